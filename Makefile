@@ -1,0 +1,93 @@
+# Set-up, build and checks in one place; everything it makes is under build/ in the checkout.
+SHELL := bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.NOTPARALLEL:
+
+VENV := build/venv
+BIN := $(VENV)/bin
+JOBS := $(shell nproc 2>/dev/null || echo 2)
+
+export PIP_CACHE_DIR := $(CURDIR)/build/cache/pip
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+export PIP_REQUIRE_VIRTUALENV := 1
+export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
+export CTEST_PARALLEL_LEVEL := $(JOBS)
+# a cmake from the virtual environment, where the system's is too old, comes first
+export PATH := $(CURDIR)/$(BIN):$(PATH)
+
+CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
+# what the installed package is made from
+SOURCES := $(shell find core plugins rig_model cmake -type f -not -name '*.pyc' 2>/dev/null) \
+	CMakeLists.txt README.md
+
+.PHONY: help demo test lint format clean setup system test-cpp test-python test-asan
+
+help: ## this list
+	@echo "make targets:"
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
+
+demo: setup ## set-up, roller-rig replay, log and report
+	@mkdir -p build/demo
+	$(BIN)/railpatch rig -o build/demo/run.mcap
+	$(BIN)/railpatch report build/demo/run.mcap -o build/demo/report.html
+	@printf '\nlog:     %s\nreport:  %s\n' \
+		"$(CURDIR)/build/demo/run.mcap" "$(CURDIR)/build/demo/report.html"
+
+test: setup lint test-cpp test-python test-asan ## set-up and every check
+	@printf '\nall checks passed:\n'
+	@$(BIN)/python .ci/summary.py $(addprefix build/junit/,cpp.xml python.xml asan.xml)
+
+setup: $(VENV)/installed ## system packages, virtual environment, package
+
+lint: $(VENV)/tools ## ruff and clang-format, nothing is changed
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/clang-format --dry-run --Werror $(CXX_FILES)
+
+format: $(VENV)/tools ## ruff and clang-format, files are changed
+	$(BIN)/ruff check --fix-only .
+	$(BIN)/ruff format .
+	$(BIN)/clang-format -i $(CXX_FILES)
+
+test-cpp: $(VENV)/tools ## C and C++ tests, release build
+	cmake --preset release
+	cmake --build --preset release
+	@mkdir -p build/junit
+	ctest --preset release --output-junit "$(CURDIR)/build/junit/cpp.xml"
+
+test-asan: $(VENV)/tools ## the same with address and undefined-behaviour sanitizers
+	cmake --preset asan
+	cmake --build --preset asan
+	@mkdir -p build/junit
+	ctest --preset asan --output-junit "$(CURDIR)/build/junit/asan.xml"
+
+test-python: setup ## pytest, against the installed package
+	@mkdir -p build/junit
+	$(BIN)/python -m pytest --junit-xml=build/junit/python.xml
+
+clean: ## removes build/
+	rm -rf build
+
+system:
+	@.ci/system-packages
+
+# pip 25.1 is the first that reads [dependency-groups]
+$(VENV)/tools: pyproject.toml | system
+	@if ! $(BIN)/python -c '' 2>/dev/null; then \
+		echo "virtual environment in $(VENV)"; \
+		rm -rf $(VENV); \
+		"$$(.ci/python)" -m venv $(VENV); \
+	fi
+	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1'
+	$(BIN)/python -m pip install --quiet --group dev
+	@if ! cmake --version | awk 'NR == 1 { split($$3, v, "."); exit !(v[1] * 100 + v[2] >= 325) }'; then \
+		$(BIN)/python -m pip install --quiet 'cmake>=3.25'; \
+	fi
+	@touch $@
+
+# C++ parts are rebuilt incrementally in build/python
+$(VENV)/installed: $(VENV)/tools $(SOURCES)
+	$(BIN)/python -m pip install --no-build-isolation --config-settings=cmake.define.RAILPATCH_WERROR=ON '.[test]'
+	@touch $@

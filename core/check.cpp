@@ -1,0 +1,203 @@
+#include "check.hpp"
+
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <limits>
+
+#include "influence.hpp"
+
+namespace railpatch {
+
+namespace {
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+struct range {
+  double low, high;
+  bool open_low, open_high;
+};
+constexpr range positive{0, inf, true, true};
+constexpr range not_negative{0, inf, false, true};
+constexpr range finite{-inf, inf, true, true};
+constexpr range angle{-1.5, 1.5, false, false};
+
+// Remembers the first field that is out of range.
+class checker {
+ public:
+  explicit checker(rp_message *message) : message_(message) {}
+
+  void number(const char *name, double value, const range &r) {
+    const bool inside = (r.open_low ? value > r.low : value >= r.low) &&
+                        (r.open_high ? value < r.high : value <= r.high);
+    if (inside || failed_) return;
+    failed_ = true;
+    set_message(message_, "%s is %g, allowed is %c%g, %g%c", name, value, r.open_low ? '(' : '[',
+                r.low, r.high, r.open_high ? ')' : ']');
+  }
+  void numbers(const char *name, const double *values, int count, const range &r) {
+    for (int i = 0; i < count && !failed_; ++i) {
+      char label[64];
+      std::snprintf(label, sizeof label, "%s[%d]", name, i);
+      number(label, values[i], r);
+    }
+  }
+  void integer(const char *name, int value, int low, int high) {
+    if ((value >= low && value <= high) || failed_) return;
+    failed_ = true;
+    set_message(message_, "%s is %d, allowed is %d ... %d", name, value, low, high);
+  }
+  void require(bool condition, const char *text) {
+    if (condition || failed_) return;
+    failed_ = true;
+    set_message(message_, "%s", text);
+  }
+  rp_error error() const { return failed_ ? RP_ERROR_VALUE : RP_OK; }
+
+ private:
+  rp_message *message_;
+  bool failed_ = false;
+};
+
+void check_grid(const rp_config &c, checker &check) {
+  const bool counted = c.elements[0] != 0 || c.elements[1] != 0;
+  const bool sized = c.element_size[0] != 0 || c.element_size[1] != 0;
+  const bool shaped = c.kind == RP_PATCH && c.geometry == RP_UNDEFORMED_DISTANCE;
+  check.require(counted != sized, "exactly one of elements and element_size must be given");
+  check.require(!shaped || sized, "undeformed_distance needs element_size");
+  for (int k = 0; k < 2; ++k) {
+    const bool line = k == 1 && c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT;
+    if (counted)
+      check.integer(k == 0 ? "elements[0]" : "elements[1]", c.elements[k], line ? 1 : 2,
+                    line ? 1 : 1000);
+    if (sized && !line)
+      check.number(k == 0 ? "element_size[0]" : "element_size[1]", c.element_size[k],
+                   {1e-9, 1, false, false});
+    check.integer(k == 0 ? "max_elements[0]" : "max_elements[1]", c.max_elements[k], 0, 1002);
+  }
+}
+
+void check_patch(const rp_config &c, checker &check) {
+  check.integer("geometry", c.geometry, RP_SEMI_AXES, RP_UNDEFORMED_DISTANCE);
+  if (c.geometry == RP_SEMI_AXES)
+    check.numbers("semi_axes", c.semi_axes, 2, {1e-7, 1, false, false});
+  if (c.geometry == RP_CURVATURES)
+    check.numbers("curvatures", c.curvatures, 2, {1e-9, 1e6, false, false});
+  if (c.geometry == RP_LINE_CONTACT) {
+    check.number("line_contact_radius", c.line_contact_radius, {1e-6, 1e6, false, false});
+    check.number("width", c.width, {1e-6, 1e3, false, false});
+    check.require(c.load == RP_FORCE, "a line contact has no approach: give normal_force");
+  }
+  if (c.geometry != RP_UNDEFORMED_DISTANCE) return;
+  check.require(c.undeformed_distance != nullptr, "undeformed_distance is null");
+  check.require(c.normal == RP_NORMAL_HALF_SPACE,
+                "undeformed_distance needs normal = half_space: Hertz takes quadratic shapes only");
+  check.integer("distance_shape[0]", c.distance_shape[0], 3, 1000);
+  check.integer("distance_shape[1]", c.distance_shape[1], 3, 1000);
+  if (check.error() == RP_OK)
+    check.numbers("undeformed_distance", c.undeformed_distance,
+                  c.distance_shape[0] * c.distance_shape[1], {-1, 1, false, false});
+}
+
+void check_wheels(const rp_config &c, checker &check) {
+  check.integer("side", c.side, RP_LEFT, RP_RIGHT);
+  check.number("nominal_radius", c.nominal_radius, {0.01, 10, false, false});
+  check.number("flange_back_distance", c.flange_back_distance, {0.01, 10, false, false});
+  check.number("flange_back_position", c.flange_back_position, {-1, 1, false, false});
+  check.integer("track", c.track, RP_RAIL, RP_ROLLER);
+  check.number("gauge", c.gauge, {0.01, 10, false, false});
+  check.number("gauge_height", c.gauge_height, {0, 0.1, false, false});
+  check.number("cant", c.cant, {-0.5, 0.5, false, false});
+  check.number("curvature", c.curvature, {-0.1, 0.1, false, false});
+  if (c.track == RP_ROLLER) {
+    check.number("roller_radius", c.roller_radius, {0.01, 100, false, false});
+    check.require(c.cant == 0, "cant must be 0 on rollers");
+    check.require(c.curvature == 0, "curvature must be 0 on rollers");
+  }
+  check.integer("max_patches", c.max_patches, 1, RP_MAX_PATCHES);
+}
+
+}  // namespace
+
+void set_message(rp_message *message, const char *format, ...) {
+  if (!message) return;
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(message->text, sizeof message->text, format, arguments);
+  va_end(arguments);
+}
+
+rp_error check_config(const rp_config &c, rp_message *message) {
+  if (c.cookie != config_cookie) {
+    set_message(message, "the config was never filled by rp_default_config");
+    return RP_ERROR_NOT_DEFAULTED;
+  }
+  checker check(message);
+  check.integer("kind", c.kind, RP_PATCH, RP_WHEELSET);
+  check.numbers("shear_modulus", c.shear_modulus, 2, {1.0, 1e15, false, false});
+  check.numbers("poisson_ratio", c.poisson_ratio, 2, {0, 0.5, false, false});
+  check.integer("load", c.load, RP_FORCE, RP_POSITION);
+  check_grid(c, check);
+  check.integer("regime", c.regime, RP_REGIME_NONE, RP_STEADY_ROLLING);
+  check.number("friction_coefficient", c.friction_coefficient, {0, 10, false, false});
+  check.number("layer_thickness", c.layer_thickness, {0, 0.1, false, false});
+  if (c.layer_thickness > 0)
+    check.number("layer_shear_modulus", c.layer_shear_modulus, {1.0, 1e15, false, false});
+  check.integer("normal", c.normal, RP_NORMAL_HERTZ, RP_NORMAL_HALF_SPACE);
+  check.integer("tangential", c.tangential, RP_TANGENTIAL_NONE, RP_TANGENTIAL_FULL);
+  check.number("tolerance", c.tolerance, {1e-12, 0.1, false, false});
+  check.integer("max_iterations", c.max_iterations, 1, 100000);
+  check.integer("spin_offset", c.spin_offset, RP_SPIN_OFFSET_NONE, RP_SPIN_OFFSET_SIXTH);
+  const bool rolling = c.regime != RP_REGIME_NONE && c.tangential != RP_TANGENTIAL_NONE;
+  const bool fast = c.tangential == RP_TANGENTIAL_FASTSIM;
+  const bool line = c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT;
+  check.require(!(rolling && fast && line), "fastsim has no line contact: use tangential = full");
+  check.require(!(rolling && fast && c.layer_thickness > 0),
+                "fastsim has no third-body layer: use tangential = full");
+  if (rolling && check.error() == RP_OK)
+    check.require(
+        std::abs(combine(c.shear_modulus, c.poisson_ratio).mismatch) < 1e-12,
+        "shear_modulus and poisson_ratio: bodies with (1-2nu)/G not equal couple the normal "
+        "and tangential directions, which this version solves for regime = none only");
+  c.kind == RP_PATCH ? check_patch(c, check) : check_wheels(c, check);
+  return check.error();
+}
+
+rp_error check_input(const rp_config &c, const rp_input &in, rp_message *message) {
+  if (in.cookie != input_cookie) {
+    set_message(message, "the input was never filled by rp_default_input");
+    return RP_ERROR_NOT_DEFAULTED;
+  }
+  checker check(message);
+  if (c.kind == RP_PATCH) {
+    if (c.load == RP_FORCE)
+      check.number("normal_force", in.normal_force, positive);
+    else
+      check.number("approach", in.approach, finite);
+    check.numbers("creepage", in.creepage, 2, finite);
+    check.number("spin_creepage", in.spin_creepage, finite);
+    check.number("rolling_speed", in.rolling_speed, not_negative);
+    check.require(in.direction == 1 || in.direction == -1, "direction must be 1 or -1");
+    return check.error();
+  }
+  check.number("y", in.y, {-1, 1, false, false});
+  if (c.load == RP_FORCE)
+    check.number("vertical_force", in.vertical_force, positive);
+  else
+    check.number("z", in.z, {-1, 1, false, false});
+  check.number("roll", in.roll, angle);
+  check.number("yaw", in.yaw, angle);
+  const char *names[] = {"speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate"};
+  const double values[] = {in.speed, in.vy, in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
+  for (int i = 0; i < 6; ++i) check.number(names[i], values[i], finite);
+  for (int side = 0; side < 2; ++side) {
+    check.numbers("wheel_offset", in.wheel_offset[side], 3, {-1, 1, false, false});
+    check.numbers("wheel_rotation", in.wheel_rotation[side], 3, angle);
+    check.numbers("rail_offset", in.rail_offset[side], 3, {-1, 1, false, false});
+    check.numbers("rail_rotation", in.rail_rotation[side], 3, angle);
+  }
+  check.number("roller_pitch_rate", in.roller_pitch_rate, finite);
+  return check.error();
+}
+
+}  // namespace railpatch

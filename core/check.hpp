@@ -1,0 +1,22 @@
+// Checks of everything that enters through the C interface: each field with its own message, naming
+// the field, the value and the allowed range.
+#pragma once
+
+#include "railpatch.h"
+
+namespace railpatch {
+
+inline constexpr uint32_t config_cookie = 0x52504331;  // "RPC1"
+inline constexpr uint32_t input_cookie = 0x52504931;   // "RPI1"
+
+// Each returns RP_OK or the first error found, with its message (which may be null).
+rp_error check_config(const rp_config &config, rp_message *message);
+rp_error check_input(const rp_config &config, const rp_input &input, rp_message *message);
+
+// Writes a formatted text, cut to size; does nothing where message is null.
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+void set_message(rp_message *message, const char *format, ...);
+
+}  // namespace railpatch

@@ -1,0 +1,47 @@
+// A contact scene: configuration, workspace and history of one handle, for a patch given directly
+// or for the wheels of a wheelset.
+#pragma once
+
+#include <vector>
+
+#include "patch_contact.hpp"
+#include "wheel_contact.hpp"
+
+namespace railpatch {
+
+class contact {
+ public:
+  // The config has been checked; throws profile_error or std::bad_alloc.
+  explicit contact(const rp_config &config);
+
+  void step(const rp_input &input, rp_result &result);
+  void reset();
+
+  size_t state_size() const;
+  void save_state(unsigned char *buffer) const;
+  bool restore_state(const unsigned char *buffer, size_t size);
+
+  rp_error field(int side, int patch, rp_field field, double *values, size_t *count) const;
+  void describe(rp_stage_info *info) const;
+  const rp_config &config() const { return config_; }
+
+ private:
+  bool has_side(int side) const;
+  patch_memory &memory(int side, int patch);
+  const patch_memory &memory(int side, int patch) const;
+  void step_patch(const rp_input &input, rp_result &result);
+  void step_wheels(const rp_input &input, rp_result &result);
+  template <class Evaluate>
+  void find_z(double vertical_force, Evaluate &&evaluate, rp_result &result);
+  bool state_fits(const unsigned char *patches, size_t size) const;
+
+  rp_config config_;
+  fft_plans plans_;
+  patch_contact solver_;
+  std::vector<patch_memory> memory_;   // of the sides in use, max_patches each
+  std::vector<wheel_contact> wheels_;  // of the sides in use
+  double depth_ = 0;                   // m, last z found minus first touch; 0: none
+  aligned_buffer<double> shape_;       // undeformed distance of the case
+};
+
+}  // namespace railpatch

@@ -1,0 +1,47 @@
+// Seam over the FFT library: real two-dimensional transforms of a fixed list of sizes.
+//
+// Layout: real arrays are [ny][nx] with x fastest; spectra are [ny][nx/2 + 1], x halved.
+// Normalisation: forward carries no factor, backward carries none either, so backward(forward(f))
+// is nx*ny*f; the caller divides. Sign: forward uses exp(-i k x).
+#pragma once
+
+#include <complex>
+#include <memory>
+#include <vector>
+
+#include "memory.hpp"
+
+namespace railpatch {
+
+class fft_plans {
+ public:
+  // Plans every combination of the given sizes (ascending); the only place that allocates.
+  fft_plans(std::vector<int> sizes_x, std::vector<int> sizes_y);
+  ~fft_plans();
+  fft_plans(const fft_plans &) = delete;
+  fft_plans &operator=(const fft_plans &) = delete;
+
+  // Index of the smallest plan with at least the given sizes, -1 where there is none.
+  int find(int min_nx, int min_ny) const;
+  int nx(int plan) const { return sizes_x_[static_cast<size_t>(plan) / sizes_y_.size()]; }
+  int ny(int plan) const { return sizes_y_[static_cast<size_t>(plan) % sizes_y_.size()]; }
+  int max_nx() const { return sizes_x_.back(); }
+  int max_ny() const { return sizes_y_.back(); }
+  size_t bytes() const;
+
+  // Arrays must come from aligned_buffer (memory.hpp); forward keeps its input, backward does not.
+  void forward(int plan, const double *values, std::complex<double> *spectrum) const;
+  void backward(int plan, std::complex<double> *spectrum, double *values) const;
+
+  static const char *backend();
+
+ private:
+  struct plan_pair;
+  std::vector<int> sizes_x_, sizes_y_;
+  std::vector<plan_pair> plans_;
+};
+
+// Smallest even number >= n whose only prime factors are 2, 3 and 5.
+int smooth_size(int n);
+
+}  // namespace railpatch

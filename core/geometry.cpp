@@ -1,0 +1,475 @@
+#include "geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace railpatch {
+
+namespace {
+
+constexpr double standstill = 1e-12;   // m/s
+constexpr double grazing = 0.03;       // least cosine between n and a surface's normal
+constexpr double aside = 0.02;         // m, what yaw may move the locus sideways
+constexpr double step_limit = 2e-3;    // m, of a newton step along a profile
+
+vec3 operator+(const vec3 &a, const vec3 &b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+vec3 operator-(const vec3 &a, const vec3 &b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+vec3 operator*(double c, const vec3 &a) { return {c * a[0], c * a[1], c * a[2]}; }
+double dot(const vec3 &a, const vec3 &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+vec3 cross(const vec3 &a, const vec3 &b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+vec3 turn(const mat3 &m, const vec3 &a) { return {dot(m[0], a), dot(m[1], a), dot(m[2], a)}; }
+vec3 column(const mat3 &m, size_t j) { return {m[0][j], m[1][j], m[2][j]}; }
+vec3 turn_back(const mat3 &m, const vec3 &a) {
+  return {dot(column(m, 0), a), dot(column(m, 1), a), dot(column(m, 2), a)};
+}
+
+// Rx(roll) Rz(yaw): its first row has no z component, which keeps the locus in closed form
+mat3 roll_yaw(double roll, double yaw) {
+  const double c = std::cos(roll), s = std::sin(roll), d = std::cos(yaw), t = std::sin(yaw);
+  return {{{d, -t, 0}, {c * t, c * d, -s}, {s * t, s * d, c}}};
+}
+
+constexpr mat3 identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+
+struct frame_axes {
+  vec3 x, s, n;
+};
+frame_axes axes_of(const contact_frame &f) {
+  const double c = std::cos(f.contact_angle), s = std::sin(f.contact_angle);
+  return {{1, 0, 0}, {0, c, s}, {0, -s, c}};
+}
+
+}  // namespace
+
+// A surface seen from the contact frame: of revolution about an axis, or prismatic along x.
+struct surface {
+  const placed_profile *meridian;
+  vec3 q0, qx, qs, qn;  // frame origin and axes in the surface's own axes
+  double radius, sign;  // r = radius + sign z
+  bool prismatic;
+
+  vec3 at(double x, double s) const { return q0 + x * qx + s * qs; }
+};
+
+namespace {
+
+surface seen_from(const contact_frame &frame, const placed_profile &meridian, const vec3 &origin,
+                  const mat3 &axes, double radius, double sign, bool prismatic) {
+  const frame_axes f = axes_of(frame);
+  return {&meridian,
+          turn_back(axes, frame.origin - origin),
+          turn_back(axes, f.x),
+          turn_back(axes, f.s),
+          turn_back(axes, f.n),
+          radius,
+          sign,
+          prismatic};
+}
+
+// Where the line along n through a point meets a surface.
+struct hit {
+  double p = 0, n = 0;  // m, arc length of the meridian, height along n
+  int interval = 0;
+  bool valid = false;
+};
+
+// Newton for (p, n): u(p) = q_y and r(p) = distance from the axis, with q = base + n qn. Stops when
+// the step leaves an error, quadratic in it, below 1e-10 m.
+bool meet(const surface &f, const vec3 &base, hit &h) {
+  const profile &curve = f.meridian->curve();
+  for (int i = 0; i < 30; ++i) {
+    h.interval = curve.interval(h.p, h.interval);
+    const curve_point m = f.meridian->evaluate(h.p, h.interval);
+    const vec3 q = base + h.n * f.qn;
+    const double r = f.radius + f.sign * m.z, dr = f.sign * m.dz;
+    const double f1 = m.y - q[1];
+    const double f2 =
+        f.prismatic ? q[2] - r : 0.5 * (q[0] * q[0] + q[2] * q[2] - r * r) / r;
+    const double g = f.prismatic ? f.qn[2] : (q[0] * f.qn[0] + q[2] * f.qn[2]) / r;
+    const double det = m.dy * g - dr * f.qn[1];
+    if (!(std::fabs(det) > grazing)) return h.valid = false;
+    const double dp = -(f1 * g + f.qn[1] * f2) / det, dn = -(m.dy * f2 + dr * f1) / det;
+    const double scale = std::min(1.0, step_limit / std::max(std::fabs(dp), 1e-300));
+    h.p += scale * dp;
+    h.n += scale * dn;
+    if (std::fabs(dp) < 4e-7 && std::fabs(dn) < 4e-7) return h.valid = curve.covers(h.p);
+  }
+  return h.valid = false;
+}
+
+// the sample of the meridian nearest to the frame's origin starts the search
+hit nearest(const surface &f) {
+  const placed_profile &m = *f.meridian;
+  const double u = f.q0[1];
+  const double r = f.prismatic ? f.q0[2] : std::hypot(f.q0[0], f.q0[2]);
+  double best = std::numeric_limits<double>::infinity();
+  int at = m.first();
+  for (int i = m.first(); i <= m.last(); ++i) {
+    const double a = m.sample(i).y - u, b = f.radius + f.sign * m.sample(i).z - r;
+    if (a * a + b * b < best) best = a * a + b * b, at = i;
+  }
+  hit h;
+  h.p = m.sample_s(at);
+  h.interval = m.curve().interval(h.p);
+  return h;
+}
+
+// One row of heights from its middle column outwards; each start extrapolates its neighbours, so
+// that one newton step is nearly always enough.
+void march(const surface &f, const surface_grid &g, int row, int from, int step, const hit &middle,
+           double *heights) {
+  const double s = g.y0 + row * g.dy;
+  hit a = middle, b = middle, c = middle;
+  for (int i = from, k = 0; i >= 0 && i < g.nx; i += step, ++k) {
+    hit h = a;
+    if (k > 1) h.p = 2 * a.p - b.p;
+    if (k > 2) h.n = 3 * (a.n - b.n) + c.n;
+    const bool met = meet(f, f.at(g.x0 + i * g.dx, s), h);
+    heights[i] = met ? h.n : std::numeric_limits<double>::quiet_NaN();
+    if (!met) {
+      for (; i >= 0 && i < g.nx; i += step) heights[i] = std::numeric_limits<double>::quiet_NaN();
+      return;
+    }
+    c = b;
+    b = a;
+    a = h;
+  }
+}
+
+void fill_row(const surface &f, const surface_grid &g, int row, int column, const hit &middle,
+              double *heights) {
+  if (!middle.valid || f.prismatic) {
+    const double n = middle.valid ? middle.n : std::numeric_limits<double>::quiet_NaN();
+    std::fill(heights, heights + g.nx, n);
+    return;
+  }
+  march(f, g, row, column, 1, middle, heights);
+  march(f, g, row, column - 1, -1, middle, heights);
+}
+
+int clamp_index(double position, int count) {
+  const double last = count - 1;
+  return static_cast<int>(std::clamp(std::round(position), 0.0, last));
+}
+
+// rail minus wheel, in place of the wheel's heights
+void subtract(const double *rail, int count, double *h) {
+  for (int i = 0; i < count; ++i) {
+    const double d = rail[i] - h[i];
+    h[i] = std::isfinite(d) ? d : side_geometry::no_surface;
+  }
+}
+
+// calls use(row, middle) for all rows, from the one nearest to the origin outwards
+template <class F>
+void for_rows(const surface &f, const surface_grid &g, int column, F use) {
+  const double x = g.x0 + column * g.dx;
+  const int start = clamp_index(-g.y0 / g.dy, g.ny);
+  hit origin = nearest(f);
+  meet(f, f.at(0, 0), origin);
+  for (int direction : {1, -1}) {
+    hit h = origin;
+    for (int row = direction > 0 ? start : start - 1; row >= 0 && row < g.ny; row += direction) {
+      // a row that is missed leaves the start of the next one as it was
+      hit next = h;
+      if (meet(f, f.at(x, g.y0 + row * g.dy), next)) h = next;
+      use(row, next);
+    }
+  }
+}
+
+}  // namespace
+
+wheelset_state mirrored(wheelset_state w) {
+  for (double *v : {&w.y, &w.roll, &w.yaw, &w.vy, &w.roll_rate, &w.yaw_rate}) *v = -*v;
+  return w;
+}
+
+deviation mirrored(deviation d) {
+  return {mirrored_vector(d.offset), mirrored_axial(d.rotation)};
+}
+
+side_motion mirrored(side_motion m) {
+  return {mirrored(m.wheelset), mirrored(m.wheel), mirrored(m.rail), m.roller_pitch_rate};
+}
+
+track_config mirrored(track_config t) {
+  t.curvature = -t.curvature;
+  return t;
+}
+
+contact_frame mirrored(contact_frame f) { return {mirrored_vector(f.origin), -f.contact_angle}; }
+
+creepage_state mirrored(creepage_state c) {
+  c.eta = -c.eta;
+  c.phi = -c.phi;
+  return c;
+}
+
+vec3 mirrored_vector(vec3 v) { return {v[0], -v[1], v[2]}; }
+vec3 mirrored_axial(vec3 v) { return {-v[0], v[1], -v[2]}; }
+
+side_geometry::side_geometry(const profile &wheel, const profile &rail,
+                             const wheel_config &wheel_sizes, const track_config &track)
+    : sizes_(wheel_sizes), track_(track), wheel_(wheel, body::wheel), rail_(rail, body::rail) {
+  gaps_.resize(static_cast<size_t>((wheel.end() - wheel.begin()) / wheel_.step() + 1.5));
+  place_rail_marker();
+  place({});
+}
+
+// the gauge face is the innermost point down to gauge_height below the top of the canted rail
+void side_geometry::place_rail_marker() {
+  const bool roller = track_.kind == track_kind::roller;
+  rail_.place(roller ? 0 : -track_.cant, 0, 0);
+  const double top = rail_.extreme(), depth = rail_.evaluate(top).z + track_.gauge_height;
+  double above = top, below = top;
+  int i = static_cast<int>((top - rail_.curve().begin()) / rail_.step());
+  double innermost = rail_.evaluate(top).y;
+  for (; i >= 0; --i) {
+    below = rail_.sample_s(i);
+    if (rail_.sample(i).z >= depth) break;
+    above = below;
+    innermost = std::min(innermost, rail_.sample(i).y);
+  }
+  // the sample below the gauge height only brackets it
+  for (int k = 0; i >= 0 && k < 60; ++k) {
+    const double m = 0.5 * (above + below);
+    (rail_.evaluate(m).z < depth ? above : below) = m;
+  }
+  innermost = std::min(innermost, rail_.evaluate(above).y);
+  marker_y_ = 0.5 * track_.gauge - innermost;
+  marker_z_ = roller ? 0 : -rail_.evaluate(top).z;
+}
+
+void side_geometry::place(const side_motion &motion) {
+  motion_ = motion;
+  const wheelset_state &w = motion.wheelset;
+  const vec3 &off = motion.wheel.offset, &rail_off = motion.rail.offset;
+  const bool roller = track_.kind == track_kind::roller;
+  const double marker = 0.5 * sizes_.flange_back_distance - sizes_.flange_back_position;
+  centre_ = {0, w.y, w.z - sizes_.nominal_radius};
+  wheelset_axes_ = roll_yaw(w.roll, w.yaw);
+  wheel_axes_ = roll_yaw(w.roll, w.yaw + motion.wheel.rotation[2]);
+  // the wheel's own yaw turns about its marker's plane, where u = 0 then lies
+  axis_origin_ = centre_ + turn(wheelset_axes_, {off[0], marker, 0});
+  wheel_.place(motion.wheel.rotation[0], off[1], off[2]);
+  const double lean = motion.rail.rotation[0] - (roller ? 0 : track_.cant);
+  rail_.place(lean, marker_y_ + rail_off[1], marker_z_ + rail_off[2]);
+  axle_x_ = rail_off[0];
+  axle_z_ = track_.roller_radius + rail_off[2];
+  placed_z_ = w.z;
+  lift_ = 0;
+  scan();
+}
+
+void side_geometry::move_to(double z) {
+  const double change = z - motion_.wheelset.z;
+  motion_.wheelset.z = z;
+  centre_[2] = z - sizes_.nominal_radius;
+  axis_origin_[2] += change;
+  lift_ = z - placed_z_;
+}
+
+// Sine of the angle along the circumference. With P = (r sin, u, r cos) and the normal
+// N = (sin du, -dr, cos du) in wheel axes, a rail asks for N_x = 0 in track axes; a roller for equal
+// slopes -N_x/N_z = (x - axle)/(axle_z - z), with z = wheel's z + gap the roller's.
+double side_geometry::locus_sine(const curve_point &p, double gap, double tolerance) const {
+  const mat3 &m = wheel_axes_;
+  double sine = m[0][1] * p.dz / (m[0][0] * p.dy);
+  if (track_.kind == track_kind::rail) return sine;
+  const double r = sizes_.nominal_radius + p.z;
+  double change = 1;
+  for (int i = 0; i < 8 && std::fabs(change) > tolerance; ++i) {
+    sine = std::clamp(sine, -0.9, 0.9);
+    const double cosine = std::sqrt(1 - sine * sine);
+    const vec3 n = turn(m, {sine * p.dy, -p.dz, cosine * p.dy});
+    const vec3 at = wheel_point(p, sine);
+    const double reach = axle_z_ - at[2] - gap;
+    const double f = -n[0] / n[2] - (at[0] - axle_x_) / reach;
+    const double dnx = m[0][0] * p.dy * cosine;
+    const double dnz = (m[2][0] * cosine - m[2][2] * sine) * p.dy;
+    const double slope =
+        -(dnx * n[2] - n[0] * dnz) / (n[2] * n[2]) - m[0][0] * r * cosine / reach;
+    change = f / slope * cosine;
+    sine -= change;
+  }
+  return sine;
+}
+
+vec3 side_geometry::wheel_point(const curve_point &p, double sine) const {
+  const double r = sizes_.nominal_radius + p.z;
+  return axis_origin_ + turn(wheel_axes_, {r * sine, p.y, r * std::sqrt(1 - sine * sine)});
+}
+
+// all samples of the wheel against chords of the rail: both are ordered in y, so walk along both
+void side_geometry::scan() {
+  std::fill(gaps_.begin(), gaps_.end(), far_apart);
+  overlap_ = false;
+  const bool roller = track_.kind == track_kind::roller;
+  const double from = rail_.sample(rail_.first()).y - aside, to = rail_.sample(rail_.last()).y + aside;
+  int k = rail_.first();
+  for (int i = wheel_.first(); i <= wheel_.last(); ++i) {
+    // where the profiles have no lateral position in common there is nothing to find
+    const double y = wheel_point(wheel_.sample(i), 0)[1];
+    if (y < from || y > to) continue;
+    const double sine = locus_sine(wheel_.sample(i), 0, 1e-5);
+    if (!(std::fabs(sine) < 0.9)) continue;
+    const vec3 p = wheel_point(wheel_.sample(i), sine);
+    while (k + 2 <= rail_.last() && rail_.sample(k + 1).y < p[1]) ++k;
+    while (k > rail_.first() && rail_.sample(k).y > p[1]) --k;
+    const curve_point &a = rail_.sample(k), &b = rail_.sample(std::min(k + 1, rail_.last()));
+    if (!(p[1] >= a.y && p[1] <= b.y)) continue;
+    double z = a.z + (b.z - a.z) * (p[1] - a.y) / std::max(b.y - a.y, 1e-12);
+    const double x = p[0] - axle_x_, r = axle_z_ - z;
+    if (roller) z = axle_z_ - std::sqrt(std::max(r * r - x * x, 0.0));
+    gaps_[static_cast<size_t>(i)] = z - p[2];
+    overlap_ = true;
+  }
+}
+
+bool side_geometry::rail_surface(double x, double y, double &z, double &angle) const {
+  double s;
+  if (!rail_.find(y, s)) return false;
+  const curve_point p = rail_.evaluate(s);
+  z = p.z;
+  angle = inclination(p);
+  if (track_.kind == track_kind::rail) return true;
+  const double r = axle_z_ - p.z, dx = x - axle_x_;
+  if (!(r * r > dx * dx)) return false;
+  z = axle_z_ - std::sqrt(r * r - dx * dx);
+  return true;
+}
+
+locus_point side_geometry::locus(double s) const {
+  locus_point l;
+  const curve_point p = wheel_.evaluate(s);
+  if (!wheel_.curve().covers(s) || !(p.dy > 0)) return l;
+  const double sine = locus_sine(p, sampled_gap(s), 1e-9);
+  if (!(std::fabs(sine) < 0.9)) return l;
+  l.wheel = wheel_point(p, sine);
+  l.valid = rail_surface(l.wheel[0], l.wheel[1], l.rail_z, l.contact_angle);
+  if (!l.valid) return l;
+  l.gap = l.rail_z - l.wheel[2];
+  set_rates(p, sine, l);
+  return l;
+}
+
+// how the gap opens in x, and how the locus moves with s (on a roller to first order in sine)
+void side_geometry::set_rates(const curve_point &p, double sine, locus_point &l) const {
+  const double r = sizes_.nominal_radius + p.z, cosine = std::sqrt(1 - sine * sine);
+  const mat3 &m = wheel_axes_;
+  double dsine = m[0][1] / m[0][0] * (p.d2z * p.dy - p.dz * p.d2y) / (p.dy * p.dy);
+  l.curvature = 0.5 / r;
+  if (track_.kind == track_kind::roller) {
+    const double reach = axle_z_ - l.rail_z;
+    l.curvature += 0.5 / reach;
+    dsine = (dsine - m[0][1] * p.dy / reach) / (1 + r / reach);
+  }
+  l.lateral_rate = m[1][0] * (p.dz * sine + r * dsine) + m[1][1] * p.dy +
+                   m[1][2] * (p.dz * cosine - r * dsine * sine / cosine);
+}
+
+// by chords between the samples: near enough where only the roller's slope depends on it
+double side_geometry::sampled_gap(double s) const {
+  const double at = (s - wheel_.curve().begin()) / wheel_.step();
+  const int i = std::clamp(static_cast<int>(at), 0, sample_count() - 2);
+  const double a = sample_gap(i), b = sample_gap(i + 1), share = at - i;
+  return std::max(a, b) < 0.5 * far_apart ? a + share * (b - a) : 0;
+}
+
+surface side_geometry::wheel_surface(const contact_frame &frame) const {
+  return seen_from(frame, wheel_, axis_origin_, wheel_axes_, sizes_.nominal_radius, 1, false);
+}
+
+surface side_geometry::rail_surface(const contact_frame &frame) const {
+  if (track_.kind == track_kind::rail)
+    return seen_from(frame, rail_, {0, 0, 0}, identity, 0, 1, true);
+  return seen_from(frame, rail_, {axle_x_, 0, axle_z_}, identity, axle_z_, -1, false);
+}
+
+void side_geometry::undeformed_distance(const contact_frame &frame, const surface_grid &g,
+                                        double *h) const {
+  const int column = clamp_index(-g.x0 / g.dx, g.nx);
+  const auto at = [&](int row) { return h + static_cast<std::ptrdiff_t>(row) * g.nx; };
+  const surface wheel = wheel_surface(frame);
+  for_rows(wheel, g, column,
+           [&](int row, const hit &m) { fill_row(wheel, g, row, column, m, at(row)); });
+  // the rail's heights are used row by row, in strips that fit on the stack
+  const surface rail = rail_surface(frame);
+  constexpr int strip = 256;
+  double heights[strip];
+  for (int first = 0; first < g.nx; first += strip) {
+    surface_grid part = g;
+    part.nx = std::min(strip, g.nx - first);
+    part.x0 = g.x0 + first * g.dx;
+    const int middle = std::clamp(column - first, 0, part.nx - 1);
+    for_rows(rail, part, middle, [&](int row, const hit &m) {
+      fill_row(rail, part, row, middle, m, heights);
+      subtract(heights, part.nx, at(row) + first);
+    });
+  }
+}
+
+void side_geometry::distances(const contact_frame &frame, const double *x, const double *s,
+                              int count, double *h) const {
+  const surface wheel = wheel_surface(frame), rail = rail_surface(frame);
+  hit on_wheel = nearest(wheel), on_rail = nearest(rail);
+  for (int i = 0; i < count; ++i) {
+    hit a = on_wheel, b = on_rail;
+    const bool met = meet(wheel, wheel.at(x[i], s[i]), a) && meet(rail, rail.at(x[i], s[i]), b);
+    h[i] = met ? b.n - a.n : no_surface;
+    if (met) on_wheel = a, on_rail = b;
+  }
+}
+
+creepage_state side_geometry::creepages(const contact_frame &frame, double approach) const {
+  const wheelset_state &w = motion_.wheelset;
+  const frame_axes f = axes_of(frame);
+  const vec3 at = frame.origin + approach * f.n;  // of the wheel's undeformed surface
+  const double c = std::cos(w.roll), s = std::sin(w.roll);
+  // the track frame follows the centre line: in a curve it turns about its z axis
+  const vec3 frame_spin{0, 0, track_.curvature * w.speed};
+  const vec3 swing = vec3{w.roll_rate, 0, 0} + w.yaw_rate * vec3{0, -s, c};
+  const vec3 roll = w.pitch_rate * column(wheel_axes_, 1);
+  const vec3 carried = vec3{w.speed, w.vy, w.vz} + cross(frame_spin, at) + cross(swing, at - centre_);
+  const vec3 turned = cross(roll, at - axis_origin_);
+  const vec3 roller_spin{0, motion_.roller_pitch_rate, 0};
+  const bool roller = track_.kind == track_kind::roller;
+  vec3 slip = carried + turned, spin = frame_spin + swing + roll;
+  double forward = carried[0], backward = turned[0];
+  if (roller) {
+    const vec3 below = cross(roller_spin, frame.origin - vec3{axle_x_, 0, axle_z_});
+    forward = -below[0];
+    backward = slip[0];
+    slip = slip - below;
+    spin = spin - roller_spin;
+  }
+  creepage_state out;
+  const double speed = 0.5 * (std::fabs(forward) + std::fabs(backward));
+  if (!(speed > standstill)) return out;
+  const double heading = std::fabs(forward - backward) > standstill ? forward - backward : forward;
+  out.rolling_speed = speed;
+  out.direction = heading > 0 ? 1 : -1;
+  out.xi = slip[0] / speed;
+  out.eta = dot(f.s, slip) / speed;
+  out.phi = dot(f.n, spin) / speed;
+  return out;
+}
+
+vec3 side_geometry::lever(const contact_frame &frame) const { return frame.origin - centre_; }
+
+double side_geometry::rolling_radius(const contact_frame &frame, double approach) const {
+  const vec3 at = frame.origin + approach * axes_of(frame).n - axis_origin_;
+  const vec3 axis = column(wheel_axes_, 1);
+  const vec3 off_axis = at - dot(at, axis) * axis;
+  return std::sqrt(dot(off_axis, off_axis));
+}
+
+size_t side_geometry::bytes() const {
+  return sizeof *this + wheel_.bytes() + rail_.bytes() + gaps_.size() * sizeof(double);
+}
+
+}  // namespace railpatch

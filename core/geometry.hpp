@@ -1,0 +1,169 @@
+// Placement of wheelset, track and roller; contact locus; undeformed distance; creepages.
+//
+// Axes. Track: x forward, y right, z down, origin in the plane of the rails' (rollers') tops.
+// Wheelset: turned by Rx(roll) Rz(yaw), centre one nominal radius above that plane at z = 0.
+// Contact frame: x as the track's, s lateral along the surface, n into the rail; turned by the
+// contact angle about x: s = (0, cos, sin), n = (0, -sin, cos).
+// Signs. Undeformed distance > 0 is a gap. Creepages are wheel minus rail, divided by the rolling
+// speed. Everything here is a right-hand side; a left one is its mirror image: feed mirrored inputs,
+// mirror the results back. Mirroring changes signs only, so it is exact.
+//
+// Deviations. A wheel's offset y, z and rotation about x move its profile in its meridian plane
+// (about the profile's origin); it still turns about the wheelset's axis. Offset x and rotation
+// about z move that axis for this wheel. Rotation about y does nothing: the wheel is round.
+// A rail's offset y, z and rotation about x move it; offset x and rotations about y, z have no
+// effect on a prismatic rail. A roller's offset moves its axle, the rotation about x turns its
+// profile in its meridian plane; rotations about y, z have no effect.
+#pragma once
+
+#include <array>
+
+#include "profile.hpp"
+
+namespace railpatch {
+
+using vec3 = std::array<double, 3>;
+using mat3 = std::array<vec3, 3>;  // rows
+
+struct wheelset_state {
+  double y = 0, z = 0;           // m
+  double roll = 0, yaw = 0;      // rad
+  double speed = 0;              // m/s, of the track frame along the centre line
+  double vy = 0, vz = 0;         // m/s
+  double roll_rate = 0, yaw_rate = 0, pitch_rate = 0;  // rad/s, relative to the track frame
+};
+
+struct deviation {
+  vec3 offset{};    // m
+  vec3 rotation{};  // rad
+};
+
+enum class track_kind { rail, roller };
+
+struct track_config {
+  track_kind kind = track_kind::rail;
+  double gauge = 0, gauge_height = 0;  // m
+  double cant = 0;                     // rad, rail; > 0 leans towards the track centre
+  double curvature = 0;                // 1/m, right-hand curve > 0
+  double roller_radius = 0;            // m
+};
+
+struct wheel_config {
+  double nominal_radius = 0, flange_back_distance = 0, flange_back_position = 0;  // m
+};
+
+// All that moves in a step, for one side.
+struct side_motion {
+  wheelset_state wheelset;
+  deviation wheel, rail;
+  double roller_pitch_rate = 0;  // rad/s, > 0 forward
+};
+
+struct contact_frame {
+  vec3 origin{};             // track axes, on the rail surface
+  double contact_angle = 0;  // rad
+};
+
+struct surface_grid {
+  int nx = 0, ny = 0;
+  double x0 = 0, y0 = 0;  // centre of element (0, 0): x, s
+  double dx = 0, dy = 0;
+};
+
+struct creepage_state {
+  double xi = 0, eta = 0;    // -, longitudinal, lateral
+  double phi = 0;            // rad/m, spin
+  double rolling_speed = 0;  // m/s, >= 0
+  int direction = 0;         // rolling towards +x (1), -x (-1); 0 at standstill: creepages are 0
+};
+
+wheelset_state mirrored(wheelset_state w);
+deviation mirrored(deviation d);
+side_motion mirrored(side_motion m);
+track_config mirrored(track_config t);
+contact_frame mirrored(contact_frame f);
+creepage_state mirrored(creepage_state c);
+vec3 mirrored_vector(vec3 v);  // force, position
+vec3 mirrored_axial(vec3 v);   // moment, rotation
+
+// The vertical gap at a point of the contact locus: on each lateral position the longitudinal
+// position where the surfaces come closest.
+struct locus_point {
+  bool valid = false;      // both profiles reach there
+  vec3 wheel{};            // m, track axes, on the wheel
+  double gap = 0;          // m, vertical, rail minus wheel
+  double rail_z = 0;       // m, of the rail surface there
+  double contact_angle = 0;  // rad, of the rail surface
+  double curvature = 0;    // 1/m, the gap grows with curvature x^2
+  double lateral_rate = 0;  // d(y)/d(s) along the locus
+};
+
+struct surface;
+
+class side_geometry {
+ public:
+  static constexpr double no_surface = 0.01;  // m, undeformed distance where a profile has ended
+  static constexpr double far_apart = 1.0;    // m, gap along the locus there
+
+  // The profiles must outlive this object. Allocates; nothing else here does.
+  side_geometry(const profile &wheel, const profile &rail, const wheel_config &wheel_sizes,
+                const track_config &track);
+
+  void place(const side_motion &motion);
+  // Only z changes: the locus stays as it is, so this is nearly free.
+  void move_to(double z);
+  const side_motion &motion() const { return motion_; }
+
+  // Approximate vertical gaps at equally spaced points of the wheel's profile (within 1 um), for
+  // the contact search; no_overlap() where the profiles have no lateral position in common.
+  int sample_count() const { return static_cast<int>(gaps_.size()); }
+  double sample_gap(int i) const { return gaps_[static_cast<std::size_t>(i)] - lift_; }
+  double sample_s(int i) const { return wheel_.sample_s(i); }
+  bool no_overlap() const { return !overlap_; }
+
+  // Exact, at arc length s of the wheel's profile.
+  locus_point locus(double s) const;
+  // The rail surface at (x, y): z, and the angle of its profile; false beyond the profile.
+  bool rail_surface(double x, double y, double &z, double &angle) const;
+  // Undeformed distance at points (x, s) of the frame, neighbours following each other.
+  void distances(const contact_frame &frame, const double *x, const double *s, int count,
+                 double *h) const;
+
+  // h[ny][nx], x fastest; no_surface beyond the profiles.
+  void undeformed_distance(const contact_frame &frame, const surface_grid &grid, double *h) const;
+
+  creepage_state creepages(const contact_frame &frame, double approach) const;
+  // From the wheelset centre to the contact reference, track axes: for moments.
+  vec3 lever(const contact_frame &frame) const;
+  // Distance of the wheel's contact point from the wheelset's axis.
+  double rolling_radius(const contact_frame &frame, double approach) const;
+
+  double rail_marker_y() const { return marker_y_; }
+  double rail_marker_z() const { return marker_z_; }
+  std::size_t bytes() const;
+
+ private:
+  void place_rail_marker();
+  void scan();
+  surface wheel_surface(const contact_frame &frame) const;
+  surface rail_surface(const contact_frame &frame) const;
+  double locus_sine(const curve_point &p, double gap, double tolerance) const;
+  double sampled_gap(double s) const;
+  void set_rates(const curve_point &p, double sine, locus_point &l) const;
+  vec3 wheel_point(const curve_point &p, double sine) const;
+
+  wheel_config sizes_;
+  track_config track_;
+  side_motion motion_;
+  placed_profile wheel_, rail_;
+  std::vector<double> gaps_;  // by sample of the wheel, for z = placed_z_
+  double placed_z_ = 0, lift_ = 0;
+  double marker_y_ = 0, marker_z_ = 0;
+  double axle_z_ = 0, axle_x_ = 0;  // roller
+  vec3 centre_{};                   // wheelset
+  vec3 axis_origin_{};              // of this wheel
+  mat3 wheelset_axes_{}, wheel_axes_{};
+  bool overlap_ = false;
+};
+
+}  // namespace railpatch

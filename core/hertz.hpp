@@ -1,0 +1,31 @@
+// Hertz contact of two quadratic surfaces in closed form, by Carlson's symmetric elliptic
+// integrals.
+//
+// For p(x, y) = p0 sqrt(1 - (x/a)^2 - (y/b)^2) and E* = G/(1 - nu) of the combined bodies
+// (Johnson 1985, "Contact mechanics", section 3.3; Carlson 1995 for R_F and R_D):
+//   curvatures   c0 = F/(2 pi E*) R_D(0, b^2, a^2),  c1 = F/(2 pi E*) R_D(0, a^2, b^2)
+//   approach     3 F/(2 pi E*) R_F(0, a^2, b^2),     p0 = 3 F/(2 pi a b)
+// where the undeformed distance is c0 x^2 + c1 y^2. Line contact of radius R and force per length
+// f: a^2 = 4 f R/(pi E*), p0 = 2 f/(pi a).
+#pragma once
+
+namespace railpatch {
+
+struct hertz_contact {
+  double semi_axes[2] = {0, 0};   // m, along rolling, lateral
+  double curvatures[2] = {0, 0};  // 1/m
+  double normal_force = 0;        // N
+  double approach = 0;            // m
+  double max_pressure = 0;        // Pa
+};
+
+hertz_contact hertz_from_force(const double curvatures[2], double modulus, double force);
+hertz_contact hertz_from_approach(const double curvatures[2], double modulus, double approach);
+// The curvatures that give the ellipse under the load.
+hertz_contact hertz_from_ellipse(const double semi_axes[2], double modulus, double force);
+hertz_contact hertz_ellipse_from_approach(const double semi_axes[2], double modulus,
+                                          double approach);
+// Line contact, force and approach-free: semi_axes[1] and the approach stay zero.
+hertz_contact hertz_line(double radius, double width, double modulus, double force);
+
+}  // namespace railpatch

@@ -1,0 +1,304 @@
+/* Railpatch: wheel-rail contact mechanics, C interface (the only public header).
+ *
+ * Life cycle: rp_default_config -> rp_create -> (rp_default_input once) rp_step ... -> rp_destroy.
+ * rp_create is the only call that allocates; rp_step allocates nothing, keeps no time of day,
+ * prints nothing and touches no global. Different handles may be used on different threads at once;
+ * one handle is used by one thread at a time. Equal inputs after equal histories give equal bits.
+ *
+ * Units: SI throughout (m, N, Pa, rad, s, W, J). Frames and signs (right-handed everywhere):
+ *   track frame    x forward along the track centre line, y right, z down; origin in the plane on
+ *                  the rails' (rollers') tops. Forward rolling means wheelset pitch_rate < 0 and
+ *                  roller pitch rate > 0.
+ *   contact frame  origin on the rail surface at the contact reference, x along rolling (track x),
+ *                  s lateral along the surface, n the normal pointing down into the rail; the
+ *                  contact angle turns about x from track z to n.
+ *   forces         act on the wheel; creepages are wheel minus rail over the rolling speed, so a
+ *                  positive creepage gives a negative creep force.
+ * Index [2] of material data is {wheel, rail}; of sides {RP_LEFT, RP_RIGHT}; of grids and patch
+ * vectors {along rolling, lateral}. Left profiles are given as right ones (flange/gauge side at
+ * negative y); the core mirrors.
+ */
+#ifndef RAILPATCH_H
+#define RAILPATCH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(_WIN32)
+#if defined(RP_BUILD)
+#define RP_API __declspec(dllexport)
+#elif defined(RP_SHARED)
+#define RP_API __declspec(dllimport)
+#else
+#define RP_API
+#endif
+#else
+#define RP_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define RP_VERSION "0.1.0"
+
+enum { RP_LEFT = 0, RP_RIGHT = 1 };
+enum { RP_MAX_PATCHES = 6, RP_MESSAGE_SIZE = 320 };
+
+/* --- errors: the call was wrong, outputs are untouched ------------------------------------- */
+#define RP_ERRORS(X)                                                          \
+  X(RP_OK, 0, "ok")                                                           \
+  X(RP_ERROR_NULL, 1, "a required pointer is null")                           \
+  X(RP_ERROR_NOT_DEFAULTED, 2, "the struct was never filled by rp_default_*") \
+  X(RP_ERROR_VALUE, 3, "a value is outside its allowed range")                \
+  X(RP_ERROR_PROFILE, 4, "a profile is not usable")                           \
+  X(RP_ERROR_MEMORY, 5, "out of memory")                                      \
+  X(RP_ERROR_STATE, 6, "the state buffer does not fit this handle")           \
+  X(RP_ERROR_NO_FIELD, 7, "the field does not exist in this scene")           \
+  X(RP_ERROR_SIZE, 8, "the buffer is too small")                              \
+  X(RP_ERROR_INTERNAL, 9, "internal error")
+
+/* --- solve status: the call was right, this is how the solve ended ------------------------- */
+#define RP_STATUSES(X)                    \
+  X(RP_CONVERGED, 0, "converged")         \
+  X(RP_NO_CONTACT, 1, "no_contact")       \
+  X(RP_NOT_CONVERGED, 2, "not_converged") \
+  X(RP_OUT_OF_RANGE, 3, "out_of_range")
+
+#define RP_ENUM_ENTRY(name, value, text) name = value,
+typedef enum rp_error { RP_ERRORS(RP_ENUM_ENTRY) } rp_error;
+typedef enum rp_status { RP_STATUSES(RP_ENUM_ENTRY) } rp_status;
+#undef RP_ENUM_ENTRY
+
+typedef enum rp_kind { RP_PATCH = 0, RP_WHEEL_RAIL = 1, RP_WHEELSET = 2 } rp_kind;
+typedef enum rp_geometry {
+  RP_SEMI_AXES = 0,          /* ellipse known, curvatures follow from the load (Hertz) */
+  RP_CURVATURES = 1,         /* undeformed distance c0 x^2 + c1 y^2 */
+  RP_LINE_CONTACT = 2,       /* cylinder, plane strain, force per length = force / width */
+  RP_UNDEFORMED_DISTANCE = 3 /* any smooth shape, given on the grid */
+} rp_geometry;
+typedef enum rp_load {
+  RP_FORCE = 0,   /* normal_force (patch) or vertical_force (wheel, wheelset) prescribed */
+  RP_POSITION = 1 /* approach (patch) or z (wheel, wheelset) prescribed */
+} rp_load;
+typedef enum rp_regime { RP_REGIME_NONE = 0, RP_STEADY_ROLLING = 1 } rp_regime;
+typedef enum rp_normal_method { RP_NORMAL_HERTZ = 0, RP_NORMAL_HALF_SPACE = 1 } rp_normal_method;
+typedef enum rp_tangential_method {
+  RP_TANGENTIAL_NONE = 0,
+  RP_TANGENTIAL_FASTSIM = 1, /* Kalker 1982, three flexibilities, parabolic bound for Hertz */
+  RP_TANGENTIAL_FULL = 2     /* Kalker's exact theory on the half-space */
+} rp_tangential_method;
+typedef enum rp_spin_offset {
+  RP_SPIN_OFFSET_NONE = 0,
+  RP_SPIN_OFFSET_SIXTH = 1 /* x + dq/6 in the spin term, as the program CONTACT does */
+} rp_spin_offset;
+typedef enum rp_track { RP_RAIL = 0, RP_ROLLER = 1 } rp_track;
+typedef enum rp_element { RP_EXTERIOR = 0, RP_STICK = 1, RP_SLIP = 2, RP_PLASTIC = 3 } rp_element;
+
+/* A smooth profile as a cubic Hermite curve in arc length; a C2 cubic spline is represented
+ * exactly. Right-hand profile from the flange or gauge side (-y) to the field side (+y), z down.
+ * Arrays of `count` values, copied by rp_create. */
+typedef struct rp_profile {
+  const double *arc_length; /* m, strictly increasing */
+  const double *y, *z;      /* m */
+  const double *dy, *dz;    /* -, derivatives with respect to arc length */
+  int32_t count;            /* 4 or more */
+} rp_profile;
+
+typedef struct rp_contact rp_contact;
+typedef struct rp_message {
+  char text[RP_MESSAGE_SIZE]; /* names the field, the value and the allowed range */
+} rp_message;
+
+typedef enum rp_stage {
+  RP_STAGE_GEOMETRY = 0, /* placement, contact search, undeformed distance */
+  RP_STAGE_INFLUENCE = 1,
+  RP_STAGE_NORMAL = 2,
+  RP_STAGE_TANGENTIAL = 3,
+  RP_STAGE_FORCES = 4,
+  RP_STAGE_COUNT = 5
+} rp_stage;
+
+/* Called when a stage begins (entering = 1) and ends (0); for time shares. The core has no clock.
+ */
+typedef void (*rp_observer)(void *user, rp_stage stage, int entering);
+
+typedef struct rp_config {
+  uint32_t cookie; /* set by rp_default_config */
+  rp_kind kind;
+
+  double shear_modulus[2]; /* Pa, > 0 */
+  double poisson_ratio[2]; /* -, 0 ... 0.5 */
+
+  /* patch */
+  rp_geometry geometry;
+  double semi_axes[2];               /* m, along rolling, lateral */
+  double curvatures[2];              /* 1/m */
+  double line_contact_radius;        /* m */
+  double width;                      /* m, of the line contact */
+  const double *undeformed_distance; /* m, [distance_shape[1]][distance_shape[0]], copied */
+  int32_t distance_shape[2];         /* elements along rolling, lateral */
+
+  rp_load load;
+
+  /* grid: elements across the contact's bounding box, or the element size; the other zero */
+  int32_t elements[2];
+  double element_size[2];  /* m */
+  int32_t max_elements[2]; /* capacity of one patch's grid; 0: chosen from the scene */
+
+  /* motion and friction */
+  rp_regime regime;
+  double friction_coefficient; /* -, Coulomb, >= 0 */
+  double layer_shear_modulus;  /* Pa; third-body layer, thickness 0: none */
+  double layer_thickness;      /* m */
+
+  /* method */
+  rp_normal_method normal;
+  rp_tangential_method tangential;
+  double tolerance;       /* -, relative, 1e-12 ... 1e-1 */
+  int32_t max_iterations; /* of each solver */
+  rp_spin_offset spin_offset;
+
+  /* wheel_rail, wheelset */
+  int32_t side;                /* RP_LEFT or RP_RIGHT, kind = RP_WHEEL_RAIL */
+  double nominal_radius;       /* m */
+  double flange_back_distance; /* m */
+  double flange_back_position; /* m, of the flange back on the profile's y axis */
+  rp_track track;
+  double gauge, gauge_height;   /* m */
+  double cant;                  /* rad, rail */
+  double curvature;             /* 1/m, right-hand curve > 0, rail */
+  double roller_radius;         /* m, roller */
+  rp_profile wheel[2], rail[2]; /* by side; the roller's profile as rail */
+  int32_t max_patches;          /* of one wheel, 1 ... RP_MAX_PATCHES */
+
+  rp_observer observer; /* may be null */
+  void *observer_user;
+} rp_config;
+
+typedef struct rp_input {
+  uint32_t cookie; /* set by rp_default_input */
+
+  /* patch */
+  double normal_force;  /* N, > 0, load = RP_FORCE */
+  double approach;      /* m, load = RP_POSITION */
+  double creepage[2];   /* -, longitudinal, lateral */
+  double spin_creepage; /* rad/m */
+  double rolling_speed; /* m/s, > 0 */
+  int32_t direction;    /* rolling towards +x (1) or -x (-1) */
+
+  /* wheelset: position, attitude (roll-yaw-pitch) and velocity in track axes */
+  double y, z;           /* m; z where load = RP_POSITION */
+  double vertical_force; /* N on the wheel or on both, > 0, where load = RP_FORCE */
+  double roll, yaw;      /* rad */
+  double speed, vy, vz;  /* m/s, forward (0 on a rig), lateral, vertical */
+  double roll_rate, yaw_rate, pitch_rate;          /* rad/s */
+  double wheel_offset[2][3], wheel_rotation[2][3]; /* m, rad: from the rigid wheelset, its axes */
+  double rail_offset[2][3], rail_rotation[2][3];   /* m, rad: from design, track axes */
+  double roller_pitch_rate;                        /* rad/s */
+} rp_input;
+
+/* One patch. Values of stages that the scene leaves out are NaN (element counts 0). */
+typedef struct rp_patch_result {
+  rp_status status;
+  double normal_force;       /* N */
+  double approach;           /* m, greatest rigid interpenetration along n */
+  double creep_force[2];     /* N on the wheel, longitudinal, lateral */
+  double spin_moment;        /* N m on the wheel about n at the contact reference */
+  double max_pressure;       /* Pa */
+  double contact_area;       /* m^2 */
+  int32_t elements[4];       /* exterior, stick, slip, plastic; indexed by rp_element */
+  double max_temperature;    /* degrees C; NaN: not part of the scene */
+  double friction_power;     /* W, >= 0 */
+  double elastic_energy;     /* J */
+  int32_t normal_iterations; /* conjugate-gradient steps */
+  int32_t newton_iterations; /* of the tangential problem */
+  int32_t inner_iterations;  /* operator products of the tangential problem */
+  double residual;           /* -, greatest relative residual of the stages */
+  double error_estimate;     /* -, NaN: not available */
+  double position[3];        /* m, contact reference in track axes (wheel kinds) */
+  double contact_angle;      /* rad */
+  double creepage[2];        /* - */
+  double spin_creepage;      /* rad/m */
+  double rolling_speed;      /* m/s, mean of the two surface speeds */
+  int32_t direction;         /* 1 or -1; 0 at standstill */
+  int32_t grid[2];           /* elements of the potential contact along rolling, lateral */
+  double grid_origin[2];     /* m, centre of element (0, 0) in the contact frame */
+  double element_size[2];    /* m */
+} rp_patch_result;
+
+typedef struct rp_side_result {
+  rp_status status;
+  double force[3];       /* N on the wheel, track axes */
+  double moment[3];      /* N m about the wheelset centre, track axes */
+  double rolling_radius; /* m, of the wheel at the mean contact reference; NaN without contact */
+  int32_t patch_count;
+  rp_patch_result patch[RP_MAX_PATCHES];
+} rp_side_result;
+
+typedef struct rp_result {
+  rp_status status;
+  double z;               /* m, given or found (wheel kinds) */
+  double force[3];        /* N, sum over the wheels (wheel kinds) */
+  double moment[3];       /* N m about the wheelset centre */
+  int32_t evaluations;    /* contact evaluations of each wheel spent on finding z */
+  rp_side_result side[2]; /* kind RP_PATCH: side[RP_RIGHT].patch[0] */
+} rp_result;
+
+typedef enum rp_field {
+  RP_FIELD_X = 0,                   /* m, [nx] element centres */
+  RP_FIELD_Y = 1,                   /* m, [ny] */
+  RP_FIELD_UNDEFORMED_DISTANCE = 2, /* m, [ny][nx] */
+  RP_FIELD_PRESSURE = 3,            /* Pa, [ny][nx] */
+  RP_FIELD_TRACTION = 4,            /* Pa on the wheel, [2][ny][nx] */
+  RP_FIELD_MICRO_SLIP = 5,          /* -, relative to the rolling speed, [2][ny][nx] */
+  RP_FIELD_ELEMENT_DIVISION = 6     /* rp_element as a double, [ny][nx] */
+} rp_field;
+
+typedef struct rp_stage_info {
+  const char *name;   /* "geometry", ... */
+  int32_t present;    /* 0: left out */
+  const char *reason; /* why it is present or left out */
+  size_t bytes;       /* memory held for it by this handle */
+} rp_stage_info;
+
+/* Fills every field with a valid default: steel, wheelset of S1002-like size, no profiles. */
+RP_API void rp_default_config(rp_config *config);
+RP_API void rp_default_input(rp_input *input);
+
+/* Makes the handle; checks every field. On error *contact is untouched and message (may be null)
+ * names the field. */
+RP_API rp_error rp_create(const rp_config *config, rp_contact **contact, rp_message *message);
+RP_API void rp_destroy(rp_contact *contact); /* null is allowed */
+
+/* Solves one state. The last solution is kept as the next start. On error the result and the
+ * handle are untouched. */
+RP_API rp_error rp_step(rp_contact *contact, const rp_input *input, rp_result *result,
+                        rp_message *message);
+/* Forgets the warm start: the next step is the same as the first one after rp_create. */
+RP_API void rp_reset(rp_contact *contact);
+
+/* Copies a field of the last step's patch (row by row, x fastest) as doubles. count: in the
+ * capacity of values, out the number written (or needed, with RP_ERROR_SIZE). */
+RP_API rp_error rp_get_field(const rp_contact *contact, int side, int patch, rp_field field,
+                             double *values, size_t *count);
+
+/* The state that later steps depend on, as plain bytes with version and checksum. A restored
+ * handle (same config) steps to the same bits. */
+RP_API size_t rp_state_size(const rp_contact *contact);
+RP_API rp_error rp_save_state(const rp_contact *contact, void *buffer, size_t size);
+RP_API rp_error rp_restore_state(rp_contact *contact, const void *buffer, size_t size);
+
+/* Which stages this scene has and why; info has RP_STAGE_COUNT entries. */
+RP_API rp_error rp_describe(const rp_contact *contact, rp_stage_info *info);
+
+RP_API const char *rp_version(void);
+RP_API const char *rp_fft_backend(void);
+RP_API const char *rp_error_text(rp_error error);
+RP_API const char *rp_status_text(rp_status status);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

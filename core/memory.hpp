@@ -1,0 +1,49 @@
+// Fixed-size memory that is made at creation and never grows: 64-byte aligned for FFT and SIMD.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <new>
+#include <type_traits>
+
+namespace railpatch {
+
+template <class T>
+class aligned_buffer {
+  static_assert(std::is_trivially_destructible_v<T>);
+
+ public:
+  aligned_buffer() = default;
+  explicit aligned_buffer(size_t count) : data_(allocate(count)), count_(count) {
+    std::uninitialized_value_construct_n(data_.get(), count);
+  }
+  // Leaves the values undefined, so that pages never used are never touched.
+  static aligned_buffer uninitialized(size_t count) {
+    aligned_buffer buffer;
+    buffer.data_.reset(allocate(count));
+    buffer.count_ = count;
+    return buffer;
+  }
+
+  T *data() { return data_.get(); }
+  const T *data() const { return data_.get(); }
+  size_t size() const { return count_; }
+  size_t bytes() const { return count_ * sizeof(T); }
+  T &operator[](size_t i) { return data_.get()[i]; }
+  const T &operator[](size_t i) const { return data_.get()[i]; }
+  T *begin() { return data(); }
+  T *end() { return data() + count_; }
+
+ private:
+  static constexpr std::align_val_t alignment{64};
+  struct release {
+    void operator()(T *p) const { ::operator delete[](static_cast<void *>(p), alignment); }
+  };
+  static T *allocate(size_t count) {
+    return static_cast<T *>(::operator new[](count * sizeof(T), alignment));
+  }
+  std::unique_ptr<T[], release> data_;
+  size_t count_ = 0;
+};
+
+}  // namespace railpatch

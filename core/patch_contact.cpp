@@ -1,0 +1,310 @@
+#include "patch_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace railpatch {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using std::numbers::pi;
+
+// Worse of two outcomes, for results that several stages contribute to.
+void degrade(rp_patch_result &result, rp_status status) {
+  if (result.status == RP_CONVERGED) result.status = status;
+}
+
+double inside_ellipse(const double semi_axes[2], double x, double y) {
+  const double u = x / semi_axes[0], v = semi_axes[1] > 0 ? y / semi_axes[1] : 0.0;
+  return 1.0 - u * u - v * v;
+}
+
+}  // namespace
+
+rp_patch_result empty_patch_result() {
+  rp_patch_result r{};
+  for (double *v :
+       {&r.normal_force, &r.approach, &r.creep_force[0], &r.creep_force[1], &r.spin_moment,
+        &r.max_pressure, &r.contact_area, &r.max_temperature, &r.friction_power, &r.elastic_energy,
+        &r.error_estimate, &r.position[0], &r.position[1], &r.position[2], &r.contact_angle,
+        &r.creepage[0], &r.creepage[1], &r.spin_creepage, &r.rolling_speed})
+    *v = nan;
+  return r;
+}
+
+patch_memory::patch_memory(int max_count, bool tangential) {
+  const auto n = static_cast<size_t>(max_count);
+  undeformed_distance = aligned_buffer<double>(n);
+  pressure = aligned_buffer<double>(n);
+  if (!tangential) return;
+  for (auto *b : {&px, &py, &sx, &sy}) *b = aligned_buffer<double>(n);
+  division = aligned_buffer<unsigned char>(n);
+}
+
+size_t patch_memory::bytes() const {
+  return undeformed_distance.bytes() + pressure.bytes() + 4 * px.bytes() + division.bytes();
+}
+
+patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, int max_nx,
+                             int max_ny, rp_observer observer, void *observer_user)
+    : scene_(scene),
+      max_nx_(max_nx),
+      max_ny_(max_ny),
+      observer_(observer),
+      observer_user_(observer_user) {
+  const bool full = scene.tangential == RP_TANGENTIAL_FULL;
+  const auto count = static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny);
+  if (full || scene.normal == RP_NORMAL_HALF_SPACE)
+    influence_.emplace(
+        influence::scene{scene.elastic, scene.layer_flexibility, scene.line_width, full}, plans);
+  if (scene.normal == RP_NORMAL_HALF_SPACE) normal_.emplace(max_nx * max_ny);
+  if (full) tangential_.emplace(max_nx, max_ny);
+  scratch_[0] = aligned_buffer<double>(count);
+  scratch_[1] = aligned_buffer<double>(count);
+  if (scene.tangential == RP_TANGENTIAL_NONE) return;
+  bound_ = aligned_buffer<double>(count);
+  leading_ = aligned_buffer<double>(static_cast<size_t>(max_ny));
+}
+
+size_t patch_contact::tangential_bytes() const {
+  return bound_.bytes() + leading_.bytes() + (tangential_ ? tangential_->bytes() : 0);
+}
+
+void patch_contact::start_from(patch_memory &memory, const grid &g) {
+  const bool same_shape = memory.g.nx == g.nx && memory.g.ny == g.ny;
+  const bool same_size = memory.g.dx == g.dx && memory.g.dy == g.dy;
+  if (memory.warm &&
+      !(same_shape && (!same_size || (memory.g.x0 == g.x0 && memory.g.y0 == g.y0)))) {
+    // nearest element of the old grid; a grid of the same shape scales with the contact instead
+    const auto carry = [&](aligned_buffer<double> &field) {
+      if (field.size() == 0) return;
+      std::copy_n(field.data(), memory.g.count(), scratch_[0].data());
+      for (int j = 0; j < g.ny; ++j)
+        for (int i = 0; i < g.nx; ++i) {
+          const double u = std::round((g.x(i) - memory.g.x0) / memory.g.dx);
+          const double v = std::round((g.y(j) - memory.g.y0) / memory.g.dy);
+          const bool inside = u >= 0 && v >= 0 && u < memory.g.nx && v < memory.g.ny;
+          field[static_cast<size_t>(j * g.nx + i)] =
+              inside ? scratch_[0][static_cast<size_t>(v * memory.g.nx + u)] : 0.0;
+        }
+    };
+    carry(memory.pressure);
+    carry(memory.px);
+    carry(memory.py);
+  }
+  if (!memory.warm)
+    for (auto *field : {&memory.pressure, &memory.px, &memory.py})
+      std::fill_n(field->data(), std::min(field->size(), static_cast<size_t>(g.count())), 0.0);
+  memory.g = g;
+}
+
+void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
+                          rp_patch_result &result, patch_wrench &wrench) {
+  result.status = RP_CONVERGED;
+  result.grid[0] = problem.g.nx;
+  result.grid[1] = problem.g.ny;
+  result.grid_origin[0] = problem.g.x0;
+  result.grid_origin[1] = problem.g.y0;
+  result.element_size[0] = problem.g.dx;
+  result.element_size[1] = problem.g.dy;
+  result.residual = 0;
+  memory.solved = true;
+  if (influence_) {
+    observe(RP_STAGE_INFLUENCE, true);
+    influence_->set_grid(problem.g);
+    observe(RP_STAGE_INFLUENCE, false);
+  }
+  observe(RP_STAGE_NORMAL, true);
+  const bool loaded = solve_normal(problem, memory, result);
+  observe(RP_STAGE_NORMAL, false);
+  memory.warm = loaded && result.status == RP_CONVERGED;
+  if (!loaded) {
+    leave_unloaded(problem, memory);
+    wrench = {};
+    return;
+  }
+  if (scene_.tangential != RP_TANGENTIAL_NONE) {
+    observe(RP_STAGE_TANGENTIAL, true);
+    memory.warm = solve_tangential(problem, memory, result) && memory.warm;
+    observe(RP_STAGE_TANGENTIAL, false);
+  }
+  observe(RP_STAGE_FORCES, true);
+  wrench = sum_tractions(problem.g, memory.pressure.data(), memory.px.data(), memory.py.data());
+  if (scene_.tangential != RP_TANGENTIAL_NONE) {
+    result.creep_force[0] = wrench.force[0];
+    result.creep_force[1] = wrench.force[1];
+    result.spin_moment = wrench.moment[2];
+    result.friction_power =
+        problem.rolling_speed * friction_force(problem.g, memory.px.data(), memory.py.data(),
+                                               memory.sx.data(), memory.sy.data());
+  }
+  observe(RP_STAGE_FORCES, false);
+}
+
+// No contact: nothing is transferred, and every element is exterior.
+void patch_contact::leave_unloaded(const patch_problem &problem, patch_memory &memory) {
+  const auto n = static_cast<size_t>(problem.g.count());
+  std::fill_n(memory.pressure.data(), n, 0.0);
+  for (auto *field : {&memory.px, &memory.py, &memory.sx, &memory.sy})
+    if (field->size()) std::fill_n(field->data(), n, 0.0);
+  if (memory.division.size())
+    std::fill_n(memory.division.data(), n, static_cast<unsigned char>(RP_EXTERIOR));
+}
+
+bool patch_contact::solve_normal(const patch_problem &problem, patch_memory &memory,
+                                 rp_patch_result &result) {
+  const grid &g = problem.g;
+  if (scene_.normal == RP_NORMAL_HERTZ) {
+    solve_hertz(problem, memory, result);
+  } else {
+    const normal_options options{scene_.tolerance, scene_.max_iterations};
+    double *p = memory.pressure.data();
+    const double *h = memory.undeformed_distance.data();
+    const normal_result n =
+        problem.force_given
+            ? normal_->with_force(*influence_, g, h, problem.force, options, p, problem.parts)
+            : normal_->with_approach(*influence_, g, h, problem.approach, options, p,
+                                     problem.parts);
+    if (!n.converged) degrade(result, RP_NOT_CONVERGED);
+    if (n.touches_border) degrade(result, RP_OUT_OF_RANGE);
+    result.normal_force = n.normal_force;
+    result.approach = n.approach;
+    result.normal_iterations = n.iterations;
+    result.residual = n.residual;
+    result.max_pressure = *std::max_element(p, p + g.count());
+    result.contact_area = n.contact_count * g.dx * g.dy;
+    // at the solution the elastic displacement is approach minus distance wherever p > 0
+    double energy = 0;
+    for (int i = 0; i < g.count(); ++i) energy += p[i] * (n.approach - h[i]);
+    result.elastic_energy = 0.5 * energy * g.dx * g.dy;
+  }
+  const int touching = static_cast<int>(std::count_if(
+      memory.pressure.data(), memory.pressure.data() + g.count(), [](double p) { return p > 0; }));
+  result.elements[RP_EXTERIOR] = g.count() - touching;
+  if (touching > 0) return true;
+  degrade(result, RP_NO_CONTACT);
+  result.normal_force = result.max_pressure = result.contact_area = result.elastic_energy = 0;
+  return false;
+}
+
+void patch_contact::solve_hertz(const patch_problem &problem, patch_memory &memory,
+                                rp_patch_result &result) {
+  const grid &g = problem.g;
+  const hertz_contact &hertz = problem.hertz;
+  double sum = 0;
+  for (int j = 0; j < g.ny; ++j)
+    for (int i = 0; i < g.nx; ++i) {
+      const double level = inside_ellipse(hertz.semi_axes, g.x(i), g.y(j));
+      const double p = level > 0 ? hertz.max_pressure * std::sqrt(level) : 0.0;
+      memory.pressure[static_cast<size_t>(j * g.nx + i)] = p;
+      sum += p * g.dx * g.dy;
+    }
+  // the sampled pressure carries exactly the closed form's force
+  for (int i = 0; i < g.count() && sum > 0; ++i)
+    memory.pressure[static_cast<size_t>(i)] *= hertz.normal_force / sum;
+  result.normal_force = hertz.normal_force;
+  result.approach = hertz.approach;
+  result.max_pressure = hertz.max_pressure;
+  const bool line = scene_.line_width > 0;
+  result.contact_area = line ? 2.0 * hertz.semi_axes[0] * scene_.line_width
+                             : pi * hertz.semi_axes[0] * hertz.semi_axes[1];
+  // 1/2 int p u dA of the elliptic pressure (Johnson 1985, section 3.3)
+  result.elastic_energy = 0.4 * hertz.normal_force * hertz.approach;
+  if (line) result.approach = result.elastic_energy = nan;
+}
+
+bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory &memory,
+                                     rp_patch_result &result) {
+  const grid &g = problem.g;
+  const tangential_fields fields = memory.fields();
+  rolling_input rolling = problem.rolling;
+  if (!(problem.rolling_speed > 0)) {
+    // standstill: creepage is not defined and no micro-slip has happened, so all sticks unloaded
+    rolling.creepage[0] = rolling.creepage[1] = rolling.spin_creepage = 0;
+  }
+  if (scene_.spin_offset) rolling.spin_offset = rolling.direction * g.dx / 6.0;
+  for (int i = 0; i < g.count(); ++i)
+    bound_[static_cast<size_t>(i)] =
+        scene_.friction_coefficient * memory.pressure[static_cast<size_t>(i)];
+  tangential_result t;
+  if (scene_.tangential == RP_TANGENTIAL_FASTSIM)
+    t = solve_fastsim(problem, rolling, result.contact_area, memory);
+  else
+    t = tangential_->solve(*influence_, g, memory.pressure.data(), bound_.data(), rolling,
+                           {scene_.tolerance, scene_.max_iterations}, fields);
+  result.elements[RP_STICK] = t.stick;
+  result.elements[RP_SLIP] = t.slip;
+  result.newton_iterations = t.newton_iterations;
+  result.inner_iterations = t.products;
+  result.residual = std::max(result.residual, t.residual);
+  if (!t.converged)
+    degrade(result, scene_.tangential == RP_TANGENTIAL_FULL ? RP_NOT_CONVERGED : RP_OUT_OF_RANGE);
+  if (scene_.tangential == RP_TANGENTIAL_FULL)
+    result.elastic_energy += tangential_energy(problem, memory);
+  return t.converged;
+}
+
+// x of the contact's leading edge in each row; returns the number of rows in contact.
+int patch_contact::find_leading_edges(const patch_problem &problem, int direction,
+                                      const double *pressure) {
+  const grid &g = problem.g;
+  const double *semi_axes = problem.hertz.semi_axes;
+  int rows = 0;
+  for (int j = 0; j < g.ny; ++j) {
+    const double *p = pressure + j * g.nx;
+    int first = direction > 0 ? g.nx - 1 : 0;
+    while (first >= 0 && first < g.nx && !(p[first] > 0)) first -= direction;
+    const bool touching = first >= 0 && first < g.nx;
+    const double level = semi_axes[0] > 0 ? inside_ellipse(semi_axes, 0.0, g.y(j)) : 0.0;
+    leading_[static_cast<size_t>(j)] = level > 0 ? direction * semi_axes[0] * std::sqrt(level)
+                                                 : g.x(first) + 0.5 * direction * g.dx;
+    rows += touching;
+  }
+  return rows;
+}
+
+tangential_result patch_contact::solve_fastsim(const patch_problem &problem,
+                                               const rolling_input &rolling, double contact_area,
+                                               patch_memory &memory) {
+  const grid &g = problem.g;
+  const hertz_contact &hertz = problem.hertz;
+  double semi_axes[2] = {hertz.semi_axes[0], hertz.semi_axes[1]};
+  const bool elliptic = scene_.normal == RP_NORMAL_HERTZ;
+  const int rows = find_leading_edges(problem, rolling.direction, memory.pressure.data());
+  if (!(semi_axes[0] > 0)) {
+    // the ellipse with the same width and area stands for a contact area of any shape
+    semi_axes[1] = 0.5 * rows * g.dy;
+    semi_axes[0] = contact_area / (pi * semi_axes[1]);
+  }
+  if (elliptic) {
+    // parabolic bound (Kalker 1982), scaled so that full sliding gives exactly mu times the force
+    double sum = 0;
+    for (int j = 0; j < g.ny; ++j)
+      for (int i = 0; i < g.nx; ++i) {
+        const auto at = static_cast<size_t>(j * g.nx + i);
+        bound_[at] = std::max(0.0, inside_ellipse(semi_axes, g.x(i), g.y(j)));
+        sum += bound_[at] * g.dx * g.dy;
+      }
+    for (int i = 0; i < g.count(); ++i)
+      bound_[static_cast<size_t>(i)] *= scene_.friction_coefficient * hertz.normal_force / sum;
+  }
+  return fastsim(scene_.elastic, g, memory.pressure.data(), bound_.data(), leading_.data(),
+                 semi_axes, rolling, memory.fields());
+}
+
+double patch_contact::tangential_energy(const patch_problem &problem, const patch_memory &memory) {
+  const grid &g = problem.g;
+  influence_->tangential_product(memory.px.data(), memory.py.data(), scratch_[0].data(),
+                                 scratch_[1].data());
+  double sum = 0;
+  for (int i = 0; i < g.count(); ++i) {
+    const auto at = static_cast<size_t>(i);
+    sum += memory.px[at] * scratch_[0][at] + memory.py[at] * scratch_[1][at];
+  }
+  return 0.5 * sum * g.dx * g.dy;
+}
+
+}  // namespace railpatch

@@ -1,0 +1,103 @@
+// One contact patch from undeformed distance to forces: the order of the stages, their workspace,
+// and what is remembered of the patch from step to step.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "fastsim.hpp"
+#include "forces.hpp"
+#include "hertz.hpp"
+#include "normal.hpp"
+#include "railpatch.h"
+#include "tangential.hpp"
+
+namespace railpatch {
+
+// Constant over the life of a handle.
+struct patch_scene {
+  elastic_constants elastic;
+  double friction_coefficient = 0;
+  double layer_flexibility = 0;  // m/Pa
+  double line_width = 0;         // m, > 0: line contact
+  rp_normal_method normal = RP_NORMAL_HALF_SPACE;
+  rp_tangential_method tangential = RP_TANGENTIAL_FULL;  // NONE: no tangential stage
+  double tolerance = 1e-5;
+  int max_iterations = 100;
+  bool spin_offset = false;  // x + dq/6 in the spin term
+  double modulus() const { return elastic.shear_modulus / (1.0 - elastic.poisson_ratio); }
+};
+
+// One step's problem; the undeformed distance is in patch_memory.
+struct patch_problem {
+  grid g;
+  bool force_given = false;
+  double force = 0, approach = 0;
+  double rolling_speed = 0;  // m/s; 0: standstill, no tangential traction arises
+  rolling_input rolling;
+  hertz_contact hertz;  // where the surfaces are quadratic, else all zero
+  contact_parts parts;
+};
+
+// Fields of the last solution, [ny][nx]; with the grid they are also the next start.
+struct patch_memory {
+  patch_memory() = default;
+  patch_memory(int max_count, bool tangential);
+  bool solved = false;  // fields belong to the last step
+  bool warm = false;    // pressure and traction may serve as a start
+  grid g;
+  std::array<double, 3> reference{};  // m, contact reference, track axes of a right wheel
+  aligned_buffer<double> undeformed_distance, pressure, px, py, sx, sy;
+  aligned_buffer<unsigned char> division;
+  tangential_fields fields() {
+    return {px.data(), py.data(), sx.data(), sy.data(), division.data()};
+  }
+  size_t bytes() const;
+};
+
+class patch_contact {
+ public:
+  patch_contact(const patch_scene &scene, const fft_plans &plans, int max_nx, int max_ny,
+                rp_observer observer, void *observer_user);
+
+  // The memory's distance must be filled for problem.g, its other fields hold the last solution on
+  // problem.g (see start_from). Fills everything of result that belongs to the patch itself.
+  void solve(const patch_problem &problem, patch_memory &memory, rp_patch_result &result,
+             patch_wrench &wrench);
+  // Carries the memory's solution over to another grid, or clears it.
+  void start_from(patch_memory &memory, const grid &g);
+
+  bool fits(const grid &g) const { return g.nx <= max_nx_ && g.ny <= max_ny_; }
+  const patch_scene &scene() const { return scene_; }
+  size_t influence_bytes() const { return influence_ ? influence_->bytes() : 0; }
+  size_t normal_bytes() const { return normal_ ? normal_->bytes() : 0; }
+  size_t tangential_bytes() const;
+  void observe(rp_stage stage, bool entering) const {
+    if (observer_) observer_(observer_user_, stage, entering);
+  }
+
+ private:
+  bool solve_normal(const patch_problem &problem, patch_memory &memory, rp_patch_result &result);
+  void solve_hertz(const patch_problem &problem, patch_memory &memory, rp_patch_result &result);
+  bool solve_tangential(const patch_problem &problem, patch_memory &memory,
+                        rp_patch_result &result);
+  void leave_unloaded(const patch_problem &problem, patch_memory &memory);
+  tangential_result solve_fastsim(const patch_problem &problem, const rolling_input &rolling,
+                                  double contact_area, patch_memory &memory);
+  int find_leading_edges(const patch_problem &problem, int direction, const double *pressure);
+  double tangential_energy(const patch_problem &problem, const patch_memory &memory);
+
+  patch_scene scene_;
+  int max_nx_, max_ny_;
+  rp_observer observer_;
+  void *observer_user_;
+  std::optional<influence> influence_;
+  std::optional<normal_solver> normal_;
+  std::optional<tangential_solver> tangential_;
+  aligned_buffer<double> bound_, leading_, scratch_[2];
+};
+
+// A result with every number NaN and every count zero.
+rp_patch_result empty_patch_result();
+
+}  // namespace railpatch

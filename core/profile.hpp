@@ -1,0 +1,99 @@
+// Wheel and rail profiles as smooth curves.
+//
+// A profile is a cubic Hermite curve y(s), z(s) in arc length s, m. It is a right-hand profile: s and
+// y grow from the flange or gauge side to the field side, z points down. The inclination
+// atan2(dz, dy) and the curvature (dy d2z - dz d2y)/|d|^3 follow from the same polynomials.
+//
+// A placed profile is turned by an angle about x, (y, z) -> (c y - s z, s y + c z), and then moved.
+// Its running branch is what can be touched from the other side: around the highest point of a rail
+// (least z), the lowest of a wheel (greatest z), as far as y keeps growing with s.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace railpatch {
+
+struct profile_view {
+  const double *s, *y, *z, *dy, *dz;  // n values each; derivatives with respect to s
+  int n;
+};
+
+enum class profile_fault {
+  none,
+  too_few_points,
+  not_finite,
+  not_increasing,
+  not_arc_length,
+  too_long,
+  wrong_direction
+};
+profile_fault validate(const profile_view &view);
+const char *text(profile_fault fault);
+
+struct curve_point {
+  double y, z, dy, dz, d2y, d2z;
+};
+double inclination(const curve_point &p);
+double curvature(const curve_point &p);
+
+class profile {
+ public:
+  // The view must have passed validate(); its values are copied.
+  explicit profile(const profile_view &view);
+
+  double begin() const { return begin_; }
+  double end() const { return end_; }
+  // Beyond the ends the end polynomials go on; ask covers() where that matters.
+  bool covers(double s) const { return s >= begin_ && s <= end_; }
+  // The interval that holds s; last is where a neighbouring s was found.
+  int interval(double s, int last) const;
+  int interval(double s) const;
+  curve_point evaluate(double s, int interval) const;
+  curve_point evaluate(double s) const { return evaluate(s, interval(s)); }
+  std::size_t bytes() const { return pieces_.size() * sizeof(piece) + first_.size() * sizeof(int); }
+
+ private:
+  struct piece {
+    double s, y[4], z[4];  // knot, polynomial coefficients from there
+  };
+  std::vector<piece> pieces_;
+  std::vector<int> first_;  // interval at the start of each of equal buckets of s
+  double begin_ = 0, end_ = 0, buckets_per_length_ = 0;
+};
+
+enum class body { wheel, rail };
+
+class placed_profile {
+ public:
+  placed_profile(const profile &curve, body kind);
+
+  void place(double angle, double y, double z);
+  curve_point evaluate(double s, int interval) const;
+  curve_point evaluate(double s) const { return evaluate(s, curve_->interval(s)); }
+  const profile &curve() const { return *curve_; }
+
+  // The arc length of the running branch at y (turned and moved); false where there is none.
+  bool find(double y, double &s) const;
+  // Samples of the running branch, equally spaced in s: first() to last(), both included.
+  int first() const { return first_; }
+  int last() const { return last_; }
+  double sample_s(int i) const { return curve_->begin() + i * step_; }
+  const curve_point &sample(int i) const { return samples_[static_cast<std::size_t>(i)]; }
+  double step() const { return step_; }
+  // The extreme point in z: highest of a rail, lowest of a wheel.
+  double extreme() const;
+  std::size_t bytes() const { return samples_.size() * 2 * sizeof(curve_point); }
+
+ private:
+  curve_point turned(const curve_point &p) const;
+  void find_branch();
+
+  const profile *curve_;
+  body kind_;
+  double cos_ = 1, sin_ = 0, y_ = 0, z_ = 0, step_ = 0;
+  std::vector<curve_point> raw_, samples_;
+  int first_ = 0, last_ = 0, extreme_ = 0;
+};
+
+}  // namespace railpatch

@@ -1,0 +1,38 @@
+// Exact single-precision LU of each row's diagonal block of the linearised tangential problem: the
+// preconditioner of the Newton steps. Rows of elements along rolling interact weakly with each
+// other, so the blocks hold most of the operator.
+#pragma once
+
+#include "influence.hpp"
+#include "memory.hpp"
+
+namespace railpatch {
+
+// How one element enters the linearised equations (see tangential.hpp):
+// row of the block = keep * unit + (stiff) * r B, both 2 x 2 symmetric.
+struct element_linearisation {
+  double keep[3];   // xx, xy, yy of I - theta (I - n n^T), zero in stick
+  double stiff[3];  // xx, xy, yy of theta (I - n n^T), unit in stick
+};
+
+class row_blocks {
+ public:
+  row_blocks(int max_nx, int max_ny);
+
+  void clear() { used_ = 0, pivots_used_ = 0; }
+  // Appends and factors the block of one row with the elements at columns i[0..n).
+  void add_row(const influence &a, const int *i, int n, int direction, double r_over_dx,
+               const element_linearisation *elements);
+  // v <- M^-1 v; v is the concatenation of the rows' (p_x, p_y) parts in the order of add_row.
+  void solve(const int *row_start, int rows, double *v);
+  size_t bytes() const;
+
+ private:
+  aligned_buffer<float> factors_;
+  aligned_buffer<int> pivots_;
+  aligned_buffer<float> vector_;
+  aligned_buffer<double> row_kernel_[2];
+  size_t used_ = 0, pivots_used_ = 0;
+};
+
+}  // namespace railpatch

@@ -1,0 +1,203 @@
+#include "wheel_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace railpatch {
+
+namespace {
+
+std::unique_ptr<profile> make_profile(const rp_profile &p, const char *field) {
+  if (!p.arc_length || !p.y || !p.z || !p.dy || !p.dz) throw profile_error{field, "is not given"};
+  const profile_view view{p.arc_length, p.y, p.z, p.dy, p.dz, p.count};
+  if (const profile_fault fault = validate(view); fault != profile_fault::none)
+    throw profile_error{field, text(fault)};
+  return std::make_unique<profile>(view);
+}
+
+// A positive cant leans both rails inwards, so the right one (and a mirrored left one) turns
+// against x; a right-hand curve is a left-hand one in the mirror.
+track_config track_of(const rp_config &c, int side) {
+  return {c.track == RP_ROLLER ? track_kind::roller : track_kind::rail,
+          c.gauge,
+          c.gauge_height,
+          -c.cant,
+          side == RP_LEFT ? -c.curvature : c.curvature,
+          c.roller_radius};
+}
+
+deviation deviation_of(const double offset[3], const double rotation[3]) {
+  return {{offset[0], offset[1], offset[2]}, {rotation[0], rotation[1], rotation[2]}};
+}
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// greatest distance a reference may move between steps for its solution to be a useful start
+constexpr double warm_distance = 2e-3;
+
+// The rows of a patch's parts on its grid.
+contact_parts parts_on(const patch_region &region, const grid &g) {
+  static_assert(max_parts <= contact_parts::capacity);
+  contact_parts parts;
+  parts.count = region.parts;
+  for (int k = 0; k + 1 < region.parts; ++k) {
+    const double row = std::ceil((region.cut[k] - g.y0) / g.dy);
+    parts.first_row[k + 1] = static_cast<int>(std::clamp(row, 0.0, static_cast<double>(g.ny)));
+    parts.factor[k] = region.coupling[k];
+  }
+  return parts;
+}
+
+}  // namespace
+
+wheel_contact::wheel_contact(const rp_config &c, int side)
+    : config_(c),
+      side_(side),
+      wheel_(make_profile(c.wheel[side], side == RP_LEFT ? "wheel_left" : "wheel_right")),
+      rail_(make_profile(c.rail[side], side == RP_LEFT ? "rail_left" : "rail_right")) {
+  const wheel_config sizes{c.nominal_radius, c.flange_back_distance, c.flange_back_position};
+  geometry_ = std::make_unique<side_geometry>(*wheel_, *rail_, sizes, track_of(c, side));
+}
+
+void wheel_contact::place(const rp_input &in) {
+  side_motion motion;
+  motion.wheelset = {in.y,  in.z,  in.roll,      in.yaw,      in.speed,
+                     in.vy, in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
+  motion.wheel = deviation_of(in.wheel_offset[side_], in.wheel_rotation[side_]);
+  motion.rail = deviation_of(in.rail_offset[side_], in.rail_rotation[side_]);
+  motion.roller_pitch_rate = in.roller_pitch_rate;
+  geometry_->place(side_ == RP_LEFT ? mirrored(motion) : motion);
+}
+
+grid wheel_contact::choose_grid(const patch_region &r) const {
+  grid g;
+  const double low[2] = {r.x_min, r.s_min}, high[2] = {r.x_max, r.s_max};
+  double size[2], origin[2];
+  int count[2];
+  for (int k = 0; k < 2; ++k) {
+    if (config_.element_size[0] > 0) {
+      // element centres on multiples of the size, so that the grid moves with the reference
+      size[k] = config_.element_size[k];
+      const double first = std::floor(low[k] / size[k]) - 1.0;
+      const double last = std::ceil(high[k] / size[k]) + 1.0;
+      origin[k] = first * size[k];
+      count[k] = static_cast<int>(std::min(last - first, 1e6)) + 1;
+    } else {
+      size[k] = (high[k] - low[k]) / config_.elements[k];
+      origin[k] = low[k] - 0.5 * size[k];
+      count[k] = config_.elements[k] + 2;
+    }
+  }
+  g.nx = count[0];
+  g.ny = count[1];
+  g.dx = size[0];
+  g.dy = size[1];
+  g.x0 = origin[0];
+  g.y0 = origin[1];
+  return g;
+}
+
+void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_side_result &out) {
+  solver.observe(RP_STAGE_GEOMETRY, true);
+  const search_result found =
+      find_patches(*geometry_, patch_rules{}, regions_.data(), config_.max_patches);
+  solver.observe(RP_STAGE_GEOMETRY, false);
+  out.status = RP_NO_CONTACT;
+  const int count = found.count;
+  out.patch_count = count;
+  for (int k = 0; k < 3; ++k) out.force[k] = out.moment[k] = 0;
+  out.rolling_radius = 0;
+  for (auto &patch : out.patch) patch = empty_patch_result();
+  if (found.status == search_status::out_of_range ||
+      found.status == search_status::too_many_patches)
+    out.status = RP_OUT_OF_RANGE;
+  for (int i = 0; i < count; ++i)
+    out.status = combine_status(
+        out.status, solve_patch(solver, regions_[static_cast<size_t>(i)], i, memory[i], out));
+  for (int i = count; i < config_.max_patches; ++i) memory[i].warm = memory[i].solved = false;
+  // of several patches the mean radius, each weighted with its load
+  double load = 0;
+  for (int i = 0; i < count; ++i)
+    if (out.patch[i].normal_force > 0) load += out.patch[i].normal_force;
+  out.rolling_radius = load > 0 ? out.rolling_radius / load : nan;
+  if (side_ == RP_LEFT) mirror(out);
+}
+
+rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &region, int index,
+                                     patch_memory &memory, rp_side_result &out) {
+  rp_patch_result &result = out.patch[index];
+  patch_problem problem;
+  problem.g = choose_grid(region);
+  if (!solver.fits(problem.g)) return result.status = RP_OUT_OF_RANGE;
+  const grid &g = problem.g;
+
+  // the reference moves with the contact; a new contact elsewhere starts afresh
+  const vec3 &origin = region.frame.origin;
+  if (std::hypot(origin[1] - memory.reference[1], origin[2] - memory.reference[2]) > warm_distance)
+    memory.warm = false;
+  memory.reference = origin;
+  solver.start_from(memory, g);
+
+  solver.observe(RP_STAGE_GEOMETRY, true);
+  double *h = memory.undeformed_distance.data();
+  geometry_->undeformed_distance(region.frame, {g.nx, g.ny, g.x0, g.y0, g.dx, g.dy}, h);
+  const double depth = -*std::min_element(h, h + g.count());
+  const creepage_state rolling = geometry_->creepages(region.frame, depth);
+  solver.observe(RP_STAGE_GEOMETRY, false);
+
+  problem.rolling_speed = rolling.rolling_speed;
+  problem.rolling = {{rolling.xi, rolling.eta}, rolling.phi, rolling.direction < 0 ? -1 : 1, 0.0};
+  problem.parts = parts_on(region, g);
+  if (solver.scene().normal == RP_NORMAL_HERTZ) {
+    // the paraboloid whose overlap has the same depth, length and width
+    const double half[2] = {0.5 * (region.x_max - region.x_min),
+                            0.5 * (region.s_max - region.s_min)};
+    const double curvatures[2] = {depth / (half[0] * half[0]), depth / (half[1] * half[1])};
+    problem.hertz = hertz_from_approach(curvatures, solver.scene().modulus(), depth);
+  }
+  patch_wrench wrench;
+  solver.solve(problem, memory, result, wrench);
+
+  out.rolling_radius += result.normal_force * geometry_->rolling_radius(region.frame, depth);
+  const vec3 lever = geometry_->lever(region.frame);
+  add_wrench(wrench, region.frame.contact_angle, lever.data(), out.force, out.moment);
+  std::copy_n(origin.begin(), 3, result.position);
+  result.contact_angle = region.frame.contact_angle;
+  result.approach = depth;
+  result.rolling_speed = rolling.rolling_speed;
+  result.direction = rolling.direction;
+  if (solver.scene().tangential != RP_TANGENTIAL_NONE) {
+    result.creepage[0] = rolling.xi;
+    result.creepage[1] = rolling.eta;
+    result.spin_creepage = rolling.phi;
+  }
+  return result.status;
+}
+
+bool wheel_contact::first_touch(double &z) const { return railpatch::first_touch(*geometry_, z); }
+
+size_t wheel_contact::bytes() const {
+  return wheel_->bytes() + rail_->bytes() + geometry_->bytes();
+}
+
+rp_status combine_status(rp_status a, rp_status b) {
+  if (a == RP_OUT_OF_RANGE || b == RP_OUT_OF_RANGE) return RP_OUT_OF_RANGE;
+  if (a == RP_NOT_CONVERGED || b == RP_NOT_CONVERGED) return RP_NOT_CONVERGED;
+  return a == RP_CONVERGED || b == RP_CONVERGED ? RP_CONVERGED : RP_NO_CONTACT;
+}
+
+void mirror(rp_side_result &side) {
+  // a reflection at the plane y = 0: vectors change their y, axial vectors their x and z
+  side.force[1] = -side.force[1];
+  side.moment[0] = -side.moment[0];
+  side.moment[2] = -side.moment[2];
+  for (auto &p : side.patch) {
+    for (double *v : {&p.creep_force[1], &p.spin_moment, &p.position[1], &p.contact_angle,
+                      &p.creepage[1], &p.spin_creepage})
+      *v = -*v;
+    p.grid_origin[1] = -(p.grid_origin[1] + (p.grid[1] - 1) * p.element_size[1]);
+  }
+}
+
+}  // namespace railpatch

@@ -1,0 +1,53 @@
+// One wheel on its rail or roller: from placement to the forces about the wheelset's centre.
+//
+// Everything inside is a right-hand wheel; the inputs of a left one are mirrored on the way in and
+// its results on the way out, so left and right agree to the last bit.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "geometry.hpp"
+#include "patch.hpp"
+#include "patch_contact.hpp"
+#include "railpatch.h"
+
+namespace railpatch {
+
+class wheel_contact {
+ public:
+  // Throws profile_error where a profile of this side is not usable.
+  wheel_contact(const rp_config &config, int side);
+
+  int side() const { return side_; }
+  void place(const rp_input &input);
+  void move_to(double z) { geometry_->move_to(z); }
+  // z at which wheel and rail first touch; false where they have no lateral position in common.
+  bool first_touch(double &z) const;
+  // Solves the contact at the placed position. memory: of this side's patches, max_patches.
+  void evaluate(patch_contact &solver, patch_memory *memory, rp_side_result &result);
+  size_t bytes() const;
+
+ private:
+  rp_status solve_patch(patch_contact &solver, const patch_region &region, int index,
+                        patch_memory &memory, rp_side_result &result);
+  grid choose_grid(const patch_region &region) const;
+
+  rp_config config_;
+  int side_;
+  std::unique_ptr<profile> wheel_, rail_;
+  std::unique_ptr<side_geometry> geometry_;
+  std::array<patch_region, RP_MAX_PATCHES> regions_;
+};
+
+struct profile_error {
+  const char *field;  // "wheel_left", ...
+  const char *reason;
+};
+
+// Status of several patches or wheels together: the worst; no contact only where none has any.
+rp_status combine_status(rp_status a, rp_status b);
+// The result of a left wheel from that of its mirror image, and the other way round.
+void mirror(rp_side_result &result);
+
+}  // namespace railpatch
