@@ -1,0 +1,61 @@
+"""The undeformed distance on the grid, from a CSV file or nested lists."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from railpatch.case.types import MOST_ELEMENTS
+from railpatch.errors import CaseError
+
+KEY = "geometry.undeformed_distance"
+
+
+def read_gap(value: str | list[list[float]] | None, folder: Path) -> NDArray[np.float64] | None:
+    """m, [lateral, along rolling]. Raises CaseError that names the file and the line."""
+    if value is None:
+        return None
+    rows = read_rows(folder / value) if isinstance(value, str) else list(enumerate(value, 1))
+    if not rows:
+        raise CaseError(f"{KEY}: value is empty, allowed one row of numbers per grid row")
+    columns = len(rows[0][1])
+    for line, row in rows:
+        if len(row) != columns:
+            raise CaseError(
+                f"{KEY}: line {line} holds {len(row)} values, allowed {columns} as in the first"
+            )
+    shape = (len(rows), columns)
+    if not 1 <= columns <= MOST_ELEMENTS or len(rows) > MOST_ELEMENTS:
+        raise CaseError(f"{KEY}: shape is {shape}, allowed 1 ... {MOST_ELEMENTS} in each direction")
+    return np.array([row for _, row in rows], dtype=float)
+
+
+def read_rows(path: Path) -> list[tuple[int, list[float]]]:
+    """Line numbers and values; '#' starts a comment."""
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise CaseError(f"{KEY}: {path} cannot be read: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise CaseError(f"{KEY}: {path} is not a text file") from None
+    rows: list[tuple[int, list[float]]] = []
+    for line, words in enumerate(text.splitlines(), 1):
+        words = words.split("#", 1)[0].strip()
+        if words:
+            rows.append((line, [parse(path, line, word) for word in re.split(r"[\s,;]+", words)]))
+    return rows
+
+
+def parse(path: Path, line: int, word: Any) -> float:
+    """One finite number."""
+    try:
+        value = float(word)
+    except ValueError:
+        value = np.nan
+    if not np.isfinite(value):
+        raise CaseError(f"{KEY}: {path}:{line}: value is {word!r}, allowed a finite number")
+    return value

@@ -1,0 +1,110 @@
+"""Loading a case from a TOML file or a dictionary."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import BaseModel, Field, TypeAdapter, ValidationError
+
+from railpatch.case.gap import read_gap
+from railpatch.case.messages import problems, show
+from railpatch.case.patch import PatchCase
+from railpatch.case.wheel import WheelRailCase, WheelsetCase
+from railpatch.errors import CaseError
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+Case = PatchCase | WheelRailCase | WheelsetCase
+KINDS: dict[str, type[PatchCase] | type[WheelRailCase] | type[WheelsetCase]] = {
+    "patch": PatchCase,
+    "wheel_rail": WheelRailCase,
+    "wheelset": WheelsetCase,
+}
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A checked case and the folder that its paths start from."""
+
+    case: Case
+    folder: Path
+
+    def gap(self) -> np.ndarray | None:
+        """m, [lateral, along rolling], the undeformed distance where the case gives one."""
+        if not isinstance(self.case, PatchCase):
+            return None
+        return read_gap(self.case.geometry.undeformed_distance, self.folder)
+
+
+def load_scene(source: Mapping[str, Any] | str | Path, folder: str | Path | None = None) -> Scene:
+    """Checks a case given as a dictionary or as the path of a TOML file.
+
+    folder: where relative paths start; default: the file's folder, for a dictionary the working
+        directory. Raises CaseError with every problem found.
+    """
+    if isinstance(source, Mapping):
+        content, home = dict(source), Path(folder or ".")
+    else:
+        path = Path(source)
+        content, home = read_toml(path), Path(folder or path.parent)
+    return Scene(check_case(plain(content)), home)
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """The content of a TOML file."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise CaseError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise CaseError(f"{path}: is not a text file in UTF-8") from None
+    except tomllib.TOMLDecodeError as error:
+        raise CaseError(f"{path}: is not TOML: {error}") from None
+
+
+def plain(value: Any) -> Any:
+    """numpy arrays and numbers, tuples and mappings as plain Python values."""
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return {key: plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    return value
+
+
+def check_case(content: dict[str, Any]) -> Case:
+    """The checked case."""
+    kind = content.get("kind")
+    model = KINDS.get(kind) if isinstance(kind, str) else None
+    if model is None:
+        shown = show(kind) if "kind" in content else "missing"
+        raise CaseError(f"kind: value is {shown}, allowed 'patch', 'wheel_rail' or 'wheelset'")
+    return check_table(model, content)
+
+
+def check_table(model: type[BaseModel], content: Any, prefix: str = "") -> Any:
+    """One checked table of a case. prefix: its key. Raises CaseError."""
+    try:
+        return model.model_validate(content)
+    except ValidationError as error:
+        raise CaseError(problems(model, error, prefix)) from None
+
+
+def json_schema() -> dict[str, Any]:
+    """The JSON schema of a case file."""
+    adapter: TypeAdapter[Any] = TypeAdapter(Annotated[Case, Field(discriminator="kind")])
+    schema = adapter.json_schema()
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Railpatch case file",
+        **schema,
+    }

@@ -1,0 +1,126 @@
+"""Turns pydantic's errors into 'key: value is ..., allowed ...'."""
+
+from __future__ import annotations
+
+import difflib
+from typing import Any, get_args
+
+from pydantic import BaseModel, ValidationError
+
+# keys of the interface that this version does not have yet
+LATER_KEYS = {
+    "load": (),
+    "motion": ("tangential_force", "distance", "steps"),
+    "friction": (
+        "kinetic",
+        "amplitude",
+        "halving_speed",
+        "memory_distance",
+        "memory_speed",
+        "reference",
+        "change",
+        "reference_temperature",
+        "temperature_range",
+    ),
+    "layer": ("yield_stress", "hardening", "hardening_table", "plastic_heat_fraction"),
+    "method": ("accuracy", "patch_rule", "flexibility_blending"),
+    "": ("temperature",),
+}
+
+ALLOWED = {
+    "greater_than": "> {gt}",
+    "greater_than_equal": ">= {ge}",
+    "less_than": "< {lt}",
+    "less_than_equal": "<= {le}",
+    "finite_number": "a finite number",
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "string_type": "a text",
+    "string_too_short": "a text that is not empty",
+    "list_type": "a list",
+    "too_short": "{min_length} values",
+    "too_long": "{max_length} values",
+    "model_type": "a table",
+    "model_attributes_type": "a table",
+    "dict_type": "a table",
+    "literal_error": "{expected}",
+}
+
+
+def problems(model: type[BaseModel], error: ValidationError, prefix: str = "") -> list[str]:
+    """One line for each error. prefix: key of the table that the model stands for."""
+    found: list[str] = []
+    for item in error.errors(include_url=False):
+        # of the union path | rows only the branch that was meant is of use
+        if item["loc"][-1:] == ("str",) and isinstance(item["input"], list):
+            continue
+        text = problem(model, item, prefix)
+        # the branches of a union report the same key several times
+        if text.split(":")[0] not in {line.split(":")[0] for line in found}:
+            found.append(text)
+    return found
+
+
+def problem(model: type[BaseModel], item: Any, prefix: str) -> str:
+    """The line for one of pydantic's errors."""
+    context = item.get("ctx", {})
+    loc = [part for part in item["loc"] if not is_branch(part)]
+    key = spell(prefix, loc)
+    if item["type"] == "relation":
+        key = ".".join(part for part in (key, context["key"]) if part) or "case"
+        return f"{key}: value is {context['shown']}, allowed {context['allowed']}"
+    table = table_at(model, loc[:-1])
+    if item["type"] == "extra_forbidden":
+        return unknown_key(key, str(loc[-1]), item["input"], table, spell(prefix, loc[:-1]))
+    if item["type"] == "missing":
+        description = table.model_fields[str(loc[-1])].description if table else "a value"
+        return f"{key}: value is missing, allowed {description}"
+    template = ALLOWED.get(item["type"])
+    if item["loc"][-1:] == ("str",):
+        template = "a path or rows of numbers"
+    allowed = template.format(**context) if template else item["msg"]
+    return f"{key}: value is {show(item['input'])}, allowed {allowed}"
+
+
+def is_branch(part: Any) -> bool:
+    """pydantic puts the name of a union's branch, 'str' or 'list[...]', into the location."""
+    return isinstance(part, str) and (part == "str" or part.startswith("list["))
+
+
+def spell(prefix: str, loc: list[Any]) -> str:
+    """'wheelset.left.offset[1]'."""
+    key = prefix
+    for part in loc:
+        key += f"[{part}]" if isinstance(part, int) else f".{part}" if key else str(part)
+    return key
+
+
+def show(value: Any) -> str:
+    """The value, cut to a readable length."""
+    text = "a table" if isinstance(value, dict) else repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def table_at(model: type[BaseModel], loc: list[Any]) -> type[BaseModel] | None:
+    """The model of the table at a location."""
+    table: type[BaseModel] | None = model
+    for part in loc:
+        if table is None or part not in table.model_fields:
+            return None
+        annotation = table.model_fields[part].annotation
+        options = [annotation, *get_args(annotation)]
+        tables = [x for x in options if isinstance(x, type) and issubclass(x, BaseModel)]
+        table = tables[0] if tables else None
+    return table
+
+
+def unknown_key(
+    key: str, name: str, value: Any, table: type[BaseModel] | None, table_key: str
+) -> str:
+    """Names the key, what is allowed there, and the key that was perhaps meant."""
+    if name in LATER_KEYS.get(table_key, ()):
+        return f"{key}: value is {show(value)}, allowed: leave it out, not in this version"
+    names = list(table.model_fields) if table else []
+    text = f"{key}: value is {show(value)}, but the key is unknown, allowed {', '.join(names)}"
+    close = difflib.get_close_matches(name, names, 1)
+    return f"{text}; did you mean '{close[0]}'?" if close else text

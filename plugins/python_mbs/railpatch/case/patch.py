@@ -1,0 +1,112 @@
+"""kind = "patch": a contact patch given directly."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from railpatch.case.common import Friction, Grid, Layer, Material, Method
+from railpatch.case.types import Number, Pair, Positive, PositivePair, Table, exactly_one, relation
+
+SHAPES = ("semi_axes", "curvatures", "line_contact_radius", "undeformed_distance")
+
+
+class Geometry(Table):
+    """Shape of the undeformed bodies: exactly one of the four forms."""
+
+    semi_axes: PositivePair | None = Field(
+        default=None,
+        description="m, semi-axes of the contact ellipse [along rolling, lateral]; the curvatures "
+        "follow from the load",
+    )
+    curvatures: PositivePair | None = Field(
+        default=None,
+        description="1/m, [c0, c1] of the undeformed distance c0 x^2 + c1 y^2",
+    )
+    line_contact_radius: Positive | None = Field(
+        default=None, description="m, combined radius 1/(1/R_wheel + 1/R_rail) of a line contact"
+    )
+    width: Positive | None = Field(default=None, description="m, width of the line contact")
+    undeformed_distance: str | list[list[Number]] | None = Field(
+        default=None,
+        description="m, undeformed distance: path of a CSV file (or nested lists), one row per "
+        "grid row from low to high y, columns along rolling from low to high x",
+    )
+
+    @model_validator(mode="after")
+    def _one_shape(self) -> Geometry:
+        exactly_one(self, SHAPES)
+        if (self.width is None) != (self.line_contact_radius is None):
+            key = "width" if self.width is None else "line_contact_radius"
+            raise relation(key, "missing", "'line_contact_radius' and 'width' together")
+        return self
+
+
+class Load(Table):
+    """Normal load: the force or the approach."""
+
+    normal_force: Positive | None = Field(default=None, description="N, normal force")
+    approach: Number | None = Field(
+        default=None, description="m, approach of the bodies; below 0 they are apart"
+    )
+
+    @model_validator(mode="after")
+    def _one_load(self) -> Load:
+        exactly_one(self, ("normal_force", "approach"))
+        return self
+
+
+class Motion(Table):
+    """Relative motion; the table is left out for the normal problem alone."""
+
+    regime: Literal["none", "steady_rolling"] = Field(
+        default="steady_rolling", description="kind of motion (no unit)"
+    )
+    creepage: Pair = Field(
+        default=[0.0, 0.0],
+        description="-, [longitudinal, lateral], wheel minus rail over the rolling speed",
+    )
+    direction: Literal[1, -1] = Field(
+        default=1, description="-, rolling towards +x (1) or towards -x (-1)"
+    )
+    spin_creepage: Number = Field(default=0.0, description="rad/m, spin creepage")
+    rolling_speed: Positive = Field(default=1.0, description="m/s, rolling speed")
+
+
+class PatchCase(Table):
+    """A contact patch given directly."""
+
+    kind: Literal["patch"] = Field(description="kind of case (no unit)")
+    material: Material = Field(default=Material(), description="elastic constants (Pa, -)")
+    geometry: Geometry = Field(description="shape of the undeformed bodies (m, 1/m)")
+    load: Load = Field(description="normal force (N) or approach (m)")
+    grid: Grid | None = Field(
+        default=None, description="elements (-, m); left out: 24 across the contact"
+    )
+    motion: Motion = Field(
+        default=Motion(regime="none"), description="relative motion (-, rad/m, m/s)"
+    )
+    friction: Friction | None = Field(
+        default=None, description="friction law (-); needed where there is a tangential problem"
+    )
+    layer: Layer | None = Field(default=None, description="third-body layer (Pa, m)")
+    method: Method = Field(default=Method(), description="theories and tolerances (-)")
+
+    @property
+    def has_tangential(self) -> bool:
+        """Whether the scene has a tangential problem."""
+        return self.motion.regime != "none" and self.method.tangential != "none"
+
+    @model_validator(mode="after")
+    def _relations(self) -> PatchCase:
+        if self.has_tangential and self.friction is None:
+            raise relation("friction", "missing", "the table [friction] with 'coefficient'")
+        gap = self.geometry.undeformed_distance
+        if gap is not None and (self.grid is None or self.grid.element_size is None):
+            raise relation(
+                "grid.element_size", "missing", "[dx, dy] in m with geometry.undeformed_distance"
+            )
+        if gap is not None and self.method.normal == "hertz":
+            raise relation("method.normal", "'hertz'", "'half_space' with undeformed_distance")
+        return self

@@ -1,0 +1,203 @@
+"""kind = "wheel_rail" and "wheelset": wheels on rails or rollers."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from railpatch.case.common import Friction, Grid, Layer, Material, Method
+from railpatch.case.types import Number, Positive, Table, Vector, exactly_one, relation
+
+SIDES = ("left", "right")
+Text = Annotated[str, Field(min_length=1)]
+
+
+class Deviation(Table):
+    """Deviation of a wheel from the rigid wheelset, or of a rail from its design position."""
+
+    offset: Vector = Field(default=[0.0, 0.0, 0.0], description="m, offset along x, y, z")
+    rotation: Vector = Field(default=[0.0, 0.0, 0.0], description="rad, rotation about x, y, z")
+
+
+class Wheelset(Table):
+    """Position, attitude and velocity of the wheelset in track axes, and its dimensions."""
+
+    y: Number = Field(default=0.0, description="m, lateral position of its centre, to the right")
+    z: Number | None = Field(
+        default=None, description="m, vertical position of its centre, down; or vertical_force"
+    )
+    vertical_force: Positive | None = Field(
+        default=None,
+        description="N, vertical force on the wheel (wheel_rail) or on both wheels together "
+        "(wheelset); z is then found",
+    )
+    roll: Number = Field(default=0.0, description="rad, about x")
+    yaw: Number = Field(default=0.0, description="rad, about z")
+    speed: Number = Field(default=0.0, description="m/s, forward speed; 0 on a rig")
+    vy: Number = Field(default=0.0, description="m/s, lateral speed")
+    vz: Number = Field(default=0.0, description="m/s, vertical speed")
+    roll_rate: Number = Field(default=0.0, description="rad/s, about x")
+    yaw_rate: Number = Field(default=0.0, description="rad/s, about z")
+    pitch_rate: Number = Field(
+        default=0.0, description="rad/s, about the axle; below 0 for rolling forward"
+    )
+    nominal_radius: Positive = Field(description="m, wheel radius at the profile's z = 0")
+    flange_back_distance: Positive = Field(description="m, between the flange backs")
+    flange_back_position: Number = Field(
+        default=0.0,
+        description="m, of the flange back on the profile's y axis: -0.070 for S1002",
+    )
+    max_patches: Annotated[int, Field(ge=1, le=6)] | None = Field(
+        default=None, description="-, capacity: most patches of one wheel"
+    )
+    left: Deviation = Field(
+        default=Deviation(), description="left wheel's deviation (m, rad), wheelset axes"
+    )
+    right: Deviation = Field(
+        default=Deviation(), description="right wheel's deviation (m, rad), wheelset axes"
+    )
+
+    @model_validator(mode="after")
+    def _one_height(self) -> Wheelset:
+        exactly_one(self, ("z", "vertical_force"))
+        return self
+
+
+class Track(Table):
+    """Rails or rollers."""
+
+    kind: Literal["rail", "roller"] = Field(default="rail", description="(no unit)")
+    gauge: Positive = Field(default=1.435, description="m, track gauge")
+    gauge_height: Positive = Field(
+        default=0.014, description="m, height below the rail's top at which the gauge is measured"
+    )
+    cant: Number = Field(
+        default=0.0,
+        description="rad, inclination of both rails towards the track's centre (rail)",
+    )
+    curvature: Number = Field(default=0.0, description="1/m, right-hand curve above 0 (rail)")
+    roller_radius: Positive | None = Field(
+        default=None, description="m, roller radius at the profile's z = 0 (roller)"
+    )
+    roller_pitch_rate: Number | None = Field(
+        default=None, description="rad/s, about the roller's axle, above 0 forward (roller)"
+    )
+    left: Deviation = Field(
+        default=Deviation(), description="left rail's deviation (m, rad), track axes"
+    )
+    right: Deviation = Field(
+        default=Deviation(), description="right rail's deviation (m, rad), track axes"
+    )
+
+    @model_validator(mode="after")
+    def _keys_of_kind(self) -> Track:
+        if self.kind == "roller":
+            if self.roller_radius is None:
+                raise relation("roller_radius", "missing", "a radius > 0 m with kind = 'roller'")
+            for key in ("cant", "curvature"):
+                if getattr(self, key) != 0.0:
+                    raise relation(key, getattr(self, key), "0 with kind = 'roller'")
+            return self
+        for key in ("roller_radius", "roller_pitch_rate"):
+            if getattr(self, key) is not None:
+                raise relation(key, getattr(self, key), "only with kind = 'roller'")
+        return self
+
+
+class Profiles(Table):
+    """Profiles by path (relative to the case file) or built-in name; by side or for both."""
+
+    wheel: Text | None = Field(default=None, description="both wheels' profile (file, no unit)")
+    rail: Text | None = Field(
+        default=None, description="both rails' or rollers' profile (file, no unit)"
+    )
+    wheel_left: Text | None = Field(default=None, description="left wheel (file, no unit)")
+    wheel_right: Text | None = Field(default=None, description="right wheel (file, no unit)")
+    rail_left: Text | None = Field(default=None, description="left rail or roller (file, no unit)")
+    rail_right: Text | None = Field(
+        default=None, description="right rail or roller (file, no unit)"
+    )
+    smoothing: Annotated[float, Field(ge=0, le=0.1)] | None = Field(
+        default=None,
+        description="m, wave length of which half the amplitude is kept in profile files; 0: "
+        "interpolation; left out: 0.0025 for MiniProf measurements, 0 for other files",
+    )
+
+    @model_validator(mode="after")
+    def _no_doubles(self) -> Profiles:
+        for body in ("wheel", "rail"):
+            sided = [f"{body}_{side}" for side in SIDES if getattr(self, f"{body}_{side}")]
+            if getattr(self, body) is not None and sided:
+                raise relation(body, f"{getattr(self, body)!r}", f"only without '{sided[0]}'")
+        return self
+
+    def of(self, body: Literal["wheel", "rail"], side: str) -> tuple[str, str | None]:
+        """Key and value of the profile of one body on one side."""
+        if getattr(self, body) is not None:
+            return body, getattr(self, body)
+        return f"{body}_{side}", getattr(self, f"{body}_{side}")
+
+
+class Wheel(Table):
+    """Which wheel a wheel_rail case is."""
+
+    side: Literal["left", "right"] = Field(default="right", description="side (no unit)")
+
+
+class _WheelCase(Table):
+    """What both kinds with wheels have."""
+
+    material: Material = Field(default=Material(), description="elastic constants (Pa, -)")
+    grid: Grid | None = Field(
+        default=None, description="elements (-, m); left out: 24 across the contact"
+    )
+    friction: Friction | None = Field(
+        default=None, description="friction law (-); needed where there is a tangential problem"
+    )
+    layer: Layer | None = Field(default=None, description="third-body layer (Pa, m)")
+    method: Method = Field(default=Method(), description="theories and tolerances (-)")
+    wheelset: Wheelset = Field(description="position, velocity, dimensions (m, rad, m/s, rad/s)")
+    track: Track = Field(description="rails or rollers (m, rad, rad/s)")
+    profiles: Profiles = Field(description="profiles by file or name (no unit)")
+
+    @property
+    def sides(self) -> tuple[str, ...]:
+        """The sides that have a wheel."""
+        return SIDES
+
+    @property
+    def has_tangential(self) -> bool:
+        """Whether the scene has a tangential problem."""
+        return self.method.tangential != "none"
+
+    @model_validator(mode="after")
+    def _relations(self) -> _WheelCase:
+        if self.has_tangential and self.friction is None:
+            raise relation("friction", "missing", "the table [friction] with 'coefficient'")
+        for side in self.sides:
+            for body in ("wheel", "rail"):
+                key, value = self.profiles.of(body, side)
+                if value is None:
+                    raise relation(
+                        f"profiles.{key}", "missing", f"'{key}', or '{body}' for both sides"
+                    )
+        return self
+
+
+class WheelRailCase(_WheelCase):
+    """One wheel on its rail or roller."""
+
+    kind: Literal["wheel_rail"] = Field(description="kind of case (no unit)")
+    wheel: Wheel = Field(default=Wheel(), description="which wheel (no unit)")
+
+    @property
+    def sides(self) -> tuple[str, ...]:
+        """The side that has a wheel."""
+        return (self.wheel.side,)
+
+
+class WheelsetCase(_WheelCase):
+    """Both wheels on their rails or rollers."""
+
+    kind: Literal["wheelset"] = Field(description="kind of case (no unit)")

@@ -1,0 +1,108 @@
+"""The command group: sub-commands of this and other packages, common options, exit codes.
+
+A package adds a sub-command by an entry point of the group "railpatch.commands" that names a click
+command. --quiet and --version are added where the command has none of its own.
+"""
+
+from __future__ import annotations
+
+from importlib.metadata import EntryPoint, entry_points
+from typing import Any
+
+import click
+
+from railpatch.errors import CaseError, ProfileError
+
+ENTRY_POINT_GROUP = "railpatch.commands"
+# sub-commands of this package that take long to import
+LAZY = {"report": EntryPoint("report", "railpatch.report.command:report", ENTRY_POINT_GROUP)}
+EXIT_WRONG_CALL = 2
+EXIT_NOT_CONVERGED = 3
+
+
+class WrongCall(click.ClickException):
+    """The call was wrong: the message goes to stderr, exit code 2."""
+
+    exit_code = EXIT_WRONG_CALL
+
+
+def print_version(context: click.Context, _option: click.Parameter, value: bool) -> None:
+    """Prints the version and ends."""
+    if not value or context.resilient_parsing:
+        return
+    from railpatch import __version__
+
+    click.echo(f"railpatch {__version__}")
+    context.exit()
+
+
+def version_option() -> click.Option:
+    """--version."""
+    return click.Option(
+        ["--version"],
+        is_flag=True,
+        is_eager=True,
+        expose_value=False,
+        callback=print_version,
+        help="Print the version.",
+    )
+
+
+def quiet_option() -> click.Option:
+    """--quiet for a command that has nothing to be quiet about."""
+    return click.Option(["--quiet"], is_flag=True, expose_value=False, help="Print nothing.")
+
+
+def with_common_options(command: click.Command) -> click.Command:
+    """The command with --quiet and --version."""
+    names = {parameter.name for parameter in command.params}
+    for option in (quiet_option(), version_option()):
+        if option.name not in names:
+            command.params.append(option)
+    return command
+
+
+class Commands(click.Group):
+    """The railpatch command with its own and other packages' sub-commands."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """All names, without importing other packages."""
+        return sorted({*super().list_commands(ctx), *self._outside()})
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """A sub-command with the common options."""
+        command = super().get_command(ctx, cmd_name)
+        if command is None:
+            entry = self._outside().get(cmd_name)
+            if entry is None:
+                return None
+            command = load_entry(entry)
+        return with_common_options(command)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Runs the sub-command; errors of the call end with exit code 2."""
+        try:
+            return super().invoke(ctx)
+        except (CaseError, ProfileError) as error:
+            raise WrongCall(str(error)) from None
+
+    @staticmethod
+    def _outside() -> dict[str, EntryPoint]:
+        found = {entry.name: entry for entry in entry_points(group=ENTRY_POINT_GROUP)}
+        return {**found, **LAZY}
+
+
+def load_entry(entry: EntryPoint) -> click.Command:
+    """The command of an entry point; one that only tells why where it cannot be imported."""
+    try:
+        command = entry.load()
+        if isinstance(command, click.Command):
+            return command
+        reason = f"{entry.value} is no click command"
+    except (ImportError, AttributeError) as error:
+        reason = str(error)
+
+    def fail() -> None:
+        raise click.ClickException(f"'{entry.name}' cannot be loaded: {reason}")
+
+    return click.Command(entry.name, callback=fail, help=f"(cannot be loaded: {reason})")

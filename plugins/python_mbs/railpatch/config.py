@@ -1,0 +1,128 @@
+"""From a checked case to the structs of the core, as dictionaries by field name."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from railpatch.case.load import Case, Scene
+from railpatch.case.patch import SHAPES, PatchCase
+from railpatch.case.wheel import SIDES, WheelRailCase, WheelsetCase
+from railpatch.profiles import load_profile
+
+WHEELSET_STATE = ("y", "roll", "yaw", "speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate")
+
+
+def config_of(scene: Scene) -> dict[str, Any]:
+    """Fields of rp_config; what is left out keeps the core's default. Raises CaseError,
+    ProfileError."""
+    case = scene.case
+    config: dict[str, Any] = {
+        "kind": case.kind,
+        "shear_modulus": case.material.shear_modulus,
+        "poisson_ratio": case.material.poisson_ratio,
+        "normal": case.method.normal,
+        "tangential": case.method.tangential,
+        "tolerance": case.method.tolerance,
+        "spin_offset": case.method.spin_offset,
+    }
+    optional = {
+        "max_iterations": case.method.max_iterations,
+        "friction_coefficient": case.friction and case.friction.coefficient,
+        "layer_shear_modulus": case.layer and case.layer.shear_modulus,
+        "layer_thickness": case.layer and case.layer.thickness,
+    }
+    config.update({key: value for key, value in optional.items() if value is not None})
+    config.update(patch_config(scene) if isinstance(case, PatchCase) else wheel_config(scene, case))
+    config.update(grid_config(case))
+    return config
+
+
+def grid_config(case: Case) -> dict[str, Any]:
+    """Elements by number or by size; the other is zero."""
+    line = isinstance(case, PatchCase) and case.geometry.line_contact_radius is not None
+    if case.grid is None:
+        return {"elements": [24, 1 if line else 24], "element_size": [0.0, 0.0]}
+    return {
+        "elements": case.grid.elements or [0, 0],
+        "element_size": case.grid.element_size or [0.0, 0.0],
+        "max_elements": case.grid.max_elements or [0, 0],
+    }
+
+
+def patch_config(scene: Scene) -> dict[str, Any]:
+    """Geometry and load of a patch."""
+    case = scene.case
+    assert isinstance(case, PatchCase)
+    shape = next(name for name in SHAPES if getattr(case.geometry, name) is not None)
+    config: dict[str, Any] = {
+        "geometry": shape,
+        "load": "force" if case.load.normal_force is not None else "position",
+        "regime": case.motion.regime,
+    }
+    if shape == "undeformed_distance":
+        config[shape] = scene.gap()
+    else:
+        config[shape] = getattr(case.geometry, shape)
+    if case.geometry.width is not None:
+        config["width"] = case.geometry.width
+    return config
+
+
+def wheel_config(scene: Scene, case: WheelRailCase | WheelsetCase) -> dict[str, Any]:
+    """Dimensions, track and profiles of a wheel or wheelset."""
+    wheelset, track = case.wheelset, case.track
+    config: dict[str, Any] = {
+        "load": "position" if wheelset.z is not None else "force",
+        "regime": "steady_rolling" if case.has_tangential else "none",
+        "nominal_radius": wheelset.nominal_radius,
+        "flange_back_distance": wheelset.flange_back_distance,
+        "flange_back_position": wheelset.flange_back_position,
+        "track": track.kind,
+        "gauge": track.gauge,
+        "gauge_height": track.gauge_height,
+        "cant": track.cant,
+        "curvature": track.curvature,
+        "wheel": profile_pair(scene, case, "wheel"),
+        "rail": profile_pair(scene, case, "rail"),
+    }
+    if track.roller_radius is not None:
+        config["roller_radius"] = track.roller_radius
+    if wheelset.max_patches is not None:
+        config["max_patches"] = wheelset.max_patches
+    if isinstance(case, WheelRailCase):
+        config["side"] = case.wheel.side
+    return config
+
+
+def profile_pair(scene: Scene, case: WheelRailCase | WheelsetCase, body: Any) -> list[Any]:
+    """[left, right] of the wheels or the rails; None for a side that has no wheel."""
+    pair: list[Any] = []
+    for side in SIDES:
+        if side not in case.sides:
+            pair.append(None)
+            continue
+        _, name = case.profiles.of(body, side)
+        assert name is not None
+        profile = load_profile(name, body, folder=scene.folder, smoothing=case.profiles.smoothing)
+        pair.append({key: getattr(profile, key) for key in ("arc_length", "y", "z", "dy", "dz")})
+    return pair
+
+
+def input_of(case: Case) -> dict[str, Any]:
+    """Fields of rp_input."""
+    if isinstance(case, PatchCase):
+        values = case.motion.model_dump(exclude={"regime"})
+        values.update(case.load.model_dump(exclude_none=True))
+        return values
+    wheelset, track = case.wheelset, case.track
+    values = {name: getattr(wheelset, name) for name in WHEELSET_STATE}
+    if wheelset.z is not None:
+        values["z"] = wheelset.z
+    else:
+        values["vertical_force"] = wheelset.vertical_force
+    if track.roller_pitch_rate is not None:
+        values["roller_pitch_rate"] = track.roller_pitch_rate
+    for name, table in (("wheel", wheelset), ("rail", track)):
+        values[f"{name}_offset"] = [table.left.offset, table.right.offset]
+        values[f"{name}_rotation"] = [table.left.rotation, table.right.rotation]
+    return values

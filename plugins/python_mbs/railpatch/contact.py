@@ -1,0 +1,142 @@
+"""solve() and Contact: one case through the core."""
+
+from __future__ import annotations
+
+import json
+import struct
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from railpatch import _core
+from railpatch.case.load import Case, Scene, check_table, load_scene
+from railpatch.config import config_of, input_of
+from railpatch.errors import CaseError
+from railpatch.moving import changed_case, moving_keys
+from railpatch.result import FIELDS, Result, patch_data, shaped_field, wheel_data
+
+SIDE_INDEX = {"left": 0, "right": 1}
+# saved state: mark, length of the moving tables as JSON, the JSON, the core's state
+MARK = b"railpatch1"
+LENGTH = struct.Struct("<I")
+CaseSource = Mapping[str, Any] | str | Path | Scene
+
+
+class Contact:
+    """A contact with its memory and last solution; the next step starts from it.
+
+    case: dictionary, path of a TOML file, or Scene. folder: where relative paths start; default the
+    file's folder, or the working directory. timing: measure the time of each stage.
+    Raises CaseError, ProfileError.
+    """
+
+    def __init__(
+        self, case: CaseSource, *, folder: str | Path | None = None, timing: bool = False
+    ) -> None:
+        scene = case if isinstance(case, Scene) else load_scene(case, folder)
+        self._case = scene.case
+        self._core = _core.Contact(config_of(scene), timing)
+        self._stages = [stage["name"] for stage in self.stages() if stage["present"]]
+
+    @property
+    def case(self) -> Case:
+        """The checked case with the moving inputs of the last step."""
+        return self._case
+
+    def step(self, *, fields: bool = False, **changes: Any) -> Result:
+        """Solves with some moving inputs changed; the others keep their last value.
+
+        patch: creepage, spin_creepage, rolling_speed, direction, normal_force or approach.
+        wheel_rail, wheelset: the position and velocity keys of [wheelset] with left and right,
+        roller_pitch_rate, track = {"left": ..., "right": ...}; left and right in part or whole.
+        fields: add the fields of each patch. Other keys raise CaseError and nothing changes.
+        """
+        case = changed_case(self._case, changes)
+        values = input_of(case)
+        begin = time.perf_counter()
+        raw = self._core.step(values)
+        wall_time = time.perf_counter() - begin
+        self._case = case
+        return Result(self._data(raw, wall_time, fields))
+
+    def reset(self) -> None:
+        """Forgets the last solution: the next step starts as the first one did."""
+        self._core.reset()
+
+    def save(self) -> bytes:
+        """The state that later steps depend on: last solution and moving inputs."""
+        tables = sorted(set(moving_keys(self._case).values()))
+        content = {name: getattr(self._case, name).model_dump() for name in tables}
+        text = json.dumps(content).encode()
+        return MARK + LENGTH.pack(len(text)) + text + self._core.save()
+
+    def restore(self, state: bytes) -> None:
+        """Brings back a saved state of a contact of the same case; the next step gives the same
+        bits. Raises CaseError for other bytes, then nothing changes."""
+        try:
+            tables, core_state = split_state(state)
+            changed = {
+                name: check_table(type(getattr(self._case, name)), content, name)
+                for name, content in tables.items()
+            }
+        except (ValueError, AttributeError, struct.error):
+            raise CaseError("state: value is no state of this case, allowed: save()") from None
+        self._core.restore(core_state)
+        self._case = self._case.model_copy(update=changed)
+
+    def stages(self) -> list[dict[str, Any]]:
+        """name, present, reason, bytes (memory held) and seconds (0 without timing) per stage."""
+        return self._core.describe()
+
+    def _data(self, raw: dict[str, Any], wall_time: float, fields: bool) -> dict[str, Any]:
+        """The JSON result's content for the case's kind."""
+        common = {"wall_time": wall_time, "stages": list(self._stages)}
+        if self._case.kind == "patch":
+            patch = raw["right"]["patches"][0]
+            data = patch_data(patch, of_wheel=False)
+            if fields:
+                data.update(self._fields("right", 0, patch["grid"]))
+            return {**data, **common}
+        wheels = {side: wheel_data(raw[side], raw["z"]) for side in self._case.sides}
+        if fields:
+            for side, wheel in wheels.items():
+                for index, patch in enumerate(wheel["patches"]):
+                    grid = raw[side]["patches"][index]["grid"]
+                    patch.update(self._fields(side, index, grid))
+        if self._case.kind == "wheel_rail":
+            return {**wheels[self._case.wheel.side], "status": raw["status"], **common}
+        total = {key: raw[key] for key in ("status", "force", "moment", "z")}
+        return {**total, **wheels, **common}
+
+    def _fields(self, side: str, patch: int, grid: list[int]) -> dict[str, Any]:
+        """The fields of one patch of the last step."""
+        found: dict[str, Any] = {}
+        for name in FIELDS:
+            values = None
+            if name != "temperature":
+                values = self._core.field(SIDE_INDEX[side], patch, name)
+            found[name] = shaped_field(name, values, grid)
+        return found
+
+
+def split_state(state: bytes) -> tuple[dict[str, Any], bytes]:
+    """Moving tables and the core's state. Raises ValueError, struct.error."""
+    start = len(MARK) + LENGTH.size
+    if state[: len(MARK)] != MARK:
+        raise ValueError("no mark")
+    (size,) = LENGTH.unpack(state[len(MARK) : start])
+    tables = json.loads(state[start : start + size])
+    if not isinstance(tables, dict):
+        raise ValueError("no tables")
+    return tables, state[start + size :]
+
+
+def solve(case: CaseSource, fields: bool = False, *, folder: str | Path | None = None) -> Result:
+    """Solves one case.
+
+    case: dictionary or path of a TOML file. fields: add pressure, traction, ... of each patch.
+    folder: where relative paths start; default the file's folder, or the working directory.
+    Raises CaseError, ProfileError. A solve that does not converge is no error: see Result.status.
+    """
+    return Contact(case, folder=folder).step(fields=fields)

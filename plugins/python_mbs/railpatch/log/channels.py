@@ -1,0 +1,322 @@
+"""The run log's own channels, in one table.
+
+Everything that must agree about the log reads this table: the protobuf schemas (schema.py), the
+checks of what is written (encode.py), the metadata in the file (writer.py), the axis labels of the
+report, and the documentation (``markdown``). Channels with well-known Foxglove messages are listed
+in ``WELL_KNOWN``; the library that defines those messages documents their fields.
+
+Conventions that hold for every channel stand in ``CONVENTIONS``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+STATUSES = ("converged", "no_contact", "not_converged", "out_of_range")
+SIDES = ("left", "right")
+
+# codes of element_division, in this order from 0
+ELEMENT_STATES = ("exterior", "stick", "slip", "plastic")
+
+CONVENTIONS = {
+    "units": "SI; temperatures in degrees Celsius, angles in rad",
+    "time": "log_time is simulation time in nanoseconds from the start of the run, not a date",
+    "track_axes": "x forward along the track centre line, y right, z down; origin in the plane on "
+    "the rails' or rollers' tops; roll, yaw, pitch follow the right-hand rule",
+    "wheelset_position": "the wheelset's centre at z = 0 lies one nominal wheel radius above the "
+    "origin; forward rolling is a negative pitch rate of the wheelset, a positive one of rollers",
+    "contact_axes": "of a patch: origin at its position, x along rolling, y lateral along the "
+    "surface, normal pointing down into the rail or roller; contact_angle turns about x from "
+    "track z to the normal",
+    "forces": "on the wheel; on the rail or roller they are the opposite",
+    "creepages": "wheel minus rail, divided by the rolling speed",
+    "missing": "a value that the scene left out, or that was not found, is absent, never zero",
+}
+
+
+@dataclass(frozen=True)
+class Field:
+    """One field of a message.
+
+    ``kind`` is a protobuf scalar ("double", "uint32", "string") or the ``Message`` it holds.
+    ``size`` is 1 for a single value, n for a list of n values, 0 for a list of any length.
+    ``unit`` is "-" for a number without unit and "" for text or a message.
+    """
+
+    name: str
+    kind: str | Message
+    unit: str
+    text: str
+    frame: str = ""
+    size: int = 1
+    required: bool = False
+    choices: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Message:
+    """A protobuf message: its name without package, what it is, and its fields in order."""
+
+    name: str
+    text: str
+    fields: tuple[Field, ...]
+
+    def field(self, name: str) -> Field:
+        """The field called ``name``; KeyError where there is none."""
+        for field in self.fields:
+            if field.name == name:
+                return field
+        raise KeyError(f"{self.name} has no field {name!r}")
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A channel of the log: its topic, its message and what it is for."""
+
+    topic: str
+    message: Message
+    text: str
+
+
+def _number(name: str, unit: str, text: str, frame: str = "", **more: object) -> Field:
+    return Field(name, "double", unit, text, frame, **more)  # type: ignore[arg-type]
+
+
+def _count(name: str, text: str, **more: object) -> Field:
+    return Field(name, "uint32", "-", text, **more)  # type: ignore[arg-type]
+
+
+def _status(text: str, required: bool = False) -> Field:
+    return Field("status", "string", "", text, choices=STATUSES, required=required)
+
+
+WHEELSET_STATE = Message(
+    "WheelsetState",
+    "Position and speeds of the wheelset, and what drives it.",
+    (
+        _number("progress", "-", "part of the run that is done, 0 to 1"),
+        _number("x", "m", "distance travelled along the track", "track"),
+        _number("y", "m", "lateral position of the wheelset's centre", "track", required=True),
+        _number("z", "m", "vertical position of the wheelset's centre", "track", required=True),
+        _number("roll", "rad", "roll angle", "track", required=True),
+        _number("yaw", "rad", "yaw angle, which is the angle of attack", "track", required=True),
+        _number("pitch", "rad", "angle turned about the axle; only the 3D scene needs it"),
+        _number("speed", "m/s", "forward speed of the centre; 0 on a roller rig", "track"),
+        _number("vy", "m/s", "lateral speed of the centre", "track"),
+        _number("vz", "m/s", "vertical speed of the centre", "track"),
+        _number("roll_rate", "rad/s", "rate of the roll angle", "track"),
+        _number("yaw_rate", "rad/s", "rate of the yaw angle", "track"),
+        _number("pitch_rate", "rad/s", "speed of rotation about the axle", "wheelset"),
+        _number("roller_pitch", "rad", "angle turned by the rollers; only the 3D scene needs it"),
+        _number("roller_pitch_rate", "rad/s", "speed of rotation of the rollers", "track"),
+        _number("vertical_force", "N", "vertical load on the wheelset, down", "track"),
+        _number("force", "N", "sum of both wheels' contact forces", "track", size=3),
+        _number("moment", "N m", "their moment about the wheelset's centre", "track", size=3),
+        _number("curvature", "1/m", "curvature of the track, right-hand curve > 0", "track"),
+        _number("cant", "rad", "cant of the track", "track"),
+    ),
+)
+
+ELEMENTS = Message(
+    "Elements",
+    "How many elements of the potential contact are in each state.",
+    tuple(_count(state, f"elements in state {state}") for state in ELEMENT_STATES),
+)
+
+PATCH = Message(
+    "Patch",
+    "One contact patch.",
+    (
+        _status("how the solution of this patch ended", required=True),
+        _number("position", "m", "contact reference", "track", size=3),
+        _number("contact_angle", "rad", "rotation about x from track z to the normal", "track"),
+        _number("creepage", "-", "longitudinal and lateral creepage", "contact", size=2),
+        _number("spin_creepage", "rad/m", "spin creepage", "contact"),
+        _number("rolling_speed", "m/s", "mean speed of the two surfaces along x", "contact"),
+        _number("normal_force", "N", "normal force, >= 0", "contact"),
+        _number("approach", "m", "approach of the bodies", "contact"),
+        _number("creep_force", "N", "longitudinal and lateral creep force", "contact", size=2),
+        _number("spin_moment", "N m", "moment about the normal", "contact"),
+        _number("max_pressure", "Pa", "highest contact pressure"),
+        _number("contact_area", "m^2", "area in contact"),
+        Field("elements", ELEMENTS, "", "the element division, counted"),
+        _number("max_temperature", "degC", "highest surface temperature"),
+        _number("friction_power", "W", "power lost in friction, >= 0"),
+        _number("elastic_energy", "J", "elastic energy"),
+        _count("iterations", "iterations of the solution"),
+        _number("residual", "-", "residual at the end"),
+        _number("wall_time", "s", "wall-clock time of the solution"),
+        _number("error_estimate", "-", "estimated relative error of the force"),
+    ),
+)
+
+WHEEL_CONTACT = Message(
+    "WheelContact",
+    "Contact of one wheel with its rail or roller.",
+    (
+        _status("how the solution of this wheel ended", required=True),
+        _number("force", "N", "contact force on the wheel", "track", size=3),
+        _number("moment", "N m", "its moment about the wheelset's centre", "track", size=3),
+        _number("z", "m", "vertical position of the wheelset, where it was found", "track"),
+        _number("rolling_radius", "m", "radius on which the wheel rolls"),
+        _number("wall_time", "s", "wall-clock time of the solution"),
+        Field("patches", PATCH, "", "the contact patches; none without contact", size=0),
+    ),
+)
+
+# keys of a result that the contact channels leave out, and why; by message
+_IN_FIELDS = "in the fields channel"
+LEFT_OUT = {
+    "WheelContact": {"stages": "the case file is attached; `railpatch explain` tells its stages"},
+    "Patch": {"stages": "as for the wheel"}
+    | dict.fromkeys(
+        ("x", "y", "pressure", "traction", "micro_slip", "element_division", "temperature"),
+        _IN_FIELDS,
+    ),
+}
+
+PATCH_FIELDS = Message(
+    "PatchFields",
+    "The fields of one patch; lists run along x first, then along y.",
+    (
+        _count("patch", "index of the patch in the contact channel, from 0", required=True),
+        _count("rows", "elements along y", required=True),
+        _count("columns", "elements along x", required=True),
+        _number("x", "m", "element centres, rows * columns values", "contact", size=0),
+        _number("y", "m", "element centres, rows * columns values", "contact", size=0),
+        _number("pressure", "Pa", "normal pressure, rows * columns values", "contact", size=0),
+        _number(
+            "traction",
+            "Pa",
+            "traction on the wheel: x of every element, then y; 2 * rows * columns values",
+            "contact",
+            size=0,
+        ),
+        _number(
+            "micro_slip",
+            "-",
+            "micro-slip over the rolling speed: x of every element, then y; 2 * rows * columns "
+            "values",
+            "contact",
+            size=0,
+        ),
+        Field(
+            "element_division",
+            "uint32",
+            "-",
+            "state of each element: "
+            + ", ".join(f"{code} {name}" for code, name in enumerate(ELEMENT_STATES)),
+            size=0,
+        ),
+        _number("temperature", "degC", "surface temperature, rows * columns values", size=0),
+    ),
+)
+
+CONTACT_FIELDS = Message(
+    "ContactFields",
+    "Snapshot of the fields of one wheel's patches, at chosen moments.",
+    (Field("patches", PATCH_FIELDS, "", "one entry per patch", size=0),),
+)
+
+RIG_BALANCE = Message(
+    "RigBalance",
+    "Force balance of the roller rig at one position.",
+    (
+        _status("how the search for balance ended", required=True),
+        _count("evaluations", "evaluations of the balance equations"),
+        _count("iterations", "iterations of Broyden's method"),
+        _number(
+            "residuals",
+            "N m, N, N m",
+            "at the end: moment about the axle, vertical force, roll moment",
+            size=3,
+        ),
+        _number("z", "m", "found: vertical position of the wheelset", "track"),
+        _number("roll", "rad", "found: roll angle of the wheelset", "track"),
+        _number("pitch_rate", "rad/s", "found: pitch rate of the wheelset", "wheelset"),
+    ),
+)
+
+SOLVER_STATS = Message(
+    "SolverStats",
+    "Work and wall-clock time of one position or time step.",
+    (
+        _number("wall_time", "s", "wall-clock time in all", required=True),
+        _number("left_wall_time", "s", "part of it in the left wheel's contact"),
+        _number("right_wall_time", "s", "part of it in the right wheel's contact"),
+        _count("contact_evaluations", "contact problems solved"),
+        _count("left_normal_iterations", "iterations of the left normal problem"),
+        _count("left_tangential_iterations", "iterations of the left tangential problem"),
+        _count("right_normal_iterations", "iterations of the right normal problem"),
+        _count("right_tangential_iterations", "iterations of the right tangential problem"),
+    ),
+)
+
+CHANNELS = (
+    Channel("/wheelset/state", WHEELSET_STATE, "where the wheelset is and how it moves"),
+    Channel("/left/contact", WHEEL_CONTACT, "result of the left wheel"),
+    Channel("/right/contact", WHEEL_CONTACT, "result of the right wheel"),
+    Channel("/rig/balance", RIG_BALANCE, "force balance; only in runs of the roller rig"),
+    Channel("/solver/stats", SOLVER_STATS, "iterations and times"),
+    Channel("/left/fields", CONTACT_FIELDS, "fields of the left patches, at chosen moments"),
+    Channel("/right/fields", CONTACT_FIELDS, "fields of the right patches, at chosen moments"),
+)
+
+# topic: (Foxglove message, what it is for)
+WELL_KNOWN = {
+    "/tf": ("foxglove.FrameTransforms", "frames world (z up), track, wheelset, wheels, rollers"),
+    "/scene/bodies": ("foxglove.SceneUpdate", "wheels, rollers or rails; once, at the start"),
+    "/scene/contact": ("foxglove.SceneUpdate", "contact patches and arrows of their forces"),
+}
+
+
+def channel(topic: str) -> Channel:
+    """The channel of ``topic``; KeyError where the table has none."""
+    for entry in CHANNELS:
+        if entry.topic == topic:
+            return entry
+    raise KeyError(f"no channel {topic!r} in the run log")
+
+
+def flat_fields(message: Message, prefix: str = "") -> Iterator[tuple[str, Field]]:
+    """Every field with its dotted path, those of nested messages too ("patches[].position")."""
+    for field in message.fields:
+        path = prefix + field.name
+        yield path, field
+        if isinstance(field.kind, Message):
+            yield from flat_fields(field.kind, f"{path}{'[]' if field.size == 0 else ''}.")
+
+
+def note(field: Field) -> str:
+    """Unit, shape, frame and meaning of a field in one line."""
+    shape = {0: "list", 1: ""}.get(field.size, f"[{field.size}]")
+    frame = f"{field.frame} axes" if field.frame else ""
+    choices = "one of " + ", ".join(field.choices) if field.choices else ""
+    parts = (field.unit, shape, frame, choices)
+    lead = "; ".join(part for part in parts if part)
+    return f"{lead}: {field.text}" if lead else field.text
+
+
+def unit(topic: str, path: str) -> str:
+    """Unit of the field at the dotted ``path`` of a channel ("patches[].approach")."""
+    for name, field in flat_fields(channel(topic).message):
+        if name == path:
+            return field.unit
+    raise KeyError(f"{topic} has no field {path!r}")
+
+
+def markdown() -> str:
+    """The table as Markdown, for the documentation."""
+    lines = ["# Channels of the run log", ""]
+    lines += [f"- {name.replace('_', ' ')}: {text}" for name, text in CONVENTIONS.items()]
+    lines += ["", "| channel | message | content |", "|---|---|---|"]
+    lines += [f"| {c.topic} | railpatch.{c.message.name} | {c.text} |" for c in CHANNELS]
+    lines += [f"| {topic} | {name} | {text} |" for topic, (name, text) in WELL_KNOWN.items()]
+    for message in dict.fromkeys(c.message for c in CHANNELS):
+        lines += ["", f"## railpatch.{message.name}", "", message.text, ""]
+        lines += ["| field | unit | frame | shape | meaning |", "|---|---|---|---|---|"]
+        for path, field in flat_fields(message):
+            shape = {0: "list", 1: "one"}.get(field.size, str(field.size))
+            lines.append(f"| {path} | {field.unit} | {field.frame} | {shape} | {field.text} |")
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,75 @@
+"""Moving inputs: the keys of a case that may change from step to step."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from railpatch.case.load import Case, check_table, plain
+from railpatch.case.messages import show
+from railpatch.case.patch import PatchCase
+from railpatch.config import WHEELSET_STATE
+from railpatch.errors import CaseError
+
+MOTION_KEYS = ("creepage", "spin_creepage", "rolling_speed", "direction")
+DEVIATION_KEYS = ("left", "right")
+
+
+def moving_keys(case: Case) -> dict[str, str]:
+    """Moving key -> table of the case that holds it. 'track' takes a table of track keys."""
+    if isinstance(case, PatchCase):
+        load = "normal_force" if case.load.normal_force is not None else "approach"
+        return {load: "load", **dict.fromkeys(MOTION_KEYS, "motion")}
+    height = "z" if case.wheelset.z is not None else "vertical_force"
+    keys = dict.fromkeys((*WHEELSET_STATE, height, *DEVIATION_KEYS), "wheelset")
+    if case.track.kind == "roller":
+        keys["roller_pitch_rate"] = "track"
+    return {**keys, "track": "track"}
+
+
+def changed_case(case: Case, changes: Mapping[str, Any]) -> Case:
+    """The case with moving inputs changed; the given one stays as it is. Raises CaseError.
+
+    left, right and track may be given in part: {"offset": [0, 0, 1e-4]} leaves the rotation.
+    """
+    if not changes:
+        return case
+    keys = moving_keys(case)
+    refuse_unknown(changes, keys, "")
+    tables: dict[str, dict[str, Any]] = {}
+    for key, value in plain(changes).items():
+        values = tables.setdefault(keys[key], {})
+        if key != "track":
+            values[key] = value
+            continue
+        if not isinstance(value, dict):
+            raise CaseError(f"track: value is {show(value)}, allowed a table")
+        allowed = [name for name in ("roller_pitch_rate",) if name in keys]
+        refuse_unknown(value, dict.fromkeys((*DEVIATION_KEYS, *allowed)), "track.")
+        values.update(value)
+    return case.model_copy(
+        update={name: changed_table(case, name, values) for name, values in tables.items()}
+    )
+
+
+def changed_table(case: Case, name: str, values: dict[str, Any]) -> Any:
+    """One table of the case, checked again with new values."""
+    table = getattr(case, name)
+    content = table.model_dump()
+    for key, value in values.items():
+        if key in DEVIATION_KEYS and isinstance(value, dict):
+            value = {**content[key], **value}
+        content[key] = value
+    return check_table(type(table), content, name)
+
+
+def refuse_unknown(changes: Mapping[str, Any], keys: Mapping[str, Any], prefix: str) -> None:
+    """Raises CaseError for keys that do not move."""
+    wrong = [key for key in changes if key not in keys]
+    if wrong:
+        allowed = ", ".join(keys)
+        raise CaseError(
+            f"{prefix}{key}: value is {show(changes[key])}, but this is no moving input of the "
+            f"case, allowed {allowed}"
+            for key in wrong
+        )

@@ -1,0 +1,64 @@
+"""Which reader a profile file needs, by content and extension."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from railpatch.errors import ProfileError
+from railpatch.profiles.columns import read_columns
+from railpatch.profiles.miniprof import read_miniprof
+from railpatch.profiles.raw import RawProfile, Role, check_points, orient
+from railpatch.profiles.simpack import read_simpack
+
+# extension -> what the file is said to be
+EXTENSION_ROLE: dict[str, Role] = {".prw": "wheel", ".prr": "rail", ".whl": "wheel", ".ban": "rail"}
+SIMPACK_EXTENSIONS = (".prr", ".prw")
+MAX_BYTES = 20_000_000
+
+
+def read_profile(path: str | Path, role: Role | None = None) -> RawProfile:
+    """Reads SIMPACK (.prr, .prw), MiniProf (.ban, .whl) or two plain columns.
+
+    role: "wheel" or "rail"; may be left out where extension or header tell.
+    Returns points in metres, right-hand orientation, z down. Raises ProfileError.
+    """
+    path = Path(path)
+    text = read_text(path)
+    role = agreed_role(path, role)
+    if re.search(r"^\s*(header|spline|point)\.begin", text, re.MULTILINE):
+        raw = read_simpack(path, text, role)
+    elif path.suffix.lower() in SIMPACK_EXTENSIONS:
+        raise ProfileError(path, "is no SIMPACK profile: 'point.begin' is missing")
+    elif re.search(r"^\s*[A-Za-z]\w*\s*=", text, re.MULTILINE):
+        raw = read_miniprof(path, text, role)
+    else:
+        raw = read_columns(path, text, role)
+    check_points(raw)
+    orient(raw)
+    return raw
+
+
+def read_text(path: Path) -> str:
+    """The file's text; refuses what is absent, empty, too large or no text."""
+    if not path.is_file():
+        raise ProfileError(path, "file not found, and not the name of a built-in profile")
+    if path.stat().st_size > MAX_BYTES:
+        raise ProfileError(path, f"is larger than {MAX_BYTES} bytes")
+    data = path.read_bytes()
+    if not data.strip():
+        raise ProfileError(path, "is empty")
+    if b"\0" in data:
+        raise ProfileError(path, "is not a text file")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def agreed_role(path: Path, role: Role | None) -> Role | None:
+    """The role asked for, checked against the extension."""
+    said = EXTENSION_ROLE.get(path.suffix.lower())
+    if role is not None and said is not None and said != role:
+        raise ProfileError(path, f"is a {said} profile by its extension, a {role} is needed")
+    return role or said

@@ -1,0 +1,9 @@
+"""The report of a run log: a self-contained HTML page.
+
+from railpatch.report import write_report
+"""
+
+from .data import ReportError
+from .page import write_report
+
+__all__ = ["ReportError", "write_report"]

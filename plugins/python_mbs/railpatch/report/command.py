@@ -1,0 +1,48 @@
+"""The sub-command ``railpatch report``."""
+
+from __future__ import annotations
+
+import click
+
+
+@click.command("report")
+@click.argument("run", metavar="RUN.mcap", type=click.Path(dir_okay=False))
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=click.Path(dir_okay=False, writable=True),
+    metavar="REPORT.html",
+    help="The page to write.",
+)
+@click.option(
+    "--at",
+    type=float,
+    metavar="NUMBER",
+    help="Show the patches nearest to this progress (0 to 1; where the run has none: "
+    "time in s). By default those at the largest yaw angle.",
+)
+@click.option(
+    "--reference",
+    type=click.Path(file_okay=False, exists=True),
+    metavar="DIR",
+    help="Folder of the roller rig's reference. By default $RAILPATCH_REFERENCE or "
+    "../shared/reference.",
+)
+@click.option("--quiet", is_flag=True, help="Print nothing.")
+def report(run: str, output: str, at: float | None, reference: str | None, quiet: bool) -> None:
+    """Make a page of plots and tables from the log of a run.
+
+    The page needs no network. A log that was cut off is reported up to its end.
+    """
+    # plotly takes a while to import; other commands need not wait for it
+    from railpatch.report import write_report
+
+    try:
+        written = write_report(run, output, reference, at)
+    except (ValueError, OSError) as error:
+        failure = click.ClickException(str(error))
+        failure.exit_code = 2
+        raise failure from None
+    if not quiet:
+        click.echo(written)

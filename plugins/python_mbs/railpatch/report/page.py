@@ -1,0 +1,220 @@
+"""The report page: one HTML file that needs no network."""
+
+from __future__ import annotations
+
+from html import escape
+from os import PathLike
+from pathlib import Path
+
+import plotly.graph_objects as go
+from plotly.offline import get_plotlyjs
+
+from railpatch.log.channels import ELEMENT_STATES, SIDES
+from railpatch.log.reader import read_run
+
+from . import figures, reference, tables
+from .data import Positions, positions, snapshot
+from .patch_figure import most_loaded, patch_figure
+
+_STYLE = """
+:root { color-scheme: light dark; --ink: #1d2126; --soft: #5d6672; --line: #d9dde2;
+  --ground: #ffffff; --panel: #f5f7f9; --warn: #fff1d6; --warn-ink: #6b4500; }
+@media (prefers-color-scheme: dark) { :root { --ink: #e4e7eb; --soft: #9aa3ae; --line: #353b43;
+  --ground: #15181c; --panel: #1d2126; --warn: #42320f; --warn-ink: #ffdf9e; } }
+* { box-sizing: border-box; }
+body { margin: 0 auto; max-width: 1180px; padding: 24px 28px 60px; background: var(--ground);
+  color: var(--ink); font: 15px/1.5 system-ui, sans-serif; }
+h1 { font-size: 26px; margin: 0 0 4px; } h2 { font-size: 19px; margin: 40px 0 4px; }
+h3 { font-size: 15px; margin: 22px 0 4px; }
+p { max-width: 78ch; margin: 4px 0 10px; } p.sub { color: var(--soft); }
+.warn { background: var(--warn); color: var(--warn-ink); padding: 10px 14px; border-radius: 6px;
+  margin: 12px 0; max-width: none; }
+.scroll { overflow-x: auto; }
+table { border-collapse: collapse; font-size: 13.5px; margin: 8px 0; }
+th, td { padding: 3px 14px 3px 0; text-align: left; border-bottom: 1px solid var(--line);
+  vertical-align: top; }
+th { color: var(--soft); font-weight: 600; white-space: nowrap; } th.n { text-align: right; }
+td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+table.summary td:first-child { color: var(--soft); white-space: nowrap; padding-right: 28px; }
+details { margin: 10px 0; } summary { cursor: pointer; color: var(--soft); }
+pre { background: var(--panel); padding: 12px; overflow-x: auto; font-size: 12.5px; }
+figure { margin: 0; }
+"""
+
+
+def write_report(
+    run_path: str | PathLike[str],
+    output: str | PathLike[str],
+    reference_dir: str | PathLike[str] | None = None,
+    at: float | None = None,
+) -> Path:
+    """Writes the report of a run log, also of one that was cut off; returns ``output``.
+
+    ``reference_dir``: where the reference of the roller rig is; see ``reference.find``. ``at``: the
+    progress (without progress: the time in s) whose patches are shown; by default those at the
+    largest yaw angle.
+
+    Raises RunFileError where ``run_path`` is not a run log, ReportError where it holds no position,
+    ValueError where the reference cannot be read, OSError where a file cannot be read or written.
+    Nothing is written then.
+    """
+    data = positions(read_run(run_path))
+    body = "".join([_head(data), *_sections(data, reference_dir, at), _ending(data)])
+    title = escape(data.run.metadata["railpatch"].get("scene", "run"))
+    page = (
+        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
+        f'<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"<title>Railpatch: {title}</title><style>{_STYLE}</style>"
+        f"<script>{get_plotlyjs()}</script></head><body>{body}</body></html>\n"
+    )
+    output = Path(output)
+    output.write_text(page, encoding="utf-8")
+    return output
+
+
+def _head(data: Positions) -> str:
+    kind = "roller rig" if data.has_balance else "wheelset"
+    scene = escape(data.run.metadata["railpatch"].get("scene", ""))
+    parts = [f"<h1>Run of the {kind}</h1><p class=sub>{scene}</p>"]
+    if data.run.truncated:
+        parts.append(
+            f"<p class=warn><b>This log is cut off:</b> {escape(data.run.problem)}. "
+            f"The report shows the {data.count} positions before that.</p>"
+        )
+    if data.run.stopped_by:
+        parts.append(
+            "<p class=warn><b>This run stopped before its end</b> "
+            f"({escape(data.run.stopped_by)}).</p>"
+        )
+    bad = int((~data.solved).sum())
+    if bad:
+        parts.append(
+            f"<p class=warn><b>{bad} of {data.count} positions did not converge.</b> "
+            "Red crosses mark them in the figures.</p>"
+        )
+    return "".join([*parts, tables.summary(data), tables.unsolved(data)])
+
+
+def _sections(
+    data: Positions, reference_dir: str | PathLike[str] | None, at: float | None
+) -> list[str]:
+    matches, remark = _reference(data, reference_dir)
+    body = data.counterpart
+    parts = [
+        f"<h2>Traction curves</h2><p>Lateral over vertical force, in track axes: the same ratio "
+        f"for wheel and {body}. Negative where the {body} pushes the wheel to the right.</p>"
+        f"{remark}",
+        _plot(figures.traction_curves(data, matches), "traction"),
+        f"<h2>Forces on the {body}</h2><p>In track axes: x forward, y right, z down. The log holds "
+        f"forces on the wheel; these are their opposites.</p>",
+        _plot(figures.forces(data, matches), "forces"),
+        "<h2>Load transfer and position of the wheelset</h2>",
+        _plot(figures.wheelset_position(data, matches), "position"),
+        "<h2>Contact patches</h2><p>Each point is one patch. Distances count outwards from the "
+        "track's centre line; a contact angle is positive at a left wheel's flange.</p>",
+        _plot(figures.patches(data), "patches"),
+    ]
+    parts += _patch_section(data, at)
+    if data.has_stats:
+        parts += [
+            "<h2>Work of the contact solver</h2>",
+            _plot(figures.contact_work(data), "contact-work"),
+        ]
+    if data.has_balance:
+        parts += [
+            "<h2>Work of the force balance</h2>",
+            _plot(figures.balance_work(data), "balance-work"),
+        ]
+    if matches:
+        parts += [
+            "<h2>Differences from the reference</h2><p>Run minus reference, forces on the "
+            "roller, at the positions with the same yaw and lateral position.</p>",
+            tables.reference_summary(matches, data),
+            "<details><summary>every matched position</summary>",
+            tables.reference_rows(matches, data),
+            "</details>",
+        ]
+    return parts
+
+
+def _patch_section(data: Positions, at: float | None) -> list[str]:
+    chosen = snapshot(data, at)
+    if chosen is None:
+        return ["<h2>One patch</h2><p>This log holds no fields of patches.</p>"]
+    index = chosen["index"]
+    yaw = tables.number(1e3 * data.state["yaw"][index])
+    where = (
+        f"Position {index}, {data.along_label} {tables.number(data.along[index])}, yaw {yaw} mrad"
+    )
+    lines = [_patch_line(data, side, chosen) for side in SIDES]
+    states = ", ".join(ELEMENT_STATES[1:])
+    return [
+        f"<h2>One patch of each wheel</h2><p>{escape(where)}. {escape(' '.join(lines))} Arrows: "
+        f"traction on the wheel. Elements in contact are in one of the states {states}. Rolling is "
+        "towards +x.</p>",
+        _plot(patch_figure(chosen), "patch"),
+    ]
+
+
+def _patch_line(data: Positions, side: str, chosen: dict) -> str:
+    grid = most_loaded(chosen[side])
+    if grid is None:
+        return f"No fields of the {side} wheel here."
+    patches = data.contact[side].messages[chosen["index"]]["patches"]
+    force = patches[grid["patch"]]["normal_force"] if grid["patch"] < len(patches) else None
+    newtons = "" if force is None else f", normal force {tables.whole(force)} N"
+    return f"{side.capitalize()}: patch {grid['patch'] + 1} of {len(patches)}{newtons}."
+
+
+def _reference(
+    data: Positions, directory: str | PathLike[str] | None
+) -> tuple[list[reference.Match], str]:
+    """The matched reference, and a sentence on it."""
+    if not data.has_balance:
+        return [], ""
+    path = reference.find(directory)
+    if path is None:
+        return [], (
+            f"<p>The reference ({reference.FILE}) is not here; {reference.VARIABLE} can "
+            "name its folder.</p>"
+        )
+    matches = reference.match(reference.load(path), data)
+    if not matches:
+        return [], (
+            f"<p>No position of this run is in the reference ({reference.FILE}): none has "
+            "the same yaw and lateral position.</p>"
+        )
+    places = len({m.index for m in matches})
+    return matches, (
+        f"<p>Open triangles: the reference ({reference.FILE}), found for {places} of "
+        f"{data.count} positions.</p>"
+    )
+
+
+def _ending(data: Positions) -> str:
+    scene = data.run.metadata["railpatch"].get("scene", "")
+    case = data.run.attachments.get(scene)
+    text = case.data.decode("utf-8", errors="replace") if case else ""
+    parts = ["<h2>The log</h2>"]
+    if text:
+        parts.append(f"<details><summary>case file</summary><pre>{escape(text)}</pre></details>")
+    parts.append(
+        f"<details><summary>channels, fields, units, signs</summary>"
+        f"{tables.channels(data)}</details>"
+    )
+    return "".join(parts)
+
+
+def _plot(figure: go.Figure, name: str) -> str:
+    inner = figure.to_html(
+        full_html=False,
+        include_plotlyjs=False,
+        div_id=name,
+        config={
+            "displaylogo": False,
+            "displayModeBar": "hover",
+            "responsive": True,
+            "modeBarButtonsToRemove": ["select2d", "lasso2d"],
+        },
+    )
+    return f"<figure>{inner}</figure>"

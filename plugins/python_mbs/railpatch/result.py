@@ -1,0 +1,135 @@
+"""The result of a solve: one form for the command line, solve() and step()."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+# quantities of a patch in the order of the JSON result, with their units
+PATCH_UNITS = {
+    "status": "",
+    "normal_force": "N",
+    "approach": "m",
+    "creep_force": "N",
+    "spin_moment": "N m",
+    "max_pressure": "Pa",
+    "contact_area": "m^2",
+    "elements": "",
+    "max_temperature": "degrees C",
+    "friction_power": "W",
+    "elastic_energy": "J",
+    "iterations": "",
+    "residual": "",
+    "error_estimate": "",
+}
+# what a patch of a wheel has besides
+PLACE_UNITS = {
+    "position": "m",
+    "contact_angle": "rad",
+    "creepage": "",
+    "spin_creepage": "rad/m",
+    "rolling_speed": "m/s",
+}
+WHEEL_UNITS = {"status": "", "force": "N", "moment": "N m", "z": "m"}
+DIVISION = ("exterior", "stick", "slip", "plastic")
+# fields with their number of components
+FIELDS = {
+    "x": 0,
+    "y": 0,
+    "pressure": 1,
+    "traction": 2,
+    "micro_slip": 2,
+    "element_division": 1,
+    "temperature": 1,
+}
+GOOD = ("converged", "no_contact")
+
+
+class Result:
+    """What a solve gives. Signs: forces act on the wheel, creepages are wheel minus rail.
+
+    ``data`` and ``result[key]`` hold the quantities of the JSON result (SI units); fields are numpy
+    arrays there: x [nx] and y [ny] in m, pressure [ny, nx] in Pa, traction [2, ny, nx] in Pa,
+    micro_slip [2, ny, nx] relative to the rolling speed, element_division [ny, nx] as 0 exterior,
+    1 stick, 2 slip, 3 plastic. ``iterations`` is the sum of conjugate-gradient steps of the normal
+    and Newton steps of the tangential problem. What the scene left out is NaN or None.
+    """
+
+    def __init__(self, data: dict[str, Any]) -> None:
+        self.data = data
+
+    def __getitem__(self, key: str) -> Any:
+        return self.data[key]
+
+    def __repr__(self) -> str:
+        return f"Result(status={self.status!r}, keys={list(self.data)})"
+
+    @property
+    def status(self) -> str:
+        """ "converged", "no_contact", "not_converged" or "out_of_range"."""
+        return str(self.data["status"])
+
+    @property
+    def good(self) -> bool:
+        """Whether the solve ended well; no contact is a valid result."""
+        return self.status in GOOD
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON result: plain numbers and lists, None for what is left out."""
+        return plain_json(self.data)
+
+
+def plain_json(value: Any) -> Any:
+    """NaN and infinity as None, arrays as lists."""
+    if isinstance(value, dict):
+        return {key: plain_json(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return plain_json(value.tolist())
+    if isinstance(value, list):
+        return [plain_json(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def patch_data(patch: dict[str, Any], *, of_wheel: bool) -> dict[str, Any]:
+    """The quantities of one patch, from the core's rp_patch_result."""
+    data = {
+        **patch,
+        "elements": dict(zip(DIVISION, patch["elements"], strict=True)),
+        "iterations": patch["normal_iterations"] + patch["newton_iterations"],
+    }
+    names = [*PATCH_UNITS, *(PLACE_UNITS if of_wheel else ())]
+    return {name: data[name] for name in names}
+
+
+def wheel_data(side: dict[str, Any], z: float) -> dict[str, Any]:
+    """The quantities of one wheel, from the core's rp_side_result."""
+    return {
+        "status": side["status"],
+        "force": side["force"],
+        "moment": side["moment"],
+        "z": z,
+        "rolling_radius": side["rolling_radius"],
+        "patches": [patch_data(patch, of_wheel=True) for patch in side["patches"]],
+    }
+
+
+def field_shape(name: str, grid: list[int]) -> tuple[int, ...]:
+    """Shape of a field on a grid [nx, ny]; x runs fastest."""
+    nx, ny = grid
+    components = FIELDS[name]
+    if name in ("x", "y"):
+        return (nx,) if name == "x" else (ny,)
+    return (ny, nx) if components == 1 else (components, ny, nx)
+
+
+def shaped_field(name: str, values: NDArray[np.float64] | None, grid: list[int]) -> Any:
+    """A field in its shape; None where the scene has none."""
+    if values is None:
+        return None
+    field = values.reshape(field_shape(name, grid))
+    return field.astype(np.int64) if name == "element_division" else field

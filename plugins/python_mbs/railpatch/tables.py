@@ -1,0 +1,108 @@
+"""Results and stages as tables on the terminal."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from railpatch.result import PATCH_UNITS, PLACE_UNITS, WHEEL_UNITS, Result
+
+SIDES = ("left", "right")
+
+
+def print_result(result: Result, console: Console | None = None) -> None:
+    """The quantities of a result, one column for each patch."""
+    console = console or Console()
+    data = result.data
+    sides = [side for side in SIDES if side in data]
+    if "patches" not in data and not sides:
+        console.print(patch_table([("", data)], PATCH_UNITS))
+    else:
+        wheels = {side: data[side] for side in sides} or {"wheel": data}
+        console.print(wheel_table(data, wheels))
+        columns = [
+            (f"{side} {index + 1}", patch)
+            for side, wheel in wheels.items()
+            for index, patch in enumerate(wheel["patches"])
+        ]
+        if columns:
+            console.print(patch_table(columns, {**PATCH_UNITS, **PLACE_UNITS}))
+    console.print(f"solved in {1e3 * data['wall_time']:.3g} ms: {', '.join(data['stages'])}")
+
+
+def patch_table(columns: list[tuple[str, dict[str, Any]]], units: dict[str, str]) -> Table:
+    """One row for each quantity that the scene has."""
+    table = new_table([name for name, _ in columns], "patch")
+    for key, unit in units.items():
+        cells = [spell(patch[key]) for _, patch in columns]
+        if any(cells):
+            table.add_row(key, unit, *cells)
+    return table
+
+
+def wheel_table(data: dict[str, Any], wheels: dict[str, dict[str, Any]]) -> Table:
+    """Forces of each wheel, and of the wheelset."""
+    columns = dict(wheels)
+    if len(wheels) > 1:
+        columns["wheelset"] = data
+    table = new_table(list(columns), "wheel")
+    for key, unit in WHEEL_UNITS.items():
+        table.add_row(key, unit, *(spell(values[key]) for values in columns.values()))
+    return table
+
+
+def new_table(names: list[str], title: str) -> Table:
+    """An empty table with columns for name, unit and values."""
+    table = Table(box=None, pad_edge=False)
+    table.add_column(title, no_wrap=True)
+    table.add_column("unit", no_wrap=True)
+    for name in names:
+        table.add_column(name, justify="right")
+    return table
+
+
+def spell(value: Any) -> str:
+    """Six digits; empty for what is left out."""
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return ""
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, list):
+        return " ".join(spell(item) for item in value)
+    if isinstance(value, dict):
+        return ", ".join(f"{count} {name}" for name, count in value.items() if count)
+    return str(value)
+
+
+def print_stages(
+    stages: list[dict[str, Any]], result: Result, console: Console | None = None
+) -> None:
+    """Stages with reason, memory and share of the measured time."""
+    console = console or Console()
+    total = sum(stage["seconds"] for stage in stages)
+    table = Table(box=None, pad_edge=False)
+    for name in ("stage", "needed", "memory", "time"):
+        table.add_column(name, justify="left" if name in ("stage", "needed") else "right")
+    table.add_column("why", overflow="fold")
+    for stage in stages:
+        share = f"{100 * stage['seconds'] / total:.1f} %" if total > 0 else ""
+        used = (memory(stage["bytes"]), share) if stage["present"] else ("", "")
+        needed = "yes" if stage["present"] else "no"
+        table.add_row(stage["name"], needed, *used, stage["reason"])
+    console.print(table)
+    console.print(
+        f"{memory(sum(stage['bytes'] for stage in stages))}, "
+        f"{1e3 * result['wall_time']:.3g} ms from a cold start, {result.status}"
+    )
+
+
+def memory(size: int) -> str:
+    """Bytes in a readable unit."""
+    for unit in ("B", "kB", "MB"):
+        if size < 1000:
+            return f"{size:.3g} {unit}"
+        size /= 1000
+    return f"{size:.3g} GB"

@@ -1,0 +1,311 @@
+#include "convert.hpp"
+
+#include <nanobind/stl/string.h>
+
+#include <cstring>
+#include <string>
+
+namespace railpatch::python {
+
+namespace {
+
+// --- enumerations ------------------------------------------------------------------------------
+
+struct Name {
+  const char *field;
+  const char *text;
+  int value;
+};
+
+// field of rp_config, text of the case file, value
+constexpr Name kNames[] = {
+    {"kind", "patch", RP_PATCH},
+    {"kind", "wheel_rail", RP_WHEEL_RAIL},
+    {"kind", "wheelset", RP_WHEELSET},
+    {"geometry", "semi_axes", RP_SEMI_AXES},
+    {"geometry", "curvatures", RP_CURVATURES},
+    {"geometry", "line_contact_radius", RP_LINE_CONTACT},
+    {"geometry", "undeformed_distance", RP_UNDEFORMED_DISTANCE},
+    {"load", "force", RP_FORCE},
+    {"load", "position", RP_POSITION},
+    {"regime", "none", RP_REGIME_NONE},
+    {"regime", "steady_rolling", RP_STEADY_ROLLING},
+    {"normal", "hertz", RP_NORMAL_HERTZ},
+    {"normal", "half_space", RP_NORMAL_HALF_SPACE},
+    {"tangential", "none", RP_TANGENTIAL_NONE},
+    {"tangential", "fastsim", RP_TANGENTIAL_FASTSIM},
+    {"tangential", "full", RP_TANGENTIAL_FULL},
+    {"spin_offset", "none", RP_SPIN_OFFSET_NONE},
+    {"spin_offset", "sixth", RP_SPIN_OFFSET_SIXTH},
+    {"track", "rail", RP_RAIL},
+    {"track", "roller", RP_ROLLER},
+    {"side", "left", RP_LEFT},
+    {"side", "right", RP_RIGHT},
+};
+
+constexpr struct {
+  const char *text;
+  rp_field value;
+} kFields[] = {
+    {"x", RP_FIELD_X},
+    {"y", RP_FIELD_Y},
+    {"undeformed_distance", RP_FIELD_UNDEFORMED_DISTANCE},
+    {"pressure", RP_FIELD_PRESSURE},
+    {"traction", RP_FIELD_TRACTION},
+    {"micro_slip", RP_FIELD_MICRO_SLIP},
+    {"element_division", RP_FIELD_ELEMENT_DIVISION},
+};
+
+// --- from Python -------------------------------------------------------------------------------
+
+// reads the keys of a dictionary and counts them, so that a misspelt key is found at the end
+class Reader {
+ public:
+  explicit Reader(const nb::dict &from) : from_(from) {}
+
+  bool has(const char *key) {
+    const bool found = from_.contains(key);
+    read_ += found;
+    return found;
+  }
+
+  nb::object at(const char *key) const { return nb::object(from_[key]); }
+
+  template <typename T>
+  void scalar(const char *key, T &to) {
+    if (has(key)) to = nb::cast<T>(at(key));
+  }
+
+  template <typename T, size_t N>
+  void array(const char *key, T (&to)[N]) {
+    if (!has(key)) return;
+    const auto values = nb::cast<nb::list>(at(key));
+    if (nb::len(values) != N) throw nb::value_error(key);
+    for (size_t i = 0; i < N; ++i) to[i] = nb::cast<T>(values[i]);
+  }
+
+  template <size_t M, size_t N>
+  void matrix(const char *key, double (&to)[M][N]) {
+    if (!has(key)) return;
+    const auto rows = nb::cast<nb::list>(at(key));
+    if (nb::len(rows) != M) throw nb::value_error(key);
+    for (size_t i = 0; i < M; ++i) {
+      const auto row = nb::cast<nb::list>(nb::object(rows[i]));
+      if (nb::len(row) != N) throw nb::value_error(key);
+      for (size_t j = 0; j < N; ++j) to[i][j] = nb::cast<double>(row[j]);
+    }
+  }
+
+  template <typename T>
+  void name(const char *key, T &to) {
+    if (!has(key)) return;
+    const auto text = nb::cast<std::string>(at(key));
+    for (const Name &entry : kNames) {
+      if (std::strcmp(entry.field, key) == 0 && text == entry.text) {
+        to = static_cast<T>(entry.value);
+        return;
+      }
+    }
+    throw nb::value_error((std::string(key) + ": no such choice: " + text).c_str());
+  }
+
+  // raises KeyError with a key that was not read
+  void finish() const {
+    if (read_ != nb::len(from_)) throw nb::key_error("a key is no field of the struct");
+  }
+
+ private:
+  const nb::dict &from_;
+  size_t read_ = 0;
+};
+
+void fill_profile(nb::handle from, rp_profile &to, std::vector<Values> &keep) {
+  if (from.is_none()) return;
+  const auto values = nb::cast<nb::dict>(from);
+  const auto take = [&](const char *key) {
+    keep.push_back(nb::cast<Values>(nb::object(values[key])));
+    return keep.back().data();
+  };
+  to.arc_length = take("arc_length");
+  to.count = static_cast<int32_t>(keep.back().shape(0));
+  to.y = take("y");
+  to.z = take("z");
+  to.dy = take("dy");
+  to.dz = take("dz");
+  for (size_t i = keep.size() - 5; i < keep.size(); ++i) {
+    if (keep[i].shape(0) != static_cast<size_t>(to.count)) throw nb::value_error("profile");
+  }
+}
+
+// [left, right]
+void fill_profiles(Reader &reader, const char *key, rp_profile (&to)[2],
+                   std::vector<Values> &keep) {
+  if (!reader.has(key)) return;
+  const auto sides = nb::cast<nb::list>(reader.at(key));
+  for (size_t side = 0; side < 2; ++side) fill_profile(nb::object(sides[side]), to[side], keep);
+}
+
+void fill_gap(Reader &reader, Config &to) {
+  if (!reader.has("undeformed_distance")) return;
+  to.gap = nb::cast<Grid>(reader.at("undeformed_distance"));
+  to.values.undeformed_distance = to.gap.data();
+  to.values.distance_shape[0] = static_cast<int32_t>(to.gap.shape(1));
+  to.values.distance_shape[1] = static_cast<int32_t>(to.gap.shape(0));
+}
+
+// --- to Python ---------------------------------------------------------------------------------
+
+template <typename T, size_t N>
+nb::list list_of(const T (&values)[N]) {
+  nb::list list;
+  for (const T value : values) list.append(value);
+  return list;
+}
+
+nb::dict patch_dict(const rp_patch_result &patch) {
+  nb::dict to;
+  to["status"] = rp_status_text(patch.status);
+  to["normal_force"] = patch.normal_force;
+  to["approach"] = patch.approach;
+  to["creep_force"] = list_of(patch.creep_force);
+  to["spin_moment"] = patch.spin_moment;
+  to["max_pressure"] = patch.max_pressure;
+  to["contact_area"] = patch.contact_area;
+  to["elements"] = list_of(patch.elements);
+  to["max_temperature"] = patch.max_temperature;
+  to["friction_power"] = patch.friction_power;
+  to["elastic_energy"] = patch.elastic_energy;
+  to["normal_iterations"] = patch.normal_iterations;
+  to["newton_iterations"] = patch.newton_iterations;
+  to["inner_iterations"] = patch.inner_iterations;
+  to["residual"] = patch.residual;
+  to["error_estimate"] = patch.error_estimate;
+  to["position"] = list_of(patch.position);
+  to["contact_angle"] = patch.contact_angle;
+  to["creepage"] = list_of(patch.creepage);
+  to["spin_creepage"] = patch.spin_creepage;
+  to["rolling_speed"] = patch.rolling_speed;
+  to["direction"] = patch.direction;
+  to["grid"] = list_of(patch.grid);
+  to["grid_origin"] = list_of(patch.grid_origin);
+  to["element_size"] = list_of(patch.element_size);
+  return to;
+}
+
+nb::dict side_dict(const rp_side_result &side) {
+  nb::list patches;
+  for (int i = 0; i < side.patch_count; ++i) patches.append(patch_dict(side.patch[i]));
+  nb::dict to;
+  to["status"] = rp_status_text(side.status);
+  to["force"] = list_of(side.force);
+  to["moment"] = list_of(side.moment);
+  to["rolling_radius"] = side.rolling_radius;
+  to["patches"] = patches;
+  return to;
+}
+
+}  // namespace
+
+void fill_config(const nb::dict &from, Config &to) {
+  rp_config &c = to.values;
+  rp_default_config(&c);
+  Reader reader(from);
+  reader.name("kind", c.kind);
+  reader.array("shear_modulus", c.shear_modulus);
+  reader.array("poisson_ratio", c.poisson_ratio);
+  reader.name("geometry", c.geometry);
+  reader.array("semi_axes", c.semi_axes);
+  reader.array("curvatures", c.curvatures);
+  reader.scalar("line_contact_radius", c.line_contact_radius);
+  reader.scalar("width", c.width);
+  fill_gap(reader, to);
+  reader.name("load", c.load);
+  reader.array("elements", c.elements);
+  reader.array("element_size", c.element_size);
+  reader.array("max_elements", c.max_elements);
+  reader.name("regime", c.regime);
+  reader.scalar("friction_coefficient", c.friction_coefficient);
+  reader.scalar("layer_shear_modulus", c.layer_shear_modulus);
+  reader.scalar("layer_thickness", c.layer_thickness);
+  reader.name("normal", c.normal);
+  reader.name("tangential", c.tangential);
+  reader.scalar("tolerance", c.tolerance);
+  reader.scalar("max_iterations", c.max_iterations);
+  reader.name("spin_offset", c.spin_offset);
+  reader.name("side", c.side);
+  reader.scalar("nominal_radius", c.nominal_radius);
+  reader.scalar("flange_back_distance", c.flange_back_distance);
+  reader.scalar("flange_back_position", c.flange_back_position);
+  reader.name("track", c.track);
+  reader.scalar("gauge", c.gauge);
+  reader.scalar("gauge_height", c.gauge_height);
+  reader.scalar("cant", c.cant);
+  reader.scalar("curvature", c.curvature);
+  reader.scalar("roller_radius", c.roller_radius);
+  reader.scalar("max_patches", c.max_patches);
+  fill_profiles(reader, "wheel", c.wheel, to.profiles);
+  fill_profiles(reader, "rail", c.rail, to.profiles);
+  reader.finish();
+}
+
+void fill_input(const nb::dict &from, rp_input &to) {
+  Reader reader(from);
+  reader.scalar("normal_force", to.normal_force);
+  reader.scalar("approach", to.approach);
+  reader.array("creepage", to.creepage);
+  reader.scalar("spin_creepage", to.spin_creepage);
+  reader.scalar("rolling_speed", to.rolling_speed);
+  reader.scalar("direction", to.direction);
+  reader.scalar("y", to.y);
+  reader.scalar("z", to.z);
+  reader.scalar("vertical_force", to.vertical_force);
+  reader.scalar("roll", to.roll);
+  reader.scalar("yaw", to.yaw);
+  reader.scalar("speed", to.speed);
+  reader.scalar("vy", to.vy);
+  reader.scalar("vz", to.vz);
+  reader.scalar("roll_rate", to.roll_rate);
+  reader.scalar("yaw_rate", to.yaw_rate);
+  reader.scalar("pitch_rate", to.pitch_rate);
+  reader.matrix("wheel_offset", to.wheel_offset);
+  reader.matrix("wheel_rotation", to.wheel_rotation);
+  reader.matrix("rail_offset", to.rail_offset);
+  reader.matrix("rail_rotation", to.rail_rotation);
+  reader.scalar("roller_pitch_rate", to.roller_pitch_rate);
+  reader.finish();
+}
+
+nb::dict result_dict(const rp_result &result) {
+  nb::dict to;
+  to["status"] = rp_status_text(result.status);
+  to["z"] = result.z;
+  to["force"] = list_of(result.force);
+  to["moment"] = list_of(result.moment);
+  to["evaluations"] = result.evaluations;
+  to["left"] = side_dict(result.side[RP_LEFT]);
+  to["right"] = side_dict(result.side[RP_RIGHT]);
+  return to;
+}
+
+nb::list stage_list(const rp_stage_info *info, const double *seconds) {
+  nb::list stages;
+  for (int i = 0; i < RP_STAGE_COUNT; ++i) {
+    nb::dict stage;
+    stage["name"] = info[i].name;
+    stage["present"] = info[i].present != 0;
+    stage["reason"] = info[i].reason;
+    stage["bytes"] = info[i].bytes;
+    stage["seconds"] = seconds[i];
+    stages.append(stage);
+  }
+  return stages;
+}
+
+rp_field field_of(const char *name) {
+  for (const auto &entry : kFields) {
+    if (std::strcmp(entry.text, name) == 0) return entry.value;
+  }
+  throw nb::key_error(name);
+}
+
+}  // namespace railpatch::python

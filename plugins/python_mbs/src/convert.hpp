@@ -1,0 +1,37 @@
+// Python dictionaries <-> the structs of railpatch.h. Names of the keys are the names of the fields;
+// enumerations are given as the texts of the case file. Checks of values are the core's.
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <vector>
+
+#include "railpatch.h"
+
+namespace railpatch::python {
+
+namespace nb = nanobind;
+
+using Values = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Grid = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+// a config and the arrays that its pointers look into
+struct Config {
+  rp_config values;
+  std::vector<Values> profiles;
+  Grid gap;
+};
+
+// starts from rp_default_config; raises KeyError for a key that is no field
+void fill_config(const nb::dict &from, Config &to);
+// keys that are left out keep their value
+void fill_input(const nb::dict &from, rp_input &to);
+
+nb::dict result_dict(const rp_result &result);
+nb::list stage_list(const rp_stage_info *info, const double *seconds);
+
+// the field's name in the JSON result; raises KeyError
+rp_field field_of(const char *name);
+
+}  // namespace railpatch::python

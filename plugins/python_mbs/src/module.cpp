@@ -1,0 +1,204 @@
+// The module railpatch._core: one class around rp_contact. No physics, no checks of values.
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "convert.hpp"
+#include "railpatch.h"
+
+namespace railpatch::python {
+
+namespace {
+
+using FieldArray = nb::ndarray<nb::numpy, double, nb::ndim<1>>;
+
+// a call that the core refused
+struct CallError {
+  rp_error code;
+  std::string text;
+};
+
+void check(rp_error code, const rp_message *message = nullptr) {
+  if (code == RP_OK) return;
+  const bool named = message != nullptr && message->text[0] != '\0';
+  throw CallError{code, named ? message->text : rp_error_text(code)};
+}
+
+// time of each stage without that of the stages inside it
+class StageClock {
+ public:
+  static void observe(void *user, rp_stage stage, int entering) {
+    static_cast<StageClock *>(user)->turn(stage, entering != 0);
+  }
+
+  const double *seconds() const { return seconds_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void turn(rp_stage stage, bool entering) {
+    const auto now = Clock::now();
+    if (depth_ > 0 && depth_ <= kDepth) {
+      seconds_[open_[depth_ - 1]] += std::chrono::duration<double>(now - since_).count();
+    }
+    if (entering) {
+      if (depth_ < kDepth) open_[depth_] = stage;
+      ++depth_;
+    } else if (depth_ > 0) {
+      --depth_;
+    }
+    since_ = now;
+  }
+
+  static constexpr int kDepth = 16;
+  double seconds_[RP_STAGE_COUNT] = {};
+  rp_stage open_[kDepth] = {};
+  int depth_ = 0;
+  Clock::time_point since_;
+};
+
+// the lock keeps one handle to one thread at a time, as railpatch.h asks for, while the
+// interpreter's lock is released
+class Contact {
+ public:
+  Contact(const nb::dict &config, bool timing) {
+    Config c;
+    fill_config(config, c);
+    if (timing) {
+      c.values.observer = StageClock::observe;
+      c.values.observer_user = &clock_;
+    }
+    rp_message message = {};
+    rp_contact *contact = nullptr;
+    check(rp_create(&c.values, &contact, &message), &message);
+    contact_.reset(contact);
+  }
+
+  nb::dict step(const nb::dict &values) {
+    rp_input input;
+    rp_default_input(&input);
+    fill_input(values, input);
+    rp_result result;
+    rp_message message = {};
+    rp_error code;
+    {
+      nb::gil_scoped_release unlocked;
+      std::lock_guard<std::mutex> guard(mutex_);
+      code = rp_step(contact_.get(), &input, &result, &message);
+    }
+    check(code, &message);
+    return result_dict(result);
+  }
+
+  std::optional<FieldArray> field(int side, int patch, const char *name) {
+    const rp_field wanted = field_of(name);
+    std::lock_guard<std::mutex> guard(mutex_);
+    double none = 0.0;
+    size_t count = 0;
+    const rp_error code = rp_get_field(contact_.get(), side, patch, wanted, &none, &count);
+    if (code == RP_ERROR_NO_FIELD) return std::nullopt;
+    if (code != RP_ERROR_SIZE) check(code);
+    std::unique_ptr<double[]> values(new double[count > 0 ? count : 1]);
+    check(rp_get_field(contact_.get(), side, patch, wanted, values.get(), &count));
+    double *data = values.get();
+    nb::capsule owner(values.release(), [](void *p) noexcept { delete[] static_cast<double *>(p); });
+    return FieldArray(data, {count}, owner);
+  }
+
+  nb::bytes save() {
+    std::lock_guard<std::mutex> guard(mutex_);
+    std::string buffer(rp_state_size(contact_.get()), '\0');
+    check(rp_save_state(contact_.get(), buffer.data(), buffer.size()));
+    return nb::bytes(buffer.data(), buffer.size());
+  }
+
+  void restore(const nb::bytes &state) {
+    std::lock_guard<std::mutex> guard(mutex_);
+    check(rp_restore_state(contact_.get(), state.c_str(), state.size()));
+  }
+
+  void reset() {
+    std::lock_guard<std::mutex> guard(mutex_);
+    rp_reset(contact_.get());
+  }
+
+  nb::list describe() {
+    std::lock_guard<std::mutex> guard(mutex_);
+    rp_stage_info info[RP_STAGE_COUNT] = {};
+    check(rp_describe(contact_.get(), info));
+    return stage_list(info, clock_.seconds());
+  }
+
+ private:
+  struct Destroy {
+    void operator()(rp_contact *contact) const { rp_destroy(contact); }
+  };
+
+  std::unique_ptr<rp_contact, Destroy> contact_;
+  StageClock clock_;
+  std::mutex mutex_;
+};
+
+// a wrong value is the caller's error, anything else is ours
+void translate(const std::exception_ptr &pointer, void *) {
+  try {
+    std::rethrow_exception(pointer);
+  } catch (const CallError &error) {
+    switch (error.code) {
+      case RP_ERROR_VALUE:
+      case RP_ERROR_PROFILE:
+      case RP_ERROR_STATE: {
+        nb::object type = nb::module_::import_("railpatch.errors").attr("CaseError");
+        PyErr_SetString(type.ptr(), error.text.c_str());
+        break;
+      }
+      case RP_ERROR_MEMORY:
+        PyErr_SetString(PyExc_MemoryError, error.text.c_str());
+        break;
+      default:
+        PyErr_SetString(PyExc_RuntimeError, error.text.c_str());
+    }
+  }
+}
+
+}  // namespace
+
+NB_MODULE(_core, m) {
+  m.doc() = "The contact library of railpatch.h. Use railpatch.solve and railpatch.Contact.";
+  nb::register_exception_translator(translate);
+
+  m.def("version", &rp_version, "Version of the library.");
+  m.def("fft_backend", &rp_fft_backend, "Name of the FFT library in use.");
+
+#define RAILPATCH_ENTRY(name, value, text) texts[nb::int_(value)] = text;
+  nb::dict texts;
+  RP_STATUSES(RAILPATCH_ENTRY)
+  m.attr("STATUSES") = texts;
+  texts = nb::dict();
+  RP_ERRORS(RAILPATCH_ENTRY)
+  m.attr("ERRORS") = texts;
+#undef RAILPATCH_ENTRY
+
+  nb::class_<Contact>(m, "Contact", "A handle of the library with its state and memory.")
+      .def(nb::init<const nb::dict &, bool>(), nb::arg("config"), nb::arg("timing") = false,
+           "config: fields of rp_config, enumerations as texts; timing: measure each stage.")
+      .def("step", &Contact::step, nb::arg("input"),
+           "Solves for the fields of rp_input, defaults where left out, and returns rp_result. "
+           "The interpreter's lock is released.")
+      .def("field", &Contact::field, nb::arg("side"), nb::arg("patch"), nb::arg("name"),
+           "A field of the last step as a flat array, x fastest; None where it does not exist.")
+      .def("save", &Contact::save, "The state that later steps depend on, as bytes.")
+      .def("restore", &Contact::restore, nb::arg("state"), "Brings back a saved state.")
+      .def("reset", &Contact::reset, "Forgets the warm start.")
+      .def("describe", &Contact::describe, "Stages with reason, bytes and measured seconds.");
+}
+
+}  // namespace railpatch::python

@@ -1,0 +1,191 @@
+"""Wrong cases: every error names the key, the value and what is allowed."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from case_samples import PATCH, WHEELSET, with_values
+from railpatch.case import CaseError, load_scene
+
+
+def problems_of(case: Any, **options: Any) -> list[str]:
+    with pytest.raises(CaseError) as caught:
+        load_scene(case, **options)
+    return caught.value.problems
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "line"),
+    [
+        ("kind", "wheel", "kind: value is 'wheel', allowed 'patch', 'wheel_rail' or 'wheelset'"),
+        ("kind", None, "kind: value is missing, allowed 'patch', 'wheel_rail' or 'wheelset'"),
+        ("load__normal_force", 0.0, "load.normal_force: value is 0.0, allowed > 0.0"),
+        ("load__normal_force", "1e5", "load.normal_force: value is '1e5', allowed a number"),
+        ("load__normal_force", True, "load.normal_force: value is True, allowed a number"),
+        (
+            "load__normal_force",
+            math.inf,
+            "load.normal_force: value is inf, allowed a finite number",
+        ),
+        ("load__approach", 1e-5, "load: value is normal_force and approach, allowed exactly one"),
+        (
+            "material__poisson_ratio",
+            [0.3, 0.6],
+            "material.poisson_ratio[1]: value is 0.6, allowed <=",
+        ),
+        ("material__shear_modulus", -1.0, "material.shear_modulus[0]: value is -1.0, allowed > 0"),
+        ("geometry__semi_axes", [0.006], "geometry.semi_axes: value is [0.006], allowed 2 values"),
+        ("geometry__semi_axes", None, "geometry: value is none of them, allowed exactly one of"),
+        (
+            "geometry__curvatures",
+            [1.0, 1.0],
+            "geometry: value is semi_axes and curvatures, allowed",
+        ),
+        ("geometry__width", 1.0, "geometry.line_contact_radius: value is missing, allowed"),
+        ("grid__elements", [16, 0], "grid.elements[1]: value is 0, allowed >= 1"),
+        ("grid__elements", [16.0, 16], "grid.elements[0]: value is 16.0, allowed a whole number"),
+        ("grid__element_size", [1e-4, 1e-4], "grid: value is elements and element_size, allowed"),
+        ("motion__direction", 0, "motion.direction: value is 0, allowed 1 or -1"),
+        ("motion__regime", "shift", "motion.regime: value is 'shift', allowed 'none' or 'steady_r"),
+        (
+            "motion__creepage",
+            [[1e-3], 0.0],
+            "motion.creepage[0]: value is [0.001], allowed a number",
+        ),
+        (
+            "motion__tangential_force",
+            [1.0, 0.0],
+            "motion.tangential_force: value is [1.0, 0.0], "
+            "allowed: leave it out, not in this version",
+        ),
+        ("motion__rolling_speed", 0.0, "motion.rolling_speed: value is 0.0, allowed > 0"),
+        ("friction", None, "friction: value is missing, allowed the table [friction]"),
+        ("friction__law", "temperature", "friction.law: value is 'temperature', allowed 'coulomb'"),
+        ("friction__coefficient", -0.1, "friction.coefficient: value is -0.1, allowed >= 0"),
+        ("friction__coefficient", math.nan, "friction.coefficient: value is nan, allowed a finite"),
+        ("layer", {"thickness": 1e-5}, "layer.shear_modulus: value is missing, allowed Pa"),
+        (
+            "layer",
+            {"shear_modulus": 1e9, "thickness": 0, "yield_stress": 2e8},
+            "layer.yield_stress: value is 200000000.0, allowed: leave it",
+        ),
+        ("temperature", {"wheel": 20.0}, "temperature: value is a table, allowed: leave it out"),
+        (
+            "method__normal",
+            "kik_piotrowski",
+            "method.normal: value is 'kik_piotrowski', allowed 'hertz' or 'half_space'",
+        ),
+        (
+            "method__tangential",
+            "polach",
+            "method.tangential: value is 'polach', allowed 'none', 'fastsim' or 'full'",
+        ),
+        ("method__tolerance", 0.0, "method.tolerance: value is 0.0, allowed >= 1e-12"),
+        ("method__accuracy", 0.01, "method.accuracy: value is 0.01, allowed: leave it out"),
+        ("grid", 5, "grid: value is 5, allowed a table"),
+    ],
+)
+def test_wrong_values_of_a_patch(key: str, value: Any, line: str) -> None:
+    found = problems_of(with_values(PATCH, **{key: value}))
+    assert len(found) in (1, 2), found  # one number for both bodies may be wrong twice
+    assert found[0].startswith(line) or found[-1].startswith(line), found
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "line"),
+    [
+        (
+            "wheelset__vertical_force",
+            1e4,
+            "wheelset: value is z and vertical_force, allowed exactly",
+        ),
+        ("wheelset__z", None, "wheelset: value is none of them, allowed exactly one of 'z'"),
+        ("wheelset__left", {"offset": [0, 0]}, "wheelset.left.offset: value is [0, 0], allowed 3"),
+        ("wheelset__nominal_radius", None, "wheelset.nominal_radius: value is missing, allowed m,"),
+        ("track__roller_radius", 0.8, "track.roller_radius: value is 0.8, allowed only with kind"),
+        ("track__kind", "roller", "track.roller_radius: value is missing, allowed a radius > 0"),
+        ("profiles__rail", None, "profiles.rail_left: value is missing, allowed 'rail_left', or"),
+        ("profiles__rail_left", "UIC60", "profiles.rail: value is 'UIC60@1:40', allowed only with"),
+        (
+            "wheel",
+            {"side": "left"},
+            "wheel: value is a table, but the key is unknown, allowed material",
+        ),
+    ],
+)
+def test_wrong_values_of_a_wheelset(key: str, value: Any, line: str) -> None:
+    found = problems_of(with_values(WHEELSET, **{key: value}))
+    assert len(found) == 1
+    assert found[0].startswith(line), found
+
+
+def test_a_roller_has_no_cant() -> None:
+    roller = {"kind": "roller", "roller_radius": 0.8, "cant": 0.025}
+    assert problems_of(with_values(WHEELSET, track=roller)) == [
+        "track.cant: value is 0.025, allowed 0 with kind = 'roller'"
+    ]
+
+
+def test_every_problem_is_told_at_once_with_a_hint() -> None:
+    case = with_values(
+        PATCH, friction__coeficient=0.3, load__normal_force=-1.0, method__tolerance="small"
+    )
+    assert problems_of(case) == [
+        "load.normal_force: value is -1.0, allowed > 0.0",
+        "friction.coeficient: value is 0.3, but the key is unknown, allowed law, coefficient; "
+        "did you mean 'coefficient'?",
+        "method.tolerance: value is 'small', allowed a number",
+    ]
+
+
+def test_toml_errors_name_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text("kind = patch\n")
+    (problem,) = problems_of(path)
+    assert problem.startswith(f"{path}: is not TOML: ")
+    assert "line 1" in problem
+    path.write_bytes(b"\xff\xfe")
+    assert problems_of(path) == [f"{path}: is not a text file in UTF-8"]
+    (problem,) = problems_of(tmp_path / "absent.toml")
+    assert problem.endswith("absent.toml: cannot be read: No such file or directory")
+
+
+GAP = {"geometry__semi_axes": None, "grid": {"element_size": [1e-4, 1e-4]}}
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ("0,1\n2\n", "line 2 holds 1 values, allowed 2 as in the first"),
+        ("0,1\n\n2,x\n", "gap.csv:3: value is 'x', allowed a finite number"),
+        ("0,nan\n", "gap.csv:1: value is 'nan', allowed a finite number"),
+        ("# nothing\n", "value is empty, allowed one row of numbers per grid row"),
+    ],
+)
+def test_undeformed_distance_of_a_bad_file(tmp_path: Path, text: str, problem: str) -> None:
+    (tmp_path / "gap.csv").write_text(text)
+    case = with_values(PATCH, geometry__undeformed_distance="gap.csv", **GAP)
+    with pytest.raises(CaseError) as caught:
+        load_scene(case, folder=tmp_path).gap()
+    assert str(caught.value).startswith("geometry.undeformed_distance: ")
+    assert str(caught.value).endswith(problem)
+
+
+def test_undeformed_distance_needs_an_element_size() -> None:
+    case = with_values(PATCH, geometry__semi_axes=None, geometry__undeformed_distance=[[0.0]])
+    assert problems_of(case) == [
+        "grid.element_size: value is missing, allowed [dx, dy] in m with "
+        "geometry.undeformed_distance"
+    ]
+
+
+def test_undeformed_distance_from_file_and_array(tmp_path: Path) -> None:
+    gap = np.arange(6.0).reshape(2, 3) * 1e-6
+    np.savetxt(tmp_path / "gap.csv", gap, delimiter=",")
+    for value in ("gap.csv", gap):
+        case = with_values(PATCH, geometry__undeformed_distance=value, **GAP)
+        np.testing.assert_array_equal(load_scene(case, folder=tmp_path).gap(), gap)

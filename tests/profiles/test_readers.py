@@ -1,0 +1,131 @@
+"""Readers: keys, comments, units, orientation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from railpatch.profiles import fit_profile, load_profile, read_profile
+
+Write = Callable[[str, str], Path]
+
+# a wheel: tread falling outwards, flange of 25 mm at -50 mm
+Y = np.linspace(-60, 60, 61)
+Z = np.where(Y < -35, 25 * np.exp(-(((Y + 50) / 9) ** 2)), 0.0) - 0.05 * Y
+
+DIGITS = 5e-11  # m, rounding of the ten digits written
+
+
+def columns(y: np.ndarray, z: np.ndarray) -> str:
+    return "".join(f"{a:.9e} {b:.9e}\n" for a, b in zip(y, z, strict=True))
+
+
+def simpack(points: str, *, kind: int = 1, **keys: object) -> str:
+    lines = "".join(
+        f"    {key.replace('_', '.')} = {value} ! a key\n" for key, value in keys.items()
+    )
+    return (
+        f"! made for a test\nheader.begin\n  version = 1\n  type = {kind}\nheader.end\n"
+        f"spline.begin\n{lines}  point.begin\n{points}  point.end\nspline.end\n"
+    )
+
+
+def assert_is_the_wheel(path: Path, role: str | None = "wheel") -> None:
+    raw = read_profile(path, role)
+    np.testing.assert_allclose(raw.y, 1e-3 * Y, rtol=0, atol=DIGITS)
+    np.testing.assert_allclose(raw.z, 1e-3 * Z, rtol=0, atol=DIGITS)
+
+
+def test_two_columns_in_mm(write: Write) -> None:
+    assert_is_the_wheel(write("w.txt", "# y z\n" + columns(Y, Z)))
+
+
+def test_two_columns_in_m_with_commas_and_titles(write: Write) -> None:
+    text = "y,z\n" + columns(1e-3 * Y, 1e-3 * Z).replace(" ", ",")
+    assert_is_the_wheel(write("w.csv", text))
+
+
+def test_z_up_and_flange_at_plus_y_are_detected(write: Write) -> None:
+    path = write("w.txt", columns(-Y, -Z))
+    assert_is_the_wheel(path)
+    assert read_profile(path, "wheel").notes[-2:] == [
+        "z pointed up: mirrored",
+        "flange lay at +y: mirrored",
+    ]
+
+
+def test_simpack_unit_and_mirror(write: Write) -> None:
+    keys = {"units_len_f": "+1.0E+03", "mirror_y": 1, "inversion": 1}
+    assert_is_the_wheel(write("w.prw", simpack(columns(-Y, Z), **keys)))
+
+
+def test_simpack_shift_and_rotation(write: Write) -> None:
+    # shift, then rotation: y' = y cos - z sin
+    angle = 0.02
+    y = Y * np.cos(angle) + Z * np.sin(angle) - 3.0
+    z = -Y * np.sin(angle) + Z * np.cos(angle) + 2.0
+    keys = {"units_len_f": 1e3, "units_ang_f": 1.0, "shift_y": 3.0, "shift_z": -2.0}
+    assert_is_the_wheel(write("w.prw", simpack(columns(y, z), rotate=angle, **keys)))
+
+
+def test_simpack_rotation_in_degrees(write: Write) -> None:
+    degree = 180 / np.pi
+    y, z = Y * np.cos(0.02) + Z * np.sin(0.02), -Y * np.sin(0.02) + Z * np.cos(0.02)
+    keys = {"units_len_f": 1e3, "units_ang_f": degree, "rotate": 0.02 * degree}
+    assert_is_the_wheel(write("w.prw", simpack(columns(y, z), **keys)))
+
+
+def test_simpack_bounds_comments_and_weights(write: Write) -> None:
+    rows = columns(Y, Z).splitlines()
+    rows[3] = "!" + rows[3]
+    rows[4] = rows[4] + "  0.0"
+    rows[5] = rows[5] + "  0.5 ! half"
+    keys = {"units_len_f": 1e3, "bound_y_min": -57.0, "bound_y_max": 1e9, "bound_z_min": 1}
+    raw = read_profile(write("w.prw", simpack("\n".join(rows) + "\n", bound_z_max=0, **keys)))
+    # lower bound: -60, -58 go; comment: -54; weight 0: -52
+    np.testing.assert_allclose(1e3 * raw.y[:3], [-56, -50, -48], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(raw.weight[:3], [1, 0.5, 1])
+
+
+def test_simpack_rail_by_header(write: Write) -> None:
+    y = np.linspace(-30, 30, 61)
+    raw = read_profile(write("r.dat", simpack(columns(y, y**2 / 60), kind=0, units_len_f=1e3)))
+    assert raw.role == "rail"
+    assert raw.z.max() == pytest.approx(0.015)
+
+
+def test_miniprof_columns(write: Write) -> None:
+    body = "".join(f"{i} {b:.9e} {a:.9e}\n" for i, (a, b) in enumerate(zip(Y, Z, strict=True)))
+    text = f"ProgramName=MiniProf\nColumnDef=N,Y,X\nXYPoints={Y.size}\n\n{body}"
+    path = write("w.whl", text)
+    assert_is_the_wheel(path, None)
+    assert read_profile(path).measured
+
+
+def test_nrc_wheels_and_rollers(reference_profiles: Path) -> None:
+    """Numbers of the files' own headers and rows: z down, flange back at 0, tape line at 70."""
+    wheel = read_profile(reference_profiles / "left-wheel-v1-pre-dry.whl")
+    assert (wheel.y.size, wheel.role) == (667, "wheel")
+    assert wheel.y[0] == pytest.approx(0.1423e-3)
+    assert wheel.notes == []
+    tape = np.interp(0.070, wheel.y, wheel.z)
+    assert wheel.z.max() - tape == pytest.approx(27.8749e-3, abs=5e-5)  # Sh of the header
+    roller = read_profile(reference_profiles / "right-roller-v1-pre-dry.ban")
+    assert (roller.y.size, roller.role) == (329, "rail")
+    assert roller.y[0] == pytest.approx(-38.0143e-3)
+    assert roller.z[0] == pytest.approx(51.8192e-3)
+
+
+def test_files_of_the_reference_become_curves(reference_profiles: Path) -> None:
+    for path in sorted(reference_profiles.iterdir()):
+        raw = read_profile(path)
+        profile = fit_profile(raw)
+        assert profile.y.size >= 0.93 * raw.y.size, path.name
+        np.testing.assert_allclose(np.hypot(profile.dy, profile.dz), 1, rtol=0, atol=5e-3)
+
+
+def test_relative_paths_start_at_the_folder(write: Write, tmp_path: Path) -> None:
+    write("w.txt", columns(Y, Z))
+    assert load_profile("w.txt", "wheel", folder=tmp_path).y.size == Y.size
