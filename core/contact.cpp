@@ -35,10 +35,10 @@ capacity grid_capacity(const rp_config &c) {
       n = static_cast<int>(std::min(2000.0, std::ceil(2.0 * c.semi_axes[k] / c.element_size[k]))) +
           3;
     else if (n == 0)
-      // wheel on rail: contact areas up to 24 mm long and 45 mm wide; else a square of 128
+      // wheel on rail: overlaps up to 40 mm long and 50 mm wide; else a square of 128
       n = c.kind == RP_PATCH
               ? 130
-              : static_cast<int>(std::clamp(std::ceil((k == 0 ? 0.024 : 0.045) / c.element_size[k]),
+              : static_cast<int>(std::clamp(std::ceil((k == 0 ? 0.040 : 0.050) / c.element_size[k]),
                                             16.0, 400.0));
   }
   return size;
@@ -293,7 +293,10 @@ void contact::find_z(double target, Evaluate &&evaluate, rp_result &out) {
   for (auto &side : out.side)
     for (int i = 0; i < side.patch_count; ++i)
       side.patch[i].residual = std::max(side.patch[i].residual, search.residual());
-  if (!search.converged() && out.status != RP_OUT_OF_RANGE) out.status = RP_NOT_CONVERGED;
+  if (search.too_deep())
+    out.status = RP_OUT_OF_RANGE;
+  else if (!search.converged() && out.status != RP_OUT_OF_RANGE)
+    out.status = RP_NOT_CONVERGED;
   depth_ = search.converged() ? depth : 0.0;
 }
 

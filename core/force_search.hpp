@@ -19,6 +19,8 @@ class force_search {
   bool converged() const { return residual_ <= tolerance_; }
   // The bracket has shrunk to rounding, or the depth left every sensible range.
   bool exhausted() const { return exhausted_; }
+  // No depth that could be evaluated carries the force.
+  bool too_deep() const { return exhausted_ && limited_; }
 
   // Takes the force at depth() and moves on; `beyond` marks a depth too great to be evaluated.
   void report(double force, bool beyond) {
@@ -26,12 +28,13 @@ class force_search {
     if (converged()) return;
     const bool deeper = !beyond && force < target_;
     (deeper ? lower_ : upper_) = depth_;
+    if (!deeper) limited_ = beyond;
     const double next = beyond ? 0.5 * (lower_ + upper_) : secant(force);
     if (!beyond) {
       last_depth_ = depth_;
       last_root_ = root(force);
     }
-    exhausted_ = upper_ - lower_ < 1e-13 || lower_ >= max_depth;
+    exhausted_ = upper_ - lower_ < 1e-16 + 1e-12 * lower_ || lower_ >= max_depth;
     depth_ = inside(next);
   }
 
@@ -57,7 +60,7 @@ class force_search {
   double last_depth_ = 0, last_root_ = 0;
   double lower_ = 0, upper_ = max_depth;
   double residual_ = HUGE_VAL;
-  bool exhausted_ = false;
+  bool exhausted_ = false, limited_ = true;
 };
 
 }  // namespace railpatch

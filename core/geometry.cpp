@@ -8,10 +8,10 @@ namespace railpatch {
 
 namespace {
 
-constexpr double standstill = 1e-12;   // m/s
-constexpr double grazing = 0.03;       // least cosine between n and a surface's normal
-constexpr double aside = 0.02;         // m, what yaw may move the locus sideways
-constexpr double step_limit = 2e-3;    // m, of a newton step along a profile
+constexpr double standstill = 1e-12;  // m/s
+constexpr double grazing = 0.03;      // least cosine between n and a surface's normal
+constexpr double aside = 0.02;        // m, what yaw may move the locus sideways
+constexpr double step_limit = 2e-3;   // m, of a newton step along a profile
 
 vec3 operator+(const vec3 &a, const vec3 &b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 vec3 operator-(const vec3 &a, const vec3 &b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -86,8 +86,7 @@ bool meet(const surface &f, const vec3 &base, hit &h) {
     const vec3 q = base + h.n * f.qn;
     const double r = f.radius + f.sign * m.z, dr = f.sign * m.dz;
     const double f1 = m.y - q[1];
-    const double f2 =
-        f.prismatic ? q[2] - r : 0.5 * (q[0] * q[0] + q[2] * q[2] - r * r) / r;
+    const double f2 = f.prismatic ? q[2] - r : 0.5 * (q[0] * q[0] + q[2] * q[2] - r * r) / r;
     const double g = f.prismatic ? f.qn[2] : (q[0] * f.qn[0] + q[2] * f.qn[2]) / r;
     const double det = m.dy * g - dr * f.qn[1];
     if (!(std::fabs(det) > grazing)) return h.valid = false;
@@ -188,9 +187,7 @@ wheelset_state mirrored(wheelset_state w) {
   return w;
 }
 
-deviation mirrored(deviation d) {
-  return {mirrored_vector(d.offset), mirrored_axial(d.rotation)};
-}
+deviation mirrored(deviation d) { return {mirrored_vector(d.offset), mirrored_axial(d.rotation)}; }
 
 side_motion mirrored(side_motion m) {
   return {mirrored(m.wheelset), mirrored(m.wheel), mirrored(m.rail), m.roller_pitch_rate};
@@ -220,28 +217,11 @@ side_geometry::side_geometry(const profile &wheel, const profile &rail,
   place({});
 }
 
-// the gauge face is the innermost point down to gauge_height below the top of the canted rail
 void side_geometry::place_rail_marker() {
   const bool roller = track_.kind == track_kind::roller;
   rail_.place(roller ? 0 : -track_.cant, 0, 0);
-  const double top = rail_.extreme(), depth = rail_.evaluate(top).z + track_.gauge_height;
-  double above = top, below = top;
-  int i = static_cast<int>((top - rail_.curve().begin()) / rail_.step());
-  double innermost = rail_.evaluate(top).y;
-  for (; i >= 0; --i) {
-    below = rail_.sample_s(i);
-    if (rail_.sample(i).z >= depth) break;
-    above = below;
-    innermost = std::min(innermost, rail_.sample(i).y);
-  }
-  // the sample below the gauge height only brackets it
-  for (int k = 0; i >= 0 && k < 60; ++k) {
-    const double m = 0.5 * (above + below);
-    (rail_.evaluate(m).z < depth ? above : below) = m;
-  }
-  innermost = std::min(innermost, rail_.evaluate(above).y);
-  marker_y_ = 0.5 * track_.gauge - innermost;
-  marker_z_ = roller ? 0 : -rail_.evaluate(top).z;
+  marker_y_ = 0.5 * track_.gauge - rail_.innermost(track_.gauge_height);
+  marker_z_ = roller ? 0 : -rail_.evaluate(rail_.extreme()).z;
 }
 
 void side_geometry::place(const side_motion &motion) {
@@ -250,32 +230,29 @@ void side_geometry::place(const side_motion &motion) {
   const vec3 &off = motion.wheel.offset, &rail_off = motion.rail.offset;
   const bool roller = track_.kind == track_kind::roller;
   const double marker = 0.5 * sizes_.flange_back_distance - sizes_.flange_back_position;
-  centre_ = {0, w.y, w.z - sizes_.nominal_radius};
-  wheelset_axes_ = roll_yaw(w.roll, w.yaw);
   wheel_axes_ = roll_yaw(w.roll, w.yaw + motion.wheel.rotation[2]);
   // the wheel's own yaw turns about its marker's plane, where u = 0 then lies
-  axis_origin_ = centre_ + turn(wheelset_axes_, {off[0], marker, 0});
+  axis_offset_ = turn(roll_yaw(w.roll, w.yaw), {off[0], marker, 0});
   wheel_.place(motion.wheel.rotation[0], off[1], off[2]);
   const double lean = motion.rail.rotation[0] - (roller ? 0 : track_.cant);
   rail_.place(lean, marker_y_ + rail_off[1], marker_z_ + rail_off[2]);
   axle_x_ = rail_off[0];
   axle_z_ = track_.roller_radius + rail_off[2];
-  placed_z_ = w.z;
-  lift_ = 0;
+  // scanned at z = 0, so that a position reached by move_to() gives the same bits
+  move_to(0);
   scan();
+  move_to(w.z);
 }
 
 void side_geometry::move_to(double z) {
-  const double change = z - motion_.wheelset.z;
   motion_.wheelset.z = z;
-  centre_[2] = z - sizes_.nominal_radius;
-  axis_origin_[2] += change;
-  lift_ = z - placed_z_;
+  centre_ = {0, motion_.wheelset.y, z - sizes_.nominal_radius};
+  axis_origin_ = centre_ + axis_offset_;
 }
 
 // Sine of the angle along the circumference. With P = (r sin, u, r cos) and the normal
-// N = (sin du, -dr, cos du) in wheel axes, a rail asks for N_x = 0 in track axes; a roller for equal
-// slopes -N_x/N_z = (x - axle)/(axle_z - z), with z = wheel's z + gap the roller's.
+// N = (sin du, -dr, cos du) in wheel axes, a rail asks for N_x = 0 in track axes; a roller for
+// equal slopes -N_x/N_z = (x - axle)/(axle_z - z), with z = wheel's z + gap the roller's.
 double side_geometry::locus_sine(const curve_point &p, double gap, double tolerance) const {
   const mat3 &m = wheel_axes_;
   double sine = m[0][1] * p.dz / (m[0][0] * p.dy);
@@ -291,8 +268,7 @@ double side_geometry::locus_sine(const curve_point &p, double gap, double tolera
     const double f = -n[0] / n[2] - (at[0] - axle_x_) / reach;
     const double dnx = m[0][0] * p.dy * cosine;
     const double dnz = (m[2][0] * cosine - m[2][2] * sine) * p.dy;
-    const double slope =
-        -(dnx * n[2] - n[0] * dnz) / (n[2] * n[2]) - m[0][0] * r * cosine / reach;
+    const double slope = -(dnx * n[2] - n[0] * dnz) / (n[2] * n[2]) - m[0][0] * r * cosine / reach;
     change = f / slope * cosine;
     sine -= change;
   }
@@ -309,7 +285,8 @@ void side_geometry::scan() {
   std::fill(gaps_.begin(), gaps_.end(), far_apart);
   overlap_ = false;
   const bool roller = track_.kind == track_kind::roller;
-  const double from = rail_.sample(rail_.first()).y - aside, to = rail_.sample(rail_.last()).y + aside;
+  const double from = rail_.sample(rail_.first()).y - aside,
+               to = rail_.sample(rail_.last()).y + aside;
   int k = rail_.first();
   for (int i = wheel_.first(); i <= wheel_.last(); ++i) {
     // where the profiles have no lateral position in common there is nothing to find
@@ -380,11 +357,11 @@ double side_geometry::sampled_gap(double s) const {
   return std::max(a, b) < 0.5 * far_apart ? a + share * (b - a) : 0;
 }
 
-surface side_geometry::wheel_surface(const contact_frame &frame) const {
+surface side_geometry::wheel_seen_from(const contact_frame &frame) const {
   return seen_from(frame, wheel_, axis_origin_, wheel_axes_, sizes_.nominal_radius, 1, false);
 }
 
-surface side_geometry::rail_surface(const contact_frame &frame) const {
+surface side_geometry::rail_seen_from(const contact_frame &frame) const {
   if (track_.kind == track_kind::rail)
     return seen_from(frame, rail_, {0, 0, 0}, identity, 0, 1, true);
   return seen_from(frame, rail_, {axle_x_, 0, axle_z_}, identity, axle_z_, -1, false);
@@ -394,11 +371,11 @@ void side_geometry::undeformed_distance(const contact_frame &frame, const surfac
                                         double *h) const {
   const int column = clamp_index(-g.x0 / g.dx, g.nx);
   const auto at = [&](int row) { return h + static_cast<std::ptrdiff_t>(row) * g.nx; };
-  const surface wheel = wheel_surface(frame);
+  const surface wheel = wheel_seen_from(frame);
   for_rows(wheel, g, column,
            [&](int row, const hit &m) { fill_row(wheel, g, row, column, m, at(row)); });
   // the rail's heights are used row by row, in strips that fit on the stack
-  const surface rail = rail_surface(frame);
+  const surface rail = rail_seen_from(frame);
   constexpr int strip = 256;
   double heights[strip];
   for (int first = 0; first < g.nx; first += strip) {
@@ -415,7 +392,7 @@ void side_geometry::undeformed_distance(const contact_frame &frame, const surfac
 
 void side_geometry::distances(const contact_frame &frame, const double *x, const double *s,
                               int count, double *h) const {
-  const surface wheel = wheel_surface(frame), rail = rail_surface(frame);
+  const surface wheel = wheel_seen_from(frame), rail = rail_seen_from(frame);
   hit on_wheel = nearest(wheel), on_rail = nearest(rail);
   for (int i = 0; i < count; ++i) {
     hit a = on_wheel, b = on_rail;
@@ -434,7 +411,8 @@ creepage_state side_geometry::creepages(const contact_frame &frame, double appro
   const vec3 frame_spin{0, 0, track_.curvature * w.speed};
   const vec3 swing = vec3{w.roll_rate, 0, 0} + w.yaw_rate * vec3{0, -s, c};
   const vec3 roll = w.pitch_rate * column(wheel_axes_, 1);
-  const vec3 carried = vec3{w.speed, w.vy, w.vz} + cross(frame_spin, at) + cross(swing, at - centre_);
+  const vec3 carried =
+      vec3{w.speed, w.vy, w.vz} + cross(frame_spin, at) + cross(swing, at - centre_);
   const vec3 turned = cross(roll, at - axis_origin_);
   const vec3 roller_spin{0, motion_.roller_pitch_rate, 0};
   const bool roller = track_.kind == track_kind::roller;

@@ -5,8 +5,8 @@
 // Contact frame: x as the track's, s lateral along the surface, n into the rail; turned by the
 // contact angle about x: s = (0, cos, sin), n = (0, -sin, cos).
 // Signs. Undeformed distance > 0 is a gap. Creepages are wheel minus rail, divided by the rolling
-// speed. Everything here is a right-hand side; a left one is its mirror image: feed mirrored inputs,
-// mirror the results back. Mirroring changes signs only, so it is exact.
+// speed. Everything here is a right-hand side; a left one is its mirror image: feed mirrored
+// inputs, mirror the results back. Mirroring changes signs only, so it is exact.
 //
 // Deviations. A wheel's offset y, z and rotation about x move its profile in its meridian plane
 // (about the profile's origin); it still turns about the wheelset's axis. Offset x and rotation
@@ -26,10 +26,10 @@ using vec3 = std::array<double, 3>;
 using mat3 = std::array<vec3, 3>;  // rows
 
 struct wheelset_state {
-  double y = 0, z = 0;           // m
-  double roll = 0, yaw = 0;      // rad
-  double speed = 0;              // m/s, of the track frame along the centre line
-  double vy = 0, vz = 0;         // m/s
+  double y = 0, z = 0;       // m
+  double roll = 0, yaw = 0;  // rad
+  double speed = 0;          // m/s, of the track frame along the centre line
+  double vy = 0, vz = 0;     // m/s
   double roll_rate = 0, yaw_rate = 0, pitch_rate = 0;  // rad/s, relative to the track frame
 };
 
@@ -89,13 +89,13 @@ vec3 mirrored_axial(vec3 v);   // moment, rotation
 // The vertical gap at a point of the contact locus: on each lateral position the longitudinal
 // position where the surfaces come closest.
 struct locus_point {
-  bool valid = false;      // both profiles reach there
-  vec3 wheel{};            // m, track axes, on the wheel
-  double gap = 0;          // m, vertical, rail minus wheel
-  double rail_z = 0;       // m, of the rail surface there
+  bool valid = false;        // both profiles reach there
+  vec3 wheel{};              // m, track axes, on the wheel
+  double gap = 0;            // m, vertical, rail minus wheel
+  double rail_z = 0;         // m, of the rail surface there
   double contact_angle = 0;  // rad, of the rail surface
-  double curvature = 0;    // 1/m, the gap grows with curvature x^2
-  double lateral_rate = 0;  // d(y)/d(s) along the locus
+  double curvature = 0;      // 1/m, the gap grows with curvature x^2
+  double lateral_rate = 0;   // d(y)/d(s) along the locus
 };
 
 struct surface;
@@ -117,7 +117,7 @@ class side_geometry {
   // Approximate vertical gaps at equally spaced points of the wheel's profile (within 1 um), for
   // the contact search; no_overlap() where the profiles have no lateral position in common.
   int sample_count() const { return static_cast<int>(gaps_.size()); }
-  double sample_gap(int i) const { return gaps_[static_cast<std::size_t>(i)] - lift_; }
+  double sample_gap(int i) const { return gaps_[static_cast<std::size_t>(i)] - motion_.wheelset.z; }
   double sample_s(int i) const { return wheel_.sample_s(i); }
   bool no_overlap() const { return !overlap_; }
 
@@ -145,8 +145,8 @@ class side_geometry {
  private:
   void place_rail_marker();
   void scan();
-  surface wheel_surface(const contact_frame &frame) const;
-  surface rail_surface(const contact_frame &frame) const;
+  surface wheel_seen_from(const contact_frame &frame) const;
+  surface rail_seen_from(const contact_frame &frame) const;
   double locus_sine(const curve_point &p, double gap, double tolerance) const;
   double sampled_gap(double s) const;
   void set_rates(const curve_point &p, double sine, locus_point &l) const;
@@ -156,13 +156,12 @@ class side_geometry {
   track_config track_;
   side_motion motion_;
   placed_profile wheel_, rail_;
-  std::vector<double> gaps_;  // by sample of the wheel, for z = placed_z_
-  double placed_z_ = 0, lift_ = 0;
+  std::vector<double> gaps_;  // by sample of the wheel, for z = 0
   double marker_y_ = 0, marker_z_ = 0;
-  double axle_z_ = 0, axle_x_ = 0;  // roller
-  vec3 centre_{};                   // wheelset
-  vec3 axis_origin_{};              // of this wheel
-  mat3 wheelset_axes_{}, wheel_axes_{};
+  double axle_z_ = 0, axle_x_ = 0;      // roller
+  vec3 centre_{};                       // wheelset
+  vec3 axis_origin_{}, axis_offset_{};  // of this wheel, from track origin and wheelset centre
+  mat3 wheel_axes_{};
   bool overlap_ = false;
 };
 

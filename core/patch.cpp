@@ -8,15 +8,15 @@ namespace railpatch {
 
 namespace {
 
-constexpr double near = 2e-5;    // m, sampled gaps below this are looked at closely
+constexpr double closeness = 2e-5;  // m, sampled gaps below this are looked at closely
 constexpr int min_rows = 24, max_rows = 64;
 constexpr double row_spacing = 2e-4;  // m
 
 // One part of contact, with its sums over rows.
 struct part {
-  double begin = 0, end = 0;  // m, arc length on the wheel
-  bool cut_off = false;       // by the end of a profile
-  vec3 first{}, last{};       // edges, track axes, on the surfaces
+  double begin = 0, end = 0;                   // m, arc length on the wheel
+  bool cut_off = false;                        // by the end of a profile
+  vec3 first{}, last{};                        // edges, track axes, on the surfaces
   double weight = 0, x = 0, y = 0, angle = 0;  // weighted means
   double x_min = 0, x_max = 0;
 };
@@ -71,7 +71,7 @@ class part_list {
   void search() {
     for (int i = 0; i < side_.sample_count(); ++i) {
       const double sampled = side_.sample_gap(i);
-      const double g = sampled < near ? gap_at(side_, side_.sample_s(i)) : sampled;
+      const double g = sampled < closeness ? gap_at(side_, side_.sample_s(i)) : sampled;
       advance(i, g);
       before_ = last_;
       last_ = g;
@@ -88,7 +88,7 @@ class part_list {
     if (start) begin(last_ < ended ? edge(side_, back, s) : s, !(last_ < ended));
     if (stop) close(g < ended ? edge(side_, s, back) : back, !(g < ended));
     // a dip between samples: contact that is only just beginning
-    if (!start && !stop && !open_ && i > 1 && last_ < near && last_ <= before_ && last_ <= g)
+    if (!start && !stop && !open_ && i > 1 && last_ < closeness && last_ <= before_ && last_ <= g)
       dip(side_.sample_s(i - 2), s);
   }
 
@@ -237,8 +237,7 @@ patch_region describe(const side_geometry &side, const patch_rules &r, const par
     if (i + 1 == g.end) break;
     const part &next = parts[i + 1];
     const double d = distance(p, next);
-    out.cut[i - g.begin] =
-        0.5 * (lateral(out.frame, p.last) + lateral(out.frame, next.first));
+    out.cut[i - g.begin] = 0.5 * (lateral(out.frame, p.last) + lateral(out.frame, next.first));
     const double share = std::clamp((r.separate - d) / (r.separate - r.combine), 0.0, 1.0);
     out.coupling[i - g.begin] = std::pow(share, r.coupling_exponent);
   }
@@ -288,10 +287,10 @@ bool first_touch(const side_geometry &side, double &z) {
   // every sampled valley deep enough to hold the least gap is searched exactly
   double least = side_geometry::far_apart;
   for (int i = 0; i < side.sample_count(); ++i) least = std::min(least, side.sample_gap(i));
-  double best = least + near;
+  double best = least + closeness;
   for (int i = 1; i + 1 < side.sample_count(); ++i) {
     const double g = side.sample_gap(i);
-    if (g > least + near || g > side.sample_gap(i - 1) || g > side.sample_gap(i + 1)) continue;
+    if (g > least + closeness || g > side.sample_gap(i - 1) || g > side.sample_gap(i + 1)) continue;
     const locus_point l = side.locus(lowest(side, side.sample_s(i - 1), side.sample_s(i + 1)));
     if (l.valid) best = std::min(best, l.gap);
   }

@@ -7,11 +7,11 @@
 // means over the rows: they move smoothly with the wheelset, and a part that appears or vanishes
 // does so with weight zero.
 //
-// Parts close to each other share a patch (Vollebregt 2022, Vehicle System Dynamics 60, gives the
-// distances of his rule; so does patch_rules by default): d is the distance between facing edges.
+// Parts close to each other share a patch, by the distance d between facing edges; the default
+// distances are those of the program CONTACT, so that results compare.
 // Up to `combine` they influence each other fully; up to `separate` by a factor
-// ((separate - d)/(separate - combine))^0.8; up to `turn` they are patches of their own, with angles
-// turned towards their weighted mean, by all at `separate`, by nothing at `turn`.
+// ((separate - d)/(separate - combine))^0.8; up to `turn` they are patches of their own, with
+// angles turned towards their weighted mean, by all at `separate`, by nothing at `turn`.
 //
 // A pure function of its inputs: no history, no allocation.
 #pragma once

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double sample_spacing = 2e-4;  // m; chords of 10 mm radius are then within 0.5 um
 constexpr int max_samples = 4096;
-constexpr double max_length = 2.0;   // m, longer ones are in millimetres
-constexpr double steepest = 0.02;    // dy/ds where a running branch ends (88.9 degrees)
+constexpr double max_length = 2.0;  // m, longer ones are in millimetres
+constexpr double steepest = 0.02;   // dy/ds where a running branch ends (88.9 degrees)
 
 bool finite(const profile_view &v, int i) {
   return std::isfinite(v.s[i]) && std::isfinite(v.y[i]) && std::isfinite(v.z[i]) &&
@@ -24,6 +24,16 @@ void hermite(double h, double f0, double f1, double d0, double d1, double c[4]) 
   c[1] = d0;
   c[2] = (3 * slope - 2 * d0 - d1) / h;
   c[3] = (d0 + d1 - 2 * slope) / (h * h);
+}
+
+// where a test that holds at lo and fails at hi turns
+template <class F>
+double bisect(double lo, double hi, F holds) {
+  for (int i = 0; i < 60; ++i) {
+    const double m = 0.5 * (lo + hi);
+    (holds(m) ? lo : hi) = m;
+  }
+  return 0.5 * (lo + hi);
 }
 
 }  // namespace
@@ -128,8 +138,8 @@ curve_point profile::evaluate(double s, int interval) const {
 
 placed_profile::placed_profile(const profile &curve, body kind) : curve_(&curve), kind_(kind) {
   const double length = curve.end() - curve.begin();
-  const int count = std::clamp(static_cast<int>(std::ceil(length / sample_spacing)), 16,
-                               max_samples);
+  const int count =
+      std::clamp(static_cast<int>(std::ceil(length / sample_spacing)), 16, max_samples);
   step_ = length / count;
   raw_.resize(static_cast<size_t>(count) + 1);
   samples_.resize(raw_.size());
@@ -149,6 +159,10 @@ curve_point placed_profile::evaluate(double s, int interval) const {
 }
 
 void placed_profile::place(double angle, double y, double z) {
+  // most scenes never move the rail in its own axes, nor the wheel's profile on its axle
+  if (placed_ && angle == angle_ && y == y_ && z == z_) return;
+  placed_ = true;
+  angle_ = angle;
   cos_ = std::cos(angle);
   sin_ = std::sin(angle);
   y_ = y;
@@ -194,6 +208,27 @@ bool placed_profile::find(double y, double &s) const {
   return true;
 }
 
+double placed_profile::innermost(double height) const {
+  const double top = extreme(), depth = evaluate(top).z + height;
+  int i = extreme_, best = i;
+  for (; i >= 0 && sample(i).z < depth; --i)
+    if (sample(i).y < sample(best).y) best = i;
+  double y = std::min(evaluate(top).y, sample(best).y);
+  // the samples only bracket where the height is reached ...
+  if (i >= 0 && i < extreme_) {
+    const double s =
+        bisect(sample_s(i), sample_s(i + 1), [&](double m) { return evaluate(m).z - depth > 0; });
+    y = std::min(y, evaluate(s).y);
+  }
+  // ... and where an undercut face lies furthest in
+  if (best > std::max(i + 1, 0) && best < extreme_) {
+    const double s = bisect(sample_s(best - 1), sample_s(best + 1),
+                            [&](double m) { return evaluate(m).dy < 0; });
+    y = std::min(y, evaluate(s).y);
+  }
+  return y;
+}
+
 double placed_profile::extreme() const {
   double lo = sample_s(std::max(extreme_ - 1, 0));
   double hi = std::min(sample_s(extreme_ + 1), curve_->end());
@@ -201,11 +236,7 @@ double placed_profile::extreme() const {
   // dz changes sign from - to + at the top of a rail; at an end of the curve it need not
   if (sign * evaluate(lo).dz >= 0) return lo;
   if (sign * evaluate(hi).dz <= 0) return hi;
-  for (int i = 0; i < 60; ++i) {
-    const double m = 0.5 * (lo + hi);
-    (sign * evaluate(m).dz < 0 ? lo : hi) = m;
-  }
-  return 0.5 * (lo + hi);
+  return bisect(lo, hi, [&](double m) { return sign * evaluate(m).dz < 0; });
 }
 
 }  // namespace railpatch

@@ -1,7 +1,7 @@
 // Wheel and rail profiles as smooth curves.
 //
-// A profile is a cubic Hermite curve y(s), z(s) in arc length s, m. It is a right-hand profile: s and
-// y grow from the flange or gauge side to the field side, z points down. The inclination
+// A profile is a cubic Hermite curve y(s), z(s) in arc length s, m. It is a right-hand profile: s
+// and y grow from the flange or gauge side to the field side, z points down. The inclination
 // atan2(dz, dy) and the curvature (dy d2z - dz d2y)/|d|^3 follow from the same polynomials.
 //
 // A placed profile is turned by an angle about x, (y, z) -> (c y - s z, s y + c z), and then moved.
@@ -83,6 +83,8 @@ class placed_profile {
   double step() const { return step_; }
   // The extreme point in z: highest of a rail, lowest of a wheel.
   double extreme() const;
+  // The least y down to the given height below the top of a rail: the gauge face.
+  double innermost(double height) const;
   std::size_t bytes() const { return samples_.size() * 2 * sizeof(curve_point); }
 
  private:
@@ -91,7 +93,8 @@ class placed_profile {
 
   const profile *curve_;
   body kind_;
-  double cos_ = 1, sin_ = 0, y_ = 0, z_ = 0, step_ = 0;
+  bool placed_ = false;
+  double angle_ = 0, cos_ = 1, sin_ = 0, y_ = 0, z_ = 0, step_ = 0;
   std::vector<curve_point> raw_, samples_;
   int first_ = 0, last_ = 0, extreme_ = 0;
 };
