@@ -19,7 +19,7 @@ export PATH := $(CURDIR)/$(BIN):$(PATH)
 
 CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
 # what the installed package is made from
-SOURCES := $(shell find core plugins rig_model cmake -type f -not -name '*.pyc' 2>/dev/null) \
+SOURCES := $(shell find core plugins rig_model -type f -not -name '*.pyc' 2>/dev/null) \
 	CMakeLists.txt README.md
 
 .PHONY: help demo test lint format clean setup system test-cpp test-python test-asan

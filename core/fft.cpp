@@ -31,14 +31,16 @@ fft_plans::fft_plans(std::vector<int> sizes_x, std::vector<int> sizes_y)
   aligned_buffer<std::complex<double>> spectrum(static_cast<size_t>(max_nx() / 2 + 1) *
                                                 static_cast<size_t>(max_ny()));
   plans_.resize(sizes_x_.size() * sizes_y_.size());
+  // FFTW's buffered plans take memory from the heap in every execution
+  constexpr unsigned flags = FFTW_ESTIMATE | FFTW_NO_BUFFERING;
   const std::lock_guard<std::mutex> guard(planner_lock());
   for (size_t i = 0; i < plans_.size(); ++i) {
     // estimated plans depend on nothing but the size, so results are the same in every run
     const int plan = static_cast<int>(i);
     plans_[i].forward = fftw_plan_dft_r2c_2d(ny(plan), nx(plan), values.data(),
-                                             as_fftw(spectrum.data()), FFTW_ESTIMATE);
+                                             as_fftw(spectrum.data()), flags);
     plans_[i].backward = fftw_plan_dft_c2r_2d(ny(plan), nx(plan), as_fftw(spectrum.data()),
-                                              values.data(), FFTW_ESTIMATE);
+                                              values.data(), flags);
     if (!plans_[i].forward || !plans_[i].backward) throw std::bad_alloc();
   }
 }

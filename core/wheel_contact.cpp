@@ -16,13 +16,12 @@ std::unique_ptr<profile> make_profile(const rp_profile &p, const char *field) {
   return std::make_unique<profile>(view);
 }
 
-// A positive cant leans both rails inwards, so the right one (and a mirrored left one) turns
-// against x; a right-hand curve is a left-hand one in the mirror.
+// Both rails lean inwards by the same cant; a right-hand curve is a left-hand one in the mirror.
 track_config track_of(const rp_config &c, int side) {
   return {c.track == RP_ROLLER ? track_kind::roller : track_kind::rail,
           c.gauge,
           c.gauge_height,
-          -c.cant,
+          c.cant,
           side == RP_LEFT ? -c.curvature : c.curvature,
           c.roller_radius};
 }
@@ -165,6 +164,8 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
   std::copy_n(origin.begin(), 3, result.position);
   result.contact_angle = region.frame.contact_angle;
   result.approach = depth;
+  // beyond a profile's end there is no surface: an edge in contact is outside the theory
+  if (region.at_profile_end && result.status == RP_CONVERGED) result.status = RP_OUT_OF_RANGE;
   result.rolling_speed = rolling.rolling_speed;
   result.direction = rolling.direction;
   if (solver.scene().tangential != RP_TANGENTIAL_NONE) {

@@ -1,0 +1,105 @@
+"""Manchester benchmark A-2.2, right wheel, against the published CONTACT results.
+
+Source: Shackleton and Iwnicki (2008), Vehicle System Dynamics 46, the benchmark; results of
+CONTACT at a grid of 0.2 mm, in the reference folder. Its forces act on the rail and its creepages
+are rail minus wheel: ours are the negatives. Bounds: normal force 0.5 %, tangential components 1 %
+of the wheel load, peak pressure 2 %, z 5 um, contact position 0.2 mm.
+"""
+
+import csv
+
+import pytest
+import railpatch
+
+WHEEL_LOAD = 1.0e4  # N
+BOUNDS = {
+    "z": 5e-6,  # m
+    "position": 2e-4,  # m
+    "normal_force": 0.005,  # -
+    "longitudinal": 0.01,  # of the wheel load
+    "lateral": 0.01,
+    "max_pressure": 0.02,  # -
+}
+
+
+def positions(reference):
+    with (reference / "manchester_a22_right.csv").open(newline="") as file:
+        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+
+def manchester_case(wheel, rail):
+    return {
+        "kind": "wheel_rail",
+        "material": {"shear_modulus": 82e9, "poisson_ratio": 0.28},
+        "wheelset": {
+            "vertical_force": WHEEL_LOAD,
+            "speed": 2.0,
+            "nominal_radius": 0.46,
+            "flange_back_distance": 1.36,
+            "flange_back_position": -0.07,
+        },
+        "track": {"kind": "rail", "gauge": 1.435, "gauge_height": 0.014},
+        "profiles": {"wheel": wheel, "rail": rail},
+        "wheel": {"side": "right"},
+        "grid": {"element_size": [2e-4, 2e-4]},
+        "friction": {"law": "coulomb", "coefficient": 0.3},
+    }
+
+
+def differences(row, result):
+    """What is bounded, by name; the units of BOUNDS."""
+    (patch,) = result["patches"]
+    place = [1e-3 * row[key] for key in ("xcp_tr", "ycp_tr", "zcp_tr")]
+    return {
+        "z": result["z"] - 1e-3 * row["z_ws"],
+        "position": max(abs(a - b) for a, b in zip(patch["position"], place, strict=True)),
+        "normal_force": patch["normal_force"] / row["FN"] - 1,
+        "longitudinal": (-patch["creep_force"][0] - row["Fx"]) / WHEEL_LOAD,
+        "lateral": (-patch["creep_force"][1] - row["Fs"]) / WHEEL_LOAD,
+        "max_pressure": patch["max_pressure"] / (1e6 * row["pmax"]) - 1,
+    }
+
+
+@pytest.mark.parametrize("source", ["built-in", "file"])
+def test_all_positions(reference, source):
+    wheel, rail = ("S1002", "UIC60@1:40")
+    if source == "file":
+        wheel = str(reference / "profiles" / "MBench_S1002_v3.prw")
+        rail = str(reference / "profiles" / "MBench_UIC60_v3.prr")
+    contact = railpatch.Contact(manchester_case(wheel, rail))
+    rows = positions(reference)
+    assert len(rows) == 21
+    worst = dict.fromkeys(BOUNDS, 0.0)
+    print(f"\n{source}: y (mm), " + ", ".join(BOUNDS))
+    for row in rows:
+        result = contact.step(
+            y=1e-3 * row["y_ws"],
+            roll=row["roll"],
+            yaw=row["yaw"],
+            pitch_rate=row["vpitch"],
+        ).to_dict()
+        assert result["status"] == "converged"
+        assert len(result["patches"]) == 1, f"y = {row['y_ws']} mm"
+        found = differences(row, result)
+        print(f"{row['y_ws']:5.1f} " + " ".join(f"{value:10.2e}" for value in found.values()))
+        for name, value in found.items():
+            worst[name] = max(worst[name], abs(value))
+            assert abs(value) <= BOUNDS[name], f"{source}, y = {row['y_ws']} mm: {name} {value}"
+    print("worst " + " ".join(f"{value:10.2e}" for value in worst.values()))
+
+
+def test_creepages_and_angle(reference):
+    # read off the published positions: creepages are given to four digits, angles to 1e-4 rad
+    contact = railpatch.Contact(manchester_case("S1002", "UIC60@1:40"))
+    for row in positions(reference):
+        result = contact.step(
+            y=1e-3 * row["y_ws"],
+            roll=row["roll"],
+            yaw=row["yaw"],
+            pitch_rate=row["vpitch"],
+        )
+        (patch,) = result["patches"]
+        assert patch["contact_angle"] == pytest.approx(row["delt_rad"], abs=2e-4)
+        assert -patch["creepage"][0] == pytest.approx(row["cksi"], abs=1e-5)
+        assert -patch["creepage"][1] == pytest.approx(row["ceta"], abs=1e-5)
+        assert -patch["spin_creepage"] == pytest.approx(1e3 * row["cphi_per_mm"], abs=2e-3)
