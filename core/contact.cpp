@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <limits>
 
@@ -314,8 +315,11 @@ constexpr uint32_t state_magic = 0x52505331;  // "RPS1"
 struct state_header {
   uint32_t magic, kind;
   uint64_t bytes, checksum;
+  // the checksum covers all that follows
+  uint64_t scene;
   double depth;
 };
+constexpr size_t checked_from = offsetof(state_header, scene);
 struct patch_header {
   grid g;
   vec3 reference;
@@ -327,6 +331,51 @@ uint64_t checksum(const unsigned char *data, size_t size) {
   uint64_t hash = 14695981039346656037ull;
   for (size_t i = 0; i < size; ++i) hash = (hash ^ data[i]) * 1099511628211ull;
   return hash;
+}
+
+// Tells the states of one config from those of another; shapes and profiles are left out.
+uint64_t fingerprint(const rp_config &c) {
+  const double values[] = {static_cast<double>(c.geometry),
+                           static_cast<double>(c.load),
+                           static_cast<double>(c.regime),
+                           static_cast<double>(c.normal),
+                           static_cast<double>(c.tangential),
+                           static_cast<double>(c.spin_offset),
+                           static_cast<double>(c.track),
+                           static_cast<double>(c.side),
+                           static_cast<double>(c.elements[0]),
+                           static_cast<double>(c.elements[1]),
+                           static_cast<double>(c.max_elements[0]),
+                           static_cast<double>(c.max_elements[1]),
+                           static_cast<double>(c.max_iterations),
+                           static_cast<double>(c.max_patches),
+                           c.element_size[0],
+                           c.element_size[1],
+                           c.shear_modulus[0],
+                           c.shear_modulus[1],
+                           c.poisson_ratio[0],
+                           c.poisson_ratio[1],
+                           c.semi_axes[0],
+                           c.semi_axes[1],
+                           c.curvatures[0],
+                           c.curvatures[1],
+                           c.line_contact_radius,
+                           c.width,
+                           c.friction_coefficient,
+                           c.layer_shear_modulus,
+                           c.layer_thickness,
+                           c.tolerance,
+                           c.nominal_radius,
+                           c.flange_back_distance,
+                           c.flange_back_position,
+                           c.gauge,
+                           c.gauge_height,
+                           c.cant,
+                           c.curvature,
+                           c.roller_radius};
+  unsigned char bytes[sizeof values];
+  std::memcpy(bytes, values, sizeof values);
+  return checksum(bytes, sizeof bytes);
 }
 
 // the fields that a later step starts from
@@ -361,8 +410,10 @@ void contact::save_state(unsigned char *buffer) const {
     for_each_start_field(m, put);
   }
   const auto bytes = static_cast<size_t>(at - buffer);
-  const state_header header{state_magic, static_cast<uint32_t>(config_.kind), bytes,
-                            checksum(buffer + sizeof header, bytes - sizeof header), depth_};
+  state_header header{
+      state_magic, static_cast<uint32_t>(config_.kind), bytes, 0, fingerprint(config_), depth_};
+  std::memcpy(buffer, &header, sizeof header);
+  header.checksum = checksum(buffer + checked_from, bytes - checked_from);
   std::memcpy(buffer, &header, sizeof header);
 }
 
@@ -372,7 +423,8 @@ bool contact::restore_state(const unsigned char *buffer, size_t size) {
   std::memcpy(&header, buffer, sizeof header);
   const bool ours = header.magic == state_magic &&
                     header.kind == static_cast<uint32_t>(config_.kind) && header.bytes == size &&
-                    header.checksum == checksum(buffer + sizeof header, size - sizeof header);
+                    header.scene == fingerprint(config_) &&
+                    header.checksum == checksum(buffer + checked_from, size - checked_from);
   if (!ours || !state_fits(buffer + sizeof header, size - sizeof header)) return false;
   const unsigned char *at = buffer + sizeof header;
   for (auto &m : memory_) {

@@ -166,7 +166,7 @@ typedef struct rp_config {
   double flange_back_position; /* m, of the flange back on the profile's y axis */
   rp_track track;
   double gauge, gauge_height;   /* m */
-  double cant;                  /* rad, rail */
+  double cant;                  /* rad, rail; > 0 leans both rails towards the track centre */
   double curvature;             /* 1/m, right-hand curve > 0, rail */
   double roller_radius;         /* m, roller */
   rp_profile wheel[2], rail[2]; /* by side; the roller's profile as rail */
@@ -184,7 +184,7 @@ typedef struct rp_input {
   double approach;      /* m, load = RP_POSITION */
   double creepage[2];   /* -, longitudinal, lateral */
   double spin_creepage; /* rad/m */
-  double rolling_speed; /* m/s, > 0 */
+  double rolling_speed; /* m/s, >= 0; 0 is standstill: no creep force */
   int32_t direction;    /* rolling towards +x (1) or -x (-1) */
 
   /* wheelset: position, attitude (roll-yaw-pitch) and velocity in track axes */

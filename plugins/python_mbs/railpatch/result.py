@@ -97,9 +97,16 @@ def plain_json(value: Any) -> Any:
 
 def patch_data(patch: dict[str, Any], *, of_wheel: bool) -> dict[str, Any]:
     """The quantities of one patch, from the core's rp_patch_result."""
+    elements = dict(zip(DIVISION, patch["elements"], strict=True))
+    creep_force = patch["creep_force"]
+    if math.isnan(creep_force[0]):
+        # no tangential problem: nothing is known of stick and slip
+        creep_force = None
+        elements.update(stick=None, slip=None, plastic=None)
     data = {
         **patch,
-        "elements": dict(zip(DIVISION, patch["elements"], strict=True)),
+        "creep_force": creep_force,
+        "elements": elements,
         "iterations": patch["normal_iterations"] + patch["newton_iterations"],
     }
     names = [*PATCH_UNITS, *(PLACE_UNITS if of_wheel else ())]

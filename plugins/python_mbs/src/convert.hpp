@@ -1,5 +1,5 @@
-// Python dictionaries <-> the structs of railpatch.h. Names of the keys are the names of the fields;
-// enumerations are given as the texts of the case file. Checks of values are the core's.
+// Python dictionaries <-> the structs of railpatch.h. Names of the keys are the names of the
+// fields; enumerations are given as the texts of the case file. Checks of values are the core's.
 #pragma once
 
 #include <nanobind/nanobind.h>

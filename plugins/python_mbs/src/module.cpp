@@ -109,7 +109,8 @@ class Contact {
     std::unique_ptr<double[]> values(new double[count > 0 ? count : 1]);
     check(rp_get_field(contact_.get(), side, patch, wanted, values.get(), &count));
     double *data = values.get();
-    nb::capsule owner(values.release(), [](void *p) noexcept { delete[] static_cast<double *>(p); });
+    nb::capsule owner(values.release(),
+                      [](void *p) noexcept { delete[] static_cast<double *>(p); });
     return FieldArray(data, {count}, owner);
   }
 

@@ -7,13 +7,16 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from railpatch.case.types import (
+    CapacityPair,
     CountPair,
-    NotNegative,
-    Positive,
-    PositivePair,
+    ElementSize,
+    Modulus,
+    ModulusPair,
     RatioPair,
     Table,
+    between,
     exactly_one,
+    relation,
     twice,
 )
 
@@ -28,9 +31,9 @@ class Material(Table):
     """Elastic constants of wheel and rail; steel where the table is left out."""
 
     shear_modulus: Annotated[
-        PositivePair,
+        ModulusPair,
         BeforeValidator(twice),
-        either({"type": "number", "exclusiveMinimum": 0}),
+        either({"type": "number", "minimum": 1.0, "maximum": 1e15}),
     ] = Field(default=[82e9, 82e9], description="Pa, shear modulus, or [wheel, rail]")
     poisson_ratio: Annotated[
         RatioPair,
@@ -46,10 +49,10 @@ class Grid(Table):
         default=None,
         description="-, elements across the contact's bounding box [along rolling, lateral]",
     )
-    element_size: PositivePair | None = Field(
+    element_size: ElementSize | None = Field(
         default=None, description="m, size of an element [along rolling, lateral]"
     )
-    max_elements: CountPair | None = Field(
+    max_elements: CapacityPair | None = Field(
         default=None,
         description="-, capacity of one patch's grid [along rolling, lateral]; left out: chosen "
         "from the scene",
@@ -65,14 +68,21 @@ class Friction(Table):
     """Friction law."""
 
     law: Literal["coulomb"] = Field(default="coulomb", description="friction law (no unit)")
-    coefficient: NotNegative = Field(description="-, coefficient of friction")
+    coefficient: Annotated[float, between(0, 10)] = Field(description="-, coefficient of friction")
 
 
 class Layer(Table):
     """Elastic third-body layer; the table is left out for none."""
 
-    shear_modulus: Positive = Field(description="Pa, shear modulus of the layer")
-    thickness: NotNegative = Field(description="m, thickness of the layer; 0: no layer")
+    shear_modulus: Modulus = Field(description="Pa, shear modulus of the layer")
+    thickness: Annotated[float, between(0, 0.1)] = Field(
+        description="m, thickness of the layer; 0: no layer"
+    )
+
+
+def has_layer(layer: Layer | None) -> bool:
+    """Whether there is a layer of some thickness."""
+    return layer is not None and layer.thickness > 0
 
 
 class Method(Table):
@@ -84,10 +94,10 @@ class Method(Table):
     tangential: Literal["none", "fastsim", "full"] = Field(
         default="full", description="theory of the tangential problem (no unit)"
     )
-    tolerance: Annotated[float, Field(ge=1e-12, le=1e-1)] = Field(
+    tolerance: Annotated[float, between(1e-12, 0.1)] = Field(
         default=1e-5, description="-, relative tolerance of the solvers"
     )
-    max_iterations: Annotated[int, Field(ge=1, le=1_000_000)] | None = Field(
+    max_iterations: Annotated[int, Field(ge=1, le=100_000)] | None = Field(
         default=None, description="-, most iterations of each solver; left out: the core's choice"
     )
     spin_offset: Literal["none", "sixth"] = Field(
@@ -95,3 +105,19 @@ class Method(Table):
         description="-, shift of the spin term in elements along rolling: none, or a sixth as in "
         "the program CONTACT, for comparisons",
     )
+
+
+def check_tangential(
+    material: Material, friction: Friction | None, layer: Layer | None, method: Method
+) -> None:
+    """What a tangential problem needs, and what this version cannot combine."""
+    if friction is None:
+        raise relation("friction", "missing", "the table [friction] with 'coefficient'")
+    if method.tangential == "fastsim" and has_layer(layer):
+        raise relation("method.tangential", "'fastsim'", "'full' with a layer of thickness > 0")
+    (g_wheel, g_rail), (nu_wheel, nu_rail) = material.shear_modulus, material.poisson_ratio
+    wheel, rail = (1 - 2 * nu_wheel) / g_wheel, (1 - 2 * nu_rail) / g_rail
+    # otherwise pressure moves the surfaces along each other: Kalker 1990, eq. 1.44
+    if abs(wheel - rail) > 1e-12 * max(wheel, rail):
+        shown = f"{material.shear_modulus}, {material.poisson_ratio}"
+        raise relation("material", shown, "equal (1 - 2 nu)/G of wheel and rail in this version")

@@ -29,8 +29,8 @@ def read_gap(value: str | list[list[float]] | None, folder: Path) -> NDArray[np.
                 f"{KEY}: line {line} holds {len(row)} values, allowed {columns} as in the first"
             )
     shape = (len(rows), columns)
-    if not 1 <= columns <= MOST_ELEMENTS or len(rows) > MOST_ELEMENTS:
-        raise CaseError(f"{KEY}: shape is {shape}, allowed 1 ... {MOST_ELEMENTS} in each direction")
+    if min(shape) < 3 or max(shape) > MOST_ELEMENTS:
+        raise CaseError(f"{KEY}: shape is {shape}, allowed 3 ... {MOST_ELEMENTS} in each direction")
     return np.array([row for _, row in rows], dtype=float)
 
 

@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from railpatch.case.common import Friction, Grid, Layer, Material, Method
-from railpatch.case.types import Number, Pair, Positive, PositivePair, Table, exactly_one, relation
+from railpatch.case.common import Friction, Grid, Layer, Material, Method, check_tangential
+from railpatch.case.types import (
+    Curvatures,
+    NotNegative,
+    Number,
+    Pair,
+    Positive,
+    SemiAxes,
+    Shift,
+    Table,
+    between,
+    exactly_one,
+    relation,
+)
 
 SHAPES = ("semi_axes", "curvatures", "line_contact_radius", "undeformed_distance")
 
@@ -15,20 +27,22 @@ SHAPES = ("semi_axes", "curvatures", "line_contact_radius", "undeformed_distance
 class Geometry(Table):
     """Shape of the undeformed bodies: exactly one of the four forms."""
 
-    semi_axes: PositivePair | None = Field(
+    semi_axes: SemiAxes | None = Field(
         default=None,
         description="m, semi-axes of the contact ellipse [along rolling, lateral]; the curvatures "
         "follow from the load",
     )
-    curvatures: PositivePair | None = Field(
+    curvatures: Curvatures | None = Field(
         default=None,
         description="1/m, [c0, c1] of the undeformed distance c0 x^2 + c1 y^2",
     )
-    line_contact_radius: Positive | None = Field(
+    line_contact_radius: Annotated[float, between(1e-6, 1e6)] | None = Field(
         default=None, description="m, combined radius 1/(1/R_wheel + 1/R_rail) of a line contact"
     )
-    width: Positive | None = Field(default=None, description="m, width of the line contact")
-    undeformed_distance: str | list[list[Number]] | None = Field(
+    width: Annotated[float, between(1e-6, 1e3)] | None = Field(
+        default=None, description="m, width of the line contact"
+    )
+    undeformed_distance: str | list[list[Shift]] | None = Field(
         default=None,
         description="m, undeformed distance: path of a CSV file (or nested lists), one row per "
         "grid row from low to high y, columns along rolling from low to high x",
@@ -71,7 +85,7 @@ class Motion(Table):
         default=1, description="-, rolling towards +x (1) or towards -x (-1)"
     )
     spin_creepage: Number = Field(default=0.0, description="rad/m, spin creepage")
-    rolling_speed: Positive = Field(default=1.0, description="m/s, rolling speed")
+    rolling_speed: NotNegative = Field(default=10.0, description="m/s, rolling speed")
 
 
 class PatchCase(Table):
@@ -100,8 +114,10 @@ class PatchCase(Table):
 
     @model_validator(mode="after")
     def _relations(self) -> PatchCase:
-        if self.has_tangential and self.friction is None:
-            raise relation("friction", "missing", "the table [friction] with 'coefficient'")
+        if self.has_tangential:
+            check_tangential(self.material, self.friction, self.layer, self.method)
+        if self.geometry.line_contact_radius is not None:
+            self._check_line()
         gap = self.geometry.undeformed_distance
         if gap is not None and (self.grid is None or self.grid.element_size is None):
             raise relation(
@@ -110,3 +126,13 @@ class PatchCase(Table):
         if gap is not None and self.method.normal == "hertz":
             raise relation("method.normal", "'hertz'", "'half_space' with undeformed_distance")
         return self
+
+    def _check_line(self) -> None:
+        """What a line contact is not combined with."""
+        if self.load.approach is not None:
+            raise relation("load.approach", self.load.approach, "normal_force with a line contact")
+        if self.has_tangential and self.method.tangential == "fastsim":
+            raise relation("method.tangential", "'fastsim'", "'full' with a line contact")
+        elements = self.grid and self.grid.elements
+        if elements and elements[1] != 1:
+            raise relation("grid.elements", str(elements), "[n, 1] with a line contact")

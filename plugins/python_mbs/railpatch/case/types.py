@@ -1,4 +1,7 @@
-"""Value types that the tables of a case share. All numbers are finite and strictly typed."""
+"""Value types that the tables of a case share. All numbers are finite and strictly typed.
+
+Ranges are those of the core's own checks; a test compares them.
+"""
 
 from __future__ import annotations
 
@@ -7,32 +10,52 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 
-# elements of one patch along one axis
-MOST_ELEMENTS = 1024
+# elements of one patch along one axis; a grid has a border of one element besides
+MOST_ELEMENTS = 1000
+
+
+def between(low: float, high: float) -> Any:
+    """The range of a number, both ends allowed."""
+    return Field(ge=low, le=high, allow_inf_nan=False)
+
+
+def exactly(count: int) -> Any:
+    """The length of a list."""
+    return Field(min_length=count, max_length=count)
+
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-Pair = Annotated[list[Number], Field(min_length=2, max_length=2)]
-PositivePair = Annotated[list[Positive], Field(min_length=2, max_length=2)]
-Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
+Shift = Annotated[float, between(-1, 1)]  # m
+Angle = Annotated[float, between(-1.5, 1.5)]  # rad
+Dimension = Annotated[float, between(0.01, 10)]  # m
+Modulus = Annotated[float, between(1.0, 1e15)]  # Pa
+Ratio = Annotated[float, between(0, 0.5)]
 Count = Annotated[int, Field(ge=1, le=MOST_ELEMENTS)]
-CountPair = Annotated[list[Count], Field(min_length=2, max_length=2)]
+Capacity = Annotated[int, Field(ge=1, le=MOST_ELEMENTS + 2)]
 
-
-def twice(value: Any) -> Any:
-    """One number stands for wheel and rail."""
-    return value if isinstance(value, list) else [value, value]
-
-
-Ratio = Annotated[float, Field(ge=0, le=0.5, allow_inf_nan=False)]
-RatioPair = Annotated[list[Ratio], Field(min_length=2, max_length=2)]
+Pair = Annotated[list[Number], exactly(2)]
+CountPair = Annotated[list[Count], exactly(2)]
+CapacityPair = Annotated[list[Capacity], exactly(2)]
+ModulusPair = Annotated[list[Modulus], exactly(2)]
+RatioPair = Annotated[list[Ratio], exactly(2)]
+ElementSize = Annotated[list[Annotated[float, between(1e-9, 1)]], exactly(2)]
+SemiAxes = Annotated[list[Annotated[float, between(1e-7, 1)]], exactly(2)]
+Curvatures = Annotated[list[Annotated[float, between(1e-9, 1e6)]], exactly(2)]
+ShiftVector = Annotated[list[Shift], exactly(3)]
+AngleVector = Annotated[list[Angle], exactly(3)]
 
 
 class Table(BaseModel):
     """A table of the case file: no unknown keys, no conversion of types, no change afterwards."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+def twice(value: Any) -> Any:
+    """One number stands for wheel and rail."""
+    return value if isinstance(value, list) else [value, value]
 
 
 def relation(key: str, value: Any, allowed: str) -> PydanticCustomError:

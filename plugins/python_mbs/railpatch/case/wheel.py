@@ -6,8 +6,21 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from railpatch.case.common import Friction, Grid, Layer, Material, Method
-from railpatch.case.types import Number, Positive, Table, Vector, exactly_one, relation
+from railpatch.case.common import Friction, Grid, Layer, Material, Method, check_tangential
+from railpatch.case.types import (
+    Angle,
+    AngleVector,
+    Dimension,
+    Number,
+    Positive,
+    Shift,
+    ShiftVector,
+    Table,
+    between,
+    exactly_one,
+    relation,
+)
+from railpatch.profiles.smooth import MEASURED_WAVELENGTH
 
 SIDES = ("left", "right")
 Text = Annotated[str, Field(min_length=1)]
@@ -16,15 +29,17 @@ Text = Annotated[str, Field(min_length=1)]
 class Deviation(Table):
     """Deviation of a wheel from the rigid wheelset, or of a rail from its design position."""
 
-    offset: Vector = Field(default=[0.0, 0.0, 0.0], description="m, offset along x, y, z")
-    rotation: Vector = Field(default=[0.0, 0.0, 0.0], description="rad, rotation about x, y, z")
+    offset: ShiftVector = Field(default=[0.0, 0.0, 0.0], description="m, offset along x, y, z")
+    rotation: AngleVector = Field(
+        default=[0.0, 0.0, 0.0], description="rad, rotation about x, y, z"
+    )
 
 
 class Wheelset(Table):
     """Position, attitude and velocity of the wheelset in track axes, and its dimensions."""
 
-    y: Number = Field(default=0.0, description="m, lateral position of its centre, to the right")
-    z: Number | None = Field(
+    y: Shift = Field(default=0.0, description="m, lateral position of its centre, to the right")
+    z: Shift | None = Field(
         default=None, description="m, vertical position of its centre, down; or vertical_force"
     )
     vertical_force: Positive | None = Field(
@@ -32,8 +47,8 @@ class Wheelset(Table):
         description="N, vertical force on the wheel (wheel_rail) or on both wheels together "
         "(wheelset); z is then found",
     )
-    roll: Number = Field(default=0.0, description="rad, about x")
-    yaw: Number = Field(default=0.0, description="rad, about z")
+    roll: Angle = Field(default=0.0, description="rad, about x")
+    yaw: Angle = Field(default=0.0, description="rad, about z")
     speed: Number = Field(default=0.0, description="m/s, forward speed; 0 on a rig")
     vy: Number = Field(default=0.0, description="m/s, lateral speed")
     vz: Number = Field(default=0.0, description="m/s, vertical speed")
@@ -42,9 +57,9 @@ class Wheelset(Table):
     pitch_rate: Number = Field(
         default=0.0, description="rad/s, about the axle; below 0 for rolling forward"
     )
-    nominal_radius: Positive = Field(description="m, wheel radius at the profile's z = 0")
-    flange_back_distance: Positive = Field(description="m, between the flange backs")
-    flange_back_position: Number = Field(
+    nominal_radius: Dimension = Field(description="m, wheel radius at the profile's z = 0")
+    flange_back_distance: Dimension = Field(description="m, between the flange backs")
+    flange_back_position: Shift = Field(
         default=0.0,
         description="m, of the flange back on the profile's y axis: -0.070 for S1002",
     )
@@ -68,16 +83,18 @@ class Track(Table):
     """Rails or rollers."""
 
     kind: Literal["rail", "roller"] = Field(default="rail", description="(no unit)")
-    gauge: Positive = Field(default=1.435, description="m, track gauge")
-    gauge_height: Positive = Field(
+    gauge: Dimension = Field(default=1.435, description="m, track gauge")
+    gauge_height: Annotated[float, between(0, 0.1)] = Field(
         default=0.014, description="m, height below the rail's top at which the gauge is measured"
     )
-    cant: Number = Field(
+    cant: Annotated[float, between(-0.5, 0.5)] = Field(
         default=0.0,
         description="rad, inclination of both rails towards the track's centre (rail)",
     )
-    curvature: Number = Field(default=0.0, description="1/m, right-hand curve above 0 (rail)")
-    roller_radius: Positive | None = Field(
+    curvature: Annotated[float, between(-0.1, 0.1)] = Field(
+        default=0.0, description="1/m, right-hand curve above 0 (rail)"
+    )
+    roller_radius: Annotated[float, between(0.01, 100)] | None = Field(
         default=None, description="m, roller radius at the profile's z = 0 (roller)"
     )
     roller_pitch_rate: Number | None = Field(
@@ -121,7 +138,7 @@ class Profiles(Table):
     smoothing: Annotated[float, Field(ge=0, le=0.1)] | None = Field(
         default=None,
         description="m, wave length of which half the amplitude is kept in profile files; 0: "
-        "interpolation; left out: 0.0025 for MiniProf measurements, 0 for other files",
+        f"interpolation; left out: {MEASURED_WAVELENGTH} for MiniProf measurements, 0 for others",
     )
 
     @model_validator(mode="after")
@@ -173,8 +190,8 @@ class _WheelCase(Table):
 
     @model_validator(mode="after")
     def _relations(self) -> _WheelCase:
-        if self.has_tangential and self.friction is None:
-            raise relation("friction", "missing", "the table [friction] with 'coefficient'")
+        if self.has_tangential:
+            check_tangential(self.material, self.friction, self.layer, self.method)
         for side in self.sides:
             for body in ("wheel", "rail"):
                 key, value = self.profiles.of(body, side)
