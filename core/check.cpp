@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <cstring>
 #include <limits>
 
 #include "influence.hpp"
@@ -47,6 +48,14 @@ class checker {
     failed_ = true;
     set_message(message_, "%s is %d, allowed is %d ... %d", name, value, low, high);
   }
+  // an enumeration: looked at as a number, since a value outside it must not be read as one
+  template <class E>
+  void choice(const char *name, const E &value, int low, int high) {
+    static_assert(sizeof(E) == sizeof(int));
+    int number;
+    std::memcpy(&number, &value, sizeof number);
+    integer(name, number, low, high);
+  }
   void require(bool condition, const char *text) {
     if (condition || failed_) return;
     failed_ = true;
@@ -58,6 +67,20 @@ class checker {
   rp_message *message_;
   bool failed_ = false;
 };
+
+void check_choices(const rp_config &c, checker &check) {
+  check.choice("kind", c.kind, RP_PATCH, RP_WHEELSET);
+  check.choice("load", c.load, RP_FORCE, RP_POSITION);
+  check.choice("regime", c.regime, RP_REGIME_NONE, RP_STEADY_ROLLING);
+  check.choice("normal", c.normal, RP_NORMAL_HERTZ, RP_NORMAL_HALF_SPACE);
+  check.choice("tangential", c.tangential, RP_TANGENTIAL_NONE, RP_TANGENTIAL_FULL);
+  check.choice("spin_offset", c.spin_offset, RP_SPIN_OFFSET_NONE, RP_SPIN_OFFSET_SIXTH);
+  if (check.error() != RP_OK) return;
+  if (c.kind == RP_PATCH)
+    check.choice("geometry", c.geometry, RP_SEMI_AXES, RP_UNDEFORMED_DISTANCE);
+  else
+    check.choice("track", c.track, RP_RAIL, RP_ROLLER);
+}
 
 void check_grid(const rp_config &c, checker &check) {
   const bool counted = c.elements[0] != 0 || c.elements[1] != 0;
@@ -78,7 +101,6 @@ void check_grid(const rp_config &c, checker &check) {
 }
 
 void check_patch(const rp_config &c, checker &check) {
-  check.integer("geometry", c.geometry, RP_SEMI_AXES, RP_UNDEFORMED_DISTANCE);
   if (c.geometry == RP_SEMI_AXES)
     check.numbers("semi_axes", c.semi_axes, 2, {1e-7, 1, false, false});
   if (c.geometry == RP_CURVATURES)
@@ -104,7 +126,6 @@ void check_wheels(const rp_config &c, checker &check) {
   check.number("nominal_radius", c.nominal_radius, {0.01, 10, false, false});
   check.number("flange_back_distance", c.flange_back_distance, {0.01, 10, false, false});
   check.number("flange_back_position", c.flange_back_position, {-1, 1, false, false});
-  check.integer("track", c.track, RP_RAIL, RP_ROLLER);
   check.number("gauge", c.gauge, {0.01, 10, false, false});
   check.number("gauge_height", c.gauge_height, {0, 0.1, false, false});
   check.number("cant", c.cant, {-0.5, 0.5, false, false});
@@ -133,21 +154,17 @@ rp_error check_config(const rp_config &c, rp_message *message) {
     return RP_ERROR_NOT_DEFAULTED;
   }
   checker check(message);
-  check.integer("kind", c.kind, RP_PATCH, RP_WHEELSET);
+  check_choices(c, check);
+  if (check.error() != RP_OK) return check.error();
   check.numbers("shear_modulus", c.shear_modulus, 2, {1.0, 1e15, false, false});
   check.numbers("poisson_ratio", c.poisson_ratio, 2, {0, 0.5, false, false});
-  check.integer("load", c.load, RP_FORCE, RP_POSITION);
   check_grid(c, check);
-  check.integer("regime", c.regime, RP_REGIME_NONE, RP_STEADY_ROLLING);
   check.number("friction_coefficient", c.friction_coefficient, {0, 10, false, false});
   check.number("layer_thickness", c.layer_thickness, {0, 0.1, false, false});
   if (c.layer_thickness > 0)
     check.number("layer_shear_modulus", c.layer_shear_modulus, {1.0, 1e15, false, false});
-  check.integer("normal", c.normal, RP_NORMAL_HERTZ, RP_NORMAL_HALF_SPACE);
-  check.integer("tangential", c.tangential, RP_TANGENTIAL_NONE, RP_TANGENTIAL_FULL);
   check.number("tolerance", c.tolerance, {1e-12, 0.1, false, false});
   check.integer("max_iterations", c.max_iterations, 1, 100000);
-  check.integer("spin_offset", c.spin_offset, RP_SPIN_OFFSET_NONE, RP_SPIN_OFFSET_SIXTH);
   const bool rolling = c.regime != RP_REGIME_NONE && c.tangential != RP_TANGENTIAL_NONE;
   const bool fast = c.tangential == RP_TANGENTIAL_FASTSIM;
   const bool line = c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT;

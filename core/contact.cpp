@@ -36,10 +36,10 @@ capacity grid_capacity(const rp_config &c) {
       n = static_cast<int>(std::min(2000.0, std::ceil(2.0 * c.semi_axes[k] / c.element_size[k]))) +
           3;
     else if (n == 0)
-      // wheel on rail: overlaps up to 40 mm long and 50 mm wide; else a square of 128
+      // wheel on rail: overlaps up to 60 mm long and 50 mm wide; else a square of 128
       n = c.kind == RP_PATCH
               ? 130
-              : static_cast<int>(std::clamp(std::ceil((k == 0 ? 0.040 : 0.050) / c.element_size[k]),
+              : static_cast<int>(std::clamp(std::ceil((k == 0 ? 0.060 : 0.050) / c.element_size[k]),
                                             16.0, 400.0));
   }
   return size;
@@ -71,7 +71,10 @@ patch_scene make_scene(const rp_config &c) {
   if (c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT) scene.line_width = c.width;
   scene.normal = c.normal;
   scene.tangential = c.regime == RP_REGIME_NONE ? RP_TANGENTIAL_NONE : c.tangential;
-  scene.tolerance = c.tolerance;
+  scene.tolerance = scene.normal_tolerance = c.tolerance;
+  // the search for z sees the force change only where each force is known better than it asks for
+  if (c.kind != RP_PATCH && c.load == RP_FORCE)
+    scene.normal_tolerance = std::max(0.1 * c.tolerance, 1e-12);
   scene.max_iterations = c.max_iterations;
   scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
   return scene;

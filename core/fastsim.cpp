@@ -89,20 +89,23 @@ tangential_result fastsim(const elastic_constants &elastic, const grid &g, const
       // rigid slip at the middle of the step from the previous point
       const double x = g.x(i), length = std::abs(before - x);
       const double middle = 0.5 * (before + x) + input.spin_offset, y = g.y(j);
-      px -= length * (input.creepage[0] / l.l1 - input.spin_creepage * y / l.l3);
-      py -= length * (input.creepage[1] / l.l2 + input.spin_creepage * middle / l.l3);
+      const double wx = input.creepage[0] - input.spin_creepage * y * l.l1 / l.l3;
+      const double wy = input.creepage[1] + input.spin_creepage * middle * l.l2 / l.l3;
+      px -= length * wx / l.l1;
+      py -= length * wy / l.l2;
       before = x;
       const double size = std::hypot(px, py);
       const bool slip = size > bound[at];
       if (slip) {
         const double cut = 1.0 - bound[at] / size;
-        fields.sx[at] = -l.l1 * cut * px / g.dx;
-        fields.sy[at] = -l.l2 * cut * py / g.dx;
+        fields.sx[at] = -l.l1 * cut * px / length;
+        fields.sy[at] = -l.l2 * cut * py / length;
         px -= cut * px;
         py -= cut * py;
       }
       fields.px[at] = px;
       fields.py[at] = py;
+      result.friction -= (px * wx + py * wy) * length * g.dy;
       fields.division[at] = static_cast<unsigned char>(slip ? RP_SLIP : RP_STICK);
       ++(slip ? result.slip : result.stick);
     }

@@ -41,7 +41,7 @@ class fft_plans {
   std::vector<plan_pair> plans_;
 };
 
-// Smallest even number >= n whose only prime factors are 2, 3 and 5.
+// Smallest suitable even number >= n whose only prime factors are 2, 3 and 5.
 int smooth_size(int n);
 
 }  // namespace railpatch

@@ -27,13 +27,6 @@ patch_wrench sum_tractions(const grid &g, const double *pressure, const double *
   return w;
 }
 
-double friction_force(const grid &g, const double *px, const double *py, const double *sx,
-                      const double *sy) {
-  double sum = 0;
-  for (int i = 0; i < g.count(); ++i) sum -= px[i] * sx[i] + py[i] * sy[i];
-  return sum * g.dx * g.dy;
-}
-
 void add_wrench(const patch_wrench &wrench, double contact_angle, const double lever[3],
                 double force[3], double moment[3]) {
   const double c = std::cos(contact_angle), s = std::sin(contact_angle);

@@ -16,9 +16,6 @@ struct patch_wrench {
 // px, py may be null where the scene has no tangential stage.
 patch_wrench sum_tractions(const grid &g, const double *pressure, const double *px,
                            const double *py);
-// Frictional power over the rolling speed (N): -sum p . s dA.
-double friction_force(const grid &g, const double *px, const double *py, const double *sx,
-                      const double *sy);
 // Adds the wrench at a contact reference `lever` away from the wheelset centre (track axes).
 void add_wrench(const patch_wrench &wrench, double contact_angle, const double lever[3],
                 double force[3], double moment[3]);

@@ -15,7 +15,7 @@ double carlson_rf(double x, double y, double z) {
   for (;;) {
     const double mean = (x + y + z) / 3.0;
     const double dx = 1.0 - x / mean, dy = 1.0 - y / mean, dz = -dx - dy;
-    if (std::max({std::abs(dx), std::abs(dy), std::abs(dz)}) < 1e-3) {
+    if (!(std::max({std::abs(dx), std::abs(dy), std::abs(dz)}) >= 1e-3)) {  // or NaN
       const double e2 = dx * dy - dz * dz, e3 = dx * dy * dz;
       return (1.0 - e2 / 10.0 + e3 / 14.0 + e2 * e2 / 24.0 - 3.0 * e2 * e3 / 44.0) /
              std::sqrt(mean);
@@ -32,7 +32,7 @@ double carlson_rd(double x, double y, double z) {
   for (;;) {
     const double mean = (x + y + 3.0 * z) / 5.0;
     const double dx = 1.0 - x / mean, dy = 1.0 - y / mean, dz = -(dx + dy) / 3.0;
-    if (std::max({std::abs(dx), std::abs(dy), std::abs(dz)}) < 1e-3) {
+    if (!(std::max({std::abs(dx), std::abs(dy), std::abs(dz)}) >= 1e-3)) {  // or NaN
       const double xy = dx * dy, z2 = dz * dz;
       const double e2 = xy - 6.0 * z2, e3 = (3.0 * xy - 8.0 * z2) * dz;
       const double e4 = 3.0 * (xy - z2) * z2, e5 = xy * z2 * dz;

@@ -137,9 +137,6 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
     result.creep_force[0] = wrench.force[0];
     result.creep_force[1] = wrench.force[1];
     result.spin_moment = wrench.moment[2];
-    result.friction_power =
-        problem.rolling_speed * friction_force(problem.g, memory.px.data(), memory.py.data(),
-                                               memory.sx.data(), memory.sy.data());
   }
   observe(RP_STAGE_FORCES, false);
 }
@@ -160,7 +157,7 @@ bool patch_contact::solve_normal(const patch_problem &problem, patch_memory &mem
   if (scene_.normal == RP_NORMAL_HERTZ) {
     solve_hertz(problem, memory, result);
   } else {
-    const normal_options options{scene_.tolerance, scene_.max_iterations};
+    const normal_options options{scene_.normal_tolerance, scene_.max_iterations};
     double *p = memory.pressure.data();
     const double *h = memory.undeformed_distance.data();
     const normal_result n =
@@ -240,6 +237,7 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   result.newton_iterations = t.newton_iterations;
   result.inner_iterations = t.products;
   result.residual = std::max(result.residual, t.residual);
+  result.friction_power = problem.rolling_speed * t.friction;
   if (!t.converged)
     degrade(result, scene_.tangential == RP_TANGENTIAL_FULL ? RP_NOT_CONVERGED : RP_OUT_OF_RANGE);
   if (scene_.tangential == RP_TANGENTIAL_FULL)

@@ -23,6 +23,7 @@ struct patch_scene {
   rp_normal_method normal = RP_NORMAL_HALF_SPACE;
   rp_tangential_method tangential = RP_TANGENTIAL_FULL;  // NONE: no tangential stage
   double tolerance = 1e-5;
+  double normal_tolerance = 1e-5;
   int max_iterations = 100;
   bool spin_offset = false;  // x + dq/6 in the spin term
   double modulus() const { return elastic.shear_modulus / (1.0 - elastic.poisson_ratio); }

@@ -248,6 +248,7 @@ void tangential_solver::release(const grid &g, tangential_fields fields,
     fields.sy[at] = stick ? 0.0 : s_[iy];
     fields.division[at] = static_cast<unsigned char>(stick ? RP_STICK : RP_SLIP);
     ++(stick ? result.stick : result.slip);
+    result.friction -= (p_[ix] * rigid_[ix] + p_[iy] * rigid_[iy]) * g.dx * g.dy;
   });
 }
 

@@ -39,7 +39,12 @@ struct tangential_result {
   int newton_iterations = 0;
   int products = 0;
   int stick = 0, slip = 0;
+  double friction = 0;  // N, frictional power over the rolling speed, see below
 };
+
+// In steady rolling the elastic energy is constant, so friction takes exactly the power that the
+// rigid motion supplies: friction = -sum p . w dA >= 0. Summing p . s instead loses
+// (Dp) A (Dp)/(2 dx) >= 0 with D the difference over one element: half the power on coarse grids.
 
 // Outputs of every tangential method, [ny][nx].
 struct tangential_fields {

@@ -81,7 +81,9 @@ grid wheel_contact::choose_grid(const patch_region &r) const {
       const double first = std::floor(low[k] / size[k]) - 1.0;
       const double last = std::ceil(high[k] / size[k]) + 1.0;
       origin[k] = first * size[k];
-      count[k] = static_cast<int>(std::min(last - first, 1e6)) + 1;
+      // bounds that are not finite, from a wild profile, give no grid
+      const double cells = last - first + 1.0;
+      count[k] = cells >= 1.0 && cells < 1e6 ? static_cast<int>(cells) : 0;
     } else {
       size[k] = (high[k] - low[k]) / config_.elements[k];
       origin[k] = low[k] - 0.5 * size[k];
@@ -128,8 +130,9 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
   rp_patch_result &result = out.patch[index];
   patch_problem problem;
   problem.g = choose_grid(region);
-  if (!solver.fits(problem.g)) return result.status = RP_OUT_OF_RANGE;
   const grid &g = problem.g;
+  const bool usable = g.nx > 0 && g.ny > 0 && g.dx > 0 && g.dy > 0 && std::isfinite(g.x0 + g.y0);
+  if (!usable || !solver.fits(g)) return result.status = RP_OUT_OF_RANGE;
 
   // the reference moves with the contact; a new contact elsewhere starts afresh
   const vec3 &origin = region.frame.origin;

@@ -209,7 +209,7 @@ typedef struct rp_patch_result {
   double contact_area;       /* m^2 */
   int32_t elements[4];       /* exterior, stick, slip, plastic; indexed by rp_element */
   double max_temperature;    /* degrees C; NaN: not part of the scene */
-  double friction_power;     /* W, >= 0 */
+  double friction_power;     /* W, >= 0: power that the creepages supply */
   double elastic_energy;     /* J */
   int32_t normal_iterations; /* conjugate-gradient steps */
   int32_t newton_iterations; /* of the tangential problem */

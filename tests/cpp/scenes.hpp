@@ -1,0 +1,189 @@
+// Scenes shared by the tests, a handle that cleans up, and comparison of results bit by bit.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "profiles.hpp"
+#include "railpatch.h"
+
+namespace scenes {
+
+class handle {
+ public:
+  explicit handle(const rp_config &config) {
+    rp_message message{};
+    const rp_error error = rp_create(&config, &contact_, &message);
+    EXPECT_EQ(error, RP_OK) << message.text;
+  }
+  ~handle() { rp_destroy(contact_); }
+  handle(const handle &) = delete;
+  handle &operator=(const handle &) = delete;
+
+  rp_contact *get() const { return contact_; }
+  rp_result step(const rp_input &input) {
+    rp_result result{};
+    rp_message message{};
+    const rp_error error = rp_step(contact_, &input, &result, &message);
+    EXPECT_EQ(error, RP_OK) << message.text;
+    return result;
+  }
+  std::vector<double> field(int side, int patch, rp_field name) const {
+    size_t count = 0;
+    if (rp_get_field(contact_, side, patch, name, nullptr, &count) != RP_ERROR_SIZE) return {};
+    std::vector<double> values(count);
+    EXPECT_EQ(rp_get_field(contact_, side, patch, name, values.data(), &count), RP_OK);
+    return values;
+  }
+  std::vector<unsigned char> state() const {
+    std::vector<unsigned char> buffer(rp_state_size(contact_));
+    EXPECT_EQ(rp_save_state(contact_, buffer.data(), buffer.size()), RP_OK);
+    return buffer;
+  }
+  rp_error restore(const std::vector<unsigned char> &buffer) {
+    return rp_restore_state(contact_, buffer.data(), buffer.size());
+  }
+
+ private:
+  rp_contact *contact_ = nullptr;
+};
+
+// --- configurations ------------------------------------------------------------------------
+
+inline rp_config patch(rp_normal_method normal, rp_tangential_method tangential,
+                       int elements = 16) {
+  rp_config c;
+  rp_default_config(&c);
+  c.normal = normal;
+  c.tangential = tangential;
+  c.elements[0] = c.elements[1] = elements;
+  return c;
+}
+
+// Wheel kinds with the profiles of profiles.hpp on both sides; `wheel` and `rail` must stay alive.
+struct profile_pair {
+  profiles::curve wheel = profiles::wheel(), rail = profiles::rail();
+};
+
+inline rp_config wheels(rp_kind kind, rp_track track, const profile_pair &pair) {
+  rp_config c;
+  rp_default_config(&c);
+  c.kind = kind;
+  c.track = track;
+  c.cant = track == RP_RAIL ? 0.025 : 0.0;
+  c.elements[0] = c.elements[1] = 0;
+  c.element_size[0] = c.element_size[1] = 1e-3;
+  for (int side = 0; side < 2; ++side) {
+    c.wheel[side] = pair.wheel.view();
+    c.rail[side] = pair.rail.view();
+  }
+  return c;
+}
+
+inline rp_input patch_input(double force, double xi, double eta, double phi) {
+  rp_input in;
+  rp_default_input(&in);
+  in.normal_force = force;
+  in.creepage[0] = xi;
+  in.creepage[1] = eta;
+  in.spin_creepage = phi;
+  return in;
+}
+
+// Running at 20 m/s, on rollers standing still above them.
+inline rp_input running(rp_track track, double radius = 0.46, double roller_radius = 1.0) {
+  rp_input in;
+  rp_default_input(&in);
+  in.pitch_rate = -20.0 / radius;
+  if (track == RP_RAIL)
+    in.speed = 20.0;
+  else
+    in.roller_pitch_rate = 20.0 / roller_radius;
+  return in;
+}
+
+// --- comparison ----------------------------------------------------------------------------
+
+// Every number of a result, in order; padding left out.
+template <class Add>
+void visit(const rp_patch_result &p, Add &&add) {
+  add("status", p.status);
+  add("normal_force", p.normal_force);
+  add("approach", p.approach);
+  for (double v : p.creep_force) add("creep_force", v);
+  add("spin_moment", p.spin_moment);
+  add("max_pressure", p.max_pressure);
+  add("contact_area", p.contact_area);
+  for (int v : p.elements) add("elements", v);
+  add("max_temperature", p.max_temperature);
+  add("friction_power", p.friction_power);
+  add("elastic_energy", p.elastic_energy);
+  add("normal_iterations", p.normal_iterations);
+  add("newton_iterations", p.newton_iterations);
+  add("inner_iterations", p.inner_iterations);
+  add("residual", p.residual);
+  add("error_estimate", p.error_estimate);
+  for (double v : p.position) add("position", v);
+  add("contact_angle", p.contact_angle);
+  for (double v : p.creepage) add("creepage", v);
+  add("spin_creepage", p.spin_creepage);
+  add("rolling_speed", p.rolling_speed);
+  add("direction", p.direction);
+  for (int v : p.grid) add("grid", v);
+  for (double v : p.grid_origin) add("grid_origin", v);
+  for (double v : p.element_size) add("element_size", v);
+}
+
+template <class Add>
+void visit(const rp_side_result &s, Add &&add) {
+  add("status", s.status);
+  for (double v : s.force) add("force", v);
+  for (double v : s.moment) add("moment", v);
+  add("rolling_radius", s.rolling_radius);
+  add("patch_count", s.patch_count);
+  for (const rp_patch_result &p : s.patch) visit(p, add);
+}
+
+template <class Add>
+void visit(const rp_result &r, Add &&add) {
+  add("status", r.status);
+  add("z", r.z);
+  for (double v : r.force) add("force", v);
+  for (double v : r.moment) add("moment", v);
+  add("evaluations", r.evaluations);
+  for (const rp_side_result &s : r.side) visit(s, add);
+}
+
+struct number {
+  std::string name;
+  double value;
+};
+
+template <class Result>
+std::vector<number> numbers(const Result &r) {
+  std::vector<number> all;
+  visit(r, [&](const char *name, double v) { all.push_back({name, v}); });
+  return all;
+}
+
+// The first field whose bits differ, empty where there is none.
+template <class Result>
+std::string difference(const Result &a, const Result &b) {
+  const std::vector<number> x = numbers(a), y = numbers(b);
+  for (size_t i = 0; i < x.size(); ++i)
+    if (std::bit_cast<uint64_t>(x[i].value) != std::bit_cast<uint64_t>(y[i].value))
+      return x[i].name + " (number " + std::to_string(i) + "): " + std::to_string(x[i].value) +
+             " and " + std::to_string(y[i].value);
+  return {};
+}
+
+inline bool same_bits(const std::vector<double> &a, const std::vector<double> &b) {
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
+}
+
+}  // namespace scenes

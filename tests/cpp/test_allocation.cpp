@@ -1,0 +1,304 @@
+// rp_step allocates nothing: every way to the heap is counted while a step runs.
+//
+// Release builds interpose the C library's malloc family, through which operator new and FFTW go
+// too. Under AddressSanitizer those names belong to the sanitizer, so there only operator new is
+// counted and what FFTW takes is not seen.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdlib>
+#include <memory>
+#include <new>
+
+#include "fft.hpp"
+#include "scenes.hpp"
+
+namespace {
+
+// constant initialisation: malloc runs before any constructor
+constinit std::atomic<bool> counting{false};
+constinit std::atomic<int> count{0};
+
+void note() {
+  if (counting.load(std::memory_order_relaxed)) count.fetch_add(1, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+#if defined(__SANITIZE_ADDRESS__)
+#define RP_COUNTS_MALLOC 0
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define RP_COUNTS_MALLOC 0
+#endif
+#endif
+#if !defined(RP_COUNTS_MALLOC) && defined(__GLIBC__)
+#define RP_COUNTS_MALLOC 1
+#elif !defined(RP_COUNTS_MALLOC)
+#define RP_COUNTS_MALLOC 0
+#endif
+
+#if RP_COUNTS_MALLOC
+
+extern "C" {
+void *__libc_malloc(size_t);
+void *__libc_calloc(size_t, size_t);
+void *__libc_realloc(void *, size_t);
+void *__libc_memalign(size_t, size_t);
+
+void *malloc(size_t size) noexcept {
+  note();
+  return __libc_malloc(size);
+}
+void *calloc(size_t number, size_t size) noexcept {
+  note();
+  return __libc_calloc(number, size);
+}
+void *realloc(void *block, size_t size) noexcept {
+  note();
+  return __libc_realloc(block, size);
+}
+void *memalign(size_t alignment, size_t size) noexcept {
+  note();
+  return __libc_memalign(alignment, size);
+}
+void *aligned_alloc(size_t alignment, size_t size) noexcept {
+  note();
+  return __libc_memalign(alignment, size);
+}
+int posix_memalign(void **block, size_t alignment, size_t size) noexcept {
+  note();
+  *block = __libc_memalign(alignment, size);
+  return *block ? 0 : ENOMEM;
+}
+}
+
+#else
+
+#if defined(__GNUC__) && !defined(__clang__)
+// where it inlines one of a pair only, GCC takes a replaced operator for a mismatch
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
+#endif
+
+void *operator new(size_t size) {
+  note();
+  if (void *block = std::malloc(size > 0 ? size : 1)) return block;
+  throw std::bad_alloc();
+}
+void *operator new(size_t size, std::align_val_t alignment) {
+  note();
+  const auto step = static_cast<size_t>(alignment);
+  if (void *block = std::aligned_alloc(step, (size + step) / step * step)) return block;
+  throw std::bad_alloc();
+}
+void *operator new[](size_t size) { return operator new(size); }
+void *operator new[](size_t size, std::align_val_t a) { return operator new(size, a); }
+void operator delete(void *block) noexcept { std::free(block); }
+void operator delete(void *block, size_t) noexcept { std::free(block); }
+void operator delete(void *block, std::align_val_t) noexcept { std::free(block); }
+void operator delete(void *block, size_t, std::align_val_t) noexcept { std::free(block); }
+void operator delete[](void *block) noexcept { std::free(block); }
+void operator delete[](void *block, size_t) noexcept { std::free(block); }
+void operator delete[](void *block, std::align_val_t) noexcept { std::free(block); }
+void operator delete[](void *block, size_t, std::align_val_t) noexcept { std::free(block); }
+
+#endif
+
+namespace {
+
+// Calls f and returns how often it allocated.
+template <class F>
+int allocations(F &&f) {
+  count = 0;
+  counting = true;
+  f();
+  counting = false;
+  return count;
+}
+
+void *volatile sink;
+
+// --- the counter itself --------------------------------------------------------------------
+
+TEST(Counter, SeesOperatorNew) {
+  EXPECT_EQ(allocations([] {
+              sink = ::operator new(24);
+              ::operator delete(sink);
+            }),
+            1);
+  EXPECT_GE(allocations([] {
+              sink = ::operator new[](100, std::align_val_t{64});
+              ::operator delete[](sink, std::align_val_t{64});
+            }),
+            1);
+  EXPECT_EQ(allocations([] {}), 0);
+}
+
+TEST(Counter, SeesTheCLibrary) {
+#if RP_COUNTS_MALLOC
+  EXPECT_EQ(allocations([] {
+              sink = std::malloc(10);
+              std::free(sink);
+              sink = std::calloc(2, 10);
+              sink = std::realloc(sink, 200);
+              std::free(sink);
+              sink = std::aligned_alloc(64, 128);
+              std::free(sink);
+              void *block = nullptr;
+              if (posix_memalign(&block, 64, 100) == 0) sink = block;
+              std::free(block);
+            }),
+            5);
+#else
+  GTEST_SKIP() << "the sanitizer owns the C library's malloc: operator new alone is counted here";
+#endif
+}
+
+TEST(Counter, SeesAnAllocationInsideAStep) {
+  rp_config c = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL, 8);
+  c.observer = [](void *, rp_stage, int) {
+    sink = ::operator new(8);
+    ::operator delete(sink);
+  };
+  scenes::handle contact(c);
+  const rp_input in = scenes::patch_input(1e5, 1e-3, 0, 0);
+  EXPECT_GT(allocations([&] { contact.step(in); }), 0);
+}
+
+TEST(Counter, SeesCreation) {
+  const rp_config c = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL, 8);
+  EXPECT_GT(allocations([&] { scenes::handle contact(c); }), 10);
+}
+
+// --- scenes --------------------------------------------------------------------------------
+
+struct outcome {
+  int allocated = 0;
+  int greatest_patches = 0;
+  bool lifted = false;
+  std::vector<double> heights;
+};
+
+template <class Inputs>
+outcome run(const rp_config &config, const Inputs &inputs) {
+  scenes::handle contact(config);
+  outcome o;
+  auto result = std::make_unique<rp_result>();
+  for (const rp_input &in : inputs) {
+    rp_error error = RP_OK;
+    rp_message message{};
+    const int n = allocations([&] { error = rp_step(contact.get(), &in, result.get(), &message); });
+    EXPECT_EQ(error, RP_OK) << message.text;
+    EXPECT_NE(result->status, RP_NOT_CONVERGED);
+    o.allocated += n;
+    for (const rp_side_result &side : result->side)
+      o.greatest_patches = std::max(o.greatest_patches, static_cast<int>(side.patch_count));
+    o.heights.push_back(result->z);
+    o.lifted |= result->status == RP_NO_CONTACT;
+  }
+  return o;
+}
+
+std::vector<rp_input> patch_inputs() {
+  std::vector<rp_input> all;
+  for (double force : {1e4, 3e4, 1e5, 1.1e5, 5e3})
+    for (double creepage : {0.0, 2e-4, 5e-3}) {
+      all.push_back(scenes::patch_input(force, creepage, -0.3 * creepage, 200 * creepage));
+      all.back().direction = force > 5e4 ? -1 : 1;
+    }
+  return all;
+}
+
+TEST(Step, OfAPatchAllocatesNothing) {
+  struct {
+    rp_normal_method normal;
+    rp_tangential_method tangential;
+  } methods[] = {
+      {RP_NORMAL_HERTZ, RP_TANGENTIAL_NONE},         {RP_NORMAL_HERTZ, RP_TANGENTIAL_FASTSIM},
+      {RP_NORMAL_HERTZ, RP_TANGENTIAL_FULL},         {RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_NONE},
+      {RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FASTSIM}, {RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL}};
+  for (const auto &m : methods)
+    for (int elements : {7, 16, 31})
+      EXPECT_EQ(run(scenes::patch(m.normal, m.tangential, elements), patch_inputs()).allocated, 0)
+          << "normal " << m.normal << " tangential " << m.tangential << " elements " << elements;
+}
+
+// Curvatures with a fixed element size: the grid grows and shrinks with the load.
+TEST(Step, OfAGrowingGridAllocatesNothing) {
+  rp_config c = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL);
+  c.geometry = RP_CURVATURES;
+  c.elements[0] = c.elements[1] = 0;
+  c.element_size[0] = c.element_size[1] = 8e-4;
+  c.max_elements[0] = c.max_elements[1] = 40;
+  EXPECT_EQ(run(c, patch_inputs()).allocated, 0);
+}
+
+TEST(Step, OfALineContactAllocatesNothing) {
+  rp_config c = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL, 60);
+  c.geometry = RP_LINE_CONTACT;
+  c.elements[1] = 1;
+  EXPECT_EQ(run(c, patch_inputs()).allocated, 0);
+}
+
+// The transforms alone, in sizes up to grids of 250 elements.
+TEST(Transforms, AllocateNothing) {
+  std::vector<int> sizes;
+  for (int n = 4; n <= 500; n = railpatch::smooth_size(n + 1)) sizes.push_back(n);
+  railpatch::aligned_buffer<double> values(500 * 500);
+  railpatch::aligned_buffer<std::complex<double>> spectrum(251 * 500);
+  for (size_t i = 0; i < sizes.size(); ++i) {
+    // each with itself and with a few others
+    const std::vector<int> along{sizes[i]}, across{1, sizes[i], sizes[(7 * i + 3) % sizes.size()]};
+    for (int ny : across) {
+      const railpatch::fft_plans plans(along, {ny});
+      EXPECT_EQ(allocations([&] {
+                  plans.forward(0, values.data(), spectrum.data());
+                  plans.backward(0, spectrum.data(), values.data());
+                }),
+                0)
+          << along[0] << " x " << ny;
+    }
+  }
+}
+
+// The larger transforms, where an FFT library may want buffers of its own.
+TEST(Step, OfALargeGridAllocatesNothing) {
+  rp_config c = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_NONE, 200);
+  EXPECT_EQ(run(c, std::vector{scenes::patch_input(1e5, 0, 0, 0)}).allocated, 0);
+  c.tangential = RP_TANGENTIAL_FULL;
+  c.elements[0] = c.elements[1] = 70;
+  EXPECT_EQ(run(c, std::vector{scenes::patch_input(1e5, 1e-2, 0, 0)}).allocated, 0);
+}
+
+// Sideways until the flange touches, then at the heights found, off the rails and back.
+TEST(Step, OfAWheelsetAllocatesNothing) {
+  const scenes::profile_pair pair;
+  for (rp_track track : {RP_RAIL, RP_ROLLER}) {
+    rp_config c = scenes::wheels(RP_WHEELSET, track, pair);
+    std::vector<rp_input> inputs;
+    for (double y : {0.0, 5e-4, 2e-3, 5e-3, 5.9e-3, 6e-3, 6.05e-3, -4e-3}) {
+      rp_input in = scenes::running(track);
+      in.y = y;
+      in.yaw = 0.002;
+      in.vertical_force = 1.2e5;
+      inputs.push_back(in);
+    }
+    const outcome force = run(c, inputs);
+    EXPECT_EQ(force.allocated, 0) << "track " << track << " force prescribed";
+    EXPECT_FALSE(force.lifted);
+    // on rollers the two contacts share one patch
+    EXPECT_GE(force.greatest_patches, track == RP_RAIL ? 2 : 1) << "tread and flange at once";
+
+    c.load = RP_POSITION;
+    for (size_t i = 0; i < inputs.size(); ++i) inputs[i].z = force.heights[i];
+    inputs.push_back(inputs[0]);
+    inputs.back().z -= 2e-3;
+    inputs.push_back(inputs[0]);
+    const outcome position = run(c, inputs);
+    EXPECT_EQ(position.allocated, 0) << "track " << track << " position prescribed";
+    EXPECT_TRUE(position.lifted);
+  }
+}
+
+}  // namespace

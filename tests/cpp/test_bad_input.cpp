@@ -1,0 +1,687 @@
+// Wrong calls: the right error, a message that names the field, outputs untouched; and no input,
+// however odd, crashes (which is worth most under the sanitizers).
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+
+#include "scenes.hpp"
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+// Enumerations out of their range, as a careless C program can pass them.
+template <class E>
+void put(E &target, int value) {
+  static_assert(sizeof(E) == sizeof(int));
+  std::memcpy(&target, &value, sizeof value);
+}
+
+rp_config default_config() {
+  rp_config c;
+  rp_default_config(&c);
+  return c;
+}
+
+rp_input default_input() {
+  rp_input in;
+  rp_default_input(&in);
+  return in;
+}
+
+// rp_create must refuse: pointer untouched, message with the field.
+void expect_refused(const rp_config &c, rp_error expected, const std::string &field) {
+  int mark = 0;
+  auto *const before = reinterpret_cast<rp_contact *>(&mark);
+  rp_contact *contact = before;
+  rp_message message{};
+  EXPECT_EQ(rp_create(&c, &contact, &message), expected) << field << ": " << message.text;
+  EXPECT_EQ(contact, before) << field;
+  EXPECT_NE(std::string(message.text).find(field), std::string::npos)
+      << "'" << message.text << "' does not name " << field;
+  EXPECT_EQ(rp_create(&c, &contact, nullptr), expected) << "without a message";
+  if (contact != before) rp_destroy(contact);
+}
+
+// rp_step must refuse: result untouched, and the next step as if nothing had been.
+void expect_refused(scenes::handle &contact, const rp_input &in, rp_error expected,
+                    const std::string &field) {
+  rp_result result, before;
+  std::memset(&result, 0x5a, sizeof result);
+  std::memset(&before, 0x5a, sizeof before);
+  rp_message message{};
+  EXPECT_EQ(rp_step(contact.get(), &in, &result, &message), expected) << field;
+  EXPECT_EQ(std::memcmp(&result, &before, sizeof result), 0) << field << " changed the result";
+  EXPECT_NE(std::string(message.text).find(field), std::string::npos)
+      << "'" << message.text << "' does not name " << field;
+  EXPECT_EQ(rp_step(contact.get(), &in, &result, nullptr), expected) << "without a message";
+}
+
+// --- null and undefaulted ----------------------------------------------------------------------
+
+TEST(Null, PointersAreErrors) {
+  rp_message message{};
+  rp_config c = default_config();
+  rp_contact *contact = nullptr;
+  EXPECT_EQ(rp_create(nullptr, &contact, &message), RP_ERROR_NULL);
+  EXPECT_NE(std::string(message.text).find("config"), std::string::npos);
+  EXPECT_EQ(rp_create(&c, nullptr, &message), RP_ERROR_NULL);
+  EXPECT_NE(std::string(message.text).find("contact"), std::string::npos);
+  EXPECT_EQ(rp_create(nullptr, nullptr, nullptr), RP_ERROR_NULL);
+
+  scenes::handle made(c);
+  const rp_input in = default_input();
+  rp_result result;
+  EXPECT_EQ(rp_step(nullptr, &in, &result, &message), RP_ERROR_NULL);
+  EXPECT_EQ(rp_step(made.get(), nullptr, &result, &message), RP_ERROR_NULL);
+  EXPECT_NE(std::string(message.text).find("input"), std::string::npos);
+  EXPECT_EQ(rp_step(made.get(), &in, nullptr, &message), RP_ERROR_NULL);
+  EXPECT_NE(std::string(message.text).find("result"), std::string::npos);
+  EXPECT_EQ(rp_step(nullptr, nullptr, nullptr, nullptr), RP_ERROR_NULL);
+
+  size_t count = 0;
+  double value = 0;
+  rp_stage_info info[RP_STAGE_COUNT];
+  EXPECT_EQ(rp_get_field(nullptr, 0, 0, RP_FIELD_X, &value, &count), RP_ERROR_NULL);
+  EXPECT_EQ(rp_get_field(made.get(), 1, 0, RP_FIELD_X, &value, nullptr), RP_ERROR_NULL);
+  EXPECT_EQ(rp_describe(nullptr, info), RP_ERROR_NULL);
+  EXPECT_EQ(rp_describe(made.get(), nullptr), RP_ERROR_NULL);
+  EXPECT_EQ(rp_state_size(nullptr), 0u);
+  // these have nothing to report
+  rp_default_config(nullptr);
+  rp_default_input(nullptr);
+  rp_reset(nullptr);
+  rp_destroy(nullptr);
+}
+
+TEST(Cookie, StructsMustBeDefaulted) {
+  rp_config zero{};
+  expect_refused(zero, RP_ERROR_NOT_DEFAULTED, "config");
+  rp_config filled;
+  std::memset(&filled, 0xcc, sizeof filled);
+  expect_refused(filled, RP_ERROR_NOT_DEFAULTED, "config");
+  scenes::handle contact(default_config());
+  rp_input in{};
+  expect_refused(contact, in, RP_ERROR_NOT_DEFAULTED, "input");
+  std::memset(&in, 0xcc, sizeof in);
+  expect_refused(contact, in, RP_ERROR_NOT_DEFAULTED, "input");
+}
+
+// --- config ------------------------------------------------------------------------------------
+
+struct number_field {
+  const char *name;
+  std::function<double &(rp_config &)> at;
+  double low, high;  // values that are refused besides NaN and infinities
+};
+
+const number_field patch_numbers[] = {
+    {"shear_modulus[0]", [](rp_config &c) -> double & { return c.shear_modulus[0]; }, 0, 1e30},
+    {"shear_modulus[1]", [](rp_config &c) -> double & { return c.shear_modulus[1]; }, -8e10, 1e30},
+    {"poisson_ratio[0]", [](rp_config &c) -> double & { return c.poisson_ratio[0]; }, -0.1, 0.51},
+    {"poisson_ratio[1]", [](rp_config &c) -> double & { return c.poisson_ratio[1]; }, -1, 1},
+    {"semi_axes[0]", [](rp_config &c) -> double & { return c.semi_axes[0]; }, 0, 10},
+    {"semi_axes[1]", [](rp_config &c) -> double & { return c.semi_axes[1]; }, -1e-3, 10},
+    {"friction_coefficient", [](rp_config &c) -> double & { return c.friction_coefficient; }, -0.1,
+     100},
+    {"layer_thickness", [](rp_config &c) -> double & { return c.layer_thickness; }, -1e-6, 1},
+    {"tolerance", [](rp_config &c) -> double & { return c.tolerance; }, 0, 0.5},
+};
+
+const number_field wheel_numbers[] = {
+    {"nominal_radius", [](rp_config &c) -> double & { return c.nominal_radius; }, 0, 100},
+    {"flange_back_distance", [](rp_config &c) -> double & { return c.flange_back_distance; }, 0,
+     100},
+    {"flange_back_position", [](rp_config &c) -> double & { return c.flange_back_position; }, -70,
+     70},
+    {"gauge", [](rp_config &c) -> double & { return c.gauge; }, 0, 1435},
+    {"gauge_height", [](rp_config &c) -> double & { return c.gauge_height; }, -0.014, 14},
+    {"cant", [](rp_config &c) -> double & { return c.cant; }, -2, 2},
+    {"curvature", [](rp_config &c) -> double & { return c.curvature; }, -1, 1},
+    {"shear_modulus[0]", [](rp_config &c) -> double & { return c.shear_modulus[0]; }, 0, 1e30},
+    {"friction_coefficient", [](rp_config &c) -> double & { return c.friction_coefficient; }, -0.1,
+     100},
+};
+
+void expect_numbers_checked(const rp_config &base, const number_field &f) {
+  for (double bad : {f.low, f.high, nan, inf, -inf}) {
+    rp_config c = base;
+    f.at(c) = bad;
+    expect_refused(c, RP_ERROR_VALUE, f.name);
+  }
+}
+
+TEST(Config, NumbersOfAPatchAreChecked) {
+  for (const number_field &f : patch_numbers) expect_numbers_checked(default_config(), f);
+  rp_config c = default_config();
+  c.layer_thickness = 1e-4;
+  c.layer_shear_modulus = 8e9;
+  expect_numbers_checked(
+      c, {"layer_shear_modulus", [](rp_config &k) -> double & { return k.layer_shear_modulus; }, 0,
+          1e30});
+  c = default_config();
+  c.geometry = RP_CURVATURES;
+  expect_numbers_checked(
+      c, {"curvatures[0]", [](rp_config &k) -> double & { return k.curvatures[0]; }, 0, 1e9});
+  expect_numbers_checked(
+      c, {"curvatures[1]", [](rp_config &k) -> double & { return k.curvatures[1]; }, -1, 1e9});
+  c.elements[0] = c.elements[1] = 0;
+  c.element_size[0] = c.element_size[1] = 1e-3;
+  expect_numbers_checked(
+      c, {"element_size[1]", [](rp_config &k) -> double & { return k.element_size[1]; }, -1e-3, 2});
+  c = default_config();
+  c.geometry = RP_LINE_CONTACT;
+  c.elements[1] = 1;
+  expect_numbers_checked(
+      c, {"line_contact_radius", [](rp_config &k) -> double & { return k.line_contact_radius; }, 0,
+          1e9});
+  expect_numbers_checked(c, {"width", [](rp_config &k) -> double & { return k.width; }, -1, 1e9});
+}
+
+TEST(Config, NumbersOfWheelsAreChecked) {
+  const scenes::profile_pair pair;
+  const rp_config c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+  for (const number_field &f : wheel_numbers) expect_numbers_checked(c, f);
+  const rp_config roller = scenes::wheels(RP_WHEELSET, RP_ROLLER, pair);
+  expect_numbers_checked(
+      roller, {"roller_radius", [](rp_config &k) -> double & { return k.roller_radius; }, 0, 1e9});
+}
+
+TEST(Config, ChoicesAndCountsAreChecked) {
+  struct {
+    const char *name;
+    std::function<void(rp_config &, int)> set;
+    int low, high;
+  } const fields[] = {
+      {"kind", [](rp_config &c, int v) { put(c.kind, v); }, -1, 3},
+      {"geometry", [](rp_config &c, int v) { put(c.geometry, v); }, -1, 4},
+      {"load", [](rp_config &c, int v) { put(c.load, v); }, -1, 2},
+      {"regime", [](rp_config &c, int v) { put(c.regime, v); }, -1, 2},
+      {"normal", [](rp_config &c, int v) { put(c.normal, v); }, -1, 2},
+      {"tangential", [](rp_config &c, int v) { put(c.tangential, v); }, -1, 3},
+      {"spin_offset", [](rp_config &c, int v) { put(c.spin_offset, v); }, -1, 2},
+      {"elements[0]", [](rp_config &c, int v) { c.elements[0] = v; }, -5, 100000},
+      {"elements[1]", [](rp_config &c, int v) { c.elements[1] = v; }, 1, 100000},
+      {"max_elements[0]", [](rp_config &c, int v) { c.max_elements[0] = v; }, -1, 1 << 30},
+      {"max_iterations", [](rp_config &c, int v) { c.max_iterations = v; }, 0, 1 << 30},
+  };
+  for (const auto &f : fields)
+    for (int bad :
+         {f.low, f.high, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()}) {
+      rp_config c = default_config();
+      f.set(c, bad);
+      expect_refused(c, RP_ERROR_VALUE, f.name);
+    }
+  const scenes::profile_pair pair;
+  for (int bad : {-1, 2, 100}) {
+    rp_config c = scenes::wheels(RP_WHEEL_RAIL, RP_RAIL, pair);
+    c.side = bad;
+    expect_refused(c, RP_ERROR_VALUE, "side");
+    c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+    put(c.track, bad);
+    expect_refused(c, RP_ERROR_VALUE, "track");
+    c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+    c.max_patches = bad == 2 ? 0 : bad;
+    expect_refused(c, RP_ERROR_VALUE, "max_patches");
+  }
+}
+
+TEST(Config, RelationsAreChecked) {
+  rp_config c = default_config();
+  c.element_size[0] = c.element_size[1] = 1e-3;
+  expect_refused(c, RP_ERROR_VALUE, "element_size");  // both
+  c = default_config();
+  c.elements[0] = c.elements[1] = 0;
+  expect_refused(c, RP_ERROR_VALUE, "elements");  // neither
+  c = default_config();
+  c.geometry = RP_LINE_CONTACT;
+  c.elements[1] = 1;
+  c.load = RP_POSITION;
+  expect_refused(c, RP_ERROR_VALUE, "approach");
+  c.load = RP_FORCE;
+  c.tangential = RP_TANGENTIAL_FASTSIM;
+  expect_refused(c, RP_ERROR_VALUE, "fastsim");
+  c = default_config();
+  c.tangential = RP_TANGENTIAL_FASTSIM;
+  c.layer_thickness = 1e-4;
+  c.layer_shear_modulus = 8e9;
+  expect_refused(c, RP_ERROR_VALUE, "layer");
+  c = default_config();
+  c.shear_modulus[0] = 26e9;
+  expect_refused(c, RP_ERROR_VALUE, "shear_modulus");
+  const scenes::profile_pair pair;
+  c = scenes::wheels(RP_WHEELSET, RP_ROLLER, pair);
+  c.cant = 0.025;
+  expect_refused(c, RP_ERROR_VALUE, "cant");
+  c = scenes::wheels(RP_WHEELSET, RP_ROLLER, pair);
+  c.curvature = 1e-3;
+  expect_refused(c, RP_ERROR_VALUE, "curvature");
+}
+
+TEST(Config, UndeformedDistanceIsChecked) {
+  std::vector<double> gap(100, 1e-6);
+  rp_config c = default_config();
+  c.geometry = RP_UNDEFORMED_DISTANCE;
+  c.elements[0] = c.elements[1] = 0;
+  c.element_size[0] = c.element_size[1] = 1e-3;
+  c.distance_shape[0] = c.distance_shape[1] = 10;
+  expect_refused(c, RP_ERROR_VALUE, "undeformed_distance");  // null
+  c.undeformed_distance = gap.data();
+  {
+    const scenes::handle usable(c);
+  }
+  for (double bad : {nan, inf, -5.0}) {
+    gap[57] = bad;
+    expect_refused(c, RP_ERROR_VALUE, "undeformed_distance[57]");
+  }
+  gap[57] = 0;
+  for (int bad : {-1, 0, 2, 100000}) {
+    rp_config d = c;
+    d.distance_shape[1] = bad;
+    expect_refused(d, RP_ERROR_VALUE, "distance_shape[1]");
+  }
+  rp_config d = c;
+  d.normal = RP_NORMAL_HERTZ;
+  expect_refused(d, RP_ERROR_VALUE, "undeformed_distance");
+}
+
+// --- profiles ----------------------------------------------------------------------------------
+
+TEST(Profiles, AreChecked) {
+  const scenes::profile_pair good;
+  struct {
+    const char *name;
+    std::function<void(profiles::curve &)> spoil;
+  } const cases[] = {
+      {"arc length not growing", [](profiles::curve &p) { std::swap(p.s[10], p.s[11]); }},
+      {"arc length standing still", [](profiles::curve &p) { p.s[11] = p.s[10]; }},
+      {"s nan", [](profiles::curve &p) { p.s[3] = nan; }},
+      {"y nan", [](profiles::curve &p) { p.y[20] = nan; }},
+      {"z infinite", [](profiles::curve &p) { p.z.back() = inf; }},
+      {"dy nan", [](profiles::curve &p) { p.dy[0] = nan; }},
+      {"dz infinite", [](profiles::curve &p) { p.dz[7] = -inf; }},
+      {"derivatives of another parameter",
+       [](profiles::curve &p) {
+         for (double &v : p.dy) v *= 1e-3;
+         for (double &v : p.dz) v *= 1e-3;
+       }},
+      {"millimetres",
+       [](profiles::curve &p) {
+         for (auto *a : {&p.s, &p.y, &p.z})
+           for (double &v : *a) v *= 1e3;
+       }},
+      {"left instead of right",
+       [](profiles::curve &p) {
+         for (double &v : p.y) v = -v;
+         for (double &v : p.dy) v = -v;
+       }},
+  };
+  const char *names[2][2] = {{"wheel_left", "wheel_right"}, {"rail_left", "rail_right"}};
+  for (const auto &spoilt : cases)
+    for (int part = 0; part < 2; ++part)
+      for (int side = 0; side < 2; ++side) {
+        rp_config c = scenes::wheels(RP_WHEELSET, RP_RAIL, good);
+        profiles::curve curve = part == 0 ? good.wheel : good.rail;
+        spoilt.spoil(curve);
+        (part == 0 ? c.wheel : c.rail)[side] = curve.view();
+        SCOPED_TRACE(spoilt.name);
+        expect_refused(c, RP_ERROR_PROFILE, names[part][side]);
+      }
+}
+
+TEST(Profiles, MustBeGivenAndLongEnough) {
+  const scenes::profile_pair good;
+  rp_config c = scenes::wheels(RP_WHEELSET, RP_RAIL, good);
+  for (int count : {-1, 0, 1, 3}) {
+    rp_config d = c;
+    d.wheel[RP_RIGHT].count = count;
+    expect_refused(d, RP_ERROR_PROFILE, "wheel_right");
+  }
+  for (int field = 0; field < 5; ++field) {
+    rp_config d = c;
+    rp_profile &p = d.rail[RP_LEFT];
+    const double **arrays[] = {&p.arc_length, &p.y, &p.z, &p.dy, &p.dz};
+    *arrays[field] = nullptr;
+    expect_refused(d, RP_ERROR_PROFILE, "rail_left");
+  }
+  // one wheel needs the profiles of its side only
+  c.kind = RP_WHEEL_RAIL;
+  c.side = RP_LEFT;
+  c.wheel[RP_RIGHT] = c.rail[RP_RIGHT] = rp_profile{};
+  {
+    const scenes::handle usable(c);
+  }
+  c.side = RP_RIGHT;
+  expect_refused(c, RP_ERROR_PROFILE, "wheel_right");
+}
+
+// --- input -------------------------------------------------------------------------------------
+
+struct input_field {
+  const char *name;
+  std::function<double &(rp_input &)> at;
+  std::vector<double> bad;  // besides NaN and infinities
+};
+
+void expect_inputs_checked(const rp_config &config, const rp_input &good,
+                           const std::vector<input_field> &fields) {
+  scenes::handle contact(config), undisturbed(config);
+  contact.step(good);
+  undisturbed.step(good);
+  for (const input_field &f : fields) {
+    std::vector<double> bad = f.bad;
+    bad.insert(bad.end(), {nan, inf, -inf});
+    for (double value : bad) {
+      rp_input in = good;
+      f.at(in) = value;
+      expect_refused(contact, in, RP_ERROR_VALUE, f.name);
+    }
+  }
+  EXPECT_EQ(scenes::difference(contact.step(good), undisturbed.step(good)), "");
+}
+
+TEST(Input, OfAPatchIsChecked) {
+  const rp_config c = default_config();
+  expect_inputs_checked(
+      c, scenes::patch_input(1e5, 1e-3, 0, 0.1),
+      {{"normal_force", [](rp_input &in) -> double & { return in.normal_force; }, {0, -1e5}},
+       {"creepage[0]", [](rp_input &in) -> double & { return in.creepage[0]; }, {}},
+       {"creepage[1]", [](rp_input &in) -> double & { return in.creepage[1]; }, {}},
+       {"spin_creepage", [](rp_input &in) -> double & { return in.spin_creepage; }, {}},
+       {"rolling_speed", [](rp_input &in) -> double & { return in.rolling_speed; }, {-1}}});
+  scenes::handle contact(c);
+  for (int direction : {0, 2, -2, std::numeric_limits<int>::min()}) {
+    rp_input in = default_input();
+    in.direction = direction;
+    expect_refused(contact, in, RP_ERROR_VALUE, "direction");
+  }
+  rp_config position = c;
+  position.load = RP_POSITION;
+  rp_input in = default_input();
+  in.approach = 5e-5;
+  expect_inputs_checked(position, in,
+                        {{"approach", [](rp_input &i) -> double & { return i.approach; }, {}}});
+}
+
+TEST(Input, OfAWheelsetIsChecked) {
+  const scenes::profile_pair pair;
+  const rp_config c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+  std::vector<input_field> fields{
+      {"y", [](rp_input &in) -> double & { return in.y; }, {-2, 2}},
+      {"roll", [](rp_input &in) -> double & { return in.roll; }, {-2, 2}},
+      {"yaw", [](rp_input &in) -> double & { return in.yaw; }, {-2, 2}},
+      {"speed", [](rp_input &in) -> double & { return in.speed; }, {}},
+      {"vy", [](rp_input &in) -> double & { return in.vy; }, {}},
+      {"vz", [](rp_input &in) -> double & { return in.vz; }, {}},
+      {"roll_rate", [](rp_input &in) -> double & { return in.roll_rate; }, {}},
+      {"yaw_rate", [](rp_input &in) -> double & { return in.yaw_rate; }, {}},
+      {"pitch_rate", [](rp_input &in) -> double & { return in.pitch_rate; }, {}},
+      {"vertical_force", [](rp_input &in) -> double & { return in.vertical_force; }, {0, -1}},
+      {"wheel_offset[1]", [](rp_input &in) -> double & { return in.wheel_offset[0][1]; }, {2}},
+      {"wheel_offset[2]", [](rp_input &in) -> double & { return in.wheel_offset[1][2]; }, {2}},
+      {"wheel_rotation[0]", [](rp_input &in) -> double & { return in.wheel_rotation[0][0]; }, {2}},
+      {"rail_offset[0]", [](rp_input &in) -> double & { return in.rail_offset[1][0]; }, {-2}},
+      {"rail_rotation[2]", [](rp_input &in) -> double & { return in.rail_rotation[1][2]; }, {2}},
+      {"roller_pitch_rate", [](rp_input &in) -> double & { return in.roller_pitch_rate; }, {}}};
+  expect_inputs_checked(c, scenes::running(RP_RAIL), fields);
+  rp_config position = c;
+  position.load = RP_POSITION;
+  expect_inputs_checked(position, scenes::running(RP_RAIL),
+                        {{"z", [](rp_input &in) -> double & { return in.z; }, {-2, 2}}});
+}
+
+// --- fields ------------------------------------------------------------------------------------
+
+TEST(Fields, AreChecked) {
+  scenes::handle contact(scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_NONE, 8));
+  std::vector<double> values(1000, 7.0);
+  size_t count = values.size();
+  EXPECT_EQ(rp_get_field(contact.get(), RP_RIGHT, 0, RP_FIELD_PRESSURE, values.data(), &count),
+            RP_ERROR_NO_FIELD)
+      << "before the first step";
+  contact.step(default_input());
+  for (int side : {-1, 0, 2})
+    EXPECT_EQ(rp_get_field(contact.get(), side, 0, RP_FIELD_X, values.data(), &count),
+              RP_ERROR_NO_FIELD);
+  for (int patch : {-1, 1, 1000})
+    EXPECT_EQ(rp_get_field(contact.get(), RP_RIGHT, patch, RP_FIELD_X, values.data(), &count),
+              RP_ERROR_NO_FIELD);
+  EXPECT_EQ(rp_get_field(contact.get(), RP_RIGHT, 0, RP_FIELD_TRACTION, values.data(), &count),
+            RP_ERROR_NO_FIELD)
+      << "a scene without tangential problem";
+  // the one number beyond the list that C++ lets the enumeration hold
+  rp_field name;
+  put(name, RP_FIELD_ELEMENT_DIVISION + 1);
+  EXPECT_EQ(rp_get_field(contact.get(), RP_RIGHT, 0, name, values.data(), &count),
+            RP_ERROR_NO_FIELD);
+  count = 99;
+  EXPECT_EQ(rp_get_field(contact.get(), RP_RIGHT, 0, RP_FIELD_PRESSURE, values.data(), &count),
+            RP_ERROR_SIZE);
+  EXPECT_EQ(count, 100u);
+  for (double v : values) EXPECT_EQ(v, 7.0) << "values written in spite of the error";
+}
+
+TEST(Texts, ExistForEveryCode) {
+  // all that C++ lets these enumerations hold, known or not
+  for (int code = 0; code < 16; ++code) {
+    rp_error error;
+    put(error, code);
+    EXPECT_GT(std::strlen(rp_error_text(error)), 1u);
+  }
+  for (int code = 0; code < 4; ++code) {
+    rp_status status;
+    put(status, code);
+    EXPECT_GT(std::strlen(rp_status_text(status)), 1u);
+  }
+}
+
+// --- anything at all ---------------------------------------------------------------------------
+
+class Garbage : public testing::Test {
+ protected:
+  double number() {
+    static const double special[] = {0,    -0.0, nan,   inf,  -inf, 1e308, -1e308, 5e-324,
+                                     1e-9, -1,   1e-30, 1e30, 0.5,  1,     1e6,    -1e-3};
+    switch (random() % 4) {
+      case 0:
+        return special[random() % std::size(special)];
+      case 1: {
+        const uint64_t bits = random();
+        double v;
+        std::memcpy(&v, &bits, sizeof v);
+        return v;
+      }
+      default:
+        return (static_cast<double>(random() % 2001) - 1000) / 1000 *
+               std::pow(10.0, static_cast<double>(random() % 12) - 8);
+    }
+  }
+  // small and sometimes wrong, so that memory and time stay small
+  int count() { return static_cast<int>(random() % 23) - 2; }
+  bool rarely() { return random() % 6 == 0; }
+
+  void spoil(rp_config &c) {
+    double *const numbers[] = {&c.shear_modulus[0],
+                               &c.shear_modulus[1],
+                               &c.poisson_ratio[0],
+                               &c.poisson_ratio[1],
+                               &c.semi_axes[0],
+                               &c.semi_axes[1],
+                               &c.curvatures[0],
+                               &c.curvatures[1],
+                               &c.line_contact_radius,
+                               &c.width,
+                               &c.friction_coefficient,
+                               &c.layer_shear_modulus,
+                               &c.layer_thickness,
+                               &c.tolerance,
+                               &c.nominal_radius,
+                               &c.flange_back_distance,
+                               &c.flange_back_position,
+                               &c.gauge,
+                               &c.gauge_height,
+                               &c.cant,
+                               &c.curvature,
+                               &c.roller_radius};
+    for (double *v : numbers)
+      if (random() % 25 == 0) *v = number();
+    for (int k = 0; k < 2; ++k) {
+      c.elements[k] = count();
+      c.max_elements[k] = 12 + count();
+      if (rarely()) c.element_size[k] = std::fabs(number());
+      if (c.element_size[k] > 0 && random() % 2) c.elements[k] = 0;
+    }
+    if (random() % 2) c.geometry = static_cast<rp_geometry>(random() % 4);
+    if (c.geometry == RP_LINE_CONTACT) c.elements[1] = 1;
+    if (random() % 2) c.load = static_cast<rp_load>(random() % 2);
+    if (random() % 2) c.regime = static_cast<rp_regime>(random() % 2);
+    if (random() % 2) c.normal = static_cast<rp_normal_method>(random() % 2);
+    if (random() % 2) c.tangential = static_cast<rp_tangential_method>(random() % 3);
+    if (random() % 2) c.spin_offset = static_cast<rp_spin_offset>(random() % 2);
+    if (random() % 60 == 0) put(c.kind, static_cast<int>(random()));
+    if (rarely()) c.max_iterations = count();
+    if (rarely()) c.max_patches = count();
+    if (rarely()) c.side = count();
+  }
+  void spoil(rp_input &in) {
+    double *const numbers[] = {&in.normal_force,
+                               &in.approach,
+                               &in.creepage[0],
+                               &in.creepage[1],
+                               &in.spin_creepage,
+                               &in.rolling_speed,
+                               &in.y,
+                               &in.z,
+                               &in.vertical_force,
+                               &in.roll,
+                               &in.yaw,
+                               &in.speed,
+                               &in.vy,
+                               &in.vz,
+                               &in.roll_rate,
+                               &in.yaw_rate,
+                               &in.pitch_rate,
+                               &in.roller_pitch_rate,
+                               &in.wheel_offset[0][1],
+                               &in.wheel_rotation[1][0],
+                               &in.wheel_rotation[0][2],
+                               &in.rail_offset[1][1],
+                               &in.rail_rotation[0][0]};
+    for (double *v : numbers)
+      if (random() % 8 == 0) *v = number();
+    if (rarely()) in.direction = count();
+  }
+  // runs a config with some inputs; counts what was accepted
+  void try_out(const rp_config &c, const rp_input &start) {
+    rp_contact *contact = nullptr;
+    rp_message message{};
+    const rp_error error = rp_create(&c, &contact, &message);
+    if (error != RP_OK) {
+      EXPECT_EQ(contact, nullptr);
+      EXPECT_GT(std::strlen(message.text), 5u);
+      return;
+    }
+    ++created;
+    for (int i = 0; i < 4; ++i) {
+      rp_input in = start;
+      spoil(in);
+      rp_result result;
+      if (rp_step(contact, &in, &result, nullptr) != RP_OK) continue;
+      ++stepped;
+      EXPECT_TRUE(result.status >= RP_CONVERGED && result.status <= RP_OUT_OF_RANGE);
+      const bool solved = c.kind == RP_PATCH && result.status == RP_CONVERGED;
+      EXPECT_TRUE(!solved || std::isfinite(result.side[RP_RIGHT].patch[0].normal_force));
+      std::vector<double> values(1 << 12);
+      size_t size = values.size();
+      rp_get_field(contact, RP_RIGHT, 0, RP_FIELD_TRACTION, values.data(), &size);
+    }
+    rp_destroy(contact);
+  }
+
+  std::mt19937_64 random{20240609};
+  int created = 0, stepped = 0;
+};
+
+TEST_F(Garbage, ConfigsOfPatchesDoNotCrash) {
+  std::vector<double> gap(20 * 20, 0.0);
+  for (int n = 0; n < 4000; ++n) {
+    rp_config c = default_config();
+    spoil(c);
+    for (double &v : gap) v = rarely() ? number() : 1e-6;
+    if (c.geometry == RP_UNDEFORMED_DISTANCE) {
+      c.undeformed_distance = rarely() ? nullptr : gap.data();
+      for (int &shape : c.distance_shape) shape = std::min(count(), 20);
+    }
+    SCOPED_TRACE("number " + std::to_string(n));
+    try_out(c, default_input());
+  }
+  EXPECT_GT(created, 300);
+  EXPECT_GT(stepped, 300);
+}
+
+TEST_F(Garbage, ConfigsOfWheelsDoNotCrash) {
+  const scenes::profile_pair pair;
+  for (int n = 0; n < 600; ++n) {
+    const rp_track track = random() % 2 ? RP_RAIL : RP_ROLLER;
+    rp_config c = scenes::wheels(random() % 2 ? RP_WHEELSET : RP_WHEEL_RAIL, track, pair);
+    c.element_size[0] = c.element_size[1] = 2e-3;
+    spoil(c);
+    SCOPED_TRACE("number " + std::to_string(n));
+    try_out(c, scenes::running(track));
+  }
+  EXPECT_GT(created, 30);
+  EXPECT_GT(stepped, 30);
+}
+
+TEST_F(Garbage, ProfilesDoNotCrash) {
+  const scenes::profile_pair good;
+  for (int n = 0; n < 1500; ++n) {
+    scenes::profile_pair bad = good;
+    profiles::curve &p = random() % 2 ? bad.wheel : bad.rail;
+    const size_t points = p.s.size();
+    switch (random() % 4) {
+      case 0:  // a few wrong numbers
+        for (auto *a : {&p.s, &p.y, &p.z, &p.dy, &p.dz})
+          if (random() % 2) (*a)[random() % points] = number();
+        break;
+      case 1:  // noise of all sizes, which may pass
+        for (auto *a : {&p.y, &p.z, &p.dy, &p.dz}) {
+          const double size = std::pow(10.0, -static_cast<double>(random() % 8));
+          for (double &v : *a) v += size * (static_cast<double>(random() % 2001) - 1000) * 1e-3;
+        }
+        break;
+      case 2:  // a short piece
+        for (auto *a : {&p.s, &p.y, &p.z, &p.dy, &p.dz}) {
+          const size_t keep = 4 + random() % 20;
+          a->resize(std::min(keep, points));
+        }
+        break;
+      default:  // bent, moved and turned
+        for (size_t i = 0; i < points; ++i) {
+          p.y[i] += 0.1 * number();
+          p.z[i] *= -1;
+        }
+    }
+    rp_config c = scenes::wheels(RP_WHEELSET, random() % 2 ? RP_RAIL : RP_ROLLER, bad);
+    c.element_size[0] = c.element_size[1] = 2e-3;
+    c.tangential = RP_TANGENTIAL_NONE;
+    // pieces of different length: the shortest array counts
+    for (rp_profile *view : {&c.wheel[0], &c.wheel[1]})
+      view->count =
+          static_cast<int32_t>(std::min({bad.wheel.s.size(), bad.wheel.y.size(), bad.wheel.z.size(),
+                                         bad.wheel.dy.size(), bad.wheel.dz.size()}));
+    for (rp_profile *view : {&c.rail[0], &c.rail[1]})
+      view->count =
+          static_cast<int32_t>(std::min({bad.rail.s.size(), bad.rail.y.size(), bad.rail.z.size(),
+                                         bad.rail.dy.size(), bad.rail.dz.size()}));
+    SCOPED_TRACE("number " + std::to_string(n));
+    try_out(c, scenes::running(c.track));
+  }
+  EXPECT_GT(created, 100);
+}
+
+}  // namespace

@@ -1,0 +1,360 @@
+// Influence coefficients against numerical integration of the point-load solutions, and products by
+// FFT against direct sums.
+#include "influence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+namespace {
+
+using namespace railpatch;
+using std::numbers::pi;
+
+constexpr double imposed = 1e-12;      // fft = direct sum, relative
+constexpr double integration = 1e-11;  // closed form = quadrature, relative to the self-influence
+
+// --- independent integration ---------------------------------------------------------------
+
+// Gauss-Legendre nodes and weights on (-1, 1), by Newton's method on the polynomial.
+struct rule {
+  std::vector<double> x, w;
+  explicit rule(int n) : x(static_cast<size_t>(n)), w(static_cast<size_t>(n)) {
+    for (int i = 0; i < n; ++i) {
+      double t = std::cos(pi * (i + 0.75) / (n + 0.5)), slope = 0;
+      for (int pass = 0; pass < 50; ++pass) {
+        double p0 = 1, p1 = t;
+        for (int k = 2; k <= n; ++k) {
+          const double p2 = ((2 * k - 1) * t * p1 - (k - 1) * p0) / k;
+          p0 = p1;
+          p1 = p2;
+        }
+        slope = n * (t * p1 - p0) / (t * t - 1);
+        const double step = p1 / slope;
+        t -= step;
+        if (std::fabs(step) < 1e-16) break;
+      }
+      x[static_cast<size_t>(i)] = t;
+      w[static_cast<size_t>(i)] = 2 / ((1 - t * t) * slope * slope);
+    }
+  }
+  template <class F>
+  double operator()(double a, double b, F &&f) const {
+    double sum = 0;
+    for (size_t i = 0; i < x.size(); ++i) sum += w[i] * f(0.5 * (a + b) + 0.5 * (b - a) * x[i]);
+    return 0.5 * (b - a) * sum;
+  }
+};
+
+// Point loads on the half-space (Boussinesq; Cerruti), both bodies together; displacement at (x, y)
+// from the load.
+double point_load(kernel k, double x, double y, const elastic_constants &e) {
+  const double r = std::hypot(x, y), nu = e.poisson_ratio, c = 1 / (pi * e.shear_modulus * r);
+  switch (k) {
+    case kernel::zz:
+      return c * (1 - nu);
+    case kernel::xx:
+      return c * (1 - nu + nu * x * x / (r * r));
+    case kernel::yy:
+      return c * (1 - nu + nu * y * y / (r * r));
+    case kernel::xy:
+      return c * nu * x * y / (r * r);
+  }
+  return 0;
+}
+
+template <class F>
+double over_rectangle(double x0, double x1, double y0, double y1, const F &f, int depth = 0) {
+  static const rule coarse(8), fine(12);
+  const auto integrate = [&](const rule &q) {
+    return q(y0, y1, [&](double y) { return q(x0, x1, [&](double x) { return f(x, y); }); });
+  };
+  const double a = integrate(coarse), b = integrate(fine);
+  if (depth == 12 || std::fabs(a - b) <= 1e-14 * (std::fabs(b) + (x1 - x0) * (y1 - y0) * 1e-9))
+    return b;
+  const double xm = 0.5 * (x0 + x1), ym = 0.5 * (y0 + y1);
+  return over_rectangle(x0, xm, y0, ym, f, depth + 1) +
+         over_rectangle(xm, x1, y0, ym, f, depth + 1) +
+         over_rectangle(x0, xm, ym, y1, f, depth + 1) +
+         over_rectangle(xm, x1, ym, y1, f, depth + 1);
+}
+
+// The load's element around the observer: kernels are f(angle)/r, so the integral over r is exact.
+double over_own_element(kernel k, double dx, double dy, const elastic_constants &e) {
+  static const rule q(40);
+  const double corner = std::atan2(dy, dx);
+  const double breaks[] = {-corner, 0,           corner,   0.5 * pi,       pi - corner,
+                           pi,      pi + corner, 1.5 * pi, 2 * pi - corner};
+  double sum = 0;
+  for (int i = 0; i < 8; ++i)
+    sum += q(breaks[i], breaks[i + 1], [&](double t) {
+      const double c = std::cos(t), s = std::sin(t);
+      const double reach = 0.5 * std::min(dx / std::fabs(c), dy / std::fabs(s));
+      return point_load(k, c, s, e) * reach;
+    });
+  return sum;
+}
+
+double integrated(kernel k, int i, int j, double dx, double dy, const elastic_constants &e) {
+  if (i == 0 && j == 0) return over_own_element(k, dx, dy, e);
+  return over_rectangle((i - 0.5) * dx, (i + 0.5) * dx, (j - 0.5) * dy, (j + 0.5) * dy,
+                        [&](double x, double y) { return point_load(k, x, y, e); });
+}
+
+// --- set-up --------------------------------------------------------------------------------
+
+struct set_up {
+  fft_plans plans;
+  influence a;
+  set_up(const influence::scene &scene, const grid &g)
+      : plans({smooth_size(2 * g.nx + 1)}, {g.ny > 1 ? smooth_size(2 * g.ny - 1) : 1}),
+        a(scene, plans) {
+    EXPECT_TRUE(a.set_grid(g));
+  }
+};
+
+elastic_constants steel(double nu = 0.28) {
+  const double g[] = {82e9, 82e9}, n[] = {nu, nu};
+  return combine(g, n);
+}
+
+constexpr kernel all_kernels[] = {kernel::zz, kernel::xx, kernel::yy, kernel::xy};
+
+// --- coefficients --------------------------------------------------------------------------
+
+TEST(Coefficients, EqualTheIntegralOfThePointLoads) {
+  for (const auto &[dx, dy] : {std::pair{1e-3, 1e-3}, {2e-4, 9e-4}, {5e-3, 5e-4}})
+    for (double nu : {0.0, 0.28, 0.5}) {
+      const elastic_constants e = steel(nu);
+      set_up s({e}, {8, 6, dx, dy, 0, 0});
+      for (kernel k : all_kernels)
+        for (int j = -5; j <= 5; ++j)
+          for (int i = -8; i <= 8; ++i) {
+            const double bound = integration * s.a.coefficient(kernel::xx, 0, 0);
+            EXPECT_NEAR(s.a.coefficient(k, i, j), integrated(k, i, j, dx, dy, e), bound)
+                << "kernel " << static_cast<int>(k) << " offset " << i << ", " << j << " element "
+                << dx << " x " << dy << " nu " << nu;
+          }
+    }
+}
+
+TEST(Coefficients, OfUnequalBodiesAreTheSumOfBoth) {
+  const double g[] = {82e9, 26e9}, nu[] = {0.28, 0.33};
+  const elastic_constants both = combine(g, nu);
+  set_up s({both}, {5, 5, 1e-3, 7e-4, 0, 0});
+  for (kernel k : all_kernels)
+    for (int i = 0; i <= 5; ++i) {
+      double sum = 0;
+      for (int body = 0; body < 2; ++body)
+        // point_load holds two equal bodies
+        sum += 0.5 * integrated(k, i, 2, 1e-3, 7e-4, {g[body], nu[body], 0});
+      EXPECT_NEAR(s.a.coefficient(k, i, 2), sum, integration * s.a.coefficient(kernel::xx, 0, 0));
+    }
+}
+
+TEST(Coefficients, AreEvenOrOdd) {
+  set_up s({steel()}, {9, 7, 1e-3, 6e-4, 0, 0});
+  for (kernel k : all_kernels) {
+    const double sign = k == kernel::xy ? -1 : 1;
+    for (int j = 0; j < 7; ++j)
+      for (int i = 0; i < 9; ++i) {
+        const double v = s.a.coefficient(k, i, j);
+        EXPECT_EQ(s.a.coefficient(k, -i, j), sign * v);
+        EXPECT_EQ(s.a.coefficient(k, i, -j), sign * v);
+        EXPECT_EQ(s.a.coefficient(k, -i, -j), v);
+      }
+  }
+  // exchanging the axes exchanges xx and yy
+  set_up t({steel()}, {7, 9, 6e-4, 1e-3, 0, 0});
+  for (int j = 0; j < 7; ++j)
+    for (int i = 0; i < 9; ++i) {
+      const double v = s.a.coefficient(kernel::xx, i, j);
+      EXPECT_NEAR(v, t.a.coefficient(kernel::yy, j, i), imposed * v);
+    }
+}
+
+TEST(Coefficients, TendToThePointLoadFarAway) {
+  const elastic_constants e = steel();
+  const double dx = 1e-3, dy = 5e-4;
+  set_up s({e}, {120, 120, dx, dy, 0, 0});
+  for (kernel k : all_kernels)
+    for (int n : {15, 30, 60, 120}) {
+      const double x = n * dx, y = 0.6 * n * dy, r = std::hypot(x, y);
+      const int j = static_cast<int>(0.6 * n);
+      const double far = dx * dy * point_load(k, x, y, e);
+      // the next term of the expansion is of second order in size over distance
+      EXPECT_NEAR(s.a.coefficient(k, n, j) / far, 1, 0.5 * (dx / r) * (dx / r))
+          << "kernel " << static_cast<int>(k) << " distance " << n << " elements";
+    }
+}
+
+TEST(Coefficients, OfALayerAddToTheDiagonalOnly) {
+  const double flexibility = 5e-5 / 8.2e9;
+  const grid g{6, 5, 1e-3, 1e-3, 0, 0};
+  set_up with({steel(), flexibility}, g), without({steel()}, g);
+  for (kernel k : all_kernels)
+    for (int j = 0; j < 5; ++j)
+      for (int i = 0; i < 6; ++i) {
+        const bool own = i == 0 && j == 0 && (k == kernel::xx || k == kernel::yy);
+        const double expected = without.a.coefficient(k, i, j) + (own ? flexibility : 0.0);
+        EXPECT_DOUBLE_EQ(with.a.coefficient(k, i, j), expected);
+      }
+}
+
+// Strip loads in plane strain; the logarithm at the load is resolved by s = h t^6.
+TEST(Coefficients, OfALineContactEqualTheIntegralOfTheLogarithm) {
+  static const rule q(40);
+  const double width = 0.02, dx = 1e-4, nu = 0.28;
+  const elastic_constants e = steel(nu);
+  set_up s({e, 0.0, width}, {40, 1, dx, width, 0, 0});
+  const auto from_zero = [&](double h) {
+    return q(0, 1, [&](double t) {
+      const double x = h * std::pow(t, 6);
+      return std::log(width / x) * 6 * h * std::pow(t, 5);
+    });
+  };
+  for (int i = 0; i <= 40; ++i) {
+    const double upper = from_zero((i + 0.5) * dx);
+    const double value = i == 0 ? 2 * upper : upper - from_zero((i - 0.5) * dx);
+    const double c = 2 / (pi * e.shear_modulus);
+    EXPECT_NEAR(s.a.coefficient(kernel::zz, i, 0), c * (1 - nu) * value, 1e-10 * c * dx);
+    EXPECT_NEAR(s.a.coefficient(kernel::xx, i, 0), c * (1 - nu) * value, 1e-10 * c * dx);
+    EXPECT_NEAR(s.a.coefficient(kernel::yy, i, 0), c * value, 1e-10 * c * dx);
+    EXPECT_EQ(s.a.coefficient(kernel::xy, i, 0), 0);
+  }
+}
+
+// --- products ------------------------------------------------------------------------------
+
+struct size_case {
+  const char *name;
+  grid g;
+  double layer, width;
+};
+
+const size_case sizes[] = {
+    {"square", {16, 16, 1e-3, 1e-3, 0, 0}, 0, 0},
+    {"odd", {13, 17, 4e-4, 7e-4, 0, 0}, 0, 0},
+    {"long", {37, 5, 2e-4, 1e-3, 0, 0}, 6e-15, 0},
+    {"wide", {3, 41, 1e-3, 2e-4, 0, 0}, 0, 0},
+    {"prime with layer", {23, 19, 5e-4, 5e-4, 0, 0}, 6e-15, 0},
+    {"line", {51, 1, 1e-4, 0.02, 0, 0}, 0, 0.02},
+    {"line with layer", {32, 1, 1e-4, 0.02, 0, 0}, 6e-15, 0.02},
+};
+
+class Products : public testing::TestWithParam<size_case> {
+ protected:
+  std::vector<double> random_field() {
+    std::uniform_real_distribution<double> u(-1e9, 1e9);
+    std::vector<double> f(static_cast<size_t>(g.count()));
+    for (double &v : f) v = u(random);
+    return f;
+  }
+  std::vector<double> zeros() const { return std::vector<double>(static_cast<size_t>(g.count())); }
+  // sum over the sources of the coefficient seen from `ahead` elements further along x
+  std::vector<double> direct(kernel k, const std::vector<double> &p, int ahead = 0) const {
+    std::vector<double> u = zeros();
+    for (int j = 0; j < g.ny; ++j)
+      for (int i = 0; i < g.nx; ++i)
+        for (int n = 0; n < g.ny; ++n)
+          for (int m = 0; m < g.nx; ++m)
+            u[static_cast<size_t>(j * g.nx + i)] +=
+                s.a.coefficient(k, i + ahead - m, j - n) * p[static_cast<size_t>(n * g.nx + m)];
+    return u;
+  }
+  static std::vector<double> sum(std::vector<double> a, const std::vector<double> &b, double c) {
+    for (size_t i = 0; i < a.size(); ++i) a[i] += c * b[i];
+    return a;
+  }
+  static void expect_near(const std::vector<double> &fft, const std::vector<double> &expected) {
+    double scale = 0, worst = 0;
+    for (size_t i = 0; i < fft.size(); ++i) {
+      scale = std::max(scale, std::fabs(expected[i]));
+      worst = std::max(worst, std::fabs(fft[i] - expected[i]));
+    }
+    EXPECT_LE(worst, imposed * scale) << "relative " << worst / scale << " bound " << imposed;
+  }
+
+  grid g = GetParam().g;
+  set_up s{{steel(), GetParam().layer, GetParam().width}, g};
+  std::mt19937_64 random{20240607};
+};
+
+TEST_P(Products, NormalEqualsTheDirectSum) {
+  const std::vector<double> p = random_field();
+  std::vector<double> u = zeros();
+  s.a.normal_product(p.data(), u.data());
+  expect_near(u, direct(kernel::zz, p));
+}
+
+TEST_P(Products, TangentialEqualsTheDirectSum) {
+  const std::vector<double> px = random_field(), py = random_field();
+  std::vector<double> ux = zeros(), uy = zeros();
+  s.a.tangential_product(px.data(), py.data(), ux.data(), uy.data());
+  expect_near(ux, sum(direct(kernel::xx, px), direct(kernel::xy, py), 1));
+  expect_near(uy, sum(direct(kernel::xy, px), direct(kernel::yy, py), 1));
+}
+
+TEST_P(Products, RollingEqualsTheDirectSumInBothDirections) {
+  const std::vector<double> px = random_field(), py = random_field();
+  for (int direction : {1, -1}) {
+    std::vector<double> sx = zeros(), sy = zeros();
+    s.a.rolling_product(px.data(), py.data(), direction, sx.data(), sy.data());
+    std::vector<double> ex = sum(direct(kernel::xx, px), direct(kernel::xy, py), 1);
+    std::vector<double> ey = sum(direct(kernel::xy, px), direct(kernel::yy, py), 1);
+    ex = sum(ex, direct(kernel::xx, px, direction), -1);
+    ex = sum(ex, direct(kernel::xy, py, direction), -1);
+    ey = sum(ey, direct(kernel::xy, px, direction), -1);
+    ey = sum(ey, direct(kernel::yy, py, direction), -1);
+    for (std::vector<double> *e : {&ex, &ey})
+      for (double &v : *e) v /= g.dx;
+    expect_near(sx, ex);
+    expect_near(sy, ey);
+  }
+}
+
+// what makes it fit as a preconditioner of conjugate gradients
+TEST_P(Products, InverseIsSymmetricAndPositive) {
+  const std::vector<double> p = random_field(), q = random_field();
+  std::vector<double> mp = zeros(), mq = zeros();
+  s.a.normal_inverse(p.data(), mp.data());
+  s.a.normal_inverse(q.data(), mq.data());
+  double pq = 0, qp = 0, pp = 0, size = 0;
+  for (size_t i = 0; i < p.size(); ++i) {
+    pq += p[i] * mq[i];
+    qp += q[i] * mp[i];
+    pp += p[i] * mp[i];
+    size += std::fabs(p[i] * mq[i]);
+  }
+  EXPECT_NEAR(pq, qp, imposed * size);
+  EXPECT_GT(pp, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, Products, testing::ValuesIn(sizes), [](const auto &info) {
+  std::string name = info.param.name;
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+});
+
+// The tables of one element size serve grids of several sizes, growing and shrinking.
+TEST(Grids, TheirOrderMakesNoDifference) {
+  fft_plans plans({16, 32, 64}, {16, 32, 64});
+  influence used({steel()}, plans), fresh({steel()}, plans);
+  const grid small{6, 7, 1e-3, 1e-3, 0, 0}, large{25, 30, 1e-3, 1e-3, 0, 0};
+  const grid other{7, 7, 9e-4, 1e-3, 0, 0};
+  for (const grid &g : {small, large, other}) ASSERT_TRUE(used.set_grid(g));
+  ASSERT_TRUE(used.set_grid(small));
+  ASSERT_TRUE(fresh.set_grid(small));
+  std::vector<double> p(42), u(42), v(42);
+  for (size_t i = 0; i < p.size(); ++i) p[i] = std::sin(static_cast<double>(i));
+  used.normal_product(p.data(), u.data());
+  fresh.normal_product(p.data(), v.data());
+  EXPECT_EQ(u, v);
+  EXPECT_FALSE(used.set_grid({40, 7, 1e-3, 1e-3, 0, 0})) << "larger than every plan";
+}
+
+}  // namespace

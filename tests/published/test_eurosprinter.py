@@ -1,0 +1,81 @@
+"""Creep curve of the Siemens EuroSprinter 127001 locomotive, Coulomb friction of 0.33.
+
+Two columns of a comparison of four models computed with the program CONTACT (reference table
+eurosprinter_4models.csv, after Engel, Beck and Alders 1998): its full theory on 44 x 44 elements
+over 1.1 times the axes, and FASTSIM with a parabolic bound. Creepage and force there are those of
+the rail, so both change sign. The table is read where the reference folder is present.
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from patch_cases import Line, check, patch_case, solve
+
+FORCE, FRICTION, SPEED = 106.7e3, 0.33, 10.0
+A, B = 6.304e-3, 12.607e-3
+FULL_THEORY = 0.01  # of F_n
+SIMPLIFIED = 0.02  # of F_n: the flexibilities there are blended, and the grid is not known
+
+
+def reference_folder() -> Path:
+    project = Path(__file__).resolve().parents[2]
+    default = project.parent / "shared" / "reference"
+    return Path(os.environ.get("RAILPATCH_REFERENCE", default))
+
+
+@pytest.fixture(scope="module")
+def curve() -> list[dict[str, float]]:
+    folder = reference_folder()
+    if not folder.is_dir():
+        pytest.skip("no reference folder: set RAILPATCH_REFERENCE to where the tables are")
+    with (folder / "eurosprinter_4models.csv").open(newline="") as file:
+        return [{key: float(text) for key, text in row.items()} for row in csv.DictReader(file)]
+
+
+def force_ratio(creepage: float, **options) -> float:
+    case = patch_case(
+        {"semi_axes": [A, B]},
+        force=FORCE,
+        elements=40,
+        creepage=[-creepage, 0.0],
+        speed=SPEED,
+        friction=FRICTION,
+        **options,
+    )
+    return solve(case)["creep_force"][0] / FORCE
+
+
+def test_full_theory(curve: list[dict[str, float]]) -> None:
+    check(
+        [
+            Line(
+                f"creepage {row['cksi']:.4f}",
+                force_ratio(row["cksi"]),
+                row["CONTACT_mu033_Fx_over_FN"],
+                FULL_THEORY,
+            )
+            for row in curve
+            if row["cksi"] < 0.02
+        ]
+    )
+
+
+def test_fastsim(curve: list[dict[str, float]]) -> None:
+    lines = [
+        Line(
+            f"creepage {row['cksi']:.4f}",
+            force_ratio(row["cksi"], normal="hertz", tangential="fastsim"),
+            row["FASTSIM_parab_Fx_over_FN"],
+            SIMPLIFIED,
+        )
+        for row in curve
+        if row["cksi"] < 0.02
+    ]
+    check(lines)
+    # and the differences do not all go one way by more than half of that
+    assert abs(np.mean([line.error for line in lines])) < SIMPLIFIED / 2

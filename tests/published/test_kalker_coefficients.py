@@ -1,0 +1,73 @@
+"""Kalker's creepage coefficients from the full solver at vanishing creepage.
+
+Kalker 1990, Three-dimensional elastic bodies in rolling contact, table E3 (three digits):
+F_x = -a b G C11 xi, F_y = -a b G (C22 eta + sqrt(a b) C23 phi). Reading error half a unit of the
+last digit, that is up to 0.2 %; the table is older than fine grids and trusted to 1 to 2 %.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from patch_cases import Line, check, patch_case, solve
+
+SHEAR_MODULUS = 82e9
+MINOR, FORCE, FRICTION = 0.004, 1e5, 5.0
+TABLE_ERROR = 0.02
+COUNTS = (30, 60)
+# a/b: (C11, C22, C23) at nu = 0, 0.25, 0.5
+TABLE = {
+    0.2: [(2.59, 2.59, 0.483), (3.37, 2.63, 0.603), (4.81, 2.66, 0.809)],
+    0.5: [(2.88, 2.88, 0.827), (3.62, 3.01, 0.929), (4.83, 3.14, 1.07)],
+    1.0: [(3.40, 3.40, 1.33), (4.12, 3.67, 1.47), (5.20, 3.98, 1.63)],
+    2.0: [(4.37, 4.37, 2.35), (5.10, 4.90, 2.62), (6.11, 5.56, 2.96)],
+    5.0: [(6.96, 6.96, 5.72), (7.78, 8.14, 6.63), (8.82, 9.79, 7.89)],
+}
+RATIOS = (0.0, 0.25, 0.5)
+
+
+def coefficients(a: float, b: float, nu: float, count: int) -> dict[str, float]:
+    """C11, C22, C23 and, from the moment under lateral creepage, C32 = -C23."""
+    unit = a * b * SHEAR_MODULUS
+    length = np.sqrt(a * b)
+    # small against what the bound lets stick, so that all but the trailing edge does
+    small = 1e-6
+
+    def result(creepage, spin):
+        return solve(
+            patch_case(
+                {"semi_axes": [a, b]},
+                force=FORCE,
+                elements=count,
+                creepage=creepage,
+                spin=spin,
+                friction=FRICTION,
+                material={"shear_modulus": SHEAR_MODULUS, "poisson_ratio": nu},
+                tolerance=1e-7,
+            )
+        )
+
+    longitudinal = result([small, 0.0], 0.0)
+    lateral = result([0.0, small], 0.0)
+    spinning = result([0.0, 0.0], small / length)
+    return {
+        "C11": -longitudinal["creep_force"][0] / (unit * small),
+        "C22": -lateral["creep_force"][1] / (unit * small),
+        "C23": -spinning["creep_force"][1] / (unit * small),
+        "C32": lateral["spin_moment"] / (unit * length * small),
+    }
+
+
+@pytest.mark.parametrize("ratio", TABLE)
+def test_coefficients(ratio: float) -> None:
+    a, b = (MINOR * ratio, MINOR) if ratio > 1 else (MINOR, MINOR / ratio)
+    lines = []
+    for nu, (c11, c22, c23) in zip(RATIOS, TABLE[ratio], strict=True):
+        coarse, fine = (coefficients(a, b, nu, n) for n in COUNTS)
+        # the solver's error is of first order in the element size
+        limit = {name: 2 * fine[name] - coarse[name] for name in fine}
+        targets = {"C11": c11, "C22": c22, "C23": c23, "C32": c23}
+        for name, target in targets.items():
+            scene = f"a/b {ratio} nu {nu:4.2f} {name} (at {COUNTS[1]}: {fine[name]:.4f})"
+            lines.append(Line(scene, limit[name], target, TABLE_ERROR * target))
+    check(lines)
