@@ -1,0 +1,112 @@
+"""The messages of the run log: from a scene and its balances."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from railpatch.case.wheel import Deviation
+from railpatch.log import SceneGeometry
+from railpatch.profiles import load_profile
+from railpatch.profiles.raw import Role
+
+from rig_model.balance import Balance
+from rig_model.scene import SIDES, RigScene
+
+# moving inputs that a scene may set and the rig does not change
+STEADY = ("speed", "vy", "vz", "roll_rate", "yaw_rate")
+
+
+class Recorder:
+    """Makes the messages of one position after the other; keeps the angles turned so far."""
+
+    def __init__(self, scene: RigScene) -> None:
+        self._scene = scene
+        self._time = 0.0
+        self._pitch = 0.0
+        self._roller_pitch = 0.0
+
+    def messages(self, balance: Balance, wall_time: float) -> dict[str, Any]:
+        """Arguments of RunLog.write. wall_time: s, of finding the balance."""
+        result = balance.result.to_dict()
+        return {
+            "state": self._state(balance, result),
+            "left": result["left"],
+            "right": result["right"],
+            "balance": {
+                "status": balance.status,
+                "evaluations": balance.evaluations,
+                "iterations": balance.iterations,
+                "residuals": balance.residuals,
+                "z": balance.z,
+                "roll": balance.roll,
+                "pitch_rate": balance.pitch_rate,
+            },
+            "stats": {
+                "wall_time": wall_time,
+                "contact_evaluations": len(SIDES) * balance.evaluations,
+            },
+        }
+
+    def _state(self, balance: Balance, result: dict[str, Any]) -> dict[str, Any]:
+        position, case = balance.position, self._scene.case
+        roller_rate = case.track.roller_pitch_rate
+        step = position.time - self._time
+        self._time = position.time
+        self._pitch = math.remainder(self._pitch + step * balance.pitch_rate, math.tau)
+        self._roller_pitch = math.remainder(self._roller_pitch + step * roller_rate, math.tau)
+        return {
+            "progress": position.progress,
+            "y": position.y,
+            "z": balance.z,
+            "roll": balance.roll,
+            "yaw": position.yaw,
+            "pitch": self._pitch,
+            "pitch_rate": balance.pitch_rate,
+            "roller_pitch": self._roller_pitch,
+            "roller_pitch_rate": roller_rate,
+            "vertical_force": self._scene.vertical_force,
+            "force": result["force"],
+            "moment": result["moment"],
+        } | {key: getattr(case.wheelset, key) for key in STEADY}
+
+
+def attachments(scene: RigScene) -> dict[str, bytes]:
+    """The profile files' content by their name in the case file."""
+    return {name: file.read_bytes() for name, file in scene.files.items()}
+
+
+def geometry(scene: RigScene) -> SceneGeometry:
+    """The bodies of the 3D scene. Raises ProfileError."""
+    wheelset, track = scene.case.wheelset, scene.case.track
+    return SceneGeometry.from_profiles(
+        "roller",
+        {side: curve(scene, "wheel", side, getattr(wheelset, side)) for side in SIDES},
+        {side: curve(scene, "rail", side, Deviation()) for side in SIDES},
+        nominal_radius=wheelset.nominal_radius,
+        flange_back_distance=wheelset.flange_back_distance,
+        flange_back_position=wheelset.flange_back_position,
+        gauge=track.gauge,
+        gauge_height=track.gauge_height,
+        roller_radius=track.roller_radius,
+        rail_offsets={side: getattr(track, side).offset[1:] for side in SIDES},
+    )
+
+
+def curve(scene: RigScene, role: Role, side: str, deviation: Deviation) -> np.ndarray:
+    """m, [n, 2], y and z of a profile, a right-hand one for both sides, with its deviation."""
+    profiles = scene.case.profiles
+    _, name = profiles.of(role, side)
+    assert name is not None
+    mirror = -1.0 if side == "left" else 1.0
+    _, y, z = deviation.offset
+    profile = load_profile(name, role, smoothing=profiles.smoothing)
+    return points(profile.moved(mirror * y, z, mirror * deviation.rotation[0]))
+
+
+def points(profile: Any) -> np.ndarray:
+    """m, [n, 2]."""
+    columns: Sequence[np.ndarray] = (profile.y, profile.z)
+    return np.column_stack(columns)

@@ -1,0 +1,85 @@
+"""A whole run: every position balanced and logged."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from railpatch.log import RunLog
+
+from rig_model.balance import Balance, Balancer
+from rig_model.record import Recorder, attachments, geometry
+from rig_model.scene import SIDES, RigScene
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Of a run with n positions.
+
+    path: of the log. converged: [n]. evaluations: [n], of both wheels. wall_time: s, [n], of
+    finding each balance.
+    """
+
+    path: Path
+    converged: NDArray[np.bool_]
+    evaluations: NDArray[np.int64]
+    wall_time: NDArray[np.float64]
+
+    @property
+    def good(self) -> bool:
+        """Whether every position is balanced."""
+        return bool(self.converged.all())
+
+    def text(self) -> str:
+        """The summary in a few lines."""
+        count = len(self.converged)
+        later = self.evaluations[1:]
+        return (
+            f"positions     {count}, {int(self.converged.sum())} converged\n"
+            f"evaluations   {self.evaluations.mean():.2f} of both wheels a position; "
+            f"first {self.evaluations[0]}, at most {later.max()} later\n"
+            f"wall time     {1e3 * np.median(self.wall_time):.3g} ms a position (median), "
+            f"{self.wall_time.sum():.3g} s in all\n"
+            f"log           {self.path}"
+        )
+
+
+def replay(
+    scene: RigScene,
+    path: str | PathLike[str],
+    progress: Callable[[Balance], None] = lambda _: None,
+) -> Summary:
+    """Balances every position of the scene and writes the log; ``progress`` is told of each.
+
+    Raises CaseError, ProfileError before a file is made, and OSError where the log cannot be
+    written. A position without balance is no error: it is logged with its status.
+    """
+    balancer = Balancer(scene)
+    recorder = Recorder(scene)
+    snapshots = scene.snapshot_every()
+    rows = []
+    with RunLog(
+        path,
+        case_text=scene.text,
+        case_name=scene.name,
+        profiles=attachments(scene),
+        geometry=geometry(scene),
+    ) as log:
+        for position in scene.positions():
+            begin = time.perf_counter()
+            balance = balancer.solve(position)
+            wall_time = time.perf_counter() - begin
+            messages = recorder.messages(balance, wall_time)
+            if snapshots and position.index % snapshots == 0:
+                fields = balancer.fields(balance)
+                messages["fields"] = {side: fields[side]["patches"] for side in SIDES}
+            log.write(position.time, **messages)
+            rows.append((balance.converged, balance.evaluations, wall_time))
+            progress(balance)
+    converged, evaluations, wall_times = (np.array(column) for column in zip(*rows, strict=True))
+    return Summary(Path(path), converged, evaluations, wall_times)

@@ -1,0 +1,281 @@
+"""The scene of a rig run: a case file of kind "wheelset" with a table [rig]."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import resources
+from itertools import pairwise
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+from railpatch.case import WheelsetCase
+from railpatch.case.load import Scene, check_case, check_table, plain, read_toml
+from railpatch.case.types import Number, Pair, Positive, Table, relation
+from railpatch.errors import CaseError
+
+from rig_model.programme import Position, positions
+
+MEASURED = "nrc_dry_10mph_13750lb.toml"
+NOMINAL = "nominal_dry_10mph_13750lb.toml"
+REFERENCE_VARIABLE = "RAILPATCH_REFERENCE"
+SIDES = ("left", "right")
+PROFILE_KEYS = ("wheel", "rail", "wheel_left", "wheel_right", "rail_left", "rail_right")
+# snapshots of the fields in a run whose scene does not say
+SNAPSHOTS = 37
+# found at each position, so not to be given
+FOUND = {"y": "lateral_position", "yaw": "yaw"} | dict.fromkeys(
+    ("roll", "pitch_rate"), "start, or leave it out"
+)
+
+Rows = Annotated[list[Pair], Field(min_length=2)]
+
+
+class Start(Table):
+    """Where the search for the first balance starts, in place of the frictionless estimate."""
+
+    z: Number = Field(description="m, vertical position of the wheelset's centre, down")
+    roll: Number = Field(description="rad, about x")
+    pitch_rate: Number = Field(description="rad/s, about the axle; below 0 for rolling forward")
+
+
+class BalanceTable(Table):
+    """How the balance is searched."""
+
+    axle_torque: Literal["track", "wheelset"] = Field(
+        default="track",
+        description="which longitudinal forces balance about the axle (no unit): those in track "
+        "axes with the part of the normal force along x, as in the published positions, or those "
+        "in wheelset axes as in the report's Eq. 51",
+    )
+    tolerance: Annotated[float, Field(ge=1e-8, le=1e-2)] = Field(
+        default=5e-5,
+        description="-, largest residual over the vertical load (moments: N m over N times 1 m); "
+        "at least twice method.tolerance",
+    )
+    max_evaluations: Annotated[int, Field(ge=4, le=1000)] = Field(
+        default=40, description="-, most evaluations of both wheels at one position"
+    )
+
+
+class Rig(Table):
+    """What the rig does with the wheelset."""
+
+    yaw: Rows = Field(
+        description="-, rad: rows of progress (0 to 1) and yaw angle, straight lines between"
+    )
+    lateral_position: Rows = Field(
+        description="-, m: rows of progress (0 to 1) and lateral position, monotone between"
+    )
+    duration: Positive = Field(description="s, of the run")
+    positions: Annotated[int, Field(ge=2, le=10_000_000)] | None = Field(
+        default=None, description="-, number of positions, evenly spaced in time; or rate"
+    )
+    rate: Positive | None = Field(default=None, description="Hz, positions per second")
+    snapshot_every: Annotated[int, Field(ge=0)] | None = Field(
+        default=None,
+        description="-, the fields of every n-th position are logged, 0: none; left out: of some "
+        f"{SNAPSHOTS} positions",
+    )
+    start: Start | None = Field(
+        default=None, description="first estimate (m, rad, rad/s); left out: without friction"
+    )
+    balance: BalanceTable = Field(default=BalanceTable(), description="search for the balance (-)")
+
+    @property
+    def count(self) -> int:
+        """Number of positions."""
+        if self.positions is not None:
+            return self.positions
+        assert self.rate is not None
+        return max(2, round(self.duration * self.rate) + 1)
+
+    @model_validator(mode="after")
+    def _relations(self) -> Rig:
+        for key in ("yaw", "lateral_position"):
+            check_progress(key, [row[0] for row in getattr(self, key)])
+        if (self.positions is None) == (self.rate is None):
+            both = "missing" if self.rate is None else "given with 'rate'"
+            raise relation("positions", both, "exactly one of 'positions', 'rate'")
+        if self.rate is not None and not 1 <= self.duration * self.rate <= 1e7:
+            raise relation("rate", self.rate, "1 to 1e7 positions in the duration")
+        for progress, angle in self.yaw:
+            if abs(angle) > 0.1:
+                raise relation("yaw", f"{angle} at {progress}", "-0.1 to 0.1 rad")
+        return self
+
+
+def check_progress(key: str, progress: list[float]) -> None:
+    """Refuses a table whose first column does not rise from 0 to 1."""
+    rises = all(a < b for a, b in pairwise(progress))
+    if not rises or progress[0] != 0 or progress[-1] != 1:
+        raise relation(key, f"a first column of {progress}", "progress rising from 0 to 1")
+
+
+@dataclass(frozen=True)
+class RigScene:
+    """A checked scene.
+
+    name: of the file. text: as it was read, with a comment where keys of [rig] were replaced.
+    case: with the profiles that were found. files: the profile files by their name in the text.
+    """
+
+    name: str
+    text: bytes
+    case: WheelsetCase
+    rig: Rig
+    files: dict[str, Path]
+
+    @property
+    def vertical_force(self) -> float:
+        """N, on both wheels together."""
+        force = self.case.wheelset.vertical_force
+        assert force is not None
+        return force
+
+    def positions(self) -> list[Position]:
+        """The positions of the run."""
+        rig = self.rig
+        return positions(rig.count, rig.duration, rig.yaw, rig.lateral_position)
+
+    def snapshot_every(self) -> int:
+        """The fields of every n-th position are logged; 0: none."""
+        if self.rig.snapshot_every is not None:
+            return self.rig.snapshot_every
+        return -(-self.rig.count // SNAPSHOTS)
+
+    def at_height(self) -> Scene:
+        """The case with z prescribed in place of the vertical force."""
+        wheelset = self.case.wheelset.model_copy(update={"vertical_force": None, "z": 0.0})
+        return self._scene(self.case.model_dump() | {"wheelset": wheelset.model_dump()})
+
+    def frictionless(self, side: str) -> Scene:
+        """One wheel without friction, with half the load."""
+        content = self.case.model_dump(exclude={"wheelset", "method", "kind"})
+        wheelset = self.case.wheelset.model_dump()
+        method = self.case.method.model_dump()
+        return self._scene(
+            content
+            | {
+                "kind": "wheel_rail",
+                "wheel": {"side": side},
+                "wheelset": wheelset | {"vertical_force": 0.5 * self.vertical_force},
+                "method": method | {"tangential": "none"},
+            }
+        )
+
+    @staticmethod
+    def _scene(content: dict[str, Any]) -> Scene:
+        return Scene(check_case(content), Path())
+
+
+def load_rig_scene(
+    path: str | Path | None = None, overrides: Mapping[str, Any] | None = None
+) -> RigScene:
+    """Checks a scene; without ``path`` that of the package: NRC's profiles if found, else nominal.
+
+    overrides: keys of [rig] that replace the file's. Profiles are looked for beside the file, then
+    among the reference data (see ``reference_profiles``). Raises CaseError with every problem.
+    """
+    path = default_scene() if path is None else Path(path)
+    given = {key: value for key, value in (overrides or {}).items() if value is not None}
+    content = plain(read_toml(path))
+    rig = content.pop("rig", None)
+    if rig is None:
+        raise CaseError("rig: value is missing, allowed a table with the run's programme")
+    if isinstance(rig, dict):
+        rig = merged(rig, given)
+    problems: list[str] = []
+    checked = []
+    for check in (lambda: check_case(content), lambda: check_table(Rig, rig, "rig")):
+        try:
+            checked.append(check())
+        except CaseError as error:
+            problems += error.problems
+    if problems:
+        raise CaseError(problems)
+    case, table = checked
+    check_machine(case, table)
+    files = found_profiles(case, path.parent)
+    found = {
+        key: str(files[name])
+        for key in PROFILE_KEYS
+        if (name := getattr(case.profiles, key)) in files
+    }
+    case = case.model_copy(update={"profiles": case.profiles.model_copy(update=found)})
+    note = "".join(f"\n# run with rig.{key} = {value}\n" for key, value in given.items())
+    return RigScene(path.name, path.read_bytes() + note.encode(), case, table, files)
+
+
+def merged(rig: dict[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
+    """The table with some keys replaced; positions and rate replace each other."""
+    rig = {**rig, **given}
+    for key, other in (("positions", "rate"), ("rate", "positions")):
+        if key in given and other not in given:
+            rig.pop(other, None)
+    return rig
+
+
+def check_machine(case: Any, rig: Rig) -> None:
+    """Refuses cases that are no wheelset on rollers with a load and friction."""
+    if case.kind != "wheelset":
+        raise CaseError(f"kind: value is {case.kind!r}, allowed 'wheelset' for a rig")
+    problems = []
+    if case.track.kind != "roller":
+        problems.append(f"track.kind: value is {case.track.kind!r}, allowed 'roller' for a rig")
+    if not case.track.roller_pitch_rate:
+        shown = case.track.roller_pitch_rate
+        problems.append(f"track.roller_pitch_rate: value is {shown}, allowed one that is not 0")
+    if case.wheelset.vertical_force is None:
+        problems.append(
+            "wheelset.z: value is given, allowed 'vertical_force' in its place: the rig finds z"
+        )
+    if not case.has_tangential:
+        problems.append("method.tangential: value is 'none', allowed one with creep forces")
+    if rig.balance.tolerance < 2 * case.method.tolerance:
+        problems.append(
+            f"rig.balance.tolerance: value is {rig.balance.tolerance}, allowed >= "
+            f"{2 * case.method.tolerance:g}, twice method.tolerance: forces are no more exact"
+        )
+    for key, other in FOUND.items():
+        value = getattr(case.wheelset, key)
+        if value != 0.0:
+            problems.append(f"wheelset.{key}: value is {value}, allowed in [rig] as {other}")
+    if problems:
+        raise CaseError(problems)
+
+
+def reference_profiles() -> Path | None:
+    """The folder of the measured profiles, or None.
+
+    $RAILPATCH_REFERENCE/profiles if that is set, else ../shared/reference/profiles beside the
+    checkout that this file, or the working directory, belongs to.
+    """
+    named = os.environ.get(REFERENCE_VARIABLE)
+    roots = [Path(__file__).resolve().parents[1], Path.cwd()]
+    places = [Path(named)] if named else [root.parent / "shared" / "reference" for root in roots]
+    return next((p / "profiles" for p in places if (p / "profiles").is_dir()), None)
+
+
+def default_scene() -> Path:
+    """NRC's measured profiles where all of them are found, else nominal ones."""
+    folder = Path(str(resources.files("rig_model"))) / "scenes"
+    measured = folder / MEASURED
+    names = read_toml(measured)["profiles"].values()
+    reference = reference_profiles()
+    found = reference is not None and all((reference / name).is_file() for name in names)
+    return measured if found else folder / NOMINAL
+
+
+def found_profiles(case: WheelsetCase, folder: Path) -> dict[str, Path]:
+    """Name in [profiles] -> its file, looked for in the folder, then among the reference data."""
+    places = [place for place in (folder, reference_profiles()) if place is not None]
+    names = {getattr(case.profiles, key) for key in PROFILE_KEYS} - {None}
+    found = {}
+    for name in sorted(names):
+        files = [place / name for place in places if (place / name).is_file()]
+        if files:
+            found[name] = files[0]
+    return found

@@ -1,0 +1,82 @@
+"""Forces at the published positions of the NRC roller rig.
+
+Dry run at 10 mph and 13,750 lb a side: wheelset positions after force balance, and the forces that
+the authors' own model of the rig gives there (CONTACT, 2025). The numbers stand in
+nrc_dry_10mph_13750lb.csv among the reference data; forces there act on the roller, so ours are
+their negatives. Each component must agree within 1 % of the wheel's vertical load where the wheel
+has one patch, within 2 % where it has two: the share of the second patch, on the flange root,
+depends more on how the measured profiles are smoothed.
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from railpatch import Contact
+
+rig_scene = pytest.importorskip("rig_model.scene")
+
+PROJECT = Path(__file__).parents[2]
+FILE = "nrc_dry_10mph_13750lb.csv"
+SIDES = {"L": "left", "R": "right"}
+ALLOWED = {1: 0.01, 2: 0.02}  # of the wheel's vertical load, by number of patches
+
+
+@pytest.fixture(scope="module")
+def reference() -> list[dict[str, str]]:
+    folder = os.environ.get("RAILPATCH_REFERENCE", PROJECT.parent / "shared" / "reference")
+    path = Path(folder) / FILE
+    if not path.is_file() or not (path.parent / "profiles").is_dir():
+        pytest.skip(f"no reference data: {path} or its profiles are absent")
+    with open(path, newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+@pytest.fixture(scope="module")
+def compared(reference):
+    """One entry a wheel: row, number of patches, force on the roller (N, [3]), published force."""
+    scene_file = rig_scene.default_scene()
+    assert scene_file.name == rig_scene.MEASURED
+    contact = Contact(rig_scene.load_rig_scene(scene_file).at_height())
+    entries = []
+    for row in reference:
+        result = contact.step(
+            y=1e-3 * float(row["y_ws_mm"]),
+            z=1e-3 * float(row["z_ws_mm"]),
+            roll=float(row["roll_rad"]),
+            yaw=float(row["yaw_rad"]),
+            pitch_rate=float(row["pitch_rate_rad_s"]),
+        )
+        wheel = result[SIDES[row["side"]]]
+        assert wheel["status"] == "converged"
+        published = np.array([float(row[f"f{axis}_on_roller_N"]) for axis in "xyz"])
+        entries.append((row, len(wheel["patches"]), -np.array(wheel["force"]), published))
+    return entries
+
+
+def test_all_rows_are_there(compared):
+    assert len(compared) == 26
+    assert {row["side"] for row, *_ in compared} == {"L", "R"}
+
+
+def test_number_of_patches(compared):
+    for row, patches, _, _ in compared:
+        assert patches == int(row["patches"]), row
+
+
+def test_forces(compared):
+    print("\nside  yaw mrad   y mm  patches   difference of Fx, Fy, Fz, % of the wheel's Fz")
+    worst = []
+    for row, _, found, published in compared:
+        difference = (found - published) / published[2]
+        allowed = ALLOWED[int(row["patches"])]
+        worst.append(np.abs(difference).max() / allowed)
+        print(
+            f"{row['side']:>4} {1e3 * float(row['yaw_rad']):+9.0f} {float(row['y_ws_mm']):+6.2f} "
+            f"{row['patches']:>8} " + " ".join(f"{100 * d:+8.2f}" for d in difference)
+        )
+    assert max(worst) < 1, "the table above is printed with pytest -s"

@@ -1,0 +1,54 @@
+"""Scenes for the tests of the rig."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from importlib import resources
+from pathlib import Path
+
+import pytest
+
+from rig_model.scene import MEASURED, NOMINAL, load_rig_scene
+
+PROJECT = Path(__file__).parents[2]
+REFERENCE = Path(os.environ.get("RAILPATCH_REFERENCE", PROJECT.parent / "shared" / "reference"))
+SCENES = Path(str(resources.files("rig_model"))) / "scenes"
+
+
+@pytest.fixture(scope="session")
+def nominal_file() -> Path:
+    """The package's scene with nominal profiles."""
+    return SCENES / NOMINAL
+
+
+@pytest.fixture(scope="session")
+def measured_file() -> Path:
+    """The package's scene with the measured profiles, which must be there."""
+    if not (REFERENCE / "profiles").is_dir():
+        pytest.skip(f"no reference data: {REFERENCE / 'profiles'} is absent")
+    return SCENES / MEASURED
+
+
+@pytest.fixture
+def scene_with(tmp_path: Path, nominal_file: Path) -> Callable[..., Path]:
+    """A copy of the nominal scene, beside its profiles, with some text replaced."""
+
+    def write(*changes: tuple[str, str], end: str = "") -> Path:
+        text = nominal_file.read_text()
+        for old, new in changes:
+            assert text.count(old) == 1, f"{old!r} occurs {text.count(old)} times"
+            text = text.replace(old, new)
+        for profile in nominal_file.parent.glob("*.csv"):
+            (tmp_path / profile.name).write_bytes(profile.read_bytes())
+        path = tmp_path / "scene.toml"
+        path.write_text(text + end)
+        return path
+
+    return write
+
+
+@pytest.fixture
+def few(nominal_file: Path):
+    """The nominal scene with five positions."""
+    return load_rig_scene(nominal_file, {"positions": 5})
