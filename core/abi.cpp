@@ -98,6 +98,16 @@ rp_error rp_step(rp_contact *contact, const rp_input *input, rp_result *result,
   }
 }
 
+rp_error rp_set_friction_coefficient(rp_contact *contact, double value, rp_message *message) {
+  if (!contact) {
+    set_message(message, "contact is null");
+    return RP_ERROR_NULL;
+  }
+  const rp_error error = check_friction_coefficient(value, message);
+  if (error == RP_OK) contact->scene.set_friction_coefficient(value);
+  return error;
+}
+
 void rp_reset(rp_contact *contact) {
   if (contact) contact->scene.reset();
 }

@@ -22,6 +22,7 @@ constexpr range positive{0, inf, true, true};
 constexpr range not_negative{0, inf, false, true};
 constexpr range finite{-inf, inf, true, true};
 constexpr range angle{-1.5, 1.5, false, false};
+constexpr range friction{0, 10, false, false};
 
 // Remembers the first field that is out of range.
 class checker {
@@ -159,7 +160,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   check.numbers("shear_modulus", c.shear_modulus, 2, {1.0, 1e15, false, false});
   check.numbers("poisson_ratio", c.poisson_ratio, 2, {0, 0.5, false, false});
   check_grid(c, check);
-  check.number("friction_coefficient", c.friction_coefficient, {0, 10, false, false});
+  check.number("friction_coefficient", c.friction_coefficient, friction);
   check.number("layer_thickness", c.layer_thickness, {0, 0.1, false, false});
   if (c.layer_thickness > 0)
     check.number("layer_shear_modulus", c.layer_shear_modulus, {1.0, 1e15, false, false});
@@ -177,6 +178,12 @@ rp_error check_config(const rp_config &c, rp_message *message) {
         "shear_modulus and poisson_ratio: bodies with (1-2nu)/G not equal couple the normal "
         "and tangential directions, which this version solves for regime = none only");
   c.kind == RP_PATCH ? check_patch(c, check) : check_wheels(c, check);
+  return check.error();
+}
+
+rp_error check_friction_coefficient(double value, rp_message *message) {
+  checker check(message);
+  check.number("friction_coefficient", value, friction);
   return check.error();
 }
 

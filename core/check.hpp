@@ -11,6 +11,7 @@ inline constexpr uint32_t input_cookie = 0x52504931;   // "RPI1"
 
 // Each returns RP_OK or the first error found, with its message (which may be null).
 rp_error check_config(const rp_config &config, rp_message *message);
+rp_error check_friction_coefficient(double value, rp_message *message);
 rp_error check_input(const rp_config &config, const rp_input &input, rp_message *message);
 
 // Writes a formatted text, cut to size; does nothing where message is null.

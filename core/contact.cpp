@@ -320,7 +320,7 @@ struct state_header {
   uint64_t bytes, checksum;
   // the checksum covers all that follows
   uint64_t scene;
-  double depth;
+  double depth, friction_coefficient;
 };
 constexpr size_t checked_from = offsetof(state_header, scene);
 struct patch_header {
@@ -414,7 +414,8 @@ void contact::save_state(unsigned char *buffer) const {
   }
   const auto bytes = static_cast<size_t>(at - buffer);
   state_header header{
-      state_magic, static_cast<uint32_t>(config_.kind), bytes, 0, fingerprint(config_), depth_};
+      state_magic, static_cast<uint32_t>(config_.kind), bytes, 0, fingerprint(config_),
+      depth_,      solver_.scene().friction_coefficient};
   std::memcpy(buffer, &header, sizeof header);
   header.checksum = checksum(buffer + checked_from, bytes - checked_from);
   std::memcpy(buffer, &header, sizeof header);
@@ -444,6 +445,7 @@ bool contact::restore_state(const unsigned char *buffer, size_t size) {
     });
   }
   depth_ = header.depth;
+  solver_.set_friction_coefficient(header.friction_coefficient);
   return true;
 }
 

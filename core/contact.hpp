@@ -16,6 +16,7 @@ class contact {
 
   void step(const rp_input &input, rp_result &result);
   void reset();
+  void set_friction_coefficient(double value) { solver_.set_friction_coefficient(value); }
 
   size_t state_size() const;
   void save_state(unsigned char *buffer) const;

@@ -1,4 +1,5 @@
-// Seam over the FFT library: real two-dimensional transforms of a fixed list of sizes.
+// Seam over the FFT library: real two-dimensional transforms of a fixed list of sizes. Exactly one
+// of fft_fftw.cpp and fft_eigen.cpp is built (RAILPATCH_FFT).
 //
 // Layout: real arrays are [ny][nx] with x fastest; spectra are [ny][nx/2 + 1], x halved.
 // Normalisation: forward carries no factor, backward carries none either, so backward(forward(f))
@@ -36,9 +37,9 @@ class fft_plans {
   static const char *backend();
 
  private:
-  struct plan_pair;
+  struct library;
   std::vector<int> sizes_x_, sizes_y_;
-  std::vector<plan_pair> plans_;
+  std::unique_ptr<library> library_;
 };
 
 // Smallest suitable even number >= n whose only prime factors are 2, 3 and 5.

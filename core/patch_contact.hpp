@@ -14,7 +14,7 @@
 
 namespace railpatch {
 
-// Constant over the life of a handle.
+// Constant over the life of a handle, but for the friction coefficient.
 struct patch_scene {
   elastic_constants elastic;
   double friction_coefficient = 0;
@@ -70,6 +70,7 @@ class patch_contact {
 
   bool fits(const grid &g) const { return g.nx <= max_nx_ && g.ny <= max_ny_; }
   const patch_scene &scene() const { return scene_; }
+  void set_friction_coefficient(double value) { scene_.friction_coefficient = value; }
   size_t influence_bytes() const { return influence_ ? influence_->bytes() : 0; }
   size_t normal_bytes() const { return normal_ ? normal_->bytes() : 0; }
   size_t tangential_bytes() const;

@@ -275,6 +275,8 @@ RP_API void rp_destroy(rp_contact *contact); /* null is allowed */
  * handle are untouched. */
 RP_API rp_error rp_step(rp_contact *contact, const rp_input *input, rp_result *result,
                         rp_message *message);
+/* Changes the friction coefficient (0 ... 10) for the steps that follow; part of the state. */
+RP_API rp_error rp_set_friction_coefficient(rp_contact *contact, double value, rp_message *message);
 /* Forgets the warm start: the next step is the same as the first one after rp_create. */
 RP_API void rp_reset(rp_contact *contact);
 
