@@ -12,6 +12,7 @@
 #include <string>
 
 #include "convert.hpp"
+#include "force_element.hpp"
 #include "railpatch.h"
 
 namespace railpatch::python {
@@ -67,7 +68,7 @@ class StageClock {
 
 // the lock keeps one handle to one thread at a time, as railpatch.h asks for, while the
 // interpreter's lock is released
-class Contact {
+class Contact : public Steppable {
  public:
   Contact(const nb::dict &config, bool timing) {
     Config c;
@@ -87,15 +88,17 @@ class Contact {
     rp_default_input(&input);
     fill_input(values, input);
     rp_result result;
-    rp_message message = {};
-    rp_error code;
     {
       nb::gil_scoped_release unlocked;
-      std::lock_guard<std::mutex> guard(mutex_);
-      code = rp_step(contact_.get(), &input, &result, &message);
+      solve(input, result);
     }
-    check(code, &message);
     return result_dict(result);
+  }
+
+  void solve(const rp_input &input, rp_result &result) override {
+    rp_message message = {};
+    std::lock_guard<std::mutex> guard(mutex_);
+    check(rp_step(contact_.get(), &input, &result, &message), &message);
   }
 
   std::optional<FieldArray> field(int side, int patch, const char *name) {
@@ -188,7 +191,8 @@ NB_MODULE(_core, m) {
   m.attr("ERRORS") = texts;
 #undef RAILPATCH_ENTRY
 
-  nb::class_<Contact>(m, "Contact", "A handle of the library with its state and memory.")
+  nb::class_<Steppable>(m, "Steppable", "A contact that a force element may step.");
+  nb::class_<Contact, Steppable>(m, "Contact", "A handle of the library with its state and memory.")
       .def(nb::init<const nb::dict &, bool>(), nb::arg("config"), nb::arg("timing") = false,
            "config: fields of rp_config, enumerations as texts; timing: measure each stage.")
       .def("step", &Contact::step, nb::arg("input"),
@@ -200,6 +204,8 @@ NB_MODULE(_core, m) {
       .def("restore", &Contact::restore, nb::arg("state"), "Brings back a saved state.")
       .def("reset", &Contact::reset, "Forgets the warm start.")
       .def("describe", &Contact::describe, "Stages with reason, bytes and measured seconds.");
+
+  bind_force_element(m);
 }
 
 }  // namespace railpatch::python

@@ -1,0 +1,25 @@
+"""Wheelsets on track in Pinocchio: force elements, a model builder, energies.
+
+    from railpatch.pinocchio import ForceElement, Suspension, wheelset_model
+
+Needs the extra: pip install 'railpatch[pinocchio]'. The host calls forwardKinematics(model, data,
+q, v), then the force elements' step(), each of which adds to ``fext``, then aba(..., fext). World
+axes are the track's (x forward, y right, z down) unless a placement of the track is given; the
+track is straight.
+"""
+
+from railpatch.pinocchio.element import ForceElement
+from railpatch.pinocchio.energy import Energies, Powers, energies, powers
+from railpatch.pinocchio.model import Body, wheelset_model
+from railpatch.pinocchio.suspension import Suspension
+
+__all__ = [
+    "Body",
+    "Energies",
+    "ForceElement",
+    "Powers",
+    "Suspension",
+    "energies",
+    "powers",
+    "wheelset_model",
+]

@@ -1,0 +1,276 @@
+"""The force element: wheel-rail contact of a Pinocchio model's wheelsets."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from railpatch import _core
+from railpatch.case.load import Scene
+from railpatch.case.messages import show
+from railpatch.case.wheel import WheelsetCase
+from railpatch.config import input_of
+from railpatch.contact import CaseSource, Contact
+from railpatch.errors import CaseError
+from railpatch.result import Result
+
+# names of the rows of `states`, in order
+STATE = (
+    *("x", "y", "z", "roll", "yaw", "pitch"),
+    *("speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate"),
+)
+# of the core, by code; a test compares them
+STATUSES = ("converged", "no_contact", "not_converged", "out_of_range")
+LENGTH = struct.Struct("<I")
+
+
+class ForceElement:
+    """Contact forces on the wheelsets of a model, all wheels in one call of the library.
+
+        pin.forwardKinematics(model, data, q, v)
+        fext = pin.StdVec_Force([pin.Force.Zero()] * model.njoints)
+        status = element.step(data, fext)
+        a = pin.aba(model, data, q, v, tau, fext)
+
+    model: pinocchio.Model. joint: name or index of the joint whose body is the spinning wheelset,
+    or a list of them. case: of kind "wheelset" with ``z`` given (its value is not used), as for
+    Contact; or a list, one a joint. Position and velocity of the case are replaced at each step;
+    deviations of wheels and rails and the roller's speed stay.
+
+    wheelset: pinocchio.SE3, of the wheelset (origin at its centre, y along the axle to the right)
+    in the joint frame. track: pinocchio.SE3, of the track frame (x forward, y right, z down) in the
+    world. frame_speed: m/s, of an inertial world frame that moves forward along the track.
+    folder: where relative paths of a case start. timing: measure the stages, see Contact.
+
+    Only position, velocity and axle direction of the wheelset are used, so any carrier will do. Let
+    a revolute joint about the axle do the spinning and a carrier that does not spin (a composite as
+    in wheelset_model(), a free-flyer, an axle box) hold it: a wheelset that is one body on a bare
+    free-flyer integrates badly, because its steps are then taken along axes that turn with the
+    wheel, at some hundred radians a second in a fast train.
+
+    Raises CaseError for a case that does not fit, ValueError for a joint that the model lacks.
+    """
+
+    def __init__(
+        self,
+        model: pin.Model,
+        joint: str | int | Sequence[str | int],
+        case: CaseSource | Sequence[CaseSource],
+        *,
+        wheelset: pin.SE3 | None = None,
+        track: pin.SE3 | None = None,
+        frame_speed: float = 0.0,
+        folder: str | Path | None = None,
+        timing: bool = False,
+    ) -> None:
+        joints = joint if isinstance(joint, (list, tuple)) else [joint]
+        cases = case if isinstance(case, (list, tuple)) else [case] * len(joints)
+        if len(cases) != len(joints):
+            raise CaseError(f"case: value is a list of {len(cases)}, allowed {len(joints)}")
+        self.joints = [joint_index(model, name) for name in joints]
+        self.contacts = [Contact(one, folder=folder, timing=timing) for one in cases]
+        for contact in self.contacts:
+            check_case(contact.case)
+        self._core = _core.ForceElement(
+            [contact._core for contact in self.contacts],
+            [input_of(contact.case) for contact in self.contacts],
+            np.array([contact.case.wheelset.nominal_radius for contact in self.contacts]),
+            placements([wheelset] * len(joints)),
+            placements([track]),
+            float(frame_speed),
+        )
+        self._joint_count = model.njoints
+        self._states, self._power = self._core.state, self._core.power
+        motion, wrench = self._core.motion, self._core.wrench
+        self._rows = [
+            (
+                index,
+                motion[row, :9].reshape(3, 3),
+                motion[row, 9:12],
+                motion[row, 12:],
+                wrench[row],
+            )
+            for row, index in enumerate(self.joints)
+        ]
+
+    def step(self, data: pin.Data, fext: pin.StdVec_Force) -> str:
+        """Adds the contact forces to ``fext`` and returns the worst status of all wheelsets.
+
+        data: with oMi and v of forwardKinematics(model, data, q, v) or anything that calls it.
+        fext: pinocchio.StdVec_Force with one entry for each joint of the model, in the local joint
+        frame, linear part first (N, N m). "no_contact" (all wheels of a wheelset in the air) is a
+        valid state; after "not_converged" and "out_of_range" the forces are not to be trusted.
+        Raises TypeError and ValueError for an fext of another type or length, which would crash
+        Pinocchio, CaseError for a state outside the library's range (a roll of 90 degrees).
+        """
+        if type(fext) is not pin.StdVec_Force or len(fext) != self._joint_count:
+            raise self._wrong(fext)
+        placed, velocities = data.oMi, data.v
+        if len(placed) != self._joint_count:
+            raise ValueError(
+                f"data: belongs to a model of {len(placed)} joints, allowed {self._joint_count}"
+            )
+        for joint, rotation, origin, velocity, _ in self._rows:
+            placement = placed[joint]
+            rotation[:] = placement.rotation
+            origin[:] = placement.translation
+            velocity[:] = velocities[joint].vector
+        status = self._core.step()
+        for joint, _, _, _, wrench in self._rows:
+            vector = fext[joint].vector
+            vector += wrench
+        return STATUSES[status]
+
+    def place(self, index: int, force: Sequence[float], moment: Sequence[float]) -> NDArray:
+        """[6], another wrench on a wheelset, as fext wants it, at the last step's position.
+
+        force: [3], N; moment: [3], N m, about the wheelset's centre, both in track axes.
+        """
+        self._core.place(index, *force, *moment)
+        return self._core.placed[index]
+
+    def state(self, index: int = 0) -> dict[str, float]:
+        """Position and velocity of a wheelset at the last step, track axes: see STATE.
+
+        x, y, z in m, roll, yaw, pitch in rad, speed, vy, vz in m/s, roll_rate, yaw_rate, pitch_rate
+        in rad/s, as in the case's [wheelset]; pitch is within half a turn.
+        """
+        return dict(zip(STATE, self._states[index].tolist(), strict=True))
+
+    @property
+    def states(self) -> NDArray[np.float64]:
+        """[wheelsets, 12], the same as an array; its values change with the next step."""
+        return self._states
+
+    @property
+    def contact_wrench(self) -> NDArray[np.float64]:
+        """[wheelsets, 6], N, N m: force and moment at the centre, track axes, of the last step."""
+        return self._core.contact
+
+    @property
+    def contact_power(self) -> float:
+        """W, of the contact forces on the wheelsets: F.v + M.omega. Below 0: energy is taken."""
+        return float(self._power[:, 0].sum())
+
+    @property
+    def friction_power(self) -> float:
+        """W, turned into heat in the contacts."""
+        return float(self._power[:, 1].sum())
+
+    @property
+    def elastic_energy(self) -> float:
+        """J, stored in the contacts."""
+        return float(self._power[:, 2].sum())
+
+    @property
+    def solve_seconds(self) -> float:
+        """s, wall-clock time inside the contact solves since the start."""
+        return self._core.seconds
+
+    @property
+    def solves(self) -> int:
+        """Number of wheelset contacts solved since the start."""
+        return self._core.solves
+
+    def result(self, index: int = 0, *, fields: bool = False) -> Result:
+        """The last step's result of a wheelset, as Contact.step() returns it; wall_time is NaN.
+
+        fields: with the fields of each patch.
+        """
+        return Result(self.contacts[index]._data(self._core.result(index), np.nan, fields))
+
+    def reset(self) -> None:
+        """Forgets the last solutions: the next step starts as the first one did."""
+        for contact in self.contacts:
+            contact.reset()
+
+    def save(self) -> bytes:
+        """The state that later steps depend on."""
+        states = [contact.save() for contact in self.contacts]
+        return b"".join(LENGTH.pack(len(state)) + state for state in states)
+
+    def restore(self, state: bytes) -> None:
+        """Brings back a saved state of the same element; the next step gives the same bits.
+
+        Raises CaseError for other bytes.
+        """
+        parts = split(state)
+        if len(parts) != len(self.contacts):
+            raise CaseError("state: value is no state of this element, allowed: save()")
+        before = self.save()
+        try:
+            for contact, part in zip(self.contacts, parts, strict=True):
+                contact.restore(part)
+        except CaseError:
+            for contact, part in zip(self.contacts, split(before), strict=True):
+                contact.restore(part)
+            raise
+
+    def _wrong(self, fext: Any) -> Exception:
+        """What is wrong with an fext."""
+        if type(fext) is not pin.StdVec_Force:
+            name = type(fext).__name__
+            return TypeError(f"fext: value is of type {name}, allowed pinocchio.StdVec_Force")
+        return ValueError(
+            f"fext: length is {len(fext)}, allowed {self._joint_count}, one for each joint of the "
+            "model (model.njoints)"
+        )
+
+
+def joint_index(model: pin.Model, joint: str | int) -> int:
+    """Index of a joint by name or index. Raises ValueError."""
+    if isinstance(joint, str):
+        if not model.existJointName(joint):
+            names = ", ".join(list(model.names)[1:])
+            raise ValueError(f"joint: value is {joint!r}, allowed {names}")
+        return int(model.getJointId(joint))
+    if isinstance(joint, bool) or not isinstance(joint, int) or not 1 <= joint < model.njoints:
+        raise ValueError(f"joint: value is {joint!r}, allowed 1 to {model.njoints - 1}, or a name")
+    return joint
+
+
+def check_case(case: Any) -> None:
+    """Refuses what a force element cannot do. Raises CaseError."""
+    if not isinstance(case, WheelsetCase):
+        raise CaseError(f"kind: value is {case.kind!r}, allowed 'wheelset' for a force element")
+    problems = []
+    if case.wheelset.z is None:
+        problems.append(
+            f"wheelset.vertical_force: value is {show(case.wheelset.vertical_force)}, allowed 'z' "
+            "in its place: the model gives the position"
+        )
+    if case.track.curvature != 0:
+        problems.append(
+            f"track.curvature: value is {case.track.curvature}, allowed 0: the track is straight"
+        )
+    if problems:
+        raise CaseError(problems)
+
+
+def at_height(case: WheelsetCase, folder: Path) -> Scene:
+    """The case with z in place of a vertical force, ready for a force element."""
+    wheelset = case.wheelset.model_copy(update={"vertical_force": None, "z": 0.0})
+    return Scene(case.model_copy(update={"wheelset": wheelset}), folder)
+
+
+def placements(frames: Sequence[pin.SE3 | None]) -> NDArray[np.float64]:
+    """[frames, 12], rotation by rows and origin; None is the identity."""
+    rows = [pin.SE3.Identity() if frame is None else frame for frame in frames]
+    return np.array([[*frame.rotation.ravel(), *frame.translation] for frame in rows])
+
+
+def split(state: bytes) -> list[bytes]:
+    """The parts of a saved state; fewer where it is damaged."""
+    parts, at = [], 0
+    while at + LENGTH.size <= len(state):
+        (size,) = LENGTH.unpack_from(state, at)
+        at += LENGTH.size
+        parts.append(state[at : at + size])
+        at += size
+    return parts

@@ -1,0 +1,83 @@
+"""Energies and powers of a wheelset on its suspension.
+
+Mechanical balance, over any part of a run:
+
+    change of (kinetic + gravity + suspension)
+        = work of the contact forces + work of the drive - work of the dampers
+
+where the drive is what keeps the suspension's reference at its speed. The contact forces' power on
+the wheelset is F.v + M.omega. What they take goes into friction and into the elastic energy of the
+contacts:
+
+    - work of the contact forces = work of friction + change of elastic energy
+
+The first holds for any contact law, so it tests time stepper and force elements; the second tests
+the contact. The contact is quasi-static: its elastic energy is that of the steady state at each
+moment.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from railpatch.pinocchio.element import ForceElement
+from railpatch.pinocchio.suspension import Suspension
+
+
+@dataclass(frozen=True)
+class Energies:
+    """J. kinetic: of all bodies in the world frame. gravity, suspension: potential energies.
+    elastic: of the contacts."""
+
+    kinetic: float
+    gravity: float
+    suspension: float
+    elastic: float
+
+    @property
+    def mechanical(self) -> float:
+        """J, of bodies and springs, without the contacts."""
+        return self.kinetic + self.gravity + self.suspension
+
+
+@dataclass(frozen=True)
+class Powers:
+    """W. contact: of the contact forces on the wheelsets. friction: turned into heat in the
+    contacts, >= 0. damping: in the dampers, >= 0. drive: put in by the moving references."""
+
+    contact: float
+    friction: float
+    damping: float
+    drive: float
+
+
+def energies(
+    model: pin.Model,
+    data: pin.Data,
+    q: NDArray,
+    v: NDArray,
+    element: ForceElement,
+    suspensions: Iterable[Suspension] = (),
+) -> Energies:
+    """At the last step of element and suspensions, whose q and v these are."""
+    return Energies(
+        pin.computeKineticEnergy(model, data, q, v),
+        pin.computePotentialEnergy(model, data, q),
+        sum(suspension.potential for suspension in suspensions),
+        element.elastic_energy,
+    )
+
+
+def powers(element: ForceElement, suspensions: Iterable[Suspension] = ()) -> Powers:
+    """At the last step of element and suspensions."""
+    springs = list(suspensions)
+    return Powers(
+        element.contact_power,
+        element.friction_power,
+        sum(suspension.damping_power for suspension in springs),
+        sum(suspension.drive_power for suspension in springs),
+    )

@@ -1,0 +1,229 @@
+// The class railpatch._core.ForceElement: all wheels of a model in one call, without allocation.
+
+#include "force_element.hpp"
+
+#include <nanobind/ndarray.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <vector>
+
+#include "convert.hpp"
+
+namespace railpatch::python {
+
+namespace {
+
+using Array = nb::ndarray<nb::numpy, double, nb::ndim<2>>;
+
+static_assert(sizeof(TrackState) == 12 * sizeof(double));
+
+enum { kMotion = 18, kWrench = 6, kState = 12, kContact = 6, kPower = 3 };
+
+Placement placement_of(const Grid &rows, size_t k) {
+  if (rows.shape(1) != 12) throw nb::value_error("a placement has 12 numbers");
+  Placement placement;
+  const double *from = rows.data() + 12 * k;
+  std::copy_n(from, 9, placement.rotation);
+  std::copy_n(from + 9, 3, placement.origin);
+  return placement;
+}
+
+double inner(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+// contact forces' power on the wheelset: F.v + M.w, with w of the body in track axes
+double power_of(const rp_result &result, const TrackState &s, const double w[3]) {
+  const double v[3] = {s.speed, s.vy, s.vz};
+  return inner(result.force, v) + inner(result.moment, w);
+}
+
+// angular velocity in track axes; see the head of force_element.hpp
+std::array<double, 3> spin_of(const TrackState &s) {
+  const double c = std::cos(s.roll), r = std::sin(s.roll);
+  const double d = std::cos(s.yaw), t = std::sin(s.yaw);
+  return {s.roll_rate - s.pitch_rate * t, s.pitch_rate * c * d - s.yaw_rate * r,
+          s.pitch_rate * r * d + s.yaw_rate * c};
+}
+
+// not converged and out of range are worse than no contact, no contact is worse than contact
+rp_status worse(rp_status a, rp_status b) { return a > b ? a : b; }
+
+struct Wheelset {
+  Steppable *contact;
+  rp_input input;
+  rp_result result;
+  Placement placement;
+};
+
+// Arrays live as long as the element and are seen from Python as they are: one row a wheelset.
+class ForceElement {
+ public:
+  ForceElement(const nb::list &contacts, const nb::list &inputs, const Values &radii,
+               const Grid &placements, const Grid &track, double frame_speed)
+      : track_(placement_of(track, 0)), frame_speed_(frame_speed), count_(nb::len(contacts)) {
+    const bool fits =
+        nb::len(inputs) == count_ && radii.shape(0) == count_ && placements.shape(0) == count_;
+    if (!fits) throw nb::value_error("one input, radius and placement a contact");
+    wheelsets_.resize(count_);
+    radii_.assign(radii.data(), radii.data() + count_);
+    for (size_t k = 0; k < count_; ++k) {
+      Wheelset &w = wheelsets_[k];
+      w.contact = nb::cast<Steppable *>(nb::object(contacts[k]));
+      rp_default_input(&w.input);
+      fill_input(nb::cast<nb::dict>(nb::object(inputs[k])), w.input);
+      w.result = {};
+      w.placement = placement_of(placements, k);
+    }
+    motion_.resize(count_ * kMotion);
+    wrench_.resize(count_ * kWrench);
+    placed_.resize(count_ * kWrench);
+    state_.resize(count_);
+    contact_.resize(count_ * kContact);
+    power_.resize(count_ * kPower);
+  }
+
+  int step() {
+    nb::gil_scoped_release unlocked;
+    std::lock_guard<std::mutex> guard(mutex_);
+    rp_status status = RP_CONVERGED;
+    for (size_t k = 0; k < count_; ++k) status = worse(status, step_wheelset(k));
+    return status;
+  }
+
+  // a wrench at the centre, in track axes, to the row of `placed`
+  void place(size_t k, double fx, double fy, double fz, double mx, double my, double mz) {
+    if (k >= count_) throw nb::index_error();
+    const double force[3] = {fx, fy, fz}, moment[3] = {mx, my, mz};
+    joint_wrench(force, moment, joint(k), wheelsets_[k].placement, track_,
+                 placed_.data() + k * kWrench);
+  }
+
+  nb::dict result(size_t k) const {
+    if (k >= count_) throw nb::index_error();
+    return result_dict(wheelsets_[k].result);
+  }
+
+  double seconds() const { return seconds_; }
+  size_t solves() const { return solves_; }
+
+  double *motion() { return motion_.data(); }
+  double *wrench() { return wrench_.data(); }
+  double *placed() { return placed_.data(); }
+  double *state() { return &state_.data()->x; }
+  double *contact() { return contact_.data(); }
+  double *power() { return power_.data(); }
+  size_t count() const { return count_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Placement joint(size_t k) const {
+    Placement placement;
+    std::copy_n(motion_.data() + k * kMotion, 9, placement.rotation);
+    std::copy_n(motion_.data() + k * kMotion + 9, 3, placement.origin);
+    return placement;
+  }
+
+  rp_status step_wheelset(size_t k) {
+    Wheelset &w = wheelsets_[k];
+    const Placement at = joint(k);
+    const double *velocity = motion_.data() + k * kMotion + 12;
+    const TrackState s = track_state(at, velocity, w.placement, track_, frame_speed_, radii_[k]);
+    fill(s, w.input);
+    const auto begin = Clock::now();
+    w.contact->solve(w.input, w.result);
+    seconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
+    ++solves_;
+    state_[k] = s;
+    report(k, w.result, s);
+    joint_wrench(w.result.force, w.result.moment, at, w.placement, track_,
+                 wrench_.data() + k * kWrench);
+    return w.result.status;
+  }
+
+  static void fill(const TrackState &s, rp_input &input) {
+    input.y = s.y;
+    input.z = s.z;
+    input.roll = s.roll;
+    input.yaw = s.yaw;
+    input.speed = s.speed;
+    input.vy = s.vy;
+    input.vz = s.vz;
+    input.roll_rate = s.roll_rate;
+    input.yaw_rate = s.yaw_rate;
+    input.pitch_rate = s.pitch_rate;
+  }
+
+  void report(size_t k, const rp_result &result, const TrackState &s) {
+    std::copy_n(result.force, 3, contact_.data() + k * kContact);
+    std::copy_n(result.moment, 3, contact_.data() + k * kContact + 3);
+    double *power = power_.data() + k * kPower;
+    power[0] = power_of(result, s, spin_of(s).data());
+    power[1] = power[2] = 0;
+    for (const rp_side_result &side : result.side)
+      for (int i = 0; i < side.patch_count; ++i) {
+        // NaN where the scene has no tangential problem: no friction
+        const double friction = side.patch[i].friction_power;
+        if (friction == friction) power[1] += friction;
+        power[2] += side.patch[i].elastic_energy;
+      }
+  }
+
+  std::vector<Wheelset> wheelsets_;
+  Placement track_;
+  double frame_speed_;
+  size_t count_;
+  std::vector<double> radii_, motion_, wrench_, contact_, power_, placed_;
+  std::vector<TrackState> state_;
+  double seconds_ = 0;
+  size_t solves_ = 0;
+  std::mutex mutex_;
+};
+
+// a view of the element's own memory that keeps the element alive
+template <size_t Columns, double *(ForceElement::*Data)()>
+Array view(nb::handle_t<ForceElement> self) {
+  ForceElement &element = nb::cast<ForceElement &>(self);
+  return Array((element.*Data)(), {element.count(), Columns}, self);
+}
+
+}  // namespace
+
+void bind_force_element(nb::module_ &m) {
+  using E = ForceElement;
+  nb::class_<E>(m, "ForceElement",
+                "Contacts of wheelsets in a multibody model; arrays have one row a wheelset.")
+      .def(nb::init<const nb::list &, const nb::list &, const Values &, const Grid &, const Grid &,
+                    double>(),
+           nb::arg("contacts"), nb::arg("inputs"), nb::arg("radii"), nb::arg("placements"),
+           nb::arg("track"), nb::arg("frame_speed"), nb::keep_alive<1, 2>(),
+           "contacts: Contact, kept alive by the list, which must not change; inputs: fields of "
+           "rp_input that stay; radii: m, nominal; placements: of the wheelsets in their joints, "
+           "track: of the track in the world, rotation by rows and origin, 12 numbers; "
+           "frame_speed: m/s, of the world along the track.")
+      .def("step", &E::step,
+           "Reads 'motion', solves all contacts, writes the other arrays; returns the worst "
+           "status. The interpreter's lock is released.")
+      .def("place", &E::place, nb::arg("index"), nb::arg("fx"), nb::arg("fy"), nb::arg("fz"),
+           nb::arg("mx"), nb::arg("my"), nb::arg("mz"),
+           "Another wrench at a wheelset's centre, track axes, into its row of 'placed'.")
+      .def("result", &E::result, nb::arg("index"), "The last step's rp_result.")
+      .def_prop_ro("seconds", &E::seconds, "Wall-clock time inside the contact solves.")
+      .def_prop_ro("solves", &E::solves, "Number of contact solves.")
+      .def_prop_ro("motion", &view<kMotion, &E::motion>,
+                   "In: rotation by rows, origin (m), linear and angular velocity, joint frame.")
+      .def_prop_ro("wrench", &view<kWrench, &E::wrench>,
+                   "Force (N) and moment (N m) in the joint frame, at its origin.")
+      .def_prop_ro("placed", &view<kWrench, &E::placed>, "As 'wrench', of the last place().")
+      .def_prop_ro("state", &view<kState, &E::state>,
+                   "x, y, z, roll, yaw, pitch, speed, vy, vz, roll_rate, yaw_rate, pitch_rate.")
+      .def_prop_ro("contact", &view<kContact, &E::contact>,
+                   "Contact force and moment at the wheelset's centre, track axes.")
+      .def_prop_ro("power", &view<kPower, &E::power>,
+                   "Power of the contact forces (W), frictional power (W), elastic energy (J).");
+}
+
+}  // namespace railpatch::python

@@ -1,0 +1,80 @@
+// Placements and velocities of rigid bodies; see force_element.hpp.
+
+#include <cmath>
+
+#include "force_element.hpp"
+
+namespace railpatch::python {
+
+namespace {
+
+struct Vector {
+  double x, y, z;
+};
+
+Vector at(const double *v) { return {v[0], v[1], v[2]}; }
+Vector operator+(Vector a, Vector b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Vector operator-(Vector a, Vector b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vector cross(Vector a, Vector b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+// from the placed frame's axes to those it is placed in
+Vector out_of(const Placement &p, Vector a) {
+  const double *r = p.rotation;
+  return {r[0] * a.x + r[1] * a.y + r[2] * a.z, r[3] * a.x + r[4] * a.y + r[5] * a.z,
+          r[6] * a.x + r[7] * a.y + r[8] * a.z};
+}
+
+Vector into(const Placement &p, Vector a) {
+  const double *r = p.rotation;
+  return {r[0] * a.x + r[3] * a.y + r[6] * a.z, r[1] * a.x + r[4] * a.y + r[7] * a.z,
+          r[2] * a.x + r[5] * a.y + r[8] * a.z};
+}
+
+// an axis of the wheelset (0, 1, 2) in track axes
+Vector axis(int k, const Placement &joint, const Placement &wheelset, const Placement &track) {
+  const double *r = wheelset.rotation;
+  return into(track, out_of(joint, {r[k], r[3 + k], r[6 + k]}));
+}
+
+}  // namespace
+
+TrackState track_state(const Placement &joint, const double velocity[6], const Placement &wheelset,
+                       const Placement &track, double frame_speed, double nominal_radius) {
+  const Vector offset = at(wheelset.origin), spin = at(velocity + 3);
+  const Vector centre = out_of(joint, offset) + at(joint.origin) - at(track.origin);
+  const Vector p = into(track, centre);
+  const Vector v = into(track, out_of(joint, at(velocity) + cross(spin, offset)));
+  const Vector w = into(track, out_of(joint, spin));
+  const Vector a = axis(1, joint, wheelset, track), e = axis(0, joint, wheelset, track);
+
+  TrackState s;
+  s.x = p.x;
+  s.y = p.y;
+  s.z = p.z + nominal_radius;
+  const double level = std::hypot(a.y, a.z);  // cos yaw, the yaw angle being below a quarter turn
+  s.roll = std::atan2(a.z, a.y);
+  s.yaw = std::atan2(-a.x, level);
+  const double c = a.y / level, r = a.z / level;
+  // x axis after Rx(roll) Rz(yaw) is (cos yaw, sin yaw g), z axis h; e turned by pitch from there
+  const double along = e.x * level - a.x * (c * e.y + r * e.z);
+  s.pitch = std::atan2(r * e.y - c * e.z, along);
+  s.speed = v.x + frame_speed;
+  s.vy = v.y;
+  s.vz = v.z;
+  s.pitch_rate = (c * w.y + r * w.z) / level;
+  s.yaw_rate = c * w.z - r * w.y;
+  s.roll_rate = w.x - s.pitch_rate * a.x;
+  return s;
+}
+
+void joint_wrench(const double force[3], const double moment[3], const Placement &joint,
+                  const Placement &wheelset, const Placement &track, double wrench[6]) {
+  const Vector f = into(joint, out_of(track, at(force)));
+  const Vector m = into(joint, out_of(track, at(moment))) + cross(at(wheelset.origin), f);
+  const double values[6] = {f.x, f.y, f.z, m.x, m.y, m.z};
+  for (int i = 0; i < 6; ++i) wrench[i] = values[i];
+}
+
+}  // namespace railpatch::python
