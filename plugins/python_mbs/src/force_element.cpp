@@ -21,7 +21,7 @@ using Array = nb::ndarray<nb::numpy, double, nb::ndim<2>>;
 
 static_assert(sizeof(TrackState) == 12 * sizeof(double));
 
-enum { kMotion = 18, kWrench = 6, kState = 12, kContact = 6, kPower = 3 };
+enum { kMotion = 18, kWrench = 6, kState = 12, kContact = 6, kPower = 4 };
 
 Placement placement_of(const Grid &rows, size_t k) {
   if (rows.shape(1) != 12) throw nb::value_error("a placement has 12 numbers");
@@ -46,6 +46,13 @@ std::array<double, 3> spin_of(const TrackState &s) {
   const double d = std::cos(s.yaw), t = std::sin(s.yaw);
   return {s.roll_rate - s.pitch_rate * t, s.pitch_rate * c * d - s.yaw_rate * r,
           s.pitch_rate * r * d + s.yaw_rate * c};
+}
+
+// what creep forces take: -(F.creepage + M spin_creepage) V
+double creep_power(const rp_patch_result &patch) {
+  const double *f = patch.creep_force, *c = patch.creepage;
+  return -(f[0] * c[0] + f[1] * c[1] + patch.spin_moment * patch.spin_creepage) *
+         patch.rolling_speed;
 }
 
 // not converged and out of range are worse than no contact, no contact is worse than contact
@@ -161,14 +168,16 @@ class ForceElement {
     std::copy_n(result.force, 3, contact_.data() + k * kContact);
     std::copy_n(result.moment, 3, contact_.data() + k * kContact + 3);
     double *power = power_.data() + k * kPower;
+    std::fill_n(power, kPower, 0.0);
     power[0] = power_of(result, s, spin_of(s).data());
-    power[1] = power[2] = 0;
     for (const rp_side_result &side : result.side)
       for (int i = 0; i < side.patch_count; ++i) {
+        const rp_patch_result &patch = side.patch[i];
+        power[1] += patch.elastic_energy;
         // NaN where the scene has no tangential problem: no friction
-        const double friction = side.patch[i].friction_power;
-        if (friction == friction) power[1] += friction;
-        power[2] += side.patch[i].elastic_energy;
+        if (std::isnan(patch.friction_power)) continue;
+        power[2] += creep_power(patch);
+        power[3] += patch.friction_power;
       }
   }
 
@@ -223,7 +232,8 @@ void bind_force_element(nb::module_ &m) {
       .def_prop_ro("contact", &view<kContact, &E::contact>,
                    "Contact force and moment at the wheelset's centre, track axes.")
       .def_prop_ro("power", &view<kPower, &E::power>,
-                   "Power of the contact forces (W), frictional power (W), elastic energy (J).");
+                   "Of the contacts: power of the forces (W), elastic energy (J), creep power (W), "
+                   "frictional power (W).");
 }
 
 }  // namespace railpatch::python

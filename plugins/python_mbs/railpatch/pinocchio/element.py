@@ -159,14 +159,23 @@ class ForceElement:
         return float(self._power[:, 0].sum())
 
     @property
-    def friction_power(self) -> float:
-        """W, turned into heat in the contacts."""
+    def elastic_energy(self) -> float:
+        """J, stored in the contacts."""
         return float(self._power[:, 1].sum())
 
     @property
-    def elastic_energy(self) -> float:
-        """J, stored in the contacts."""
+    def creep_power(self) -> float:
+        """W, that creep forces take: -(F.creepage + M spin_creepage) V, >= 0 up to rounding."""
         return float(self._power[:, 2].sum())
+
+    @property
+    def friction_power(self) -> float:
+        """W, turned into heat in elements that slip.
+
+        In the limit of small elements it is creep_power. On a grid it misses what is lost in slip
+        regions smaller than an element: all of it where the whole patch is computed to stick.
+        """
+        return float(self._power[:, 3].sum())
 
     @property
     def solve_seconds(self) -> float:

@@ -1,0 +1,240 @@
+"""The scene of a wheelset run: a case file of kind "wheelset" with body, suspension and run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+from railpatch.case import WheelsetCase
+from railpatch.case.load import Scene, check_case, check_table, plain, read_toml
+from railpatch.case.types import NotNegative, Positive, Table, relation
+from railpatch.errors import CaseError
+
+DEFAULT = "s1002.toml"
+SIDES = ("left", "right")
+PROFILE_KEYS = ("wheel", "rail", "wheel_left", "wheel_right", "rail_left", "rail_right")
+TABLES = ("body", "suspension", "run")
+# snapshots of the fields in a run whose scene does not say
+SNAPSHOTS = 20
+GRAVITY = 9.81  # m/s^2
+# found at the start, so not to be given
+FOUND = ("roll", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate")
+
+
+class BodyTable(Table):
+    """The rigid wheelset, and what its axle boxes carry along without spinning."""
+
+    mass: Positive = Field(description="kg, of the spinning wheelset")
+    roll_inertia: Positive = Field(description="kg m^2, about any diameter (x, z)")
+    pitch_inertia: Positive = Field(description="kg m^2, about the axle")
+    carrier_mass: Positive | None = Field(
+        default=None, description="kg, of the axle boxes; left out: none"
+    )
+    carrier_inertia: Positive | None = Field(
+        default=None, description="kg m^2, of the axle boxes about x and z"
+    )
+
+    @model_validator(mode="after")
+    def _carrier(self) -> BodyTable:
+        if (self.carrier_mass is None) != (self.carrier_inertia is None):
+            raise relation("carrier_mass", self.carrier_mass, "only with 'carrier_inertia'")
+        return self
+
+    @property
+    def total_mass(self) -> float:
+        """kg."""
+        return self.mass + (self.carrier_mass or 0.0)
+
+
+class Coefficients(Table):
+    """Of springs or dampers."""
+
+    x: NotNegative = Field(default=0.0, description="N/m or N s/m, along the track")
+    y: NotNegative = Field(default=0.0, description="N/m or N s/m, lateral")
+    z: NotNegative = Field(default=0.0, description="N/m or N s/m, vertical")
+    roll: NotNegative = Field(default=0.0, description="N m/rad or N m s/rad, about x")
+    yaw: NotNegative = Field(default=0.0, description="N m/rad or N m s/rad, about z")
+
+
+class SuspensionTable(Table):
+    """Primary suspension to a frame that moves on at the speed of the start."""
+
+    stiffness: Coefficients = Field(
+        default=Coefficients(), description="of the springs (N/m, N m/rad)"
+    )
+    damping: Coefficients = Field(
+        default=Coefficients(), description="of the dampers (N s/m, N m s/rad)"
+    )
+
+    @model_validator(mode="after")
+    def _drawn(self) -> SuspensionTable:
+        if not self.stiffness.x > 0:
+            raise relation("stiffness.x", self.stiffness.x, "> 0: it draws the wheelset along")
+        return self
+
+
+class Run(Table):
+    """How far, with which steps, and what is logged."""
+
+    distance: Annotated[float, Field(gt=0, le=1e6)] = Field(description="m, to run")
+    step: Annotated[float, Field(ge=1e-6, le=0.1)] = Field(description="s, time step")
+    stepper: Literal["rk4", "ros2"] = Field(
+        default="ros2",
+        description="(no unit): rk4, explicit, Runge-Kutta of order 4; ros2, linearly implicit, "
+        "Rosenbrock of order 2 with contact derivatives by differences",
+    )
+    derivatives_every: Annotated[int, Field(ge=1, le=100_000)] = Field(
+        default=25, description="-, steps between new contact derivatives (ros2)"
+    )
+    log_every: Annotated[int, Field(ge=1)] = Field(
+        default=10, description="-, every n-th step is logged"
+    )
+    snapshot_every: Annotated[int, Field(ge=0)] | None = Field(
+        default=None,
+        description="-, the fields of every n-th logged step are logged, 0: none; left out: of "
+        f"some {SNAPSHOTS} steps",
+    )
+
+
+MODELS: dict[str, type[Table]] = {"body": BodyTable, "suspension": SuspensionTable, "run": Run}
+
+
+@dataclass(frozen=True)
+class WheelsetScene:
+    """A checked scene.
+
+    name: of the file. text: as it was read. case: the contact. profiles: key of [profiles] -> the
+    file found, or the built-in name.
+    """
+
+    name: str
+    text: bytes
+    case: WheelsetCase
+    body: BodyTable
+    suspension: SuspensionTable
+    run: Run
+    profiles: dict[str, str]
+
+    @property
+    def speed(self) -> float:
+        """m/s, of the suspension's reference and of the start."""
+        return self.case.wheelset.speed
+
+    @property
+    def steps(self) -> int:
+        """Number of time steps."""
+        return max(1, round(self.run.distance / (self.speed * self.run.step)))
+
+    @property
+    def preload(self) -> float:
+        """N, what the suspension carries, down."""
+        force = self.case.wheelset.vertical_force
+        assert force is not None
+        return force - self.body.total_mass * GRAVITY
+
+    @property
+    def snapshot_every(self) -> int:
+        """The fields of every n-th logged step are logged; 0: none."""
+        if self.run.snapshot_every is not None:
+            return self.run.snapshot_every
+        return -(-self.steps // (SNAPSHOTS * self.run.log_every))
+
+    def at_height(self) -> Scene:
+        """The case with z prescribed in place of the vertical force."""
+        wheelset = self.case.wheelset.model_copy(update={"vertical_force": None, "z": 0.0})
+        return Scene(self.case.model_copy(update={"wheelset": wheelset}), Path())
+
+    def at_rest(self) -> Scene:
+        """The case with the load prescribed and without friction, for a first estimate."""
+        method = self.case.method.model_copy(update={"tangential": "none"})
+        return Scene(self.case.model_copy(update={"method": method}), Path())
+
+
+def load_wheelset_scene(
+    path: str | Path | None = None, overrides: Mapping[str, Any] | None = None
+) -> WheelsetScene:
+    """Checks a scene; without ``path`` that of the package.
+
+    overrides: keys of [run] that replace the file's. Relative paths of profiles start beside the
+    file. Raises CaseError with every problem.
+    """
+    path = scene_file(DEFAULT) if path is None else Path(path)
+    content = plain(read_toml(path))
+    tables = {name: content.pop(name, None) for name in TABLES}
+    if isinstance(tables["run"], dict):
+        given = {key: value for key, value in (overrides or {}).items() if value is not None}
+        tables["run"] = {**tables["run"], **given}
+    problems: list[str] = []
+    checked: dict[str, Any] = {}
+    for name, table in tables.items():
+        try:
+            if table is None:
+                raise CaseError(f"{name}: value is missing, allowed {MODELS[name].__doc__}")
+            checked[name] = check_table(MODELS[name], table, name)
+        except CaseError as error:
+            problems += error.problems
+    try:
+        checked["case"] = check_case(content)
+    except CaseError as error:
+        problems += error.problems
+    if problems:
+        raise CaseError(problems)
+    check_run(**checked)
+    profiles = found_profiles(checked["case"], path.parent)
+    tables = checked["case"].profiles.model_copy(update=profiles)
+    checked["case"] = checked["case"].model_copy(update={"profiles": tables})
+    return WheelsetScene(path.name, path.read_bytes(), profiles=profiles, **checked)
+
+
+def check_run(case: Any, body: BodyTable, run: Run, **_: Any) -> None:
+    """Refuses cases that are no wheelset on straight track with a load and friction."""
+    if case.kind != "wheelset":
+        raise CaseError(f"kind: value is {case.kind!r}, allowed 'wheelset' for a wheelset run")
+    wheelset, track = case.wheelset, case.track
+    problems = []
+    if track.kind != "rail":
+        problems.append(f"track.kind: value is {track.kind!r}, allowed 'rail'")
+    if track.curvature != 0:
+        problems.append(f"track.curvature: value is {track.curvature}, allowed 0")
+    if not wheelset.speed > 0:
+        problems.append(f"wheelset.speed: value is {wheelset.speed}, allowed > 0 m/s")
+    elif not 1 <= run.distance / (wheelset.speed * run.step) <= 1e7:
+        problems.append(f"run.step: value is {run.step}, allowed 1 to 1e7 steps over the distance")
+    weight = body.total_mass * GRAVITY
+    if wheelset.vertical_force is None:
+        problems.append("wheelset.z: value is given, allowed 'vertical_force' in its place")
+    elif wheelset.vertical_force < weight:
+        problems.append(
+            f"wheelset.vertical_force: value is {wheelset.vertical_force}, allowed >= "
+            f"{weight:.6g}, the weight of [body]"
+        )
+    if not case.has_tangential:
+        problems.append("method.tangential: value is 'none', allowed a method: creep forces guide")
+    for key in FOUND:
+        if getattr(wheelset, key) != 0:
+            problems.append(
+                f"wheelset.{key}: value is {getattr(wheelset, key)}, allowed: leave it out, it is "
+                "found at the start"
+            )
+    if problems:
+        raise CaseError(problems)
+
+
+def scene_file(name: str) -> Path:
+    """Path of a scene of the package."""
+    return Path(str(resources.files("wheelset_demo"))) / "scenes" / name
+
+
+def found_profiles(case: WheelsetCase, folder: Path) -> dict[str, str]:
+    """Key of [profiles] -> path of the file, or the name as it is where there is none."""
+    found = {}
+    for key in PROFILE_KEYS:
+        name = getattr(case.profiles, key)
+        if name is not None:
+            file = folder / name
+            found[key] = str(file if file.is_file() else name)
+    return found

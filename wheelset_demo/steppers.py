@@ -1,0 +1,120 @@
+"""Time steppers: explicit Runge-Kutta of order 4, linearly implicit Rosenbrock of order 2.
+
+The creep forces damp the wheelset like f/(V m), with f some 1e7 N: the slower it runs, the stiffer
+it is. Steps of rk4 (Kutta 1901) are bounded by 2.8 V m/f and by 2.8 over the frequency at which the
+wheelset bounces on its contacts, some 1500 rad/s. ros2 has no bound on these; its steps are chosen
+for accuracy.
+
+ros2 (Verwer, Spee, Blom, Hundsdorfer, SIAM J. Sci. Comput. 20 (1999) 1456-1480) solves
+
+    (I - gamma h A) k1 = f(y),   (I - gamma h A) k2 = f(y + h k1) - 2 k1,
+    y <- y + 3/2 h k1 + 1/2 h k2,   gamma = 1 - 1/sqrt(2).
+
+It is of order 2 for any matrix A and L-stable where A is the Jacobian of f, so that A may be an old
+one: contact derivatives by differences cost a dozen evaluations.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from wheelset_demo.system import COUNT, WORKS, Rates, State, System, Vector
+
+# parts of a state as one vector: motion, work, time
+MOTION = 2 * COUNT
+TIME = MOTION + len(WORKS)
+
+GAMMA = 1 - 1 / math.sqrt(2)
+# m, of differences: small against the approach of wheel and rail, some 1e-4 m
+LENGTH = 1e-7
+# -, of differences: small against the creepage at which friction is used up, some 1e-3
+CREEPAGE = 1e-5
+ARM = 0.75  # m, half the distance of the contacts: from lengths to angles
+
+
+class Rk4:
+    """Explicit Runge-Kutta method of order 4 with a fixed step (s)."""
+
+    def __init__(self, system: System, step: float) -> None:
+        self._system, self._step = system, step
+
+    def step(self, state: State, rates: Rates) -> State:
+        """The state one step on; rates: those at the state. Raises ContactFailure."""
+        h, half = self._step, 0.5 * self._step
+        stages = [rates]
+        for share in (half, half, h):
+            motion = state.motion + share * stages[-1].motion
+            stages.append(self._system.rates(state.time + share, motion))
+        weights = [h / 6, h / 3, h / 3, h / 6]
+        motion = sum(w * k.motion for w, k in zip(weights, stages, strict=True))
+        work = sum(w * k.work for w, k in zip(weights, stages, strict=True))
+        return State(state.time + h, state.motion + motion, state.work + work)
+
+
+class Ros2:
+    """Linearly implicit Rosenbrock method of order 2 with a fixed step (s).
+
+    every: steps between new derivatives of the accelerations.
+    """
+
+    def __init__(self, system: System, step: float, every: int = 25) -> None:
+        self._system, self._step, self._every = system, step, every
+        self._age = 0
+        self._inverse: Vector | None = None
+
+    def step(self, state: State, rates: Rates) -> State:
+        """The state one step on; rates: those at the state. Raises ContactFailure."""
+        if self._inverse is None or self._age >= self._every:
+            self._renew(state, rates)
+        self._age += 1
+        h = self._step
+        first = self._inverse @ rates_of(rates)
+        moved = self._system.rates(state.time + h, state.motion + h * first[:MOTION])
+        second = self._inverse @ (rates_of(moved) - 2 * first)
+        change = h * (1.5 * first + 0.5 * second)
+        motion, work = state.motion + change[:MOTION], state.work + change[MOTION:TIME]
+        return State(state.time + h, motion, work)
+
+    def _renew(self, state: State, rates: Rates) -> None:
+        jacobian = derivatives(self._system, state, rates, self._step)
+        self._inverse = np.linalg.inv(np.eye(TIME + 1) - GAMMA * self._step * jacobian)
+        self._age = 0
+
+
+def rates_of(rates: Rates) -> Vector:
+    """[18], of motion, work and time."""
+    return np.concatenate([rates.motion, rates.work, [1.0]])
+
+
+def derivatives(system: System, state: State, rates: Rates, time_step: float) -> Vector:
+    """[18, 18], of the rates of motion, work and time with respect to these, by differences.
+
+    The works are part of it: they are then integrated with the same stiff accuracy as the motion,
+    or the balance of energies would not close. So is time, because the suspension's reference
+    moves. Nothing depends on the pitch angle.
+    """
+    jacobian = np.zeros((TIME + 1, TIME + 1))
+    known = rates_of(rates)
+    for column, length in enumerate(differences(float(state.v[0]))):
+        if length > 0:
+            motion = state.motion.copy()
+            motion[column] += length
+            moved = system.rates(state.time, motion)
+            jacobian[:, column] = (rates_of(moved) - known) / length
+    moved = system.rates(state.time + time_step, state.motion)
+    jacobian[:, TIME] = (rates_of(moved) - known) / time_step
+    return jacobian
+
+
+def differences(speed: float) -> list[float]:
+    """[12], m, rad, m/s, rad/s; 0 where nothing depends on the coordinate."""
+    rate = CREEPAGE * max(abs(speed), 1e-3)
+    lengths = [LENGTH, LENGTH, LENGTH, LENGTH / ARM, CREEPAGE, 0.0]
+    return [*lengths, rate, rate, rate, rate / ARM, rate / ARM, rate / ARM]
+
+
+def make_stepper(name: str, system: System, step: float, every: int) -> Rk4 | Ros2:
+    """By the name in the scene."""
+    return Rk4(system, step) if name == "rk4" else Ros2(system, step, every)

@@ -1,0 +1,122 @@
+"""The equations of motion: wheelset, suspension and contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+from railpatch.pinocchio import Body, Energies, ForceElement, Suspension, energies, wheelset_model
+from railpatch.pinocchio import powers as powers_of
+from railpatch.pinocchio.model import WHEELSET
+
+from wheelset_demo.scene import GRAVITY, SIDES, WheelsetScene
+
+Vector = NDArray[np.float64]
+
+# coordinates x, y, z, roll, yaw, pitch, and the same number of velocities
+COUNT = 6
+# integrated along with the motion (J), see railpatch.pinocchio.Powers
+WORKS = ("contact", "creep", "friction", "damping", "drive")
+BAD = ("not_converged", "out_of_range")
+
+
+class ContactFailure(RuntimeError):
+    """A contact was not solved; the run cannot go on. time: s, of the state."""
+
+    def __init__(self, time: float, position: float, statuses: dict[str, str]) -> None:
+        self.time, self.statuses = time, statuses
+        sides = ", ".join(f"{side} wheel {status}" for side, status in statuses.items())
+        super().__init__(f"contact failed at {time:.6g} s, {position:.6g} m: {sides}")
+
+
+@dataclass(frozen=True)
+class State:
+    """time: s. motion: [12], coordinates and velocities. work: [5], J, by WORKS."""
+
+    time: float
+    motion: Vector
+    work: Vector
+
+    @property
+    def q(self) -> Vector:
+        """[6], x, y, z, roll, yaw, pitch."""
+        return self.motion[:COUNT]
+
+    @property
+    def v(self) -> Vector:
+        """[6], speed, vy, vz, roll_rate, yaw_rate, pitch_rate."""
+        return self.motion[COUNT:]
+
+
+@dataclass(frozen=True)
+class Rates:
+    """Time derivatives of a state. motion: [12]. work: [5], W. status: of the contact."""
+
+    motion: Vector
+    work: Vector
+    status: str
+
+
+class System:
+    """Wheelset, suspension and contact of a scene. Keeps the contact's last solution."""
+
+    def __init__(self, scene: WheelsetScene) -> None:
+        """Raises CaseError, ProfileError."""
+        body = scene.body
+        wheelset = Body(body.mass, (body.roll_inertia, body.pitch_inertia, body.roll_inertia))
+        radius = scene.case.wheelset.nominal_radius
+        self.model = wheelset_model(
+            wheelset, radius, carrier_body=carrier_of(scene), gravity=GRAVITY
+        )
+        self.data = self.model.createData()
+        self.element = ForceElement(self.model, WHEELSET, scene.at_height())
+        table = scene.suspension
+        self.suspension = Suspension(
+            self.element,
+            table.stiffness.model_dump(),
+            table.damping.model_dump(),
+            speed=scene.speed,
+            preload=scene.preload,
+        )
+        zeros = [pin.Force.Zero() for _ in range(self.model.njoints)]
+        self._fext = pin.StdVec_Force(zeros)
+        self._joint = self.model.getJointId(WHEELSET)
+        self._torque = np.zeros(self.model.nv)
+        self.evaluations = 0
+
+    def rates(self, time: float, motion: Vector) -> Rates:
+        """At a time (s) and a motion, [12]. Raises ContactFailure."""
+        q, v = motion[:COUNT], motion[COUNT:]
+        pin.forwardKinematics(self.model, self.data, q, v)
+        self._fext[self._joint].setZero()
+        status = self.element.step(self.data, self._fext)
+        self.evaluations += 1
+        if status in BAD:
+            raise ContactFailure(time, float(q[0]), self.statuses())
+        self.suspension.step(time, self._fext)
+        acceleration = pin.aba(self.model, self.data, q, v, self._torque, self._fext)
+        power = powers_of(self.element, [self.suspension])
+        work = np.array([getattr(power, name) for name in WORKS])
+        return Rates(np.concatenate([v, acceleration]), work, status)
+
+    def statuses(self) -> dict[str, str]:
+        """By side, how the last contact ended."""
+        result = self.element.result()
+        return {side: result[side]["status"] for side in SIDES}
+
+    def energies(self, state: State) -> Energies:
+        """Of a state whose rates were the last ones asked for."""
+        return energies(
+            self.model, self.data, state.q, state.v, self.element, [self.suspension]
+        )
+
+
+def carrier_of(scene: WheelsetScene) -> Body | None:
+    """What is carried without spinning."""
+    mass, inertia = scene.body.carrier_mass, scene.body.carrier_inertia
+    if mass is None or inertia is None:
+        return None
+    # nothing turns about the axle but the wheelset: any value will do
+    return Body(mass, (inertia, inertia, inertia))
