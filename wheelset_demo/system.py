@@ -108,9 +108,7 @@ class System:
 
     def energies(self, state: State) -> Energies:
         """Of a state whose rates were the last ones asked for."""
-        return energies(
-            self.model, self.data, state.q, state.v, self.element, [self.suspension]
-        )
+        return energies(self.model, self.data, state.q, state.v, self.element, [self.suspension])
 
 
 def carrier_of(scene: WheelsetScene) -> Body | None:

@@ -238,6 +238,24 @@ RIG_BALANCE = Message(
     ),
 )
 
+WHEELSET_ENERGY = Message(
+    "WheelsetEnergy",
+    "Energies of a wheelset on track, and work done since the start.",
+    (
+        _number("kinetic", "J", "kinetic energy of all bodies", "track"),
+        _number("gravity", "J", "potential energy of gravity"),
+        _number("suspension", "J", "potential energy of springs and static load"),
+        _number("elastic", "J", "elastic energy of the contacts"),
+        _number("contact_work", "J", "work of the contact forces on the wheelset"),
+        _number("creep_work", "J", "lost in the contacts: creep forces times creepages"),
+        _number("friction_work", "J", "the part of it found in slipping elements"),
+        _number("damping_work", "J", "taken by the dampers"),
+        _number("drive_work", "J", "put in by the suspension's moving reference"),
+        _number("mechanical_residual", "J", "open in the balance of bodies and springs"),
+        _number("contact_residual", "J", "open in the balance of the contacts"),
+    ),
+)
+
 SOLVER_STATS = Message(
     "SolverStats",
     "Work and wall-clock time of one position or time step.",
@@ -258,6 +276,7 @@ CHANNELS = (
     Channel("/left/contact", WHEEL_CONTACT, "result of the left wheel"),
     Channel("/right/contact", WHEEL_CONTACT, "result of the right wheel"),
     Channel("/rig/balance", RIG_BALANCE, "force balance; only in runs of the roller rig"),
+    Channel("/wheelset/energy", WHEELSET_ENERGY, "balance of energies; only in runs on track"),
     Channel("/solver/stats", SOLVER_STATS, "iterations and times"),
     Channel("/left/fields", CONTACT_FIELDS, "fields of the left patches, at chosen moments"),
     Channel("/right/fields", CONTACT_FIELDS, "fields of the right patches, at chosen moments"),

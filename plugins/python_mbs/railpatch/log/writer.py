@@ -31,6 +31,8 @@ from .encode import encode, encode_fields
 from .geometry import SceneGeometry
 from .schema import PACKAGE, schema_data
 
+# what a run may leave out
+OPTIONAL = ("/rig/balance", "/wheelset/energy", "/solver/stats")
 FLUSH_INTERVAL = 0.25  # s, wall clock
 CASE_MEDIA_TYPE = "application/toml"
 PROFILE_MEDIA_TYPE = "text/plain"
@@ -91,6 +93,7 @@ class RunLog:
         right: Mapping[str, Any],
         balance: Mapping[str, Any] | None = None,
         stats: Mapping[str, Any] | None = None,
+        energy: Mapping[str, Any] | None = None,
         fields: Mapping[str, Sequence[Mapping[str, Any]]] | None = None,
     ) -> None:
         """Logs one position or time step; the fields of each dict stand in channels.py.
@@ -104,7 +107,7 @@ class RunLog:
         if self._stream.closed:
             raise ValueError(f"{self.path}: the run log is closed")
         time_ns = self._checked_time(time_s)
-        messages = _encoded(state, left, right, balance, stats, fields or {})
+        messages = _encoded(state, left, right, balance, stats, energy, fields or {})
         messages["/tf"] = scene.transforms(state, self._geometry, time_ns)
         messages["/scene/contact"] = scene.contact({"left": left, "right": right}, time_ns)
         with self._lock:
@@ -218,6 +221,7 @@ def _encoded(
     right: Any,
     balance: Any,
     stats: Any,
+    energy: Any,
     fields: Mapping[str, Sequence[Mapping[str, Any]]],
 ) -> dict[str, Any]:
     """The messages of one step by topic, all checked before any is written."""
@@ -226,13 +230,13 @@ def _encoded(
         "/left/contact": left,
         "/right/contact": right,
         "/rig/balance": balance,
+        "/wheelset/energy": energy,
         "/solver/stats": stats,
     }
-    # only a run's balance and statistics may be left out
     messages = {
         topic: encode(channel(topic).message, values, topic)
         for topic, values in given.items()
-        if values is not None or topic not in ("/rig/balance", "/solver/stats")
+        if values is not None or topic not in OPTIONAL
     }
     for side in fields:
         if side not in SIDES:

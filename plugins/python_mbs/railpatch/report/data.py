@@ -23,8 +23,9 @@ class ReportError(ValueError):
 class Positions:
     """The run's n positions (or time steps).
 
-    ``state``, ``contact``, ``balance``, ``stats``: series of n messages each; where a position has
-    none, its values are absent. ``force``: by side, on the wheel in track axes, N, shape (n, 3).
+    ``state``, ``contact``, ``balance``, ``stats``, ``energy``: series of n messages each; where a
+    position has none, its values are absent. ``force``: by side, on the wheel in track axes, N,
+    shape (n, 3).
     ``ratio``: by side, lateral over vertical force, the same for wheel and roller; NaN without
     vertical force. ``solved``: whether all of the position converged. ``along``: the abscissa of
     plots over the run, with ``along_label``.
@@ -35,6 +36,7 @@ class Positions:
     contact: dict[str, Series]
     balance: Series
     stats: Series
+    energy: Series
     force: dict[str, np.ndarray]
     ratio: dict[str, np.ndarray]
     solved: np.ndarray
@@ -61,6 +63,11 @@ class Positions:
     def has_stats(self) -> bool:
         """Whether times and iterations were logged."""
         return len(self.run["/solver/stats"]) > 0
+
+    @property
+    def has_energy(self) -> bool:
+        """Whether the balance of energies was logged."""
+        return len(self.run["/wheelset/energy"]) > 0
 
     def patch_count(self, side: str) -> np.ndarray:
         """Patches of one side at each position, shape (n,)."""
@@ -92,6 +99,7 @@ def positions(run: Run) -> Positions:
         contact,
         balance,
         _at(run["/solver/stats"], times),
+        _at(run["/wheelset/energy"], times),
         force,
         ratio,
         _solved(contact, balance),

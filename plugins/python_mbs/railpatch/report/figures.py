@@ -170,6 +170,29 @@ def balance_work(data: Positions) -> go.Figure:
     return styled(figure, 360)
 
 
+def energy(data: Positions) -> go.Figure:
+    """Work done since the start, and what is open in the balance of energies."""
+    figure = make_subplots(1, 2, horizontal_spacing=0.12)
+    works = {
+        "lost in creep": ("creep_work", "#c2528b"),
+        "in slipping elements": ("friction_work", "#d9a0bd"),
+        "dampers": ("damping_work", "#5f9e6e"),
+        "drive": ("drive_work", "#17879c"),
+    }
+    for name, (field, color) in works.items():
+        _Adder(figure, data, 1, 1).line(data.along, data.energy[field], name, color)
+    residuals = {
+        "bodies and springs": ("mechanical_residual", "#b5651d"),
+        "contacts": ("contact_residual", "#9467bd"),
+    }
+    for name, (field, color) in residuals.items():
+        _Adder(figure, data, 1, 2).line(data.along, data.energy[field], name, color)
+    figure.update_yaxes(title_text="work [J]", col=1)
+    figure.update_yaxes(title_text="open in the balance [J]", exponentformat="power", col=2)
+    figure.update_xaxes(title_text=data.along_label)
+    return styled(figure, 360)
+
+
 def styled(figure: go.Figure, height: int) -> go.Figure:
     """Neutral on a light and on a dark page."""
     figure.update_layout(

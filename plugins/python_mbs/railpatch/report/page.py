@@ -120,6 +120,13 @@ def _sections(
             "<h2>Work of the contact solver</h2>",
             _plot(figures.contact_work(data), "contact-work"),
         ]
+    if data.has_energy:
+        parts += [
+            "<h2>Energies</h2><p>Work since the start. What is lost in creep is the power of creep "
+            "forces on creepages; the sum over slipping elements misses slip regions smaller than "
+            "an element.</p>",
+            _plot(figures.energy(data), "energy"),
+        ]
     if data.has_balance:
         parts += [
             "<h2>Work of the force balance</h2>",

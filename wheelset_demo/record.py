@@ -1,0 +1,125 @@
+"""The messages of the run log: from a scene and its steps."""
+
+from __future__ import annotations
+
+import math
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from railpatch.case.wheel import Deviation
+from railpatch.log import SceneGeometry
+from railpatch.profiles import load_profile
+from railpatch.profiles.raw import Role
+
+from wheelset_demo.scene import SIDES, WheelsetScene
+from wheelset_demo.system import WORKS, State, System
+from wheelset_demo.trace import STORES, Trace
+
+COORDINATES = ("x", "y", "z", "roll", "yaw", "pitch")
+RATES = ("speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate")
+
+
+class Recorder:
+    """Makes the messages of one logged step after the other."""
+
+    def __init__(self, scene: WheelsetScene, system: System) -> None:
+        self._scene, self._system = scene, system
+        self._clock = time.perf_counter()
+        self._evaluations = 0
+
+    def messages(self, trace: Trace, state: State) -> dict[str, Any]:
+        """Arguments of RunLog.write for the trace's last step."""
+        assert trace.result is not None
+        result = trace.result.to_dict()
+        snapshot = any("pressure" in patch for patch in result["left"]["patches"])
+        fields = {side: result[side]["patches"] for side in SIDES} if snapshot else None
+        return {
+            "state": self._state(state, result),
+            "left": result["left"],
+            "right": result["right"],
+            "energy": energy(trace),
+            "stats": self._stats(),
+            "fields": fields,
+        }
+
+    def failed(self) -> dict[str, Any]:
+        """The same for the last contact that was asked for, which was not solved."""
+        result = self._system.element.result().to_dict()
+        values = self._system.element.state()
+        state = {name: values[name] for name in COORDINATES + RATES}
+        return {
+            "state": state | {"force": result["force"], "moment": result["moment"]},
+            "left": result["left"],
+            "right": result["right"],
+            "stats": self._stats(),
+        }
+
+    def _state(self, state: State, result: dict[str, Any]) -> dict[str, Any]:
+        values = dict(zip(COORDINATES + RATES, state.motion.tolist(), strict=True))
+        values["pitch"] = math.remainder(values["pitch"], math.tau)
+        return values | {
+            "vertical_force": self._scene.case.wheelset.vertical_force,
+            "force": result["force"],
+            "moment": result["moment"],
+        }
+
+    def _stats(self) -> dict[str, Any]:
+        """Work since the step that was logged before."""
+        now, evaluations = time.perf_counter(), self._system.evaluations
+        stats = {
+            "wall_time": now - self._clock,
+            "contact_evaluations": len(SIDES) * (evaluations - self._evaluations),
+        }
+        self._clock, self._evaluations = now, evaluations
+        return stats
+
+
+def energy(trace: Trace) -> dict[str, float]:
+    """The balance of energies at the trace's last step."""
+    stored = dict(zip(STORES, trace.energies[-1], strict=True))
+    first = dict(zip(STORES, trace.energies[0], strict=True))
+    work = dict(zip(WORKS, trace.works[-1].tolist(), strict=True))
+    change = {name: stored[name] - first[name] for name in STORES}
+    mechanical = change["kinetic"] + change["gravity"] + change["suspension"]
+    return {
+        **stored,
+        **{f"{name}_work": value for name, value in work.items()},
+        "mechanical_residual": mechanical - work["contact"] - work["drive"] + work["damping"],
+        "contact_residual": work["contact"] + work["creep"] + change["elastic"],
+    }
+
+
+def attachments(scene: WheelsetScene) -> dict[str, bytes]:
+    """The profile files' content by their name."""
+    files = [Path(name) for name in scene.profiles.values()]
+    return {file.name: file.read_bytes() for file in files if file.is_file()}
+
+
+def geometry(scene: WheelsetScene) -> SceneGeometry:
+    """The bodies of the 3D scene. Raises ProfileError."""
+    wheelset, track = scene.case.wheelset, scene.case.track
+    return SceneGeometry.from_profiles(
+        "rail",
+        {side: curve(scene, "wheel", side, getattr(wheelset, side)) for side in SIDES},
+        {side: curve(scene, "rail", side, Deviation()) for side in SIDES},
+        nominal_radius=wheelset.nominal_radius,
+        flange_back_distance=wheelset.flange_back_distance,
+        flange_back_position=wheelset.flange_back_position,
+        gauge=track.gauge,
+        gauge_height=track.gauge_height,
+        rail_offsets={side: getattr(track, side).offset[1:] for side in SIDES},
+    )
+
+
+def curve(scene: WheelsetScene, role: Role, side: str, deviation: Deviation) -> np.ndarray:
+    """m, [n, 2], y and z of a profile, a right-hand one for both sides, with its deviation."""
+    profiles = scene.case.profiles
+    _, name = profiles.of(role, side)
+    assert name is not None
+    mirror = -1.0 if side == "left" else 1.0
+    _, y, z = deviation.offset
+    profile = load_profile(name, role, smoothing=profiles.smoothing)
+    moved = profile.moved(mirror * y, z, mirror * deviation.rotation[0])
+    return np.column_stack([moved.y, moved.z])

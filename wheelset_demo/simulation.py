@@ -1,0 +1,83 @@
+"""One run: release, time steps, log."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from railpatch.log import RunLog
+
+from wheelset_demo.record import Recorder, attachments, geometry
+from wheelset_demo.scene import WheelsetScene
+from wheelset_demo.start import released
+from wheelset_demo.steppers import make_stepper
+from wheelset_demo.summary import Summary, summarise
+from wheelset_demo.system import ContactFailure, State, System
+from wheelset_demo.trace import Trace
+
+Advance = Callable[[State], None]
+
+
+class Simulation:
+    """A scene, ready to run: the wheelset is released and at rest in its fast motions."""
+
+    def __init__(self, scene: WheelsetScene) -> None:
+        """Raises CaseError, ProfileError, and ContactFailure where it cannot be released."""
+        self.scene = scene
+        self.system = System(scene)
+        self.state = released(scene, self.system)
+
+    def run(self, log: RunLog | None = None, advance: Advance | None = None) -> Trace:
+        """All steps. log: where every n-th is written. advance: called after each.
+
+        A contact that is not solved ends the run: the failure is in the trace, and its state the
+        last one in the log.
+        """
+        run, steps = self.scene.run, self.scene.steps
+        stepper = make_stepper(run.stepper, self.system, run.step, run.derivatives_every)
+        trace = Trace(self.scene)
+        recorder = Recorder(self.scene, self.system)
+        try:
+            for index in range(steps + 1):
+                rates = self.system.rates(self.state.time, self.state.motion)
+                if index % run.log_every == 0 or index == steps:
+                    trace.add(self.system, self.state)
+                    if log is not None:
+                        log.write(self.state.time, **recorder.messages(trace, self.state))
+                if index < steps:
+                    self.state = stepper.step(self.state, rates)
+                    if advance is not None:
+                        advance(self.state)
+        except ContactFailure as failure:
+            trace.failure = failure
+            if log is not None:
+                # a stage may be the logged step itself: times must rise
+                late = max(failure.time, trace.times[-1] + 1e-9)
+                log.write(late, **recorder.failed())
+        trace.finish(self.system)
+        return trace
+
+
+def simulate(scene: WheelsetScene) -> Trace:
+    """A run without log. Raises as Simulation."""
+    return Simulation(scene).run()
+
+
+def run_scene(scene: WheelsetScene, output: Path, advance: Advance | None = None) -> Summary:
+    """Runs a scene and writes the log.
+
+    Raises as Simulation, before a file is made, and OSError where the log cannot be written.
+    """
+    begin = time.perf_counter()
+    simulation = Simulation(scene)
+    with RunLog(
+        output,
+        case_text=scene.text,
+        case_name=scene.name,
+        profiles=attachments(scene),
+        geometry=geometry(scene),
+    ) as log:
+        trace = simulation.run(log, advance)
+        log.close(str(trace.failure or ""))
+    return summarise(trace, time.perf_counter() - begin)
