@@ -72,7 +72,6 @@ def wheelset(
         raise WrongCall(MISSING) from None
     from wheelset_demo.scene import load_wheelset_scene
     from wheelset_demo.simulation import run_scene
-    from wheelset_demo.system import ContactFailure
 
     try:
         loaded = load_wheelset_scene(scene, overrides)
@@ -80,9 +79,6 @@ def wheelset(
             summary = run_scene(loaded, output, advance)
     except (CaseError, ProfileError, OSError) as error:
         raise WrongCall(str(error)) from None
-    except ContactFailure as error:
-        click.echo(f"status: {error}; nothing was written", err=True)
-        context.exit(EXIT_NOT_CONVERGED)
     if as_json:
         click.echo(json.dumps(summary.to_dict(), allow_nan=False))
     elif not quiet:

@@ -23,7 +23,7 @@ class Simulation:
     """A scene, ready to run: the wheelset is released and at rest in its fast motions."""
 
     def __init__(self, scene: WheelsetScene) -> None:
-        """Raises CaseError, ProfileError, and ContactFailure where it cannot be released."""
+        """Raises CaseError, also where it cannot be released, and ProfileError."""
         self.scene = scene
         self.system = System(scene)
         self.state = released(scene, self.system)

@@ -7,15 +7,19 @@ from railpatch import CaseError, Contact
 
 from wheelset_demo.scene import SIDES, WheelsetScene
 from wheelset_demo.steppers import differences
-from wheelset_demo.system import BAD, COUNT, WORKS, State, System, Vector
+from wheelset_demo.system import BAD, COUNT, WORKS, ContactFailure, State, System, Vector
 
-# unknowns, as indices of the motion: z, roll, and the rates of y, yaw and pitch
-UNKNOWN = [2, 3, 7, 10, 11]
-# whose accelerations vanish: y, z, roll, yaw, pitch
-FREE = [7, 8, 9, 10, 11]
-MOST_STEPS = 30
+# unknowns and the accelerations that vanish, as indices of the motion: z, roll and the rates of y,
+# yaw and pitch with the accelerations of y, z, roll, yaw, pitch; on a flange, which holds no
+# wheelset at rest sideways, z and roll only
+QUASI_STATIC = ([2, 3, 7, 10, 11], [7, 8, 9, 10, 11])
+UPRIGHT = ([2, 3], [8, 9])
+MOST_STEPS = 60
 # m/s^2 and rad/s^2
 TOLERANCE = 1e-4
+# longest step: m, rad, of lengths and angles, a tenth of the approach; -, of rates over the speed
+LENGTH_LIMIT = 2e-5
+RATE_LIMIT = 1e-3
 
 
 def released(scene: WheelsetScene, system: System) -> State:
@@ -23,36 +27,52 @@ def released(scene: WheelsetScene, system: System) -> State:
 
     Vertical position, roll angle and the rates of y, yaw and pitch are those at which all
     accelerations but that along the track vanish: the quasi-static motion, which any other start
-    would reach within centimetres, after a bounce. Raises CaseError where there is no such state,
-    ContactFailure.
+    would reach within centimetres, after a bounce. Where there is none, near a flange, the
+    wheelset starts without the rate of yaw, and only its vertical and roll accelerations vanish.
+    Raises CaseError where both wheels cannot carry the load.
     """
-    wheelset = scene.case.wheelset
-    motion = estimate(scene)
-    rates = system.rates(0.0, motion)
-    for _ in range(MOST_STEPS):
-        residual = rates.motion[FREE]
-        if np.abs(residual).max() < TOLERANCE:
-            return State(0.0, motion, np.zeros(len(WORKS)))
-        change = -np.linalg.solve(jacobian(system, motion, rates.motion), residual)
-        # a step keeps within a tenth of the approach and of the creepages
-        limit = np.array([2e-5, 2e-5, *np.array([1e-3, 1e-3, 1e-3]) * scene.speed])
-        motion = motion.copy()
-        motion[UNKNOWN] += change / max(1.0, float(np.abs(change / limit).max()))
-        rates = system.rates(0.0, motion)
-    raise CaseError(
-        f"wheelset.y: value is {wheelset.y}, allowed one where the wheelset can be released: "
-        "no quasi-static motion was found here"
-    )
+    start = estimate(scene)
+    motion = balanced(system, start, *QUASI_STATIC)
+    if motion is None:
+        start[COUNT + 4] = 0.0
+        motion = balanced(system, start, *UPRIGHT)
+    if motion is None:
+        y = scene.case.wheelset.y
+        raise CaseError(
+            f"wheelset.y: value is {y}, allowed one where both wheels can carry the load"
+        )
+    return State(0.0, motion, np.zeros(len(WORKS)))
 
 
-def jacobian(system: System, motion: Vector, rates: Vector) -> Vector:
-    """[5, 5], of the accelerations with respect to the unknowns."""
+def balanced(system: System, start: Vector, unknown: list[int], free: list[int]) -> Vector | None:
+    """[12], the motion near a start without the accelerations ``free``; Newton's method."""
+    motion = start.copy()
+    limit = np.array([LENGTH_LIMIT if k < COUNT else RATE_LIMIT * motion[COUNT] for k in unknown])
+    try:
+        for _ in range(MOST_STEPS):
+            rates = system.rates(0.0, motion).motion
+            residual = rates[free]
+            if np.abs(residual).max() < TOLERANCE:
+                return motion
+            slope = jacobian(system, motion, rates, unknown, free)
+            change = -np.linalg.solve(slope, residual)
+            motion[unknown] += change / max(1.0, float(np.abs(change / limit).max()))
+    except (ContactFailure, np.linalg.LinAlgError):
+        # the search has left the range of the contact
+        return None
+    return None
+
+
+def jacobian(
+    system: System, motion: Vector, rates: Vector, unknown: list[int], free: list[int]
+) -> Vector:
+    """[k, k], of the accelerations with respect to the unknowns, by differences."""
     sizes = differences(float(motion[COUNT]))
     columns = []
-    for column in UNKNOWN:
+    for column in unknown:
         moved = motion.copy()
         moved[column] += sizes[column]
-        columns.append((system.rates(0.0, moved).motion - rates)[FREE] / sizes[column])
+        columns.append((system.rates(0.0, moved).motion - rates)[free] / sizes[column])
     return np.array(columns).T
 
 
