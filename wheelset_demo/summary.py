@@ -31,6 +31,7 @@ class Waves:
     first: float
     last: float
     conicity: float
+    radius: float
     half_distance: float
     klingel: float
 
@@ -131,7 +132,7 @@ def waves_of(trace: Trace) -> Waves:
     crossings, peaks = half_waves(x, y)
     length = 2 * float(np.mean(np.diff(crossings))) if len(crossings) > 1 else math.nan
     conicity, distance = conicity_of(trace), half_distance_of(trace)
-    radius = trace.scene.case.wheelset.nominal_radius
+    radius = mean(np.array(trace.radii))
     curvature = conicity / (radius * distance) if distance > 0 else math.nan
     return Waves(
         length,
@@ -139,6 +140,7 @@ def waves_of(trace: Trace) -> Waves:
         float(abs(y[0])) if len(y) else math.nan,
         float(peaks[-1]) if len(peaks) else math.nan,
         conicity,
+        radius,
         distance,
         2 * math.pi / math.sqrt(curvature) if curvature > 0 else math.nan,
     )
@@ -177,6 +179,10 @@ def conicity_of(trace: Trace) -> float:
 def half_distance_of(trace: Trace) -> float:
     """m, mean half distance of the contacts."""
     contacts = np.array(trace.contacts)
-    if not len(contacts) or not np.isfinite(contacts).any():
-        return math.nan
-    return 0.5 * float(np.nanmean(contacts[:, 1] - contacts[:, 0]))
+    return 0.5 * mean(contacts[:, 1] - contacts[:, 0]) if len(contacts) else math.nan
+
+
+def mean(values: Vector) -> float:
+    """Of those that are known."""
+    known = values[np.isfinite(values)]
+    return float(known.mean()) if known.size else math.nan
