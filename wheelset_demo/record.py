@@ -87,7 +87,7 @@ def energy(trace: Trace) -> dict[str, float]:
         **stored,
         **{f"{name}_work": value for name, value in work.items()},
         "mechanical_residual": mechanical - work["contact"] - work["drive"] + work["damping"],
-        "contact_residual": work["contact"] + work["creep"] + change["elastic"],
+        "contact_residual": work["contact"] + work["friction"] + change["elastic"],
     }
 
 

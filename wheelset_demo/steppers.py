@@ -84,12 +84,12 @@ class Ros2:
 
 
 def rates_of(rates: Rates) -> Vector:
-    """[18], of motion, work and time."""
+    """[17], of motion, work and time."""
     return np.concatenate([rates.motion, rates.work, [1.0]])
 
 
 def derivatives(system: System, state: State, rates: Rates, time_step: float) -> Vector:
-    """[18, 18], of the rates of motion, work and time with respect to these, by differences.
+    """[17, 17], of the rates of motion, work and time with respect to these, by differences.
 
     The works are part of it: they are then integrated with the same stiff accuracy as the motion,
     or the balance of energies would not close. So is time, because the suspension's reference

@@ -67,8 +67,8 @@ class Summary:
             ("wave length", f"{w.length:.3f} m, mean of {w.count} half waves"),
             ("Klingel", f"{w.klingel:.3f} m with conicity {w.conicity:.5f} found in the run"),
             ("amplitude", f"{1e3 * w.first:.3f} mm at first, {1e3 * w.last:.3f} mm at last"),
-            ("lost in creep", f"{e['creep']:.4g} J, {e['friction']:.4g} J in slipping elements"),
-            ("drive, dampers", f"{e['drive']:.4g} J put in, {e['damping']:.4g} J taken"),
+            ("drive", f"{e['drive']:.4g} J put in"),
+            ("lost", f"{e['friction']:.4g} J in friction, {e['damping']:.4g} J in dampers"),
             (
                 "balance",
                 f"open by {100 * self.mechanical_error:.2g} % (bodies and springs), "
@@ -95,7 +95,7 @@ def summarise(trace: Trace, wall_time: float = math.nan) -> Summary:
     """Of a run that may have ended early, even at its start."""
     logged = bool(trace.times)
     energies = {name: last(trace.work(name)) for name in WORKS}
-    lost = energies["creep"] + energies["damping"]
+    lost = energies["friction"] + energies["damping"]
     return Summary(
         good=trace.failure is None,
         message=str(trace.failure or ""),

@@ -18,7 +18,7 @@ Vector = NDArray[np.float64]
 # coordinates x, y, z, roll, yaw, pitch, and the same number of velocities
 COUNT = 6
 # integrated along with the motion (J), see railpatch.pinocchio.Powers
-WORKS = ("contact", "creep", "friction", "damping", "drive")
+WORKS = ("contact", "friction", "damping", "drive")
 BAD = ("not_converged", "out_of_range")
 
 
@@ -33,7 +33,7 @@ class ContactFailure(RuntimeError):
 
 @dataclass(frozen=True)
 class State:
-    """time: s. motion: [12], coordinates and velocities. work: [5], J, by WORKS."""
+    """time: s. motion: [12], coordinates and velocities. work: [4], J, by WORKS."""
 
     time: float
     motion: Vector
@@ -52,7 +52,7 @@ class State:
 
 @dataclass(frozen=True)
 class Rates:
-    """Time derivatives of a state. motion: [12]. work: [5], W. status: of the contact."""
+    """Time derivatives of a state. motion: [12]. work: [4], W. status: of the contact."""
 
     motion: Vector
     work: Vector

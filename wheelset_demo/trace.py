@@ -19,7 +19,7 @@ STORES = ("kinetic", "gravity", "suspension", "elastic")
 class Trace:
     """The n logged steps of a run.
 
-    times: [n], s. motions: [n][12]. works: [n][5], J, by WORKS, since the start. energies: [n][4],
+    times: [n], s. motions: [n][12]. works: [n][4], J, by WORKS, since the start. energies: [n][4],
     J, by STORES. radii: [n][2], m, rolling radii left and right. contacts: [n][2], m, lateral
     positions of the contacts, weighted with their load; NaN for a wheel in the air. statuses: [n],
     by side. result: of the last step. failure: what ended the run before its end. evaluations,
@@ -83,7 +83,7 @@ class Trace:
 
     def contact_residual(self) -> NDArray[np.float64]:
         """[n], J, what is missing in the balance of the contacts."""
-        return self.work("contact") + self.work("creep") + self.change("elastic")
+        return self.work("contact") + self.work("friction") + self.change("elastic")
 
     def balance_residual(self) -> NDArray[np.float64]:
         """[n], J, what is missing in the balance of all."""

@@ -41,7 +41,7 @@ def test_run_log_and_report(tmp_path: Path):
     assert len(state) == len(energy) == 8
     assert state["y"][0] == 0.004
     assert (state["speed"] > 19.9).all()
-    assert energy["creep_work"][-1] == pytest.approx(summary["energies"]["creep"])
+    assert energy["friction_work"][-1] == pytest.approx(summary["energies"]["friction"])
     assert set(run["/left/contact"]["status"]) == {"converged"}
     assert run.counts["/right/fields"] > 0
     assert run.counts["/scene/bodies"] == 1
@@ -54,7 +54,7 @@ def test_run_log_and_report(tmp_path: Path):
 def test_summary_text_and_quiet(tmp_path: Path):
     ran = invoke("-o", tmp_path / "run.mcap", "--distance", 0.1)
     assert ran.exit_code == 0
-    for word in ("s1002.toml", "wave length", "Klingel", "balance", "lost in creep"):
+    for word in ("s1002.toml", "wave length", "Klingel", "balance", "in friction"):
         assert word in ran.stdout
     assert ran.stderr == ""
     quiet = invoke("-o", tmp_path / "run.mcap", "--distance", 0.1, "--quiet")

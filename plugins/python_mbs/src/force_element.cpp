@@ -21,7 +21,7 @@ using Array = nb::ndarray<nb::numpy, double, nb::ndim<2>>;
 
 static_assert(sizeof(TrackState) == 12 * sizeof(double));
 
-enum { kMotion = 18, kWrench = 6, kState = 12, kContact = 6, kPower = 4 };
+enum { kMotion = 18, kWrench = 6, kState = 12, kContact = 6, kPower = 3 };
 
 Placement placement_of(const Grid &rows, size_t k) {
   if (rows.shape(1) != 12) throw nb::value_error("a placement has 12 numbers");
@@ -48,8 +48,8 @@ std::array<double, 3> spin_of(const TrackState &s) {
           s.pitch_rate * r * d + s.yaw_rate * c};
 }
 
-// what creep forces take: -(F.creepage + M spin_creepage) V
-double creep_power(const rp_patch_result &patch) {
+// what creep forces take and friction turns into heat: -(F.creepage + M spin_creepage) V
+double friction_power(const rp_patch_result &patch) {
   const double *f = patch.creep_force, *c = patch.creepage;
   return -(f[0] * c[0] + f[1] * c[1] + patch.spin_moment * patch.spin_creepage) *
          patch.rolling_speed;
@@ -175,9 +175,7 @@ class ForceElement {
         const rp_patch_result &patch = side.patch[i];
         power[1] += patch.elastic_energy;
         // NaN where the scene has no tangential problem: no friction
-        if (std::isnan(patch.friction_power)) continue;
-        power[2] += creep_power(patch);
-        power[3] += patch.friction_power;
+        if (!std::isnan(patch.creep_force[0])) power[2] += friction_power(patch);
       }
   }
 
@@ -231,9 +229,9 @@ void bind_force_element(nb::module_ &m) {
                    "x, y, z, roll, yaw, pitch, speed, vy, vz, roll_rate, yaw_rate, pitch_rate.")
       .def_prop_ro("contact", &view<kContact, &E::contact>,
                    "Contact force and moment at the wheelset's centre, track axes.")
-      .def_prop_ro("power", &view<kPower, &E::power>,
-                   "Of the contacts: power of the forces (W), elastic energy (J), creep power (W), "
-                   "frictional power (W).");
+      .def_prop_ro(
+          "power", &view<kPower, &E::power>,
+          "Of the contacts: power of the forces (W), elastic energy (J), frictional power (W).");
 }
 
 }  // namespace railpatch::python

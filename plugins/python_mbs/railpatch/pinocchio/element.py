@@ -164,18 +164,13 @@ class ForceElement:
         return float(self._power[:, 1].sum())
 
     @property
-    def creep_power(self) -> float:
-        """W, that creep forces take: -(F.creepage + M spin_creepage) V, >= 0 up to rounding."""
-        return float(self._power[:, 2].sum())
-
-    @property
     def friction_power(self) -> float:
-        """W, turned into heat in elements that slip.
+        """W, that creep forces take and friction turns into heat, >= 0 up to rounding.
 
-        In the limit of small elements it is creep_power. On a grid it misses what is lost in slip
-        regions smaller than an element: all of it where the whole patch is computed to stick.
+        It is -(F.creepage + M spin_creepage) V of all patches. A sum over slipping elements would
+        miss what is lost in slip regions smaller than an element.
         """
-        return float(self._power[:, 3].sum())
+        return float(self._power[:, 2].sum())
 
     @property
     def solve_seconds(self) -> float:

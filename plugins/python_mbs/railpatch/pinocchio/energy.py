@@ -9,13 +9,11 @@ where the drive is what keeps the suspension's reference at its speed. The conta
 the wheelset is F.v + M.omega. What they take goes into friction and into the elastic energy of the
 contacts:
 
-    - work of the contact forces = work lost in creep + change of elastic energy
+    - work of the contact forces = work of friction + change of elastic energy
 
 The first holds for any contact law, so it tests time stepper and force elements; the second tests
 the contact. The contact is quasi-static: its elastic energy is that of the steady state at each
-moment. For the loss the second takes the creep power -(F.creepage + M spin_creepage) V. That is
-friction's power, but the sum over slipping elements misses what is lost in slip regions smaller
-than an element: see ForceElement.friction_power.
+moment.
 """
 
 from __future__ import annotations
@@ -48,12 +46,10 @@ class Energies:
 
 @dataclass(frozen=True)
 class Powers:
-    """W. contact: of the contact forces on the wheelsets. creep: lost in the contacts, >= 0.
-    friction: the part of it found in slipping elements, >= 0. damping: in the dampers, >= 0. drive:
-    put in by the moving references."""
+    """W. contact: of the contact forces on the wheelsets. friction: turned into heat in the
+    contacts, >= 0. damping: in the dampers, >= 0. drive: put in by the moving references."""
 
     contact: float
-    creep: float
     friction: float
     damping: float
     drive: float
@@ -81,7 +77,6 @@ def powers(element: ForceElement, suspensions: Iterable[Suspension] = ()) -> Pow
     springs = list(suspensions)
     return Powers(
         element.contact_power,
-        element.creep_power,
         element.friction_power,
         sum(suspension.damping_power for suspension in springs),
         sum(suspension.drive_power for suspension in springs),

@@ -174,8 +174,7 @@ def energy(data: Positions) -> go.Figure:
     """Work done since the start, and what is open in the balance of energies."""
     figure = make_subplots(1, 2, horizontal_spacing=0.12)
     works = {
-        "lost in creep": ("creep_work", "#c2528b"),
-        "in slipping elements": ("friction_work", "#d9a0bd"),
+        "friction": ("friction_work", "#c2528b"),
         "dampers": ("damping_work", "#5f9e6e"),
         "drive": ("drive_work", "#17879c"),
     }

@@ -122,9 +122,8 @@ def _sections(
         ]
     if data.has_energy:
         parts += [
-            "<h2>Energies</h2><p>Work since the start. What is lost in creep is the power of creep "
-            "forces on creepages; the sum over slipping elements misses slip regions smaller than "
-            "an element.</p>",
+            "<h2>Energies</h2><p>Work since the start. Friction's is that of the creep forces on "
+            "the creepages; the drive holds the suspension's reference at its speed.</p>",
             _plot(figures.energy(data), "energy"),
         ]
     if data.has_balance:
