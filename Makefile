@@ -19,7 +19,7 @@ export PATH := $(CURDIR)/$(BIN):$(PATH)
 
 CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
 # what the installed package is made from
-SOURCES := $(shell find core plugins rig_model -type f -not -name '*.pyc' 2>/dev/null) \
+SOURCES := $(shell find core plugins rig_model wheelset_demo -type f -not -name '*.pyc' 2>/dev/null) \
 	CMakeLists.txt README.md
 
 .PHONY: help demo test lint format clean setup system test-cpp test-python test-asan
@@ -28,12 +28,15 @@ help: ## this list
 	@echo "make targets:"
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
 
-demo: setup ## set-up, roller-rig replay, log and report
+demo: setup ## set-up, roller-rig replay, wheelset on track; logs and reports
 	@mkdir -p build/demo
 	$(BIN)/railpatch rig -o build/demo/run.mcap
 	$(BIN)/railpatch report build/demo/run.mcap -o build/demo/report.html
-	@printf '\nlog:     %s\nreport:  %s\n' \
-		"$(CURDIR)/build/demo/run.mcap" "$(CURDIR)/build/demo/report.html"
+	$(BIN)/railpatch wheelset -o build/demo/wheelset.mcap
+	$(BIN)/railpatch report build/demo/wheelset.mcap -o build/demo/wheelset.html
+	@printf '\nroller rig\n  log:     %s\n  report:  %s\nwheelset on track\n  log:     %s\n  report:  %s\n' \
+		"$(CURDIR)/build/demo/run.mcap" "$(CURDIR)/build/demo/report.html" \
+		"$(CURDIR)/build/demo/wheelset.mcap" "$(CURDIR)/build/demo/wheelset.html"
 
 test: setup lint test-cpp test-python test-asan ## set-up and every check
 	@printf '\nall checks passed:\n'
