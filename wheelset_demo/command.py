@@ -12,8 +12,6 @@ import click
 from railpatch.commands import EXIT_NOT_CONVERGED, WrongCall
 from railpatch.errors import CaseError, ProfileError
 
-MISSING = "Pinocchio is not installed: pip install 'railpatch[pinocchio]'"
-
 
 def show_scene(context: click.Context, _option: click.Parameter, value: bool) -> None:
     """Prints the scene that is run by default, and ends."""
@@ -67,9 +65,9 @@ def wheelset(
     solved ends the run with exit code 3; the log up to there is kept.
     """
     try:
-        import pinocchio  # noqa: F401
-    except ImportError:
-        raise WrongCall(MISSING) from None
+        import railpatch.pinocchio  # noqa: F401
+    except ImportError as error:
+        raise WrongCall(str(error)) from None
     from wheelset_demo.scene import load_wheelset_scene
     from wheelset_demo.simulation import run_scene
 

@@ -6,17 +6,17 @@ import mbs_samples as samples
 import numpy as np
 import pinocchio as pin
 import pytest
-from railpatch.pinocchio import ForceElement, Suspension
+from railpatch.pinocchio import ForceElement, Suspension, energies
 
 STIFFNESS = {"x": 3e5, "y": 2e5, "z": 1e6, "roll": 4e5, "yaw": 5e5}
 DAMPING = {"x": 1e3, "y": 2e3, "z": 3e3, "roll": 4e3, "yaw": 5e3}
 
 
-def on_wheelset(time, q, v, **more):
-    """Suspension after one step, and the fext with its force alone."""
+def on_wheelset(time, q, v, frame_speed=0.0, **more):
+    """Suspension after one step, and the generalised force of it alone."""
     model = samples.model()
     data = model.createData()
-    element = ForceElement(model, "wheelset", samples.CASE)
+    element = ForceElement(model, "wheelset", samples.CASE, frame_speed=frame_speed)
     suspension = Suspension(element, STIFFNESS, DAMPING, **more)
     pin.forwardKinematics(model, data, q, v)
     element.step(data, samples.no_forces(model))
@@ -53,3 +53,19 @@ def test_generalised_force_energy_and_power(seed):
     rate = (potentials[1] - potentials[0]) / (2 * step)
     balance = suspension.drive_power - suspension.damping_power - rate
     assert float(force @ v) == pytest.approx(balance, rel=1e-6)
+
+
+def test_in_a_frame_that_moves_along():
+    q, v, time, frame_speed = samples.ROLLING, samples.RATES, 0.4, 15.0
+    still, force = on_wheelset(time, q, v, speed=20.0)
+    shift = np.array([frame_speed, 0, 0, 0, 0, 0])
+    moving, same = on_wheelset(time, q - shift * time, v - shift, frame_speed, speed=20.0)
+    np.testing.assert_allclose(same, force, rtol=1e-9)
+    assert moving.drive_power == pytest.approx(still.drive_power, rel=1e-9)
+
+
+def test_no_energies_in_a_moving_frame():
+    model = samples.model()
+    element = ForceElement(model, "wheelset", samples.CASE, frame_speed=15.0)
+    with pytest.raises(ValueError, match=r"frame_speed: value is 15.0, allowed 0"):
+        energies(model, model.createData(), samples.ROLLING, samples.RATES, element)

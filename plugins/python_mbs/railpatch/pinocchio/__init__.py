@@ -8,6 +8,14 @@ axes are the track's (x forward, y right, z down) unless a placement of the trac
 track is straight.
 """
 
+try:
+    from pinocchio import StdVec_Force as _  # noqa: F401
+except ImportError as error:
+    # another package of that name lacks it
+    raise ImportError(
+        "railpatch.pinocchio needs Pinocchio: pip install 'railpatch[pinocchio]'"
+    ) from error
+
 from railpatch.pinocchio.element import ForceElement
 from railpatch.pinocchio.energy import Energies, Powers, energies, powers
 from railpatch.pinocchio.model import Body, wheelset_model

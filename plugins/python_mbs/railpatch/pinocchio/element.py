@@ -77,13 +77,14 @@ class ForceElement:
         self.contacts = [Contact(one, folder=folder, timing=timing) for one in cases]
         for contact in self.contacts:
             check_case(contact.case)
+        self.frame_speed = float(frame_speed)
         self._core = _core.ForceElement(
             [contact._core for contact in self.contacts],
             [input_of(contact.case) for contact in self.contacts],
             np.array([contact.case.wheelset.nominal_radius for contact in self.contacts]),
             placements([wheelset] * len(joints)),
             placements([track]),
-            float(frame_speed),
+            self.frame_speed,
         )
         self._joint_count = model.njoints
         self._states, self._power = self._core.state, self._core.power

@@ -63,7 +63,13 @@ def energies(
     element: ForceElement,
     suspensions: Iterable[Suspension] = (),
 ) -> Energies:
-    """At the last step of element and suspensions, whose q and v these are."""
+    """At the last step of element and suspensions, whose q and v these are.
+
+    Raises ValueError for an element in a moving frame: kinetic energy is that in the model's world,
+    but work is counted on the track.
+    """
+    if element.frame_speed != 0:
+        raise ValueError(f"frame_speed: value is {element.frame_speed}, allowed 0 for energies")
     return Energies(
         pin.computeKineticEnergy(model, data, q, v),
         pin.computePotentialEnergy(model, data, q),

@@ -23,7 +23,8 @@ class Suspension:
     element: the force element of the wheelset; its step() comes first. stiffness: N/m for "x", "y",
     "z", N m/rad for "roll", "yaw"; damping: N s/m, N m s/rad; what is left out is 0. index: of the
     wheelset in the element. reference: m, rad, where the springs are free of force, by the same
-    names; its x moves on with ``speed`` (m/s). preload: N, constant force on the wheelset, down.
+    names; its x moves on with ``speed`` (m/s, on the track). preload: N, constant force on the
+    wheelset, down.
 
     The force acts at the wheelset's centre through bearings without friction: there is no moment
     about the axle. Moments are those of the generalised coordinates roll and yaw: with angular
@@ -54,10 +55,10 @@ class Suspension:
         self._force = np.zeros(5)
 
     def step(self, time: float, fext: pin.StdVec_Force) -> None:
-        """Adds the suspension's force to ``fext``; time: s, the reference is at speed * time."""
+        """Adds the suspension's force to ``fext``; time: s, since the reference was at x = 0."""
         state = self._element.states[self._index]
         self._deflection = state[POSITION] - self._reference
-        self._deflection[0] -= self.speed * time
+        self._deflection[0] -= (self.speed - self._element.frame_speed) * time
         self._rates = state[RATES]
         self._rates[0] -= self.speed
         self._force = -self._stiffness * self._deflection - self._damping * self._rates
