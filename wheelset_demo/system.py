@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
+from railpatch import CaseError
 from railpatch.pinocchio import Body, Energies, ForceElement, Suspension, energies, wheelset_model
 from railpatch.pinocchio import powers as powers_of
 from railpatch.pinocchio.model import WHEELSET
@@ -25,10 +26,9 @@ BAD = ("not_converged", "out_of_range")
 class ContactFailure(RuntimeError):
     """A contact was not solved; the run cannot go on. time: s, of the state."""
 
-    def __init__(self, time: float, position: float, statuses: dict[str, str]) -> None:
-        self.time, self.statuses = time, statuses
-        sides = ", ".join(f"{side} wheel {status}" for side, status in statuses.items())
-        super().__init__(f"contact failed at {time:.6g} s, {position:.6g} m: {sides}")
+    def __init__(self, time: float, position: float, reason: str) -> None:
+        self.time = time
+        super().__init__(f"contact failed at {time:.6g} s, {position:.6g} m: {reason}")
 
 
 @dataclass(frozen=True)
@@ -91,8 +91,12 @@ class System:
         q, v = motion[:COUNT], motion[COUNT:]
         pin.forwardKinematics(self.model, self.data, q, v)
         self._fext[self._joint].setZero()
-        status = self.element.step(self.data, self._fext)
         self.evaluations += 1
+        try:
+            status = self.element.step(self.data, self._fext)
+        except CaseError as error:
+            # far off the rails, or not a number: a step too long
+            raise ContactFailure(time, float(q[0]), str(error)) from None
         if status in BAD:
             raise ContactFailure(time, float(q[0]), self.statuses())
         self.suspension.step(time, self._fext)
@@ -101,10 +105,10 @@ class System:
         work = np.array([getattr(power, name) for name in WORKS])
         return Rates(np.concatenate([v, acceleration]), work, status)
 
-    def statuses(self) -> dict[str, str]:
-        """By side, how the last contact ended."""
+    def statuses(self) -> str:
+        """How the last contact ended, by side."""
         result = self.element.result()
-        return {side: result[side]["status"] for side in SIDES}
+        return ", ".join(f"{side} wheel {result[side]['status']}" for side in SIDES)
 
     def energies(self, state: State) -> Energies:
         """Of a state whose rates were the last ones asked for."""

@@ -93,6 +93,15 @@ def test_contact_that_fails_ends_the_run(tmp_path: Path):
     assert len(run["/wheelset/energy"]) == len(run["/wheelset/state"]) - 1 > 1
 
 
+@pytest.mark.parametrize("stepper", ["ros2", "rk4"])
+def test_steps_that_are_too_long_end_the_run(stepper: str, tmp_path: Path):
+    log = tmp_path / "run.mcap"
+    ran = invoke("-o", log, "--step", 0.02, "--stepper", stepper, "--distance", 20.0)
+    assert ran.exit_code == 3
+    assert "status: contact failed at" in ran.stderr
+    assert "contact failed at" in read_run(log).stopped_by
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
