@@ -219,6 +219,9 @@ rp_error check_input(const rp_config &c, const rp_input &in, rp_message *message
     check.numbers("wheel_rotation", in.wheel_rotation[side], 3, angle);
     check.numbers("rail_offset", in.rail_offset[side], 3, {-1, 1, false, false});
     check.numbers("rail_rotation", in.rail_rotation[side], 3, angle);
+    check.require(in.rail_rotation[side][1] == 0 && in.rail_rotation[side][2] == 0,
+                  "rail_rotation about y and z must be 0: this version turns rails and rollers "
+                  "about x only");
   }
   check.number("roller_pitch_rate", in.roller_pitch_rate, finite);
   return check.error();

@@ -142,6 +142,7 @@ contact::contact(const rp_config &config)
         memory_.emplace_back(size.nx * size.ny, tangential);
     }
   }
+  scene_ = fingerprint(config, shape_);
   // nothing of the caller's memory is kept
   config_.undeformed_distance = nullptr;
   for (auto *p : {&config_.wheel[0], &config_.wheel[1], &config_.rail[0], &config_.rail[1]})
@@ -187,7 +188,7 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
   if (config_.load == RP_POSITION && config_.geometry != RP_UNDEFORMED_DISTANCE &&
       in.approach <= 0) {
     result.approach = in.approach;
-    result.normal_force = result.max_pressure = result.contact_area = 0;
+    set_unloaded(solver_.scene(), result);
     return finish(RP_NO_CONTACT);
   }
   patch_problem problem;
@@ -294,177 +295,27 @@ void contact::find_z(double target, Evaluate &&evaluate, rp_result &out) {
     if (search.converged() || search.exhausted()) break;
   }
   out.z = touch + depth;
-  for (auto &side : out.side)
-    for (int i = 0; i < side.patch_count; ++i)
+  // what does not carry the force asked for is no solution of the case, wheel by wheel
+  const rp_status found = search.converged()  ? RP_CONVERGED
+                          : search.too_deep() ? RP_OUT_OF_RANGE
+                                              : RP_NOT_CONVERGED;
+  const auto degrade = [&](rp_status &status) {
+    if (status == RP_CONVERGED) status = found;
+  };
+  for (auto &side : out.side) {
+    degrade(side.status);
+    for (int i = 0; i < side.patch_count; ++i) {
+      degrade(side.patch[i].status);
       side.patch[i].residual = std::max(side.patch[i].residual, search.residual());
-  if (search.too_deep())
-    out.status = RP_OUT_OF_RANGE;
-  else if (!search.converged() && out.status != RP_OUT_OF_RANGE)
-    out.status = RP_NOT_CONVERGED;
+    }
+  }
+  if (found != RP_CONVERGED && out.status != RP_OUT_OF_RANGE) out.status = found;
   depth_ = search.converged() ? depth : 0.0;
 }
 
 void contact::reset() {
   for (auto &m : memory_) m.warm = m.solved = false;
   depth_ = 0;
-}
-
-// --- state -------------------------------------------------------------------------------------
-
-namespace {
-
-constexpr uint32_t state_magic = 0x52505331;  // "RPS1"
-
-struct state_header {
-  uint32_t magic, kind;
-  uint64_t bytes, checksum;
-  // the checksum covers all that follows
-  uint64_t scene;
-  double depth, friction_coefficient;
-};
-constexpr size_t checked_from = offsetof(state_header, scene);
-struct patch_header {
-  grid g;
-  vec3 reference;
-  uint64_t warm;
-};
-
-// FNV-1a (Fowler, Noll, Vo 1991)
-uint64_t checksum(const unsigned char *data, size_t size) {
-  uint64_t hash = 14695981039346656037ull;
-  for (size_t i = 0; i < size; ++i) hash = (hash ^ data[i]) * 1099511628211ull;
-  return hash;
-}
-
-// Tells the states of one config from those of another; shapes and profiles are left out.
-uint64_t fingerprint(const rp_config &c) {
-  const double values[] = {static_cast<double>(c.geometry),
-                           static_cast<double>(c.load),
-                           static_cast<double>(c.regime),
-                           static_cast<double>(c.normal),
-                           static_cast<double>(c.tangential),
-                           static_cast<double>(c.spin_offset),
-                           static_cast<double>(c.track),
-                           static_cast<double>(c.side),
-                           static_cast<double>(c.elements[0]),
-                           static_cast<double>(c.elements[1]),
-                           static_cast<double>(c.max_elements[0]),
-                           static_cast<double>(c.max_elements[1]),
-                           static_cast<double>(c.max_iterations),
-                           static_cast<double>(c.max_patches),
-                           c.element_size[0],
-                           c.element_size[1],
-                           c.shear_modulus[0],
-                           c.shear_modulus[1],
-                           c.poisson_ratio[0],
-                           c.poisson_ratio[1],
-                           c.semi_axes[0],
-                           c.semi_axes[1],
-                           c.curvatures[0],
-                           c.curvatures[1],
-                           c.line_contact_radius,
-                           c.width,
-                           c.friction_coefficient,
-                           c.layer_shear_modulus,
-                           c.layer_thickness,
-                           c.tolerance,
-                           c.nominal_radius,
-                           c.flange_back_distance,
-                           c.flange_back_position,
-                           c.gauge,
-                           c.gauge_height,
-                           c.cant,
-                           c.curvature,
-                           c.roller_radius};
-  unsigned char bytes[sizeof values];
-  std::memcpy(bytes, values, sizeof values);
-  return checksum(bytes, sizeof bytes);
-}
-
-// the fields that a later step starts from
-template <class Memory, class F>
-void for_each_start_field(Memory &m, F &&f) {
-  const auto bytes = static_cast<size_t>(m.g.count()) * sizeof(double);
-  if (!m.warm) return;
-  f(m.pressure.data(), bytes);
-  if (m.px.size() == 0) return;
-  f(m.px.data(), bytes);
-  f(m.py.data(), bytes);
-}
-
-}  // namespace
-
-size_t contact::state_size() const {
-  size_t size = sizeof(state_header) + memory_.size() * sizeof(patch_header);
-  for (const auto &m : memory_)
-    for_each_start_field(m, [&](const double *, size_t bytes) { size += bytes; });
-  return size;
-}
-
-void contact::save_state(unsigned char *buffer) const {
-  unsigned char *at = buffer + sizeof(state_header);
-  const auto put = [&](const void *data, size_t size) {
-    std::memcpy(at, data, size);
-    at += size;
-  };
-  for (const auto &m : memory_) {
-    const patch_header header{m.g, m.reference, m.warm ? 1u : 0u};
-    put(&header, sizeof header);
-    for_each_start_field(m, put);
-  }
-  const auto bytes = static_cast<size_t>(at - buffer);
-  state_header header{
-      state_magic, static_cast<uint32_t>(config_.kind), bytes, 0, fingerprint(config_),
-      depth_,      solver_.scene().friction_coefficient};
-  std::memcpy(buffer, &header, sizeof header);
-  header.checksum = checksum(buffer + checked_from, bytes - checked_from);
-  std::memcpy(buffer, &header, sizeof header);
-}
-
-bool contact::restore_state(const unsigned char *buffer, size_t size) {
-  state_header header;
-  if (size < sizeof header) return false;
-  std::memcpy(&header, buffer, sizeof header);
-  const bool ours = header.magic == state_magic &&
-                    header.kind == static_cast<uint32_t>(config_.kind) && header.bytes == size &&
-                    header.scene == fingerprint(config_) &&
-                    header.checksum == checksum(buffer + checked_from, size - checked_from);
-  if (!ours || !state_fits(buffer + sizeof header, size - sizeof header)) return false;
-  const unsigned char *at = buffer + sizeof header;
-  for (auto &m : memory_) {
-    patch_header patch;
-    std::memcpy(&patch, at, sizeof patch);
-    at += sizeof patch;
-    m.g = patch.g;
-    m.reference = patch.reference;
-    m.warm = patch.warm != 0;
-    m.solved = false;
-    for_each_start_field(m, [&](double *data, size_t bytes) {
-      std::memcpy(data, at, bytes);
-      at += bytes;
-    });
-  }
-  depth_ = header.depth;
-  solver_.set_friction_coefficient(header.friction_coefficient);
-  return true;
-}
-
-// Walks the patches without changing anything: every grid must fit this handle's memory.
-bool contact::state_fits(const unsigned char *at, size_t size) const {
-  for (const auto &m : memory_) {
-    patch_header patch;
-    if (size < sizeof patch) return false;
-    std::memcpy(&patch, at, sizeof patch);
-    const bool fits = patch.g.nx >= 0 && patch.g.ny >= 0 && solver_.fits(patch.g);
-    if (!fits) return false;
-    const size_t fields = patch.warm ? (m.px.size() ? 3 : 1) : 0;
-    const size_t bytes =
-        sizeof patch + fields * static_cast<size_t>(patch.g.count()) * sizeof(double);
-    if (size < bytes) return false;
-    at += bytes;
-    size -= bytes;
-  }
-  return size == 0;
 }
 
 // --- fields and stages -------------------------------------------------------------------------

@@ -27,6 +27,8 @@ class contact {
   const rp_config &config() const { return config_; }
 
  private:
+  // Tells the states of one config from those of another.
+  static uint64_t fingerprint(const rp_config &config, const aligned_buffer<double> &shape);
   bool has_side(int side) const;
   patch_memory &memory(int side, int patch);
   const patch_memory &memory(int side, int patch) const;
@@ -42,6 +44,7 @@ class contact {
   std::vector<patch_memory> memory_;   // of the sides in use, max_patches each
   std::vector<wheel_contact> wheels_;  // of the sides in use
   double depth_ = 0;                   // m, last z found minus first touch; 0: none
+  uint64_t scene_ = 0;                 // fingerprint of the config
   aligned_buffer<double> shape_;       // undeformed distance of the case
 };
 

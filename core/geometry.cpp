@@ -330,23 +330,10 @@ locus_point side_geometry::locus(double s) const {
   l.valid = rail_surface(l.wheel[0], l.wheel[1], l.rail_z, l.contact_angle);
   if (!l.valid) return l;
   l.gap = l.rail_z - l.wheel[2];
-  set_rates(p, sine, l);
+  // how the gap opens in x
+  l.curvature = 0.5 / (sizes_.nominal_radius + p.z);
+  if (track_.kind == track_kind::roller) l.curvature += 0.5 / (axle_z_ - l.rail_z);
   return l;
-}
-
-// how the gap opens in x, and how the locus moves with s (on a roller to first order in sine)
-void side_geometry::set_rates(const curve_point &p, double sine, locus_point &l) const {
-  const double r = sizes_.nominal_radius + p.z, cosine = std::sqrt(1 - sine * sine);
-  const mat3 &m = wheel_axes_;
-  double dsine = m[0][1] / m[0][0] * (p.d2z * p.dy - p.dz * p.d2y) / (p.dy * p.dy);
-  l.curvature = 0.5 / r;
-  if (track_.kind == track_kind::roller) {
-    const double reach = axle_z_ - l.rail_z;
-    l.curvature += 0.5 / reach;
-    dsine = (dsine - m[0][1] * p.dy / reach) / (1 + r / reach);
-  }
-  l.lateral_rate = m[1][0] * (p.dz * sine + r * dsine) + m[1][1] * p.dy +
-                   m[1][2] * (p.dz * cosine - r * dsine * sine / cosine);
 }
 
 // by chords between the samples: near enough where only the roller's slope depends on it

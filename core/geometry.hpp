@@ -95,7 +95,6 @@ struct locus_point {
   double rail_z = 0;         // m, of the rail surface there
   double contact_angle = 0;  // rad, of the rail surface
   double curvature = 0;      // 1/m, the gap grows with curvature x^2
-  double lateral_rate = 0;   // d(y)/d(s) along the locus
 };
 
 struct surface;

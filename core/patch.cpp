@@ -9,8 +9,7 @@ namespace railpatch {
 namespace {
 
 constexpr double closeness = 2e-5;  // m, sampled gaps below this are looked at closely
-constexpr int min_rows = 24, max_rows = 64;
-constexpr double row_spacing = 2e-4;  // m
+constexpr int rows = 64;            // of one part, for its means
 
 // One part of contact, with its sums over rows.
 struct part {
@@ -125,19 +124,26 @@ class part_list {
   double last_ = side_geometry::far_apart, before_ = last_;
 };
 
-// Rows at s = m + h cos t for equally spaced t: the weight's d^2.5 at the edges becomes smooth, so
-// that few rows give the means to many digits.
+// Rows at s = m - h cos t for equally spaced t: the weight's d^2.5 at the edges becomes smooth, so
+// that few rows give the means to many digits. Their number is fixed and a row is as wide as the
+// lateral distance of its neighbours, so the means move smoothly with the wheelset, kinks in the
+// profiles' curvature included.
 void sum_rows(const side_geometry &side, part &p) {
   const double half = 0.5 * (p.end - p.begin), middle = 0.5 * (p.end + p.begin);
-  const int rows = std::clamp(static_cast<int>(2 * half / row_spacing), min_rows, max_rows);
+  locus_point row[rows + 2];
+  for (int i = 1; i <= rows; ++i)
+    row[i] = side.locus(middle - half * std::cos(std::numbers::pi * (i - 0.5) / rows));
+  row[0] = side.locus(p.begin);
+  row[rows + 1] = side.locus(p.end);
+  p.first = row[0].wheel;
+  p.last = row[rows + 1].wheel;
   bool any = false;
-  for (int i = 0; i < rows; ++i) {
-    const double t = std::numbers::pi * (i + 0.5) / rows;
-    const locus_point l = side.locus(middle - half * std::cos(t));
+  for (int i = 1; i <= rows; ++i) {
+    const locus_point &l = row[i];
     if (!l.valid || !(l.gap < 0)) continue;
     const double depth = -l.gap, reach = std::sqrt(depth / l.curvature);
-    const double weight =
-        depth * depth * reach * l.lateral_rate * half * std::sin(t) * std::numbers::pi / rows;
+    const double width = 0.5 * (row[i + 1].wheel[1] - row[i - 1].wheel[1]);
+    const double weight = depth * depth * reach * width;
     p.weight += weight;
     p.x += weight * l.wheel[0];
     p.y += weight * l.wheel[1];
@@ -147,8 +153,6 @@ void sum_rows(const side_geometry &side, part &p) {
     any = true;
   }
   for (double *v : {&p.x, &p.y, &p.angle}) *v /= p.weight;
-  p.first = side.locus(p.begin).wheel;
-  p.last = side.locus(p.end).wheel;
 }
 
 double distance(const part &a, const part &b) {

@@ -35,6 +35,12 @@ rp_patch_result empty_patch_result() {
   return r;
 }
 
+void set_unloaded(const patch_scene &scene, rp_patch_result &result) {
+  result.normal_force = result.max_pressure = result.contact_area = result.elastic_energy = 0;
+  if (scene.tangential == RP_TANGENTIAL_NONE) return;
+  result.creep_force[0] = result.creep_force[1] = result.spin_moment = result.friction_power = 0;
+}
+
 patch_memory::patch_memory(int max_count, bool tangential) {
   const auto n = static_cast<size_t>(max_count);
   undeformed_distance = aligned_buffer<double>(n);
@@ -122,6 +128,7 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   observe(RP_STAGE_NORMAL, false);
   memory.warm = loaded && result.status == RP_CONVERGED;
   if (!loaded) {
+    set_unloaded(scene_, result);
     leave_unloaded(problem, memory);
     wrench = {};
     return;
@@ -183,7 +190,6 @@ bool patch_contact::solve_normal(const patch_problem &problem, patch_memory &mem
   result.elements[RP_EXTERIOR] = g.count() - touching;
   if (touching > 0) return true;
   degrade(result, RP_NO_CONTACT);
-  result.normal_force = result.max_pressure = result.contact_area = result.elastic_energy = 0;
   return false;
 }
 
@@ -236,7 +242,8 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   result.elements[RP_SLIP] = t.slip;
   result.newton_iterations = t.newton_iterations;
   result.inner_iterations = t.products;
-  result.residual = std::max(result.residual, t.residual);
+  // written so that a residual that is no number stays visible
+  if (!(t.residual <= result.residual)) result.residual = t.residual;
   result.friction_power = problem.rolling_speed * t.friction;
   if (!t.converged)
     degrade(result, scene_.tangential == RP_TANGENTIAL_FULL ? RP_NOT_CONVERGED : RP_OUT_OF_RANGE);

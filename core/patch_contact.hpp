@@ -99,6 +99,8 @@ class patch_contact {
   aligned_buffer<double> bound_, leading_, scratch_[2];
 };
 
+// Sets what the scene's stages give where nothing touches: zeros.
+void set_unloaded(const patch_scene &scene, rp_patch_result &result);
 // A result with every number NaN and every count zero.
 rp_patch_result empty_patch_result();
 

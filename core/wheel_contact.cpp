@@ -132,7 +132,12 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
   problem.g = choose_grid(region);
   const grid &g = problem.g;
   const bool usable = g.nx > 0 && g.ny > 0 && g.dx > 0 && g.dy > 0 && std::isfinite(g.x0 + g.y0);
-  if (!usable || !solver.fits(g)) return result.status = RP_OUT_OF_RANGE;
+  if (!usable || !solver.fits(g)) {
+    // what this patch carries is not known, so neither is the sum
+    std::fill_n(out.force, 3, nan);
+    std::fill_n(out.moment, 3, nan);
+    return result.status = RP_OUT_OF_RANGE;
+  }
 
   // the reference moves with the contact; a new contact elsewhere starts afresh
   const vec3 &origin = region.frame.origin;

@@ -22,10 +22,10 @@ today's forces of the program that made them leave 300 N m at 18 mrad, and balan
 the pitch rate by 2.6e-3 rad/s; balancing their exact moment about the axle moves it by 1.4e-3
 rad/s. What the positions satisfy, within 1e-4 rad/s, is the sum of the whole longitudinal forces in
 track axes: creep force plus the part of the normal force along x, which a yawed wheel has because
-it touches its roller ahead of the roller's top, or behind. This is axle_torque = "track", the
-default. axle_torque = "wheelset" is Eq. 55 to the letter; pressures on a body of revolution have no
-moment about its axis, so this is the torque on a free axle, and the better choice where that is
-wanted rather than the published positions.
+it touches its roller ahead of the roller's top, or behind. This is axle_torque = "track", which the
+scene of the NRC run asks for, to be compared with those positions. The default, "wheelset", is
+Eq. 55 to the letter: pressures on a body of revolution have no moment about its axis, so it is the
+torque on a free axle.
 """
 
 from __future__ import annotations

@@ -45,10 +45,10 @@ class BalanceTable(Table):
     """How the balance is searched."""
 
     axle_torque: Literal["track", "wheelset"] = Field(
-        default="track",
-        description="which longitudinal forces balance about the axle (no unit): those in track "
-        "axes with the part of the normal force along x, as in the published positions, or those "
-        "in wheelset axes as in the report's Eq. 51",
+        default="wheelset",
+        description="which longitudinal forces balance about the axle (no unit): those in wheelset "
+        "axes (a free axle, the report's Eq. 51), or those in track axes with the part of the "
+        "normal force along x, as in the published positions of the NRC run",
     )
     tolerance: Annotated[float, Field(ge=1e-8, le=1e-2)] = Field(
         default=5e-5,

@@ -144,7 +144,7 @@ typedef struct rp_config {
   /* grid: elements across the contact's bounding box, or the element size; the other zero */
   int32_t elements[2];
   double element_size[2];  /* m */
-  int32_t max_elements[2]; /* capacity of one patch's grid; 0: chosen from the scene */
+  int32_t max_elements[2]; /* with element_size: capacity of one patch's grid; 0: chosen */
 
   /* motion and friction */
   rp_regime regime;
@@ -194,7 +194,8 @@ typedef struct rp_input {
   double speed, vy, vz;  /* m/s, forward (0 on a rig), lateral, vertical */
   double roll_rate, yaw_rate, pitch_rate;          /* rad/s */
   double wheel_offset[2][3], wheel_rotation[2][3]; /* m, rad: from the rigid wheelset, its axes */
-  double rail_offset[2][3], rail_rotation[2][3];   /* m, rad: from design, track axes */
+  double rail_offset[2][3], rail_rotation[2][3];   /* m, rad: from design, track axes; of the
+                                                      rotations only that about x may differ from 0 */
   double roller_pitch_rate;                        /* rad/s */
 } rp_input;
 
@@ -227,6 +228,10 @@ typedef struct rp_patch_result {
   double element_size[2];    /* m */
 } rp_patch_result;
 
+/* One wheel. On a roller the contact frame is not pitched: where the contact lies ahead of or
+ * behind the roller's top, at x, the part -Fn x/R of the normal force along track x is left out of
+ * force and moment, as in the published results of the program CONTACT. NaN where a patch could not
+ * be solved. */
 typedef struct rp_side_result {
   rp_status status;
   double force[3];       /* N on the wheel, track axes */

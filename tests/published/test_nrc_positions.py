@@ -17,8 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from railpatch import Contact
-
-rig_scene = pytest.importorskip("rig_model.scene")
+from rig_model import scene as rig_scene
 
 PROJECT = Path(__file__).parents[2]
 FILE = "nrc_dry_10mph_13750lb.csv"

@@ -85,6 +85,8 @@ class Commands(click.Group):
             return super().invoke(ctx)
         except (CaseError, ProfileError) as error:
             raise WrongCall(str(error)) from None
+        except MemoryError as error:
+            raise WrongCall(f"grid: {error or 'out of memory'}, allowed what fits") from None
 
     @staticmethod
     def _outside() -> dict[str, EntryPoint]:

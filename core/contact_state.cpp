@@ -1,0 +1,185 @@
+// The state that later steps of a handle depend on, as plain bytes.
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+
+#include "contact.hpp"
+
+namespace railpatch {
+
+namespace {
+
+constexpr uint32_t state_magic = 0x52505331;  // "RPS1"
+
+struct state_header {
+  uint32_t magic, kind;
+  uint64_t bytes, checksum;
+  // the checksum covers all that follows
+  uint64_t scene;
+  double depth, friction_coefficient;
+};
+constexpr size_t checked_from = offsetof(state_header, scene);
+struct patch_header {
+  grid g;
+  vec3 reference;
+  uint64_t warm;
+};
+
+// FNV-1a (Fowler, Noll, Vo 1991)
+uint64_t checksum(const unsigned char *data, size_t size) {
+  uint64_t hash = 14695981039346656037ull;
+  for (size_t i = 0; i < size; ++i) hash = (hash ^ data[i]) * 1099511628211ull;
+  return hash;
+}
+
+// Tells the states of one config from those of another.
+uint64_t fingerprint_of_numbers(const rp_config &c) {
+  const double values[] = {static_cast<double>(c.geometry),
+                           static_cast<double>(c.load),
+                           static_cast<double>(c.regime),
+                           static_cast<double>(c.normal),
+                           static_cast<double>(c.tangential),
+                           static_cast<double>(c.spin_offset),
+                           static_cast<double>(c.track),
+                           static_cast<double>(c.side),
+                           static_cast<double>(c.elements[0]),
+                           static_cast<double>(c.elements[1]),
+                           static_cast<double>(c.max_elements[0]),
+                           static_cast<double>(c.max_elements[1]),
+                           static_cast<double>(c.max_iterations),
+                           static_cast<double>(c.max_patches),
+                           c.element_size[0],
+                           c.element_size[1],
+                           c.shear_modulus[0],
+                           c.shear_modulus[1],
+                           c.poisson_ratio[0],
+                           c.poisson_ratio[1],
+                           c.semi_axes[0],
+                           c.semi_axes[1],
+                           c.curvatures[0],
+                           c.curvatures[1],
+                           c.line_contact_radius,
+                           c.width,
+                           c.friction_coefficient,
+                           c.layer_shear_modulus,
+                           c.layer_thickness,
+                           c.tolerance,
+                           c.nominal_radius,
+                           c.flange_back_distance,
+                           c.flange_back_position,
+                           c.gauge,
+                           c.gauge_height,
+                           c.cant,
+                           c.curvature,
+                           c.roller_radius};
+  unsigned char bytes[sizeof values];
+  std::memcpy(bytes, values, sizeof values);
+  return checksum(bytes, sizeof bytes);
+}
+
+// The same for the arrays that come with a config.
+uint64_t fingerprint_of_arrays(const rp_config &c, const aligned_buffer<double> &shape) {
+  uint64_t hash = 0;
+  const auto add = [&](const double *values, size_t count) {
+    if (!values) return;
+    const auto *bytes = reinterpret_cast<const unsigned char *>(values);
+    hash = hash * 31 + checksum(bytes, count * sizeof(double));
+  };
+  add(shape.data(), shape.size());
+  if (c.kind == RP_PATCH) return hash;
+  for (const rp_profile *p : {&c.wheel[0], &c.wheel[1], &c.rail[0], &c.rail[1]})
+    for (const double *values : {p->arc_length, p->y, p->z, p->dy, p->dz})
+      add(values, static_cast<size_t>(std::max(p->count, 0)));
+  return hash;
+}
+
+// the fields that a later step starts from
+template <class Memory, class F>
+void for_each_start_field(Memory &m, F &&f) {
+  const auto bytes = static_cast<size_t>(m.g.count()) * sizeof(double);
+  if (!m.warm) return;
+  f(m.pressure.data(), bytes);
+  if (m.px.size() == 0) return;
+  f(m.px.data(), bytes);
+  f(m.py.data(), bytes);
+}
+
+}  // namespace
+
+uint64_t contact::fingerprint(const rp_config &c, const aligned_buffer<double> &shape) {
+  return fingerprint_of_numbers(c) * 31 + fingerprint_of_arrays(c, shape);
+}
+
+size_t contact::state_size() const {
+  size_t size = sizeof(state_header) + memory_.size() * sizeof(patch_header);
+  for (const auto &m : memory_)
+    for_each_start_field(m, [&](const double *, size_t bytes) { size += bytes; });
+  return size;
+}
+
+void contact::save_state(unsigned char *buffer) const {
+  unsigned char *at = buffer + sizeof(state_header);
+  const auto put = [&](const void *data, size_t size) {
+    std::memcpy(at, data, size);
+    at += size;
+  };
+  for (const auto &m : memory_) {
+    const patch_header header{m.g, m.reference, m.warm ? 1u : 0u};
+    put(&header, sizeof header);
+    for_each_start_field(m, put);
+  }
+  const auto bytes = static_cast<size_t>(at - buffer);
+  state_header header{state_magic, static_cast<uint32_t>(config_.kind), bytes, 0, scene_,
+                      depth_,      solver_.scene().friction_coefficient};
+  std::memcpy(buffer, &header, sizeof header);
+  header.checksum = checksum(buffer + checked_from, bytes - checked_from);
+  std::memcpy(buffer, &header, sizeof header);
+}
+
+bool contact::restore_state(const unsigned char *buffer, size_t size) {
+  state_header header;
+  if (size < sizeof header) return false;
+  std::memcpy(&header, buffer, sizeof header);
+  const bool ours = header.magic == state_magic &&
+                    header.kind == static_cast<uint32_t>(config_.kind) && header.bytes == size &&
+                    header.scene == scene_ &&
+                    header.checksum == checksum(buffer + checked_from, size - checked_from);
+  if (!ours || !state_fits(buffer + sizeof header, size - sizeof header)) return false;
+  const unsigned char *at = buffer + sizeof header;
+  for (auto &m : memory_) {
+    patch_header patch;
+    std::memcpy(&patch, at, sizeof patch);
+    at += sizeof patch;
+    m.g = patch.g;
+    m.reference = patch.reference;
+    m.warm = patch.warm != 0;
+    m.solved = false;
+    for_each_start_field(m, [&](double *data, size_t bytes) {
+      std::memcpy(data, at, bytes);
+      at += bytes;
+    });
+  }
+  depth_ = header.depth;
+  solver_.set_friction_coefficient(header.friction_coefficient);
+  return true;
+}
+
+// Walks the patches without changing anything: every grid must fit this handle's memory.
+bool contact::state_fits(const unsigned char *at, size_t size) const {
+  for (const auto &m : memory_) {
+    patch_header patch;
+    if (size < sizeof patch) return false;
+    std::memcpy(&patch, at, sizeof patch);
+    const bool fits = patch.g.nx >= 0 && patch.g.ny >= 0 && solver_.fits(patch.g);
+    if (!fits) return false;
+    const size_t fields = patch.warm ? (m.px.size() ? 3 : 1) : 0;
+    const size_t bytes =
+        sizeof patch + fields * static_cast<size_t>(patch.g.count()) * sizeof(double);
+    if (size < bytes) return false;
+    at += bytes;
+    size -= bytes;
+  }
+  return size == 0;
+}
+
+}  // namespace railpatch
