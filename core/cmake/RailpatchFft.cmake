@@ -1,4 +1,6 @@
-# The FFT library behind core/fft.hpp: defines the target railpatch_fft and the source that uses it.
+# The FFT libraries behind core/fft.hpp. For each backend at hand: an object library
+# railpatch_fft_<name> of core/fft_<name>.cpp and an interface library <name>_library to link with it.
+# RAILPATCH_FFT chooses the one of the main library: fft_objects, fft_library.
 # FFTW is GPL-2.0-or-later and fast, Eigen's own FFT (MPL-2.0) is the permissive choice.
 
 set(fft_choices fftw eigen)
@@ -6,13 +8,34 @@ if(NOT RAILPATCH_FFT IN_LIST fft_choices)
   message(FATAL_ERROR
     "RAILPATCH_FFT is \"${RAILPATCH_FFT}\"; this version of Railpatch knows: ${fft_choices}")
 endif()
-set(fft_source "fft_${RAILPATCH_FFT}.cpp")
 
-add_library(railpatch_fft INTERFACE)
-if(RAILPATCH_FFT STREQUAL "eigen")
-  find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-  target_link_libraries(railpatch_fft INTERFACE Eigen3::Eigen)
-  return()
+# what every object of the core is compiled with
+function(railpatch_object_options target)
+  set_target_properties(${target} PROPERTIES
+    CXX_VISIBILITY_PRESET hidden
+    VISIBILITY_INLINES_HIDDEN ON
+    POSITION_INDEPENDENT_CODE ON
+  )
+  target_compile_definitions(${target} PRIVATE RP_BUILD)
+  target_include_directories(${target} PUBLIC
+    "${PROJECT_SOURCE_DIR}/core"
+    "${PROJECT_SOURCE_DIR}/core/include"
+  )
+  target_link_libraries(${target} PRIVATE railpatch_options)
+endfunction()
+
+function(railpatch_fft_backend name library)
+  add_library(${name}_library INTERFACE)
+  target_link_libraries(${name}_library INTERFACE ${library})
+  add_library(railpatch_fft_${name} OBJECT EXCLUDE_FROM_ALL fft_${name}.cpp)
+  railpatch_object_options(railpatch_fft_${name})
+  target_link_libraries(railpatch_fft_${name} PRIVATE ${name}_library)
+endfunction()
+
+find_package(Eigen3 3.4 QUIET NO_MODULE)
+if(TARGET Eigen3::Eigen)
+  railpatch_fft_backend(eigen Eigen3::Eigen)
+  set_source_files_properties(fft_eigen.cpp PROPERTIES COMPILE_OPTIONS -fcx-limited-range)
 endif()
 
 find_package(PkgConfig QUIET)
@@ -20,14 +43,19 @@ if(PkgConfig_FOUND)
   pkg_check_modules(FFTW3 QUIET IMPORTED_TARGET fftw3>=3.3)
 endif()
 if(FFTW3_FOUND)
-  target_link_libraries(railpatch_fft INTERFACE PkgConfig::FFTW3)
+  railpatch_fft_backend(fftw PkgConfig::FFTW3)
 else()
   find_path(FFTW3_INCLUDE_DIR fftw3.h)
   find_library(FFTW3_LIBRARY NAMES fftw3 fftw3-3)
-  if(NOT FFTW3_INCLUDE_DIR OR NOT FFTW3_LIBRARY)
-    message(FATAL_ERROR
-      "FFTW 3 (double precision) was not found; on Debian and Ubuntu: apt install libfftw3-dev")
+  if(FFTW3_INCLUDE_DIR AND FFTW3_LIBRARY)
+    railpatch_fft_backend(fftw "${FFTW3_LIBRARY}")
+    target_include_directories(fftw_library SYSTEM INTERFACE "${FFTW3_INCLUDE_DIR}")
   endif()
-  target_include_directories(railpatch_fft SYSTEM INTERFACE "${FFTW3_INCLUDE_DIR}")
-  target_link_libraries(railpatch_fft INTERFACE "${FFTW3_LIBRARY}")
+endif()
+
+set(fft_objects railpatch_fft_${RAILPATCH_FFT})
+set(fft_library ${RAILPATCH_FFT}_library)
+if(NOT TARGET ${fft_objects})
+  message(FATAL_ERROR "RAILPATCH_FFT is ${RAILPATCH_FFT}, which was not found (FFTW 3 in double "
+    "precision, or Eigen 3.4); on Debian and Ubuntu: apt install libfftw3-dev libeigen3-dev")
 endif()
