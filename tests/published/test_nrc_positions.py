@@ -11,28 +11,16 @@ depends more on how the measured profiles are smoothed.
 from __future__ import annotations
 
 import csv
-import os
-from pathlib import Path
 
 import numpy as np
 import pytest
 from railpatch import Contact
+
 from rig_model import scene as rig_scene
 
-PROJECT = Path(__file__).parents[2]
 FILE = "nrc_dry_10mph_13750lb.csv"
 SIDES = {"L": "left", "R": "right"}
 ALLOWED = {1: 0.01, 2: 0.02}  # of the wheel's vertical load, by number of patches
-
-
-@pytest.fixture(scope="module")
-def reference() -> list[dict[str, str]]:
-    folder = os.environ.get("RAILPATCH_REFERENCE", PROJECT.parent / "shared" / "reference")
-    path = Path(folder) / FILE
-    if not path.is_file() or not (path.parent / "profiles").is_dir():
-        pytest.skip(f"no reference data: {path} or its profiles are absent")
-    with open(path, newline="", encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +30,9 @@ def compared(reference):
     assert scene_file.name == rig_scene.MEASURED
     contact = Contact(rig_scene.load_rig_scene(scene_file).at_height())
     entries = []
-    for row in reference:
+    with open(reference / FILE, newline="", encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    for row in rows:
         result = contact.step(
             y=1e-3 * float(row["y_ws_mm"]),
             z=1e-3 * float(row["z_ws_mm"]),
