@@ -1,0 +1,266 @@
+// The functions of FMI 2.0 for co-simulation: checks whether the state allows the call, and passes
+// it on. No exception leaves this file.
+#include "fmi2Functions.h"
+
+#include <new>
+
+#include "instance.hpp"
+
+using namespace railpatch::fmu;
+
+namespace {
+
+// Runs a call where the state allows it.
+template <class F>
+fmi2Status run(fmi2Component component, const Call &call, F &&function) noexcept {
+  auto *instance = static_cast<Instance *>(component);
+  if (instance == nullptr) return fmi2Error;
+  try {
+    if (!instance->allows(call)) return fmi2Error;
+    return function(*instance);
+  } catch (...) {
+    try {
+      return instance->refuse(call, "out of memory");
+    } catch (...) {
+      return fmi2Error;
+    }
+  }
+}
+
+// A scene has no variables of this type.
+template <class T>
+fmi2Status none(fmi2Component component, const Call &call, const char *type,
+                const fmi2ValueReference *references, size_t count, T *values) {
+  return run(component, call, [&](Instance &i) {
+    if (count == 0) return fmi2OK;
+    if (references == nullptr) return i.refuse(call, "vr is NULL");
+    if (values == nullptr) return i.refuse(call, "value is NULL");
+    return i.refuse(call, std::string("there is no ") + type + " with value reference " +
+                              std::to_string(references[0]));
+  });
+}
+
+fmi2Status not_provided(fmi2Component component, const Call &call, size_t count, const char *flag) {
+  return run(component, call, [&](Instance &i) {
+    if (count == 0) return fmi2OK;
+    return i.refuse(call, std::string("is not provided: see ") + flag + " in modelDescription.xml");
+  });
+}
+
+// Status of an asynchronous step, which this FMU never has.
+template <class T>
+fmi2Status pending(fmi2Component component, const Call &call, fmi2StatusKind kind, T *value) {
+  return run(component, call, [&](Instance &i) {
+    if (value == nullptr) return i.refuse(call, "value is NULL");
+    if (kind < fmi2DoStepStatus || kind > fmi2Terminated)
+      return i.refuse(call, "the kind of status is unknown");
+    i.log().say(fmi2Discard, Category::discard,
+                std::string(call.name) + ": there is no such value: no step is ever pending");
+    return fmi2Discard;
+  });
+}
+
+}  // namespace
+
+const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
+const char *fmi2GetVersion(void) { return fmi2Version; }
+
+fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2String fmuGUID,
+                              fmi2String fmuResourceLocation,
+                              const fmi2CallbackFunctions *functions, fmi2Boolean,
+                              fmi2Boolean loggingOn) {
+  try {
+    Log log(instanceName, functions, loggingOn != fmi2False);
+    if (instanceName == nullptr || instanceName[0] == '\0') {
+      log.error("fmi2Instantiate: instanceName is missing");
+      return nullptr;
+    }
+    if (fmuType != fmi2CoSimulation) {
+      log.error("fmi2Instantiate: fmuType is not fmi2CoSimulation, the only one in this FMU");
+      return nullptr;
+    }
+    return Instance::create(fmuGUID, fmuResourceLocation, std::move(log)).release();
+  } catch (...) {
+    return nullptr;
+  }
+}
+
+void fmi2FreeInstance(fmi2Component c) { delete static_cast<Instance *>(c); }
+
+fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nCategories,
+                               const fmi2String categories[]) {
+  const Call &call = call::set_debug_logging;
+  return run(c, call, [&](Instance &i) {
+    if (nCategories > 0 && categories == nullptr) return i.refuse(call, "categories is NULL");
+    if (i.log().set(loggingOn != fmi2False, nCategories, categories)) return fmi2OK;
+    return i.refuse(call, "a category is not one of those in modelDescription.xml");
+  });
+}
+
+fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fmi2Real tolerance,
+                               fmi2Real startTime, fmi2Boolean stopTimeDefined, fmi2Real stopTime) {
+  return run(c, call::setup_experiment, [&](Instance &i) {
+    return i.setup(toleranceDefined != fmi2False, tolerance, startTime,
+                   stopTimeDefined != fmi2False, stopTime);
+  });
+}
+
+fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
+  return run(c, call::enter_initialization, [](Instance &i) { return i.enter_initialization(); });
+}
+
+fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
+  return run(c, call::exit_initialization, [](Instance &i) { return i.exit_initialization(); });
+}
+
+fmi2Status fmi2Terminate(fmi2Component c) {
+  return run(c, call::terminate, [](Instance &i) { return i.terminate(); });
+}
+
+fmi2Status fmi2Reset(fmi2Component c) {
+  return run(c, call::reset, [](Instance &i) { return i.reset(); });
+}
+
+// --- values ------------------------------------------------------------------------------------
+
+fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                       fmi2Real value[]) {
+  const Call &call = call::get_real;
+  return run(c, call, [&](Instance &i) { return i.get(call, Type::real, vr, nvr, value); });
+}
+
+fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                          fmi2Integer value[]) {
+  const Call &call = call::get_integer;
+  return run(c, call, [&](Instance &i) { return i.get(call, Type::integer, vr, nvr, value); });
+}
+
+fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                          fmi2Boolean value[]) {
+  return none(c, call::get_boolean, "Boolean", vr, nvr, value);
+}
+
+fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                         fmi2String value[]) {
+  return none(c, call::get_string, "String", vr, nvr, value);
+}
+
+fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                       const fmi2Real value[]) {
+  const Call &call = call::set_real;
+  return run(c, call, [&](Instance &i) { return i.set(call, Type::real, vr, nvr, value); });
+}
+
+fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                          const fmi2Integer value[]) {
+  const Call &call = call::set_integer;
+  return run(c, call, [&](Instance &i) { return i.set(call, Type::integer, vr, nvr, value); });
+}
+
+fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                          const fmi2Boolean value[]) {
+  return none(c, call::set_boolean, "Boolean", vr, nvr, value);
+}
+
+fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                         const fmi2String value[]) {
+  return none(c, call::set_string, "String", vr, nvr, value);
+}
+
+// --- saved states ------------------------------------------------------------------------------
+
+fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *FMUstate) {
+  return run(c, call::get_state, [&](Instance &i) { return i.get_state(FMUstate); });
+}
+
+fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate FMUstate) {
+  return run(c, call::set_state, [&](Instance &i) { return i.set_state(FMUstate); });
+}
+
+fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *FMUstate) {
+  return run(c, call::free_state, [&](Instance &i) { return i.free_state(FMUstate); });
+}
+
+fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate FMUstate, size_t *size) {
+  return run(c, call::state_size, [&](Instance &i) { return i.state_size(FMUstate, size); });
+}
+
+fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate, fmi2Byte serializedState[],
+                                 size_t size) {
+  return run(c, call::serialize,
+             [&](Instance &i) { return i.serialize(FMUstate, serializedState, size); });
+}
+
+fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedState[], size_t size,
+                                   fmi2FMUstate *FMUstate) {
+  return run(c, call::deserialize,
+             [&](Instance &i) { return i.deserialize(serializedState, size, FMUstate); });
+}
+
+// --- derivatives: none -------------------------------------------------------------------------
+
+fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference[],
+                                        size_t nUnknown, const fmi2ValueReference[], size_t,
+                                        const fmi2Real[], fmi2Real[]) {
+  return not_provided(c, call::derivative, nUnknown, "providesDirectionalDerivative");
+}
+
+fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference[], size_t nvr,
+                                       const fmi2Integer[], const fmi2Real[]) {
+  return not_provided(c, call::input_derivatives, nvr, "canInterpolateInputs");
+}
+
+fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference[], size_t nvr,
+                                        const fmi2Integer[], fmi2Real[]) {
+  return not_provided(c, call::output_derivatives, nvr, "maxOutputDerivativeOrder");
+}
+
+// --- steps -------------------------------------------------------------------------------------
+
+fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint,
+                      fmi2Real communicationStepSize, fmi2Boolean) {
+  return run(c, call::do_step,
+             [&](Instance &i) { return i.step(currentCommunicationPoint, communicationStepSize); });
+}
+
+fmi2Status fmi2CancelStep(fmi2Component c) {
+  return run(c, call::cancel_step, [](Instance &) { return fmi2OK; });
+}
+
+fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind s, fmi2Status *value) {
+  const Call &call = call::get_status;
+  if (s != fmi2DoStepStatus) return pending(c, call, s, value);
+  return run(c, call, [&](Instance &i) {
+    if (value == nullptr) return i.refuse(call, "value is NULL");
+    *value = i.last_step();
+    return fmi2OK;
+  });
+}
+
+fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s, fmi2Real *value) {
+  const Call &call = call::get_real_status;
+  if (s != fmi2LastSuccessfulTime) return pending(c, call, s, value);
+  return run(c, call, [&](Instance &i) {
+    if (value == nullptr) return i.refuse(call, "value is NULL");
+    *value = i.time();
+    return fmi2OK;
+  });
+}
+
+fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind s, fmi2Integer *value) {
+  return pending(c, call::get_integer_status, s, value);
+}
+
+fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s, fmi2Boolean *value) {
+  const Call &call = call::get_boolean_status;
+  if (s != fmi2Terminated) return pending(c, call, s, value);
+  return run(c, call, [&](Instance &i) {
+    if (value == nullptr) return i.refuse(call, "value is NULL");
+    *value = fmi2False;
+    return fmi2OK;
+  });
+}
+
+fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind s, fmi2String *value) {
+  return pending(c, call::get_string_status, s, value);
+}

@@ -1,0 +1,285 @@
+#include "instance.hpp"
+
+#include <cmath>
+#include <cstring>
+
+#include "floating_point.hpp"
+#include "resource.hpp"
+
+namespace railpatch::fmu {
+
+namespace {
+
+constexpr const char *kSceneFile = "scene.txt";
+
+std::string quoted(const std::string &text) { return "\"" + text + "\""; }
+
+// FNV-1a (Fowler, Noll, Vo 1991)
+uint64_t hash_of(const std::string &text) {
+  uint64_t hash = 14695981039346656037ull;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+  return hash;
+}
+
+// Reads, parses and compares resources/scene.txt; else says in the log what is wrong.
+bool load_scene(const char *guid, const char *location, Log &log, Scene &scene) {
+  const std::string call = "fmi2Instantiate: ";
+  if (location == nullptr) {
+    log.error(call + "fmuResourceLocation is NULL, but the scene is in the resources folder");
+    return false;
+  }
+  std::string content, tried, problem;
+  if (!read_resource(location, kSceneFile, content, tried)) {
+    log.error(call + "the scene cannot be read; fmuResourceLocation is " + quoted(location) +
+              ", tried: " + tried);
+    return false;
+  }
+  if (!parse_scene(content, scene, problem)) {
+    log.error(call + kSceneFile + " of the resources cannot be used: " + problem);
+    return false;
+  }
+  if (guid == nullptr || scene.guid != guid) {
+    log.error(call + "fmuGUID is " + quoted(guid != nullptr ? guid : "NULL") +
+              ", but that of the resources is " + quoted(scene.guid));
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::unique_ptr<Instance> Instance::create(const char *guid, const char *location, Log log) {
+  std::unique_ptr<Instance> instance(new Instance(std::move(log)));
+  Scene scene;
+  if (!load_scene(guid, location, instance->log_, scene)) return nullptr;
+  rp_contact *contact = nullptr;
+  rp_message message = {};
+  const DefaultFloatingPoint environment;
+  const rp_error error = rp_create(&scene.config, &contact, &message);
+  if (error != RP_OK) {
+    instance->log_.error(
+        "fmi2Instantiate: the scene is refused: " +
+        std::string(message.text[0] != '\0' ? message.text : rp_error_text(error)));
+    return nullptr;
+  }
+  instance->contact_.reset(contact);
+  instance->wheels_ = scene.config.kind != RP_PATCH;
+  instance->content_ = hash_of(scene.guid);
+  instance->variables_ = std::move(scene.variables);
+  for (size_t i = 0; i < instance->variables_.size(); ++i) {
+    const uint32_t reference = instance->variables_[i].variable->reference;
+    if (reference >= instance->index_.size()) instance->index_.resize(reference + 1, -1);
+    instance->index_[reference] = static_cast<int16_t>(i);
+  }
+  instance->start_values();
+  return instance;
+}
+
+void Instance::start_values() {
+  rp_default_input(&input_);
+  values_.clear();
+  for (const SceneVariable &item : variables_) values_.push_back(item.start);
+  changed_ = true;
+}
+
+bool Instance::allows(const Call &call) {
+  if ((call.allowed & static_cast<uint32_t>(mode_)) != 0) return true;
+  refuse(call, std::string("is not allowed in the state ") + mode_text(mode_));
+  return false;
+}
+
+fmi2Status Instance::refuse(const Call &call, const std::string &why) {
+  log_.error(std::string(call.name) + ": " + why);
+  return fmi2Error;
+}
+
+// --- modes -------------------------------------------------------------------------------------
+
+fmi2Status Instance::setup(bool tolerance_defined, double tolerance, double start,
+                           bool stop_defined, double stop) {
+  const Call &call = call::setup_experiment;
+  if (tolerance_defined && !(tolerance > 0 && std::isfinite(tolerance)))
+    return refuse(call, "tolerance is " + text_of(tolerance) + ", allowed > 0");
+  if (!std::isfinite(start))
+    return refuse(call, "startTime is " + text_of(start) + ", allowed a finite number");
+  if (stop_defined && !(stop >= start))
+    return refuse(call, "stopTime is " + text_of(stop) + ", allowed from " + text_of(start));
+  time_ = start_ = start;
+  stop_defined_ = stop_defined;
+  stop_ = stop_defined ? stop : 0;
+  return fmi2OK;
+}
+
+fmi2Status Instance::enter_initialization() {
+  mode_ = Mode::initialization;
+  return fmi2OK;
+}
+
+fmi2Status Instance::exit_initialization() {
+  if (changed_ && solve(call::exit_initialization, time_) != fmi2OK) {
+    mode_ = Mode::error;
+    return fmi2Error;
+  }
+  mode_ = Mode::step_complete;
+  return fmi2OK;
+}
+
+fmi2Status Instance::terminate() {
+  mode_ = Mode::terminated;
+  return fmi2OK;
+}
+
+fmi2Status Instance::reset() {
+  rp_reset(contact_.get());
+  start_values();
+  time_ = start_ = stop_ = 0;
+  stop_defined_ = false;
+  mode_ = Mode::instantiated;
+  return fmi2OK;
+}
+
+fmi2Status Instance::step(double time, double step) {
+  const Call &call = call::do_step;
+  if (!(step > 0) || !std::isfinite(step))
+    return refuse(call, "communicationStepSize is " + text_of(step) + ", allowed > 0");
+  // masters add up time in their own way
+  const double slack = 1e-6 * step + 1e-9 * std::abs(time_);
+  if (!(std::abs(time - time_) <= slack))
+    return refuse(call, "currentCommunicationPoint is " + text_of(time) + ", but the time is " +
+                            text_of(time_));
+  const double end = time + step;
+  if (stop_defined_ && end > stop_ + slack)
+    return refuse(call, "the step ends at " + text_of(end) + ", after stopTime " + text_of(stop_));
+  const fmi2Status status = solve(call, end);
+  if (status == fmi2OK) time_ = end;
+  if (status == fmi2Discard) mode_ = Mode::step_failed;
+  if (status == fmi2Error) mode_ = Mode::error;
+  return status;
+}
+
+// --- solving -----------------------------------------------------------------------------------
+
+fmi2Status Instance::solve(const Call &call, double time) {
+  const DefaultFloatingPoint environment;
+  // before the first step a result depends on nothing but the values set
+  if (mode_ == Mode::initialization) rp_reset(contact_.get());
+  rp_message message = {};
+  rp_error error = RP_OK;
+  for (size_t i = 0; i < values_.size() && error == RP_OK; ++i) {
+    const Variable &variable = *variables_[i].variable;
+    if (variable.role == Role::input) put_input(input_, variable, values_[i]);
+    if (variable.role == Role::parameter)
+      error = rp_set_friction_coefficient(contact_.get(), values_[i], &message);
+  }
+  rp_result result = {};
+  if (error == RP_OK) error = rp_step(contact_.get(), &input_, &result, &message);
+  if (error != RP_OK)
+    return refuse(call, message.text[0] != '\0' ? message.text : rp_error_text(error));
+  if (result.status == RP_NOT_CONVERGED || result.status == RP_OUT_OF_RANGE) {
+    log_.say(fmi2Discard, Category::discard, std::string(call.name) + ": " + failure(time, result));
+    return fmi2Discard;
+  }
+  take(result);
+  return fmi2OK;
+}
+
+void Instance::take(rp_result &result) {
+  for (rp_side_result &side : result.side)
+    for (int i = wheels_ ? side.patch_count : RP_MAX_PATCHES; i < RP_MAX_PATCHES; ++i)
+      side.patch[i].status = RP_NO_CONTACT;
+  for (size_t i = 0; i < values_.size(); ++i) {
+    const Variable &variable = *variables_[i].variable;
+    if (variable.role == Role::output) values_[i] = output_of(result, variable);
+  }
+  changed_ = false;
+}
+
+std::string Instance::failure(double time, const rp_result &result) const {
+  std::string where;
+  for (int side = 0; wheels_ && side < 2; ++side)
+    if (result.side[side].status == result.status)
+      where += side == RP_LEFT ? " (left wheel)" : " (right wheel)";
+  const std::string at = "at time " + text_of(time);
+  if (result.status == RP_NOT_CONVERGED)
+    return at + " the contact did not converge" + where +
+           ": take a smaller step, or make the FMU of a scene with a larger method.tolerance or "
+           "method.max_iterations";
+  return at + " the contact is out of its range of validity" + where +
+         ": take a smaller step or smaller inputs, such that contact stays on the profiles and the "
+         "approach small; or make the FMU of a scene with larger grid.max_elements or "
+         "wheelset.max_patches";
+}
+
+// --- values ------------------------------------------------------------------------------------
+
+int Instance::index_of(fmi2ValueReference reference) const {
+  return reference < index_.size() ? index_[reference] : -1;
+}
+
+int Instance::find(const Call &call, Type type, fmi2ValueReference reference) {
+  const int index = index_of(reference);
+  const auto at = static_cast<size_t>(index);
+  if (index >= 0 && variables_[at].variable->type == type) return index;
+  refuse(call, index < 0 ? "there is no variable with value reference " + std::to_string(reference)
+                         : variables_[at].name + " is not of this type");
+  return -1;
+}
+
+template <class T>
+fmi2Status Instance::get(const Call &call, Type type, const fmi2ValueReference *references,
+                         size_t count, T *values) {
+  if (count > 0 && (references == nullptr || values == nullptr))
+    return refuse(call, references == nullptr ? "vr is NULL" : "value is NULL");
+  bool of_output = false;
+  for (size_t i = 0; i < count; ++i) {
+    const int index = find(call, type, references[i]);
+    if (index < 0) return fmi2Error;
+    of_output |= variables_[static_cast<size_t>(index)].variable->role == Role::output;
+  }
+  if (of_output && changed_ && mode_ == Mode::initialization) {
+    const fmi2Status status = solve(call, time_);
+    if (status != fmi2OK) return status;
+  }
+  for (size_t i = 0; i < count; ++i)
+    values[i] = static_cast<T>(values_[static_cast<size_t>(index_of(references[i]))]);
+  return fmi2OK;
+}
+
+bool Instance::settable(const Call &call, int index, double value) {
+  const SceneVariable &item = variables_[static_cast<size_t>(index)];
+  const Variable &variable = *item.variable;
+  if (variable.role == Role::output) {
+    refuse(call, item.name + " is an output");
+    return false;
+  }
+  if (value >= variable.low && value <= variable.high) return true;
+  refuse(call, item.name + " is " + text_of(value) + ", allowed " + text_of(variable.low) +
+                   " ... " + text_of(variable.high));
+  return false;
+}
+
+template <class T>
+fmi2Status Instance::set(const Call &call, Type type, const fmi2ValueReference *references,
+                         size_t count, const T *values) {
+  if (count > 0 && (references == nullptr || values == nullptr))
+    return refuse(call, references == nullptr ? "vr is NULL" : "value is NULL");
+  for (size_t i = 0; i < count; ++i) {
+    const int index = find(call, type, references[i]);
+    if (index < 0 || !settable(call, index, static_cast<double>(values[i]))) return fmi2Error;
+  }
+  for (size_t i = 0; i < count; ++i)
+    values_[static_cast<size_t>(index_of(references[i]))] = static_cast<double>(values[i]);
+  changed_ = changed_ || count > 0;
+  return fmi2OK;
+}
+
+template fmi2Status Instance::get(const Call &, Type, const fmi2ValueReference *, size_t,
+                                  fmi2Real *);
+template fmi2Status Instance::get(const Call &, Type, const fmi2ValueReference *, size_t,
+                                  fmi2Integer *);
+template fmi2Status Instance::set(const Call &, Type, const fmi2ValueReference *, size_t,
+                                  const fmi2Real *);
+template fmi2Status Instance::set(const Call &, Type, const fmi2ValueReference *, size_t,
+                                  const fmi2Integer *);
+
+}  // namespace railpatch::fmu

@@ -1,0 +1,118 @@
+// Saved states: handles, and the way to and from bytes.
+#include <algorithm>
+#include <cstring>
+
+#include "instance.hpp"
+
+namespace railpatch::fmu {
+
+Snapshot *Instance::known(fmi2FMUstate state) const {
+  for (const auto &snapshot : snapshots_)
+    if (snapshot.get() == state) return snapshot.get();
+  return nullptr;
+}
+
+fmi2Status Instance::give_handle(const Call &call, std::unique_ptr<Snapshot> snapshot,
+                                 fmi2FMUstate *state) {
+  if (*state == nullptr) {
+    snapshots_.push_back(std::move(snapshot));
+    *state = snapshots_.back().get();
+    return fmi2OK;
+  }
+  // a handle given before is used again
+  Snapshot *old = known(*state);
+  if (old == nullptr) return refuse(call, "*FMUstate is neither NULL nor a state of this instance");
+  old->swap(*snapshot);
+  return fmi2OK;
+}
+
+fmi2Status Instance::get_state(fmi2FMUstate *state) {
+  if (state == nullptr) return refuse(call::get_state, "FMUstate is NULL");
+  std::vector<unsigned char> core(rp_state_size(contact_.get()));
+  const rp_error error = rp_save_state(contact_.get(), core.data(), core.size());
+  if (error != RP_OK) return refuse(call::get_state, rp_error_text(error));
+  SnapshotHeader header = {};
+  header.content = content_;
+  header.time = time_;
+  header.start = start_;
+  header.stop = stop_;
+  header.mode = static_cast<uint32_t>(mode_);
+  header.stop_defined = stop_defined_ ? 1 : 0;
+  header.changed = changed_ ? 1 : 0;
+  return give_handle(call::get_state, std::make_unique<Snapshot>(pack(header, values_, core)),
+                     state);
+}
+
+fmi2Status Instance::set_state(fmi2FMUstate state) {
+  const Call &call = call::set_state;
+  const Snapshot *snapshot = known(state);
+  if (snapshot == nullptr) return refuse(call, "FMUstate is not a state of this instance");
+  const unsigned char *bytes = snapshot->data();
+  const char *problem = check(bytes, snapshot->size(), content_, values_.size());
+  if (problem != nullptr) return refuse(call, problem);
+  const SnapshotHeader header = header_of(bytes);
+  std::vector<double> values(values_.size());
+  if (!values.empty()) std::memcpy(values.data(), values_of(bytes), values.size() * sizeof(double));
+  for (size_t i = 0; i < values.size(); ++i)
+    if (variables_[i].variable->role != Role::output &&
+        !settable(call, static_cast<int>(i), values[i]))
+      return fmi2Error;
+  const rp_error error = rp_restore_state(contact_.get(), core_of(bytes), header.core);
+  if (error != RP_OK) return refuse(call, rp_error_text(error));
+  values_ = std::move(values);
+  time_ = header.time;
+  start_ = header.start;
+  stop_ = header.stop;
+  stop_defined_ = header.stop_defined != 0;
+  changed_ = header.changed != 0;
+  mode_ = static_cast<Mode>(header.mode);
+  return fmi2OK;
+}
+
+fmi2Status Instance::free_state(fmi2FMUstate *state) {
+  if (state == nullptr) return fmi2OK;
+  // some importers give the handle itself instead of its address
+  const bool by_value = known(state) != nullptr;
+  fmi2FMUstate handle = by_value ? state : *state;
+  if (handle == nullptr) return fmi2OK;
+  const auto found = std::find_if(snapshots_.begin(), snapshots_.end(),
+                                  [&](const auto &own) { return own.get() == handle; });
+  if (found == snapshots_.end())
+    return refuse(call::free_state, "*FMUstate is not a state of this instance");
+  snapshots_.erase(found);
+  if (!by_value) *state = nullptr;
+  return fmi2OK;
+}
+
+fmi2Status Instance::state_size(fmi2FMUstate state, size_t *size) {
+  const Call &call = call::state_size;
+  const Snapshot *snapshot = known(state);
+  if (snapshot == nullptr) return refuse(call, "FMUstate is not a state of this instance");
+  if (size == nullptr) return refuse(call, "size is NULL");
+  *size = snapshot->size();
+  return fmi2OK;
+}
+
+fmi2Status Instance::serialize(fmi2FMUstate state, fmi2Byte *bytes, size_t size) {
+  const Call &call = call::serialize;
+  const Snapshot *snapshot = known(state);
+  if (snapshot == nullptr) return refuse(call, "FMUstate is not a state of this instance");
+  if (bytes == nullptr) return refuse(call, "serializedState is NULL");
+  if (size < snapshot->size())
+    return refuse(call, "size is " + std::to_string(size) + ", allowed from " +
+                            std::to_string(snapshot->size()));
+  std::memcpy(bytes, snapshot->data(), snapshot->size());
+  return fmi2OK;
+}
+
+fmi2Status Instance::deserialize(const fmi2Byte *bytes, size_t size, fmi2FMUstate *state) {
+  const Call &call = call::deserialize;
+  if (bytes == nullptr) return refuse(call, "serializedState is NULL");
+  if (state == nullptr) return refuse(call, "FMUstate is NULL");
+  const auto *from = reinterpret_cast<const unsigned char *>(bytes);
+  const char *problem = check(from, size, content_, values_.size());
+  if (problem != nullptr) return refuse(call, problem);
+  return give_handle(call, std::make_unique<Snapshot>(from, from + size), state);
+}
+
+}  // namespace railpatch::fmu

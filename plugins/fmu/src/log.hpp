@@ -1,0 +1,35 @@
+// Messages to the host's logger: only the declared categories, never with an open "%" or "#",
+// silent where logging is off. Nothing is printed.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "fmi2FunctionTypes.h"
+
+namespace railpatch::fmu {
+
+enum class Category : uint32_t { error = 1, discard = 2 };
+
+class Log {
+ public:
+  // functions may be null
+  Log(const char *instance_name, const fmi2CallbackFunctions *functions, bool on);
+
+  void say(fmi2Status status, Category category, const std::string &text);
+  void error(const std::string &text) { say(fmi2Error, Category::error, text); }
+  // count 0: all categories; false for one that is not declared, then nothing changes
+  bool set(bool on, size_t count, const fmi2String categories[]);
+
+ private:
+  std::string instance_name_;
+  fmi2CallbackLogger logger_ = nullptr;
+  fmi2ComponentEnvironment environment_ = nullptr;
+  uint32_t categories_ = 0;
+  std::string last_;
+  int repeats_ = 0;
+};
+
+std::string text_of(double value);
+
+}  // namespace railpatch::fmu

@@ -1,0 +1,192 @@
+#include "scene.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <type_traits>
+
+#include "../../common/config_fields.hpp"
+#include "checksum.hpp"
+
+namespace railpatch::fmu {
+
+namespace {
+
+constexpr std::string_view kHead = "railpatch-fmu-scene";
+constexpr int kVersion = 1;
+constexpr std::string_view kArrays[] = {"arc_length", "y", "z", "dy", "dz"};
+
+// The words of one line.
+class Words {
+ public:
+  explicit Words(std::string_view line) : rest_(line) {}
+
+  std::string_view next() {
+    const size_t start = rest_.find_first_not_of(' ');
+    if (start == std::string_view::npos) return rest_ = {};
+    rest_.remove_prefix(start);
+    const std::string_view word = rest_.substr(0, rest_.find(' '));
+    rest_.remove_prefix(word.size());
+    return word;
+  }
+
+  template <class T>
+  bool number(T &value) {
+    const std::string_view word = next();
+    const char *end = word.data() + word.size();
+    if (word.empty()) return false;
+    const auto read = std::from_chars(word.data(), end, value);
+    return read.ec == std::errc() && read.ptr == end;
+  }
+
+  bool number(double &value) {
+    const std::string_view word = next();
+    const char *end = word.data() + word.size();
+    if (word.empty()) return false;
+    const auto read = std::from_chars(word.data(), end, value);
+    return read.ec == std::errc() && read.ptr == end && std::isfinite(value);
+  }
+
+  bool done() { return rest_.find_first_not_of(' ') == std::string_view::npos; }
+  size_t left() const { return rest_.size(); }
+
+ private:
+  std::string_view rest_;
+};
+
+template <class T>
+bool read_field(Words &words, T &field) {
+  if constexpr (std::is_array_v<T>) {
+    for (auto &item : field)
+      if (!read_field(words, item)) return false;
+    return true;
+  } else if constexpr (std::is_enum_v<T>) {
+    int value = 0;
+    if (!words.number(value)) return false;
+    field = static_cast<T>(value);
+    return true;
+  } else {
+    return words.number(field);
+  }
+}
+
+bool read_set(Words &words, Scene &scene) {
+  const std::string_view name = words.next();
+#define RAILPATCH_READ(field) \
+  if (name == #field) return read_field(words, scene.config.field);
+  RAILPATCH_CONFIG_FIELDS(RAILPATCH_READ)
+#undef RAILPATCH_READ
+  return false;
+}
+
+bool read_values(Words &words, std::vector<double> &values) {
+  size_t count = 0;
+  // a value takes two characters at least
+  if (!words.number(count) || count > words.left()) return false;
+  values.resize(count);
+  for (double &value : values)
+    if (!words.number(value)) return false;
+  return true;
+}
+
+bool read_profile(Words &words, Scene &scene) {
+  const std::string_view body = words.next();
+  int side = -1;
+  if ((body != "wheel" && body != "rail") || !words.number(side) || side < 0 || side > 1)
+    return false;
+  const std::string_view name = words.next();
+  for (size_t i = 0; i < 5; ++i)
+    if (name == kArrays[i]) return read_values(words, scene.arrays[body == "rail"][side][i]);
+  return false;
+}
+
+bool read_variable(Words &words, Scene &scene) {
+  uint32_t reference = 0;
+  SceneVariable item{};
+  if (!words.number(reference)) return false;
+  item.name = words.next();
+  item.variable = find_variable(reference);
+  if (item.name.empty() || item.variable == nullptr || !words.number(item.start)) return false;
+  scene.variables.push_back(std::move(item));
+  return true;
+}
+
+bool read_line(std::string_view line, Scene &scene) {
+  Words words(line);
+  const std::string_view key = words.next();
+  bool good = false;
+  if (key == "guid") {
+    scene.guid = words.next();
+    good = !scene.guid.empty();
+  } else if (key == "set") {
+    good = read_set(words, scene);
+  } else if (key == "profile") {
+    good = read_profile(words, scene);
+  } else if (key == "distance") {
+    good = read_values(words, scene.distance);
+  } else if (key == "variable") {
+    good = read_variable(words, scene);
+  }
+  return good && words.done();
+}
+
+// Lets the config point to the arrays.
+bool connect(Scene &scene) {
+  for (size_t body = 0; body < 2; ++body)
+    for (size_t side = 0; side < 2; ++side) {
+      auto &arrays = scene.arrays[body][side];
+      if (arrays[0].empty()) continue;
+      for (const auto &values : arrays)
+        if (values.size() != arrays[0].size() || values.size() > INT32_MAX) return false;
+      rp_profile &profile = (body == 0 ? scene.config.wheel : scene.config.rail)[side];
+      profile = {arrays[0].data(), arrays[1].data(), arrays[2].data(),
+                 arrays[3].data(), arrays[4].data(), static_cast<int32_t>(arrays[0].size())};
+    }
+  if (scene.distance.empty()) return true;
+  scene.config.undeformed_distance = scene.distance.data();
+  const auto *shape = scene.config.distance_shape;
+  return shape[0] > 0 && shape[1] > 0 &&
+         scene.distance.size() == static_cast<size_t>(shape[0]) * static_cast<size_t>(shape[1]);
+}
+
+bool check_end(std::string_view text, size_t begin, std::string_view line) {
+  Words words(line.substr(3));
+  const std::string_view word = words.next();
+  uint32_t expected = 0;
+  const auto read = std::from_chars(word.data(), word.data() + word.size(), expected, 16);
+  return read.ec == std::errc() && expected == crc32(text.data(), begin);
+}
+
+bool check_head(std::string_view line) {
+  Words words(line);
+  int version = 0;
+  return words.next() == kHead && words.number(version) && version == kVersion;
+}
+
+}  // namespace
+
+bool parse_scene(const std::string &text, Scene &scene, std::string &problem) {
+  rp_default_config(&scene.config);
+  const std::string_view all(text);
+  size_t number = 0;
+  for (size_t begin = 0; begin < all.size();) {
+    const size_t end = std::min(all.find('\n', begin), all.size());
+    const std::string_view line = all.substr(begin, end - begin);
+    ++number;
+    if (line.substr(0, 4) == "end ") {
+      if (check_end(all, begin, line) && connect(scene)) return true;
+      problem = "its checksum is wrong: the file was altered";
+      return false;
+    }
+    if (!(number == 1 ? check_head(line) : read_line(line, scene))) {
+      problem = "line " + std::to_string(number) +
+                " is not understood: " + std::string(line.substr(0, 60));
+      return false;
+    }
+    begin = end + 1;
+  }
+  problem = "it has no end: the file was cut off";
+  return false;
+}
+
+}  // namespace railpatch::fmu

@@ -1,0 +1,56 @@
+#include "variables.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <iterator>
+
+namespace railpatch::fmu {
+
+namespace {
+
+// sorted by reference
+constexpr Variable kVariables[] = {
+#include "variables.inc"
+};
+
+double read_field(const rp_result &result, Type type, size_t field) {
+  const unsigned char *from = reinterpret_cast<const unsigned char *>(&result) + field;
+  if (type == Type::integer) {
+    int32_t value;
+    std::memcpy(&value, from, sizeof value);
+    return value;
+  }
+  double value;
+  std::memcpy(&value, from, sizeof value);
+  return std::isfinite(value) ? value : 0.0;
+}
+
+}  // namespace
+
+static_assert(sizeof(rp_status) == sizeof(int32_t));
+
+const Variable *find_variable(uint32_t reference) {
+  const auto before = [](const Variable &v, uint32_t wanted) { return v.reference < wanted; };
+  const auto *found =
+      std::lower_bound(std::begin(kVariables), std::end(kVariables), reference, before);
+  return found != std::end(kVariables) && found->reference == reference ? found : nullptr;
+}
+
+double output_of(const rp_result &result, const Variable &variable) {
+  const double value = read_field(result, variable.type, variable.field);
+  if (variable.plus == no_field) return value;
+  return value + read_field(result, variable.type, variable.plus);
+}
+
+void put_input(rp_input &input, const Variable &variable, double value) {
+  unsigned char *to = reinterpret_cast<unsigned char *>(&input) + variable.field;
+  if (variable.type == Type::integer) {
+    const auto whole = static_cast<int32_t>(value);
+    std::memcpy(to, &whole, sizeof whole);
+  } else {
+    std::memcpy(to, &value, sizeof value);
+  }
+}
+
+}  // namespace railpatch::fmu

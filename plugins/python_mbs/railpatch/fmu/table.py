@@ -1,0 +1,167 @@
+"""The table of the FMU's variables: expands variables.toml for a scene, or for the C++ table.
+
+Imports nothing of the package, so that the build can use it before the package exists.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+SIDES = ("left", "right")
+MAX_PATCHES = 6
+# each acts on the outputs of its own level and of all that follow
+LEVELS = ("height", "pose", "rolling", "sliding", "friction")
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What the scene has, as far as the variables depend on it."""
+
+    kind: str
+    sides: tuple[int, ...]  # 0: left, 1: right
+    max_patches: int
+    conditions: frozenset[str]  # "tangential", "force" or "position", "roller"
+
+    @property
+    def coupled(self) -> bool:
+        """Whether z is found, so that everything acts on everything."""
+        return self.kind != "patch" and "force" in self.conditions
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One scalar variable."""
+
+    reference: int
+    name: str
+    type: str  # declared type
+    base: str  # "Real", "Integer" or "Enumeration"
+    causality: str
+    field: str  # of rp_input or rp_result
+    plus: str  # second field that is added; may be empty
+    level: str  # one of LEVELS: what it affects or depends on
+    side: int | None
+    range: tuple[float, float]
+    description: str
+    start: float | int | None = None
+
+
+class Table:
+    """The content of variables.toml."""
+
+    def __init__(self, path: Path) -> None:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+        self.types: dict[str, dict[str, Any]] = content["type"]
+        self._rows = [
+            {key: value for key, value in group.items() if key != "variables"} | row
+            for group in content["group"]
+            for row in group["variables"]
+        ]
+
+    def variables(self, kind: Kind) -> list[Variable]:
+        """The variables of a scene, inputs and parameters first."""
+        found = [v for row in self._rows if exists(row, kind) for v in self._expand(row, kind)]
+        return sorted(found, key=lambda v: (v.causality == "output", v.reference))
+
+    def everything(self) -> list[Variable]:
+        """All variables of all scenes, by value reference; for the C++ table."""
+        most = Kind("wheelset", (0, 1), MAX_PATCHES, frozenset())
+        found = {v.reference: v for row in self._rows for v in self._expand(row, most)}
+        return [found[reference] for reference in sorted(found)]
+
+    def base(self, name: str) -> str:
+        """FMI's base type of a declared type."""
+        declared = self.types[name]
+        if "unit" in declared:
+            return "Real"
+        return "Enumeration" if "items" in declared else "Integer"
+
+    def range(self, name: str) -> tuple[float, float]:
+        """Smallest and largest value of a declared type."""
+        declared = self.types[name]
+        if "items" in declared:
+            return 0, len(declared["items"]) - 1
+        return tuple(declared["range"])
+
+    def _expand(self, row: dict[str, Any], kind: Kind) -> Iterator[Variable]:
+        """One row for every side, patch and component."""
+        for side, patch in places(row["scope"], kind):
+            names = {"side": "" if side is None else SIDES[side], "s": side, "p": patch}
+            prefix = prefix_of(row, kind, side, patch)
+            for number in row.get("components", [None]):
+                index = "" if number is None else f"[{number}]"
+                names["k"] = 0 if number is None else number - 1
+                yield Variable(
+                    reference=reference_of(row, side, patch) + names["k"],
+                    name=prefix + row["name"].format(**names) + index,
+                    type=row["type"],
+                    base=self.base(row["type"]),
+                    causality=row["causality"],
+                    field=row["field"].format(**names),
+                    plus=row.get("plus", "").format(**names),
+                    level=row.get("affects") or row["depends"],
+                    side=side,
+                    range=self.range(row["type"]),
+                    description=row["description"].format(**names),
+                )
+
+
+def exists(row: dict[str, Any], kind: Kind) -> bool:
+    """Whether the scene has the variable."""
+    needed = set(row.get("when", ()))
+    if kind.kind == "patch":
+        needed |= set(row.get("when_patch", ()))
+    return kind.kind in row.get("kinds", [kind.kind]) and needed <= kind.conditions
+
+
+def places(scope: str, kind: Kind) -> list[tuple[int | None, int | None]]:
+    """Side and patch of every occurrence."""
+    if scope == "scene":
+        return [(None, None)]
+    if scope == "side":
+        return [(side, None) for side in kind.sides]
+    return [(side, patch) for side in kind.sides for patch in range(kind.max_patches)]
+
+
+def reference_of(row: dict[str, Any], side: int | None, patch: int | None) -> int:
+    """Value reference of the first component."""
+    return (
+        row["reference"]
+        + (0 if side is None else 1000 * (side + 1))
+        + (0 if patch is None else 100 * (patch + 1))
+    )
+
+
+def prefix_of(row: dict[str, Any], kind: Kind, side: int | None, patch: int | None) -> str:
+    """What stands before the name of an output."""
+    if row["causality"] != "output" or kind.kind == "patch":
+        return ""
+    prefix = f"{SIDES[side]}." if side is not None and kind.kind == "wheelset" else ""
+    return prefix if patch is None else f"{prefix}patch[{patch + 1}]."
+
+
+def dependencies(output: Variable, inputs: list[Variable], kind: Kind) -> list[Variable]:
+    """The inputs and parameters that act on an output."""
+    level = LEVELS.index(output.level)
+    if kind.coupled:
+        return inputs
+    return [
+        v
+        for v in inputs
+        if LEVELS.index(v.level) <= level
+        and (v.side is None or output.side is None or v.side == output.side)
+    ]
+
+
+def with_start(variable: Variable, start: float | int) -> Variable:
+    """The variable with a start value."""
+    return replace(variable, start=start)
