@@ -16,7 +16,8 @@ STRUCTS = {"input": "rp_input", "output": "rp_result", "parameter": ""}
 def load(path: Path) -> Any:
     """The module of that file, which is not installed yet."""
     spec = importlib.util.spec_from_file_location(path.stem, path)
-    assert spec is not None and spec.loader is not None
+    assert spec is not None
+    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[path.stem] = module
     spec.loader.exec_module(module)

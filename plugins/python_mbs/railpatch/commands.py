@@ -15,7 +15,10 @@ from railpatch.errors import CaseError, ProfileError
 
 ENTRY_POINT_GROUP = "railpatch.commands"
 # sub-commands of this package that take long to import
-LAZY = {"report": EntryPoint("report", "railpatch.report.command:report", ENTRY_POINT_GROUP)}
+LAZY = {
+    name: EntryPoint(name, f"railpatch.{name}.command:{name}", ENTRY_POINT_GROUP)
+    for name in ("fmu", "report")
+}
 EXIT_WRONG_CALL = 2
 EXIT_NOT_CONVERGED = 3
 

@@ -4,6 +4,9 @@
 
 #include <cstring>
 #include <string>
+#include <type_traits>
+
+#include "../../common/config_fields.hpp"
 
 namespace railpatch::python {
 
@@ -162,6 +165,20 @@ nb::list list_of(const T (&values)[N]) {
   return list;
 }
 
+template <typename T>
+nb::list numbers_of(const T &field) {
+  if constexpr (std::is_array_v<T>) {
+    return list_of(field);
+  } else {
+    nb::list list;
+    if constexpr (std::is_enum_v<T>)
+      list.append(static_cast<int>(field));
+    else
+      list.append(field);
+    return list;
+  }
+}
+
 nb::dict patch_dict(const rp_patch_result &patch) {
   nb::dict to;
   to["status"] = rp_status_text(patch.status);
@@ -273,6 +290,14 @@ void fill_input(const nb::dict &from, rp_input &to) {
   reader.matrix("rail_rotation", to.rail_rotation);
   reader.scalar("roller_pitch_rate", to.roller_pitch_rate);
   reader.finish();
+}
+
+nb::dict config_dict(const rp_config &config) {
+  nb::dict to;
+#define RAILPATCH_PUT(field) to[#field] = numbers_of(config.field);
+  RAILPATCH_CONFIG_FIELDS(RAILPATCH_PUT)
+#undef RAILPATCH_PUT
+  return to;
 }
 
 nb::dict result_dict(const rp_result &result) {

@@ -28,6 +28,8 @@ void fill_config(const nb::dict &from, Config &to);
 // keys that are left out keep their value
 void fill_input(const nb::dict &from, rp_input &to);
 
+// every plain field as a list of numbers, defaults filled in, enumerations as their values
+nb::dict config_dict(const rp_config &config);
 nb::dict result_dict(const rp_result &result);
 nb::list stage_list(const rp_stage_info *info, const double *seconds);
 

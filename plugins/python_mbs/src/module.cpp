@@ -182,6 +182,15 @@ NB_MODULE(_core, m) {
   m.def("version", &rp_version, "Version of the library.");
   m.def("fft_backend", &rp_fft_backend, "Name of the FFT library in use.");
 
+  m.def(
+      "config_numbers",
+      [](const nb::dict &config) {
+        Config c;
+        fill_config(config, c);
+        return config_dict(c.values);
+      },
+      nb::arg("config"), "The plain fields of rp_config as lists of numbers, defaults filled in.");
+
 #define RAILPATCH_ENTRY(name, value, text) texts[nb::int_(value)] = text;
   nb::dict texts;
   RP_STATUSES(RAILPATCH_ENTRY)

@@ -1,0 +1,5 @@
+"""Makes an FMU (FMI 2.0, co-simulation) of a scene from libraries that were built before."""
+
+from railpatch.fmu.pack import Backend, pack_fmu
+
+__all__ = ["Backend", "pack_fmu"]

@@ -1,0 +1,43 @@
+"""The sub-command ``railpatch fmu``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+
+@click.command("fmu")
+@click.argument("scene", metavar="[SCENE.toml]", required=False, type=click.Path(path_type=Path))
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="NAME.fmu",
+    help="The FMU to write; NAME is also that of the library inside.",
+)
+@click.option(
+    "--fft",
+    type=click.Choice(["eigen", "fftw"]),
+    default="eigen",
+    show_default=True,
+    help="The FFT library: fftw is faster, and makes the FMU one under the GPL.",
+)
+@click.option("--quiet", is_flag=True, help="Print nothing.")
+def fmu(scene: Path | None, output: Path, fft: Any, quiet: bool) -> None:
+    """Pack a scene as an FMU: FMI 2.0, co-simulation, Linux on x86-64.
+
+    Position and velocity come in, forces and the patches' quantities go out; the FMU holds its own
+    description in documentation/index.html. A scene is a case file, or that of a rig. Without one
+    it is the roller rig, or where that is not installed an S1002 wheelset on UIC60 rails.
+    """
+    from railpatch.fmu.pack import pack_fmu
+    from railpatch.fmu.scenes import scene_of
+
+    name, loaded = scene_of(scene)
+    written = pack_fmu(loaded, output, name=name, backend=fft)
+    if not quiet:
+        licence = ", under the GPL because of FFTW" if fft == "fftw" else ""
+        click.echo(f"{written}: {name}{licence}")

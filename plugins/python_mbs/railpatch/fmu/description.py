@@ -1,0 +1,213 @@
+"""modelDescription.xml of a scene, from the table of variables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+from xml.sax.saxutils import quoteattr
+
+from railpatch.fmu.table import Kind, Table, Variable, dependencies
+
+# base units of SI: exponents
+BASE_UNITS = {
+    "1": {},
+    "m": {"m": 1},
+    "rad": {"rad": 1},
+    "m/s": {"m": 1, "s": -1},
+    "rad/s": {"rad": 1, "s": -1},
+    "rad/m": {"rad": 1, "m": -1},
+    "N": {"kg": 1, "m": 1, "s": -2},
+    "N.m": {"kg": 1, "m": 2, "s": -2},
+    "Pa": {"kg": 1, "m": -1, "s": -2},
+    "m2": {"m": 2},
+    "W": {"kg": 1, "m": 2, "s": -3},
+    "J": {"kg": 1, "m": 2, "s": -2},
+}
+CAPABILITIES = {
+    "canHandleVariableCommunicationStepSize": "true",
+    "canInterpolateInputs": "false",
+    "maxOutputDerivativeOrder": "0",
+    "canRunAsynchronuously": "false",
+    "canBeInstantiatedOnlyOncePerProcess": "false",
+    "canNotUseMemoryManagementFunctions": "true",
+    "canGetAndSetFMUstate": "true",
+    "canSerializeFMUstate": "true",
+    "providesDirectionalDerivative": "false",
+}
+CATEGORIES = {
+    "logStatusError": "The call was wrong, or cannot be carried out",
+    "logStatusDiscard": "A step or value that the contact could not solve, and what to change",
+    "logAll": "All messages",
+}
+
+
+@dataclass(frozen=True)
+class Labels:
+    """What the FMU as a whole is called."""
+
+    identifier: str  # of the model, and name of the library
+    name: str
+    description: str
+    licence: str
+    version: str
+    date: str
+    tolerance: float
+
+
+def description_xml(
+    labels: Labels, table: Table, kind: Kind, variables: list[Variable], guid: str
+) -> str:
+    """The whole file."""
+    head = {
+        "fmiVersion": "2.0",
+        "modelName": labels.name,
+        "guid": guid,
+        "description": labels.description,
+        "version": labels.version,
+        "license": labels.licence,
+        "generationTool": f"Railpatch {labels.version}",
+        "generationDateAndTime": labels.date,
+        "variableNamingConvention": "structured",
+        "numberOfEventIndicators": "0",
+    }
+    slave = {"modelIdentifier": labels.identifier, **CAPABILITIES}
+    experiment = {"startTime": 0.0, "stopTime": 1.0, "tolerance": labels.tolerance}
+    lines = [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        f"<fmiModelDescription{attributes(head)}>",
+        f"  <CoSimulation{attributes(slave)}/>",
+        *unit_lines(table, variables),
+        *type_lines(table, variables),
+        "  <LogCategories>",
+        *(
+            f"    <Category{attributes({'name': k, 'description': CATEGORIES[k]})}/>"
+            for k in CATEGORIES
+        ),
+        "  </LogCategories>",
+        f"  <DefaultExperiment{attributes({**experiment, 'stepSize': 1e-3})}/>",
+        "  <ModelVariables>",
+        *(line for v in variables for line in variable_lines(table, v)),
+        "  </ModelVariables>",
+        *structure_lines(kind, variables),
+        "</fmiModelDescription>",
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def attributes(values: dict[str, Any]) -> str:
+    """' a="1" b="2"'; None is left out."""
+    return "".join(
+        f" {key}={quoteattr(value if isinstance(value, str) else repr(value))}"
+        for key, value in values.items()
+        if value is not None
+    )
+
+
+def used_types(table: Table, variables: list[Variable]) -> dict[str, dict[str, Any]]:
+    """Declared types that occur, in the table's order."""
+    names = {v.type for v in variables}
+    return {name: declared for name, declared in table.types.items() if name in names}
+
+
+def unit_lines(table: Table, variables: list[Variable]) -> list[str]:
+    """UnitDefinitions."""
+    displays: dict[str, dict[str, float]] = {}
+    for declared in used_types(table, variables).values():
+        if "unit" in declared:
+            name, factor = declared["display"]
+            displays.setdefault(declared["unit"], {})[name] = factor
+    lines = ["  <UnitDefinitions>"]
+    for unit, display in displays.items():
+        lines.append(f"    <Unit{attributes({'name': unit})}>")
+        lines.append(f"      <BaseUnit{attributes(BASE_UNITS[unit])}/>")
+        for name, factor in display.items():
+            lines.append(f"      <DisplayUnit{attributes({'name': name, 'factor': factor})}/>")
+        lines.append("    </Unit>")
+    return [*lines, "  </UnitDefinitions>"] if displays else []
+
+
+def type_attributes(table: Table, name: str) -> dict[str, Any]:
+    """What a declared type and each of its variables say."""
+    declared = table.types[name]
+    if "items" in declared:
+        return {"quantity": name}
+    low, high = declared["range"]
+    if "unit" not in declared:
+        return {"quantity": name, "min": low, "max": high}
+    return {
+        "quantity": declared["quantity"],
+        "unit": declared["unit"],
+        "displayUnit": declared["display"][0],
+        "min": low,
+        "max": high,
+        "nominal": declared["nominal"],
+    }
+
+
+def type_lines(table: Table, variables: list[Variable]) -> list[str]:
+    """TypeDefinitions."""
+    lines = ["  <TypeDefinitions>"]
+    for name, declared in used_types(table, variables).items():
+        base = table.base(name)
+        lines.append(f"    <SimpleType{attributes({'name': name})}>")
+        element = f"      <{base}{attributes(type_attributes(table, name))}"
+        if base == "Enumeration":
+            lines.append(element + ">")
+            for value, item in enumerate(declared["items"]):
+                lines.append(f"        <Item{attributes({'name': item, 'value': value})}/>")
+            lines.append("      </Enumeration>")
+        else:
+            lines.append(element + "/>")
+        lines.append("    </SimpleType>")
+    return [*lines, "  </TypeDefinitions>"]
+
+
+def variable_lines(table: Table, variable: Variable) -> list[str]:
+    """One ScalarVariable."""
+    role = {
+        "name": variable.name,
+        "valueReference": variable.reference,
+        "description": variable.description,
+        "causality": variable.causality,
+        "variability": variability(variable),
+        "initial": {"output": "calculated", "parameter": "exact"}.get(variable.causality),
+    }
+    value = {"declaredType": variable.type, **type_attributes(table, variable.type)}
+    if variable.base == "Enumeration":
+        value |= {"min": int(variable.range[0]), "max": int(variable.range[1])}
+    value["start"] = variable.start
+    return [
+        f"    <ScalarVariable{attributes(role)}>",
+        f"      <{variable.base}{attributes(value)}/>",
+        "    </ScalarVariable>",
+    ]
+
+
+def variability(variable: Variable) -> str:
+    """FMI's variability."""
+    if variable.causality == "parameter":
+        return "tunable"
+    return "continuous" if variable.base == "Real" else "discrete"
+
+
+def structure_lines(kind: Kind, variables: list[Variable]) -> list[str]:
+    """ModelStructure: outputs depend on inputs, at the start on parameters too."""
+    number = {v.reference: i for i, v in enumerate(variables, 1)}
+    known = [v for v in variables if v.causality != "output"]
+    inputs = [v for v in known if v.causality == "input"]
+    lines = ["  <ModelStructure>"]
+    for tag, candidates in (("Outputs", inputs), ("InitialUnknowns", known)):
+        lines.append(f"    <{tag}>")
+        for v in variables:
+            if v.causality == "output":
+                found = [number[d.reference] for d in dependencies(v, candidates, kind)]
+                kinds = " ".join(["dependent"] * len(found))
+                listed = {
+                    "index": number[v.reference],
+                    "dependencies": " ".join(map(str, found)),
+                    "dependenciesKind": kinds,
+                }
+                lines.append(f"      <Unknown{attributes(listed)}/>")
+        lines.append(f"    </{tag}>")
+    return [*lines, "  </ModelStructure>"]

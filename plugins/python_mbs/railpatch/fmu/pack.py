@@ -1,0 +1,157 @@
+"""Packs an FMU: description, scene, library, documentation. No compiler is needed."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import time
+import uuid
+import zipfile
+from dataclasses import dataclass, replace
+from importlib import resources
+from pathlib import Path
+from typing import Literal
+
+from railpatch import _core
+from railpatch.case.load import Scene
+from railpatch.config import config_of
+from railpatch.errors import CaseError
+from railpatch.fmu.description import Labels, description_xml
+from railpatch.fmu.document import index_html, notice
+from railpatch.fmu.scene import kind_of, scene_text, variables_of
+from railpatch.fmu.table import Kind, Table, Variable
+
+Backend = Literal["eigen", "fftw"]
+PLATFORM = "linux64"
+LICENCES = {"eigen": "Apache-2.0 AND MPL-2.0", "fftw": "GPL-3.0-or-later"}
+# the name of the library tells the licence
+SUFFIXES = {"eigen": "", "fftw": "_fftw_gpl"}
+# ZIP knows no time before 1980
+FIRST_DATE = 315532800
+
+
+@dataclass(frozen=True)
+class Contents:
+    """What an FMU is made of."""
+
+    labels: Labels
+    table: Table
+    kind: Kind
+    variables: list[Variable]
+    scene: Scene
+    backend: Backend
+    library: bytes
+
+
+def pack_fmu(
+    scene: Scene, output: str | Path, *, name: str = "scene", backend: Backend = "eigen"
+) -> Path:
+    """Writes the FMU of a scene.
+
+    name: of the model. backend: "eigen" (permissive), or "fftw" (faster; then the FMU is under the
+    GPL). The same scene, library and SOURCE_DATE_EPOCH give the same bytes. Raises CaseError.
+    """
+    output = Path(output)
+    contents = contents_of(scene, output.stem, name, backend)
+    guid = guid_of(contents)
+    files = files_of(contents, guid)
+    temporary = output.with_name(f".{output.name}.{os.getpid()}")
+    try:
+        with zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
+            for path, content in sorted(files.items()):
+                archive.writestr(entry(path), content)
+        temporary.replace(output)
+    except OSError as error:
+        raise CaseError(f"{output}: cannot be written: {error.strerror or error}") from None
+    finally:
+        temporary.unlink(missing_ok=True)
+    return output
+
+
+def contents_of(scene: Scene, stem: str, name: str, backend: Backend) -> Contents:
+    """Everything that is known before the GUID."""
+    table = Table(Path(str(resources.files("railpatch.fmu") / "variables.toml")))
+    # the handle checks what the schema leaves to the core: an FMU is never made of a bad scene
+    config = config_of(scene)
+    _core.Contact(config)
+    kind = kind_of(scene.case, _core.config_numbers(config))
+    labels = Labels(
+        identifier=identifier_of(stem) + SUFFIXES[backend],
+        name=name,
+        description=describe(kind, backend),
+        licence=LICENCES[backend],
+        version=_core.version(),
+        date=time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(epoch())),
+        tolerance=scene.case.method.tolerance,
+    )
+    variables = variables_of(table, kind, scene.case)
+    return Contents(labels, table, kind, variables, scene, backend, library_of(backend))
+
+
+def describe(kind: Kind, backend: Backend) -> str:
+    """One sentence."""
+    track = "roller" if "roller" in kind.conditions else "rail"
+    what = {
+        "patch": "Contact patch of wheel and rail",
+        "wheel_rail": f"Contact of one wheel on its {track}",
+        "wheelset": f"Contact of a wheelset on its {track}s",
+    }[kind.kind]
+    licence = " This variant contains FFTW and is under the GPL." if backend == "fftw" else ""
+    return f"{what}: position and velocity in, forces and patches out.{licence}"
+
+
+def identifier_of(stem: str) -> str:
+    """A name for the library that C allows."""
+    name = re.sub(r"\W", "_", stem, flags=re.ASCII)
+    return name if re.match(r"[A-Za-z_]", name) else f"fmu_{name}"
+
+
+def library_of(backend: Backend) -> bytes:
+    """The library that was built with the package."""
+    path = resources.files("railpatch.fmu") / "lib" / PLATFORM / f"railpatch_fmu_{backend}.so"
+    if not path.is_file():
+        raise CaseError(f"--fft: value is {backend!r}, but this package was built without it")
+    return path.read_bytes()
+
+
+def guid_of(contents: Contents) -> str:
+    """A hash of everything but the date."""
+    labels = replace(contents.labels, date="")
+    text = description_xml(labels, contents.table, contents.kind, contents.variables, "")
+    text += scene_text(contents.scene, contents.variables, "{}")
+    digest = hashlib.sha256(text.encode() + contents.library).digest()
+    return "{" + str(uuid.UUID(bytes=digest[:16], version=4)) + "}"
+
+
+def files_of(contents: Contents, guid: str) -> dict[str, bytes]:
+    """Path in the archive -> content."""
+    c = contents
+    texts = {
+        "modelDescription.xml": description_xml(c.labels, c.table, c.kind, c.variables, guid),
+        "resources/scene.txt": scene_text(c.scene, c.variables, guid),
+        "documentation/index.html": index_html(c.labels, c.table, c.kind, c.variables, guid),
+        "documentation/licenses/NOTICE.txt": notice(c.backend),
+    }
+    files = {path: text.encode() for path, text in texts.items()}
+    folder = resources.files("railpatch.fmu") / "licenses"
+    for text in folder.iterdir() if folder.is_dir() else ():
+        if c.backend == "fftw" or not text.name.startswith("GPL"):
+            files[f"documentation/licenses/{text.name}"] = text.read_bytes()
+    files[f"binaries/{PLATFORM}/{c.labels.identifier}.so"] = c.library
+    return files
+
+
+def epoch() -> int:
+    """s, the date that the archive carries."""
+    return max(FIRST_DATE, int(os.environ.get("SOURCE_DATE_EPOCH", time.time())))
+
+
+def entry(path: str) -> zipfile.ZipInfo:
+    """Head of a file in the archive; nothing of this machine is in it."""
+    info = zipfile.ZipInfo(path, time.gmtime(epoch())[:6])
+    info.compress_type = zipfile.ZIP_DEFLATED
+    info.create_system = 3
+    mode = 0o755 if path.startswith("binaries/") else 0o644
+    info.external_attr = (0o100000 | mode) << 16
+    return info

@@ -1,0 +1,92 @@
+"""The scene inside an FMU: what its variables depend on, their start values, scene.txt."""
+
+from __future__ import annotations
+
+import re
+import zlib
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from railpatch import _core
+from railpatch.case.load import Case, Scene
+from railpatch.case.patch import PatchCase
+from railpatch.config import config_of
+from railpatch.fmu.table import Kind, Table, Variable, with_start
+
+SIDE_INDEX = {"left": 0, "right": 1}
+PROFILE_ARRAYS = ("arc_length", "y", "z", "dy", "dz")
+
+
+def kind_of(case: Case, config: dict[str, list[float]]) -> Kind:
+    """What the variables depend on. config: numbers of the core."""
+    conditions = {"tangential"} if case.has_tangential else set()
+    if isinstance(case, PatchCase):
+        conditions.add("force" if case.load.normal_force is not None else "position")
+        return Kind("patch", (1,), 1, frozenset(conditions))
+    conditions.add("force" if case.wheelset.vertical_force is not None else "position")
+    if case.track.kind == "roller":
+        conditions.add("roller")
+    sides = tuple(SIDE_INDEX[side] for side in case.sides)
+    return Kind(case.kind, sides, int(config["max_patches"][0]), frozenset(conditions))
+
+
+def variables_of(table: Table, kind: Kind, case: Case) -> list[Variable]:
+    """The scene's variables; inputs and parameters with the case's values as start."""
+    return [
+        v if v.causality == "output" else with_start(v, start_of(v, case))
+        for v in table.variables(kind)
+    ]
+
+
+def start_of(variable: Variable, case: Case) -> float | int:
+    """The case's value of an input or parameter."""
+    name, index = split_name(variable.name)
+    path = name.split(".")
+    if isinstance(case, PatchCase) and len(path) == 1:
+        path.insert(0, "load" if name in ("normal_force", "approach") else "motion")
+    value: Any = case
+    for part in path:
+        value = getattr(value, part)
+    if index is not None:
+        value = value[index]
+    if value is None:  # a roller's speed that the case leaves out
+        value = 0.0
+    return float(value) if variable.base == "Real" else int(value)
+
+
+def split_name(name: str) -> tuple[str, int | None]:
+    """'a.b[2]' -> 'a.b', 1."""
+    match = re.fullmatch(r"(.*)\[(\d+)\]", name)
+    return (match[1], int(match[2]) - 1) if match else (name, None)
+
+
+def scene_text(scene: Scene, variables: list[Variable], guid: str) -> str:
+    """resources/scene.txt; plugins/fmu/src/scene.hpp tells its form."""
+    config = config_of(scene)
+    body = "\n".join([*lines_of(config, variables, guid), ""])
+    return f"{body}end {zlib.crc32(body.encode('ascii')):08x}\n"
+
+
+def lines_of(config: dict[str, Any], variables: list[Variable], guid: str) -> Iterator[str]:
+    """All lines but the last."""
+    yield "railpatch-fmu-scene 1"
+    yield f"guid {guid}"
+    for name, numbers in _core.config_numbers(config).items():
+        yield f"set {name} {spell(numbers)}"
+    for body in ("wheel", "rail"):
+        for side, profile in enumerate(config.get(body, ())):
+            for array in PROFILE_ARRAYS if profile is not None else ():
+                values = profile[array]
+                yield f"profile {body} {side} {array} {len(values)} {spell(values)}"
+    if config.get("undeformed_distance") is not None:
+        values = np.asarray(config["undeformed_distance"]).ravel()
+        yield f"distance {values.size} {spell(values)}"
+    for v in variables:
+        yield f"variable {v.reference} {v.name} {spell([v.start or 0])}"
+
+
+def spell(numbers: Any) -> str:
+    """The shortest text that gives the same bits again."""
+    return " ".join(repr(n) for n in np.asarray(numbers).tolist())

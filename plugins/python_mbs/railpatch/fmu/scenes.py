@@ -1,0 +1,53 @@
+"""Scenes for an FMU: from a file, or the one that is packed by default."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from railpatch.case.load import Scene, check_case, load_scene, read_toml
+from railpatch.contact import Contact
+from railpatch.errors import CaseError
+
+# a wheelset on track, where the rig model is not installed
+TRACK: dict[str, Any] = {
+    "kind": "wheelset",
+    "grid": {"element_size": [5e-4, 5e-4]},
+    "friction": {"coefficient": 0.3},
+    "wheelset": {
+        "z": 2e-4,
+        "speed": 20.0,
+        "pitch_rate": -20.0 / 0.46,
+        "nominal_radius": 0.46,
+        "flange_back_distance": 1.36,
+        "flange_back_position": -0.070,
+    },
+    "track": {"kind": "rail", "gauge": 1.435, "gauge_height": 0.014},
+    "profiles": {"wheel": "S1002", "rail": "UIC60@1:40"},
+}
+
+
+def scene_of(path: Path | None) -> tuple[str, Scene]:
+    """Name and scene. A file may be a case, or a rig's scene. Raises CaseError, ProfileError."""
+    if path is not None and "rig" not in read_toml(path):
+        return path.stem, load_scene(path)
+    try:
+        from rig_model.scene import load_rig_scene
+    except ImportError:
+        if path is not None:
+            raise CaseError(f"{path}: has a table [rig], but rig_model is not installed") from None
+        return "S1002_on_UIC60", load_scene(TRACK)
+    rig = load_rig_scene(path)
+    return Path(rig.name).stem, at_first_position(rig)
+
+
+def at_first_position(rig: Any) -> Scene:
+    """The rig's machine with z prescribed, where its run begins; the wheels roll without slip."""
+    first = rig.positions()[0]
+    wheelset, track = rig.case.wheelset, rig.case.track
+    rolling = -track.roller_pitch_rate * track.roller_radius / wheelset.nominal_radius
+    start = {"y": first.y, "yaw": first.yaw, "pitch_rate": rolling}
+    content = rig.case.model_dump() | {"wheelset": wheelset.model_dump() | start}
+    z = Contact(Scene(check_case(content), Path())).step()["z"]
+    content["wheelset"] |= {"vertical_force": None, "z": z}
+    return Scene(check_case(content), Path())
