@@ -13,6 +13,8 @@ namespace railpatch {
 namespace {
 
 constexpr int max_searches = 60;
+// m; below it the squares of the patch's size vanish, and with them all meaning
+constexpr double least_approach = 1e-100;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct capacity {
@@ -186,7 +188,7 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
   const auto finish = [&](rp_status status) { out.status = side.status = result.status = status; };
   result.rolling_speed = in.rolling_speed;
   if (config_.load == RP_POSITION && config_.geometry != RP_UNDEFORMED_DISTANCE &&
-      in.approach <= 0) {
+      in.approach < least_approach) {
     result.approach = in.approach;
     set_unloaded(solver_.scene(), result);
     return finish(RP_NO_CONTACT);

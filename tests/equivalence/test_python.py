@@ -226,6 +226,12 @@ def test_no_contact_is_a_result() -> None:
     assert lifted["left"]["patches"] == []
 
 
+@pytest.mark.parametrize("approach", [5e-324, 1e-162])
+def test_an_approach_of_no_size_is_no_contact(approach: float) -> None:
+    case = with_values(PATCH, geometry={"curvatures": [1.0, 1.0]}, load={"approach": approach})
+    assert railpatch.solve(case).status == "no_contact"
+
+
 def test_undeformed_distance_equals_curvatures(tmp_path: Path) -> None:
     """The same paraboloid as formula and as file."""
     size, count = 5e-4, 40
