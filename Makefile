@@ -17,26 +17,36 @@ export CTEST_PARALLEL_LEVEL := $(JOBS)
 # a cmake from the virtual environment, where the system's is too old, comes first
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
+# the FMU's functions are among the C++ tests; the FMI headers come with fmpy in this environment
+FMU := -DRAILPATCH_FMU=ON -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python
 CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
 # what the installed package is made from
 SOURCES := $(shell find core plugins rig_model wheelset_demo -type f -not -name '*.pyc' 2>/dev/null) \
 	CMakeLists.txt README.md
 
-.PHONY: help demo test lint format clean setup system test-cpp test-python test-asan
+.PHONY: help demo fmu test lint format clean setup system test-cpp test-python test-asan
 
 help: ## this list
 	@echo "make targets:"
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
 
-demo: setup ## set-up, roller-rig replay, wheelset on track; logs and reports
+demo: setup ## set-up, roller-rig replay, wheelset on track, an FMU; logs and reports
 	@mkdir -p build/demo
 	$(BIN)/railpatch rig -o build/demo/run.mcap
 	$(BIN)/railpatch report build/demo/run.mcap -o build/demo/report.html
 	$(BIN)/railpatch wheelset -o build/demo/wheelset.mcap
 	$(BIN)/railpatch report build/demo/wheelset.mcap -o build/demo/wheelset.html
-	@printf '\nroller rig\n  log:     %s\n  report:  %s\nwheelset on track\n  log:     %s\n  report:  %s\n' \
+	$(BIN)/railpatch fmu -o build/demo/railpatch.fmu
+	$(BIN)/python -m railpatch.fmu.try_out build/demo/railpatch.fmu
+	@printf '\nroller rig\n  log:     %s\n  report:  %s\nwheelset on track\n  log:     %s\n  report:  %s\nFMU:       %s\n' \
 		"$(CURDIR)/build/demo/run.mcap" "$(CURDIR)/build/demo/report.html" \
-		"$(CURDIR)/build/demo/wheelset.mcap" "$(CURDIR)/build/demo/wheelset.html"
+		"$(CURDIR)/build/demo/wheelset.mcap" "$(CURDIR)/build/demo/wheelset.html" \
+		"$(CURDIR)/build/demo/railpatch.fmu"
+
+fmu: setup ## the FMUs of the default scene: permissive, and with FFTW under the GPL
+	@mkdir -p build/fmu
+	$(BIN)/railpatch fmu -o build/fmu/railpatch.fmu
+	$(BIN)/railpatch fmu --fft fftw -o build/fmu/railpatch_fftw_gpl.fmu
 
 test: setup lint test-cpp test-python test-asan ## set-up and every check
 	@printf '\nall checks passed:\n'
@@ -55,13 +65,13 @@ format: $(VENV)/tools ## ruff and clang-format, files are changed
 	$(BIN)/clang-format -i $(CXX_FILES)
 
 test-cpp: $(VENV)/tools ## C and C++ tests, release build
-	cmake --preset release
+	cmake --preset release $(FMU)
 	cmake --build --preset release
 	@mkdir -p build/junit
 	ctest --preset release --output-junit "$(CURDIR)/build/junit/cpp.xml"
 
 test-asan: $(VENV)/tools ## the same with address and undefined-behaviour sanitizers
-	cmake --preset asan
+	cmake --preset asan $(FMU)
 	cmake --build --preset asan
 	@mkdir -p build/junit
 	ctest --preset asan --output-junit "$(CURDIR)/build/junit/asan.xml"

@@ -50,11 +50,11 @@ bool load_scene(const char *guid, const char *location, Log &log, Scene &scene) 
 
 std::unique_ptr<Instance> Instance::create(const char *guid, const char *location, Log log) {
   std::unique_ptr<Instance> instance(new Instance(std::move(log)));
+  const DefaultFloatingPoint environment;  // numbers in text are rounded, too
   Scene scene;
   if (!load_scene(guid, location, instance->log_, scene)) return nullptr;
   rp_contact *contact = nullptr;
   rp_message message = {};
-  const DefaultFloatingPoint environment;
   const rp_error error = rp_create(&scene.config, &contact, &message);
   if (error != RP_OK) {
     instance->log_.error(

@@ -19,7 +19,7 @@ else:
 SIDES = ("left", "right")
 MAX_PATCHES = 6
 # each acts on the outputs of its own level and of all that follow
-LEVELS = ("height", "pose", "rolling", "sliding", "friction")
+LEVELS = ("none", "height", "pose", "rolling", "sliding", "friction")
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ class Table:
                     causality=row["causality"],
                     field=row["field"].format(**names),
                     plus=row.get("plus", "").format(**names),
-                    level=row.get("affects") or row["depends"],
+                    level=level_of(row, kind),
                     side=side,
                     range=self.range(row["type"]),
                     description=row["description"].format(**names),
@@ -141,6 +141,13 @@ def reference_of(row: dict[str, Any], side: int | None, patch: int | None) -> in
     )
 
 
+def level_of(row: dict[str, Any], kind: Kind) -> str:
+    """What an input affects, or an output depends on."""
+    if "depends_frictionless" in row and "tangential" not in kind.conditions:
+        return row["depends_frictionless"]
+    return row.get("affects") or row["depends"]
+
+
 def prefix_of(row: dict[str, Any], kind: Kind, side: int | None, patch: int | None) -> str:
     """What stands before the name of an output."""
     if row["causality"] != "output" or kind.kind == "patch":
@@ -152,7 +159,7 @@ def prefix_of(row: dict[str, Any], kind: Kind, side: int | None, patch: int | No
 def dependencies(output: Variable, inputs: list[Variable], kind: Kind) -> list[Variable]:
     """The inputs and parameters that act on an output."""
     level = LEVELS.index(output.level)
-    if kind.coupled:
+    if kind.coupled and level > 0:
         return inputs
     return [
         v

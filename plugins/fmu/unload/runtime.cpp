@@ -1,0 +1,12 @@
+// The C++ runtime that is linked in keeps a pool for exceptions that nobody frees when the library
+// is unloaded: 70 kB each time an importer loads and unloads it.
+
+namespace __gnu_cxx {
+void __freeres();
+}
+
+namespace {
+
+[[gnu::destructor]] void free_pool() { __gnu_cxx::__freeres(); }
+
+}  // namespace

@@ -1,0 +1,54 @@
+"""Scenes that the FMU tests share."""
+
+from __future__ import annotations
+
+from importlib import resources
+from typing import Any
+
+from case_samples import PATCH, WHEELSET, with_values
+from railpatch import _core
+
+# a wheelset of 20 kN, and one wheel near its flange, where contact jumps between patches
+LOADED = with_values(WHEELSET, wheelset__z=None, wheelset__vertical_force=2e4)
+RAIL = with_values(WHEELSET, wheelset__z=2.0e-4)
+ROLLER = with_values(
+    RAIL,
+    wheelset__speed=0.0,
+    track={
+        "kind": "roller",
+        "gauge": 1.435,
+        "gauge_height": 0.014,
+        "roller_radius": 1.0,
+        "roller_pitch_rate": 2.0,
+    },
+)
+PATCHES = {
+    **with_values(
+        WHEELSET,
+        wheelset__z=None,
+        wheelset__vertical_force=5e4,
+        wheelset__y=5.5e-3,
+        profiles__rail="UIC60@1:20",
+    ),
+    "kind": "wheel_rail",
+}
+SCENES: dict[str, dict[str, Any]] = {
+    "patch": PATCH,
+    "patch_approach": with_values(
+        PATCH, geometry={"curvatures": [1.0, 1.5]}, load={"approach": 5e-5}
+    ),
+    "patch_normal": with_values(PATCH, motion=None, friction=None),
+    "rail": RAIL,
+    "roller": ROLLER,
+    "loaded": LOADED,
+    "left_wheel": {**RAIL, "kind": "wheel_rail", "wheel": {"side": "left"}},
+    "patches": PATCHES,
+    "frictionless": with_values(RAIL, method={"tangential": "none"}, friction=None),
+}
+OWN = _core.fft_backend()
+
+
+def has(backend: str) -> bool:
+    """Whether the package holds the library of a backend."""
+    name = f"railpatch_fmu_{backend}.so"
+    return (resources.files("railpatch.fmu") / "lib" / "linux64" / name).is_file()

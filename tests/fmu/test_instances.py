@@ -1,0 +1,106 @@
+"""Several instances, threads, and loading again and again."""
+
+from __future__ import annotations
+
+import ctypes as ct
+import locale
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+from slave import OK, Fmu, Slave
+from test_numbers import MOTIONS
+from test_state import run
+
+Unpack = Callable[..., Fmu]
+
+
+def test_instances_do_not_touch_each_other(unpacked: Unpack) -> None:
+    names = ["rail", "patch", "rail"]
+    alone = []
+    for name in names:
+        with Slave(unpacked(name)).initialize() as slave:
+            alone.append(run(slave, MOTIONS[name], 0))
+    slaves = [Slave(unpacked(name), name="same").initialize() for name in names]
+    for k in range(4):
+        for name, slave in zip(names, slaves, strict=True):
+            assert slave.set(MOTIONS[name][k]) == OK
+            assert slave.step(k * 1e-3, 1e-3) == OK
+    assert [slave.outputs() for slave in slaves] == alone
+    for slave in slaves:
+        slave.free()
+
+
+def test_instances_on_threads_give_the_same_bits(unpacked: Unpack) -> None:
+    fmu = unpacked("patch")
+    found = []
+
+    def work() -> None:
+        for _ in range(5):
+            with Slave(fmu).initialize() as slave:
+                found.append(run(slave, MOTIONS["patch"], 0))
+
+    threads = [threading.Thread(target=work) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(found) == 10
+    assert all(outputs == found[0] for outputs in found)
+
+
+def resident() -> int:
+    """Bytes of this process in memory."""
+    return int(Path("/proc/self/statm").read_text().split()[1]) * 4096
+
+
+def test_loading_and_unloading_leaves_nothing(unpacked: Unpack) -> None:
+    fmu = Fmu(unpacked("patch").folder)
+    close = ct.CDLL(None).dlclose
+    close.argtypes = [ct.c_void_p]
+    # the fixture's own handle, so that the library really goes
+    path = fmu.folder / "binaries" / "linux64" / "again.so"
+    path.write_bytes(fmu.library_path.read_bytes())
+    sizes = []
+    for _ in range(100):
+        fmu.library = ct.CDLL(str(path))
+        fmu.library.fmi2Instantiate.restype = ct.c_void_p
+        with Slave(fmu).initialize() as slave:
+            assert slave.step(0, 1e-3) == OK
+        assert close(fmu.library._handle) == 0
+        assert str(path) not in Path("/proc/self/maps").read_text()
+        sizes.append(resident())
+    assert sizes[-1] - sizes[20] < 4e6
+    assert threading.active_count() == 1
+
+
+def test_locale_and_floating_point_do_not_matter(unpacked: Unpack) -> None:
+    with Slave(unpacked("rail")).initialize() as slave:
+        expected = run(slave, MOTIONS["rail"], 0)
+    before = locale.setlocale(locale.LC_ALL)
+    comma = next((n for n in ("de_DE.UTF-8", "fr_FR.UTF-8") if settable(n)), None)
+    libm = ct.CDLL("libm.so.6")
+    upward = 0x800  # FE_UPWARD of x86
+    try:
+        if comma:
+            locale.setlocale(locale.LC_ALL, comma)
+        assert libm.fesetround(upward) == 0
+        with Slave(unpacked("rail")).initialize() as slave:
+            found = run(slave, MOTIONS["rail"], 0)
+        kept = libm.fegetround()
+    finally:
+        libm.fesetround(0)
+        locale.setlocale(locale.LC_ALL, before)
+    assert kept == upward
+    assert found == expected
+
+
+def settable(name: str) -> bool:
+    """Whether this machine has the locale."""
+    before = locale.setlocale(locale.LC_ALL)
+    try:
+        locale.setlocale(locale.LC_ALL, name)
+    except locale.Error:
+        return False
+    locale.setlocale(locale.LC_ALL, before)
+    return True
