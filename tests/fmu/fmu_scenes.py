@@ -8,6 +8,13 @@ from typing import Any
 from case_samples import PATCH, WHEELSET, with_values
 from railpatch import _core
 
+
+def gap(count: int, size: float) -> list[list[float]]:
+    """m, undeformed distance of a paraboloid on a square grid of elements."""
+    axis = [(i - (count - 1) / 2) * size for i in range(count)]
+    return [[x**2 + 2 * y**2 for x in axis] for y in axis]
+
+
 # a wheelset of 20 kN, and one wheel near its flange, where contact jumps between patches
 LOADED = with_values(WHEELSET, wheelset__z=None, wheelset__vertical_force=2e4)
 RAIL = with_values(WHEELSET, wheelset__z=2.0e-4)
@@ -38,6 +45,17 @@ SCENES: dict[str, dict[str, Any]] = {
         PATCH, geometry={"curvatures": [1.0, 1.5]}, load={"approach": 5e-5}
     ),
     "patch_normal": with_values(PATCH, motion=None, friction=None),
+    "line": with_values(
+        PATCH, geometry={"line_contact_radius": 0.5, "width": 0.1}, grid={"elements": [16, 1]}
+    ),
+    "gap": with_values(
+        PATCH,
+        geometry={"undeformed_distance": gap(24, 5e-4)},
+        grid={"element_size": [5e-4, 5e-4]},
+        load={"normal_force": 2e4},
+    ),
+    "fast": with_values(PATCH, method={"normal": "hertz", "tangential": "fastsim"}),
+    "layer": with_values(PATCH, layer={"shear_modulus": 8.2e9, "thickness": 5e-5}),
     "rail": RAIL,
     "roller": ROLLER,
     "loaded": LOADED,

@@ -24,6 +24,10 @@ MOTIONS: dict[str, list[dict[str, float]]] = {
     ],
     "patch_approach": [{"approach": 8e-5}, {"approach": -1e-6}, {"approach": 3e-5}],
     "patch_normal": [{"normal_force": 2e4}],
+    "line": [{"creepage[1]": 2e-3}, {"normal_force": 5e4}],
+    "gap": [{"creepage[2]": 2e-3}, {"normal_force": 1e4}],
+    "fast": [{"creepage[2]": 2e-3}, {"normal_force": 1e4, "spin_creepage": 0.2}],
+    "layer": [{"creepage[1]": 2e-3}],
     "rail": [
         {"wheelset.y": 1e-4, "wheelset.yaw": 1e-3},
         {"wheelset.vy": 0.01, "wheelset.left.offset[3]": 2e-5, "track.right.rotation[1]": 1e-4},

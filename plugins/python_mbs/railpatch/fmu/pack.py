@@ -71,6 +71,7 @@ def pack_fmu(
 
 def contents_of(scene: Scene, stem: str, name: str, backend: Backend) -> Contents:
     """Everything that is known before the GUID."""
+    library = library_of(backend)
     table = Table(Path(str(resources.files("railpatch.fmu") / "variables.toml")))
     # the handle checks what the schema leaves to the core: an FMU is never made of a bad scene
     config = config_of(scene)
@@ -86,7 +87,7 @@ def contents_of(scene: Scene, stem: str, name: str, backend: Backend) -> Content
         tolerance=scene.case.method.tolerance,
     )
     variables = variables_of(table, kind, scene.case)
-    return Contents(labels, table, kind, variables, scene, backend, library_of(backend))
+    return Contents(labels, table, kind, variables, scene, backend, library)
 
 
 def describe(kind: Kind, backend: Backend) -> str:
