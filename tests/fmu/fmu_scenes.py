@@ -7,6 +7,7 @@ from typing import Any
 
 from case_samples import PATCH, WHEELSET, with_values
 from railpatch import _core
+from slave import OK, Slave
 
 
 def gap(count: int, size: float) -> list[list[float]]:
@@ -63,6 +64,39 @@ SCENES: dict[str, dict[str, Any]] = {
     "patches": PATCHES,
     "frictionless": with_values(RAIL, method={"tangential": "none"}, friction=None),
 }
+# s, communication step
+STEP = 1e-3
+# what is set before each step, by scene
+MOTIONS: dict[str, list[dict[str, float]]] = {
+    "patch": [
+        {"creepage[1]": 2e-3},
+        {"creepage[2]": -5e-4, "spin_creepage": 0.4},
+        {"normal_force": 6e4, "direction": -1},
+        {"rolling_speed": 0.0},
+    ],
+    "patch_approach": [{"approach": 8e-5}, {"approach": -1e-6}, {"approach": 3e-5}],
+    "patch_normal": [{"normal_force": 2e4}],
+    "line": [{"creepage[1]": 2e-3}, {"normal_force": 5e4}],
+    "gap": [{"creepage[2]": 2e-3}, {"normal_force": 1e4}],
+    "fast": [{"creepage[2]": 2e-3}, {"normal_force": 1e4, "spin_creepage": 0.2}],
+    "layer": [{"creepage[1]": 2e-3}],
+    "rail": [
+        {"wheelset.y": 1e-4, "wheelset.yaw": 1e-3},
+        {"wheelset.vy": 0.01, "wheelset.left.offset[3]": 2e-5, "track.right.rotation[1]": 1e-4},
+        {"wheelset.z": -1e-3},
+        {"wheelset.z": 1.9e-4, "wheelset.right.rotation[3]": 1e-3},
+    ],
+    "roller": [
+        {"wheelset.y": 1e-4, "wheelset.yaw": 1e-3},
+        {"track.roller_pitch_rate": 2.01, "track.left.offset[1]": 1e-4},
+        {"wheelset.z": -1e-3},
+        {"wheelset.z": 1.9e-4},
+    ],
+    "loaded": [{"wheelset.y": 1e-4}, {"wheelset.vertical_force": 3e4, "wheelset.roll": 1e-5}],
+    "left_wheel": [{"wheelset.yaw": -1e-3, "track.left.offset[2]": 1e-4}],
+    "patches": [{"wheelset.y": y} for y in (5.75e-3, 6e-3, 6.25e-3, 5.5e-3, 0.0)],
+    "frictionless": [{"wheelset.yaw": 1e-3}, {"wheelset.z": 2.1e-4}],
+}
 OWN = _core.fft_backend()
 
 
@@ -70,3 +104,12 @@ def has(backend: str) -> bool:
     """Whether the package holds the library of a backend."""
     name = f"railpatch_fmu_{backend}.so"
     return (resources.files("railpatch.fmu") / "lib" / "linux64" / name).is_file()
+
+
+def run(slave: Slave, motions: list[dict[str, float]], time: float) -> dict[str, float]:
+    """Outputs after some steps."""
+    for values in motions:
+        assert slave.set(values) == OK, slave.log
+        assert slave.step(time, STEP) == OK, slave.log
+        time += STEP
+    return slave.outputs()

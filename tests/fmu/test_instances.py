@@ -8,9 +8,9 @@ import threading
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
+from fmu_scenes import MOTIONS, run
 from slave import OK, Fmu, Slave
-from test_numbers import MOTIONS
-from test_state import run
 
 Unpack = Callable[..., Fmu]
 
@@ -74,24 +74,39 @@ def test_loading_and_unloading_leaves_nothing(unpacked: Unpack) -> None:
     assert threading.active_count() == 1
 
 
-def test_locale_and_floating_point_do_not_matter(unpacked: Unpack) -> None:
-    with Slave(unpacked("rail")).initialize() as slave:
+# bits of MXCSR, the control register of SSE: set, cleared
+HOSTS = {
+    "rounds upwards": (0x4000, 0),
+    "flushes to zero": (0x8040, 0),
+    "traps": (0, 0x0680),  # invalid, division by zero, overflow
+}
+
+
+@pytest.mark.parametrize("host", HOSTS)
+def test_locale_and_floating_point_do_not_matter(host: str, unpacked: Unpack) -> None:
+    fmu = unpacked("rail")
+    with Slave(fmu).initialize() as slave:
         expected = run(slave, MOTIONS["rail"], 0)
     before = locale.setlocale(locale.LC_ALL)
     comma = next((n for n in ("de_DE.UTF-8", "fr_FR.UTF-8") if settable(n)), None)
     libm = ct.CDLL("libm.so.6")
-    upward = 0x800  # FE_UPWARD of x86
+    own, changed, after = (ct.create_string_buffer(32) for _ in range(3))  # fenv_t
+    libm.fegetenv(own)
+    changed.raw = own.raw
+    register = ct.c_uint32.from_buffer(changed, 28)
+    register.value = (register.value | HOSTS[host][0]) & ~HOSTS[host][1]
     try:
         if comma:
             locale.setlocale(locale.LC_ALL, comma)
-        assert libm.fesetround(upward) == 0
-        with Slave(unpacked("rail")).initialize() as slave:
+        libm.fesetenv(changed)
+        with Slave(fmu).initialize() as slave:
             found = run(slave, MOTIONS["rail"], 0)
-        kept = libm.fegetround()
+        libm.fegetenv(after)
     finally:
-        libm.fesetround(0)
+        libm.fesetenv(own)
         locale.setlocale(locale.LC_ALL, before)
-    assert kept == upward
+    control = 0xFFC0  # all but the flags of what has happened
+    assert ct.c_uint32.from_buffer(after, 28).value & control == register.value & control
     assert found == expected
 
 

@@ -9,42 +9,10 @@ from typing import Any
 
 import pytest
 import railpatch
-from fmu_scenes import OWN, SCENES, has
+from fmu_scenes import MOTIONS, OWN, SCENES, STEP, has
 from slave import DISCARD, OK, Fmu, Slave
 
 TOLERANCE = 1e-5  # of the scenes' solvers
-STEP = 1e-3
-# what is set before each step, by scene
-MOTIONS: dict[str, list[dict[str, float]]] = {
-    "patch": [
-        {"creepage[1]": 2e-3},
-        {"creepage[2]": -5e-4, "spin_creepage": 0.4},
-        {"normal_force": 6e4, "direction": -1},
-        {"rolling_speed": 0.0},
-    ],
-    "patch_approach": [{"approach": 8e-5}, {"approach": -1e-6}, {"approach": 3e-5}],
-    "patch_normal": [{"normal_force": 2e4}],
-    "line": [{"creepage[1]": 2e-3}, {"normal_force": 5e4}],
-    "gap": [{"creepage[2]": 2e-3}, {"normal_force": 1e4}],
-    "fast": [{"creepage[2]": 2e-3}, {"normal_force": 1e4, "spin_creepage": 0.2}],
-    "layer": [{"creepage[1]": 2e-3}],
-    "rail": [
-        {"wheelset.y": 1e-4, "wheelset.yaw": 1e-3},
-        {"wheelset.vy": 0.01, "wheelset.left.offset[3]": 2e-5, "track.right.rotation[1]": 1e-4},
-        {"wheelset.z": -1e-3},
-        {"wheelset.z": 1.9e-4, "wheelset.right.rotation[3]": 1e-3},
-    ],
-    "roller": [
-        {"wheelset.y": 1e-4, "wheelset.yaw": 1e-3},
-        {"track.roller_pitch_rate": 2.01, "track.left.offset[1]": 1e-4},
-        {"wheelset.z": -1e-3},
-        {"wheelset.z": 1.9e-4},
-    ],
-    "loaded": [{"wheelset.y": 1e-4}, {"wheelset.vertical_force": 3e4, "wheelset.roll": 1e-5}],
-    "left_wheel": [{"wheelset.yaw": -1e-3, "track.left.offset[2]": 1e-4}],
-    "patches": [{"wheelset.y": y} for y in (5.75e-3, 6e-3, 6.25e-3, 5.5e-3, 0.0)],
-    "frictionless": [{"wheelset.yaw": 1e-3}, {"wheelset.z": 2.1e-4}],
-}
 STATUSES = ["converged", "no_contact", "not_converged", "out_of_range"]
 
 

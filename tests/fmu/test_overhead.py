@@ -10,7 +10,7 @@ from slave import OK, Fmu, Integer, Real, Reference, Size, Slave
 
 
 def test_overhead_of_a_step(unpacked: Callable[..., Fmu]) -> None:
-    """Lifted off, so that nothing is solved: set all inputs, step, read all outputs."""
+    """Apart, so that nothing is solved: set all inputs, step, read all outputs."""
     fmu = unpacked("patch_approach")
     reals = fmu.names("input", "Real")
     outputs = fmu.names("output", "Real")

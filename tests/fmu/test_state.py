@@ -12,20 +12,10 @@ from pathlib import Path
 
 import pytest
 import slave as slave_program
-from fmu_scenes import SCENES
+from fmu_scenes import MOTIONS, SCENES, STEP, run
 from slave import ERROR, OK, Fmu, Slave
-from test_numbers import MOTIONS, STEP
 
 Unpack = Callable[..., Fmu]
-
-
-def run(slave: Slave, motions: list[dict[str, float]], time: float) -> dict[str, float]:
-    """Outputs after some steps."""
-    for values in motions:
-        assert slave.set(values) == OK, slave.log
-        assert slave.step(time, STEP) == OK, slave.log
-        time += STEP
-    return slave.outputs()
 
 
 @pytest.mark.parametrize("name", SCENES)

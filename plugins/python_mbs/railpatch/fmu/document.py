@@ -35,25 +35,26 @@ small against the radii of wheel and rail, and motion changes little while the w
 patch length. Lift-off is a valid result: status no_contact, all forces 0. A step that does not
 converge, or in which contact leaves the profiles or needs more elements or patches than the FMU
 was made with, ends with fmi2Discard: the time stays at that of the last good step, outputs keep
-its values, and the message in the category logStatusDiscard says what to change. Values outside
+its values, and the message in the category logStatusDiscard says what to change. Go on from a saved
+state, or reset. Values outside
 the ranges below are refused with fmi2Error, and nothing is set.</p>
 """
 COUPLING = """
 <p>Co-simulation lags: the forces after a step belong to the motion that was set before it, so a
-master that exchanges values once a step delays the contact force by one communication step. The
-contact is stiff (of the order of 1e9 N/m for a wheel), and a delay acts on it like negative
-damping. Therefore:</p>
+master that exchanges values once a step delays the contact force by one communication step. A
+delayed spring acts like one with a negative damper of stiffness times step: a wheel's contact of
+about 1e9 N/m and steps of 0.1 ms take 1e5 N s/m of damping out of the system. Therefore:</p>
 <ul>
-<li>Choose steps that are short against the contact's oscillation: 0.1 ms is a start for a
-wheelset of 1000 kg; halve it until results stay.</li>
-<li>Or iterate: save the state, step, correct the motion, restore, step again. States can be
-saved, restored and serialised at any time; a restored step gives the same bits.</li>
-<li>Or give the vertical force instead of z, where the scene allows it: z is then found
-inside.</li>
+<li>Choose steps so short that the rest of the model damps more than that, and halve them until
+results stay.</li>
+<li>Or iterate: save the state, step, correct the motion, restore, step again. States can be saved,
+restored and serialised at any time; a restored step gives the same bits.</li>
+<li>Or give the vertical force instead of z, in the scene: z is then found inside, and only the
+softer creep forces lag.</li>
 </ul>
 <p>The last solution is the start of the next one. It changes results only within the solver's
-tolerance, and is part of the saved state. Steps may vary in length; inputs are held during a
-step. In initialization mode outputs follow the inputs at once.</p>
+tolerance, and is part of the saved state. Steps may vary in length; inputs are held during a step.
+In initialization mode outputs follow the inputs at once.</p>
 """
 NOTICES = {
     "eigen": """Railpatch is under the Apache License 2.0. The library in this FMU also contains
