@@ -2,47 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import click
-from railpatch.commands import EXIT_NOT_CONVERGED, WrongCall
+from railpatch.commands import (
+    EXIT_NOT_CONVERGED,
+    WrongCall,
+    output_option,
+    progress_bar,
+    scene_argument,
+    show_scene_option,
+)
 from railpatch.errors import CaseError, ProfileError
 
 
-def show_scene(context: click.Context, _option: click.Parameter, value: bool) -> None:
-    """Prints the scene that is run by default, and ends."""
-    if not value or context.resilient_parsing:
-        return
+def default_scene_text() -> str:
+    """The scene that is run by default."""
     from rig_model.scene import default_scene
 
-    click.echo(default_scene().read_text(encoding="utf-8"), nl=False)
-    context.exit()
+    return default_scene().read_text(encoding="utf-8")
 
 
 @click.command("rig")
-@click.argument("scene", metavar="[SCENE.toml]", required=False, type=click.Path(path_type=Path))
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="RUN.mcap",
-    help="The log to write.",
-)
+@scene_argument()
+@output_option("RUN.mcap", "The log to write.")
 @click.option("--positions", type=int, metavar="NUMBER", help="Replaces rig.positions.")
 @click.option("--rate", type=float, metavar="HZ", help="Replaces rig.rate: positions per second.")
 @click.option("--duration", type=float, metavar="SECONDS", help="Replaces rig.duration.")
-@click.option(
-    "--show-scene",
-    is_flag=True,
-    is_eager=True,
-    expose_value=False,
-    callback=show_scene,
-    help="Print the scene that is run by default, as a start for one's own.",
-)
+@show_scene_option(default_scene_text)
 @click.option("--quiet", is_flag=True, help="Print no summary and no progress.")
 @click.pass_context
 def rig(
@@ -63,7 +51,7 @@ def rig(
         if not quiet:
             click.echo(f"scene         {loaded.name}")
             click.echo(f"profiles      {profiles_used(loaded, chosen=scene is None)}")
-        with progress_bar(loaded.rig.count, quiet) as advance:
+        with progress_bar("balancing", loaded.rig.count, quiet) as advance:
             summary = replay(loaded, output, advance)
     except (CaseError, ProfileError, OSError) as error:
         raise WrongCall(str(error)) from None
@@ -87,17 +75,3 @@ def profiles_used(scene: Any, *, chosen: bool) -> str:
     if scene.name == NOMINAL:
         return f"nominal ({names}); set {REFERENCE_VARIABLE} for the measured ones: not found"
     return f"measured ({names})"
-
-
-@contextmanager
-def progress_bar(total: int, quiet: bool) -> Iterator[Any]:
-    """What to call after each position; a bar on stderr only where that is a terminal."""
-    from rich.console import Console
-    from rich.progress import MofNCompleteColumn, Progress
-
-    console = Console(stderr=True)
-    shown = console.is_terminal and not quiet
-    columns = (*Progress.get_default_columns(), MofNCompleteColumn())
-    with Progress(*columns, console=console, disable=not shown, transient=True) as bar:
-        task = bar.add_task("balancing", total=total)
-        yield lambda _balance: bar.advance(task)

@@ -3,14 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Any
-
-import numpy as np
-from railpatch.case.wheel import Deviation
-from railpatch.log import SceneGeometry
-from railpatch.profiles import load_profile
-from railpatch.profiles.raw import Role
 
 from rig_model.balance import Balance
 from rig_model.scene import SIDES, RigScene
@@ -76,37 +69,3 @@ class Recorder:
 def attachments(scene: RigScene) -> dict[str, bytes]:
     """The profile files' content by their name in the case file."""
     return {name: file.read_bytes() for name, file in scene.files.items()}
-
-
-def geometry(scene: RigScene) -> SceneGeometry:
-    """The bodies of the 3D scene. Raises ProfileError."""
-    wheelset, track = scene.case.wheelset, scene.case.track
-    return SceneGeometry.from_profiles(
-        "roller",
-        {side: curve(scene, "wheel", side, getattr(wheelset, side)) for side in SIDES},
-        {side: curve(scene, "rail", side, Deviation()) for side in SIDES},
-        nominal_radius=wheelset.nominal_radius,
-        flange_back_distance=wheelset.flange_back_distance,
-        flange_back_position=wheelset.flange_back_position,
-        gauge=track.gauge,
-        gauge_height=track.gauge_height,
-        roller_radius=track.roller_radius,
-        rail_offsets={side: getattr(track, side).offset[1:] for side in SIDES},
-    )
-
-
-def curve(scene: RigScene, role: Role, side: str, deviation: Deviation) -> np.ndarray:
-    """m, [n, 2], y and z of a profile, a right-hand one for both sides, with its deviation."""
-    profiles = scene.case.profiles
-    _, name = profiles.of(role, side)
-    assert name is not None
-    mirror = -1.0 if side == "left" else 1.0
-    _, y, z = deviation.offset
-    profile = load_profile(name, role, smoothing=profiles.smoothing)
-    return points(profile.moved(mirror * y, z, mirror * deviation.rotation[0]))
-
-
-def points(profile: Any) -> np.ndarray:
-    """m, [n, 2]."""
-    columns: Sequence[np.ndarray] = (profile.y, profile.z)
-    return np.column_stack(columns)

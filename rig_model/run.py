@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from railpatch.log import RunLog
+from railpatch.log import RunLog, scene_geometry
 
 from rig_model.balance import Balance, Balancer
-from rig_model.record import Recorder, attachments, geometry
+from rig_model.record import Recorder, attachments
 from rig_model.scene import SIDES, RigScene
 
 
@@ -68,7 +68,7 @@ def replay(
         case_text=scene.text,
         case_name=scene.name,
         profiles=attachments(scene),
-        geometry=geometry(scene),
+        geometry=scene_geometry(scene.case),
     ) as log:
         for position in scene.positions():
             begin = time.perf_counter()

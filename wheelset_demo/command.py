@@ -3,36 +3,31 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import click
-from railpatch.commands import EXIT_NOT_CONVERGED, WrongCall
+from railpatch.commands import (
+    EXIT_NOT_CONVERGED,
+    WrongCall,
+    output_option,
+    progress_bar,
+    scene_argument,
+    show_scene_option,
+)
 from railpatch.errors import CaseError, ProfileError
 
 
-def show_scene(context: click.Context, _option: click.Parameter, value: bool) -> None:
-    """Prints the scene that is run by default, and ends."""
-    if not value or context.resilient_parsing:
-        return
+def default_scene_text() -> str:
+    """The scene that is run by default."""
     from wheelset_demo.scene import DEFAULT, scene_file
 
-    click.echo(scene_file(DEFAULT).read_text(encoding="utf-8"), nl=False)
-    context.exit()
+    return scene_file(DEFAULT).read_text(encoding="utf-8")
 
 
 @click.command("wheelset")
-@click.argument("scene", metavar="[SCENE.toml]", required=False, type=click.Path(path_type=Path))
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="RUN.mcap",
-    help="The log to write.",
-)
+@scene_argument()
+@output_option("RUN.mcap", "The log to write.")
 @click.option("--distance", type=float, metavar="METRES", help="Replaces run.distance.")
 @click.option("--step", type=float, metavar="SECONDS", help="Replaces run.step.")
 @click.option(
@@ -41,14 +36,7 @@ def show_scene(context: click.Context, _option: click.Parameter, value: bool) ->
     help="Replaces run.stepper: explicit, implicit.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object.")
-@click.option(
-    "--show-scene",
-    is_flag=True,
-    is_eager=True,
-    expose_value=False,
-    callback=show_scene,
-    help="Print the scene that is run by default, as a start for one's own.",
-)
+@show_scene_option(default_scene_text)
 @click.option("--quiet", is_flag=True, help="Print no summary and no progress.")
 @click.pass_context
 def wheelset(
@@ -73,7 +61,7 @@ def wheelset(
 
     try:
         loaded = load_wheelset_scene(scene, overrides)
-        with progress_bar(loaded.steps, quiet) as advance:
+        with progress_bar("rolling", loaded.steps, quiet) as advance:
             summary = run_scene(loaded, output, advance)
     except (CaseError, ProfileError, OSError) as error:
         raise WrongCall(str(error)) from None
@@ -86,16 +74,3 @@ def wheelset(
         if not quiet:
             click.echo(f"status: {summary.message}; the log up to there is in {output}", err=True)
         context.exit(EXIT_NOT_CONVERGED)
-
-
-@contextmanager
-def progress_bar(total: int, quiet: bool) -> Iterator[Any]:
-    """What to call after each step; a bar on stderr only where that is a terminal."""
-    from rich.console import Console
-    from rich.progress import Progress
-
-    console = Console(stderr=True)
-    shown = console.is_terminal and not quiet
-    with Progress(console=console, disable=not shown, transient=True) as bar:
-        task = bar.add_task("rolling", total=total)
-        yield lambda _state: bar.advance(task)

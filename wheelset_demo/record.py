@@ -7,12 +7,6 @@ import time
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from railpatch.case.wheel import Deviation
-from railpatch.log import SceneGeometry
-from railpatch.profiles import load_profile
-from railpatch.profiles.raw import Role
-
 from wheelset_demo.scene import SIDES, WheelsetScene
 from wheelset_demo.system import WORKS, State, System
 from wheelset_demo.trace import STORES, Trace
@@ -95,31 +89,3 @@ def attachments(scene: WheelsetScene) -> dict[str, bytes]:
     """The profile files' content by their name."""
     files = [Path(name) for name in scene.profiles.values()]
     return {file.name: file.read_bytes() for file in files if file.is_file()}
-
-
-def geometry(scene: WheelsetScene) -> SceneGeometry:
-    """The bodies of the 3D scene. Raises ProfileError."""
-    wheelset, track = scene.case.wheelset, scene.case.track
-    return SceneGeometry.from_profiles(
-        "rail",
-        {side: curve(scene, "wheel", side, getattr(wheelset, side)) for side in SIDES},
-        {side: curve(scene, "rail", side, Deviation()) for side in SIDES},
-        nominal_radius=wheelset.nominal_radius,
-        flange_back_distance=wheelset.flange_back_distance,
-        flange_back_position=wheelset.flange_back_position,
-        gauge=track.gauge,
-        gauge_height=track.gauge_height,
-        rail_offsets={side: getattr(track, side).offset[1:] for side in SIDES},
-    )
-
-
-def curve(scene: WheelsetScene, role: Role, side: str, deviation: Deviation) -> np.ndarray:
-    """m, [n, 2], y and z of a profile, a right-hand one for both sides, with its deviation."""
-    profiles = scene.case.profiles
-    _, name = profiles.of(role, side)
-    assert name is not None
-    mirror = -1.0 if side == "left" else 1.0
-    _, y, z = deviation.offset
-    profile = load_profile(name, role, smoothing=profiles.smoothing)
-    moved = profile.moved(mirror * y, z, mirror * deviation.rotation[0])
-    return np.column_stack([moved.y, moved.z])

@@ -6,9 +6,9 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from railpatch.log import RunLog
+from railpatch.log import RunLog, scene_geometry
 
-from wheelset_demo.record import Recorder, attachments, geometry
+from wheelset_demo.record import Recorder, attachments
 from wheelset_demo.scene import WheelsetScene
 from wheelset_demo.start import released
 from wheelset_demo.steppers import make_stepper
@@ -76,7 +76,7 @@ def run_scene(scene: WheelsetScene, output: Path, advance: Advance | None = None
         case_text=scene.text,
         case_name=scene.name,
         profiles=attachments(scene),
-        geometry=geometry(scene),
+        geometry=scene_geometry(scene.case),
     ) as log:
         trace = simulation.run(log, advance)
         log.close(str(trace.failure or ""))

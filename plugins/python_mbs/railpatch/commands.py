@@ -6,7 +6,10 @@ command. --quiet and --version are added where the command has none of its own.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
 from typing import Any
 
 import click
@@ -54,6 +57,58 @@ def version_option() -> click.Option:
 def quiet_option() -> click.Option:
     """--quiet for a command that has nothing to be quiet about."""
     return click.Option(["--quiet"], is_flag=True, expose_value=False, help="Print nothing.")
+
+
+def scene_argument() -> Callable[..., Any]:
+    """[SCENE.toml], a path or None."""
+    return click.argument(
+        "scene", metavar="[SCENE.toml]", required=False, type=click.Path(path_type=Path)
+    )
+
+
+def output_option(metavar: str, text: str) -> Callable[..., Any]:
+    """-o, --output: the file to write."""
+    return click.option(
+        "-o",
+        "--output",
+        required=True,
+        type=click.Path(dir_okay=False, path_type=Path),
+        metavar=metavar,
+        help=text,
+    )
+
+
+def show_scene_option(text: Callable[[], str]) -> Callable[..., Any]:
+    """--show-scene: prints the scene that is run by default and ends."""
+
+    def show(context: click.Context, _option: click.Parameter, value: bool) -> None:
+        if not value or context.resilient_parsing:
+            return
+        click.echo(text(), nl=False)
+        context.exit()
+
+    return click.option(
+        "--show-scene",
+        is_flag=True,
+        is_eager=True,
+        expose_value=False,
+        callback=show,
+        help="Print the scene that is run by default, as a start for one's own.",
+    )
+
+
+@contextmanager
+def progress_bar(label: str, total: int, quiet: bool) -> Iterator[Callable[[Any], None]]:
+    """What to call after each step; a bar on stderr only where that is a terminal."""
+    from rich.console import Console
+    from rich.progress import MofNCompleteColumn, Progress
+
+    console = Console(stderr=True)
+    shown = console.is_terminal and not quiet
+    columns = (*Progress.get_default_columns(), MofNCompleteColumn())
+    with Progress(*columns, console=console, disable=not shown, transient=True) as bar:
+        task = bar.add_task(label, total=total)
+        yield lambda _step: bar.advance(task)
 
 
 def with_common_options(command: click.Command) -> click.Command:

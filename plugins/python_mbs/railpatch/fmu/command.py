@@ -7,17 +7,12 @@ from typing import Any
 
 import click
 
+from railpatch.commands import output_option, scene_argument
+
 
 @click.command("fmu")
-@click.argument("scene", metavar="[SCENE.toml]", required=False, type=click.Path(path_type=Path))
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="NAME.fmu",
-    help="The FMU to write; NAME is also that of the library inside.",
-)
+@scene_argument()
+@output_option("NAME.fmu", "The FMU to write; NAME is also that of the library inside.")
 @click.option(
     "--fft",
     type=click.Choice(["eigen", "fftw"]),

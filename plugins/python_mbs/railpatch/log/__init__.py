@@ -3,8 +3,17 @@
 from railpatch.log import RunLog, SceneGeometry, read_run
 """
 
-from .geometry import SceneGeometry
+from .geometry import SceneGeometry, scene_geometry
 from .reader import Attachment, Run, RunFileError, Series, read_run
 from .writer import RunLog
 
-__all__ = ["Attachment", "Run", "RunFileError", "RunLog", "SceneGeometry", "Series", "read_run"]
+__all__ = [
+    "Attachment",
+    "Run",
+    "RunFileError",
+    "RunLog",
+    "SceneGeometry",
+    "Series",
+    "read_run",
+    "scene_geometry",
+]

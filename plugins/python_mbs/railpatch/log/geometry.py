@@ -11,6 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from railpatch.case.wheel import Deviation, WheelsetCase
+from railpatch.profiles import load_profile
+from railpatch.profiles.raw import Role
+
 from .channels import SIDES
 
 KINDS = ("rail", "roller")
@@ -137,3 +141,34 @@ def _strip(rows: int, columns: int) -> np.ndarray:
     lower = np.column_stack([corner, corner + 1, corner + columns])
     upper = np.column_stack([corner + 1, corner + columns + 1, corner + columns])
     return np.vstack([lower, upper])
+
+
+def scene_geometry(case: WheelsetCase) -> SceneGeometry:
+    """The bodies of a case's 3D scene; its profiles are names or absolute paths.
+
+    Raises ProfileError.
+    """
+    wheelset, track = case.wheelset, case.track
+    return SceneGeometry.from_profiles(
+        "roller" if track.kind == "roller" else "rail",
+        {side: curve(case, "wheel", side, getattr(wheelset, side)) for side in SIDES},
+        {side: curve(case, "rail", side, Deviation()) for side in SIDES},
+        nominal_radius=wheelset.nominal_radius,
+        flange_back_distance=wheelset.flange_back_distance,
+        flange_back_position=wheelset.flange_back_position,
+        gauge=track.gauge,
+        gauge_height=track.gauge_height,
+        roller_radius=track.roller_radius,
+        rail_offsets={side: getattr(track, side).offset[1:] for side in SIDES},
+    )
+
+
+def curve(case: WheelsetCase, role: Role, side: str, deviation: Deviation) -> np.ndarray:
+    """m, [n, 2], y and z of a profile, a right-hand one for both sides, with its deviation."""
+    _, name = case.profiles.of(role, side)
+    assert name is not None
+    mirror = -1.0 if side == "left" else 1.0
+    _, y, z = deviation.offset
+    profile = load_profile(name, role, smoothing=case.profiles.smoothing)
+    moved = profile.moved(mirror * y, z, mirror * deviation.rotation[0])
+    return np.column_stack([moved.y, moved.z])
