@@ -71,7 +71,8 @@ def solved(fmu: Fmu, values: dict[str, float]) -> dict[str, float]:
         return slave.outputs()
 
 
-SOLVED = ("patch", "patch_approach", "patch_normal", "rail", "roller", "loaded", "frictionless")
+SOLVED = ("patch", "patch_approach", "patch_normal", "line", "fast", "rail", "roller", "loaded")
+SOLVED += ("frictionless",)
 
 
 @pytest.mark.parametrize("name", SOLVED)

@@ -8,12 +8,15 @@ import sys
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
+from case_samples import PATCH, with_values
 from fmpy import read_model_description, simulate_fmu
 from fmpy.validation import validate_fmu
-from fmu_scenes import SCENES, has
+from fmu_scenes import RAIL, SCENES, has
 from railpatch.case import load_scene
+from railpatch.errors import CaseError
 from railpatch.fmu import pack_fmu
 from slave import Fmu
 
@@ -182,3 +185,28 @@ def test_a_wrong_call_writes_nothing(tmp_path: Path) -> None:
     assert "geometry.semi_axes" in run.stderr
     assert railpatch("fmu", "-o", tmp_path / "absent" / "a.fmu").returncode == 2
     assert list(tmp_path.iterdir()) == [case]
+
+
+def refused(case: dict[str, Any], tmp_path: Path) -> str:
+    """What packing the case says; nothing is written."""
+    path = tmp_path / "case.fmu"
+    with pytest.raises(CaseError) as caught:
+        pack_fmu(load_scene(case), path, name="case", backend="eigen")
+    assert not path.exists()
+    return str(caught.value)
+
+
+def test_a_scene_that_the_core_refuses_is_not_packed(tmp_path: Path) -> None:
+    turned = with_values(RAIL, track__right={"rotation": [0, 0.01, 0]})
+    assert "rail_rotation" in refused(turned, tmp_path)
+
+
+def test_a_start_that_cannot_be_solved_is_not_packed(tmp_path: Path) -> None:
+    assert "out_of_range" in refused(with_values(RAIL, wheelset__z=0.02), tmp_path)
+
+
+def test_a_start_outside_the_range_is_not_packed(tmp_path: Path) -> None:
+    text = refused(with_values(PATCH, motion__rolling_speed=2000.0), tmp_path)
+    assert "rolling_speed" in text
+    assert "2000" in text
+    assert "1000" in text

@@ -4,6 +4,7 @@
 
 #include <new>
 
+#include "floating_point.hpp"
 #include "instance.hpp"
 
 using namespace railpatch::fmu;
@@ -15,6 +16,8 @@ template <class F>
 fmi2Status run(fmi2Component component, const Call &call, F &&function) noexcept {
   auto *instance = static_cast<Instance *>(component);
   if (instance == nullptr) return fmi2Error;
+  // a host may trap on NaN or flush to zero: nothing here, comparisons included, must feel it
+  const DefaultFloatingPoint environment;
   try {
     if (!instance->allows(call)) return fmi2Error;
     return function(*instance);

@@ -118,6 +118,7 @@ fmi2Status Instance::enter_initialization() {
 fmi2Status Instance::exit_initialization() {
   if (changed_ && solve(call::exit_initialization, time_) != fmi2OK) {
     mode_ = Mode::error;
+    log_.error(std::string(call::exit_initialization.name) + ": the start cannot be solved");
     return fmi2Error;
   }
   mode_ = Mode::step_complete;
@@ -160,7 +161,6 @@ fmi2Status Instance::step(double time, double step) {
 // --- solving -----------------------------------------------------------------------------------
 
 fmi2Status Instance::solve(const Call &call, double time) {
-  const DefaultFloatingPoint environment;
   // before the first step a result depends on nothing but the values set
   if (mode_ == Mode::initialization) rp_reset(contact_.get());
   rp_message message = {};

@@ -26,7 +26,7 @@ creep force. Vectors are counted from 1.</p>
 """
 MISSING = """
 <p>Inputs without effect do not exist: a wheel may be turned about its axle and a rail moved
-along x, or turned about y or z, without any change of the contact that is solved here. Outputs
+along x without any change. Rails and rollers turn about x only in this version. Outputs
 of a patch that is not there are 0, its status is no_contact.</p>
 """
 RANGE = """

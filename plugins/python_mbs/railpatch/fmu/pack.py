@@ -16,11 +16,13 @@ from typing import Literal
 from railpatch import _core
 from railpatch.case.load import Scene
 from railpatch.config import config_of
+from railpatch.contact import Contact
 from railpatch.errors import CaseError
 from railpatch.fmu.description import Labels, description_xml
 from railpatch.fmu.document import index_html, notice
 from railpatch.fmu.scene import kind_of, scene_text, variables_of
 from railpatch.fmu.table import Kind, Table, Variable
+from railpatch.result import GOOD
 
 Backend = Literal["eigen", "fftw"]
 PLATFORM = "linux64"
@@ -73,9 +75,7 @@ def contents_of(scene: Scene, stem: str, name: str, backend: Backend) -> Content
     """Everything that is known before the GUID."""
     library = library_of(backend)
     table = Table(Path(str(resources.files("railpatch.fmu") / "variables.toml")))
-    # the handle checks what the schema leaves to the core: an FMU is never made of a bad scene
     config = config_of(scene)
-    _core.Contact(config)
     kind = kind_of(scene.case, _core.config_numbers(config))
     labels = Labels(
         identifier=identifier_of(stem) + SUFFIXES[backend],
@@ -87,6 +87,10 @@ def contents_of(scene: Scene, stem: str, name: str, backend: Backend) -> Content
         tolerance=scene.case.method.tolerance,
     )
     variables = variables_of(table, kind, scene.case)
+    # solved once, so that an FMU is never made of a scene that the core refuses or cannot start
+    status = Contact(scene).step().status
+    if status not in GOOD:
+        raise CaseError(f"{name}: the start values cannot be solved: {status}")
     return Contents(labels, table, kind, variables, scene, backend, library)
 
 

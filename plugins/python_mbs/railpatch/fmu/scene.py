@@ -13,6 +13,7 @@ from railpatch import _core
 from railpatch.case.load import Case, Scene
 from railpatch.case.patch import PatchCase
 from railpatch.config import config_of
+from railpatch.errors import CaseError
 from railpatch.fmu.table import Kind, Table, Variable, with_start
 
 SIDE_INDEX = {"left": 0, "right": 1}
@@ -22,6 +23,8 @@ PROFILE_ARRAYS = ("arc_length", "y", "z", "dy", "dz")
 def kind_of(case: Case, config: dict[str, list[float]]) -> Kind:
     """What the variables depend on. config: numbers of the core."""
     conditions = {"tangential"} if case.has_tangential else set()
+    if case.has_tangential and case.method.tangential != "full":
+        conditions.add("fast")
     if isinstance(case, PatchCase):
         conditions.add("force" if case.load.normal_force is not None else "position")
         return Kind("patch", (1,), 1, frozenset(conditions))
@@ -34,10 +37,24 @@ def kind_of(case: Case, config: dict[str, list[float]]) -> Kind:
 
 def variables_of(table: Table, kind: Kind, case: Case) -> list[Variable]:
     """The scene's variables; inputs and parameters with the case's values as start."""
-    return [
+    found = [
         v if v.causality == "output" else with_start(v, start_of(v, case))
         for v in table.variables(kind)
     ]
+    wrong = [v for v in found if v.start is not None and not within(v)]
+    if wrong:
+        raise CaseError(
+            f"{v.name}: value is {v.start}, allowed in an FMU {v.range[0]:g} ... {v.range[1]:g}"
+            for v in wrong
+        )
+    return found
+
+
+def within(variable: Variable) -> bool:
+    """Whether the start lies in the variable's own range."""
+    low, high = variable.range
+    assert variable.start is not None
+    return low <= variable.start <= high
 
 
 def start_of(variable: Variable, case: Case) -> float | int:

@@ -28,8 +28,16 @@ TRACK: dict[str, Any] = {
 
 
 def scene_of(path: Path | None) -> tuple[str, Scene]:
-    """Name and scene. A file may be a case, or a rig's scene. Raises CaseError, ProfileError."""
-    if path is not None and "rig" not in read_toml(path):
+    """Name and scene. A file may be a case, or the scene of a rig or of a wheelset's run.
+
+    Raises CaseError, ProfileError.
+    """
+    tables = read_toml(path) if path is not None else {}
+    if path is not None and "run" in tables:
+        from wheelset_demo.scene import load_wheelset_scene
+
+        return path.stem, Scene(load_wheelset_scene(path).case, path.parent)
+    if path is not None and "rig" not in tables:
         return path.stem, load_scene(path)
     try:
         from rig_model.scene import load_rig_scene

@@ -145,6 +145,8 @@ def level_of(row: dict[str, Any], kind: Kind) -> str:
     """What an input affects, or an output depends on."""
     if "depends_frictionless" in row and "tangential" not in kind.conditions:
         return row["depends_frictionless"]
+    if "depends_fast" in row and "fast" in kind.conditions:
+        return row["depends_fast"]
     return row.get("affects") or row["depends"]
 
 
