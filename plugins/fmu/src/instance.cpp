@@ -116,13 +116,13 @@ fmi2Status Instance::enter_initialization() {
 }
 
 fmi2Status Instance::exit_initialization() {
-  if (changed_ && solve(call::exit_initialization, time_) != fmi2OK) {
-    mode_ = Mode::error;
-    log_.error(std::string(call::exit_initialization.name) + ": the start cannot be solved");
-    return fmi2Error;
-  }
-  mode_ = Mode::step_complete;
-  return fmi2OK;
+  const Call &call = call::exit_initialization;
+  const fmi2Status status = changed_ ? solve(call, time_) : fmi2OK;
+  // FMI knows no discard here, so a start that cannot be solved is an error, and said as one
+  if (status == fmi2Discard)
+    log_.error(std::string(call.name) + ": the start values cannot be solved");
+  mode_ = status == fmi2OK ? Mode::step_complete : Mode::error;
+  return status == fmi2OK ? fmi2OK : fmi2Error;
 }
 
 fmi2Status Instance::terminate() {
