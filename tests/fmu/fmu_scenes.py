@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib import resources
 from typing import Any
 
 from case_samples import PATCH, WHEELSET, with_values
@@ -98,12 +97,6 @@ MOTIONS: dict[str, list[dict[str, float]]] = {
     "frictionless": [{"wheelset.yaw": 1e-3}, {"wheelset.z": 2.1e-4}],
 }
 OWN = _core.fft_backend()
-
-
-def has(backend: str) -> bool:
-    """Whether the package holds the library of a backend."""
-    name = f"railpatch_fmu_{backend}.so"
-    return (resources.files("railpatch.fmu") / "lib" / "linux64" / name).is_file()
 
 
 def run(slave: Slave, motions: list[dict[str, float]], time: float) -> dict[str, float]:

@@ -43,9 +43,9 @@ class Fmu:
             self.variables[variable.attrib["name"]] = variable
         self.references = {n: int(v.attrib["valueReference"]) for n, v in self.variables.items()}
         identifier = root.find("CoSimulation").attrib["modelIdentifier"]
-        self.library_path = folder / "binaries" / "linux64" / f"{identifier}.so"
-        self.library = ct.CDLL(str(self.library_path))
-        self.library.fmi2Instantiate.restype = ct.c_void_p
+        self.binary_path = folder / "binaries" / "linux64" / f"{identifier}.so"
+        self.binary = ct.CDLL(str(self.binary_path))
+        self.binary.fmi2Instantiate.restype = ct.c_void_p
 
     @property
     def location(self) -> str:
@@ -78,7 +78,7 @@ class Slave:
         self.log: list[tuple[int, str, str]] = []
         self.callbacks = Callbacks(logger=Logger(self._hear))
         where = fmu.location if location == "" else location
-        self.component = fmu.library.fmi2Instantiate(
+        self.component = fmu.binary.fmi2Instantiate(
             name.encode(),
             1,
             None if guid is None else (guid or fmu.guid).encode(),
@@ -93,7 +93,7 @@ class Slave:
 
     def call(self, function: str, *arguments: Any) -> int:
         """Any function, with the component first."""
-        return getattr(self.fmu.library, f"fmi2{function}")(ct.c_void_p(self.component), *arguments)
+        return getattr(self.fmu.binary, f"fmi2{function}")(ct.c_void_p(self.component), *arguments)
 
     def free(self) -> None:
         """fmi2FreeInstance; twice does nothing."""

@@ -193,9 +193,9 @@ def test_instantiation_is_forgiving_where_it_can(unpacked: Unpack) -> None:
         with Slave(fmu, **changes) as slave:
             assert slave.component is None
             assert len(slave.log) == 1
-    free = fmu.library.fmi2FreeInstance
+    free = fmu.binary.fmi2FreeInstance
     free(None)
-    assert fmu.library.fmi2Reset(None) == ERROR
+    assert fmu.binary.fmi2Reset(None) == ERROR
 
 
 def test_the_log_can_be_switched(unpacked: Unpack, capfd: pytest.CaptureFixture[str]) -> None:

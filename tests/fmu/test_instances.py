@@ -61,15 +61,15 @@ def test_loading_and_unloading_leaves_nothing(unpacked: Unpack) -> None:
     close.argtypes = [ct.c_void_p]
     # the fixture's own handle, so that the library really goes
     path = fmu.folder / "binaries" / "linux64" / "again.so"
-    path.write_bytes(fmu.library_path.read_bytes())
+    path.write_bytes(fmu.binary_path.read_bytes())
     sizes = []
     threads = len(list(Path("/proc/self/task").iterdir()))
     for _ in range(100):
-        fmu.library = ct.CDLL(str(path))
-        fmu.library.fmi2Instantiate.restype = ct.c_void_p
+        fmu.binary = ct.CDLL(str(path))
+        fmu.binary.fmi2Instantiate.restype = ct.c_void_p
         with Slave(fmu).initialize() as slave:
             assert slave.step(0, 1e-3) == OK
-        assert close(fmu.library._handle) == 0
+        assert close(fmu.binary._handle) == 0
         assert str(path) not in Path("/proc/self/maps").read_text()
         sizes.append(resident())
     assert sizes[-1] - sizes[20] < 4e6

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 import railpatch
-from fmu_scenes import MOTIONS, OWN, SCENES, STEP, has
+from fmu_scenes import MOTIONS, OWN, SCENES, STEP
 from slave import DISCARD, OK, Fmu, Slave
 
 TOLERANCE = 1e-5  # of the scenes' solvers
@@ -70,8 +70,6 @@ def scale_of(name: str, found: dict[str, float]) -> float:
 
 @pytest.mark.parametrize("name", SCENES)
 def test_same_numbers_as_python(name: str, unpacked: Callable[..., Fmu]) -> None:
-    if not has(OWN):
-        pytest.skip(f"built without the library for {OWN}")
     contact = railpatch.Contact(SCENES[name])
     with Slave(unpacked(name, OWN)).initialize() as slave:
         results = [contact.step().to_dict()]
@@ -88,7 +86,6 @@ def test_same_numbers_as_python(name: str, unpacked: Callable[..., Fmu]) -> None
             assert abs(value - wanted) <= bound, (name, k, key, value, wanted, bound)
 
 
-@pytest.mark.skipif(not (has("eigen") and has("fftw")), reason="one FFT library alone was built")
 @pytest.mark.parametrize("name", SCENES)
 def test_both_fft_libraries_agree(name: str, unpacked: Callable[..., Fmu]) -> None:
     slaves = [Slave(unpacked(name, backend)).initialize() for backend in ("eigen", "fftw")]

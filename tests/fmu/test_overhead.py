@@ -18,7 +18,7 @@ def test_overhead_of_a_step(unpacked: Callable[..., Fmu]) -> None:
     get_references = (Reference * len(outputs))(*(fmu.references[n] for n in outputs))
     values = (Real * len(reals))(*(-1e-4 if n == "approach" else 0.0 for n in reals))
     found = (Real * len(outputs))()
-    library, count = fmu.library, 20000
+    library, count = fmu.binary, 20000
     with Slave(fmu).initialize() as slave:
         component = ct.c_void_p(slave.component)
         sizes = Size(len(reals)), Size(len(outputs))

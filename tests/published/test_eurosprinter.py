@@ -9,7 +9,6 @@ the rail, so both change sign. The table is read where the reference folder is p
 from __future__ import annotations
 
 import csv
-import os
 from pathlib import Path
 
 import numpy as np
@@ -22,18 +21,9 @@ FULL_THEORY = 0.01  # of F_n
 SIMPLIFIED = 0.02  # of F_n: the flexibilities there are blended, and the grid is not known
 
 
-def reference_folder() -> Path:
-    project = Path(__file__).resolve().parents[2]
-    default = project.parent / "shared" / "reference"
-    return Path(os.environ.get("RAILPATCH_REFERENCE", default))
-
-
 @pytest.fixture(scope="module")
-def curve() -> list[dict[str, float]]:
-    folder = reference_folder()
-    if not folder.is_dir():
-        pytest.skip("no reference folder: set RAILPATCH_REFERENCE to where the tables are")
-    with (folder / "eurosprinter_4models.csv").open(newline="") as file:
+def curve(reference: Path) -> list[dict[str, float]]:
+    with (reference / "eurosprinter_4models.csv").open(newline="") as file:
         return [{key: float(text) for key, text in row.items()} for row in csv.DictReader(file)]
 
 

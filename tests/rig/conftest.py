@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
@@ -11,8 +10,6 @@ import pytest
 
 from rig_model.scene import MEASURED, NOMINAL, load_rig_scene
 
-PROJECT = Path(__file__).parents[2]
-REFERENCE = Path(os.environ.get("RAILPATCH_REFERENCE", PROJECT.parent / "shared" / "reference"))
 SCENES = Path(str(resources.files("rig_model"))) / "scenes"
 
 
@@ -23,10 +20,8 @@ def nominal_file() -> Path:
 
 
 @pytest.fixture(scope="session")
-def measured_file() -> Path:
+def measured_file(reference_profiles: Path) -> Path:
     """The package's scene with the measured profiles, which must be there."""
-    if not (REFERENCE / "profiles").is_dir():
-        pytest.skip(f"no reference data: {REFERENCE / 'profiles'} is absent")
     return SCENES / MEASURED
 
 

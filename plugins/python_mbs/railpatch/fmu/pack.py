@@ -43,7 +43,7 @@ class Contents:
     variables: list[Variable]
     scene: Scene
     backend: Backend
-    library: bytes
+    binary: bytes
 
 
 def pack_fmu(
@@ -125,7 +125,7 @@ def guid_of(contents: Contents) -> str:
     labels = replace(contents.labels, date="")
     text = description_xml(labels, contents.table, contents.kind, contents.variables, "")
     text += scene_text(contents.scene, contents.variables, "{}")
-    digest = hashlib.sha256(text.encode() + contents.library).digest()
+    digest = hashlib.sha256(text.encode() + contents.binary).digest()
     return "{" + str(uuid.UUID(bytes=digest[:16], version=4)) + "}"
 
 
@@ -143,7 +143,7 @@ def files_of(contents: Contents, guid: str) -> dict[str, bytes]:
     for text in folder.iterdir() if folder.is_dir() else ():
         if c.backend == "fftw" or not text.name.startswith("GPL"):
             files[f"documentation/licenses/{text.name}"] = text.read_bytes()
-    files[f"binaries/{PLATFORM}/{c.labels.identifier}.so"] = c.library
+    files[f"binaries/{PLATFORM}/{c.labels.identifier}.so"] = c.binary
     return files
 
 
