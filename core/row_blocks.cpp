@@ -49,31 +49,21 @@ void substitute(const float *a, const int *pivot, int n, float *v) {
 
 }  // namespace
 
-row_blocks::row_blocks(int max_nx, int max_ny) {
-  const auto nx = static_cast<size_t>(max_nx), ny = static_cast<size_t>(max_ny);
-  factors_ = aligned_buffer<float>::uninitialized(4 * nx * nx * ny);
-  pivots_ = aligned_buffer<int>::uninitialized(2 * nx * ny);
-  vector_ = aligned_buffer<float>(2 * nx);
-  for (auto &k : row_kernel_) k = aligned_buffer<double>(2 * nx + 1);
+row_blocks::row_blocks(int max_row, int max_rows) {
+  const auto row = static_cast<size_t>(max_row), rows = static_cast<size_t>(max_rows);
+  factors_ = aligned_buffer<float>::uninitialized(4 * row * row * rows);
+  pivots_ = aligned_buffer<int>::uninitialized(2 * row * rows);
+  vector_ = aligned_buffer<float>(2 * row);
 }
 
-void row_blocks::add_row(const influence &a, const int *i, int n, int direction, double r_over_dx,
+void row_blocks::add_row(int n, const double *bxx, const double *byy,
                          const element_linearisation *elements) {
-  const int span = i[n - 1] - i[0];
-  // r B along the row at offsets -span ... span; the xy kernel vanishes within a row
-  for (int c = 0; c < 2; ++c)
-    for (int d = -span; d <= span; ++d) {
-      const kernel k = c == 0 ? kernel::xx : kernel::yy;
-      row_kernel_[c][static_cast<size_t>(d + span)] =
-          r_over_dx * (a.coefficient(k, d, 0) - a.coefficient(k, d + direction, 0));
-    }
   const int size = 2 * n;
   float *block = factors_.data() + used_;
   for (int col = 0; col < n; ++col)
     for (int row = 0; row < n; ++row) {
       const element_linearisation &e = elements[row];
-      const auto at = static_cast<size_t>(i[row] - i[col] + span);
-      const double bx = row_kernel_[0][at], by = row_kernel_[1][at];
+      const double bx = bxx[col * n + row], by = byy[col * n + row];
       const double one = row == col ? 1.0 : 0.0;
       block[col * size + row] = static_cast<float>(e.stiff[0] * bx + one * e.keep[0]);
       block[col * size + n + row] = static_cast<float>(e.stiff[1] * bx + one * e.keep[1]);
@@ -105,8 +95,6 @@ void row_blocks::solve(const int *row_start, int rows, double *v) {
   }
 }
 
-size_t row_blocks::bytes() const {
-  return factors_.bytes() + pivots_.bytes() + vector_.bytes() + 2 * row_kernel_[0].bytes();
-}
+size_t row_blocks::bytes() const { return factors_.bytes() + pivots_.bytes() + vector_.bytes(); }
 
 }  // namespace railpatch

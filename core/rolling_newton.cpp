@@ -1,0 +1,204 @@
+#include "rolling_newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace railpatch {
+
+namespace {
+
+constexpr int krylov_size = 40;
+constexpr double inner_tolerance = 1e-2;
+constexpr int max_inner_products = 200;
+
+double norm(const double *v, size_t n) {
+  double sum = 0;
+  for (size_t i = 0; i < n; ++i) sum += v[i] * v[i];
+  return std::sqrt(sum);
+}
+
+}  // namespace
+
+struct rolling_newton::task {
+  rolling_operator &b;
+  const rolling_problem &problem;
+  tangential_result result{};
+
+  size_t vector_size() const { return 2 * static_cast<size_t>(problem.count()); }
+  // f(element, index of its x component, of its y component)
+  template <class F>
+  void for_each_element(F &&f) const {
+    for (int row = 0; row < problem.rows; ++row) {
+      const int begin = problem.row_start[row], n = problem.row_start[row + 1] - begin;
+      for (int k = 0; k < n; ++k)
+        f(static_cast<size_t>(begin + k), static_cast<size_t>(2 * begin + k),
+          static_cast<size_t>(2 * begin + n + k));
+    }
+  }
+};
+
+rolling_newton::rolling_newton(int max_row, int max_rows)
+    : blocks_(max_row, max_rows), linear_solver_(2 * max_row * max_rows, krylov_size) {
+  const auto row = static_cast<size_t>(max_row), n = row * static_cast<size_t>(max_rows);
+  r_ = aligned_buffer<double>(n);
+  linear_ = aligned_buffer<element_linearisation>(n);
+  stick_ = aligned_buffer<unsigned char>(n);
+  for (auto *b : {&f_, &step_, &right_, &trial_p_, &trial_s_, &trial_f_})
+    *b = aligned_buffer<double>(2 * n);
+  for (auto &m : row_matrix_) m = aligned_buffer<double>::uninitialized(row * row);
+}
+
+size_t rolling_newton::bytes() const {
+  return blocks_.bytes() + linear_solver_.bytes() + r_.bytes() + 6 * f_.bytes() +
+         2 * row_matrix_[0].bytes() + linear_.bytes() + stick_.bytes();
+}
+
+tangential_result rolling_newton::solve(rolling_operator &b, const rolling_problem &problem,
+                                        const tangential_options &options) {
+  task t{b, problem};
+  tangential_result &result = t.result;
+  double *p = problem.traction, *s = problem.micro_slip;
+  for (int row = 0; row < problem.rows; ++row)
+    std::fill(r_.data() + problem.row_start[row], r_.data() + problem.row_start[row + 1],
+              b.projection_scale(row));
+  const double size = scale(t);
+  if (size > 0) {
+    project(t, p);
+    micro_slip(t, p, s);
+    double error = residual(t, p, s, f_.data());
+    for (; error > options.tolerance * size && result.newton_iterations < options.max_iterations;
+         ++result.newton_iterations) {
+      linearise(t);
+      for (size_t i = 0; i < t.vector_size(); ++i) right_[i] = -f_[i];
+      linear_solver_.solve(
+          t.vector_size(), right_.data(), step_.data(), inner_tolerance, max_inner_products,
+          [&](const double *v, double *out) { apply_jacobian(t, v, out); },
+          [&](double *v) { blocks_.solve(problem.row_start, problem.rows, v); });
+      error = line_search(t, error);
+    }
+    result.residual = error / size;
+    result.converged = error <= options.tolerance * size;
+  } else {
+    // nothing drives a traction: no creepage, no friction or no contact
+    std::fill_n(p, t.vector_size(), 0.0);
+    std::copy_n(problem.rigid_slip, t.vector_size(), s);
+    result.converged = true;
+  }
+  finish(t);
+  return result;
+}
+
+// The residual of zero traction: the size against which others are measured.
+double rolling_newton::scale(const task &t) const {
+  const double *w = t.problem.rigid_slip;
+  double sum = 0;
+  t.for_each_element([&](size_t k, size_t ix, size_t iy) {
+    const double f = std::min(t.problem.bound[k], r_[k] * std::hypot(w[ix], w[iy]));
+    sum += f * f;
+  });
+  return std::sqrt(sum);
+}
+
+void rolling_newton::micro_slip(task &t, const double *p, double *s) {
+  t.b.product(p, s);
+  ++t.result.products;
+  for (size_t i = 0; i < t.vector_size(); ++i) s[i] += t.problem.rigid_slip[i];
+}
+
+double rolling_newton::residual(const task &t, const double *p, const double *s, double *f) const {
+  t.for_each_element([&](size_t k, size_t ix, size_t iy) {
+    const double bound = t.problem.bound[k];
+    const double qx = p[ix] - r_[k] * s[ix], qy = p[iy] - r_[k] * s[iy];
+    const double q = std::hypot(qx, qy);
+    const bool stick = q <= bound;
+    f[ix] = stick ? r_[k] * s[ix] : p[ix] - bound * qx / q;
+    f[iy] = stick ? r_[k] * s[iy] : p[iy] - bound * qy / q;
+  });
+  return norm(f, t.vector_size());
+}
+
+void rolling_newton::project(const task &t, double *p) const {
+  t.for_each_element([&](size_t k, size_t ix, size_t iy) {
+    const double bound = t.problem.bound[k], size = std::hypot(p[ix], p[iy]);
+    if (size <= bound) return;
+    p[ix] *= bound / size;
+    p[iy] *= bound / size;
+  });
+}
+
+// Prepares dF at the present p and s and factors its row blocks.
+void rolling_newton::linearise(task &t) {
+  const double *p = t.problem.traction, *s = t.problem.micro_slip;
+  t.for_each_element([&](size_t k, size_t ix, size_t iy) {
+    element_linearisation &e = linear_[k];
+    const double bound = t.problem.bound[k], r = r_[k];
+    const double qx = p[ix] - r * s[ix], qy = p[iy] - r * s[iy];
+    const double q = std::hypot(qx, qy);
+    if (q <= bound) {
+      e = {{0.0, 0.0, 0.0}, {r, 0.0, r}};
+      return;
+    }
+    const double nx = qx / q, ny = qy / q, theta = bound / q;
+    const double m[3] = {theta * (1.0 - nx * nx), -theta * nx * ny, theta * (1.0 - ny * ny)};
+    e = {{1.0 - m[0], -m[1], 1.0 - m[2]}, {r * m[0], r * m[1], r * m[2]}};
+  });
+  blocks_.clear();
+  for (int row = 0; row < t.problem.rows; ++row) {
+    const int begin = t.problem.row_start[row], n = t.problem.row_start[row + 1] - begin;
+    t.b.row_matrices(row, row_matrix_[0].data(), row_matrix_[1].data());
+    blocks_.add_row(n, row_matrix_[0].data(), row_matrix_[1].data(), linear_.data() + begin);
+  }
+}
+
+void rolling_newton::apply_jacobian(task &t, const double *v, double *out) {
+  t.b.product(v, out);
+  ++t.result.products;
+  t.for_each_element([&](size_t k, size_t ix, size_t iy) {
+    const element_linearisation &e = linear_[k];
+    const double bx = out[ix], by = out[iy];
+    out[ix] = e.keep[0] * v[ix] + e.keep[1] * v[iy] + e.stiff[0] * bx + e.stiff[1] * by;
+    out[iy] = e.keep[1] * v[ix] + e.keep[2] * v[iy] + e.stiff[1] * bx + e.stiff[2] * by;
+  });
+}
+
+// One trial along the Newton step: p, s and F of the trial, and |F|.
+double rolling_newton::try_step(task &t, double length) {
+  const double *p = t.problem.traction;
+  for (size_t i = 0; i < t.vector_size(); ++i) trial_p_[i] = p[i] + length * step_[i];
+  project(t, trial_p_.data());
+  micro_slip(t, trial_p_.data(), trial_s_.data());
+  return residual(t, trial_p_.data(), trial_s_.data(), trial_f_.data());
+}
+
+// Takes the longest of the halved Newton steps that lowers |F|; where none does, the whole step, so
+// that the active sets move on. Updates p, s and F and returns |F|.
+double rolling_newton::line_search(task &t, double current) {
+  constexpr int halvings = 4;
+  double length = 1.0, error = try_step(t, length);
+  for (int trial = 0; trial < halvings && error > (1.0 - 1e-3 * length) * current; ++trial) {
+    length *= 0.5;
+    error = try_step(t, length);
+  }
+  if (error > (1.0 - 1e-3 * length) * current) error = try_step(t, 1.0);
+  std::copy_n(trial_p_.data(), t.vector_size(), t.problem.traction);
+  std::copy_n(trial_s_.data(), t.vector_size(), t.problem.micro_slip);
+  std::copy_n(trial_f_.data(), t.vector_size(), f_.data());
+  return error;
+}
+
+// Divides the elements into stick and slip and sums the friction.
+void rolling_newton::finish(task &t) {
+  const rolling_problem &problem = t.problem;
+  const double *p = problem.traction, *w = problem.rigid_slip;
+  double *s = problem.micro_slip;
+  t.for_each_element([&](size_t k, size_t ix, size_t iy) {
+    const bool stick = std::hypot(p[ix] - r_[k] * s[ix], p[iy] - r_[k] * s[iy]) <= problem.bound[k];
+    // in stick the micro-slip is the solver's residual: zero by definition
+    if (stick) s[ix] = s[iy] = 0.0;
+    stick_[k] = stick;
+    ++(stick ? t.result.stick : t.result.slip);
+    t.result.friction -= (p[ix] * w[ix] + p[iy] * w[iy]) * problem.area[k];
+  });
+}
+
+}  // namespace railpatch

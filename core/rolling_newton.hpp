@@ -1,0 +1,100 @@
+// Semi-smooth Newton method for steady rolling with Coulomb friction, for any discretisation whose
+// elements lie in rows along rolling (Kalker 1990, chapter 4).
+//
+// Unknown: traction p = (p_x, p_y) in each element. Micro-slip, wheel minus rail and over the
+// rolling speed: s = w + B p, with the rigid slip w and the operator B that the discretisation
+// gives. Stick: s = 0, |p| <= g; slip: |p| = g, p opposite to s. Both are p = projection of
+// p - r s on |p| <= g; with q = p - r s, n = q/|q|, theta = g/|q| the residual and its derivative
+//   stick (|q| <= g): F = r s,        dF = r B dp
+//   slip:             F = p - g n,    dF = dp - theta (I - n n^T)(dp - r B dp).
+// r > 0 is a scale of the equations, one number per row, and does not change their solution.
+// Linear systems: GMRES with exact row blocks as preconditioner.
+//
+// Vectors hold, row after row, the row's p_x and then its p_y (slip likewise): element k of a row
+// that begins with element b and has n elements has its components at
+//   2 b + (k - b) and 2 b + n + (k - b).
+// Values per element are in the same order without the factor 2. Elements of a row may stand in any
+// order and need not have neighbours; no row is empty.
+#pragma once
+
+#include "gmres.hpp"
+#include "row_blocks.hpp"
+
+namespace railpatch {
+
+// What a discretisation gives: the operator B, from tractions (Pa) to micro-slip (-).
+class rolling_operator {
+ public:
+  virtual ~rolling_operator() = default;
+  // s = B p; p is kept.
+  virtual void product(const double *p, double *s) = 0;
+  // The parts of B within a row of n elements, s_x from p_x and s_y from p_y: n x n, column-major
+  // (source by source). Within a row s_x does not depend on p_y, nor s_y on p_x.
+  virtual void row_matrices(int row, double *bxx, double *byy) const = 0;
+  // r of a row's elements, Pa: the inverse of a typical diagonal entry of B.
+  virtual double projection_scale(int row) const = 0;
+};
+
+// Arrays belong to the caller.
+struct rolling_problem {
+  int rows = 0;
+  const int *row_start = nullptr;      // [rows + 1], first element of each row
+  const double *bound = nullptr;       // Pa, g of each element
+  const double *area = nullptr;        // m^2, of each element
+  const double *rigid_slip = nullptr;  // -, w, vector
+  double *traction = nullptr;          // Pa, p, vector: start in, solution out
+  double *micro_slip = nullptr;        // -, s, vector: out
+  int count() const { return row_start[rows]; }
+};
+
+struct tangential_options {
+  double tolerance;    // of the residual, relative to that of zero traction
+  int max_iterations;  // Newton steps
+};
+
+struct tangential_result {
+  bool converged = false;
+  double residual = 0;
+  int newton_iterations = 0;
+  int products = 0;
+  int stick = 0, slip = 0;
+  double friction = 0;  // N, frictional power over the rolling speed, see below
+};
+
+// In steady rolling the elastic energy is constant, so friction takes exactly the power that the
+// rigid motion supplies: friction = -sum p . w dA >= 0. Summing p . s instead loses
+// (Dp) A (Dp)/(2 dx) >= 0 with D the difference over one element: half the power on coarse grids.
+
+class rolling_newton {
+ public:
+  rolling_newton(int max_row, int max_rows);
+
+  tangential_result solve(rolling_operator &b, const rolling_problem &problem,
+                          const tangential_options &options);
+  // Whether an element sticks, after solve.
+  bool sticks(int element) const { return stick_[static_cast<size_t>(element)] != 0; }
+  size_t bytes() const;
+
+ private:
+  // one solve's problem and operator, so that the steps need not pass them on
+  struct task;
+  double scale(const task &t) const;
+  void micro_slip(task &t, const double *p, double *s);
+  double residual(const task &t, const double *p, const double *s, double *f) const;
+  void project(const task &t, double *p) const;
+  void linearise(task &t);
+  void apply_jacobian(task &t, const double *v, double *out);
+  double try_step(task &t, double length);
+  double line_search(task &t, double current);
+  void finish(task &t);
+
+  aligned_buffer<double> r_;  // per element
+  aligned_buffer<double> f_, step_, right_, trial_p_, trial_s_, trial_f_;
+  aligned_buffer<double> row_matrix_[2];
+  aligned_buffer<element_linearisation> linear_;
+  aligned_buffer<unsigned char> stick_;
+  row_blocks blocks_;
+  gmres linear_solver_;
+};
+
+}  // namespace railpatch
