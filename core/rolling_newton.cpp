@@ -11,6 +11,8 @@ constexpr int krylov_size = 40;
 constexpr double inner_tolerance = 1e-2;
 constexpr int max_inner_products = 200;
 
+double square(double v) { return v * v; }
+
 double norm(const double *v, size_t n) {
   double sum = 0;
   for (size_t i = 0; i < n; ++i) sum += v[i] * v[i];
@@ -43,13 +45,13 @@ rolling_newton::rolling_newton(int max_row, int max_rows)
   r_ = aligned_buffer<double>(n);
   linear_ = aligned_buffer<element_linearisation>(n);
   stick_ = aligned_buffer<unsigned char>(n);
-  for (auto *b : {&f_, &step_, &right_, &trial_p_, &trial_s_, &trial_f_})
+  for (auto *b : {&f_, &step_, &right_, &unknowns_, &normal_step_, &trial_p_, &trial_s_, &trial_f_})
     *b = aligned_buffer<double>(2 * n);
   for (auto &m : row_matrix_) m = aligned_buffer<double>::uninitialized(row * row);
 }
 
 size_t rolling_newton::bytes() const {
-  return blocks_.bytes() + linear_solver_.bytes() + r_.bytes() + 6 * f_.bytes() +
+  return blocks_.bytes() + linear_solver_.bytes() + r_.bytes() + 8 * f_.bytes() +
          2 * row_matrix_[0].bytes() + linear_.bytes() + stick_.bytes();
 }
 
@@ -69,11 +71,7 @@ tangential_result rolling_newton::solve(rolling_operator &b, const rolling_probl
     for (; error > options.tolerance * size && result.newton_iterations < options.max_iterations;
          ++result.newton_iterations) {
       linearise(t);
-      for (size_t i = 0; i < t.vector_size(); ++i) right_[i] = -f_[i];
-      linear_solver_.solve(
-          t.vector_size(), right_.data(), step_.data(), inner_tolerance, max_inner_products,
-          [&](const double *v, double *out) { apply_jacobian(t, v, out); },
-          [&](double *v) { blocks_.solve(problem.row_start, problem.rows, v); });
+      find_step(t);
       error = line_search(t, error);
     }
     result.residual = error / size;
@@ -130,17 +128,15 @@ void rolling_newton::project(const task &t, double *p) const {
 void rolling_newton::linearise(task &t) {
   const double *p = t.problem.traction, *s = t.problem.micro_slip;
   t.for_each_element([&](size_t k, size_t ix, size_t iy) {
-    element_linearisation &e = linear_[k];
     const double bound = t.problem.bound[k], r = r_[k];
     const double qx = p[ix] - r * s[ix], qy = p[iy] - r * s[iy];
     const double q = std::hypot(qx, qy);
     if (q <= bound) {
-      e = {{0.0, 0.0, 0.0}, {r, 0.0, r}};
-      return;
+      linear_[k] = {{1.0, 0.0}, 0.0, r, true};
+    } else {
+      const double theta = bound / q;
+      linear_[k] = {{-qy / q, qx / q}, 1.0 - theta, r * theta, false};
     }
-    const double nx = qx / q, ny = qy / q, theta = bound / q;
-    const double m[3] = {theta * (1.0 - nx * nx), -theta * nx * ny, theta * (1.0 - ny * ny)};
-    e = {{1.0 - m[0], -m[1], 1.0 - m[2]}, {r * m[0], r * m[1], r * m[2]}};
   });
   blocks_.clear();
   for (int row = 0; row < t.problem.rows; ++row) {
@@ -150,15 +146,82 @@ void rolling_newton::linearise(task &t) {
   }
 }
 
-void rolling_newton::apply_jacobian(task &t, const double *v, double *out) {
-  t.b.product(v, out);
+// The vectors of the linear system hold z and z_y (row_blocks.hpp); f(element, index of z, index of
+// z_y, indices of the element's components in vectors of traction). Returns the system's size.
+template <class F>
+size_t rolling_newton::for_each_unknown(const task &t, F &&f) const {
+  size_t first = 0;
+  for (int row = 0; row < t.problem.rows; ++row) {
+    const auto begin = static_cast<size_t>(t.problem.row_start[row]);
+    const size_t n = static_cast<size_t>(t.problem.row_start[row + 1]) - begin;
+    size_t second = first + n;
+    for (size_t k = 0; k < n; ++k) {
+      f(linear_[begin + k], first + k, second, 2 * begin + k, 2 * begin + n + k);
+      if (linear_[begin + k].stick) ++second;
+    }
+    first = second;
+  }
+  return first;
+}
+
+// dp of the unknowns
+void rolling_newton::expand(const task &t, const double *z, double *dp) const {
+  for_each_unknown(t,
+                   [&](const element_linearisation &e, size_t i, size_t j, size_t ix, size_t iy) {
+                     dp[ix] = e.c[0] * z[i];
+                     dp[iy] = e.stick ? z[j] : e.c[1] * z[i];
+                   });
+}
+
+void rolling_newton::apply_jacobian(task &t, const double *z, double *out) {
+  expand(t, z, trial_p_.data());
+  t.b.product(trial_p_.data(), trial_s_.data());
   ++t.result.products;
-  t.for_each_element([&](size_t k, size_t ix, size_t iy) {
-    const element_linearisation &e = linear_[k];
-    const double bx = out[ix], by = out[iy];
-    out[ix] = e.keep[0] * v[ix] + e.keep[1] * v[iy] + e.stiff[0] * bx + e.stiff[1] * by;
-    out[iy] = e.keep[1] * v[ix] + e.keep[2] * v[iy] + e.stiff[1] * bx + e.stiff[2] * by;
-  });
+  const double *s = trial_s_.data();
+  for_each_unknown(t,
+                   [&](const element_linearisation &e, size_t i, size_t j, size_t ix, size_t iy) {
+                     out[i] = e.keep * z[i] + e.stiff * (e.c[0] * s[ix] + e.c[1] * s[iy]);
+                     if (e.stick) out[j] = e.stiff * s[iy];
+                   });
+}
+
+// The Newton step, to the inner tolerance.
+void rolling_newton::find_step(task &t) {
+  // in slip F = p - g n fixes the step along n: what it leaves of F is at once taken as the step
+  // there, and its share of the other equations taken to the right side where it counts
+  const double *f = f_.data();
+  double along = 0, whole = 0;
+  const size_t size = for_each_unknown(
+      t, [&](const element_linearisation &e, size_t i, size_t j, size_t ix, size_t iy) {
+        if (e.stick) {
+          right_[i] = -f[ix];
+          right_[j] = -f[iy];
+          normal_step_[ix] = normal_step_[iy] = 0;
+        } else {
+          const double fn = f[ix] * e.c[1] - f[iy] * e.c[0];
+          right_[i] = -(f[ix] * e.c[0] + f[iy] * e.c[1]);
+          normal_step_[ix] = -fn * e.c[1];
+          normal_step_[iy] = fn * e.c[0];
+          along += fn * fn;
+        }
+        whole += f[ix] * f[ix] + f[iy] * f[iy];
+      });
+  if (along > square(0.1 * inner_tolerance) * whole) {
+    t.b.product(normal_step_.data(), trial_s_.data());
+    ++t.result.products;
+    const double *s = trial_s_.data();
+    for_each_unknown(t,
+                     [&](const element_linearisation &e, size_t i, size_t j, size_t ix, size_t iy) {
+                       right_[i] -= e.stiff * (e.c[0] * s[ix] + e.c[1] * s[iy]);
+                       if (e.stick) right_[j] -= e.stiff * s[iy];
+                     });
+  }
+  linear_solver_.solve(
+      size, right_.data(), unknowns_.data(), inner_tolerance, max_inner_products,
+      [&](const double *v, double *out) { apply_jacobian(t, v, out); },
+      [&](double *v) { blocks_.solve(v); });
+  expand(t, unknowns_.data(), step_.data());
+  for (size_t i = 0; i < t.vector_size(); ++i) step_[i] += normal_step_[i];
 }
 
 // One trial along the Newton step: p, s and F of the trial, and |F|.

@@ -8,13 +8,16 @@
 //   stick (|q| <= g): F = r s,        dF = r B dp
 //   slip:             F = p - g n,    dF = dp - theta (I - n n^T)(dp - r B dp).
 // r > 0 is a scale of the equations, one number per row, and does not change their solution.
-// Linear systems: GMRES with exact row blocks as preconditioner.
+// A slipping element's traction moves along its bound only, so the linear systems have two unknowns
+// in an element that sticks and one in an element that slips. They are solved by GMRES with exact
+// row blocks as preconditioner.
 //
 // Vectors hold, row after row, the row's p_x and then its p_y (slip likewise): element k of a row
 // that begins with element b and has n elements has its components at
 //   2 b + (k - b) and 2 b + n + (k - b).
 // Values per element are in the same order without the factor 2. Elements of a row may stand in any
-// order and need not have neighbours; no row is empty.
+// order and need not have neighbours, but the row blocks are factored fastest (and without pivots
+// at their safest) where a row begins at its leading edge; no row is empty.
 #pragma once
 
 #include "gmres.hpp"
@@ -83,13 +86,17 @@ class rolling_newton {
   double residual(const task &t, const double *p, const double *s, double *f) const;
   void project(const task &t, double *p) const;
   void linearise(task &t);
+  template <class F>
+  size_t for_each_unknown(const task &t, F &&f) const;
+  void expand(const task &t, const double *z, double *dp) const;
+  void find_step(task &t);
   void apply_jacobian(task &t, const double *v, double *out);
   double try_step(task &t, double length);
   double line_search(task &t, double current);
   void finish(task &t);
 
   aligned_buffer<double> r_;  // per element
-  aligned_buffer<double> f_, step_, right_, trial_p_, trial_s_, trial_f_;
+  aligned_buffer<double> f_, step_, right_, unknowns_, normal_step_, trial_p_, trial_s_, trial_f_;
   aligned_buffer<double> row_matrix_[2];
   aligned_buffer<element_linearisation> linear_;
   aligned_buffer<unsigned char> stick_;

@@ -1,35 +1,54 @@
-// Exact single-precision LU of each row's diagonal block of the linearised tangential problem: the
+// Single-precision LU of each row's diagonal block of the linearised tangential problem: the
 // preconditioner of the Newton steps. Rows of elements along rolling interact weakly with each
 // other, so the blocks hold most of the operator.
+//
+// No pivots are exchanged: along a row B is close to the Cauchy matrix 1/(i - j + 1/2), whose
+// pivots all lie between 2 and pi; a layer and slip only add to the diagonal.
 #pragma once
 
 #include "memory.hpp"
 
 namespace railpatch {
 
-// How one element enters the linearised equations (see rolling_newton.hpp):
-// row of the block = keep + stiff B, both 2 x 2 symmetric.
+// How one element enters the linearised equations (see rolling_newton.hpp). A slipping element has
+// one unknown z, its traction turning along the unit vector c: dp = z c, and the equation
+//   keep z + stiff c . (B dp) = right side.
+// A sticking element has two: dp = (z, z_y), c = (1, 0), with stiff (B dp)_y as second equation.
 struct element_linearisation {
-  double keep[3];   // xx, xy, yy of I - theta (I - n n^T), zero in stick
-  double stiff[3];  // Pa; xx, xy, yy of r theta (I - n n^T), r times unit in stick
+  double c[2];
+  double keep;   // -, 1 - theta; 0 in stick
+  double stiff;  // Pa, r theta; r in stick
+  bool stick;
 };
 
+// Vectors hold, row after row, z of all the row's elements and then z_y of those that stick.
 class row_blocks {
  public:
   row_blocks(int max_row, int max_rows);
 
-  void clear() { used_ = 0, pivots_used_ = 0; }
+  void clear() { used_ = 0, rows_ = 0; }
   // Appends and factors the block of one row of n elements; B of the row as in rolling_operator.
   void add_row(int n, const double *bxx, const double *byy, const element_linearisation *elements);
-  // v <- M^-1 v; v is the concatenation of the rows' (p_x, p_y) parts in the order of add_row.
-  void solve(const int *row_start, int rows, double *v);
+  // v <- M^-1 v, for all rows in the order of add_row.
+  void solve(double *v);
   size_t bytes() const;
 
  private:
+  struct block {
+    size_t at;  // of the first column in factors_
+    int size;   // unknowns
+    int order;  // of the factored matrix: unknowns and some of the unit matrix, in whole packs
+  };
+  void fill(int n, const double *bxx, const double *byy, const element_linearisation *elements,
+            float *columns, int order);
+  void substitute(const float *a, int order, float *x) const;
+
+  aligned_buffer<block> blocks_;
   aligned_buffer<float> factors_;
-  aligned_buffer<int> pivots_;
-  aligned_buffer<float> vector_;
-  size_t used_ = 0, pivots_used_ = 0;
+  aligned_buffer<float> vector_, row_x_, row_y_;
+  aligned_buffer<int> sticking_;
+  size_t used_ = 0;
+  int rows_ = 0;
 };
 
 }  // namespace railpatch

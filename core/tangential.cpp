@@ -1,6 +1,7 @@
 #include "tangential.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "railpatch.h"
 
@@ -26,6 +27,11 @@ class tangential_solver::grid_operator final : public rolling_operator {
       : solver_(solver), a_(a), g_(g), direction_(direction) {
     std::fill_n(solver_.grid_px_.data(), g.count(), 0.0);
     std::fill_n(solver_.grid_py_.data(), g.count(), 0.0);
+    for (int ahead = -g.nx; ahead <= g.nx; ++ahead) {
+      const auto at = static_cast<size_t>(ahead + g.nx);
+      solver_.line_[0][at] = entry(kernel::xx, -direction_ * ahead);
+      solver_.line_[1][at] = entry(kernel::yy, -direction_ * ahead);
+    }
   }
 
   void product(const double *p, double *s) override {
@@ -47,12 +53,22 @@ class tangential_solver::grid_operator final : public rolling_operator {
     const int begin = solver_.row_start_[static_cast<size_t>(row)];
     const int n = solver_.row_start_[static_cast<size_t>(row) + 1] - begin;
     const int *at = solver_.at_.data() + begin;
-    for (int source = 0; source < n; ++source)
-      for (int observer = 0; observer < n; ++observer) {
-        const int offset = at[observer] - at[source];
-        bxx[source * n + observer] = entry(kernel::xx, offset);
-        byy[source * n + observer] = entry(kernel::yy, offset);
+    // entries by the number of elements that the source lies ahead of the observer
+    const double *xx = solver_.line_[0].data() + g_.nx, *yy = solver_.line_[1].data() + g_.nx;
+    const bool gapless = std::abs(at[n - 1] - at[0]) == n - 1;
+    for (int source = 0; source < n; ++source) {
+      double *x = bxx + source * n, *y = byy + source * n;
+      if (gapless) {
+        std::copy_n(xx - source, n, x);
+        std::copy_n(yy - source, n, y);
+        continue;
       }
+      for (int observer = 0; observer < n; ++observer) {
+        const int ahead = direction_ * (at[source] - at[observer]);
+        x[observer] = xx[ahead];
+        y[observer] = yy[ahead];
+      }
+    }
   }
 
   // makes r B of unit size on the diagonal
@@ -78,10 +94,12 @@ tangential_solver::tangential_solver(int max_nx, int max_ny) : newton_(max_nx, m
   for (auto *b : {&bound_, &area_, &grid_px_, &grid_py_, &grid_sx_, &grid_sy_})
     *b = aligned_buffer<double>(n);
   for (auto *b : {&rigid_, &p_, &s_}) *b = aligned_buffer<double>(2 * n);
+  for (auto &l : line_) l = aligned_buffer<double>(2 * static_cast<size_t>(max_nx) + 1);
 }
 
 size_t tangential_solver::bytes() const {
-  return newton_.bytes() + 3 * p_.bytes() + 6 * bound_.bytes() + at_.bytes() + row_start_.bytes();
+  return newton_.bytes() + 3 * p_.bytes() + 6 * bound_.bytes() + at_.bytes() + row_start_.bytes() +
+         2 * line_[0].bytes();
 }
 
 tangential_result tangential_solver::solve(influence &a, const grid &g, const double *pressure,
@@ -102,13 +120,14 @@ void tangential_solver::collect(const grid &g, const double *pressure, const dou
   count_ = rows_ = 0;
   for (int j = 0; j < g.ny; ++j) {
     const int begin = count_;
-    for (int i = 0; i < g.nx; ++i) {
-      const int at = j * g.nx + i;
+    // rows begin at their leading edge
+    for (int k = 0; k < g.nx; ++k) {
+      const int at = j * g.nx + (input.direction > 0 ? g.nx - 1 - k : k);
       if (!(pressure[at] > 0)) continue;
-      const auto k = static_cast<size_t>(count_++);
-      at_[k] = at;
-      bound_[k] = bound[at];
-      area_[k] = g.dx * g.dy;
+      const auto element = static_cast<size_t>(count_++);
+      at_[element] = at;
+      bound_[element] = bound[at];
+      area_[element] = g.dx * g.dy;
     }
     if (count_ == begin) continue;
     row_start_[static_cast<size_t>(rows_++)] = begin;
