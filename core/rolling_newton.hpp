@@ -25,19 +25,6 @@
 
 namespace railpatch {
 
-// What a discretisation gives: the operator B, from tractions (Pa) to micro-slip (-).
-class rolling_operator {
- public:
-  virtual ~rolling_operator() = default;
-  // s = B p; p is kept.
-  virtual void product(const double *p, double *s) = 0;
-  // The parts of B within a row of n elements, s_x from p_x and s_y from p_y: n x n, column-major
-  // (source by source). Within a row s_x does not depend on p_y, nor s_y on p_x.
-  virtual void row_matrices(int row, double *bxx, double *byy) const = 0;
-  // r of a row's elements, Pa: the inverse of a typical diagonal entry of B.
-  virtual double projection_scale(int row) const = 0;
-};
-
 // Arrays belong to the caller.
 struct rolling_problem {
   int rows = 0;
@@ -48,6 +35,27 @@ struct rolling_problem {
   double *traction = nullptr;          // Pa, p, vector: start in, solution out
   double *micro_slip = nullptr;        // -, s, vector: out
   int count() const { return row_start[rows]; }
+};
+
+// What a discretisation gives: micro-slip (-) from tractions (Pa). B is linear, or else the
+// derivative of the micro-slip at the traction of the last call of linearise.
+class rolling_operator {
+ public:
+  virtual ~rolling_operator() = default;
+  // s = B v; v is kept.
+  virtual void product(const double *v, double *s) = 0;
+  // The micro-slip, w + B p where B is linear.
+  virtual void micro_slip(const rolling_problem &problem, const double *p, double *s);
+  // Sets B where the micro-slip is not linear, at the traction of the last call of micro_slip.
+  virtual void linearise() {}
+  // The parts of B within a row of n elements, s_x from p_x and s_y from p_y: n x n, column-major
+  // (source by source), for the preconditioner.
+  virtual void row_matrices(int row, double *bxx, double *byy) const = 0;
+  // The row's part of B v where v is zero from this row on; false where that costs as much as a
+  // product.
+  virtual bool product_of_rows_before(int, const double *, double *) { return false; }
+  // r of a row's elements, Pa: the inverse of a typical diagonal entry of B.
+  virtual double projection_scale(int row) const = 0;
 };
 
 struct tangential_options {
@@ -91,13 +99,14 @@ class rolling_newton {
   void expand(const task &t, const double *z, double *dp) const;
   void find_step(task &t);
   void apply_jacobian(task &t, const double *v, double *out);
+  void precondition(task &t, double *z);
   double try_step(task &t, double length);
   double line_search(task &t, double current);
   void finish(task &t);
 
   aligned_buffer<double> r_;  // per element
   aligned_buffer<double> f_, step_, right_, unknowns_, normal_step_, trial_p_, trial_s_, trial_f_;
-  aligned_buffer<double> row_matrix_[2];
+  aligned_buffer<double> row_matrix_[2], row_slip_;
   aligned_buffer<element_linearisation> linear_;
   aligned_buffer<unsigned char> stick_;
   row_blocks blocks_;

@@ -144,21 +144,17 @@ void row_blocks::add_row(int n, const double *bxx, const double *byy,
   }
 }
 
-void row_blocks::solve(double *v) {
+void row_blocks::solve(int row, double *v) {
   float *x = vector_.data();
-  for (int row = 0; row < rows_; ++row) {
-    const auto [at, size, order] = blocks_[static_cast<size_t>(row)];
-    // scaled to unit size, so that single precision neither overflows nor loses small tractions
-    double scale = 0;
-    for (int k = 0; k < size; ++k) scale = std::max(scale, std::abs(v[k]));
-    if (scale > 0) {
-      for (int k = 0; k < size; ++k) x[k] = static_cast<float>(v[k] / scale);
-      std::fill(x + size, x + order, 0.0f);
-      substitute(factors_.data() + at, order, x);
-      for (int k = 0; k < size; ++k) v[k] = scale * static_cast<double>(x[k]);
-    }
-    v += size;
-  }
+  const auto [at, size, order] = blocks_[static_cast<size_t>(row)];
+  // scaled to unit size, so that single precision neither overflows nor loses small tractions
+  double scale = 0;
+  for (int k = 0; k < size; ++k) scale = std::max(scale, std::abs(v[k]));
+  if (!(scale > 0)) return;
+  for (int k = 0; k < size; ++k) x[k] = static_cast<float>(v[k] / scale);
+  std::fill(x + size, x + order, 0.0f);
+  substitute(factors_.data() + at, order, x);
+  for (int k = 0; k < size; ++k) v[k] = scale * static_cast<double>(x[k]);
 }
 
 void row_blocks::substitute(const float *a, int order, float *x) const {

@@ -21,7 +21,7 @@ struct element_linearisation {
   bool stick;
 };
 
-// Vectors hold, row after row, z of all the row's elements and then z_y of those that stick.
+// A row's vector holds z of all its elements and then z_y of those that stick.
 class row_blocks {
  public:
   row_blocks(int max_row, int max_rows);
@@ -29,8 +29,10 @@ class row_blocks {
   void clear() { used_ = 0, rows_ = 0; }
   // Appends and factors the block of one row of n elements; B of the row as in rolling_operator.
   void add_row(int n, const double *bxx, const double *byy, const element_linearisation *elements);
-  // v <- M^-1 v, for all rows in the order of add_row.
-  void solve(double *v);
+  // Unknowns of a row, counted in the order of add_row.
+  int size(int row) const { return blocks_[static_cast<size_t>(row)].size; }
+  // v <- M^-1 v, of one row.
+  void solve(int row, double *v);
   size_t bytes() const;
 
  private:
