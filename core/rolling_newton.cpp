@@ -175,7 +175,7 @@ void rolling_newton::expand(const task &t, const double *z, double *dp) const {
 
 void rolling_newton::apply_jacobian(task &t, const double *z, double *out) {
   expand(t, z, trial_p_.data());
-  t.b.product(trial_p_.data(), trial_s_.data());
+  t.b.product_single(trial_p_.data(), trial_s_.data());
   ++t.result.products;
   const double *s = trial_s_.data();
   for_each_unknown(t,
@@ -207,7 +207,7 @@ void rolling_newton::find_step(task &t) {
         whole += f[ix] * f[ix] + f[iy] * f[iy];
       });
   if (along > square(0.1 * inner_tolerance) * whole) {
-    t.b.product(normal_step_.data(), trial_s_.data());
+    t.b.product_single(normal_step_.data(), trial_s_.data());
     ++t.result.products;
     const double *s = trial_s_.data();
     for_each_unknown(t,

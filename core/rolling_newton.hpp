@@ -31,6 +31,8 @@ class rolling_operator {
   virtual ~rolling_operator() = default;
   // s = B p; p is kept.
   virtual void product(const double *p, double *s) = 0;
+  // The same to some five digits, for what only steers the iteration.
+  virtual void product_single(const double *p, double *s) { product(p, s); }
   // The parts of B within a row of n elements, s_x from p_x and s_y from p_y: n x n, column-major
   // (source by source). Within a row s_x does not depend on p_y, nor s_y on p_x.
   virtual void row_matrices(int row, double *bxx, double *byy) const = 0;
