@@ -83,6 +83,9 @@ class rolling_newton {
  private:
   // one solve's problem and operator, so that the steps need not pass them on
   struct task;
+  double start(task &t, double size);
+  void march(task &t, double *p);
+  void accept_trial(task &t);
   double scale(const task &t) const;
   void micro_slip(task &t, const double *p, double *s);
   double residual(const task &t, const double *p, const double *s, double *f) const;
