@@ -139,6 +139,8 @@ void fitted_operator::set(const contact_rows &rows, const rolling_input &input) 
       w[points_ + i] = input.slip(1, x, row.y);
     }
   }
+  // until the first linearisation: the slip at the collocation point ahead of each node
+  std::fill_n(blends_.data(), count_ * nodes_, slip_blend{{1, 0, 0, 1}, {0, 0, 0, 0}});
 }
 
 void fitted_operator::make_blocks() {

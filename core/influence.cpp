@@ -27,7 +27,8 @@ elastic_constants combine(const double shear_modulus[2], const double poisson_ra
           0.25 * g * ((1.0 - 2.0 * nw) / gw - (1.0 - 2.0 * nr) / gr)};
 }
 
-influence::influence(const scene &scene, const fft_plans &plans) : scene_(scene), plans_(plans) {
+influence::influence(const scene &scene, const fft_plans &plans)
+    : scene_(scene), plans_(plans), single_(plans.max_nx(), plans.max_ny(), scene.tangential) {
   const auto nx = static_cast<size_t>(plans.max_nx()), ny = static_cast<size_t>(plans.max_ny());
   const size_t table = (nx / 2 + 1) * (ny / 2 + 1);
   const size_t half = (nx / 2 + 1) * ny;
@@ -38,7 +39,6 @@ influence::influence(const scene &scene, const fft_plans &plans) : scene_(scene)
     spectrum_[k] = aligned_buffer<double>(half);
   }
   for (auto &corner : corner_) corner = aligned_buffer<double>((nx / 2 + 2) * (ny / 2 + 2));
-  inverse_zz_ = aligned_buffer<double>(half);
   padded_ = aligned_buffer<double>(nx * ny);
   for (int k = 0; k < (scene.tangential ? 2 : 1); ++k)
     transform_[k] = aligned_buffer<std::complex<double>>(half);
@@ -52,6 +52,7 @@ bool influence::set_grid(const grid &g) {
   const bool same_elements = g.dx == grid_.dx && g.dy == grid_.dy;
   const int half_x = plans_.nx(plan) / 2, half_y = plans_.ny(plan) / 2;
   grid_ = g;
+  single_.set_size(g.nx, g.ny, plans_.nx(plan), plans_.ny(plan));
   if (same_elements && plan == plan_) return true;
   if (!same_elements || half_x > half_x_ || half_y > half_y_) make_kernels(half_x, half_y);
   plan_ = plan;
@@ -139,14 +140,19 @@ void influence::transform_kernel(kernel k, double *spectrum) {
 
 void influence::make_spectra() {
   const int nx = plans_.nx(plan_), ny = plans_.ny(plan_), half = (nx / 2 + 1) * ny;
-  for (int k = 0; k < (scene_.tangential ? 4 : 1); ++k)
+  constexpr convolution::kernel_name names[] = {convolution::zz, convolution::xx, convolution::yy,
+                                                convolution::xy};
+  for (int k = 0; k < (scene_.tangential ? 4 : 1); ++k) {
     transform_kernel(static_cast<kernel>(k), spectrum_[k].data());
+    single_.set_spectrum(names[k], spectrum_[k].data());
+  }
   // truncation can make small entries negative; a floor keeps the preconditioner positive
   const double top = *std::max_element(spectrum_[0].data(), spectrum_[0].data() + half);
   for (int i = 0; i < half; ++i) {
     const auto at = static_cast<size_t>(i);
-    inverse_zz_[at] = 1.0 / std::max(spectrum_[0][at], 1e-6 * top);
+    padded_[at] = 1.0 / std::max(spectrum_[0][at], 1e-6 * top);
   }
+  single_.set_spectrum(convolution::zz_inverse, padded_.data());
   if (!scene_.tangential) return;
   for (int i = 0; i <= nx / 2; ++i)
     shift_[static_cast<size_t>(i)] = (1.0 - std::polar(1.0, 2.0 * pi * i / nx)) / grid_.dx;
@@ -182,14 +188,12 @@ void influence::normal_product(const double *pressure, double *displacement) {
   extract(displacement);
 }
 
+void influence::normal_product_single(const double *pressure, double *displacement) {
+  single_.product(convolution::zz, pressure, displacement);
+}
+
 void influence::normal_inverse(const double *displacement, double *pressure) {
-  pad(displacement);
-  plans_.forward(plan_, padded_.data(), transform_[0].data());
-  const int half = (plans_.nx(plan_) / 2 + 1) * plans_.ny(plan_);
-  for (int i = 0; i < half; ++i)
-    transform_[0][static_cast<size_t>(i)] *= inverse_zz_[static_cast<size_t>(i)];
-  plans_.backward(plan_, transform_[0].data(), padded_.data());
-  extract(pressure);
+  single_.product(convolution::zz_inverse, displacement, pressure);
 }
 
 void influence::tangential_product(const double *px, const double *py, double *ux, double *uy) {
@@ -199,6 +203,11 @@ void influence::tangential_product(const double *px, const double *py, double *u
 void influence::rolling_product(const double *px, const double *py, int direction, double *sx,
                                 double *sy) {
   product(px, py, direction, sx, sy);
+}
+
+void influence::rolling_product_single(const double *px, const double *py, int direction,
+                                       double *sx, double *sy) {
+  single_.rolling_product(px, py, direction, grid_.dx, sx, sy);
 }
 
 void influence::product(const double *px, const double *py, int shift, double *ux, double *uy) {
@@ -235,7 +244,7 @@ void influence::product(const double *px, const double *py, int shift, double *u
 }
 
 size_t influence::bytes() const {
-  size_t sum = inverse_zz_.bytes() + shift_.bytes() + padded_.bytes() + plans_.bytes();
+  size_t sum = single_.bytes() + shift_.bytes() + padded_.bytes() + plans_.bytes();
   for (const auto &b : table_) sum += b.bytes();
   for (const auto &b : corner_) sum += b.bytes();
   for (const auto &b : spectrum_) sum += b.bytes();

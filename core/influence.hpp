@@ -18,6 +18,7 @@
 
 #include <complex>
 
+#include "convolution.hpp"
 #include "fft.hpp"
 #include "memory.hpp"
 
@@ -58,12 +59,17 @@ class influence {
 
   // u = A p for the normal direction, [ny][nx].
   void normal_product(const double *pressure, double *displacement);
-  // Circulant approximation of the inverse of normal_product, symmetric positive.
+  // The same in single precision, for what only steers an iteration.
+  void normal_product_single(const double *pressure, double *displacement);
+  // Circulant approximation of the inverse of normal_product, symmetric positive up to the rounding
+  // of single precision.
   void normal_inverse(const double *displacement, double *pressure);
   // (u_x, u_y) = A (p_x, p_y).
   void tangential_product(const double *px, const double *py, double *ux, double *uy);
   // Steady rolling: (u(x) - u(x + direction dx))/dx, the micro-slip caused by the tractions.
   void rolling_product(const double *px, const double *py, int direction, double *sx, double *sy);
+  void rolling_product_single(const double *px, const double *py, int direction, double *sx,
+                              double *sy);
 
   // One coefficient at offset (i, j) elements, observer minus source.
   double coefficient(kernel k, int i, int j) const;
@@ -88,10 +94,10 @@ class influence {
   aligned_buffer<double> table_[4];
   aligned_buffer<double> corner_[3];
   aligned_buffer<double> spectrum_[4];
-  aligned_buffer<double> inverse_zz_;
   aligned_buffer<std::complex<double>> shift_;  // (1 - exp(i k dx))/dx along x
   aligned_buffer<double> padded_;
   aligned_buffer<std::complex<double>> transform_[2];
+  convolution single_;
 };
 
 }  // namespace railpatch

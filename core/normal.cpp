@@ -96,8 +96,10 @@ void normal_solver::start(problem &s, double *p) {
 }
 
 // u = A p, the influence between separate parts reduced.
-void normal_solver::product(problem &s, const double *p, double *u) {
-  if (s.parts.count == 1) return s.a.normal_product(p, u);
+void normal_solver::product(problem &s, const double *p, double *u, precision digits) {
+  const auto product =
+      digits == precision::full ? &influence::normal_product : &influence::normal_product_single;
+  if (s.parts.count == 1) return (s.a.*product)(p, u);
   std::fill_n(u, s.n, 0.0);
   const auto row_begin = [&](int part) {
     return static_cast<size_t>((part < s.parts.count ? s.parts.first_row[part] : s.g.ny) * s.g.nx);
@@ -105,7 +107,7 @@ void normal_solver::product(problem &s, const double *p, double *u) {
   for (int source = 0; source < s.parts.count; ++source) {
     std::fill_n(part_pressure_.data(), s.n, 0.0);
     for (size_t i = row_begin(source); i < row_begin(source + 1); ++i) part_pressure_[i] = p[i];
-    s.a.normal_product(part_pressure_.data(), part_displacement_.data());
+    (s.a.*product)(part_pressure_.data(), part_displacement_.data());
     for (int part = 0; part < s.parts.count; ++part) {
       double factor = 1;
       for (int k = std::min(source, part); k < std::max(source, part); ++k)
@@ -132,7 +134,7 @@ void normal_solver::cold_start(problem &s, double *p) {
     if (total(p, s.n) <= 0) std::fill_n(p, s.n, 1.0);
     return;
   }
-  product(s, p, displacement_.data());
+  product(s, p, displacement_.data(), precision::single);
   const double size = dot(p, displacement_.data(), s.n);
   double work = 0;
   for (size_t i = 0; i < s.n; ++i) work += p[i] * (s.approach - s.h[i]);
@@ -147,7 +149,7 @@ void normal_solver::scale_to_force(problem &s, double *p) {
 }
 
 void normal_solver::evaluate(problem &s, const double *p) {
-  product(s, p, displacement_.data());
+  product(s, p, displacement_.data(), precision::full);
   s.scale = *std::max_element(displacement_.data(), displacement_.data() + s.n);
   if (s.force_given) {
     // the approach that leaves no mean error where the bodies touch
@@ -205,7 +207,7 @@ bool normal_solver::search_direction(problem &s, bool restart) {
 
 // One step along the direction, exact on the free elements; true where an element lost contact.
 bool normal_solver::advance(problem &s, double *p) {
-  product(s, direction_.data(), product_.data());
+  product(s, direction_.data(), product_.data(), precision::single);
   const double slope = dot(residual_.data(), direction_.data(), s.n);
   const double curvature = dot(direction_.data(), product_.data(), s.n);
   const double step = curvature > 0 ? slope / curvature : 0.0;

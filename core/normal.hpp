@@ -51,7 +51,9 @@ class normal_solver {
   struct problem;
   normal_result solve(problem &state, double *pressure);
   void start(problem &state, double *pressure);
-  void product(problem &state, const double *pressure, double *displacement);
+  // single: for what only steers the iteration
+  enum class precision { full, single };
+  void product(problem &state, const double *pressure, double *displacement, precision digits);
   void cold_start(problem &state, double *pressure);
   void evaluate(problem &state, const double *pressure);
   bool search_direction(problem &state, bool restart);

@@ -10,6 +10,8 @@ namespace {
 constexpr int krylov_size = 40;
 constexpr double inner_tolerance = 1e-2;
 constexpr int max_inner_products = 200;
+// a start with more of zero traction's residual than this is tried against a new one
+constexpr double far_away = 0.3;
 
 double square(double v) { return v * v; }
 
@@ -71,9 +73,7 @@ tangential_result rolling_newton::solve(rolling_operator &b, const rolling_probl
               b.projection_scale(row));
   const double size = scale(t);
   if (size > 0) {
-    project(t, p);
-    micro_slip(t, p, s);
-    double error = residual(t, p, s, f_.data());
+    double error = start(t, size);
     for (; error > options.tolerance * size && result.newton_iterations < options.max_iterations;
          ++result.newton_iterations) {
       linearise(t);
@@ -90,6 +90,66 @@ tangential_result rolling_newton::solve(rolling_operator &b, const rolling_probl
   }
   finish(t);
   return result;
+}
+
+// Start of the iteration: the traction given, or where that says little the simplified theory's.
+// Sets p, s and F and returns |F|.
+double rolling_newton::start(task &t, double size) {
+  double *p = t.problem.traction, *s = t.problem.micro_slip;
+  project(t, p);
+  const bool cold = std::all_of(p, p + t.vector_size(), [](double v) { return v == 0; });
+  double error = HUGE_VAL;
+  if (!cold) {
+    micro_slip(t, p, s);
+    error = residual(t, p, s, f_.data());
+    if (error <= far_away * size) return error;
+  }
+  march(t, trial_p_.data());
+  micro_slip(t, trial_p_.data(), trial_s_.data());
+  const double marched = residual(t, trial_p_.data(), trial_s_.data(), trial_f_.data());
+  if (!(marched < error)) {
+    // the operator remembers the traction that it saw last
+    if (!cold) micro_slip(t, p, s);
+    return error;
+  }
+  accept_trial(t);
+  return marched;
+}
+
+// Simplified theory (Kalker 1982): displacement = L p, so traction grows from the leading edge on
+// with the rigid slip over L, up to the bound. Lx and Ly are those with which B gives the mean slip
+// that it really gives to tractions growing evenly from the leading edge.
+void rolling_newton::march(task &t, double *p) {
+  // lengths of elements are only needed relative to each other; rows are equally wide, or nearly
+  for (int row = 0; row < t.problem.rows; ++row) {
+    const int begin = t.problem.row_start[row], n = t.problem.row_start[row + 1] - begin;
+    double ramp = 0;
+    for (int k = 0; k < n; ++k) {
+      ramp += t.problem.area[begin + k];
+      p[2 * begin + k] = p[2 * begin + n + k] = ramp;
+    }
+  }
+  t.b.product_single(p, trial_s_.data());
+  ++t.result.products;
+  double flexibility[2] = {0, 0};
+  t.for_each_element([&](size_t, size_t ix, size_t iy) {
+    flexibility[0] += trial_s_[ix] / t.problem.count();
+    flexibility[1] += trial_s_[iy] / t.problem.count();
+  });
+  for (int row = 0; row < t.problem.rows; ++row) {
+    const int begin = t.problem.row_start[row], n = t.problem.row_start[row + 1] - begin;
+    double grown[2] = {0, 0};
+    for (int k = 0; k < n; ++k) {
+      const int at[2] = {2 * begin + k, 2 * begin + n + k};
+      for (int c = 0; c < 2; ++c)
+        grown[c] -= t.problem.rigid_slip[at[c]] * t.problem.area[begin + k] / flexibility[c];
+      const double size = std::hypot(grown[0], grown[1]), bound = t.problem.bound[begin + k];
+      for (int c = 0; c < 2; ++c) {
+        if (size > bound) grown[c] *= bound / size;
+        p[at[c]] = grown[c];
+      }
+    }
+  }
 }
 
 // The residual of zero traction: the size against which others are measured.
@@ -181,7 +241,7 @@ void rolling_newton::expand(const task &t, const double *z, double *dp) const {
 
 void rolling_newton::apply_jacobian(task &t, const double *z, double *out) {
   expand(t, z, trial_p_.data());
-  t.b.product(trial_p_.data(), trial_s_.data());
+  t.b.product_single(trial_p_.data(), trial_s_.data());
   ++t.result.products;
   const double *s = trial_s_.data();
   for_each_unknown(t,
@@ -235,7 +295,7 @@ void rolling_newton::find_step(task &t) {
         whole += f[ix] * f[ix] + f[iy] * f[iy];
       });
   if (along > square(0.1 * inner_tolerance) * whole) {
-    t.b.product(normal_step_.data(), trial_s_.data());
+    t.b.product_single(normal_step_.data(), trial_s_.data());
     ++t.result.products;
     const double *s = trial_s_.data();
     for_each_unknown(t,
@@ -271,10 +331,14 @@ double rolling_newton::line_search(task &t, double current) {
     error = try_step(t, length);
   }
   if (error > (1.0 - 1e-3 * length) * current) error = try_step(t, 1.0);
+  accept_trial(t);
+  return error;
+}
+
+void rolling_newton::accept_trial(task &t) {
   std::copy_n(trial_p_.data(), t.vector_size(), t.problem.traction);
   std::copy_n(trial_s_.data(), t.vector_size(), t.problem.micro_slip);
   std::copy_n(trial_f_.data(), t.vector_size(), f_.data());
-  return error;
 }
 
 // Divides the elements into stick and slip and sums the friction.

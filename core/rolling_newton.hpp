@@ -44,9 +44,12 @@ class rolling_operator {
   virtual ~rolling_operator() = default;
   // s = B v; v is kept.
   virtual void product(const double *v, double *s) = 0;
+  // The same to some five digits, for what only steers the iteration.
+  virtual void product_single(const double *v, double *s) { product(v, s); }
   // The micro-slip, w + B p where B is linear.
   virtual void micro_slip(const rolling_problem &problem, const double *p, double *s);
-  // Sets B where the micro-slip is not linear, at the traction of the last call of micro_slip.
+  // Sets B where the micro-slip is not linear, at the traction of the last call of micro_slip;
+  // before the first call B is that of any fixed traction.
   virtual void linearise() {}
   // The parts of B within a row of n elements, s_x from p_x and s_y from p_y: n x n, column-major
   // (source by source), for the preconditioner.
@@ -89,6 +92,9 @@ class rolling_newton {
  private:
   // one solve's problem and operator, so that the steps need not pass them on
   struct task;
+  double start(task &t, double size);
+  void march(task &t, double *p);
+  void accept_trial(task &t);
   double scale(const task &t) const;
   void micro_slip(task &t, const double *p, double *s);
   double residual(const task &t, const double *p, const double *s, double *f) const;

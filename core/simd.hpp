@@ -8,3 +8,12 @@
 #else
 #define RAILPATCH_DISPATCH
 #endif
+
+// Before a loop whose steps touch no number that another step writes.
+#if defined(__clang__)
+#define RAILPATCH_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__)
+#define RAILPATCH_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define RAILPATCH_INDEPENDENT
+#endif

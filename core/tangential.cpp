@@ -35,17 +35,18 @@ class tangential_solver::grid_operator final : public rolling_operator {
   }
 
   void product(const double *p, double *s) override {
+    scatter(p);
     tangential_solver &t = solver_;
-    t.for_each_element([&](size_t, size_t at, size_t ix, size_t iy) {
-      t.grid_px_[at] = p[ix];
-      t.grid_py_[at] = p[iy];
-    });
     a_.rolling_product(t.grid_px_.data(), t.grid_py_.data(), direction_, t.grid_sx_.data(),
                        t.grid_sy_.data());
-    t.for_each_element([&](size_t, size_t at, size_t ix, size_t iy) {
-      s[ix] = t.grid_sx_[at];
-      s[iy] = t.grid_sy_[at];
-    });
+    gather(s);
+  }
+  void product_single(const double *p, double *s) override {
+    scatter(p);
+    tangential_solver &t = solver_;
+    a_.rolling_product_single(t.grid_px_.data(), t.grid_py_.data(), direction_, t.grid_sx_.data(),
+                              t.grid_sy_.data());
+    gather(s);
   }
 
   // within a row the xy kernel vanishes
@@ -77,6 +78,18 @@ class tangential_solver::grid_operator final : public rolling_operator {
   }
 
  private:
+  void scatter(const double *p) {
+    solver_.for_each_element([&](size_t, size_t at, size_t ix, size_t iy) {
+      solver_.grid_px_[at] = p[ix];
+      solver_.grid_py_[at] = p[iy];
+    });
+  }
+  void gather(double *s) const {
+    solver_.for_each_element([&](size_t, size_t at, size_t ix, size_t iy) {
+      s[ix] = solver_.grid_sx_[at];
+      s[iy] = solver_.grid_sy_[at];
+    });
+  }
   double entry(kernel k, int offset) const {
     return (a_.coefficient(k, offset, 0) - a_.coefficient(k, offset + direction_, 0)) / g_.dx;
   }
