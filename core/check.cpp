@@ -73,7 +73,7 @@ void check_choices(const rp_config &c, checker &check) {
   check.choice("kind", c.kind, RP_PATCH, RP_WHEELSET);
   check.choice("load", c.load, RP_FORCE, RP_POSITION);
   check.choice("regime", c.regime, RP_REGIME_NONE, RP_STEADY_ROLLING);
-  check.choice("normal", c.normal, RP_NORMAL_HERTZ, RP_NORMAL_HALF_SPACE);
+  check.choice("normal", c.normal, RP_NORMAL_HERTZ, RP_NORMAL_ANALYN);
   check.choice("tangential", c.tangential, RP_TANGENTIAL_NONE, RP_TANGENTIAL_FULL);
   check.choice("spin_offset", c.spin_offset, RP_SPIN_OFFSET_NONE, RP_SPIN_OFFSET_SIXTH);
   if (check.error() != RP_OK) return;
@@ -110,11 +110,14 @@ void check_patch(const rp_config &c, checker &check) {
     check.number("line_contact_radius", c.line_contact_radius, {1e-6, 1e6, false, false});
     check.number("width", c.width, {1e-6, 1e3, false, false});
     check.require(c.load == RP_FORCE, "a line contact has no approach: give normal_force");
+    check.require(c.normal == RP_NORMAL_HERTZ || c.normal == RP_NORMAL_HALF_SPACE,
+                  "a line contact needs normal = hertz or half_space");
   }
   if (c.geometry != RP_UNDEFORMED_DISTANCE) return;
   check.require(c.undeformed_distance != nullptr, "undeformed_distance is null");
-  check.require(c.normal == RP_NORMAL_HALF_SPACE,
-                "undeformed_distance needs normal = half_space: Hertz takes quadratic shapes only");
+  check.require(c.normal != RP_NORMAL_HERTZ,
+                "undeformed_distance needs normal = half_space, kik_piotrowski or analyn: Hertz "
+                "takes quadratic shapes only");
   check.integer("distance_shape[0]", c.distance_shape[0], 3, 1000);
   check.integer("distance_shape[1]", c.distance_shape[1], 3, 1000);
   if (check.error() == RP_OK)

@@ -21,12 +21,30 @@ struct capacity {
   int nx, ny;
 };
 
+// Half of what a theory's grid must cover along axis k, over Hertz's semi-axis. Kik-Piotrowski
+// needs its contact, an ellipse with Hertz's axis ratio and the area pi 0.55 d/sqrt(A B), and the
+// interpenetration region it is stretched from; with (a b) that is s^2 times as large, its force at
+// equal approach d is s times as large.
+double relative_size(const rp_config &c, const hertz_contact &hertz, int k) {
+  if (c.normal != RP_NORMAL_KIK_PIOTROWSKI || c.geometry == RP_UNDEFORMED_DISTANCE) return 1.0;
+  const double half[2] = {
+      std::sqrt(virtual_interpenetration * hertz.approach / hertz.curvatures[0]),
+      std::sqrt(virtual_interpenetration * hertz.approach / hertz.curvatures[1])};
+  const double size =
+      std::sqrt(half[0] / hertz.semi_axes[0]) * std::sqrt(half[1] / hertz.semi_axes[1]);
+  // at equal force the approach is smaller, and with it both regions
+  const double load = c.load == RP_POSITION ? 1.0 : 1.0 / std::cbrt(size);
+  return load * std::max(size, half[k] / hertz.semi_axes[k]);
+}
+
 // Elements of one patch's grid, with a border of one element that stays free of contact.
 capacity grid_capacity(const rp_config &c) {
   capacity size{c.max_elements[0], c.max_elements[1]};
   const bool sized = c.element_size[0] > 0;
   if (c.kind == RP_PATCH && c.geometry == RP_UNDEFORMED_DISTANCE)
     return {c.distance_shape[0], c.distance_shape[1]};
+  const bool ellipse = c.kind == RP_PATCH && c.geometry == RP_SEMI_AXES;
+  const hertz_contact unit = ellipse ? hertz_from_ellipse(c.semi_axes, 1.0, 1.0) : hertz_contact{};
   for (int k = 0; k < 2; ++k) {
     int &n = k == 0 ? size.nx : size.ny;
     const bool line = k == 1 && c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT;
@@ -34,8 +52,9 @@ capacity grid_capacity(const rp_config &c) {
       n = 1;
     else if (!sized)
       n = c.elements[k] + 2;
-    else if (c.kind == RP_PATCH && c.geometry == RP_SEMI_AXES)
-      n = static_cast<int>(std::min(2000.0, std::ceil(2.0 * c.semi_axes[k] / c.element_size[k]))) +
+    else if (ellipse)
+      n = static_cast<int>(std::min(2000.0, std::ceil(2.0 * relative_size(c, unit, k) *
+                                                      c.semi_axes[k] / c.element_size[k]))) +
           3;
     else if (n == 0)
       // wheel on rail: overlaps up to 60 mm long and 50 mm wide; else a square of 128
@@ -45,24 +64,6 @@ capacity grid_capacity(const rp_config &c) {
                                             16.0, 400.0));
   }
   return size;
-}
-
-// Transform sizes up to a capacity, each about a fifth larger than the one before.
-std::vector<int> ladder(int smallest, int largest) {
-  std::vector<int> sizes{smooth_size(smallest)};
-  while (sizes.back() < largest)
-    sizes.push_back(
-        std::min(smooth_size(sizes.back() + sizes.back() / 5 + 1), smooth_size(largest)));
-  return sizes;
-}
-
-fft_plans make_plans(const rp_config &c) {
-  const capacity size = grid_capacity(c);
-  const int nx = 2 * size.nx + 1, ny = size.ny > 1 ? 2 * size.ny - 1 : 1;
-  const bool fixed = c.kind == RP_PATCH && !(c.geometry == RP_CURVATURES && c.element_size[0] > 0);
-  const auto top = [](int n) { return n > 1 ? smooth_size(n) : 1; };
-  if (fixed) return fft_plans({top(nx)}, {top(ny)});
-  return fft_plans(ladder(std::min(nx, 16), nx), ladder(std::min(ny, 16), ny));
 }
 
 patch_scene make_scene(const rp_config &c) {
@@ -80,6 +81,30 @@ patch_scene make_scene(const rp_config &c) {
   scene.max_iterations = c.max_iterations;
   scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
   return scene;
+}
+
+// Transform sizes up to a capacity, each about a fifth larger than the one before.
+std::vector<int> ladder(int smallest, int largest) {
+  std::vector<int> sizes{smooth_size(smallest)};
+  while (sizes.back() < largest)
+    sizes.push_back(
+        std::min(smooth_size(sizes.back() + sizes.back() / 5 + 1), smooth_size(largest)));
+  return sizes;
+}
+
+bool needs_influence(const patch_scene &scene) {
+  return scene.normal == RP_NORMAL_HALF_SPACE || scene.tangential == RP_TANGENTIAL_FULL;
+}
+
+fft_plans make_plans(const rp_config &c) {
+  // closed forms need no transforms
+  if (!needs_influence(make_scene(c))) return fft_plans({2}, {1});
+  const capacity size = grid_capacity(c);
+  const int nx = 2 * size.nx + 1, ny = size.ny > 1 ? 2 * size.ny - 1 : 1;
+  const bool fixed = c.kind == RP_PATCH && !(c.geometry == RP_CURVATURES && c.element_size[0] > 0);
+  const auto top = [](int n) { return n > 1 ? smooth_size(n) : 1; };
+  if (fixed) return fft_plans({top(nx)}, {top(ny)});
+  return fft_plans(ladder(std::min(nx, 16), nx), ladder(std::min(ny, 16), ny));
 }
 
 hertz_contact hertz_of(const rp_config &c, const patch_scene &scene, const rp_input &in) {
@@ -105,7 +130,7 @@ grid hertz_grid(const rp_config &c, const hertz_contact &hertz) {
   grid g;
   const bool line = c.geometry == RP_LINE_CONTACT;
   const auto cells = [&](int k, double &size) {
-    const double length = 2.0 * hertz.semi_axes[k];
+    const double length = 2.0 * relative_size(c, hertz, k) * hertz.semi_axes[k];
     if (c.element_size[0] > 0) {
       size = c.element_size[k];
       return static_cast<int>(std::min(1e6, std::ceil(length / size - 1e-9))) + 2;
@@ -377,6 +402,20 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
   return RP_OK;
 }
 
+static const char *normal_reason(rp_normal_method method) {
+  switch (method) {
+    case RP_NORMAL_HERTZ:
+      return "normal = hertz: closed form";
+    case RP_NORMAL_KIK_PIOTROWSKI:
+      return "normal = kik_piotrowski: virtual interpenetration, row by row";
+    case RP_NORMAL_ANALYN:
+      return "normal = analyn: assumed deformation, row by row";
+    case RP_NORMAL_HALF_SPACE:
+      break;
+  }
+  return "normal = half_space: conjugate gradients";
+}
+
 void contact::describe(rp_stage_info *info) const {
   const patch_scene &scene = solver_.scene();
   const bool tangential = scene.tangential != RP_TANGENTIAL_NONE;
@@ -397,10 +436,7 @@ void contact::describe(rp_stage_info *info) const {
                               influence > 0 ? "a method on the half-space is asked for"
                                             : "neither normal nor tangential method needs it",
                               influence};
-  info[RP_STAGE_NORMAL] = {"normal", 1,
-                           scene.normal == RP_NORMAL_HERTZ
-                               ? "normal = hertz: closed form"
-                               : "normal = half_space: conjugate gradients",
+  info[RP_STAGE_NORMAL] = {"normal", 1, normal_reason(scene.normal),
                            normal + solver_.normal_bytes()};
   const char *why = "tangential = full: semi-smooth Newton";
   if (config_.regime == RP_REGIME_NONE)

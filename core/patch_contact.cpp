@@ -67,6 +67,8 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
     influence_.emplace(
         influence::scene{scene.elastic, scene.layer_flexibility, scene.line_width, full}, plans);
   if (scene.normal == RP_NORMAL_HALF_SPACE) normal_.emplace(max_nx * max_ny);
+  if (scene.normal == RP_NORMAL_KIK_PIOTROWSKI || scene.normal == RP_NORMAL_ANALYN)
+    rows_.emplace(scene.normal, scene.modulus(), max_ny);
   if (full) tangential_.emplace(max_nx, max_ny);
   scratch_[0] = aligned_buffer<double>(count);
   scratch_[1] = aligned_buffer<double>(count);
@@ -161,36 +163,60 @@ void patch_contact::leave_unloaded(const patch_problem &problem, patch_memory &m
 bool patch_contact::solve_normal(const patch_problem &problem, patch_memory &memory,
                                  rp_patch_result &result) {
   const grid &g = problem.g;
-  if (scene_.normal == RP_NORMAL_HERTZ) {
+  if (rows_)
+    solve_rows(problem, memory, result);
+  else if (normal_)
+    solve_half_space(problem, memory, result);
+  else
     solve_hertz(problem, memory, result);
-  } else {
-    const normal_options options{scene_.normal_tolerance, scene_.max_iterations};
-    double *p = memory.pressure.data();
-    const double *h = memory.undeformed_distance.data();
-    const normal_result n =
-        problem.force_given
-            ? normal_->with_force(*influence_, g, h, problem.force, options, p, problem.parts)
-            : normal_->with_approach(*influence_, g, h, problem.approach, options, p,
-                                     problem.parts);
-    if (!n.converged) degrade(result, RP_NOT_CONVERGED);
-    if (n.touches_border) degrade(result, RP_OUT_OF_RANGE);
-    result.normal_force = n.normal_force;
-    result.approach = n.approach;
-    result.normal_iterations = n.iterations;
-    result.residual = n.residual;
-    result.max_pressure = *std::max_element(p, p + g.count());
-    result.contact_area = n.contact_count * g.dx * g.dy;
-    // at the solution the elastic displacement is approach minus distance wherever p > 0
-    double energy = 0;
-    for (int i = 0; i < g.count(); ++i) energy += p[i] * (n.approach - h[i]);
-    result.elastic_energy = 0.5 * energy * g.dx * g.dy;
-  }
   const int touching = static_cast<int>(std::count_if(
       memory.pressure.data(), memory.pressure.data() + g.count(), [](double p) { return p > 0; }));
   result.elements[RP_EXTERIOR] = g.count() - touching;
   if (touching > 0) return true;
   degrade(result, RP_NO_CONTACT);
   return false;
+}
+
+void patch_contact::solve_half_space(const patch_problem &problem, patch_memory &memory,
+                                     rp_patch_result &result) {
+  const grid &g = problem.g;
+  const normal_options options{scene_.normal_tolerance, scene_.max_iterations};
+  double *p = memory.pressure.data();
+  const double *h = memory.undeformed_distance.data();
+  const normal_result n =
+      problem.force_given
+          ? normal_->with_force(*influence_, g, h, problem.force, options, p, problem.parts)
+          : normal_->with_approach(*influence_, g, h, problem.approach, options, p, problem.parts);
+  if (!n.converged) degrade(result, RP_NOT_CONVERGED);
+  if (n.touches_border) degrade(result, RP_OUT_OF_RANGE);
+  result.normal_force = n.normal_force;
+  result.approach = n.approach;
+  result.normal_iterations = n.iterations;
+  result.residual = n.residual;
+  result.max_pressure = *std::max_element(p, p + g.count());
+  result.contact_area = n.contact_count * g.dx * g.dy;
+  // at the solution the elastic displacement is approach minus distance wherever p > 0
+  double energy = 0;
+  for (int i = 0; i < g.count(); ++i) energy += p[i] * (n.approach - h[i]);
+  result.elastic_energy = 0.5 * energy * g.dx * g.dy;
+}
+
+// The fast theories for contact areas of any shape.
+void patch_contact::solve_rows(const patch_problem &problem, patch_memory &memory,
+                               rp_patch_result &result) {
+  const row_contact_result n =
+      rows_->solve(problem.g, memory.undeformed_distance.data(),
+                   {problem.force_given, problem.force, problem.approach, problem.hertz.approach},
+                   problem.parts, memory.pressure.data());
+  if (!n.converged) degrade(result, RP_NOT_CONVERGED);
+  if (n.touches_border) degrade(result, RP_OUT_OF_RANGE);
+  result.normal_force = n.normal_force;
+  result.approach = n.approach;
+  result.normal_iterations = n.iterations;
+  result.residual = n.residual;
+  result.max_pressure = n.max_pressure;
+  result.contact_area = n.contact_area;
+  result.elastic_energy = n.elastic_energy;
 }
 
 void patch_contact::solve_hertz(const patch_problem &problem, patch_memory &memory,
@@ -264,8 +290,12 @@ int patch_contact::find_leading_edges(const patch_problem &problem, int directio
     while (first >= 0 && first < g.nx && !(p[first] > 0)) first -= direction;
     const bool touching = first >= 0 && first < g.nx;
     const double level = semi_axes[0] > 0 ? inside_ellipse(semi_axes, 0.0, g.y(j)) : 0.0;
-    leading_[static_cast<size_t>(j)] = level > 0 ? direction * semi_axes[0] * std::sqrt(level)
-                                                 : g.x(first) + 0.5 * direction * g.dx;
+    double edge = g.x(first) + 0.5 * direction * g.dx;
+    if (level > 0 && !rows_) edge = direction * semi_axes[0] * std::sqrt(level);
+    // the chord's end, unless the row is too narrow for an element's middle
+    if (rows_ && touching && direction * (rows_->leading_edge(j, direction) - g.x(first)) > 0)
+      edge = rows_->leading_edge(j, direction);
+    leading_[static_cast<size_t>(j)] = edge;
     rows += touching;
   }
   return rows;
@@ -279,9 +309,9 @@ tangential_result patch_contact::solve_fastsim(const patch_problem &problem,
   double semi_axes[2] = {hertz.semi_axes[0], hertz.semi_axes[1]};
   const bool elliptic = scene_.normal == RP_NORMAL_HERTZ;
   const int rows = find_leading_edges(problem, rolling.direction, memory.pressure.data());
-  if (!(semi_axes[0] > 0)) {
+  if (rows_ || !(semi_axes[0] > 0)) {
     // the ellipse with the same width and area stands for a contact area of any shape
-    semi_axes[1] = 0.5 * rows * g.dy;
+    semi_axes[1] = 0.5 * (rows_ ? rows_->width() : rows * g.dy);
     semi_axes[0] = contact_area / (pi * semi_axes[1]);
   }
   if (elliptic) {

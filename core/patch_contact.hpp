@@ -10,6 +10,7 @@
 #include "hertz.hpp"
 #include "normal.hpp"
 #include "railpatch.h"
+#include "row_contact.hpp"
 #include "tangential.hpp"
 
 namespace railpatch {
@@ -72,7 +73,9 @@ class patch_contact {
   const patch_scene &scene() const { return scene_; }
   void set_friction_coefficient(double value) { scene_.friction_coefficient = value; }
   size_t influence_bytes() const { return influence_ ? influence_->bytes() : 0; }
-  size_t normal_bytes() const { return normal_ ? normal_->bytes() : 0; }
+  size_t normal_bytes() const {
+    return (normal_ ? normal_->bytes() : 0) + (rows_ ? rows_->bytes() : 0);
+  }
   size_t tangential_bytes() const;
   void observe(rp_stage stage, bool entering) const {
     if (observer_) observer_(observer_user_, stage, entering);
@@ -80,6 +83,9 @@ class patch_contact {
 
  private:
   bool solve_normal(const patch_problem &problem, patch_memory &memory, rp_patch_result &result);
+  void solve_half_space(const patch_problem &problem, patch_memory &memory,
+                        rp_patch_result &result);
+  void solve_rows(const patch_problem &problem, patch_memory &memory, rp_patch_result &result);
   void solve_hertz(const patch_problem &problem, patch_memory &memory, rp_patch_result &result);
   bool solve_tangential(const patch_problem &problem, patch_memory &memory,
                         rp_patch_result &result);
@@ -95,6 +101,7 @@ class patch_contact {
   void *observer_user_;
   std::optional<influence> influence_;
   std::optional<normal_solver> normal_;
+  std::optional<row_contact> rows_;
   std::optional<tangential_solver> tangential_;
   aligned_buffer<double> bound_, leading_, scratch_[2];
 };

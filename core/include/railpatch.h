@@ -82,7 +82,12 @@ typedef enum rp_load {
   RP_POSITION = 1 /* approach (patch) or z (wheel, wheelset) prescribed */
 } rp_load;
 typedef enum rp_regime { RP_REGIME_NONE = 0, RP_STEADY_ROLLING = 1 } rp_regime;
-typedef enum rp_normal_method { RP_NORMAL_HERTZ = 0, RP_NORMAL_HALF_SPACE = 1 } rp_normal_method;
+typedef enum rp_normal_method {
+  RP_NORMAL_HERTZ = 0,
+  RP_NORMAL_HALF_SPACE = 1,
+  RP_NORMAL_KIK_PIOTROWSKI = 2, /* Piotrowski and Kik 2008, by virtual interpenetration */
+  RP_NORMAL_ANALYN = 3          /* Sichani, Enblom and Berg 2014, by an assumed deformation */
+} rp_normal_method;
 typedef enum rp_tangential_method {
   RP_TANGENTIAL_NONE = 0,
   RP_TANGENTIAL_FASTSIM = 1, /* Kalker 1982, three flexibilities, parabolic bound for Hertz */
@@ -212,7 +217,7 @@ typedef struct rp_patch_result {
   double max_temperature;    /* degrees C; NaN: not part of the scene */
   double friction_power;     /* W, >= 0: power that the creepages supply */
   double elastic_energy;     /* J */
-  int32_t normal_iterations; /* conjugate-gradient steps */
+  int32_t normal_iterations; /* conjugate-gradient steps; evaluations of the fast theories */
   int32_t newton_iterations; /* of the tangential problem */
   int32_t inner_iterations;  /* operator products of the tangential problem */
   double residual;           /* -, greatest relative residual of the stages */

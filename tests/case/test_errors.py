@@ -76,8 +76,9 @@ def problems_of(case: Any, **options: Any) -> list[str]:
         ("temperature", {"wheel": 20.0}, "temperature: value is a table, allowed: leave it out"),
         (
             "method__normal",
-            "kik_piotrowski",
-            "method.normal: value is 'kik_piotrowski', allowed 'hertz' or 'half_space'",
+            "stripes",
+            "method.normal: value is 'stripes', allowed 'hertz', 'kik_piotrowski', 'analyn' or "
+            "'half_space'",
         ),
         (
             "method__tangential",

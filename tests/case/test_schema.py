@@ -36,7 +36,7 @@ def test_kinds_and_choices() -> None:
     schema = json_schema()
     assert set(schema["discriminator"]["mapping"]) == {"patch", "wheel_rail", "wheelset"}
     method = schema["$defs"]["Method"]["properties"]
-    assert method["normal"]["enum"] == ["hertz", "half_space"]
+    assert method["normal"]["enum"] == ["hertz", "kik_piotrowski", "analyn", "half_space"]
     assert method["tangential"]["enum"] == ["none", "fastsim", "full"]
 
 

@@ -210,27 +210,26 @@ std::vector<rp_input> patch_inputs() {
 }
 
 TEST(Step, OfAPatchAllocatesNothing) {
-  struct {
-    rp_normal_method normal;
-    rp_tangential_method tangential;
-  } methods[] = {
-      {RP_NORMAL_HERTZ, RP_TANGENTIAL_NONE},         {RP_NORMAL_HERTZ, RP_TANGENTIAL_FASTSIM},
-      {RP_NORMAL_HERTZ, RP_TANGENTIAL_FULL},         {RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_NONE},
-      {RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FASTSIM}, {RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL}};
-  for (const auto &m : methods)
-    for (int elements : {7, 16, 31})
-      EXPECT_EQ(run(scenes::patch(m.normal, m.tangential, elements), patch_inputs()).allocated, 0)
-          << "normal " << m.normal << " tangential " << m.tangential << " elements " << elements;
+  for (rp_normal_method normal :
+       {RP_NORMAL_HERTZ, RP_NORMAL_HALF_SPACE, RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN})
+    for (rp_tangential_method tangential :
+         {RP_TANGENTIAL_NONE, RP_TANGENTIAL_FASTSIM, RP_TANGENTIAL_FULL})
+      for (int elements : {7, 16, 31})
+        EXPECT_EQ(run(scenes::patch(normal, tangential, elements), patch_inputs()).allocated, 0)
+            << "normal " << normal << " tangential " << tangential << " elements " << elements;
 }
 
 // Curvatures with a fixed element size: the grid grows and shrinks with the load.
 TEST(Step, OfAGrowingGridAllocatesNothing) {
-  rp_config c = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL);
-  c.geometry = RP_CURVATURES;
-  c.elements[0] = c.elements[1] = 0;
-  c.element_size[0] = c.element_size[1] = 8e-4;
-  c.max_elements[0] = c.max_elements[1] = 40;
-  EXPECT_EQ(run(c, patch_inputs()).allocated, 0);
+  for (rp_normal_method normal :
+       {RP_NORMAL_HALF_SPACE, RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN}) {
+    rp_config c = scenes::patch(normal, RP_TANGENTIAL_FULL);
+    c.geometry = RP_CURVATURES;
+    c.elements[0] = c.elements[1] = 0;
+    c.element_size[0] = c.element_size[1] = 8e-4;
+    c.max_elements[0] = c.max_elements[1] = 40;
+    EXPECT_EQ(run(c, patch_inputs()).allocated, 0) << "normal " << normal;
+  }
 }
 
 TEST(Step, OfALineContactAllocatesNothing) {
@@ -238,6 +237,24 @@ TEST(Step, OfALineContactAllocatesNothing) {
   c.geometry = RP_LINE_CONTACT;
   c.elements[1] = 1;
   EXPECT_EQ(run(c, patch_inputs()).allocated, 0);
+}
+
+// Wheelsets by the theories that build the contact from rows.
+TEST(Step, OfAWheelsetWithRowsAllocatesNothing) {
+  const scenes::profile_pair pair;
+  for (rp_normal_method normal : {RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN})
+    for (rp_tangential_method tangential : {RP_TANGENTIAL_FASTSIM, RP_TANGENTIAL_FULL}) {
+      rp_config c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+      c.normal = normal;
+      c.tangential = tangential;
+      std::vector<rp_input> inputs;
+      for (double y : {0.0, 2e-3, 5.9e-3, 6.05e-3, -4e-3}) {
+        inputs.push_back(scenes::running(RP_RAIL));
+        inputs.back().y = y;
+        inputs.back().vertical_force = 1.2e5;
+      }
+      EXPECT_EQ(run(c, inputs).allocated, 0) << "normal " << normal << " tangential " << tangential;
+    }
 }
 
 // The transforms alone, in sizes up to grids of 250 elements.

@@ -201,7 +201,7 @@ TEST(Config, ChoicesAndCountsAreChecked) {
       {"geometry", [](rp_config &c, int v) { put(c.geometry, v); }, -1, 4},
       {"load", [](rp_config &c, int v) { put(c.load, v); }, -1, 2},
       {"regime", [](rp_config &c, int v) { put(c.regime, v); }, -1, 2},
-      {"normal", [](rp_config &c, int v) { put(c.normal, v); }, -1, 2},
+      {"normal", [](rp_config &c, int v) { put(c.normal, v); }, -1, 4},
       {"tangential", [](rp_config &c, int v) { put(c.tangential, v); }, -1, 3},
       {"spin_offset", [](rp_config &c, int v) { put(c.spin_offset, v); }, -1, 2},
       {"elements[0]", [](rp_config &c, int v) { c.elements[0] = v; }, -5, 100000},
@@ -245,6 +245,11 @@ TEST(Config, RelationsAreChecked) {
   c.load = RP_FORCE;
   c.tangential = RP_TANGENTIAL_FASTSIM;
   expect_refused(c, RP_ERROR_VALUE, "fastsim");
+  for (rp_normal_method method : {RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN}) {
+    c.tangential = RP_TANGENTIAL_FULL;
+    c.normal = method;
+    expect_refused(c, RP_ERROR_VALUE, "line contact");
+  }
   c = default_config();
   c.tangential = RP_TANGENTIAL_FASTSIM;
   c.layer_thickness = 1e-4;
@@ -287,6 +292,10 @@ TEST(Config, UndeformedDistanceIsChecked) {
   rp_config d = c;
   d.normal = RP_NORMAL_HERTZ;
   expect_refused(d, RP_ERROR_VALUE, "undeformed_distance");
+  for (rp_normal_method method : {RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN}) {
+    d.normal = method;
+    const scenes::handle usable(d);
+  }
 }
 
 // --- profiles ----------------------------------------------------------------------------------
@@ -539,7 +548,7 @@ class Garbage : public testing::Test {
     if (c.geometry == RP_LINE_CONTACT) c.elements[1] = 1;
     if (random() % 2) c.load = static_cast<rp_load>(random() % 2);
     if (random() % 2) c.regime = static_cast<rp_regime>(random() % 2);
-    if (random() % 2) c.normal = static_cast<rp_normal_method>(random() % 2);
+    if (random() % 2) c.normal = static_cast<rp_normal_method>(random() % 4);
     if (random() % 2) c.tangential = static_cast<rp_tangential_method>(random() % 3);
     if (random() % 2) c.spin_offset = static_cast<rp_spin_offset>(random() % 2);
     if (random() % 60 == 0) put(c.kind, static_cast<int>(random()));

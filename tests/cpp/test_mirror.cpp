@@ -111,6 +111,7 @@ struct scene {
   rp_track track;
   rp_load load;
   double curvature;
+  rp_normal_method normal = RP_NORMAL_HALF_SPACE;
 };
 
 void PrintTo(const scene &s, std::ostream *out) { *out << s.name; }
@@ -121,6 +122,8 @@ const scene all_scenes[] = {
     {"wheel_on_roller", RP_WHEEL_RAIL, RP_ROLLER, RP_FORCE, 0.0},
     {"wheelset_on_rails", RP_WHEELSET, RP_RAIL, RP_FORCE, 1.0 / 500},
     {"wheelset_on_rollers", RP_WHEELSET, RP_ROLLER, RP_FORCE, 0.0},
+    {"kik_piotrowski", RP_WHEELSET, RP_RAIL, RP_FORCE, 0.0, RP_NORMAL_KIK_PIOTROWSKI},
+    {"analyn", RP_WHEEL_RAIL, RP_ROLLER, RP_POSITION, 0.0, RP_NORMAL_ANALYN},
 };
 
 class Mirror : public testing::TestWithParam<scene> {
@@ -156,6 +159,7 @@ TEST_P(Mirror, EqualsTheMirroredMotion) {
   for (double &z : two.rail.z) z += 1e-5;
   rp_config c = scenes::wheels(GetParam().kind, GetParam().track, one);
   c.curvature = GetParam().curvature;
+  c.normal = GetParam().normal;
   c.load = RP_FORCE;
   c.max_elements[0] = c.max_elements[1] = 64;
   c.rail[RP_LEFT] = two.rail.view();

@@ -35,6 +35,8 @@ constexpr Name kNames[] = {
     {"regime", "steady_rolling", RP_STEADY_ROLLING},
     {"normal", "hertz", RP_NORMAL_HERTZ},
     {"normal", "half_space", RP_NORMAL_HALF_SPACE},
+    {"normal", "kik_piotrowski", RP_NORMAL_KIK_PIOTROWSKI},
+    {"normal", "analyn", RP_NORMAL_ANALYN},
     {"tangential", "none", RP_TANGENTIAL_NONE},
     {"tangential", "fastsim", RP_TANGENTIAL_FASTSIM},
     {"tangential", "full", RP_TANGENTIAL_FULL},

@@ -88,7 +88,7 @@ def has_layer(layer: Layer | None) -> bool:
 class Method(Table):
     """Which theory solves which problem."""
 
-    normal: Literal["hertz", "half_space"] = Field(
+    normal: Literal["hertz", "kik_piotrowski", "analyn", "half_space"] = Field(
         default="half_space", description="theory of the normal problem (no unit)"
     )
     tangential: Literal["none", "fastsim", "full"] = Field(

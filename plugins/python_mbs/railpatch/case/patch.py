@@ -124,13 +124,20 @@ class PatchCase(Table):
                 "grid.element_size", "missing", "[dx, dy] in m with geometry.undeformed_distance"
             )
         if gap is not None and self.method.normal == "hertz":
-            raise relation("method.normal", "'hertz'", "'half_space' with undeformed_distance")
+            raise relation(
+                "method.normal",
+                "'hertz'",
+                "'half_space', 'kik_piotrowski' or 'analyn' with undeformed_distance",
+            )
         return self
 
     def _check_line(self) -> None:
         """What a line contact is not combined with."""
         if self.load.approach is not None:
             raise relation("load.approach", self.load.approach, "normal_force with a line contact")
+        if self.method.normal in ("kik_piotrowski", "analyn"):
+            shown = f"'{self.method.normal}'"
+            raise relation("method.normal", shown, "'half_space' or 'hertz' with a line contact")
         if self.has_tangential and self.method.tangential == "fastsim":
             raise relation("method.tangential", "'fastsim'", "'full' with a line contact")
         elements = self.grid and self.grid.elements
