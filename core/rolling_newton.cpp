@@ -108,9 +108,9 @@ double rolling_newton::start(task &t, double size) {
   micro_slip(t, trial_p_.data(), trial_s_.data());
   const double marched = residual(t, trial_p_.data(), trial_s_.data(), trial_f_.data());
   if (!(marched < error)) {
-    // the operator remembers the traction that it saw last
-    if (!cold) micro_slip(t, p, s);
-    return error;
+    // again, since the operator remembers the traction that it saw last
+    micro_slip(t, p, s);
+    return residual(t, p, s, f_.data());
   }
   accept_trial(t);
   return marched;
