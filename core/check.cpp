@@ -83,7 +83,19 @@ void check_choices(const rp_config &c, checker &check) {
     check.choice("track", c.track, RP_RAIL, RP_ROLLER);
 }
 
+void check_fitted(const rp_config &c, checker &check) {
+  if (c.fitted[0] == 0 && c.fitted[1] == 0) return;
+  const bool line = c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT;
+  check.integer("fitted[0]", c.fitted[0], 3, 64);
+  check.integer("fitted[1]", c.fitted[1], line ? 1 : 3, line ? 1 : 64);
+  check.require(c.tangential == RP_TANGENTIAL_FULL, "fitted needs tangential = full");
+  check.require(c.spin_offset == RP_SPIN_OFFSET_NONE,
+                "spin_offset must be none with fitted: it belongs to the uniform grid");
+}
+
 void check_grid(const rp_config &c, checker &check) {
+  check_fitted(c, check);
+  if (!needs_grid(c)) return;
   const bool counted = c.elements[0] != 0 || c.elements[1] != 0;
   const bool sized = c.element_size[0] != 0 || c.element_size[1] != 0;
   const bool shaped = c.kind == RP_PATCH && c.geometry == RP_UNDEFORMED_DISTANCE;
@@ -143,6 +155,11 @@ void check_wheels(const rp_config &c, checker &check) {
 }
 
 }  // namespace
+
+bool needs_grid(const rp_config &c) {
+  const bool full = c.regime != RP_REGIME_NONE && c.tangential == RP_TANGENTIAL_FULL;
+  return c.kind != RP_PATCH || c.normal != RP_NORMAL_HERTZ || !full || c.fitted[0] == 0;
+}
 
 void set_message(rp_message *message, const char *format, ...) {
   if (!message) return;

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "check.hpp"
 #include "force_search.hpp"
 
 namespace railpatch {
@@ -39,6 +40,7 @@ double relative_size(const rp_config &c, const hertz_contact &hertz, int k) {
 
 // Elements of one patch's grid, with a border of one element that stays free of contact.
 capacity grid_capacity(const rp_config &c) {
+  if (!needs_grid(c)) return {0, 0};
   capacity size{c.max_elements[0], c.max_elements[1]};
   const bool sized = c.element_size[0] > 0;
   if (c.kind == RP_PATCH && c.geometry == RP_UNDEFORMED_DISTANCE)
@@ -79,6 +81,7 @@ patch_scene make_scene(const rp_config &c) {
   if (c.kind != RP_PATCH && c.load == RP_FORCE)
     scene.normal_tolerance = std::max(0.1 * c.tolerance, 1e-12);
   scene.max_iterations = c.max_iterations;
+  for (int k = 0; k < 2; ++k) scene.fitted[k] = c.fitted[k];
   scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
   return scene;
 }
@@ -93,7 +96,8 @@ std::vector<int> ladder(int smallest, int largest) {
 }
 
 bool needs_influence(const patch_scene &scene) {
-  return scene.normal == RP_NORMAL_HALF_SPACE || scene.tangential == RP_TANGENTIAL_FULL;
+  return scene.normal == RP_NORMAL_HALF_SPACE ||
+         (scene.tangential == RP_TANGENTIAL_FULL && !scene.is_fitted());
 }
 
 fft_plans make_plans(const rp_config &c) {
@@ -128,6 +132,7 @@ hertz_contact hertz_of(const rp_config &c, const patch_scene &scene, const rp_in
 // Grid over the ellipse's bounding box, centred, with one free element around it.
 grid hertz_grid(const rp_config &c, const hertz_contact &hertz) {
   grid g;
+  if (!needs_grid(c)) return g;
   const bool line = c.geometry == RP_LINE_CONTACT;
   const auto cells = [&](int k, double &size) {
     const double length = 2.0 * relative_size(c, hertz, k) * hertz.semi_axes[k];
@@ -154,9 +159,8 @@ contact::contact(const rp_config &config)
       solver_(make_scene(config), plans_, grid_capacity(config).nx, grid_capacity(config).ny,
               config.observer, config.observer_user) {
   const capacity size = grid_capacity(config);
-  const bool tangential = solver_.scene().tangential != RP_TANGENTIAL_NONE;
   if (config.kind == RP_PATCH) {
-    memory_.emplace_back(size.nx * size.ny, tangential);
+    memory_.emplace_back(size.nx * size.ny, solver_.scene());
     if (config.geometry == RP_UNDEFORMED_DISTANCE) {
       shape_ = aligned_buffer<double>(static_cast<size_t>(size.nx * size.ny));
       std::copy_n(config.undeformed_distance, shape_.size(), shape_.data());
@@ -166,7 +170,7 @@ contact::contact(const rp_config &config)
       if (!has_side(side)) continue;
       wheels_.emplace_back(config, side);
       for (int i = 0; i < config.max_patches; ++i)
-        memory_.emplace_back(size.nx * size.ny, tangential);
+        memory_.emplace_back(size.nx * size.ny, solver_.scene());
     }
   }
   scene_ = fingerprint(config, shape_);
@@ -355,10 +359,12 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
   const bool of_tangential =
       name == RP_FIELD_TRACTION || name == RP_FIELD_MICRO_SLIP || name == RP_FIELD_ELEMENT_DIVISION;
   if (!m.solved || (of_tangential && m.px.size() == 0)) return RP_ERROR_NO_FIELD;
-  const bool of_axis = name == RP_FIELD_X || name == RP_FIELD_Y;
+  if (m.fitted() && name == RP_FIELD_UNDEFORMED_DISTANCE) return RP_ERROR_NO_FIELD;
+  const int nx = m.columns(), ny = m.rows();
+  const bool of_axis = (name == RP_FIELD_X && !m.fitted()) || name == RP_FIELD_Y;
   const bool of_vectors = name == RP_FIELD_TRACTION || name == RP_FIELD_MICRO_SLIP;
-  const auto plane = static_cast<size_t>(m.g.count());
-  const size_t needed = of_axis ? static_cast<size_t>(name == RP_FIELD_X ? m.g.nx : m.g.ny)
+  const auto plane = static_cast<size_t>(nx * ny);
+  const size_t needed = of_axis ? static_cast<size_t>(name == RP_FIELD_X ? nx : ny)
                                 : (of_vectors ? 2 * plane : plane);
   const size_t capacity = *count;
   *count = needed;
@@ -366,24 +372,28 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
   // a left wheel is solved as its mirror image: rows in reverse, lateral components negative
   const bool left = config_.kind != RP_PATCH && side == RP_LEFT;
   const auto copy = [&](auto &&source, double *out, double sign) {
-    for (int j = 0; j < m.g.ny; ++j)
-      for (int i = 0; i < m.g.nx; ++i)
-        out[j * m.g.nx + i] =
-            sign * source[static_cast<size_t>((left ? m.g.ny - 1 - j : j) * m.g.nx + i)];
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i)
+        out[j * nx + i] = sign * source[static_cast<size_t>((left ? ny - 1 - j : j) * nx + i)];
   };
+  const auto y = [&](int j) { return m.fitted() ? m.node_y[static_cast<size_t>(j)] : m.g.y(j); };
   const double lateral = left ? -1.0 : 1.0;
   switch (name) {
     case RP_FIELD_X:
-      for (int i = 0; i < m.g.nx; ++i) values[i] = m.g.x(i);
+      if (m.fitted()) {
+        copy(m.node_x, values, 1.0);
+        break;
+      }
+      for (int i = 0; i < nx; ++i) values[i] = m.g.x(i);
       break;
     case RP_FIELD_Y:
-      for (int j = 0; j < m.g.ny; ++j) values[j] = left ? -m.g.y(m.g.ny - 1 - j) : m.g.y(j);
+      for (int j = 0; j < ny; ++j) values[j] = lateral * y(left ? ny - 1 - j : j);
       break;
     case RP_FIELD_UNDEFORMED_DISTANCE:
       copy(m.undeformed_distance, values, 1.0);
       break;
     case RP_FIELD_PRESSURE:
-      copy(m.pressure, values, 1.0);
+      copy(m.fitted() ? m.node_pressure : m.pressure, values, 1.0);
       break;
     case RP_FIELD_TRACTION:
       copy(m.px, values, 1.0);
@@ -445,6 +455,8 @@ void contact::describe(rp_stage_info *info) const {
     why = "tangential = none";
   else if (scene.tangential == RP_TANGENTIAL_FASTSIM)
     why = "tangential = fastsim: simplified theory";
+  else if (scene.is_fitted())
+    why = "tangential = full: semi-smooth Newton on fitted rows";
   info[RP_STAGE_TANGENTIAL] = {"tangential", tangential, why,
                                tangential ? traction + solver_.tangential_bytes() : 0};
   info[RP_STAGE_FORCES] = {"forces", 1, "resultants of pressure and traction", 0};

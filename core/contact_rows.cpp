@@ -48,14 +48,14 @@ void contact_rows::set_ellipse(const double semi_axes[2], double normal_force) {
     const double mean = 1.0 - (low * low + low * high + high * high) / 3.0;
     const double half_length = semi_axes[0] * std::sqrt(mean);
     const double load = 0.75 * normal_force * mean * 2.0 / strips_;
-    rows_[static_cast<size_t>(j)] = {j,           0.5 * (low + high) * semi_axes[1],   height, 0.0,
+    rows_[static_cast<size_t>(j)] = {j,           0.5 * (low + high) * semi_axes[1], height, 0.0,
                                      half_length, peak_of(load, half_length, height)};
   }
 }
 
-void contact_rows::set_line(double half_length, double width, double normal_force) {
+void contact_rows::set_line(double half_length, double width, double normal_force, double x) {
   count_ = 1;
-  rows_[0] = {0, 0.0, width, 0.0, half_length, peak_of(normal_force, half_length, width)};
+  rows_[0] = {0, 0.0, width, x, half_length, peak_of(normal_force, half_length, width)};
 }
 
 void contact_rows::set_pressure(const grid &g, const double *pressure) {
@@ -63,6 +63,8 @@ void contact_rows::set_pressure(const grid &g, const double *pressure) {
   count_ = 0;
   if (points == 0) return;
   profile_point *p = points_.data();
+  if (g.ny == 1)
+    return set_line(std::sqrt(p[1].half_length_squared), g.dy, p[1].load * g.dy, p[1].x);
   const double low = edge(p + 1, 1, points, g.dy);
   const double high = edge(p + points, -1, points, g.dy);
   double force = 0;
@@ -123,7 +125,8 @@ void contact_rows::cut_strips(int points, double low, double high, double force)
       const double to = at + 2 < points ? std::min(end, b.y) : end;
       const double t = (0.5 * (from + to) - a.y) / (b.y - a.y), length = to - from;
       load += length * (a.load + t * (b.load - a.load));
-      squared += length * (a.half_length_squared + t * (b.half_length_squared - a.half_length_squared));
+      squared +=
+          length * (a.half_length_squared + t * (b.half_length_squared - a.half_length_squared));
       x += length * (a.x + t * (b.x - a.x));
       from = to;
     }

@@ -30,8 +30,8 @@ class contact_rows {
 
   // The ellipse about the origin under the force; strips of equal height with their exact loads.
   void set_ellipse(const double semi_axes[2], double normal_force);
-  // A line contact of the given width: one row.
-  void set_line(double half_length, double width, double normal_force);
+  // A line contact of the given width about x: one row.
+  void set_line(double half_length, double width, double normal_force, double x = 0);
   // Any pressure on a uniform grid; the rows carry exactly its force.
   void set_pressure(const grid &g, const double *pressure);
 

@@ -44,6 +44,8 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            static_cast<double>(c.side),
                            static_cast<double>(c.elements[0]),
                            static_cast<double>(c.elements[1]),
+                           static_cast<double>(c.fitted[0]),
+                           static_cast<double>(c.fitted[1]),
                            static_cast<double>(c.max_elements[0]),
                            static_cast<double>(c.max_elements[1]),
                            static_cast<double>(c.max_iterations),
@@ -100,8 +102,10 @@ void for_each_start_field(Memory &m, F &&f) {
   if (!m.warm) return;
   f(m.pressure.data(), bytes);
   if (m.px.size() == 0) return;
-  f(m.px.data(), bytes);
-  f(m.py.data(), bytes);
+  const auto traction = static_cast<size_t>(m.columns() * m.rows()) * sizeof(double);
+  f(m.px.data(), traction);
+  f(m.py.data(), traction);
+  if (m.fitted()) f(m.node_pressure.data(), traction);
 }
 
 }  // namespace
@@ -172,9 +176,9 @@ bool contact::state_fits(const unsigned char *at, size_t size) const {
     std::memcpy(&patch, at, sizeof patch);
     const bool fits = patch.g.nx >= 0 && patch.g.ny >= 0 && solver_.fits(patch.g);
     if (!fits) return false;
-    const size_t fields = patch.warm ? (m.px.size() ? 3 : 1) : 0;
-    const size_t bytes =
-        sizeof patch + fields * static_cast<size_t>(patch.g.count()) * sizeof(double);
+    const auto count = static_cast<size_t>(patch.g.count());
+    const size_t traction = m.fitted() ? 3 * m.px.size() : m.px.size() ? 2 * count : 0;
+    const size_t bytes = sizeof patch + (patch.warm ? count + traction : 0) * sizeof(double);
     if (size < bytes) return false;
     at += bytes;
     size -= bytes;

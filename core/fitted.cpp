@@ -39,8 +39,8 @@ tangential_result fitted_solver::solve(const contact_rows &rows, double friction
                                        const tangential_options &options, fitted_fields fields) {
   operator_.set(rows, input);
   collect(rows, friction_coefficient, input, fields);
-  const rolling_problem problem{rows.count(), row_start_.data(), bound_.data(), area_.data(),
-                                rigid_.data(), p_.data(), s_.data()};
+  const rolling_problem problem{rows.count(),  row_start_.data(), bound_.data(), area_.data(),
+                                rigid_.data(), p_.data(),         s_.data()};
   const tangential_result result = newton_.solve(operator_, problem, options);
   release(rows, input.direction, fields);
   return result;
@@ -50,19 +50,19 @@ void fitted_solver::collect(const contact_rows &rows, double friction_coefficien
                             const rolling_input &input, const fitted_fields &fields) {
   for (int row = 0; row <= rows.count(); ++row)
     row_start_[static_cast<size_t>(row)] = row * rows.nodes();
-  for_each_node(rows, input.direction,
-                [&](int row, int k, size_t element, size_t ix, size_t iy, size_t at) {
-    const double x = rows[row].x + input.direction * rows[row].half_length * rows.cosine(k);
-    const double pressure = rows.pressure(row, k);
-    bound_[element] = friction_coefficient * pressure;
-    area_[element] = rows.area(row, k);
-    rigid_[ix] = input.slip(0, x, rows[row].y);
-    rigid_[iy] = input.slip(1, x, rows[row].y);
-    // the last solution grows with the pressure
-    const double before = fields.pressure[at], ratio = before > 0 ? pressure / before : 0.0;
-    p_[ix] = ratio * fields.traction.px[at];
-    p_[iy] = ratio * fields.traction.py[at];
-  });
+  for_each_node(
+      rows, input.direction, [&](int row, int k, size_t element, size_t ix, size_t iy, size_t at) {
+        const double x = rows[row].x + input.direction * rows[row].half_length * rows.cosine(k);
+        const double pressure = rows.pressure(row, k);
+        bound_[element] = friction_coefficient * pressure;
+        area_[element] = rows.area(row, k);
+        rigid_[ix] = input.slip(0, x, rows[row].y);
+        rigid_[iy] = input.slip(1, x, rows[row].y);
+        // the last solution grows with the pressure
+        const double before = fields.pressure[at], ratio = before > 0 ? pressure / before : 0.0;
+        p_[ix] = ratio * fields.traction.px[at];
+        p_[iy] = ratio * fields.traction.py[at];
+      });
 }
 
 void fitted_solver::release(const contact_rows &rows, int direction, fitted_fields fields) const {
@@ -74,16 +74,16 @@ void fitted_solver::release(const contact_rows &rows, int direction, fitted_fiel
   std::fill_n(t.division, count, static_cast<unsigned char>(RP_EXTERIOR));
   for_each_node(rows, direction,
                 [&](int row, int k, size_t element, size_t ix, size_t iy, size_t at) {
-    fields.x[at] = rows[row].x + direction * rows[row].half_length * rows.cosine(k);
-    fields.y[rows[row].strip] = rows[row].y;
-    fields.pressure[at] = rows.pressure(row, k);
-    t.px[at] = p_[ix];
-    t.py[at] = p_[iy];
-    t.sx[at] = s_[ix];
-    t.sy[at] = s_[iy];
-    const bool stick = newton_.sticks(static_cast<int>(element));
-    t.division[at] = static_cast<unsigned char>(stick ? RP_STICK : RP_SLIP);
-  });
+                  fields.x[at] = rows[row].x + direction * rows[row].half_length * rows.cosine(k);
+                  fields.y[rows[row].strip] = rows[row].y;
+                  fields.pressure[at] = rows.pressure(row, k);
+                  t.px[at] = p_[ix];
+                  t.py[at] = p_[iy];
+                  t.sx[at] = s_[ix];
+                  t.sy[at] = s_[iy];
+                  const bool stick = newton_.sticks(static_cast<int>(element));
+                  t.division[at] = static_cast<unsigned char>(stick ? RP_STICK : RP_SLIP);
+                });
 }
 
 patch_wrench fitted_solver::creep_wrench(const contact_rows &rows,

@@ -10,9 +10,9 @@ namespace railpatch {
 
 // Outputs on the nodes, [strip][node], nodes by rising x; strips out of contact are zero.
 struct fitted_fields {
-  double *x;               // m
-  double *y;               // m, [strip]
-  double *pressure;        // Pa; start in (of the traction's start), solution out
+  double *x;         // m
+  double *y;         // m, [strip]
+  double *pressure;  // Pa; start in (of the traction's start), solution out
   tangential_fields traction;
 };
 

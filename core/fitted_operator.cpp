@@ -133,8 +133,7 @@ void fitted_operator::set(const contact_rows &rows, const rolling_input &input) 
     const contact_row &row = rows_[static_cast<size_t>(j)];
     double *w = rigid_.data() + j * stride_;
     for (int i = 0; i < points_; ++i) {
-      const double x =
-          row.x + direction_ * row.half_length * point_cosine_[static_cast<size_t>(i)];
+      const double x = row.x + direction_ * row.half_length * point_cosine_[static_cast<size_t>(i)];
       w[i] = input.slip(0, x, row.y);
       w[points_ + i] = input.slip(1, x, row.y);
     }
@@ -174,9 +173,9 @@ void fitted_operator::assemble(int target, int source) {
   double *x = kernel_[0].data();
   for (int l = 0; l < fine; ++l)
     for (int i = 0; i < points_; ++i)
-      x[l * points_ + i] =
-          direction_ * (t.x - s.x) + t.half_length * point_cosine_[static_cast<size_t>(i)] -
-          s.half_length * r.cosine[static_cast<size_t>(l)];
+      x[l * points_ + i] = direction_ * (t.x - s.x) +
+                           t.half_length * point_cosine_[static_cast<size_t>(i)] -
+                           s.half_length * r.cosine[static_cast<size_t>(l)];
   double *xx = kernel_[1].data(), *yy = kernel_[2].data(), *xy = kernel_[3].data();
   const double nu = elastic_.poisson_ratio;
   if (line_)
@@ -215,8 +214,7 @@ void fitted_operator::gather(const refinement &r, double scale, bool coupled, do
 // The block of rows that mirror those of another block in y: the coupling of x and y turns round.
 void fitted_operator::mirror(int target, int source) {
   const double *from = block(target, source);
-  double *to =
-      matrix_.data() + (block(count_ - 1 - target, count_ - 1 - source) - matrix_.data());
+  double *to = matrix_.data() + (block(count_ - 1 - target, count_ - 1 - source) - matrix_.data());
   for (int c = 0; c < 2 * nodes_; ++c, from += stride_, to += stride_) {
     const double x = c < nodes_ ? 1.0 : -1.0;
     for (int i = 0; i < points_; ++i) {
@@ -243,8 +241,9 @@ void fitted_operator::add_layer(int row) {
 }
 
 const double *fitted_operator::block(int target, int source) const {
-  return matrix_.data() + (static_cast<size_t>(target) * rows_.size() + static_cast<size_t>(source)) *
-                              2 * static_cast<size_t>(nodes_ * stride_);
+  return matrix_.data() +
+         (static_cast<size_t>(target) * rows_.size() + static_cast<size_t>(source)) * 2 *
+             static_cast<size_t>(nodes_ * stride_);
 }
 
 // t = slip at the collocation points of a row from the tractions of the rows begin ... end - 1.
@@ -333,7 +332,8 @@ void fitted_operator::row_matrices(int row, double *bxx, double *byy) const {
 double fitted_operator::projection_scale(int row) const {
   const double *px = block(row, row), *py = px + nodes_ * stride_ + points_;
   double sum = 0;
-  for (int k = 0; k < nodes_; ++k) sum += std::abs(px[k * stride_ + k]) + std::abs(py[k * stride_ + k]);
+  for (int k = 0; k < nodes_; ++k)
+    sum += std::abs(px[k * stride_ + k]) + std::abs(py[k * stride_ + k]);
   return 2.0 * nodes_ / sum;
 }
 

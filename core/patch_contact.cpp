@@ -41,17 +41,23 @@ void set_unloaded(const patch_scene &scene, rp_patch_result &result) {
   result.creep_force[0] = result.creep_force[1] = result.spin_moment = result.friction_power = 0;
 }
 
-patch_memory::patch_memory(int max_count, bool tangential) {
-  const auto n = static_cast<size_t>(max_count);
-  undeformed_distance = aligned_buffer<double>(n);
-  pressure = aligned_buffer<double>(n);
-  if (!tangential) return;
+patch_memory::patch_memory(int max_count, const patch_scene &scene) {
+  undeformed_distance = aligned_buffer<double>(static_cast<size_t>(max_count));
+  pressure = aligned_buffer<double>(static_cast<size_t>(max_count));
+  if (scene.tangential == RP_TANGENTIAL_NONE) return;
+  const auto n =
+      static_cast<size_t>(scene.is_fitted() ? scene.fitted[0] * scene.fitted[1] : max_count);
   for (auto *b : {&px, &py, &sx, &sy}) *b = aligned_buffer<double>(n);
   division = aligned_buffer<unsigned char>(n);
+  if (!scene.is_fitted()) return;
+  node_x = aligned_buffer<double>(n);
+  node_y = aligned_buffer<double>(static_cast<size_t>(scene.fitted[1]));
+  node_pressure = aligned_buffer<double>(n);
 }
 
 size_t patch_memory::bytes() const {
-  return undeformed_distance.bytes() + pressure.bytes() + 4 * px.bytes() + division.bytes();
+  return undeformed_distance.bytes() + pressure.bytes() + 4 * px.bytes() + division.bytes() +
+         2 * node_x.bytes() + node_y.bytes();
 }
 
 patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, int max_nx,
@@ -61,7 +67,7 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
       max_ny_(max_ny),
       observer_(observer),
       observer_user_(observer_user) {
-  const bool full = scene.tangential == RP_TANGENTIAL_FULL;
+  const bool full = scene.tangential == RP_TANGENTIAL_FULL && !scene.is_fitted();
   const auto count = static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny);
   if (full || scene.normal == RP_NORMAL_HALF_SPACE)
     influence_.emplace(
@@ -72,13 +78,18 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
   if (full) tangential_.emplace(max_nx, max_ny);
   scratch_[0] = aligned_buffer<double>(count);
   scratch_[1] = aligned_buffer<double>(count);
-  if (scene.tangential == RP_TANGENTIAL_NONE) return;
+  if (scene.is_fitted()) {
+    fitted_rows_.emplace(scene.fitted[0], scene.fitted[1], max_ny);
+    fitted_.emplace(scene.elastic, scene.layer_flexibility, scene.line_width > 0, *fitted_rows_);
+  }
+  if (scene.tangential == RP_TANGENTIAL_NONE || scene.is_fitted()) return;
   bound_ = aligned_buffer<double>(count);
   leading_ = aligned_buffer<double>(static_cast<size_t>(max_ny));
 }
 
 size_t patch_contact::tangential_bytes() const {
-  return bound_.bytes() + leading_.bytes() + (tangential_ ? tangential_->bytes() : 0);
+  return bound_.bytes() + leading_.bytes() + (tangential_ ? tangential_->bytes() : 0) +
+         (fitted_ ? fitted_rows_->bytes() + fitted_->bytes() : 0);
 }
 
 void patch_contact::start_from(patch_memory &memory, const grid &g) {
@@ -100,24 +111,23 @@ void patch_contact::start_from(patch_memory &memory, const grid &g) {
         }
     };
     carry(memory.pressure);
-    carry(memory.px);
-    carry(memory.py);
+    if (!memory.fitted()) {
+      carry(memory.px);
+      carry(memory.py);
+    }
   }
-  if (!memory.warm)
-    for (auto *field : {&memory.pressure, &memory.px, &memory.py})
-      std::fill_n(field->data(), std::min(field->size(), static_cast<size_t>(g.count())), 0.0);
   memory.g = g;
+  if (memory.warm) return;
+  std::fill_n(memory.pressure.data(), g.count(), 0.0);
+  if (memory.px.size() == 0) return;
+  for (auto *field : {&memory.px, &memory.py})
+    std::fill_n(field->data(), memory.columns() * memory.rows(), 0.0);
 }
 
 void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
                           rp_patch_result &result, patch_wrench &wrench) {
   result.status = RP_CONVERGED;
-  result.grid[0] = problem.g.nx;
-  result.grid[1] = problem.g.ny;
-  result.grid_origin[0] = problem.g.x0;
-  result.grid_origin[1] = problem.g.y0;
-  result.element_size[0] = problem.g.dx;
-  result.element_size[1] = problem.g.dy;
+  describe_grid(problem, result);
   result.residual = 0;
   memory.solved = true;
   if (influence_) {
@@ -141,7 +151,17 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
     observe(RP_STAGE_TANGENTIAL, false);
   }
   observe(RP_STAGE_FORCES, true);
-  wrench = sum_tractions(problem.g, memory.pressure.data(), memory.px.data(), memory.py.data());
+  if (fitted_) {
+    const patch_wrench creep = fitted_->creep_wrench(*fitted_rows_, memory.nodes());
+    wrench = sum_tractions(problem.g, memory.pressure.data(), nullptr, nullptr);
+    // without a grid the ellipse's pressure is symmetric about the reference
+    if (problem.g.count() == 0) wrench.force[2] = -result.normal_force;
+    wrench.force[0] = creep.force[0];
+    wrench.force[1] = creep.force[1];
+    wrench.moment[2] = creep.moment[2];
+  } else {
+    wrench = sum_tractions(problem.g, memory.pressure.data(), memory.px.data(), memory.py.data());
+  }
   if (scene_.tangential != RP_TANGENTIAL_NONE) {
     result.creep_force[0] = wrench.force[0];
     result.creep_force[1] = wrench.force[1];
@@ -150,11 +170,23 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   observe(RP_STAGE_FORCES, false);
 }
 
+// Fitted rows have elements of many sizes: their places are in the fields.
+void patch_contact::describe_grid(const patch_problem &problem, rp_patch_result &result) const {
+  const grid &g = problem.g;
+  const bool fitted = scene_.is_fitted();
+  result.grid[0] = fitted ? scene_.fitted[0] : g.nx;
+  result.grid[1] = fitted ? scene_.fitted[1] : g.ny;
+  result.grid_origin[0] = fitted ? 0.0 : g.x0;
+  result.grid_origin[1] = fitted ? 0.0 : g.y0;
+  result.element_size[0] = fitted ? 0.0 : g.dx;
+  result.element_size[1] = fitted ? 0.0 : g.dy;
+}
+
 // No contact: nothing is transferred, and every element is exterior.
 void patch_contact::leave_unloaded(const patch_problem &problem, patch_memory &memory) {
-  const auto n = static_cast<size_t>(problem.g.count());
-  std::fill_n(memory.pressure.data(), n, 0.0);
-  for (auto *field : {&memory.px, &memory.py, &memory.sx, &memory.sy})
+  std::fill_n(memory.pressure.data(), problem.g.count(), 0.0);
+  const int n = memory.columns() * memory.rows();
+  for (auto *field : {&memory.px, &memory.py, &memory.sx, &memory.sy, &memory.node_pressure})
     if (field->size()) std::fill_n(field->data(), n, 0.0);
   if (memory.division.size())
     std::fill_n(memory.division.data(), n, static_cast<unsigned char>(RP_EXTERIOR));
@@ -169,6 +201,12 @@ bool patch_contact::solve_normal(const patch_problem &problem, patch_memory &mem
     solve_half_space(problem, memory, result);
   else
     solve_hertz(problem, memory, result);
+  if (g.count() == 0) {
+    // closed form, and a tangential theory that has its own nodes
+    if (result.normal_force > 0) return true;
+    degrade(result, RP_NO_CONTACT);
+    return false;
+  }
   const int touching = static_cast<int>(std::count_if(
       memory.pressure.data(), memory.pressure.data() + g.count(), [](double p) { return p > 0; }));
   result.elements[RP_EXTERIOR] = g.count() - touching;
@@ -255,17 +293,21 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
     rolling.creepage[0] = rolling.creepage[1] = rolling.spin_creepage = 0;
   }
   if (scene_.spin_offset) rolling.spin_offset = rolling.direction * g.dx / 6.0;
-  for (int i = 0; i < g.count(); ++i)
-    bound_[static_cast<size_t>(i)] =
-        scene_.friction_coefficient * memory.pressure[static_cast<size_t>(i)];
   tangential_result t;
-  if (scene_.tangential == RP_TANGENTIAL_FASTSIM)
+  if (!fitted_)
+    for (int i = 0; i < g.count(); ++i)
+      bound_[static_cast<size_t>(i)] =
+          scene_.friction_coefficient * memory.pressure[static_cast<size_t>(i)];
+  if (fitted_)
+    t = solve_fitted(problem, rolling, memory);
+  else if (scene_.tangential == RP_TANGENTIAL_FASTSIM)
     t = solve_fastsim(problem, rolling, result.contact_area, memory);
   else
     t = tangential_->solve(*influence_, g, memory.pressure.data(), bound_.data(), rolling,
                            {scene_.tolerance, scene_.max_iterations}, fields);
   result.elements[RP_STICK] = t.stick;
   result.elements[RP_SLIP] = t.slip;
+  if (fitted_) result.elements[RP_EXTERIOR] = memory.columns() * memory.rows() - t.stick - t.slip;
   result.newton_iterations = t.newton_iterations;
   result.inner_iterations = t.products;
   // written so that a residual that is no number stays visible
@@ -273,9 +315,23 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   result.friction_power = problem.rolling_speed * t.friction;
   if (!t.converged)
     degrade(result, scene_.tangential == RP_TANGENTIAL_FULL ? RP_NOT_CONVERGED : RP_OUT_OF_RANGE);
+  // fitted rows have the slope of the displacement, not the displacement
   if (scene_.tangential == RP_TANGENTIAL_FULL)
-    result.elastic_energy += tangential_energy(problem, memory);
+    result.elastic_energy += fitted_ ? nan : tangential_energy(problem, memory);
   return t.converged;
+}
+
+tangential_result patch_contact::solve_fitted(const patch_problem &problem,
+                                              const rolling_input &rolling, patch_memory &memory) {
+  const hertz_contact &hertz = problem.hertz;
+  if (scene_.normal != RP_NORMAL_HERTZ)
+    fitted_rows_->set_pressure(problem.g, memory.pressure.data());
+  else if (scene_.line_width > 0)
+    fitted_rows_->set_line(hertz.semi_axes[0], scene_.line_width, hertz.normal_force);
+  else
+    fitted_rows_->set_ellipse(hertz.semi_axes, hertz.normal_force);
+  return fitted_->solve(*fitted_rows_, scene_.friction_coefficient, rolling,
+                        {scene_.tolerance, scene_.max_iterations}, memory.nodes());
 }
 
 // x of the contact's leading edge in each row; returns the number of rows in contact.

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "fastsim.hpp"
+#include "fitted.hpp"
 #include "forces.hpp"
 #include "hertz.hpp"
 #include "normal.hpp"
@@ -27,6 +28,8 @@ struct patch_scene {
   double normal_tolerance = 1e-5;
   int max_iterations = 100;
   bool spin_offset = false;  // x + dq/6 in the spin term
+  int fitted[2] = {0, 0};    // nodes and strips of the tangential problem; 0: on the uniform grid
+  bool is_fitted() const { return tangential == RP_TANGENTIAL_FULL && fitted[0] > 0; }
   double modulus() const { return elastic.shear_modulus / (1.0 - elastic.poisson_ratio); }
 };
 
@@ -41,19 +44,27 @@ struct patch_problem {
   contact_parts parts;
 };
 
-// Fields of the last solution, [ny][nx]; with the grid they are also the next start.
+// Fields of the last solution, [ny][nx] of the grid or, for what belongs to the tangential problem
+// of fitted rows, [strip][node]; with the grid they are also the next start.
 struct patch_memory {
   patch_memory() = default;
-  patch_memory(int max_count, bool tangential);
+  // max_count: elements of the greatest grid.
+  patch_memory(int max_count, const patch_scene &scene);
   bool solved = false;  // fields belong to the last step
   bool warm = false;    // pressure and traction may serve as a start
   grid g;
   std::array<double, 3> reference{};  // m, contact reference, track axes of a right wheel
   aligned_buffer<double> undeformed_distance, pressure, px, py, sx, sy;
   aligned_buffer<unsigned char> division;
+  aligned_buffer<double> node_x, node_y, node_pressure;  // fitted rows only
+  bool fitted() const { return node_x.size() > 0; }
+  // elements of the tangential problem along rolling and lateral
+  int columns() const { return fitted() ? static_cast<int>(node_x.size() / node_y.size()) : g.nx; }
+  int rows() const { return fitted() ? static_cast<int>(node_y.size()) : g.ny; }
   tangential_fields fields() {
     return {px.data(), py.data(), sx.data(), sy.data(), division.data()};
   }
+  fitted_fields nodes() { return {node_x.data(), node_y.data(), node_pressure.data(), fields()}; }
   size_t bytes() const;
 };
 
@@ -82,6 +93,7 @@ class patch_contact {
   }
 
  private:
+  void describe_grid(const patch_problem &problem, rp_patch_result &result) const;
   bool solve_normal(const patch_problem &problem, patch_memory &memory, rp_patch_result &result);
   void solve_half_space(const patch_problem &problem, patch_memory &memory,
                         rp_patch_result &result);
@@ -92,6 +104,8 @@ class patch_contact {
   void leave_unloaded(const patch_problem &problem, patch_memory &memory);
   tangential_result solve_fastsim(const patch_problem &problem, const rolling_input &rolling,
                                   double contact_area, patch_memory &memory);
+  tangential_result solve_fitted(const patch_problem &problem, const rolling_input &rolling,
+                                 patch_memory &memory);
   int find_leading_edges(const patch_problem &problem, int direction, const double *pressure);
   double tangential_energy(const patch_problem &problem, const patch_memory &memory);
 
@@ -103,6 +117,8 @@ class patch_contact {
   std::optional<normal_solver> normal_;
   std::optional<row_contact> rows_;
   std::optional<tangential_solver> tangential_;
+  std::optional<contact_rows> fitted_rows_;
+  std::optional<fitted_solver> fitted_;
   aligned_buffer<double> bound_, leading_, scratch_[2];
 };
 

@@ -150,6 +150,8 @@ typedef struct rp_config {
   int32_t elements[2];
   double element_size[2];  /* m */
   int32_t max_elements[2]; /* with element_size: capacity of one patch's grid; 0: chosen */
+  int32_t fitted[2];       /* nodes along rolling and rows of the tangential problem on rows fitted
+                              to the contact area; 0: tangential problem on the grid above */
 
   /* motion and friction */
   rp_regime regime;
@@ -216,7 +218,7 @@ typedef struct rp_patch_result {
   int32_t elements[4];       /* exterior, stick, slip, plastic; indexed by rp_element */
   double max_temperature;    /* degrees C; NaN: not part of the scene */
   double friction_power;     /* W, >= 0: power that the creepages supply */
-  double elastic_energy;     /* J */
+  double elastic_energy;     /* J; NaN with fitted rows */
   int32_t normal_iterations; /* conjugate-gradient steps; evaluations of the fast theories */
   int32_t newton_iterations; /* of the tangential problem */
   int32_t inner_iterations;  /* operator products of the tangential problem */
@@ -228,9 +230,10 @@ typedef struct rp_patch_result {
   double spin_creepage;      /* rad/m */
   double rolling_speed;      /* m/s, mean of the two surface speeds */
   int32_t direction;         /* 1 or -1; 0 at standstill */
-  int32_t grid[2];           /* elements of the potential contact along rolling, lateral */
-  double grid_origin[2];     /* m, centre of element (0, 0) in the contact frame */
-  double element_size[2];    /* m */
+  int32_t grid[2];           /* elements of the potential contact along rolling, lateral; of
+                                fitted rows the nodes and rows */
+  double grid_origin[2];     /* m, centre of element (0, 0) in the contact frame; fitted rows: 0 */
+  double element_size[2];    /* m; fitted rows: 0 */
 } rp_patch_result;
 
 /* One wheel. On a roller the contact frame is not pitched: where the contact lies ahead of or
@@ -256,9 +259,9 @@ typedef struct rp_result {
 } rp_result;
 
 typedef enum rp_field {
-  RP_FIELD_X = 0,                   /* m, [nx] element centres */
+  RP_FIELD_X = 0,                   /* m, [nx] element centres; fitted rows: [ny][nx] nodes */
   RP_FIELD_Y = 1,                   /* m, [ny] */
-  RP_FIELD_UNDEFORMED_DISTANCE = 2, /* m, [ny][nx] */
+  RP_FIELD_UNDEFORMED_DISTANCE = 2, /* m, [ny][nx]; not with fitted rows */
   RP_FIELD_PRESSURE = 3,            /* Pa, [ny][nx] */
   RP_FIELD_TRACTION = 4,            /* Pa on the wheel, [2][ny][nx] */
   RP_FIELD_MICRO_SLIP = 5,          /* -, relative to the rolling speed, [2][ny][nx] */

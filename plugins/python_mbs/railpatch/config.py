@@ -42,10 +42,12 @@ def grid_config(case: Case) -> dict[str, Any]:
     line = isinstance(case, PatchCase) and case.geometry.line_contact_radius is not None
     if case.grid is None:
         return {"elements": [24, 1 if line else 24], "element_size": [0.0, 0.0]}
+    standard = [0, 0] if case.grid.element_size else [24, 1 if line else 24]
     return {
-        "elements": case.grid.elements or [0, 0],
+        "elements": case.grid.elements or standard,
         "element_size": case.grid.element_size or [0.0, 0.0],
         "max_elements": case.grid.max_elements or [0, 0],
+        "fitted": case.grid.fitted or [0, 0],
     }
 
 

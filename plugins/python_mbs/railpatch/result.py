@@ -52,7 +52,7 @@ class Result:
     """What a solve gives. Signs: forces act on the wheel, creepages are wheel minus rail.
 
     ``data`` and ``result[key]`` hold the quantities of the JSON result (SI units); fields are numpy
-    arrays there: x [nx] and y [ny] in m, pressure [ny, nx] in Pa, traction [2, ny, nx] in Pa,
+    arrays there: x [nx] (fitted rows: [ny, nx]) and y [ny] in m, pressure [ny, nx] in Pa, traction [2, ny, nx] in Pa,
     micro_slip [2, ny, nx] relative to the rolling speed, element_division [ny, nx] as 0 exterior,
     1 stick, 2 slip, 3 plastic. ``iterations`` is the sum of conjugate-gradient steps of the normal
     and Newton steps of the tangential problem. What the scene left out is NaN or None.
@@ -138,5 +138,7 @@ def shaped_field(name: str, values: NDArray[np.float64] | None, grid: list[int])
     """A field in its shape; None where the scene has none."""
     if values is None:
         return None
-    field = values.reshape(field_shape(name, grid))
+    # nodes of fitted rows have their own x in each row
+    by_row = name == "x" and values.size != grid[0]
+    field = values.reshape((grid[1], grid[0]) if by_row else field_shape(name, grid))
     return field.astype(np.int64) if name == "element_division" else field

@@ -242,6 +242,7 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.array("elements", c.elements);
   reader.array("element_size", c.element_size);
   reader.array("max_elements", c.max_elements);
+  reader.array("fitted", c.fitted);
   reader.name("regime", c.regime);
   reader.scalar("friction_coefficient", c.friction_coefficient);
   reader.scalar("layer_shear_modulus", c.layer_shear_modulus);

@@ -10,6 +10,7 @@ from railpatch.case.types import (
     CapacityPair,
     CountPair,
     ElementSize,
+    FittedPair,
     Modulus,
     ModulusPair,
     RatioPair,
@@ -58,9 +59,19 @@ class Grid(Table):
         "from the scene",
     )
 
+    fitted: FittedPair | None = Field(
+        default=None,
+        description="-, nodes along rolling and rows of the tangential problem (full) on rows "
+        "fitted to the contact area; left out: the elements above. The normal problem keeps its "
+        "elements, 24 across where none are given",
+    )
+
     @model_validator(mode="after")
     def _one_way(self) -> Grid:
-        exactly_one(self, ("elements", "element_size"))
+        if self.fitted is None or self.elements or self.element_size:
+            exactly_one(self, ("elements", "element_size"))
+        if self.fitted is not None and self.fitted[0] < 3:
+            raise relation("fitted", str(self.fitted), "3 to 64 nodes along rolling")
         return self
 
 
@@ -105,6 +116,20 @@ class Method(Table):
         description="-, shift of the spin term in elements along rolling: none, or a sixth as in "
         "the program CONTACT, for comparisons",
     )
+
+
+def check_fitted(grid: Grid | None, method: Method, *, line: bool = False) -> None:
+    """What rows fitted to the contact area are not combined with."""
+    if grid is None or grid.fitted is None:
+        return
+    if method.tangential != "full":
+        raise relation("grid.fitted", str(grid.fitted), "tangential = 'full', or no fitted rows")
+    if method.spin_offset != "none":
+        raise relation("method.spin_offset", repr(method.spin_offset), "'none' with grid.fitted")
+    if line and grid.fitted[1] != 1:
+        raise relation("grid.fitted", str(grid.fitted), "[n, 1] with a line contact")
+    if not line and grid.fitted[1] < 3:
+        raise relation("grid.fitted", str(grid.fitted), "3 to 64 rows")
 
 
 def check_tangential(

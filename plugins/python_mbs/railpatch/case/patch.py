@@ -6,7 +6,15 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from railpatch.case.common import Friction, Grid, Layer, Material, Method, check_tangential
+from railpatch.case.common import (
+    Friction,
+    Grid,
+    Layer,
+    Material,
+    Method,
+    check_fitted,
+    check_tangential,
+)
 from railpatch.case.types import (
     Curvatures,
     NotNegative,
@@ -116,7 +124,9 @@ class PatchCase(Table):
     def _relations(self) -> PatchCase:
         if self.has_tangential:
             check_tangential(self.material, self.friction, self.layer, self.method)
-        if self.geometry.line_contact_radius is not None:
+        line = self.geometry.line_contact_radius is not None
+        check_fitted(self.grid, self.method, line=line)
+        if line:
             self._check_line()
         gap = self.geometry.undeformed_distance
         if gap is not None and (self.grid is None or self.grid.element_size is None):

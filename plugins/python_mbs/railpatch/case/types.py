@@ -37,6 +37,8 @@ Capacity = Annotated[int, Field(ge=1, le=MOST_ELEMENTS + 2)]
 
 Pair = Annotated[list[Number], exactly(2)]
 CountPair = Annotated[list[Count], exactly(2)]
+Nodes = Annotated[int, Field(ge=1, le=64)]
+FittedPair = Annotated[list[Nodes], exactly(2)]
 CapacityPair = Annotated[list[Capacity], exactly(2)]
 ModulusPair = Annotated[list[Modulus], exactly(2)]
 RatioPair = Annotated[list[Ratio], exactly(2)]

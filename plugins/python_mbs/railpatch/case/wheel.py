@@ -6,7 +6,15 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from railpatch.case.common import Friction, Grid, Layer, Material, Method, check_tangential
+from railpatch.case.common import (
+    Friction,
+    Grid,
+    Layer,
+    Material,
+    Method,
+    check_fitted,
+    check_tangential,
+)
 from railpatch.case.types import (
     Angle,
     AngleVector,
@@ -192,6 +200,7 @@ class _WheelCase(Table):
     def _relations(self) -> _WheelCase:
         if self.has_tangential:
             check_tangential(self.material, self.friction, self.layer, self.method)
+        check_fitted(self.grid, self.method)
         for side in self.sides:
             for body in ("wheel", "rail"):
                 key, value = self.profiles.of(body, side)
