@@ -15,13 +15,12 @@ constexpr int pack = 8;
 constexpr int whole_packs(int n) { return (n + pack - 1) / pack * pack; }
 
 // target[begin ... end) -= the panel's columns, each times its factor
-RAILPATCH_DISPATCH
-void eliminate(const float *__restrict panel, int stride, int begin, int end, const float *factors,
-               float *__restrict target) {
+RAILPATCH_INLINE void eliminate(const float *__restrict panel, int stride, int begin, int end,
+                                const float *factors, float *__restrict target) {
   const float *l[pack];
   float u[pack];
   for (int c = 0; c < pack; ++c) {
-    l[c] = panel + static_cast<size_t>(c) * static_cast<size_t>(stride) + begin;
+    l[c] = panel + c * stride + begin;
     u[c] = factors[c];
   }
   target += begin;
@@ -31,35 +30,85 @@ void eliminate(const float *__restrict panel, int stride, int begin, int end, co
                  ((l[4][i] * u[4] + l[5][i] * u[5]) + (l[6][i] * u[6] + l[7][i] * u[7]));
 }
 
-// target <- L^-1 target within a panel's rows; L in a[row + column stride], unit diagonal
-inline void solve_lower(const float *a, int stride, float *target) {
-  for (int c = 0; c + 1 < pack; ++c)
-    for (int i = c + 1; i < pack; ++i) target[i] -= a[c * stride + i] * target[c];
-}
-
-inline void solve_upper(const float *a, int stride, float *target) {
-  for (int c = pack - 1; c >= 0; --c) {
-    target[c] *= a[c * stride + c];
-    for (int i = 0; i < c; ++i) target[i] -= a[c * stride + i] * target[c];
-  }
+// x <- M x within a panel's rows, M dense in columns. The number of rows is not given as a constant
+// only because loops of unknown length are made of whole SIMD registers by every compiler.
+RAILPATCH_INLINE void apply(const float *__restrict m, int rows, float *__restrict x) {
+  float u[pack];
+  for (int c = 0; c < pack; ++c) u[c] = x[c];
+  const auto count = static_cast<size_t>(rows / pack) * pack;
+  for (size_t i = 0; i < count; ++i)
+    x[i] =
+        ((m[i] * u[0] + m[pack + i] * u[1]) + (m[2 * pack + i] * u[2] + m[3 * pack + i] * u[3])) +
+        ((m[4 * pack + i] * u[4] + m[5 * pack + i] * u[5]) +
+         (m[6 * pack + i] * u[6] + m[7 * pack + i] * u[7]));
 }
 
 // A panel's columns from its diagonal block down to `end`: L below, U above, inverse pivots on the
 // diagonal. `a` points to the block, rows are counted from there.
-RAILPATCH_DISPATCH
-void factor_panel(float *a, int stride, int end) {
+RAILPATCH_INLINE void factor_panel(float *a, int stride, int end) {
+  const auto below = static_cast<size_t>((end - pack) / pack) * pack;
   for (int c = 0; c < pack; ++c) {
     float *__restrict column = a + c * stride;
+    float *__restrict rest = column + pack;
     for (int e = 0; e < c; ++e) {
       const float *__restrict l = a + e * stride;
       const float u = column[e];
       for (int i = e + 1; i < pack; ++i) column[i] -= u * l[i];
-      for (int i = pack; i < end; ++i) column[i] -= u * l[i];
+      for (size_t i = 0; i < below; ++i) rest[i] -= u * l[pack + i];
     }
     // only the matrix of no rolling contact has no pivot here
     const float inverse = column[c] != 0.0f ? 1.0f / column[c] : 1.0f;
-    for (int i = c + 1; i < end; ++i) column[i] *= inverse;
+    for (int i = c + 1; i < pack; ++i) column[i] *= inverse;
+    for (size_t i = 0; i < below; ++i) rest[i] *= inverse;
     column[c] = inverse;
+  }
+}
+
+// Inverses of a panel's L and U within its rows, each dense.
+inline void invert(const float *a, int stride, float *lower, float *upper) {
+  std::fill_n(lower, pack * pack, 0.0f);
+  std::fill_n(upper, pack * pack, 0.0f);
+  for (int c = 0; c < pack; ++c) {
+    float *l = lower + c * pack, *u = upper + c * pack;
+    l[c] = 1.0f;
+    for (int e = c; e < pack; ++e)
+      for (int i = e + 1; i < pack; ++i) l[i] -= a[e * stride + i] * l[e];
+    u[c] = 1.0f;
+    for (int e = c; e >= 0; --e) {
+      u[e] *= a[e * stride + e];
+      for (int i = 0; i < e; ++i) u[i] -= a[e * stride + i] * u[e];
+    }
+  }
+}
+
+// LU of a matrix whose first n columns do not meet the others before column `meet`; `inverses`
+// holds those of L and U of each panel's diagonal block.
+RAILPATCH_DISPATCH
+void factor(float *a, int order, int n, int meet, int width, float *inverses) {
+  for (int k = 0; k < order; k += pack) {
+    const int next = k + pack;
+    const int last = next <= meet ? n : order, end = whole_packs(last);
+    float *panel = a + k * order;
+    float *lower = inverses + 2 * pack * k;
+    factor_panel(panel + k, order, end - k);
+    invert(panel + k, order, lower, lower + pack * pack);
+    for (int j = next; j < last; ++j) {
+      float *target = a + j * order;
+      apply(lower, width, target + k);
+      eliminate(panel, order, next, end, target + k, target);
+    }
+  }
+}
+
+RAILPATCH_DISPATCH
+void substitute(const float *a, int order, int width, const float *inverses, float *x) {
+  for (int k = 0; k < order; k += pack) {
+    apply(inverses + 2 * pack * k, width, x + k);
+    eliminate(a + k * order, order, k + pack, order, x + k, x);
+  }
+  for (int k = order - pack; k >= 0; k -= pack) {
+    apply(inverses + 2 * pack * k + pack * pack, width, x + k);
+    eliminate(a + k * order, order, 0, k, x + k, x);
   }
 }
 
@@ -69,6 +118,7 @@ row_blocks::row_blocks(int max_row, int max_rows) {
   const auto row = static_cast<size_t>(max_row), rows = static_cast<size_t>(max_rows);
   const auto order = static_cast<size_t>(whole_packs(2 * max_row));
   factors_ = aligned_buffer<float>::uninitialized(order * order * rows);
+  inverses_ = aligned_buffer<float>::uninitialized(2 * pack * order * rows);
   blocks_ = aligned_buffer<block>(rows);
   vector_ = aligned_buffer<float>(order);
   row_x_ = aligned_buffer<float>(row);
@@ -131,21 +181,13 @@ void row_blocks::add_row(int n, const double *bxx, const double *byy,
   fill(n, bxx, byy, elements, a, order);
   // before the first element that slips, x and y do not meet
   const int meet = static_cast<int>(std::find_if_not(elements, elements + n, sticks) - elements);
-  for (int k = 0; k < order; k += pack) {
-    const int next = k + pack;
-    const int last = next <= meet ? n : order, end = whole_packs(last);
-    float *panel = a + static_cast<size_t>(k * order);
-    factor_panel(panel + k, order, end - k);
-    for (int j = next; j < last; ++j) {
-      float *target = a + static_cast<size_t>(j * order);
-      solve_lower(panel + k, order, target + k);
-      eliminate(panel, order, next, end, target + k, target);
-    }
-  }
+  factor(a, order, n, meet, pack, inverses_.data() + inverses_used_);
+  inverses_used_ += static_cast<size_t>(2 * pack * order);
 }
 
 void row_blocks::solve(double *v) {
   float *x = vector_.data();
+  const float *inverses = inverses_.data();
   for (int row = 0; row < rows_; ++row) {
     const auto [at, size, order] = blocks_[static_cast<size_t>(row)];
     // scaled to unit size, so that single precision neither overflows nor loses small tractions
@@ -154,29 +196,17 @@ void row_blocks::solve(double *v) {
     if (scale > 0) {
       for (int k = 0; k < size; ++k) x[k] = static_cast<float>(v[k] / scale);
       std::fill(x + size, x + order, 0.0f);
-      substitute(factors_.data() + at, order, x);
+      substitute(factors_.data() + at, order, pack, inverses, x);
       for (int k = 0; k < size; ++k) v[k] = scale * static_cast<double>(x[k]);
     }
     v += size;
-  }
-}
-
-void row_blocks::substitute(const float *a, int order, float *x) const {
-  for (int k = 0; k < order; k += pack) {
-    const float *panel = a + static_cast<size_t>(k * order);
-    solve_lower(panel + k, order, x + k);
-    eliminate(panel, order, k + pack, order, x + k, x);
-  }
-  for (int k = order - pack; k >= 0; k -= pack) {
-    const float *panel = a + static_cast<size_t>(k * order);
-    solve_upper(panel + k, order, x + k);
-    eliminate(panel, order, 0, k, x + k, x);
+    inverses += 2 * pack * order;
   }
 }
 
 size_t row_blocks::bytes() const {
-  return factors_.bytes() + blocks_.bytes() + vector_.bytes() + row_x_.bytes() + row_y_.bytes() +
-         sticking_.bytes();
+  return factors_.bytes() + inverses_.bytes() + blocks_.bytes() + vector_.bytes() + row_x_.bytes() +
+         row_y_.bytes() + sticking_.bytes();
 }
 
 }  // namespace railpatch

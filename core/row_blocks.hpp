@@ -26,7 +26,7 @@ class row_blocks {
  public:
   row_blocks(int max_row, int max_rows);
 
-  void clear() { used_ = 0, rows_ = 0; }
+  void clear() { used_ = inverses_used_ = 0, rows_ = 0; }
   // Appends and factors the block of one row of n elements; B of the row as in rolling_operator.
   void add_row(int n, const double *bxx, const double *byy, const element_linearisation *elements);
   // v <- M^-1 v, for all rows in the order of add_row.
@@ -41,13 +41,12 @@ class row_blocks {
   };
   void fill(int n, const double *bxx, const double *byy, const element_linearisation *elements,
             float *columns, int order);
-  void substitute(const float *a, int order, float *x) const;
 
   aligned_buffer<block> blocks_;
-  aligned_buffer<float> factors_;
+  aligned_buffer<float> factors_, inverses_;
   aligned_buffer<float> vector_, row_x_, row_y_;
   aligned_buffer<int> sticking_;
-  size_t used_ = 0;
+  size_t used_ = 0, inverses_used_ = 0;
   int rows_ = 0;
 };
 
