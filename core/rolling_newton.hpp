@@ -94,7 +94,7 @@ class rolling_newton {
   template <class F>
   size_t for_each_unknown(const task &t, F &&f) const;
   void expand(const task &t, const double *z, double *dp) const;
-  void find_step(task &t);
+  void find_step(task &t, double tolerance);
   void apply_jacobian(task &t, const double *v, double *out);
   double try_step(task &t, double length);
   double line_search(task &t, double current);

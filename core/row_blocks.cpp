@@ -14,6 +14,10 @@ namespace {
 constexpr int pack = 8;
 constexpr int whole_packs(int n) { return (n + pack - 1) / pack * pack; }
 
+// Factors serve equations whose slip directions and weights have changed no more than this: they
+// precondition only, so it decides on speed and not on results.
+constexpr double least_cosine = 0.98, greatest_change = 0.1;
+
 // target[begin ... end) -= the panel's columns, each times its factor
 RAILPATCH_INLINE void eliminate(const float *__restrict panel, int stride, int begin, int end,
                                 const float *factors, float *__restrict target) {
@@ -114,12 +118,13 @@ void substitute(const float *a, int order, int width, const float *inverses, flo
 
 }  // namespace
 
-row_blocks::row_blocks(int max_row, int max_rows) {
+row_blocks::row_blocks(int max_row, int max_rows) : max_order_(whole_packs(2 * max_row)) {
   const auto row = static_cast<size_t>(max_row), rows = static_cast<size_t>(max_rows);
-  const auto order = static_cast<size_t>(whole_packs(2 * max_row));
+  const auto order = static_cast<size_t>(max_order_);
   factors_ = aligned_buffer<float>::uninitialized(order * order * rows);
   inverses_ = aligned_buffer<float>::uninitialized(2 * pack * order * rows);
   blocks_ = aligned_buffer<block>(rows);
+  factored_ = aligned_buffer<element_linearisation>(row * rows);
   vector_ = aligned_buffer<float>(order);
   row_x_ = aligned_buffer<float>(row);
   row_y_ = aligned_buffer<float>(row);
@@ -170,43 +175,57 @@ void row_blocks::fill(int n, const double *bxx, const double *byy,
   }
 }
 
-void row_blocks::add_row(int n, const double *bxx, const double *byy,
+void row_blocks::start(int rows, const int *row_start) {
+  rows_ = rows;
+  row_start_ = row_start;
+  for (int row = 0; row < rows; ++row) blocks_[static_cast<size_t>(row)] = {0, 0};
+}
+
+bool row_blocks::serves(int row, const element_linearisation *elements) const {
+  if (blocks_[static_cast<size_t>(row)].size == 0) return false;
+  const element_linearisation *factored = factored_.data() + row_start_[row];
+  const int n = row_start_[row + 1] - row_start_[row];
+  return std::equal(elements, elements + n, factored, [](const auto &e, const auto &f) {
+    if (e.stick || f.stick) return e.stick == f.stick;
+    return e.c[0] * f.c[0] + e.c[1] * f.c[1] >= least_cosine &&
+           std::abs(e.keep - f.keep) <= greatest_change;
+  });
+}
+
+void row_blocks::set_row(int row, const double *bxx, const double *byy,
                          const element_linearisation *elements) {
   const auto sticks = [](const element_linearisation &e) { return e.stick; };
+  const int n = row_start_[row + 1] - row_start_[row];
   const int size = n + static_cast<int>(std::count_if(elements, elements + n, sticks));
   const int order = whole_packs(size);
-  float *a = factors_.data() + used_;
-  blocks_[static_cast<size_t>(rows_++)] = {used_, size, order};
-  used_ += static_cast<size_t>(order) * static_cast<size_t>(order);
-  fill(n, bxx, byy, elements, a, order);
+  blocks_[static_cast<size_t>(row)] = {size, order};
+  std::copy_n(elements, n, factored_.data() + row_start_[row]);
+  fill(n, bxx, byy, elements, factors(row), order);
   // before the first element that slips, x and y do not meet
   const int meet = static_cast<int>(std::find_if_not(elements, elements + n, sticks) - elements);
-  factor(a, order, n, meet, pack, inverses_.data() + inverses_used_);
-  inverses_used_ += static_cast<size_t>(2 * pack * order);
+  factor(factors(row), order, n, meet, pack, inverses(row));
 }
 
 void row_blocks::solve(double *v) {
   float *x = vector_.data();
-  const float *inverses = inverses_.data();
   for (int row = 0; row < rows_; ++row) {
-    const auto [at, size, order] = blocks_[static_cast<size_t>(row)];
+    const auto [size, order] = blocks_[static_cast<size_t>(row)];
     // scaled to unit size, so that single precision neither overflows nor loses small tractions
     double scale = 0;
     for (int k = 0; k < size; ++k) scale = std::max(scale, std::abs(v[k]));
     if (scale > 0) {
       for (int k = 0; k < size; ++k) x[k] = static_cast<float>(v[k] / scale);
       std::fill(x + size, x + order, 0.0f);
-      substitute(factors_.data() + at, order, pack, inverses, x);
+      substitute(factors(row), order, pack, inverses(row), x);
       for (int k = 0; k < size; ++k) v[k] = scale * static_cast<double>(x[k]);
     }
     v += size;
-    inverses += 2 * pack * order;
   }
 }
 
 size_t row_blocks::bytes() const {
-  return factors_.bytes() + inverses_.bytes() + blocks_.bytes() + vector_.bytes() + row_x_.bytes() +
-         row_y_.bytes() + sticking_.bytes();
+  return factors_.bytes() + inverses_.bytes() + factored_.bytes() + blocks_.bytes() +
+         vector_.bytes() + row_x_.bytes() + row_y_.bytes() + sticking_.bytes();
 }
 
 }  // namespace railpatch
