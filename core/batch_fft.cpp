@@ -1,5 +1,6 @@
 #include "batch_fft.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
@@ -12,167 +13,237 @@ namespace railpatch {
 namespace {
 
 // One pass splits each of `stride` transforms of length factor * m; `run` numbers lie side by side.
+template <class T>
 struct pass {
-  int m, stride, run;
-  const float *cosine, *sine;
-  const float *xr, *xi;
-  float *yr, *yi;
+  int factor, m, stride;
+  size_t run;
+  const T *cosine, *sine;
+  const T *xr, *xi;
+  T *yr, *yi;
+  enum { whole, first, last } part;  // first: second half zero; last: second half not asked for
 };
 
-struct twiddle {
-  float c, s;
+// Where one butterfly reads and writes: x step apart, y run apart, y turned by w where asked for.
+template <class T>
+struct place {
+  size_t run, step;
+  const T *xr, *xi;
+  T *yr, *yi;
+  T c[5], s[5];
 };
-inline twiddle turn(const pass &f, int k, int p) {
-  return {f.cosine[k * p * f.stride], f.sine[k * p * f.stride]};
+
+template <bool turned, class T>
+RAILPATCH_INLINE void put(const place<T> &f, int k, size_t i, T re, T im) {
+  const size_t at = static_cast<size_t>(k) * f.run + i;
+  f.yr[at] = turned ? f.c[k] * re - f.s[k] * im : re;
+  f.yi[at] = turned ? f.c[k] * im + f.s[k] * re : im;
 }
 
-RAILPATCH_DISPATCH
-void pass_2(const pass &f) {
-  const auto run = static_cast<size_t>(f.run / batch_fft::pack) * batch_fft::pack;
-  for (int p = 0; p < f.m; ++p) {
-    const size_t x0 = static_cast<size_t>(p) * run, x1 = x0 + static_cast<size_t>(f.m) * run;
-    const float *__restrict ar = f.xr + x0, *__restrict ai = f.xi + x0;
-    const float *__restrict br = f.xr + x1, *__restrict bi = f.xi + x1;
-    float *__restrict yr = f.yr + 2 * x0, *__restrict yi = f.yi + 2 * x0;
-    const twiddle w = turn(f, 1, p);
-    RAILPATCH_INDEPENDENT
-    for (size_t i = 0; i < run; ++i) {
-      const float dr = ar[i] - br[i], di = ai[i] - bi[i];
-      yr[i] = ar[i] + br[i];
-      yi[i] = ai[i] + bi[i];
-      yr[run + i] = w.c * dr - w.s * di;
-      yi[run + i] = w.c * di + w.s * dr;
-    }
+template <bool turned, class T>
+RAILPATCH_INLINE void butterfly_2(const place<T> &f) {
+  const size_t n = f.run, h = f.step;
+  RAILPATCH_INDEPENDENT
+  for (size_t i = 0; i < n; ++i) {
+    put<false>(f, 0, i, f.xr[i] + f.xr[h + i], f.xi[i] + f.xi[h + i]);
+    put<turned>(f, 1, i, f.xr[i] - f.xr[h + i], f.xi[i] - f.xi[h + i]);
   }
 }
 
-RAILPATCH_DISPATCH
-void pass_3(const pass &f) {
-  const auto run = static_cast<size_t>(f.run / batch_fft::pack) * batch_fft::pack;
-  const float half_root = 0.866025403784438647f;
-  for (int p = 0; p < f.m; ++p) {
-    const size_t x0 = static_cast<size_t>(p) * run, step = static_cast<size_t>(f.m) * run;
-    const float *__restrict xr = f.xr + x0, *__restrict xi = f.xi + x0;
-    float *__restrict yr = f.yr + 3 * x0, *__restrict yi = f.yi + 3 * x0;
-    const twiddle w1 = turn(f, 1, p), w2 = turn(f, 2, p);
-    RAILPATCH_INDEPENDENT
-    for (size_t i = 0; i < run; ++i) {
-      const float sr = xr[step + i] + xr[2 * step + i], si = xi[step + i] + xi[2 * step + i];
-      const float dr = half_root * (xr[step + i] - xr[2 * step + i]);
-      const float di = half_root * (xi[step + i] - xi[2 * step + i]);
-      const float mr = xr[i] - 0.5f * sr, mi = xi[i] - 0.5f * si;
-      const float pr = mr + di, pi = mi - dr, qr = mr - di, qi = mi + dr;
-      yr[i] = xr[i] + sr;
-      yi[i] = xi[i] + si;
-      yr[run + i] = w1.c * pr - w1.s * pi;
-      yi[run + i] = w1.c * pi + w1.s * pr;
-      yr[2 * run + i] = w2.c * qr - w2.s * qi;
-      yi[2 * run + i] = w2.c * qi + w2.s * qr;
-    }
+template <bool turned, class T>
+RAILPATCH_INLINE void butterfly_3(const place<T> &f) {
+  const size_t n = f.run, h = f.step;
+  const T half_root = static_cast<T>(0.866025403784438646763723);
+  const T half = static_cast<T>(0.5);
+  RAILPATCH_INDEPENDENT
+  for (size_t i = 0; i < n; ++i) {
+    const T ar = f.xr[h + i] + f.xr[2 * h + i], ai = f.xi[h + i] + f.xi[2 * h + i];
+    const T br = half_root * (f.xr[h + i] - f.xr[2 * h + i]);
+    const T bi = half_root * (f.xi[h + i] - f.xi[2 * h + i]);
+    const T cr = f.xr[i] - half * ar, ci = f.xi[i] - half * ai;
+    put<false>(f, 0, i, f.xr[i] + ar, f.xi[i] + ai);
+    put<turned>(f, 1, i, cr + bi, ci - br);
+    put<turned>(f, 2, i, cr - bi, ci + br);
   }
 }
 
-RAILPATCH_DISPATCH
-void pass_4(const pass &f) {
-  const auto run = static_cast<size_t>(f.run / batch_fft::pack) * batch_fft::pack;
-  for (int p = 0; p < f.m; ++p) {
-    const size_t x0 = static_cast<size_t>(p) * run, step = static_cast<size_t>(f.m) * run;
-    const float *__restrict xr = f.xr + x0, *__restrict xi = f.xi + x0;
-    float *__restrict yr = f.yr + 4 * x0, *__restrict yi = f.yi + 4 * x0;
-    const twiddle w1 = turn(f, 1, p), w2 = turn(f, 2, p), w3 = turn(f, 3, p);
-    RAILPATCH_INDEPENDENT
-    for (size_t i = 0; i < run; ++i) {
-      const float ar = xr[i] + xr[2 * step + i], ai = xi[i] + xi[2 * step + i];
-      const float br = xr[i] - xr[2 * step + i], bi = xi[i] - xi[2 * step + i];
-      const float cr = xr[step + i] + xr[3 * step + i], ci = xi[step + i] + xi[3 * step + i];
-      const float dr = xr[step + i] - xr[3 * step + i], di = xi[step + i] - xi[3 * step + i];
-      yr[i] = ar + cr;
-      yi[i] = ai + ci;
-      const float pr = br + di, pi = bi - dr, qr = ar - cr, qi = ai - ci;
-      const float sr = br - di, si = bi + dr;
-      yr[run + i] = w1.c * pr - w1.s * pi;
-      yi[run + i] = w1.c * pi + w1.s * pr;
-      yr[2 * run + i] = w2.c * qr - w2.s * qi;
-      yi[2 * run + i] = w2.c * qi + w2.s * qr;
-      yr[3 * run + i] = w3.c * sr - w3.s * si;
-      yi[3 * run + i] = w3.c * si + w3.s * sr;
-    }
+template <bool turned, class T>
+RAILPATCH_INLINE void butterfly_4(const place<T> &f) {
+  const size_t n = f.run, h = f.step;
+  RAILPATCH_INDEPENDENT
+  for (size_t i = 0; i < n; ++i) {
+    const T ar = f.xr[i] + f.xr[2 * h + i], ai = f.xi[i] + f.xi[2 * h + i];
+    const T br = f.xr[i] - f.xr[2 * h + i], bi = f.xi[i] - f.xi[2 * h + i];
+    const T cr = f.xr[h + i] + f.xr[3 * h + i], ci = f.xi[h + i] + f.xi[3 * h + i];
+    const T dr = f.xr[h + i] - f.xr[3 * h + i], di = f.xi[h + i] - f.xi[3 * h + i];
+    put<false>(f, 0, i, ar + cr, ai + ci);
+    put<turned>(f, 1, i, br + di, bi - dr);
+    put<turned>(f, 2, i, ar - cr, ai - ci);
+    put<turned>(f, 3, i, br - di, bi + dr);
   }
 }
 
-RAILPATCH_DISPATCH
-void pass_5(const pass &f) {
-  const auto run = static_cast<size_t>(f.run / batch_fft::pack) * batch_fft::pack;
+template <bool turned, class T>
+RAILPATCH_INLINE void butterfly_5(const place<T> &f) {
+  const size_t n = f.run, h = f.step;
   // cosines and sines of 72 and 144 degrees
-  const float c1 = 0.309016994374947424f, c2 = -0.809016994374947424f;
-  const float s1 = 0.951056516295153572f, s2 = 0.587785252292473129f;
-  for (int p = 0; p < f.m; ++p) {
-    const size_t x0 = static_cast<size_t>(p) * run, step = static_cast<size_t>(f.m) * run;
-    const float *__restrict xr = f.xr + x0, *__restrict xi = f.xi + x0;
-    float *__restrict yr = f.yr + 5 * x0, *__restrict yi = f.yi + 5 * x0;
-    const twiddle w[4] = {turn(f, 1, p), turn(f, 2, p), turn(f, 3, p), turn(f, 4, p)};
-    RAILPATCH_INDEPENDENT
-    for (size_t i = 0; i < run; ++i) {
-      const float ar = xr[step + i] + xr[4 * step + i], ai = xi[step + i] + xi[4 * step + i];
-      const float br = xr[2 * step + i] + xr[3 * step + i],
-                  bi = xi[2 * step + i] + xi[3 * step + i];
-      const float cr = xr[step + i] - xr[4 * step + i], ci = xi[step + i] - xi[4 * step + i];
-      const float dr = xr[2 * step + i] - xr[3 * step + i],
-                  di = xi[2 * step + i] - xi[3 * step + i];
-      const float er = xr[i] + (c1 * ar + c2 * br), ei = xi[i] + (c1 * ai + c2 * bi);
-      const float fr = xr[i] + (c2 * ar + c1 * br), fi = xi[i] + (c2 * ai + c1 * bi);
-      const float gr = s1 * cr + s2 * dr, gi = s1 * ci + s2 * di;
-      const float hr = s2 * cr - s1 * dr, hi = s2 * ci - s1 * di;
-      yr[i] = xr[i] + (ar + br);
-      yi[i] = xi[i] + (ai + bi);
-      const float r1 = er + gi, i1 = ei - gr, r2 = fr + hi, i2 = fi - hr;
-      const float r3 = fr - hi, i3 = fi + hr, r4 = er - gi, i4 = ei + gr;
-      yr[run + i] = w[0].c * r1 - w[0].s * i1;
-      yi[run + i] = w[0].c * i1 + w[0].s * r1;
-      yr[2 * run + i] = w[1].c * r2 - w[1].s * i2;
-      yi[2 * run + i] = w[1].c * i2 + w[1].s * r2;
-      yr[3 * run + i] = w[2].c * r3 - w[2].s * i3;
-      yi[3 * run + i] = w[2].c * i3 + w[2].s * r3;
-      yr[4 * run + i] = w[3].c * r4 - w[3].s * i4;
-      yi[4 * run + i] = w[3].c * i4 + w[3].s * r4;
-    }
+  const T c1 = static_cast<T>(0.309016994374947424102293);
+  const T c2 = static_cast<T>(-0.809016994374947424102293);
+  const T s1 = static_cast<T>(0.951056516295153572116439);
+  const T s2 = static_cast<T>(0.587785252292473129168706);
+  RAILPATCH_INDEPENDENT
+  for (size_t i = 0; i < n; ++i) {
+    const T x0 = f.xr[i], y0 = f.xi[i];
+    const T ar = f.xr[h + i] + f.xr[4 * h + i], ai = f.xi[h + i] + f.xi[4 * h + i];
+    const T br = f.xr[2 * h + i] + f.xr[3 * h + i], bi = f.xi[2 * h + i] + f.xi[3 * h + i];
+    const T cr = f.xr[h + i] - f.xr[4 * h + i], ci = f.xi[h + i] - f.xi[4 * h + i];
+    const T dr = f.xr[2 * h + i] - f.xr[3 * h + i], di = f.xi[2 * h + i] - f.xi[3 * h + i];
+    const T er = x0 + (c1 * ar + c2 * br), ei = y0 + (c1 * ai + c2 * bi);
+    const T gr = x0 + (c2 * ar + c1 * br), gi = y0 + (c2 * ai + c1 * bi);
+    const T pr = s1 * cr + s2 * dr, pi = s1 * ci + s2 * di;
+    const T qr = s2 * cr - s1 * dr, qi = s2 * ci - s1 * di;
+    put<false>(f, 0, i, x0 + (ar + br), y0 + (ai + bi));
+    put<turned>(f, 1, i, er + pi, ei - pr);
+    put<turned>(f, 2, i, gr + qi, gi - qr);
+    put<turned>(f, 3, i, gr - qi, gi + qr);
+    put<turned>(f, 4, i, er - pi, ei + pr);
   }
 }
+
+// The second half of the line is zero.
+template <class T>
+RAILPATCH_INLINE void first_2(const place<T> &f) {
+  const size_t n = f.run;
+  RAILPATCH_INDEPENDENT
+  for (size_t i = 0; i < n; ++i) {
+    put<false>(f, 0, i, f.xr[i], f.xi[i]);
+    put<true>(f, 1, i, f.xr[i], f.xi[i]);
+  }
+}
+
+template <class T>
+RAILPATCH_INLINE void first_4(const place<T> &f) {
+  const size_t n = f.run, h = f.step;
+  RAILPATCH_INDEPENDENT
+  for (size_t i = 0; i < n; ++i) {
+    const T ar = f.xr[i], ai = f.xi[i], br = f.xr[h + i], bi = f.xi[h + i];
+    put<false>(f, 0, i, ar + br, ai + bi);
+    put<true>(f, 1, i, ar + bi, ai - br);
+    put<true>(f, 2, i, ar - br, ai - bi);
+    put<true>(f, 3, i, ar - bi, ai + br);
+  }
+}
+
+// The second half of the line is not asked for.
+template <class T>
+RAILPATCH_INLINE void last_2(const place<T> &f) {
+  const size_t n = f.run, h = f.step;
+  RAILPATCH_INDEPENDENT
+  for (size_t i = 0; i < n; ++i) put<false>(f, 0, i, f.xr[i] + f.xr[h + i], f.xi[i] + f.xi[h + i]);
+}
+
+template <class T>
+RAILPATCH_INLINE void last_4(const place<T> &f) {
+  const size_t n = f.run, h = f.step;
+  RAILPATCH_INDEPENDENT
+  for (size_t i = 0; i < n; ++i) {
+    put<false>(f, 0, i, (f.xr[i] + f.xr[2 * h + i]) + (f.xr[h + i] + f.xr[3 * h + i]),
+               (f.xi[i] + f.xi[2 * h + i]) + (f.xi[h + i] + f.xi[3 * h + i]));
+    put<false>(f, 1, i, (f.xr[i] - f.xr[2 * h + i]) + (f.xi[h + i] - f.xi[3 * h + i]),
+               (f.xi[i] - f.xi[2 * h + i]) - (f.xr[h + i] - f.xr[3 * h + i]));
+  }
+}
+
+template <bool turned, class T>
+RAILPATCH_INLINE void butterfly(int factor, const place<T> &f) {
+  if (factor == 2) butterfly_2<turned>(f);
+  if (factor == 3) butterfly_3<turned>(f);
+  if (factor == 4) butterfly_4<turned>(f);
+  if (factor == 5) butterfly_5<turned>(f);
+}
+
+template <class T>
+RAILPATCH_INLINE void run(const pass<T> &f) {
+  // the compiler sees that no pack is left over
+  const size_t width = f.run / batch_fft<T>::pack * batch_fft<T>::pack;
+  for (int p = 0; p < f.m; ++p) {
+    const size_t x = static_cast<size_t>(p) * width, y = static_cast<size_t>(f.factor) * x;
+    place<T> at{width, static_cast<size_t>(f.m) * width, f.xr + x, f.xi + x, f.yr + y, f.yi + y, {},
+                {}};
+    for (int k = 1; k < f.factor; ++k) {
+      at.c[k] = f.cosine[k * p * f.stride];
+      at.s[k] = f.sine[k * p * f.stride];
+    }
+    if (f.part == pass<T>::first)
+      f.factor == 2 ? first_2(at) : first_4(at);
+    else if (f.part == pass<T>::last)
+      f.factor == 2 ? last_2(at) : last_4(at);
+    else if (p == 0)
+      butterfly<false>(f.factor, at);
+    else
+      butterfly<true>(f.factor, at);
+  }
+}
+
+// dispatch does not go with templates
+RAILPATCH_DISPATCH
+void run_pass(const pass<float> &f) { run(f); }
+RAILPATCH_DISPATCH
+void run_pass(const pass<double> &f) { run(f); }
 
 }  // namespace
 
-batch_fft::batch_fft(int max_length)
+template <class T>
+batch_fft<T>::batch_fft(int max_length)
     : cosine_(static_cast<size_t>(max_length)), sine_(static_cast<size_t>(max_length)) {}
 
-void batch_fft::set_length(int length) {
+template <class T>
+void batch_fft<T>::set_length(int length) {
   length_ = length;
   factors_ = 0;
-  for (int rest = length; int f : {4, 2, 3, 5})
+  int rest = length;
+  for (int f : {4, 2, 3, 5})
     for (; rest % f == 0; rest /= f) factor_[factors_++] = f;
   for (int k = 0; k < length; ++k) {
     const double angle = 2.0 * std::numbers::pi * k / length;
-    cosine_[static_cast<size_t>(k)] = static_cast<float>(std::cos(angle));
-    sine_[static_cast<size_t>(k)] = static_cast<float>(-std::sin(angle));
+    cosine_[static_cast<size_t>(k)] = static_cast<T>(std::cos(angle));
+    sine_[static_cast<size_t>(k)] = static_cast<T>(-std::sin(angle));
   }
 }
 
-batch_fft::lines batch_fft::transform(int count, lines data, lines work) const {
+template <class T>
+typename batch_fft<T>::lines batch_fft<T>::forward(int count, int used, lines data,
+                                                   lines work) const {
+  const int filled = factors_ > 1 ? length_ / 2 : length_;
+  std::fill(data.re + used * count, data.re + filled * count, T(0));
+  std::fill(data.im + used * count, data.im + filled * count, T(0));
   for (int k = 0, stride = 1; k < factors_; ++k) {
     const int f = factor_[k];
-    const pass step{length_ / (stride * f),
-                    stride,
-                    stride * count,
-                    cosine_.data(),
-                    sine_.data(),
-                    data.re,
-                    data.im,
-                    work.re,
-                    work.im};
-    (f == 2 ? pass_2 : f == 3 ? pass_3 : f == 4 ? pass_4 : pass_5)(step);
+    run_pass({f, length_ / (stride * f), stride, static_cast<size_t>(stride * count),
+              cosine_.data(), sine_.data(), data.re, data.im, work.re, work.im,
+              k == 0 && factors_ > 1 ? pass<T>::first : pass<T>::whole});
     stride *= f;
     std::swap(data, work);
   }
   return data;
 }
+
+// Real and imaginary parts change places; factors in reverse, so that a 4 or 2 comes last.
+template <class T>
+typename batch_fft<T>::lines batch_fft<T>::backward(int count, int used, lines data,
+                                                    lines work) const {
+  const bool half = factors_ > 1 && 2 * used <= length_;
+  for (int k = factors_ - 1, stride = 1; k >= 0; --k) {
+    const int f = factor_[k];
+    run_pass({f, length_ / (stride * f), stride, static_cast<size_t>(stride * count),
+              cosine_.data(), sine_.data(), data.im, data.re, work.im, work.re,
+              k == 0 && half ? pass<T>::last : pass<T>::whole});
+    stride *= f;
+    std::swap(data, work);
+  }
+  return data;
+}
+
+template class batch_fft<float>;
+template class batch_fft<double>;
 
 }  // namespace railpatch

@@ -1,9 +1,9 @@
-// Products of the influence coefficients in single precision, for what only steers an iteration:
-// steps of GMRES, preconditioners, lengths of steps. Residuals are formed in double precision by
-// the FFT library (influence.hpp), so that a solution knows nothing of this file's rounding.
+// Products of the influence coefficients with a grid's pressure or tractions, in single or double
+// precision. Single precision serves what only steers an iteration: steps of GMRES,
+// preconditioners, lengths of steps. What a solution is measured by is formed in double precision.
 //
 // Lateral direction first, all columns at once; then along x, all lateral wave numbers at once. Two
-// real fields travel as one complex one; their spectra are told apart after the lateral transform.
+// real fields travel as one complex one and are told apart after the lateral transform.
 #pragma once
 
 #include "batch_fft.hpp"
@@ -11,6 +11,7 @@
 
 namespace railpatch {
 
+template <class T>
 class convolution {
  public:
   // Greatest transform, and with it the greatest padded grid; tangential: tractions too.
@@ -25,29 +26,42 @@ class convolution {
 
   // u = A p with zz or its inverse, [ny][nx].
   void product(kernel_name name, const double *p, double *u);
-  // (s_x, s_y) = (u(x) - u(x + direction dx))/dx of u = A (p_x, p_y)
+  // (u_x, u_y) = A (p_x, p_y)
+  void tangential_product(const double *px, const double *py, double *ux, double *uy);
+  // (s_x, s_y) = (u(x) - u(x + direction dx))/dx
   void rolling_product(const double *px, const double *py, int direction, double dx, double *sx,
                        double *sy);
   size_t bytes() const;
 
  private:
-  using lines = batch_fft::lines;
-  lines lateral(int i) { return {lateral_[2 * i].data(), lateral_[2 * i + 1].data()}; }
-  lines along(int i) { return {along_[2 * i].data(), along_[2 * i + 1].data()}; }
-  lines lateral_forward(const double *first, const double *second, int count, int second_count,
-                        int pitch);
-  void lateral_backward(lines z, double *first, double *second, int count, int second_count,
-                        int pitch);
-  void tell_apart(lines z, int count, int waves, size_t second);
-  lines join(lines from, int count, int waves, size_t second);
+  using fft = batch_fft<T>;
+  using lines = typename fft::lines;
+  // Two fields on the grid, or the two halves of one.
+  struct two_fields {
+    int columns[2];  // of each
+    int waves;       // numbers from one x to the next
+    size_t second;   // from a wave number of the first field to that of the second
+  };
+  template <class Multiply>
+  void convolve(const two_fields &f, const double *const in[2], double *const out[2],
+                Multiply &&multiply);
+  void load_lateral(const two_fields &f, const double *const in[2]);
+  void store_lateral(const two_fields &f, lines z, double *const out[2]) const;
+  void tell_apart(const two_fields &f, lines z);
+  void join(const two_fields &f, lines from);
+  template <class Turn>
+  void two_products(const double *const in[2], double *const out[2], Turn &&turn);
 
   int nx_ = 0, ny_ = 0, big_nx_ = 1, big_ny_ = 1;
   int half_ = 1;  // lateral wave numbers kept: 0 ... big_ny/2
   bool tangential_;
-  batch_fft along_x_, along_y_;
-  aligned_buffer<float> lateral_[4], along_[4];
-  aligned_buffer<float> spectrum_[5];        // [big_nx/2 + 1][half]
-  aligned_buffer<float> turn_re_, turn_im_;  // 1 - exp(i k dx)
+  fft along_x_, along_y_;
+  aligned_buffer<T> lateral_[4], along_[4];  // data and work, real and imaginary
+  aligned_buffer<T> spectrum_[5];            // [big_nx/2 + 1][half]
+  aligned_buffer<T> turn_re_, turn_im_;      // 1 - exp(i k dx)
 };
+
+extern template class convolution<float>;
+extern template class convolution<double>;
 
 }  // namespace railpatch

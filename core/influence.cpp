@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 
 namespace railpatch {
@@ -28,21 +27,18 @@ elastic_constants combine(const double shear_modulus[2], const double poisson_ra
 }
 
 influence::influence(const scene &scene, const fft_plans &plans)
-    : scene_(scene), plans_(plans), single_(plans.max_nx(), plans.max_ny(), scene.tangential) {
+    : scene_(scene),
+      plans_(plans),
+      full_(plans.max_nx(), plans.max_ny(), scene.tangential),
+      single_(plans.max_nx(), plans.max_ny(), scene.tangential) {
   const auto nx = static_cast<size_t>(plans.max_nx()), ny = static_cast<size_t>(plans.max_ny());
-  const size_t table = (nx / 2 + 1) * (ny / 2 + 1);
-  const size_t half = (nx / 2 + 1) * ny;
-  const int kernels = scene.tangential ? 4 : 1;
+  const size_t table = (nx / 2 + 1) * (ny / 2 + 1), half = (nx / 2 + 1) * ny;
   stride_ = static_cast<int>(nx / 2 + 1);
-  for (int k = 0; k < kernels; ++k) {
-    table_[k] = aligned_buffer<double>(table);
-    spectrum_[k] = aligned_buffer<double>(half);
-  }
+  for (int k = 0; k < (scene.tangential ? 4 : 1); ++k) table_[k] = aligned_buffer<double>(table);
   for (auto &corner : corner_) corner = aligned_buffer<double>((nx / 2 + 2) * (ny / 2 + 2));
   padded_ = aligned_buffer<double>(nx * ny);
-  for (int k = 0; k < (scene.tangential ? 2 : 1); ++k)
-    transform_[k] = aligned_buffer<std::complex<double>>(half);
-  if (scene.tangential) shift_ = aligned_buffer<std::complex<double>>(nx / 2 + 1);
+  spectrum_ = aligned_buffer<double>(half);
+  transform_ = aligned_buffer<std::complex<double>>(half);
 }
 
 bool influence::set_grid(const grid &g) {
@@ -52,6 +48,7 @@ bool influence::set_grid(const grid &g) {
   const bool same_elements = g.dx == grid_.dx && g.dy == grid_.dy;
   const int half_x = plans_.nx(plan) / 2, half_y = plans_.ny(plan) / 2;
   grid_ = g;
+  full_.set_size(g.nx, g.ny, plans_.nx(plan), plans_.ny(plan));
   single_.set_size(g.nx, g.ny, plans_.nx(plan), plans_.ny(plan));
   if (same_elements && plan == plan_) return true;
   if (!same_elements || half_x > half_x_ || half_y > half_y_) make_kernels(half_x, half_y);
@@ -124,7 +121,7 @@ double influence::coefficient(kernel k, int i, int j) const {
   return i == 0 || j == 0 ? 0.0 : ((i < 0) == (j < 0) ? value : -value);
 }
 
-void influence::transform_kernel(kernel k, double *spectrum) {
+void influence::transform_kernel(kernel k) {
   const int nx = plans_.nx(plan_), ny = plans_.ny(plan_);
   for (int j = 0; j < ny; ++j)
     for (int i = 0; i < nx; ++i) {
@@ -133,76 +130,49 @@ void influence::transform_kernel(kernel k, double *spectrum) {
       const bool wrap = k == kernel::xy && (2 * i == nx || 2 * j == ny);
       padded_[static_cast<size_t>(j * nx + i)] = wrap ? 0.0 : coefficient(k, oi, oj);
     }
-  plans_.forward(plan_, padded_.data(), transform_[0].data());
-  const int half = (nx / 2 + 1) * ny;
-  for (int i = 0; i < half; ++i) spectrum[i] = transform_[0][static_cast<size_t>(i)].real();
+  plans_.forward(plan_, padded_.data(), transform_.data());
+  const auto half = static_cast<size_t>((nx / 2 + 1) * ny);
+  for (size_t i = 0; i < half; ++i) spectrum_[i] = transform_[i].real();
 }
 
 void influence::make_spectra() {
-  const int nx = plans_.nx(plan_), ny = plans_.ny(plan_), half = (nx / 2 + 1) * ny;
-  constexpr convolution::kernel_name names[] = {convolution::zz, convolution::xx, convolution::yy,
-                                                convolution::xy};
-  for (int k = 0; k < (scene_.tangential ? 4 : 1); ++k) {
-    transform_kernel(static_cast<kernel>(k), spectrum_[k].data());
-    single_.set_spectrum(names[k], spectrum_[k].data());
+  using name = convolution<double>::kernel_name;
+  constexpr name names[] = {name::zz, name::xx, name::yy, name::xy};
+  for (int k = scene_.tangential ? 3 : 0; k >= 0; --k) {
+    transform_kernel(static_cast<kernel>(k));
+    full_.set_spectrum(names[k], spectrum_.data());
+    single_.set_spectrum(static_cast<convolution<float>::kernel_name>(names[k]), spectrum_.data());
   }
-  // truncation can make small entries negative; a floor keeps the preconditioner positive
-  const double top = *std::max_element(spectrum_[0].data(), spectrum_[0].data() + half);
+  // zz came last; truncation can make small entries negative, and a floor keeps the preconditioner
+  // positive
+  const int half = (plans_.nx(plan_) / 2 + 1) * plans_.ny(plan_);
+  const double top = *std::max_element(spectrum_.data(), spectrum_.data() + half);
   for (int i = 0; i < half; ++i) {
-    const auto at = static_cast<size_t>(i);
-    padded_[at] = 1.0 / std::max(spectrum_[0][at], 1e-6 * top);
+    double &value = spectrum_[static_cast<size_t>(i)];
+    value = 1.0 / std::max(value, 1e-6 * top);
   }
-  single_.set_spectrum(convolution::zz_inverse, padded_.data());
-  if (!scene_.tangential) return;
-  for (int i = 0; i <= nx / 2; ++i)
-    shift_[static_cast<size_t>(i)] = (1.0 - std::polar(1.0, 2.0 * pi * i / nx)) / grid_.dx;
-}
-
-void influence::pad(const double *values) {
-  const int nx = plans_.nx(plan_), ny = plans_.ny(plan_);
-  const auto row = static_cast<size_t>(grid_.nx) * sizeof(double);
-  const auto rest = static_cast<size_t>(nx - grid_.nx) * sizeof(double);
-  for (int j = 0; j < grid_.ny; ++j) {
-    std::memcpy(padded_.data() + j * nx, values + j * grid_.nx, row);
-    std::memset(padded_.data() + j * nx + grid_.nx, 0, rest);
-  }
-  std::memset(padded_.data() + grid_.ny * nx, 0,
-              static_cast<size_t>((ny - grid_.ny) * nx) * sizeof(double));
-}
-
-void influence::extract(double *values) const {
-  const int nx = plans_.nx(plan_), ny = plans_.ny(plan_);
-  const double scale = 1.0 / (static_cast<double>(nx) * ny);
-  for (int j = 0; j < grid_.ny; ++j)
-    for (int i = 0; i < grid_.nx; ++i)
-      values[j * grid_.nx + i] = scale * padded_[static_cast<size_t>(j * nx + i)];
+  single_.set_spectrum(convolution<float>::zz_inverse, spectrum_.data());
 }
 
 void influence::normal_product(const double *pressure, double *displacement) {
-  pad(pressure);
-  plans_.forward(plan_, padded_.data(), transform_[0].data());
-  const int half = (plans_.nx(plan_) / 2 + 1) * plans_.ny(plan_);
-  for (int i = 0; i < half; ++i)
-    transform_[0][static_cast<size_t>(i)] *= spectrum_[0][static_cast<size_t>(i)];
-  plans_.backward(plan_, transform_[0].data(), padded_.data());
-  extract(displacement);
+  full_.product(convolution<double>::zz, pressure, displacement);
 }
 
 void influence::normal_product_single(const double *pressure, double *displacement) {
-  single_.product(convolution::zz, pressure, displacement);
+  single_.product(convolution<float>::zz, pressure, displacement);
 }
 
 void influence::normal_inverse(const double *displacement, double *pressure) {
-  single_.product(convolution::zz_inverse, displacement, pressure);
+  single_.product(convolution<float>::zz_inverse, displacement, pressure);
 }
 
 void influence::tangential_product(const double *px, const double *py, double *ux, double *uy) {
-  product(px, py, 0, ux, uy);
+  full_.tangential_product(px, py, ux, uy);
 }
 
 void influence::rolling_product(const double *px, const double *py, int direction, double *sx,
                                 double *sy) {
-  product(px, py, direction, sx, sy);
+  full_.rolling_product(px, py, direction, grid_.dx, sx, sy);
 }
 
 void influence::rolling_product_single(const double *px, const double *py, int direction,
@@ -210,45 +180,11 @@ void influence::rolling_product_single(const double *px, const double *py, int d
   single_.rolling_product(px, py, direction, grid_.dx, sx, sy);
 }
 
-void influence::product(const double *px, const double *py, int shift, double *ux, double *uy) {
-  pad(px);
-  plans_.forward(plan_, padded_.data(), transform_[0].data());
-  pad(py);
-  plans_.forward(plan_, padded_.data(), transform_[1].data());
-  const int half_x = plans_.nx(plan_) / 2 + 1, ny = plans_.ny(plan_);
-  for (int j = 0; j < ny; ++j)
-    for (int i = 0; i < half_x; ++i) {
-      const auto at = static_cast<size_t>(j * half_x + i);
-      const std::complex<double> tx = transform_[0][at], ty = transform_[1][at];
-      // written out: the library's complex product checks for infinities
-      double xr = spectrum_[1][at] * tx.real() + spectrum_[3][at] * ty.real();
-      double xi = spectrum_[1][at] * tx.imag() + spectrum_[3][at] * ty.imag();
-      double yr = spectrum_[3][at] * tx.real() + spectrum_[2][at] * ty.real();
-      double yi = spectrum_[3][at] * tx.imag() + spectrum_[2][at] * ty.imag();
-      if (shift != 0) {
-        const double cr = shift_[static_cast<size_t>(i)].real();
-        const double ci = shift * shift_[static_cast<size_t>(i)].imag();
-        const double vr = cr * xr - ci * xi, wr = cr * yr - ci * yi;
-        xi = cr * xi + ci * xr;
-        yi = cr * yi + ci * yr;
-        xr = vr;
-        yr = wr;
-      }
-      transform_[0][at] = {xr, xi};
-      transform_[1][at] = {yr, yi};
-    }
-  plans_.backward(plan_, transform_[0].data(), padded_.data());
-  extract(ux);
-  plans_.backward(plan_, transform_[1].data(), padded_.data());
-  extract(uy);
-}
-
 size_t influence::bytes() const {
-  size_t sum = single_.bytes() + shift_.bytes() + padded_.bytes() + plans_.bytes();
+  size_t sum = plans_.bytes() + padded_.bytes() + spectrum_.bytes() + transform_.bytes() +
+               full_.bytes() + single_.bytes();
   for (const auto &b : table_) sum += b.bytes();
   for (const auto &b : corner_) sum += b.bytes();
-  for (const auto &b : spectrum_) sum += b.bytes();
-  for (const auto &b : transform_) sum += b.bytes();
   return sum;
 }
 

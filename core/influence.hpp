@@ -1,5 +1,5 @@
 // Influence coefficients of the elastic half-space (and third-body layer) on a uniform grid, and
-// their products with pressure and traction by FFT.
+// their products with pressure and traction by FFT (convolution.hpp).
 //
 // Piecewise-constant tractions on elements dx by dy (Kalker 1990, "Three-dimensional elastic
 // bodies in rolling contact", appendix C). With observer minus source (x, y), r = |(x, y)| and
@@ -80,10 +80,7 @@ class influence {
   void make_half_space_kernels();
   void make_line_kernels();
   void make_spectra();
-  void transform_kernel(kernel k, double *spectrum);
-  void pad(const double *values);
-  void extract(double *values) const;
-  void product(const double *px, const double *py, int shift, double *ux, double *uy);
+  void transform_kernel(kernel k);
 
   scene scene_;
   const fft_plans &plans_;
@@ -93,11 +90,11 @@ class influence {
   int stride_ = 0;
   aligned_buffer<double> table_[4];
   aligned_buffer<double> corner_[3];
-  aligned_buffer<double> spectrum_[4];
-  aligned_buffer<std::complex<double>> shift_;  // (1 - exp(i k dx))/dx along x
-  aligned_buffer<double> padded_;
-  aligned_buffer<std::complex<double>> transform_[2];
-  convolution single_;
+  // a kernel on the transform's grid, its transform and the real spectrum
+  aligned_buffer<double> padded_, spectrum_;
+  aligned_buffer<std::complex<double>> transform_;
+  convolution<double> full_;
+  convolution<float> single_;
 };
 
 }  // namespace railpatch

@@ -8,8 +8,13 @@ namespace railpatch {
 namespace {
 
 constexpr int krylov_size = 40;
-constexpr double inner_tolerance = 1e-2;
+// of the linear systems; a step need not be better than the tolerance asks for
+constexpr double inner_tolerance = 3e-2, worst_inner_tolerance = 0.3;
 constexpr int max_inner_products = 200;
+// Newton steps that need not lower the best |F| to `enough` of it before it is taken up again
+constexpr int patience = 4;
+constexpr double enough = 0.9;
+constexpr int max_projections = 400;
 // a start with more of zero traction's residual than this is tried against a new one
 constexpr double far_away = 0.3;
 
@@ -52,14 +57,15 @@ rolling_newton::rolling_newton(int max_row, int max_rows)
   r_ = aligned_buffer<double>(n);
   linear_ = aligned_buffer<element_linearisation>(n);
   stick_ = aligned_buffer<unsigned char>(n);
-  for (auto *b : {&f_, &step_, &right_, &unknowns_, &normal_step_, &trial_p_, &trial_s_, &trial_f_})
+  for (auto *b :
+       {&f_, &step_, &best_p_, &right_, &unknowns_, &normal_step_, &trial_p_, &trial_s_, &trial_f_})
     *b = aligned_buffer<double>(2 * n);
   for (auto &m : row_matrix_) m = aligned_buffer<double>::uninitialized(row * row);
   row_slip_ = aligned_buffer<double>(2 * row);
 }
 
 size_t rolling_newton::bytes() const {
-  return blocks_.bytes() + linear_solver_.bytes() + r_.bytes() + 8 * f_.bytes() +
+  return blocks_.bytes() + linear_solver_.bytes() + r_.bytes() + 9 * f_.bytes() +
          2 * row_matrix_[0].bytes() + row_slip_.bytes() + linear_.bytes() + stick_.bytes();
 }
 
@@ -73,11 +79,21 @@ tangential_result rolling_newton::solve(rolling_operator &b, const rolling_probl
               b.projection_scale(row));
   const double size = scale(t);
   if (size > 0) {
-    double error = start(t, size);
-    for (; error > options.tolerance * size && result.newton_iterations < options.max_iterations;
+    blocks_.start(problem.rows, problem.row_start);
+    const double goal = options.tolerance * size;
+    double error = start(t, size), best = HUGE_VAL;
+    for (int strayed = 0; error > goal && result.newton_iterations < options.max_iterations;
          ++result.newton_iterations) {
+      if (error <= enough * best) {
+        best = error;
+        strayed = 0;
+        std::copy_n(p, t.vector_size(), best_p_.data());
+      } else if (++strayed > patience) {
+        error = descend(t, enough * best);
+        continue;
+      }
       linearise(t);
-      find_step(t);
+      find_step(t, std::clamp(0.3 * goal / error, inner_tolerance, worst_inner_tolerance));
       error = line_search(t, error);
     }
     result.residual = error / size;
@@ -204,11 +220,11 @@ void rolling_newton::linearise(task &t) {
     }
   });
   t.b.linearise();
-  blocks_.clear();
   for (int row = 0; row < t.problem.rows; ++row) {
-    const int begin = t.problem.row_start[row], n = t.problem.row_start[row + 1] - begin;
+    const element_linearisation *elements = linear_.data() + t.problem.row_start[row];
+    if (blocks_.serves(row, elements)) continue;
     t.b.row_matrices(row, row_matrix_[0].data(), row_matrix_[1].data());
-    blocks_.add_row(n, row_matrix_[0].data(), row_matrix_[1].data(), linear_.data() + begin);
+    blocks_.set_row(row, row_matrix_[0].data(), row_matrix_[1].data(), elements);
   }
 }
 
@@ -274,7 +290,7 @@ void rolling_newton::precondition(task &t, double *z) {
 }
 
 // The Newton step, to the inner tolerance.
-void rolling_newton::find_step(task &t) {
+void rolling_newton::find_step(task &t, double tolerance) {
   // in slip F = p - g n fixes the step along n: what it leaves of F is at once taken as the step
   // there, and its share of the other equations taken to the right side where it counts
   const double *f = f_.data();
@@ -294,7 +310,7 @@ void rolling_newton::find_step(task &t) {
         }
         whole += f[ix] * f[ix] + f[iy] * f[iy];
       });
-  if (along > square(0.1 * inner_tolerance) * whole) {
+  if (along > square(0.1 * tolerance) * whole) {
     t.b.product_single(normal_step_.data(), trial_s_.data());
     ++t.result.products;
     const double *s = trial_s_.data();
@@ -305,7 +321,7 @@ void rolling_newton::find_step(task &t) {
                      });
   }
   linear_solver_.solve(
-      size, right_.data(), unknowns_.data(), inner_tolerance, max_inner_products,
+      size, right_.data(), unknowns_.data(), tolerance, max_inner_products,
       [&](const double *v, double *out) { apply_jacobian(t, v, out); },
       [&](double *v) { precondition(t, v); });
   expand(t, unknowns_.data(), step_.data());
@@ -322,7 +338,8 @@ double rolling_newton::try_step(task &t, double length) {
 }
 
 // Takes the longest of the halved Newton steps that lowers |F|; where none does, the whole step, so
-// that the active sets move on. Updates p, s and F and returns |F|.
+// that the active sets move on (how often that may happen is bounded in solve). Updates p, s and F
+// and returns |F|.
 double rolling_newton::line_search(task &t, double current) {
   constexpr int halvings = 4;
   double length = 1.0, error = try_step(t, length);
@@ -333,6 +350,47 @@ double rolling_newton::line_search(task &t, double current) {
   if (error > (1.0 - 1e-3 * length) * current) error = try_step(t, 1.0);
   accept_trial(t);
   return error;
+}
+
+// Projected steps from the best traction so far until |F| is down at `goal`; returns |F|. Why this
+// ends: see rolling_newton.hpp.
+double rolling_newton::descend(task &t, double goal) {
+  double *p = t.problem.traction, *s = t.problem.micro_slip;
+  std::copy_n(best_p_.data(), t.vector_size(), p);
+  micro_slip(t, p, s);
+  double error = residual(t, p, s, f_.data());
+  double length = 1;
+  for (int k = 0; k < max_projections && error > goal; ++k) {
+    // the slip must not turn more over a step than the step is long
+    for (bool short_enough = false; !short_enough; length *= short_enough ? 1.0 : 0.5) {
+      projected_step(t, s, length, trial_p_.data());
+      micro_slip(t, trial_p_.data(), trial_s_.data());
+      double moved = 0, turned = 0;
+      t.for_each_element([&](size_t e, size_t ix, size_t iy) {
+        const double weight = t.problem.area[e] / r_[e];
+        moved += weight * (square(trial_p_[ix] - p[ix]) + square(trial_p_[iy] - p[iy]));
+        turned += weight * square(r_[e] * length) *
+                  (square(trial_s_[ix] - s[ix]) + square(trial_s_[iy] - s[iy]));
+      });
+      short_enough = turned <= 0.5 * moved || !(moved > 0);
+    }
+    projected_step(t, trial_s_.data(), length, p);
+    micro_slip(t, p, s);
+    error = residual(t, p, s, f_.data());
+    length = std::min(1.0, 1.5 * length);
+  }
+  return error;
+}
+
+// out = projection of p - length r s
+void rolling_newton::projected_step(const task &t, const double *s, double length,
+                                    double *out) const {
+  const double *p = t.problem.traction;
+  t.for_each_element([&](size_t k, size_t ix, size_t iy) {
+    out[ix] = p[ix] - length * r_[k] * s[ix];
+    out[iy] = p[iy] - length * r_[k] * s[iy];
+  });
+  project(t, out);
 }
 
 void rolling_newton::accept_trial(task &t) {

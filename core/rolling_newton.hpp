@@ -12,6 +12,21 @@
 // in an element that sticks and one in an element that slips. They are solved by GMRES with exact
 // row blocks as preconditioner.
 //
+// Convergence from any start. The problem is the variational inequality: find p with |p| <= g and
+// s(p) . (q - p) >= 0 for all q with |q| <= g (sums with the elements' areas). On a grid of equal
+// elements B is monotone: with S the shift by one element, A symmetric positive and unchanged by
+// the shift, p . B p = p . A (p - S p)/dx = (p - S p) . A (p - S p)/(2 dx) > 0 for p other than 0.
+// So there is one solution p*, and the extragradient step (Korpelevich 1976; Khobotov 1987)
+//   q = P(p - t r s(p)),  p <- P(p - t r s(q)),  t so small that |t r (s(q) - s(p))| <= |q -
+//   p|/2^0.5
+// (norm with weights area/r, in which P, the projection on |p| <= g, is the same) never moves away
+// from p*, |p_new - p*|^2 <= |p - p*|^2 - |p - q|^2/2, and |p - q| and with it |F| tend to 0.
+// The merit is the least |F| so far. A Newton step takes the longest of five halved lengths that
+// lowers |F|, else the whole one; where the merit has not come down to 0.9 of itself after four
+// further steps, extragradient steps from the best traction bring it down. So every fifth iteration
+// at the latest lowers the merit by a tenth: it tends to 0. Near the solution Newton's steps are
+// all that is taken. (Other discretisations inherit this as far as their B is monotone.)
+//
 // Vectors hold, row after row, the row's p_x and then its p_y (slip likewise): element k of a row
 // that begins with element b and has n elements has its components at
 //   2 b + (k - b) and 2 b + n + (k - b).
@@ -95,6 +110,8 @@ class rolling_newton {
   double start(task &t, double size);
   void march(task &t, double *p);
   void accept_trial(task &t);
+  double descend(task &t, double goal);
+  void projected_step(const task &t, const double *s, double length, double *out) const;
   double scale(const task &t) const;
   void micro_slip(task &t, const double *p, double *s);
   double residual(const task &t, const double *p, const double *s, double *f) const;
@@ -103,7 +120,7 @@ class rolling_newton {
   template <class F>
   size_t for_each_unknown(const task &t, F &&f) const;
   void expand(const task &t, const double *z, double *dp) const;
-  void find_step(task &t);
+  void find_step(task &t, double tolerance);
   void apply_jacobian(task &t, const double *v, double *out);
   void precondition(task &t, double *z);
   double try_step(task &t, double length);
@@ -111,7 +128,8 @@ class rolling_newton {
   void finish(task &t);
 
   aligned_buffer<double> r_;  // per element
-  aligned_buffer<double> f_, step_, right_, unknowns_, normal_step_, trial_p_, trial_s_, trial_f_;
+  aligned_buffer<double> f_, step_, best_p_, right_, unknowns_, normal_step_, trial_p_, trial_s_,
+      trial_f_;
   aligned_buffer<double> row_matrix_[2], row_slip_;
   aligned_buffer<element_linearisation> linear_;
   aligned_buffer<unsigned char> stick_;

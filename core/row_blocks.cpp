@@ -14,14 +14,17 @@ namespace {
 constexpr int pack = 8;
 constexpr int whole_packs(int n) { return (n + pack - 1) / pack * pack; }
 
+// Factors serve equations whose slip directions and weights have changed no more than this: they
+// precondition only, so it decides on speed and not on results.
+constexpr double least_cosine = 0.98, greatest_change = 0.1;
+
 // target[begin ... end) -= the panel's columns, each times its factor
-RAILPATCH_DISPATCH
-void eliminate(const float *__restrict panel, int stride, int begin, int end, const float *factors,
-               float *__restrict target) {
+RAILPATCH_INLINE void eliminate(const float *__restrict panel, int stride, int begin, int end,
+                                const float *factors, float *__restrict target) {
   const float *l[pack];
   float u[pack];
   for (int c = 0; c < pack; ++c) {
-    l[c] = panel + static_cast<size_t>(c) * static_cast<size_t>(stride) + begin;
+    l[c] = panel + c * stride + begin;
     u[c] = factors[c];
   }
   target += begin;
@@ -31,45 +34,97 @@ void eliminate(const float *__restrict panel, int stride, int begin, int end, co
                  ((l[4][i] * u[4] + l[5][i] * u[5]) + (l[6][i] * u[6] + l[7][i] * u[7]));
 }
 
-// target <- L^-1 target within a panel's rows; L in a[row + column stride], unit diagonal
-inline void solve_lower(const float *a, int stride, float *target) {
-  for (int c = 0; c + 1 < pack; ++c)
-    for (int i = c + 1; i < pack; ++i) target[i] -= a[c * stride + i] * target[c];
-}
-
-inline void solve_upper(const float *a, int stride, float *target) {
-  for (int c = pack - 1; c >= 0; --c) {
-    target[c] *= a[c * stride + c];
-    for (int i = 0; i < c; ++i) target[i] -= a[c * stride + i] * target[c];
-  }
+// x <- M x within a panel's rows, M dense in columns. The number of rows is not given as a constant
+// only because loops of unknown length are made of whole SIMD registers by every compiler.
+RAILPATCH_INLINE void apply(const float *__restrict m, int rows, float *__restrict x) {
+  float u[pack];
+  for (int c = 0; c < pack; ++c) u[c] = x[c];
+  const auto count = static_cast<size_t>(rows / pack) * pack;
+  for (size_t i = 0; i < count; ++i)
+    x[i] =
+        ((m[i] * u[0] + m[pack + i] * u[1]) + (m[2 * pack + i] * u[2] + m[3 * pack + i] * u[3])) +
+        ((m[4 * pack + i] * u[4] + m[5 * pack + i] * u[5]) +
+         (m[6 * pack + i] * u[6] + m[7 * pack + i] * u[7]));
 }
 
 // A panel's columns from its diagonal block down to `end`: L below, U above, inverse pivots on the
 // diagonal. `a` points to the block, rows are counted from there.
-RAILPATCH_DISPATCH
-void factor_panel(float *a, int stride, int end) {
+RAILPATCH_INLINE void factor_panel(float *a, int stride, int end) {
+  const auto below = static_cast<size_t>((end - pack) / pack) * pack;
   for (int c = 0; c < pack; ++c) {
     float *__restrict column = a + c * stride;
+    float *__restrict rest = column + pack;
     for (int e = 0; e < c; ++e) {
       const float *__restrict l = a + e * stride;
       const float u = column[e];
       for (int i = e + 1; i < pack; ++i) column[i] -= u * l[i];
-      for (int i = pack; i < end; ++i) column[i] -= u * l[i];
+      for (size_t i = 0; i < below; ++i) rest[i] -= u * l[pack + i];
     }
     // only the matrix of no rolling contact has no pivot here
     const float inverse = column[c] != 0.0f ? 1.0f / column[c] : 1.0f;
-    for (int i = c + 1; i < end; ++i) column[i] *= inverse;
+    for (int i = c + 1; i < pack; ++i) column[i] *= inverse;
+    for (size_t i = 0; i < below; ++i) rest[i] *= inverse;
     column[c] = inverse;
+  }
+}
+
+// Inverses of a panel's L and U within its rows, each dense.
+inline void invert(const float *a, int stride, float *lower, float *upper) {
+  std::fill_n(lower, pack * pack, 0.0f);
+  std::fill_n(upper, pack * pack, 0.0f);
+  for (int c = 0; c < pack; ++c) {
+    float *l = lower + c * pack, *u = upper + c * pack;
+    l[c] = 1.0f;
+    for (int e = c; e < pack; ++e)
+      for (int i = e + 1; i < pack; ++i) l[i] -= a[e * stride + i] * l[e];
+    u[c] = 1.0f;
+    for (int e = c; e >= 0; --e) {
+      u[e] *= a[e * stride + e];
+      for (int i = 0; i < e; ++i) u[i] -= a[e * stride + i] * u[e];
+    }
+  }
+}
+
+// LU of a matrix whose first n columns do not meet the others before column `meet`; `inverses`
+// holds those of L and U of each panel's diagonal block.
+RAILPATCH_DISPATCH
+void factor(float *a, int order, int n, int meet, int width, float *inverses) {
+  for (int k = 0; k < order; k += pack) {
+    const int next = k + pack;
+    const int last = next <= meet ? n : order, end = whole_packs(last);
+    float *panel = a + k * order;
+    float *lower = inverses + 2 * pack * k;
+    factor_panel(panel + k, order, end - k);
+    invert(panel + k, order, lower, lower + pack * pack);
+    for (int j = next; j < last; ++j) {
+      float *target = a + j * order;
+      apply(lower, width, target + k);
+      eliminate(panel, order, next, end, target + k, target);
+    }
+  }
+}
+
+RAILPATCH_DISPATCH
+void substitute(const float *a, int order, int width, const float *inverses, float *x) {
+  for (int k = 0; k < order; k += pack) {
+    apply(inverses + 2 * pack * k, width, x + k);
+    eliminate(a + k * order, order, k + pack, order, x + k, x);
+  }
+  for (int k = order - pack; k >= 0; k -= pack) {
+    apply(inverses + 2 * pack * k + pack * pack, width, x + k);
+    eliminate(a + k * order, order, 0, k, x + k, x);
   }
 }
 
 }  // namespace
 
-row_blocks::row_blocks(int max_row, int max_rows) {
+row_blocks::row_blocks(int max_row, int max_rows) : max_order_(whole_packs(2 * max_row)) {
   const auto row = static_cast<size_t>(max_row), rows = static_cast<size_t>(max_rows);
-  const auto order = static_cast<size_t>(whole_packs(2 * max_row));
+  const auto order = static_cast<size_t>(max_order_);
   factors_ = aligned_buffer<float>::uninitialized(order * order * rows);
+  inverses_ = aligned_buffer<float>::uninitialized(2 * pack * order * rows);
   blocks_ = aligned_buffer<block>(rows);
+  factored_ = aligned_buffer<element_linearisation>(row * rows);
   vector_ = aligned_buffer<float>(order);
   row_x_ = aligned_buffer<float>(row);
   row_y_ = aligned_buffer<float>(row);
@@ -120,59 +175,53 @@ void row_blocks::fill(int n, const double *bxx, const double *byy,
   }
 }
 
-void row_blocks::add_row(int n, const double *bxx, const double *byy,
+void row_blocks::start(int rows, const int *row_start) {
+  rows_ = rows;
+  row_start_ = row_start;
+  for (int row = 0; row < rows; ++row) blocks_[static_cast<size_t>(row)] = {0, 0};
+}
+
+bool row_blocks::serves(int row, const element_linearisation *elements) const {
+  if (blocks_[static_cast<size_t>(row)].size == 0) return false;
+  const element_linearisation *factored = factored_.data() + row_start_[row];
+  const int n = row_start_[row + 1] - row_start_[row];
+  return std::equal(elements, elements + n, factored, [](const auto &e, const auto &f) {
+    if (e.stick || f.stick) return e.stick == f.stick;
+    return e.c[0] * f.c[0] + e.c[1] * f.c[1] >= least_cosine &&
+           std::abs(e.keep - f.keep) <= greatest_change;
+  });
+}
+
+void row_blocks::set_row(int row, const double *bxx, const double *byy,
                          const element_linearisation *elements) {
   const auto sticks = [](const element_linearisation &e) { return e.stick; };
+  const int n = row_start_[row + 1] - row_start_[row];
   const int size = n + static_cast<int>(std::count_if(elements, elements + n, sticks));
   const int order = whole_packs(size);
-  float *a = factors_.data() + used_;
-  blocks_[static_cast<size_t>(rows_++)] = {used_, size, order};
-  used_ += static_cast<size_t>(order) * static_cast<size_t>(order);
-  fill(n, bxx, byy, elements, a, order);
+  blocks_[static_cast<size_t>(row)] = {size, order};
+  std::copy_n(elements, n, factored_.data() + row_start_[row]);
+  fill(n, bxx, byy, elements, factors(row), order);
   // before the first element that slips, x and y do not meet
   const int meet = static_cast<int>(std::find_if_not(elements, elements + n, sticks) - elements);
-  for (int k = 0; k < order; k += pack) {
-    const int next = k + pack;
-    const int last = next <= meet ? n : order, end = whole_packs(last);
-    float *panel = a + static_cast<size_t>(k * order);
-    factor_panel(panel + k, order, end - k);
-    for (int j = next; j < last; ++j) {
-      float *target = a + static_cast<size_t>(j * order);
-      solve_lower(panel + k, order, target + k);
-      eliminate(panel, order, next, end, target + k, target);
-    }
-  }
+  factor(factors(row), order, n, meet, pack, inverses(row));
 }
 
 void row_blocks::solve(int row, double *v) {
   float *x = vector_.data();
-  const auto [at, size, order] = blocks_[static_cast<size_t>(row)];
+  const auto [size, order] = blocks_[static_cast<size_t>(row)];
   // scaled to unit size, so that single precision neither overflows nor loses small tractions
   double scale = 0;
   for (int k = 0; k < size; ++k) scale = std::max(scale, std::abs(v[k]));
   if (!(scale > 0)) return;
   for (int k = 0; k < size; ++k) x[k] = static_cast<float>(v[k] / scale);
   std::fill(x + size, x + order, 0.0f);
-  substitute(factors_.data() + at, order, x);
+  substitute(factors(row), order, pack, inverses(row), x);
   for (int k = 0; k < size; ++k) v[k] = scale * static_cast<double>(x[k]);
 }
 
-void row_blocks::substitute(const float *a, int order, float *x) const {
-  for (int k = 0; k < order; k += pack) {
-    const float *panel = a + static_cast<size_t>(k * order);
-    solve_lower(panel + k, order, x + k);
-    eliminate(panel, order, k + pack, order, x + k, x);
-  }
-  for (int k = order - pack; k >= 0; k -= pack) {
-    const float *panel = a + static_cast<size_t>(k * order);
-    solve_upper(panel + k, order, x + k);
-    eliminate(panel, order, 0, k, x + k, x);
-  }
-}
-
 size_t row_blocks::bytes() const {
-  return factors_.bytes() + blocks_.bytes() + vector_.bytes() + row_x_.bytes() + row_y_.bytes() +
-         sticking_.bytes();
+  return factors_.bytes() + inverses_.bytes() + factored_.bytes() + blocks_.bytes() +
+         vector_.bytes() + row_x_.bytes() + row_y_.bytes() + sticking_.bytes();
 }
 
 }  // namespace railpatch

@@ -26,10 +26,15 @@ class row_blocks {
  public:
   row_blocks(int max_row, int max_rows);
 
-  void clear() { used_ = 0, rows_ = 0; }
-  // Appends and factors the block of one row of n elements; B of the row as in rolling_operator.
-  void add_row(int n, const double *bxx, const double *byy, const element_linearisation *elements);
-  // Unknowns of a row, counted in the order of add_row.
+  // Forgets all rows: another problem begins, with the first elements of its rows.
+  void start(int rows, const int *row_start);
+  // Whether a row's last factors serve these equations too: its elements are in the same state and
+  // slip in nearly the same direction.
+  bool serves(int row, const element_linearisation *elements) const;
+  // Factors the block of one row; B of the row as in rolling_operator.
+  void set_row(int row, const double *bxx, const double *byy,
+               const element_linearisation *elements);
+  // Unknowns of a row.
   int size(int row) const { return blocks_[static_cast<size_t>(row)].size; }
   // v <- M^-1 v, of one row.
   void solve(int row, double *v);
@@ -37,20 +42,28 @@ class row_blocks {
 
  private:
   struct block {
-    size_t at;  // of the first column in factors_
-    int size;   // unknowns
+    int size;   // unknowns; 0: not factored yet
     int order;  // of the factored matrix: unknowns and some of the unit matrix, in whole packs
   };
   void fill(int n, const double *bxx, const double *byy, const element_linearisation *elements,
             float *columns, int order);
-  void substitute(const float *a, int order, float *x) const;
+
+  float *factors(int row) {
+    return factors_.data() + static_cast<size_t>(row) * static_cast<size_t>(max_order_) *
+                                 static_cast<size_t>(max_order_);
+  }
+  float *inverses(int row) {
+    return inverses_.data() + static_cast<size_t>(row) * (inverses_.size() / blocks_.size());
+  }
 
   aligned_buffer<block> blocks_;
-  aligned_buffer<float> factors_;
+  aligned_buffer<float> factors_, inverses_;
   aligned_buffer<float> vector_, row_x_, row_y_;
   aligned_buffer<int> sticking_;
-  size_t used_ = 0;
+  aligned_buffer<element_linearisation> factored_;
+  int max_order_;
   int rows_ = 0;
+  const int *row_start_ = nullptr;
 };
 
 }  // namespace railpatch

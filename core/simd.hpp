@@ -17,3 +17,10 @@
 #else
 #define RAILPATCH_INDEPENDENT
 #endif
+
+// Bodies of dispatched functions must be part of them.
+#if defined(__GNUC__)
+#define RAILPATCH_INLINE __attribute__((always_inline)) inline
+#else
+#define RAILPATCH_INLINE inline
+#endif
