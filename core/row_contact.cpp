@@ -10,7 +10,8 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double flattest_row = 0.1;  // of the mean curvature of the overlap
+constexpr double curvature_reach = 0.2;  // of the width at half depth, see the header
+constexpr double flattest_row = 0.1;     // of the mean curvature of the overlap
 constexpr double force_tolerance = 1e-12;
 constexpr double least_depth = 1e-100;  // m
 constexpr int max_evaluations = 100;
@@ -35,6 +36,12 @@ quadratic through(const double *f, const grid &g, int j) {
 double value_at(const double *f, const grid &g, double y) {
   const int j = index((y - g.y0) / g.dy, 0, g.ny - 1);
   return through(f, g, j).at(y - g.y(j));
+}
+
+// Half the second derivative, as seen over a distance to both sides.
+double mean_curvature(const double *f, const grid &g, int j, double reach) {
+  const double y = g.y(j);
+  return 0.5 * (value_at(f, g, y + reach) - 2 * f[j] + value_at(f, g, y - reach)) / (reach * reach);
 }
 
 }  // namespace
@@ -121,19 +128,20 @@ row_contact_result row_contact::solve(const grid &g, const double *h, const row_
   double approach = load.approach;
   // the parabolas reach as far as contact does, which for other shapes than parabolas matters
   int reach = 1;
+  measure_rows(g, h, reach);
   for (int pass = 0; pass < 3; ++pass) {
-    measure_rows(g, h, reach);
     if (load.force_given)
       approach = load.first_approach > 0 ? load.first_approach : guess_approach(g, load.force);
-    reach = find_reach(g, approach);
+    const int next = find_reach(g, approach);
+    if (next == reach) break;
+    measure_rows(g, h, reach = next);
   }
-  measure_rows(g, h, reach);
   result.converged = true;
   if (load.force_given) approach = search(g, load, approach, parts, result);
   const totals sum = evaluate(g, approach, parts);
   result.converged = result.converged && std::isfinite(sum.force);
   result.approach = approach;
-  result.normal_force = load.force_given && sum.force > 0 ? load.force : sum.force;
+  result.normal_force = load.force_given && result.converged ? load.force : sum.force;
   result.max_pressure = sum.max_pressure;
   result.contact_area = sum.area;
   width_ = sum.width;
@@ -228,10 +236,12 @@ void row_contact::analyn(const grid &g, const deepest_point &deep, int begin, in
                          totals &way) {
   const double width = overlap_width(g, deep.lowest + 0.5 * deep.depth, begin, end);
   const double flattest = flattest_row * 2 * deep.depth / (width * width);
+  const double reach = std::max(curvature_reach * width, g.dy);
   for (int j = begin; j < end; ++j) {
     const quadratic f = through(lowest_.data(), g, j) - deep.lowest;
     const double a = curvature_[at(j)];
-    const hertz_ratios::values hz = hertz_.at(a, std::max(f.c2, flattest));
+    const double b = mean_curvature(lowest_.data(), g, j, reach);
+    const hertz_ratios::values hz = hertz_.at(a, std::max(b, flattest));
     const double scale = hz.edge_along / a, factor = modulus_ * a * hz.pressure;
     const quadratic chord = (f * (-1 / hz.edge_across) + deep.depth) * scale;
     const strip s(chord, g.dy);

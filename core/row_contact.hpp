@@ -7,22 +7,25 @@
 // Kik-Piotrowski (Piotrowski and Kik 2008, Vehicle System Dynamics 46: equations 7 and 13, and
 // their shape correction). Chords where the bodies, moved together by 0.55 d only, overlap:
 //   l^2 = (0.55 d - f)/A
-// The region of length L and width W is stretched, its area kept, until its axis ratio is that of
-// the Hertzian ellipse whose interpenetration has the ratio L/W; stretched about (vertex, y0). One
-// k for all rows follows from the displacement d at the deepest point.
+// The region of length L and width W is stretched about (vertex, y0), its area kept, until its axis
+// ratio is that of the Hertzian ellipse whose interpenetration has the ratio L/W, but never beyond
+// the overlap of the undeformed bodies. One k for all rows follows from the displacement d at the
+// deepest point; in it all of a row is as far away as its vertex.
 //
 // ANALYN (Sichani, Enblom and Berg 2014, Vehicle System Dynamics 52). The surfaces deform by
 // alpha A x^2 + beta f, with alpha, beta and k of each row from the Hertzian contact (a, b, p0) of
 // the row's own curvatures A and B = f''/2 at the approach d:
 //   l^2 = (d - (1 + beta) f)/((1 + alpha) A),  1 + alpha = d/(A a^2),  1 + beta = d/(B b^2),
 //   k = p0/a
-// Rows flatter than a tenth of the mean curvature of the region with f < d/2 (that of the parabola
-// of the same width) count as that.
+// B is taken over a reach of a fifth of the width of the region with f < d/2 to both sides, and not
+// below a tenth of the mean curvature of that region: the curvature at a point jumps where a
+// profile's arcs join and says little of a measured profile.
 //
 // Both integrate over a strip of one row's width with f the parabola through three rows, cut where
 // contact ends, so force and area do not jump when an edge passes from row to row; for quadratic
-// surfaces they are exact. Contact areas that are parts of one patch (contact_parts) are blended
-// from all ways of taking neighbours together or apart, weighted with the coupling factors.
+// surfaces ANALYN is Hertz's solution on any grid. Contact areas that are parts of one patch
+// (contact_parts) are blended from all ways of taking neighbours together or apart, weighted with
+// the coupling factors.
 #pragma once
 
 #include "hertz_ratios.hpp"

@@ -117,6 +117,6 @@ def test_unknown_fields_are_refused() -> None:
     with pytest.raises(KeyError, match="no field"):
         _core.Contact({**config_of(scene), "elemnts": [8, 8]})
     with pytest.raises(ValueError, match="no such choice"):
-        _core.Contact({**config_of(scene), "normal": "analyn"})
+        _core.Contact({**config_of(scene), "normal": "stripes"})
     with pytest.raises(KeyError, match="no field"):
         _core.Contact(config_of(scene)).step({"creepages": [0.0, 0.0]})
