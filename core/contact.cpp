@@ -17,12 +17,36 @@ constexpr int max_searches = 60;
 constexpr double least_approach = 1e-100;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+patch_scene make_scene(const rp_config &c) {
+  patch_scene scene;
+  scene.elastic = combine(c.shear_modulus, c.poisson_ratio);
+  scene.friction_coefficient = c.friction_coefficient;
+  if (c.layer_thickness > 0) scene.layer_flexibility = c.layer_thickness / c.layer_shear_modulus;
+  if (c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT) scene.line_width = c.width;
+  scene.normal = c.normal;
+  scene.tangential = c.regime == RP_REGIME_NONE ? RP_TANGENTIAL_NONE : c.tangential;
+  scene.tolerance = scene.normal_tolerance = c.tolerance;
+  // the search for z sees the force change only where each force is known better than it asks for
+  if (c.kind != RP_PATCH && c.load == RP_FORCE)
+    scene.normal_tolerance = std::max(0.1 * c.tolerance, 1e-12);
+  scene.max_iterations = c.max_iterations;
+  scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
+  scene.fast.theory = scene.tangential;
+  scene.fast.coefficient_factor = 0.01 * c.percent_kalker;
+  scene.fast.bound = c.traction_bound;
+  scene.fast.blending = c.flexibility_blending;
+  scene.fast.polach = {c.polach_k_a, c.polach_k_s};
+  scene.fast.reduction = {c.fastsim_k0, c.fastsim_alpha, c.fastsim_beta};
+  return scene;
+}
+
 struct capacity {
   int nx, ny;
 };
 
 // Elements of one patch's grid, with a border of one element that stays free of contact.
 capacity grid_capacity(const rp_config &c) {
+  if (c.kind == RP_PATCH && make_scene(c).closed_form()) return {0, 0};
   capacity size{c.max_elements[0], c.max_elements[1]};
   const bool sized = c.element_size[0] > 0;
   if (c.kind == RP_PATCH && c.geometry == RP_UNDEFORMED_DISTANCE)
@@ -57,29 +81,15 @@ std::vector<int> ladder(int smallest, int largest) {
 }
 
 fft_plans make_plans(const rp_config &c) {
+  // without a method on the half-space nothing is ever transformed
+  if (c.normal == RP_NORMAL_HERTZ && make_scene(c).tangential != RP_TANGENTIAL_FULL)
+    return fft_plans({4}, {1});
   const capacity size = grid_capacity(c);
   const int nx = 2 * size.nx + 1, ny = size.ny > 1 ? 2 * size.ny - 1 : 1;
   const bool fixed = c.kind == RP_PATCH && !(c.geometry == RP_CURVATURES && c.element_size[0] > 0);
   const auto top = [](int n) { return n > 1 ? smooth_size(n) : 1; };
   if (fixed) return fft_plans({top(nx)}, {top(ny)});
   return fft_plans(ladder(std::min(nx, 16), nx), ladder(std::min(ny, 16), ny));
-}
-
-patch_scene make_scene(const rp_config &c) {
-  patch_scene scene;
-  scene.elastic = combine(c.shear_modulus, c.poisson_ratio);
-  scene.friction_coefficient = c.friction_coefficient;
-  if (c.layer_thickness > 0) scene.layer_flexibility = c.layer_thickness / c.layer_shear_modulus;
-  if (c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT) scene.line_width = c.width;
-  scene.normal = c.normal;
-  scene.tangential = c.regime == RP_REGIME_NONE ? RP_TANGENTIAL_NONE : c.tangential;
-  scene.tolerance = scene.normal_tolerance = c.tolerance;
-  // the search for z sees the force change only where each force is known better than it asks for
-  if (c.kind != RP_PATCH && c.load == RP_FORCE)
-    scene.normal_tolerance = std::max(0.1 * c.tolerance, 1e-12);
-  scene.max_iterations = c.max_iterations;
-  scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
-  return scene;
 }
 
 hertz_contact hertz_of(const rp_config &c, const patch_scene &scene, const rp_input &in) {
@@ -129,9 +139,10 @@ contact::contact(const rp_config &config)
       solver_(make_scene(config), plans_, grid_capacity(config).nx, grid_capacity(config).ny,
               config.observer, config.observer_user) {
   const capacity size = grid_capacity(config);
-  const bool tangential = solver_.scene().tangential != RP_TANGENTIAL_NONE;
+  const bool traction = has_tractions(solver_.scene().tangential);
+  const bool pressure = !solver_.scene().closed_form();
   if (config.kind == RP_PATCH) {
-    memory_.emplace_back(size.nx * size.ny, tangential);
+    memory_.emplace_back(size.nx * size.ny, pressure, traction);
     if (config.geometry == RP_UNDEFORMED_DISTANCE) {
       shape_ = aligned_buffer<double>(static_cast<size_t>(size.nx * size.ny));
       std::copy_n(config.undeformed_distance, shape_.size(), shape_.data());
@@ -141,7 +152,7 @@ contact::contact(const rp_config &config)
       if (!has_side(side)) continue;
       wheels_.emplace_back(config, side);
       for (int i = 0; i < config.max_patches; ++i)
-        memory_.emplace_back(size.nx * size.ny, tangential);
+        memory_.emplace_back(size.nx * size.ny, pressure, traction);
     }
   }
   scene_ = fingerprint(config, shape_);
@@ -205,7 +216,7 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
          0};
     g.x0 = -0.5 * (g.nx - 1) * g.dx;
     g.y0 = -0.5 * (g.ny - 1) * g.dy;
-  } else {
+  } else if (!solver_.scene().closed_form()) {
     problem.g = hertz_grid(config_, problem.hertz);
   }
   if (!solver_.fits(problem.g)) return finish(RP_OUT_OF_RANGE);
@@ -293,7 +304,10 @@ void contact::find_z(double target, Evaluate &&evaluate, rp_result &out) {
   for (int i = 0; i < max_searches; ++i) {
     depth = search.depth();
     const double force = evaluate(touch + depth);
-    search.report(force, out.status == RP_OUT_OF_RANGE);
+    // a creep force outside its theory's range is a force all the same
+    const bool beyond = std::any_of(wheels_.begin(), wheels_.end(),
+                                    [](const wheel_contact &wheel) { return wheel.beyond(); });
+    search.report(force, beyond);
     if (search.converged() || search.exhausted()) break;
   }
   out.z = touch + depth;
@@ -329,7 +343,9 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
   const patch_memory &m = memory(side, patch);
   const bool of_tangential =
       name == RP_FIELD_TRACTION || name == RP_FIELD_MICRO_SLIP || name == RP_FIELD_ELEMENT_DIVISION;
-  if (!m.solved || (of_tangential && m.px.size() == 0)) return RP_ERROR_NO_FIELD;
+  const bool missing = (of_tangential && m.px.size() == 0) || m.g.count() == 0 ||
+                       (name == RP_FIELD_PRESSURE && m.pressure.size() == 0);
+  if (!m.solved || missing) return RP_ERROR_NO_FIELD;
   const bool of_axis = name == RP_FIELD_X || name == RP_FIELD_Y;
   const bool of_vectors = name == RP_FIELD_TRACTION || name == RP_FIELD_MICRO_SLIP;
   const auto plane = static_cast<size_t>(m.g.count());
@@ -377,6 +393,28 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
   return RP_OK;
 }
 
+namespace {
+
+const char *reason(rp_tangential_method theory) {
+  switch (theory) {
+    case RP_TANGENTIAL_NONE:
+      return "tangential = none";
+    case RP_TANGENTIAL_FASTSIM:
+      return "tangential = fastsim: simplified theory";
+    case RP_TANGENTIAL_FULL:
+      return "tangential = full: semi-smooth Newton";
+    case RP_TANGENTIAL_LINEAR:
+      return "tangential = linear: creepage coefficients, no traction field";
+    case RP_TANGENTIAL_POLACH:
+      return "tangential = polach: closed form, no traction field";
+    case RP_TANGENTIAL_FASTRIP:
+      return "tangential = fastrip: strip theory";
+  }
+  return "";
+}
+
+}  // namespace
+
 void contact::describe(rp_stage_info *info) const {
   const patch_scene &scene = solver_.scene();
   const bool tangential = scene.tangential != RP_TANGENTIAL_NONE;
@@ -402,13 +440,7 @@ void contact::describe(rp_stage_info *info) const {
                                ? "normal = hertz: closed form"
                                : "normal = half_space: conjugate gradients",
                            normal + solver_.normal_bytes()};
-  const char *why = "tangential = full: semi-smooth Newton";
-  if (config_.regime == RP_REGIME_NONE)
-    why = "regime = none";
-  else if (!tangential)
-    why = "tangential = none";
-  else if (scene.tangential == RP_TANGENTIAL_FASTSIM)
-    why = "tangential = fastsim: simplified theory";
+  const char *why = config_.regime == RP_REGIME_NONE ? "regime = none" : reason(scene.tangential);
   info[RP_STAGE_TANGENTIAL] = {"tangential", tangential, why,
                                tangential ? traction + solver_.tangential_bytes() : 0};
   info[RP_STAGE_FORCES] = {"forces", 1, "resultants of pressure and traction", 0};

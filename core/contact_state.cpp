@@ -40,6 +40,8 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            static_cast<double>(c.normal),
                            static_cast<double>(c.tangential),
                            static_cast<double>(c.spin_offset),
+                           static_cast<double>(c.traction_bound),
+                           static_cast<double>(c.flexibility_blending),
                            static_cast<double>(c.track),
                            static_cast<double>(c.side),
                            static_cast<double>(c.elements[0]),
@@ -64,6 +66,12 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            c.layer_shear_modulus,
                            c.layer_thickness,
                            c.tolerance,
+                           c.percent_kalker,
+                           c.polach_k_a,
+                           c.polach_k_s,
+                           c.fastsim_k0,
+                           c.fastsim_alpha,
+                           c.fastsim_beta,
                            c.nominal_radius,
                            c.flange_back_distance,
                            c.flange_back_position,
@@ -97,7 +105,7 @@ uint64_t fingerprint_of_arrays(const rp_config &c, const aligned_buffer<double> 
 template <class Memory, class F>
 void for_each_start_field(Memory &m, F &&f) {
   const auto bytes = static_cast<size_t>(m.g.count()) * sizeof(double);
-  if (!m.warm) return;
+  if (!m.warm || m.pressure.size() == 0) return;
   f(m.pressure.data(), bytes);
   if (m.px.size() == 0) return;
   f(m.px.data(), bytes);
@@ -172,7 +180,8 @@ bool contact::state_fits(const unsigned char *at, size_t size) const {
     std::memcpy(&patch, at, sizeof patch);
     const bool fits = patch.g.nx >= 0 && patch.g.ny >= 0 && solver_.fits(patch.g);
     if (!fits) return false;
-    const size_t fields = patch.warm ? (m.px.size() ? 3 : 1) : 0;
+    const bool starts = patch.warm && m.pressure.size();
+    const size_t fields = starts ? (m.px.size() ? 3 : 1) : 0;
     const size_t bytes =
         sizeof patch + fields * static_cast<size_t>(patch.g.count()) * sizeof(double);
     if (size < bytes) return false;

@@ -41,11 +41,12 @@ void set_unloaded(const patch_scene &scene, rp_patch_result &result) {
   result.creep_force[0] = result.creep_force[1] = result.spin_moment = result.friction_power = 0;
 }
 
-patch_memory::patch_memory(int max_count, bool tangential) {
+patch_memory::patch_memory(int max_count, bool with_pressure, bool traction) {
   const auto n = static_cast<size_t>(max_count);
   undeformed_distance = aligned_buffer<double>(n);
+  if (!with_pressure) return;
   pressure = aligned_buffer<double>(n);
-  if (!tangential) return;
+  if (!traction) return;
   for (auto *b : {&px, &py, &sx, &sy}) *b = aligned_buffer<double>(n);
   division = aligned_buffer<unsigned char>(n);
 }
@@ -68,15 +69,16 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
         influence::scene{scene.elastic, scene.layer_flexibility, scene.line_width, full}, plans);
   if (scene.normal == RP_NORMAL_HALF_SPACE) normal_.emplace(max_nx * max_ny);
   if (full) tangential_.emplace(max_nx, max_ny);
+  if (is_fast(scene.tangential)) fast_.emplace(scene.elastic, scene.fast, max_nx, max_ny);
+  if (scene.closed_form()) return;
   scratch_[0] = aligned_buffer<double>(count);
   scratch_[1] = aligned_buffer<double>(count);
-  if (scene.tangential == RP_TANGENTIAL_NONE) return;
-  bound_ = aligned_buffer<double>(count);
-  leading_ = aligned_buffer<double>(static_cast<size_t>(max_ny));
+  if (full) bound_ = aligned_buffer<double>(count);
 }
 
 size_t patch_contact::tangential_bytes() const {
-  return bound_.bytes() + leading_.bytes() + (tangential_ ? tangential_->bytes() : 0);
+  return bound_.bytes() + (tangential_ ? tangential_->bytes() : 0) +
+         (fast_ ? sizeof(fast_solver) + fast_->bytes() : 0);
 }
 
 void patch_contact::start_from(patch_memory &memory, const grid &g) {
@@ -126,7 +128,8 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   observe(RP_STAGE_NORMAL, true);
   const bool loaded = solve_normal(problem, memory, result);
   observe(RP_STAGE_NORMAL, false);
-  memory.warm = loaded && result.status == RP_CONVERGED;
+  memory.beyond = result.status == RP_OUT_OF_RANGE;
+  memory.warm = loaded && result.status == RP_CONVERGED && memory.pressure.size() > 0;
   if (!loaded) {
     set_unloaded(scene_, result);
     leave_unloaded(problem, memory);
@@ -139,7 +142,17 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
     observe(RP_STAGE_TANGENTIAL, false);
   }
   observe(RP_STAGE_FORCES, true);
-  wrench = sum_tractions(problem.g, memory.pressure.data(), memory.px.data(), memory.py.data());
+  if (scene_.closed_form()) {
+    wrench = {};
+    wrench.force[2] = -result.normal_force;
+  } else {
+    wrench = sum_tractions(problem.g, memory.pressure.data(), memory.px.data(), memory.py.data());
+  }
+  if (fast_ && !has_tractions(scene_.tangential)) {
+    wrench.force[0] = sums_.force[0];
+    wrench.force[1] = sums_.force[1];
+    wrench.moment[2] = sums_.moment;
+  }
   if (scene_.tangential != RP_TANGENTIAL_NONE) {
     result.creep_force[0] = wrench.force[0];
     result.creep_force[1] = wrench.force[1];
@@ -151,8 +164,7 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
 // No contact: nothing is transferred, and every element is exterior.
 void patch_contact::leave_unloaded(const patch_problem &problem, patch_memory &memory) {
   const auto n = static_cast<size_t>(problem.g.count());
-  std::fill_n(memory.pressure.data(), n, 0.0);
-  for (auto *field : {&memory.px, &memory.py, &memory.sx, &memory.sy})
+  for (auto *field : {&memory.pressure, &memory.px, &memory.py, &memory.sx, &memory.sy})
     if (field->size()) std::fill_n(field->data(), n, 0.0);
   if (memory.division.size())
     std::fill_n(memory.division.data(), n, static_cast<unsigned char>(RP_EXTERIOR));
@@ -163,6 +175,7 @@ bool patch_contact::solve_normal(const patch_problem &problem, patch_memory &mem
   const grid &g = problem.g;
   if (scene_.normal == RP_NORMAL_HERTZ) {
     solve_hertz(problem, memory, result);
+    if (memory.pressure.size() == 0) return true;
   } else {
     const normal_options options{scene_.normal_tolerance, scene_.max_iterations};
     double *p = memory.pressure.data();
@@ -198,7 +211,7 @@ void patch_contact::solve_hertz(const patch_problem &problem, patch_memory &memo
   const grid &g = problem.g;
   const hertz_contact &hertz = problem.hertz;
   double sum = 0;
-  for (int j = 0; j < g.ny; ++j)
+  for (int j = 0; j < g.ny && memory.pressure.size(); ++j)
     for (int i = 0; i < g.nx; ++i) {
       const double level = inside_ellipse(hertz.semi_axes, g.x(i), g.y(j));
       const double p = level > 0 ? hertz.max_pressure * std::sqrt(level) : 0.0;
@@ -229,15 +242,22 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
     rolling.creepage[0] = rolling.creepage[1] = rolling.spin_creepage = 0;
   }
   if (scene_.spin_offset) rolling.spin_offset = rolling.direction * g.dx / 6.0;
-  for (int i = 0; i < g.count(); ++i)
-    bound_[static_cast<size_t>(i)] =
-        scene_.friction_coefficient * memory.pressure[static_cast<size_t>(i)];
   tangential_result t;
-  if (scene_.tangential == RP_TANGENTIAL_FASTSIM)
-    t = solve_fastsim(problem, rolling, result.contact_area, memory);
-  else
+  if (fast_) {
+    const fast_patch patch{g,
+                           memory.pressure.size() ? memory.pressure.data() : nullptr,
+                           problem.hertz,
+                           result.normal_force,
+                           result.contact_area,
+                           scene_.friction_coefficient};
+    t = fast_->solve(patch, rolling, fields, sums_);
+  } else {
+    for (int i = 0; i < g.count(); ++i)
+      bound_[static_cast<size_t>(i)] =
+          scene_.friction_coefficient * memory.pressure[static_cast<size_t>(i)];
     t = tangential_->solve(*influence_, g, memory.pressure.data(), bound_.data(), rolling,
                            {scene_.tolerance, scene_.max_iterations}, fields);
+  }
   result.elements[RP_STICK] = t.stick;
   result.elements[RP_SLIP] = t.slip;
   result.newton_iterations = t.newton_iterations;
@@ -250,54 +270,6 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   if (scene_.tangential == RP_TANGENTIAL_FULL)
     result.elastic_energy += tangential_energy(problem, memory);
   return t.converged;
-}
-
-// x of the contact's leading edge in each row; returns the number of rows in contact.
-int patch_contact::find_leading_edges(const patch_problem &problem, int direction,
-                                      const double *pressure) {
-  const grid &g = problem.g;
-  const double *semi_axes = problem.hertz.semi_axes;
-  int rows = 0;
-  for (int j = 0; j < g.ny; ++j) {
-    const double *p = pressure + j * g.nx;
-    int first = direction > 0 ? g.nx - 1 : 0;
-    while (first >= 0 && first < g.nx && !(p[first] > 0)) first -= direction;
-    const bool touching = first >= 0 && first < g.nx;
-    const double level = semi_axes[0] > 0 ? inside_ellipse(semi_axes, 0.0, g.y(j)) : 0.0;
-    leading_[static_cast<size_t>(j)] = level > 0 ? direction * semi_axes[0] * std::sqrt(level)
-                                                 : g.x(first) + 0.5 * direction * g.dx;
-    rows += touching;
-  }
-  return rows;
-}
-
-tangential_result patch_contact::solve_fastsim(const patch_problem &problem,
-                                               const rolling_input &rolling, double contact_area,
-                                               patch_memory &memory) {
-  const grid &g = problem.g;
-  const hertz_contact &hertz = problem.hertz;
-  double semi_axes[2] = {hertz.semi_axes[0], hertz.semi_axes[1]};
-  const bool elliptic = scene_.normal == RP_NORMAL_HERTZ;
-  const int rows = find_leading_edges(problem, rolling.direction, memory.pressure.data());
-  if (!(semi_axes[0] > 0)) {
-    // the ellipse with the same width and area stands for a contact area of any shape
-    semi_axes[1] = 0.5 * rows * g.dy;
-    semi_axes[0] = contact_area / (pi * semi_axes[1]);
-  }
-  if (elliptic) {
-    // parabolic bound (Kalker 1982), scaled so that full sliding gives exactly mu times the force
-    double sum = 0;
-    for (int j = 0; j < g.ny; ++j)
-      for (int i = 0; i < g.nx; ++i) {
-        const auto at = static_cast<size_t>(j * g.nx + i);
-        bound_[at] = std::max(0.0, inside_ellipse(semi_axes, g.x(i), g.y(j)));
-        sum += bound_[at] * g.dx * g.dy;
-      }
-    for (int i = 0; i < g.count(); ++i)
-      bound_[static_cast<size_t>(i)] *= scene_.friction_coefficient * hertz.normal_force / sum;
-  }
-  return fastsim(scene_.elastic, g, memory.pressure.data(), bound_.data(), leading_.data(),
-                 semi_axes, rolling, memory.fields());
 }
 
 double patch_contact::tangential_energy(const patch_problem &problem, const patch_memory &memory) {

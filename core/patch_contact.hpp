@@ -5,7 +5,7 @@
 #include <array>
 #include <optional>
 
-#include "fastsim.hpp"
+#include "fast.hpp"
 #include "forces.hpp"
 #include "hertz.hpp"
 #include "normal.hpp"
@@ -26,6 +26,11 @@ struct patch_scene {
   double normal_tolerance = 1e-5;
   int max_iterations = 100;
   bool spin_offset = false;  // x + dq/6 in the spin term
+  fast_options fast;         // where the tangential theory is a fast one
+  // Everything in closed form: no pressure and no traction on a grid.
+  bool closed_form() const {
+    return normal == RP_NORMAL_HERTZ && is_fast(tangential) && !has_tractions(tangential);
+  }
   double modulus() const { return elastic.shear_modulus / (1.0 - elastic.poisson_ratio); }
 };
 
@@ -43,9 +48,11 @@ struct patch_problem {
 // Fields of the last solution, [ny][nx]; with the grid they are also the next start.
 struct patch_memory {
   patch_memory() = default;
-  patch_memory(int max_count, bool tangential);
+  // Without pressure no field but the undeformed distance.
+  patch_memory(int max_count, bool pressure, bool traction);
   bool solved = false;  // fields belong to the last step
   bool warm = false;    // pressure and traction may serve as a start
+  bool beyond = false;  // the normal problem left its range: what the patch carries is not known
   grid g;
   std::array<double, 3> reference{};  // m, contact reference, track axes of a right wheel
   aligned_buffer<double> undeformed_distance, pressure, px, py, sx, sy;
@@ -84,9 +91,6 @@ class patch_contact {
   bool solve_tangential(const patch_problem &problem, patch_memory &memory,
                         rp_patch_result &result);
   void leave_unloaded(const patch_problem &problem, patch_memory &memory);
-  tangential_result solve_fastsim(const patch_problem &problem, const rolling_input &rolling,
-                                  double contact_area, patch_memory &memory);
-  int find_leading_edges(const patch_problem &problem, int direction, const double *pressure);
   double tangential_energy(const patch_problem &problem, const patch_memory &memory);
 
   patch_scene scene_;
@@ -96,7 +100,9 @@ class patch_contact {
   std::optional<influence> influence_;
   std::optional<normal_solver> normal_;
   std::optional<tangential_solver> tangential_;
-  aligned_buffer<double> bound_, leading_, scratch_[2];
+  std::optional<fast_solver> fast_;
+  creep_resultants sums_;  // of the last step, where the theory has no tractions
+  aligned_buffer<double> bound_, scratch_[2];
 };
 
 // Sets what the scene's stages give where nothing touches: zeros.

@@ -55,6 +55,8 @@ SCENES: dict[str, dict[str, Any]] = {
         load={"normal_force": 2e4},
     ),
     "fast": with_values(PATCH, method={"normal": "hertz", "tangential": "fastsim"}),
+    "closed_form": with_values(PATCH, method={"normal": "hertz", "tangential": "polach"}),
+    "strips": with_values(PATCH, method={"tangential": "fastrip"}),
     "layer": with_values(PATCH, layer={"shear_modulus": 8.2e9, "thickness": 5e-5}),
     "rail": RAIL,
     "roller": ROLLER,

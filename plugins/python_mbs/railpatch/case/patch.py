@@ -131,8 +131,10 @@ class PatchCase(Table):
         """What a line contact is not combined with."""
         if self.load.approach is not None:
             raise relation("load.approach", self.load.approach, "normal_force with a line contact")
-        if self.has_tangential and self.method.tangential == "fastsim":
-            raise relation("method.tangential", "'fastsim'", "'full' with a line contact")
+        if self.has_tangential and self.method.tangential != "full":
+            raise relation(
+                "method.tangential", repr(self.method.tangential), "'full' with a line contact"
+            )
         elements = self.grid and self.grid.elements
         if elements and elements[1] != 1:
             raise relation("grid.elements", str(elements), "[n, 1] with a line contact")
