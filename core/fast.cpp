@@ -143,8 +143,8 @@ tangential_result fast_solver::solve(const fast_patch &patch, const rolling_inpu
                    : linear(c, g, e.axes, at_centre);
     sums.moment += e.centre[0] * sums.force[1] - e.centre[1] * sums.force[0];
     result.friction = sums.friction;
-    result.converged =
-        c.in_range && (bounded || std::hypot(sums.force[0], sums.force[1]) <= capacity);
+    result.converged = c.in_range && std::isfinite(result.friction) &&
+                       (bounded || std::hypot(sums.force[0], sums.force[1]) <= capacity);
     return result;
   }
   set_bound(patch);
@@ -156,7 +156,8 @@ tangential_result fast_solver::solve(const fast_patch &patch, const rolling_inpu
                          rolling, fields)
                : fastsim(patch.g, patch.pressure, bound_.data(), rows, l,
                          options_.blending == RP_BLENDING_CONTACT, rolling, fields);
-  result.converged = c.in_range;
+  // beyond what floating-point numbers hold there is no result
+  result.converged = c.in_range && std::isfinite(result.friction);
   return result;
 }
 

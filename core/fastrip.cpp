@@ -90,7 +90,7 @@ void slip_traction(const flexibilities &l, double length, const double w[2], dou
     return;
   }
   const double size = std::hypot(trial[0], trial[1]);
-  for (int k = 0; k < 2; ++k) p[k] = size > 0 ? bound * (trial[k] / size) : 0.0;
+  for (int k = 0; k < 2; ++k) p[k] = size == 0 ? 0.0 : bound * (trial[k] / size);
 }
 
 }  // namespace

@@ -19,15 +19,18 @@ flexibilities kalker_flexibilities(const creepage_coefficients &c, double shear_
 
 flexibilities blend(const flexibilities &l, const creepage_coefficients &c, double shear_modulus,
                     const double semi_axes[2], double capacity, const rolling_input &input) {
-  const double xi2 = input.creepage[0] * input.creepage[0];
-  const double eta2 = input.creepage[1] * input.creepage[1];
-  const double turn = input.spin_creepage * 3.0 * pi * semi_axes[0] / 32.0;
-  const double total = xi2 + eta2 + turn * turn;
-  if (!(total > 0)) return l;
+  const double turn = std::abs(input.spin_creepage) * 3.0 * pi * semi_axes[0] / 32.0;
+  const double greatest =
+      std::max({std::abs(input.creepage[0]), std::abs(input.creepage[1]), turn});
+  if (!(greatest > 0)) return l;
+  const double xi = input.creepage[0] / greatest, eta = input.creepage[1] / greatest;
+  const double spin = turn / greatest;
   const double unit = capacity / (semi_axes[0] * semi_axes[1] * shear_modulus);
   const double saturating = std::hypot(unit / c.c11, unit / c.c22);
-  const double w = saturating > 0 ? std::min(1.0, std::sqrt(xi2 + eta2) / saturating / 3.0) : 1.0;
-  const double one = total / (xi2 / l.l1 + eta2 / l.l2 + turn * turn / l.l3);
+  const double creepage = greatest * std::hypot(xi, eta);
+  const double w = saturating > 0 ? std::min(1.0, creepage / saturating / 3.0) : 1.0;
+  const double one = (xi * xi + eta * eta + spin * spin) /
+                     (xi * xi / l.l1 + eta * eta / l.l2 + spin * spin / l.l3);
   const auto mix = [&](double own) { return (1.0 - w) * own + w * one; };
   return {mix(l.l1), mix(l.l2), mix(l.l3)};
 }
@@ -42,8 +45,8 @@ bool march(const flexibilities &l, double length, double wx, double wy, double b
   const double cut = 1.0 - bound / size;
   s[0] = -l.l1 * cut * p[0] / length;
   s[1] = -l.l2 * cut * p[1] / length;
-  p[0] -= cut * p[0];
-  p[1] -= cut * p[1];
+  p[0] *= bound / size;
+  p[1] *= bound / size;
   return true;
 }
 

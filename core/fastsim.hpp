@@ -21,7 +21,7 @@ struct flexibilities {
 struct stiffness_reduction {
   double k0 = 1, alpha = 1, beta = 0;
   double at(double gradient) const {
-    return k0 * (alpha + (1.0 - alpha) / (1.0 + beta * gradient));
+    return k0 * (beta > 0 ? alpha + (1.0 - alpha) / (1.0 + beta * gradient) : 1.0);
   }
 };
 

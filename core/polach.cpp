@@ -30,12 +30,12 @@ creep_resultants polach(const creepage_coefficients &c, double shear_modulus,
   const resultant_creepage r = resultant_of(c, shear_modulus, semi_axes, capacity, input);
   if (!(r.size > 0)) return out;
   const double adhesion = factors.adhesion * r.gradient;
-  const double size =
-      2.0 * capacity / pi *
-      (adhesion / (1.0 + adhesion * adhesion) + std::atan(factors.slip * r.gradient));
+  // x/(1 + x^2), for any x
+  const double hump = adhesion > 0 ? 1.0 / (adhesion + 1.0 / adhesion) : 0.0;
+  const double size = 2.0 * capacity / pi * (hump + std::atan(factors.slip * r.gradient));
   const double eta = input.creepage[1];
-  out.force[0] = -size * input.creepage[0] / r.size;
-  out.force[1] = -size * eta / r.size;
+  out.force[0] = -size * (input.creepage[0] / r.size);
+  out.force[1] = -size * (eta / r.size);
   out.friction = -(out.force[0] * input.creepage[0] + out.force[1] * eta);
 
   const double a = semi_axes[0], b = semi_axes[1];

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import railpatch
+from case_samples import WHEELSET, with_values
 from patch_cases import STEEL, Line, check, patch_case, solve
 from railpatch.kalker_table import coefficients
 
@@ -16,7 +17,7 @@ A, B = 6e-3, 4e-3
 LENGTH = np.sqrt(A * B)
 TRACTIONS = ("fastsim", "fastrip")
 RESULTANTS = ("linear", "polach")
-ROUNDING = 1e-12
+LOADED = with_values(WHEELSET, wheelset__z=None, wheelset__vertical_force=1e5)
 
 
 def ellipse(
@@ -359,3 +360,39 @@ def test_resultants_have_no_fields(tangential: str) -> None:
     assert elastic["pressure"].max() > 1e9
     assert elastic["traction"] is None
     np.testing.assert_allclose(elastic["creep_force"], result["creep_force"], rtol=0.05)
+
+
+@pytest.mark.parametrize("tangential", ["polach", *TRACTIONS])
+def test_extreme_creepages_stay_within_the_bound(tangential: str) -> None:
+    for size in (1e-300, 1e-30, 1e3, 1e30, 1e150):
+        for creepage, spin in (((size, 0), 0), ((0, -size), 0), ((0, 0), size), ((size, size), 1)):
+            result = ellipse(tangential, creepage, spin, elements=12)
+            force = np.array(result["creep_force"])
+            assert np.isfinite([*force, result["spin_moment"]]).all(), (size, creepage, spin)
+            if spin == 0 and size >= 1e3:
+                way = -np.array(creepage) / np.linalg.norm(creepage)
+                np.testing.assert_allclose(force, BOUND * way, atol=1e-4 * BOUND)
+            assert np.linalg.norm(force) <= 1.01 * BOUND, (size, creepage, spin, force)
+
+
+@pytest.mark.parametrize("tangential", [*RESULTANTS, *TRACTIONS])
+@pytest.mark.parametrize("normal", ["hertz", "half_space"])
+def test_wheelset_under_a_load(tangential: str, normal: str) -> None:
+    """The height under a vertical force is found with every theory, also where the creep forces lie
+    beyond the range of theirs."""
+    case = with_values(
+        LOADED,
+        wheelset__speed=20.0,
+        wheelset__yaw=2e-4,
+        wheelset__pitch_rate=-20.0 / LOADED["wheelset"]["nominal_radius"],
+        method={"normal": normal, "tangential": tangential},
+        friction={"coefficient": 0.3},
+    )
+    result = railpatch.solve(case)
+    assert result.status == "converged"
+    load = LOADED["wheelset"]["vertical_force"]
+    assert result["force"][2] == pytest.approx(-load, rel=2e-5)
+    assert abs(result["force"][1]) > 100
+    slippery = railpatch.solve(with_values(case, friction={"coefficient": 1e-3}))
+    assert slippery.status == ("out_of_range" if tangential == "linear" else "converged")
+    assert slippery["force"][2] == pytest.approx(-load, rel=2e-5)

@@ -80,6 +80,8 @@ MOTIONS: dict[str, list[dict[str, float]]] = {
     "line": [{"creepage[1]": 2e-3}, {"normal_force": 5e4}],
     "gap": [{"creepage[2]": 2e-3}, {"normal_force": 1e4}],
     "fast": [{"creepage[2]": 2e-3}, {"normal_force": 1e4, "spin_creepage": 0.2}],
+    "closed_form": [{"creepage[2]": 2e-3}, {"normal_force": 1e4, "spin_creepage": 0.2}],
+    "strips": [{"creepage[2]": 2e-3}, {"normal_force": 1e4, "spin_creepage": 0.2}],
     "layer": [{"creepage[1]": 2e-3}],
     "rail": [
         {"wheelset.y": 1e-4, "wheelset.yaw": 1e-3},
