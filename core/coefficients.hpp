@@ -12,9 +12,10 @@ struct creepage_coefficients {
   bool in_range = true;  // false: a/b is outside the table and was taken from its edge
 };
 
-// Computed coefficients for a/b = 1/20 ... 20. Errors against finer grids, relative: 2e-4 in C11
-// and C22 and 6e-4 in C23 for 0.1 < a/b < 5; up to 1e-3 and 4e-3 beyond. C33 is known to 1e-3 where
-// it is not small against the others, a/b < 3.
+// Computed coefficients for a/b = 1/20 ... 20. Relative differences between two sets of grids
+// (railpatch.kalker_table --check), greatest of Poisson's ratios: C11, C22 and C23 3e-4 for
+// 0.1 < a/b < 5, 1.3e-3 up to 10, 7e-3 up to 20, C23 2e-3 down to 1/20; C33 2e-4 for a/b < 2.2,
+// 2e-3 up to 5 and 0.1 at 20, where it hardly counts.
 class coefficient_table {
  public:
   explicit coefficient_table(double poisson_ratio);
