@@ -179,10 +179,11 @@ const patch_memory &contact::memory(int side, int patch) const {
 void contact::step(const rp_input &input, rp_result &result) {
   rp_result out{};
   out.z = nan;
+  const rp_patch_result empty = empty_patch_result();
   for (auto &side : out.side) {
     side.status = RP_NO_CONTACT;
     side.rolling_radius = nan;
-    for (auto &patch : side.patch) patch = empty_patch_result();
+    for (auto &patch : side.patch) patch = empty;
   }
   for (auto &m : memory_) m.solved = false;
   config_.kind == RP_PATCH ? step_patch(input, out) : step_wheels(input, out);
