@@ -38,6 +38,9 @@ void rp_default_config(rp_config *config) {
   c.tangential = RP_TANGENTIAL_FULL;
   c.tolerance = 1e-5;
   c.max_iterations = 100;
+  c.percent_kalker = 100.0;
+  c.polach_k_a = c.polach_k_s = 1.0;
+  c.fastsim_k0 = c.fastsim_alpha = 1.0;
   c.side = RP_RIGHT;
   c.nominal_radius = 0.46;
   c.flange_back_distance = 1.36;

@@ -5,7 +5,9 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
+#include <utility>
 
+#include "fast.hpp"
 #include "influence.hpp"
 
 namespace railpatch {
@@ -30,15 +32,14 @@ class checker {
   explicit checker(rp_message *message) : message_(message) {}
 
   void number(const char *name, double value, const range &r) {
-    const bool inside = (r.open_low ? value > r.low : value >= r.low) &&
-                        (r.open_high ? value < r.high : value <= r.high);
-    if (inside || failed_) return;
+    if (failed_ || inside(value, r)) return;
     failed_ = true;
     set_message(message_, "%s is %g, allowed is %c%g, %g%c", name, value, r.open_low ? '(' : '[',
                 r.low, r.high, r.open_high ? ')' : ']');
   }
   void numbers(const char *name, const double *values, int count, const range &r) {
     for (int i = 0; i < count && !failed_; ++i) {
+      if (inside(values[i], r)) continue;
       char label[64];
       std::snprintf(label, sizeof label, "%s[%d]", name, i);
       number(label, values[i], r);
@@ -65,6 +66,11 @@ class checker {
   rp_error error() const { return failed_ ? RP_ERROR_VALUE : RP_OK; }
 
  private:
+  static bool inside(double value, const range &r) {
+    return (r.open_low ? value > r.low : value >= r.low) &&
+           (r.open_high ? value < r.high : value <= r.high);
+  }
+
   rp_message *message_;
   bool failed_ = false;
 };
@@ -74,8 +80,11 @@ void check_choices(const rp_config &c, checker &check) {
   check.choice("load", c.load, RP_FORCE, RP_POSITION);
   check.choice("regime", c.regime, RP_REGIME_NONE, RP_STEADY_ROLLING);
   check.choice("normal", c.normal, RP_NORMAL_HERTZ, RP_NORMAL_ANALYN);
-  check.choice("tangential", c.tangential, RP_TANGENTIAL_NONE, RP_TANGENTIAL_FULL);
+  check.choice("tangential", c.tangential, RP_TANGENTIAL_NONE, RP_TANGENTIAL_FASTRIP);
   check.choice("spin_offset", c.spin_offset, RP_SPIN_OFFSET_NONE, RP_SPIN_OFFSET_SIXTH);
+  check.choice("traction_bound", c.traction_bound, RP_BOUND_AUTOMATIC, RP_BOUND_ELLIPTIC);
+  check.choice("flexibility_blending", c.flexibility_blending, RP_BLENDING_SLIDING,
+               RP_BLENDING_CONTACT);
   if (check.error() != RP_OK) return;
   if (c.kind == RP_PATCH)
     check.choice("geometry", c.geometry, RP_SEMI_AXES, RP_UNDEFORMED_DISTANCE);
@@ -91,6 +100,33 @@ void check_fitted(const rp_config &c, checker &check) {
   check.require(c.tangential == RP_TANGENTIAL_FULL, "fitted needs tangential = full");
   check.require(c.spin_offset == RP_SPIN_OFFSET_NONE,
                 "spin_offset must be none with fitted: it belongs to the uniform grid");
+}
+
+// What only some of the fast theories read must not be set for others.
+void check_fast(const rp_config &c, checker &check) {
+  const auto theory = c.tangential;
+  const bool fastsim = theory == RP_TANGENTIAL_FASTSIM;
+  check.number("percent_kalker", c.percent_kalker, {0, 200, true, false});
+  for (const auto &[name, value] : {std::pair{"polach_k_a", c.polach_k_a},
+                                    {"polach_k_s", c.polach_k_s},
+                                    {"fastsim_k0", c.fastsim_k0}})
+    check.number(name, value, {0, 10, true, false});
+  check.number("fastsim_alpha", c.fastsim_alpha, {0, 1, false, false});
+  check.number("fastsim_beta", c.fastsim_beta, {0, 1000, false, false});
+  if (c.regime == RP_REGIME_NONE || theory == RP_TANGENTIAL_NONE) return;
+  check.require(is_fast(theory) || c.percent_kalker == 100.0,
+                "percent_kalker must be 100 with tangential = full: it has no coefficients");
+  check.require(theory == RP_TANGENTIAL_POLACH || (c.polach_k_a == 1.0 && c.polach_k_s == 1.0),
+                "polach_k_a and polach_k_s must be 1 where tangential is not polach");
+  check.require(
+      fastsim || (c.fastsim_k0 == 1.0 && c.fastsim_alpha == 1.0 && c.fastsim_beta == 0.0),
+      "fastsim_k0 and fastsim_alpha must be 1, fastsim_beta 0 where tangential is not fastsim");
+  check.require(fastsim || c.traction_bound == RP_BOUND_AUTOMATIC,
+                "traction_bound must be automatic where tangential is not fastsim");
+  check.require(fastsim || c.flexibility_blending == RP_BLENDING_SLIDING ||
+                    (theory == RP_TANGENTIAL_FASTRIP && c.flexibility_blending == RP_BLENDING_NONE),
+                "flexibility_blending must be sliding where tangential is not fastsim or fastrip, "
+                "and not contact with fastrip");
 }
 
 void check_grid(const rp_config &c, checker &check) {
@@ -157,8 +193,9 @@ void check_wheels(const rp_config &c, checker &check) {
 }  // namespace
 
 bool needs_grid(const rp_config &c) {
-  const bool full = c.regime != RP_REGIME_NONE && c.tangential == RP_TANGENTIAL_FULL;
-  return c.kind != RP_PATCH || c.normal != RP_NORMAL_HERTZ || !full || c.fitted[0] == 0;
+  if (c.kind != RP_PATCH || c.normal != RP_NORMAL_HERTZ || c.regime == RP_REGIME_NONE) return true;
+  if (c.tangential == RP_TANGENTIAL_FULL) return c.fitted[0] == 0;
+  return !is_fast(c.tangential) || has_tractions(c.tangential);
 }
 
 void set_message(rp_message *message, const char *format, ...) {
@@ -187,11 +224,13 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   check.number("tolerance", c.tolerance, {1e-12, 0.1, false, false});
   check.integer("max_iterations", c.max_iterations, 1, 100000);
   const bool rolling = c.regime != RP_REGIME_NONE && c.tangential != RP_TANGENTIAL_NONE;
-  const bool fast = c.tangential == RP_TANGENTIAL_FASTSIM;
+  const bool fast = is_fast(c.tangential);
+  check_fast(c, check);
   const bool line = c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT;
-  check.require(!(rolling && fast && line), "fastsim has no line contact: use tangential = full");
+  check.require(!(rolling && fast && line),
+                "a fast theory has no line contact: use tangential = full");
   check.require(!(rolling && fast && c.layer_thickness > 0),
-                "fastsim has no third-body layer: use tangential = full");
+                "a fast theory has no third-body layer: use tangential = full");
   if (rolling && check.error() == RP_OK)
     check.require(
         std::abs(combine(c.shear_modulus, c.poisson_ratio).mismatch) < 1e-12,

@@ -18,6 +18,30 @@ constexpr int max_searches = 60;
 constexpr double least_approach = 1e-100;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+patch_scene make_scene(const rp_config &c) {
+  patch_scene scene;
+  scene.elastic = combine(c.shear_modulus, c.poisson_ratio);
+  scene.friction_coefficient = c.friction_coefficient;
+  if (c.layer_thickness > 0) scene.layer_flexibility = c.layer_thickness / c.layer_shear_modulus;
+  if (c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT) scene.line_width = c.width;
+  scene.normal = c.normal;
+  scene.tangential = c.regime == RP_REGIME_NONE ? RP_TANGENTIAL_NONE : c.tangential;
+  scene.tolerance = scene.normal_tolerance = c.tolerance;
+  // the search for z sees the force change only where each force is known better than it asks for
+  if (c.kind != RP_PATCH && c.load == RP_FORCE)
+    scene.normal_tolerance = std::max(0.1 * c.tolerance, 1e-12);
+  scene.max_iterations = c.max_iterations;
+  for (int k = 0; k < 2; ++k) scene.fitted[k] = c.fitted[k];
+  scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
+  scene.fast.theory = scene.tangential;
+  scene.fast.coefficient_factor = 0.01 * c.percent_kalker;
+  scene.fast.bound = c.traction_bound;
+  scene.fast.blending = c.flexibility_blending;
+  scene.fast.polach = {c.polach_k_a, c.polach_k_s};
+  scene.fast.reduction = {c.fastsim_k0, c.fastsim_alpha, c.fastsim_beta};
+  return scene;
+}
+
 struct capacity {
   int nx, ny;
 };
@@ -66,24 +90,6 @@ capacity grid_capacity(const rp_config &c) {
                                             16.0, 400.0));
   }
   return size;
-}
-
-patch_scene make_scene(const rp_config &c) {
-  patch_scene scene;
-  scene.elastic = combine(c.shear_modulus, c.poisson_ratio);
-  scene.friction_coefficient = c.friction_coefficient;
-  if (c.layer_thickness > 0) scene.layer_flexibility = c.layer_thickness / c.layer_shear_modulus;
-  if (c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT) scene.line_width = c.width;
-  scene.normal = c.normal;
-  scene.tangential = c.regime == RP_REGIME_NONE ? RP_TANGENTIAL_NONE : c.tangential;
-  scene.tolerance = scene.normal_tolerance = c.tolerance;
-  // the search for z sees the force change only where each force is known better than it asks for
-  if (c.kind != RP_PATCH && c.load == RP_FORCE)
-    scene.normal_tolerance = std::max(0.1 * c.tolerance, 1e-12);
-  scene.max_iterations = c.max_iterations;
-  for (int k = 0; k < 2; ++k) scene.fitted[k] = c.fitted[k];
-  scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
-  return scene;
 }
 
 // Transform sizes up to a capacity, each about a fifth larger than the one before.
@@ -197,10 +203,11 @@ const patch_memory &contact::memory(int side, int patch) const {
 void contact::step(const rp_input &input, rp_result &result) {
   rp_result out{};
   out.z = nan;
+  const rp_patch_result empty = empty_patch_result();
   for (auto &side : out.side) {
     side.status = RP_NO_CONTACT;
     side.rolling_radius = nan;
-    for (auto &patch : side.patch) patch = empty_patch_result();
+    for (auto &patch : side.patch) patch = empty;
   }
   for (auto &m : memory_) m.solved = false;
   config_.kind == RP_PATCH ? step_patch(input, out) : step_wheels(input, out);
@@ -234,7 +241,7 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
          0};
     g.x0 = -0.5 * (g.nx - 1) * g.dx;
     g.y0 = -0.5 * (g.ny - 1) * g.dy;
-  } else {
+  } else if (!solver_.scene().closed_form()) {
     problem.g = hertz_grid(config_, problem.hertz);
   }
   if (!solver_.fits(problem.g)) return finish(RP_OUT_OF_RANGE);
@@ -322,7 +329,10 @@ void contact::find_z(double target, Evaluate &&evaluate, rp_result &out) {
   for (int i = 0; i < max_searches; ++i) {
     depth = search.depth();
     const double force = evaluate(touch + depth);
-    search.report(force, out.status == RP_OUT_OF_RANGE);
+    // a creep force outside its theory's range is a force all the same
+    const bool beyond = std::any_of(wheels_.begin(), wheels_.end(),
+                                    [](const wheel_contact &wheel) { return wheel.beyond(); });
+    search.report(force, beyond);
     if (search.converged() || search.exhausted()) break;
   }
   out.z = touch + depth;
@@ -358,7 +368,10 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
   const patch_memory &m = memory(side, patch);
   const bool of_tangential =
       name == RP_FIELD_TRACTION || name == RP_FIELD_MICRO_SLIP || name == RP_FIELD_ELEMENT_DIVISION;
-  if (!m.solved || (of_tangential && m.px.size() == 0)) return RP_ERROR_NO_FIELD;
+  const bool missing =
+      (of_tangential && m.px.size() == 0) || m.columns() * m.rows() == 0 ||
+      (name == RP_FIELD_PRESSURE && m.pressure.size() + m.node_pressure.size() == 0);
+  if (!m.solved || missing) return RP_ERROR_NO_FIELD;
   if (m.fitted() && name == RP_FIELD_UNDEFORMED_DISTANCE) return RP_ERROR_NO_FIELD;
   const int nx = m.columns(), ny = m.rows();
   const bool of_axis = (name == RP_FIELD_X && !m.fitted()) || name == RP_FIELD_Y;
@@ -412,7 +425,9 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
   return RP_OK;
 }
 
-static const char *normal_reason(rp_normal_method method) {
+namespace {
+
+const char *normal_reason(rp_normal_method method) {
   switch (method) {
     case RP_NORMAL_HERTZ:
       return "normal = hertz: closed form";
@@ -425,6 +440,27 @@ static const char *normal_reason(rp_normal_method method) {
   }
   return "normal = half_space: conjugate gradients";
 }
+
+const char *tangential_reason(const patch_scene &scene) {
+  switch (scene.tangential) {
+    case RP_TANGENTIAL_NONE:
+      return "tangential = none";
+    case RP_TANGENTIAL_FASTSIM:
+      return "tangential = fastsim: simplified theory";
+    case RP_TANGENTIAL_FULL:
+      return scene.is_fitted() ? "tangential = full: semi-smooth Newton on fitted rows"
+                               : "tangential = full: semi-smooth Newton";
+    case RP_TANGENTIAL_LINEAR:
+      return "tangential = linear: creepage coefficients, no traction field";
+    case RP_TANGENTIAL_POLACH:
+      return "tangential = polach: closed form, no traction field";
+    case RP_TANGENTIAL_FASTRIP:
+      return "tangential = fastrip: strip theory";
+  }
+  return "";
+}
+
+}  // namespace
 
 void contact::describe(rp_stage_info *info) const {
   const patch_scene &scene = solver_.scene();
@@ -448,15 +484,7 @@ void contact::describe(rp_stage_info *info) const {
                               influence};
   info[RP_STAGE_NORMAL] = {"normal", 1, normal_reason(scene.normal),
                            normal + solver_.normal_bytes()};
-  const char *why = "tangential = full: semi-smooth Newton";
-  if (config_.regime == RP_REGIME_NONE)
-    why = "regime = none";
-  else if (!tangential)
-    why = "tangential = none";
-  else if (scene.tangential == RP_TANGENTIAL_FASTSIM)
-    why = "tangential = fastsim: simplified theory";
-  else if (scene.is_fitted())
-    why = "tangential = full: semi-smooth Newton on fitted rows";
+  const char *why = config_.regime == RP_REGIME_NONE ? "regime = none" : tangential_reason(scene);
   info[RP_STAGE_TANGENTIAL] = {"tangential", tangential, why,
                                tangential ? traction + solver_.tangential_bytes() : 0};
   info[RP_STAGE_FORCES] = {"forces", 1, "resultants of pressure and traction", 0};

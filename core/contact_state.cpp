@@ -40,6 +40,8 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            static_cast<double>(c.normal),
                            static_cast<double>(c.tangential),
                            static_cast<double>(c.spin_offset),
+                           static_cast<double>(c.traction_bound),
+                           static_cast<double>(c.flexibility_blending),
                            static_cast<double>(c.track),
                            static_cast<double>(c.side),
                            static_cast<double>(c.elements[0]),
@@ -66,6 +68,12 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            c.layer_shear_modulus,
                            c.layer_thickness,
                            c.tolerance,
+                           c.percent_kalker,
+                           c.polach_k_a,
+                           c.polach_k_s,
+                           c.fastsim_k0,
+                           c.fastsim_alpha,
+                           c.fastsim_beta,
                            c.nominal_radius,
                            c.flange_back_distance,
                            c.flange_back_position,
@@ -98,9 +106,8 @@ uint64_t fingerprint_of_arrays(const rp_config &c, const aligned_buffer<double> 
 // the fields that a later step starts from
 template <class Memory, class F>
 void for_each_start_field(Memory &m, F &&f) {
-  const auto bytes = static_cast<size_t>(m.g.count()) * sizeof(double);
   if (!m.warm) return;
-  f(m.pressure.data(), bytes);
+  if (m.pressure.size()) f(m.pressure.data(), static_cast<size_t>(m.g.count()) * sizeof(double));
   if (m.px.size() == 0) return;
   const auto traction = static_cast<size_t>(m.columns() * m.rows()) * sizeof(double);
   f(m.px.data(), traction);
@@ -176,7 +183,7 @@ bool contact::state_fits(const unsigned char *at, size_t size) const {
     std::memcpy(&patch, at, sizeof patch);
     const bool fits = patch.g.nx >= 0 && patch.g.ny >= 0 && solver_.fits(patch.g);
     if (!fits) return false;
-    const auto count = static_cast<size_t>(patch.g.count());
+    const auto count = m.pressure.size() ? static_cast<size_t>(patch.g.count()) : 0;
     const size_t traction = m.fitted() ? 3 * m.px.size() : m.px.size() ? 2 * count : 0;
     const size_t bytes = sizeof patch + (patch.warm ? count + traction : 0) * sizeof(double);
     if (size < bytes) return false;

@@ -42,17 +42,18 @@ void set_unloaded(const patch_scene &scene, rp_patch_result &result) {
 }
 
 patch_memory::patch_memory(int max_count, const patch_scene &scene) {
-  undeformed_distance = aligned_buffer<double>(static_cast<size_t>(max_count));
-  pressure = aligned_buffer<double>(static_cast<size_t>(max_count));
-  if (scene.tangential == RP_TANGENTIAL_NONE) return;
-  const auto n =
-      static_cast<size_t>(scene.is_fitted() ? scene.fitted[0] * scene.fitted[1] : max_count);
-  for (auto *b : {&px, &py, &sx, &sy}) *b = aligned_buffer<double>(n);
-  division = aligned_buffer<unsigned char>(n);
+  const auto n = static_cast<size_t>(max_count);
+  undeformed_distance = aligned_buffer<double>(n);
+  if (!scene.closed_form()) pressure = aligned_buffer<double>(n);
+  if (!has_tractions(scene.tangential)) return;
+  const size_t count =
+      scene.is_fitted() ? static_cast<size_t>(scene.fitted[0] * scene.fitted[1]) : n;
+  for (auto *b : {&px, &py, &sx, &sy}) *b = aligned_buffer<double>(count);
+  division = aligned_buffer<unsigned char>(count);
   if (!scene.is_fitted()) return;
-  node_x = aligned_buffer<double>(n);
+  node_x = aligned_buffer<double>(count);
   node_y = aligned_buffer<double>(static_cast<size_t>(scene.fitted[1]));
-  node_pressure = aligned_buffer<double>(n);
+  node_pressure = aligned_buffer<double>(count);
 }
 
 size_t patch_memory::bytes() const {
@@ -76,19 +77,20 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
   if (scene.normal == RP_NORMAL_KIK_PIOTROWSKI || scene.normal == RP_NORMAL_ANALYN)
     rows_.emplace(scene.normal, scene.modulus(), max_ny);
   if (full) tangential_.emplace(max_nx, max_ny);
+  if (is_fast(scene.tangential)) fast_.emplace(scene.elastic, scene.fast, max_nx, max_ny);
+  if (scene.closed_form()) return;
   scratch_[0] = aligned_buffer<double>(count);
   scratch_[1] = aligned_buffer<double>(count);
   if (scene.is_fitted()) {
     fitted_rows_.emplace(scene.fitted[0], scene.fitted[1], max_ny);
     fitted_.emplace(scene.elastic, scene.layer_flexibility, scene.line_width > 0, *fitted_rows_);
   }
-  if (scene.tangential == RP_TANGENTIAL_NONE || scene.is_fitted()) return;
-  bound_ = aligned_buffer<double>(count);
-  leading_ = aligned_buffer<double>(static_cast<size_t>(max_ny));
+  if (full) bound_ = aligned_buffer<double>(count);
 }
 
 size_t patch_contact::tangential_bytes() const {
-  return bound_.bytes() + leading_.bytes() + (tangential_ ? tangential_->bytes() : 0) +
+  return bound_.bytes() + (tangential_ ? tangential_->bytes() : 0) +
+         (fast_ ? sizeof(fast_solver) + fast_->bytes() : 0) +
          (fitted_ ? fitted_rows_->bytes() + fitted_->bytes() : 0);
 }
 
@@ -138,7 +140,8 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   observe(RP_STAGE_NORMAL, true);
   const bool loaded = solve_normal(problem, memory, result);
   observe(RP_STAGE_NORMAL, false);
-  memory.warm = loaded && result.status == RP_CONVERGED;
+  memory.beyond = result.status == RP_OUT_OF_RANGE;
+  memory.warm = loaded && result.status == RP_CONVERGED && memory.pressure.size() > 0;
   if (!loaded) {
     set_unloaded(scene_, result);
     leave_unloaded(problem, memory);
@@ -151,16 +154,22 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
     observe(RP_STAGE_TANGENTIAL, false);
   }
   observe(RP_STAGE_FORCES, true);
-  if (fitted_) {
-    const patch_wrench creep = fitted_->creep_wrench(*fitted_rows_, memory.nodes());
-    wrench = sum_tractions(problem.g, memory.pressure.data(), nullptr, nullptr);
-    // without a grid the ellipse's pressure is symmetric about the reference
-    if (problem.g.count() == 0) wrench.force[2] = -result.normal_force;
+  if (scene_.closed_form()) {
+    // the ellipse's pressure is symmetric about the reference
+    wrench = {};
+    wrench.force[2] = -result.normal_force;
+  } else {
+    const bool on_grid = memory.px.size() && !fitted_;
+    wrench = sum_tractions(problem.g, memory.pressure.data(), on_grid ? memory.px.data() : nullptr,
+                           memory.py.data());
+  }
+  if (fitted_ || (fast_ && !has_tractions(scene_.tangential))) {
+    const patch_wrench creep =
+        fitted_ ? fitted_->creep_wrench(*fitted_rows_, memory.nodes())
+                : patch_wrench{{sums_.force[0], sums_.force[1], 0.0}, {0.0, 0.0, sums_.moment}};
     wrench.force[0] = creep.force[0];
     wrench.force[1] = creep.force[1];
     wrench.moment[2] = creep.moment[2];
-  } else {
-    wrench = sum_tractions(problem.g, memory.pressure.data(), memory.px.data(), memory.py.data());
   }
   if (scene_.tangential != RP_TANGENTIAL_NONE) {
     result.creep_force[0] = wrench.force[0];
@@ -184,7 +193,7 @@ void patch_contact::describe_grid(const patch_problem &problem, rp_patch_result 
 
 // No contact: nothing is transferred, and every element is exterior.
 void patch_contact::leave_unloaded(const patch_problem &problem, patch_memory &memory) {
-  std::fill_n(memory.pressure.data(), problem.g.count(), 0.0);
+  if (memory.pressure.size()) std::fill_n(memory.pressure.data(), problem.g.count(), 0.0);
   const int n = memory.columns() * memory.rows();
   for (auto *field : {&memory.px, &memory.py, &memory.sx, &memory.sy, &memory.node_pressure})
     if (field->size()) std::fill_n(field->data(), n, 0.0);
@@ -201,8 +210,7 @@ bool patch_contact::solve_normal(const patch_problem &problem, patch_memory &mem
     solve_half_space(problem, memory, result);
   else
     solve_hertz(problem, memory, result);
-  if (g.count() == 0) {
-    // closed form, and a tangential theory that has its own nodes
+  if (memory.pressure.size() == 0) {
     if (result.normal_force > 0) return true;
     degrade(result, RP_NO_CONTACT);
     return false;
@@ -262,7 +270,7 @@ void patch_contact::solve_hertz(const patch_problem &problem, patch_memory &memo
   const grid &g = problem.g;
   const hertz_contact &hertz = problem.hertz;
   double sum = 0;
-  for (int j = 0; j < g.ny; ++j)
+  for (int j = 0; j < g.ny && memory.pressure.size(); ++j)
     for (int i = 0; i < g.nx; ++i) {
       const double level = inside_ellipse(hertz.semi_axes, g.x(i), g.y(j));
       const double p = level > 0 ? hertz.max_pressure * std::sqrt(level) : 0.0;
@@ -294,17 +302,24 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   }
   if (scene_.spin_offset) rolling.spin_offset = rolling.direction * g.dx / 6.0;
   tangential_result t;
-  if (!fitted_)
+  if (fast_) {
+    const fast_patch patch{g,
+                           memory.pressure.size() ? memory.pressure.data() : nullptr,
+                           problem.hertz,
+                           rows_ ? &*rows_ : nullptr,
+                           result.normal_force,
+                           result.contact_area,
+                           scene_.friction_coefficient};
+    t = fast_->solve(patch, rolling, fields, sums_);
+  } else if (fitted_) {
+    t = solve_fitted(problem, rolling, memory);
+  } else {
     for (int i = 0; i < g.count(); ++i)
       bound_[static_cast<size_t>(i)] =
           scene_.friction_coefficient * memory.pressure[static_cast<size_t>(i)];
-  if (fitted_)
-    t = solve_fitted(problem, rolling, memory);
-  else if (scene_.tangential == RP_TANGENTIAL_FASTSIM)
-    t = solve_fastsim(problem, rolling, result.contact_area, memory);
-  else
     t = tangential_->solve(*influence_, g, memory.pressure.data(), bound_.data(), rolling,
                            {scene_.tolerance, scene_.max_iterations}, fields);
+  }
   result.elements[RP_STICK] = t.stick;
   result.elements[RP_SLIP] = t.slip;
   if (fitted_) result.elements[RP_EXTERIOR] = memory.columns() * memory.rows() - t.stick - t.slip;
@@ -332,58 +347,6 @@ tangential_result patch_contact::solve_fitted(const patch_problem &problem,
     fitted_rows_->set_ellipse(hertz.semi_axes, hertz.normal_force);
   return fitted_->solve(*fitted_rows_, scene_.friction_coefficient, rolling,
                         {scene_.tolerance, scene_.max_iterations}, memory.nodes());
-}
-
-// x of the contact's leading edge in each row; returns the number of rows in contact.
-int patch_contact::find_leading_edges(const patch_problem &problem, int direction,
-                                      const double *pressure) {
-  const grid &g = problem.g;
-  const double *semi_axes = problem.hertz.semi_axes;
-  int rows = 0;
-  for (int j = 0; j < g.ny; ++j) {
-    const double *p = pressure + j * g.nx;
-    int first = direction > 0 ? g.nx - 1 : 0;
-    while (first >= 0 && first < g.nx && !(p[first] > 0)) first -= direction;
-    const bool touching = first >= 0 && first < g.nx;
-    const double level = semi_axes[0] > 0 ? inside_ellipse(semi_axes, 0.0, g.y(j)) : 0.0;
-    double edge = g.x(first) + 0.5 * direction * g.dx;
-    if (level > 0 && !rows_) edge = direction * semi_axes[0] * std::sqrt(level);
-    // the chord's end, unless the row is too narrow for an element's middle
-    if (rows_ && touching && direction * (rows_->leading_edge(j, direction) - g.x(first)) > 0)
-      edge = rows_->leading_edge(j, direction);
-    leading_[static_cast<size_t>(j)] = edge;
-    rows += touching;
-  }
-  return rows;
-}
-
-tangential_result patch_contact::solve_fastsim(const patch_problem &problem,
-                                               const rolling_input &rolling, double contact_area,
-                                               patch_memory &memory) {
-  const grid &g = problem.g;
-  const hertz_contact &hertz = problem.hertz;
-  double semi_axes[2] = {hertz.semi_axes[0], hertz.semi_axes[1]};
-  const bool elliptic = scene_.normal == RP_NORMAL_HERTZ;
-  const int rows = find_leading_edges(problem, rolling.direction, memory.pressure.data());
-  if (rows_ || !(semi_axes[0] > 0)) {
-    // the ellipse with the same width and area stands for a contact area of any shape
-    semi_axes[1] = 0.5 * (rows_ ? rows_->width() : rows * g.dy);
-    semi_axes[0] = contact_area / (pi * semi_axes[1]);
-  }
-  if (elliptic) {
-    // parabolic bound (Kalker 1982), scaled so that full sliding gives exactly mu times the force
-    double sum = 0;
-    for (int j = 0; j < g.ny; ++j)
-      for (int i = 0; i < g.nx; ++i) {
-        const auto at = static_cast<size_t>(j * g.nx + i);
-        bound_[at] = std::max(0.0, inside_ellipse(semi_axes, g.x(i), g.y(j)));
-        sum += bound_[at] * g.dx * g.dy;
-      }
-    for (int i = 0; i < g.count(); ++i)
-      bound_[static_cast<size_t>(i)] *= scene_.friction_coefficient * hertz.normal_force / sum;
-  }
-  return fastsim(scene_.elastic, g, memory.pressure.data(), bound_.data(), leading_.data(),
-                 semi_axes, rolling, memory.fields());
 }
 
 double patch_contact::tangential_energy(const patch_problem &problem, const patch_memory &memory) {

@@ -5,7 +5,7 @@
 #include <array>
 #include <optional>
 
-#include "fastsim.hpp"
+#include "fast.hpp"
 #include "fitted.hpp"
 #include "forces.hpp"
 #include "hertz.hpp"
@@ -29,7 +29,13 @@ struct patch_scene {
   int max_iterations = 100;
   bool spin_offset = false;  // x + dq/6 in the spin term
   int fitted[2] = {0, 0};    // nodes and strips of the tangential problem; 0: on the uniform grid
+  fast_options fast;         // where the tangential theory is a fast one
   bool is_fitted() const { return tangential == RP_TANGENTIAL_FULL && fitted[0] > 0; }
+  // No pressure and no traction on a uniform grid: all is closed form or on rows of its own.
+  bool closed_form() const {
+    return normal == RP_NORMAL_HERTZ &&
+           (is_fitted() || (is_fast(tangential) && !has_tractions(tangential)));
+  }
   double modulus() const { return elastic.shear_modulus / (1.0 - elastic.poisson_ratio); }
 };
 
@@ -52,6 +58,7 @@ struct patch_memory {
   patch_memory(int max_count, const patch_scene &scene);
   bool solved = false;  // fields belong to the last step
   bool warm = false;    // pressure and traction may serve as a start
+  bool beyond = false;  // the normal problem left its range: what the patch carries is not known
   grid g;
   std::array<double, 3> reference{};  // m, contact reference, track axes of a right wheel
   aligned_buffer<double> undeformed_distance, pressure, px, py, sx, sy;
@@ -102,11 +109,8 @@ class patch_contact {
   bool solve_tangential(const patch_problem &problem, patch_memory &memory,
                         rp_patch_result &result);
   void leave_unloaded(const patch_problem &problem, patch_memory &memory);
-  tangential_result solve_fastsim(const patch_problem &problem, const rolling_input &rolling,
-                                  double contact_area, patch_memory &memory);
   tangential_result solve_fitted(const patch_problem &problem, const rolling_input &rolling,
                                  patch_memory &memory);
-  int find_leading_edges(const patch_problem &problem, int direction, const double *pressure);
   double tangential_energy(const patch_problem &problem, const patch_memory &memory);
 
   patch_scene scene_;
@@ -119,7 +123,9 @@ class patch_contact {
   std::optional<tangential_solver> tangential_;
   std::optional<contact_rows> fitted_rows_;
   std::optional<fitted_solver> fitted_;
-  aligned_buffer<double> bound_, leading_, scratch_[2];
+  std::optional<fast_solver> fast_;
+  creep_resultants sums_;  // of the last step, where the theory has no tractions
+  aligned_buffer<double> bound_, scratch_[2];
 };
 
 // Sets what the scene's stages give where nothing touches: zeros.

@@ -110,9 +110,9 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
   for (int k = 0; k < 3; ++k) out.force[k] = out.moment[k] = 0;
   out.rolling_radius = 0;
   for (auto &patch : out.patch) patch = empty_patch_result();
-  if (found.status == search_status::out_of_range ||
-      found.status == search_status::too_many_patches)
-    out.status = RP_OUT_OF_RANGE;
+  beyond_ = found.status == search_status::out_of_range ||
+            found.status == search_status::too_many_patches;
+  if (beyond_) out.status = RP_OUT_OF_RANGE;
   for (int i = 0; i < count; ++i)
     out.status = combine_status(
         out.status, solve_patch(solver, regions_[static_cast<size_t>(i)], i, memory[i], out));
@@ -136,6 +136,7 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
     // what this patch carries is not known, so neither is the sum
     std::fill_n(out.force, 3, nan);
     std::fill_n(out.moment, 3, nan);
+    beyond_ = true;
     return result.status = RP_OUT_OF_RANGE;
   }
 
@@ -174,6 +175,7 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
   result.approach = depth;
   // beyond a profile's end there is no surface: an edge in contact is outside the theory
   if (region.at_profile_end && result.status == RP_CONVERGED) result.status = RP_OUT_OF_RANGE;
+  beyond_ = beyond_ || memory.beyond || (region.at_profile_end && result.status == RP_OUT_OF_RANGE);
   result.rolling_speed = rolling.rolling_speed;
   result.direction = rolling.direction;
   if (solver.scene().tangential != RP_TANGENTIAL_NONE) {

@@ -26,6 +26,8 @@ class wheel_contact {
   bool first_touch(double &z) const;
   // Solves the contact at the placed position. memory: of this side's patches, max_patches.
   void evaluate(patch_contact &solver, patch_memory *memory, rp_side_result &result);
+  // The last state is out of range for its geometry or normal problem, so its force is not known.
+  bool beyond() const { return beyond_; }
   size_t bytes() const;
 
  private:
@@ -35,6 +37,7 @@ class wheel_contact {
 
   rp_config config_;
   int side_;
+  bool beyond_ = false;
   std::unique_ptr<profile> wheel_, rail_;
   std::unique_ptr<side_geometry> geometry_;
   std::array<patch_region, RP_MAX_PATCHES> regions_;

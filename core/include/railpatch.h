@@ -90,9 +90,26 @@ typedef enum rp_normal_method {
 } rp_normal_method;
 typedef enum rp_tangential_method {
   RP_TANGENTIAL_NONE = 0,
-  RP_TANGENTIAL_FASTSIM = 1, /* Kalker 1982, three flexibilities, parabolic bound for Hertz */
-  RP_TANGENTIAL_FULL = 2     /* Kalker's exact theory on the half-space */
+  RP_TANGENTIAL_FASTSIM = 1, /* Kalker 1982, three flexibilities */
+  RP_TANGENTIAL_FULL = 2,    /* Kalker's exact theory on the half-space */
+  RP_TANGENTIAL_LINEAR = 3,  /* Kalker 1967, no bound: RP_OUT_OF_RANGE beyond saturation */
+  RP_TANGENTIAL_POLACH = 4,  /* Polach 1999, 2005; no spin moment: 0 */
+  RP_TANGENTIAL_FASTRIP = 5  /* FaStrip, Sichani, Enblom, Berg 2016 */
 } rp_tangential_method;
+/* of FASTSIM; the bound of FaStrip is elliptic */
+typedef enum rp_traction_bound {
+  RP_BOUND_AUTOMATIC = 0, /* with Hertz parabolic, else elliptic */
+  RP_BOUND_PARABOLIC = 1, /* as the square of the pressure */
+  RP_BOUND_ELLIPTIC = 2   /* friction coefficient times pressure */
+} rp_traction_bound;
+/* of FASTSIM and FaStrip: whether the flexibilities become one as sliding becomes full, so that the
+ * creep force then points against the creepage */
+typedef enum rp_flexibility_blending {
+  RP_BLENDING_SLIDING = 0,
+  RP_BLENDING_NONE = 1,
+  RP_BLENDING_CONTACT = 2 /* FASTSIM as in the program CONTACT: blended, with Kalker's published
+                             coefficients, whole elements as steps and the bound not scaled */
+} rp_flexibility_blending;
 typedef enum rp_spin_offset {
   RP_SPIN_OFFSET_NONE = 0,
   RP_SPIN_OFFSET_SIXTH = 1 /* x + dq/6 in the spin term, as the program CONTACT does */
@@ -165,6 +182,13 @@ typedef struct rp_config {
   double tolerance;       /* -, relative, 1e-12 ... 1e-1 */
   int32_t max_iterations; /* of each solver */
   rp_spin_offset spin_offset;
+  double percent_kalker; /* %, 0 < ... 200: of the creepage coefficients of the fast theories */
+  rp_traction_bound traction_bound;
+  rp_flexibility_blending flexibility_blending;
+  double polach_k_a, polach_k_s; /* -, 0 < ... 10: reduction of adhesion and of slip area */
+  double fastsim_k0;             /* -, 0 < ... 10: stiffness k0 (alpha + (1-alpha)/(1+beta e)) */
+  double fastsim_alpha;          /* -, 0 ... 1 */
+  double fastsim_beta;           /* -, 0 ... 1000 */
 
   /* wheel_rail, wheelset */
   int32_t side;                /* RP_LEFT or RP_RIGHT, kind = RP_WHEEL_RAIL */
@@ -206,7 +230,9 @@ typedef struct rp_input {
   double roller_pitch_rate;                        /* rad/s */
 } rp_input;
 
-/* One patch. Values of stages that the scene leaves out are NaN (element counts 0). */
+/* One patch. Values of stages that the scene leaves out are NaN (element counts 0). Linear theory
+ * and Polach know no elements in stick or slip; with Hertz a patch has no grid either: its size is
+ * 0. */
 typedef struct rp_patch_result {
   rp_status status;
   double normal_force;       /* N */
@@ -217,7 +243,7 @@ typedef struct rp_patch_result {
   double contact_area;       /* m^2 */
   int32_t elements[4];       /* exterior, stick, slip, plastic; indexed by rp_element */
   double max_temperature;    /* degrees C; NaN: not part of the scene */
-  double friction_power;     /* W, >= 0: power that the creepages supply */
+  double friction_power;     /* W, >= 0: power that the creepages supply (Polach: without spin) */
   double elastic_energy;     /* J; NaN with fitted rows */
   int32_t normal_iterations; /* conjugate-gradient steps; evaluations of the fast theories */
   int32_t newton_iterations; /* of the tangential problem */

@@ -25,6 +25,14 @@
   X(tolerance)                     \
   X(max_iterations)                \
   X(spin_offset)                   \
+  X(percent_kalker)                \
+  X(traction_bound)                \
+  X(flexibility_blending)          \
+  X(polach_k_a)                    \
+  X(polach_k_s)                    \
+  X(fastsim_k0)                    \
+  X(fastsim_alpha)                 \
+  X(fastsim_beta)                  \
   X(side)                          \
   X(nominal_radius)                \
   X(flange_back_distance)          \

@@ -82,8 +82,16 @@ def problems_of(case: Any, **options: Any) -> list[str]:
         ),
         (
             "method__tangential",
-            "polach",
-            "method.tangential: value is 'polach', allowed 'none', 'fastsim' or 'full'",
+            "carter",
+            "method.tangential: value is 'carter', allowed 'none', 'linear', 'polach', 'fastsim', "
+            "'fastrip' or 'full'",
+        ),
+        ("method__percent_kalker", 0.0, "method.percent_kalker: value is 0.0, allowed > 0"),
+        ("method__polach_k_a", 11.0, "method.polach_k_a: value is 11.0, allowed <= 10"),
+        (
+            "method__traction_bound",
+            "flat",
+            "method.traction_bound: value is 'flat', allowed 'parabolic' or 'elliptic'",
         ),
         ("method__tolerance", 0.0, "method.tolerance: value is 0.0, allowed >= 1e-12"),
         ("method__accuracy", 0.01, "method.accuracy: value is 0.01, allowed: leave it out"),
@@ -209,12 +217,20 @@ LAYER = {"shear_modulus": 8.2e9, "thickness": 5e-5}
             "method.tangential: value is 'fastsim', allowed 'full' with a line contact",
         ),
         (
+            {**LINE, "method__tangential": "polach"},
+            "method.tangential: value is 'polach', allowed 'full' with a line contact",
+        ),
+        (
             {**LINE, "grid": {"elements": [16, 16]}},
             "grid.elements: value is [16, 16], allowed [n, 1] with a line contact",
         ),
         (
             {"layer": LAYER, "method__tangential": "fastsim"},
             "method.tangential: value is 'fastsim', allowed 'full' with a layer of thickness > 0",
+        ),
+        (
+            {"layer": LAYER, "method__tangential": "linear"},
+            "method.tangential: value is 'linear', allowed 'full' with a layer of thickness > 0",
         ),
         (
             {"material__poisson_ratio": [0.31, 0.28]},
@@ -228,3 +244,33 @@ def test_what_this_version_cannot_combine(change: dict[str, Any], problem: str) 
     # the normal problem alone has no such limits, but for those of the line contact itself
     if "tangential" in problem or "material" in problem:
         load_scene(with_values(PATCH, **{**change, "motion": None}))
+
+
+@pytest.mark.parametrize(
+    ("tangential", "key", "value", "allowed"),
+    [
+        ("full", "percent_kalker", 60.0, "'linear' or 'polach' or 'fastsim' or 'fastrip'"),
+        ("fastsim", "polach_k_a", 0.5, "'polach'"),
+        ("fastrip", "polach_k_s", 0.5, "'polach'"),
+        ("polach", "fastsim_k0", 0.5, "'fastsim'"),
+        ("linear", "fastsim_alpha", 0.5, "'fastsim'"),
+        ("fastrip", "fastsim_beta", 0.5, "'fastsim'"),
+        ("fastrip", "traction_bound", "elliptic", "'fastsim'"),
+        ("polach", "flexibility_blending", "none", "'fastsim' or 'fastrip'"),
+    ],
+)
+def test_keys_of_other_theories(tangential: str, key: str, value: Any, allowed: str) -> None:
+    case = with_values(PATCH, method={"tangential": tangential, key: value})
+    assert problems_of(case) == [
+        f"method.{key}: value is {value!r}, allowed it only with tangential = {allowed}"
+    ]
+    # without a tangential problem nothing reads them
+    load_scene(with_values(case, method__tangential="none"))
+
+
+def test_fastrip_has_no_compatible_blending() -> None:
+    method = {"tangential": "fastrip", "flexibility_blending": "contact"}
+    assert problems_of(with_values(PATCH, method=method)) == [
+        "method.flexibility_blending: value is 'contact', allowed 'sliding' or 'none' with "
+        "tangential = 'fastrip'"
+    ]

@@ -15,7 +15,7 @@ from railpatch.case.messages import LATER_KEYS
 from railpatch.moving import changed_case, moving_keys
 
 # "m, ..." of a value, "... (m, rad)" of a table, "... (no unit)" of a choice
-UNIT = re.compile(r"^(-|m|1/m|rad|rad/s|rad/m|m/s|N|Pa), |\((no unit|file|Pa|m|N|-|rad)[^()]*\)")
+UNIT = re.compile(r"^(-|%|m|1/m|rad|rad/s|rad/m|m/s|N|Pa), |\((no unit|file|Pa|m|N|-|rad)[^()]*\)")
 
 
 def properties() -> Iterator[tuple[str, dict[str, Any]]]:
@@ -37,7 +37,14 @@ def test_kinds_and_choices() -> None:
     assert set(schema["discriminator"]["mapping"]) == {"patch", "wheel_rail", "wheelset"}
     method = schema["$defs"]["Method"]["properties"]
     assert method["normal"]["enum"] == ["hertz", "kik_piotrowski", "analyn", "half_space"]
-    assert method["tangential"]["enum"] == ["none", "fastsim", "full"]
+    assert method["tangential"]["enum"] == [
+        "none",
+        "linear",
+        "polach",
+        "fastsim",
+        "fastrip",
+        "full",
+    ]
 
 
 def test_later_keys_are_no_keys_yet() -> None:

@@ -213,10 +213,22 @@ TEST(Step, OfAPatchAllocatesNothing) {
   for (rp_normal_method normal :
        {RP_NORMAL_HERTZ, RP_NORMAL_HALF_SPACE, RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN})
     for (rp_tangential_method tangential :
-         {RP_TANGENTIAL_NONE, RP_TANGENTIAL_FASTSIM, RP_TANGENTIAL_FULL})
+         {RP_TANGENTIAL_NONE, RP_TANGENTIAL_FASTSIM, RP_TANGENTIAL_FULL, RP_TANGENTIAL_LINEAR,
+          RP_TANGENTIAL_POLACH, RP_TANGENTIAL_FASTRIP})
       for (int elements : {7, 16, 31})
         EXPECT_EQ(run(scenes::patch(normal, tangential, elements), patch_inputs()).allocated, 0)
             << "normal " << normal << " tangential " << tangential << " elements " << elements;
+}
+
+TEST(Step, OfFittedRowsAllocatesNothing) {
+  for (rp_normal_method normal :
+       {RP_NORMAL_HERTZ, RP_NORMAL_HALF_SPACE, RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN})
+    for (int nodes : {3, 8, 17}) {
+      rp_config c = scenes::patch(normal, RP_TANGENTIAL_FULL, 16);
+      c.fitted[0] = nodes;
+      c.fitted[1] = nodes + 2;
+      EXPECT_EQ(run(c, patch_inputs()).allocated, 0) << "normal " << normal << " nodes " << nodes;
+    }
 }
 
 // Curvatures with a fixed element size: the grid grows and shrinks with the load.

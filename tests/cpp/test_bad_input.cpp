@@ -128,6 +128,12 @@ const number_field patch_numbers[] = {
     {"semi_axes[1]", [](rp_config &c) -> double & { return c.semi_axes[1]; }, -1e-3, 10},
     {"friction_coefficient", [](rp_config &c) -> double & { return c.friction_coefficient; }, -0.1,
      100},
+    {"percent_kalker", [](rp_config &c) -> double & { return c.percent_kalker; }, 0, 201},
+    {"polach_k_a", [](rp_config &c) -> double & { return c.polach_k_a; }, 0, 11},
+    {"polach_k_s", [](rp_config &c) -> double & { return c.polach_k_s; }, 0, 11},
+    {"fastsim_k0", [](rp_config &c) -> double & { return c.fastsim_k0; }, 0, 11},
+    {"fastsim_alpha", [](rp_config &c) -> double & { return c.fastsim_alpha; }, -0.1, 1.1},
+    {"fastsim_beta", [](rp_config &c) -> double & { return c.fastsim_beta; }, -0.1, 1001},
     {"layer_thickness", [](rp_config &c) -> double & { return c.layer_thickness; }, -1e-6, 1},
     {"tolerance", [](rp_config &c) -> double & { return c.tolerance; }, 0, 0.5},
 };
@@ -202,7 +208,9 @@ TEST(Config, ChoicesAndCountsAreChecked) {
       {"load", [](rp_config &c, int v) { put(c.load, v); }, -1, 2},
       {"regime", [](rp_config &c, int v) { put(c.regime, v); }, -1, 2},
       {"normal", [](rp_config &c, int v) { put(c.normal, v); }, -1, 4},
-      {"tangential", [](rp_config &c, int v) { put(c.tangential, v); }, -1, 3},
+      {"tangential", [](rp_config &c, int v) { put(c.tangential, v); }, -1, 6},
+      {"traction_bound", [](rp_config &c, int v) { put(c.traction_bound, v); }, -1, 3},
+      {"flexibility_blending", [](rp_config &c, int v) { put(c.flexibility_blending, v); }, -1, 3},
       {"spin_offset", [](rp_config &c, int v) { put(c.spin_offset, v); }, -1, 2},
       {"elements[0]", [](rp_config &c, int v) { c.elements[0] = v; }, -5, 100000},
       {"elements[1]", [](rp_config &c, int v) { c.elements[1] = v; }, 1, 100000},
@@ -244,7 +252,7 @@ TEST(Config, RelationsAreChecked) {
   expect_refused(c, RP_ERROR_VALUE, "approach");
   c.load = RP_FORCE;
   c.tangential = RP_TANGENTIAL_FASTSIM;
-  expect_refused(c, RP_ERROR_VALUE, "fastsim");
+  expect_refused(c, RP_ERROR_VALUE, "fast theory");
   for (rp_normal_method method : {RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN}) {
     c.tangential = RP_TANGENTIAL_FULL;
     c.normal = method;
@@ -255,6 +263,23 @@ TEST(Config, RelationsAreChecked) {
   c.layer_thickness = 1e-4;
   c.layer_shear_modulus = 8e9;
   expect_refused(c, RP_ERROR_VALUE, "layer");
+  c = default_config();
+  c.percent_kalker = 60;
+  expect_refused(c, RP_ERROR_VALUE, "percent_kalker");
+  c = default_config();
+  c.tangential = RP_TANGENTIAL_FASTRIP;
+  c.traction_bound = RP_BOUND_PARABOLIC;
+  expect_refused(c, RP_ERROR_VALUE, "traction_bound");
+  c.traction_bound = RP_BOUND_AUTOMATIC;
+  c.flexibility_blending = RP_BLENDING_CONTACT;
+  expect_refused(c, RP_ERROR_VALUE, "flexibility_blending");
+  c.flexibility_blending = RP_BLENDING_SLIDING;
+  c.polach_k_s = 0.4;
+  expect_refused(c, RP_ERROR_VALUE, "polach_k_s");
+  c = default_config();
+  c.tangential = RP_TANGENTIAL_POLACH;
+  c.fastsim_beta = 0.6;
+  expect_refused(c, RP_ERROR_VALUE, "fastsim_beta");
   c = default_config();
   c.shear_modulus[0] = 26e9;
   expect_refused(c, RP_ERROR_VALUE, "shear_modulus");

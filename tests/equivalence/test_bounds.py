@@ -20,6 +20,7 @@ LINE = with_values(
 )
 CURVED = with_values(PATCH, geometry={"curvatures": [1.0, 1.0]}, load={"approach": 1e-5})
 SIZED = with_values(CURVED, grid={"element_size": [1e-4, 1e-4]})
+METHODS = {name: with_values(PATCH, method__tangential=name) for name in ("polach", "fastsim")}
 LAYERED = with_values(PATCH, layer={"shear_modulus": 8e9, "thickness": 1e-5})
 
 # case, key of the case, field of the core's structs
@@ -34,6 +35,12 @@ CONFIG_KEYS = [
     (LAYERED, "layer.thickness", "layer_thickness"),
     (PATCH, "method.tolerance", "tolerance"),
     (PATCH, "method.max_iterations", "max_iterations"),
+    (METHODS["polach"], "method.percent_kalker", "percent_kalker"),
+    (METHODS["polach"], "method.polach_k_a", "polach_k_a"),
+    (METHODS["polach"], "method.polach_k_s", "polach_k_s"),
+    (METHODS["fastsim"], "method.fastsim_k0", "fastsim_k0"),
+    (METHODS["fastsim"], "method.fastsim_alpha", "fastsim_alpha"),
+    (METHODS["fastsim"], "method.fastsim_beta", "fastsim_beta"),
     (PATCH, "material.shear_modulus", "shear_modulus"),
     (PATCH, "material.poisson_ratio", "poisson_ratio"),
     (WHEELSET, "wheelset.nominal_radius", "nominal_radius"),

@@ -45,9 +45,11 @@ def assert_same(one: railpatch.Result, two: railpatch.Result, scale: float, rel:
 
 
 @pytest.mark.parametrize("geometry", [{"semi_axes": [6e-3, 6e-3]}, {"curvatures": [0.5, 1.0]}])
-@pytest.mark.parametrize("tangential", ["none", "fastsim", "full"])
+@pytest.mark.parametrize("tangential", ["none", "linear", "polach", "fastsim", "fastrip", "full"])
 def test_step_equals_solve_of_the_changed_case(geometry: dict[str, Any], tangential: str) -> None:
     case = with_values(PATCH, geometry=geometry, method__tangential=tangential)
+    if tangential == "linear":  # it holds below saturation only
+        case = with_values(case, friction__coefficient=10.0)
     contact = railpatch.Contact(case)
     contact.step()
     stepped = contact.step(creepage=[2e-3, -5e-4], spin_creepage=0.4, normal_force=6e4)

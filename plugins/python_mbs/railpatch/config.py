@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from railpatch.case.common import FAST_NUMBERS
 from railpatch.case.load import Case, Scene
 from railpatch.case.patch import SHAPES, PatchCase
 from railpatch.case.wheel import SIDES, WheelRailCase, WheelsetCase
@@ -24,9 +25,12 @@ def config_of(scene: Scene) -> dict[str, Any]:
         "tangential": case.method.tangential,
         "tolerance": case.method.tolerance,
         "spin_offset": case.method.spin_offset,
+        "flexibility_blending": case.method.flexibility_blending,
+        **{name: getattr(case.method, name) for name in FAST_NUMBERS},
     }
     optional = {
         "max_iterations": case.method.max_iterations,
+        "traction_bound": case.method.traction_bound,
         "friction_coefficient": case.friction and case.friction.coefficient,
         "layer_shear_modulus": case.layer and case.layer.shear_modulus,
         "layer_thickness": case.layer and case.layer.thickness,

@@ -40,6 +40,14 @@ constexpr Name kNames[] = {
     {"tangential", "none", RP_TANGENTIAL_NONE},
     {"tangential", "fastsim", RP_TANGENTIAL_FASTSIM},
     {"tangential", "full", RP_TANGENTIAL_FULL},
+    {"tangential", "linear", RP_TANGENTIAL_LINEAR},
+    {"tangential", "polach", RP_TANGENTIAL_POLACH},
+    {"tangential", "fastrip", RP_TANGENTIAL_FASTRIP},
+    {"traction_bound", "parabolic", RP_BOUND_PARABOLIC},
+    {"traction_bound", "elliptic", RP_BOUND_ELLIPTIC},
+    {"flexibility_blending", "sliding", RP_BLENDING_SLIDING},
+    {"flexibility_blending", "none", RP_BLENDING_NONE},
+    {"flexibility_blending", "contact", RP_BLENDING_CONTACT},
     {"spin_offset", "none", RP_SPIN_OFFSET_NONE},
     {"spin_offset", "sixth", RP_SPIN_OFFSET_SIXTH},
     {"track", "rail", RP_RAIL},
@@ -252,6 +260,14 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.scalar("tolerance", c.tolerance);
   reader.scalar("max_iterations", c.max_iterations);
   reader.name("spin_offset", c.spin_offset);
+  reader.scalar("percent_kalker", c.percent_kalker);
+  reader.name("traction_bound", c.traction_bound);
+  reader.name("flexibility_blending", c.flexibility_blending);
+  reader.scalar("polach_k_a", c.polach_k_a);
+  reader.scalar("polach_k_s", c.polach_k_s);
+  reader.scalar("fastsim_k0", c.fastsim_k0);
+  reader.scalar("fastsim_alpha", c.fastsim_alpha);
+  reader.scalar("fastsim_beta", c.fastsim_beta);
   reader.name("side", c.side);
   reader.scalar("nominal_radius", c.nominal_radius);
   reader.scalar("flange_back_distance", c.flange_back_distance);

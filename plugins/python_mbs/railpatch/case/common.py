@@ -17,6 +17,7 @@ from railpatch.case.types import (
     Table,
     between,
     exactly_one,
+    more_than,
     relation,
     twice,
 )
@@ -96,13 +97,29 @@ def has_layer(layer: Layer | None) -> bool:
     return layer is not None and layer.thickness > 0
 
 
+# what only some of the tangential theories read
+READERS = {
+    "percent_kalker": ("linear", "polach", "fastsim", "fastrip"),
+    "traction_bound": ("fastsim",),
+    "flexibility_blending": ("fastsim", "fastrip"),
+    "polach_k_a": ("polach",),
+    "polach_k_s": ("polach",),
+    "fastsim_k0": ("fastsim",),
+    "fastsim_alpha": ("fastsim",),
+    "fastsim_beta": ("fastsim",),
+}
+FAST_NUMBERS = tuple(
+    name for name in READERS if name not in ("traction_bound", "flexibility_blending")
+)
+
+
 class Method(Table):
     """Which theory solves which problem."""
 
     normal: Literal["hertz", "kik_piotrowski", "analyn", "half_space"] = Field(
         default="half_space", description="theory of the normal problem (no unit)"
     )
-    tangential: Literal["none", "fastsim", "full"] = Field(
+    tangential: Literal["none", "linear", "polach", "fastsim", "fastrip", "full"] = Field(
         default="full", description="theory of the tangential problem (no unit)"
     )
     tolerance: Annotated[float, between(1e-12, 0.1)] = Field(
@@ -116,6 +133,52 @@ class Method(Table):
         description="-, shift of the spin term in elements along rolling: none, or a sixth as in "
         "the program CONTACT, for comparisons",
     )
+    percent_kalker: Annotated[float, more_than(0, 200)] = Field(
+        default=100.0, description="%, of Kalker's creepage coefficients in the fast theories"
+    )
+    traction_bound: Literal["parabolic", "elliptic"] | None = Field(
+        default=None,
+        description="of fastsim (no unit): elliptic, the friction coefficient times the pressure, "
+        "or parabolic, as its square; left out: parabolic with hertz, else elliptic",
+    )
+    flexibility_blending: Literal["sliding", "none", "contact"] = Field(
+        default="sliding",
+        description="of fastsim and fastrip (no unit): one flexibility for all directions as "
+        "sliding becomes full, or none; contact: fastsim as in the program CONTACT, to compare "
+        "(blended, Kalker's published coefficients, whole elements as steps, bound not scaled)",
+    )
+    polach_k_a: Annotated[float, more_than(0, 10)] = Field(
+        default=1.0,
+        description="-, k_A of polach, reduction of the area of adhesion; 1: Kalker's slope",
+    )
+    polach_k_s: Annotated[float, more_than(0, 10)] = Field(
+        default=1.0, description="-, k_S of polach, reduction of the area of slip"
+    )
+    fastsim_k0: Annotated[float, more_than(0, 10)] = Field(
+        default=1.0,
+        description="-, k0 of modified fastsim, whose stiffness is that of Kalker times "
+        "k0 (alpha + (1 - alpha)/(1 + beta e))",
+    )
+    fastsim_alpha: Annotated[float, between(0, 1)] = Field(
+        default=1.0, description="-, alpha of modified fastsim"
+    )
+    fastsim_beta: Annotated[float, between(0, 1000)] = Field(
+        default=0.0, description="-, beta of modified fastsim"
+    )
+
+    @model_validator(mode="after")
+    def _read_by_theory(self) -> Method:
+        if self.tangential == "none":
+            return self
+        for name, readers in READERS.items():
+            value = getattr(self, name)
+            if self.tangential not in readers and value != type(self).model_fields[name].default:
+                allowed = " or ".join(f"'{reader}'" for reader in readers)
+                raise relation(name, repr(value), f"it only with tangential = {allowed}")
+        if self.tangential == "fastrip" and self.flexibility_blending == "contact":
+            allowed = "'sliding' or 'none' with tangential = 'fastrip'"
+            raise relation("flexibility_blending", "'contact'", allowed)
+        return self
 
 
 def check_fitted(grid: Grid | None, method: Method, *, line: bool = False) -> None:
@@ -138,8 +201,10 @@ def check_tangential(
     """What a tangential problem needs, and what this version cannot combine."""
     if friction is None:
         raise relation("friction", "missing", "the table [friction] with 'coefficient'")
-    if method.tangential == "fastsim" and has_layer(layer):
-        raise relation("method.tangential", "'fastsim'", "'full' with a layer of thickness > 0")
+    if method.tangential != "full" and has_layer(layer):
+        raise relation(
+            "method.tangential", repr(method.tangential), "'full' with a layer of thickness > 0"
+        )
     (g_wheel, g_rail), (nu_wheel, nu_rail) = material.shear_modulus, material.poisson_ratio
     wheel, rail = (1 - 2 * nu_wheel) / g_wheel, (1 - 2 * nu_rail) / g_rail
     # otherwise pressure moves the surfaces along each other: Kalker 1990, eq. 1.44

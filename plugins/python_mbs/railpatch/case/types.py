@@ -19,6 +19,11 @@ def between(low: float, high: float) -> Any:
     return Field(ge=low, le=high, allow_inf_nan=False)
 
 
+def more_than(low: float, high: float) -> Any:
+    """The range of a number, the lower end not allowed."""
+    return Field(gt=low, le=high, allow_inf_nan=False)
+
+
 def exactly(count: int) -> Any:
     """The length of a list."""
     return Field(min_length=count, max_length=count)
