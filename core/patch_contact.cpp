@@ -78,13 +78,13 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
     rows_.emplace(scene.normal, scene.modulus(), max_ny);
   if (full) tangential_.emplace(max_nx, max_ny);
   if (is_fast(scene.tangential)) fast_.emplace(scene.elastic, scene.fast, max_nx, max_ny);
-  if (scene.closed_form()) return;
-  scratch_[0] = aligned_buffer<double>(count);
-  scratch_[1] = aligned_buffer<double>(count);
   if (scene.is_fitted()) {
     fitted_rows_.emplace(scene.fitted[0], scene.fitted[1], max_ny);
     fitted_.emplace(scene.elastic, scene.layer_flexibility, scene.line_width > 0, *fitted_rows_);
   }
+  if (scene.closed_form()) return;
+  scratch_[0] = aligned_buffer<double>(count);
+  scratch_[1] = aligned_buffer<double>(count);
   if (full) bound_ = aligned_buffer<double>(count);
 }
 
@@ -120,7 +120,7 @@ void patch_contact::start_from(patch_memory &memory, const grid &g) {
   }
   memory.g = g;
   if (memory.warm) return;
-  std::fill_n(memory.pressure.data(), g.count(), 0.0);
+  if (memory.pressure.size()) std::fill_n(memory.pressure.data(), g.count(), 0.0);
   if (memory.px.size() == 0) return;
   for (auto *field : {&memory.px, &memory.py})
     std::fill_n(field->data(), memory.columns() * memory.rows(), 0.0);

@@ -154,11 +154,12 @@ TEST_P(State, HoldsAHistory) {
   const bool resultants =
       s.config.tangential == RP_TANGENTIAL_LINEAR || s.config.tangential == RP_TANGENTIAL_POLACH;
   EXPECT_EQ(contact.state() != fresh, !(s.config.normal == RP_NORMAL_HERTZ && resultants));
-  const rp_result warm = contact.step(s.inputs[2]);
+  // the same again: a step far away may well start afresh
+  const rp_result warm = contact.step(s.inputs[1]);
   rp_reset(contact.get());
   const bool closed_form =
       s.config.normal != RP_NORMAL_HALF_SPACE && s.config.tangential != RP_TANGENTIAL_FULL;
-  EXPECT_EQ(scenes::difference(contact.step(s.inputs[2]), warm).empty(), closed_form);
+  EXPECT_EQ(scenes::difference(contact.step(s.inputs[1]), warm).empty(), closed_form);
 }
 
 TEST_P(State, BuffersThatDoNotFitChangeNothing) {
