@@ -2,8 +2,8 @@
 // of fft_fftw.cpp and fft_eigen.cpp is built (RAILPATCH_FFT).
 //
 // Layout: real arrays are [ny][nx] with x fastest; spectra are [ny][nx/2 + 1], x halved.
-// Normalisation: forward carries no factor, backward carries none either, so backward(forward(f))
-// is nx*ny*f; the caller divides. Sign: forward uses exp(-i k x).
+// Normalisation: no factor. Sign: exp(-i k x). Products go the way there and back by batch_fft.hpp;
+// this serves the kernels' spectra, once for each size of element.
 #pragma once
 
 #include <complex>
@@ -30,9 +30,8 @@ class fft_plans {
   int max_ny() const { return sizes_y_.back(); }
   size_t bytes() const;
 
-  // Arrays must come from aligned_buffer (memory.hpp); forward keeps its input, backward does not.
+  // Arrays must come from aligned_buffer (memory.hpp); the input is kept.
   void forward(int plan, const double *values, std::complex<double> *spectrum) const;
-  void backward(int plan, std::complex<double> *spectrum, double *values) const;
 
   static const char *backend();
 

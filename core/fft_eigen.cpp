@@ -27,10 +27,8 @@ fft_plans::fft_plans(std::vector<int> sizes_x, std::vector<int> sizes_y)
                                                 static_cast<size_t>(max_ny()));
   const auto columns = static_cast<int>(sizes_y_.size());
   for (int i = 0; i < static_cast<int>(sizes_x_.size()); ++i)
-    for (int j = 0; j < columns; j += i == 0 ? 1 : columns) {
+    for (int j = 0; j < columns; j += i == 0 ? 1 : columns)
       forward(i * columns + j, values.data(), spectrum.data());
-      backward(i * columns + j, spectrum.data(), values.data());
-    }
 }
 
 fft_plans::~fft_plans() = default;
@@ -54,17 +52,6 @@ void fft_plans::forward(int plan, const double *values, std::complex<double> *sp
     l.fft.fwd(l.image.data(), l.column.data(), height);
     for (int j = 0; j < height; ++j) spectrum[j * half + i] = l.image[static_cast<size_t>(j)];
   }
-}
-
-void fft_plans::backward(int plan, std::complex<double> *spectrum, double *values) const {
-  const int width = nx(plan), height = ny(plan), half = width / 2 + 1;
-  library &l = *library_;
-  for (int i = 0; i < half && height > 1; ++i) {
-    for (int j = 0; j < height; ++j) l.column[static_cast<size_t>(j)] = spectrum[j * half + i];
-    l.fft.inv(l.image.data(), l.column.data(), height);
-    for (int j = 0; j < height; ++j) spectrum[j * half + i] = l.image[static_cast<size_t>(j)];
-  }
-  for (int j = 0; j < height; ++j) l.fft.inv(values + j * width, spectrum + j * half, width);
 }
 
 const char *fft_plans::backend() { return "eigen"; }

@@ -8,11 +8,6 @@ namespace railpatch {
 
 namespace {
 
-struct plan_pair {
-  fftw_plan forward = nullptr;
-  fftw_plan backward = nullptr;
-};
-
 // FFTW's planner works on process-wide tables; execution is free of them. This lock is the one
 // exception to "no globals", forced by the library.
 std::mutex &planner_lock() {
@@ -27,12 +22,9 @@ fftw_complex *as_fftw(std::complex<double> *z) { return reinterpret_cast<fftw_co
 struct fft_plans::library {
   ~library() {
     const std::lock_guard<std::mutex> guard(planner_lock());
-    for (auto &pair : plans) {
-      fftw_destroy_plan(pair.forward);
-      fftw_destroy_plan(pair.backward);
-    }
+    for (fftw_plan plan : plans) fftw_destroy_plan(plan);
   }
-  std::vector<plan_pair> plans;
+  std::vector<fftw_plan> plans;
 };
 
 fft_plans::fft_plans(std::vector<int> sizes_x, std::vector<int> sizes_y)
@@ -51,26 +43,19 @@ fft_plans::fft_plans(std::vector<int> sizes_x, std::vector<int> sizes_y)
   for (size_t i = 0; i < plans.size(); ++i) {
     // estimated plans depend on nothing but the size, so results are the same in every run
     const int plan = static_cast<int>(i);
-    plans[i].forward =
+    plans[i] =
         fftw_plan_dft_r2c_2d(ny(plan), nx(plan), values.data(), as_fftw(spectrum.data()), flags);
-    plans[i].backward =
-        fftw_plan_dft_c2r_2d(ny(plan), nx(plan), as_fftw(spectrum.data()), values.data(), flags);
-    if (!plans[i].forward || !plans[i].backward) throw std::bad_alloc();
+    if (!plans[i]) throw std::bad_alloc();
   }
 }
 
 fft_plans::~fft_plans() = default;
 
-size_t fft_plans::bytes() const { return library_->plans.size() * sizeof(plan_pair); }
+size_t fft_plans::bytes() const { return library_->plans.size() * sizeof(fftw_plan); }
 
 void fft_plans::forward(int plan, const double *values, std::complex<double> *spectrum) const {
-  fftw_execute_dft_r2c(library_->plans[static_cast<size_t>(plan)].forward,
-                       const_cast<double *>(values), as_fftw(spectrum));
-}
-
-void fft_plans::backward(int plan, std::complex<double> *spectrum, double *values) const {
-  fftw_execute_dft_c2r(library_->plans[static_cast<size_t>(plan)].backward, as_fftw(spectrum),
-                       values);
+  fftw_execute_dft_r2c(library_->plans[static_cast<size_t>(plan)], const_cast<double *>(values),
+                       as_fftw(spectrum));
 }
 
 const char *fft_plans::backend() { return "fftw"; }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "memory.hpp"
+#include "sums.hpp"
 
 namespace railpatch {
 
@@ -71,8 +72,7 @@ class gmres {
       double *h = hessenberg_.data() + k * (krylov_ + 1);
       for (int i = 0; i <= k; ++i) {
         const double *e = basis(i);
-        h[i] = 0;
-        for (size_t m = 0; m < n; ++m) h[i] += e[m] * v[m];
+        h[i] = dot(e, v, n);
         for (size_t m = 0; m < n; ++m) v[m] -= h[i] * e[m];
       }
       h[k + 1] = norm(v, n);
@@ -124,11 +124,7 @@ class gmres {
     for (size_t m = 0; m < n; ++m) x[m] += work_[m];
   }
 
-  static double norm(const double *v, size_t n) {
-    double sum = 0;
-    for (size_t i = 0; i < n; ++i) sum += v[i] * v[i];
-    return std::sqrt(sum);
-  }
+  static double norm(const double *v, size_t n) { return std::sqrt(dot(v, v, n)); }
   double *basis(int k) { return basis_.data() + static_cast<size_t>(k) * max_size_; }
 
   int krylov_;

@@ -3,23 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sums.hpp"
+
 namespace railpatch {
-
-namespace {
-
-double dot(const double *a, const double *b, size_t n) {
-  double sum = 0;
-  for (size_t i = 0; i < n; ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-double total(const double *a, size_t n) {
-  double sum = 0;
-  for (size_t i = 0; i < n; ++i) sum += a[i];
-  return sum;
-}
-
-}  // namespace
 
 struct normal_solver::problem {
   influence &a;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sums.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -20,11 +22,7 @@ constexpr double far_away = 0.3;
 
 double square(double v) { return v * v; }
 
-double norm(const double *v, size_t n) {
-  double sum = 0;
-  for (size_t i = 0; i < n; ++i) sum += v[i] * v[i];
-  return std::sqrt(sum);
-}
+double norm(const double *v, size_t n) { return std::sqrt(dot(v, v, n)); }
 
 }  // namespace
 
