@@ -14,6 +14,7 @@
 #include "convert.hpp"
 #include "force_element.hpp"
 #include "railpatch.h"
+#include "timing.hpp"
 
 namespace railpatch::python {
 
@@ -101,6 +102,17 @@ class Contact : public Steppable {
     check(rp_step(contact_.get(), &input, &result, &message), &message);
   }
 
+  nb::tuple time_steps(const nb::list &inputs, const nb::list &reset, int repeat) {
+    timed_steps steps(inputs, reset, repeat);
+    {
+      nb::gil_scoped_release unlocked;
+      std::lock_guard<std::mutex> guard(mutex_);
+      rp_message message = {};
+      check(steps.run(contact_.get(), message), &message);
+    }
+    return steps.outcome();
+  }
+
   std::optional<FieldArray> field(int side, int patch, const char *name) {
     const rp_field wanted = field_of(name);
     std::lock_guard<std::mutex> guard(mutex_);
@@ -181,6 +193,9 @@ NB_MODULE(_core, m) {
 
   m.def("version", &rp_version, "Version of the library.");
   m.def("fft_backend", &rp_fft_backend, "Name of the FFT library in use.");
+  m.def("time_fft", &time_fft, nb::arg("size"), nb::arg("repeat"),
+        "Seconds of each of `repeat` real transforms of size x size numbers: a measure of the "
+        "machine, to carry run times over to another one.");
 
   m.def(
       "config_numbers",
@@ -207,6 +222,11 @@ NB_MODULE(_core, m) {
       .def("step", &Contact::step, nb::arg("input"),
            "Solves for the fields of rp_input, defaults where left out, and returns rp_result. "
            "The interpreter's lock is released.")
+      .def("time_steps", &Contact::time_steps, nb::arg("inputs"), nb::arg("reset"),
+           nb::arg("repeat") = 1,
+           "Steps through a list of inputs `repeat` times, each time forgetting the last solution "
+           "before the inputs whose `reset` is true. Returns the seconds of each step [repeat, n], "
+           "without Python's own, and the results of the last pass.")
       .def("field", &Contact::field, nb::arg("side"), nb::arg("patch"), nb::arg("name"),
            "A field of the last step as a flat array, x fastest; None where it does not exist.")
       .def("save", &Contact::save, "The state that later steps depend on, as bytes.")

@@ -60,16 +60,20 @@ def write_report(
     """
     data = positions(read_run(run_path))
     body = "".join([_head(data), *_sections(data, reference_dir, at), _ending(data)])
-    title = escape(data.run.metadata["railpatch"].get("scene", "run"))
-    page = (
-        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
-        f'<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>Railpatch: {title}</title><style>{_STYLE}</style>"
-        f"<script>{get_plotlyjs()}</script></head><body>{body}</body></html>\n"
-    )
+    page = document(data.run.metadata["railpatch"].get("scene", "run"), body)
     output = Path(output)
     output.write_text(page, encoding="utf-8")
     return output
+
+
+def document(title: str, body: str) -> str:
+    """A whole page with style and plotly, around the HTML of its body."""
+    return (
+        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
+        f'<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"<title>Railpatch: {escape(title)}</title><style>{_STYLE}</style>"
+        f"<script>{get_plotlyjs()}</script></head><body>{body}</body></html>\n"
+    )
 
 
 def _head(data: Positions) -> str:
@@ -104,32 +108,32 @@ def _sections(
         f"<h2>Traction curves</h2><p>Lateral over vertical force, in track axes: the same ratio "
         f"for wheel and {body}. Negative where the {body} pushes the wheel to the right.</p>"
         f"{remark}",
-        _plot(figures.traction_curves(data, matches), "traction"),
+        plot(figures.traction_curves(data, matches), "traction"),
         f"<h2>Forces on the {body}</h2><p>In track axes: x forward, y right, z down. The log holds "
         f"forces on the wheel; these are their opposites.</p>",
-        _plot(figures.forces(data, matches), "forces"),
+        plot(figures.forces(data, matches), "forces"),
         "<h2>Load transfer and position of the wheelset</h2>",
-        _plot(figures.wheelset_position(data, matches), "position"),
+        plot(figures.wheelset_position(data, matches), "position"),
         "<h2>Contact patches</h2><p>Each point is one patch. Distances count outwards from the "
         "track's centre line; a contact angle is positive at a left wheel's flange.</p>",
-        _plot(figures.patches(data), "patches"),
+        plot(figures.patches(data), "patches"),
     ]
     parts += _patch_section(data, at)
     if data.has_stats:
         parts += [
             "<h2>Work of the contact solver</h2>",
-            _plot(figures.contact_work(data), "contact-work"),
+            plot(figures.contact_work(data), "contact-work"),
         ]
     if data.has_energy:
         parts += [
             "<h2>Energies</h2><p>Work since the start. Friction's is that of the creep forces on "
             "the creepages; the drive holds the suspension's reference at its speed.</p>",
-            _plot(figures.energy(data), "energy"),
+            plot(figures.energy(data), "energy"),
         ]
     if data.has_balance:
         parts += [
             "<h2>Work of the force balance</h2>",
-            _plot(figures.balance_work(data), "balance-work"),
+            plot(figures.balance_work(data), "balance-work"),
         ]
     if matches:
         parts += [
@@ -158,7 +162,7 @@ def _patch_section(data: Positions, at: float | None) -> list[str]:
         f"<h2>One patch of each wheel</h2><p>{escape(where)}. {escape(' '.join(lines))} Arrows: "
         f"traction on the wheel. Elements in contact are in one of the states {states}. Rolling is "
         "towards +x.</p>",
-        _plot(patch_figure(chosen), "patch"),
+        plot(patch_figure(chosen), "patch"),
     ]
 
 
@@ -211,7 +215,8 @@ def _ending(data: Positions) -> str:
     return "".join(parts)
 
 
-def _plot(figure: go.Figure, name: str) -> str:
+def plot(figure: go.Figure, name: str) -> str:
+    """A figure as HTML; the name is unique on its page."""
     inner = figure.to_html(
         full_html=False,
         include_plotlyjs=False,

@@ -1,0 +1,1 @@
+"""Error against run time: sets of problems, truth, measurements and the report."""
