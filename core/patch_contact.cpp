@@ -141,8 +141,8 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   const bool loaded = solve_normal(problem, memory, result);
   observe(RP_STAGE_NORMAL, false);
   memory.beyond = result.status == RP_OUT_OF_RANGE;
-  memory.warm = loaded && result.status == RP_CONVERGED &&
-                memory.pressure.size() + memory.px.size() > 0;
+  memory.warm =
+      loaded && result.status == RP_CONVERGED && memory.pressure.size() + memory.px.size() > 0;
   if (!loaded) {
     set_unloaded(scene_, result);
     leave_unloaded(problem, memory);
