@@ -82,6 +82,7 @@ patch_scene make_scene(const rp_config &c) {
     scene.normal_tolerance = std::max(0.1 * c.tolerance, 1e-12);
   scene.max_iterations = c.max_iterations;
   for (int k = 0; k < 2; ++k) scene.fitted[k] = c.fitted[k];
+  for (int k = 0; k < 2; ++k) scene.prescribed[k] = c.force_prescribed[k] != 0;
   scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
   return scene;
 }
@@ -244,7 +245,9 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
   const bool rolling = solver_.scene().tangential != RP_TANGENTIAL_NONE;
   if (rolling) {
     problem.rolling_speed = in.rolling_speed;
-    problem.rolling = {{in.creepage[0], in.creepage[1]}, in.spin_creepage, in.direction, 0.0};
+    problem.rolling = {
+        {in.creepage[0], in.creepage[1]}, in.spin_creepage, in.direction, 0.0, nullptr};
+    for (int k = 0; k < 2; ++k) problem.tangential_force[k] = in.tangential_force[k];
     result.creepage[0] = in.creepage[0];
     result.creepage[1] = in.creepage[1];
     result.spin_creepage = in.spin_creepage;
@@ -448,7 +451,9 @@ void contact::describe(rp_stage_info *info) const {
                               influence};
   info[RP_STAGE_NORMAL] = {"normal", 1, normal_reason(scene.normal),
                            normal + solver_.normal_bytes()};
-  const char *why = "tangential = full: semi-smooth Newton";
+  const char *why = scene.is_forced()
+                        ? "tangential = full: semi-smooth Newton, creepage from the force"
+                        : "tangential = full: semi-smooth Newton";
   if (config_.regime == RP_REGIME_NONE)
     why = "regime = none";
   else if (!tangential)
@@ -456,7 +461,9 @@ void contact::describe(rp_stage_info *info) const {
   else if (scene.tangential == RP_TANGENTIAL_FASTSIM)
     why = "tangential = fastsim: simplified theory";
   else if (scene.is_fitted())
-    why = "tangential = full: semi-smooth Newton on fitted rows";
+    why = scene.is_forced()
+              ? "tangential = full: semi-smooth Newton on fitted rows, creepage from the force"
+              : "tangential = full: semi-smooth Newton on fitted rows";
   info[RP_STAGE_TANGENTIAL] = {"tangential", tangential, why,
                                tangential ? traction + solver_.tangential_bytes() : 0};
   info[RP_STAGE_FORCES] = {"forces", 1, "resultants of pressure and traction", 0};

@@ -49,6 +49,7 @@ patch_memory::patch_memory(int max_count, const patch_scene &scene) {
       static_cast<size_t>(scene.is_fitted() ? scene.fitted[0] * scene.fitted[1] : max_count);
   for (auto *b : {&px, &py, &sx, &sy}) *b = aligned_buffer<double>(n);
   division = aligned_buffer<unsigned char>(n);
+  if (scene.is_forced()) creepage = aligned_buffer<double>(2);
   if (!scene.is_fitted()) return;
   node_x = aligned_buffer<double>(n);
   node_y = aligned_buffer<double>(static_cast<size_t>(scene.fitted[1]));
@@ -75,12 +76,13 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
   if (scene.normal == RP_NORMAL_HALF_SPACE) normal_.emplace(max_nx * max_ny);
   if (scene.normal == RP_NORMAL_KIK_PIOTROWSKI || scene.normal == RP_NORMAL_ANALYN)
     rows_.emplace(scene.normal, scene.modulus(), max_ny);
-  if (full) tangential_.emplace(max_nx, max_ny);
+  if (full) tangential_.emplace(max_nx, max_ny, scene.is_forced());
   scratch_[0] = aligned_buffer<double>(count);
   scratch_[1] = aligned_buffer<double>(count);
   if (scene.is_fitted()) {
     fitted_rows_.emplace(scene.fitted[0], scene.fitted[1], max_ny);
-    fitted_.emplace(scene.elastic, scene.layer_flexibility, scene.line_width > 0, *fitted_rows_);
+    fitted_.emplace(scene.elastic, scene.layer_flexibility, scene.line_width > 0, scene.is_forced(),
+                    *fitted_rows_);
   }
   if (scene.tangential == RP_TANGENTIAL_NONE || scene.is_fitted()) return;
   bound_ = aligned_buffer<double>(count);
@@ -122,6 +124,7 @@ void patch_contact::start_from(patch_memory &memory, const grid &g) {
   if (memory.px.size() == 0) return;
   for (auto *field : {&memory.px, &memory.py})
     std::fill_n(field->data(), memory.columns() * memory.rows(), 0.0);
+  if (scene_.is_forced()) std::fill_n(memory.creepage.data(), 2, 0.0);
 }
 
 void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
@@ -292,6 +295,17 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
     // standstill: creepage is not defined and no micro-slip has happened, so all sticks unloaded
     rolling.creepage[0] = rolling.creepage[1] = rolling.spin_creepage = 0;
   }
+  prescribed_force force;
+  if (scene_.is_forced()) {
+    for (int c = 0; c < 2; ++c) {
+      if (!scene_.prescribed[c]) continue;
+      force.component[c] = true;
+      force.force[c] = problem.tangential_force[c];
+      force.creepage[c] = memory.creepage[static_cast<size_t>(c)];
+      rolling.creepage[c] = 0;
+    }
+    rolling.force = &force;
+  }
   if (scene_.spin_offset) rolling.spin_offset = rolling.direction * g.dx / 6.0;
   tangential_result t;
   if (!fitted_)
@@ -305,6 +319,10 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   else
     t = tangential_->solve(*influence_, g, memory.pressure.data(), bound_.data(), rolling,
                            {scene_.tolerance, scene_.max_iterations}, fields);
+  for (int c = 0; c < 2; ++c) {
+    if (!scene_.prescribed[c]) continue;
+    result.creepage[c] = memory.creepage[static_cast<size_t>(c)] = force.creepage[c];
+  }
   result.elements[RP_STICK] = t.stick;
   result.elements[RP_SLIP] = t.slip;
   if (fitted_) result.elements[RP_EXTERIOR] = memory.columns() * memory.rows() - t.stick - t.slip;
@@ -314,7 +332,8 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   if (!(t.residual <= result.residual)) result.residual = t.residual;
   result.friction_power = problem.rolling_speed * t.friction;
   if (!t.converged)
-    degrade(result, scene_.tangential == RP_TANGENTIAL_FULL ? RP_NOT_CONVERGED : RP_OUT_OF_RANGE);
+    degrade(result, scene_.tangential != RP_TANGENTIAL_FULL || t.out_of_range ? RP_OUT_OF_RANGE
+                                                                              : RP_NOT_CONVERGED);
   // fitted rows have the slope of the displacement, not the displacement
   if (scene_.tangential == RP_TANGENTIAL_FULL)
     result.elastic_energy += fitted_ ? nan : tangential_energy(problem, memory);
