@@ -17,6 +17,7 @@
   X(element_size)                  \
   X(max_elements)                  \
   X(regime)                        \
+  X(force_prescribed)              \
   X(friction_coefficient)          \
   X(layer_shear_modulus)           \
   X(layer_thickness)               \
