@@ -258,8 +258,12 @@ void fitted_operator::micro_slip(const rolling_problem &problem, const double *p
   for (int j = 0; j < count_; ++j) {
     double *t = slip_.data() + j * stride_;
     collocation_slip(j, p, 0, count_, t);
-    for (int i = 0; i < 2 * points_; ++i)
-      t[i] += rigid_[static_cast<size_t>(j * stride_ + i)] + problem.creepage(i >= points_);
+    const double *w = rigid_.data() + j * stride_;
+    for (int i = 0; i < 2 * points_; ++i) t[i] += w[i];
+    for (int i = 0; i < points_ && problem.force; ++i) {
+      t[i] += problem.creepage(0);
+      t[points_ + i] += problem.creepage(1);
+    }
     for (int k = 0; k < nodes_; ++k) {
       const double *x = t + k, *y = t + points_ + k, tau = tau_[static_cast<size_t>(k)];
       const double dx = tau * (x[1] - x[0]), dy = tau * (y[1] - y[0]);
