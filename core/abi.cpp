@@ -90,7 +90,8 @@ rp_error rp_step(rp_contact *contact, const rp_input *input, rp_result *result,
     set_message(message, "%s is null", !contact ? "contact" : (!input ? "input" : "result"));
     return RP_ERROR_NULL;
   }
-  const rp_error error = check_input(contact->scene.config(), *input, message);
+  const rp_error error =
+      check_input(contact->scene.config(), contact->scene.friction_coefficient(), *input, message);
   if (error != RP_OK) return error;
   try {
     contact->scene.step(*input, *result);

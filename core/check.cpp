@@ -129,6 +129,15 @@ void check_fast(const rp_config &c, checker &check) {
                 "and not contact with fastrip");
 }
 
+void check_prescribed(const rp_config &c, checker &check) {
+  check.integer("force_prescribed[0]", c.force_prescribed[0], 0, 1);
+  check.integer("force_prescribed[1]", c.force_prescribed[1], 0, 1);
+  if (c.force_prescribed[0] == 0 && c.force_prescribed[1] == 0) return;
+  check.require(c.kind == RP_PATCH, "force_prescribed must be 0, 0 but for kind = patch");
+  check.require(c.regime == RP_STEADY_ROLLING && c.tangential == RP_TANGENTIAL_FULL,
+                "force_prescribed needs regime = steady_rolling and tangential = full");
+}
+
 void check_grid(const rp_config &c, checker &check) {
   check_fitted(c, check);
   if (!needs_grid(c)) return;
@@ -171,6 +180,28 @@ void check_patch(const rp_config &c, checker &check) {
   if (check.error() == RP_OK)
     check.numbers("undeformed_distance", c.undeformed_distance,
                   c.distance_shape[0] * c.distance_shape[1], {-1, 1, false, false});
+}
+
+// Where the normal force follows from the approach, only the solve can tell what friction carries.
+void check_force(const rp_config &c, double friction, const rp_input &in, checker &check) {
+  check.numbers("tangential_force", in.tangential_force, 2, finite);
+  for (int k = 0; k < 2; ++k) {
+    const range none{0, 0, false, false};
+    if (c.force_prescribed[k])
+      check.number(k == 0 ? "creepage[0], found from tangential_force,"
+                          : "creepage[1], found from tangential_force,",
+                   in.creepage[k], none);
+    else
+      check.number(k == 0 ? "tangential_force[0], not in force_prescribed,"
+                          : "tangential_force[1], not in force_prescribed,",
+                   in.tangential_force[k], none);
+  }
+  if (c.force_prescribed[0] == 0 && c.force_prescribed[1] == 0) return;
+  check.number("rolling_speed, with a prescribed tangential_force,", in.rolling_speed, positive);
+  if (c.load == RP_FORCE)
+    check.number("tangential_force, by the friction coefficient times normal_force, in magnitude",
+                 std::hypot(in.tangential_force[0], in.tangential_force[1]),
+                 {0, friction * in.normal_force * (1.0 + 1e-12), false, false});
 }
 
 void check_wheels(const rp_config &c, checker &check) {
@@ -217,6 +248,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   check.numbers("shear_modulus", c.shear_modulus, 2, {1.0, 1e15, false, false});
   check.numbers("poisson_ratio", c.poisson_ratio, 2, {0, 0.5, false, false});
   check_grid(c, check);
+  check_prescribed(c, check);
   check.number("friction_coefficient", c.friction_coefficient, friction);
   check.number("layer_thickness", c.layer_thickness, {0, 0.1, false, false});
   if (c.layer_thickness > 0)
@@ -246,7 +278,8 @@ rp_error check_friction_coefficient(double value, rp_message *message) {
   return check.error();
 }
 
-rp_error check_input(const rp_config &c, const rp_input &in, rp_message *message) {
+rp_error check_input(const rp_config &c, double friction_coefficient, const rp_input &in,
+                     rp_message *message) {
   if (in.cookie != input_cookie) {
     set_message(message, "the input was never filled by rp_default_input");
     return RP_ERROR_NOT_DEFAULTED;
@@ -261,6 +294,7 @@ rp_error check_input(const rp_config &c, const rp_input &in, rp_message *message
     check.number("spin_creepage", in.spin_creepage, finite);
     check.number("rolling_speed", in.rolling_speed, not_negative);
     check.require(in.direction == 1 || in.direction == -1, "direction must be 1 or -1");
+    check_force(c, friction_coefficient, in, check);
     return check.error();
   }
   check.number("y", in.y, {-1, 1, false, false});

@@ -14,7 +14,9 @@ inline constexpr uint32_t input_cookie = 0x52504931;   // "RPI1"
 bool needs_grid(const rp_config &c);
 rp_error check_config(const rp_config &config, rp_message *message);
 rp_error check_friction_coefficient(double value, rp_message *message);
-rp_error check_input(const rp_config &config, const rp_input &input, rp_message *message);
+// friction_coefficient: the present one.
+rp_error check_input(const rp_config &config, double friction_coefficient, const rp_input &input,
+                     rp_message *message);
 
 // Writes a formatted text, cut to size; does nothing where message is null.
 #if defined(__GNUC__)

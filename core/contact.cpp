@@ -32,6 +32,7 @@ patch_scene make_scene(const rp_config &c) {
     scene.normal_tolerance = std::max(0.1 * c.tolerance, 1e-12);
   scene.max_iterations = c.max_iterations;
   for (int k = 0; k < 2; ++k) scene.fitted[k] = c.fitted[k];
+  for (int k = 0; k < 2; ++k) scene.prescribed[k] = c.force_prescribed[k] != 0;
   scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
   scene.fast.theory = scene.tangential;
   scene.fast.coefficient_factor = 0.01 * c.percent_kalker;
@@ -251,7 +252,9 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
   const bool rolling = solver_.scene().tangential != RP_TANGENTIAL_NONE;
   if (rolling) {
     problem.rolling_speed = in.rolling_speed;
-    problem.rolling = {{in.creepage[0], in.creepage[1]}, in.spin_creepage, in.direction, 0.0};
+    problem.rolling = {
+        {in.creepage[0], in.creepage[1]}, in.spin_creepage, in.direction, 0.0, nullptr};
+    for (int k = 0; k < 2; ++k) problem.tangential_force[k] = in.tangential_force[k];
     result.creepage[0] = in.creepage[0];
     result.creepage[1] = in.creepage[1];
     result.spin_creepage = in.spin_creepage;
@@ -448,6 +451,10 @@ const char *tangential_reason(const patch_scene &scene) {
     case RP_TANGENTIAL_FASTSIM:
       return "tangential = fastsim: simplified theory";
     case RP_TANGENTIAL_FULL:
+      if (scene.is_forced())
+        return scene.is_fitted()
+                   ? "tangential = full: semi-smooth Newton on fitted rows, creepage from the force"
+                   : "tangential = full: semi-smooth Newton, creepage from the force";
       return scene.is_fitted() ? "tangential = full: semi-smooth Newton on fitted rows"
                                : "tangential = full: semi-smooth Newton";
     case RP_TANGENTIAL_LINEAR:

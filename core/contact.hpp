@@ -16,6 +16,7 @@ class contact {
 
   void step(const rp_input &input, rp_result &result);
   void reset();
+  double friction_coefficient() const { return solver_.scene().friction_coefficient; }
   void set_friction_coefficient(double value) { solver_.set_friction_coefficient(value); }
 
   size_t state_size() const;

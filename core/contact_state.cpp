@@ -52,6 +52,8 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            static_cast<double>(c.max_elements[1]),
                            static_cast<double>(c.max_iterations),
                            static_cast<double>(c.max_patches),
+                           static_cast<double>(c.force_prescribed[0]),
+                           static_cast<double>(c.force_prescribed[1]),
                            c.element_size[0],
                            c.element_size[1],
                            c.shear_modulus[0],
@@ -113,6 +115,7 @@ void for_each_start_field(Memory &m, F &&f) {
   f(m.px.data(), traction);
   f(m.py.data(), traction);
   if (m.fitted()) f(m.node_pressure.data(), traction);
+  if (m.creepage.size() > 0) f(m.creepage.data(), m.creepage.size() * sizeof(double));
 }
 
 }  // namespace
@@ -184,7 +187,8 @@ bool contact::state_fits(const unsigned char *at, size_t size) const {
     const bool fits = patch.g.nx >= 0 && patch.g.ny >= 0 && solver_.fits(patch.g);
     if (!fits) return false;
     const auto count = m.pressure.size() ? static_cast<size_t>(patch.g.count()) : 0;
-    const size_t traction = m.fitted() ? 3 * m.px.size() : m.px.size() ? 2 * count : 0;
+    const size_t fields = m.fitted() ? 3 * m.px.size() : m.px.size() ? 2 * count : 0;
+    const size_t traction = m.creepage.size() + fields;
     const size_t bytes = sizeof patch + (patch.warm ? count + traction : 0) * sizeof(double);
     if (size < bytes) return false;
     at += bytes;

@@ -7,8 +7,9 @@
 namespace railpatch {
 
 fitted_solver::fitted_solver(const elastic_constants &elastic, double layer_flexibility, bool line,
-                             const contact_rows &rows)
-    : operator_(elastic, layer_flexibility, line, rows), newton_(rows.nodes(), rows.strips()) {
+                             bool forced, const contact_rows &rows)
+    : operator_(elastic, layer_flexibility, line, rows),
+      newton_(rows.nodes(), rows.strips(), forced) {
   const auto strips = static_cast<size_t>(rows.strips());
   const size_t n = strips * static_cast<size_t>(rows.nodes());
   row_start_ = aligned_buffer<int>(strips + 1);
@@ -40,7 +41,7 @@ tangential_result fitted_solver::solve(const contact_rows &rows, double friction
   operator_.set(rows, input);
   collect(rows, friction_coefficient, input, fields);
   const rolling_problem problem{rows.count(),  row_start_.data(), bound_.data(), area_.data(),
-                                rigid_.data(), p_.data(),         s_.data()};
+                                rigid_.data(), p_.data(),         s_.data(),     input.force};
   const tangential_result result = newton_.solve(operator_, problem, options);
   release(rows, input.direction, fields);
   return result;

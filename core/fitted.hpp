@@ -18,7 +18,8 @@ struct fitted_fields {
 
 class fitted_solver {
  public:
-  fitted_solver(const elastic_constants &elastic, double layer_flexibility, bool line,
+  // forced: for inputs with a prescribed force.
+  fitted_solver(const elastic_constants &elastic, double layer_flexibility, bool line, bool forced,
                 const contact_rows &rows);
 
   tangential_result solve(const contact_rows &rows, double friction_coefficient,

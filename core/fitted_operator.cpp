@@ -254,11 +254,16 @@ void fitted_operator::collocation_slip(int row, const double *v, int begin, int 
   add_columns(stride_, columns * (end - begin), block(row, begin), v + begin * columns, t);
 }
 
-void fitted_operator::micro_slip(const rolling_problem &, const double *p, double *s) {
+void fitted_operator::micro_slip(const rolling_problem &problem, const double *p, double *s) {
   for (int j = 0; j < count_; ++j) {
     double *t = slip_.data() + j * stride_;
     collocation_slip(j, p, 0, count_, t);
-    for (int i = 0; i < 2 * points_; ++i) t[i] += rigid_[static_cast<size_t>(j * stride_ + i)];
+    const double *w = rigid_.data() + j * stride_;
+    for (int i = 0; i < 2 * points_; ++i) t[i] += w[i];
+    for (int i = 0; i < points_ && problem.force; ++i) {
+      t[i] += problem.creepage(0);
+      t[points_ + i] += problem.creepage(1);
+    }
     for (int k = 0; k < nodes_; ++k) {
       const double *x = t + k, *y = t + points_ + k, tau = tau_[static_cast<size_t>(k)];
       const double dx = tau * (x[1] - x[0]), dy = tau * (y[1] - y[0]);
@@ -302,6 +307,16 @@ void fitted_operator::blend_change(int row, const double *t, double *ds) const {
     ds[k] = b.ahead[0] * x + b.ahead[1] * y + b.between[0] * dx + b.between[1] * dy;
     ds[nodes_ + k] = b.ahead[2] * x + b.ahead[3] * y + b.between[2] * dx + b.between[3] * dy;
   }
+}
+
+// A creepage changes the slip everywhere alike, so nothing between the collocation points.
+void fitted_operator::slip_of_creepage(const rolling_problem &, int component, double *s) const {
+  for (int j = 0; j < count_; ++j)
+    for (int k = 0; k < nodes_; ++k) {
+      const slip_blend &b = blends_[static_cast<size_t>(j * nodes_ + k)];
+      s[2 * j * nodes_ + k] = b.ahead[component];
+      s[(2 * j + 1) * nodes_ + k] = b.ahead[2 + component];
+    }
 }
 
 void fitted_operator::product(const double *v, double *ds) {

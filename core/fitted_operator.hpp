@@ -40,6 +40,7 @@ class fitted_operator final : public rolling_operator {
 
   void micro_slip(const rolling_problem &problem, const double *p, double *s) override;
   void linearise() override;
+  void slip_of_creepage(const rolling_problem &, int component, double *s) const override;
   void product(const double *v, double *ds) override;
   bool product_of_rows_before(int row, const double *v, double *ds) override;
   void row_matrices(int row, double *bxx, double *byy) const override;

@@ -50,6 +50,7 @@ patch_memory::patch_memory(int max_count, const patch_scene &scene) {
       scene.is_fitted() ? static_cast<size_t>(scene.fitted[0] * scene.fitted[1]) : n;
   for (auto *b : {&px, &py, &sx, &sy}) *b = aligned_buffer<double>(count);
   division = aligned_buffer<unsigned char>(count);
+  if (scene.is_forced()) creepage = aligned_buffer<double>(2);
   if (!scene.is_fitted()) return;
   node_x = aligned_buffer<double>(count);
   node_y = aligned_buffer<double>(static_cast<size_t>(scene.fitted[1]));
@@ -76,11 +77,12 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
   if (scene.normal == RP_NORMAL_HALF_SPACE) normal_.emplace(max_nx * max_ny);
   if (scene.normal == RP_NORMAL_KIK_PIOTROWSKI || scene.normal == RP_NORMAL_ANALYN)
     rows_.emplace(scene.normal, scene.modulus(), max_ny);
-  if (full) tangential_.emplace(max_nx, max_ny);
+  if (full) tangential_.emplace(max_nx, max_ny, scene.is_forced());
   if (is_fast(scene.tangential)) fast_.emplace(scene.elastic, scene.fast, max_nx, max_ny);
   if (scene.is_fitted()) {
     fitted_rows_.emplace(scene.fitted[0], scene.fitted[1], max_ny);
-    fitted_.emplace(scene.elastic, scene.layer_flexibility, scene.line_width > 0, *fitted_rows_);
+    fitted_.emplace(scene.elastic, scene.layer_flexibility, scene.line_width > 0, scene.is_forced(),
+                    *fitted_rows_);
   }
   if (scene.closed_form()) return;
   scratch_[0] = aligned_buffer<double>(count);
@@ -124,6 +126,7 @@ void patch_contact::start_from(patch_memory &memory, const grid &g) {
   if (memory.px.size() == 0) return;
   for (auto *field : {&memory.px, &memory.py})
     std::fill_n(field->data(), memory.columns() * memory.rows(), 0.0);
+  if (scene_.is_forced()) std::fill_n(memory.creepage.data(), 2, 0.0);
 }
 
 void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
@@ -301,6 +304,17 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
     // standstill: creepage is not defined and no micro-slip has happened, so all sticks unloaded
     rolling.creepage[0] = rolling.creepage[1] = rolling.spin_creepage = 0;
   }
+  prescribed_force force;
+  if (scene_.is_forced()) {
+    for (int c = 0; c < 2; ++c) {
+      if (!scene_.prescribed[c]) continue;
+      force.component[c] = true;
+      force.force[c] = problem.tangential_force[c];
+      force.creepage[c] = memory.creepage[static_cast<size_t>(c)];
+      rolling.creepage[c] = 0;
+    }
+    rolling.force = &force;
+  }
   if (scene_.spin_offset) rolling.spin_offset = rolling.direction * g.dx / 6.0;
   tangential_result t;
   if (fast_) {
@@ -321,6 +335,10 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
     t = tangential_->solve(*influence_, g, memory.pressure.data(), bound_.data(), rolling,
                            {scene_.tolerance, scene_.max_iterations}, fields);
   }
+  for (int c = 0; c < 2; ++c) {
+    if (!scene_.prescribed[c]) continue;
+    result.creepage[c] = memory.creepage[static_cast<size_t>(c)] = force.creepage[c];
+  }
   result.elements[RP_STICK] = t.stick;
   result.elements[RP_SLIP] = t.slip;
   if (fitted_) result.elements[RP_EXTERIOR] = memory.columns() * memory.rows() - t.stick - t.slip;
@@ -330,7 +348,8 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   if (!(t.residual <= result.residual)) result.residual = t.residual;
   result.friction_power = problem.rolling_speed * t.friction;
   if (!t.converged)
-    degrade(result, scene_.tangential == RP_TANGENTIAL_FULL ? RP_NOT_CONVERGED : RP_OUT_OF_RANGE);
+    degrade(result, scene_.tangential != RP_TANGENTIAL_FULL || t.out_of_range ? RP_OUT_OF_RANGE
+                                                                              : RP_NOT_CONVERGED);
   // fitted rows have the slope of the displacement, not the displacement
   if (scene_.tangential == RP_TANGENTIAL_FULL)
     result.elastic_energy += fitted_ ? nan : tangential_energy(problem, memory);

@@ -30,6 +30,8 @@ struct patch_scene {
   bool spin_offset = false;  // x + dq/6 in the spin term
   int fitted[2] = {0, 0};    // nodes and strips of the tangential problem; 0: on the uniform grid
   fast_options fast;         // where the tangential theory is a fast one
+  bool prescribed[2] = {false, false};  // components of the creep force: their creepage is found
+  bool is_forced() const { return prescribed[0] || prescribed[1]; }
   bool is_fitted() const { return tangential == RP_TANGENTIAL_FULL && fitted[0] > 0; }
   // No pressure and no traction on a uniform grid: all is closed form or on rows of its own.
   bool closed_form() const {
@@ -46,7 +48,8 @@ struct patch_problem {
   double force = 0, approach = 0;
   double rolling_speed = 0;  // m/s; 0: standstill, no tangential traction arises
   rolling_input rolling;
-  hertz_contact hertz;  // where the surfaces are quadratic, else all zero
+  double tangential_force[2] = {0, 0};  // N, of the components prescribed
+  hertz_contact hertz;                  // where the surfaces are quadratic, else all zero
   contact_parts parts;
 };
 
@@ -64,6 +67,7 @@ struct patch_memory {
   aligned_buffer<double> undeformed_distance, pressure, px, py, sx, sy;
   aligned_buffer<unsigned char> division;
   aligned_buffer<double> node_x, node_y, node_pressure;  // fitted rows only
+  aligned_buffer<double> creepage;                       // [2], of a prescribed creep force only
   bool fitted() const { return node_x.size() > 0; }
   // elements of the tangential problem along rolling and lateral
   int columns() const { return fitted() ? static_cast<int>(node_x.size() / node_y.size()) : g.nx; }

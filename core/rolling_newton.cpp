@@ -29,7 +29,9 @@ double norm(const double *v, size_t n) { return std::sqrt(dot(v, v, n)); }
 struct rolling_newton::task {
   rolling_operator &b;
   const rolling_problem &problem;
+  force_constraint *force;  // null: none
   tangential_result result{};
+  double flexibility[2] = {0, 0}, ramp_force = 0;
 
   size_t vector_size() const { return 2 * static_cast<size_t>(problem.count()); }
   // f(element, index of its x component, of its y component)
@@ -47,29 +49,49 @@ struct rolling_newton::task {
 void rolling_operator::micro_slip(const rolling_problem &problem, const double *p, double *s) {
   product(p, s);
   for (int i = 0; i < 2 * problem.count(); ++i) s[i] += problem.rigid_slip[i];
+  if (!problem.force) return;
+  for (int row = 0; row < problem.rows; ++row) {
+    const int begin = problem.row_start[row], n = problem.row_start[row + 1] - begin;
+    for (int k = 0; k < n; ++k) {
+      s[2 * begin + k] += problem.creepage(0);
+      s[2 * begin + n + k] += problem.creepage(1);
+    }
+  }
 }
 
-rolling_newton::rolling_newton(int max_row, int max_rows)
-    : blocks_(max_row, max_rows), linear_solver_(2 * max_row * max_rows, krylov_size) {
+void rolling_operator::slip_of_creepage(const rolling_problem &problem, int component,
+                                        double *s) const {
+  for (int row = 0; row < problem.rows; ++row) {
+    const int begin = problem.row_start[row], n = problem.row_start[row + 1] - begin;
+    std::fill_n(s + 2 * begin, n, component == 0 ? 1.0 : 0.0);
+    std::fill_n(s + 2 * begin + n, n, component == 1 ? 1.0 : 0.0);
+  }
+}
+
+rolling_newton::rolling_newton(int max_row, int max_rows, bool forced)
+    : blocks_(max_row, max_rows), linear_solver_(2 * max_row * max_rows + 2, krylov_size) {
+  if (forced) force_.emplace(max_row * max_rows);
   const auto row = static_cast<size_t>(max_row), n = row * static_cast<size_t>(max_rows);
   r_ = aligned_buffer<double>(n);
   linear_ = aligned_buffer<element_linearisation>(n);
   stick_ = aligned_buffer<unsigned char>(n);
   for (auto *b :
        {&f_, &step_, &best_p_, &right_, &unknowns_, &normal_step_, &trial_p_, &trial_s_, &trial_f_})
-    *b = aligned_buffer<double>(2 * n);
+    *b = aligned_buffer<double>(2 * n + 2);
   for (auto &m : row_matrix_) m = aligned_buffer<double>::uninitialized(row * row);
   row_slip_ = aligned_buffer<double>(2 * row);
 }
 
 size_t rolling_newton::bytes() const {
   return blocks_.bytes() + linear_solver_.bytes() + r_.bytes() + 9 * f_.bytes() +
-         2 * row_matrix_[0].bytes() + row_slip_.bytes() + linear_.bytes() + stick_.bytes();
+         2 * row_matrix_[0].bytes() + row_slip_.bytes() + linear_.bytes() + stick_.bytes() +
+         (force_ ? force_->bytes() : 0);
 }
 
 tangential_result rolling_newton::solve(rolling_operator &b, const rolling_problem &problem,
                                         const tangential_options &options) {
-  task t{b, problem};
+  task t{b, problem, problem.force ? &*force_ : nullptr};
+  if (t.force) t.force->begin(problem, options.tolerance);
   tangential_result &result = t.result;
   double *p = problem.traction, *s = problem.micro_slip;
   for (int row = 0; row < problem.rows; ++row)
@@ -80,13 +102,15 @@ tangential_result rolling_newton::solve(rolling_operator &b, const rolling_probl
     blocks_.start(problem.rows, problem.row_start);
     const double goal = options.tolerance * size;
     double error = start(t, size), best = HUGE_VAL;
-    for (int strayed = 0; error > goal && result.newton_iterations < options.max_iterations;
+    for (int strayed = 0; error > goal && result.newton_iterations < options.max_iterations &&
+                          !(t.force && t.force->beyond());
          ++result.newton_iterations) {
       if (error <= enough * best) {
         best = error;
         strayed = 0;
         std::copy_n(p, t.vector_size(), best_p_.data());
-      } else if (++strayed > patience) {
+      } else if (++strayed > patience && !t.force) {
+        // with a force given the creepage is not fixed, and nothing is known of such steps
         error = descend(t, enough * best);
         continue;
       }
@@ -96,10 +120,12 @@ tangential_result rolling_newton::solve(rolling_operator &b, const rolling_probl
     }
     result.residual = error / size;
     result.converged = error <= options.tolerance * size;
+    result.out_of_range = !result.converged && t.force && t.force->beyond();
   } else {
     // nothing drives a traction: no creepage, no friction or no contact
     std::fill_n(p, t.vector_size(), 0.0);
     std::copy_n(problem.rigid_slip, t.vector_size(), s);
+    if (t.force) problem.force->creepage[0] = problem.force->creepage[1] = 0;
     result.converged = true;
   }
   finish(t);
@@ -110,6 +136,10 @@ tangential_result rolling_newton::solve(rolling_operator &b, const rolling_probl
 // Sets p, s and F and returns |F|.
 double rolling_newton::start(task &t, double size) {
   double *p = t.problem.traction, *s = t.problem.micro_slip;
+  if (t.force) {
+    find_flexibility(t);
+    t.force->set_units(t.problem, t.flexibility, t.ramp_force);
+  }
   project(t, p);
   const bool cold = std::all_of(p, p + t.vector_size(), [](double v) { return v == 0; });
   double error = HUGE_VAL;
@@ -123,6 +153,7 @@ double rolling_newton::start(task &t, double size) {
   const double marched = residual(t, trial_p_.data(), trial_s_.data(), trial_f_.data());
   if (!(marched < error)) {
     // again, since the operator remembers the traction that it saw last
+    if (t.force) t.force->go_back(t.problem);
     micro_slip(t, p, s);
     return residual(t, p, s, f_.data());
   }
@@ -134,29 +165,18 @@ double rolling_newton::start(task &t, double size) {
 // with the rigid slip over L, up to the bound. Lx and Ly are those with which B gives the mean slip
 // that it really gives to tractions growing evenly from the leading edge.
 void rolling_newton::march(task &t, double *p) {
-  // lengths of elements are only needed relative to each other; rows are equally wide, or nearly
-  for (int row = 0; row < t.problem.rows; ++row) {
-    const int begin = t.problem.row_start[row], n = t.problem.row_start[row + 1] - begin;
-    double ramp = 0;
-    for (int k = 0; k < n; ++k) {
-      ramp += t.problem.area[begin + k];
-      p[2 * begin + k] = p[2 * begin + n + k] = ramp;
-    }
-  }
-  t.b.product_single(p, trial_s_.data());
-  ++t.result.products;
-  double flexibility[2] = {0, 0};
-  t.for_each_element([&](size_t, size_t ix, size_t iy) {
-    flexibility[0] += trial_s_[ix] / t.problem.count();
-    flexibility[1] += trial_s_[iy] / t.problem.count();
-  });
+  if (t.force)
+    t.force->guess(t.problem, t.flexibility);
+  else
+    find_flexibility(t);
   for (int row = 0; row < t.problem.rows; ++row) {
     const int begin = t.problem.row_start[row], n = t.problem.row_start[row + 1] - begin;
     double grown[2] = {0, 0};
     for (int k = 0; k < n; ++k) {
       const int at[2] = {2 * begin + k, 2 * begin + n + k};
       for (int c = 0; c < 2; ++c)
-        grown[c] -= t.problem.rigid_slip[at[c]] * t.problem.area[begin + k] / flexibility[c];
+        grown[c] -= (t.problem.rigid_slip[at[c]] + t.problem.creepage(c)) *
+                    t.problem.area[begin + k] / t.flexibility[c];
       const double size = std::hypot(grown[0], grown[1]), bound = t.problem.bound[begin + k];
       for (int c = 0; c < 2; ++c) {
         if (size > bound) grown[c] *= bound / size;
@@ -164,6 +184,27 @@ void rolling_newton::march(task &t, double *p) {
       }
     }
   }
+}
+
+// Lx and Ly over the ramp of areas, and the ramp's force in one component.
+void rolling_newton::find_flexibility(task &t) {
+  // lengths of elements are only needed relative to each other; rows are equally wide, or nearly
+  double *p = trial_p_.data();
+  for (int row = 0; row < t.problem.rows; ++row) {
+    const int begin = t.problem.row_start[row], n = t.problem.row_start[row + 1] - begin;
+    double ramp = 0;
+    for (int k = 0; k < n; ++k) {
+      ramp += t.problem.area[begin + k];
+      p[2 * begin + k] = p[2 * begin + n + k] = ramp;
+      t.ramp_force += ramp * t.problem.area[begin + k];
+    }
+  }
+  t.b.product_single(p, trial_s_.data());
+  ++t.result.products;
+  t.for_each_element([&](size_t, size_t ix, size_t iy) {
+    t.flexibility[0] += trial_s_[ix] / t.problem.count();
+    t.flexibility[1] += trial_s_[iy] / t.problem.count();
+  });
 }
 
 // The residual of zero traction: the size against which others are measured.
@@ -174,7 +215,7 @@ double rolling_newton::scale(const task &t) const {
     const double f = std::min(t.problem.bound[k], r_[k] * std::hypot(w[ix], w[iy]));
     sum += f * f;
   });
-  return std::sqrt(sum);
+  return t.force ? std::hypot(std::sqrt(sum), t.force->size()) : std::sqrt(sum);
 }
 
 void rolling_newton::micro_slip(task &t, const double *p, double *s) {
@@ -191,7 +232,8 @@ double rolling_newton::residual(const task &t, const double *p, const double *s,
     f[ix] = stick ? r_[k] * s[ix] : p[ix] - bound * qx / q;
     f[iy] = stick ? r_[k] * s[iy] : p[iy] - bound * qy / q;
   });
-  return norm(f, t.vector_size());
+  const double size = norm(f, t.vector_size());
+  return t.force ? std::hypot(size, t.force->miss(t.problem, p)) : size;
 }
 
 void rolling_newton::project(const task &t, double *p) const {
@@ -318,18 +360,63 @@ void rolling_newton::find_step(task &t, double tolerance) {
                        if (e.stick) right_[j] -= e.stiff * s[iy];
                      });
   }
-  linear_solver_.solve(
-      size, right_.data(), unknowns_.data(), tolerance, max_inner_products,
-      [&](const double *v, double *out) { apply_jacobian(t, v, out); },
-      [&](double *v) { precondition(t, v); });
+  if (t.force)
+    solve_bordered(t, size, tolerance);
+  else
+    linear_solver_.solve(
+        size, right_.data(), unknowns_.data(), tolerance, max_inner_products,
+        [&](const double *v, double *out) { apply_jacobian(t, v, out); },
+        [&](double *v) { precondition(t, v); });
   expand(t, unknowns_.data(), step_.data());
   for (size_t i = 0; i < t.vector_size(); ++i) step_[i] += normal_step_[i];
+}
+
+// The same with the creepages as further unknowns (force_constraint.hpp).
+void rolling_newton::solve_bordered(task &t, size_t size, double tolerance) {
+  force_constraint &force = *t.force;
+  for (int m = 0; m < force.unknowns(); ++m) {
+    const int component = force.component(m);
+    t.b.slip_of_creepage(t.problem, component, trial_s_.data());
+    const double *s = trial_s_.data();
+    double *column = force.column(m), *row = force.row(m);
+    double right = force.remainder(m, t.problem);
+    for_each_unknown(t,
+                     [&](const element_linearisation &e, size_t i, size_t j, size_t ix, size_t iy) {
+                       const double area = force.weight() * t.problem.area[&e - linear_.data()];
+                       column[i] = e.stiff * (e.c[0] * s[ix] + e.c[1] * s[iy]);
+                       row[i] = area * e.c[component];
+                       if (e.stick) {
+                         column[j] = e.stiff * s[iy];
+                         row[j] = component == 1 ? area : 0.0;
+                       }
+                       right -= area * normal_step_[component == 0 ? ix : iy];
+                     });
+    right_[size + static_cast<size_t>(m)] = right;
+  }
+  for (int m = 0; m < force.unknowns(); ++m) {
+    std::copy_n(force.column(m), size, force.reduced(m));
+    precondition(t, force.reduced(m));
+  }
+  force.factor(size);
+  linear_solver_.solve(
+      size + static_cast<size_t>(force.unknowns()), right_.data(), unknowns_.data(), tolerance,
+      max_inner_products,
+      [&](const double *v, double *out) {
+        apply_jacobian(t, v, out);
+        force.apply(size, v, out);
+      },
+      [&](double *v) {
+        precondition(t, v);
+        force.precondition(size, v);
+      });
+  force.bound_step(size, unknowns_.data());
 }
 
 // One trial along the Newton step: p, s and F of the trial, and |F|.
 double rolling_newton::try_step(task &t, double length) {
   const double *p = t.problem.traction;
   for (size_t i = 0; i < t.vector_size(); ++i) trial_p_[i] = p[i] + length * step_[i];
+  if (t.force) t.force->move(t.problem, length);
   project(t, trial_p_.data());
   micro_slip(t, trial_p_.data(), trial_s_.data());
   return residual(t, trial_p_.data(), trial_s_.data(), trial_f_.data());
@@ -339,7 +426,8 @@ double rolling_newton::try_step(task &t, double length) {
 // that the active sets move on (how often that may happen is bounded in solve). Updates p, s and F
 // and returns |F|.
 double rolling_newton::line_search(task &t, double current) {
-  constexpr int halvings = 4;
+  // where all slips, the length of a step back in creepage says nothing
+  const int halvings = t.force ? 12 : 4;
   double length = 1.0, error = try_step(t, length);
   for (int trial = 0; trial < halvings && error > (1.0 - 1e-3 * length) * current; ++trial) {
     length *= 0.5;
@@ -395,6 +483,7 @@ void rolling_newton::accept_trial(task &t) {
   std::copy_n(trial_p_.data(), t.vector_size(), t.problem.traction);
   std::copy_n(trial_s_.data(), t.vector_size(), t.problem.micro_slip);
   std::copy_n(trial_f_.data(), t.vector_size(), f_.data());
+  if (t.force) t.force->keep(t.problem);
 }
 
 // Divides the elements into stick and slip and sums the friction.
@@ -408,7 +497,9 @@ void rolling_newton::finish(task &t) {
     if (stick) s[ix] = s[iy] = 0.0;
     stick_[k] = stick;
     ++(stick ? t.result.stick : t.result.slip);
-    t.result.friction -= (p[ix] * w[ix] + p[iy] * w[iy]) * problem.area[k];
+    t.result.friction -=
+        (p[ix] * (w[ix] + problem.creepage(0)) + p[iy] * (w[iy] + problem.creepage(1))) *
+        problem.area[k];
   });
 }
 

@@ -35,6 +35,9 @@
 // at their safest) where a row begins at its leading edge; no row is empty.
 #pragma once
 
+#include <optional>
+
+#include "force_constraint.hpp"
 #include "gmres.hpp"
 #include "row_blocks.hpp"
 
@@ -49,6 +52,9 @@ struct rolling_problem {
   const double *rigid_slip = nullptr;  // -, w, vector
   double *traction = nullptr;          // Pa, p, vector: start in, solution out
   double *micro_slip = nullptr;        // -, s, vector: out
+  prescribed_force *force = nullptr;   // null: all creepages are part of the rigid slip
+  // what is to be added to the rigid slip
+  double creepage(int component) const { return force ? force->creepage[component] : 0.0; }
   int count() const { return row_start[rows]; }
 };
 
@@ -61,11 +67,13 @@ class rolling_operator {
   virtual void product(const double *v, double *s) = 0;
   // The same to some five digits, for what only steers the iteration.
   virtual void product_single(const double *v, double *s) { product(v, s); }
-  // The micro-slip, w + B p where B is linear.
+  // The micro-slip, w + B p where B is linear; w with the creepages that are unknown.
   virtual void micro_slip(const rolling_problem &problem, const double *p, double *s);
   // Sets B where the micro-slip is not linear, at the traction of the last call of micro_slip;
   // before the first call B is that of any fixed traction.
   virtual void linearise() {}
+  // ds/dxi of a component of the creepage, as B at the traction of the last call of linearise.
+  virtual void slip_of_creepage(const rolling_problem &problem, int component, double *s) const;
   // The parts of B within a row of n elements, s_x from p_x and s_y from p_y: n x n, column-major
   // (source by source), for the preconditioner.
   virtual void row_matrices(int row, double *bxx, double *byy) const = 0;
@@ -83,6 +91,7 @@ struct tangential_options {
 
 struct tangential_result {
   bool converged = false;
+  bool out_of_range = false;  // not converged, since the prescribed force cannot be carried
   double residual = 0;
   int newton_iterations = 0;
   int products = 0;
@@ -96,7 +105,8 @@ struct tangential_result {
 
 class rolling_newton {
  public:
-  rolling_newton(int max_row, int max_rows);
+  // forced: for problems with a prescribed force.
+  rolling_newton(int max_row, int max_rows, bool forced);
 
   tangential_result solve(rolling_operator &b, const rolling_problem &problem,
                           const tangential_options &options);
@@ -108,6 +118,7 @@ class rolling_newton {
   // one solve's problem and operator, so that the steps need not pass them on
   struct task;
   double start(task &t, double size);
+  void find_flexibility(task &t);
   void march(task &t, double *p);
   void accept_trial(task &t);
   double descend(task &t, double goal);
@@ -121,6 +132,7 @@ class rolling_newton {
   size_t for_each_unknown(const task &t, F &&f) const;
   void expand(const task &t, const double *z, double *dp) const;
   void find_step(task &t, double tolerance);
+  void solve_bordered(task &t, size_t size, double tolerance);
   void apply_jacobian(task &t, const double *v, double *out);
   void precondition(task &t, double *z);
   double try_step(task &t, double length);
@@ -135,6 +147,7 @@ class rolling_newton {
   aligned_buffer<unsigned char> stick_;
   row_blocks blocks_;
   gmres linear_solver_;
+  std::optional<force_constraint> force_;
 };
 
 }  // namespace railpatch

@@ -100,7 +100,8 @@ class tangential_solver::grid_operator final : public rolling_operator {
   int direction_;
 };
 
-tangential_solver::tangential_solver(int max_nx, int max_ny) : newton_(max_nx, max_ny) {
+tangential_solver::tangential_solver(int max_nx, int max_ny, bool forced)
+    : newton_(max_nx, max_ny, forced) {
   const auto n = static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny);
   at_ = aligned_buffer<int>(n);
   row_start_ = aligned_buffer<int>(static_cast<size_t>(max_ny) + 1);
@@ -122,7 +123,7 @@ tangential_result tangential_solver::solve(influence &a, const grid &g, const do
   collect(g, pressure, bound, input, fields);
   grid_operator b(*this, a, g, input.direction);
   const rolling_problem problem{rows_,         row_start_.data(), bound_.data(), area_.data(),
-                                rigid_.data(), p_.data(),         s_.data()};
+                                rigid_.data(), p_.data(),         s_.data(),     input.force};
   const tangential_result result = newton_.solve(b, problem, options);
   release(g, fields);
   return result;

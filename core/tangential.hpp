@@ -13,10 +13,11 @@
 namespace railpatch {
 
 struct rolling_input {
-  double creepage[2] = {0, 0};  // longitudinal, lateral
-  double spin_creepage = 0;     // rad/m
-  int direction = 1;            // rolling towards +x or -x
-  double spin_offset = 0;       // m, added to x in the spin term
+  double creepage[2] = {0, 0};        // longitudinal, lateral
+  double spin_creepage = 0;           // rad/m
+  int direction = 1;                  // rolling towards +x or -x
+  double spin_offset = 0;             // m, added to x in the spin term
+  prescribed_force *force = nullptr;  // its components' creepages above are then 0
   double slip(int component, double x, double y) const {
     return component == 0 ? creepage[0] - spin_creepage * y
                           : creepage[1] + spin_creepage * (x + spin_offset);
@@ -32,7 +33,8 @@ struct tangential_fields {
 
 class tangential_solver {
  public:
-  tangential_solver(int max_nx, int max_ny);
+  // forced: for inputs with a prescribed force.
+  tangential_solver(int max_nx, int max_ny, bool forced);
 
   // bound: traction bound g on the grid (Pa), zero outside the contact area (pressure > 0).
   tangential_result solve(influence &a, const grid &g, const double *pressure, const double *bound,

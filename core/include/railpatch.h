@@ -172,6 +172,9 @@ typedef struct rp_config {
 
   /* motion and friction */
   rp_regime regime;
+  int32_t force_prescribed[2]; /* longitudinal, lateral; 1: the creep force's component is given
+                                  (tangential_force) and its creepage found, else 0 (kind RP_PATCH,
+                                  tangential = full) */
   double friction_coefficient; /* -, Coulomb, >= 0 */
   double layer_shear_modulus;  /* Pa; third-body layer, thickness 0: none */
   double layer_thickness;      /* m */
@@ -211,12 +214,14 @@ typedef struct rp_input {
   uint32_t cookie; /* set by rp_default_input */
 
   /* patch */
-  double normal_force;  /* N, > 0, load = RP_FORCE */
-  double approach;      /* m, load = RP_POSITION */
-  double creepage[2];   /* -, longitudinal, lateral */
-  double spin_creepage; /* rad/m */
-  double rolling_speed; /* m/s, >= 0; 0 is standstill: no creep force */
-  int32_t direction;    /* rolling towards +x (1) or -x (-1) */
+  double normal_force;        /* N, > 0, load = RP_FORCE */
+  double approach;            /* m, load = RP_POSITION */
+  double creepage[2];         /* -, longitudinal, lateral; 0 where the force is prescribed */
+  double tangential_force[2]; /* N on the wheel, of the components in force_prescribed, else 0;
+                                 together at most friction_coefficient times the normal force */
+  double spin_creepage;       /* rad/m */
+  double rolling_speed;       /* m/s, >= 0; 0 is standstill: no creep force */
+  int32_t direction;          /* rolling towards +x (1) or -x (-1) */
 
   /* wheelset: position, attitude (roll-yaw-pitch) and velocity in track axes */
   double y, z;           /* m; z where load = RP_POSITION */
@@ -252,7 +257,7 @@ typedef struct rp_patch_result {
   double error_estimate;     /* -, NaN: not available */
   double position[3];        /* m, contact reference in track axes (wheel kinds) */
   double contact_angle;      /* rad */
-  double creepage[2];        /* - */
+  double creepage[2];        /* -; found where the force is prescribed */
   double spin_creepage;      /* rad/m */
   double rolling_speed;      /* m/s, mean of the two surface speeds */
   int32_t direction;         /* 1 or -1; 0 at standstill */

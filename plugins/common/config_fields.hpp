@@ -18,6 +18,7 @@
   X(max_elements)                  \
   X(fitted)                        \
   X(regime)                        \
+  X(force_prescribed)              \
   X(friction_coefficient)          \
   X(layer_shear_modulus)           \
   X(layer_thickness)               \

@@ -59,8 +59,28 @@ def problems_of(case: Any, **options: Any) -> list[str]:
         (
             "motion__tangential_force",
             [1.0, 0.0],
-            "motion.tangential_force: value is [1.0, 0.0], "
-            "allowed: leave it out, not in this version",
+            "motion.creepage: value is [0.001, 0.0], allowed 0 where tangential_force gives",
+        ),
+        (
+            "motion__tangential_force",
+            ["creepage", "free"],
+            "motion.tangential_force[1]: value is 'free', allowed a number or 'creepage'",
+        ),
+        (
+            "motion__tangential_force",
+            ["creepage", math.nan],
+            "motion.tangential_force[1]: value is nan, allowed a finite number",
+        ),
+        (
+            "motion__tangential_force",
+            ["creepage", "creepage"],
+            "motion.tangential_force: value is ['creepage', 'creepage'], allowed at least one",
+        ),
+        (
+            "motion__tangential_force",
+            ["creepage", 30001.0],
+            "motion.tangential_force: value is ['creepage', 30001.0], allowed at most "
+            "friction.coefficient * load.normal_force = 30000 N in magnitude",
         ),
         ("motion__rolling_speed", -1.0, "motion.rolling_speed: value is -1.0, allowed >= 0"),
         ("friction", None, "friction: value is missing, allowed the table [friction]"),

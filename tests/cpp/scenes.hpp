@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -64,6 +65,15 @@ inline rp_config patch(rp_normal_method normal, rp_tangential_method tangential,
   return c;
 }
 
+// The full theory with both components of the creep force prescribed; nodes: across, on fitted
+// rows.
+inline rp_config forced_patch(int nodes = 0) {
+  rp_config c = patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL);
+  c.fitted[0] = c.fitted[1] = nodes;
+  c.force_prescribed[0] = c.force_prescribed[1] = 1;
+  return c;
+}
+
 // Wheel kinds with the profiles of profiles.hpp on both sides; `wheel` and `rail` must stay alive.
 struct profile_pair {
   profiles::curve wheel = profiles::wheel(), rail = profiles::rail();
@@ -91,6 +101,14 @@ inline rp_input patch_input(double force, double xi, double eta, double phi) {
   in.creepage[0] = xi;
   in.creepage[1] = eta;
   in.spin_creepage = phi;
+  return in;
+}
+
+// A creep force at an angle, as a share of friction's most (coefficient 0.3).
+inline rp_input forced_input(double force, double share, double angle, double phi) {
+  rp_input in = patch_input(force, 0, 0, phi);
+  in.tangential_force[0] = 0.3 * force * share * std::cos(angle);
+  in.tangential_force[1] = 0.3 * force * share * std::sin(angle);
   return in;
 }
 

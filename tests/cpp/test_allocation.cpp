@@ -251,6 +251,18 @@ TEST(Step, OfALineContactAllocatesNothing) {
   EXPECT_EQ(run(c, patch_inputs()).allocated, 0);
 }
 
+TEST(Step, WithAPrescribedForceAllocatesNothing) {
+  for (int nodes : {0, 7}) {
+    rp_config c = scenes::forced_patch(nodes);
+    c.friction_coefficient = 0.3;
+    std::vector<rp_input> inputs;
+    for (double share : {0.0, 0.5, 0.99, 0.2})
+      for (double angle : {0.3, 2.0, 5.0})
+        inputs.push_back(scenes::forced_input(1e5 * (1 + share), share, angle, angle > 1 ? 0 : .1));
+    EXPECT_EQ(run(c, inputs).allocated, 0) << "fitted " << nodes;
+  }
+}
+
 // Wheelsets by the theories that build the contact from rows.
 TEST(Step, OfAWheelsetWithRowsAllocatesNothing) {
   const scenes::profile_pair pair;

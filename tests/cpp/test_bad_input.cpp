@@ -213,6 +213,8 @@ TEST(Config, ChoicesAndCountsAreChecked) {
       {"flexibility_blending", [](rp_config &c, int v) { put(c.flexibility_blending, v); }, -1, 3},
       {"spin_offset", [](rp_config &c, int v) { put(c.spin_offset, v); }, -1, 2},
       {"elements[0]", [](rp_config &c, int v) { c.elements[0] = v; }, -5, 100000},
+      {"force_prescribed[0]", [](rp_config &c, int v) { c.force_prescribed[0] = v; }, -1, 2},
+      {"force_prescribed[1]", [](rp_config &c, int v) { c.force_prescribed[1] = v; }, -1, 2},
       {"elements[1]", [](rp_config &c, int v) { c.elements[1] = v; }, 1, 100000},
       {"max_elements[0]", [](rp_config &c, int v) { c.max_elements[0] = v; }, -1, 1 << 30},
       {"max_iterations", [](rp_config &c, int v) { c.max_iterations = v; }, 0, 1 << 30},
@@ -439,6 +441,78 @@ TEST(Input, OfAPatchIsChecked) {
   in.approach = 5e-5;
   expect_inputs_checked(position, in,
                         {{"approach", [](rp_input &i) -> double & { return i.approach; }, {}}});
+}
+
+TEST(Config, APrescribedForceNeedsAPatchAndTheFullTheory) {
+  rp_config c = scenes::forced_patch();
+  c.tangential = RP_TANGENTIAL_FASTSIM;
+  expect_refused(c, RP_ERROR_VALUE, "force_prescribed");
+  c = scenes::forced_patch();
+  c.regime = RP_REGIME_NONE;
+  expect_refused(c, RP_ERROR_VALUE, "force_prescribed");
+  const scenes::profile_pair pair;
+  c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+  c.force_prescribed[1] = 1;
+  expect_refused(c, RP_ERROR_VALUE, "force_prescribed");
+}
+
+TEST(Input, OfAPrescribedForceIsChecked) {
+  rp_config c = scenes::forced_patch();
+  c.friction_coefficient = 0.3;
+  const auto force = [](int k) {
+    return [k](rp_input &in) -> double & { return in.tangential_force[k]; };
+  };
+  const auto creepage = [](int k) {
+    return [k](rp_input &in) -> double & { return in.creepage[k]; };
+  };
+  const auto speed = [](rp_input &in) -> double & { return in.rolling_speed; };
+  // friction carries 3e4 N, of which 1e4 N lie across
+  rp_input in = scenes::patch_input(1e5, 0, 0, 0.1);
+  in.tangential_force[0] = 2.5e4;
+  in.tangential_force[1] = -1e4;
+  expect_inputs_checked(c, in,
+                        {{"tangential_force", force(0), {3e4, -2.9e4}},
+                         {"tangential_force", force(1), {3e4, 1.7e4}},
+                         {"creepage[0]", creepage(0), {1e-3}},
+                         {"creepage[1]", creepage(1), {-1e-9}},
+                         {"rolling_speed", speed, {0, -1}}});
+  c.force_prescribed[1] = 0;
+  in.tangential_force[1] = 0;
+  in.creepage[1] = 1e-3;
+  expect_inputs_checked(c, in,
+                        {{"tangential_force", force(0), {3.1e4}},
+                         {"tangential_force[1]", force(1), {1.0}},
+                         {"creepage[0]", creepage(0), {1e-3}},
+                         {"creepage[1]", creepage(1), {}}});
+  // the present friction coefficient counts
+  scenes::handle contact(c);
+  contact.step(in);
+  ASSERT_EQ(rp_set_friction_coefficient(contact.get(), 0.2, nullptr), RP_OK);
+  expect_refused(contact, in, RP_ERROR_VALUE, "tangential_force");
+}
+
+// Where the normal force follows from the approach, the solve tells.
+TEST(Input, ForceBeyondFrictionIsAStatus) {
+  for (int nodes : {0, 8}) {
+    rp_config c = scenes::forced_patch(nodes);
+    c.load = RP_POSITION;
+    c.friction_coefficient = 0.3;
+    scenes::handle contact(c);
+    rp_input in = default_input();
+    in.approach = 5e-5;
+    const double most = 0.3 * contact.step(in).side[RP_RIGHT].patch[0].normal_force;
+    for (double share : {0.999, 1.001, 3.0, 0.5}) {
+      in.tangential_force[0] = -share * most;
+      const rp_patch_result p = contact.step(in).side[RP_RIGHT].patch[0];
+      EXPECT_EQ(p.status, share > 1 ? RP_OUT_OF_RANGE : RP_CONVERGED) << share;
+      EXPECT_TRUE(std::isfinite(p.residual) && std::isfinite(p.creepage[0])) << share;
+      // the residual does not hide the missing force
+      EXPECT_GE(p.residual, share > 1 ? 0.99 * (1 - 1 / share) : 0.0) << share;
+      if (share < 1) {
+        EXPECT_NEAR(p.creep_force[0], in.tangential_force[0], 1.01e-5 * most) << share;
+      }
+    }
+  }
 }
 
 TEST(Input, OfAWheelsetIsChecked) {

@@ -75,7 +75,7 @@ class Operators : public testing::TestWithParam<double> {};
 TEST_P(Operators, AreSolvedFromAnyStart) {
   std::mt19937_64 random(20240919);
   std::uniform_real_distribution<double> entry(-1, 1);
-  rolling_newton newton(12, static_cast<int>(lengths.size()));
+  rolling_newton newton(12, static_cast<int>(lengths.size()), false);
   for (int k = 0; k < 20; ++k) {
     dense_operator b(GetParam(), random);
     const size_t n = b.size() / 2;

@@ -65,6 +65,14 @@ std::vector<scene> all_scenes() {
   fitted.normal = RP_NORMAL_HALF_SPACE;
   add("half_space_fitted", fitted, patch_inputs());
   add("normal_only", scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_NONE), patch_inputs());
+  rp_config forced = scenes::forced_patch();
+  forced.friction_coefficient = 0.3;
+  const std::vector<rp_input> forces = {
+      scenes::forced_input(8e4, 0.3, 0.5, 0.1), scenes::forced_input(9e4, 0.9, 0.6, 0.2),
+      scenes::forced_input(7e4, 0.6, 2.5, 0.1), scenes::forced_input(1e5, 0.99, -1.0, 0)};
+  add("prescribed_force", forced, forces);
+  forced.fitted[0] = forced.fitted[1] = 8;
+  add("prescribed_force_fitted", forced, forces);
   rp_config sized = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL);
   sized.geometry = RP_CURVATURES;
   sized.elements[0] = sized.elements[1] = 0;

@@ -60,6 +60,9 @@ SCENES: dict[str, dict[str, Any]] = {
     "strips": with_values(PATCH, method={"tangential": "fastrip"}),
     "fitted": with_values(PATCH, method={"normal": "hertz"}, grid={"fitted": [8, 8]}),
     "layer": with_values(PATCH, layer={"shear_modulus": 8.2e9, "thickness": 5e-5}),
+    "prescribed_force": with_values(
+        PATCH, motion__creepage=[0.0, 1e-4], motion__tangential_force=[-5e3, "creepage"]
+    ),
     "rail": RAIL,
     "roller": ROLLER,
     "loaded": LOADED,
@@ -79,6 +82,7 @@ MOTIONS: dict[str, list[dict[str, float]]] = {
     ],
     "patch_approach": [{"approach": 8e-5}, {"approach": -1e-6}, {"approach": 3e-5}],
     "patch_normal": [{"normal_force": 2e4}],
+    "prescribed_force": [{"tangential_force[1]": 8e3}, {"creepage[2]": -5e-4, "normal_force": 6e4}],
     "line": [{"creepage[1]": 2e-3}, {"normal_force": 5e4}],
     "gap": [{"creepage[2]": 2e-3}, {"normal_force": 1e4}],
     "fast": [{"creepage[2]": 2e-3}, {"normal_force": 1e4, "spin_creepage": 0.2}],

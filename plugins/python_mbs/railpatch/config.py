@@ -64,6 +64,7 @@ def patch_config(scene: Scene) -> dict[str, Any]:
         "geometry": shape,
         "load": "force" if case.load.normal_force is not None else "position",
         "regime": case.motion.regime,
+        "force_prescribed": [int(prescribed) for prescribed in case.motion.prescribed],
     }
     if shape == "undeformed_distance":
         config[shape] = scene.gap()
@@ -118,6 +119,7 @@ def input_of(case: Case) -> dict[str, Any]:
     """Fields of rp_input."""
     if isinstance(case, PatchCase):
         values = case.motion.model_dump(exclude={"regime"})
+        values["tangential_force"] = case.motion.forces
         values.update(case.load.model_dump(exclude_none=True))
         return values
     wheelset, track = case.wheelset, case.track

@@ -47,7 +47,8 @@ class Contact:
     def step(self, *, fields: bool = False, **changes: Any) -> Result:
         """Solves with some moving inputs changed; the others keep their last value.
 
-        patch: creepage, spin_creepage, rolling_speed, direction, normal_force or approach.
+        patch: creepage or tangential_force, spin_creepage, rolling_speed, direction, normal_force
+        or approach.
         wheel_rail, wheelset: the position and velocity keys of [wheelset] with left and right,
         roller_pitch_rate, track = {"left": ..., "right": ...}; left and right in part or whole.
         fields: add the fields of each patch. Other keys raise CaseError and nothing changes.
@@ -94,7 +95,8 @@ class Contact:
         common = {"wall_time": wall_time, "stages": list(self._stages)}
         if self._case.kind == "patch":
             patch = raw["right"]["patches"][0]
-            data = patch_data(patch, of_wheel=False)
+            found = any(self._case.motion.prescribed)
+            data = patch_data(patch, of_wheel=False, creepage_found=found)
             if fields:
                 data.update(self._fields("right", 0, patch["grid"]))
             return {**data, **common}

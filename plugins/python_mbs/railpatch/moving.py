@@ -19,7 +19,13 @@ def moving_keys(case: Case) -> dict[str, str]:
     """Moving key -> table of the case that holds it. 'track' takes a table of track keys."""
     if isinstance(case, PatchCase):
         load = "normal_force" if case.load.normal_force is not None else "approach"
-        return {load: "load", **dict.fromkeys(MOTION_KEYS, "motion")}
+        prescribed = case.motion.prescribed
+        keys = {load: "load", **dict.fromkeys(MOTION_KEYS, "motion")}
+        if all(prescribed):
+            del keys["creepage"]
+        if any(prescribed):
+            keys["tangential_force"] = "motion"
+        return keys
     height = "z" if case.wheelset.z is not None else "vertical_force"
     keys = dict.fromkeys((*WHEELSET_STATE, height, *DEVIATION_KEYS), "wheelset")
     if case.track.kind == "roller":
@@ -47,9 +53,16 @@ def changed_case(case: Case, changes: Mapping[str, Any]) -> Case:
         allowed = [name for name in ("roller_pitch_rate",) if name in keys]
         refuse_unknown(value, dict.fromkeys((*DEVIATION_KEYS, *allowed)), "track.")
         values.update(value)
-    return case.model_copy(
+    changed = case.model_copy(
         update={name: changed_table(case, name, values) for name, values in tables.items()}
     )
+    if isinstance(case, PatchCase) and changed.motion.prescribed != case.motion.prescribed:
+        given = show(changed.motion.tangential_force)
+        raise CaseError(
+            f"motion.tangential_force: value is {given}, allowed the components of the case's own, "
+            f"{case.motion.tangential_force}: which are prescribed does not change"
+        )
+    return changed
 
 
 def changed_table(case: Case, name: str, values: dict[str, Any]) -> Any:

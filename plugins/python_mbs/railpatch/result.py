@@ -96,8 +96,13 @@ def plain_json(value: Any) -> Any:
     return value
 
 
-def patch_data(patch: dict[str, Any], *, of_wheel: bool) -> dict[str, Any]:
-    """The quantities of one patch, from the core's rp_patch_result."""
+def patch_data(
+    patch: dict[str, Any], *, of_wheel: bool, creepage_found: bool = False
+) -> dict[str, Any]:
+    """The quantities of one patch, from the core's rp_patch_result.
+
+    creepage_found: the case prescribes a tangential force.
+    """
     elements = dict(zip(DIVISION, patch["elements"], strict=True))
     creep_force = patch["creep_force"]
     if math.isnan(creep_force[0]):
@@ -110,7 +115,7 @@ def patch_data(patch: dict[str, Any], *, of_wheel: bool) -> dict[str, Any]:
         "elements": elements,
         "iterations": patch["normal_iterations"] + patch["newton_iterations"],
     }
-    names = [*PATCH_UNITS, *(PLACE_UNITS if of_wheel else ())]
+    names = [*PATCH_UNITS, *(PLACE_UNITS if of_wheel else ["creepage"] if creepage_found else [])]
     return {name: data[name] for name in names}
 
 

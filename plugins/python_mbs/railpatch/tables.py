@@ -19,7 +19,8 @@ def print_result(result: Result, console: Console | None = None) -> None:
     data = result.data
     sides = [side for side in SIDES if side in data]
     if "patches" not in data and not sides:
-        console.print(patch_table([("", data)], PATCH_UNITS))
+        found = {"creepage": PLACE_UNITS["creepage"]} if "creepage" in data else {}
+        console.print(patch_table([("", data)], {**PATCH_UNITS, **found}))
     else:
         wheels = {side: data[side] for side in sides} or {"wheel": data}
         console.print(wheel_table(data, wheels))

@@ -252,6 +252,7 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.array("max_elements", c.max_elements);
   reader.array("fitted", c.fitted);
   reader.name("regime", c.regime);
+  reader.array("force_prescribed", c.force_prescribed);
   reader.scalar("friction_coefficient", c.friction_coefficient);
   reader.scalar("layer_shear_modulus", c.layer_shear_modulus);
   reader.scalar("layer_thickness", c.layer_thickness);
@@ -289,6 +290,7 @@ void fill_input(const nb::dict &from, rp_input &to) {
   reader.scalar("normal_force", to.normal_force);
   reader.scalar("approach", to.approach);
   reader.array("creepage", to.creepage);
+  reader.array("tangential_force", to.tangential_force);
   reader.scalar("spin_creepage", to.spin_creepage);
   reader.scalar("rolling_speed", to.rolling_speed);
   reader.scalar("direction", to.direction);

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 # keys of the interface that this version does not have yet
 LATER_KEYS = {
     "load": (),
-    "motion": ("tangential_force", "distance", "steps"),
+    "motion": ("distance", "steps"),
     "friction": (
         "kinetic",
         "amplitude",
@@ -78,13 +78,17 @@ def problem(model: type[BaseModel], item: Any, prefix: str) -> str:
     template = ALLOWED.get(item["type"])
     if item["loc"][-1:] == ("str",):
         template = "a path or rows of numbers"
+    if item["loc"][-1:] == ("float",) and item["type"] == "float_type":
+        template = "a number or 'creepage'"
     allowed = template.format(**context) if template else item["msg"]
     return f"{key}: value is {show(item['input'])}, allowed {allowed}"
 
 
 def is_branch(part: Any) -> bool:
     """pydantic puts the name of a union's branch, 'str' or 'list[...]', into the location."""
-    return isinstance(part, str) and (part == "str" or part.startswith("list["))
+    return isinstance(part, str) and (
+        part in ("str", "float") or part.startswith(("list[", "literal["))
+    )
 
 
 def spell(prefix: str, loc: list[Any]) -> str:

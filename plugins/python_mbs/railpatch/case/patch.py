@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
@@ -17,6 +18,7 @@ from railpatch.case.common import (
 )
 from railpatch.case.types import (
     Curvatures,
+    ForcePair,
     NotNegative,
     Number,
     Pair,
@@ -89,11 +91,44 @@ class Motion(Table):
         default=[0.0, 0.0],
         description="-, [longitudinal, lateral], wheel minus rail over the rolling speed",
     )
+    tangential_force: ForcePair | None = Field(
+        default=None,
+        description="N, [longitudinal, lateral] on the wheel: the creep force is prescribed and "
+        'the creepage found; "creepage" in place of a number leaves a component to the key '
+        "creepage. Left out: both creepages are given",
+    )
     direction: Literal[1, -1] = Field(
         default=1, description="-, rolling towards +x (1) or towards -x (-1)"
     )
     spin_creepage: Number = Field(default=0.0, description="rad/m, spin creepage")
     rolling_speed: NotNegative = Field(default=10.0, description="m/s, rolling speed")
+
+    @property
+    def prescribed(self) -> tuple[bool, bool]:
+        """Whether the longitudinal and the lateral force are prescribed."""
+        force = self.tangential_force or ["creepage", "creepage"]
+        return force[0] != "creepage", force[1] != "creepage"
+
+    @property
+    def forces(self) -> list[float]:
+        """N, the components prescribed, else 0."""
+        return [0.0 if force == "creepage" else force for force in self.tangential_force or (0, 0)]
+
+    @model_validator(mode="after")
+    def _one_of_force_and_creepage(self) -> Motion:
+        if self.tangential_force is None:
+            return self
+        for prescribed, creepage in zip(self.prescribed, self.creepage, strict=True):
+            if prescribed and creepage != 0:
+                shown = str(self.creepage)
+                raise relation("creepage", shown, "0 where tangential_force gives the force")
+        if not any(self.prescribed):
+            raise relation(
+                "tangential_force", str(self.tangential_force), "at least one force in N"
+            )
+        if not self.rolling_speed > 0:
+            raise relation("rolling_speed", self.rolling_speed, "> 0 with tangential_force")
+        return self
 
 
 class PatchCase(Table):
@@ -124,6 +159,8 @@ class PatchCase(Table):
     def _relations(self) -> PatchCase:
         if self.has_tangential:
             check_tangential(self.material, self.friction, self.layer, self.method)
+        if any(self.motion.prescribed):
+            self._check_force()
         line = self.geometry.line_contact_radius is not None
         check_fitted(self.grid, self.method, line=line)
         if line:
@@ -140,6 +177,22 @@ class PatchCase(Table):
                 "'half_space', 'kik_piotrowski' or 'analyn' with undeformed_distance",
             )
         return self
+
+    def _check_force(self) -> None:
+        """What a prescribed tangential force needs."""
+        if self.motion.regime != "steady_rolling":
+            shown = repr(self.motion.regime)
+            raise relation("motion.regime", shown, "'steady_rolling' with tangential_force")
+        if self.method.tangential != "full":
+            shown = repr(self.method.tangential)
+            raise relation("method.tangential", shown, "'full' with motion.tangential_force")
+        if self.load.normal_force is None or self.friction is None:
+            return
+        most = self.friction.coefficient * self.load.normal_force
+        if math.hypot(*self.motion.forces) > most * (1 + 1e-12):
+            shown = str(self.motion.tangential_force)
+            allowed = f"at most friction.coefficient * load.normal_force = {most:g} N in magnitude"
+            raise relation("motion.tangential_force", shown, allowed)
 
     def _check_line(self) -> None:
         """What a line contact is not combined with."""

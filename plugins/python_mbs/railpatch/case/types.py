@@ -5,7 +5,7 @@ Ranges are those of the core's own checks; a test compares them.
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
@@ -41,6 +41,8 @@ Count = Annotated[int, Field(ge=1, le=MOST_ELEMENTS)]
 Capacity = Annotated[int, Field(ge=1, le=MOST_ELEMENTS + 2)]
 
 Pair = Annotated[list[Number], exactly(2)]
+# a number, or the word that leaves the component to its creepage
+ForcePair = Annotated[list[Number | Literal["creepage"]], exactly(2)]
 CountPair = Annotated[list[Count], exactly(2)]
 Nodes = Annotated[int, Field(ge=1, le=64)]
 FittedPair = Annotated[list[Nodes], exactly(2)]

@@ -27,6 +27,8 @@ def kind_of(case: Case, config: dict[str, list[float]]) -> Kind:
         conditions.add("fast")
     if isinstance(case, PatchCase):
         conditions.add("force" if case.load.normal_force is not None else "position")
+        for component, prescribed in enumerate(case.motion.prescribed, 1):
+            conditions.add(f"force[{component}]" if prescribed else f"creepage[{component}]")
         return Kind("patch", (1,), 1, frozenset(conditions))
     conditions.add("force" if case.wheelset.vertical_force is not None else "position")
     if case.track.kind == "roller":

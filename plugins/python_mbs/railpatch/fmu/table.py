@@ -29,7 +29,7 @@ class Kind:
     kind: str
     sides: tuple[int, ...]  # 0: left, 1: right
     max_patches: int
-    conditions: frozenset[str]  # "tangential", "force" or "position", "roller"
+    conditions: frozenset[str]  # "tangential", "force" or "position", "roller", ...
 
     @property
     def coupled(self) -> bool:
