@@ -23,6 +23,7 @@ def patch_case(
     approach: float | None = None,
     elements: int | Sequence[int] | None = None,
     element_size: Sequence[float] | None = None,
+    fitted: Sequence[int] | None = None,
     creepage: Sequence[float] | None = None,
     spin: float = 0.0,
     direction: int = 1,
@@ -33,13 +34,19 @@ def patch_case(
     **method: Any,
 ) -> dict[str, Any]:
     """A case of one patch; without creepage the normal problem alone."""
-    count = [elements, elements] if isinstance(elements, int) else elements
+    grid: dict[str, Any] = {}
+    if elements is not None:
+        grid["elements"] = [elements, elements] if isinstance(elements, int) else list(elements)
+    if element_size is not None:
+        grid["element_size"] = list(element_size)
+    if fitted is not None:
+        grid["fitted"] = list(fitted)
     case: dict[str, Any] = {
         "kind": "patch",
         "material": dict(material),
         "geometry": geometry,
         "load": {"normal_force": force} if approach is None else {"approach": approach},
-        "grid": {"element_size": list(element_size)} if count is None else {"elements": count},
+        "grid": grid,
         "method": method,
     }
     if creepage is not None:

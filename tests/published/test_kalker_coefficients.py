@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import csv
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -31,7 +32,7 @@ RATIOS = (0.0, 0.25, 0.5)
 MIDDLE, MIDDLE_ERROR = (0.2, 5.0), 0.01
 
 
-def coefficients(a: float, b: float, nu: float, count: int) -> dict[str, float]:
+def coefficients(a: float, b: float, nu: float, **grid: Any) -> dict[str, float]:
     """C11, C22, C23 and, from the moment under lateral creepage, C32 = -C23."""
     unit = a * b * SHEAR_MODULUS
     length = np.sqrt(a * b)
@@ -43,12 +44,12 @@ def coefficients(a: float, b: float, nu: float, count: int) -> dict[str, float]:
             patch_case(
                 {"semi_axes": [a, b]},
                 force=FORCE,
-                elements=count,
                 creepage=creepage,
                 spin=spin,
                 friction=FRICTION,
                 material={"shear_modulus": SHEAR_MODULUS, "poisson_ratio": nu},
                 tolerance=1e-7,
+                **grid,
             )
         )
 
@@ -68,13 +69,30 @@ def test_coefficients(ratio: float) -> None:
     a, b = (MINOR * ratio, MINOR) if ratio > 1 else (MINOR, MINOR / ratio)
     lines = []
     for nu, (c11, c22, c23) in zip(RATIOS, TABLE[ratio], strict=True):
-        coarse, fine = (coefficients(a, b, nu, n) for n in COUNTS)
+        coarse, fine = (coefficients(a, b, nu, elements=n) for n in COUNTS)
         # the solver's error is of first order in the element size
         limit = {name: 2 * fine[name] - coarse[name] for name in fine}
         targets = {"C11": c11, "C22": c22, "C23": c23, "C32": c23}
         for name, target in targets.items():
             scene = f"a/b {ratio} nu {nu:4.2f} {name} (at {COUNTS[1]}: {fine[name]:.4f})"
             lines.append(Line(scene, limit[name], target, TABLE_ERROR * target))
+    check(lines)
+
+
+# nodes along rolling and rows: as many more across as the ellipse is wider, so that rows stay about
+# as far apart as their nodes
+FITTED = {0.2: [8, 40], 0.5: [12, 24], 1.0: [12, 12], 2.0: [16, 12], 5.0: [24, 12]}
+
+
+@pytest.mark.parametrize("ratio", TABLE)
+def test_coefficients_of_fitted_rows(ratio: float) -> None:
+    a, b = (MINOR * ratio, MINOR) if ratio > 1 else (MINOR, MINOR / ratio)
+    lines = []
+    for nu, (c11, c22, c23) in zip(RATIOS, TABLE[ratio], strict=True):
+        found = coefficients(a, b, nu, fitted=FITTED[ratio], normal="hertz")
+        for name, target in {"C11": c11, "C22": c22, "C23": c23, "C32": c23}.items():
+            bound = MIDDLE_ERROR * target
+            lines.append(Line(f"a/b {ratio} nu {nu:4.2f} {name}", found[name], target, bound))
     check(lines)
 
 

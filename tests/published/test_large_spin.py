@@ -66,3 +66,33 @@ def test_both_rules_tend_to_the_same_limit() -> None:
             Line("limit of M_z", limits["sixth"][1], limits["none"][1], 0.2),
         ]
     )
+
+
+def test_fitted_rows_give_the_limit_of_uniform_grids() -> None:
+    """The uniform grids' error is of first order, so that the two finest extrapolate."""
+    case = spin_case("none")
+    case["grid"] = {"fitted": [24, 16]}
+    case["method"]["normal"] = "hertz"
+    rows = solve(case)
+    grids = [solve(spin_case("none", k)) for k in (1.0, 2.0, 4.0)]
+    length = np.sqrt(8e-3 * 4e-3)
+
+    def wrench(result) -> np.ndarray:
+        return np.array([*result["creep_force"], result["spin_moment"] / length]) / (
+            FRICTION * FORCE
+        )
+
+    values = [wrench(result) for result in grids]
+    for value in values:
+        print(value)
+    limit = 2 * values[2] - values[1]
+    # the limit is known to half of what is asked of the rows
+    before = 2 * values[1] - values[0]
+    assert np.all(np.abs(limit - before) < 2.5e-3), (before, limit)
+    names = ("F_x", "F_y", "M_z")
+    check(
+        [
+            Line(f"{n} / (mu F_n)", float(v), float(t), 5e-3)
+            for n, v, t in zip(names, wrench(rows), limit, strict=True)
+        ]
+    )

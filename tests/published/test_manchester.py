@@ -60,13 +60,17 @@ def differences(row, result):
     }
 
 
+@pytest.mark.parametrize("fitted", [None, [12, 12]])
 @pytest.mark.parametrize("source", ["built-in", "file"])
-def test_all_positions(reference, source):
+def test_all_positions(reference, source, fitted):
     wheel, rail = ("S1002", "UIC60@1:40")
     if source == "file":
         wheel = str(reference / "profiles" / "MBench_S1002_v3.prw")
         rail = str(reference / "profiles" / "MBench_UIC60_v3.prr")
-    contact = railpatch.Contact(manchester_case(wheel, rail))
+    case = manchester_case(wheel, rail)
+    if fitted is not None:
+        case["grid"]["fitted"] = fitted
+    contact = railpatch.Contact(case)
     rows = positions(reference)
     assert len(rows) == 21
     worst = dict.fromkeys(BOUNDS, 0.0)
