@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "creep_table.hpp"
 #include "influence.hpp"
 
 namespace railpatch {
@@ -74,9 +75,12 @@ void check_choices(const rp_config &c, checker &check) {
   check.choice("load", c.load, RP_FORCE, RP_POSITION);
   check.choice("regime", c.regime, RP_REGIME_NONE, RP_STEADY_ROLLING);
   check.choice("normal", c.normal, RP_NORMAL_HERTZ, RP_NORMAL_ANALYN);
-  check.choice("tangential", c.tangential, RP_TANGENTIAL_NONE, RP_TANGENTIAL_FULL);
+  check.choice("tangential", c.tangential, RP_TANGENTIAL_NONE, RP_TANGENTIAL_TABLE);
   check.choice("spin_offset", c.spin_offset, RP_SPIN_OFFSET_NONE, RP_SPIN_OFFSET_SIXTH);
   if (check.error() != RP_OK) return;
+  // between the two lie numbers without a method
+  if (c.tangential != RP_TANGENTIAL_TABLE)
+    check.choice("tangential", c.tangential, RP_TANGENTIAL_NONE, RP_TANGENTIAL_FULL);
   if (c.kind == RP_PATCH)
     check.choice("geometry", c.geometry, RP_SEMI_AXES, RP_UNDEFORMED_DISTANCE);
   else
@@ -91,6 +95,23 @@ void check_fitted(const rp_config &c, checker &check) {
   check.require(c.tangential == RP_TANGENTIAL_FULL, "fitted needs tangential = full");
   check.require(c.spin_offset == RP_SPIN_OFFSET_NONE,
                 "spin_offset must be none with fitted: it belongs to the uniform grid");
+}
+
+// Where creep forces come from a table.
+void check_table(const rp_config &c, checker &check) {
+  if (!uses_table(c)) return;
+  const bool line = c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT;
+  check.require(!line, "a creep table has no line contact: use tangential = full");
+  check.require(!(c.layer_thickness > 0),
+                "a creep table has no third-body layer: use tangential = full");
+  check.require(c.spin_offset == RP_SPIN_OFFSET_NONE,
+                "spin_offset must be none with a creep table: it belongs to the uniform grid");
+  if (check.error() != RP_OK) return;
+  const char *defect = creep_table::defect(c.creep_table, c.creep_table_size);
+  if (!defect) return;
+  char text[RP_MESSAGE_SIZE];
+  std::snprintf(text, sizeof text, "creep_table %s", defect);
+  check.require(false, text);
 }
 
 void check_grid(const rp_config &c, checker &check) {
@@ -158,7 +179,12 @@ void check_wheels(const rp_config &c, checker &check) {
 
 bool needs_grid(const rp_config &c) {
   const bool full = c.regime != RP_REGIME_NONE && c.tangential == RP_TANGENTIAL_FULL;
-  return c.kind != RP_PATCH || c.normal != RP_NORMAL_HERTZ || !full || c.fitted[0] == 0;
+  const bool own_nodes = full && c.fitted[0] != 0;
+  return c.kind != RP_PATCH || c.normal != RP_NORMAL_HERTZ || !(own_nodes || uses_table(c));
+}
+
+bool uses_table(const rp_config &c) {
+  return c.regime != RP_REGIME_NONE && c.tangential == RP_TANGENTIAL_TABLE;
 }
 
 void set_message(rp_message *message, const char *format, ...) {
@@ -180,6 +206,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   check.numbers("shear_modulus", c.shear_modulus, 2, {1.0, 1e15, false, false});
   check.numbers("poisson_ratio", c.poisson_ratio, 2, {0, 0.5, false, false});
   check_grid(c, check);
+  check_table(c, check);
   check.number("friction_coefficient", c.friction_coefficient, friction);
   check.number("layer_thickness", c.layer_thickness, {0, 0.1, false, false});
   if (c.layer_thickness > 0)

@@ -83,6 +83,7 @@ patch_scene make_scene(const rp_config &c) {
   scene.max_iterations = c.max_iterations;
   for (int k = 0; k < 2; ++k) scene.fitted[k] = c.fitted[k];
   scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
+  if (uses_table(c)) scene.creep_table = c.creep_table;
   return scene;
 }
 
@@ -174,7 +175,7 @@ contact::contact(const rp_config &config)
     }
   }
   scene_ = fingerprint(config, shape_);
-  // nothing of the caller's memory is kept
+  // nothing else of the caller's memory is kept than the creep table
   config_.undeformed_distance = nullptr;
   for (auto *p : {&config_.wheel[0], &config_.wheel[1], &config_.rail[0], &config_.rail[1]})
     *p = rp_profile{};
@@ -455,6 +456,8 @@ void contact::describe(rp_stage_info *info) const {
     why = "tangential = none";
   else if (scene.tangential == RP_TANGENTIAL_FASTSIM)
     why = "tangential = fastsim: simplified theory";
+  else if (scene.tangential == RP_TANGENTIAL_TABLE)
+    why = "tangential = table: full theory, interpolated; the table is the caller's";
   else if (scene.is_fitted())
     why = "tangential = full: semi-smooth Newton on fitted rows";
   info[RP_STAGE_TANGENTIAL] = {"tangential", tangential, why,

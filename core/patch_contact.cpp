@@ -44,7 +44,7 @@ void set_unloaded(const patch_scene &scene, rp_patch_result &result) {
 patch_memory::patch_memory(int max_count, const patch_scene &scene) {
   undeformed_distance = aligned_buffer<double>(static_cast<size_t>(max_count));
   pressure = aligned_buffer<double>(static_cast<size_t>(max_count));
-  if (scene.tangential == RP_TANGENTIAL_NONE) return;
+  if (!scene.has_tractions()) return;
   const auto n =
       static_cast<size_t>(scene.is_fitted() ? scene.fitted[0] * scene.fitted[1] : max_count);
   for (auto *b : {&px, &py, &sx, &sy}) *b = aligned_buffer<double>(n);
@@ -82,7 +82,9 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
     fitted_rows_.emplace(scene.fitted[0], scene.fitted[1], max_ny);
     fitted_.emplace(scene.elastic, scene.layer_flexibility, scene.line_width > 0, *fitted_rows_);
   }
-  if (scene.tangential == RP_TANGENTIAL_NONE || scene.is_fitted()) return;
+  if (scene.tangential == RP_TANGENTIAL_TABLE)
+    table_.emplace(scene.creep_table, scene.elastic.poisson_ratio);
+  if (!scene.has_tractions() || scene.is_fitted()) return;
   bound_ = aligned_buffer<double>(count);
   leading_ = aligned_buffer<double>(static_cast<size_t>(max_ny));
 }
@@ -161,6 +163,12 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
     wrench.moment[2] = creep.moment[2];
   } else {
     wrench = sum_tractions(problem.g, memory.pressure.data(), memory.px.data(), memory.py.data());
+  }
+  if (table_) {
+    if (problem.g.count() == 0) wrench.force[2] = -result.normal_force;
+    wrench.force[0] = table_forces_.force[0];
+    wrench.force[1] = table_forces_.force[1];
+    wrench.moment[2] = table_forces_.moment;
   }
   if (scene_.tangential != RP_TANGENTIAL_NONE) {
     result.creep_force[0] = wrench.force[0];
@@ -294,11 +302,13 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   }
   if (scene_.spin_offset) rolling.spin_offset = rolling.direction * g.dx / 6.0;
   tangential_result t;
-  if (!fitted_)
+  if (scene_.has_tractions() && !fitted_)
     for (int i = 0; i < g.count(); ++i)
       bound_[static_cast<size_t>(i)] =
           scene_.friction_coefficient * memory.pressure[static_cast<size_t>(i)];
-  if (fitted_)
+  if (table_)
+    t = solve_table(problem, rolling, memory, result);
+  else if (fitted_)
     t = solve_fitted(problem, rolling, memory);
   else if (scene_.tangential == RP_TANGENTIAL_FASTSIM)
     t = solve_fastsim(problem, rolling, result.contact_area, memory);
@@ -319,6 +329,35 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   if (scene_.tangential == RP_TANGENTIAL_FULL)
     result.elastic_energy += fitted_ ? nan : tangential_energy(problem, memory);
   return t.converged;
+}
+
+// Creep forces of the ellipse, or of that with the same width and area.
+tangential_result patch_contact::solve_table(const patch_problem &problem,
+                                             const rolling_input &rolling,
+                                             const patch_memory &memory, rp_patch_result &result) {
+  const grid &g = problem.g;
+  const double bound = scene_.friction_coefficient * result.normal_force;
+  creep_problem ellipse{{problem.hertz.semi_axes[0], problem.hertz.semi_axes[1]},
+                        scene_.elastic.shear_modulus,
+                        bound,
+                        {rolling.creepage[0], rolling.creepage[1]},
+                        rolling.spin_creepage,
+                        rolling.direction};
+  if (scene_.normal != RP_NORMAL_HERTZ) {
+    int rows = 0;
+    for (int j = 0; j < g.ny; ++j) {
+      const double *row = memory.pressure.data() + j * g.nx;
+      rows += std::any_of(row, row + g.nx, [](double p) { return p > 0; });
+    }
+    ellipse.semi_axes[1] = 0.5 * (rows_ ? rows_->width() : rows * g.dy);
+    ellipse.semi_axes[0] = result.contact_area / (pi * ellipse.semi_axes[1]);
+  }
+  table_forces_ = table_->evaluate(ellipse);
+  result.error_estimate = table_->force_error();
+  tangential_result t;
+  t.converged = table_forces_.in_range;
+  t.friction = table_forces_.friction;
+  return t;
 }
 
 tangential_result patch_contact::solve_fitted(const patch_problem &problem,

@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 
+#include "creep_table.hpp"
 #include "fastsim.hpp"
 #include "fitted.hpp"
 #include "forces.hpp"
@@ -29,6 +30,11 @@ struct patch_scene {
   int max_iterations = 100;
   bool spin_offset = false;  // x + dq/6 in the spin term
   int fitted[2] = {0, 0};    // nodes and strips of the tangential problem; 0: on the uniform grid
+  const void *creep_table = nullptr;  // the caller's, without defect; with RP_TANGENTIAL_TABLE
+  // whether there are tractions, not their resultants alone
+  bool has_tractions() const {
+    return tangential != RP_TANGENTIAL_NONE && tangential != RP_TANGENTIAL_TABLE;
+  }
   bool is_fitted() const { return tangential == RP_TANGENTIAL_FULL && fitted[0] > 0; }
   double modulus() const { return elastic.shear_modulus / (1.0 - elastic.poisson_ratio); }
 };
@@ -104,6 +110,8 @@ class patch_contact {
   void leave_unloaded(const patch_problem &problem, patch_memory &memory);
   tangential_result solve_fastsim(const patch_problem &problem, const rolling_input &rolling,
                                   double contact_area, patch_memory &memory);
+  tangential_result solve_table(const patch_problem &problem, const rolling_input &rolling,
+                                const patch_memory &memory, rp_patch_result &result);
   tangential_result solve_fitted(const patch_problem &problem, const rolling_input &rolling,
                                  patch_memory &memory);
   int find_leading_edges(const patch_problem &problem, int direction, const double *pressure);
@@ -119,6 +127,8 @@ class patch_contact {
   std::optional<tangential_solver> tangential_;
   std::optional<contact_rows> fitted_rows_;
   std::optional<fitted_solver> fitted_;
+  std::optional<creep_table> table_;
+  creep_forces table_forces_{};  // of the last solve
   aligned_buffer<double> bound_, leading_, scratch_[2];
 };
 

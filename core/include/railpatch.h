@@ -91,7 +91,8 @@ typedef enum rp_normal_method {
 typedef enum rp_tangential_method {
   RP_TANGENTIAL_NONE = 0,
   RP_TANGENTIAL_FASTSIM = 1, /* Kalker 1982, three flexibilities, parabolic bound for Hertz */
-  RP_TANGENTIAL_FULL = 2     /* Kalker's exact theory on the half-space */
+  RP_TANGENTIAL_FULL = 2,    /* Kalker's exact theory on the half-space */
+  RP_TANGENTIAL_TABLE = 6    /* the same, interpolated for elliptic contacts: config.creep_table */
 } rp_tangential_method;
 typedef enum rp_spin_offset {
   RP_SPIN_OFFSET_NONE = 0,
@@ -165,6 +166,11 @@ typedef struct rp_config {
   double tolerance;       /* -, relative, 1e-12 ... 1e-1 */
   int32_t max_iterations; /* of each solver */
   rp_spin_offset spin_offset;
+  /* table of creep forces, made by `railpatch table`, for tangential = RP_TANGENTIAL_TABLE. Used in
+   * place, not copied: it must stay there, unchanged, until rp_destroy; any number of handles on
+   * any threads may share it. Aligned to 8 bytes. */
+  const void *creep_table;
+  size_t creep_table_size;
 
   /* wheel_rail, wheelset */
   int32_t side;                /* RP_LEFT or RP_RIGHT, kind = RP_WHEEL_RAIL */
