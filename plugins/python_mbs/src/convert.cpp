@@ -40,6 +40,7 @@ constexpr Name kNames[] = {
     {"tangential", "none", RP_TANGENTIAL_NONE},
     {"tangential", "fastsim", RP_TANGENTIAL_FASTSIM},
     {"tangential", "full", RP_TANGENTIAL_FULL},
+    {"tangential", "table", RP_TANGENTIAL_TABLE},
     {"spin_offset", "none", RP_SPIN_OFFSET_NONE},
     {"spin_offset", "sixth", RP_SPIN_OFFSET_SIXTH},
     {"track", "rail", RP_RAIL},
@@ -252,6 +253,11 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.scalar("tolerance", c.tolerance);
   reader.scalar("max_iterations", c.max_iterations);
   reader.name("spin_offset", c.spin_offset);
+  if (reader.has("creep_table")) {
+    to.table = nb::cast<Bytes>(reader.at("creep_table"));
+    c.creep_table = to.table.data();
+    c.creep_table_size = to.table.size();
+  }
   reader.name("side", c.side);
   reader.scalar("nominal_radius", c.nominal_radius);
   reader.scalar("flange_back_distance", c.flange_back_distance);

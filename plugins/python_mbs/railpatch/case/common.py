@@ -102,7 +102,7 @@ class Method(Table):
     normal: Literal["hertz", "kik_piotrowski", "analyn", "half_space"] = Field(
         default="half_space", description="theory of the normal problem (no unit)"
     )
-    tangential: Literal["none", "fastsim", "full"] = Field(
+    tangential: Literal["none", "fastsim", "table", "full"] = Field(
         default="full", description="theory of the tangential problem (no unit)"
     )
     tolerance: Annotated[float, between(1e-12, 0.1)] = Field(
@@ -132,14 +132,22 @@ def check_fitted(grid: Grid | None, method: Method, *, line: bool = False) -> No
         raise relation("grid.fitted", str(grid.fitted), "3 to 64 rows")
 
 
+def check_table(method: Method) -> None:
+    """What a table of creep forces is not combined with."""
+    if method.tangential == "table" and method.spin_offset != "none":
+        raise relation("method.spin_offset", repr(method.spin_offset), "'none' with 'table'")
+
+
 def check_tangential(
     material: Material, friction: Friction | None, layer: Layer | None, method: Method
 ) -> None:
     """What a tangential problem needs, and what this version cannot combine."""
     if friction is None:
         raise relation("friction", "missing", "the table [friction] with 'coefficient'")
-    if method.tangential == "fastsim" and has_layer(layer):
-        raise relation("method.tangential", "'fastsim'", "'full' with a layer of thickness > 0")
+    check_table(method)
+    if method.tangential in ("fastsim", "table") and has_layer(layer):
+        shown = f"'{method.tangential}'"
+        raise relation("method.tangential", shown, "'full' with a layer of thickness > 0")
     (g_wheel, g_rail), (nu_wheel, nu_rail) = material.shear_modulus, material.poisson_ratio
     wheel, rail = (1 - 2 * nu_wheel) / g_wheel, (1 - 2 * nu_rail) / g_rail
     # otherwise pressure moves the surfaces along each other: Kalker 1990, eq. 1.44

@@ -148,8 +148,9 @@ class PatchCase(Table):
         if self.method.normal in ("kik_piotrowski", "analyn"):
             shown = f"'{self.method.normal}'"
             raise relation("method.normal", shown, "'half_space' or 'hertz' with a line contact")
-        if self.has_tangential and self.method.tangential == "fastsim":
-            raise relation("method.tangential", "'fastsim'", "'full' with a line contact")
+        if self.has_tangential and self.method.tangential in ("fastsim", "table"):
+            shown = f"'{self.method.tangential}'"
+            raise relation("method.tangential", shown, "'full' with a line contact")
         elements = self.grid and self.grid.elements
         if elements and elements[1] != 1:
             raise relation("grid.elements", str(elements), "[n, 1] with a line contact")
