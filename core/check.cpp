@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "creep_table.hpp"
 #include "fast.hpp"
 #include "influence.hpp"
 
@@ -80,7 +81,7 @@ void check_choices(const rp_config &c, checker &check) {
   check.choice("load", c.load, RP_FORCE, RP_POSITION);
   check.choice("regime", c.regime, RP_REGIME_NONE, RP_STEADY_ROLLING);
   check.choice("normal", c.normal, RP_NORMAL_HERTZ, RP_NORMAL_ANALYN);
-  check.choice("tangential", c.tangential, RP_TANGENTIAL_NONE, RP_TANGENTIAL_FASTRIP);
+  check.choice("tangential", c.tangential, RP_TANGENTIAL_NONE, RP_TANGENTIAL_TABLE);
   check.choice("spin_offset", c.spin_offset, RP_SPIN_OFFSET_NONE, RP_SPIN_OFFSET_SIXTH);
   check.choice("traction_bound", c.traction_bound, RP_BOUND_AUTOMATIC, RP_BOUND_ELLIPTIC);
   check.choice("flexibility_blending", c.flexibility_blending, RP_BLENDING_SLIDING,
@@ -136,6 +137,23 @@ void check_prescribed(const rp_config &c, checker &check) {
   check.require(c.kind == RP_PATCH, "force_prescribed must be 0, 0 but for kind = patch");
   check.require(c.regime == RP_STEADY_ROLLING && c.tangential == RP_TANGENTIAL_FULL,
                 "force_prescribed needs regime = steady_rolling and tangential = full");
+}
+
+// Where creep forces come from a table.
+void check_table(const rp_config &c, checker &check) {
+  if (!uses_table(c)) return;
+  const bool line = c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT;
+  check.require(!line, "a creep table has no line contact: use tangential = full");
+  check.require(!(c.layer_thickness > 0),
+                "a creep table has no third-body layer: use tangential = full");
+  check.require(c.spin_offset == RP_SPIN_OFFSET_NONE,
+                "spin_offset must be none with a creep table: it belongs to the uniform grid");
+  if (check.error() != RP_OK) return;
+  const char *defect = creep_table::defect(c.creep_table, c.creep_table_size);
+  if (!defect) return;
+  char text[RP_MESSAGE_SIZE];
+  std::snprintf(text, sizeof text, "creep_table %s", defect);
+  check.require(false, text);
 }
 
 void check_grid(const rp_config &c, checker &check) {
@@ -229,6 +247,10 @@ bool needs_grid(const rp_config &c) {
   return !is_fast(c.tangential) || has_tractions(c.tangential);
 }
 
+bool uses_table(const rp_config &c) {
+  return c.regime != RP_REGIME_NONE && c.tangential == RP_TANGENTIAL_TABLE;
+}
+
 void set_message(rp_message *message, const char *format, ...) {
   if (!message) return;
   va_list arguments;
@@ -249,6 +271,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   check.numbers("poisson_ratio", c.poisson_ratio, 2, {0, 0.5, false, false});
   check_grid(c, check);
   check_prescribed(c, check);
+  check_table(c, check);
   check.number("friction_coefficient", c.friction_coefficient, friction);
   check.number("layer_thickness", c.layer_thickness, {0, 0.1, false, false});
   if (c.layer_thickness > 0)

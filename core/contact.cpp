@@ -35,6 +35,7 @@ patch_scene make_scene(const rp_config &c) {
   for (int k = 0; k < 2; ++k) scene.prescribed[k] = c.force_prescribed[k] != 0;
   scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
   scene.fast.theory = scene.tangential;
+  if (uses_table(c)) scene.fast.creep_table = c.creep_table;
   scene.fast.coefficient_factor = 0.01 * c.percent_kalker;
   scene.fast.bound = c.traction_bound;
   scene.fast.blending = c.flexibility_blending;
@@ -181,7 +182,7 @@ contact::contact(const rp_config &config)
     }
   }
   scene_ = fingerprint(config, shape_);
-  // nothing of the caller's memory is kept
+  // nothing else of the caller's memory is kept than the creep table
   config_.undeformed_distance = nullptr;
   for (auto *p : {&config_.wheel[0], &config_.wheel[1], &config_.rail[0], &config_.rail[1]})
     *p = rp_profile{};
@@ -463,6 +464,8 @@ const char *tangential_reason(const patch_scene &scene) {
       return "tangential = polach: closed form, no traction field";
     case RP_TANGENTIAL_FASTRIP:
       return "tangential = fastrip: strip theory";
+    case RP_TANGENTIAL_TABLE:
+      return "tangential = table: full theory, interpolated; the table is the caller's";
   }
   return "";
 }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstring>
 
+#include "check.hpp"
 #include "contact.hpp"
 
 namespace railpatch {
@@ -98,6 +99,11 @@ uint64_t fingerprint_of_arrays(const rp_config &c, const aligned_buffer<double> 
     hash = hash * 31 + checksum(bytes, count * sizeof(double));
   };
   add(shape.data(), shape.size());
+  if (uses_table(c)) {
+    creep_table_header header;
+    std::memcpy(&header, c.creep_table, sizeof header);
+    hash = hash * 31 + header.checksum;
+  }
   if (c.kind == RP_PATCH) return hash;
   for (const rp_profile *p : {&c.wheel[0], &c.wheel[1], &c.rail[0], &c.rail[1]})
     for (const double *values : {p->arc_length, p->y, p->z, p->dy, p->dz})

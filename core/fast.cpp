@@ -38,6 +38,8 @@ creep_resultants linear(const creepage_coefficients &c, double shear_modulus,
 fast_solver::fast_solver(const elastic_constants &elastic, const fast_options &options, int max_nx,
                          int max_ny)
     : elastic_(elastic), options_(options), table_(elastic.poisson_ratio) {
+  if (options.theory == RP_TANGENTIAL_TABLE)
+    creep_table_.emplace(options.creep_table, elastic.poisson_ratio);
   if (!has_tractions(options.theory)) return;
   bound_ = aligned_buffer<double>(static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny));
   leading_ = aligned_buffer<double>(static_cast<size_t>(max_ny));
@@ -140,6 +142,7 @@ tangential_result fast_solver::solve(const fast_patch &patch, const rolling_inpu
   at_centre.creepage[1] += rolling.spin_creepage * e.centre[0];
   const double g = elastic_.shear_modulus;
   const double capacity = patch.friction_coefficient * patch.normal_force;
+  if (creep_table_) return solve_table(e, capacity, at_centre, sums);
   const creepage_coefficients c = coefficients(e.axes[0] / e.axes[1]);
   tangential_result result;
   if (!has_tractions(options_.theory)) {
@@ -163,6 +166,25 @@ tangential_result fast_solver::solve(const fast_patch &patch, const rolling_inpu
                          options_.blending == RP_BLENDING_CONTACT, rolling, fields);
   // beyond what floating-point numbers hold there is no result
   result.converged = c.in_range && std::isfinite(result.friction);
+  return result;
+}
+
+tangential_result fast_solver::solve_table(const ellipse &e, double capacity,
+                                           const rolling_input &at_centre,
+                                           creep_resultants &sums) const {
+  const creep_forces found = creep_table_->evaluate({{e.axes[0], e.axes[1]},
+                                                     elastic_.shear_modulus,
+                                                     capacity,
+                                                     {at_centre.creepage[0], at_centre.creepage[1]},
+                                                     at_centre.spin_creepage,
+                                                     at_centre.direction});
+  sums.force[0] = found.force[0];
+  sums.force[1] = found.force[1];
+  sums.moment = found.moment + e.centre[0] * found.force[1] - e.centre[1] * found.force[0];
+  sums.friction = found.friction;
+  tangential_result result;
+  result.friction = found.friction;
+  result.converged = found.in_range;
   return result;
 }
 

@@ -3,11 +3,14 @@
 // the ends of the rows. Of an area of any shape the resultant theories see the creepages at its
 // centre of pressure, the others at the middle of each row.
 //
-// Linear theory and Polach give resultants only: they need no grid and no fields. The linear theory
-// (Kalker 1967) knows no bound; beyond it the result counts as not in range.
+// Linear theory, Polach and the table give resultants only: they need no grid and no fields. The
+// linear theory (Kalker 1967) knows no bound; beyond it the result counts as not in range.
 #pragma once
 
+#include <optional>
+
 #include "coefficients.hpp"
+#include "creep_table.hpp"
 #include "fastsim.hpp"
 #include "hertz.hpp"
 #include "memory.hpp"
@@ -25,6 +28,7 @@ struct fast_options {
   rp_flexibility_blending blending = RP_BLENDING_SLIDING;
   polach_factors polach;
   stiffness_reduction reduction;
+  const void *creep_table = nullptr;  // the caller's, without defect; of theory table
 };
 
 // What a fast theory sees of a patch.
@@ -64,6 +68,8 @@ class fast_solver {
     double centre[2];  // m
   };
   ellipse ellipse_of(const fast_patch &patch) const;
+  tangential_result solve_table(const ellipse &e, double capacity, const rolling_input &at_centre,
+                                creep_resultants &sums) const;
   flexibilities flexibilities_of(const ellipse &e, const creepage_coefficients &c, double capacity,
                                  const rolling_input &at_centre) const;
   creepage_coefficients coefficients(double axis_ratio) const;
@@ -73,6 +79,7 @@ class fast_solver {
   elastic_constants elastic_;
   fast_options options_;
   coefficient_table table_;
+  std::optional<creep_table> creep_table_;
   aligned_buffer<double> bound_, leading_, trailing_;
 };
 

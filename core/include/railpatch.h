@@ -94,7 +94,8 @@ typedef enum rp_tangential_method {
   RP_TANGENTIAL_FULL = 2,    /* Kalker's exact theory on the half-space */
   RP_TANGENTIAL_LINEAR = 3,  /* Kalker 1967, no bound: RP_OUT_OF_RANGE beyond saturation */
   RP_TANGENTIAL_POLACH = 4,  /* Polach 1999, 2005; no spin moment: 0 */
-  RP_TANGENTIAL_FASTRIP = 5  /* FaStrip, Sichani, Enblom, Berg 2016 */
+  RP_TANGENTIAL_FASTRIP = 5, /* FaStrip, Sichani, Enblom, Berg 2016 */
+  RP_TANGENTIAL_TABLE = 6    /* the same, interpolated for elliptic contacts: config.creep_table */
 } rp_tangential_method;
 /* of FASTSIM; the bound of FaStrip is elliptic */
 typedef enum rp_traction_bound {
@@ -192,6 +193,11 @@ typedef struct rp_config {
   double fastsim_k0;             /* -, 0 < ... 10: stiffness k0 (alpha + (1-alpha)/(1+beta e)) */
   double fastsim_alpha;          /* -, 0 ... 1 */
   double fastsim_beta;           /* -, 0 ... 1000 */
+  /* table of creep forces, made by `railpatch table`, for tangential = RP_TANGENTIAL_TABLE. Used in
+   * place, not copied: it must stay there, unchanged, until rp_destroy; any number of handles on
+   * any threads may share it. Aligned to 8 bytes. */
+  const void *creep_table;
+  size_t creep_table_size;
 
   /* wheel_rail, wheelset */
   int32_t side;                /* RP_LEFT or RP_RIGHT, kind = RP_WHEEL_RAIL */

@@ -12,6 +12,8 @@ ELSEWHERE = {
     "undeformed_distance",
     "wheel",
     "rail",
+    "creep_table",
+    "creep_table_size",
     "observer",
     "observer_user",
 }

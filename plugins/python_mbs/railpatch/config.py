@@ -9,6 +9,7 @@ from railpatch.case.load import Case, Scene
 from railpatch.case.patch import SHAPES, PatchCase
 from railpatch.case.wheel import SIDES, WheelRailCase, WheelsetCase
 from railpatch.profiles import load_profile
+from railpatch.table import default_table
 
 WHEELSET_STATE = ("y", "roll", "yaw", "speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate")
 
@@ -36,6 +37,8 @@ def config_of(scene: Scene) -> dict[str, Any]:
         "layer_thickness": case.layer and case.layer.thickness,
     }
     config.update({key: value for key, value in optional.items() if value is not None})
+    if case.has_tangential and case.method.tangential == "table":
+        config["creep_table"] = default_table()
     config.update(patch_config(scene) if isinstance(case, PatchCase) else wheel_config(scene, case))
     config.update(grid_config(case))
     return config

@@ -48,6 +48,7 @@ constexpr Name kNames[] = {
     {"flexibility_blending", "sliding", RP_BLENDING_SLIDING},
     {"flexibility_blending", "none", RP_BLENDING_NONE},
     {"flexibility_blending", "contact", RP_BLENDING_CONTACT},
+    {"tangential", "table", RP_TANGENTIAL_TABLE},
     {"spin_offset", "none", RP_SPIN_OFFSET_NONE},
     {"spin_offset", "sixth", RP_SPIN_OFFSET_SIXTH},
     {"track", "rail", RP_RAIL},
@@ -269,6 +270,11 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.scalar("fastsim_k0", c.fastsim_k0);
   reader.scalar("fastsim_alpha", c.fastsim_alpha);
   reader.scalar("fastsim_beta", c.fastsim_beta);
+  if (reader.has("creep_table")) {
+    to.table = nb::cast<Bytes>(reader.at("creep_table"));
+    c.creep_table = to.table.data();
+    c.creep_table_size = to.table.size();
+  }
   reader.name("side", c.side);
   reader.scalar("nominal_radius", c.nominal_radius);
   reader.scalar("flange_back_distance", c.flange_back_distance);

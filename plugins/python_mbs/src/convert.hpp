@@ -14,6 +14,7 @@ namespace railpatch::python {
 namespace nb = nanobind;
 
 using Values = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Bytes = nb::ndarray<const uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Grid = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
 // a config and the arrays that its pointers look into
@@ -21,6 +22,7 @@ struct Config {
   rp_config values;
   std::vector<Values> profiles;
   Grid gap;
+  Bytes table;
 };
 
 // starts from rp_default_config; raises KeyError for a key that is no field

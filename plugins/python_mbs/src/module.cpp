@@ -74,6 +74,7 @@ class Contact : public Steppable {
   Contact(const nb::dict &config, bool timing) {
     Config c;
     fill_config(config, c);
+    table_ = c.table;
     if (timing) {
       c.values.observer = StageClock::observe;
       c.values.observer_user = &clock_;
@@ -158,6 +159,7 @@ class Contact : public Steppable {
     void operator()(rp_contact *contact) const { rp_destroy(contact); }
   };
 
+  Bytes table_;  // the contact uses it in place
   std::unique_ptr<rp_contact, Destroy> contact_;
   StageClock clock_;
   std::mutex mutex_;

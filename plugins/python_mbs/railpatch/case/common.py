@@ -119,7 +119,7 @@ class Method(Table):
     normal: Literal["hertz", "kik_piotrowski", "analyn", "half_space"] = Field(
         default="half_space", description="theory of the normal problem (no unit)"
     )
-    tangential: Literal["none", "linear", "polach", "fastsim", "fastrip", "full"] = Field(
+    tangential: Literal["none", "linear", "polach", "fastsim", "fastrip", "table", "full"] = Field(
         default="full", description="theory of the tangential problem (no unit)"
     )
     tolerance: Annotated[float, between(1e-12, 0.1)] = Field(
@@ -195,12 +195,19 @@ def check_fitted(grid: Grid | None, method: Method, *, line: bool = False) -> No
         raise relation("grid.fitted", str(grid.fitted), "3 to 64 rows")
 
 
+def check_table(method: Method) -> None:
+    """What a table of creep forces is not combined with."""
+    if method.tangential == "table" and method.spin_offset != "none":
+        raise relation("method.spin_offset", repr(method.spin_offset), "'none' with 'table'")
+
+
 def check_tangential(
     material: Material, friction: Friction | None, layer: Layer | None, method: Method
 ) -> None:
     """What a tangential problem needs, and what this version cannot combine."""
     if friction is None:
         raise relation("friction", "missing", "the table [friction] with 'coefficient'")
+    check_table(method)
     if method.tangential != "full" and has_layer(layer):
         raise relation(
             "method.tangential", repr(method.tangential), "'full' with a layer of thickness > 0"

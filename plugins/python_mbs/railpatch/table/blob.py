@@ -1,0 +1,74 @@
+"""The table as bytes; core/creep_table.hpp tells the form."""
+
+from __future__ import annotations
+
+import json
+import struct
+from functools import lru_cache
+from importlib import resources
+from typing import Any
+
+import numpy as np
+
+from railpatch.errors import CaseError
+from railpatch.table.recipe import Recipe
+from railpatch.table.spline import Coefficients
+
+MAGIC = b"RPCREEP1"
+HEAD = struct.Struct("<8sQQ")
+BODY = struct.Struct("<4i2i3d2d1d3d2d")
+FILE = "creep_table.bin"
+
+
+def pack(recipe: Recipe, c: Coefficients, about: dict[str, Any], error: list[float]) -> bytes:
+    """The bytes of a table. about: what else the recipe's text tells; error: of force and moment,
+    95th percentile."""
+    text = json.dumps({**json.loads(recipe.text()), **about}, sort_keys=True).encode()
+    counts = (recipe.ratios + 3, recipe.psi + 3, recipe.theta + 3, recipe.t + 3)
+    low, high = np.log(recipe.lowest_ratio), np.log(recipe.highest_ratio)
+    body = BODY.pack(
+        *counts, len(text), 0, *recipe.poisson_ratio, low, high, recipe.radius,
+        *c.remainder_scale, *error,
+    )  # fmt: skip
+    scale = c.scale.astype("<f8").tobytes()
+    body += scale + c.linear.tobytes() + padded(c.remainder.tobytes()) + padded(text)
+    return HEAD.pack(MAGIC, HEAD.size + len(body), checksum(body)) + body
+
+
+def padded(data: bytes) -> bytes:
+    """To a multiple of 8 bytes."""
+    return data + bytes(-len(data) % 8)
+
+
+def checksum(data: bytes) -> int:
+    """FNV-1a by words of 8 bytes."""
+    value = 14695981039346656037
+    for word in np.frombuffer(data, "<u8").tolist():
+        value = ((value ^ word) * 1099511628211) & 0xFFFFFFFFFFFFFFFF
+    return value
+
+
+def describe_table(data: bytes) -> dict[str, Any]:
+    """Recipe and errors of a table. Raises CaseError."""
+    try:
+        magic, size, total = HEAD.unpack_from(data)
+        fields = BODY.unpack_from(data, HEAD.size)
+        if magic != MAGIC or size != len(data) or checksum(data[HEAD.size :]) != total:
+            raise ValueError("altered")
+        end = len(data) - (-fields[4] % 8)
+        return json.loads(data[end - fields[4] : end])
+    except (ValueError, struct.error):
+        raise CaseError(
+            "creep table: value is none, allowed what 'railpatch table' writes"
+        ) from None
+
+
+@lru_cache(maxsize=1)
+def default_table() -> np.ndarray:
+    """The table that comes with the package, one copy for all."""
+    path = resources.files("railpatch") / "data" / FILE
+    if not path.is_file():
+        raise CaseError("method.tangential: value is 'table', but the package holds no table")
+    table = np.frombuffer(path.read_bytes(), np.uint8)
+    table.setflags(write=False)
+    return table
