@@ -14,6 +14,8 @@ constexpr double least_slope = 1e-6;    // delta over the creep curve's initial 
 constexpr double most_creepage = 1e3;   // in units
 constexpr double nearly_sliding = 0.9;  // share of friction that the first guess aims at
 constexpr int guesses = 12;
+// a start is on the flat of the creep curve: creepage in units, force over friction's most
+constexpr double flat_from = 3.0, noticeable = 1e-4, far_from_solution = 0.02;
 
 // Creep force of the simplified theory and its derivative: rolling_newton::march with
 // derivatives, and without keeping the traction.
@@ -63,6 +65,8 @@ void force_constraint::begin(const rolling_problem &problem, double tolerance) {
   const prescribed_force &force = *problem.force;
   unknowns_ = 0;
   target_size_ = 0;
+  shortened_ = false;
+  travelled_ = 0;
   for (int c = 0; c < 2; ++c)
     if (force.component[c]) {
       target_size_ = std::hypot(target_size_, force.force[c]);
@@ -102,6 +106,49 @@ double force_constraint::miss(const rolling_problem &problem, const double *p) c
 
 void force_constraint::keep(const rolling_problem &problem) {
   for (int m = 0; m < unknowns_; ++m) kept_[m] = problem.force->creepage[component_[m]];
+}
+
+bool force_constraint::overshoots(const rolling_problem &problem, const double *p,
+                                  double residual) const {
+  double far = 0, excess = 0;
+  for (int m = 0; m < unknowns_; ++m) {
+    const double force = carried(m, problem, p);
+    far = std::hypot(far, kept_[m] / unit_[m]);
+    excess += force * (force - target_[m]);
+  }
+  return far > flat_from &&
+         (excess > noticeable * capacity_ * capacity_ || residual > far_from_solution);
+}
+
+void force_constraint::remember() {
+  for (int m = 0; m < unknowns_; ++m) best_[m] = kept_[m];
+}
+
+void force_constraint::recall(const rolling_problem &problem) {
+  for (int m = 0; m < unknowns_; ++m) problem.force->creepage[component_[m]] = best_[m];
+  keep(problem);
+}
+
+void force_constraint::pull(const rolling_problem &problem, const double *p, const double *trial_p,
+                            double length, double *moved, double *turned) const {
+  for (int m = 0; m < unknowns_; ++m) {
+    const double sigma = capacity_ > 0 ? unit_[m] / capacity_ : 0.0;
+    const double now = carried(m, problem, p), then = carried(m, problem, trial_p);
+    const double step = -length * sigma * (target_[m] - now);
+    problem.force->creepage[component_[m]] = kept_[m] + step;
+    if (sigma > 0) *moved += step * step / sigma;
+    *turned += sigma * length * length * (then - now) * (then - now);
+  }
+}
+
+void force_constraint::pull_again(const rolling_problem &problem, const double *trial_p,
+                                  double length) {
+  for (int m = 0; m < unknowns_; ++m) {
+    const double sigma = capacity_ > 0 ? unit_[m] / capacity_ : 0.0;
+    problem.force->creepage[component_[m]] =
+        kept_[m] - length * sigma * (target_[m] - carried(m, problem, trial_p));
+  }
+  keep(problem);
 }
 
 void force_constraint::move(const rolling_problem &problem, double length) const {
@@ -212,6 +259,9 @@ void force_constraint::bound_step(size_t n, double *v) {
   double *full = v + n;
   for (int m = 0; m < unknowns_; ++m) step_[m] = full[m];
   beyond_ = bounded(kept_, step_);
+  shortened_ = false;
+  for (int m = 0; m < unknowns_; ++m) shortened_ = shortened_ || step_[m] != full[m];
+  travelled_ += shortened_;
   for (int m = 0; m < unknowns_; ++m) {
     const double *z = reduced_[m].data(), less = full[m] - step_[m];
     if (less != 0)

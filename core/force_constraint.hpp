@@ -54,10 +54,27 @@ class force_constraint {
   // Start: the creepages with which the simplified theory carries the force.
   void guess(const rolling_problem &problem, const double flexibility[2]);
 
+  // Whether a start lies on the flat of the creep curve and is far from a solution (relative
+  // residual) or carries more than the force asked for: nothing there says how far to go back.
+  bool overshoots(const rolling_problem &problem, const double *p, double residual) const;
+
   // The creepages of the present solution, and of a trial along the step.
   void keep(const rolling_problem &problem);
   void go_back(const rolling_problem &problem) const { move(problem, 0.0); }
   void move(const rolling_problem &problem, double length) const;
+
+  // The creepages of the best solution so far.
+  void remember();
+  void recall(const rolling_problem &problem);
+  // Extragradient steps of rolling_newton::descend, in which the creepage steps against the force
+  // that is missing: xi - length sigma (T - R p), one unit where all of friction is missing. The
+  // operator (s(p, xi), T - R p) is as monotone as s alone: the parts with xi cancel. `pull` steps
+  // to a trial and adds to the squares of the step and of the operator's change over it, in the
+  // metric 1/sigma; `pull_again` steps from the present creepages with the trial's force, and
+  // keeps.
+  void pull(const rolling_problem &problem, const double *p, const double *trial_p, double length,
+            double *moved, double *turned) const;
+  void pull_again(const rolling_problem &problem, const double *trial_p, double length);
 
   // The bordered system over n unknowns of the elements; column(m) and row(m) are to be filled and
   // what the preconditioner makes of column(m) is put in reduced(m), before `factor`.
@@ -72,6 +89,9 @@ class force_constraint {
   void precondition(size_t n, double *v) const;
   // Bounds the creepages' part of a Newton step v and lets the elements' part follow.
   void bound_step(size_t n, double *v);
+  // Whether the last step was bounded: on the way to another creepage, the residual need not fall.
+  // Not more often than the way from one end to the other takes.
+  bool travels() const { return shortened_ && travelled_ <= longest_way; }
 
  private:
   double carried(int m, const rolling_problem &problem, const double *p) const;
@@ -82,8 +102,11 @@ class force_constraint {
   double target_[2] = {0, 0}, target_size_ = 0;  // N
   double capacity_ = 0;                          // N, sum of area g
   double weight_ = 0, unit_[2] = {1, 1};
-  double kept_[2] = {0, 0}, step_[2] = {0, 0}, delta_[2] = {0, 0}, schur_[2][2] = {};
-  bool beyond_ = false;
+  double kept_[2] = {0, 0}, best_[2] = {0, 0}, step_[2] = {0, 0}, delta_[2] = {0, 0},
+         schur_[2][2] = {};
+  bool beyond_ = false, shortened_ = false;
+  int travelled_ = 0;
+  static constexpr int longest_way = 30;
   aligned_buffer<double> column_[2], reduced_[2], row_[2];
 };
 

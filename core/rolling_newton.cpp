@@ -109,8 +109,8 @@ tangential_result rolling_newton::solve(rolling_operator &b, const rolling_probl
         best = error;
         strayed = 0;
         std::copy_n(p, t.vector_size(), best_p_.data());
-      } else if (++strayed > patience && !t.force) {
-        // with a force given the creepage is not fixed, and nothing is known of such steps
+        if (t.force) t.force->remember();
+      } else if (!(t.force && t.force->travels()) && ++strayed > patience) {
         error = descend(t, enough * best);
         continue;
       }
@@ -146,7 +146,10 @@ double rolling_newton::start(task &t, double size) {
   if (!cold) {
     micro_slip(t, p, s);
     error = residual(t, p, s, f_.data());
-    if (error <= far_away * size) return error;
+    if (t.force && t.force->overshoots(t.problem, p, error / size))
+      error = HUGE_VAL;
+    else if (error <= far_away * size)
+      return error;
   }
   march(t, trial_p_.data());
   micro_slip(t, trial_p_.data(), trial_s_.data());
@@ -443,6 +446,7 @@ double rolling_newton::line_search(task &t, double current) {
 double rolling_newton::descend(task &t, double goal) {
   double *p = t.problem.traction, *s = t.problem.micro_slip;
   std::copy_n(best_p_.data(), t.vector_size(), p);
+  if (t.force) t.force->recall(t.problem);
   micro_slip(t, p, s);
   double error = residual(t, p, s, f_.data());
   double length = 1;
@@ -450,8 +454,9 @@ double rolling_newton::descend(task &t, double goal) {
     // the slip must not turn more over a step than the step is long
     for (bool short_enough = false; !short_enough; length *= short_enough ? 1.0 : 0.5) {
       projected_step(t, s, length, trial_p_.data());
-      micro_slip(t, trial_p_.data(), trial_s_.data());
       double moved = 0, turned = 0;
+      if (t.force) t.force->pull(t.problem, p, trial_p_.data(), length, &moved, &turned);
+      micro_slip(t, trial_p_.data(), trial_s_.data());
       t.for_each_element([&](size_t e, size_t ix, size_t iy) {
         const double weight = t.problem.area[e] / r_[e];
         moved += weight * (square(trial_p_[ix] - p[ix]) + square(trial_p_[iy] - p[iy]));
@@ -461,6 +466,7 @@ double rolling_newton::descend(task &t, double goal) {
       short_enough = turned <= 0.5 * moved || !(moved > 0);
     }
     projected_step(t, trial_s_.data(), length, p);
+    if (t.force) t.force->pull_again(t.problem, trial_p_.data(), length);
     micro_slip(t, p, s);
     error = residual(t, p, s, f_.data());
     length = std::min(1.0, 1.5 * length);

@@ -106,7 +106,7 @@ struct tangential_result {
 class rolling_newton {
  public:
   // forced: for problems with a prescribed force.
-  rolling_newton(int max_row, int max_rows, bool forced);
+  rolling_newton(int max_row, int max_rows, bool forced = false);
 
   tangential_result solve(rolling_operator &b, const rolling_problem &problem,
                           const tangential_options &options);
