@@ -60,9 +60,9 @@ void fitted_solver::collect(const contact_rows &rows, double friction_coefficien
         rigid_[ix] = input.slip(0, x, rows[row].y);
         rigid_[iy] = input.slip(1, x, rows[row].y);
         // the last solution grows with the pressure
-        const double before = fields.pressure[at], ratio = before > 0 ? pressure / before : 0.0;
-        p_[ix] = ratio * fields.traction.px[at];
-        p_[iy] = ratio * fields.traction.py[at];
+        const double before = fields.pressure[at];
+        p_[ix] = before > 0 ? fields.traction.px[at] / before * pressure : 0.0;
+        p_[iy] = before > 0 ? fields.traction.py[at] / before * pressure : 0.0;
       });
 }
 

@@ -13,6 +13,11 @@ namespace {
 
 using std::numbers::pi;
 
+// Fine nodes whose kernels are made in one go.
+constexpr int batch = 64;
+// A squared slip below this is zero: its inverse must be a number.
+constexpr double least_square = 1e-290;
+
 // Strip edges at y = upper, lower from observers a distance x ahead: the kernels times pi G.
 RAILPATCH_DISPATCH
 void strip_kernels(int count, const double *distance, double upper, double lower, double nu,
@@ -23,6 +28,26 @@ void strip_kernels(int count, const double *distance, double upper, double lower
     const double iu = 1.0 / std::sqrt(x * x + upper2), il = 1.0 / std::sqrt(x * x + lower2);
     const double cu = upper * iu, cl = lower * il;  // Y/r
     const double shear = nu * x * (cu * iu * iu - cl * il * il), direct = (cu - cl) / x;
+    xx[i] = shear + (1.0 - nu) * direct;
+    yy[i] = direct - shear;
+    xy[i] = nu * (cu * cu * iu - cl * cl * il);
+  }
+}
+
+// The same beside a strip, where observers may stand abreast of a node: there (cu - cl)/x is
+//   x (upper^2 - lower^2) iu^2 il^2/(cu + cl),
+// without the division by x and without the difference of two numbers near one.
+RAILPATCH_DISPATCH
+void strip_kernels_beside(int count, const double *distance, double upper, double lower, double nu,
+                          double *xx, double *yy, double *xy) {
+  const double upper2 = upper * upper, lower2 = lower * lower;
+  const double difference = (upper - lower) * (upper + lower);
+  for (int i = 0; i < count; ++i) {
+    const double x = distance[i];
+    const double iu = 1.0 / std::sqrt(x * x + upper2), il = 1.0 / std::sqrt(x * x + lower2);
+    const double cu = upper * iu, cl = lower * il, iul = iu * il;
+    const double shear = nu * x * (cu * iu * iu - cl * il * il);
+    const double direct = x * difference * iul * iul / (cu + cl);
     xx[i] = shear + (1.0 - nu) * direct;
     yy[i] = direct - shear;
     xy[i] = nu * (cu * cu * iu - cl * cl * il);
@@ -76,8 +101,7 @@ fitted_operator::fitted_operator(const elastic_constants &elastic, double layer_
   rigid_ = aligned_buffer<double>(strips * stride);
   slip_ = aligned_buffer<double>(strips * stride);
   change_ = aligned_buffer<double>(stride);
-  const int finest = fine_[factors - 1].factor * points_ - 1;
-  for (auto &k : kernel_) k = aligned_buffer<double>(static_cast<size_t>(finest * points_));
+  for (auto &k : kernel_) k = aligned_buffer<double>(static_cast<size_t>(batch * points_));
   blends_ = aligned_buffer<slip_blend>(strips * n);
 }
 
@@ -168,36 +192,48 @@ void fitted_operator::assemble(int target, int source) {
   // nodes must not be much wider apart than the observers are from the strip's edges
   const double spacing = pi * s.half_length / points_;
   const double distance = std::min(std::abs(upper), std::abs(lower));
-  const refinement &r = fine_[spacing <= distance ? 0 : spacing <= 3.0 * distance ? 1 : 2];
+  int level = 0;
+  while (level + 1 < factors && spacing > fine_[level].factor * distance) ++level;
+  const refinement &r = fine_[level];
   const int fine = r.factor * points_ - 1;
-  double *x = kernel_[0].data();
-  for (int l = 0; l < fine; ++l)
-    for (int i = 0; i < points_; ++i)
-      x[l * points_ + i] = direction_ * (t.x - s.x) +
-                           t.half_length * point_cosine_[static_cast<size_t>(i)] -
-                           s.half_length * r.cosine[static_cast<size_t>(l)];
+  double *to = matrix_.data() + (block(target, source) - matrix_.data());
+  std::fill_n(to, 2 * nodes_ * stride_, 0.0);
+  const double scale = s.half_length / ((fine + 1) * elastic_.shear_modulus);
+  for (int first = 0; first < fine; first += batch) {
+    const int count = std::min(batch, fine - first);
+    double *x = kernel_[0].data();
+    for (int l = 0; l < count; ++l)
+      for (int i = 0; i < points_; ++i)
+        x[l * points_ + i] = direction_ * (t.x - s.x) +
+                             t.half_length * point_cosine_[static_cast<size_t>(i)] -
+                             s.half_length * r.cosine[static_cast<size_t>(first + l)];
+    make_kernels(count * points_, upper, lower);
+    gather(r, first, count, scale, target != source, to);
+  }
+}
+
+void fitted_operator::make_kernels(int count, double upper, double lower) {
+  const double *x = kernel_[0].data(), nu = elastic_.poisson_ratio;
   double *xx = kernel_[1].data(), *yy = kernel_[2].data(), *xy = kernel_[3].data();
-  const double nu = elastic_.poisson_ratio;
   if (line_)
-    for (int i = 0; i < fine * points_; ++i) {
+    for (int i = 0; i < count; ++i) {
       yy[i] = 2.0 / x[i];
       xx[i] = (1.0 - nu) * yy[i];
       xy[i] = 0;
     }
+  else if (lower < 0 && upper > 0)
+    strip_kernels(count, x, upper, lower, nu, xx, yy, xy);
   else
-    strip_kernels(fine * points_, x, upper, lower, nu, xx, yy, xy);
-  gather(r, s.half_length / ((fine + 1) * elastic_.shear_modulus), target != source,
-         matrix_.data() + (block(target, source) - matrix_.data()));
+    strip_kernels_beside(count, x, upper, lower, nu, xx, yy, xy);
 }
 
-// Sums the kernels of the fine nodes into the columns of a block, weighted by the quadrature.
-void fitted_operator::gather(const refinement &r, double scale, bool coupled, double *px) {
+// Sums the kernels of fine nodes into the columns of a block, weighted by the quadrature.
+void fitted_operator::gather(const refinement &r, int first, int count, double scale, bool coupled,
+                             double *px) const {
   const int stride = stride_;
   double *py = px + nodes_ * stride;
-  std::fill_n(px, 2 * nodes_ * stride, 0.0);
   const double *xx = kernel_[1].data(), *yy = kernel_[2].data(), *xy = kernel_[3].data();
-  const int fine = r.factor * points_ - 1;
-  for (int l = 0; l < fine; ++l, xx += points_, yy += points_, xy += points_)
+  for (int l = first; l < first + count; ++l, xx += points_, yy += points_, xy += points_)
     for (int m = 4 * l; m < 4 * l + 4; ++m) {
       const int k = r.column[static_cast<size_t>(m)];
       const double w = scale * r.sine[static_cast<size_t>(l)] * r.weight[static_cast<size_t>(m)];
@@ -268,7 +304,7 @@ void fitted_operator::micro_slip(const rolling_problem &problem, const double *p
       const double *x = t + k, *y = t + points_ + k, tau = tau_[static_cast<size_t>(k)];
       const double dx = tau * (x[1] - x[0]), dy = tau * (y[1] - y[0]);
       const double size = x[0] * x[0] + y[0] * y[0], change = 4.0 * (dx * dx + dy * dy);
-      const double lambda = size > 0 ? size / (size + change) : 0.0;
+      const double lambda = size > least_square ? size / (size + change) : 0.0;
       s[2 * j * nodes_ + k] = x[0] + lambda * dx;
       s[(2 * j + 1) * nodes_ + k] = y[0] + lambda * dy;
     }
@@ -285,9 +321,10 @@ void fitted_operator::linearise() {
       const double size = s[0] * s[0] + s[1] * s[1], change = 4.0 * (d[0] * d[0] + d[1] * d[1]);
       const double sum = size + change;
       slip_blend &b = blends_[static_cast<size_t>(j * nodes_ + k)];
-      const double lambda = size > 0 ? size / sum : 0.0;
-      const double ahead = size > 0 ? 2.0 * change / (sum * sum) : 0.0;
-      const double between = size > 0 ? -8.0 * size / (sum * sum) : 0.0;
+      const bool slides = size > least_square;
+      const double lambda = slides ? size / sum : 0.0;
+      const double ahead = slides ? 2.0 * (change / sum) / sum : 0.0;
+      const double between = slides ? -8.0 * (size / sum) / sum : 0.0;
       for (int r = 0; r < 2; ++r)
         for (int c = 0; c < 2; ++c) {
           b.ahead[2 * r + c] = (r == c) + d[r] * ahead * s[c];

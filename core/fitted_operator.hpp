@@ -61,7 +61,9 @@ class fitted_operator final : public rolling_operator {
   void make_refinement(refinement &r, int factor);
   void make_blocks();
   void assemble(int target, int source);
-  void gather(const refinement &r, double scale, bool coupled, double *px);
+  void make_kernels(int count, double upper, double lower);
+  void gather(const refinement &r, int first, int count, double scale, bool coupled,
+              double *px) const;
   void mirror(int target, int source);
   void add_layer(int row);
   void collocation_slip(int row, const double *v, int begin, int end, double *t) const;
@@ -77,13 +79,13 @@ class fitted_operator final : public rolling_operator {
   int direction_ = 0;
   aligned_buffer<contact_row> rows_;
   aligned_buffer<double> point_cosine_, tau_;
-  static constexpr int factors = 3;
+  static constexpr int factors = 8;
   refinement fine_[factors];
   aligned_buffer<double> matrix_;     // blocks [target row][source row]
   aligned_buffer<double> rigid_;      // [row][stride], at the collocation points
   aligned_buffer<double> slip_;       // [row][stride], of the last call of micro_slip
   aligned_buffer<double> change_;     // scratch of one row
-  aligned_buffer<double> kernel_[4];  // scratch of one block: distance, xx, yy, xy
+  aligned_buffer<double> kernel_[4];  // scratch of some nodes: distance, xx, yy, xy
   aligned_buffer<slip_blend> blends_;
 };
 

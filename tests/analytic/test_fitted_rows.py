@@ -236,3 +236,29 @@ def test_any_pressure_of_an_ellipse_gives_the_ellipse_s_forces(normal: str) -> N
 def patch_radius(a: float) -> float:
     """m, combined radius of a ball on a plane with the contact radius a (Johnson 1985, 4.2)."""
     return 4 * modulus() * a**3 / (3 * FORCE)
+
+
+# --- odd shapes --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("ratio", [0.01, 0.1, 5.0, 20.0, 100.0])
+@pytest.mark.parametrize("fitted", [[3, 3], [12, 24], [24, 8], [8, 40]])
+def test_rows_much_narrower_than_their_nodes_are_apart(ratio: float, fitted: list[int]) -> None:
+    """Any shape of ellipse with any rows: converged from a cold start, and within the bound."""
+    axes = [0.004 * ratio**0.5, 0.004 * ratio**-0.5]
+    linear = FRICTION * FORCE / (4 * 82e9 * 0.004**2)
+    for share, spin in ((1e-4, 0.0), (0.5, 0.5), (0.0, 1.0), (20.0, 5.0)):
+        creepage = [share * linear, share * linear / 3]
+        case = patch_case(
+            {"semi_axes": axes},
+            force=FORCE,
+            fitted=fitted,
+            creepage=creepage,
+            spin=spin * linear / 0.004,
+            friction=FRICTION,
+            normal="hertz",
+        )
+        result = solve(case)
+        force = np.hypot(*result["creep_force"]) / BOUND
+        assert force <= 1 + 1e-9, (share, spin)
+        assert result["friction_power"] > 0

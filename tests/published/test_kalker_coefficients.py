@@ -79,19 +79,21 @@ def test_coefficients(ratio: float) -> None:
     check(lines)
 
 
-# nodes along rolling and rows: as many more across as the ellipse is wider, so that rows stay about
-# as far apart as their nodes
-FITTED = {0.2: [8, 40], 0.5: [12, 24], 1.0: [12, 12], 2.0: [16, 12], 5.0: [24, 12]}
+# nodes and rows, and the error left there with the table.s: the end of stick, with its
+# infinite traction, is known to part of a node, which shows most in the moment with its lever
+FITTED = {12: (0.02, 0.06), 24: (MIDDLE_ERROR, TABLE_ERROR)}
 
 
+@pytest.mark.parametrize("count", FITTED)
 @pytest.mark.parametrize("ratio", TABLE)
-def test_coefficients_of_fitted_rows(ratio: float) -> None:
+def test_coefficients_of_fitted_rows(ratio: float, count: int) -> None:
     a, b = (MINOR * ratio, MINOR) if ratio > 1 else (MINOR, MINOR / ratio)
+    of_force, of_moment = FITTED[count]
     lines = []
     for nu, (c11, c22, c23) in zip(RATIOS, TABLE[ratio], strict=True):
-        found = coefficients(a, b, nu, fitted=FITTED[ratio], normal="hertz")
+        found = coefficients(a, b, nu, fitted=[count, count], normal="hertz")
         for name, target in {"C11": c11, "C22": c22, "C23": c23, "C32": c23}.items():
-            bound = MIDDLE_ERROR * target
+            bound = (of_moment if name == "C32" else of_force) * target
             lines.append(Line(f"a/b {ratio} nu {nu:4.2f} {name}", found[name], target, bound))
     check(lines)
 
