@@ -17,6 +17,9 @@ namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
+// Their influence coefficients are four numbers for every pair of nodes, here 170 MB.
+constexpr int max_fitted_nodes = 48 * 48;
+
 struct range {
   double low, high;
   bool open_low, open_high;
@@ -98,6 +101,8 @@ void check_fitted(const rp_config &c, checker &check) {
   const bool line = c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT;
   check.integer("fitted[0]", c.fitted[0], 3, 64);
   check.integer("fitted[1]", c.fitted[1], line ? 1 : 3, line ? 1 : 64);
+  if (check.error() == RP_OK)
+    check.integer("fitted[0] * fitted[1]", c.fitted[0] * c.fitted[1], 3, max_fitted_nodes);
   check.require(c.tangential == RP_TANGENTIAL_FULL, "fitted needs tangential = full");
   check.require(c.spin_offset == RP_SPIN_OFFSET_NONE,
                 "spin_offset must be none with fitted: it belongs to the uniform grid");

@@ -169,7 +169,8 @@ typedef struct rp_config {
   double element_size[2];  /* m */
   int32_t max_elements[2]; /* with element_size: capacity of one patch's grid; 0: chosen */
   int32_t fitted[2];       /* nodes along rolling and rows of the tangential problem on rows fitted
-                              to the contact area; 0: tangential problem on the grid above */
+                              to the contact area, 2304 nodes in all at most; 0: tangential
+                              problem on the grid above */
 
   /* motion and friction */
   rp_regime regime;

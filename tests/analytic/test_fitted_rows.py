@@ -241,7 +241,7 @@ def patch_radius(a: float) -> float:
 # --- odd shapes --------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("ratio", [0.01, 0.1, 5.0, 20.0, 100.0])
+@pytest.mark.parametrize("ratio", [0.01, 0.1, 5.0, 20.0])
 @pytest.mark.parametrize("fitted", [[3, 3], [12, 24], [24, 8], [8, 40]])
 def test_rows_much_narrower_than_their_nodes_are_apart(ratio: float, fitted: list[int]) -> None:
     """Any shape of ellipse with any rows: converged from a cold start, and within the bound."""

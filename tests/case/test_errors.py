@@ -49,6 +49,13 @@ def problems_of(case: Any, **options: Any) -> list[str]:
         ("grid__elements", [16, 0], "grid.elements[1]: value is 0, allowed >= 1"),
         ("grid__elements", [16.0, 16], "grid.elements[0]: value is 16.0, allowed a whole number"),
         ("grid__element_size", [1e-4, 1e-4], "grid: value is elements and element_size, allowed"),
+        ("grid__fitted", [2, 8], "grid.fitted: value is [2, 8], allowed 3 to 64 nodes"),
+        ("grid__fitted", [8, 1], "grid.fitted: value is [8, 1], allowed 3 to 64 rows"),
+        ("grid__fitted", [65, 8], "grid.fitted[0]: value is 65, allowed <= 64"),
+        ("grid__fitted", [8, 65], "grid.fitted[1]: value is 65, allowed <= 64"),
+        ("grid__fitted", [8], "grid.fitted: value is [8], allowed 2 values"),
+        ("grid__fitted", [8.5, 8], "grid.fitted[0]: value is 8.5, allowed a whole number"),
+        ("grid__fitted", [64, 64], "grid.fitted: value is [64, 64], allowed 2304 nodes in all"),
         ("motion__direction", 0, "motion.direction: value is 0, allowed 1 or -1"),
         ("motion__regime", "shift", "motion.regime: value is 'shift', allowed 'none' or 'steady_r"),
         (
@@ -264,6 +271,30 @@ def test_what_this_version_cannot_combine(change: dict[str, Any], problem: str) 
     # the normal problem alone has no such limits, but for those of the line contact itself
     if "tangential" in problem or "material" in problem:
         load_scene(with_values(PATCH, **{**change, "motion": None}))
+
+
+@pytest.mark.parametrize(
+    ("change", "problem"),
+    [
+        (
+            {"grid__fitted": [8, 8], "method__tangential": "fastsim"},
+            "grid.fitted: value is [8, 8], allowed tangential = 'full', or no fitted rows",
+        ),
+        (
+            {"grid__fitted": [8, 8], "method__spin_offset": "sixth"},
+            "method.spin_offset: value is 'sixth', allowed 'none' with grid.fitted",
+        ),
+        (
+            {
+                "geometry": {"line_contact_radius": 0.5, "width": 0.1},
+                "grid": {"fitted": [8, 3]},
+            },
+            "grid.fitted: value is [8, 3], allowed [n, 1] with a line contact",
+        ),
+    ],
+)
+def test_fitted_rows_are_of_the_full_theory(change: dict[str, Any], problem: str) -> None:
+    assert problems_of(with_values(PATCH, **change)) == [problem]
 
 
 @pytest.mark.parametrize(

@@ -197,6 +197,30 @@ TEST(Config, NumbersOfWheelsAreChecked) {
       roller, {"roller_radius", [](rp_config &k) -> double & { return k.roller_radius; }, 0, 1e9});
 }
 
+TEST(Config, FittedRowsAreChecked) {
+  const auto expect = [](int nodes, int rows, const char *field, const auto &change) {
+    rp_config c = default_config();
+    c.fitted[0] = nodes;
+    c.fitted[1] = rows;
+    change(c);
+    expect_refused(c, RP_ERROR_VALUE, field);
+  };
+  const auto nothing = [](rp_config &) {};
+  for (int bad : {-2147483647, -1, 0, 2, 65, 2147483647}) {
+    expect(bad, 8, "fitted[0]", nothing);
+    expect(8, bad, "fitted[1]", nothing);
+  }
+  expect(8, 1, "fitted[1]", nothing);
+  expect(64, 64, "fitted[0] * fitted[1]", nothing);
+  expect(8, 3, "fitted[1]", [](rp_config &c) {
+    c.geometry = RP_LINE_CONTACT;
+    c.elements[1] = 1;
+  });
+  for (int theory : {RP_TANGENTIAL_NONE, RP_TANGENTIAL_FASTSIM, RP_TANGENTIAL_FASTRIP})
+    expect(8, 8, "fitted", [&](rp_config &c) { put(c.tangential, theory); });
+  expect(8, 8, "spin_offset", [](rp_config &c) { c.spin_offset = RP_SPIN_OFFSET_SIXTH; });
+}
+
 TEST(Config, ChoicesAndCountsAreChecked) {
   struct {
     const char *name;
@@ -651,6 +675,8 @@ class Garbage : public testing::Test {
     if (random() % 2) c.tangential = static_cast<rp_tangential_method>(random() % 3);
     if (random() % 2) c.spin_offset = static_cast<rp_spin_offset>(random() % 2);
     if (random() % 60 == 0) put(c.kind, static_cast<int>(random()));
+    if (rarely())
+      for (int &n : c.fitted) n = count();
     if (rarely()) c.max_iterations = count();
     if (rarely()) c.max_patches = count();
     if (rarely()) c.side = count();

@@ -87,13 +87,15 @@ void expect_mirrored_field(const scenes::handle &a, const scenes::handle &b, int
   std::vector<double> y = b.field(1 - side, patch, name);
   ASSERT_EQ(x.size(), y.size()) << what;
   if (x.empty()) return;
-  const size_t nx = a.field(side, patch, RP_FIELD_X).size();
+  // of fitted rows every row has its own x
   const size_t ny = a.field(side, patch, RP_FIELD_Y).size();
+  const size_t nx = a.field(side, patch, RP_FIELD_PRESSURE).size() / ny;
+  const bool by_row = a.field(side, patch, RP_FIELD_X).size() > nx;
   const bool vectors = name == RP_FIELD_TRACTION || name == RP_FIELD_MICRO_SLIP;
   double scale = 0;
   for (double v : x) scale = std::max(scale, std::fabs(v));
   const auto expected = [&](size_t i) {
-    if (name == RP_FIELD_X) return y[i];
+    if (name == RP_FIELD_X && !by_row) return y[i];
     if (name == RP_FIELD_Y) return -y[ny - 1 - i];
     const size_t plane = i / (nx * ny), row = i / nx % ny, column = i % nx;
     const double v = y[plane * nx * ny + (ny - 1 - row) * nx + column];
@@ -112,6 +114,7 @@ struct scene {
   rp_load load;
   double curvature;
   rp_normal_method normal = RP_NORMAL_HALF_SPACE;
+  int fitted = 0;
 };
 
 void PrintTo(const scene &s, std::ostream *out) { *out << s.name; }
@@ -124,6 +127,9 @@ const scene all_scenes[] = {
     {"wheelset_on_rollers", RP_WHEELSET, RP_ROLLER, RP_FORCE, 0.0},
     {"kik_piotrowski", RP_WHEELSET, RP_RAIL, RP_FORCE, 0.0, RP_NORMAL_KIK_PIOTROWSKI},
     {"analyn", RP_WHEEL_RAIL, RP_ROLLER, RP_POSITION, 0.0, RP_NORMAL_ANALYN},
+    {"fitted_half_space", RP_WHEELSET, RP_RAIL, RP_FORCE, 0.0, RP_NORMAL_HALF_SPACE, 7},
+    {"fitted_kik_piotrowski", RP_WHEELSET, RP_ROLLER, RP_FORCE, 0.0, RP_NORMAL_KIK_PIOTROWSKI, 8},
+    {"fitted_hertz", RP_WHEEL_RAIL, RP_RAIL, RP_POSITION, 0.0, RP_NORMAL_HERTZ, 8},
 };
 
 class Mirror : public testing::TestWithParam<scene> {
@@ -160,6 +166,8 @@ TEST_P(Mirror, EqualsTheMirroredMotion) {
   rp_config c = scenes::wheels(GetParam().kind, GetParam().track, one);
   c.curvature = GetParam().curvature;
   c.normal = GetParam().normal;
+  c.fitted[0] = GetParam().fitted;
+  c.fitted[1] = GetParam().fitted > 0 ? GetParam().fitted + 1 : 0;
   c.load = RP_FORCE;
   c.max_elements[0] = c.max_elements[1] = 64;
   c.rail[RP_LEFT] = two.rail.view();

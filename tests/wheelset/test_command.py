@@ -51,6 +51,29 @@ def test_run_log_and_report(tmp_path: Path):
     assert "Energies" in page.read_text()
 
 
+def test_fitted_rows_log_and_report(tmp_path: Path):
+    """The same run on fitted rows, whose fields have places of their own."""
+    file, log, page = tmp_path / "scene.toml", tmp_path / "run.mcap", tmp_path / "report.html"
+    text = scenes.text_of("s1002.toml")
+    assert text.count("elements = [12, 12]") == 1
+    text = text.replace("elements = [12, 12]", "elements = [24, 24]\nfitted = [8, 8]")
+    file.write_text(text, encoding="utf-8")
+    ran = invoke(file, "-o", log, "--distance", 1.0, "--json")
+    assert ran.exit_code == 0, ran.output
+    summary = json.loads(ran.stdout)
+    assert summary["good"]
+    uniform = invoke("-o", tmp_path / "uniform.mcap", "--distance", 1.0, "--json")
+    other = json.loads(uniform.stdout)
+    # friction's work of twelve elements across, which are good to some ten per cent
+    assert summary["energies"]["friction"] == pytest.approx(other["energies"]["friction"], rel=0.1)
+    run = read_run(log)
+    assert run.counts["/right/fields"] > 0
+    assert set(run["/left/contact"]["status"]) == {"converged"}
+    made = CliRunner().invoke(report, [str(log), "-o", str(page)])
+    assert made.exit_code == 0, made.output
+    assert "Energies" in page.read_text()
+
+
 def test_summary_text_and_quiet(tmp_path: Path):
     ran = invoke("-o", tmp_path / "run.mcap", "--distance", 0.1)
     assert ran.exit_code == 0

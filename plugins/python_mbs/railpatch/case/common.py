@@ -44,6 +44,10 @@ class Material(Table):
     ] = Field(default=[0.28, 0.28], description="-, Poisson's ratio, or [wheel, rail]")
 
 
+# of the core: memory grows with the square
+MAX_FITTED_NODES = 48 * 48
+
+
 class Grid(Table):
     """Elements of the potential contact: by number or by size."""
 
@@ -63,8 +67,8 @@ class Grid(Table):
     fitted: FittedPair | None = Field(
         default=None,
         description="-, nodes along rolling and rows of the tangential problem (full) on rows "
-        "fitted to the contact area; left out: the elements above. The normal problem keeps its "
-        "elements, 24 across where none are given",
+        "fitted to the contact area, at most 2304 nodes in all; left out: the elements above. The "
+        "normal problem keeps its elements, 24 across where none are given",
     )
 
     @model_validator(mode="after")
@@ -73,6 +77,8 @@ class Grid(Table):
             exactly_one(self, ("elements", "element_size"))
         if self.fitted is not None and self.fitted[0] < 3:
             raise relation("fitted", str(self.fitted), "3 to 64 nodes along rolling")
+        if self.fitted is not None and self.fitted[0] * self.fitted[1] > MAX_FITTED_NODES:
+            raise relation("fitted", str(self.fitted), f"{MAX_FITTED_NODES} nodes in all")
         return self
 
 
