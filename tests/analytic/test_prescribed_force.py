@@ -170,7 +170,8 @@ def test_either_component() -> None:
 
 def test_force_beyond_friction() -> None:
     grid = LAYOUTS["uniform"]
-    solve(forced(ELLIPSE, grid, [MOST, 0.0]))
+    # at the very most the solve depends on the normal force's own tolerance
+    solve(forced(ELLIPSE, grid, [(1 - 10 * TOLERANCE) * MOST, 0.0]))
     for force in ([1.001 * MOST, 0.0], [0.8 * MOST, 0.7 * MOST]):
         with pytest.raises(
             railpatch.CaseError, match=r"tangential_force: value is .* allowed at m"
