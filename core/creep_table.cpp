@@ -1,7 +1,6 @@
 #include "creep_table.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -64,14 +63,27 @@ bool all_finite(const unsigned char *data, size_t count) {
   return std::all_of(values, values + count, [](T v) { return std::isfinite(v); });
 }
 
-// Sums weight[k] times the 12 numbers at data[k], first for every component by itself: the order
-// of the sums does not depend on the width of the vectors.
-RAILPATCH_DISPATCH void add_weighted(const int16_t *const *data, const float *weight, int count,
-                                     float *__restrict sum) {
-  std::array<float, 12> s{};
+// Sums weight[k] times the 12 numbers at data[k], each component by itself, so that the order of
+// the sums does not depend on the width of the vectors. Compilers convert numbers of 16 bits one by
+// one, so vectors are spelled out where they can be.
+RAILPATCH_DISPATCH void add_weighted(const int16_t *const *data, const double *weight, int count,
+                                     double *sum) {
+#if defined(__GNUC__)
+  typedef int16_t shorts __attribute__((vector_size(8)));
+  typedef double doubles __attribute__((vector_size(32)));
+  doubles total[3] = {};
   for (int k = 0; k < count; ++k)
-    for (size_t i = 0; i < 12; ++i) s[i] += weight[k] * static_cast<float>(data[k][i]);
-  std::copy(s.begin(), s.end(), sum);
+    for (int i = 0; i < 3; ++i) {
+      shorts part;
+      std::memcpy(&part, data[k] + 4 * i, sizeof part);
+      total[i] += weight[k] * __builtin_convertvector(part, doubles);
+    }
+  std::memcpy(sum, total, sizeof total);
+#else
+  std::fill_n(sum, 12, 0.0);
+  for (int k = 0; k < count; ++k)
+    for (int i = 0; i < 12; ++i) sum[i] += weight[k] * data[k][i];
+#endif
 }
 
 // 1 for s up to 1 - bend, then s times it bends towards 1 with continuous slope: s/|s| limited.
@@ -168,7 +180,7 @@ void creep_table::interpolate_remainder(const axis &ratio, const axis &psi, cons
                                         const axis &t, double h[3]) const {
   const creep_table_header &d = header();
   const int16_t *data[192];
-  float weight[192], sum[12];
+  double weight[192], sum[12];
   int count = 0;
   for (int n = 0; n < 3; ++n) {
     // at a node of Poisson's ratio the others count nothing
@@ -181,14 +193,14 @@ void creep_table::interpolate_remainder(const axis &ratio, const axis &psi, cons
           const auto line = static_cast<size_t>(row * d.theta_count + theta.first + k);
           data[count] = remainder_ +
                         3 * (line * static_cast<size_t>(d.t_count) + static_cast<size_t>(t.first));
-          weight[count++] = static_cast<float>(w * theta.weight[k]);
+          weight[count++] = w * theta.weight[k];
         }
       }
   }
   add_weighted(data, weight, count, sum);
   for (int k = 0; k < 3; ++k) {
     h[k] = 0;
-    for (int j = 0; j < 4; ++j) h[k] += t.weight[j] * static_cast<double>(sum[3 * j + k]);
+    for (int j = 0; j < 4; ++j) h[k] += t.weight[j] * sum[3 * j + k];
     h[k] *= d.remainder_scale[k];
   }
 }

@@ -13,6 +13,7 @@
 
 #include "fft.hpp"
 #include "scenes.hpp"
+#include "tables.hpp"
 
 namespace {
 
@@ -229,6 +230,25 @@ TEST(Step, OfFittedRowsAllocatesNothing) {
       c.fitted[1] = nodes + 2;
       EXPECT_EQ(run(c, patch_inputs()).allocated, 0) << "normal " << normal << " nodes " << nodes;
     }
+}
+
+TEST(Step, WithACreepTableAllocatesNothing) {
+  const tables::table table = tables::small();
+  for (rp_normal_method normal :
+       {RP_NORMAL_HERTZ, RP_NORMAL_HALF_SPACE, RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN}) {
+    rp_config c = scenes::patch(normal, RP_TANGENTIAL_TABLE, 16);
+    c.creep_table = table.data();
+    c.creep_table_size = table.size();
+    EXPECT_EQ(run(c, patch_inputs()).allocated, 0) << "normal " << normal;
+  }
+  const scenes::profile_pair pair;
+  rp_config c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+  c.tangential = RP_TANGENTIAL_TABLE;
+  c.creep_table = table.data();
+  c.creep_table_size = table.size();
+  rp_input in = scenes::running(RP_RAIL);
+  in.vertical_force = 1.2e5;
+  EXPECT_EQ(run(c, std::vector{in}).allocated, 0);
 }
 
 // Curvatures with a fixed element size: the grid grows and shrinks with the load.

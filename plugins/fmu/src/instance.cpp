@@ -11,6 +11,7 @@ namespace railpatch::fmu {
 namespace {
 
 constexpr const char *kSceneFile = "scene.txt";
+constexpr const char *kTableFile = "creep_table.bin";
 
 std::string quoted(const std::string &text) { return "\"" + text + "\""; }
 
@@ -46,6 +47,19 @@ bool load_scene(const char *guid, const char *location, Log &log, Scene &scene) 
   return true;
 }
 
+// Reads the table of creep forces of a scene that uses one; what is wrong with it the core tells.
+bool load_table(const char *location, Log &log, Scene &scene, std::string &table) {
+  if (scene.config.tangential != RP_TANGENTIAL_TABLE) return true;
+  std::string tried;
+  if (!read_resource(location, kTableFile, table, tried)) {
+    log.error("fmi2Instantiate: the table of creep forces cannot be read, tried: " + tried);
+    return false;
+  }
+  scene.config.creep_table = table.data();
+  scene.config.creep_table_size = table.size();
+  return true;
+}
+
 }  // namespace
 
 std::unique_ptr<Instance> Instance::create(const char *guid, const char *location, Log log) {
@@ -53,6 +67,7 @@ std::unique_ptr<Instance> Instance::create(const char *guid, const char *locatio
   const DefaultFloatingPoint environment;  // numbers in text are rounded, too
   Scene scene;
   if (!load_scene(guid, location, instance->log_, scene)) return nullptr;
+  if (!load_table(location, instance->log_, scene, instance->table_)) return nullptr;
   rp_contact *contact = nullptr;
   rp_message message = {};
   const rp_error error = rp_create(&scene.config, &contact, &message);

@@ -71,6 +71,7 @@ class Instance {
   std::vector<int16_t> index_;  // by value reference, -1: not in this scene
   uint64_t content_ = 0;        // tells this FMU's states from those of another
   bool wheels_ = false;
+  std::string table_;  // of creep forces, which the contact uses in place
   std::unique_ptr<rp_contact, Destroy> contact_;
   rp_input input_ = {};
   std::vector<std::unique_ptr<Snapshot>> snapshots_;

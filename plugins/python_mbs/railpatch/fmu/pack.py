@@ -44,6 +44,7 @@ class Contents:
     scene: Scene
     backend: Backend
     binary: bytes
+    creep_table: bytes | None
 
 
 def pack_fmu(
@@ -91,7 +92,8 @@ def contents_of(scene: Scene, stem: str, name: str, backend: Backend) -> Content
     status = Contact(scene).step().status
     if status not in GOOD:
         raise CaseError(f"{name}: the start values cannot be solved: {status}")
-    return Contents(labels, table, kind, variables, scene, backend, library)
+    creep_table = config["creep_table"].tobytes() if "creep_table" in config else None
+    return Contents(labels, table, kind, variables, scene, backend, library, creep_table)
 
 
 def describe(kind: Kind, backend: Backend) -> str:
@@ -125,7 +127,9 @@ def guid_of(contents: Contents) -> str:
     labels = replace(contents.labels, date="")
     text = description_xml(labels, contents.table, contents.kind, contents.variables, "")
     text += scene_text(contents.scene, contents.variables, "{}")
-    digest = hashlib.sha256(text.encode() + contents.binary).digest()
+    digest = hashlib.sha256(
+        text.encode() + contents.binary + (contents.creep_table or b"")
+    ).digest()
     return "{" + str(uuid.UUID(bytes=digest[:16], version=4)) + "}"
 
 
@@ -144,6 +148,8 @@ def files_of(contents: Contents, guid: str) -> dict[str, bytes]:
         if c.backend == "fftw" or not text.name.startswith("GPL"):
             files[f"documentation/licenses/{text.name}"] = text.read_bytes()
     files[f"binaries/{PLATFORM}/{c.labels.identifier}.so"] = c.binary
+    if c.creep_table is not None:
+        files["resources/creep_table.bin"] = c.creep_table
     return files
 
 
