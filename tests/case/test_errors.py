@@ -83,7 +83,7 @@ def problems_of(case: Any, **options: Any) -> list[str]:
         (
             "method__tangential",
             "polach",
-            "method.tangential: value is 'polach', allowed 'none', 'fastsim' or 'full'",
+            "method.tangential: value is 'polach', allowed 'none', 'fastsim', 'table' or 'full'",
         ),
         ("method__tolerance", 0.0, "method.tolerance: value is 0.0, allowed >= 1e-12"),
         ("method__accuracy", 0.01, "method.accuracy: value is 0.01, allowed: leave it out"),

@@ -37,7 +37,7 @@ def test_kinds_and_choices() -> None:
     assert set(schema["discriminator"]["mapping"]) == {"patch", "wheel_rail", "wheelset"}
     method = schema["$defs"]["Method"]["properties"]
     assert method["normal"]["enum"] == ["hertz", "kik_piotrowski", "analyn", "half_space"]
-    assert method["tangential"]["enum"] == ["none", "fastsim", "full"]
+    assert method["tangential"]["enum"] == ["none", "fastsim", "table", "full"]
 
 
 def test_later_keys_are_no_keys_yet() -> None:

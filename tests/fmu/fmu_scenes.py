@@ -55,6 +55,7 @@ SCENES: dict[str, dict[str, Any]] = {
         load={"normal_force": 2e4},
     ),
     "fast": with_values(PATCH, method={"normal": "hertz", "tangential": "fastsim"}),
+    "table": with_values(PATCH, method={"normal": "hertz", "tangential": "table"}),
     "layer": with_values(PATCH, layer={"shear_modulus": 8.2e9, "thickness": 5e-5}),
     "rail": RAIL,
     "roller": ROLLER,
@@ -78,6 +79,7 @@ MOTIONS: dict[str, list[dict[str, float]]] = {
     "line": [{"creepage[1]": 2e-3}, {"normal_force": 5e4}],
     "gap": [{"creepage[2]": 2e-3}, {"normal_force": 1e4}],
     "fast": [{"creepage[2]": 2e-3}, {"normal_force": 1e4, "spin_creepage": 0.2}],
+    "table": [{"creepage[2]": 2e-3}, {"normal_force": 1e4, "spin_creepage": 0.2}],
     "layer": [{"creepage[1]": 2e-3}],
     "rail": [
         {"wheelset.y": 1e-4, "wheelset.yaw": 1e-3},
