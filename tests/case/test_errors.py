@@ -111,7 +111,7 @@ def problems_of(case: Any, **options: Any) -> list[str]:
             "method__tangential",
             "carter",
             "method.tangential: value is 'carter', allowed 'none', 'linear', 'polach', 'fastsim', "
-            "'fastrip' or 'full'",
+            "'fastrip', 'table' or 'full'",
         ),
         ("method__percent_kalker", 0.0, "method.percent_kalker: value is 0.0, allowed > 0"),
         ("method__polach_k_a", 11.0, "method.polach_k_a: value is 11.0, allowed <= 10"),

@@ -43,6 +43,7 @@ def test_kinds_and_choices() -> None:
         "polach",
         "fastsim",
         "fastrip",
+        "table",
         "full",
     ]
 

@@ -59,6 +59,7 @@ SCENES: dict[str, dict[str, Any]] = {
     "closed_form": with_values(PATCH, method={"normal": "hertz", "tangential": "polach"}),
     "strips": with_values(PATCH, method={"tangential": "fastrip"}),
     "fitted": with_values(PATCH, method={"normal": "hertz"}, grid={"fitted": [8, 8]}),
+    "table": with_values(PATCH, method={"normal": "hertz", "tangential": "table"}),
     "layer": with_values(PATCH, layer={"shear_modulus": 8.2e9, "thickness": 5e-5}),
     "prescribed_force": with_values(
         PATCH, motion__creepage=[0.0, 1e-4], motion__tangential_force=[-5e3, "creepage"]
@@ -90,6 +91,7 @@ MOTIONS: dict[str, list[dict[str, float]]] = {
     "closed_form": [{"creepage[2]": 2e-3}, {"normal_force": 1e4, "spin_creepage": 0.2}],
     "strips": [{"creepage[2]": 2e-3}, {"normal_force": 1e4, "spin_creepage": 0.2}],
     "fitted": [{"creepage[2]": 2e-3}, {"normal_force": 1e4, "spin_creepage": 0.2}],
+    "table": [{"creepage[2]": 2e-3}, {"normal_force": 1e4, "spin_creepage": 0.2}],
     "layer": [{"creepage[1]": 2e-3}],
     "rail": [
         {"wheelset.y": 1e-4, "wheelset.yaw": 1e-3},

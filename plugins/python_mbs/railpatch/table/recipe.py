@@ -79,7 +79,9 @@ class Recipe:
 
     def spin_grid(self, ratio: float, factor: float = 1.0) -> tuple[int, int]:
         """Nodes and rows where spin rules: slip turns about a point inside the contact, which the
-        grid must resolve along its longer axis above all."""
+        grid must resolve along its longer axis above all; less so where wheels hardly come."""
+        if ratio > 5.0:
+            factor *= 0.75
         nodes = self.spin_nodes * ratio ** (0.32 if ratio > 1 else 0.43)
         rows = self.spin_rows * ratio ** (-0.20 if ratio > 1 else -0.50)
         return whole(factor * nodes), whole(factor * rows)
