@@ -70,13 +70,16 @@ RAILPATCH_DISPATCH void add_weighted(const int16_t *const *data, const double *w
                                      double *sum) {
 #if defined(__GNUC__)
   typedef int16_t shorts __attribute__((vector_size(8)));
+  typedef int32_t integers __attribute__((vector_size(16)));
   typedef double doubles __attribute__((vector_size(32)));
   doubles total[3] = {};
   for (int k = 0; k < count; ++k)
     for (int i = 0; i < 3; ++i) {
       shorts part;
       std::memcpy(&part, data[k] + 4 * i, sizeof part);
-      total[i] += weight[k] * __builtin_convertvector(part, doubles);
+      // in two steps, each of which is one instruction
+      const integers wide = __builtin_convertvector(part, integers);
+      total[i] += weight[k] * __builtin_convertvector(wide, doubles);
     }
   std::memcpy(sum, total, sizeof total);
 #else

@@ -75,6 +75,22 @@ def test_a_damaged_scene_is_refused(unpacked: Unpack, tmp_path: Path) -> None:
             assert len(slave.log) == 1, name
 
 
+def test_a_missing_or_damaged_creep_table_is_refused(unpacked: Unpack, tmp_path: Path) -> None:
+    resources = unpacked("table").folder / "resources"
+    shutil.copy(resources / "scene.txt", tmp_path)
+    with Slave(unpacked("table"), location=str(tmp_path)) as slave:
+        assert slave.component is None
+        assert f"{tmp_path}/creep_table.bin" in slave.log[0][2]
+    table = bytearray((resources / "creep_table.bin").read_bytes())
+    table[len(table) // 2] ^= 1
+    (tmp_path / "creep_table.bin").write_bytes(table)
+    with Slave(unpacked("table"), location=str(tmp_path)) as slave:
+        assert slave.component is None
+        assert "creep_table has a wrong checksum" in slave.log[0][2]
+    # scenes without it carry none
+    assert not (unpacked("patch").folder / "resources" / "creep_table.bin").exists()
+
+
 def signed(body: bytes) -> bytes:
     """With a good last line."""
     return body + f"end {zlib.crc32(body):08x}\n".encode()
