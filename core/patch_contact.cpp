@@ -141,8 +141,8 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   const bool loaded = solve_normal(problem, memory, result);
   observe(RP_STAGE_NORMAL, false);
   memory.beyond = result.status == RP_OUT_OF_RANGE;
-  memory.warm = loaded && result.status == RP_CONVERGED &&
-                memory.pressure.size() + memory.px.size() > 0;
+  memory.warm =
+      loaded && result.status == RP_CONVERGED && memory.pressure.size() + memory.px.size() > 0;
   if (!loaded) {
     set_unloaded(scene_, result);
     leave_unloaded(problem, memory);
@@ -331,9 +331,9 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   result.friction_power = problem.rolling_speed * t.friction;
   if (!t.converged)
     degrade(result, scene_.tangential == RP_TANGENTIAL_FULL ? RP_NOT_CONVERGED : RP_OUT_OF_RANGE);
-  // fitted rows have the slope of the displacement, not the displacement
   if (scene_.tangential == RP_TANGENTIAL_FULL)
-    result.elastic_energy += fitted_ ? nan : tangential_energy(problem, memory);
+    result.elastic_energy +=
+        fitted_ ? fitted_->elastic_energy(*fitted_rows_) : tangential_energy(problem, memory);
   return t.converged;
 }
 
