@@ -103,7 +103,9 @@ void check_fitted(const rp_config &c, checker &check) {
   check.integer("fitted[1]", c.fitted[1], line ? 1 : 3, line ? 1 : 64);
   if (check.error() == RP_OK)
     check.integer("fitted[0] * fitted[1]", c.fitted[0] * c.fitted[1], 3, max_fitted_nodes);
-  check.require(c.tangential == RP_TANGENTIAL_FULL, "fitted needs tangential = full");
+  // a scene whose tangential problem is left out for a while keeps its rows
+  check.require(c.tangential == RP_TANGENTIAL_FULL || c.tangential == RP_TANGENTIAL_NONE,
+                "fitted needs tangential = full");
   check.require(c.spin_offset == RP_SPIN_OFFSET_NONE,
                 "spin_offset must be none with fitted: it belongs to the uniform grid");
 }

@@ -87,6 +87,13 @@ void fitted_solver::release(const contact_rows &rows, int direction, fitted_fiel
                 });
 }
 
+double fitted_solver::elastic_energy(const contact_rows &rows) const {
+  // where nothing drives a traction the operator was not asked for a slip
+  const bool loaded = std::any_of(p_.data(), p_.data() + 2 * rows.count() * rows.nodes(),
+                                  [](double p) { return p != 0; });
+  return loaded ? operator_.elastic_energy(rows, p_.data()) : 0.0;
+}
+
 patch_wrench fitted_solver::creep_wrench(const contact_rows &rows,
                                          const fitted_fields &fields) const {
   patch_wrench w{};

@@ -27,6 +27,8 @@ class fitted_solver {
                           fitted_fields fields);
   // Longitudinal and lateral force and spin moment of the last solution.
   patch_wrench creep_wrench(const contact_rows &rows, const fitted_fields &fields) const;
+  // J, of the tractions of the last solution; NaN for a line contact.
+  double elastic_energy(const contact_rows &rows) const;
   size_t bytes() const;
 
  private:

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <limits>
 #include <numbers>
 
 #include "simd.hpp"
@@ -379,6 +379,51 @@ void fitted_operator::row_matrices(int row, double *bxx, double *byy) const {
         *matrix++ = blends[k].ahead[3 * c] * column[k] +
                     blends[k].between[3 * c] * (column[k + 1] - column[k]);
   }
+}
+
+// At a row's leading edge, from all tractions.
+void fitted_operator::edge_displacement(const contact_rows &rows, int row, const double *p,
+                                        double u[2]) const {
+  const contact_row &t = rows[row];
+  const double nu = elastic_.poisson_ratio;
+  u[0] = u[1] = 0;
+  for (int source = 0; source < count_; ++source) {
+    const contact_row &s = rows[source];
+    const double between = t.y - s.y;
+    const double upper = between + 0.5 * s.height, lower = between - 0.5 * s.height;
+    const double weight = s.half_length / (points_ * elastic_.shear_modulus);
+    const double *px = p + 2 * source * nodes_, *py = px + nodes_;
+    for (int k = 0; k < nodes_; ++k) {
+      const double x = t.x - s.x + direction_ * (t.half_length - s.half_length * rows.cosine(k));
+      const double iu = 1.0 / std::hypot(x, upper), il = 1.0 / std::hypot(x, lower);
+      const double log = std::asinh(upper / std::abs(x)) - std::asinh(lower / std::abs(x));
+      const double share = upper * iu - lower * il, w = weight * rows.sine(k);
+      const double cross = nu * x * (il - iu);
+      u[0] += w * (((1.0 - nu) * log + nu * share) * px[k] + cross * py[k]);
+      u[1] += w * ((log - nu * share) * py[k] + cross * px[k]);
+    }
+  }
+}
+
+double fitted_operator::elastic_energy(const contact_rows &rows, const double *p) const {
+  if (line_) return std::numeric_limits<double>::quiet_NaN();
+  double energy = 0;
+  for (int j = 0; j < count_; ++j) {
+    double u[2];
+    edge_displacement(rows, j, p, u);
+    const double *t = slip_.data() + j * stride_, *w = rigid_.data() + j * stride_;
+    double before = 1.0;
+    for (int k = 0; k < nodes_; ++k) {
+      // slip minus rigid slip is the displacement's slope downstream
+      const double step = rows[j].half_length * (before - rows.cosine(k));
+      before = rows.cosine(k);
+      u[0] += step * (t[k] - w[k]);
+      u[1] += step * (t[points_ + k] - w[points_ + k]);
+      energy +=
+          rows.area(j, k) * (p[2 * j * nodes_ + k] * u[0] + p[(2 * j + 1) * nodes_ + k] * u[1]);
+    }
+  }
+  return 0.5 * energy;
 }
 
 double fitted_operator::projection_scale(int row) const {

@@ -20,6 +20,12 @@
 //   s_k = s(X_k) + lambda d,  d = tau (s(X_(k+1)) - s(X_k)),
 //   lambda = |s(X_k)|^2/(|s(X_k)|^2 + 4 |d|^2),
 // which vanishes together with s(X_k) and tends to the slip at the node as slip grows.
+//
+// Displacement, for the energy alone: at the leading edge, the only point of a row that has it in
+// closed form without a singular node, and from there on by summing the slope. There
+//   u_x from p_x: (1/(pi G)) [[(1-nu) asinh(Y/|X|) + nu Y/r]]
+//   u_y from p_y: (1/(pi G)) [[asinh(Y/|X|) - nu Y/r]]
+//   u_x from p_y = u_y from p_x: (nu/(pi G)) [[-X/r]]
 // The third-body layer adds its flexibility times -direction dp/dx, by differences of the nodes.
 #pragma once
 
@@ -45,6 +51,9 @@ class fitted_operator final : public rolling_operator {
   bool product_of_rows_before(int row, const double *v, double *ds) override;
   void row_matrices(int row, double *bxx, double *byy) const override;
   double projection_scale(int row) const override;
+  // J, 1/2 sum p . u dA of the traction of the last call of micro_slip; NaN for a line contact,
+  // whose displacement is known up to a constant only.
+  double elastic_energy(const contact_rows &rows, const double *p) const;
   size_t bytes() const;
 
  private:
@@ -67,6 +76,7 @@ class fitted_operator final : public rolling_operator {
   void mirror(int target, int source);
   void add_layer(int row);
   void collocation_slip(int row, const double *v, int begin, int end, double *t) const;
+  void edge_displacement(const contact_rows &rows, int row, const double *p, double u[2]) const;
   void blend_change(int row, const double *t, double *ds) const;
   // [source component][stride], the slip at row target's collocation points
   const double *block(int target, int source) const;

@@ -350,9 +350,9 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   if (!t.converged)
     degrade(result, scene_.tangential != RP_TANGENTIAL_FULL || t.out_of_range ? RP_OUT_OF_RANGE
                                                                               : RP_NOT_CONVERGED);
-  // fitted rows have the slope of the displacement, not the displacement
   if (scene_.tangential == RP_TANGENTIAL_FULL)
-    result.elastic_energy += fitted_ ? nan : tangential_energy(problem, memory);
+    result.elastic_energy +=
+        fitted_ ? fitted_->elastic_energy(*fitted_rows_) : tangential_energy(problem, memory);
   return t.converged;
 }
 

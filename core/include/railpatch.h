@@ -256,7 +256,7 @@ typedef struct rp_patch_result {
   int32_t elements[4];       /* exterior, stick, slip, plastic; indexed by rp_element */
   double max_temperature;    /* degrees C; NaN: not part of the scene */
   double friction_power;     /* W, >= 0: power that the creepages supply (Polach: without spin) */
-  double elastic_energy;     /* J; NaN with fitted rows */
+  double elastic_energy;     /* J; NaN for a line contact on fitted rows */
   int32_t normal_iterations; /* conjugate-gradient steps; evaluations of the fast theories */
   int32_t newton_iterations; /* of the tangential problem */
   int32_t inner_iterations;  /* operator products of the tangential problem */

@@ -238,6 +238,34 @@ def patch_radius(a: float) -> float:
     return 4 * modulus() * a**3 / (3 * FORCE)
 
 
+@pytest.mark.parametrize("layer", [None, {"shear_modulus": 8.2e9, "thickness": 5e-5}])
+@pytest.mark.parametrize("direction", [1, -1])
+@pytest.mark.parametrize("name", MOTIONS)
+def test_elastic_energy_of_the_tractions(name: str, direction: int, layer: Any) -> None:
+    """The same as uniform grids', whose error is of first order and extrapolated."""
+    creepage, spin = MOTIONS[name]
+
+    def energy(**options: Any) -> float:
+        case = patch_case(
+            {"semi_axes": list(AXES)},
+            force=FORCE,
+            creepage=creepage,
+            spin=spin,
+            direction=direction,
+            friction=FRICTION,
+            layer=layer,
+            normal="hertz",
+            **options,
+        )
+        return solve(case)["elastic_energy"]
+
+    normal = energy(fitted=[16, 16], tangential="none", elements=16)
+    coarse, fine = (energy(elements=n) - normal for n in (30, 60))
+    limit = 2 * fine - coarse
+    found = energy(fitted=[16, 16]) - normal
+    check([Line(name, found, limit, 0.02 * limit)])
+
+
 # --- odd shapes --------------------------------------------------------------------------------
 
 

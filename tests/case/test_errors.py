@@ -297,6 +297,10 @@ def test_fitted_rows_are_of_the_full_theory(change: dict[str, Any], problem: str
     assert problems_of(with_values(PATCH, **change)) == [problem]
 
 
+def test_fitted_rows_rest_where_the_tangential_problem_is_left_out() -> None:
+    load_scene(with_values(PATCH, grid__fitted=[8, 8], method__tangential="none"))
+
+
 @pytest.mark.parametrize(
     ("tangential", "key", "value", "allowed"),
     [

@@ -216,7 +216,7 @@ TEST(Config, FittedRowsAreChecked) {
     c.geometry = RP_LINE_CONTACT;
     c.elements[1] = 1;
   });
-  for (int theory : {RP_TANGENTIAL_NONE, RP_TANGENTIAL_FASTSIM, RP_TANGENTIAL_FASTRIP})
+  for (int theory : {RP_TANGENTIAL_LINEAR, RP_TANGENTIAL_FASTSIM, RP_TANGENTIAL_FASTRIP})
     expect(8, 8, "fitted", [&](rp_config &c) { put(c.tangential, theory); });
   expect(8, 8, "spin_offset", [](rp_config &c) { c.spin_offset = RP_SPIN_OFFSET_SIXTH; });
 }

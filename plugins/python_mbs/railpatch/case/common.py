@@ -191,7 +191,8 @@ def check_fitted(grid: Grid | None, method: Method, *, line: bool = False) -> No
     """What rows fitted to the contact area are not combined with."""
     if grid is None or grid.fitted is None:
         return
-    if method.tangential != "full":
+    # a scene whose tangential problem is left out for a while keeps its rows
+    if method.tangential not in ("full", "none"):
         raise relation("grid.fitted", str(grid.fitted), "tangential = 'full', or no fitted rows")
     if method.spin_offset != "none":
         raise relation("method.spin_offset", repr(method.spin_offset), "'none' with grid.fitted")
