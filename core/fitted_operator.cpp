@@ -395,9 +395,13 @@ void fitted_operator::edge_displacement(const contact_rows &rows, int row, const
     const double *px = p + 2 * source * nodes_, *py = px + nodes_;
     for (int k = 0; k < nodes_; ++k) {
       const double x = t.x - s.x + direction_ * (t.half_length - s.half_length * rows.cosine(k));
-      const double iu = 1.0 / std::hypot(x, upper), il = 1.0 / std::hypot(x, lower);
-      const double log = std::asinh(upper / std::abs(x)) - std::asinh(lower / std::abs(x));
-      const double share = upper * iu - lower * il, w = weight * rows.sine(k);
+      const double ru = std::hypot(x, upper), rl = std::hypot(x, lower);
+      const double iu = 1.0 / ru, il = 1.0 / rl, share = upper * iu - lower * il;
+      // asinh(upper/|x|) - asinh(lower/|x|), beside a strip also where x = 0
+      const double log = lower > 0   ? std::log((upper + ru) / (lower + rl))
+                         : upper < 0 ? std::log((rl - lower) / (ru - upper))
+                                     : std::log((upper + ru) * (rl - lower) / (x * x));
+      const double w = weight * rows.sine(k);
       const double cross = nu * x * (il - iu);
       u[0] += w * (((1.0 - nu) * log + nu * share) * px[k] + cross * py[k]);
       u[1] += w * ((log - nu * share) * py[k] + cross * px[k]);

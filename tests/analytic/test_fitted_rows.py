@@ -290,3 +290,23 @@ def test_rows_much_narrower_than_their_nodes_are_apart(ratio: float, fitted: lis
         force = np.hypot(*result["creep_force"]) / BOUND
         assert force <= 1 + 1e-9, (share, spin)
         assert result["friction_power"] > 0
+
+
+@pytest.mark.parametrize("elements", [[2, 2], [2, 8], [8, 2], [3, 3], [40, 5]])
+@pytest.mark.parametrize("normal", ["half_space", "kik_piotrowski", "analyn"])
+def test_rows_on_the_pressure_of_a_few_elements(normal: str, elements: list[int]) -> None:
+    case = patch_case(
+        {"curvatures": [1.0, 1.3]},
+        force=1e4,
+        elements=elements,
+        fitted=[8, 8],
+        creepage=[1e-3, 5e-4],
+        spin=0.1,
+        normal=normal,
+    )
+    result = solve(case)
+    assert np.hypot(*result["creep_force"]) <= 0.3 * 1e4 * (1 + 1e-9)
+    assert result["friction_power"] > 0
+    case["method"]["tangential"] = "none"
+    # tractions add to the energy of the pressure, here less than mu^2 (2 - nu)/(1 - nu) of it
+    assert 1 < result["elastic_energy"] / solve(case)["elastic_energy"] < 1.2
