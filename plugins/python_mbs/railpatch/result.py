@@ -23,7 +23,7 @@ PATCH_UNITS = {
     "elastic_energy": "J",
     "iterations": "",
     "residual": "",
-    "error_estimate": "",
+    "error_estimate": "N, N m, Pa",
 }
 # what a patch of a wheel has besides
 PLACE_UNITS = {
