@@ -365,11 +365,25 @@ void contact::reset() {
 
 // --- fields and stages -------------------------------------------------------------------------
 
+namespace {
+
+rp_error error_features_of(const patch_memory &m, double *values, size_t *count) {
+  if (!m.solved) return RP_ERROR_NO_FIELD;
+  const size_t capacity = *count;
+  *count = m.error_features.size();
+  if (capacity < m.error_features.size() || !values) return RP_ERROR_SIZE;
+  std::copy(m.error_features.begin(), m.error_features.end(), values);
+  return RP_OK;
+}
+
+}  // namespace
+
 rp_error contact::field(int side, int patch, rp_field name, double *values, size_t *count) const {
   const int patches = config_.kind == RP_PATCH ? 1 : config_.max_patches;
   if ((side != RP_LEFT && side != RP_RIGHT) || !has_side(side) || patch < 0 || patch >= patches)
     return RP_ERROR_NO_FIELD;
   const patch_memory &m = memory(side, patch);
+  if (name == RP_FIELD_ERROR_FEATURES) return error_features_of(m, values, count);
   const bool of_tangential =
       name == RP_FIELD_TRACTION || name == RP_FIELD_MICRO_SLIP || name == RP_FIELD_ELEMENT_DIVISION;
   const bool missing =

@@ -27,18 +27,32 @@ double inside_ellipse(const double semi_axes[2], double x, double y) {
 rp_patch_result empty_patch_result() {
   rp_patch_result r{};
   for (double *v :
-       {&r.normal_force, &r.approach, &r.creep_force[0], &r.creep_force[1], &r.spin_moment,
-        &r.max_pressure, &r.contact_area, &r.max_temperature, &r.friction_power, &r.elastic_energy,
-        &r.error_estimate, &r.position[0], &r.position[1], &r.position[2], &r.contact_angle,
-        &r.creepage[0], &r.creepage[1], &r.spin_creepage, &r.rolling_speed})
+       {&r.normal_force,      &r.approach,       &r.creep_force[0],    &r.creep_force[1],
+        &r.spin_moment,       &r.max_pressure,   &r.contact_area,      &r.max_temperature,
+        &r.friction_power,    &r.elastic_energy, &r.error_estimate[0], &r.error_estimate[1],
+        &r.error_estimate[2], &r.position[0],    &r.position[1],       &r.position[2],
+        &r.contact_angle,     &r.creepage[0],    &r.creepage[1],       &r.spin_creepage,
+        &r.rolling_speed})
     *v = nan;
   return r;
 }
 
 void set_unloaded(const patch_scene &scene, rp_patch_result &result) {
   result.normal_force = result.max_pressure = result.contact_area = result.elastic_energy = 0;
+  result.error_estimate[2] = 0;
   if (scene.tangential == RP_TANGENTIAL_NONE) return;
   result.creep_force[0] = result.creep_force[1] = result.spin_moment = result.friction_power = 0;
+  result.error_estimate[0] = result.error_estimate[1] = 0;
+}
+
+bool patch_scene::estimates_force() const {
+  if (spin_offset) return false;
+  if (!is_fast(tangential)) return true;
+  const polach_factors &p = fast.polach;
+  const stiffness_reduction &r = fast.reduction;
+  const bool reduced = p.adhesion != 1 || p.slip != 1 || r.k0 != 1 || (r.alpha != 1 && r.beta != 0);
+  return fast.coefficient_factor == 1 && !reduced && fast.blending == RP_BLENDING_SLIDING &&
+         fast.bound == RP_BOUND_AUTOMATIC;
 }
 
 patch_memory::patch_memory(int max_count, const patch_scene &scene) {
@@ -68,7 +82,8 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
       max_nx_(max_nx),
       max_ny_(max_ny),
       observer_(observer),
-      observer_user_(observer_user) {
+      observer_user_(observer_user),
+      errors_(scene.elastic, scene.layer_flexibility) {
   const bool full = scene.tangential == RP_TANGENTIAL_FULL && !scene.is_fitted();
   const auto count = static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny);
   if (full || scene.normal == RP_NORMAL_HALF_SPACE)
@@ -180,7 +195,26 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
     result.creep_force[1] = wrench.force[1];
     result.spin_moment = wrench.moment[2];
   }
+  estimate_error(problem, memory, result);
   observe(RP_STAGE_FORCES, false);
+}
+
+void patch_contact::estimate_error(const patch_problem &problem, patch_memory &memory,
+                                   rp_patch_result &result) const {
+  // linear theory beyond its bound is what it is; other results are no solutions
+  const bool linear = scene_.tangential == RP_TANGENTIAL_LINEAR;
+  if (result.status != RP_CONVERGED && !(linear && result.status == RP_OUT_OF_RANGE)) return;
+  if (scene_.line_width > 0) return;
+  solved_patch patch{scene_.normal,      scene_.tangential,           problem.hertz,  {}, {0, 0},
+                     scene_.is_fitted(), scene_.friction_coefficient, problem.rolling};
+  if (!scene_.estimates_force()) patch.tangential = RP_TANGENTIAL_NONE;
+  if (!(problem.rolling_speed > 0)) patch.rolling = rolling_input{};
+  if (memory.pressure.size()) patch.extent = extent_of(problem.g, memory.pressure.data());
+  if (rows_) patch.extent.width = rows_->width();
+  for (int k = 0; k < 2 && has_tractions(scene_.tangential); ++k)
+    patch.tangential_grid[k] = scene_.is_fitted() ? scene_.fitted[k] : patch.extent.across[k];
+  if (scene_.normal == RP_NORMAL_HERTZ) patch.extent = {};
+  errors_.estimate(patch, result, memory.error_features.data());
 }
 
 // Fitted rows have elements of many sizes: their places are in the fields.

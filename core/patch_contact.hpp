@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 
+#include "error_estimate.hpp"
 #include "fast.hpp"
 #include "fitted.hpp"
 #include "forces.hpp"
@@ -32,6 +33,8 @@ struct patch_scene {
   fast_options fast;         // where the tangential theory is a fast one
   bool prescribed[2] = {false, false};  // components of the creep force: their creepage is found
   bool is_forced() const { return prescribed[0] || prescribed[1]; }
+  // false: beside the exact theory, by choice
+  bool estimates_force() const;
   bool is_fitted() const { return tangential == RP_TANGENTIAL_FULL && fitted[0] > 0; }
   // No pressure and no traction on a uniform grid: all is closed form or on rows of its own.
   bool closed_form() const {
@@ -68,6 +71,7 @@ struct patch_memory {
   aligned_buffer<unsigned char> division;
   aligned_buffer<double> node_x, node_y, node_pressure;  // fitted rows only
   aligned_buffer<double> creepage;                       // [2], of a prescribed creep force only
+  std::array<double, error_feature_count> error_features{};
   bool fitted() const { return node_x.size() > 0; }
   // elements of the tangential problem along rolling and lateral
   int columns() const { return fitted() ? static_cast<int>(node_x.size() / node_y.size()) : g.nx; }
@@ -116,6 +120,8 @@ class patch_contact {
   tangential_result solve_fitted(const patch_problem &problem, const rolling_input &rolling,
                                  patch_memory &memory);
   double tangential_energy(const patch_problem &problem, const patch_memory &memory);
+  void estimate_error(const patch_problem &problem, patch_memory &memory,
+                      rp_patch_result &result) const;
 
   patch_scene scene_;
   int max_nx_, max_ny_;
@@ -128,6 +134,7 @@ class patch_contact {
   std::optional<contact_rows> fitted_rows_;
   std::optional<fitted_solver> fitted_;
   std::optional<fast_solver> fast_;
+  error_model errors_;
   creep_resultants sums_;  // of the last step, where the theory has no tractions
   aligned_buffer<double> bound_, scratch_[2];
 };

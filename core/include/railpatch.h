@@ -261,7 +261,11 @@ typedef struct rp_patch_result {
   int32_t newton_iterations; /* of the tangential problem */
   int32_t inner_iterations;  /* operator products of the tangential problem */
   double residual;           /* -, greatest relative residual of the stages */
-  double error_estimate;     /* -, NaN: not available */
+  double error_estimate[3];  /* N, N m, Pa: bounds that 95 % of the errors of creep force (length
+                                of the vector), spin moment and greatest pressure stay below, by
+                                measured errors of each method; against the exact theory, without
+                                errors of the case. NaN: no such stage, or not measured (line
+                                contact, factors of fast theories other than 1, spin_offset) */
   double position[3];        /* m, contact reference in track axes (wheel kinds) */
   double contact_angle;      /* rad */
   double creepage[2];        /* -; found where the force is prescribed */
@@ -303,7 +307,8 @@ typedef enum rp_field {
   RP_FIELD_PRESSURE = 3,            /* Pa, [ny][nx] */
   RP_FIELD_TRACTION = 4,            /* Pa on the wheel, [2][ny][nx] */
   RP_FIELD_MICRO_SLIP = 5,          /* -, relative to the rolling speed, [2][ny][nx] */
-  RP_FIELD_ELEMENT_DIVISION = 6     /* rp_element as a double, [ny][nx] */
+  RP_FIELD_ELEMENT_DIVISION = 6,    /* rp_element as a double, [ny][nx] */
+  RP_FIELD_ERROR_FEATURES = 7       /* -, [20], what the error estimate is made from */
 } rp_field;
 
 typedef struct rp_stage_info {

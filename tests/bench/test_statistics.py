@@ -54,6 +54,9 @@ def test_calibration() -> None:
     # the exact result has no multiple
     assert within == pytest.approx(3 / 4)
     assert all(math.isnan(share) for share in calibration(error, np.full(5, np.nan)))
+    # errors smaller than those of the truth count as those
+    _, within = calibration(np.full(2, 1e-5), np.array([1e-3, 2e-3]))
+    assert within == pytest.approx(1 / 2)
     covers, within = calibration(np.zeros(3), np.zeros(3))
     assert covers == 1.0
     assert math.isnan(within)

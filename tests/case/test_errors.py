@@ -121,7 +121,11 @@ def problems_of(case: Any, **options: Any) -> list[str]:
             "method.traction_bound: value is 'flat', allowed 'parabolic' or 'elliptic'",
         ),
         ("method__tolerance", 0.0, "method.tolerance: value is 0.0, allowed >= 1e-12"),
-        ("method__accuracy", 0.01, "method.accuracy: value is 0.01, allowed: leave it out"),
+        (
+            "method__accuracy",
+            0.01,
+            "method.accuracy: value is 0.01 and grid is given, allowed exactly one of 'accuracy'",
+        ),
         ("grid", 5, "grid: value is 5, allowed a table"),
     ],
 )
@@ -329,3 +333,35 @@ def test_fastrip_has_no_compatible_blending() -> None:
         "method.flexibility_blending: value is 'contact', allowed 'sliding' or 'none' with "
         "tangential = 'fastrip'"
     ]
+
+
+@pytest.mark.parametrize(
+    ("values", "line"),
+    [
+        ({"method__accuracy": 1e-4}, "method.accuracy: value is 0.0001, allowed >= 0.002"),
+        ({"method__accuracy": 0.5}, "method.accuracy: value is 0.5, allowed <= 0.2"),
+        (
+            {"method": {"accuracy": 0.01, "tangential": "fastsim"}},
+            "method.accuracy: value is 0.01, allowed >= 0.",
+        ),
+        (
+            {"method": {"accuracy": 0.01, "normal": "kik_piotrowski"}},
+            "method.accuracy: value is 0.01, allowed >= 0.",
+        ),
+        (
+            {"method": {"accuracy": 0.01, "spin_offset": "sixth"}},
+            "method.spin_offset: value is 'sixth', allowed 'none' with accuracy",
+        ),
+        (
+            {"geometry": {"line_contact_radius": 0.3, "width": 0.01}, "method__accuracy": 0.01},
+            "method.accuracy: value is 0.01, allowed to be left out with a line contact",
+        ),
+        (
+            {"geometry": {"undeformed_distance": "gap.csv"}, "method__accuracy": 0.01},
+            "method.accuracy: value is 0.01, allowed to be left out with geometry.undeformed",
+        ),
+    ],
+)
+def test_wrong_accuracies(values: dict[str, Any], line: str) -> None:
+    found = problems_of(with_values(PATCH, grid=None, **values))
+    assert any(text.startswith(line) for text in found), found

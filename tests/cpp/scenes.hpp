@@ -144,7 +144,7 @@ void visit(const rp_patch_result &p, Add &&add) {
   add("newton_iterations", p.newton_iterations);
   add("inner_iterations", p.inner_iterations);
   add("residual", p.residual);
-  add("error_estimate", p.error_estimate);
+  for (double v : p.error_estimate) add("error_estimate", v);
   for (double v : p.position) add("position", v);
   add("contact_angle", p.contact_angle);
   for (double v : p.creepage) add("creepage", v);

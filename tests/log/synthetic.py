@@ -113,7 +113,7 @@ def _patch(sign: float, share: float, number: int, force: tuple, fields: bool) -
         "iterations": 4,
         "residual": 3e-6,
         "wall_time": 0.01,
-        "error_estimate": None,
+        "error_estimate": {"creep_force": 120.0, "spin_moment": 0.4, "max_pressure": None},
         "stages": ["normal"],
     }
     return patch | (_fields(lateral / vertical) if fields else {})

@@ -75,6 +75,7 @@ def explain(context: click.Context, case: Path, quiet: bool) -> None:
 
     The case is solved once from a cold start; the time share is measured in it.
     """
+    from railpatch.choice import choose
     from railpatch.contact import Contact
 
     contact = Contact(case, timing=True)
@@ -82,6 +83,9 @@ def explain(context: click.Context, case: Path, quiet: bool) -> None:
     if not quiet:
         from railpatch.tables import print_stages
 
+        choice = choose(contact.case)
+        if choice is not None and contact.case.method.accuracy is not None:
+            click.echo(choice.spell(contact.case.method.accuracy))
         print_stages(contact.stages(), result)
     if not result.good:
         context.exit(EXIT_NOT_CONVERGED)

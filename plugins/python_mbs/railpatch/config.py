@@ -8,6 +8,7 @@ from railpatch.case.common import FAST_NUMBERS
 from railpatch.case.load import Case, Scene
 from railpatch.case.patch import SHAPES, PatchCase
 from railpatch.case.wheel import SIDES, WheelRailCase, WheelsetCase
+from railpatch.choice import resolved
 from railpatch.profiles import load_profile
 from railpatch.table import default_table
 
@@ -17,7 +18,7 @@ WHEELSET_STATE = ("y", "roll", "yaw", "speed", "vy", "vz", "roll_rate", "yaw_rat
 def config_of(scene: Scene) -> dict[str, Any]:
     """Fields of rp_config; what is left out keeps the core's default. Raises CaseError,
     ProfileError."""
-    case = scene.case
+    case = resolved(scene.case)
     config: dict[str, Any] = {
         "kind": case.kind,
         "shear_modulus": case.material.shear_modulus,

@@ -23,7 +23,7 @@ PATCH_UNITS = {
     "elastic_energy": "J",
     "iterations": "",
     "residual": "",
-    "error_estimate": "",
+    "error_estimate": "N, N m, Pa",
 }
 # what a patch of a wheel has besides
 PLACE_UNITS = {
@@ -52,11 +52,11 @@ class Result:
     """What a solve gives. Signs: forces act on the wheel, creepages are wheel minus rail.
 
     ``data`` and ``result[key]`` hold the quantities of the JSON result (SI units); fields are numpy
-    arrays there: x [nx] (fitted rows: [ny, nx]) and y [ny] in m, pressure [ny, nx] in Pa,
-    traction [2, ny, nx] in Pa,
-    micro_slip [2, ny, nx] relative to the rolling speed, element_division [ny, nx] as 0 exterior,
-    1 stick, 2 slip, 3 plastic. ``iterations`` is the sum of conjugate-gradient steps of the normal
-    and Newton steps of the tangential problem. What the scene left out is NaN or None.
+    arrays there: x [nx] (fitted rows: [ny, nx]) and y [ny] in m, pressure [ny, nx] in Pa, traction
+    [2, ny, nx] in Pa, micro_slip [2, ny, nx] relative to the rolling speed, element_division
+    [ny, nx] as 0 exterior, 1 stick, 2 slip, 3 plastic. ``iterations`` is the sum of
+    conjugate-gradient steps of the normal and Newton steps of the tangential problem. What the
+    scene left out is NaN or None.
     """
 
     def __init__(self, data: dict[str, Any]) -> None:

@@ -74,7 +74,8 @@ def spell(value: Any) -> str:
     if isinstance(value, list):
         return " ".join(spell(item) for item in value)
     if isinstance(value, dict):
-        return ", ".join(f"{count} {name}" for name, count in value.items() if count)
+        shown = {name: spell(item) for name, item in value.items() if item}
+        return ", ".join(f"{text} {name}" for name, text in shown.items() if text)
     return str(value)
 
 

@@ -68,6 +68,7 @@ constexpr struct {
     {"traction", RP_FIELD_TRACTION},
     {"micro_slip", RP_FIELD_MICRO_SLIP},
     {"element_division", RP_FIELD_ELEMENT_DIVISION},
+    {"error_features", RP_FIELD_ERROR_FEATURES},
 };
 
 // --- from Python -------------------------------------------------------------------------------
@@ -207,7 +208,11 @@ nb::dict patch_dict(const rp_patch_result &patch) {
   to["newton_iterations"] = patch.newton_iterations;
   to["inner_iterations"] = patch.inner_iterations;
   to["residual"] = patch.residual;
-  to["error_estimate"] = patch.error_estimate;
+  nb::dict errors;
+  errors["creep_force"] = patch.error_estimate[0];
+  errors["spin_moment"] = patch.error_estimate[1];
+  errors["max_pressure"] = patch.error_estimate[2];
+  to["error_estimate"] = errors;
   to["position"] = list_of(patch.position);
   to["contact_angle"] = patch.contact_angle;
   to["creepage"] = list_of(patch.creepage);

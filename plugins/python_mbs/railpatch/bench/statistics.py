@@ -13,6 +13,8 @@ ERRORS = ("force_error", "moment_error", "pressure_error", "power_error")
 ESTIMATED = ("force", "moment", "pressure")
 # what an error estimate must be: below it in so many cases, within the factor in so many
 COVERED, WITHIN, FACTOR = 0.95, 0.80, 4.0
+# of the scales of errors: what the truth itself is known to; smaller errors count as this one
+NOISE = 3e-4
 NO_ERROR = 1e-12  # below it an error is exact, and no estimate of it is too great
 
 
@@ -89,7 +91,7 @@ def calibration(error: Floats, estimate: Floats) -> tuple[float, float]:
     """Shares of cases with error <= estimate, and with estimate <= FACTOR times error.
 
     NaN without estimates. An error of nothing has no estimate that is too great a multiple of it,
-    so such cases count for the first share only.
+    so such cases count for the first share only; one below NOISE counts as NOISE for the second.
     """
     given = np.isfinite(estimate) & np.isfinite(error)
     if not given.any():
@@ -97,7 +99,8 @@ def calibration(error: Floats, estimate: Floats) -> tuple[float, float]:
     error, estimate = error[given], estimate[given]
     some = error > NO_ERROR
     covered = float((error <= estimate + NO_ERROR).mean())
-    within = float((estimate[some] <= FACTOR * error[some]).mean()) if some.any() else float("nan")
+    near = estimate[some] <= FACTOR * np.maximum(error[some], NOISE)
+    within = float(near.mean()) if some.any() else float("nan")
     return covered, within
 
 

@@ -21,6 +21,7 @@ from railpatch.case.types import (
     relation,
     twice,
 )
+from railpatch.choice import least_error
 
 
 def either(item: dict[str, object]) -> WithJsonSchema:
@@ -134,6 +135,12 @@ class Method(Table):
     max_iterations: Annotated[int, Field(ge=1, le=100_000)] | None = Field(
         default=None, description="-, most iterations of each solver; left out: the core's choice"
     )
+    accuracy: Annotated[float, between(0.002, 0.2)] | None = Field(
+        default=None,
+        description="-, wanted instead of [grid]: error of the creep force over friction "
+        "coefficient times normal force that 95 % of cases stay below; the cheapest grid, and the "
+        "cheapest method where 'normal' and 'tangential' are left out, are chosen for it",
+    )
     spin_offset: Literal["none", "sixth"] = Field(
         default="none",
         description="-, shift of the spin term in elements along rolling: none, or a sixth as in "
@@ -185,6 +192,23 @@ class Method(Table):
             allowed = "'sliding' or 'none' with tangential = 'fastrip'"
             raise relation("flexibility_blending", "'contact'", allowed)
         return self
+
+
+def check_accuracy(grid: Grid | None, method: Method, *, line: bool = False) -> None:
+    """What a wanted accuracy is not combined with, and theories that do not reach it."""
+    if method.accuracy is None:
+        return
+    key, shown = "method.accuracy", repr(method.accuracy)
+    if grid is not None:
+        raise relation(key, f"{shown} and grid is given", "exactly one of 'accuracy' and 'grid'")
+    if line:
+        raise relation(key, shown, "to be left out with a line contact: give 'grid'")
+    if method.spin_offset != "none":
+        raise relation("method.spin_offset", repr(method.spin_offset), "'none' with accuracy")
+    least = least_error(method)
+    if method.accuracy < least:
+        theories = f"normal = '{method.normal}' and tangential = '{method.tangential}'"
+        raise relation(key, shown, f">= {least:g}, what {theories} reach")
 
 
 def check_fitted(grid: Grid | None, method: Method, *, line: bool = False) -> None:

@@ -23,7 +23,7 @@ LATER_KEYS = {
         "temperature_range",
     ),
     "layer": ("yield_stress", "hardening", "hardening_table", "plastic_heat_fraction"),
-    "method": ("accuracy", "patch_rule"),
+    "method": ("patch_rule",),
     "": ("temperature",),
 }
 

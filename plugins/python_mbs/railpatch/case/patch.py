@@ -13,6 +13,7 @@ from railpatch.case.common import (
     Layer,
     Material,
     Method,
+    check_accuracy,
     check_fitted,
     check_tangential,
 )
@@ -163,9 +164,16 @@ class PatchCase(Table):
             self._check_force()
         line = self.geometry.line_contact_radius is not None
         check_fitted(self.grid, self.method, line=line)
+        check_accuracy(self.grid, self.method, line=line)
         if line:
             self._check_line()
         gap = self.geometry.undeformed_distance
+        if gap is not None and self.method.accuracy is not None:
+            raise relation(
+                "method.accuracy",
+                self.method.accuracy,
+                "to be left out with geometry.undeformed_distance: give 'grid'",
+            )
         if gap is not None and (self.grid is None or self.grid.element_size is None):
             raise relation(
                 "grid.element_size", "missing", "[dx, dy] in m with geometry.undeformed_distance"

@@ -12,6 +12,7 @@ from railpatch.case.common import (
     Layer,
     Material,
     Method,
+    check_accuracy,
     check_fitted,
     check_tangential,
 )
@@ -201,6 +202,7 @@ class _WheelCase(Table):
         if self.has_tangential:
             check_tangential(self.material, self.friction, self.layer, self.method)
         check_fitted(self.grid, self.method)
+        check_accuracy(self.grid, self.method)
         for side in self.sides:
             for body in ("wheel", "rail"):
                 key, value = self.profiles.of(body, side)

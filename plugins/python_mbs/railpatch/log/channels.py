@@ -124,6 +124,17 @@ ELEMENTS = Message(
     tuple(_count(state, f"elements in state {state}") for state in ELEMENT_STATES),
 )
 
+ERROR_ESTIMATE = Message(
+    "ErrorEstimate",
+    "Bounds that 95 % of the errors against the exact theory stay below, by the method's measured "
+    "errors.",
+    (
+        _number("creep_force", "N", "of the creep force: length of the error vector"),
+        _number("spin_moment", "N m", "of the spin moment"),
+        _number("max_pressure", "Pa", "of the highest contact pressure"),
+    ),
+)
+
 PATCH = Message(
     "Patch",
     "One contact patch.",
@@ -147,7 +158,7 @@ PATCH = Message(
         _count("iterations", "iterations of the solution"),
         _number("residual", "-", "residual at the end"),
         _number("wall_time", "s", "wall-clock time of the solution"),
-        _number("error_estimate", "-", "estimated relative error of the force"),
+        Field("error_estimate", ERROR_ESTIMATE, "", "estimated errors"),
     ),
 )
 

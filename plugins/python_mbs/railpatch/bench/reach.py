@@ -1,0 +1,70 @@
+"""What force error each method and grid reaches: the figures that ``accuracy`` chooses by.
+
+``python -m railpatch.bench.reach`` prints the 95th percentile of the error in creep force over
+friction coefficient times normal force, in per cent, on sets A and B and on random problems (those
+of ``railpatch.bench.samples``). ``railpatch.choice`` holds the greatest of each line, rounded up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from railpatch.accuracy import fitted_size
+from railpatch.bench.samples import SEED, Problem, measured, other_problems, problems
+from railpatch.bench.statistics import percentile
+from railpatch.choice import FAST_ELEMENTS, NORMAL, ROWS_ON_ELLIPSE, ROWS_ON_PRESSURE
+
+FAST = ("linear", "polach", "fastsim", "fastrip")
+
+
+def fitted(scale: int, problem: Problem, normal: str) -> dict[str, Any]:
+    """Overrides of a case on fitted rows, as ``railpatch.choice`` makes them."""
+    ratio = problem.axis_ratio if normal == "hertz" else 1.0
+    size = fitted_size(scale, ratio)
+    method = {"tangential": "full", "normal": normal}
+    return {"elements": NORMAL * scale, "grid": {"fitted": list(size)}, "method": method}
+
+
+def fast(tangential: str, normal: str) -> dict[str, Any]:
+    """Overrides of a fast theory."""
+    method = {"tangential": tangential, "normal": normal}
+    return {"elements": FAST_ELEMENTS, "method": method}
+
+
+def errors(
+    every: list[Problem], choose: Any, ellipses: bool = False
+) -> Iterator[tuple[str, float]]:
+    """Source and percentile of the error of one choice."""
+    sources = dict.fromkeys(problem.source for problem in every)
+    for source in sources:
+        chosen = [p for p in every if p.source == source]
+        if ellipses and not chosen[0].batch.exact_pressure:
+            continue
+        found = [measured(problem, choose(problem)).errors[:, 0] for problem in chosen]
+        yield source, percentile(np.concatenate(found), 95)
+
+
+def main() -> None:
+    """Prints one line for each method and grid."""
+    every = [*problems(SEED), *(p for p in other_problems() if p.source == "B")]
+    lines: list[tuple[str, Any, bool]] = []
+    for scale in ROWS_ON_ELLIPSE:
+        lines.append((f"rows on ellipse, {scale}", lambda p, s=scale: fitted(s, p, "hertz"), True))
+    for scale in ROWS_ON_PRESSURE:
+        lines.append(
+            (f"rows on pressure, {scale}", lambda p, s=scale: fitted(s, p, "half_space"), False)
+        )
+    for normal in ("kik_piotrowski", "analyn"):
+        lines.append((f"rows on {normal}, 16", lambda p, n=normal: fitted(16, p, n), False))
+    for name in FAST:
+        lines.append((name, lambda p, n=name: fast(n, "half_space"), False))
+    for title, choose, ellipses in lines:
+        cells = [f"{source} {100 * e:.3g}" for source, e in errors(every, choose, ellipses)]
+        print(f"{title:24}", "  ".join(cells), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,318 @@
+"""Measured errors of every method with what the core's error estimate is made from.
+
+Problems: half of the Hertzian set, Hertzian contacts of random shape, load, friction, Poisson's
+ratio and motion, and random contacts whose lateral curvature changes across them. Their truth is
+the full theory on two fine grids of rows fitted to the contact, extrapolated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from railpatch.accuracy import fitted_size
+from railpatch.bench.problems import Batch, merged
+from railpatch.bench.sets import ELLIPSES, FORCE, FRICTION, units
+from railpatch.bench.shapes import POISSON_RATIO, Ellipse, Floats, Surface, hertz_curvatures
+from railpatch.bench.steps import contact_of, steps_of
+from railpatch.bench.surfaces import contact_box, moved
+from railpatch.bench.truth import TruthFile, batches_of
+
+SEED = 20261122
+SHAPES, SURFACES, STEPS = 100, 60, 14  # random ones, and motions of each
+# fine rows: scales of fitted_size, elements of the normal problem across, order of the error
+FINE = ((14, 36), (20, 51))
+ORDER = 1.7
+NORMALS = ("hertz", "half_space", "kik_piotrowski", "analyn")
+GRIDS = (8, 10, 12, 14, 16, 20, 24, 32)
+# passes over the problems of each source, each time on other grids
+PASSES = {"A": 2, "random": 2, "surface": 3, "B": 3, "C": 3}
+FITTED = (6, 7, 8, 9, 10, 11, 12, 13, 14, 16)
+SOURCES = ("A", "random", "surface", "B", "C")
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A batch with its truth, [n, 4] as in ``truth.Truth``. overrides: of the case, the material.
+
+    source: of SOURCES. number: of its first case.
+    """
+
+    batch: Batch
+    truth: Floats
+    overrides: Mapping[str, Any]
+    source: str
+    number: int = 0
+
+    @property
+    def axis_ratio(self) -> float:
+        """a/b of the contact or of the box around it."""
+        a, b = self.batch.shape.semi_axes(self.batch.normal_force)[0]
+        return float(a / b)
+
+
+@dataclass(frozen=True)
+class Family:
+    """A model of the core: a theory, with the cases of its grids and normal theories.
+
+    name: of the arrays in core/error_model.inc. normals: theories of the normal problem, each with
+    the share of the problems that it is taken for.
+    """
+
+    name: str
+    tangential: str
+    fitted: bool = False
+    normals: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(NORMALS, 1.0))
+
+    def choices(self, problem: Problem, random: np.random.Generator) -> Iterator[dict[str, Any]]:
+        """Overrides of the case: every normal theory that applies, on a random grid."""
+        ellipse = problem.batch.exact_pressure
+        for normal, share in self.normals.items():
+            if (normal == "hertz" and not ellipse) or random.random() >= share:
+                continue
+            elements = int(random.choice(GRIDS))
+            yield self.overrides(problem, normal, elements, random)
+
+    def overrides(
+        self, problem: Problem, normal: str, elements: int, random: np.random.Generator
+    ) -> dict[str, Any]:
+        """Of one case. A dictionary with the key 'elements' besides."""
+        method = {"normal": normal, "tangential": self.tangential}
+        found: dict[str, Any] = {"elements": elements, "method": method}
+        if self.fitted:
+            scale = float(random.choice(FITTED))
+            square = random.random() < 0.3
+            size = fitted_size(scale, 1.0 if square else problem.axis_ratio)
+            found["grid"] = {"fitted": list(size)}
+        return found
+
+
+FAMILIES = (
+    Family("uniform", "full", normals={"half_space": 1.0, "hertz": 0.5}),
+    Family(
+        "fitted",
+        "full",
+        fitted=True,
+        normals={"hertz": 1.0, "half_space": 0.7, "kik_piotrowski": 0.2, "analyn": 0.2},
+    ),
+    Family("fastsim", "fastsim"),
+    Family("fastrip", "fastrip"),
+    Family("linear", "linear"),
+    Family("polach", "polach"),
+)
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Cases of a family.
+
+    features: [n, 20] of the core. errors: [n, 3] of force over mu Fn, moment over that times c,
+    pressure over itself; estimates: the same of the core's present model. source: [n], index in
+    SOURCES. case: [n], the same number for the same case by other methods and grids.
+    """
+
+    features: Floats
+    errors: Floats
+    estimates: Floats
+    source: NDArray[np.int64]
+    case: NDArray[np.int64]
+
+    def part(self, chosen: NDArray[Any]) -> Samples:
+        """Some of the cases."""
+        return Samples(
+            self.features[chosen],
+            self.errors[chosen],
+            self.estimates[chosen],
+            self.source[chosen],
+            self.case[chosen],
+        )
+
+
+def joined(parts: list[Samples]) -> Samples:
+    """All of them as one."""
+    names = ("features", "errors", "estimates", "source", "case")
+    return Samples(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+
+
+def random_motion(random: np.random.Generator, count: int) -> tuple[Floats, Floats]:
+    """Creepages [n, 2] and spin [n] over their units, from nearly all stick to full sliding."""
+    size, angle = 10 ** random.uniform(-2.0, 1.2, count), random.uniform(-np.pi, np.pi, count)
+    spin = random.choice((-1, 1), count) * 10 ** random.uniform(-1.8, 0.5, count)
+    spin[random.random(count) < 0.15] = 0
+    size[random.random(count) < 0.05] = 0
+    return (size * np.array([np.cos(angle), np.sin(angle)])).T, spin
+
+
+def unit_of_ratio(ratio: float) -> Floats:
+    """Creepage units and spin unit times c at mu Fn = G c^2, between the ellipses of set A."""
+    known = np.array(sorted(ELLIPSES))
+    rows = []
+    for each in known:
+        ellipse, creepage, spin = units(float(each))
+        c2 = ellipse.a * ellipse.b
+        rows.append(np.log([*(creepage * c2), spin * c2**1.5]))
+    table = np.array(rows)
+    logs = [np.interp(np.log(ratio), np.log(known), column) for column in table.T]
+    return np.exp(logs) / (FRICTION * FORCE)
+
+
+def with_motion(batch: Batch, random: np.random.Generator) -> Batch:
+    """The batch with random motions."""
+    axes = batch.shape.semi_axes(batch.normal_force)[0]
+    c2, capacity = float(axes.prod()), batch.friction * float(batch.normal_force[0])
+    unit = unit_of_ratio(float(axes[0] / axes[1])) * capacity / c2
+    creepage, spin = random_motion(random, STEPS)
+    return replace(
+        batch,
+        normal_force=np.full(STEPS, batch.normal_force[0]),
+        creepage=creepage * unit[:2],
+        spin=spin * unit[2] / np.sqrt(c2),
+        direction=int(random.choice((-1, 1))),
+    )
+
+
+def random_ellipse(random: np.random.Generator, index: int) -> tuple[Batch, dict[str, Any]]:
+    """A Hertzian contact, with its material."""
+    ratio, c = np.exp(random.uniform(np.log(0.12), np.log(12))), 10 ** random.uniform(-3, -2)
+    batch = Batch(
+        name=f"random {index}, a/b = {ratio:.3g}",
+        shape=Ellipse(c * np.sqrt(ratio), c / np.sqrt(ratio)),
+        normal_force=np.array([10 ** random.uniform(3.5, 5.2)]),
+        creepage=np.zeros((1, 2)),
+        spin=np.zeros(1),
+        friction=float(random.uniform(0.05, 0.6)),
+    )
+    nu = float(random.uniform(0, 0.5)) if random.random() < 0.3 else POISSON_RATIO
+    return with_motion(batch, random), {"material": {"poisson_ratio": nu}}
+
+
+def random_surface(random: np.random.Generator, index: int) -> Batch:
+    """A contact whose lateral curvature passes from one value to another."""
+    ratio, force = np.exp(random.uniform(np.log(0.12), np.log(20))), 82e3
+    b = 6e-3 / np.sqrt(ratio)
+    along, across = hertz_curvatures(6e-3 * np.sqrt(ratio), b, force)
+    y = np.linspace(-8 * b, 8 * b, 1601)
+    # as profiles do where arcs join, here over some width
+    change = np.tanh((y - b * random.uniform(-0.8, 0.8)) / (b * random.uniform(0.03, 1)))
+    curvature = across * np.exp(random.uniform(0.1, 1.0) * random.choice((-1, 1)) * change)
+    slope = np.cumsum(2 * curvature) * (y[1] - y[0])
+    slope -= np.interp(0, y, slope)
+    gap = np.cumsum(slope) * (y[1] - y[0])
+    rows = np.stack([gap - gap.min(), 0 * y, along * (1 + random.uniform(-4, 4) * y)], axis=1)
+    surface = Surface(y, rows, (20e-3 * np.sqrt(ratio), 5 * b))
+    # the box from a coarse grid with some room, then from a finer one
+    for room in (1.15, 1.0):
+        shift, half = contact_box(surface, force)
+        size = (room * half[0], room * half[1])
+        surface = moved(Surface(surface.y, surface.rows, size), shift)
+    batch = Batch(
+        name=f"surface {index}",
+        shape=surface,
+        normal_force=np.array([force]),
+        creepage=np.zeros((1, 2)),
+        spin=np.zeros(1),
+    )
+    return with_motion(batch, random)
+
+
+def fine_truth(batch: Batch, overrides: Mapping[str, Any]) -> Floats:
+    """[n, 4] of the batch, extrapolated; NaN where it does not converge."""
+    a, b = batch.shape.semi_axes(batch.normal_force)[0]
+    found = []
+    for scale, elements in FINE:
+        fine: dict[str, Any] = {
+            "grid": {"fitted": list(fitted_size(scale, float(a / b)))},
+            "method": {"tolerance": 1e-7, "max_iterations": 200},
+        }
+        if batch.exact_pressure:
+            fine["method"]["normal"] = "hertz"
+        contact = contact_of(batch, merged(fine, overrides), elements)
+        inputs = batch.inputs()
+        steps = steps_of(batch, contact.time_steps(inputs, [False] * len(inputs), 1)[1])
+        values = np.column_stack([steps.force, steps.moment, steps.pressure])
+        values[~steps.good] = np.nan
+        found.append(values)
+    growth = (FINE[1][0] / FINE[0][0]) ** ORDER
+    return found[1] + (found[1] - found[0]) / (growth - 1)
+
+
+def problems(seed: int) -> list[Problem]:
+    """Those to fit a model to, with their truth."""
+    found = list(unnumbered(seed))
+    first = np.cumsum([0, *(len(problem.batch) for problem in found)])
+    return [replace(p, number=int(n)) for p, n in zip(found, first, strict=False)]
+
+
+def unnumbered(seed: int) -> Iterator[Problem]:
+    """The same before their cases have numbers."""
+    random = np.random.default_rng(seed)
+    truth = TruthFile()
+    for index, batch in enumerate(batches_of("A")):
+        chosen = np.flatnonzero(first_half(len(batch), index))
+        yield Problem(batch.take(chosen), truth.of("A", index).values[chosen], {}, "A")
+    for index in range(SHAPES):
+        batch, material = random_ellipse(random, index)
+        yield Problem(batch, fine_truth(batch, material), material, "random")
+    for index in range(SURFACES):
+        batch = random_surface(random, index)
+        yield Problem(batch, fine_truth(batch, {}), {}, "surface")
+
+
+def other_problems() -> Iterator[Problem]:
+    """Others to test it on: the other half of set A, sets B and C of the benchmark."""
+    truth = TruthFile()
+    for name in "ABC":
+        for index, batch in enumerate(batches_of(name)):
+            assert isinstance(batch, Batch)
+            chosen = np.arange(len(batch))
+            if name == "A":
+                chosen = np.flatnonzero(~first_half(len(batch), index))
+            yield Problem(batch.take(chosen), truth.of(name, index).values[chosen], {}, name)
+
+
+def first_half(count: int, index: int) -> NDArray[np.bool_]:
+    """A random half of the cases of a batch of set A."""
+    return np.random.default_rng([SEED, index]).random(count) < 0.5
+
+
+def measured(problem: Problem, overrides: dict[str, Any]) -> Samples:
+    """Errors and features of one method."""
+    own = dict(overrides)
+    elements = own.pop("elements")
+    batch = problem.batch
+    contact = contact_of(batch, merged(own, problem.overrides), elements)
+    results, features = [], []
+    for values in batch.inputs():
+        results.append(contact.step(values))
+        features.append(contact.field(1, 0, "error_features"))
+    return compared(batch, results, np.array(features), problem)
+
+
+def compared(
+    batch: Batch, results: list[dict[str, Any]], features: Floats, problem: Problem
+) -> Samples:
+    """The errors of results that have an estimate."""
+    steps, patches = steps_of(batch, results), [r["right"]["patches"][0] for r in results]
+    estimate = np.array([list(patch["error_estimate"].values()) for patch in patches])
+    pressure = np.array([patch["max_pressure"] for patch in patches])
+    # c of the core: of the ellipse with the contact's area
+    length = np.sqrt(np.array([patch["contact_area"] for patch in patches]) / np.pi)
+    unit = batch.scales()
+    ratio = unit.length / length
+    truth = problem.truth
+    errors = np.column_stack(
+        [
+            np.hypot(*(steps.force - truth[:, :2]).T),
+            np.abs(steps.moment - truth[:, 2]) * ratio,
+            np.abs(steps.pressure / truth[:, 3] - 1),
+        ]
+    )
+    scale = np.stack([unit.force, unit.force * length, pressure], axis=1)
+    good = np.isfinite(errors).all(axis=1) & np.isfinite(estimate).all(axis=1)
+    source = np.full(len(batch), SOURCES.index(problem.source))
+    case = problem.number + np.arange(len(batch))
+    return Samples(features, errors, estimate / scale, source, case).part(good)
