@@ -308,7 +308,7 @@ typedef enum rp_field {
   RP_FIELD_TRACTION = 4,            /* Pa on the wheel, [2][ny][nx] */
   RP_FIELD_MICRO_SLIP = 5,          /* -, relative to the rolling speed, [2][ny][nx] */
   RP_FIELD_ELEMENT_DIVISION = 6,    /* rp_element as a double, [ny][nx] */
-  RP_FIELD_ERROR_FEATURES = 7       /* -, [20], what the error estimate is made from */
+  RP_FIELD_ERROR_FEATURES = 8       /* -, [20], what the error estimate is made from */
 } rp_field;
 
 typedef struct rp_stage_info {

@@ -585,9 +585,9 @@ TEST(Fields, AreChecked) {
   EXPECT_EQ(rp_get_field(contact.get(), RP_RIGHT, 0, RP_FIELD_TRACTION, values.data(), &count),
             RP_ERROR_NO_FIELD)
       << "a scene without tangential problem";
-  // the one number beyond the list that C++ lets the enumeration hold
+  // a number beyond the list that C++ lets the enumeration hold
   rp_field name;
-  put(name, RP_FIELD_ELEMENT_DIVISION + 1);
+  put(name, RP_FIELD_ERROR_FEATURES + 1);
   EXPECT_EQ(rp_get_field(contact.get(), RP_RIGHT, 0, name, values.data(), &count),
             RP_ERROR_NO_FIELD);
   count = 99;

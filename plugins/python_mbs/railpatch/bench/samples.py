@@ -7,7 +7,7 @@ the full theory on two fine grids of rows fitted to the contact, extrapolated.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -23,7 +23,7 @@ from railpatch.bench.surfaces import contact_box, moved
 from railpatch.bench.truth import TruthFile, batches_of
 
 SEED = 20261122
-SHAPES, SURFACES, STEPS = 100, 60, 14  # random ones, and motions of each
+SHAPES, SURFACES, STEPS = 100, 80, 14  # random ones, and motions of each
 # fine rows: scales of fitted_size, elements of the normal problem across, order of the error
 FINE = ((14, 36), (20, 51))
 ORDER = 1.7
@@ -191,14 +191,17 @@ def random_ellipse(random: np.random.Generator, index: int) -> tuple[Batch, dict
 
 
 def random_surface(random: np.random.Generator, index: int) -> Batch:
-    """A contact whose lateral curvature passes from one value to another."""
-    ratio, force = np.exp(random.uniform(np.log(0.12), np.log(20))), 82e3
+    """A contact whose lateral curvature changes from value to value."""
+    ratio, force = np.exp(random.uniform(np.log(0.12), np.log(12))), 82e3
     b = 6e-3 / np.sqrt(ratio)
     along, across = hertz_curvatures(6e-3 * np.sqrt(ratio), b, force)
     y = np.linspace(-8 * b, 8 * b, 1601)
     # as profiles do where arcs join, here over some width
-    change = np.tanh((y - b * random.uniform(-0.8, 0.8)) / (b * random.uniform(0.03, 1)))
-    curvature = across * np.exp(random.uniform(0.1, 1.0) * random.choice((-1, 1)) * change)
+    logarithm = np.zeros_like(y)
+    for _ in range(random.integers(1, 5)):
+        change = np.tanh((y - b * random.uniform(-1.2, 1.2)) / (b * random.uniform(0.03, 1)))
+        logarithm += random.uniform(0.1, 0.8) * random.choice((-1, 1)) * change
+    curvature = across * np.exp(np.clip(logarithm, -1.5, 1.5))
     slope = np.cumsum(2 * curvature) * (y[1] - y[0])
     slope -= np.interp(0, y, slope)
     gap = np.cumsum(slope) * (y[1] - y[0])
@@ -226,7 +229,7 @@ def fine_truth(batch: Batch, overrides: Mapping[str, Any]) -> Floats:
     for scale, elements in FINE:
         fine: dict[str, Any] = {
             "grid": {"fitted": list(fitted_size(scale, float(a / b)))},
-            "method": {"tolerance": 1e-7, "max_iterations": 200},
+            "method": {"tolerance": 1e-6, "max_iterations": 40},
         }
         if batch.exact_pressure:
             fine["method"]["normal"] = "hertz"
@@ -240,26 +243,33 @@ def fine_truth(batch: Batch, overrides: Mapping[str, Any]) -> Floats:
     return found[1] + (found[1] - found[0]) / (growth - 1)
 
 
-def problems(seed: int) -> list[Problem]:
-    """Those to fit a model to, with their truth."""
-    found = list(unnumbered(seed))
+def problems(seed: int, mapping: Callable[..., Iterable[Problem]] = map) -> list[Problem]:
+    """Those to fit a model to, with their truth. mapping: as map, perhaps in several processes."""
+    found = list(mapping(with_truth, unsolved(seed)))
     first = np.cumsum([0, *(len(problem.batch) for problem in found)])
     return [replace(p, number=int(n)) for p, n in zip(found, first, strict=False)]
 
 
-def unnumbered(seed: int) -> Iterator[Problem]:
-    """The same before their cases have numbers."""
+def with_truth(problem: Problem) -> Problem:
+    """The problem with its truth, where it has none."""
+    if problem.truth.size:
+        return problem
+    return replace(problem, truth=fine_truth(problem.batch, problem.overrides))
+
+
+def unsolved(seed: int) -> Iterator[Problem]:
+    """Half of set A with its truth, random problems without."""
     random = np.random.default_rng(seed)
-    truth = TruthFile()
+    truth, none = TruthFile(), np.empty((0, 4))
     for index, batch in enumerate(batches_of("A")):
+        assert isinstance(batch, Batch)
         chosen = np.flatnonzero(first_half(len(batch), index))
         yield Problem(batch.take(chosen), truth.of("A", index).values[chosen], {}, "A")
     for index in range(SHAPES):
         batch, material = random_ellipse(random, index)
-        yield Problem(batch, fine_truth(batch, material), material, "random")
+        yield Problem(batch, none, material, "random")
     for index in range(SURFACES):
-        batch = random_surface(random, index)
-        yield Problem(batch, fine_truth(batch, {}), {}, "surface")
+        yield Problem(random_surface(random, index), none, {}, "surface")
 
 
 def other_problems() -> Iterator[Problem]:
