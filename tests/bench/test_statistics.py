@@ -9,7 +9,9 @@ import pytest
 from made_up import measured
 from railpatch.bench.cost import SizeCost, WheelCost
 from railpatch.bench.curves import cost_curves, curves, frontier_curve
-from railpatch.bench.methods import FAST, METHODS, UNIFORM, Method
+from railpatch.bench.methods import FAST, FITTED, METHODS, UNIFORM, Method
+from railpatch.bench.picture import spread
+from railpatch.bench.sets import hertz_batch
 from railpatch.bench.statistics import (
     calibration,
     fastest_within,
@@ -126,8 +128,19 @@ def test_curves() -> None:
     best = frontier_curve(found)
     assert best.time.tolist() == [1e-5, 0.4e-3, 2e-3, 5e-3]
     assert best.labels[0] == "method made_up, 10 across"
+    # what does not converge everywhere is on no frontier, and says so
+    lost = curves([*outcome().summaries, summarize(measured(warm=1e-5, lost=30))])
+    assert frontier_curve(lost).time.tolist() == [0.4e-3, 2e-3, 5e-3]
+    assert lost[1].name == "method made_up (30 % without a result)"
     (cost,) = cost_curves(outcome().costs)
     assert cost.exponents == pytest.approx((1.1, 1.3))
+
+
+def test_names_beside_the_axes() -> None:
+    assert spread([0.1, 0.5, 0.9], 0.2) == pytest.approx([0.1, 0.5, 0.9])
+    # two too near move apart about their middle, and push no other
+    assert spread([0.1, 0.4, 0.4, 0.9], 0.1) == pytest.approx([0.1, 0.35, 0.45, 0.9])
+    assert spread([0.5, 0.5, 0.5, 0.55], 0.1) == pytest.approx([0.3625, 0.4625, 0.5625, 0.6625])
 
 
 def test_methods() -> None:
@@ -141,3 +154,11 @@ def test_methods() -> None:
     assert full.count(32, 3220) == 3220
     assert full.count(64, 3220) == pytest.approx(3220 / 8, abs=1)
     assert full.point(64) == "full, 64 across"
+    assert FITTED.point(10) == "full theory, fitted rows, scale 10"
+
+
+def test_fitted_rows_follow_the_ellipse() -> None:
+    batch = hertz_batch(2.0, [0.0], np.array([0.0]), [1.0])
+    assert callable(FITTED.overrides)
+    grid = FITTED.overrides(batch, 20)["grid"]
+    assert grid == {"fitted": [23, 17], "elements": None}

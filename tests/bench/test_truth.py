@@ -6,20 +6,26 @@ from importlib import resources
 
 import numpy as np
 import pytest
+from railpatch.bench.methods import FITTED, UNIFORM
 from railpatch.bench.sets import DIRECTIONS, ELLIPSES, MAGNITUDES, SPINS
 from railpatch.bench.truth import (
     FILE,
+    FITTED_ORDER,
+    UNIFORM_ORDER,
     Recipe,
     TruthFile,
     batches_of,
     combine,
     compute_truth,
+    recipes_of,
     solve_batch,
 )
 
 MOST_BYTES = 300_000
-# of the force, 95th percentile: errors of one per cent are told apart
-AGREED = 3e-3
+# of the force, 95th percentile: a tenth of the one per cent that methods are chosen for, by the
+# finest check. Checks that take every step of a set, and those of thin layers (D), which uniform
+# grids do not resolve: a third of it
+AGREED, AGREED_ALL = 1e-3, 3e-3
 SEED = 4
 
 
@@ -29,9 +35,9 @@ def truth() -> TruthFile:
 
 
 def test_file(truth: TruthFile) -> None:
-    # wheels (W) are measured for their run times
-    assert truth.names[:4] == "ABCD"
-    assert len(truth.recipes) >= 2
+    assert truth.names == "ABCDW"
+    for name in truth.names:
+        assert len(truth.agreement(name)) == len(truth.recipes_of(name)) - 1 >= 1
     assert all(recipe["grids"] and recipe["version"] for recipe in truth.recipes)
     data = resources.files("railpatch.bench").joinpath(FILE).read_bytes()
     assert len(data) <= MOST_BYTES
@@ -40,12 +46,15 @@ def test_file(truth: TruthFile) -> None:
 @pytest.mark.parametrize("name", "ABCD")
 def test_values(truth: TruthFile, name: str) -> None:
     agreement = truth.agreement(name)
-    assert np.isfinite(agreement).all()
-    assert np.percentile(agreement[:, 0], 95) <= AGREED
+    # the first check takes every step
+    assert np.isfinite(agreement[0]).all()
+    assert np.percentile(agreement[0, :, 0], 95) <= AGREED_ALL
+    finest = agreement[-1, :, 0]
+    assert np.percentile(finest[np.isfinite(finest)], 95) <= (AGREED_ALL if name == "D" else AGREED)
     for index, batch in enumerate(batches_of(name)):
         found = truth.of(name, index)
         assert found.values.shape == (len(batch), 4)
-        assert (np.hypot(*found.values[:, :2].T) <= 1 + found.agreement[:, 0] + AGREED).all()
+        assert (np.hypot(*found.values[:, :2].T) <= 1 + found.agreement[0, :, 0] + AGREED).all()
         assert (found.values[:, 3] > 0).all()
         # friction takes power out
         power = batch.true_power(found.values[:, :2], found.values[:, 2])
@@ -79,8 +88,10 @@ def test_closed_forms(truth: TruthFile, index: int) -> None:
 def test_coarser_grids_say_the_same(truth: TruthFile, name: str) -> None:
     # cases drawn by seed, recomputed by cheaper recipes; these know by their own difference how
     # far they can be trusted
-    even = Recipe("even", {}, (24, 28, 32, 36), 1.0)
-    odd = Recipe("odd", {}, (23, 27, 31, 35), 1.0)
+    even = Recipe("even", UNIFORM, (24, 28, 32, 36), UNIFORM_ORDER)
+    odd = Recipe("odd", UNIFORM, (23, 27, 31, 35), UNIFORM_ORDER)
+    rows = Recipe("rows", FITTED, (12, 16), FITTED_ORDER)
+    recipes = (even, odd) if name == "B" else (even, rows)
     random = np.random.default_rng(SEED)
     batches = batches_of(name)
     for index in random.choice(len(batches), 3, replace=False):
@@ -89,24 +100,25 @@ def test_coarser_grids_say_the_same(truth: TruthFile, name: str) -> None:
         part = batch.take(chosen)
         again = combine(
             part,
-            [
-                r.extrapolated([solve_batch(r, part, n) for n in r.grids], r.grids)
-                for r in (even, odd)
-            ],
+            [r.extrapolated([solve_batch(r, part, n) for n in r.grids]) for r in recipes],
         )
         difference = np.hypot(*(again.values - stored.values[chosen])[:, :2].T)
-        allowed = 2 * again.agreement[:, 0].max() + stored.agreement[chosen, 0] + AGREED
+        allowed = 2 * again.agreement[0, :, 0].max() + stored.agreement[0, chosen, 0] + AGREED
         assert (difference <= allowed).all(), (name, batch.name, chosen, difference, allowed)
 
 
 def test_extrapolation() -> None:
-    recipe = Recipe("", {}, (10, 20, 40), 2.0)
+    recipe = Recipe("", UNIFORM, (10, 20, 40), 2.0)
     values = [np.array([[3.0 + 7.0 / n**2, -1.0]]) for n in recipe.grids]
-    assert recipe.extrapolated(values, recipe.grids) == pytest.approx(np.array([[3.0, -1.0]]))
+    assert recipe.extrapolated(values) == pytest.approx(np.array([[3.0, -1.0]]))
 
 
 def test_computing_goes_on_where_it_stopped(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
-    recipes = (Recipe("even", {}, (8, 10), 1.0), Recipe("odd", {}, (7, 9), 1.0))
+    recipes = (
+        Recipe("even", UNIFORM, (8, 10), 1.0),
+        Recipe("rows", FITTED, (7, 9), 1.0, "AD"),
+        Recipe("odd", UNIFORM, (7, 9), 1.0, "B"),
+    )
     monkeypatch.setattr("railpatch.bench.truth.RECIPES", recipes)
     first = compute_truth(tmp_path, "D", 1).read_bytes()
     parts = sorted((tmp_path / "parts").iterdir())
@@ -118,9 +130,8 @@ def test_computing_goes_on_where_it_stopped(tmp_path, monkeypatch: pytest.Monkey
     assert {path: path.stat().st_mtime_ns for path in parts[1:]} == kept
     found = TruthFile(tmp_path / FILE)
     assert found.names == "D"
-    wheel = Recipe("", {}, (64,), 1.0, wheel_grids=(48,))
-    assert (wheel.grids_of("A"), wheel.grids_of("W")) == ((64,), (48,))
-    assert [recipe["name"] for recipe in found.recipes] == ["even", "odd"]
+    assert [recipe["name"] for recipe in found.recipes] == ["even", "rows", "odd"]
+    assert [recipe.name for recipe in recipes_of("B")] == ["even", "odd"]
 
 
 def test_truth_of_other_problems_is_refused(tmp_path) -> None:
@@ -132,7 +143,8 @@ def test_truth_of_other_problems_is_refused(tmp_path) -> None:
 
 
 def test_set_without_truth(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("railpatch.bench.truth.RECIPES", (Recipe("one", {}, (7, 8), 1.0),) * 2)
+    recipe = Recipe("one", UNIFORM, (7, 8), 1.0)
+    monkeypatch.setattr("railpatch.bench.truth.RECIPES", (recipe, recipe))
     found = TruthFile(compute_truth(tmp_path, "C", 1)).of("D", 0)
     assert found.values.shape == (len(batches_of("D")[0]), 4)
     assert np.isnan(found.values).all()

@@ -16,7 +16,6 @@ from railpatch.bench.methods import Method
 from railpatch.bench.problems import merged
 from railpatch.bench.sets import FORCE, MAGNITUDES, hertz_batch, units
 from railpatch.bench.shapes import Floats, Quadratic
-from railpatch.bench.steps import contact_of
 from railpatch.case.load import load_scene
 from railpatch.config import config_of, input_of
 from railpatch.moving import changed_case
@@ -55,7 +54,7 @@ def size_cost(method: Method, across: int) -> SizeCost:
     """Median over four partial slips of a circular contact, spin and direction mixed."""
     middle = [MAGNITUDES[i] for i in (5, 10)]
     batch = hertz_batch(1.0, (0.0, 1.0), np.radians([30.0]), middle)
-    contact = contact_of(batch, method.overrides, across)
+    contact = method.contact(batch, across)
     begin = time.perf_counter()
     timed = time_apart(contact, batch, 1)
     once = time.perf_counter() - begin

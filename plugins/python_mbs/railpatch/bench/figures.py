@@ -41,7 +41,7 @@ def error_over_time(found: list[Curve]) -> go.Figure:
             mode="lines+markers",
             name=curve.name,
             line={"color": curve.color, "width": 1.5},
-            marker={"size": 8},
+            marker={"size": 9, "symbol": curve.marker[1]},
             hovertemplate=HOVER,
         )
     figure.add_scatter(

@@ -13,7 +13,7 @@ from railpatch.bench.methods import Method
 from railpatch.bench.problems import Batch
 from railpatch.bench.sets import AnyBatch, sample
 from railpatch.bench.shapes import Floats
-from railpatch.bench.steps import contact_of, steps_of
+from railpatch.bench.steps import steps_of
 from railpatch.bench.truth import Truth, TruthFile, batches_of
 
 WARM_CHANGE = 1.01  # of the creepages and spin, between a warm step and the one before
@@ -110,10 +110,10 @@ def measure(
     for batch, chosen in sample(batches, method.count(elements, total)):
         index = batches.index(batch)
         part = batch.take(chosen)
-        contact = contact_of(part, method.overrides, elements or COARSEST)
+        contact = method.contact(part, elements)
         timed = (time_ordered if batch.ordered else time_apart)(contact, part, method.repeat)
         known = truth.of(set_name, index)
-        found = columns_of(part, timed, Truth(known.values[chosen], known.agreement[chosen]))
+        found = columns_of(part, timed, Truth(known.values[chosen], known.agreement[:, chosen]))
         goods.append(found.pop("good").astype(bool))
         columns.append(found)
         places.append(np.column_stack([np.full(len(chosen), index), chosen]))
@@ -130,10 +130,6 @@ def measure(
     )
 
 
-# of the tables of a method that chooses its grid itself and replaces them
-COARSEST = 8
-
-
 def columns_of(batch: AnyBatch, timed: Timed, truth: Truth) -> dict[str, Floats]:
     """The columns of a batch, and whether each step is good."""
     cold, warm = (steps_of(batch, results) for results in (timed.cold_results, timed.warm_results))
@@ -146,7 +142,7 @@ def columns_of(batch: AnyBatch, timed: Timed, truth: Truth) -> dict[str, Floats]
         "moment_error": np.abs(warm.moment - moment),
         "pressure_error": np.abs(warm.pressure / pressure - 1),
         "power_error": np.abs(warm.power - batch.true_power(force, moment)),
-        "truth_agreement": truth.agreement[:, 0],
+        "truth_agreement": truth.agreement[0, :, 0],
         "cold": timed.cold,
         "warm": timed.warm,
         "cold_iterations": cold.counts[:, :2].sum(axis=1).astype(float),

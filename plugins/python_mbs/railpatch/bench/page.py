@@ -187,27 +187,32 @@ def truth(report: Report) -> str:
     recipes = [
         (
             r["name"],
-            ", ".join(map(str, r["grids"])),
-            ", ".join(map(str, r["wheel_grids"] or r["grids"])),
+            r["sets"],
+            r["method"],
+            f"{r['unit']} {', '.join(map(str, r['grids']))}",
             r["order"],
-            str(r["overrides"] or "-"),
         )
         for r in report.truth.recipes
     ]
     lines = []
     for name in report.truth.names:
-        agreement = report.truth.agreement(name)
-        for column, quantity in enumerate(("force", "moment", "pressure")):
-            values = agreement[:, column]
-            shares = [np.nanpercentile(values, share) for share in (50, 95, 100)]
-            missing = int(np.isnan(values).sum())
-            lines.append([name, quantity, *(percent(v) for v in shares), missing])
+        others = report.truth.recipes_of(name)[1:]
+        for recipe, agreement in zip(others, report.truth.agreement(name), strict=True):
+            taken = agreement[np.isfinite(agreement[:, 0])]
+            for column, quantity in enumerate(("force", "moment", "pressure")):
+                shares = [np.percentile(taken[:, column], share) for share in (50, 95, 100)]
+                lines.append(
+                    [name, recipe["name"], len(taken), quantity, *(percent(v) for v in shares)]
+                )
     return (
         "<h2>Truth</h2><p>Each recipe is extrapolated over its grids to elements of size zero; the "
-        "first one is the truth, the difference of the others from it says how far it can be "
-        "trusted. Differences in %.</p>"
-        + table(("recipe", "elements across", "set W", "order", "case"), recipes)
-        + table(("set", "quantity", "median", "95th percentile", "greatest", "without"), lines)
+        "first one of a set is its truth, the differences of the others from it say how far it can "
+        "be trusted. Differences in %.</p>"
+        + table(("recipe", "sets", "method", "grids", "order"), recipes)
+        + table(
+            ("set", "other recipe", "cases", "quantity", "median", "95th percentile", "greatest"),
+            lines,
+        )
     )
 
 

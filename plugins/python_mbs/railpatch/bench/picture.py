@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from railpatch.bench.curves import (
     FRONTIER_COLOR,
     PEER_COLOR,
@@ -18,7 +20,8 @@ from railpatch.bench.targets import PEER
 if TYPE_CHECKING:
     from railpatch.bench.run import Report
 
-SIZE = (8.0, 5.6)  # inches
+SIZE = (9.5, 6.0)  # inches
+LABEL_STEP = 0.034  # least distance of two names, of the axes' height
 INK = "#6b7380"  # readable on light and on dark pages
 
 
@@ -56,22 +59,69 @@ def picture(found: list[Curve], processor: str) -> Any:
     figure = Figure(figsize=SIZE, layout="constrained")
     axes = figure.add_subplot()
     best = frontier_curve(found)
-    axes.plot(1e3 * best.time, 100 * best.error, color=FRONTIER_COLOR, lw=8, alpha=0.3,
-              label="frontier")  # fmt: skip
+    axes.plot(1e3 * best.time, 100 * best.error, color=FRONTIER_COLOR, lw=8, alpha=0.3)
     for curve in found:
-        axes.plot(1e3 * curve.time, 100 * curve.error, "o-", ms=4.5, lw=1.3, color=curve.color,
-                  label=curve.name)  # fmt: skip
+        axes.plot(1e3 * curve.time, 100 * curve.error, ls="-", marker=curve.marker[0], ms=5,
+                  lw=1.3, color=curve.color)  # fmt: skip
+        for grid, time, error in zip(curve.short, curve.time, curve.error, strict=True):
+            axes.annotate(grid, (1e3 * time, 100 * error), (0, -4), textcoords="offset points",
+                          ha="center", va="top", fontsize=5.5, color=curve.color)  # fmt: skip
     axes.plot([1e3 * p.time for p in PEER], [100 * p.error for p in PEER], "D:", ms=5,
-              mfc="none", color=PEER_COLOR, label=PEER_NAME)  # fmt: skip
+              mfc="none", color=PEER_COLOR)  # fmt: skip
+    for p in PEER:
+        axes.annotate(str(p.across), (1e3 * p.time, 100 * p.error), (0, 5), fontsize=5.5,
+                      textcoords="offset points", ha="center", color=PEER_COLOR)  # fmt: skip
     axes.set(
         xscale="log",
         yscale="log",
         xlabel="warm run time of a patch, median [ms]",
         ylabel=r"error of the creep force over $\mu F_n$, 95th percentile [%]",
     )
-    axes.set_title(f"one core, {processor}", fontsize=9, color=INK)
+    axes.set_title(
+        f"one core, {processor}; small numbers: elements across, or scale of fitted rows",
+        fontsize=8,
+        color=INK,
+    )
     style(axes)
+    last = [(c.name, c.color, 1e3 * c.time[-1], 100 * c.error[-1]) for c in found]
+    label(axes, [*last, (PEER_NAME, PEER_COLOR, 1e3 * PEER[-1].time, 100 * PEER[-1].error)])
     return figure
+
+
+def label(axes: Any, ends: list[tuple[str, str, float, float]]) -> None:
+    """Names beside the axes at the heights of their curves' last points, moved apart.
+
+    ends: name, colour, and the point in the units of the axes.
+    """
+    low, high = np.log(axes.get_ylim())
+    ends = sorted(ends, key=lambda end: end[3])
+    heights = spread([(np.log(end[3]) - low) / (high - low) for end in ends], LABEL_STEP)
+    for (name, color, x, y), height in zip(ends, heights, strict=True):
+        axes.annotate(
+            name,
+            (x, y),
+            (1.02, height),
+            textcoords="axes fraction",
+            va="center",
+            fontsize=7.5,
+            color=color,
+            arrowprops={"arrowstyle": "-", "color": color, "lw": 0.5, "alpha": 0.5},
+        )
+
+
+def spread(wanted: list[float], step: float) -> list[float]:
+    """Ascending heights with at least a step between them, as near the wanted ones as may be.
+
+    Least squares: pools of adjacent heights that would come too near move together.
+    """
+    pools: list[list[float]] = []
+    for index, height in enumerate(wanted):
+        pools.append([height - index * step])
+        while len(pools) > 1 and np.mean(pools[-2]) > np.mean(pools[-1]):
+            last = pools.pop()
+            pools[-1] += last
+    level = [float(np.mean(pool)) for pool in pools for _ in pool]
+    return [base + index * step for index, base in enumerate(level)]
 
 
 def style(axes: Any) -> None:
@@ -85,4 +135,3 @@ def style(axes: Any) -> None:
         spine.set_color(INK)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter("{x:g}")
-    axes.legend(fontsize=8, labelcolor=INK, framealpha=0)

@@ -95,6 +95,12 @@ class Batch:
         ]
 
     @property
+    def axis_ratio(self) -> float:
+        """a/b of the contact, or of the box that bounds it."""
+        along, across = self.shape.semi_axes(self.normal_force[:1])[0]
+        return float(along / across)
+
+    @property
     def exact_pressure(self) -> bool:
         """Whether the greatest pressure is that of a closed form."""
         return self.shape.exact_pressure

@@ -16,7 +16,6 @@ from railpatch.bench.measure import COLUMNS, Measured, measure
 from railpatch.bench.methods import Method
 from railpatch.bench.sets import SEED, SETS
 from railpatch.bench.statistics import summarize
-from railpatch.bench.steps import contact_of
 from railpatch.bench.targets import Outcome, rows
 from railpatch.bench.truth import TruthFile, batches_of
 
@@ -54,7 +53,7 @@ class Plan:
     def check(self) -> None:
         """Makes one contact of every method and set. Raises CaseError where a case is refused."""
         for method, elements, name in self.points():
-            contact_of(batches_of(name)[0], method.overrides, elements or 8)
+            method.contact(batches_of(name)[0], elements)
 
 
 @dataclass(frozen=True)

@@ -91,10 +91,14 @@ class Surface:
         c0, c1, c2 = CubicSpline(self.y, self.rows)(y).T[:, :, None]
         return c0 + c1 * x + c2 * x**2
 
-    def tables(self, elements: int) -> dict[str, Any]:
-        """The distance on a grid with a margin around the contact's box."""
+    def tables(self, elements: int, room: float = 0.0) -> dict[str, Any]:
+        """The distance on a grid with a margin around the contact's box.
+
+        room: least margin over the size of the box, for theories whose contact is larger.
+        """
         size = [2 * half / elements for half in self.half_size]
-        places = np.arange(elements + 2 * MARGIN) - (elements + 2 * MARGIN - 1) / 2
+        count = elements + 2 * max(MARGIN, int(np.ceil(room * elements)))
+        places = np.arange(count) - (count - 1) / 2
         gap = self.distance(size[0] * places, size[1] * places)
         return {
             "geometry": {"undeformed_distance": gap.tolist()},

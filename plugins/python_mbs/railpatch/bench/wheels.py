@@ -49,6 +49,7 @@ class WheelRun:
     states: Floats
     ordered = True
     exact_pressure = False
+    axis_ratio = BOX[0] / BOX[1]
 
     def __len__(self) -> int:
         return len(self.states)
