@@ -16,6 +16,7 @@
   X(elements)                      \
   X(element_size)                  \
   X(max_elements)                  \
+  X(fitted)                        \
   X(regime)                        \
   X(friction_coefficient)          \
   X(layer_shear_modulus)           \
