@@ -67,7 +67,9 @@ class creep_table {
   creep_table(const void *data, double poisson_ratio);
 
   creep_forces evaluate(const creep_problem &problem) const;
+  // 95th percentiles: of force over B and of moment over c B.
   double force_error() const { return header().error[0]; }
+  double moment_error() const { return header().error[1]; }
 
  private:
   struct axis {

@@ -60,6 +60,8 @@ class fast_solver {
   // range, the result is there all the same.
   tangential_result solve(const fast_patch &patch, const rolling_input &rolling,
                           tangential_fields fields, creep_resultants &sums);
+  // The table of creep forces, where the theory is that.
+  const creep_table *table() const { return creep_table_ ? &*creep_table_ : nullptr; }
   size_t bytes() const { return bound_.bytes() + leading_.bytes() + trailing_.bytes(); }
 
  private:

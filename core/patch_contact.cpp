@@ -215,6 +215,12 @@ void patch_contact::estimate_error(const patch_problem &problem, patch_memory &m
     patch.tangential_grid[k] = scene_.is_fitted() ? scene_.fitted[k] : patch.extent.across[k];
   if (scene_.normal == RP_NORMAL_HERTZ) patch.extent = {};
   errors_.estimate(patch, result, memory.error_features.data());
+  if (!fast_ || !fast_->table()) return;
+  // a table states its own error
+  const double capacity = scene_.friction_coefficient * result.normal_force;
+  result.error_estimate[0] = fast_->table()->force_error() * capacity;
+  result.error_estimate[1] =
+      fast_->table()->moment_error() * capacity * std::sqrt(result.contact_area / pi);
 }
 
 // Fitted rows have elements of many sizes: their places are in the fields.

@@ -37,6 +37,8 @@ REACHED = {
     "analyn": 0.1,
 }
 FAST_ELEMENTS = 20
+# of the table of creep forces on a Hertzian patch, and the a/b that it holds
+ON_TABLE, TABLE_RATIOS = 0.0027, (0.1, 10.0)
 QUADRATIC = ("semi_axes", "curvatures")
 
 
@@ -53,6 +55,8 @@ class Choice:
     def spell(self, accuracy: float) -> str:
         """One line on what was chosen and why."""
         grid = f"{self.elements} elements across"
+        if self.tangential == "table":
+            grid = "no grid"
         if self.fitted is not None:
             rows = f"{self.fitted[0]} nodes on {self.fitted[1]} fitted rows"
             grid = rows if self.normal == "hertz" else f"{rows}, pressure on {grid}"
@@ -86,8 +90,9 @@ def choose(case: Case) -> Choice | None:
     ratio = axis_ratio(case)
     given = "normal" in method.model_fields_set or ratio is None
     normal = method.normal if given else "hertz"
-    # the one place to choose a cheaper theory for a Hertzian patch
     tangential = method.tangential
+    if "tangential" not in method.model_fields_set and table_serves(case, normal, ratio):
+        return Choice("hertz", "table", FAST_ELEMENTS, None, ON_TABLE)
     table = ROWS_ON_ELLIPSE if normal == "hertz" else ROWS_ON_PRESSURE
     scale = smallest(table, method.accuracy)
     errors = [REACHED[name] for name in (normal, tangential) if name in REACHED]
@@ -96,6 +101,21 @@ def choose(case: Case) -> Choice | None:
         return Choice(normal, tangential, elements, None, max(errors, default=table[scale]))
     size = fitted_size(scale, ratio or 1.0)
     return Choice(normal, tangential, NORMAL * scale, size, max([table[scale], *errors]))
+
+
+def table_serves(case: Case, normal: str, ratio: float | None) -> bool:
+    """Whether the table of creep forces gives the accuracy that the case asks for."""
+    low, high = TABLE_RATIOS
+    forced = getattr(getattr(case, "motion", None), "tangential_force", None) is not None
+    return (
+        normal == "hertz"
+        and ratio is not None
+        and low <= ratio <= high
+        and (case.method.accuracy or 0.0) >= ON_TABLE
+        and case.has_tangential
+        and (case.layer is None or case.layer.thickness == 0)
+        and not forced
+    )
 
 
 def axis_ratio(case: Case) -> float | None:
