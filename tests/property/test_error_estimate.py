@@ -172,5 +172,6 @@ def test_accuracy_is_reached(
         reached += force_error(result, truth) <= (accuracy + ERROR_OF_REFERENCE) * bound
         estimates.append(result["error_estimate"]["creep_force"] / bound)
     assert reached >= 0.90 * CASES
-    # told of the same order
-    assert accuracy / 10 < np.percentile(estimates, 90) < 3 * accuracy
+    # told of the same order, but that the table chosen without a method may be better than asked
+    assert np.percentile(estimates, 90) < 3 * accuracy
+    assert not method or accuracy / 10 < np.percentile(estimates, 90)
