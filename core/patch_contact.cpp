@@ -46,7 +46,8 @@ void set_unloaded(const patch_scene &scene, rp_patch_result &result) {
 }
 
 bool patch_scene::estimates_force() const {
-  if (spin_offset) return false;
+  // of a prescribed force the creepage errs
+  if (spin_offset || is_forced()) return false;
   if (!is_fast(tangential)) return true;
   const polach_factors &p = fast.polach;
   const stiffness_reduction &r = fast.reduction;

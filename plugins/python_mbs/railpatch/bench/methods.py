@@ -145,6 +145,7 @@ METHODS = (
            tangential("full", normal="hertz"), grids=(16, 32), quick=(16,), sets="ACD"),
     Method("linear", "linear theory", without_grid("linear"), FAST, (0,), (0,), "AC"),
     Method("polach", "Polach", without_grid("polach"), FAST, (0,), (0,), "AC"),
+    Method("table", "table of the full theory", without_grid("table"), FAST, (0,), (0,), "AC"),
     strips("fastsim", "FASTSIM, parabolic", "fastsim", "AC", normal="hertz"),
     strips("fastsim_elliptic", "FASTSIM, elliptic", "fastsim", "AC", normal="hertz",
            traction_bound="elliptic"),
