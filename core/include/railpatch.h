@@ -265,7 +265,8 @@ typedef struct rp_patch_result {
                                 of the vector), spin moment and greatest pressure stay below, by
                                 measured errors of each method; against the exact theory, without
                                 errors of the case. NaN: no such stage, or not measured (line
-                                contact, factors of fast theories other than 1, spin_offset) */
+                                contact, force prescribed, factors of fast theories other than 1,
+                                spin_offset) */
   double position[3];        /* m, contact reference in track axes (wheel kinds) */
   double contact_angle;      /* rad */
   double creepage[2];        /* -; found where the force is prescribed */

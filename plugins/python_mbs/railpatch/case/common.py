@@ -194,7 +194,9 @@ class Method(Table):
         return self
 
 
-def check_accuracy(grid: Grid | None, method: Method, *, line: bool = False) -> None:
+def check_accuracy(
+    grid: Grid | None, method: Method, *, ellipse: bool = False, line: bool = False
+) -> None:
     """What a wanted accuracy is not combined with, and theories that do not reach it."""
     if method.accuracy is None:
         return
@@ -205,10 +207,11 @@ def check_accuracy(grid: Grid | None, method: Method, *, line: bool = False) -> 
         raise relation(key, shown, "to be left out with a line contact: give 'grid'")
     if method.spin_offset != "none":
         raise relation("method.spin_offset", repr(method.spin_offset), "'none' with accuracy")
-    least = least_error(method)
+    least = least_error(method, ellipse=ellipse)
     if method.accuracy < least:
         theories = f"normal = '{method.normal}' and tangential = '{method.tangential}'"
-        raise relation(key, shown, f">= {least:g}, what {theories} reach")
+        known = f">= {least:g}, what {theories} reach"
+        raise relation(key, shown, known if least < 1 else f"to be left out with {theories}")
 
 
 def check_fitted(grid: Grid | None, method: Method, *, line: bool = False) -> None:

@@ -164,7 +164,8 @@ class PatchCase(Table):
             self._check_force()
         line = self.geometry.line_contact_radius is not None
         check_fitted(self.grid, self.method, line=line)
-        check_accuracy(self.grid, self.method, line=line)
+        ellipse = not line and self.geometry.undeformed_distance is None
+        check_accuracy(self.grid, self.method, ellipse=ellipse, line=line)
         if line:
             self._check_line()
         gap = self.geometry.undeformed_distance
