@@ -34,6 +34,16 @@ void rp_default_config(rp_config *config) {
   c.width = 1.0;
   c.regime = RP_STEADY_ROLLING;
   c.friction_coefficient = 0.3;
+  c.friction_kinetic = c.friction_reference = 0.3;
+  for (double &speed : c.friction_halving_speed) speed = 1.0;
+  c.friction_memory_speed = 1e-3;
+  c.friction_temperature_range = 1.0;
+  for (int k = 0; k < 2; ++k) {
+    c.conductivity[k] = 50.0;
+    c.heat_capacity[k] = 450.0;
+    c.density[k] = 7850.0;
+  }
+  c.plastic_heat_fraction = 0.9;
   c.normal = RP_NORMAL_HALF_SPACE;
   c.tangential = RP_TANGENTIAL_FULL;
   c.tolerance = 1e-5;

@@ -82,7 +82,10 @@ class checker {
 void check_choices(const rp_config &c, checker &check) {
   check.choice("kind", c.kind, RP_PATCH, RP_WHEELSET);
   check.choice("load", c.load, RP_FORCE, RP_POSITION);
-  check.choice("regime", c.regime, RP_REGIME_NONE, RP_STEADY_ROLLING);
+  check.choice("regime", c.regime, RP_REGIME_NONE, RP_TRANSIENT_ROLLING);
+  check.choice("friction_law", c.friction_law, RP_COULOMB, RP_TEMPERATURE);
+  check.choice("slip_law", c.slip_law, RP_SLIP_EXPONENTIAL, RP_SLIP_LINEAR);
+  check.choice("plastic_rule", c.plastic_rule, RP_PLASTIC_PATH, RP_PLASTIC_MAGNITUDE);
   check.choice("normal", c.normal, RP_NORMAL_HERTZ, RP_NORMAL_ANALYN);
   check.choice("tangential", c.tangential, RP_TANGENTIAL_NONE, RP_TANGENTIAL_TABLE);
   check.choice("spin_offset", c.spin_offset, RP_SPIN_OFFSET_NONE, RP_SPIN_OFFSET_SIXTH);
@@ -137,13 +140,113 @@ void check_fast(const rp_config &c, checker &check) {
                 "and not contact with fastrip");
 }
 
+bool has_tangential(const rp_config &c) {
+  return c.regime != RP_REGIME_NONE && c.tangential != RP_TANGENTIAL_NONE;
+}
+
+// Pairs of a table: increasing places, values in a range.
+void check_points(const char *points, int count, const char *place, const double *places,
+                  const char *value, const double *values, const range &r, checker &check) {
+  if (count == 0) return;
+  check.integer(points, count, 2, RP_MAX_POINTS);
+  if (check.error() != RP_OK) return;
+  check.numbers(place, places, count, finite);
+  check.numbers(value, values, count, r);
+  char text[RP_MESSAGE_SIZE];
+  for (int i = 1; i < count; ++i) {
+    std::snprintf(text, sizeof text, "%s[%d] is %g, allowed is more than %s[%d] = %g", place, i,
+                  places[i], place, i - 1, places[i - 1]);
+    check.require(places[i] > places[i - 1], text);
+  }
+}
+
+// Friction laws beside Coulomb's; unused numbers are checked all the same.
+void check_friction(const rp_config &c, checker &check) {
+  check.number("friction_coefficient", c.friction_coefficient, friction);
+  check.number("friction_kinetic", c.friction_kinetic, friction);
+  check.numbers("friction_amplitude", c.friction_amplitude, 2, {-10, 10, false, false});
+  check.numbers("friction_halving_speed", c.friction_halving_speed, 2, positive);
+  check.number("friction_memory_distance", c.friction_memory_distance, {0, 1, false, false});
+  check.number("friction_memory_speed", c.friction_memory_speed, positive);
+  check.number("friction_reference", c.friction_reference, friction);
+  check.number("friction_reference + friction_change", c.friction_reference + c.friction_change,
+               friction);
+  check.number("friction_reference_temperature", c.friction_reference_temperature,
+               {-273.15, 1e4, false, false});
+  check.number("friction_temperature_range", c.friction_temperature_range, {0, 1e5, true, false});
+  check_points("friction_points", c.friction_points, "friction_position", c.friction_position,
+               "friction_factor", c.friction_factor, {0, 100, false, false}, check);
+  if (check.error() != RP_OK || !has_tangential(c)) return;
+  double least = c.friction_kinetic;
+  for (double amplitude : c.friction_amplitude) least += std::min(amplitude, 0.0);
+  check.require(least >= 0,
+                "friction_kinetic with negative friction_amplitude: the law falls below 0");
+  const bool grid = c.tangential == RP_TANGENTIAL_FULL && c.fitted[0] == 0;
+  check.require(c.friction_law == RP_COULOMB || grid,
+                "friction_law must be coulomb but with tangential = full and no fitted rows");
+  check.require(c.friction_points == 0 || grid,
+                "friction_points must be 0 but with tangential = full and no fitted rows");
+  check.require(c.friction_law != RP_TEMPERATURE || c.temperature == 1,
+                "friction_law = temperature needs temperature = 1");
+  check.require(c.friction_law == RP_COULOMB || c.regime != RP_SHIFT,
+                "friction_law must be coulomb with regime = shift: it has no speed");
+}
+
+void check_plastic(const rp_config &c, checker &check) {
+  check.number("layer_yield_stress", c.layer_yield_stress, {0, 1e15, false, false});
+  check.number("layer_hardening", c.layer_hardening, {-1e25, 1e25, false, false});
+  check_points("hardening_points", c.hardening_points, "hardening_displacement",
+               c.hardening_displacement, "hardening_stress", c.hardening_stress,
+               {1e-3, 1e15, false, false}, check);
+  if (c.hardening_points > 0 && check.error() == RP_OK) {
+    check.number("hardening_displacement[0]", c.hardening_displacement[0], {0, 0, false, false});
+    check.require(c.layer_yield_stress == c.hardening_stress[0],
+                  "layer_yield_stress must equal hardening_stress[0]");
+  }
+  if (!has_tangential(c) || !(c.layer_yield_stress > 0)) return;
+  check.require(c.tangential == RP_TANGENTIAL_FULL && c.fitted[0] == 0,
+                "layer_yield_stress must be 0 but with tangential = full and no fitted rows");
+}
+
+void check_temperature(const rp_config &c, checker &check) {
+  check.integer("temperature", c.temperature, 0, 1);
+  check.numbers("bulk_temperature", c.bulk_temperature, 2, {-273.15, 1e4, false, false});
+  check.numbers("conductivity", c.conductivity, 2, {1e-6, 1e6, false, false});
+  check.numbers("heat_capacity", c.heat_capacity, 2, {1e-3, 1e6, false, false});
+  check.numbers("density", c.density, 2, {1e-3, 1e6, false, false});
+  check.number("temperature_depth", c.temperature_depth, {0, 1, false, false});
+  check.number("plastic_heat_fraction", c.plastic_heat_fraction, {0, 1, false, false});
+  if (c.temperature == 0 || check.error() != RP_OK) return;
+  check.require(c.regime == RP_STEADY_ROLLING || c.regime == RP_TRANSIENT_ROLLING,
+                "temperature needs regime = steady_rolling or transient_rolling");
+  check.require(c.tangential == RP_TANGENTIAL_FULL && c.fitted[0] == 0,
+                "temperature needs tangential = full and no fitted rows");
+}
+
+// Shift and transient rolling keep their grid in the frame of the contact.
+void check_regime(const rp_config &c, checker &check) {
+  if (!has_tangential(c) || c.regime == RP_STEADY_ROLLING) return;
+  const char *wrong = nullptr;
+  if (c.tangential != RP_TANGENTIAL_FULL || c.fitted[0] > 0)
+    wrong = "regime = shift and transient_rolling need tangential = full and no fitted rows";
+  else if (c.kind != RP_PATCH)
+    wrong = "regime must be none or steady_rolling for wheels in this version";
+  else if (c.spin_offset != RP_SPIN_OFFSET_NONE)
+    wrong = "spin_offset must be none but with regime = steady_rolling";
+  else if (c.geometry == RP_CURVATURES && !(c.element_size[0] > 0 && c.max_elements[0] > 0))
+    wrong =
+        "regime = shift and transient_rolling with curvatures need element_size and "
+        "max_elements: their grid is fixed";
+  check.require(wrong == nullptr, wrong ? wrong : "");
+}
+
 void check_prescribed(const rp_config &c, checker &check) {
   check.integer("force_prescribed[0]", c.force_prescribed[0], 0, 1);
   check.integer("force_prescribed[1]", c.force_prescribed[1], 0, 1);
   if (c.force_prescribed[0] == 0 && c.force_prescribed[1] == 0) return;
   check.require(c.kind == RP_PATCH, "force_prescribed must be 0, 0 but for kind = patch");
-  check.require(c.regime == RP_STEADY_ROLLING && c.tangential == RP_TANGENTIAL_FULL,
-                "force_prescribed needs regime = steady_rolling and tangential = full");
+  check.require(has_tangential(c) && c.tangential == RP_TANGENTIAL_FULL,
+                "force_prescribed needs a regime of motion and tangential = full");
 }
 
 // Where creep forces come from a table.
@@ -279,13 +382,16 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   check_grid(c, check);
   check_prescribed(c, check);
   check_table(c, check);
-  check.number("friction_coefficient", c.friction_coefficient, friction);
+  check_friction(c, check);
+  check_plastic(c, check);
+  check_temperature(c, check);
+  check_regime(c, check);
   check.number("layer_thickness", c.layer_thickness, {0, 0.1, false, false});
   if (c.layer_thickness > 0)
     check.number("layer_shear_modulus", c.layer_shear_modulus, {1.0, 1e15, false, false});
   check.number("tolerance", c.tolerance, {1e-12, 0.1, false, false});
   check.integer("max_iterations", c.max_iterations, 1, 100000);
-  const bool rolling = c.regime != RP_REGIME_NONE && c.tangential != RP_TANGENTIAL_NONE;
+  const bool rolling = has_tangential(c);
   const bool fast = is_fast(c.tangential);
   check_fast(c, check);
   const bool line = c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT;
@@ -323,6 +429,7 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
     check.numbers("creepage", in.creepage, 2, finite);
     check.number("spin_creepage", in.spin_creepage, finite);
     check.number("rolling_speed", in.rolling_speed, not_negative);
+    if (c.regime == RP_TRANSIENT_ROLLING) check.number("distance", in.distance, positive);
     check.require(in.direction == 1 || in.direction == -1, "direction must be 1 or -1");
     check_force(c, friction_coefficient, in, check);
     return check.error();

@@ -511,6 +511,7 @@ void contact::describe(rp_stage_info *info) const {
   const char *why = config_.regime == RP_REGIME_NONE ? "regime = none" : tangential_reason(scene);
   info[RP_STAGE_TANGENTIAL] = {"tangential", tangential, why,
                                tangential ? traction + solver_.tangential_bytes() : 0};
+  info[RP_STAGE_TEMPERATURE] = {"temperature", 0, "no surface temperature in the scene", 0};
   info[RP_STAGE_FORCES] = {"forces", 1, "resultants of pressure and traction", 0};
 }
 

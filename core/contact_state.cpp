@@ -70,6 +70,35 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            c.friction_coefficient,
                            c.layer_shear_modulus,
                            c.layer_thickness,
+                           static_cast<double>(c.friction_law),
+                           static_cast<double>(c.slip_law),
+                           c.friction_kinetic,
+                           c.friction_amplitude[0],
+                           c.friction_amplitude[1],
+                           c.friction_halving_speed[0],
+                           c.friction_halving_speed[1],
+                           c.friction_memory_distance,
+                           c.friction_memory_speed,
+                           c.friction_reference,
+                           c.friction_change,
+                           c.friction_reference_temperature,
+                           c.friction_temperature_range,
+                           static_cast<double>(c.friction_points),
+                           c.layer_yield_stress,
+                           c.layer_hardening,
+                           static_cast<double>(c.hardening_points),
+                           static_cast<double>(c.plastic_rule),
+                           static_cast<double>(c.temperature),
+                           c.bulk_temperature[0],
+                           c.bulk_temperature[1],
+                           c.conductivity[0],
+                           c.conductivity[1],
+                           c.heat_capacity[0],
+                           c.heat_capacity[1],
+                           c.density[0],
+                           c.density[1],
+                           c.temperature_depth,
+                           c.plastic_heat_fraction,
                            c.tolerance,
                            c.percent_kalker,
                            c.polach_k_a,
@@ -99,6 +128,12 @@ uint64_t fingerprint_of_arrays(const rp_config &c, const aligned_buffer<double> 
     hash = hash * 31 + checksum(bytes, count * sizeof(double));
   };
   add(shape.data(), shape.size());
+  const auto points = static_cast<size_t>(c.friction_points);
+  add(c.friction_position, points);
+  add(c.friction_factor, points);
+  const auto hardening = static_cast<size_t>(c.hardening_points);
+  add(c.hardening_displacement, hardening);
+  add(c.hardening_stress, hardening);
   if (uses_table(c)) {
     creep_table_header header;
     std::memcpy(&header, c.creep_table, sizeof header);

@@ -43,7 +43,7 @@ extern "C" {
 #define RP_VERSION "0.1.0"
 
 enum { RP_LEFT = 0, RP_RIGHT = 1 };
-enum { RP_MAX_PATCHES = 6, RP_MESSAGE_SIZE = 320 };
+enum { RP_MAX_PATCHES = 6, RP_MESSAGE_SIZE = 320, RP_MAX_POINTS = 32 };
 
 /* --- errors: the call was wrong, outputs are untouched ------------------------------------- */
 #define RP_ERRORS(X)                                                          \
@@ -81,7 +81,28 @@ typedef enum rp_load {
   RP_FORCE = 0,   /* normal_force (patch) or vertical_force (wheel, wheelset) prescribed */
   RP_POSITION = 1 /* approach (patch) or z (wheel, wheelset) prescribed */
 } rp_load;
-typedef enum rp_regime { RP_REGIME_NONE = 0, RP_STEADY_ROLLING = 1 } rp_regime;
+typedef enum rp_regime {
+  RP_REGIME_NONE = 0,
+  RP_STEADY_ROLLING = 1,
+  RP_SHIFT = 2,            /* Cattaneo: displacement without rolling, step by step */
+  RP_TRANSIENT_ROLLING = 3 /* each step rolls input.distance on from the last one's tractions */
+} rp_regime;
+typedef enum rp_friction_law {
+  RP_COULOMB = 0,
+  RP_SLIP_VELOCITY = 1, /* mu(s), s the micro-slip's speed: rp_slip_law, with memory */
+  RP_TEMPERATURE = 2    /* mu(T), T the greater surface temperature */
+} rp_friction_law;
+/* mu(s) = friction_kinetic + sum over i of friction_amplitude[i] f(s/friction_halving_speed[i]) */
+typedef enum rp_slip_law {
+  RP_SLIP_EXPONENTIAL = 0, /* f(u) = 2^-u; Polach 2005: mu0 A, mu0 (1 - A), ln 2/B */
+  RP_SLIP_RATIONAL = 1,    /* f(u) = 1/(1 + u) */
+  RP_SLIP_LINEAR = 2       /* f(u) = max(0, 1 - u/2) */
+} rp_slip_law;
+/* how the plastic displacement of the layer accumulates */
+typedef enum rp_plastic_rule {
+  RP_PLASTIC_PATH = 0,     /* length of the path */
+  RP_PLASTIC_MAGNITUDE = 1 /* magnitude of the vector sum */
+} rp_plastic_rule;
 typedef enum rp_normal_method {
   RP_NORMAL_HERTZ = 0,
   RP_NORMAL_HALF_SPACE = 1,
@@ -138,8 +159,9 @@ typedef enum rp_stage {
   RP_STAGE_INFLUENCE = 1,
   RP_STAGE_NORMAL = 2,
   RP_STAGE_TANGENTIAL = 3,
-  RP_STAGE_FORCES = 4,
-  RP_STAGE_COUNT = 5
+  RP_STAGE_TEMPERATURE = 4,
+  RP_STAGE_FORCES = 5,
+  RP_STAGE_COUNT = 6
 } rp_stage;
 
 /* Called when a stage begins (entering = 1) and ends (0); for time shares. The core has no clock.
@@ -177,9 +199,42 @@ typedef struct rp_config {
   int32_t force_prescribed[2]; /* longitudinal, lateral; 1: the creep force's component is given
                                   (tangential_force) and its creepage found, else 0 (kind RP_PATCH,
                                   tangential = full) */
-  double friction_coefficient; /* -, Coulomb, >= 0 */
-  double layer_shear_modulus;  /* Pa; third-body layer, thickness 0: none */
-  double layer_thickness;      /* m */
+  rp_friction_law friction_law;
+  double friction_coefficient;      /* -, Coulomb, >= 0 */
+  rp_slip_law slip_law;             /* of the slip-velocity law */
+  double friction_kinetic;          /* -, at high speed */
+  double friction_amplitude[2];     /* -, at rest above the kinetic one; 0: no such term */
+  double friction_halving_speed[2]; /* m/s, > 0 */
+  double friction_memory_distance;  /* m, over which mu follows mu(s); 0: at once */
+  double friction_memory_speed;     /* m/s, > 0, least speed of following */
+  double friction_reference;        /* -, of the temperature law, below its first temperature */
+  double friction_change;           /* -, from there to the end of the range */
+  double friction_reference_temperature; /* degrees C */
+  double friction_temperature_range;     /* degrees C, > 0 */
+  /* factor of the friction law over the lateral position (kind RP_PATCH, m) or the angle of the
+   * rail's surface (wheels, rad, as contact_angle); linear between the points, constant beyond */
+  int32_t friction_points;                 /* 0: none, else 2 ... RP_MAX_POINTS */
+  double friction_position[RP_MAX_POINTS]; /* m or rad, increasing */
+  double friction_factor[RP_MAX_POINTS];   /* -, >= 0 */
+
+  /* third-body layer: elastic where its thickness is not 0, plastic where it has a yield stress */
+  double layer_shear_modulus; /* Pa */
+  double layer_thickness;     /* m */
+  double layer_yield_stress;  /* Pa, tau_c0; 0: not plastic */
+  double layer_hardening;     /* Pa/m, of tau_c over the plastic displacement; any sign */
+  int32_t hardening_points;   /* 0: the two values above, else 2 ... RP_MAX_POINTS */
+  double hardening_displacement[RP_MAX_POINTS]; /* m, increasing from 0 */
+  double hardening_stress[RP_MAX_POINTS];       /* Pa, > 0; the last one holds beyond */
+  rp_plastic_rule plastic_rule;
+
+  /* surface temperature */
+  int32_t temperature;          /* 1: computed, 0: no such stage */
+  double bulk_temperature[2];   /* degrees C */
+  double conductivity[2];       /* W/(m K) */
+  double heat_capacity[2];      /* J/(kg K) */
+  double density[2];            /* kg/m^3 */
+  double temperature_depth;     /* m, below the surface, of the temperatures given; 0: surface */
+  double plastic_heat_fraction; /* -, of the plastic work, 0 ... 1 */
 
   /* method */
   rp_normal_method normal;
@@ -223,12 +278,14 @@ typedef struct rp_input {
   /* patch */
   double normal_force;        /* N, > 0, load = RP_FORCE */
   double approach;            /* m, load = RP_POSITION */
-  double creepage[2];         /* -, longitudinal, lateral; 0 where the force is prescribed */
+  double creepage[2];         /* -, longitudinal, lateral; 0 where the force is prescribed.
+                                 RP_SHIFT: m, displacement of the wheel in this step */
   double tangential_force[2]; /* N on the wheel, of the components in force_prescribed, else 0;
                                  together at most friction_coefficient times the normal force */
-  double spin_creepage;       /* rad/m */
+  double spin_creepage;       /* rad/m; RP_SHIFT: rad, rotation in this step */
   double rolling_speed;       /* m/s, >= 0; 0 is standstill: no creep force */
   int32_t direction;          /* rolling towards +x (1) or -x (-1) */
+  double distance;            /* m, > 0, rolled in this step where regime = RP_TRANSIENT_ROLLING */
 
   /* wheelset: position, attitude (roll-yaw-pitch) and velocity in track axes */
   double y, z;           /* m; z where load = RP_POSITION */
@@ -256,27 +313,31 @@ typedef struct rp_patch_result {
   int32_t elements[4];       /* exterior, stick, slip, plastic; indexed by rp_element */
   double max_temperature;    /* degrees C; NaN: not part of the scene */
   double friction_power;     /* W, >= 0: power that the creepages supply (Polach: without spin) */
+  double plastic_power;      /* W, >= 0, of the layer's plastic displacement; RP_SHIFT: both in J */
   double elastic_energy;     /* J; NaN for a line contact on fitted rows */
   int32_t normal_iterations; /* conjugate-gradient steps; evaluations of the fast theories */
   int32_t newton_iterations; /* of the tangential problem */
   int32_t inner_iterations;  /* operator products of the tangential problem */
-  double residual;           /* -, greatest relative residual of the stages */
-  double error_estimate[3];  /* N, N m, Pa: bounds that 95 % of the errors of creep force (length
-                                of the vector), spin moment and greatest pressure stay below, by
-                                measured errors of each method; against the exact theory, without
-                                errors of the case. NaN: no such stage, or not measured (line
-                                contact, force prescribed, factors of fast theories other than 1,
-                                spin_offset) */
-  double position[3];        /* m, contact reference in track axes (wheel kinds) */
-  double contact_angle;      /* rad */
-  double creepage[2];        /* -; found where the force is prescribed */
-  double spin_creepage;      /* rad/m */
-  double rolling_speed;      /* m/s, mean of the two surface speeds */
-  int32_t direction;         /* 1 or -1; 0 at standstill */
-  int32_t grid[2];           /* elements of the potential contact along rolling, lateral; of
-                                fitted rows the nodes and rows */
-  double grid_origin[2];     /* m, centre of element (0, 0) in the contact frame; fitted rows: 0 */
-  double element_size[2];    /* m; fitted rows: 0 */
+  int32_t outer_iterations;  /* of normal with tangential problem, friction with temperature */
+  int32_t ambiguous_elements; /* whose falling friction law has further solutions: the one next to
+                                 the last step's is taken */
+  double residual;            /* -, greatest relative residual of the stages */
+  double error_estimate[3];   /* N, N m, Pa: bounds that 95 % of the errors of creep force (length
+                                 of the vector), spin moment and greatest pressure stay below, by
+                                 measured errors of each method; against the exact theory, without
+                                 errors of the case. NaN: no such stage, or not measured (line
+                                 contact, force prescribed, factors of fast theories other than 1,
+                                 spin_offset) */
+  double position[3];         /* m, contact reference in track axes (wheel kinds) */
+  double contact_angle;       /* rad */
+  double creepage[2];         /* -; found where the force is prescribed */
+  double spin_creepage;       /* rad/m */
+  double rolling_speed;       /* m/s, mean of the two surface speeds */
+  int32_t direction;          /* 1 or -1; 0 at standstill */
+  int32_t grid[2];            /* elements of the potential contact along rolling, lateral; of
+                                 fitted rows the nodes and rows */
+  double grid_origin[2];      /* m, centre of element (0, 0) in the contact frame; fitted rows: 0 */
+  double element_size[2];     /* m; fitted rows: 0 */
 } rp_patch_result;
 
 /* One wheel. On a roller the contact frame is not pitched: where the contact lies ahead of or
@@ -302,14 +363,19 @@ typedef struct rp_result {
 } rp_result;
 
 typedef enum rp_field {
-  RP_FIELD_X = 0,                   /* m, [nx] element centres; fitted rows: [ny][nx] nodes */
-  RP_FIELD_Y = 1,                   /* m, [ny] */
-  RP_FIELD_UNDEFORMED_DISTANCE = 2, /* m, [ny][nx]; not with fitted rows */
-  RP_FIELD_PRESSURE = 3,            /* Pa, [ny][nx] */
-  RP_FIELD_TRACTION = 4,            /* Pa on the wheel, [2][ny][nx] */
-  RP_FIELD_MICRO_SLIP = 5,          /* -, relative to the rolling speed, [2][ny][nx] */
-  RP_FIELD_ELEMENT_DIVISION = 6,    /* rp_element as a double, [ny][nx] */
-  RP_FIELD_ERROR_FEATURES = 8       /* -, [20], what the error estimate is made from */
+  RP_FIELD_X = 0,                     /* m, [nx] element centres; fitted rows: [ny][nx] nodes */
+  RP_FIELD_Y = 1,                     /* m, [ny] */
+  RP_FIELD_UNDEFORMED_DISTANCE = 2,   /* m, [ny][nx]; not with fitted rows */
+  RP_FIELD_PRESSURE = 3,              /* Pa, [ny][nx] */
+  RP_FIELD_TRACTION = 4,              /* Pa on the wheel, [2][ny][nx] */
+  RP_FIELD_MICRO_SLIP = 5,            /* -, relative to the rolling speed, [2][ny][nx] */
+  RP_FIELD_ELEMENT_DIVISION = 6,      /* rp_element as a double, [ny][nx] */
+  RP_FIELD_TEMPERATURE = 7,           /* degrees C, [2][ny][nx], wheel and rail */
+  RP_FIELD_ERROR_FEATURES = 8,        /* -, [20], what the error estimate is made from */
+  RP_FIELD_FRICTION = 9,              /* -, friction coefficient of each element, [ny][nx] */
+  RP_FIELD_PLASTIC_DISPLACEMENT = 10, /* m, accumulated vector, [2][ny][nx] */
+  RP_FIELD_PLASTIC_PATH = 11,         /* m, what the yield stress depends on, [ny][nx] */
+  RP_FIELD_YIELD_STRESS = 12          /* Pa, [ny][nx] */
 } rp_field;
 
 typedef struct rp_stage_info {

@@ -57,7 +57,10 @@ def problems_of(case: Any, **options: Any) -> list[str]:
         ("grid__fitted", [8.5, 8], "grid.fitted[0]: value is 8.5, allowed a whole number"),
         ("grid__fitted", [64, 64], "grid.fitted: value is [64, 64], allowed 2304 nodes in all"),
         ("motion__direction", 0, "motion.direction: value is 0, allowed 1 or -1"),
-        ("motion__regime", "shift", "motion.regime: value is 'shift', allowed 'none' or 'steady_r"),
+        ("motion__regime", "slide", "motion.regime: value is 'slide', allowed 'none', 'shift', "),
+        ("motion__regime", "transient_rolling", "motion.distance: value is missing, allowed a num"),
+        ("motion__distance", 1e-3, "motion.distance: value is 0.001, allowed only with regime = "),
+        ("motion__steps", 3, "motion.steps: value is 3, allowed only with regime = 'transient_rol"),
         (
             "motion__creepage",
             [[1e-3], 0.0],
@@ -91,16 +94,38 @@ def problems_of(case: Any, **options: Any) -> list[str]:
         ),
         ("motion__rolling_speed", -1.0, "motion.rolling_speed: value is -1.0, allowed >= 0"),
         ("friction", None, "friction: value is missing, allowed the table [friction]"),
-        ("friction__law", "temperature", "friction.law: value is 'temperature', allowed 'coulomb'"),
+        ("friction__law", "viscous", "friction.law: value is 'viscous', allowed 'coulomb', 'slip"),
+        ("friction__law", "temperature", "friction.reference: value is missing, allowed a number"),
+        ("friction__kinetic", 0.2, "friction.kinetic: value is 0.2, allowed to be left out with "),
+        (
+            "friction",
+            {"law": "slip_velocity", "kinetic": 0.1, "amplitude": -0.2, "halving_speed": 1.0},
+            "friction.amplitude: value is -0.2, allowed a law that does not fall below 0",
+        ),
+        (
+            "friction",
+            {"law": "slip_velocity", "kinetic": 0.1, "amplitude": [0.2, 0.1], "halving_speed": 1.0},
+            "friction.halving_speed: value is 1.0, allowed as many numbers as amplitude",
+        ),
+        (
+            "friction__factor",
+            [[0.0, 1.0], [0.0, 0.5]],
+            "friction.factor: value is [[0.0, 1.0], [0.0, 0.5]], allowed pairs with increasing",
+        ),
         ("friction__coefficient", -0.1, "friction.coefficient: value is -0.1, allowed >= 0"),
         ("friction__coefficient", math.nan, "friction.coefficient: value is nan, allowed a finite"),
-        ("layer", {"thickness": 1e-5}, "layer.shear_modulus: value is missing, allowed Pa"),
+        ("layer", {"thickness": 1e-5}, "layer.shear_modulus: value is missing, allowed a num"),
         (
             "layer",
-            {"shear_modulus": 1e9, "thickness": 0, "yield_stress": 2e8},
-            "layer.yield_stress: value is 200000000.0, allowed: leave it",
+            {"thickness": 0, "hardening": 1e9},
+            "layer.hardening: value is 1000000000.0, allowed only with yield_stress",
         ),
-        ("temperature", {"wheel": 20.0}, "temperature: value is a table, allowed: leave it out"),
+        (
+            "layer",
+            {"thickness": 0, "hardening_table": [[1e-6, 1e8], [2e-6, 2e8]]},
+            "layer.hardening_table: value is [1e-06, 100000000.0], allowed a first displacement",
+        ),
+        ("temperature", {"wheel": -300.0}, "temperature.wheel: value is -300.0, allowed >= -273"),
         (
             "method__normal",
             "stripes",
@@ -176,7 +201,9 @@ def test_every_problem_is_told_at_once_with_a_hint() -> None:
     )
     assert problems_of(case) == [
         "load.normal_force: value is -1.0, allowed > 0.0",
-        "friction.coeficient: value is 0.3, but the key is unknown, allowed law, coefficient; "
+        "friction.coeficient: value is 0.3, but the key is unknown, allowed law, coefficient, shape, kinetic, amplitude, halving_speed, polach_a, polach_b, "
+        "memory_distance, memory_speed, reference, change, reference_temperature, "
+        "temperature_range, factor; "
         "did you mean 'coefficient'?",
         "method.tolerance: value is 'small', allowed a number",
     ]

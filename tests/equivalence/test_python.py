@@ -275,7 +275,14 @@ def test_stages_tell_reason_memory_and_time() -> None:
     contact = railpatch.Contact(with_values(PATCH, method__tangential="none"), timing=True)
     contact.step()
     stages = {stage["name"]: stage for stage in contact.stages()}
-    assert list(stages) == ["geometry", "influence", "normal", "tangential", "forces"]
+    assert list(stages) == [
+        "geometry",
+        "influence",
+        "normal",
+        "tangential",
+        "temperature",
+        "forces",
+    ]
     assert stages["normal"]["seconds"] > 0
     assert stages["normal"]["bytes"] > 0
     assert not stages["tangential"]["present"]

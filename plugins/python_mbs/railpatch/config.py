@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from railpatch.case.common import FAST_NUMBERS
+from railpatch.case.common import FAST_NUMBERS, Friction, Layer, Temperature
 from railpatch.case.load import Case, Scene
 from railpatch.case.patch import SHAPES, PatchCase
+from railpatch.case.types import MOST_POINTS
 from railpatch.case.wheel import SIDES, WheelRailCase, WheelsetCase
 from railpatch.choice import resolved
 from railpatch.profiles import load_profile
@@ -33,9 +34,9 @@ def config_of(scene: Scene) -> dict[str, Any]:
     optional = {
         "max_iterations": case.method.max_iterations,
         "traction_bound": case.method.traction_bound,
-        "friction_coefficient": case.friction and case.friction.coefficient,
-        "layer_shear_modulus": case.layer and case.layer.shear_modulus,
-        "layer_thickness": case.layer and case.layer.thickness,
+        **friction_config(case.friction),
+        **layer_config(case.layer),
+        **temperature_config(case.temperature),
     }
     config.update({key: value for key, value in optional.items() if value is not None})
     if case.has_tangential and case.method.tangential == "table":
@@ -43,6 +44,75 @@ def config_of(scene: Scene) -> dict[str, Any]:
     config.update(patch_config(scene) if isinstance(case, PatchCase) else wheel_config(scene, case))
     config.update(grid_config(case))
     return config
+
+
+def friction_config(friction: Friction | None) -> dict[str, Any]:
+    """Friction law."""
+    if friction is None:
+        return {}
+    config: dict[str, Any] = {"friction_law": friction.law}
+    if friction.law == "coulomb":
+        config["friction_coefficient"] = friction.coefficient
+    if friction.law == "slip_velocity":
+        amplitudes, speeds = friction.terms
+        config["slip_law"] = "exponential" if friction.shape == "polach" else friction.shape
+        config["friction_kinetic"] = friction.kinetic_coefficient
+        config["friction_amplitude"] = [*amplitudes, 0.0][:2]
+        config["friction_halving_speed"] = [*speeds, 1.0][:2]
+    if friction.law == "temperature":
+        for name in ("reference", "change", "reference_temperature", "temperature_range"):
+            config[f"friction_{name}"] = getattr(friction, name)
+    if friction.law != "coulomb":
+        config["friction_memory_distance"] = friction.memory_distance
+        config["friction_memory_speed"] = friction.memory_speed
+    if friction.factor is not None:
+        config.update(points_config("friction", ("position", "factor"), friction.factor))
+    return config
+
+
+def layer_config(layer: Layer | None) -> dict[str, Any]:
+    """Third-body layer."""
+    if layer is None:
+        return {}
+    config: dict[str, Any] = {
+        "layer_shear_modulus": layer.shear_modulus,
+        "layer_thickness": layer.thickness,
+    }
+    if not layer.is_plastic:
+        return config
+    config["plastic_rule"] = layer.plastic_rule
+    config["plastic_heat_fraction"] = layer.plastic_heat_fraction
+    if layer.hardening_table is None:
+        config["layer_yield_stress"] = layer.yield_stress
+        config["layer_hardening"] = layer.hardening
+        return config
+    config["layer_yield_stress"] = layer.hardening_table[0][1]
+    names = ("displacement", "stress")
+    return {**config, **points_config("hardening", names, layer.hardening_table)}
+
+
+def temperature_config(heat: Temperature | None) -> dict[str, Any]:
+    """Surface temperature."""
+    if heat is None:
+        return {}
+    return {
+        "temperature": 1,
+        "bulk_temperature": [heat.wheel, heat.rail],
+        "conductivity": heat.conductivity,
+        "heat_capacity": heat.heat_capacity,
+        "density": heat.density,
+        "temperature_depth": heat.depth,
+    }
+
+
+def points_config(prefix: str, names: tuple[str, str], points: list[list[float]]) -> dict[str, Any]:
+    """A table of pairs as the core's arrays of fixed length."""
+    columns = zip(*points, strict=True)
+    padded = {
+        f"{prefix}_{name}": [*column, *[0.0] * (MOST_POINTS - len(points))]
+        for name, column in zip(names, columns, strict=True)
+    }
+    return {f"{prefix}_points": len(points), **padded}
 
 
 def grid_config(case: Case) -> dict[str, Any]:
@@ -122,8 +192,10 @@ def profile_pair(scene: Scene, case: WheelRailCase | WheelsetCase, body: Any) ->
 def input_of(case: Case) -> dict[str, Any]:
     """Fields of rp_input."""
     if isinstance(case, PatchCase):
-        values = case.motion.model_dump(exclude={"regime"})
+        values = case.motion.model_dump(exclude={"regime", "distance", "steps"})
         values["tangential_force"] = case.motion.forces
+        if case.motion.distance is not None:
+            values["distance"] = case.motion.distance / (case.motion.steps or 1)
         values.update(case.load.model_dump(exclude_none=True))
         return values
     wheelset, track = case.wheelset, case.track

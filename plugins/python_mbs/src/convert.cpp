@@ -33,6 +33,16 @@ constexpr Name kNames[] = {
     {"load", "position", RP_POSITION},
     {"regime", "none", RP_REGIME_NONE},
     {"regime", "steady_rolling", RP_STEADY_ROLLING},
+    {"regime", "shift", RP_SHIFT},
+    {"regime", "transient_rolling", RP_TRANSIENT_ROLLING},
+    {"friction_law", "coulomb", RP_COULOMB},
+    {"friction_law", "slip_velocity", RP_SLIP_VELOCITY},
+    {"friction_law", "temperature", RP_TEMPERATURE},
+    {"slip_law", "exponential", RP_SLIP_EXPONENTIAL},
+    {"slip_law", "rational", RP_SLIP_RATIONAL},
+    {"slip_law", "linear", RP_SLIP_LINEAR},
+    {"plastic_rule", "path", RP_PLASTIC_PATH},
+    {"plastic_rule", "magnitude", RP_PLASTIC_MAGNITUDE},
     {"normal", "hertz", RP_NORMAL_HERTZ},
     {"normal", "half_space", RP_NORMAL_HALF_SPACE},
     {"normal", "kik_piotrowski", RP_NORMAL_KIK_PIOTROWSKI},
@@ -68,7 +78,12 @@ constexpr struct {
     {"traction", RP_FIELD_TRACTION},
     {"micro_slip", RP_FIELD_MICRO_SLIP},
     {"element_division", RP_FIELD_ELEMENT_DIVISION},
+    {"temperature", RP_FIELD_TEMPERATURE},
     {"error_features", RP_FIELD_ERROR_FEATURES},
+    {"friction", RP_FIELD_FRICTION},
+    {"plastic_displacement", RP_FIELD_PLASTIC_DISPLACEMENT},
+    {"plastic_path", RP_FIELD_PLASTIC_PATH},
+    {"yield_stress", RP_FIELD_YIELD_STRESS},
 };
 
 // --- from Python -------------------------------------------------------------------------------
@@ -203,10 +218,13 @@ nb::dict patch_dict(const rp_patch_result &patch) {
   to["elements"] = list_of(patch.elements);
   to["max_temperature"] = patch.max_temperature;
   to["friction_power"] = patch.friction_power;
+  to["plastic_power"] = patch.plastic_power;
   to["elastic_energy"] = patch.elastic_energy;
   to["normal_iterations"] = patch.normal_iterations;
   to["newton_iterations"] = patch.newton_iterations;
   to["inner_iterations"] = patch.inner_iterations;
+  to["outer_iterations"] = patch.outer_iterations;
+  to["ambiguous_elements"] = patch.ambiguous_elements;
   to["residual"] = patch.residual;
   nb::dict errors;
   errors["creep_force"] = patch.error_estimate[0];
@@ -259,9 +277,36 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.array("fitted", c.fitted);
   reader.name("regime", c.regime);
   reader.array("force_prescribed", c.force_prescribed);
+  reader.name("friction_law", c.friction_law);
   reader.scalar("friction_coefficient", c.friction_coefficient);
+  reader.name("slip_law", c.slip_law);
+  reader.scalar("friction_kinetic", c.friction_kinetic);
+  reader.array("friction_amplitude", c.friction_amplitude);
+  reader.array("friction_halving_speed", c.friction_halving_speed);
+  reader.scalar("friction_memory_distance", c.friction_memory_distance);
+  reader.scalar("friction_memory_speed", c.friction_memory_speed);
+  reader.scalar("friction_reference", c.friction_reference);
+  reader.scalar("friction_change", c.friction_change);
+  reader.scalar("friction_reference_temperature", c.friction_reference_temperature);
+  reader.scalar("friction_temperature_range", c.friction_temperature_range);
+  reader.scalar("friction_points", c.friction_points);
+  reader.array("friction_position", c.friction_position);
+  reader.array("friction_factor", c.friction_factor);
   reader.scalar("layer_shear_modulus", c.layer_shear_modulus);
   reader.scalar("layer_thickness", c.layer_thickness);
+  reader.scalar("layer_yield_stress", c.layer_yield_stress);
+  reader.scalar("layer_hardening", c.layer_hardening);
+  reader.scalar("hardening_points", c.hardening_points);
+  reader.array("hardening_displacement", c.hardening_displacement);
+  reader.array("hardening_stress", c.hardening_stress);
+  reader.name("plastic_rule", c.plastic_rule);
+  reader.scalar("temperature", c.temperature);
+  reader.array("bulk_temperature", c.bulk_temperature);
+  reader.array("conductivity", c.conductivity);
+  reader.array("heat_capacity", c.heat_capacity);
+  reader.array("density", c.density);
+  reader.scalar("temperature_depth", c.temperature_depth);
+  reader.scalar("plastic_heat_fraction", c.plastic_heat_fraction);
   reader.name("normal", c.normal);
   reader.name("tangential", c.tangential);
   reader.scalar("tolerance", c.tolerance);
@@ -305,6 +350,7 @@ void fill_input(const nb::dict &from, rp_input &to) {
   reader.scalar("spin_creepage", to.spin_creepage);
   reader.scalar("rolling_speed", to.rolling_speed);
   reader.scalar("direction", to.direction);
+  reader.scalar("distance", to.distance);
   reader.scalar("y", to.y);
   reader.scalar("z", to.z);
   reader.scalar("vertical_force", to.vertical_force);

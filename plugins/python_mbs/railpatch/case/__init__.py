@@ -1,6 +1,6 @@
 """The case file: its schema, its checks, and loading it from TOML or a dictionary."""
 
-from railpatch.case.common import Friction, Grid, Layer, Material, Method
+from railpatch.case.common import Friction, Grid, Layer, Material, Method, Temperature
 from railpatch.case.load import Scene, json_schema, load_scene
 from railpatch.case.patch import Geometry, Load, Motion, PatchCase
 from railpatch.case.wheel import (
@@ -28,6 +28,7 @@ __all__ = [
     "PatchCase",
     "Profiles",
     "Scene",
+    "Temperature",
     "Track",
     "Wheel",
     "WheelRailCase",

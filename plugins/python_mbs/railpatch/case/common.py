@@ -6,11 +6,15 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
+from railpatch.case.friction import Friction, check_increasing
 from railpatch.case.types import (
     CapacityPair,
+    Celsius,
     CountPair,
     ElementSize,
     FittedPair,
+    HardeningTable,
+    HeatPair,
     Modulus,
     ModulusPair,
     RatioPair,
@@ -83,25 +87,80 @@ class Grid(Table):
         return self
 
 
-class Friction(Table):
-    """Friction law."""
-
-    law: Literal["coulomb"] = Field(default="coulomb", description="friction law (no unit)")
-    coefficient: Annotated[float, between(0, 10)] = Field(description="-, coefficient of friction")
-
-
 class Layer(Table):
-    """Elastic third-body layer; the table is left out for none."""
+    """Third-body layer, elastic and, with a yield stress, plastic; the table is left out for
+    none."""
 
-    shear_modulus: Modulus = Field(description="Pa, shear modulus of the layer")
-    thickness: Annotated[float, between(0, 0.1)] = Field(
-        description="m, thickness of the layer; 0: no layer"
+    shear_modulus: Modulus | None = Field(
+        default=None, description="Pa, shear modulus of the layer; needed with a thickness > 0"
     )
+    thickness: Annotated[float, between(0, 0.1)] = Field(
+        description="m, thickness of the layer; 0: no elastic layer"
+    )
+    yield_stress: Annotated[float, between(1e-3, 1e15)] | None = Field(
+        default=None, description="Pa, at which the layer begins to yield; left out: elastic"
+    )
+    hardening: Annotated[float, between(-1e25, 1e25)] | None = Field(
+        default=None,
+        description="Pa/m, slope of the yield stress over the plastic displacement, not below a "
+        "tenth of yield_stress; left out: 0",
+    )
+    hardening_table: HardeningTable | None = Field(
+        default=None,
+        description="m and Pa, [[plastic displacement, yield stress], ...] from [0, yield_stress] "
+        "on, in place of yield_stress and hardening; the last stress holds beyond",
+    )
+    plastic_rule: Literal["path", "magnitude"] = Field(
+        default="path",
+        description="what the yield stress depends on (no unit): length of the plastic "
+        "displacement's path, or magnitude of its vector sum",
+    )
+    plastic_heat_fraction: Annotated[float, between(0, 1)] = Field(
+        default=0.9, description="-, part of the plastic work that heats the surfaces"
+    )
+
+    @model_validator(mode="after")
+    def _plastic(self) -> Layer:
+        if self.thickness > 0 and self.shear_modulus is None:
+            raise relation("shear_modulus", "missing", "a number with thickness > 0")
+        if self.hardening_table is not None:
+            for name in ("yield_stress", "hardening"):
+                if getattr(self, name) is not None:
+                    raise relation(name, getattr(self, name), "to be left out with hardening_table")
+            check_increasing("hardening_table", self.hardening_table)
+            if self.hardening_table[0][0] != 0:
+                shown = str(self.hardening_table[0])
+                raise relation("hardening_table", shown, "a first displacement of 0")
+        elif self.hardening is not None and self.yield_stress is None:
+            raise relation("hardening", self.hardening, "only with yield_stress")
+        return self
+
+    @property
+    def is_plastic(self) -> bool:
+        """Whether the layer yields."""
+        return self.yield_stress is not None or self.hardening_table is not None
 
 
 def has_layer(layer: Layer | None) -> bool:
-    """Whether there is a layer of some thickness."""
-    return layer is not None and layer.thickness > 0
+    """Whether there is a layer of some thickness, or one that yields."""
+    return layer is not None and (layer.thickness > 0 or layer.is_plastic)
+
+
+class Temperature(Table):
+    """Surface temperature of wheel and rail; the table is left out for none."""
+
+    wheel: Celsius = Field(default=0.0, description="degrees C, bulk temperature of the wheel")
+    rail: Celsius = Field(default=0.0, description="degrees C, bulk temperature of the rail")
+    conductivity: HeatPair = Field(
+        default=[50.0, 50.0], description="W/(m K), thermal conductivity, or [wheel, rail]"
+    )
+    heat_capacity: HeatPair = Field(
+        default=[450.0, 450.0], description="J/(kg K), specific heat capacity, or [wheel, rail]"
+    )
+    density: HeatPair = Field(default=[7850.0, 7850.0], description="kg/m^3, or [wheel, rail]")
+    depth: Annotated[float, between(0, 1)] = Field(
+        default=0.0, description="m, below the surface, where the temperatures are given"
+    )
 
 
 # what only some of the tangential theories read
@@ -192,6 +251,35 @@ class Method(Table):
             allowed = "'sliding' or 'none' with tangential = 'fastrip'"
             raise relation("flexibility_blending", "'contact'", allowed)
         return self
+
+
+def check_physics(
+    friction: Friction | None,
+    layer: Layer | None,
+    heat: Temperature | None,
+    grid: Grid | None,
+    method: Method,
+) -> None:
+    """Where the inelastic laws and temperature belong: the full theory on the uniform grid."""
+    asked = {
+        "friction.law": friction is not None and friction.law != "coulomb",
+        "friction.factor": friction is not None and friction.factor is not None,
+        "layer.yield_stress": layer is not None and layer.is_plastic,
+        "temperature": heat is not None,
+    }
+    for key, needed in asked.items():
+        if not needed:
+            continue
+        if method.tangential != "full":
+            shown = repr(method.tangential)
+            raise relation("method.tangential", shown, f"'full' with {key}")
+        if grid is not None and grid.fitted is not None:
+            raise relation("grid.fitted", str(grid.fitted), f"to be left out with {key}")
+        if method.accuracy is not None:
+            allowed = f"to be left out with {key}: give 'grid'"
+            raise relation("method.accuracy", method.accuracy, allowed)
+    if friction is not None and friction.law == "temperature" and heat is None:
+        raise relation("temperature", "missing", "the table [temperature] with this friction law")
 
 
 def check_accuracy(

@@ -9,22 +9,7 @@ from pydantic import BaseModel, ValidationError
 
 # keys of the interface that this version does not have yet
 LATER_KEYS = {
-    "load": (),
-    "motion": ("distance", "steps"),
-    "friction": (
-        "kinetic",
-        "amplitude",
-        "halving_speed",
-        "memory_distance",
-        "memory_speed",
-        "reference",
-        "change",
-        "reference_temperature",
-        "temperature_range",
-    ),
-    "layer": ("yield_stress", "hardening", "hardening_table", "plastic_heat_fraction"),
     "method": ("patch_rule",),
-    "": ("temperature",),
 }
 
 ALLOWED = {

@@ -13,8 +13,10 @@ from railpatch.case.common import (
     Layer,
     Material,
     Method,
+    Temperature,
     check_accuracy,
     check_fitted,
+    check_physics,
     check_tangential,
 )
 from railpatch.case.types import (
@@ -85,12 +87,13 @@ class Load(Table):
 class Motion(Table):
     """Relative motion; the table is left out for the normal problem alone."""
 
-    regime: Literal["none", "steady_rolling"] = Field(
+    regime: Literal["none", "shift", "transient_rolling", "steady_rolling"] = Field(
         default="steady_rolling", description="kind of motion (no unit)"
     )
     creepage: Pair = Field(
         default=[0.0, 0.0],
-        description="-, [longitudinal, lateral], wheel minus rail over the rolling speed",
+        description="-, [longitudinal, lateral], wheel minus rail over the rolling speed; with "
+        "shift m, the displacement of the wheel against the rail",
     )
     tangential_force: ForcePair | None = Field(
         default=None,
@@ -101,8 +104,18 @@ class Motion(Table):
     direction: Literal[1, -1] = Field(
         default=1, description="-, rolling towards +x (1) or towards -x (-1)"
     )
-    spin_creepage: Number = Field(default=0.0, description="rad/m, spin creepage")
+    spin_creepage: Number = Field(
+        default=0.0, description="rad/m, spin creepage; with shift rad, the rotation"
+    )
     rolling_speed: NotNegative = Field(default=10.0, description="m/s, rolling speed")
+    distance: Positive | None = Field(
+        default=None, description="m, rolled in all steps of a solve with transient_rolling"
+    )
+    steps: Annotated[int, Field(ge=1, le=1_000_000)] | None = Field(
+        default=None,
+        description="-, number of equal steps of a solve with transient_rolling or shift; left "
+        "out: 1",
+    )
 
     @property
     def prescribed(self) -> tuple[bool, bool]:
@@ -114,6 +127,17 @@ class Motion(Table):
     def forces(self) -> list[float]:
         """N, the components prescribed, else 0."""
         return [0.0 if force == "creepage" else force for force in self.tangential_force or (0, 0)]
+
+    @model_validator(mode="after")
+    def _by_regime(self) -> Motion:
+        rolls = self.regime == "transient_rolling"
+        if rolls and self.distance is None:
+            raise relation("distance", "missing", "a number > 0 with regime = 'transient_rolling'")
+        if not rolls and self.distance is not None:
+            raise relation("distance", self.distance, "only with regime = 'transient_rolling'")
+        if not rolls and self.regime != "shift" and self.steps is not None:
+            raise relation("steps", self.steps, "only with regime = 'transient_rolling' or 'shift'")
+        return self
 
     @model_validator(mode="after")
     def _one_of_force_and_creepage(self) -> Motion:
@@ -149,6 +173,9 @@ class PatchCase(Table):
         default=None, description="friction law (-); needed where there is a tangential problem"
     )
     layer: Layer | None = Field(default=None, description="third-body layer (Pa, m)")
+    temperature: Temperature | None = Field(
+        default=None, description="surface temperature (degrees C, W/(m K), J/(kg K), kg/m^3)"
+    )
     method: Method = Field(default=Method(), description="theories and tolerances (-)")
 
     @property
@@ -160,6 +187,8 @@ class PatchCase(Table):
     def _relations(self) -> PatchCase:
         if self.has_tangential:
             check_tangential(self.material, self.friction, self.layer, self.method)
+            check_physics(self.friction, self.layer, self.temperature, self.grid, self.method)
+            self._check_regime()
         if any(self.motion.prescribed):
             self._check_force()
         line = self.geometry.line_contact_radius is not None
@@ -187,15 +216,42 @@ class PatchCase(Table):
             )
         return self
 
+    def _check_regime(self) -> None:
+        """What shift and transient rolling need: a grid that is fixed in the contact frame."""
+        regime = self.motion.regime
+        if regime == "shift":
+            for key, asked in (
+                ("friction.law", self.friction is not None and self.friction.law != "coulomb"),
+                ("temperature", self.temperature is not None),
+            ):
+                if asked:
+                    raise relation("motion.regime", "'shift'", f"a regime that rolls with {key}")
+        if regime == "steady_rolling":
+            return
+        if self.method.tangential != "full":
+            shown = repr(self.method.tangential)
+            raise relation("method.tangential", shown, f"'full' with regime = '{regime}'")
+        if self.grid is not None and self.grid.fitted is not None:
+            shown = str(self.grid.fitted)
+            raise relation("grid.fitted", shown, f"to be left out with regime = '{regime}'")
+        if self.method.accuracy is not None:
+            shown = f"to be left out with regime = '{regime}': give 'grid'"
+            raise relation("method.accuracy", self.method.accuracy, shown)
+        sized = self.grid is not None and self.grid.element_size and self.grid.max_elements
+        if self.geometry.curvatures is not None and not sized:
+            allowed = f"element_size and max_elements with curvatures and regime = '{regime}'"
+            raise relation("grid", "another", allowed)
+
     def _check_force(self) -> None:
         """What a prescribed tangential force needs."""
-        if self.motion.regime != "steady_rolling":
-            shown = repr(self.motion.regime)
-            raise relation("motion.regime", shown, "'steady_rolling' with tangential_force")
+        if self.motion.regime == "none":
+            raise relation("motion.regime", "'none'", "a regime of motion with tangential_force")
         if self.method.tangential != "full":
             shown = repr(self.method.tangential)
             raise relation("method.tangential", shown, "'full' with motion.tangential_force")
         if self.load.normal_force is None or self.friction is None:
+            return
+        if self.friction.law != "coulomb" or self.friction.coefficient is None:
             return
         most = self.friction.coefficient * self.load.normal_force
         if math.hypot(*self.motion.forces) > most * (1 + 1e-12):

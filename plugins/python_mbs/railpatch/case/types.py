@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 # elements of one patch along one axis; a grid has a border of one element besides
@@ -54,6 +54,34 @@ SemiAxes = Annotated[list[Annotated[float, between(1e-7, 1)]], exactly(2)]
 Curvatures = Annotated[list[Annotated[float, between(1e-9, 1e6)]], exactly(2)]
 ShiftVector = Annotated[list[Shift], exactly(3)]
 AngleVector = Annotated[list[Angle], exactly(3)]
+
+
+# degrees C
+Celsius = Annotated[float, between(-273.15, 1e4)]
+# factor of the friction law at a position, and displacement with yield stress: of the core
+MOST_POINTS = 32
+Points = Annotated[list[Pair], Field(min_length=2, max_length=MOST_POINTS)]
+HardeningTable = Annotated[
+    list[Annotated[list[NotNegative], exactly(2)]], Field(min_length=2, max_length=MOST_POINTS)
+]
+HeatPair = Annotated[
+    list[Positive],
+    exactly(2),
+    BeforeValidator(lambda value: twice(value)),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "number", "exclusiveMinimum": 0},
+                {
+                    "type": "array",
+                    "items": {"type": "number", "exclusiveMinimum": 0},
+                    "minItems": 2,
+                    "maxItems": 2,
+                },
+            ]
+        }
+    ),
+]
 
 
 class Table(BaseModel):

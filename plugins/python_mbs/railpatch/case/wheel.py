@@ -12,8 +12,10 @@ from railpatch.case.common import (
     Layer,
     Material,
     Method,
+    Temperature,
     check_accuracy,
     check_fitted,
+    check_physics,
     check_tangential,
 )
 from railpatch.case.types import (
@@ -182,6 +184,9 @@ class _WheelCase(Table):
         default=None, description="friction law (-); needed where there is a tangential problem"
     )
     layer: Layer | None = Field(default=None, description="third-body layer (Pa, m)")
+    temperature: Temperature | None = Field(
+        default=None, description="surface temperature (degrees C, W/(m K), J/(kg K), kg/m^3)"
+    )
     method: Method = Field(default=Method(), description="theories and tolerances (-)")
     wheelset: Wheelset = Field(description="position, velocity, dimensions (m, rad, m/s, rad/s)")
     track: Track = Field(description="rails or rollers (m, rad, rad/s)")
@@ -201,6 +206,7 @@ class _WheelCase(Table):
     def _relations(self) -> _WheelCase:
         if self.has_tangential:
             check_tangential(self.material, self.friction, self.layer, self.method)
+            check_physics(self.friction, self.layer, self.temperature, self.grid, self.method)
         check_fitted(self.grid, self.method)
         check_accuracy(self.grid, self.method)
         for side in self.sides:

@@ -1,0 +1,182 @@
+"""The table [friction]: the friction laws."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from railpatch.case.types import (
+    Celsius,
+    Number,
+    Points,
+    Positive,
+    Table,
+    between,
+    more_than,
+    relation,
+)
+
+Coefficient = Annotated[float, between(0, 10)]
+Terms = Annotated[list[Number], Field(min_length=1, max_length=2)]
+Speeds = Annotated[list[Positive], Field(min_length=1, max_length=2)]
+# keys of each law, needed and optional
+KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "coulomb": (("coefficient",), ()),
+    "slip_velocity": ((), ("memory_distance", "memory_speed")),
+    "temperature": (
+        ("reference", "change", "reference_temperature", "temperature_range"),
+        ("memory_distance", "memory_speed"),
+    ),
+}
+SHAPES: dict[str, tuple[str, ...]] = {
+    "exponential": ("kinetic", "amplitude", "halving_speed"),
+    "rational": ("kinetic", "amplitude", "halving_speed"),
+    "linear": ("kinetic", "amplitude", "halving_speed"),
+    "polach": ("coefficient", "polach_a", "polach_b"),
+}
+
+
+class Friction(Table):
+    """Friction law."""
+
+    law: Literal["coulomb", "slip_velocity", "temperature"] = Field(
+        default="coulomb", description="friction law (no unit)"
+    )
+    coefficient: Coefficient | None = Field(
+        default=None, description="-, coefficient of friction; with polach: at rest"
+    )
+    shape: Literal["exponential", "rational", "linear", "polach"] = Field(
+        default="exponential",
+        description="of slip_velocity (no unit): mu = kinetic + sum of amplitude f(s/halving_speed)"
+        " with f(u) = 2^-u, 1/(1 + u) or max(0, 1 - u/2) over the speed s of micro-slip; polach: "
+        "coefficient ((1 - polach_a) exp(-polach_b s) + polach_a)",
+    )
+    kinetic: Coefficient | None = Field(
+        default=None, description="-, coefficient of friction at high micro-slip"
+    )
+    amplitude: Number | Terms | None = Field(
+        default=None, description="-, at rest above kinetic; one or two terms"
+    )
+    halving_speed: Positive | Speeds | None = Field(
+        default=None, description="m/s, at which a term is half its amplitude; one for each term"
+    )
+    polach_a: Annotated[float, between(0, 1)] | None = Field(
+        default=None, description="-, A of Polach's law, friction at high micro-slip over at rest"
+    )
+    polach_b: Annotated[float, more_than(0, 1e6)] | None = Field(
+        default=None, description="s/m, B of Polach's law"
+    )
+    memory_distance: Annotated[float, between(0, 1)] = Field(
+        default=0.0, description="m, over which the coefficient follows the law; 0: at once"
+    )
+    memory_speed: Positive = Field(
+        default=1e-3, description="m/s, least speed with which it follows the law"
+    )
+    reference: Coefficient | None = Field(
+        default=None, description="-, of the temperature law up to reference_temperature"
+    )
+    change: Annotated[float, between(-10, 10)] | None = Field(
+        default=None, description="-, from there to the end of temperature_range, linear"
+    )
+    reference_temperature: Celsius | None = Field(
+        default=None, description="degrees C, where the temperature law begins"
+    )
+    temperature_range: Annotated[float, more_than(0, 1e5)] | None = Field(
+        default=None, description="K, over which it changes"
+    )
+    factor: Points | None = Field(
+        default=None,
+        description="m or rad and -, [[place, factor], ...]: factor of the law over the lateral "
+        "position in a patch (m) or over the angle of the rail's surface (rad, as contact_angle)",
+    )
+
+    @model_validator(mode="after")
+    def _by_law(self) -> Friction:
+        needed, optional = KEYS[self.law]
+        if self.law == "slip_velocity":
+            needed = SHAPES[self.shape]
+        allowed = {"law", "factor", *needed, *optional}
+        if self.law == "slip_velocity":
+            allowed.add("shape")
+        for name in needed:
+            if getattr(self, name) is None:
+                raise relation(name, "missing", f"a number with {self._named()}")
+        for name, field in type(self).model_fields.items():
+            if name not in allowed and getattr(self, name) != field.default:
+                shown = repr(getattr(self, name))
+                raise relation(name, shown, f"to be left out with {self._named()}")
+        if self.factor is not None:
+            check_increasing("factor", self.factor)
+        self._check_values()
+        return self
+
+    def _named(self) -> str:
+        shape = f" and shape = '{self.shape}'" if self.law == "slip_velocity" else ""
+        return f"law = '{self.law}'{shape}"
+
+    def _check_values(self) -> None:
+        if len(self.terms[0]) != len(self.terms[1]):
+            shown = str(self.halving_speed)
+            raise relation("halving_speed", shown, "as many numbers as amplitude")
+        if self.law == "slip_velocity" and self.shape != "polach":
+            assert self.kinetic is not None
+            if self.kinetic + sum(min(a, 0.0) for a in self.terms[0]) < 0:
+                shown = str(self.amplitude)
+                raise relation("amplitude", shown, "a law that does not fall below 0")
+        if self.law == "temperature":
+            assert self.reference is not None
+            assert self.change is not None
+            if not 0 <= self.reference + self.change <= 10:
+                raise relation("change", self.change, "reference + change within 0 ... 10")
+        if self.factor is not None and min(value for _, value in self.factor) < 0:
+            raise relation("factor", str(self.factor), "factors >= 0")
+
+    @property
+    def terms(self) -> tuple[list[float], list[float]]:
+        """Amplitudes (-) and halving speeds (m/s) of the slip-velocity law."""
+        if self.law != "slip_velocity":
+            return [], []
+        if self.shape == "polach":
+            assert self.coefficient is not None
+            assert self.polach_a is not None
+            assert self.polach_b is not None
+            return [self.coefficient * (1 - self.polach_a)], [math.log(2) / self.polach_b]
+        return as_list(self.amplitude), as_list(self.halving_speed)
+
+    @property
+    def kinetic_coefficient(self) -> float:
+        """-, of the slip-velocity law at high micro-slip."""
+        if self.shape == "polach":
+            assert self.coefficient is not None
+            assert self.polach_a is not None
+            return self.coefficient * self.polach_a
+        assert self.kinetic is not None
+        return self.kinetic
+
+    @property
+    def greatest(self) -> float:
+        """-, greatest coefficient that the law may give, without factor."""
+        if self.law == "coulomb":
+            assert self.coefficient is not None
+            return self.coefficient
+        if self.law == "temperature":
+            assert self.reference is not None
+            assert self.change is not None
+            return max(self.reference, self.reference + self.change)
+        return self.kinetic_coefficient + sum(max(a, 0.0) for a in self.terms[0])
+
+
+def as_list(value: float | list[float] | None) -> list[float]:
+    """One number as a list."""
+    return value if isinstance(value, list) else [] if value is None else [value]
+
+
+def check_increasing(name: str, points: Sequence[Sequence[float]]) -> None:
+    """Raises where the first numbers of the pairs do not increase."""
+    places = [place for place, _ in points]
+    if any(b <= a for a, b in itertools.pairwise(places)):
+        raise relation(name, str(points), "pairs with increasing first numbers")
