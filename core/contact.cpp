@@ -22,6 +22,7 @@ patch_scene make_scene(const rp_config &c) {
   patch_scene scene;
   scene.elastic = combine(c.shear_modulus, c.poisson_ratio);
   scene.friction_coefficient = c.friction_coefficient;
+  if (c.friction_points > 0) scene.friction_variation = friction_factor(c);
   if (c.layer_thickness > 0) scene.layer_flexibility = c.layer_thickness / c.layer_shear_modulus;
   if (c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT) scene.line_width = c.width;
   scene.normal = c.normal;
@@ -168,7 +169,7 @@ contact::contact(const rp_config &config)
               config.observer, config.observer_user) {
   const capacity size = grid_capacity(config);
   if (config.kind == RP_PATCH) {
-    memory_.emplace_back(size.nx * size.ny, solver_.scene());
+    memory_.emplace_back(size.nx * size.ny, size.ny, solver_.scene());
     if (config.geometry == RP_UNDEFORMED_DISTANCE) {
       shape_ = aligned_buffer<double>(static_cast<size_t>(size.nx * size.ny));
       std::copy_n(config.undeformed_distance, shape_.size(), shape_.data());
@@ -178,7 +179,7 @@ contact::contact(const rp_config &config)
       if (!has_side(side)) continue;
       wheels_.emplace_back(config, side);
       for (int i = 0; i < config.max_patches; ++i)
-        memory_.emplace_back(size.nx * size.ny, solver_.scene());
+        memory_.emplace_back(size.nx * size.ny, size.ny, solver_.scene());
     }
   }
   scene_ = fingerprint(config, shape_);
@@ -272,6 +273,8 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
       m.undeformed_distance[at] =
           shape_.size() ? shape_[at] : hertz.curvatures[0] * x * x + hertz.curvatures[1] * y * y;
     }
+  for (size_t j = 0; j < m.row_friction.size() && j < static_cast<size_t>(g.ny); ++j)
+    m.row_friction[j] = solver_.scene().friction_variation.at(g.y(static_cast<int>(j)));
   patch_wrench wrench;
   solver_.solve(problem, m, result, wrench);
   finish(result.status);

@@ -56,11 +56,13 @@ bool patch_scene::estimates_force() const {
          fast.bound == RP_BOUND_AUTOMATIC;
 }
 
-patch_memory::patch_memory(int max_count, const patch_scene &scene) {
+patch_memory::patch_memory(int max_count, int max_rows, const patch_scene &scene) {
   const auto n = static_cast<size_t>(max_count);
   undeformed_distance = aligned_buffer<double>(n);
   if (!scene.closed_form()) pressure = aligned_buffer<double>(n);
   if (!has_tractions(scene.tangential)) return;
+  if (scene.friction_variation.varies())
+    row_friction = aligned_buffer<double>(static_cast<size_t>(max_rows));
   const size_t count =
       scene.is_fitted() ? static_cast<size_t>(scene.fitted[0] * scene.fitted[1]) : n;
   for (auto *b : {&px, &py, &sx, &sy}) *b = aligned_buffer<double>(count);
@@ -74,7 +76,7 @@ patch_memory::patch_memory(int max_count, const patch_scene &scene) {
 
 size_t patch_memory::bytes() const {
   return undeformed_distance.bytes() + pressure.bytes() + 4 * px.bytes() + division.bytes() +
-         2 * node_x.bytes() + node_y.bytes();
+         2 * node_x.bytes() + node_y.bytes() + row_friction.bytes();
 }
 
 patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, int max_nx,
@@ -370,9 +372,13 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   } else if (fitted_) {
     t = solve_fitted(problem, rolling, memory);
   } else {
-    for (int i = 0; i < g.count(); ++i)
-      bound_[static_cast<size_t>(i)] =
-          scene_.friction_coefficient * memory.pressure[static_cast<size_t>(i)];
+    const bool varies = scene_.friction_variation.varies();
+    for (int j = 0; j < g.ny; ++j) {
+      const double coefficient = scene_.friction_coefficient *
+                                 (varies ? memory.row_friction[static_cast<size_t>(j)] : 1.0);
+      for (auto i = static_cast<size_t>(j * g.nx); i < static_cast<size_t>((j + 1) * g.nx); ++i)
+        bound_[i] = coefficient * memory.pressure[i];
+    }
     t = tangential_->solve(*influence_, g, memory.pressure.data(), bound_.data(), rolling,
                            {scene_.tolerance, scene_.max_iterations}, fields);
   }

@@ -9,6 +9,7 @@
 #include "fast.hpp"
 #include "fitted.hpp"
 #include "forces.hpp"
+#include "friction_factor.hpp"
 #include "hertz.hpp"
 #include "normal.hpp"
 #include "railpatch.h"
@@ -21,6 +22,7 @@ namespace railpatch {
 struct patch_scene {
   elastic_constants elastic;
   double friction_coefficient = 0;
+  friction_factor friction_variation;
   double layer_flexibility = 0;  // m/Pa
   double line_width = 0;         // m, > 0: line contact
   rp_normal_method normal = RP_NORMAL_HALF_SPACE;
@@ -61,7 +63,7 @@ struct patch_problem {
 struct patch_memory {
   patch_memory() = default;
   // max_count: elements of the greatest grid.
-  patch_memory(int max_count, const patch_scene &scene);
+  patch_memory(int max_count, int max_rows, const patch_scene &scene);
   bool solved = false;  // fields belong to the last step
   bool warm = false;    // pressure and traction may serve as a start
   bool beyond = false;  // the normal problem left its range: what the patch carries is not known
@@ -70,6 +72,7 @@ struct patch_memory {
   aligned_buffer<double> undeformed_distance, pressure, px, py, sx, sy;
   aligned_buffer<unsigned char> division;
   aligned_buffer<double> node_x, node_y, node_pressure;  // fitted rows only
+  aligned_buffer<double> row_friction;                   // factor of each grid row, where it varies
   aligned_buffer<double> creepage;                       // [2], of a prescribed creep force only
   std::array<double, error_feature_count> error_features{};
   bool fitted() const { return node_x.size() > 0; }

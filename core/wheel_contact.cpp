@@ -152,6 +152,7 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
   geometry_->undeformed_distance(region.frame, {g.nx, g.ny, g.x0, g.y0, g.dx, g.dy}, h);
   const double depth = -*std::min_element(h, h + g.count());
   const creepage_state rolling = geometry_->creepages(region.frame, depth);
+  if (memory.row_friction.size() > 0) set_friction(solver, region.frame, memory);
   solver.observe(RP_STAGE_GEOMETRY, false);
 
   problem.rolling_speed = rolling.rolling_speed;
@@ -184,6 +185,18 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
     result.spin_creepage = rolling.phi;
   }
   return result.status;
+}
+
+// The factor of each row by the angle of the rail's surface there, > 0 towards the gauge face; a
+// row beyond the profile has no contact, and any factor.
+void wheel_contact::set_friction(const patch_contact &solver, const contact_frame &frame,
+                                 patch_memory &memory) const {
+  for (int j = 0; j < memory.g.ny; ++j) {
+    const double across = std::cos(frame.contact_angle) * memory.g.y(j);
+    double z = 0, slope = frame.contact_angle;
+    geometry_->rail_surface(frame.origin[0], frame.origin[1] + across, z, slope);
+    memory.row_friction[static_cast<size_t>(j)] = solver.scene().friction_variation.at(-slope);
+  }
 }
 
 bool wheel_contact::first_touch(double &z) const { return railpatch::first_touch(*geometry_, z); }

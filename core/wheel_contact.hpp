@@ -33,6 +33,8 @@ class wheel_contact {
  private:
   rp_status solve_patch(patch_contact &solver, const patch_region &region, int index,
                         patch_memory &memory, rp_side_result &result);
+  void set_friction(const patch_contact &solver, const contact_frame &frame,
+                    patch_memory &memory) const;
   grid choose_grid(const patch_region &region) const;
 
   rp_config config_;

@@ -212,7 +212,8 @@ typedef struct rp_config {
   double friction_reference_temperature; /* degrees C */
   double friction_temperature_range;     /* degrees C, > 0 */
   /* factor of the friction law over the lateral position (kind RP_PATCH, m) or the angle of the
-   * rail's surface (wheels, rad, as contact_angle); linear between the points, constant beyond */
+   * rail's surface (wheels, rad, > 0 towards the gauge face on either side); linear between the
+   * points, constant beyond */
   int32_t friction_points;                 /* 0: none, else 2 ... RP_MAX_POINTS */
   double friction_position[RP_MAX_POINTS]; /* m or rad, increasing */
   double friction_factor[RP_MAX_POINTS];   /* -, >= 0 */

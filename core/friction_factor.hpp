@@ -1,0 +1,35 @@
+// Factor of the friction law over the lateral position or the angle of the rail's surface: linear
+// between points, constant beyond the first and the last.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "railpatch.h"
+
+namespace railpatch {
+
+class friction_factor {
+ public:
+  friction_factor() = default;
+  explicit friction_factor(const rp_config &c) : count_(c.friction_points) {
+    std::copy_n(c.friction_position, RP_MAX_POINTS, place_.begin());
+    std::copy_n(c.friction_factor, RP_MAX_POINTS, factor_.begin());
+  }
+  bool varies() const { return count_ > 0; }
+  double at(double place) const {
+    const auto begin = place_.begin(), end = begin + count_;
+    const auto above = std::upper_bound(begin, end, place) - begin;
+    if (above == 0) return factor_.front();
+    const auto below = static_cast<size_t>(above - 1), next = static_cast<size_t>(above);
+    if (above == count_) return factor_[below];
+    const double part = (place - place_[below]) / (place_[next] - place_[below]);
+    return factor_[below] + part * (factor_[next] - factor_[below]);
+  }
+
+ private:
+  int count_ = 0;
+  std::array<double, RP_MAX_POINTS> place_{}, factor_{};
+};
+
+}  // namespace railpatch
