@@ -114,6 +114,32 @@ void influence::make_line_kernels() {
   }
 }
 
+void influence::bodies_at(double x, double y, double values[3]) const {
+  const double nu = scene_.elastic.poisson_ratio;
+  const double c = 1.0 / (pi * scene_.elastic.shear_modulus);
+  if (scene_.line_width > 0) {
+    const double ends[2] = {x + 0.5 * grid_.dx, x - 0.5 * grid_.dx};
+    double sum = 0;
+    for (int k = 0; k < 2; ++k)
+      if (ends[k] != 0) sum += (k == 0 ? 1 : -1) * line_primitive(ends[k], scene_.line_width);
+    values[0] = 2.0 * c * (1.0 - nu) * sum;
+    values[1] = 2.0 * c * sum;
+    values[2] = 0;
+    return;
+  }
+  double sum[3] = {0, 0, 0};
+  for (int k = 0; k < 4; ++k) {
+    const double sign = (k == 0 || k == 3) ? 1.0 : -1.0;
+    const double u = x + (k & 1 ? -0.5 : 0.5) * grid_.dx, v = y + (k & 2 ? -0.5 : 0.5) * grid_.dy;
+    sum[0] += sign * (v != 0 ? y_log(u, v) : 0.0);
+    sum[1] += sign * (u != 0 ? y_log(v, u) : 0.0);
+    sum[2] -= sign * std::hypot(u, v);
+  }
+  values[0] = c * (sum[0] + (1.0 - nu) * sum[1]);
+  values[1] = c * (sum[1] + (1.0 - nu) * sum[0]);
+  values[2] = c * nu * sum[2];
+}
+
 double influence::coefficient(kernel k, int i, int j) const {
   const auto at = static_cast<size_t>(std::abs(j) * stride_ + std::abs(i));
   const double value = table_[static_cast<int>(k)][at];
@@ -168,6 +194,11 @@ void influence::normal_inverse(const double *displacement, double *pressure) {
 
 void influence::tangential_product(const double *px, const double *py, double *ux, double *uy) {
   full_.tangential_product(px, py, ux, uy);
+}
+
+void influence::tangential_product_single(const double *px, const double *py, double *ux,
+                                          double *uy) {
+  single_.tangential_product(px, py, ux, uy);
 }
 
 void influence::rolling_product(const double *px, const double *py, int direction, double *sx,

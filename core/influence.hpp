@@ -66,11 +66,16 @@ class influence {
   void normal_inverse(const double *displacement, double *pressure);
   // (u_x, u_y) = A (p_x, p_y).
   void tangential_product(const double *px, const double *py, double *ux, double *uy);
+  // The same in single precision, for what only steers an iteration.
+  void tangential_product_single(const double *px, const double *py, double *ux, double *uy);
   // Steady rolling: (u(x) - u(x + direction dx))/dx, the micro-slip caused by the tractions.
   void rolling_product(const double *px, const double *py, int direction, double *sx, double *sy);
   void rolling_product_single(const double *px, const double *py, int direction, double *sx,
                               double *sy);
 
+  const scene &bodies() const { return scene_; }
+  // xx, yy and xy of the bodies at any offset (m), observer minus source.
+  void bodies_at(double x, double y, double values[3]) const;
   // One coefficient at offset (i, j) elements, observer minus source.
   double coefficient(kernel k, int i, int j) const;
   size_t bytes() const;

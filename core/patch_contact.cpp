@@ -95,7 +95,7 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
   if (scene.normal == RP_NORMAL_HALF_SPACE) normal_.emplace(max_nx * max_ny);
   if (scene.normal == RP_NORMAL_KIK_PIOTROWSKI || scene.normal == RP_NORMAL_ANALYN)
     rows_.emplace(scene.normal, scene.modulus(), max_ny);
-  if (full) tangential_.emplace(max_nx, max_ny, scene.is_forced());
+  if (full) tangential_.emplace(max_nx, max_ny, tangential_solver::setup{scene.is_forced()});
   if (is_fast(scene.tangential)) fast_.emplace(scene.elastic, scene.fast, max_nx, max_ny);
   if (scene.is_fitted()) {
     fitted_rows_.emplace(scene.fitted[0], scene.fitted[1], max_ny);

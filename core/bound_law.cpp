@@ -1,0 +1,359 @@
+#include "bound_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace railpatch {
+
+namespace {
+
+using std::numbers::ln2;
+
+double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1]; }
+
+}  // namespace
+
+// --- slip velocity -------------------------------------------------------------------------------
+
+double slip_velocity_law::coefficient(double speed, double &slope) const {
+  double mu = kinetic;
+  slope = 0;
+  for (int i = 0; i < 2; ++i) {
+    if (amplitude[i] == 0) continue;
+    const double u = speed / halving_speed[i];
+    double f = 0, df = 0;
+    switch (kind) {
+      case exponential:
+        f = std::exp2(-u);
+        df = -ln2 * f;
+        break;
+      case rational:
+        f = 1.0 / (1.0 + u);
+        df = -f * f;
+        break;
+      case linear:
+        f = std::max(0.0, 1.0 - 0.5 * u);
+        df = f > 0 ? -0.5 : 0.0;
+        break;
+    }
+    mu += amplitude[i] * f;
+    slope += amplitude[i] * df / halving_speed[i];
+  }
+  return mu;
+}
+
+double slip_velocity_law::greatest() const {
+  return kinetic + std::max(amplitude[0], 0.0) + std::max(amplitude[1], 0.0);
+}
+
+double slip_velocity_law::steepest_fall() const {
+  const double at_rest = kind == exponential ? ln2 : kind == rational ? 1.0 : 0.5;
+  double sum = 0;
+  for (int i = 0; i < 2; ++i) sum += at_rest * std::max(amplitude[i], 0.0) / halving_speed[i];
+  // with memory the distance from mu_before adds at most a quarter
+  return memory_distance > 0 ? 1.25 * sum : sum;
+}
+
+// --- yield stress --------------------------------------------------------------------------------
+
+hardening_curve hardening_curve::straight(double yield_stress, double hardening) {
+  hardening_curve c;
+  c.points = 1;
+  c.stress[0] = yield_stress;
+  c.last_slope = hardening;
+  if (!(hardening < 0)) return c;
+  c.points = 2;
+  c.displacement[1] = 0.9 * yield_stress / -hardening;
+  c.stress[1] = 0.1 * yield_stress;
+  c.last_slope = 0;
+  return c;
+}
+
+double hardening_curve::at(double u, double &slope) const {
+  int i = 1;
+  while (i < points && u >= displacement[i]) ++i;
+  if (i == points) {
+    slope = last_slope;
+  } else {
+    slope = (stress[i] - stress[i - 1]) / (displacement[i] - displacement[i - 1]);
+  }
+  return stress[i - 1] + slope * (u - displacement[i - 1]);
+}
+
+double hardening_curve::next_above(double from, double level) const {
+  for (int i = 1; i <= points; ++i) {
+    const double end = i < points ? displacement[i] : HUGE_VAL;
+    if (end <= from) continue;
+    double slope;
+    const double begin = std::max(from, displacement[i - 1]), now = at(begin, slope);
+    if (now == level && begin > from) return begin;
+    const double there = begin + (level - now) / slope;
+    if (slope != 0 && there > begin && there <= end) return there;
+  }
+  return HUGE_VAL;
+}
+
+double hardening_curve::next_below(double from, double level) const {
+  for (int i = points; i >= 1; --i) {
+    const double begin = displacement[i - 1];
+    if (begin >= from) continue;
+    double slope;
+    const double first = at(begin, slope);
+    const double there = begin + (level - first) / slope;
+    const double end = std::min(from, i < points ? displacement[i] : HUGE_VAL);
+    if (slope != 0 && there >= begin && there < end) return there;
+  }
+  return -1;
+}
+
+double hardening_curve::greatest() const {
+  if (last_slope > 0) return HUGE_VAL;
+  return *std::max_element(stress, stress + points);
+}
+
+double hardening_curve::steepest() const {
+  double steepest = std::abs(last_slope);
+  for (int i = 1; i < points; ++i)
+    steepest = std::max(steepest, std::abs(stress[i] - stress[i - 1]) /
+                                      (displacement[i] - displacement[i - 1]));
+  return steepest;
+}
+
+// --- both together -------------------------------------------------------------------------------
+
+struct bound_law::slipping {
+  double bound, by_slip, by_before;        // Pa
+  double coefficient, c_by_slip, c_before;  // with memory: mu after the step
+};
+
+bound_law::slipping bound_law::friction_at(double normal, double carried, double slip_length) const {
+  if (!by_velocity) return {normal, 0, 0, 0, 0, 1};
+  const double rate = speed / step;
+  double slope;
+  const double mu = slip.coefficient(slip_length * rate, slope);
+  slope *= rate;
+  if (!remembers()) return {normal * mu, normal * slope, 0, mu, slope, 0};
+  const double least = slip.memory_speed / rate, d = slip.memory_distance;
+  const double way = std::max(slip_length, least), sum = d + way;
+  const double now = (d * carried + way * mu) / sum;
+  const double grows = slip_length >= least ? 1.0 : 0.0;
+  const double by_slip = (grows * (mu - now) + way * slope) / sum;
+  return {normal * now, normal * by_slip, normal * d / sum, now, by_slip, d / sum};
+}
+
+struct bound_law::yielding {
+  double stress, by_slip, by_angle, by_state[2];
+  double slip;  // m, and its derivatives where it ends at a given stress
+  double slip_by_angle, slip_by_state[2], slip_by_level;
+};
+
+// tau after plastic displacement m along e
+bound_law::yielding bound_law::yield_at(const carried_state &before, const double e[2],
+                                        double m) const {
+  yielding y{};
+  y.slip = m;
+  double slope;
+  if (!by_magnitude) {
+    y.stress = yield.at(before.v[1] + m, slope);
+    y.by_slip = y.by_state[0] = slope;
+    return y;
+  }
+  const double w[2] = {before.v[1] + m * e[0], before.v[2] + m * e[1]};
+  const double across[2] = {-e[1], e[0]}, size = std::hypot(w[0], w[1]);
+  y.stress = yield.at(size, slope);
+  const double n[2] = {size > 0 ? w[0] / size : e[0], size > 0 ? w[1] / size : e[1]};
+  y.by_slip = slope * dot(n, e);
+  y.by_angle = slope * m * dot(n, across);
+  for (int c = 0; c < 2; ++c) y.by_state[c] = slope * n[c];
+  return y;
+}
+
+// Plastic displacement that lifts tau to the level; slip infinite: none does.
+bound_law::yielding bound_law::until(const carried_state &before, const double e[2],
+                                     double level) const {
+  yielding y{};
+  if (!by_magnitude) {
+    const double u = yield.next_above(before.v[1], level);
+    y = yield_at(before, e, u - before.v[1]);
+    if (!std::isfinite(u)) {
+      y.slip = HUGE_VAL;
+      return y;
+    }
+    y.slip_by_state[0] = -1;
+    y.slip_by_level = y.by_slip != 0 ? 1.0 / y.by_slip : 0.0;
+    return y;
+  }
+  const double *u = before.v + 1, size = std::hypot(u[0], u[1]), along = dot(u, e);
+  const double inside = along < 0 ? yield.next_below(size, level) : -1;
+  const double least = size * size - along * along;  // square of the least magnitude on the way
+  double m = HUGE_VAL;
+  if (inside >= 0 && inside * inside >= least) {
+    m = -along - std::sqrt(inside * inside - least);
+  } else {
+    const double outside = yield.next_above(size, level);
+    if (std::isfinite(outside)) m = -along + std::sqrt(outside * outside - least);
+  }
+  if (!std::isfinite(m)) {
+    y.slip = HUGE_VAL;
+    return y;
+  }
+  y = yield_at(before, e, m);
+  if (y.by_slip != 0) {
+    y.slip_by_level = 1.0 / y.by_slip;
+    y.slip_by_angle = -y.by_angle / y.by_slip;
+    for (int c = 0; c < 2; ++c) y.slip_by_state[c] = -y.by_state[c] / y.by_slip;
+  }
+  return y;
+}
+
+double bound_law::at_rest(double friction, const carried_state &before) const {
+  const double g = friction_at(friction, before.v[0], 0).bound;
+  if (!plastic()) return g;
+  const double e[2] = {1, 0};
+  return std::min(g, yield_at(before, e, 0).stress);
+}
+
+double bound_law::greatest(double friction) const {
+  const double g = by_velocity ? friction * slip.greatest() : friction;
+  return plastic() ? std::min(g, yield.greatest()) : g;
+}
+
+double bound_law::steepest_fall(double friction) const {
+  double fall = by_velocity ? friction * slip.steepest_fall() * speed / step : 0.0;
+  if (!plastic()) return fall;
+  double falls = yield.steepest();
+  // only where plastic displacement is undone does a hardening layer soften
+  if (!by_magnitude) {
+    falls = std::max(0.0, -yield.last_slope);
+    for (int i = 1; i < yield.points; ++i)
+      falls = std::max(falls, (yield.stress[i - 1] - yield.stress[i]) /
+                                  (yield.displacement[i] - yield.displacement[i - 1]));
+  }
+  return std::max(fall, falls);
+}
+
+// b at m; limit: plastic part at which g(0) is reached.
+double bound_law::value(double friction, const carried_state &before, const double e[2],
+                        double limit, double m, double &slope) const {
+  if (m < limit) {
+    const yielding y = yield_at(before, e, m);
+    slope = y.by_slip;
+    return y.stress;
+  }
+  const slipping s = friction_at(friction, before.v[0], m - limit);
+  slope = s.by_slip;
+  return s.bound;
+}
+
+double bound_law::resolve(double friction, const carried_state &before, const double e[2],
+                          double size, double stiffness) const {
+  const double g = friction_at(friction, before.v[0], 0).bound;
+  double limit = 0;
+  if (plastic() && yield_at(before, e, 0).stress < g) limit = until(before, e, g).slip;
+  if (!by_velocity && limit == 0) return (size - g) / stiffness;
+  // size - stiffness m - b(m) falls from above to below 0
+  double low = 0, high = size / stiffness, m = 0;
+  for (int i = 0; i < 100; ++i) {
+    double slope;
+    const double gap = size - stiffness * m - value(friction, before, e, limit, m, slope);
+    (gap > 0 ? low : high) = m;
+    if (std::abs(gap) <= 4e-16 * size || !(high > low)) break;
+    const double next = m + gap / (stiffness + slope);
+    const bool inside = stiffness + slope > 0 && next > low && next < high;
+    const double to = inside ? next : 0.5 * (low + high);
+    if (to == m) break;
+    m = to;
+  }
+  return m;
+}
+
+bound_point bound_law::evaluate(double friction, const carried_state &before, const double e[2],
+                                double m) const {
+  bound_point b{};
+  const slipping rest = friction_at(friction, before.v[0], 0);
+  const double across[2] = {-e[1], e[0]};
+  double limit = 0;
+  yielding y{};
+  b.yield_stress = HUGE_VAL;
+  bool yields = false, met = false;  // below g; both bounds met
+  if (plastic()) {
+    y = yield_at(before, e, 0);
+    if (y.stress < rest.bound) {
+      const yielding end = until(before, e, rest.bound);
+      limit = end.slip;
+      yields = m < limit;
+      met = !yields;
+      y = yields ? yield_at(before, e, m) : end;
+    }
+    b.yield_stress = y.stress;
+  }
+  b.plastic = std::min(m, limit);
+  const slipping s = friction_at(friction, before.v[0], m - b.plastic);
+  b.friction = s.bound;
+  if (yields) {
+    b.bound = y.stress;
+    b.by_slip = y.by_slip;
+    b.by_angle = y.by_angle;
+    for (int c = 0; c < 2; ++c) b.by_state[1 + c] = y.by_state[c];
+  } else {
+    b.bound = s.bound;
+    b.by_slip = s.by_slip;
+    b.by_state[0] = s.by_before;
+    if (met) {
+      b.by_angle = -s.by_slip * y.slip_by_angle;
+      b.by_state[0] -= s.by_slip * y.slip_by_level * rest.by_before;
+      for (int c = 0; c < 2; ++c) b.by_state[1 + c] = -s.by_slip * y.slip_by_state[c];
+    }
+  }
+  // what is carried on
+  b.state = before;
+  if (by_velocity) {
+    b.state.v[0] = s.coefficient;
+    b.state_by_slip[0] = yields ? 0.0 : s.c_by_slip;
+    b.state_by_state[0][0] = s.c_before;
+    if (met) {
+      b.state_by_angle[0] = -s.c_by_slip * y.slip_by_angle;
+      b.state_by_state[0][0] -= s.c_by_slip * y.slip_by_level * rest.by_before;
+      for (int c = 0; c < 2; ++c)
+        b.state_by_state[0][1 + c] = -s.c_by_slip * y.slip_by_state[c];
+    }
+  }
+  const int parts = by_magnitude ? 2 : 1;
+  for (int c = 0; c < parts; ++c) {
+    const double way = by_magnitude ? e[c] : 1.0, turn = by_magnitude ? across[c] : 0.0;
+    double *by_state = b.state_by_state[1 + c];
+    b.state.v[1 + c] += b.plastic * way;
+    by_state[1 + c] = 1.0;
+    b.state_by_slip[1 + c] = yields ? way : 0.0;
+    b.state_by_angle[1 + c] = b.plastic * turn;
+    if (!met) continue;
+    b.state_by_angle[1 + c] += way * y.slip_by_angle;
+    by_state[0] = way * y.slip_by_level * rest.by_before;
+    for (int d = 0; d < parts; ++d) by_state[1 + d] += way * y.slip_by_state[d];
+  }
+  return b;
+}
+
+bool bound_law::ambiguous(double friction, const carried_state &before, const double e[2],
+                          double size, double stiffness) const {
+  if (stiffness >= steepest_fall(friction)) return false;
+  const double g = friction_at(friction, before.v[0], 0).bound;
+  double limit = 0;
+  if (plastic() && yield_at(before, e, 0).stress < g) limit = until(before, e, g).slip;
+  // changes of sign of size - stiffness m - b(m), finely sampled from m = 0 to where b = 0
+  constexpr int samples = 256;
+  const double most = size / stiffness;
+  double slope;
+  bool above = size > value(friction, before, e, limit, 0, slope);
+  int solutions = above ? 0 : 1;
+  for (int i = 1; i <= samples; ++i) {
+    const double u = static_cast<double>(i) / samples, at = most * u * u * u;
+    const bool now = size - stiffness * at > value(friction, before, e, limit, at, slope);
+    solutions += now != above;
+    above = now;
+  }
+  return solutions > 1;
+}
+
+}  // namespace railpatch

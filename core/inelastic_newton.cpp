@@ -1,0 +1,590 @@
+#include "inelastic_newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "railpatch.h"
+#include "sums.hpp"
+
+namespace railpatch {
+
+namespace {
+
+constexpr int krylov_size = 40;
+constexpr double inner_tolerance = 1e-2, worst_inner_tolerance = 0.3;
+constexpr int max_inner_products = 200;
+// Newton steps that need not lower the best |F| to `enough` of it before it is taken up again
+constexpr int patience = 4;
+constexpr double enough = 0.9;
+constexpr int max_projections = 100;
+constexpr double far_away = 0.3;
+// r over the steepest fall of b: 1 would do for uniqueness
+constexpr double steepness_margin = 2.0;
+// factors serve as long as the laws' derivatives have changed less
+constexpr double greatest_change = 0.1;
+
+double square(double v) { return v * v; }
+
+double norm(const double *v, size_t n) { return std::sqrt(dot(v, v, n)); }
+
+// One element at q = p - length r s.
+struct element_at {
+  int row;
+  size_t k, ix, iy;
+  const carried_state *before;
+  double e[2], size, stiffness;  // q = size e; R
+  double m;                      // m, inelastic slip; 0 in stick
+  bool stick;
+  bound_point point;  // only where states are carried along
+  double bound() const { return stick ? size : size - stiffness * m; }
+};
+
+}  // namespace
+
+struct inelastic_newton::task {
+  rolling_operator &b;
+  rolling_problem problem;  // with the greatest bound
+  const inelastic_problem &inelastic;
+  const bound_law &law;
+  const double *friction;
+  force_constraint *force;
+  inelastic_result result{};
+  double flexibility[2] = {0, 0}, ramp_force = 0;
+
+  bool carried() const { return !inelastic.before; }
+  size_t size() const { return 2 * static_cast<size_t>(problem.count()); }
+  template <class F>
+  void for_each_element(F &&f) const {
+    for (int row = 0; row < problem.rows; ++row) {
+      const int begin = problem.row_start[row], n = problem.row_start[row + 1] - begin;
+      for (int k = 0; k < n; ++k)
+        f(static_cast<size_t>(begin + k), static_cast<size_t>(2 * begin + k),
+          static_cast<size_t>(2 * begin + n + k));
+    }
+  }
+};
+
+inelastic_newton::inelastic_newton(int max_row, int max_rows, bool forced)
+    : blocks_(max_row, max_rows), linear_solver_(2 * max_row * max_rows + 2, krylov_size) {
+  if (forced) force_.emplace(max_row * max_rows);
+  const auto row = static_cast<size_t>(max_row), n = row * static_cast<size_t>(max_rows);
+  for (auto *b : {&r_, &most_}) *b = aligned_buffer<double>(n);
+  for (auto *b : {&f_, &step_, &best_p_, &right_, &unknowns_, &trial_p_, &trial_s_, &trial_f_})
+    *b = aligned_buffer<double>(2 * n + 2);
+  for (auto &m : row_matrix_) m = aligned_buffer<double>::uninitialized(row * row);
+  for (auto *l : {&linear_, &factored_}) *l = aligned_buffer<linearisation>(n);
+  has_factors_ = aligned_buffer<unsigned char>(static_cast<size_t>(max_rows));
+}
+
+size_t inelastic_newton::bytes() const {
+  return blocks_.bytes() + linear_solver_.bytes() + 2 * r_.bytes() + 8 * f_.bytes() +
+         2 * row_matrix_[0].bytes() + 2 * linear_.bytes() + has_factors_.bytes() +
+         (force_ ? force_->bytes() : 0);
+}
+
+inelastic_result inelastic_newton::solve(rolling_operator &b, const rolling_problem &problem,
+                                         const inelastic_problem &inelastic,
+                                         const tangential_options &options) {
+  task t{b,
+         problem,
+         inelastic,
+         *inelastic.law,
+         problem.bound,
+         problem.force ? &*force_ : nullptr};
+  for (int row = 0; row < problem.rows; ++row) {
+    const double typical = b.projection_scale(row);
+    for (int k = problem.row_start[row]; k < problem.row_start[row + 1]; ++k) {
+      const auto at = static_cast<size_t>(k);
+      most_[at] = t.law.greatest(problem.bound[k]);
+      r_[at] = std::max(typical, steepness_margin * t.law.step *
+                                     t.law.steepest_fall(problem.bound[k]));
+    }
+  }
+  t.problem.bound = most_.data();
+  tangential_result &result = t.result.tangential;
+  double *p = problem.traction, *s = problem.micro_slip;
+  if (t.force) t.force->begin(t.problem, options.tolerance);
+  const double size = scale(t);
+  if (size > 0) {
+    std::fill_n(has_factors_.data(), problem.rows, static_cast<unsigned char>(0));
+    const double goal = options.tolerance * size;
+    double error = start(t), best = HUGE_VAL, least = HUGE_VAL;
+    for (int strayed = 0;
+         error > goal && result.newton_iterations < options.max_iterations &&
+         !(t.force && t.force->beyond());
+         ++result.newton_iterations) {
+      if (error <= enough * best) {
+        best = least = error;
+        strayed = 0;
+        std::copy_n(p, t.size(), best_p_.data());
+        if (t.force) t.force->remember();
+      } else {
+        if (error < least) {
+          least = error;
+          std::copy_n(p, t.size(), best_p_.data());
+          if (t.force) t.force->remember();
+        }
+        if (!(t.force && t.force->travels()) && ++strayed > patience) {
+          error = descend(t, enough * best);
+          best = std::min(best, error);
+          strayed = 0;
+          continue;
+        }
+      }
+      linearise(t);
+      find_step(t, std::clamp(0.3 * goal / error, inner_tolerance, worst_inner_tolerance));
+      error = line_search(t, error);
+    }
+    if (!(error <= least)) {
+      std::copy_n(best_p_.data(), t.size(), p);
+      if (t.force) t.force->recall(t.problem);
+      micro_slip(t, p, s);
+      error = residual(t, p, s, f_.data());
+    }
+    result.residual = error / size;
+    result.converged = error <= goal;
+    result.out_of_range = !result.converged && t.force && t.force->beyond();
+  } else {
+    std::fill_n(p, t.size(), 0.0);
+    std::copy_n(problem.rigid_slip, t.size(), s);
+    if (t.force) problem.force->creepage[0] = problem.force->creepage[1] = 0;
+    result.converged = true;
+  }
+  finish(t);
+  return t.result;
+}
+
+// Goes through all elements, rows from their first element on, at q = p - length r s.
+template <class Each>
+void inelastic_newton::apply_law(const task &t, const double *p, const double *s, double length,
+                                 Each &&each) const {
+  element_at at;
+  const carried_state fresh = t.law.fresh();
+  carried_state upstream = fresh;
+  int row = 0;
+  t.for_each_element([&](size_t k, size_t ix, size_t iy) {
+    while (static_cast<int>(k) >= t.problem.row_start[row + 1]) ++row;
+    if (static_cast<int>(k) == t.problem.row_start[row]) upstream = fresh;
+    const double r = length * r_[k];
+    const double q[2] = {p[ix] - r * s[ix], p[iy] - r * s[iy]};
+    at.row = row, at.k = k, at.ix = ix, at.iy = iy;
+    at.before = t.carried() ? &upstream : t.inelastic.before + k;
+    at.size = std::hypot(q[0], q[1]);
+    at.stiffness = r / t.law.step;
+    at.stick = at.size <= t.law.at_rest(t.friction[k], *at.before);
+    for (int c = 0; c < 2; ++c) at.e[c] = at.size > 0 ? q[c] / at.size : c == 0 ? 1.0 : 0.0;
+    at.m = at.stick ? 0.0
+                    : t.law.resolve(t.friction[k], *at.before, at.e, at.size, at.stiffness);
+    if (t.carried()) at.point = t.law.evaluate(t.friction[k], *at.before, at.e, at.m);
+    each(at);
+    if (t.carried()) upstream = at.point.state;
+  });
+}
+
+double inelastic_newton::residual(const task &t, const double *p, const double *s,
+                                  double *f) const {
+  apply_law(t, p, s, 1.0, [&](const element_at &at) {
+    const double r = r_[at.k], bound = at.bound();
+    f[at.ix] = at.stick ? r * s[at.ix] : p[at.ix] - bound * at.e[0];
+    f[at.iy] = at.stick ? r * s[at.iy] : p[at.iy] - bound * at.e[1];
+  });
+  const double size = norm(f, t.size());
+  return t.force ? std::hypot(size, t.force->miss(t.problem, p)) : size;
+}
+
+void inelastic_newton::resolvent(const task &t, const double *p, const double *s, double length,
+                                 double *out) const {
+  apply_law(t, p, s, length, [&](const element_at &at) {
+    out[at.ix] = at.bound() * at.e[0];
+    out[at.iy] = at.bound() * at.e[1];
+  });
+}
+
+// Start: the traction given, or where rows begin at their leading edge and that says little the
+// simplified theory's.
+double inelastic_newton::start(task &t) {
+  double *p = t.problem.traction, *s = t.problem.micro_slip;
+  if (t.force) {
+    find_flexibility(t);
+    t.force->set_units(t.problem, t.flexibility, t.ramp_force);
+  }
+  t.for_each_element([&](size_t k, size_t ix, size_t iy) {
+    const double size = std::hypot(p[ix], p[iy]);
+    if (size <= most_[k]) return;
+    p[ix] *= most_[k] / size;
+    p[iy] *= most_[k] / size;
+  });
+  micro_slip(t, p, s);
+  double error = residual(t, p, s, f_.data());
+  if (t.carried() && error > far_away * scale(t)) try_march(t, error);
+  return error;
+}
+
+// Simplified theory (Kalker 1982), see rolling_newton::march; takes it where it is better.
+void inelastic_newton::try_march(task &t, double &error) {
+  const bool cold = std::all_of(t.problem.traction, t.problem.traction + t.size(),
+                                [](double v) { return v == 0; });
+  if (t.force)
+    t.force->guess(t.problem, t.flexibility);
+  else
+    find_flexibility(t);
+  double *p = trial_p_.data();
+  const carried_state fresh = t.law.fresh();
+  for (int row = 0; row < t.problem.rows; ++row) {
+    const int begin = t.problem.row_start[row], n = t.problem.row_start[row + 1] - begin;
+    double grown[2] = {0, 0};
+    for (int k = 0; k < n; ++k) {
+      const int at[2] = {2 * begin + k, 2 * begin + n + k};
+      for (int c = 0; c < 2; ++c)
+        grown[c] -= (t.problem.rigid_slip[at[c]] + t.problem.creepage(c)) *
+                    t.problem.area[begin + k] / t.flexibility[c];
+      const double size = std::hypot(grown[0], grown[1]);
+      const double bound = t.law.at_rest(t.friction[begin + k], fresh);
+      for (int c = 0; c < 2; ++c) {
+        if (size > bound) grown[c] *= bound / size;
+        p[at[c]] = grown[c];
+      }
+    }
+  }
+  micro_slip(t, p, trial_s_.data());
+  const double marched = residual(t, p, trial_s_.data(), trial_f_.data());
+  if (marched < error || (cold && t.force)) {
+    take_trial(t);
+    error = marched;
+    return;
+  }
+  if (t.force) t.force->go_back(t.problem);
+}
+
+void inelastic_newton::find_flexibility(task &t) {
+  double *p = trial_p_.data();
+  t.ramp_force = 0;
+  for (int row = 0; row < t.problem.rows; ++row) {
+    const int begin = t.problem.row_start[row], n = t.problem.row_start[row + 1] - begin;
+    double ramp = 0;
+    for (int k = 0; k < n; ++k) {
+      ramp += t.problem.area[begin + k];
+      p[2 * begin + k] = p[2 * begin + n + k] = ramp;
+      t.ramp_force += ramp * t.problem.area[begin + k];
+    }
+  }
+  t.b.product_single(p, trial_s_.data());
+  ++t.result.tangential.products;
+  t.for_each_element([&](size_t, size_t ix, size_t iy) {
+    t.flexibility[0] += trial_s_[ix] / t.problem.count();
+    t.flexibility[1] += trial_s_[iy] / t.problem.count();
+  });
+}
+
+// The residual of zero traction: the size against which others are measured.
+double inelastic_newton::scale(const task &t) const {
+  const double *w = t.problem.rigid_slip;
+  double sum = 0;
+  t.for_each_element([&](size_t k, size_t ix, size_t iy) {
+    const double f = std::min(most_[k], r_[k] * std::hypot(w[ix], w[iy]));
+    sum += f * f;
+  });
+  return t.force ? std::hypot(std::sqrt(sum), t.force->size()) : std::sqrt(sum);
+}
+
+void inelastic_newton::micro_slip(task &t, const double *p, double *s) {
+  t.b.micro_slip(t.problem, p, s);
+  ++t.result.tangential.products;
+}
+
+// --- the linear systems ------------------------------------------------------------------------
+
+void inelastic_newton::linearise(task &t) {
+  apply_law(t, t.problem.traction, t.problem.micro_slip, 1.0, [&](const element_at &at) {
+    linearisation &l = linear_[at.k];
+    l = {};
+    if (at.stick) {
+      l.m[0][0] = l.m[1][1] = 1.0;
+      if (t.carried())
+        for (int i = 0; i < 3; ++i) std::copy_n(at.point.state_by_state[i], 3, l.a[i]);
+      return;
+    }
+    const bound_point b =
+        t.carried() ? at.point : t.law.evaluate(t.friction[at.k], *at.before, at.e, at.m);
+    const double *e = at.e, across[2] = {-e[1], e[0]};
+    // dm = (g . dq - b_U dU)/sum
+    const double sum = at.stiffness + b.by_slip, share = at.stiffness / sum;
+    const double theta = at.bound() / at.size;
+    double g[2];
+    for (int c = 0; c < 2; ++c) g[c] = e[c] - b.by_angle / at.size * across[c];
+    for (int c = 0; c < 2; ++c)
+      for (int d = 0; d < 2; ++d)
+        l.m[c][d] = e[c] * (e[d] - share * g[d]) + theta * across[c] * across[d];
+    if (!t.carried()) return;
+    for (int i = 0; i < 3; ++i) {
+      for (int c = 0; c < 2; ++c) {
+        l.h[c][i] = e[c] * share * b.by_state[i];
+        l.e[i][c] = b.state_by_slip[i] / sum * g[c] + b.state_by_angle[i] / at.size * across[c];
+      }
+      for (int j = 0; j < 3; ++j)
+        l.a[i][j] = b.state_by_state[i][j] - b.state_by_slip[i] * b.by_state[j] / sum;
+    }
+  });
+  t.b.linearise();
+  for (int row = 0; row < t.problem.rows; ++row) fill_block(t, row);
+}
+
+// out = dP of a row where its tractions change by dp and its micro-slip by ds, both x and then y
+void inelastic_newton::derivative(const task &t, int row, const double *dp, const double *ds,
+                                  double *out) const {
+  const int begin = t.problem.row_start[row], n = t.problem.row_start[row + 1] - begin;
+  const linearisation *l = linear_.data() + begin;
+  const double *r = r_.data() + begin;
+  if (!t.carried()) {
+    for (int k = 0; k < n; ++k) {
+      const double qx = dp[k] - r[k] * ds[k], qy = dp[n + k] - r[k] * ds[n + k];
+      out[k] = l[k].m[0][0] * qx + l[k].m[0][1] * qy;
+      out[n + k] = l[k].m[1][0] * qx + l[k].m[1][1] * qy;
+    }
+    return;
+  }
+  double u[3] = {0, 0, 0};
+  for (int k = 0; k < n; ++k) {
+    const linearisation &at = l[k];
+    const double q[2] = {dp[k] - r[k] * ds[k], dp[n + k] - r[k] * ds[n + k]};
+    for (int c = 0; c < 2; ++c)
+      out[c * n + k] = at.m[c][0] * q[0] + at.m[c][1] * q[1] +
+                       (at.h[c][0] * u[0] + at.h[c][1] * u[1] + at.h[c][2] * u[2]);
+    double next[3];
+    for (int i = 0; i < 3; ++i)
+      next[i] = at.e[i][0] * q[0] + at.e[i][1] * q[1] +
+                (at.a[i][0] * u[0] + at.a[i][1] * u[1] + at.a[i][2] * u[2]);
+    std::copy_n(next, 3, u);
+  }
+}
+
+void inelastic_newton::fill_block(const task &t, int row) {
+  const int begin = t.problem.row_start[row], n = t.problem.row_start[row + 1] - begin;
+  const auto first = static_cast<size_t>(begin), count = static_cast<size_t>(n);
+  const linearisation *now = linear_.data() + first;
+  linearisation *before = factored_.data() + first;
+  unsigned char &has_factors = has_factors_[static_cast<size_t>(row)];
+  const auto near = [](const linearisation &a, const linearisation &b) {
+    double change = 0;
+    for (int c = 0; c < 2; ++c)
+      for (int d = 0; d < 2; ++d) change = std::max(change, std::abs(a.m[c][d] - b.m[c][d]));
+    return change <= greatest_change;
+  };
+  if (has_factors && std::equal(now, now + count, before, near)) return;
+  has_factors = 1;
+  std::copy_n(now, count, before);
+  t.b.row_matrices(row, row_matrix_[0].data(), row_matrix_[1].data());
+  float *matrix = blocks_.matrix(row);
+  // a unit traction in one component of one element
+  double *dp = trial_p_.data(), *ds = trial_s_.data(), *out = trial_f_.data();
+  std::fill_n(dp, 2 * count, 0.0);
+  for (int component = 0; component < 2; ++component)
+    for (int source = 0; source < n; ++source) {
+      const int column = component * n + source;
+      std::fill_n(ds, 2 * count, 0.0);
+      std::copy_n(row_matrix_[component].data() + source * n, n, ds + component * n);
+      dp[column] = 1.0;
+      derivative(t, row, dp, ds, out);
+      out[column] -= 1.0;
+      dp[column] = 0.0;
+      for (int i = 0; i < 2 * n; ++i) matrix[column * 2 * n + i] = static_cast<float>(-out[i]);
+    }
+  blocks_.factor(row, n);
+}
+
+void inelastic_newton::apply_jacobian(task &t, const double *v, double *out) {
+  t.b.product_single(v, trial_s_.data());
+  ++t.result.tangential.products;
+  for (int row = 0; row < t.problem.rows; ++row) {
+    const int at = 2 * t.problem.row_start[row], n = 2 * t.problem.row_start[row + 1] - at;
+    derivative(t, row, v + at, trial_s_.data() + at, out + at);
+    for (int i = at; i < at + n; ++i) out[i] = v[i] - out[i];
+  }
+}
+
+void inelastic_newton::precondition(const task &t, double *v) {
+  for (int row = 0; row < t.problem.rows; ++row) {
+    const int begin = t.problem.row_start[row];
+    blocks_.solve(row, t.problem.row_start[row + 1] - begin, v + 2 * begin);
+  }
+}
+
+void inelastic_newton::find_step(task &t, double tolerance) {
+  for (size_t i = 0; i < t.size(); ++i) right_[i] = -f_[i];
+  if (t.force) {
+    solve_bordered(t, tolerance);
+  } else {
+    linear_solver_.solve(
+        t.size(), right_.data(), unknowns_.data(), tolerance, max_inner_products,
+        [&](const double *v, double *out) { apply_jacobian(t, v, out); },
+        [&](double *v) { precondition(t, v); });
+  }
+  std::copy_n(unknowns_.data(), t.size(), step_.data());
+}
+
+// The same with the creepages as further unknowns (force_constraint.hpp).
+void inelastic_newton::solve_bordered(task &t, double tolerance) {
+  force_constraint &force = *t.force;
+  const size_t size = t.size();
+  std::fill_n(trial_p_.data(), size, 0.0);
+  for (int m = 0; m < force.unknowns(); ++m) {
+    const int component = force.component(m);
+    t.b.slip_of_creepage(t.problem, component, trial_s_.data());
+    double *column = force.column(m), *line = force.row(m);
+    for (int row = 0; row < t.problem.rows; ++row) {
+      const int at = 2 * t.problem.row_start[row];
+      derivative(t, row, trial_p_.data() + at, trial_s_.data() + at, column + at);
+    }
+    for (size_t i = 0; i < size; ++i) column[i] = -column[i];
+    std::fill_n(line, size, 0.0);
+    t.for_each_element([&](size_t k, size_t ix, size_t iy) {
+      line[component == 0 ? ix : iy] = force.weight() * t.problem.area[k];
+    });
+    right_[size + static_cast<size_t>(m)] = force.remainder(m, t.problem);
+  }
+  for (int m = 0; m < force.unknowns(); ++m) {
+    std::copy_n(force.column(m), size, force.reduced(m));
+    precondition(t, force.reduced(m));
+  }
+  force.factor(size);
+  linear_solver_.solve(
+      size + static_cast<size_t>(force.unknowns()), right_.data(), unknowns_.data(), tolerance,
+      max_inner_products,
+      [&](const double *v, double *out) {
+        apply_jacobian(t, v, out);
+        force.apply(size, v, out);
+      },
+      [&](double *v) {
+        precondition(t, v);
+        force.precondition(size, v);
+      });
+  force.bound_step(size, unknowns_.data());
+}
+
+// --- steps -------------------------------------------------------------------------------------
+
+double inelastic_newton::try_step(task &t, double length) {
+  double *p = trial_p_.data();
+  for (size_t i = 0; i < t.size(); ++i) p[i] = t.problem.traction[i] + length * step_[i];
+  if (t.force) t.force->move(t.problem, length);
+  t.for_each_element([&](size_t k, size_t ix, size_t iy) {
+    const double size = std::hypot(p[ix], p[iy]);
+    if (size <= most_[k]) return;
+    p[ix] *= most_[k] / size;
+    p[iy] *= most_[k] / size;
+  });
+  micro_slip(t, p, trial_s_.data());
+  return residual(t, p, trial_s_.data(), trial_f_.data());
+}
+
+double inelastic_newton::line_search(task &t, double current) {
+  const int halvings = t.force ? 12 : 4;
+  double length = 1.0, error = try_step(t, length);
+  for (int trial = 0; trial < halvings && !(error <= (1.0 - 1e-3 * length) * current); ++trial) {
+    length *= 0.5;
+    error = try_step(t, length);
+  }
+  if (!(error <= (1.0 - 1e-3 * length) * current)) error = try_step(t, 1.0);
+  take_trial(t);
+  return error;
+}
+
+// Extragradient steps with the law's resolvent from the best traction until |F| is down at `goal`,
+// or as long as there are steps; ends at the best of them.
+double inelastic_newton::descend(task &t, double goal) {
+  double *p = t.problem.traction, *s = t.problem.micro_slip;
+  std::copy_n(best_p_.data(), t.size(), p);
+  if (t.force) t.force->recall(t.problem);
+  micro_slip(t, p, s);
+  double error = residual(t, p, s, f_.data()), least = error;
+  double length = 1;
+  for (int k = 0; k < max_projections && error > goal; ++k) {
+    for (bool short_enough = false; !short_enough; length *= short_enough ? 1.0 : 0.5) {
+      resolvent(t, p, s, length, trial_p_.data());
+      double moved = 0, turned = 0;
+      if (t.force) t.force->pull(t.problem, p, trial_p_.data(), length, &moved, &turned);
+      micro_slip(t, trial_p_.data(), trial_s_.data());
+      t.for_each_element([&](size_t e, size_t ix, size_t iy) {
+        const double weight = t.problem.area[e] / r_[e];
+        moved += weight * (square(trial_p_[ix] - p[ix]) + square(trial_p_[iy] - p[iy]));
+        turned += weight * square(r_[e] * length) *
+                  (square(trial_s_[ix] - s[ix]) + square(trial_s_[iy] - s[iy]));
+      });
+      short_enough = turned <= 0.5 * moved || !(moved > 0) || length < 1e-6;
+    }
+    // p, and not the trial, less the slip at the trial
+    resolvent(t, p, trial_s_.data(), length, trial_f_.data());
+    std::copy_n(trial_f_.data(), t.size(), p);
+    if (t.force) t.force->pull_again(t.problem, trial_p_.data(), length);
+    micro_slip(t, p, s);
+    error = residual(t, p, s, f_.data());
+    if (error < least) {
+      least = error;
+      std::copy_n(p, t.size(), best_p_.data());
+      if (t.force) t.force->remember();
+    }
+    length = std::min(1.0, 1.5 * length);
+  }
+  if (error <= least) return error;
+  std::copy_n(best_p_.data(), t.size(), p);
+  if (t.force) t.force->recall(t.problem);
+  micro_slip(t, p, s);
+  return residual(t, p, s, f_.data());
+}
+
+void inelastic_newton::take_trial(task &t) {
+  std::copy_n(trial_p_.data(), t.size(), t.problem.traction);
+  std::copy_n(trial_s_.data(), t.size(), t.problem.micro_slip);
+  std::copy_n(trial_f_.data(), t.size(), f_.data());
+  if (t.force) t.force->keep(t.problem);
+}
+
+// Puts the tractions exactly on the law, so that bound, slip and states belong together, and
+// divides the elements.
+void inelastic_newton::finish(task &t) {
+  const rolling_problem &problem = t.problem;
+  const inelastic_problem &out = t.inelastic;
+  double *p = problem.traction, *s = problem.micro_slip;
+  tangential_result &sum = t.result.tangential;
+  double slipped = 0, plastic = 0, supplied = 0;
+  // the traction moves by F: s, known at the traction before, decides
+  std::copy_n(p, t.size(), trial_p_.data());
+  std::copy_n(s, t.size(), trial_s_.data());
+  apply_law(t, trial_p_.data(), trial_s_.data(), 1.0, [&](const element_at &at) {
+    const bound_point b =
+        t.carried() ? at.point : t.law.evaluate(t.friction[at.k], *at.before, at.e, at.m);
+    const int ix = static_cast<int>(at.ix), iy = static_cast<int>(at.iy);
+    // in stick the traction may have grown to the bound by less than the tolerance
+    const double bound = at.stick ? at.size : b.bound, slip = (at.m - b.plastic) / t.law.step;
+    p[ix] = bound * at.e[0];
+    p[iy] = bound * at.e[1];
+    s[ix] = at.stick ? 0.0 : -slip * at.e[0];
+    s[iy] = at.stick ? 0.0 : -slip * at.e[1];
+    const bool yields = !at.stick && b.plastic > 0;
+    const rp_element state = at.stick ? RP_STICK : yields ? RP_PLASTIC : RP_SLIP;
+    out.state[at.k] = static_cast<unsigned char>(state);
+    out.after[at.k] = b.state;
+    out.plastic_slip[at.k] = b.plastic;
+    out.yield_stress[at.k] = b.yield_stress;
+    out.friction[at.k] = b.friction;
+    ++(at.stick ? sum.stick : yields ? t.result.plastic : sum.slip);
+    const double area = problem.area[at.k];
+    slipped += bound * slip * area;
+    plastic += bound * b.plastic / t.law.step * area;
+    supplied -= (p[ix] * (problem.rigid_slip[ix] + problem.creepage(0)) +
+                 p[iy] * (problem.rigid_slip[iy] + problem.creepage(1))) *
+                area;
+    // as the element sees it with all others held
+    const double stiffness = t.b.projection_scale(at.row) / t.law.step;
+    t.result.ambiguous += t.law.ambiguous(t.friction[at.k], *at.before, at.e,
+                                          bound + stiffness * at.m, stiffness);
+  });
+  // in steady rolling the rigid motion's supply is all dissipated (rolling_newton.hpp): in the
+  // proportion of the two sums, which lose part of it on coarse grids
+  const double spent = slipped + plastic;
+  const double whole = t.carried() && spent > 0 ? std::max(0.0, supplied) / spent : 1.0;
+  sum.friction = whole * slipped;
+  t.result.plastic_work = whole * plastic;
+}
+
+}  // namespace railpatch

@@ -1,0 +1,41 @@
+// Displacement that tractions on a grid cause at points off it by a constant distance along x: where
+// the material was one step of transient rolling ago, before it came to the elements' centres.
+// Exact for tractions constant on elements, by FFT; the layer's part is interpolated between them,
+// as all that belongs to elements is (for a step of one element both are exact).
+#pragma once
+
+#include <complex>
+
+#include "influence.hpp"
+
+namespace railpatch {
+
+class offset_influence {
+ public:
+  explicit offset_influence(const fft_plans &plans);
+
+  // (u_x, u_y) at x + offset; the grid is that of a. Kernels are only made anew when offset, element
+  // size or transform change.
+  void product(const influence &a, const grid &g, double offset, const double *px, const double *py,
+               double *ux, double *uy);
+  size_t bytes() const;
+
+ private:
+  using fft = batch_fft<double>;
+  using lines = typename fft::lines;
+  void make_spectra(const influence &a, const grid &g);
+  void multiply(lines from, lines to, int stride) const;
+
+  const fft_plans &plans_;
+  int plan_ = -1;
+  double offset_ = 0, dx_ = 0, dy_ = 0;
+  fft along_x_, along_y_;
+  aligned_buffer<double> padded_, re_[3], im_[3];  // [big_nx][big_ny]
+  aligned_buffer<std::complex<double>> transform_;
+  aligned_buffer<double> lateral_[4], along_[4];
+};
+
+// Field values at x + offset, straight between element centres; `outside` beyond the grid.
+void shift_field(const grid &g, double offset, double outside, const double *from, double *to);
+
+}  // namespace railpatch
