@@ -129,17 +129,19 @@ struct bound_law::slipping {
 
 bound_law::slipping bound_law::friction_at(double normal, double carried, double slip_length) const {
   if (!by_velocity) return {normal, 0, 0, 0, 0, 1};
-  const double rate = speed / step;
+  const double rest = slip.standing(), rate = speed / step;
+  // without speed no way is slipped over which friction could follow
+  if (!(rate > 0) && remembers()) return {normal * (rest + carried), 0, normal, carried, 0, 1};
   double slope;
-  const double mu = slip.coefficient(slip_length * rate, slope);
+  const double mu = slip.coefficient(slip_length * rate, slope) - rest;
   slope *= rate;
-  if (!remembers()) return {normal * mu, normal * slope, 0, mu, slope, 0};
+  if (!remembers()) return {normal * (rest + mu), normal * slope, 0, mu, slope, 0};
   const double least = slip.memory_speed / rate, d = slip.memory_distance;
   const double way = std::max(slip_length, least), sum = d + way;
   const double now = (d * carried + way * mu) / sum;
   const double grows = slip_length >= least ? 1.0 : 0.0;
   const double by_slip = (grows * (mu - now) + way * slope) / sum;
-  return {normal * now, normal * by_slip, normal * d / sum, now, by_slip, d / sum};
+  return {normal * (rest + now), normal * by_slip, normal * d / sum, now, by_slip, d / sum};
 }
 
 struct bound_law::yielding {

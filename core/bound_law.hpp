@@ -50,8 +50,9 @@ struct hardening_curve {
   double steepest() const;
 };
 
-// What an element carries from step to step, or along its row: friction coefficient, and plastic
-// displacement: {length of the path, 0} or the vector.
+// What an element carries from step to step, or along its row: friction coefficient minus that at
+// rest, so that all is 0 in material that comes into contact, and plastic displacement: {length of
+// the path, 0} or the vector.
 struct carried_state {
   double v[3];
 };
@@ -78,8 +79,6 @@ class bound_law {
 
   bool plastic() const { return yield.points > 0; }
   bool remembers() const { return by_velocity && slip.memory_distance > 0; }
-  // What material carries that comes into contact.
-  carried_state fresh() const { return {{by_velocity ? slip.standing() : 0.0, 0.0, 0.0}}; }
   // friction: Pa, mu p_n, or p_n where mu depends on the slip's speed.
   bound_point evaluate(double friction, const carried_state &before, const double e[2],
                        double m) const;

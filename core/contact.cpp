@@ -18,6 +18,33 @@ constexpr int max_searches = 60;
 constexpr double least_approach = 1e-100;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+// Where friction is more than Coulomb's, or the layer yields.
+std::optional<bound_law> make_law(const rp_config &c) {
+  const bool by_velocity = c.friction_law == RP_SLIP_VELOCITY;
+  if (!by_velocity && !(c.layer_yield_stress > 0)) return std::nullopt;
+  bound_law law;
+  law.by_velocity = by_velocity;
+  if (by_velocity) {
+    law.slip.kind = static_cast<slip_velocity_law::shape>(c.slip_law);
+    law.slip.kinetic = c.friction_kinetic;
+    for (int i = 0; i < 2; ++i) {
+      law.slip.amplitude[i] = c.friction_amplitude[i];
+      law.slip.halving_speed[i] = c.friction_halving_speed[i];
+    }
+    law.slip.memory_distance = c.friction_memory_distance;
+    law.slip.memory_speed = c.friction_memory_speed;
+  }
+  law.by_magnitude = c.plastic_rule == RP_PLASTIC_MAGNITUDE;
+  if (!(c.layer_yield_stress > 0)) return law;
+  law.yield = hardening_curve::straight(c.layer_yield_stress, c.layer_hardening);
+  if (c.hardening_points == 0) return law;
+  law.yield.points = c.hardening_points;
+  law.yield.last_slope = 0;
+  std::copy_n(c.hardening_displacement, c.hardening_points, law.yield.displacement);
+  std::copy_n(c.hardening_stress, c.hardening_points, law.yield.stress);
+  return law;
+}
+
 patch_scene make_scene(const rp_config &c) {
   patch_scene scene;
   scene.elastic = combine(c.shear_modulus, c.poisson_ratio);
@@ -32,6 +59,11 @@ patch_scene make_scene(const rp_config &c) {
   if (c.kind != RP_PATCH && c.load == RP_FORCE)
     scene.normal_tolerance = std::max(0.1 * c.tolerance, 1e-12);
   scene.max_iterations = c.max_iterations;
+  if (scene.tangential == RP_TANGENTIAL_FULL && c.fitted[0] == 0) {
+    scene.law = make_law(c);
+    if (c.regime == RP_SHIFT) scene.regime = motion::shift;
+    if (c.regime == RP_TRANSIENT_ROLLING) scene.regime = motion::transient;
+  }
   for (int k = 0; k < 2; ++k) scene.fitted[k] = c.fitted[k];
   for (int k = 0; k < 2; ++k) scene.prescribed[k] = c.force_prescribed[k] != 0;
   scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
@@ -217,6 +249,19 @@ void contact::step(const rp_input &input, rp_result &result) {
   result = out;
 }
 
+rolling_input contact::step_of(const rp_input &in) const {
+  rolling_input step{{in.creepage[0], in.creepage[1]}, in.spin_creepage, in.direction, 0.0, nullptr};
+  step.regime = solver_.scene().regime;
+  step.speed = in.rolling_speed;
+  if (step.regime != motion::transient) return step;
+  // what stands still does not roll on: tractions stay, as in a shift by nothing
+  if (in.rolling_speed > 0)
+    step.distance = in.distance;
+  else
+    step.regime = motion::shift;
+  return step;
+}
+
 void contact::step_patch(const rp_input &in, rp_result &out) {
   rp_side_result &side = out.side[RP_RIGHT];
   rp_patch_result &result = side.patch[0];
@@ -230,8 +275,10 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
       in.approach < least_approach) {
     result.approach = in.approach;
     set_unloaded(solver_.scene(), result);
+    solver_.leave_contact(step_of(in), memory(RP_RIGHT, 0));
     return finish(RP_NO_CONTACT);
   }
+  patch_memory &m = memory(RP_RIGHT, 0);
   patch_problem problem;
   problem.hertz = hertz_of(config_, solver_.scene(), in);
   if (config_.geometry == RP_UNDEFORMED_DISTANCE) {
@@ -247,6 +294,22 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
   } else if (!solver_.scene().closed_form()) {
     problem.g = hertz_grid(config_, problem.hertz);
   }
+  // shift and transient rolling stay on the grid of their first step
+  if (solver_.scene().keeps_steps()) {
+    grid &g = problem.g;
+    if (m.history.begun) {
+      g = m.g;
+    } else if (config_.max_elements[0] > 0 && config_.geometry != RP_UNDEFORMED_DISTANCE) {
+      g.nx = config_.max_elements[0];
+      if (config_.geometry != RP_LINE_CONTACT) g.ny = config_.max_elements[1];
+      g.x0 = -0.5 * (g.nx - 1) * g.dx;
+      g.y0 = -0.5 * (g.ny - 1) * g.dy;
+    }
+    // Hertz's ellipse is drawn on the grid and not found on it
+    const bool covered = 2.0 * problem.hertz.semi_axes[0] <= g.nx * g.dx &&
+                         2.0 * problem.hertz.semi_axes[1] <= g.ny * g.dy;
+    if (config_.normal == RP_NORMAL_HERTZ && !covered) return finish(RP_OUT_OF_RANGE);
+  }
   if (!solver_.fits(problem.g)) return finish(RP_OUT_OF_RANGE);
   problem.force_given = config_.load == RP_FORCE;
   problem.force = in.normal_force;
@@ -254,15 +317,14 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
   const bool rolling = solver_.scene().tangential != RP_TANGENTIAL_NONE;
   if (rolling) {
     problem.rolling_speed = in.rolling_speed;
-    problem.rolling = {
-        {in.creepage[0], in.creepage[1]}, in.spin_creepage, in.direction, 0.0, nullptr};
+    problem.rolling = step_of(in);
     for (int k = 0; k < 2; ++k) problem.tangential_force[k] = in.tangential_force[k];
     result.creepage[0] = in.creepage[0];
     result.creepage[1] = in.creepage[1];
     result.spin_creepage = in.spin_creepage;
     result.direction = in.rolling_speed > 0 ? in.direction : 0;
   }
-  patch_memory &m = memory(RP_RIGHT, 0);
+  solver_.begin_step(problem, m);
   solver_.start_from(m, problem.g);
   const grid &g = problem.g;
   const hertz_contact &hertz = problem.hertz;
@@ -362,7 +424,10 @@ void contact::find_z(double target, Evaluate &&evaluate, rp_result &out) {
 }
 
 void contact::reset() {
-  for (auto &m : memory_) m.warm = m.solved = false;
+  for (auto &m : memory_) {
+    m.warm = m.solved = false;
+    m.history.clear();
+  }
   depth_ = 0;
 }
 
@@ -381,6 +446,27 @@ rp_error error_features_of(const patch_memory &m, double *values, size_t *count)
 
 }  // namespace
 
+namespace {
+
+// What the yield stress depends on, element by element.
+struct plastic_path {
+  const patch_history &history;
+  double operator[](size_t at) const {
+    const double *u = history.after[at].v + 1;
+    return std::hypot(u[0], u[1]);
+  }
+};
+
+// Whether a field belongs to laws beyond Coulomb's, and this patch has none such.
+bool lacks_law(const patch_memory &m, rp_field name) {
+  if (name == RP_FIELD_FRICTION) return m.history.friction.size() == 0;
+  const bool plastic = name == RP_FIELD_PLASTIC_DISPLACEMENT || name == RP_FIELD_PLASTIC_PATH ||
+                       name == RP_FIELD_YIELD_STRESS;
+  return plastic && m.history.yield_stress.size() == 0;
+}
+
+}  // namespace
+
 rp_error contact::field(int side, int patch, rp_field name, double *values, size_t *count) const {
   const int patches = config_.kind == RP_PATCH ? 1 : config_.max_patches;
   if ((side != RP_LEFT && side != RP_RIGHT) || !has_side(side) || patch < 0 || patch >= patches)
@@ -390,13 +476,14 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
   const bool of_tangential =
       name == RP_FIELD_TRACTION || name == RP_FIELD_MICRO_SLIP || name == RP_FIELD_ELEMENT_DIVISION;
   const bool missing =
-      (of_tangential && m.px.size() == 0) || m.columns() * m.rows() == 0 ||
+      (of_tangential && m.px.size() == 0) || lacks_law(m, name) || m.columns() * m.rows() == 0 ||
       (name == RP_FIELD_PRESSURE && m.pressure.size() + m.node_pressure.size() == 0);
   if (!m.solved || missing) return RP_ERROR_NO_FIELD;
   if (m.fitted() && name == RP_FIELD_UNDEFORMED_DISTANCE) return RP_ERROR_NO_FIELD;
   const int nx = m.columns(), ny = m.rows();
   const bool of_axis = (name == RP_FIELD_X && !m.fitted()) || name == RP_FIELD_Y;
-  const bool of_vectors = name == RP_FIELD_TRACTION || name == RP_FIELD_MICRO_SLIP;
+  const bool of_vectors = name == RP_FIELD_TRACTION || name == RP_FIELD_MICRO_SLIP ||
+                          name == RP_FIELD_PLASTIC_DISPLACEMENT;
   const auto plane = static_cast<size_t>(nx * ny);
   const size_t needed = of_axis ? static_cast<size_t>(name == RP_FIELD_X ? nx : ny)
                                 : (of_vectors ? 2 * plane : plane);
@@ -440,6 +527,19 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
     case RP_FIELD_ELEMENT_DIVISION:
       copy(m.division, values, 1.0);
       break;
+    case RP_FIELD_FRICTION:
+      copy(m.history.friction, values, 1.0);
+      break;
+    case RP_FIELD_PLASTIC_DISPLACEMENT:
+      copy(m.history.plastic[0], values, 1.0);
+      copy(m.history.plastic[1], values + plane, lateral);
+      break;
+    case RP_FIELD_PLASTIC_PATH:
+      copy(plastic_path{m.history}, values, 1.0);
+      break;
+    case RP_FIELD_YIELD_STRESS:
+      copy(m.history.yield_stress, values, 1.0);
+      break;
     default:
       return RP_ERROR_NO_FIELD;
   }
@@ -469,6 +569,11 @@ const char *tangential_reason(const patch_scene &scene) {
     case RP_TANGENTIAL_FASTSIM:
       return "tangential = fastsim: simplified theory";
     case RP_TANGENTIAL_FULL:
+      if (scene.law)
+        return !scene.law->plastic() ? "tangential = full: semi-smooth Newton, slip-velocity law"
+               : scene.law->by_velocity
+                   ? "tangential = full: semi-smooth Newton, slip-velocity law and plastic layer"
+                   : "tangential = full: semi-smooth Newton, plastic layer";
       if (scene.is_forced())
         return scene.is_fitted()
                    ? "tangential = full: semi-smooth Newton on fitted rows, creepage from the force"
@@ -497,7 +602,7 @@ void contact::describe(rp_stage_info *info) const {
   for (const auto &m : memory_) {
     distance += m.undeformed_distance.bytes();
     normal += m.pressure.bytes();
-    traction += 4 * m.px.bytes() + m.division.bytes();
+    traction += 4 * m.px.bytes() + m.division.bytes() + m.history.bytes();
   }
   for (const auto &wheel : wheels_) distance += wheel.bytes();
   info[RP_STAGE_GEOMETRY] = {"geometry", 1,

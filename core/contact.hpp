@@ -33,6 +33,7 @@ class contact {
   bool has_side(int side) const;
   patch_memory &memory(int side, int patch);
   const patch_memory &memory(int side, int patch) const;
+  rolling_input step_of(const rp_input &input) const;
   void step_patch(const rp_input &input, rp_result &result);
   void step_wheels(const rp_input &input, rp_result &result);
   template <class Evaluate>

@@ -23,7 +23,7 @@ constexpr size_t checked_from = offsetof(state_header, scene);
 struct patch_header {
   grid g;
   vec3 reference;
-  uint64_t warm;
+  uint64_t warm, begun;
 };
 
 // FNV-1a (Fowler, Noll, Vo 1991)
@@ -149,7 +149,7 @@ uint64_t fingerprint_of_arrays(const rp_config &c, const aligned_buffer<double> 
 // the fields that a later step starts from
 template <class Memory, class F>
 void for_each_start_field(Memory &m, F &&f) {
-  if (!m.warm) return;
+  if (!m.warm && !m.history.begun) return;
   if (m.pressure.size()) f(m.pressure.data(), static_cast<size_t>(m.g.count()) * sizeof(double));
   if (m.px.size() == 0) return;
   const auto traction = static_cast<size_t>(m.columns() * m.rows()) * sizeof(double);
@@ -157,6 +157,7 @@ void for_each_start_field(Memory &m, F &&f) {
   f(m.py.data(), traction);
   if (m.fitted()) f(m.node_pressure.data(), traction);
   if (m.creepage.size() > 0) f(m.creepage.data(), m.creepage.size() * sizeof(double));
+  if (m.history.begun) m.history.for_each_kept(static_cast<size_t>(m.g.count()), f);
 }
 
 }  // namespace
@@ -179,7 +180,7 @@ void contact::save_state(unsigned char *buffer) const {
     at += size;
   };
   for (const auto &m : memory_) {
-    const patch_header header{m.g, m.reference, m.warm ? 1u : 0u};
+    const patch_header header{m.g, m.reference, m.warm ? 1u : 0u, m.history.begun ? 1u : 0u};
     put(&header, sizeof header);
     for_each_start_field(m, put);
   }
@@ -208,6 +209,7 @@ bool contact::restore_state(const unsigned char *buffer, size_t size) {
     m.g = patch.g;
     m.reference = patch.reference;
     m.warm = patch.warm != 0;
+    m.history.begun = patch.begun != 0;
     m.solved = false;
     for_each_start_field(m, [&](double *data, size_t bytes) {
       std::memcpy(data, at, bytes);
@@ -230,7 +232,10 @@ bool contact::state_fits(const unsigned char *at, size_t size) const {
     const auto count = m.pressure.size() ? static_cast<size_t>(patch.g.count()) : 0;
     const size_t fields = m.fitted() ? 3 * m.px.size() : m.px.size() ? 2 * count : 0;
     const size_t traction = m.creepage.size() + fields;
-    const size_t bytes = sizeof patch + (patch.warm ? count + traction : 0) * sizeof(double);
+    if (patch.begun && !m.history.keeps_steps()) return false;
+    const bool kept = patch.warm || patch.begun;
+    const size_t bytes = sizeof patch + (kept ? count + traction : 0) * sizeof(double) +
+                         (patch.begun ? m.history.kept_bytes(count) : 0);
     if (size < bytes) return false;
     at += bytes;
     size -= bytes;

@@ -159,7 +159,7 @@ template <class Each>
 void inelastic_newton::apply_law(const task &t, const double *p, const double *s, double length,
                                  Each &&each) const {
   element_at at;
-  const carried_state fresh = t.law.fresh();
+  const carried_state fresh{{0, 0, 0}};
   carried_state upstream = fresh;
   int row = 0;
   t.for_each_element([&](size_t k, size_t ix, size_t iy) {
@@ -229,7 +229,7 @@ void inelastic_newton::try_march(task &t, double &error) {
   else
     find_flexibility(t);
   double *p = trial_p_.data();
-  const carried_state fresh = t.law.fresh();
+  const carried_state fresh{{0, 0, 0}};
   for (int row = 0; row < t.problem.rows; ++row) {
     const int begin = t.problem.row_start[row], n = t.problem.row_start[row + 1] - begin;
     double grown[2] = {0, 0};

@@ -29,7 +29,7 @@ rp_patch_result empty_patch_result() {
   for (double *v :
        {&r.normal_force,      &r.approach,       &r.creep_force[0],    &r.creep_force[1],
         &r.spin_moment,       &r.max_pressure,   &r.contact_area,      &r.max_temperature,
-        &r.friction_power,    &r.elastic_energy, &r.error_estimate[0], &r.error_estimate[1],
+        &r.friction_power,    &r.plastic_power,     &r.elastic_energy, &r.error_estimate[0], &r.error_estimate[1],
         &r.error_estimate[2], &r.position[0],    &r.position[1],       &r.position[2],
         &r.contact_angle,     &r.creepage[0],    &r.creepage[1],       &r.spin_creepage,
         &r.rolling_speed})
@@ -42,12 +42,13 @@ void set_unloaded(const patch_scene &scene, rp_patch_result &result) {
   result.error_estimate[2] = 0;
   if (scene.tangential == RP_TANGENTIAL_NONE) return;
   result.creep_force[0] = result.creep_force[1] = result.spin_moment = result.friction_power = 0;
+  if (scene.law && scene.law->plastic()) result.plastic_power = 0;
   result.error_estimate[0] = result.error_estimate[1] = 0;
 }
 
 bool patch_scene::estimates_force() const {
   // of a prescribed force the creepage errs
-  if (spin_offset || is_forced()) return false;
+  if (spin_offset || is_forced() || law || keeps_steps()) return false;
   if (!is_fast(tangential)) return true;
   const polach_factors &p = fast.polach;
   const stiffness_reduction &r = fast.reduction;
@@ -68,6 +69,7 @@ patch_memory::patch_memory(int max_count, int max_rows, const patch_scene &scene
   for (auto *b : {&px, &py, &sx, &sy}) *b = aligned_buffer<double>(count);
   division = aligned_buffer<unsigned char>(count);
   if (scene.is_forced()) creepage = aligned_buffer<double>(2);
+  history = patch_history(max_count, scene.keeps_steps(), scene.law ? &*scene.law : nullptr);
   if (!scene.is_fitted()) return;
   node_x = aligned_buffer<double>(count);
   node_y = aligned_buffer<double>(static_cast<size_t>(scene.fitted[1]));
@@ -76,7 +78,8 @@ patch_memory::patch_memory(int max_count, int max_rows, const patch_scene &scene
 
 size_t patch_memory::bytes() const {
   return undeformed_distance.bytes() + pressure.bytes() + 4 * px.bytes() + division.bytes() +
-         2 * node_x.bytes() + node_y.bytes() + row_friction.bytes();
+         2 * node_x.bytes() + node_y.bytes() + row_friction.bytes() +
+         history.bytes();
 }
 
 patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, int max_nx,
@@ -95,7 +98,12 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
   if (scene.normal == RP_NORMAL_HALF_SPACE) normal_.emplace(max_nx * max_ny);
   if (scene.normal == RP_NORMAL_KIK_PIOTROWSKI || scene.normal == RP_NORMAL_ANALYN)
     rows_.emplace(scene.normal, scene.modulus(), max_ny);
-  if (full) tangential_.emplace(max_nx, max_ny, tangential_solver::setup{scene.is_forced()});
+  if (full) {
+    const bool rolls_on = scene.regime == motion::transient;
+    tangential_.emplace(max_nx, max_ny,
+                        tangential_solver::setup{scene.is_forced(), scene.law.has_value(),
+                                                 scene.keeps_steps(), rolls_on ? &plans : nullptr});
+  }
   if (is_fast(scene.tangential)) fast_.emplace(scene.elastic, scene.fast, max_nx, max_ny);
   if (scene.is_fitted()) {
     fitted_rows_.emplace(scene.fitted[0], scene.fitted[1], max_ny);
@@ -112,6 +120,15 @@ size_t patch_contact::tangential_bytes() const {
   return bound_.bytes() + (tangential_ ? tangential_->bytes() : 0) +
          (fast_ ? sizeof(fast_solver) + fast_->bytes() : 0) +
          (fitted_ ? fitted_rows_->bytes() + fitted_->bytes() : 0);
+}
+
+void patch_contact::leave_contact(const rolling_input &step, patch_memory &memory) {
+  memory.warm = false;
+  if (!memory.history.begun) return;
+  memory.history.begin(memory.g, step.upstream(), memory.px.data(), memory.py.data());
+  patch_problem nothing;
+  nothing.g = memory.g;
+  leave_unloaded(nothing, memory);
 }
 
 void patch_contact::start_from(patch_memory &memory, const grid &g) {
@@ -246,6 +263,7 @@ void patch_contact::leave_unloaded(const patch_problem &problem, patch_memory &m
     if (field->size()) std::fill_n(field->data(), n, 0.0);
   if (memory.division.size())
     std::fill_n(memory.division.data(), n, static_cast<unsigned char>(RP_EXTERIOR));
+  if (memory.history.has_law()) memory.history.start_from_before(problem.g, *scene_.law);
 }
 
 bool patch_contact::solve_normal(const patch_problem &problem, patch_memory &memory,
@@ -343,7 +361,11 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   const grid &g = problem.g;
   const tangential_fields fields = memory.fields();
   rolling_input rolling = problem.rolling;
-  if (!(problem.rolling_speed > 0)) {
+  if (scene_.keeps_steps()) {
+    rolling.px = memory.history.last_px.data();
+    rolling.py = memory.history.last_py.data();
+  }
+  if (!(problem.rolling_speed > 0) && scene_.regime != motion::shift) {
     // standstill: creepage is not defined and no micro-slip has happened, so all sticks unloaded
     rolling.creepage[0] = rolling.creepage[1] = rolling.spin_creepage = 0;
   }
@@ -372,15 +394,7 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   } else if (fitted_) {
     t = solve_fitted(problem, rolling, memory);
   } else {
-    const bool varies = scene_.friction_variation.varies();
-    for (int j = 0; j < g.ny; ++j) {
-      const double coefficient = scene_.friction_coefficient *
-                                 (varies ? memory.row_friction[static_cast<size_t>(j)] : 1.0);
-      for (auto i = static_cast<size_t>(j * g.nx); i < static_cast<size_t>((j + 1) * g.nx); ++i)
-        bound_[i] = coefficient * memory.pressure[i];
-    }
-    t = tangential_->solve(*influence_, g, memory.pressure.data(), bound_.data(), rolling,
-                           {scene_.tolerance, scene_.max_iterations}, fields);
+    t = solve_on_grid(problem, rolling, memory, result);
   }
   for (int c = 0; c < 2; ++c) {
     if (!scene_.prescribed[c]) continue;
@@ -393,7 +407,9 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   result.inner_iterations = t.products;
   // written so that a residual that is no number stays visible
   if (!(t.residual <= result.residual)) result.residual = t.residual;
-  result.friction_power = problem.rolling_speed * t.friction;
+  const double rate = scene_.regime == motion::shift ? 1.0 : problem.rolling_speed;
+  result.friction_power = rate * t.friction;
+  if (scene_.law && scene_.law->plastic()) result.plastic_power *= rate;
   if (!t.converged)
     degrade(result, scene_.tangential != RP_TANGENTIAL_FULL || t.out_of_range ? RP_OUT_OF_RANGE
                                                                               : RP_NOT_CONVERGED);
@@ -401,6 +417,38 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
     result.elastic_energy +=
         fitted_ ? fitted_->elastic_energy(*fitted_rows_) : tangential_energy(problem, memory);
   return t.converged;
+}
+
+tangential_result patch_contact::solve_on_grid(const patch_problem &problem,
+                                               const rolling_input &rolling, patch_memory &memory,
+                                               rp_patch_result &result) {
+  const grid &g = problem.g;
+  const bool varies = scene_.friction_variation.varies();
+  // where the law says mu, what it is multiplied by
+  const bool by_velocity = scene_.law && scene_.law->by_velocity;
+  const double friction = by_velocity ? 1.0 : scene_.friction_coefficient;
+  for (int j = 0; j < g.ny; ++j) {
+    const double coefficient =
+        friction * (varies ? memory.row_friction[static_cast<size_t>(j)] : 1.0);
+    for (auto i = static_cast<size_t>(j * g.nx); i < static_cast<size_t>((j + 1) * g.nx); ++i)
+      bound_[i] = coefficient * memory.pressure[i];
+  }
+  const tangential_options options{scene_.tolerance, scene_.max_iterations};
+  if (!scene_.law)
+    return tangential_->solve(*influence_, g, memory.pressure.data(), bound_.data(), rolling,
+                              options, memory.fields());
+  memory.history.start_from_before(g, *scene_.law);
+  const inelastic_fields fields = memory.history.fields(*scene_.law);
+  inelastic_sums sums;
+  const tangential_result t =
+      tangential_->solve(*influence_, g, memory.pressure.data(), bound_.data(), rolling, options,
+                         memory.fields(), &fields, &sums);
+  for (size_t i = 0; i < static_cast<size_t>(g.count()); ++i)
+    if (memory.pressure[i] > 0) memory.history.friction[i] /= memory.pressure[i];
+  result.elements[RP_PLASTIC] = sums.plastic;
+  result.ambiguous_elements = sums.ambiguous;
+  if (scene_.law->plastic()) result.plastic_power = sums.plastic_work;
+  return t;
 }
 
 tangential_result patch_contact::solve_fitted(const patch_problem &problem,

@@ -12,6 +12,7 @@
 #include "friction_factor.hpp"
 #include "hertz.hpp"
 #include "normal.hpp"
+#include "patch_history.hpp"
 #include "railpatch.h"
 #include "row_contact.hpp"
 #include "tangential.hpp"
@@ -27,6 +28,11 @@ struct patch_scene {
   double line_width = 0;         // m, > 0: line contact
   rp_normal_method normal = RP_NORMAL_HALF_SPACE;
   rp_tangential_method tangential = RP_TANGENTIAL_FULL;  // NONE: no tangential stage
+  motion regime = motion::steady;
+  std::optional<bound_law> law;  // beyond Coulomb's, or a layer that yields
+  bool keeps_steps() const {
+    return tangential == RP_TANGENTIAL_FULL && regime != motion::steady;
+  }
   double tolerance = 1e-5;
   double normal_tolerance = 1e-5;
   int max_iterations = 100;
@@ -75,6 +81,7 @@ struct patch_memory {
   aligned_buffer<double> row_friction;                   // factor of each grid row, where it varies
   aligned_buffer<double> creepage;                       // [2], of a prescribed creep force only
   std::array<double, error_feature_count> error_features{};
+  patch_history history;
   bool fitted() const { return node_x.size() > 0; }
   // elements of the tangential problem along rolling and lateral
   int columns() const { return fitted() ? static_cast<int>(node_x.size() / node_y.size()) : g.nx; }
@@ -95,6 +102,12 @@ class patch_contact {
   // problem.g (see start_from). Fills everything of result that belongs to the patch itself.
   void solve(const patch_problem &problem, patch_memory &memory, rp_patch_result &result,
              patch_wrench &wrench);
+  // Begins a step on the grid of the last one, in shift and transient rolling; before start_from.
+  void begin_step(const patch_problem &problem, patch_memory &memory) {
+    memory.history.begin(problem.g, problem.rolling.upstream(), memory.px.data(), memory.py.data());
+  }
+  // A step without contact: the material moves on and bears no traction.
+  void leave_contact(const rolling_input &step, patch_memory &memory);
   // Carries the memory's solution over to another grid, or clears it.
   void start_from(patch_memory &memory, const grid &g);
 
@@ -122,6 +135,8 @@ class patch_contact {
   void leave_unloaded(const patch_problem &problem, patch_memory &memory);
   tangential_result solve_fitted(const patch_problem &problem, const rolling_input &rolling,
                                  patch_memory &memory);
+  tangential_result solve_on_grid(const patch_problem &problem, const rolling_input &rolling,
+                                  patch_memory &memory, rp_patch_result &result);
   double tangential_energy(const patch_problem &problem, const patch_memory &memory);
   void estimate_error(const patch_problem &problem, patch_memory &memory,
                       rp_patch_result &result) const;

@@ -193,6 +193,7 @@ def input_of(case: Case) -> dict[str, Any]:
     """Fields of rp_input."""
     if isinstance(case, PatchCase):
         values = case.motion.model_dump(exclude={"regime", "distance", "steps"})
+        values["creepage"] = case.motion.creepages[0]
         values["tangential_force"] = case.motion.forces
         if case.motion.distance is not None:
             values["distance"] = case.motion.distance / (case.motion.steps or 1)

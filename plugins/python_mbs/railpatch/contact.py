@@ -11,15 +11,30 @@ from typing import Any
 
 from railpatch import _core
 from railpatch.case.load import Case, Scene, check_table, load_scene
+from railpatch.case.patch import Motion
 from railpatch.config import config_of, input_of
 from railpatch.errors import CaseError
 from railpatch.moving import changed_case, moving_keys
-from railpatch.result import FIELDS, Result, patch_data, shaped_field, wheel_data
+from railpatch.result import FIELDS, GOOD, LAW_FIELDS, Result, patch_data, shaped_field, wheel_data
 
 SIDE_INDEX = {"left": 0, "right": 1}
 # saved state: mark, length of the moving tables as JSON, the JSON, the core's state
 MARK = b"railpatch1"
 LENGTH = struct.Struct("<I")
+# quantities of each step of shift or transient rolling
+STEP_KEYS = (
+    "status",
+    "normal_force",
+    "creep_force",
+    "spin_moment",
+    "creepage",
+    "elements",
+    "friction_power",
+    "plastic_power",
+    "elastic_energy",
+    "iterations",
+    "residual",
+)
 CaseSource = Mapping[str, Any] | str | Path | Scene
 
 
@@ -48,13 +63,18 @@ class Contact:
         """Solves with some moving inputs changed; the others keep their last value.
 
         patch: creepage or tangential_force, spin_creepage, rolling_speed, direction, normal_force
-        or approach.
+        or approach; in transient rolling distance and steps: one step rolls distance/steps.
         wheel_rail, wheelset: the position and velocity keys of [wheelset] with left and right,
         roller_pitch_rate, track = {"left": ..., "right": ...}; left and right in part or whole.
         fields: add the fields of each patch. Other keys raise CaseError and nothing changes.
         """
-        case = changed_case(self._case, changes)
+        return self._solve(changed_case(self._case, changes), None, fields=fields)
+
+    def _solve(self, case: Case, creepage: list[float] | None, *, fields: bool) -> Result:
+        """One step; creepage: of this step, where the case has one for each."""
         values = input_of(case)
+        if creepage is not None:
+            values["creepage"] = creepage
         begin = time.perf_counter()
         raw = self._core.step(values)
         wall_time = time.perf_counter() - begin
@@ -118,6 +138,8 @@ class Contact:
             values = None
             if name != "temperature":
                 values = self._core.field(SIDE_INDEX[side], patch, name)
+            if values is None and name in LAW_FIELDS:
+                continue
             found[name] = shaped_field(name, values, grid)
         return found
 
@@ -139,6 +161,32 @@ def solve(case: CaseSource, fields: bool = False, *, folder: str | Path | None =
 
     case: dictionary or path of a TOML file. fields: add pressure, traction, ... of each patch.
     folder: where relative paths start; default the file's folder, or the working directory.
-    Raises CaseError, ProfileError. A solve that does not converge is no error: see Result.status.
+    Shift and transient rolling: all steps of the case; the result is that of the last one, with the
+    status of the first step that was not good if there is one, and ``steps`` holds some quantities
+    of each. Raises CaseError, ProfileError. A solve that does not converge is no error: see
+    Result.status.
     """
-    return Contact(case, folder=folder).step(fields=fields)
+    contact = Contact(case, folder=folder)
+    motion = contact.case.motion if contact.case.kind == "patch" else None
+    if motion is None or motion.steps is None:
+        return contact.step(fields=fields)
+    return solve_steps(contact, motion, fields)
+
+
+def solve_steps(contact: Contact, motion: Motion, fields: bool) -> Result:
+    """All steps of shift or transient rolling."""
+    count = motion.steps or 1
+    pairs = motion.creepages
+    # the case's way is that of all steps
+    case = contact.case
+    rows: list[dict[str, Any]] = []
+    wall_time = 0.0
+    for index in range(count):
+        pair = pairs[index] if len(pairs) > 1 else pairs[0]
+        last = index == count - 1
+        result = contact._solve(case, pair, fields=fields and last)
+        rows.append({name: result[name] for name in STEP_KEYS if name in result.data})
+        wall_time += result["wall_time"]
+    bad = [row["status"] for row in rows if row["status"] not in GOOD]
+    status = bad[0] if bad else result["status"]
+    return Result({**result.data, "status": status, "wall_time": wall_time, "steps": rows})

@@ -25,6 +25,8 @@ def moving_keys(case: Case) -> dict[str, str]:
             del keys["creepage"]
         if any(prescribed):
             keys["tangential_force"] = "motion"
+        if case.motion.regime == "transient_rolling":
+            keys.update(distance="motion", steps="motion")
         return keys
     height = "z" if case.wheelset.z is not None else "vertical_force"
     keys = dict.fromkeys((*WHEELSET_STATE, height, *DEVIATION_KEYS), "wheelset")

@@ -20,8 +20,10 @@ PATCH_UNITS = {
     "elements": "",
     "max_temperature": "degrees C",
     "friction_power": "W",
+    "plastic_power": "W",
     "elastic_energy": "J",
     "iterations": "",
+    "ambiguous_elements": "",
     "residual": "",
     "error_estimate": "N, N m, Pa",
 }
@@ -44,7 +46,13 @@ FIELDS = {
     "micro_slip": 2,
     "element_division": 1,
     "temperature": 1,
+    "friction": 1,
+    "plastic_displacement": 2,
+    "plastic_path": 1,
+    "yield_stress": 1,
 }
+# only where the scene has such a law
+LAW_FIELDS = ("friction", "plastic_displacement", "plastic_path", "yield_stress")
 GOOD = ("converged", "no_contact")
 
 

@@ -25,6 +25,7 @@ from railpatch.case.types import (
     NotNegative,
     Number,
     Pair,
+    Pairs,
     Positive,
     SemiAxes,
     Shift,
@@ -90,10 +91,11 @@ class Motion(Table):
     regime: Literal["none", "shift", "transient_rolling", "steady_rolling"] = Field(
         default="steady_rolling", description="kind of motion (no unit)"
     )
-    creepage: Pair = Field(
+    creepage: Pair | Pairs = Field(
         default=[0.0, 0.0],
         description="-, [longitudinal, lateral], wheel minus rail over the rolling speed; with "
-        "shift m, the displacement of the wheel against the rail",
+        "shift m, the displacement of the wheel against the rail in a step. With steps also one "
+        "pair for each of them",
     )
     tangential_force: ForcePair | None = Field(
         default=None,
@@ -139,12 +141,28 @@ class Motion(Table):
             raise relation("steps", self.steps, "only with regime = 'transient_rolling' or 'shift'")
         return self
 
+    @property
+    def creepages(self) -> list[list[float]]:
+        """Creepage of each step."""
+        if self.creepage and isinstance(self.creepage[0], list):
+            return [list(pair) for pair in self.creepage if isinstance(pair, list)]
+        return [[float(value) for value in self.creepage if not isinstance(value, list)]]
+
+    @model_validator(mode="after")
+    def _one_creepage_a_step(self) -> Motion:
+        count = len(self.creepages)
+        if count > 1 and count != (self.steps or 1):
+            raise relation("creepage", f"{count} pairs", f"one pair, or steps = {self.steps} pairs")
+        return self
+
     @model_validator(mode="after")
     def _one_of_force_and_creepage(self) -> Motion:
         if self.tangential_force is None:
             return self
-        for prescribed, creepage in zip(self.prescribed, self.creepage, strict=True):
-            if prescribed and creepage != 0:
+        for pair in self.creepages:
+            for prescribed, creepage in zip(self.prescribed, pair, strict=True):
+                if not prescribed or creepage == 0:
+                    continue
                 shown = str(self.creepage)
                 raise relation("creepage", shown, "0 where tangential_force gives the force")
         if not any(self.prescribed):

@@ -41,6 +41,8 @@ Count = Annotated[int, Field(ge=1, le=MOST_ELEMENTS)]
 Capacity = Annotated[int, Field(ge=1, le=MOST_ELEMENTS + 2)]
 
 Pair = Annotated[list[Number], exactly(2)]
+# one for each step
+Pairs = Annotated[list[Pair], Field(min_length=1, max_length=1_000_000)]
 # a number, or the word that leaves the component to its creepage
 ForcePair = Annotated[list[Number | Literal["creepage"]], exactly(2)]
 CountPair = Annotated[list[Count], exactly(2)]

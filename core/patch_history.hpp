@@ -1,0 +1,58 @@
+// What the material of one patch remembers on the grid: tractions of the last step in shift and
+// transient rolling, plastic displacement of the third-body layer, friction coefficient. Only what
+// the scene needs is there.
+#pragma once
+
+#include "tangential.hpp"
+
+namespace railpatch {
+
+struct patch_history {
+  patch_history() = default;
+  // steps: the last step's tractions count; law: null for Coulomb friction without plasticity.
+  patch_history(int max_count, bool steps, const bound_law *law);
+  bool keeps_steps() const { return last_px.size() > 0; }
+  bool has_law() const { return after.size() > 0; }
+
+  bool begun = false;  // a step has been made on this grid
+  aligned_buffer<double> last_px, last_py;
+  aligned_buffer<carried_state> before, after;
+  aligned_buffer<double> plastic_before[2], plastic[2], yield_stress, friction;
+
+  // Begins a step: what the last one left becomes what was before, moved with the material from
+  // x + upstream to x. Also where there is no law.
+  void begin(const grid &g, double upstream, const double *px, const double *py);
+  // Sets what is carried as no contact leaves it, for elements that then are in contact to differ.
+  void start_from_before(const grid &g, const bound_law &law);
+  // Nothing has happened yet.
+  void clear() { begun = false; }
+  inelastic_fields fields(bound_law &law);
+  // f(data, bytes) of what later steps depend on besides the tractions, on a grid of count elements
+  template <class F>
+  void for_each_kept(size_t count, F &&f) {
+    visit(*this, count, f);
+  }
+  template <class F>
+  void for_each_kept(size_t count, F &&f) const {
+    visit(*this, count, f);
+  }
+  size_t kept_bytes(size_t count) const {
+    size_t sum = 0;
+    for_each_kept(count, [&](const double *, size_t bytes) { sum += bytes; });
+    return sum;
+  }
+  size_t bytes() const;
+
+ private:
+  template <class History, class F>
+  static void visit(History &h, size_t count, F &&f) {
+    // carried states are three numbers each
+    static_assert(sizeof(carried_state) == 3 * sizeof(double));
+    if (h.has_law()) f(h.after[0].v, count * sizeof(carried_state));
+    for (auto &p : h.plastic)
+      if (p.size()) f(p.data(), count * sizeof(double));
+  }
+  void shift_states(const grid &g, double upstream);
+};
+
+}  // namespace railpatch
