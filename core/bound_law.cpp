@@ -115,19 +115,20 @@ double hardening_curve::greatest() const {
 double hardening_curve::steepest() const {
   double steepest = std::abs(last_slope);
   for (int i = 1; i < points; ++i)
-    steepest = std::max(steepest, std::abs(stress[i] - stress[i - 1]) /
-                                      (displacement[i] - displacement[i - 1]));
+    steepest = std::max(
+        steepest, std::abs(stress[i] - stress[i - 1]) / (displacement[i] - displacement[i - 1]));
   return steepest;
 }
 
 // --- both together -------------------------------------------------------------------------------
 
 struct bound_law::slipping {
-  double bound, by_slip, by_before;        // Pa
+  double bound, by_slip, by_before;         // Pa
   double coefficient, c_by_slip, c_before;  // with memory: mu after the step
 };
 
-bound_law::slipping bound_law::friction_at(double normal, double carried, double slip_length) const {
+bound_law::slipping bound_law::friction_at(double normal, double carried,
+                                           double slip_length) const {
   if (!by_velocity) return {normal, 0, 0, 0, 0, 1};
   const double rest = slip.standing(), rate = speed / step;
   // without speed no way is slipped over which friction could follow
@@ -317,8 +318,7 @@ bound_point bound_law::evaluate(double friction, const carried_state &before, co
     if (met) {
       b.state_by_angle[0] = -s.c_by_slip * y.slip_by_angle;
       b.state_by_state[0][0] -= s.c_by_slip * y.slip_by_level * rest.by_before;
-      for (int c = 0; c < 2; ++c)
-        b.state_by_state[0][1 + c] = -s.c_by_slip * y.slip_by_state[c];
+      for (int c = 0; c < 2; ++c) b.state_by_state[0][1 + c] = -s.c_by_slip * y.slip_by_state[c];
     }
   }
   const int parts = by_magnitude ? 2 : 1;

@@ -2,8 +2,8 @@
 // of friction and yield stress of a third-body layer.
 //
 // Inelastic slip m (m) over a step: plastic displacement of the layer first, as long as the yield
-// stress is below the traction bound, then slip of the surfaces (Vollebregt 2024, DOT/FRA/ORD-24/18,
-// section 4.3, with the state S* in which both bounds are met):
+// stress is below the traction bound, then slip of the surfaces (Vollebregt 2024,
+// DOT/FRA/ORD-24/18, section 4.3, with the state S* in which both bounds are met):
 //   b(m) = tau(u* after m) while below g(0), else g(m - m_p) with tau = g(0) at m_p.
 // Coulomb: g constant. Slip velocity: g = mu(s) p_n with the slip's speed s = V slip/dq, and with a
 // memory of the friction coefficient over the distance d_c

@@ -250,7 +250,8 @@ void contact::step(const rp_input &input, rp_result &result) {
 }
 
 rolling_input contact::step_of(const rp_input &in) const {
-  rolling_input step{{in.creepage[0], in.creepage[1]}, in.spin_creepage, in.direction, 0.0, nullptr};
+  rolling_input step{
+      {in.creepage[0], in.creepage[1]}, in.spin_creepage, in.direction, 0.0, nullptr};
   step.regime = solver_.scene().regime;
   step.speed = in.rolling_speed;
   if (step.regime != motion::transient) return step;

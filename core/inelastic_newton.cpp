@@ -85,19 +85,14 @@ size_t inelastic_newton::bytes() const {
 inelastic_result inelastic_newton::solve(rolling_operator &b, const rolling_problem &problem,
                                          const inelastic_problem &inelastic,
                                          const tangential_options &options) {
-  task t{b,
-         problem,
-         inelastic,
-         *inelastic.law,
-         problem.bound,
-         problem.force ? &*force_ : nullptr};
+  task t{b, problem, inelastic, *inelastic.law, problem.bound, problem.force ? &*force_ : nullptr};
   for (int row = 0; row < problem.rows; ++row) {
     const double typical = b.projection_scale(row);
     for (int k = problem.row_start[row]; k < problem.row_start[row + 1]; ++k) {
       const auto at = static_cast<size_t>(k);
       most_[at] = t.law.greatest(problem.bound[k]);
-      r_[at] = std::max(typical, steepness_margin * t.law.step *
-                                     t.law.steepest_fall(problem.bound[k]));
+      r_[at] =
+          std::max(typical, steepness_margin * t.law.step * t.law.steepest_fall(problem.bound[k]));
     }
   }
   t.problem.bound = most_.data();
@@ -109,9 +104,8 @@ inelastic_result inelastic_newton::solve(rolling_operator &b, const rolling_prob
     std::fill_n(has_factors_.data(), problem.rows, static_cast<unsigned char>(0));
     const double goal = options.tolerance * size;
     double error = start(t), best = HUGE_VAL, least = HUGE_VAL;
-    for (int strayed = 0;
-         error > goal && result.newton_iterations < options.max_iterations &&
-         !(t.force && t.force->beyond());
+    for (int strayed = 0; error > goal && result.newton_iterations < options.max_iterations &&
+                          !(t.force && t.force->beyond());
          ++result.newton_iterations) {
       if (error <= enough * best) {
         best = least = error;
@@ -173,8 +167,7 @@ void inelastic_newton::apply_law(const task &t, const double *p, const double *s
     at.stiffness = r / t.law.step;
     at.stick = at.size <= t.law.at_rest(t.friction[k], *at.before);
     for (int c = 0; c < 2; ++c) at.e[c] = at.size > 0 ? q[c] / at.size : c == 0 ? 1.0 : 0.0;
-    at.m = at.stick ? 0.0
-                    : t.law.resolve(t.friction[k], *at.before, at.e, at.size, at.stiffness);
+    at.m = at.stick ? 0.0 : t.law.resolve(t.friction[k], *at.before, at.e, at.size, at.stiffness);
     if (t.carried()) at.point = t.law.evaluate(t.friction[k], *at.before, at.e, at.m);
     each(at);
     if (t.carried()) upstream = at.point.state;
@@ -576,8 +569,8 @@ void inelastic_newton::finish(task &t) {
                 area;
     // as the element sees it with all others held
     const double stiffness = t.b.projection_scale(at.row) / t.law.step;
-    t.result.ambiguous += t.law.ambiguous(t.friction[at.k], *at.before, at.e,
-                                          bound + stiffness * at.m, stiffness);
+    t.result.ambiguous +=
+        t.law.ambiguous(t.friction[at.k], *at.before, at.e, bound + stiffness * at.m, stiffness);
   });
   // in steady rolling the rigid motion's supply is all dissipated (rolling_newton.hpp): in the
   // proportion of the two sums, which lose part of it on coarse grids

@@ -1,6 +1,6 @@
-// Semi-smooth Newton method for tangential contact where the traction bound depends on the inelastic
-// slip: friction that changes with slip velocity, with memory, and third-body layers with plasticity
-// (bound_law.hpp). Notation, operators and vectors as in rolling_newton.hpp.
+// Semi-smooth Newton method for tangential contact where the traction bound depends on the
+// inelastic slip: friction that changes with slip velocity, with memory, and third-body layers with
+// plasticity (bound_law.hpp). Notation, operators and vectors as in rolling_newton.hpp.
 //
 // With q = p - r s, Q = |q|, e = q/Q the law's resolvent is radial, P(q) = h(Q) e:
 //   F = p - P(q),  dP = e dh + (h/Q) (I - e e^T) dq,  h = Q - R m,  R = r/dq,
@@ -8,8 +8,8 @@
 // r is at least a typical inverse diagonal entry of B and at least twice b's steepest fall, so that
 // P is one-valued and smooth on either side of its kinks whatever the law. Every element keeps two
 // unknowns. In steady rolling U, what material carries along its row from the leading edge, is a
-// scalar recurrence, and so is its derivative: dU_i = A_i dU_(i-1) + E_i dq_i, a running sum in each
-// product with the Jacobian and in each column of the row blocks.
+// scalar recurrence, and so is its derivative: dU_i = A_i dU_(i-1) + E_i dq_i, a running sum in
+// each product with the Jacobian and in each column of the row blocks.
 //
 // Convergence. Where b does not fall and nothing is carried along rows, -s is a monotone function
 // of p (the subdifferential of a convex function of |p|), the problem is a mixed variational

@@ -81,7 +81,9 @@ void offset_influence::product(const influence &a, const grid &g, double offset,
                             {lateral_[2].data(), lateral_[3].data()}};
   const lines along[2] = {{along_[0].data(), along_[1].data()},
                           {along_[2].data(), along_[3].data()}};
-  const auto other = [](const lines pair[2], lines l) { return l.re == pair[0].re ? pair[1] : pair[0]; };
+  const auto other = [](const lines pair[2], lines l) {
+    return l.re == pair[0].re ? pair[1] : pair[0];
+  };
   for (int j = 0; j < g.ny; ++j) {
     double *re = lateral[0].re + j * columns, *im = lateral[0].im + j * columns;
     std::copy_n(px + j * g.nx, g.nx, re);

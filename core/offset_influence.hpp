@@ -1,7 +1,7 @@
-// Displacement that tractions on a grid cause at points off it by a constant distance along x: where
-// the material was one step of transient rolling ago, before it came to the elements' centres.
-// Exact for tractions constant on elements, by FFT; the layer's part is interpolated between them,
-// as all that belongs to elements is (for a step of one element both are exact).
+// Displacement that tractions on a grid cause at points off it by a constant distance along x:
+// where the material was one step of transient rolling ago, before it came to the elements'
+// centres. Exact for tractions constant on elements, by FFT; the layer's part is interpolated
+// between them, as all that belongs to elements is (for a step of one element both are exact).
 #pragma once
 
 #include <complex>
@@ -14,8 +14,8 @@ class offset_influence {
  public:
   explicit offset_influence(const fft_plans &plans);
 
-  // (u_x, u_y) at x + offset; the grid is that of a. Kernels are only made anew when offset, element
-  // size or transform change.
+  // (u_x, u_y) at x + offset; the grid is that of a. Kernels are only made anew when offset,
+  // element size or transform change.
   void product(const influence &a, const grid &g, double offset, const double *px, const double *py,
                double *ux, double *uy);
   size_t bytes() const;

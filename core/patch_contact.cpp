@@ -27,12 +27,12 @@ double inside_ellipse(const double semi_axes[2], double x, double y) {
 rp_patch_result empty_patch_result() {
   rp_patch_result r{};
   for (double *v :
-       {&r.normal_force,      &r.approach,       &r.creep_force[0],    &r.creep_force[1],
-        &r.spin_moment,       &r.max_pressure,   &r.contact_area,      &r.max_temperature,
-        &r.friction_power,    &r.plastic_power,     &r.elastic_energy, &r.error_estimate[0], &r.error_estimate[1],
-        &r.error_estimate[2], &r.position[0],    &r.position[1],       &r.position[2],
-        &r.contact_angle,     &r.creepage[0],    &r.creepage[1],       &r.spin_creepage,
-        &r.rolling_speed})
+       {&r.normal_force,      &r.approach,          &r.creep_force[0], &r.creep_force[1],
+        &r.spin_moment,       &r.max_pressure,      &r.contact_area,   &r.max_temperature,
+        &r.friction_power,    &r.plastic_power,     &r.elastic_energy, &r.error_estimate[0],
+        &r.error_estimate[1], &r.error_estimate[2], &r.position[0],    &r.position[1],
+        &r.position[2],       &r.contact_angle,     &r.creepage[0],    &r.creepage[1],
+        &r.spin_creepage,     &r.rolling_speed})
     *v = nan;
   return r;
 }
@@ -78,8 +78,7 @@ patch_memory::patch_memory(int max_count, int max_rows, const patch_scene &scene
 
 size_t patch_memory::bytes() const {
   return undeformed_distance.bytes() + pressure.bytes() + 4 * px.bytes() + division.bytes() +
-         2 * node_x.bytes() + node_y.bytes() + row_friction.bytes() +
-         history.bytes();
+         2 * node_x.bytes() + node_y.bytes() + row_friction.bytes() + history.bytes();
 }
 
 patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, int max_nx,

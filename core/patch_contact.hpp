@@ -30,9 +30,7 @@ struct patch_scene {
   rp_tangential_method tangential = RP_TANGENTIAL_FULL;  // NONE: no tangential stage
   motion regime = motion::steady;
   std::optional<bound_law> law;  // beyond Coulomb's, or a layer that yields
-  bool keeps_steps() const {
-    return tangential == RP_TANGENTIAL_FULL && regime != motion::steady;
-  }
+  bool keeps_steps() const { return tangential == RP_TANGENTIAL_FULL && regime != motion::steady; }
   double tolerance = 1e-5;
   double normal_tolerance = 1e-5;
   int max_iterations = 100;

@@ -135,8 +135,7 @@ class tangential_solver::step_operator final : public rolling_operator {
       }
   }
   double projection_scale(int) const override {
-    return 2.0 /
-           (inverse_ * (a_.coefficient(kernel::xx, 0, 0) + a_.coefficient(kernel::yy, 0, 0)));
+    return 2.0 / (inverse_ * (a_.coefficient(kernel::xx, 0, 0) + a_.coefficient(kernel::yy, 0, 0)));
   }
 
  private:
@@ -181,8 +180,8 @@ tangential_solver::tangential_solver(int max_nx, int max_ny, const setup &setup)
 size_t tangential_solver::bytes() const {
   return (newton_ ? newton_->bytes() : 0) + (inelastic_ ? inelastic_->bytes() : 0) +
          (offset_ ? offset_->bytes() : 0) + before_.bytes() + after_.bytes() +
-         3 * plastic_slip_.bytes() + state_.bytes() + 3 * p_.bytes() + 6 * bound_.bytes() + at_.bytes() + row_start_.bytes() +
-         2 * line_[0].bytes();
+         3 * plastic_slip_.bytes() + state_.bytes() + 3 * p_.bytes() + 6 * bound_.bytes() +
+         at_.bytes() + row_start_.bytes() + 2 * line_[0].bytes();
 }
 
 tangential_result tangential_solver::solve(influence &a, const grid &g, const double *pressure,
@@ -231,12 +230,9 @@ void tangential_solver::add_history(influence &a, const grid &g, const rolling_i
   });
 }
 
-tangential_result tangential_solver::solve_inelastic(rolling_operator &b,
-                                                     const rolling_problem &problem,
-                                                     const rolling_input &input,
-                                                     const tangential_options &options,
-                                                     const inelastic_fields &fields,
-                                                     inelastic_sums &sums) {
+tangential_result tangential_solver::solve_inelastic(
+    rolling_operator &b, const rolling_problem &problem, const rolling_input &input,
+    const tangential_options &options, const inelastic_fields &fields, inelastic_sums &sums) {
   fields.law->step = input.regime == motion::steady ? step_ : input.distance;
   fields.law->speed = input.speed;
   if (fields.before)

@@ -5,8 +5,8 @@
 //   w_x = xi - phi y, w_y = eta + phi (x + offset);
 // in steady rolling the tractions add B p = (u(x) - u(x + direction dx))/dx, in a step of transient
 // rolling over the distance dq (u(x) - u_before(x + direction dq))/dq with the last step's u: a
-// known part and A p/dq. A shift is such a step that does not roll, dq = 1 m: its slips are lengths.
-// Products by FFT. Equations and solver: rolling_newton.hpp, for laws beyond Coulomb's
+// known part and A p/dq. A shift is such a step that does not roll, dq = 1 m: its slips are
+// lengths. Products by FFT. Equations and solver: rolling_newton.hpp, for laws beyond Coulomb's
 // inelastic_newton.hpp.
 #pragma once
 
@@ -28,8 +28,8 @@ struct rolling_input {
   double spin_offset = 0;             // m, added to x in the spin term
   prescribed_force *force = nullptr;  // its components' creepages above are then 0
   motion regime = motion::steady;
-  double distance = 1;        // m, rolled in a step of transient rolling
-  double speed = 0;           // m/s, for friction that depends on it
+  double distance = 1;                        // m, rolled in a step of transient rolling
+  double speed = 0;                           // m/s, for friction that depends on it
   const double *px = nullptr, *py = nullptr;  // Pa, tractions of the last step on the same grid
   // m, to where the material was in the last step
   double upstream() const { return regime == motion::transient ? direction * distance : 0.0; }
@@ -48,11 +48,11 @@ struct tangential_fields {
 
 // What laws beyond Coulomb's need and give, on the grid.
 struct inelastic_fields {
-  bound_law *law;                     // step and speed are set by the solver
-  const carried_state *before;        // null: carried along the rows, in steady rolling
+  bound_law *law;               // step and speed are set by the solver
+  const carried_state *before;  // null: carried along the rows, in steady rolling
   carried_state *after;
-  double *plastic_x, *plastic_y;      // m, vector sum: of the step before in, out
-  double *yield_stress, *friction;    // Pa, traction bound g
+  double *plastic_x, *plastic_y;    // m, vector sum: of the step before in, out
+  double *yield_stress, *friction;  // Pa, traction bound g
 };
 struct inelastic_sums {
   int plastic = 0, ambiguous = 0;
@@ -62,9 +62,9 @@ struct inelastic_sums {
 class tangential_solver {
  public:
   struct setup {
-    bool forced = false;     // for inputs with a prescribed force
-    bool inelastic = false;  // for laws beyond Coulomb's
-    bool history = false;    // for shift and transient rolling
+    bool forced = false;                   // for inputs with a prescribed force
+    bool inelastic = false;                // for laws beyond Coulomb's
+    bool history = false;                  // for shift and transient rolling
     const fft_plans *transient = nullptr;  // transient rolling: those of the influence
   };
   tangential_solver(int max_nx, int max_ny, const setup &setup);
@@ -92,7 +92,7 @@ class tangential_solver {
   void for_each_element(F &&f) const;
 
   int count_ = 0, rows_ = 0;
-  double step_ = 1;  // m, of an element
+  double step_ = 1;                     // m, of an element
   aligned_buffer<int> at_, row_start_;  // element -> index on the grid; first elements of the rows
   aligned_buffer<double> bound_, area_, rigid_, p_, s_;
   aligned_buffer<double> grid_px_, grid_py_, grid_sx_, grid_sy_;
