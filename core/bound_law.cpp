@@ -47,12 +47,17 @@ double slip_velocity_law::greatest() const {
   return kinetic + std::max(amplitude[0], 0.0) + std::max(amplitude[1], 0.0);
 }
 
-double slip_velocity_law::steepest_fall() const {
+double slip_velocity_law::steepest_fall(double rate) const {
   const double at_rest = kind == exponential ? ln2 : kind == rational ? 1.0 : 0.5;
-  double sum = 0;
-  for (int i = 0; i < 2; ++i) sum += at_rest * std::max(amplitude[i], 0.0) / halving_speed[i];
-  // with memory the distance from mu_before adds at most a quarter
-  return memory_distance > 0 ? 1.25 * sum : sum;
+  double at_once = 0, height = 0;
+  for (int i = 0; i < 2; ++i) {
+    at_once += at_rest * std::max(amplitude[i], 0.0) / halving_speed[i] * rate;
+    height += std::max(amplitude[i], 0.0);
+  }
+  if (!(memory_distance > 0)) return at_once;
+  // with D the way: d (mu_before - mu)/(d + D)^2 + D/(d + D) |dmu/dD|, mu_before not above the
+  // law's greatest, and D |dmu/dD| not above the height for any of the laws
+  return std::min(1.25 * at_once, 2.0 * height / memory_distance);
 }
 
 // --- yield stress --------------------------------------------------------------------------------
@@ -223,7 +228,7 @@ double bound_law::greatest(double friction) const {
 }
 
 double bound_law::steepest_fall(double friction) const {
-  double fall = by_velocity ? friction * slip.steepest_fall() * speed / step : 0.0;
+  double fall = by_velocity ? friction * slip.steepest_fall(speed / step) : 0.0;
   if (!plastic()) return fall;
   double falls = yield.steepest();
   // only where plastic displacement is undone does a hardening layer soften

@@ -29,8 +29,8 @@ struct slip_velocity_law {
   double coefficient(double speed, double &slope) const;
   double standing() const { return kinetic + amplitude[0] + amplitude[1]; }
   double greatest() const;
-  // of a fall with speed, s/m
-  double steepest_fall() const;
+  // Steepest fall of mu with the length of slip, 1/m, at a rate (1/s) of speed over length.
+  double steepest_fall(double rate) const;
 };
 
 // Yield stress over accumulated plastic displacement: straight between points, going on with

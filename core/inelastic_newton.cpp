@@ -16,7 +16,8 @@ constexpr int max_inner_products = 200;
 // Newton steps that need not lower the best |F| to `enough` of it before it is taken up again
 constexpr int patience = 4;
 constexpr double enough = 0.9;
-constexpr int max_projections = 100;
+// of one descent, and of all in a solve: Newton steps go on without
+constexpr int max_projections = 100, max_sweeps = 20, all_projections = 400;
 constexpr double far_away = 0.3;
 // r over the steepest fall of b: 1 would do for uniqueness
 constexpr double steepness_margin = 2.0;
@@ -50,6 +51,8 @@ struct inelastic_newton::task {
   force_constraint *force;
   inelastic_result result{};
   double flexibility[2] = {0, 0}, ramp_force = 0;
+  int projections = 0, descents = 0;
+  bool falls = false;  // the law, somewhere
 
   bool carried() const { return !inelastic.before; }
   size_t size() const { return 2 * static_cast<size_t>(problem.count()); }
@@ -482,8 +485,8 @@ double inelastic_newton::line_search(task &t, double current) {
   return error;
 }
 
-// Extragradient steps with the law's resolvent from the best traction until |F| is down at `goal`,
-// or as long as there are steps; ends at the best of them.
+// Slow but sure steps from the best traction until |F| is down at `goal`, or as long as there are
+// steps; ends at the best of them.
 double inelastic_newton::descend(task &t, double goal) {
   double *p = t.problem.traction, *s = t.problem.micro_slip;
   std::copy_n(best_p_.data(), t.size(), p);
@@ -491,38 +494,86 @@ double inelastic_newton::descend(task &t, double goal) {
   micro_slip(t, p, s);
   double error = residual(t, p, s, f_.data()), least = error;
   double length = 1;
-  for (int k = 0; k < max_projections && error > goal; ++k) {
-    for (bool short_enough = false; !short_enough; length *= short_enough ? 1.0 : 0.5) {
-      resolvent(t, p, s, length, trial_p_.data());
-      double moved = 0, turned = 0;
-      if (t.force) t.force->pull(t.problem, p, trial_p_.data(), length, &moved, &turned);
-      micro_slip(t, trial_p_.data(), trial_s_.data());
-      t.for_each_element([&](size_t e, size_t ix, size_t iy) {
-        const double weight = t.problem.area[e] / r_[e];
-        moved += weight * (square(trial_p_[ix] - p[ix]) + square(trial_p_[iy] - p[iy]));
-        turned += weight * square(r_[e] * length) *
-                  (square(trial_s_[ix] - s[ix]) + square(trial_s_[iy] - s[iy]));
-      });
-      short_enough = turned <= 0.5 * moved || !(moved > 0) || length < 1e-6;
-    }
-    // p, and not the trial, less the slip at the trial
-    resolvent(t, p, trial_s_.data(), length, trial_f_.data());
-    std::copy_n(trial_f_.data(), t.size(), p);
-    if (t.force) t.force->pull_again(t.problem, trial_p_.data(), length);
+  // where the law falls each has its cases: turn about
+  const bool monotone = t.force || !(t.carried() || t.falls) || t.descents++ % 2 == 1;
+  const int most = monotone ? max_projections : max_sweeps;
+  for (int k = 0; k < most && t.projections < all_projections && error > goal;
+       ++k, ++t.projections) {
+    if (monotone)
+      extragradient(t, length);
+    else
+      sweep(t);
     micro_slip(t, p, s);
     error = residual(t, p, s, f_.data());
-    if (error < least) {
-      least = error;
-      std::copy_n(p, t.size(), best_p_.data());
-      if (t.force) t.force->remember();
-    }
-    length = std::min(1.0, 1.5 * length);
+    if (!(error < least)) continue;
+    least = error;
+    std::copy_n(p, t.size(), best_p_.data());
+    if (t.force) t.force->remember();
   }
   if (error <= least) return error;
   std::copy_n(best_p_.data(), t.size(), p);
   if (t.force) t.force->recall(t.problem);
   micro_slip(t, p, s);
   return residual(t, p, s, f_.data());
+}
+
+// One extragradient step with the law's resolvent.
+void inelastic_newton::extragradient(task &t, double &length) {
+  double *p = t.problem.traction, *s = t.problem.micro_slip;
+  for (bool short_enough = false; !short_enough; length *= short_enough ? 1.0 : 0.5) {
+    resolvent(t, p, s, length, trial_p_.data());
+    double moved = 0, turned = 0;
+    if (t.force) t.force->pull(t.problem, p, trial_p_.data(), length, &moved, &turned);
+    micro_slip(t, trial_p_.data(), trial_s_.data());
+    t.for_each_element([&](size_t e, size_t ix, size_t iy) {
+      const double weight = t.problem.area[e] / r_[e];
+      moved += weight * (square(trial_p_[ix] - p[ix]) + square(trial_p_[iy] - p[iy]));
+      turned += weight * square(r_[e] * length) *
+                (square(trial_s_[ix] - s[ix]) + square(trial_s_[iy] - s[iy]));
+    });
+    short_enough = turned <= 0.5 * moved || !(moved > 0) || length < 1e-6;
+  }
+  // p, and not the trial, less the slip at the trial
+  resolvent(t, p, trial_s_.data(), length, trial_f_.data());
+  std::copy_n(trial_f_.data(), t.size(), p);
+  if (t.force) t.force->pull_again(t.problem, trial_p_.data(), length);
+  length = std::min(1.0, 1.5 * length);
+}
+
+// Solves one element after another, along each row; rows feel each other's changes afterwards.
+void inelastic_newton::sweep(task &t) {
+  double *p = t.problem.traction, *s = t.problem.micro_slip;
+  for (int row = 0; row < t.problem.rows; ++row) {
+    const int begin = t.problem.row_start[row], n = t.problem.row_start[row + 1] - begin;
+    t.b.row_matrices(row, row_matrix_[0].data(), row_matrix_[1].data());
+    carried_state upstream{{0, 0, 0}};
+    for (int k = 0; k < n; ++k) {
+      const auto at = static_cast<size_t>(begin + k);
+      const carried_state &before = t.carried() ? upstream : t.inelastic.before[at];
+      double *traction[2] = {p + 2 * begin + k, p + 2 * begin + n + k};
+      const double *slip[2] = {s + 2 * begin + k, s + 2 * begin + n + k};
+      const double own = 0.5 * (row_matrix_[0][static_cast<size_t>(k * n + k)] +
+                                row_matrix_[1][static_cast<size_t>(k * n + k)]);
+      double q[2], e[2] = {1, 0};
+      for (int c = 0; c < 2; ++c) q[c] = *traction[c] - *slip[c] / own;
+      const double size = std::hypot(q[0], q[1]), stiffness = 1.0 / (own * t.law.step);
+      double bound = size, m = 0;
+      if (size > 0)
+        for (int c = 0; c < 2; ++c) e[c] = q[c] / size;
+      if (size > t.law.at_rest(t.friction[at], before)) {
+        m = t.law.resolve(t.friction[at], before, e, size, stiffness);
+        bound = std::min(size - stiffness * m, most_[at]);
+      }
+      if (t.carried()) upstream = t.law.evaluate(t.friction[at], before, e, m).state;
+      for (int c = 0; c < 2; ++c) {
+        const double change = bound * e[c] - *traction[c];
+        *traction[c] += change;
+        const double *column = row_matrix_[c].data() + k * n;
+        double *target = s + 2 * begin + c * n;
+        for (int i = 0; i < n; ++i) target[i] += change * column[i];
+      }
+    }
+  }
 }
 
 void inelastic_newton::take_trial(task &t) {

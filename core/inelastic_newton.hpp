@@ -16,8 +16,9 @@
 // inequality with a monotone B, and the extragradient step with the resolvent as projection tends
 // to its solution, as in rolling_newton.hpp. With falling friction, softening, plastic displacement
 // undone (magnitude rule) or carried states there may be several solutions or, beyond the snap-back
-// limit, none near by: the same safeguard is then a heuristic, and what has not converged says so
-// and returns the best traction found.
+// limit, none near by. The safeguard then is a heuristic, sweeps that solve element after element
+// with all others held (Vollebregt 1995, 2010 solve whole problems so), and what has not converged
+// says so and returns the best traction found.
 #pragma once
 
 #include <optional>
@@ -79,6 +80,8 @@ class inelastic_newton {
   double try_step(task &t, double length);
   double line_search(task &t, double current);
   double descend(task &t, double goal);
+  void extragradient(task &t, double &length);
+  void sweep(task &t);
   void take_trial(task &t);
   void finish(task &t);
 
