@@ -255,13 +255,13 @@ double bound_law::value(double friction, const carried_state &before, const doub
 }
 
 double bound_law::resolve(double friction, const carried_state &before, const double e[2],
-                          double size, double stiffness) const {
+                          double size, double stiffness, double low) const {
   const double g = friction_at(friction, before.v[0], 0).bound;
   double limit = 0;
   if (plastic() && yield_at(before, e, 0).stress < g) limit = until(before, e, g).slip;
   if (!by_velocity && limit == 0) return (size - g) / stiffness;
   // size - stiffness m - b(m) falls from above to below 0
-  double low = 0, high = size / stiffness, m = 0;
+  double high = size / stiffness, m = low;
   for (int i = 0; i < 100; ++i) {
     double slope;
     const double gap = size - stiffness * m - value(friction, before, e, limit, m, slope);

@@ -82,9 +82,9 @@ class bound_law {
   // friction: Pa, mu p_n, or p_n where mu depends on the slip's speed.
   bound_point evaluate(double friction, const carried_state &before, const double e[2],
                        double m) const;
-  // m for |q| = size above b(0).
+  // m for |q| = size above b(0): one of the solutions above `low`, where size - stiffness m > b(m).
   double resolve(double friction, const carried_state &before, const double e[2], double size,
-                 double stiffness) const;
+                 double stiffness, double low = 0) const;
   double at_rest(double friction, const carried_state &before) const;
   // of b in any state, Pa and Pa/m
   double greatest(double friction) const;

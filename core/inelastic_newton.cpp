@@ -18,6 +18,8 @@ constexpr int patience = 4;
 constexpr double enough = 0.9;
 // of one descent, and of all in a solve: Newton steps go on without
 constexpr int max_projections = 100, max_sweeps = 20, all_projections = 400;
+// times that elements are taken off unstable branches
+constexpr int max_returns = 5;
 constexpr double far_away = 0.3;
 // r over the steepest fall of b: 1 would do for uniqueness
 constexpr double steepness_margin = 2.0;
@@ -72,7 +74,8 @@ inelastic_newton::inelastic_newton(int max_row, int max_rows, bool forced)
   if (forced) force_.emplace(max_row * max_rows);
   const auto row = static_cast<size_t>(max_row), n = row * static_cast<size_t>(max_rows);
   for (auto *b : {&r_, &most_}) *b = aligned_buffer<double>(n);
-  for (auto *b : {&f_, &step_, &best_p_, &right_, &unknowns_, &trial_p_, &trial_s_, &trial_f_})
+  for (auto *b :
+       {&f_, &step_, &best_p_, &right_, &unknowns_, &trial_p_, &trial_s_, &trial_f_, &started_})
     *b = aligned_buffer<double>(2 * n + 2);
   for (auto &m : row_matrix_) m = aligned_buffer<double>::uninitialized(row * row);
   for (auto *l : {&linear_, &factored_}) *l = aligned_buffer<linearisation>(n);
@@ -80,7 +83,7 @@ inelastic_newton::inelastic_newton(int max_row, int max_rows, bool forced)
 }
 
 size_t inelastic_newton::bytes() const {
-  return blocks_.bytes() + linear_solver_.bytes() + 2 * r_.bytes() + 8 * f_.bytes() +
+  return blocks_.bytes() + linear_solver_.bytes() + 2 * r_.bytes() + 9 * f_.bytes() +
          2 * row_matrix_[0].bytes() + 2 * linear_.bytes() + has_factors_.bytes() +
          (force_ ? force_->bytes() : 0);
 }
@@ -94,8 +97,9 @@ inelastic_result inelastic_newton::solve(rolling_operator &b, const rolling_prob
     for (int k = problem.row_start[row]; k < problem.row_start[row + 1]; ++k) {
       const auto at = static_cast<size_t>(k);
       most_[at] = t.law.greatest(problem.bound[k]);
-      r_[at] =
-          std::max(typical, steepness_margin * t.law.step * t.law.steepest_fall(problem.bound[k]));
+      const double fall = t.law.steepest_fall(problem.bound[k]);
+      t.falls = t.falls || fall > 0;
+      r_[at] = std::max(typical, steepness_margin * t.law.step * fall);
     }
   }
   t.problem.bound = most_.data();
@@ -106,37 +110,12 @@ inelastic_result inelastic_newton::solve(rolling_operator &b, const rolling_prob
   if (size > 0) {
     std::fill_n(has_factors_.data(), problem.rows, static_cast<unsigned char>(0));
     const double goal = options.tolerance * size;
-    double error = start(t), best = HUGE_VAL, least = HUGE_VAL;
-    for (int strayed = 0; error > goal && result.newton_iterations < options.max_iterations &&
-                          !(t.force && t.force->beyond());
-         ++result.newton_iterations) {
-      if (error <= enough * best) {
-        best = least = error;
-        strayed = 0;
-        std::copy_n(p, t.size(), best_p_.data());
-        if (t.force) t.force->remember();
-      } else {
-        if (error < least) {
-          least = error;
-          std::copy_n(p, t.size(), best_p_.data());
-          if (t.force) t.force->remember();
-        }
-        if (!(t.force && t.force->travels()) && ++strayed > patience) {
-          error = descend(t, enough * best);
-          best = std::min(best, error);
-          strayed = 0;
-          continue;
-        }
-      }
-      linearise(t);
-      find_step(t, std::clamp(0.3 * goal / error, inner_tolerance, worst_inner_tolerance));
-      error = line_search(t, error);
-    }
-    if (!(error <= least)) {
-      std::copy_n(best_p_.data(), t.size(), p);
-      if (t.force) t.force->recall(t.problem);
+    double error = start(t);
+    if (t.falls) std::copy_n(p, t.size(), started_.data());
+    error = iterate(t, error, goal, options.max_iterations);
+    for (int k = 0; k < max_returns && error <= goal && t.falls && leave_unstable(t); ++k) {
       micro_slip(t, p, s);
-      error = residual(t, p, s, f_.data());
+      error = iterate(t, residual(t, p, s, f_.data()), goal, options.max_iterations);
     }
     result.residual = error / size;
     result.converged = error <= goal;
@@ -149,6 +128,66 @@ inelastic_result inelastic_newton::solve(rolling_operator &b, const rolling_prob
   }
   finish(t);
   return t.result;
+}
+
+// Newton's steps and their safeguard; returns the best |F|, which the traction then has.
+double inelastic_newton::iterate(task &t, double error, double goal, int max_iterations) {
+  double *p = t.problem.traction, *s = t.problem.micro_slip;
+  int &iterations = t.result.tangential.newton_iterations;
+  double best = HUGE_VAL, least = HUGE_VAL;
+  for (int strayed = 0;
+       error > goal && iterations < max_iterations && !(t.force && t.force->beyond());
+       ++iterations) {
+    const bool lower = error <= enough * best;
+    if (error < least || lower) {
+      least = error;
+      std::copy_n(p, t.size(), best_p_.data());
+      if (t.force) t.force->remember();
+    }
+    if (lower) {
+      best = error;
+      strayed = 0;
+    } else if (!(t.force && t.force->travels()) && ++strayed > patience) {
+      error = descend(t, enough * best);
+      best = std::min(best, error);
+      strayed = 0;
+      continue;
+    }
+    linearise(t);
+    find_step(t, std::clamp(0.3 * goal / error, inner_tolerance, worst_inner_tolerance));
+    error = line_search(t, error);
+  }
+  if (error <= least || least == HUGE_VAL) return error;
+  std::copy_n(best_p_.data(), t.size(), p);
+  if (t.force) t.force->recall(t.problem);
+  micro_slip(t, p, s);
+  return residual(t, p, s, f_.data());
+}
+
+// An element on the branch between stick and slip, where friction falls faster than elasticity can
+// follow, is at no rest: it goes to stick or slip, whichever is on the side of the start. Returns
+// whether there was one.
+bool inelastic_newton::leave_unstable(task &t) {
+  double *p = t.problem.traction;
+  bool any = false;
+  std::copy_n(p, t.size(), trial_p_.data());
+  apply_law(t, trial_p_.data(), t.problem.micro_slip, 1.0, [&](const element_at &at) {
+    if (at.stick) return;
+    const double stiffness = t.b.projection_scale(at.row) / t.law.step;
+    const bound_point b =
+        t.carried() ? at.point : t.law.evaluate(t.friction[at.k], *at.before, at.e, at.m);
+    if (stiffness + b.by_slip >= 0) return;
+    any = true;
+    const double size = b.bound + stiffness * at.m;
+    const double before = std::hypot(started_[at.ix], started_[at.iy]);
+    double bound = std::min(size, t.law.at_rest(t.friction[at.k], *at.before));
+    if (before < b.bound)
+      bound = size - stiffness * t.law.resolve(t.friction[at.k], *at.before, at.e, size, stiffness,
+                                               at.m * (1.0 + 1e-6));
+    p[at.ix] = bound * at.e[0];
+    p[at.iy] = bound * at.e[1];
+  });
+  return any;
 }
 
 // Goes through all elements, rows from their first element on, at q = p - length r s.

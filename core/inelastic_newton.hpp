@@ -62,6 +62,8 @@ class inelastic_newton {
     double m[2][2], h[2][3], e[3][2], a[3][3];
   };
   double start(task &t);
+  double iterate(task &t, double error, double goal, int max_iterations);
+  bool leave_unstable(task &t);
   void find_flexibility(task &t);
   void try_march(task &t, double &error);
   double scale(const task &t) const;
@@ -86,7 +88,8 @@ class inelastic_newton {
   void finish(task &t);
 
   aligned_buffer<double> r_, most_;  // per element: r, greatest b
-  aligned_buffer<double> f_, step_, best_p_, right_, unknowns_, trial_p_, trial_s_, trial_f_;
+  aligned_buffer<double> f_, step_, best_p_, right_, unknowns_, trial_p_, trial_s_, trial_f_,
+      started_;
   aligned_buffer<double> row_matrix_[2];
   aligned_buffer<linearisation> linear_, factored_;
   aligned_buffer<unsigned char> has_factors_;  // per row
