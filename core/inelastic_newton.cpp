@@ -54,6 +54,7 @@ struct inelastic_newton::task {
   inelastic_result result{};
   double flexibility[2] = {0, 0}, ramp_force = 0;
   int projections = 0, descents = 0;
+  int row = -1;        // whose matrices row_matrix_ holds for own_stiffness
   bool falls = false;  // the law, somewhere
 
   bool carried() const { return !inelastic.before; }
@@ -164,16 +165,27 @@ double inelastic_newton::iterate(task &t, double error, double goal, int max_ite
   return residual(t, p, s, f_.data());
 }
 
+// Pa/m, of an element along e with all others held; elements are asked for row by row.
+double inelastic_newton::own_stiffness(task &t, int row, size_t element, const double e[2]) {
+  if (row != t.row) t.b.row_matrices(row, row_matrix_[0].data(), row_matrix_[1].data());
+  t.row = row;
+  const int begin = t.problem.row_start[row], n = t.problem.row_start[row + 1] - begin;
+  const auto at = (element - static_cast<size_t>(begin)) * static_cast<size_t>(n + 1);
+  const double own = row_matrix_[0][at] * e[0] * e[0] + row_matrix_[1][at] * e[1] * e[1];
+  return 1.0 / (own * t.law.step);
+}
+
 // An element on the branch between stick and slip, where friction falls faster than elasticity can
 // follow, is at no rest: it goes to stick or slip, whichever is on the side of the start. Returns
 // whether there was one.
 bool inelastic_newton::leave_unstable(task &t) {
   double *p = t.problem.traction;
   bool any = false;
+  t.row = -1;
   std::copy_n(p, t.size(), trial_p_.data());
   apply_law(t, trial_p_.data(), t.problem.micro_slip, 1.0, [&](const element_at &at) {
     if (at.stick) return;
-    const double stiffness = t.b.projection_scale(at.row) / t.law.step;
+    const double stiffness = own_stiffness(t, at.row, at.k, at.e);
     const bound_point b =
         t.carried() ? at.point : t.law.evaluate(t.friction[at.k], *at.before, at.e, at.m);
     if (stiffness + b.by_slip >= 0) return;
@@ -630,6 +642,7 @@ void inelastic_newton::finish(task &t) {
   double *p = problem.traction, *s = problem.micro_slip;
   tangential_result &sum = t.result.tangential;
   double slipped = 0, plastic = 0, supplied = 0;
+  t.row = -1;
   // the traction moves by F: s, known at the traction before, decides
   std::copy_n(p, t.size(), trial_p_.data());
   std::copy_n(s, t.size(), trial_s_.data());
@@ -657,8 +670,8 @@ void inelastic_newton::finish(task &t) {
     supplied -= (p[ix] * (problem.rigid_slip[ix] + problem.creepage(0)) +
                  p[iy] * (problem.rigid_slip[iy] + problem.creepage(1))) *
                 area;
-    // as the element sees it with all others held
-    const double stiffness = t.b.projection_scale(at.row) / t.law.step;
+    if (!t.falls) return;
+    const double stiffness = own_stiffness(t, at.row, at.k, at.e);
     t.result.ambiguous +=
         t.law.ambiguous(t.friction[at.k], *at.before, at.e, bound + stiffness * at.m, stiffness);
   });

@@ -64,6 +64,7 @@ class inelastic_newton {
   double start(task &t);
   double iterate(task &t, double error, double goal, int max_iterations);
   bool leave_unstable(task &t);
+  double own_stiffness(task &t, int row, size_t element, const double e[2]);
   void find_flexibility(task &t);
   void try_march(task &t, double &error);
   double scale(const task &t) const;

