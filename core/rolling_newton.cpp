@@ -100,6 +100,7 @@ tangential_result rolling_newton::solve(rolling_operator &b, const rolling_probl
   const double size = scale(t);
   if (size > 0) {
     blocks_.start(problem.rows, problem.row_start);
+    share_factors(t);
     const double goal = options.tolerance * size;
     double error = start(t, size), best = HUGE_VAL;
     for (int strayed = 0; error > goal && result.newton_iterations < options.max_iterations &&
@@ -248,6 +249,15 @@ void rolling_newton::project(const task &t, double *p) const {
   });
 }
 
+// Rows of equal elements begin with the same matrices.
+void rolling_newton::share_factors(task &t) {
+  const int row = t.b.common_row(t.problem);
+  if (row < 0) return;
+  t.b.row_matrices(row, row_matrix_[0].data(), row_matrix_[1].data());
+  blocks_.share(t.problem.row_start[row + 1] - t.problem.row_start[row], row_matrix_[0].data(),
+                row_matrix_[1].data());
+}
+
 // Prepares dF at the present p and s and factors its row blocks.
 void rolling_newton::linearise(task &t) {
   const double *p = t.problem.traction, *s = t.problem.micro_slip;
@@ -265,7 +275,7 @@ void rolling_newton::linearise(task &t) {
   t.b.linearise();
   for (int row = 0; row < t.problem.rows; ++row) {
     const element_linearisation *elements = linear_.data() + t.problem.row_start[row];
-    if (blocks_.serves(row, elements)) continue;
+    if (blocks_.serves(row, elements) || blocks_.set_row(row, elements)) continue;
     t.b.row_matrices(row, row_matrix_[0].data(), row_matrix_[1].data());
     blocks_.set_row(row, row_matrix_[0].data(), row_matrix_[1].data(), elements);
   }

@@ -77,6 +77,8 @@ class rolling_operator {
   // The parts of B within a row of n elements, s_x from p_x and s_y from p_y: n x n, column-major
   // (source by source), for the preconditioner.
   virtual void row_matrices(int row, double *bxx, double *byy) const = 0;
+  // The row whose matrices begin with those of every other one; -1: there is none.
+  virtual int common_row(const rolling_problem &) const { return -1; }
   // The row's part of B v where v is zero from this row on; false where that costs as much as a
   // product.
   virtual bool product_of_rows_before(int, const double *, double *) { return false; }
@@ -127,6 +129,7 @@ class rolling_newton {
   void micro_slip(task &t, const double *p, double *s);
   double residual(const task &t, const double *p, const double *s, double *f) const;
   void project(const task &t, double *p) const;
+  void share_factors(task &t);
   void linearise(task &t);
   template <class F>
   size_t for_each_unknown(const task &t, F &&f) const;

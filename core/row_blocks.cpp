@@ -18,6 +18,9 @@ constexpr int whole_packs(int n) { return (n + pack - 1) / pack * pack; }
 // precondition only, so it decides on speed and not on results.
 constexpr double least_cosine = 0.98, greatest_change = 0.1;
 
+// Elements of the longest row for each row at most, where rows share factors.
+constexpr size_t least_sharing = 8;
+
 // target[begin ... end) -= the panel's columns, each times its factor
 RAILPATCH_INLINE void eliminate(const float *__restrict panel, int stride, int begin, int end,
                                 const float *factors, float *__restrict target) {
@@ -86,10 +89,14 @@ inline void invert(const float *a, int stride, float *lower, float *upper) {
 }
 
 // LU of a matrix whose first n columns do not meet the others before column `meet`; `inverses`
-// holds those of L and U of each panel's diagonal block.
+// holds those of L and U of each panel's diagonal block. `trailing`, where given, takes what is
+// still to be factored before each panel.
 RAILPATCH_DISPATCH
-void factor(float *a, int order, int n, int meet, int width, float *inverses) {
+void factor(float *a, int order, int n, int meet, int width, float *inverses,
+            float *trailing = nullptr) {
   for (int k = 0; k < order; k += pack) {
+    for (int j = k; trailing && j < order; ++j, trailing += order - k)
+      std::copy_n(a + j * order + k, order - k, trailing);
     const int next = k + pack;
     const int last = next <= meet ? n : order, end = whole_packs(last);
     float *panel = a + k * order;
@@ -116,43 +123,64 @@ void substitute(const float *a, int order, int width, const float *inverses, flo
   }
 }
 
-}  // namespace
-
-row_blocks::row_blocks(int max_row, int max_rows) : max_order_(whole_packs(2 * max_row)) {
-  const auto row = static_cast<size_t>(max_row), rows = static_cast<size_t>(max_rows);
-  const auto order = static_cast<size_t>(max_order_);
-  factors_ = aligned_buffer<float>::uninitialized(order * order * rows);
-  inverses_ = aligned_buffer<float>::uninitialized(2 * pack * order * rows);
-  blocks_ = aligned_buffer<block>(rows);
-  factored_ = aligned_buffer<element_linearisation>(row * rows);
-  vector_ = aligned_buffer<float>(order);
-  row_x_ = aligned_buffer<float>(row);
-  row_y_ = aligned_buffer<float>(row);
-  sticking_ = aligned_buffer<int>(row);
+// The leading part of the factors, of `lead` unknowns: x[lead ... end) takes what they add there.
+RAILPATCH_DISPATCH
+void substitute_down(const float *a, int order, int width, int lead, int end,
+                     const float *inverses, float *x) {
+  for (int k = 0; k < lead; k += pack) {
+    apply(inverses + 2 * pack * k, width, x + k);
+    eliminate(a + k * order, order, k + pack, end, x + k, x);
+  }
 }
 
-// Equations and unknowns: first those of z, then those of z_y, then unit ones up to the order.
+// The way back: from x[lead ... end) to the leading unknowns.
 RAILPATCH_DISPATCH
-void row_blocks::fill(int n, const double *bxx, const double *byy,
-                      const element_linearisation *elements, float *columns, int order) {
-  const auto column = [&](int j) { return columns + static_cast<size_t>(j * order); };
-  float *__restrict row_x = row_x_.data(), *__restrict row_y = row_y_.data();
-  int *sticking = sticking_.data();
+void substitute_up(const float *a, int order, int width, int lead, int end, const float *inverses,
+                   float *x) {
+  for (int k = end - pack; k >= lead; k -= pack) eliminate(a + k * order, order, 0, lead, x + k, x);
+  for (int k = whole_packs(lead) - pack; k >= 0; k -= pack) {
+    apply(inverses + 2 * pack * k + pack * pack, width, x + k);
+    eliminate(a + k * order, order, 0, k, x + k, x);
+  }
+}
+
+// What a block is made of. scale: of the matrices xx and yy, whose columns lie `stride` apart.
+template <class T>
+struct block_filling {
+  struct {
+    int n, order, stride;
+  } sizes;
+  const T *xx, *yy;
+  double scale;
+  const element_linearisation *elements;
+  float *columns, *row_x, *row_y;
+  int *sticking;
+};
+
+// Equations and unknowns: first those of z, then those of z_y, then unit ones up to the order.
+template <class T>
+RAILPATCH_INLINE void fill_block(const block_filling<T> &f) {
+  const auto [n, order, stride] = f.sizes;
+  const element_linearisation *elements = f.elements;
+  const auto column = [&](int j) { return f.columns + static_cast<size_t>(j * order); };
+  float *__restrict row_x = f.row_x, *__restrict row_y = f.row_y;
+  int *sticking = f.sticking;
   int sticks = 0;
   for (int i = 0; i < n; ++i) {
     const element_linearisation &e = elements[i];
-    row_x[i] = static_cast<float>(e.stiff * e.c[0]);
-    row_y[i] = static_cast<float>(e.stiff * e.c[1]);
+    row_x[i] = static_cast<float>(f.scale * e.stiff * e.c[0]);
+    row_y[i] = static_cast<float>(f.scale * e.stiff * e.c[1]);
     if (e.stick) sticking[sticks++] = i;
   }
-  const auto stick_rows = [&](const double *y, double factor, float *out) {
+  const auto stick_rows = [&](const T *y, double factor, float *out) {
     for (int i = 0; i < sticks; ++i)
-      out[i] = static_cast<float>(elements[sticking[i]].stiff * factor * y[sticking[i]]);
+      out[i] = static_cast<float>(f.scale * elements[sticking[i]].stiff * factor *
+                                  static_cast<double>(y[sticking[i]]));
     std::fill(out + sticks, out + order - n, 0.0f);
   };
   for (int j = 0, next = n; j < n; ++j) {
     const element_linearisation &e = elements[j];
-    const double *__restrict x = bxx + j * n, *__restrict y = byy + j * n;
+    const T *__restrict x = f.xx + j * stride, *__restrict y = f.yy + j * stride;
     float *__restrict out = column(j);
     if (e.stick) {
       for (int i = 0; i < n; ++i) out[i] = row_x[i] * static_cast<float>(x[i]);
@@ -175,10 +203,54 @@ void row_blocks::fill(int n, const double *bxx, const double *byy,
   }
 }
 
+// dispatch does not go with templates
+RAILPATCH_DISPATCH
+void fill(const block_filling<float> &f) { fill_block(f); }
+RAILPATCH_DISPATCH
+void fill(const block_filling<double> &f) { fill_block(f); }
+
+int leading_sticks(const element_linearisation *elements, int n) {
+  int k = 0;
+  while (k < n && elements[k].stick) ++k;
+  return k;
+}
+
+// Where the matrix left after `eliminated` unknowns lies among all of them.
+constexpr size_t trailing_at(int order, int eliminated) {
+  size_t sum = 0;
+  for (int k = 0; k < eliminated; k += pack)
+    sum += static_cast<size_t>(order - k) * static_cast<size_t>(order - k);
+  return sum;
+}
+
+}  // namespace
+
+row_blocks::row_blocks(int max_row, int max_rows) : max_order_(whole_packs(2 * max_row)) {
+  const auto row = static_cast<size_t>(max_row), rows = static_cast<size_t>(max_rows);
+  const auto order = static_cast<size_t>(max_order_);
+  factors_ = aligned_buffer<float>::uninitialized(order * order * rows);
+  inverses_ = aligned_buffer<float>::uninitialized(2 * pack * order * rows);
+  blocks_ = aligned_buffer<block>(rows);
+  factored_ = aligned_buffer<element_linearisation>(row * rows);
+  vector_ = aligned_buffer<float>(order);
+  const int shared = whole_packs(max_row);
+  row_x_ = aligned_buffer<float>(static_cast<size_t>(shared));
+  row_y_ = aligned_buffer<float>(static_cast<size_t>(shared));
+  sticking_ = aligned_buffer<int>(row);
+  // few rows gain nothing
+  if (rows * least_sharing < row) return;
+  for (int c = 0; c < 2; ++c) {
+    shared_[c] = aligned_buffer<float>::uninitialized(static_cast<size_t>(shared * shared));
+    shared_inverses_[c] = aligned_buffer<float>::uninitialized(2 * pack * static_cast<size_t>(shared));
+    trailing_[c] = aligned_buffer<float>::uninitialized(trailing_at(shared, shared));
+  }
+}
+
 void row_blocks::start(int rows, const int *row_start) {
   rows_ = rows;
   row_start_ = row_start;
-  for (int row = 0; row < rows; ++row) blocks_[static_cast<size_t>(row)] = {0, 0};
+  for (int row = 0; row < rows; ++row) blocks_[static_cast<size_t>(row)] = {0, 0, 0};
+  shared_order_ = 0;
 }
 
 bool row_blocks::serves(int row, const element_linearisation *elements) const {
@@ -192,36 +264,142 @@ bool row_blocks::serves(int row, const element_linearisation *elements) const {
   });
 }
 
+void row_blocks::share(int n, const double *bxx, const double *byy) {
+  shared_order_ = whole_packs(n);
+  shared_scale_ = bxx[0];
+  if (shared_[0].size() == 0 || !(shared_scale_ > 0)) {
+    shared_order_ = 0;
+    return;
+  }
+  const double *b[2] = {bxx, byy};
+  for (int c = 0; c < 2; ++c) {
+    float *a = shared_[c].data();
+    for (int j = 0; j < shared_order_; ++j) {
+      float *column = a + j * shared_order_;
+      std::fill_n(column, shared_order_, 0.0f);
+      if (j >= n) column[j] = 1.0f;
+      for (int i = 0; i < n && j < n; ++i)
+        column[i] = static_cast<float>(b[c][j * n + i] / shared_scale_);
+    }
+    factor(a, shared_order_, shared_order_, shared_order_, pack, shared_inverses_[c].data(),
+           trailing_[c].data());
+  }
+}
+
+bool row_blocks::set_row(int row, const element_linearisation *elements) {
+  if (shared_order_ == 0) return false;
+  const int n = row_start_[row + 1] - row_start_[row];
+  const int sticks = leading_sticks(elements, n);
+  const int lead = sticks == n ? n : sticks / pack * pack, stride = shared_order_ - lead;
+  prepare(row, lead, elements);
+  if (lead == n) return true;
+  const size_t at = trailing_at(shared_order_, lead);
+  const auto [size, order, skipped] = blocks_[static_cast<size_t>(row)];
+  fill(block_filling<float>{{n - lead, order, stride},
+                            trailing_[0].data() + at,
+                            trailing_[1].data() + at,
+                            shared_scale_,
+                            elements + lead,
+                            factors(row),
+                            row_x_.data(),
+                            row_y_.data(),
+                            sticking_.data()});
+  factor(factors(row), order, n - lead, sticks - lead, pack, inverses(row));
+  return true;
+}
+
 void row_blocks::set_row(int row, const double *bxx, const double *byy,
                          const element_linearisation *elements) {
+  const int n = row_start_[row + 1] - row_start_[row];
+  prepare(row, 0, elements);
+  const int order = blocks_[static_cast<size_t>(row)].order;
+  fill(block_filling<double>{{n, order, n},
+                             bxx,
+                             byy,
+                             1.0,
+                             elements,
+                             factors(row),
+                             row_x_.data(),
+                             row_y_.data(),
+                             sticking_.data()});
+  // before the first element that slips, x and y do not meet
+  factor(factors(row), order, n, leading_sticks(elements, n), pack, inverses(row));
+}
+
+void row_blocks::prepare(int row, int lead, const element_linearisation *elements) {
   const auto sticks = [](const element_linearisation &e) { return e.stick; };
   const int n = row_start_[row + 1] - row_start_[row];
   const int size = n + static_cast<int>(std::count_if(elements, elements + n, sticks));
-  const int order = whole_packs(size);
-  blocks_[static_cast<size_t>(row)] = {size, order};
+  blocks_[static_cast<size_t>(row)] = {size, whole_packs(size - 2 * lead), lead};
   std::copy_n(elements, n, factored_.data() + row_start_[row]);
-  fill(n, bxx, byy, elements, factors(row), order);
-  // before the first element that slips, x and y do not meet
-  const int meet = static_cast<int>(std::find_if_not(elements, elements + n, sticks) - elements);
-  factor(factors(row), order, n, meet, pack, inverses(row));
 }
 
 void row_blocks::solve(int row, double *v) {
-  float *x = vector_.data();
-  const auto [size, order] = blocks_[static_cast<size_t>(row)];
+  const auto [size, order, lead] = blocks_[static_cast<size_t>(row)];
   // scaled to unit size, so that single precision neither overflows nor loses small tractions
   double scale = 0;
   for (int k = 0; k < size; ++k) scale = std::max(scale, std::abs(v[k]));
   if (!(scale > 0)) return;
-  for (int k = 0; k < size; ++k) x[k] = static_cast<float>(v[k] / scale);
-  std::fill(x + size, x + order, 0.0f);
+  const int n = row_start_[row + 1] - row_start_[row], end = whole_packs(n);
+  // own unknowns: z, then z_y, of the elements behind the leading ones
+  const int own = n - lead, own_size = size - 2 * lead;
+  double *own_z = v + lead, *own_y = v + n + lead;
+  float *x = vector_.data();
+  for (int k = 0; k < own; ++k) x[k] = static_cast<float>(own_z[k] / scale);
+  for (int k = own; k < own_size; ++k) x[k] = static_cast<float>(own_y[k - own] / scale);
+  std::fill(x + own_size, x + order, 0.0f);
+  float *lead_x = row_x_.data(), *lead_y = row_y_.data();
+  const element_linearisation *rest = factored_.data() + row_start_[row] + lead;
+  if (lead > 0) {
+    for (int k = 0; k < lead; ++k) {
+      lead_x[k] = static_cast<float>(v[k] / scale);
+      lead_y[k] = static_cast<float>(v[n + k] / scale);
+    }
+    for (int c = 0; c < 2; ++c) {
+      float *part = c == 0 ? lead_x : lead_y;
+      std::fill(part + lead, part + end, 0.0f);
+      substitute_down(shared_[c].data(), shared_order_, pack, lead, end, shared_inverses_[c].data(),
+                      part);
+    }
+    // L's rows of an element that slips are those of its components, as its equation is
+    const double unit = factored_[static_cast<size_t>(row_start_[row])].stiff;
+    for (int k = 0, second = own; k < own; ++k) {
+      const element_linearisation &e = rest[k];
+      const auto weight = static_cast<float>(e.stiff / unit);
+      x[k] += weight * (static_cast<float>(e.c[0]) * lead_x[lead + k] +
+                        static_cast<float>(e.c[1]) * lead_y[lead + k]);
+      if (e.stick) x[second++] += weight * lead_y[lead + k];
+    }
+  }
   substitute(factors(row), order, pack, inverses(row), x);
-  for (int k = 0; k < size; ++k) v[k] = scale * static_cast<double>(x[k]);
+  if (lead > 0) {
+    for (int k = 0, second = own; k < own; ++k) {
+      const element_linearisation &e = rest[k];
+      lead_x[lead + k] = static_cast<float>(e.c[0]) * x[k];
+      lead_y[lead + k] = e.stick ? x[second++] : static_cast<float>(e.c[1]) * x[k];
+    }
+    // in stick the equations are those of the shared matrix times stiff and its scale
+    const double unit = 1.0 / (factored_[static_cast<size_t>(row_start_[row])].stiff * shared_scale_);
+    for (int c = 0; c < 2; ++c) {
+      float *part = c == 0 ? lead_x : lead_y;
+      std::fill(part + n, part + end, 0.0f);
+      for (int k = 0; k < lead; ++k) part[k] *= static_cast<float>(unit);
+      substitute_up(shared_[c].data(), shared_order_, pack, lead, end, shared_inverses_[c].data(),
+                    part);
+    }
+    for (int k = 0; k < lead; ++k) {
+      v[k] = scale * static_cast<double>(lead_x[k]);
+      v[n + k] = scale * static_cast<double>(lead_y[k]);
+    }
+  }
+  for (int k = 0; k < own; ++k) own_z[k] = scale * static_cast<double>(x[k]);
+  for (int k = own; k < own_size; ++k) own_y[k - own] = scale * static_cast<double>(x[k]);
 }
 
 size_t row_blocks::bytes() const {
   return factors_.bytes() + inverses_.bytes() + factored_.bytes() + blocks_.bytes() +
-         vector_.bytes() + row_x_.bytes() + row_y_.bytes() + sticking_.bytes();
+         vector_.bytes() + row_x_.bytes() + row_y_.bytes() + sticking_.bytes() +
+         2 * (shared_[0].bytes() + shared_inverses_[0].bytes() + trailing_[0].bytes());
 }
 
 }  // namespace railpatch

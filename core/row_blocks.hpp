@@ -31,6 +31,11 @@ class row_blocks {
   // Whether a row's last factors serve these equations too: its elements are in the same state and
   // slip in nearly the same direction.
   bool serves(int row, const element_linearisation *elements) const;
+  // The matrices of a row of n elements begin with those of every row: factors them once, for the
+  // elements that stick from the leading edge on.
+  void share(int n, const double *bxx, const double *byy);
+  // Factors the block of one row by what is shared; false where nothing is.
+  bool set_row(int row, const element_linearisation *elements);
   // Factors the block of one row; B of the row as in rolling_operator.
   void set_row(int row, const double *bxx, const double *byy,
                const element_linearisation *elements);
@@ -43,10 +48,10 @@ class row_blocks {
  private:
   struct block {
     int size;   // unknowns; 0: not factored yet
-    int order;  // of the factored matrix: unknowns and some of the unit matrix, in whole packs
+    int order;  // of the row's own factors: unknowns and some of the unit matrix, in whole packs
+    int lead;   // elements that the shared factors serve
   };
-  void fill(int n, const double *bxx, const double *byy, const element_linearisation *elements,
-            float *columns, int order);
+  void prepare(int row, int lead, const element_linearisation *elements);
 
   float *factors(int row) {
     return factors_.data() + static_cast<size_t>(row) * static_cast<size_t>(max_order_) *
@@ -59,6 +64,10 @@ class row_blocks {
   aligned_buffer<block> blocks_;
   aligned_buffer<float> factors_, inverses_;
   aligned_buffer<float> vector_, row_x_, row_y_;
+  // LU of B over its first entry, xx and yy, and what was left to be factored before each panel
+  aligned_buffer<float> shared_[2], shared_inverses_[2], trailing_[2];
+  int shared_order_ = 0;  // 0: nothing is shared
+  double shared_scale_ = 1;
   aligned_buffer<int> sticking_;
   aligned_buffer<element_linearisation> factored_;
   int max_order_;

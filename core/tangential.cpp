@@ -72,6 +72,18 @@ class tangential_solver::grid_operator final : public rolling_operator {
     }
   }
 
+  // the longest, where none has a gap
+  int common_row(const rolling_problem &problem) const override {
+    int longest = 0;
+    for (int row = 0; row < problem.rows; ++row) {
+      const int begin = problem.row_start[row], n = problem.row_start[row + 1] - begin;
+      const int *at = solver_.at_.data() + begin;
+      if (std::abs(at[n - 1] - at[0]) != n - 1) return -1;
+      if (n > problem.row_start[longest + 1] - problem.row_start[longest]) longest = row;
+    }
+    return longest;
+  }
+
   // makes r B of unit size on the diagonal
   double projection_scale(int) const override {
     return 2.0 / (entry(kernel::xx, 0) + entry(kernel::yy, 0));
