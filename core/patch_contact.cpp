@@ -87,13 +87,15 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
       errors_(scene.elastic, scene.layer_flexibility) {
   const bool full = scene.tangential == RP_TANGENTIAL_FULL && !scene.is_fitted();
   const auto count = static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny);
-  if (full || scene.normal == RP_NORMAL_HALF_SPACE)
-    influence_.emplace(
-        influence::scene{scene.elastic, scene.layer_flexibility, scene.line_width, full}, plans);
+  const influence::scene elastic{scene.elastic, scene.layer_flexibility, scene.line_width, full};
+  if (full || scene.normal == RP_NORMAL_HALF_SPACE) influence_.emplace(elastic, plans);
   if (scene.normal == RP_NORMAL_HALF_SPACE) normal_.emplace(max_nx * max_ny);
   if (scene.normal == RP_NORMAL_KIK_PIOTROWSKI || scene.normal == RP_NORMAL_ANALYN)
     rows_.emplace(scene.normal, scene.modulus(), max_ny);
   if (full) tangential_.emplace(max_nx, max_ny, scene.is_forced());
+  // with a prescribed force no creepage is known to start from
+  if (full && !scene.is_forced() && coarse_start::serves(max_nx, max_ny))
+    coarse_start_.emplace(elastic, plans, max_nx, max_ny);
   if (is_fast(scene.tangential)) fast_.emplace(scene.elastic, scene.fast, max_nx, max_ny);
   if (scene.is_fitted()) {
     fitted_rows_.emplace(scene.fitted[0], scene.fitted[1], max_ny);
@@ -108,6 +110,7 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
 
 size_t patch_contact::tangential_bytes() const {
   return bound_.bytes() + (tangential_ ? tangential_->bytes() : 0) +
+         (coarse_start_ ? coarse_start_->bytes() : 0) +
          (fast_ ? sizeof(fast_solver) + fast_->bytes() : 0) +
          (fitted_ ? fitted_rows_->bytes() + fitted_->bytes() : 0);
 }
@@ -373,8 +376,14 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
     for (int i = 0; i < g.count(); ++i)
       bound_[static_cast<size_t>(i)] =
           scene_.friction_coefficient * memory.pressure[static_cast<size_t>(i)];
-    t = tangential_->solve(*influence_, g, memory.pressure.data(), bound_.data(), rolling,
-                           {scene_.tolerance, scene_.max_iterations}, fields);
+    const tangential_options options{scene_.tolerance, scene_.max_iterations};
+    const auto zero = [&](const double *p) {
+      return std::all_of(p, p + g.count(), [](double v) { return v == 0; });
+    };
+    if (coarse_start_ && coarse_start::serves(g.nx, g.ny) && zero(fields.px) && zero(fields.py))
+      coarse_start_->find(g, memory.pressure.data(), bound_.data(), rolling, options, fields);
+    t = tangential_->solve(*influence_, g, memory.pressure.data(), bound_.data(), rolling, options,
+                           fields);
   }
   for (int c = 0; c < 2; ++c) {
     if (!scene_.prescribed[c]) continue;
