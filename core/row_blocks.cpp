@@ -111,22 +111,43 @@ void factor(float *a, int order, int n, int meet, int width, float *inverses,
   }
 }
 
-RAILPATCH_DISPATCH
-void substitute(const float *a, int order, int width, const float *inverses, float *x) {
+// The numbers of a matrix of some order in the order that substitution takes them: for each panel
+// its inverse and L below, then from the last panel on its inverse and U above.
+constexpr size_t packed_size(size_t order) { return order * (order + pack); }
+
+void pack_factors(const float *a, int order, const float *inverses, float *out) {
+  const auto take = [&](const float *from, int count) { out = std::copy_n(from, count, out); };
   for (int k = 0; k < order; k += pack) {
-    apply(inverses + 2 * pack * k, width, x + k);
-    eliminate(a + k * order, order, k + pack, order, x + k, x);
+    take(inverses + 2 * pack * k, pack * pack);
+    for (int c = k; c < k + pack; ++c) take(a + c * order + k + pack, order - k - pack);
   }
   for (int k = order - pack; k >= 0; k -= pack) {
-    apply(inverses + 2 * pack * k + pack * pack, width, x + k);
-    eliminate(a + k * order, order, 0, k, x + k, x);
+    take(inverses + 2 * pack * k + pack * pack, pack * pack);
+    for (int c = k; c < k + pack; ++c) take(a + c * order, k);
+  }
+}
+
+RAILPATCH_DISPATCH
+void substitute(const float *packed, int order, int width, float *x) {
+  for (int k = 0; k < order; k += pack) {
+    apply(packed, width, x + k);
+    packed += pack * pack;
+    const int below = order - k - pack;
+    eliminate(packed, below, 0, below, x + k, x + k + pack);
+    packed += pack * below;
+  }
+  for (int k = order - pack; k >= 0; k -= pack) {
+    apply(packed, width, x + k);
+    packed += pack * pack;
+    eliminate(packed, k, 0, k, x + k, x);
+    packed += pack * k;
   }
 }
 
 // The leading part of the factors, of `lead` unknowns: x[lead ... end) takes what they add there.
 RAILPATCH_DISPATCH
-void substitute_down(const float *a, int order, int width, int lead, int end,
-                     const float *inverses, float *x) {
+void substitute_down(const float *a, int order, int width, int lead, int end, const float *inverses,
+                     float *x) {
   for (int k = 0; k < lead; k += pack) {
     apply(inverses + 2 * pack * k, width, x + k);
     eliminate(a + k * order, order, k + pack, end, x + k, x);
@@ -228,8 +249,9 @@ constexpr size_t trailing_at(int order, int eliminated) {
 row_blocks::row_blocks(int max_row, int max_rows) : max_order_(whole_packs(2 * max_row)) {
   const auto row = static_cast<size_t>(max_row), rows = static_cast<size_t>(max_rows);
   const auto order = static_cast<size_t>(max_order_);
-  factors_ = aligned_buffer<float>::uninitialized(order * order * rows);
-  inverses_ = aligned_buffer<float>::uninitialized(2 * pack * order * rows);
+  factors_ = aligned_buffer<float>::uninitialized(packed_size(order) * rows);
+  block_ = aligned_buffer<float>::uninitialized(order * order);
+  inverses_ = aligned_buffer<float>::uninitialized(2 * pack * order);
   blocks_ = aligned_buffer<block>(rows);
   factored_ = aligned_buffer<element_linearisation>(row * rows);
   vector_ = aligned_buffer<float>(order);
@@ -241,7 +263,8 @@ row_blocks::row_blocks(int max_row, int max_rows) : max_order_(whole_packs(2 * m
   if (rows * least_sharing < row) return;
   for (int c = 0; c < 2; ++c) {
     shared_[c] = aligned_buffer<float>::uninitialized(static_cast<size_t>(shared * shared));
-    shared_inverses_[c] = aligned_buffer<float>::uninitialized(2 * pack * static_cast<size_t>(shared));
+    shared_inverses_[c] =
+        aligned_buffer<float>::uninitialized(2 * pack * static_cast<size_t>(shared));
     trailing_[c] = aligned_buffer<float>::uninitialized(trailing_at(shared, shared));
   }
 }
@@ -300,11 +323,11 @@ bool row_blocks::set_row(int row, const element_linearisation *elements) {
                             trailing_[1].data() + at,
                             shared_scale_,
                             elements + lead,
-                            factors(row),
+                            block_.data(),
                             row_x_.data(),
                             row_y_.data(),
                             sticking_.data()});
-  factor(factors(row), order, n - lead, sticks - lead, pack, inverses(row));
+  factor_row(row, n - lead, sticks - lead);
   return true;
 }
 
@@ -318,12 +341,18 @@ void row_blocks::set_row(int row, const double *bxx, const double *byy,
                              byy,
                              1.0,
                              elements,
-                             factors(row),
+                             block_.data(),
                              row_x_.data(),
                              row_y_.data(),
                              sticking_.data()});
   // before the first element that slips, x and y do not meet
-  factor(factors(row), order, n, leading_sticks(elements, n), pack, inverses(row));
+  factor_row(row, n, leading_sticks(elements, n));
+}
+
+void row_blocks::factor_row(int row, int n, int meet) {
+  const int order = blocks_[static_cast<size_t>(row)].order;
+  factor(block_.data(), order, n, meet, pack, inverses_.data());
+  pack_factors(block_.data(), order, inverses_.data(), factors(row));
 }
 
 void row_blocks::prepare(int row, int lead, const element_linearisation *elements) {
@@ -371,7 +400,7 @@ void row_blocks::solve(int row, double *v) {
       if (e.stick) x[second++] += weight * lead_y[lead + k];
     }
   }
-  substitute(factors(row), order, pack, inverses(row), x);
+  substitute(factors(row), order, pack, x);
   if (lead > 0) {
     for (int k = 0, second = own; k < own; ++k) {
       const element_linearisation &e = rest[k];
@@ -379,7 +408,8 @@ void row_blocks::solve(int row, double *v) {
       lead_y[lead + k] = e.stick ? x[second++] : static_cast<float>(e.c[1]) * x[k];
     }
     // in stick the equations are those of the shared matrix times stiff and its scale
-    const double unit = 1.0 / (factored_[static_cast<size_t>(row_start_[row])].stiff * shared_scale_);
+    const double unit =
+        1.0 / (factored_[static_cast<size_t>(row_start_[row])].stiff * shared_scale_);
     for (int c = 0; c < 2; ++c) {
       float *part = c == 0 ? lead_x : lead_y;
       std::fill(part + n, part + end, 0.0f);
@@ -397,8 +427,8 @@ void row_blocks::solve(int row, double *v) {
 }
 
 size_t row_blocks::bytes() const {
-  return factors_.bytes() + inverses_.bytes() + factored_.bytes() + blocks_.bytes() +
-         vector_.bytes() + row_x_.bytes() + row_y_.bytes() + sticking_.bytes() +
+  return factors_.bytes() + block_.bytes() + inverses_.bytes() + factored_.bytes() +
+         blocks_.bytes() + vector_.bytes() + row_x_.bytes() + row_y_.bytes() + sticking_.bytes() +
          2 * (shared_[0].bytes() + shared_inverses_[0].bytes() + trailing_[0].bytes());
 }
 

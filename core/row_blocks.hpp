@@ -53,16 +53,15 @@ class row_blocks {
   };
   void prepare(int row, int lead, const element_linearisation *elements);
 
+  void factor_row(int row, int n, int meet);
+
   float *factors(int row) {
-    return factors_.data() + static_cast<size_t>(row) * static_cast<size_t>(max_order_) *
-                                 static_cast<size_t>(max_order_);
-  }
-  float *inverses(int row) {
-    return inverses_.data() + static_cast<size_t>(row) * (inverses_.size() / blocks_.size());
+    return factors_.data() + static_cast<size_t>(row) * (factors_.size() / blocks_.size());
   }
 
   aligned_buffer<block> blocks_;
-  aligned_buffer<float> factors_, inverses_;
+  aligned_buffer<float> factors_;           // packed, row by row
+  aligned_buffer<float> block_, inverses_;  // what is being factored
   aligned_buffer<float> vector_, row_x_, row_y_;
   // LU of B over its first entry, xx and yy, and what was left to be factored before each panel
   aligned_buffer<float> shared_[2], shared_inverses_[2], trailing_[2];

@@ -51,9 +51,9 @@ class tangential_solver::grid_operator final : public rolling_operator {
     gather(s);
   }
 
-  // The tractions that a step changes differ little from a row to its neighbours, whose slip one row
-  // alone does not see. So the preconditioner's rows are strips: the mean slip in a strip of several
-  // rows from tractions that are the same in all of them. xy has no part in it.
+  // The tractions that a step changes differ little from a row to its neighbours, whose slip one
+  // row alone does not see. So the preconditioner's rows are strips: the mean slip in a strip of
+  // several rows from tractions that are the same in all of them. xy has no part in it.
   void row_matrices(int row, double *bxx, double *byy) const override {
     const int begin = solver_.row_start_[static_cast<size_t>(row)];
     const int n = solver_.row_start_[static_cast<size_t>(row) + 1] - begin;
