@@ -18,6 +18,10 @@ constexpr int whole_packs(int n) { return (n + pack - 1) / pack * pack; }
 // precondition only, so it decides on speed and not on results.
 constexpr double least_cosine = 0.98, greatest_change = 0.1;
 
+// In slip an element's traction answers to the slip near it only, as friction itself resists: what
+// lies further than this many elements away is left out of the factors.
+constexpr int slip_band = 4 * pack;
+
 // Elements of the longest row for each row at most, where rows share factors.
 constexpr size_t least_sharing = 8;
 
@@ -50,23 +54,46 @@ RAILPATCH_INLINE void apply(const float *__restrict m, int rows, float *__restri
          (m[6 * pack + i] * u[6] + m[7 * pack + i] * u[7]));
 }
 
-// A panel's columns from its diagonal block down to `end`: L below, U above, inverse pivots on the
-// diagonal. `a` points to the block, rows are counted from there.
-RAILPATCH_INLINE void factor_panel(float *a, int stride, int end) {
-  const auto below = static_cast<size_t>((end - pack) / pack) * pack;
+// Rows below a panel, and columns behind it: next ... near and far ... end.
+struct reach {
+  int near, far, end;
+};
+
+constexpr reach reach_of(const block_shape &m, int k) {
+  const int next = k + pack, end = next <= m.meet ? whole_packs(m.n) : m.order;
+  const int near = next + m.band;
+  if (k >= m.border || near >= m.border) return {end, end, end};
+  return {near, m.border, end};
+}
+
+// First row that meets a panel from above.
+constexpr int first_above(const block_shape &m, int k) {
+  return k >= m.border ? 0 : std::max(0, k - m.band);
+}
+
+// A panel's columns from its diagonal block down: L below, U above, inverse pivots on the diagonal.
+// `a` points to the first row.
+RAILPATCH_INLINE void factor_panel(float *a, int stride, int k, const reach &below) {
+  const int next = k + pack;
+  const auto near = static_cast<size_t>((below.near - next) / pack) * pack;
+  const auto far = static_cast<size_t>((below.end - below.far) / pack) * pack;
   for (int c = 0; c < pack; ++c) {
-    float *__restrict column = a + c * stride;
-    float *__restrict rest = column + pack;
+    float *__restrict column = a + c * stride + k;
+    float *__restrict rest = a + c * stride + next, *__restrict border = a + c * stride + below.far;
     for (int e = 0; e < c; ++e) {
-      const float *__restrict l = a + e * stride;
+      const float *__restrict l = a + e * stride + k;
+      const float *__restrict l_near = a + e * stride + next;
+      const float *__restrict l_far = a + e * stride + below.far;
       const float u = column[e];
       for (int i = e + 1; i < pack; ++i) column[i] -= u * l[i];
-      for (size_t i = 0; i < below; ++i) rest[i] -= u * l[pack + i];
+      for (size_t i = 0; i < near; ++i) rest[i] -= u * l_near[i];
+      for (size_t i = 0; i < far; ++i) border[i] -= u * l_far[i];
     }
     // only the matrix of no rolling contact has no pivot here
     const float inverse = column[c] != 0.0f ? 1.0f / column[c] : 1.0f;
     for (int i = c + 1; i < pack; ++i) column[i] *= inverse;
-    for (size_t i = 0; i < below; ++i) rest[i] *= inverse;
+    for (size_t i = 0; i < near; ++i) rest[i] *= inverse;
+    for (size_t i = 0; i < far; ++i) border[i] *= inverse;
     column[c] = inverse;
   }
 }
@@ -88,59 +115,69 @@ inline void invert(const float *a, int stride, float *lower, float *upper) {
   }
 }
 
-// LU of a matrix whose first n columns do not meet the others before column `meet`; `inverses`
-// holds those of L and U of each panel's diagonal block. `trailing`, where given, takes what is
-// still to be factored before each panel.
+// LU of what is kept of a matrix; `inverses` holds those of L and U of each panel's diagonal block.
+// `trailing`, where given, takes what is still to be factored before each panel.
 RAILPATCH_DISPATCH
-void factor(float *a, int order, int n, int meet, int width, float *inverses,
-            float *trailing = nullptr) {
+void factor(float *a, const block_shape &m, int width, float *inverses, float *trailing = nullptr) {
+  const int order = m.order;
   for (int k = 0; k < order; k += pack) {
     for (int j = k; trailing && j < order; ++j, trailing += order - k)
       std::copy_n(a + j * order + k, order - k, trailing);
-    const int next = k + pack;
-    const int last = next <= meet ? n : order, end = whole_packs(last);
+    const int next = k + pack, last = next <= m.meet ? m.n : order;
+    const reach to = reach_of(m, k);
     float *panel = a + k * order;
     float *lower = inverses + 2 * pack * k;
-    factor_panel(panel + k, order, end - k);
+    factor_panel(panel, order, k, to);
     invert(panel + k, order, lower, lower + pack * pack);
     for (int j = next; j < last; ++j) {
+      if (j == to.near) j = to.far;
+      if (j >= last) break;
       float *target = a + j * order;
       apply(lower, width, target + k);
-      eliminate(panel, order, next, end, target + k, target);
+      eliminate(panel, order, next, to.near, target + k, target);
+      if (to.far < to.end) eliminate(panel, order, to.far, to.end, target + k, target);
     }
   }
 }
 
-// The numbers of a matrix of some order in the order that substitution takes them: for each panel
-// its inverse and L below, then from the last panel on its inverse and U above.
+// The factors in the order that substitution takes them: for each panel its inverse and L below,
+// then from the last panel on its inverse and U above.
 constexpr size_t packed_size(size_t order) { return order * (order + pack); }
 
-void pack_factors(const float *a, int order, const float *inverses, float *out) {
+void pack_factors(const float *a, const block_shape &m, const float *inverses, float *out) {
   const auto take = [&](const float *from, int count) { out = std::copy_n(from, count, out); };
-  for (int k = 0; k < order; k += pack) {
+  for (int k = 0; k < m.order; k += pack) {
+    const reach to = reach_of(m, k);
     take(inverses + 2 * pack * k, pack * pack);
-    for (int c = k; c < k + pack; ++c) take(a + c * order + k + pack, order - k - pack);
+    const float *panel = a + k * m.order;
+    for (int c = 0; c < pack; ++c) take(panel + c * m.order + k + pack, to.near - k - pack);
+    for (int c = 0; c < pack; ++c) take(panel + c * m.order + to.far, to.end - to.far);
   }
-  for (int k = order - pack; k >= 0; k -= pack) {
+  for (int k = m.order - pack; k >= 0; k -= pack) {
+    const int first = first_above(m, k);
     take(inverses + 2 * pack * k + pack * pack, pack * pack);
-    for (int c = k; c < k + pack; ++c) take(a + c * order, k);
+    for (int c = k; c < k + pack; ++c) take(a + c * m.order + first, k - first);
   }
 }
 
 RAILPATCH_DISPATCH
-void substitute(const float *packed, int order, int width, float *x) {
-  for (int k = 0; k < order; k += pack) {
+void substitute(const float *packed, const block_shape &m, int width, float *x) {
+  for (int k = 0; k < m.order; k += pack) {
+    const reach to = reach_of(m, k);
     apply(packed, width, x + k);
     packed += pack * pack;
-    const int below = order - k - pack;
-    eliminate(packed, below, 0, below, x + k, x + k + pack);
-    packed += pack * below;
+    const int near = to.near - k - pack, far = to.end - to.far;
+    eliminate(packed, near, 0, near, x + k, x + k + pack);
+    packed += pack * near;
+    if (far > 0) eliminate(packed, far, 0, far, x + k, x + to.far);
+    packed += pack * far;
   }
-  for (int k = order - pack; k >= 0; k -= pack) {
+  for (int k = m.order - pack; k >= 0; k -= pack) {
+    const int first = first_above(m, k);
     apply(packed, width, x + k);
     packed += pack * pack;
-    eliminate(packed, k, 0, k, x + k, x);
-    packed += pack * k;
+    eliminate(packed, k - first, 0, k - first, x + k, x + first);
+    packed += pack * (k - first);
   }
 }
 
@@ -272,7 +309,7 @@ row_blocks::row_blocks(int max_row, int max_rows) : max_order_(whole_packs(2 * m
 void row_blocks::start(int rows, const int *row_start) {
   rows_ = rows;
   row_start_ = row_start;
-  for (int row = 0; row < rows; ++row) blocks_[static_cast<size_t>(row)] = {0, 0, 0};
+  for (int row = 0; row < rows; ++row) blocks_[static_cast<size_t>(row)] = {};
   shared_order_ = 0;
 }
 
@@ -304,8 +341,9 @@ void row_blocks::share(int n, const double *bxx, const double *byy) {
       for (int i = 0; i < n && j < n; ++i)
         column[i] = static_cast<float>(b[c][j * n + i] / shared_scale_);
     }
-    factor(a, shared_order_, shared_order_, shared_order_, pack, shared_inverses_[c].data(),
-           trailing_[c].data());
+    const block_shape all{shared_order_, shared_order_, shared_order_, shared_order_,
+                          shared_order_};
+    factor(a, all, pack, shared_inverses_[c].data(), trailing_[c].data());
   }
 }
 
@@ -314,11 +352,10 @@ bool row_blocks::set_row(int row, const element_linearisation *elements) {
   const int n = row_start_[row + 1] - row_start_[row];
   const int sticks = leading_sticks(elements, n);
   const int lead = sticks == n ? n : sticks / pack * pack, stride = shared_order_ - lead;
-  prepare(row, lead, elements);
+  prepare(row, lead, sticks - lead, slip_band, elements);
   if (lead == n) return true;
   const size_t at = trailing_at(shared_order_, lead);
-  const auto [size, order, skipped] = blocks_[static_cast<size_t>(row)];
-  fill(block_filling<float>{{n - lead, order, stride},
+  fill(block_filling<float>{{n - lead, shape_of(row).order, stride},
                             trailing_[0].data() + at,
                             trailing_[1].data() + at,
                             shared_scale_,
@@ -327,16 +364,15 @@ bool row_blocks::set_row(int row, const element_linearisation *elements) {
                             row_x_.data(),
                             row_y_.data(),
                             sticking_.data()});
-  factor_row(row, n - lead, sticks - lead);
+  factor_row(row);
   return true;
 }
 
 void row_blocks::set_row(int row, const double *bxx, const double *byy,
                          const element_linearisation *elements) {
   const int n = row_start_[row + 1] - row_start_[row];
-  prepare(row, 0, elements);
-  const int order = blocks_[static_cast<size_t>(row)].order;
-  fill(block_filling<double>{{n, order, n},
+  prepare(row, 0, leading_sticks(elements, n), max_order_, elements);
+  fill(block_filling<double>{{n, shape_of(row).order, n},
                              bxx,
                              byy,
                              1.0,
@@ -345,26 +381,27 @@ void row_blocks::set_row(int row, const double *bxx, const double *byy,
                              row_x_.data(),
                              row_y_.data(),
                              sticking_.data()});
-  // before the first element that slips, x and y do not meet
-  factor_row(row, n, leading_sticks(elements, n));
+  factor_row(row);
 }
 
-void row_blocks::factor_row(int row, int n, int meet) {
-  const int order = blocks_[static_cast<size_t>(row)].order;
-  factor(block_.data(), order, n, meet, pack, inverses_.data());
-  pack_factors(block_.data(), order, inverses_.data(), factors(row));
+void row_blocks::factor_row(int row) {
+  factor(block_.data(), shape_of(row), pack, inverses_.data());
+  pack_factors(block_.data(), shape_of(row), inverses_.data(), factors(row));
 }
 
-void row_blocks::prepare(int row, int lead, const element_linearisation *elements) {
+void row_blocks::prepare(int row, int lead, int meet, int band,
+                         const element_linearisation *elements) {
   const auto sticks = [](const element_linearisation &e) { return e.stick; };
   const int n = row_start_[row + 1] - row_start_[row];
   const int size = n + static_cast<int>(std::count_if(elements, elements + n, sticks));
-  blocks_[static_cast<size_t>(row)] = {size, whole_packs(size - 2 * lead), lead};
+  const int own = n - lead, own_size = size - 2 * lead, order = whole_packs(own_size);
+  const int border = own_size > own ? own / pack * pack : order;
+  blocks_[static_cast<size_t>(row)] = {size, lead, {order, own, meet, band, border}};
   std::copy_n(elements, n, factored_.data() + row_start_[row]);
 }
 
 void row_blocks::solve(int row, double *v) {
-  const auto [size, order, lead] = blocks_[static_cast<size_t>(row)];
+  const auto [size, lead, shape] = blocks_[static_cast<size_t>(row)];
   // scaled to unit size, so that single precision neither overflows nor loses small tractions
   double scale = 0;
   for (int k = 0; k < size; ++k) scale = std::max(scale, std::abs(v[k]));
@@ -376,7 +413,7 @@ void row_blocks::solve(int row, double *v) {
   float *x = vector_.data();
   for (int k = 0; k < own; ++k) x[k] = static_cast<float>(own_z[k] / scale);
   for (int k = own; k < own_size; ++k) x[k] = static_cast<float>(own_y[k - own] / scale);
-  std::fill(x + own_size, x + order, 0.0f);
+  std::fill(x + own_size, x + shape.order, 0.0f);
   float *lead_x = row_x_.data(), *lead_y = row_y_.data();
   const element_linearisation *rest = factored_.data() + row_start_[row] + lead;
   if (lead > 0) {
@@ -400,7 +437,7 @@ void row_blocks::solve(int row, double *v) {
       if (e.stick) x[second++] += weight * lead_y[lead + k];
     }
   }
-  substitute(factors(row), order, pack, x);
+  substitute(factors(row), shape, pack, x);
   if (lead > 0) {
     for (int k = 0, second = own; k < own; ++k) {
       const element_linearisation &e = rest[k];

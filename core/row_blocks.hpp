@@ -21,6 +21,13 @@ struct element_linearisation {
   bool stick;
 };
 
+// What is kept of a matrix and its factors. Of the first n columns, those before `meet` do not meet
+// the columns behind n; of the first `border` rows and columns, those further apart than `band` do
+// not meet. order, band and border: whole packs.
+struct block_shape {
+  int order, n, meet, band, border;
+};
+
 // A row's vector holds z of all its elements and then z_y of those that stick.
 class row_blocks {
  public:
@@ -47,13 +54,13 @@ class row_blocks {
 
  private:
   struct block {
-    int size;   // unknowns; 0: not factored yet
-    int order;  // of the row's own factors: unknowns and some of the unit matrix, in whole packs
-    int lead;   // elements that the shared factors serve
+    int size;           // unknowns; 0: not factored yet
+    int lead;           // elements that the shared factors serve
+    block_shape shape;  // of the row's own factors: other unknowns and some of the unit matrix
   };
-  void prepare(int row, int lead, const element_linearisation *elements);
-
-  void factor_row(int row, int n, int meet);
+  const block_shape &shape_of(int row) const { return blocks_[static_cast<size_t>(row)].shape; }
+  void prepare(int row, int lead, int meet, int band, const element_linearisation *elements);
+  void factor_row(int row);
 
   float *factors(int row) {
     return factors_.data() + static_cast<size_t>(row) * (factors_.size() / blocks_.size());
