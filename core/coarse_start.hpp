@@ -18,7 +18,8 @@ class coarse_start {
   // Whether a grid is fine enough to be worth it.
   static bool serves(int nx, int ny) { return nx >= least_elements && ny >= least_elements; }
 
-  // Sets the tractions of `fields` to a start; leaves them where it finds none.
+  // Sets the tractions of `fields` to a start; leaves them where it finds none. Its iterations, at
+  // a quarter of the price and less, are not among those that results count.
   void find(const grid &g, const double *pressure, const double *bound, const rolling_input &input,
             const tangential_options &options, tangential_fields fields);
   size_t bytes() const;

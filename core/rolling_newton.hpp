@@ -9,8 +9,8 @@
 //   slip:             F = p - g n,    dF = dp - theta (I - n n^T)(dp - r B dp).
 // r > 0 is a scale of the equations, one number per row, and does not change their solution.
 // A slipping element's traction moves along its bound only, so the linear systems have two unknowns
-// in an element that sticks and one in an element that slips. They are solved by GMRES with exact
-// row blocks as preconditioner.
+// in an element that sticks and one in an element that slips. They are solved by GMRES with row
+// blocks (row_blocks.hpp) as preconditioner.
 //
 // Convergence from any start. The problem is the variational inequality: find p with |p| <= g and
 // s(p) . (q - p) >= 0 for all q with |q| <= g (sums with the elements' areas). On a grid of equal
@@ -75,7 +75,7 @@ class rolling_operator {
   // ds/dxi of a component of the creepage, as B at the traction of the last call of linearise.
   virtual void slip_of_creepage(const rolling_problem &problem, int component, double *s) const;
   // The parts of B within a row of n elements, s_x from p_x and s_y from p_y: n x n, column-major
-  // (source by source), for the preconditioner.
+  // (source by source), or what stands for them in the preconditioner.
   virtual void row_matrices(int row, double *bxx, double *byy) const = 0;
   // The row whose matrices begin with those of every other one; -1: there is none.
   virtual int common_row(const rolling_problem &) const { return -1; }

@@ -2,6 +2,11 @@
 // preconditioner of the Newton steps. Rows of elements along rolling interact weakly with each
 // other, so the blocks hold most of the operator.
 //
+// Where all rows' matrices begin alike, as those of equal elements do, the elements that stick from
+// the leading edge on are eliminated by factors that all rows share: their equations differ from
+// row to row in number only. What is left to a row is the Schur complement of the others, which was
+// left over when those factors were made.
+//
 // No pivots are exchanged: along a row B is close to the Cauchy matrix 1/(i - j + 1/2), whose
 // pivots all lie between 2 and pi; a layer and slip only add to the diagonal.
 #pragma once
