@@ -74,7 +74,7 @@ patch_memory::patch_memory(int max_count, const patch_scene &scene) {
 
 size_t patch_memory::bytes() const {
   return undeformed_distance.bytes() + pressure.bytes() + 4 * px.bytes() + division.bytes() +
-         2 * node_x.bytes() + node_y.bytes();
+         2 * node_x.bytes() + node_y.bytes() + creepage.bytes();
 }
 
 patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, int max_nx,

@@ -22,10 +22,14 @@
 // (norm with weights area/r, in which P, the projection on |p| <= g, is the same) never moves away
 // from p*, |p_new - p*|^2 <= |p - p*|^2 - |p - q|^2/2, and |p - q| and with it |F| tend to 0.
 // The merit is the least |F| so far. A Newton step takes the longest of five halved lengths that
-// lowers |F|, else the whole one; where the merit has not come down to 0.9 of itself after four
-// further steps, extragradient steps from the best traction bring it down. So every fifth iteration
-// at the latest lowers the merit by a tenth: it tends to 0. Near the solution Newton's steps are
-// all that is taken. (Other discretisations inherit this as far as their B is monotone.)
+// lowers |F|, else the whole one; where the merit has not come down to 0.9 of itself after five of
+// them, extragradient steps from the best traction follow, at most 400 in an iteration, and go on
+// in the next iterations from where they ended until they have brought it down. So the merit is
+// lowered by a tenth again and again: it tends to 0. Near the solution Newton's steps are all that
+// is taken. (Other discretisations inherit this as far as their B is monotone.)
+//
+// Full sliding. Where |r s| is great against the bound in every element, p = -g s/|s| is a
+// contraction by g/|r s|: it is solved by such substitutions alone, without a Newton step.
 //
 // Vectors hold, row after row, the row's p_x and then its p_y (slip likewise): element k of a row
 // that begins with element b and has n elements has its components at
@@ -123,6 +127,7 @@ class rolling_newton {
   void find_flexibility(task &t);
   void march(task &t, double *p);
   void accept_trial(task &t);
+  double slide(task &t, double error, double goal);
   double descend(task &t, double goal);
   void projected_step(const task &t, const double *s, double length, double *out) const;
   double scale(const task &t) const;
