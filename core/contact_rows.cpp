@@ -137,11 +137,12 @@ void contact_rows::close_area(const grid &g, int first, int last) {
   }
   double low, high;
   if (count < least_rows) {
-    // too few rows for their shape: the ends of the ellipse with their moments
+    // too few rows for their shape: the ends of the ellipse with their moments, which may lie
+    // beyond the outermost elements, but not near the next ones
     const double middle = moment / sum, variance = second / sum - middle * middle;
     const double half = std::sqrt(std::max(5.0 * variance, 0.25 * g.dy * g.dy));
-    low = p[first + 1].y + middle - half;
-    high = p[first + 1].y + middle + half;
+    low = std::max(p[first + 1].y + middle - half, p[first + 1].y - 0.75 * g.dy);
+    high = std::min(p[first + 1].y + middle + half, p[last - 1].y + 0.75 * g.dy);
   } else {
     low = edge(p + first + 1, 1, g.dy);
     high = edge(p + last - 1, -1, g.dy);
