@@ -64,6 +64,9 @@ const network *pressure_model_of(rp_normal_method normal) {
 // relative, of Hertz's closed form; and of mu Fn, of the results that models are fitted to
 constexpr double rounding = 1e-10, force_floor = 3e-4;
 
+// scaled creepage and spin up to which models are fitted: beyond, all slides
+constexpr double farthest[2] = {16.0, 4.0};
+
 // of a number of elements, 0 for what has none
 double fineness(int count) { return count > 0 ? std::log(count / 16.0) : 0.0; }
 
@@ -208,8 +211,8 @@ void error_model::describe_motion(const solved_patch &patch, const rp_patch_resu
   const double moment = result.spin_moment - centre[0] * f[1] + centre[1] * f[0];
   const int stick = result.elements[RP_STICK], slip = result.elements[RP_SLIP];
   double *motion = features + pressure_feature_count;
-  motion[0] = std::log(1.0 + m.size());
-  motion[1] = std::log(1.0 + m.spin);
+  motion[0] = std::log(1.0 + std::min(m.size(), farthest[0]));
+  motion[1] = std::log(1.0 + std::min(m.spin, farthest[1]));
   motion[2] = m.xi * m.xi / (square + 0.0025);
   motion[3] = m.coupling / (0.05 + square + m.spin * m.spin);
   motion[4] = linear / (1.0 + linear);

@@ -281,7 +281,13 @@ def pressure_models(pool: ProcessPoolExecutor, seed: int) -> Iterator[Model]:
     test += [samples for name in "AB" for samples in pressures.of_benchmark(name)]
     own, other = (
         [
-            joined([samples[normal] for samples in part if len(samples[normal].errors)])
+            joined(
+                [
+                    samples[normal]
+                    for samples in part
+                    if normal in samples and len(samples[normal].errors)
+                ]
+            )
             for normal in NORMALS[1:]
         ]
         for part in (fit, test)

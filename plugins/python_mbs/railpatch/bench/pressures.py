@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
+from railpatch.bench.methods import ROOM
 from railpatch.bench.positions import random_patch
 from railpatch.bench.problems import Batch
 from railpatch.bench.samples import (
@@ -18,12 +20,13 @@ from railpatch.bench.samples import (
     random_ellipse,
     random_surface,
 )
-from railpatch.bench.shapes import Floats
+from railpatch.bench.shapes import Floats, Surface
 from railpatch.bench.steps import contact_of, steps_of
 from railpatch.bench.truth import TruthFile, batches_of
 
-COUNTS = {"random": 120, "surface": 250, "position": 500}
+COUNTS = {"random": 60, "surface": 150, "position": 300}
 PASSES = 4  # grids of each contact and theory
+FEATURES = 23  # of the core
 TESTS = 0.25  # of the counts: those to test on
 
 Task = tuple[int, str, int]  # seed, source, number
@@ -60,11 +63,16 @@ def of_benchmark(name: str) -> Iterator[dict[str, Samples]]:
 
 
 def measured(batch: Batch, truth: float, source: int, number: int) -> dict[str, Samples]:
-    """Errors of every theory but Hertz's."""
+    """Errors of every theory but Hertz's.
+
+    ANALYN is exact for quadratic surfaces, which the features do not tell from others: a model that
+    knew those would take every contact that is nearly an ellipse for one of them.
+    """
     random = np.random.default_rng([SEED, source, number])
     return {
         normal: of_theory(batch, truth, normal, random.choice(GRIDS, PASSES), (source, number))
         for normal in NORMALS[1:]
+        if normal != "analyn" or not batch.exact_pressure
     }
 
 
@@ -74,8 +82,10 @@ def of_theory(
     """Errors of one theory on some grids."""
     features, errors = [], []
     for elements in grids:
-        method = {"method": {"tangential": "none", "normal": normal}}
-        contact = contact_of(batch, method, int(elements))
+        overrides: dict[str, Any] = {"method": {"tangential": "none", "normal": normal}}
+        if normal != "half_space" and isinstance(batch.shape, Surface):
+            overrides.update(batch.shape.tables(int(elements), ROOM))
+        contact = contact_of(batch, overrides, int(elements))
         steps = steps_of(batch, [contact.step(batch.inputs()[0])])
         if not steps.good[0]:
             continue
@@ -83,7 +93,7 @@ def of_theory(
         errors.append([0.0, 0.0, abs(steps.pressure[0] / truth - 1)])
     count = len(errors)
     return Samples(
-        np.array(features).reshape(count, -1),
+        np.array(features).reshape(count, FEATURES),
         np.array(errors).reshape(count, 3),
         np.full((count, 3), np.nan),
         np.full(count, place[0]),
