@@ -209,8 +209,13 @@ void patch_contact::estimate_error(const patch_problem &problem, patch_memory &m
   const bool linear = scene_.tangential == RP_TANGENTIAL_LINEAR;
   if (result.status != RP_CONVERGED && !(linear && result.status == RP_OUT_OF_RANGE)) return;
   if (scene_.line_width > 0) return;
-  solved_patch patch{scene_.normal,      scene_.tangential,           problem.hertz,  {}, {0, 0},
-                     scene_.is_fitted(), scene_.friction_coefficient, problem.rolling};
+  solved_patch patch{scene_.normal,  scene_.tangential,  problem.hertz, {},
+                     {0, 0},         scene_.is_fitted(), {1, 1},        scene_.friction_coefficient,
+                     problem.rolling};
+  if (fast_ && fast_->table()) {
+    patch.stated[0] = fast_->table()->force_error();
+    patch.stated[1] = fast_->table()->moment_error();
+  }
   if (!scene_.estimates_force()) patch.tangential = RP_TANGENTIAL_NONE;
   if (!(problem.rolling_speed > 0)) patch.rolling = rolling_input{};
   if (memory.pressure.size()) patch.extent = extent_of(problem.g, memory.pressure.data());
@@ -219,12 +224,6 @@ void patch_contact::estimate_error(const patch_problem &problem, patch_memory &m
     patch.tangential_grid[k] = scene_.is_fitted() ? scene_.fitted[k] : patch.extent.across[k];
   if (scene_.normal == RP_NORMAL_HERTZ) patch.extent = {};
   errors_.estimate(patch, result, memory.error_features.data());
-  if (!fast_ || !fast_->table()) return;
-  // a table states its own error
-  const double capacity = scene_.friction_coefficient * result.normal_force;
-  result.error_estimate[0] = fast_->table()->force_error() * capacity;
-  result.error_estimate[1] =
-      fast_->table()->moment_error() * capacity * std::sqrt(result.contact_area / pi);
 }
 
 // Fitted rows have elements of many sizes: their places are in the fields.
