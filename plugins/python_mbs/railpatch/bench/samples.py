@@ -235,9 +235,9 @@ def random_surface(random: np.random.Generator, index: int) -> Batch:
     rows = np.stack([gap - gap.min(), 0 * y, along * (1 + random.uniform(-4, 4) * y)], axis=1)
     surface = Surface(y, rows, (20e-3 * np.sqrt(ratio), 5 * b))
     # the box from a coarse grid with some room, then from a finer one
-    for room in (1.15, 1.0):
+    for margin in (1.15, 1.0):
         shift, half = contact_box(surface, force)
-        size = (room * half[0], room * half[1])
+        size = (margin * half[0], margin * half[1])
         surface = moved(Surface(surface.y, surface.rows, size), shift)
     batch = Batch(
         name=f"surface {index}",
