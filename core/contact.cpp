@@ -179,7 +179,7 @@ grid hertz_grid(const rp_config &c, const hertz_contact &hertz) {
     const double length = 2.0 * relative_size(c, hertz, k) * hertz.semi_axes[k];
     if (c.element_size[0] > 0) {
       size = c.element_size[k];
-      return static_cast<int>(std::min(1e6, std::ceil(length / size - 1e-9))) + 2;
+      return static_cast<int>(std::clamp(std::ceil(length / size - 1e-9), 1.0, 1e6)) + 2;
     }
     size = length / c.elements[k];
     return c.elements[k] + 2;
@@ -603,7 +603,7 @@ void contact::describe(rp_stage_info *info) const {
   for (const auto &m : memory_) {
     distance += m.undeformed_distance.bytes();
     normal += m.pressure.bytes();
-    traction += 4 * m.px.bytes() + m.division.bytes() + m.history.bytes();
+    traction += m.bytes() - m.undeformed_distance.bytes() - m.pressure.bytes();
   }
   for (const auto &wheel : wheels_) distance += wheel.bytes();
   info[RP_STAGE_GEOMETRY] = {"geometry", 1,

@@ -12,6 +12,11 @@ using std::numbers::pi;
 
 // Strips with less than this part of the force are left out: rounding, not contact.
 constexpr double negligible = 1e-12;
+// Strips lie closer where a row carries more: density ~ (base + load over the greatest)^power.
+// Measured: higher powers err more on ellipses, lower ones where a short part carries most.
+constexpr double density_base = 0.1, density_power = 0.2;
+// Grid rows from which on the ends of an area follow from its outermost rows.
+constexpr int least_rows = 4;
 
 // Peak of the elliptic pressure that carries the load of a strip.
 double peak_of(double load, double half_length, double height) {
@@ -26,7 +31,11 @@ contact_rows::contact_rows(int nodes, int strips, int max_grid_rows)
       rows_(static_cast<size_t>(strips)),
       cosine_(static_cast<size_t>(nodes)),
       sine_(static_cast<size_t>(nodes)),
-      points_(static_cast<size_t>(max_grid_rows) + 2) {
+      // every other grid row may be an area of its own, with two ends
+      points_(2 * static_cast<size_t>(max_grid_rows) + 2),
+      density_(points_.size()),
+      weight_(points_.size()),
+      areas_(static_cast<size_t>(strips)) {
   for (int k = 0; k < nodes; ++k) {
     const double angle = (k + 1) * pi / (nodes + 1);
     cosine_[static_cast<size_t>(k)] = std::cos(angle);
@@ -62,22 +71,33 @@ void contact_rows::set_pressure(const grid &g, const double *pressure) {
   const int points = collect(g, pressure);
   count_ = 0;
   if (points == 0) return;
-  profile_point *p = points_.data();
+  const profile_point *p = points_.data();
   if (g.ny == 1)
     return set_line(std::sqrt(p[1].half_length_squared), g.dy, p[1].load * g.dy, p[1].x);
-  const double low = edge(p + 1, 1, points, g.dy);
-  const double high = edge(p + points, -1, points, g.dy);
-  double force = 0;
-  for (int j = 1; j <= points; ++j) force += p[j].load * g.dy;
-  // nothing is transferred at the edges
-  p[0] = {low, 0.0, p[1].x, 0.0};
-  p[points + 1] = {high, 0.0, p[points].x, 0.0};
-  cut_strips(points + 2, low, high, force);
+  share_strips(points);
 }
 
-// The grid's rows from the first to the last in contact, from points_[1] on; returns their number.
+// Every area gets at least one strip, and the more the wider it is and the more it carries.
+void contact_rows::share_strips(int points) {
+  double peak = 0, whole = 0, before = 0;
+  for (int i = 0; i < points; ++i) peak = std::max(peak, points_[static_cast<size_t>(i)].load);
+  for (int k = 0; k < area_count_; ++k) whole += weigh(areas_[static_cast<size_t>(k)], peak);
+  int strip = 0;
+  for (int k = 0; k < area_count_; ++k) {
+    const contact_area &area = areas_[static_cast<size_t>(k)];
+    before += area.share;
+    const int end = std::clamp(static_cast<int>(std::lround(strips_ * before / whole)), strip + 1,
+                               strips_ - (area_count_ - 1 - k));
+    cut_strips(area, strip, end - strip);
+    strip = end;
+  }
+}
+
+// The grid's rows in contact, with the ends of every area between rows without contact; returns
+// the number of points. Where there are more areas than strips, the last strip holds the rest.
 int contact_rows::collect(const grid &g, const double *pressure) {
-  int points = 0, last = 0;
+  int points = 0, begin = 0, last = -1;
+  area_count_ = 0;
   for (int j = 0; j < g.ny; ++j) {
     double sum = 0, first = 0, second = 0;
     for (int i = 0; i < g.nx; ++i) {
@@ -86,64 +106,157 @@ int contact_rows::collect(const grid &g, const double *pressure) {
       first += p * x;
       second += p * x * x;
     }
-    if (points == 0 && !(sum > 0)) continue;
-    const double x = sum > 0 ? first / sum : points_[static_cast<size_t>(points)].x;
+    const bool loaded = sum > 0;
+    if (loaded && last >= 0 && last < j - 1 && area_count_ + 1 < strips_) {
+      close_area(g, begin, points);
+      points = begin = points + 1;
+    }
+    if (!loaded) continue;
+    if (points == begin) ++points;  // the end
+    const double x = first / sum;
     // variance of the ellipse is a quarter of its squared half-length; elements have their own
-    const double variance = sum > 0 ? second / sum - x * x + g.dx * g.dx / 12.0 : 0.0;
-    points_[static_cast<size_t>(++points)] = {g.y(j), sum * g.dx, x, 4.0 * std::max(0.0, variance)};
-    if (sum > 0) last = points;
+    const double variance = second / sum - x * x + g.dx * g.dx / 12.0;
+    points_[static_cast<size_t>(points++)] = {g.y(j), sum * g.dx, x, 4.0 * std::max(0.0, variance)};
+    last = j;
   }
-  return last;
+  if (last < 0) return 0;
+  close_area(g, begin, points);
+  return points + 1;
+}
+
+// An area of contact from the points between its ends; nothing is transferred at those.
+void contact_rows::close_area(const grid &g, int first, int last) {
+  profile_point *p = points_.data();
+  const int count = last - first - 1;
+  double sum = 0, moment = 0, second = 0;
+  for (int i = first + 1; i < last; ++i) {
+    const double y = p[i].y - p[first + 1].y;
+    sum += p[i].load;
+    moment += p[i].load * y;
+    second += p[i].load * y * y;
+  }
+  double low, high;
+  if (count < least_rows) {
+    // too few rows for their shape: the ends of the ellipse with their moments, which may lie
+    // beyond the outermost elements, but not near the next ones
+    const double middle = moment / sum, variance = second / sum - middle * middle;
+    const double half = std::sqrt(std::max(5.0 * variance, 0.25 * g.dy * g.dy));
+    low = std::max(p[first + 1].y + middle - half, p[first + 1].y - 0.75 * g.dy);
+    high = std::min(p[first + 1].y + middle + half, p[last - 1].y + 0.75 * g.dy);
+  } else {
+    low = edge(p + first + 1, 1, g.dy);
+    high = edge(p + last - 1, -1, g.dy);
+  }
+  // a row whose middle lies beyond the end gives way to it
+  if (!(p[first + 1].y > low)) ++first;
+  if (!(p[last - 1].y < high)) --last;
+  const int inner = std::min(first + 1, last - 1);
+  p[first] = {low, 0.0, p[inner].x, 0.0};
+  p[last] = {high, 0.0, p[last - 1].x, 0.0};
+  areas_[static_cast<size_t>(area_count_++)] = {first, last, sum * g.dy, 0.0, 0.0};
+}
+
+// Density of strips from the load, and its integral, linear and quadratic between the points;
+// returns the area's share of the strips.
+double contact_rows::weigh(contact_area &p, double peak_load) {
+  double sum = 0;
+  for (int i = p.first; i <= p.last; ++i) {
+    const auto at = static_cast<size_t>(i);
+    density_[at] = std::pow(density_base + points_[at].load / peak_load, density_power);
+    if (i > p.first)
+      sum += 0.5 * (density_[at] + density_[at - 1]) * (points_[at].y - points_[at - 1].y);
+    weight_[at] = sum;
+  }
+  p.weight = sum;
+  return p.share = std::sqrt(p.weight * p.force);
+}
+
+// y up to which the integral of the density is so much.
+double contact_rows::place(const contact_area &p, double weight) const {
+  int i = p.first;
+  while (i + 2 <= p.last && weight_[static_cast<size_t>(i + 1)] < weight) ++i;
+  const auto at = static_cast<size_t>(i);
+  const double length = points_[at + 1].y - points_[at].y, q = (weight - weight_[at]) / length;
+  const double a = density_[at], bend = density_[at + 1] - a;
+  const double t = 2.0 * q / (a + std::sqrt(std::max(0.0, a * a + 2.0 * bend * q)));
+  return points_[at].y + std::clamp(t, 0.0, 1.0) * length;
 }
 
 // y where the load vanishes: the parabola through the three rows next to the outermost one, whose
 // own element is only partly in contact; never beyond that element.
-double contact_rows::edge(const profile_point *first, int step, int count, double dy) const {
-  const double out = first->y - step * 0.5 * dy;
-  if (count < 4) return out;
+double contact_rows::edge(const profile_point *first, int step, double dy) const {
   const double l1 = first[step].load, l2 = first[2 * step].load, l3 = first[3 * step].load;
   // load = l1 + t (l2 - l1) + t (t - 1)/2 bend, t in rows from the first of the three inwards
   const double bend = std::min(0.0, l3 - 2.0 * l2 + l1), slope = l2 - l1 - 0.5 * bend;
-  if (!(slope > 0)) return out;
+  if (!(slope > 0)) return first->y - step * 0.5 * dy;
   const double root = std::sqrt(slope * slope - 2.0 * bend * l1);
   const double t = -2.0 * l1 / (slope + root);
   return first->y + step * dy * std::clamp(1.0 + t, -0.5, 0.5);
 }
 
-// Strips of equal height with the integrals of what is linear between the points.
-void contact_rows::cut_strips(int points, double low, double high, double force) {
-  const double height = (high - low) / strips_;
+// Of load and squared half-length between the points i and i + 1 of an area: k in the parabola
+// linear - k t (1 - t), from the smaller one of the second differences at both, never below zero.
+contact_rows::bends contact_rows::bend(const contact_area &area, int i) const {
   const profile_point *p = points_.data();
-  int at = 0;
-  double carried = 0;
-  for (int j = 0; j < strips_; ++j) {
-    const double begin = low + j * height, end = j + 1 < strips_ ? begin + height : high;
+  const auto of = [&](double profile_point::*value) {
+    const auto at = [&](int j) {
+      const double before = p[j].y - p[j - 1].y, after = p[j + 1].y - p[j].y;
+      const double rise = (p[j].*value - p[j - 1].*value) / before;
+      const double next = (p[j + 1].*value - p[j].*value) / after;
+      return (next - rise) / (before + after);
+    };
+    const double length = p[i + 1].y - p[i].y, limit = std::max(p[i].*value, p[i + 1].*value);
+    const bool inner[2] = {i > area.first, i + 1 < area.last};
+    double k = inner[0] ? at(i) : inner[1] ? at(i + 1) : 0.0;
+    if (inner[0] && inner[1]) {
+      const double other = at(i + 1);
+      k = k * other > 0 ? (std::abs(other) < std::abs(k) ? other : k) : 0.0;
+    }
+    return std::clamp(k * length * length, -limit, limit);
+  };
+  return {of(&profile_point::load), of(&profile_point::half_length_squared)};
+}
+
+// Strips of equal weight with the integrals of what is linear between the points.
+void contact_rows::cut_strips(const contact_area &area, int first_strip, int strips) {
+  const profile_point *p = points_.data();
+  const int first = count_;
+  int at = area.first;
+  double carried = 0, end = p[area.first].y;
+  for (int j = 0; j < strips; ++j) {
+    const double begin = end;
+    end = j + 1 < strips ? place(area, area.weight * (j + 1) / strips) : p[area.last].y;
+    const double height = end - begin;
     double load = 0, squared = 0, x = 0, from = begin;
     while (from < end) {
-      while (at + 2 < points && p[at + 1].y <= from) ++at;
+      while (at + 1 < area.last && p[at + 1].y <= from) ++at;
       const profile_point &a = p[at], &b = p[at + 1];
-      const double to = at + 2 < points ? std::min(end, b.y) : end;
-      const double t = (0.5 * (from + to) - a.y) / (b.y - a.y), length = to - from;
-      load += length * (a.load + t * (b.load - a.load));
-      squared +=
-          length * (a.half_length_squared + t * (b.half_length_squared - a.half_length_squared));
+      const double to = at + 1 < area.last ? std::min(end, b.y) : end;
+      const double span = b.y - a.y, length = to - from, t = (0.5 * (from + to) - a.y) / span;
+      // mean of t (1 - t)
+      const double bow = t * (1.0 - t) - length * length / (12.0 * span * span);
+      const bends k = bend(area, at);
+      load += length * (a.load + t * (b.load - a.load) - bow * k.load);
+      squared += length * (a.half_length_squared +
+                           t * (b.half_length_squared - a.half_length_squared) - bow * k.squared);
       x += length * (a.x + t * (b.x - a.x));
       from = to;
     }
-    if (!(load > negligible * force) || !(squared > 0)) continue;
+    if (!(load > negligible * area.force) || !(squared > 0)) continue;
     const double half_length = std::sqrt(squared / height);
-    rows_[static_cast<size_t>(count_++)] = {j,          begin + 0.5 * height, height,
-                                            x / height, half_length,          load};
+    rows_[static_cast<size_t>(count_++)] = {first_strip + j, 0.5 * (begin + end), height,
+                                            x / height,      half_length,         load};
     carried += load;
   }
-  for (int j = 0; j < count_; ++j) {
+  for (int j = first; j < count_; ++j) {
     contact_row &row = rows_[static_cast<size_t>(j)];
-    row.peak = peak_of(row.peak * force / carried, row.half_length, row.height);
+    row.peak = peak_of(row.peak * area.force / carried, row.half_length, row.height);
   }
 }
 
 size_t contact_rows::bytes() const {
-  return rows_.bytes() + cosine_.bytes() + sine_.bytes() + points_.bytes();
+  return rows_.bytes() + cosine_.bytes() + sine_.bytes() + points_.bytes() + density_.bytes() +
+         weight_.bytes() + areas_.bytes();
 }
 
 }  // namespace railpatch

@@ -1,5 +1,6 @@
 // The contact area as rows along rolling, each a strip in y with its own chord: the fitted
 // discretisation of the tangential problem, whose edges lie where the contact's edges are.
+// Each of several areas beside each other has strips of its own.
 //
 // A row carries the pressure p(x) = p_row sqrt(1 - ((x - x_row)/a_row)^2): exact for Hertz
 // contact, and the ellipse with the same load, centroid and second moment for any other (the
@@ -32,7 +33,8 @@ class contact_rows {
   void set_ellipse(const double semi_axes[2], double normal_force);
   // A line contact of the given width about x: one row.
   void set_line(double half_length, double width, double normal_force, double x = 0);
-  // Any pressure on a uniform grid; the rows carry exactly its force.
+  // Any pressure on a uniform grid; the rows carry exactly its force. Between the grid's rows load
+  // and squared chord are parabolas, as they are of an ellipse.
   void set_pressure(const grid &g, const double *pressure);
 
   int nodes() const { return nodes_; }
@@ -52,14 +54,32 @@ class contact_rows {
   struct profile_point {
     double y, load, x, half_length_squared;
   };
+  // contact between grid rows without pressure: its points, with both ends
+  struct contact_area {
+    int first, last;
+    double force;   // N
+    double weight;  // integral of the strips' density
+    double share;   // of the strips
+  };
+  struct bends {
+    double load, squared;
+  };
   int collect(const grid &g, const double *pressure);
-  double edge(const profile_point *first, int step, int count, double dy) const;
-  void cut_strips(int points, double low, double high, double force);
+  void close_area(const grid &g, int first, int last);
+  double edge(const profile_point *first, int step, double dy) const;
+  bends bend(const contact_area &area, int i) const;
+  void share_strips(int points);
+  double weigh(contact_area &p, double peak_load);
+  double place(const contact_area &p, double weight) const;
+  void cut_strips(const contact_area &p, int first_strip, int strips);
 
   int nodes_, strips_, count_ = 0;
   aligned_buffer<contact_row> rows_;
   aligned_buffer<double> cosine_, sine_;
   aligned_buffer<profile_point> points_;
+  aligned_buffer<double> density_, weight_;  // of strips at the points, and its integral
+  aligned_buffer<contact_area> areas_;
+  int area_count_ = 0;
 };
 
 }  // namespace railpatch

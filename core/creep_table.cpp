@@ -18,7 +18,7 @@ constexpr size_t checked_from = offsetof(creep_table_header, ratio_count);
 constexpr int linear_stride = 8;
 // Of the bound: above this part the force bends away from it, so that it stays below for sure.
 constexpr double bend = 1e-3;
-// Creepages beyond are all the same: sliding.
+// Creepages beyond are all sliding, and shrunk to this size.
 constexpr double greatest = 1e150;
 
 struct layout {
@@ -136,6 +136,7 @@ creep_table::creep_table(const void *data, double poisson_ratio)
   linear_ = reinterpret_cast<const float *>(bytes + at.linear);
   remainder_ = reinterpret_cast<const int16_t *>(bytes + at.remainder);
   const double *node = header_->poisson_ratio;
+  poisson_in_range_ = poisson_ratio >= node[0] && poisson_ratio <= node[2];
   for (int i = 0; i < 3; ++i) {
     const double a = node[(i + 1) % 3], b = node[(i + 2) % 3];
     poisson_weight_[i] =
@@ -212,7 +213,7 @@ creep_forces creep_table::evaluate(const creep_problem &p) const {
   const creep_table_header &d = header();
   creep_forces out{};
   const double ratio = std::log(p.semi_axes[0] / p.semi_axes[1]);
-  out.in_range = ratio >= d.log_ratio[0] && ratio <= d.log_ratio[1];
+  out.in_range = poisson_in_range_ && ratio >= d.log_ratio[0] && ratio <= d.log_ratio[1];
   if (!(p.bound > 0)) return out;
   const double inside = std::clamp(ratio, d.log_ratio[0], d.log_ratio[1]);
   const axis at_ratio =
@@ -226,9 +227,11 @@ creep_forces creep_table::evaluate(const creep_problem &p) const {
   const double xi = p.direction * p.creepage[0], phi = p.direction * p.spin_creepage;
   const double eta = p.creepage[1];
   const double mirror = phi < 0 || (phi == 0 && eta < 0) ? -1.0 : 1.0;
-  double n[3] = {std::min(scale[0] * std::abs(xi), greatest),
-                 std::clamp(mirror * scale[1] * eta, -greatest, greatest),
-                 std::min(scale[2] * c * std::abs(phi), greatest)};
+  // all components alike, so that the direction stays
+  const double most = std::max({std::abs(xi), std::abs(eta), c * std::abs(phi)});
+  const double shrink = most > greatest ? greatest / most : 1.0;
+  double n[3] = {scale[0] * std::abs(xi * shrink), mirror * scale[1] * (eta * shrink),
+                 scale[2] * c * std::abs(phi * shrink)};
   const double size = std::hypot(n[0], n[1], n[2]);
   if (size == 0) return out;
   for (double &component : n) component /= size;

@@ -55,7 +55,8 @@ struct creep_forces {
   double force[2];  // N
   double moment;    // N m
   double friction;  // N, frictional power over the rolling speed
-  bool in_range;    // of a/b; outside, the nearest a/b of the table stands for it
+  bool in_range;    // of the table; outside, its nearest a/b stands for a/b, and its parabola
+                    // continues in Poisson's ratio
 };
 
 class creep_table {
@@ -88,6 +89,7 @@ class creep_table {
   const float *linear_;
   const int16_t *remainder_;
   double poisson_weight_[3];
+  bool poisson_in_range_;
 };
 
 }  // namespace railpatch

@@ -41,6 +41,8 @@ const network *model_of(const solved_patch &patch) {
       return linear_errors;
     case RP_TANGENTIAL_POLACH:
       return polach_errors;
+    case RP_TANGENTIAL_TABLE:
+      return table_errors;
     default:
       return nullptr;
   }
@@ -62,6 +64,9 @@ const network *pressure_model_of(rp_normal_method normal) {
 // relative, of Hertz's closed form; and of mu Fn, of the results that models are fitted to
 constexpr double rounding = 1e-10, force_floor = 3e-4;
 
+// scaled creepage and spin up to which models are fitted: beyond, all slides
+constexpr double farthest[2] = {16.0, 4.0};
+
 // of a number of elements, 0 for what has none
 double fineness(int count) { return count > 0 ? std::log(count / 16.0) : 0.0; }
 
@@ -70,7 +75,7 @@ double fineness(int count) { return count > 0 ? std::log(count / 16.0) : 0.0; }
 contact_extent extent_of(const grid &g, const double *pressure) {
   contact_extent e;
   int low[2] = {g.nx, g.ny}, high[2] = {-1, -1}, count = 0;
-  double sum = 0, sum_x = 0, sum_y = 0;
+  double sum = 0, sum_x = 0, sum_y = 0, sum_xx = 0, sum_yy = 0;
   for (int j = 0; j < g.ny; ++j) {
     double row = 0;
     for (int i = 0; i < g.nx; ++i) {
@@ -80,6 +85,7 @@ contact_extent extent_of(const grid &g, const double *pressure) {
       high[0] = std::max(high[0], i);
       row += p;
       sum_x += p * g.x(i);
+      sum_xx += p * g.x(i) * g.x(i);
       ++count;
     }
     if (!(row > 0)) continue;
@@ -87,12 +93,19 @@ contact_extent extent_of(const grid &g, const double *pressure) {
     high[1] = j;
     sum += row;
     sum_y += row * g.y(j);
+    sum_yy += row * g.y(j) * g.y(j);
   }
   if (count == 0) return e;
   for (int k = 0; k < 2; ++k) e.across[k] = high[k] - low[k] + 1;
   e.centre[0] = sum_x / sum;
   e.centre[1] = sum_y / sum;
   e.width = e.across[1] * g.dy;
+  const double size[2] = {g.dx, g.dy}, square[2] = {sum_xx / sum, sum_yy / sum};
+  for (int k = 0; k < 2; ++k) {
+    // of an ellipse a twentieth of the squared width; elements have their own
+    const double variance = square[k] - e.centre[k] * e.centre[k] + size[k] * size[k] / 12.0;
+    e.spread[k] = 20.0 * variance / std::pow(e.across[k] * size[k], 2);
+  }
   const double ellipse = 0.25 * pi * e.across[0] * e.across[1];
   e.box_share = count / ellipse;
   return e;
@@ -161,7 +174,8 @@ void error_model::estimate(const solved_patch &patch, rp_patch_result &result,
   describe_motion(patch, result, m, force, length, features);
   const double share = m.sum() / (1.0 + m.sum()), least = force_floor * std::min(1.0, m.sum());
   for (int k = 0; k < 2; ++k) {
-    const double relative = std::max(least, share * std::exp(model[k].at(features)));
+    const double relative =
+        std::max(least, share * patch.stated[k] * std::exp(model[k].at(features)));
     estimate[k] = force * (k == 0 ? 1.0 : length) * relative;
   }
 }
@@ -178,9 +192,11 @@ void error_model::describe_area(const solved_patch &patch, const rp_patch_result
   const contact_extent &e = patch.extent;
   features[3] = fineness(e.across[0]);
   features[4] = fineness(e.across[1]);
-  // both zero for an ellipse
+  // all four zero for an ellipse
   features[5] = std::log(result.max_pressure * result.contact_area / (1.5 * result.normal_force));
   features[6] = std::log(e.box_share);
+  features[10] = std::log(e.spread[0]);
+  features[11] = std::log(e.spread[1]);
   features[7] = patch.normal == RP_NORMAL_HALF_SPACE;
   features[8] = patch.normal == RP_NORMAL_KIK_PIOTROWSKI;
   features[9] = patch.normal == RP_NORMAL_ANALYN;
@@ -195,8 +211,8 @@ void error_model::describe_motion(const solved_patch &patch, const rp_patch_resu
   const double moment = result.spin_moment - centre[0] * f[1] + centre[1] * f[0];
   const int stick = result.elements[RP_STICK], slip = result.elements[RP_SLIP];
   double *motion = features + pressure_feature_count;
-  motion[0] = std::log(1.0 + m.size());
-  motion[1] = std::log(1.0 + m.spin);
+  motion[0] = std::log(1.0 + std::min(m.size(), farthest[0]));
+  motion[1] = std::log(1.0 + std::min(m.spin, farthest[1]));
   motion[2] = m.xi * m.xi / (square + 0.0025);
   motion[3] = m.coupling / (0.05 + square + m.spin * m.spin);
   motion[4] = linear / (1.0 + linear);
@@ -205,6 +221,7 @@ void error_model::describe_motion(const solved_patch &patch, const rp_patch_resu
   motion[7] = stick + slip > 0 ? static_cast<double>(stick) / (stick + slip) : 0.0;
   motion[8] = fineness(patch.tangential_grid[0]);
   motion[9] = fineness(patch.tangential_grid[1]);
+  motion[10] = std::log(1.0 + 20.0 * layer_flexibility_ * elastic_.shear_modulus / length);
 }
 
 }  // namespace railpatch

@@ -6,6 +6,7 @@
 //   creep force   mu Fn s/(1 + s) exp(model), at least mu Fn min(1, s) floor; length of the vector
 //   spin moment   the same times c
 //   pressure      p_max exp(model)
+// Creep forces from a table have the error that the table states as a further factor.
 // with s the sum of scaled creepage and spin (see features), c^2 = a b. The floor is the accuracy
 // of the results that the errors were measured against. The model is a network of one hidden layer,
 //   model(f) = w0 + sum_k w_k g(v_k0 + v_k . f),  g(t) = t/(1 + |t|).
@@ -21,7 +22,7 @@
 namespace railpatch {
 
 // the first of them describe the contact area and the grid, the others the motion
-constexpr int pressure_feature_count = 10, error_feature_count = 20;
+constexpr int pressure_feature_count = 12, error_feature_count = 23;
 
 // The contact area as a grid of elements has it; zeros where it is a closed form.
 struct contact_extent {
@@ -29,6 +30,7 @@ struct contact_extent {
   double centre[2] = {0, 0};  // m, of pressure
   double width = 0;           // m, lateral
   double box_share = 1;       // -, of the bounding box that is in contact, over that of an ellipse
+  double spread[2] = {1, 1};  // -, variance of the pressure over that of an ellipse in the box
 };
 contact_extent extent_of(const grid &g, const double *pressure);
 
@@ -40,6 +42,7 @@ struct solved_patch {
   contact_extent extent;       // else
   int tangential_grid[2];      // elements across the contact, nodes and rows; 0: closed form
   bool fitted;
+  double stated[2];  // -, errors of force and moment that a table states; else 1
   double friction_coefficient;
   rolling_input rolling;
 };

@@ -56,6 +56,7 @@ tangential_result fastsim(const grid &g, const double *pressure, const double *b
   tangential_result result;
   for (int j = 0; j < g.ny; ++j) {
     double p[2] = {0, 0}, s[2], before = rows.leading[j];
+    bool entered = false;
     const double spin = input.spin_creepage, middle = 0.5 * (rows.leading[j] + rows.trailing[j]);
     const double wx =
         input.creepage[0] - spin * (rows.centre + (g.y(j) - rows.centre) * l.l1 / l.l3);
@@ -64,7 +65,13 @@ tangential_result fastsim(const grid &g, const double *pressure, const double *b
       const int at = j * g.nx + i;
       fields.px[at] = fields.py[at] = fields.sx[at] = fields.sy[at] = 0;
       fields.division[at] = static_cast<unsigned char>(RP_EXTERIOR);
-      if (!(pressure[at] > 0)) continue;
+      if (!(pressure[at] > 0)) {
+        // traction does not cross a gap: behind it the row begins afresh
+        p[0] = p[1] = 0;
+        if (entered) before = g.x(i) - input.direction * 0.5 * g.dx;
+        continue;
+      }
+      entered = true;
       const double x = g.x(i);
       const double length = whole_steps ? g.dx : std::abs(before - x);
       const double where = (whole_steps ? x : 0.5 * (before + x)) + input.spin_offset;

@@ -7,6 +7,10 @@
 // creepage is three times that which saturates the linear theory, L_i -> (1 - w) L_i + w L*, L* one
 // flexibility for all three, so that full sliding points exactly against the creepage. Against the
 // full theory this halves the median error in force.
+//
+// The friction is that of the slip which the theory sees, with spin's part scaled by L1/L3 and
+// L2/L3 (row_ends): it differs from what creep force and moment do on the creepages where spin is
+// large.
 #pragma once
 
 #include "coefficients.hpp"

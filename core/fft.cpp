@@ -1,5 +1,7 @@
 #include "fft.hpp"
 
+#include <algorithm>
+
 namespace railpatch {
 
 int fft_plans::find(int min_nx, int min_ny) const {
@@ -9,6 +11,17 @@ int fft_plans::find(int min_nx, int min_ny) const {
       if (sizes_y_[j] >= min_ny) return static_cast<int>(i * sizes_y_.size() + j);
   }
   return -1;
+}
+
+fft_plans fft_plans::halved() const {
+  const auto half = [](std::vector<int> sizes) {
+    // a grid rounded up, seen from one element more
+    for (int &size : sizes)
+      if (size > 1) size = smooth_size(size / 2 + 1);
+    sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
+    return sizes;
+  };
+  return fft_plans(half(sizes_x_), half(sizes_y_));
 }
 
 int smooth_size(int n) {

@@ -29,6 +29,8 @@ class fft_plans {
   int max_nx() const { return sizes_x_.back(); }
   int max_ny() const { return sizes_y_.back(); }
   size_t bytes() const;
+  // Plans for grids of half as many elements, rounded up.
+  fft_plans halved() const;
 
   // Arrays must come from aligned_buffer (memory.hpp); the input is kept.
   void forward(int plan, const double *values, std::complex<double> *spectrum) const;

@@ -46,6 +46,7 @@ class gmres {
       }
       first = false;
       const double beta = norm(v0, n);
+      if (!(beta > 0)) break;
       for (size_t i = 0; i < n; ++i) v0[i] /= beta;
       std::fill_n(right_.data(), krylov_ + 1, 0.0);
       right_[0] = beta;
@@ -56,7 +57,10 @@ class gmres {
     return result;
   }
 
-  size_t bytes() const { return basis_.bytes() + work_.bytes() + hessenberg_.bytes(); }
+  size_t bytes() const {
+    return basis_.bytes() + work_.bytes() + hessenberg_.bytes() + cosine_.bytes() + sine_.bytes() +
+           right_.bytes();
+  }
 
  private:
   template <class Apply, class Precondition>

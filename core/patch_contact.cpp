@@ -78,7 +78,8 @@ patch_memory::patch_memory(int max_count, int max_rows, const patch_scene &scene
 
 size_t patch_memory::bytes() const {
   return undeformed_distance.bytes() + pressure.bytes() + 4 * px.bytes() + division.bytes() +
-         2 * node_x.bytes() + node_y.bytes() + row_friction.bytes() + history.bytes();
+         2 * node_x.bytes() + node_y.bytes() + row_friction.bytes() + creepage.bytes() +
+         history.bytes();
 }
 
 patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, int max_nx,
@@ -91,9 +92,8 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
       errors_(scene.elastic, scene.layer_flexibility) {
   const bool full = scene.tangential == RP_TANGENTIAL_FULL && !scene.is_fitted();
   const auto count = static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny);
-  if (full || scene.normal == RP_NORMAL_HALF_SPACE)
-    influence_.emplace(
-        influence::scene{scene.elastic, scene.layer_flexibility, scene.line_width, full}, plans);
+  const influence::scene elastic{scene.elastic, scene.layer_flexibility, scene.line_width, full};
+  if (full || scene.normal == RP_NORMAL_HALF_SPACE) influence_.emplace(elastic, plans);
   if (scene.normal == RP_NORMAL_HALF_SPACE) normal_.emplace(max_nx * max_ny);
   if (scene.normal == RP_NORMAL_KIK_PIOTROWSKI || scene.normal == RP_NORMAL_ANALYN)
     rows_.emplace(scene.normal, scene.modulus(), max_ny);
@@ -102,6 +102,10 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
     tangential_.emplace(max_nx, max_ny,
                         tangential_solver::setup{scene.is_forced(), scene.law.has_value(),
                                                  scene.keeps_steps(), rolls_on ? &plans : nullptr});
+    // with a prescribed force no creepage is known to start from
+    const bool plain = !scene.is_forced() && !scene.law && !scene.keeps_steps();
+    if (plain && coarse_start::serves(max_nx, max_ny))
+      coarse_start_.emplace(elastic, plans, max_nx, max_ny);
   }
   if (is_fast(scene.tangential)) fast_.emplace(scene.elastic, scene.fast, max_nx, max_ny);
   if (scene.is_fitted()) {
@@ -117,6 +121,7 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
 
 size_t patch_contact::tangential_bytes() const {
   return bound_.bytes() + (tangential_ ? tangential_->bytes() : 0) +
+         (coarse_start_ ? coarse_start_->bytes() : 0) +
          (fast_ ? sizeof(fast_solver) + fast_->bytes() : 0) +
          (fitted_ ? fitted_rows_->bytes() + fitted_->bytes() : 0);
 }
@@ -224,8 +229,13 @@ void patch_contact::estimate_error(const patch_problem &problem, patch_memory &m
   const bool linear = scene_.tangential == RP_TANGENTIAL_LINEAR;
   if (result.status != RP_CONVERGED && !(linear && result.status == RP_OUT_OF_RANGE)) return;
   if (scene_.line_width > 0) return;
-  solved_patch patch{scene_.normal,      scene_.tangential,           problem.hertz,  {}, {0, 0},
-                     scene_.is_fitted(), scene_.friction_coefficient, problem.rolling};
+  solved_patch patch{scene_.normal,  scene_.tangential,  problem.hertz, {},
+                     {0, 0},         scene_.is_fitted(), {1, 1},        scene_.friction_coefficient,
+                     problem.rolling};
+  if (fast_ && fast_->table()) {
+    patch.stated[0] = fast_->table()->force_error();
+    patch.stated[1] = fast_->table()->moment_error();
+  }
   if (!scene_.estimates_force()) patch.tangential = RP_TANGENTIAL_NONE;
   if (!(problem.rolling_speed > 0)) patch.rolling = rolling_input{};
   if (memory.pressure.size()) patch.extent = extent_of(problem.g, memory.pressure.data());
@@ -234,12 +244,6 @@ void patch_contact::estimate_error(const patch_problem &problem, patch_memory &m
     patch.tangential_grid[k] = scene_.is_fitted() ? scene_.fitted[k] : patch.extent.across[k];
   if (scene_.normal == RP_NORMAL_HERTZ) patch.extent = {};
   errors_.estimate(patch, result, memory.error_features.data());
-  if (!fast_ || !fast_->table()) return;
-  // a table states its own error
-  const double capacity = scene_.friction_coefficient * result.normal_force;
-  result.error_estimate[0] = fast_->table()->force_error() * capacity;
-  result.error_estimate[1] =
-      fast_->table()->moment_error() * capacity * std::sqrt(result.contact_area / pi);
 }
 
 // Fitted rows have elements of many sizes: their places are in the fields.
@@ -433,6 +437,13 @@ tangential_result patch_contact::solve_on_grid(const patch_problem &problem,
       bound_[i] = coefficient * memory.pressure[i];
   }
   const tangential_options options{scene_.tolerance, scene_.max_iterations};
+  const auto zero = [&](const double *p) {
+    return std::all_of(p, p + g.count(), [](double v) { return v == 0; });
+  };
+  if (coarse_start_ && coarse_start::serves(g.nx, g.ny) && zero(memory.px.data()) &&
+      zero(memory.py.data()))
+    coarse_start_->find(g, memory.pressure.data(), bound_.data(), rolling, options,
+                        memory.fields());
   if (!scene_.law)
     return tangential_->solve(*influence_, g, memory.pressure.data(), bound_.data(), rolling,
                               options, memory.fields());

@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 
+#include "coarse_start.hpp"
 #include "error_estimate.hpp"
 #include "fast.hpp"
 #include "fitted.hpp"
@@ -147,6 +148,7 @@ class patch_contact {
   std::optional<normal_solver> normal_;
   std::optional<row_contact> rows_;
   std::optional<tangential_solver> tangential_;
+  std::optional<coarse_start> coarse_start_;  // of fine grids
   std::optional<contact_rows> fitted_rows_;
   std::optional<fitted_solver> fitted_;
   std::optional<fast_solver> fast_;

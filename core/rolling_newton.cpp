@@ -19,6 +19,8 @@ constexpr double enough = 0.9;
 constexpr int max_projections = 400;
 // a start with more of zero traction's residual than this is tried against a new one
 constexpr double far_away = 0.3;
+// bound over |r s| up to which substitutions beat Newton steps
+constexpr double fast_sliding = 0.1;
 
 double square(double v) { return v * v; }
 
@@ -100,8 +102,10 @@ tangential_result rolling_newton::solve(rolling_operator &b, const rolling_probl
   const double size = scale(t);
   if (size > 0) {
     blocks_.start(problem.rows, problem.row_start);
+    share_factors(t);
     const double goal = options.tolerance * size;
     double error = start(t, size), best = HUGE_VAL;
+    if (!t.force) error = slide(t, error, goal);
     for (int strayed = 0; error > goal && result.newton_iterations < options.max_iterations &&
                           !(t.force && t.force->beyond());
          ++result.newton_iterations) {
@@ -126,7 +130,8 @@ tangential_result rolling_newton::solve(rolling_operator &b, const rolling_probl
     std::fill_n(p, t.vector_size(), 0.0);
     std::copy_n(problem.rigid_slip, t.vector_size(), s);
     if (t.force) problem.force->creepage[0] = problem.force->creepage[1] = 0;
-    result.converged = true;
+    result.residual = size;
+    result.converged = size == 0;
   }
   finish(t);
   return result;
@@ -162,6 +167,32 @@ double rolling_newton::start(task &t, double size) {
   }
   accept_trial(t);
   return marched;
+}
+
+// Substitutions p = -g s/|s| while every element slips fast enough for them to converge fast;
+// returns |F|.
+double rolling_newton::slide(task &t, double error, double goal) {
+  double *p = t.problem.traction, *s = t.problem.micro_slip;
+  while (error > goal) {
+    bool fast = true;
+    t.for_each_element([&](size_t k, size_t ix, size_t iy) {
+      const double bound = t.problem.bound[k], slip = std::hypot(s[ix], s[iy]);
+      fast = fast && bound <= fast_sliding * r_[k] * slip;
+      const double factor = slip > 0 ? -bound / slip : 0.0;
+      trial_p_[ix] = factor * s[ix];
+      trial_p_[iy] = factor * s[iy];
+    });
+    if (!fast) return error;
+    micro_slip(t, trial_p_.data(), trial_s_.data());
+    const double slid = residual(t, trial_p_.data(), trial_s_.data(), trial_f_.data());
+    if (!(slid <= 0.5 * error)) {
+      micro_slip(t, p, s);
+      return residual(t, p, s, f_.data());
+    }
+    accept_trial(t);
+    error = slid;
+  }
+  return error;
 }
 
 // Simplified theory (Kalker 1982): displacement = L p, so traction grows from the leading edge on
@@ -248,6 +279,15 @@ void rolling_newton::project(const task &t, double *p) const {
   });
 }
 
+// Rows of equal elements begin with the same matrices.
+void rolling_newton::share_factors(task &t) {
+  const int row = t.b.common_row(t.problem);
+  if (row < 0) return;
+  t.b.row_matrices(row, row_matrix_[0].data(), row_matrix_[1].data());
+  blocks_.share(t.problem.row_start[row + 1] - t.problem.row_start[row], row_matrix_[0].data(),
+                row_matrix_[1].data());
+}
+
 // Prepares dF at the present p and s and factors its row blocks.
 void rolling_newton::linearise(task &t) {
   const double *p = t.problem.traction, *s = t.problem.micro_slip;
@@ -265,7 +305,7 @@ void rolling_newton::linearise(task &t) {
   t.b.linearise();
   for (int row = 0; row < t.problem.rows; ++row) {
     const element_linearisation *elements = linear_.data() + t.problem.row_start[row];
-    if (blocks_.serves(row, elements)) continue;
+    if (blocks_.serves(row, elements) || blocks_.set_row(row, elements)) continue;
     t.b.row_matrices(row, row_matrix_[0].data(), row_matrix_[1].data());
     blocks_.set_row(row, row_matrix_[0].data(), row_matrix_[1].data(), elements);
   }
@@ -471,6 +511,9 @@ double rolling_newton::descend(task &t, double goal) {
     error = residual(t, p, s, f_.data());
     length = std::min(1.0, 1.5 * length);
   }
+  // where the goal is not met, the next iteration goes on from here
+  std::copy_n(p, t.vector_size(), best_p_.data());
+  if (t.force) t.force->remember();
   return error;
 }
 

@@ -9,8 +9,8 @@
 //   slip:             F = p - g n,    dF = dp - theta (I - n n^T)(dp - r B dp).
 // r > 0 is a scale of the equations, one number per row, and does not change their solution.
 // A slipping element's traction moves along its bound only, so the linear systems have two unknowns
-// in an element that sticks and one in an element that slips. They are solved by GMRES with exact
-// row blocks as preconditioner.
+// in an element that sticks and one in an element that slips. They are solved by GMRES with row
+// blocks (row_blocks.hpp) as preconditioner.
 //
 // Convergence from any start. The problem is the variational inequality: find p with |p| <= g and
 // s(p) . (q - p) >= 0 for all q with |q| <= g (sums with the elements' areas). On a grid of equal
@@ -22,10 +22,14 @@
 // (norm with weights area/r, in which P, the projection on |p| <= g, is the same) never moves away
 // from p*, |p_new - p*|^2 <= |p - p*|^2 - |p - q|^2/2, and |p - q| and with it |F| tend to 0.
 // The merit is the least |F| so far. A Newton step takes the longest of five halved lengths that
-// lowers |F|, else the whole one; where the merit has not come down to 0.9 of itself after four
-// further steps, extragradient steps from the best traction bring it down. So every fifth iteration
-// at the latest lowers the merit by a tenth: it tends to 0. Near the solution Newton's steps are
-// all that is taken. (Other discretisations inherit this as far as their B is monotone.)
+// lowers |F|, else the whole one; where the merit has not come down to 0.9 of itself after five of
+// them, extragradient steps from the best traction follow, at most 400 in an iteration, and go on
+// in the next iterations from where they ended until they have brought it down. So the merit is
+// lowered by a tenth again and again: it tends to 0. Near the solution Newton's steps are all that
+// is taken. (Other discretisations inherit this as far as their B is monotone.)
+//
+// Full sliding. Where |r s| is great against the bound in every element, p = -g s/|s| is a
+// contraction by g/|r s|: it is solved by such substitutions alone, without a Newton step.
 //
 // Vectors hold, row after row, the row's p_x and then its p_y (slip likewise): element k of a row
 // that begins with element b and has n elements has its components at
@@ -75,8 +79,10 @@ class rolling_operator {
   // ds/dxi of a component of the creepage, as B at the traction of the last call of linearise.
   virtual void slip_of_creepage(const rolling_problem &problem, int component, double *s) const;
   // The parts of B within a row of n elements, s_x from p_x and s_y from p_y: n x n, column-major
-  // (source by source), for the preconditioner.
+  // (source by source), or what stands for them in the preconditioner.
   virtual void row_matrices(int row, double *bxx, double *byy) const = 0;
+  // The row whose matrices begin with those of every other one; -1: there is none.
+  virtual int common_row(const rolling_problem &) const { return -1; }
   // The row's part of B v where v is zero from this row on; false where that costs as much as a
   // product.
   virtual bool product_of_rows_before(int, const double *, double *) { return false; }
@@ -121,12 +127,14 @@ class rolling_newton {
   void find_flexibility(task &t);
   void march(task &t, double *p);
   void accept_trial(task &t);
+  double slide(task &t, double error, double goal);
   double descend(task &t, double goal);
   void projected_step(const task &t, const double *s, double length, double *out) const;
   double scale(const task &t) const;
   void micro_slip(task &t, const double *p, double *s);
   double residual(const task &t, const double *p, const double *s, double *f) const;
   void project(const task &t, double *p) const;
+  void share_factors(task &t);
   void linearise(task &t);
   template <class F>
   size_t for_each_unknown(const task &t, F &&f) const;

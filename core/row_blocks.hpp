@@ -2,6 +2,11 @@
 // preconditioner of the Newton steps. Rows of elements along rolling interact weakly with each
 // other, so the blocks hold most of the operator.
 //
+// Where all rows' matrices begin alike, as those of equal elements do, the elements that stick from
+// the leading edge on are eliminated by factors that all rows share: their equations differ from
+// row to row in number only. What is left to a row is the Schur complement of the others, which was
+// left over when those factors were made.
+//
 // No pivots are exchanged: along a row B is close to the Cauchy matrix 1/(i - j + 1/2), whose
 // pivots all lie between 2 and pi; a layer and slip only add to the diagonal.
 #pragma once
@@ -21,6 +26,13 @@ struct element_linearisation {
   bool stick;
 };
 
+// What is kept of a matrix and its factors. Of the first n columns, those before `meet` do not meet
+// the columns behind n; of the first `border` rows and columns, those further apart than `band` do
+// not meet. order, band and border: whole packs.
+struct block_shape {
+  int order, n, meet, band, border;
+};
+
 // A row's vector holds z of all its elements and then z_y of those that stick.
 class row_blocks {
  public:
@@ -31,6 +43,11 @@ class row_blocks {
   // Whether a row's last factors serve these equations too: its elements are in the same state and
   // slip in nearly the same direction.
   bool serves(int row, const element_linearisation *elements) const;
+  // The matrices of a row of n elements begin with those of every row: factors them once, for the
+  // elements that stick from the leading edge on.
+  void share(int n, const double *bxx, const double *byy);
+  // Factors the block of one row by what is shared; false where nothing is.
+  bool set_row(int row, const element_linearisation *elements);
   // Factors the block of one row; B of the row as in rolling_operator.
   void set_row(int row, const double *bxx, const double *byy,
                const element_linearisation *elements);
@@ -42,23 +59,26 @@ class row_blocks {
 
  private:
   struct block {
-    int size;   // unknowns; 0: not factored yet
-    int order;  // of the factored matrix: unknowns and some of the unit matrix, in whole packs
+    int size;           // unknowns; 0: not factored yet
+    int lead;           // elements that the shared factors serve
+    block_shape shape;  // of the row's own factors: other unknowns and some of the unit matrix
   };
-  void fill(int n, const double *bxx, const double *byy, const element_linearisation *elements,
-            float *columns, int order);
+  const block_shape &shape_of(int row) const { return blocks_[static_cast<size_t>(row)].shape; }
+  void prepare(int row, int lead, int meet, int band, const element_linearisation *elements);
+  void factor_row(int row);
 
   float *factors(int row) {
-    return factors_.data() + static_cast<size_t>(row) * static_cast<size_t>(max_order_) *
-                                 static_cast<size_t>(max_order_);
-  }
-  float *inverses(int row) {
-    return inverses_.data() + static_cast<size_t>(row) * (inverses_.size() / blocks_.size());
+    return factors_.data() + static_cast<size_t>(row) * (factors_.size() / blocks_.size());
   }
 
   aligned_buffer<block> blocks_;
-  aligned_buffer<float> factors_, inverses_;
+  aligned_buffer<float> factors_;           // packed, row by row
+  aligned_buffer<float> block_, inverses_;  // what is being factored
   aligned_buffer<float> vector_, row_x_, row_y_;
+  // LU of B over its first entry, xx and yy, and what was left to be factored before each panel
+  aligned_buffer<float> shared_[2], shared_inverses_[2], trailing_[2];
+  int shared_order_ = 0;  // 0: nothing is shared
+  double shared_scale_ = 1;
   aligned_buffer<int> sticking_;
   aligned_buffer<element_linearisation> factored_;
   int max_order_;

@@ -21,6 +21,10 @@ void tangential_solver::for_each_element(F &&f) const {
   }
 }
 
+// of the preconditioner across the contact: few enough to hold what neighbouring rows do together,
+// enough to follow the edge of slip
+constexpr int strips = 8;
+
 // The elements of contact collected in tangential_solver, and the influence coefficients.
 class tangential_solver::grid_operator final : public rolling_operator {
  public:
@@ -28,11 +32,9 @@ class tangential_solver::grid_operator final : public rolling_operator {
       : solver_(solver), a_(a), g_(g), direction_(direction) {
     std::fill_n(solver_.grid_px_.data(), g.count(), 0.0);
     std::fill_n(solver_.grid_py_.data(), g.count(), 0.0);
-    for (int ahead = -g.nx; ahead <= g.nx; ++ahead) {
-      const auto at = static_cast<size_t>(ahead + g.nx);
-      solver_.line_[0][at] = entry(kernel::xx, -direction_ * ahead);
-      solver_.line_[1][at] = entry(kernel::yy, -direction_ * ahead);
-    }
+    const int strip = 1 + solver_.rows_ / strips;
+    set_line(kernel::xx, strip, solver_.line_[0].data() + g.nx);
+    set_line(kernel::yy, strip, solver_.line_[1].data() + g.nx);
   }
 
   void product(const double *p, double *s) override {
@@ -50,7 +52,9 @@ class tangential_solver::grid_operator final : public rolling_operator {
     gather(s);
   }
 
-  // within a row the xy kernel vanishes
+  // The tractions that a step changes differ little from a row to its neighbours, whose slip one
+  // row alone does not see. So the preconditioner's rows are strips: the mean slip in a strip of
+  // several rows from tractions that are the same in all of them. xy has no part in it.
   void row_matrices(int row, double *bxx, double *byy) const override {
     const int begin = solver_.row_start_[static_cast<size_t>(row)];
     const int n = solver_.row_start_[static_cast<size_t>(row) + 1] - begin;
@@ -73,6 +77,18 @@ class tangential_solver::grid_operator final : public rolling_operator {
     }
   }
 
+  // the longest, where none has a gap
+  int common_row(const rolling_problem &problem) const override {
+    int longest = 0;
+    for (int row = 0; row < problem.rows; ++row) {
+      const int begin = problem.row_start[row], n = problem.row_start[row + 1] - begin;
+      const int *at = solver_.at_.data() + begin;
+      if (std::abs(at[n - 1] - at[0]) != n - 1) return -1;
+      if (n > problem.row_start[longest + 1] - problem.row_start[longest]) longest = row;
+    }
+    return longest;
+  }
+
   // makes r B of unit size on the diagonal
   double projection_scale(int) const override {
     return 2.0 / (entry(kernel::xx, 0) + entry(kernel::yy, 0));
@@ -93,6 +109,20 @@ class tangential_solver::grid_operator final : public rolling_operator {
   }
   double entry(kernel k, int offset) const {
     return (a_.coefficient(k, offset, 0) - a_.coefficient(k, offset + direction_, 0)) / g_.dx;
+  }
+  // Entries by the number of elements, -nx ... nx, that the source lies ahead of the observer; rows
+  // of a strip that lie j apart are strip - j pairs.
+  void set_line(kernel k, int strip, double *line) const {
+    std::fill(line - g_.nx, line + g_.nx + 1, 0.0);
+    for (int j = 0; j < strip; ++j) {
+      const double weight = (j == 0 ? 1.0 : 2.0) * (strip - j) / (strip * g_.dx);
+      double before = a_.coefficient(k, g_.nx + 1, j);
+      for (int ahead = -g_.nx; ahead <= g_.nx; ++ahead) {
+        const double here = a_.coefficient(k, ahead, j);
+        line[ahead] += weight * (here - before);
+        before = here;
+      }
+    }
   }
 
   tangential_solver &solver_;

@@ -96,7 +96,7 @@ class tangential_solver {
   aligned_buffer<int> at_, row_start_;  // element -> index on the grid; first elements of the rows
   aligned_buffer<double> bound_, area_, rigid_, p_, s_;
   aligned_buffer<double> grid_px_, grid_py_, grid_sx_, grid_sy_;
-  aligned_buffer<double> line_[2];  // B within a row by offset, xx and yy
+  aligned_buffer<double> line_[2];  // the preconditioner's B in a row by offset, xx and yy
   std::optional<rolling_newton> newton_;
   std::optional<inelastic_newton> inelastic_;
   std::optional<offset_influence> offset_;

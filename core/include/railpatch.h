@@ -116,7 +116,7 @@ typedef enum rp_tangential_method {
   RP_TANGENTIAL_LINEAR = 3,  /* Kalker 1967, no bound: RP_OUT_OF_RANGE beyond saturation */
   RP_TANGENTIAL_POLACH = 4,  /* Polach 1999, 2005; no spin moment: 0 */
   RP_TANGENTIAL_FASTRIP = 5, /* FaStrip, Sichani, Enblom, Berg 2016 */
-  RP_TANGENTIAL_TABLE = 6    /* the same, interpolated for elliptic contacts: config.creep_table */
+  RP_TANGENTIAL_TABLE = 6 /* full theory, interpolated for elliptic contacts: config.creep_table */
 } rp_tangential_method;
 /* of FASTSIM; the bound of FaStrip is elliptic */
 typedef enum rp_traction_bound {
@@ -313,7 +313,8 @@ typedef struct rp_patch_result {
   double contact_area;       /* m^2 */
   int32_t elements[4];       /* exterior, stick, slip, plastic; indexed by rp_element */
   double max_temperature;    /* degrees C; NaN: not part of the scene */
-  double friction_power;     /* W, >= 0: power that the creepages supply (Polach: without spin) */
+  double friction_power;     /* W, >= 0: power that the creepages supply (Polach: without spin); of
+                                FASTSIM traction times micro-slip */
   double plastic_power;      /* W, >= 0, of the layer's plastic displacement; RP_SHIFT: both in J */
   double elastic_energy;     /* J; NaN for a line contact on fitted rows */
   int32_t normal_iterations; /* conjugate-gradient steps; evaluations of the fast theories */
@@ -326,9 +327,9 @@ typedef struct rp_patch_result {
   double error_estimate[3];   /* N, N m, Pa: bounds that 95 % of the errors of creep force (length
                                  of the vector), spin moment and greatest pressure stay below, by
                                  measured errors of each method; against the exact theory, without
-                                 errors of the case. NaN: no such stage, or not measured (line
-                                 contact, force prescribed, factors of fast theories other than 1,
-                                 spin_offset) */
+                                 errors of the case. NaN: no solution, no such stage, or not
+                                 measured (line contact, force prescribed, factors of fast theories
+                                 other than 1, spin_offset) */
   double position[3];         /* m, contact reference in track axes (wheel kinds) */
   double contact_angle;       /* rad */
   double creepage[2];         /* -; found where the force is prescribed */

@@ -170,7 +170,9 @@ def test_force_stays_below_the_bound_and_power_is_lost() -> None:
         assert result["friction_power"] == pytest.approx(power, rel=1e-12)
         assert power > 0
     estimate = result["error_estimate"]
-    assert 0 < estimate["creep_force"] < 0.01 * 0.3 * 8e4
+    # no more than the worst error that the table states
+    worst = describe_table(default_table().tobytes())["error"]["all"]["force"][2]
+    assert 0 < estimate["creep_force"] <= worst * 0.3 * 8e4
     assert estimate["spin_moment"] > 0
     assert result["elements"] == {"exterior": 0, "stick": 0, "slip": 0, "plastic": 0}
 

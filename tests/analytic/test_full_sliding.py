@@ -201,3 +201,11 @@ def test_speed_scales_the_power_only() -> None:
     slow, fast = (solve(ellipse(creepage=[1e-3, 2e-4], speed=v)) for v in (1.0, 40.0))
     assert slow["creep_force"] == fast["creep_force"]
     assert fast["friction_power"] == pytest.approx(40 * slow["friction_power"], rel=1e-12)
+
+
+@pytest.mark.parametrize("spin", [0.0, 3.0])
+def test_fast_sliding_takes_no_newton_step(spin: float) -> None:
+    result = solve(ellipse(creepage=[0.1, 0.04], spin=spin, normal="hertz"))
+    assert result.status == "converged"
+    assert result["elements"]["stick"] == 0
+    assert result["iterations"] == 0

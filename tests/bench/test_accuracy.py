@@ -1,9 +1,13 @@
-"""Sizes of fitted rows for a scale."""
+"""Sizes of fitted rows for a scale, and the accuracy that a scale is chosen for."""
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from railpatch.accuracy import fitted_size
+from railpatch.bench.reach import fitted
+from railpatch.bench.samples import STEPS, Problem, fine_truth, measured, random_position
+from railpatch.choice import ROWS_ON_PRESSURE, smallest
 
 
 def test_sizes() -> None:
@@ -20,3 +24,18 @@ def test_sizes() -> None:
 def test_sizes_that_no_grid_takes(scale: float, ratio: float) -> None:
     with pytest.raises(ValueError, match="allowed"):
         fitted_size(scale, ratio)
+
+
+def test_accuracy_is_reached_on_wheels() -> None:
+    """accuracy = 0.01 on wheels at random positions, against finer, extrapolated rows."""
+    accuracy, positions = 0.01, 10
+    scale = smallest(ROWS_ON_PRESSURE, accuracy)
+    random = np.random.default_rng(20261127)
+    errors = []
+    for index in range(positions):
+        batch = random_position(random, index)
+        problem = Problem(batch, fine_truth(batch, {}), {}, "position")
+        errors += list(measured(problem, fitted(scale, problem, "half_space")).errors[:, 0])
+    assert len(errors) == positions * STEPS
+    # 95 % on many cases; here with the scatter of so few: three standard deviations
+    assert np.mean(np.array(errors) <= accuracy) >= 0.90

@@ -77,7 +77,23 @@ TEST_P(Patches, ConvergeToOneResultFromAnyStart) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(ElementsAcross, Patches, testing::Values(10, 16, 32),
+// Cold, half slipping: the edge of slip has four times as many elements to cross on the fine grid.
+int newton_steps(int across, double share) {
+  scenes::handle contact(scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL, across));
+  const rp_input input = scenes::patch_input(normal_force, share * 1e-3, 0.7 * share * 1e-3, 0.0);
+  const rp_patch_result result = contact.step(input).side[RP_RIGHT].patch[0];
+  EXPECT_EQ(result.status, RP_CONVERGED);
+  EXPECT_GT(result.elements[RP_STICK], 0);
+  EXPECT_GT(result.elements[RP_SLIP], 0);
+  return result.newton_iterations;
+}
+
+TEST(Newton, TakesNoMoreStepsOnFinerGrids) {
+  for (const double share : {0.3, 0.6, 1.0})
+    EXPECT_LE(newton_steps(96, share), newton_steps(24, share)) << share;
+}
+
+INSTANTIATE_TEST_SUITE_P(ElementsAcross, Patches, testing::Values(10, 16, 32, 48),
                          testing::PrintToStringParamName());
 
 }  // namespace

@@ -2,6 +2,7 @@
 // numbers do not depend on where the table lies.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -139,6 +140,40 @@ TEST(CreepTable, ExtremeInputsGiveNumbers) {
         EXPECT_TRUE(std::isfinite(p.spin_moment));
         EXPECT_GE(p.friction_power, 0.0);
       }
+  }
+}
+
+// Far beyond saturation all slides, and the force keeps its direction for creepages of any size.
+TEST(CreepTable, SlidingKeepsItsDirection) {
+  const tables::table t = tables::small();
+  scenes::handle contact(config_of(t));
+  const auto force = [&](double size) {
+    const rp_result r = contact.step(scenes::patch_input(1e5, size, -0.3 * size, 20 * size));
+    return std::array{r.side[RP_RIGHT].patch[0].creep_force[0],
+                      r.side[RP_RIGHT].patch[0].creep_force[1]};
+  };
+  const auto wanted = force(1e20);
+  for (double size : {1e140, 1e160, 1e200, 1e306}) {
+    EXPECT_NEAR(force(size)[0], wanted[0], 1e-9 * std::abs(wanted[0])) << size;
+    EXPECT_NEAR(force(size)[1], wanted[1], 1e-9 * std::abs(wanted[1])) << size;
+  }
+}
+
+// A table need not hold every Poisson's ratio.
+TEST(CreepTable, KnowsItsPoissonRatios) {
+  tables::table t = tables::small();
+  railpatch::creep_table_header h = t.header();
+  h.poisson_ratio[0] = 0.2;
+  h.poisson_ratio[2] = 0.3;
+  t.set_header(h);
+  for (double ratio : {0.19, 0.2, 0.28, 0.3, 0.31}) {
+    rp_config c = config_of(t);
+    c.poisson_ratio[0] = c.poisson_ratio[1] = ratio;
+    scenes::handle contact(c);
+    const bool known = ratio >= 0.2 && ratio <= 0.3;
+    EXPECT_EQ(contact.step(scenes::patch_input(1e5, 1e-3, 0, 0)).status,
+              known ? RP_CONVERGED : RP_OUT_OF_RANGE)
+        << ratio;
   }
 }
 

@@ -1,6 +1,7 @@
 // Rows fitted to the contact area carry the load of the pressure they are made from.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -55,10 +56,86 @@ TEST(ContactRows, CarryTheForceOfAnyPressure) {
       for (int j = 0; j < rows.count(); ++j) {
         const contact_row &row = rows[j];
         EXPECT_TRUE(row.half_length > 0 && row.peak > 0 && row.height > 0);
-        // inside the grid, neighbours in order
-        EXPECT_GE(row.y - 0.5 * row.height, g.y(0) - 0.5001 * g.dy);
-        EXPECT_LE(row.y + 0.5 * row.height, g.y(ny - 1) + 0.5001 * g.dy);
+        // inside the grid, areas of few rows a quarter of an element beyond; neighbours in order
+        const double beyond = shape == 3 ? 0.7501 : 0.5001;
+        EXPECT_GE(row.y - 0.5 * row.height, g.y(0) - beyond * g.dy);
+        EXPECT_LE(row.y + 0.5 * row.height, g.y(ny - 1) + beyond * g.dy);
         EXPECT_TRUE(j == 0 || row.y > rows[j - 1].y);
+      }
+    }
+}
+
+// Half an ellipsoid of pressure about x = 0, y; unit peak.
+struct ellipsoid {
+  double a, b, y;
+  double squared(double v) const { return 1.0 - (v - y) * (v - y) / (b * b); }
+  double operator()(double x, double v) const {
+    return std::sqrt(std::max(0.0, squared(v) - x * x / (a * a)));
+  }
+};
+
+std::vector<double> sampled(const grid &g, const std::vector<ellipsoid> &parts) {
+  std::vector<double> p(static_cast<size_t>(g.count()), 0.0);
+  for (int j = 0; j < g.ny; ++j)
+    for (int i = 0; i < g.nx; ++i)
+      for (const ellipsoid &part : parts)
+        p[static_cast<size_t>(j * g.nx + i)] += part(g.x(i), g.y(j));
+  return p;
+}
+
+// One of two areas is narrow and carries most: strips lie in contact only, and each area has its
+// own force.
+TEST(ContactRows, OfSeparateAreasCarryTheForceOfEach) {
+  const int nx = 60, ny = 40;
+  const grid g{nx, ny, 2e-4, 3e-4, -5.9e-3, -5.85e-3};
+  const ellipsoid parts[2] = {{4e-3, 6e-4, -4.5e-3}, {1e-3, 1.5e-3, 3.5e-3}};
+  for (int strips : {2, 7, 14}) {
+    contact_rows rows(5, strips, ny);
+    const std::vector<double> p = sampled(g, {parts[0], parts[1]});
+    rows.set_pressure(g, p.data());
+    ASSERT_EQ(rows.count(), strips);
+    double force[2] = {0, 0}, exact[2] = {0, 0};
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i)
+        exact[g.y(j) > 0] += p[static_cast<size_t>(j * nx + i)] * g.dx * g.dy;
+    int count[2] = {0, 0};
+    for (int j = 0; j < rows.count(); ++j) {
+      const contact_row &row = rows[j];
+      const ellipsoid &part = parts[row.y > 0];
+      ++count[row.y > 0];
+      // to an element
+      EXPECT_LE(std::abs(row.y - part.y) + 0.5 * row.height, part.b + g.dy);
+      for (int k = 0; k < rows.nodes(); ++k)
+        force[row.y > 0] += rows.pressure(j, k) * rows.area(j, k);
+    }
+    for (int k = 0; k < 2; ++k) EXPECT_NEAR(force[k], exact[k], 1e-12 * exact[k]);
+    // the one that carries more has more than its share of the width
+    EXPECT_GT(count[0], strips * parts[0].b / (parts[0].b + parts[1].b));
+  }
+}
+
+// Chords of an ellipse that few rows of the grid cross, all over the shift of the grid.
+TEST(ContactRows, FollowAnEllipseThatFewGridRowsCross) {
+  const int nx = 100, ny = 12, strips = 8;
+  const ellipsoid part{4e-3, 1e-3, 0.0};
+  for (double dy : {2.5e-4, 2e-4})
+    for (double shift = 0; shift < 1; shift += 0.1) {
+      const grid g{nx, ny, 1e-4, dy, -4.95e-3, dy * (shift - 0.5 * ny)};
+      contact_rows rows(9, strips, ny);
+      const std::vector<double> p = sampled(g, {part});
+      rows.set_pressure(g, p.data());
+      ASSERT_EQ(rows.count(), strips);
+      SCOPED_TRACE("dy " + std::to_string(dy) + ", shift " + std::to_string(shift));
+      // the ends to half an element
+      EXPECT_NEAR(rows[0].y - 0.5 * rows[0].height, -part.b, 0.5001 * dy);
+      EXPECT_NEAR(rows[strips - 1].y + 0.5 * rows[strips - 1].height, part.b, 0.5001 * dy);
+      for (int j = 1; j + 1 < strips; ++j) {
+        const contact_row &row = rows[j];
+        // mean over the strip; straight lines between the grid's rows err by dy^2/6 and more
+        const double h = 0.5 * row.height / part.b;
+        const double exact = part.a * std::sqrt(part.squared(row.y) - h * h / 3.0);
+        EXPECT_NEAR(row.half_length, exact, 0.015 * part.a) << row.y;
+        EXPECT_NEAR(row.x, 0.0, 1e-12);
       }
     }
 }

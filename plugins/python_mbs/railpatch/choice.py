@@ -19,29 +19,29 @@ if TYPE_CHECKING:
     from railpatch.case.common import Method
     from railpatch.case.load import Case
 
-# error of the full theory on fitted rows by their scale: with Hertz's pressure, a/b = 1/7 ... 7 (18
-# and 20: on random cases alone); and on as many nodes as rows, with the pressure of the half-space
-# on a grid of NORMAL times as many elements, on random ellipses and other shapes
+# error of the full theory on fitted rows by their scale: with Hertz's pressure, a/b = 1/10 ... 10,
+# any Poisson's ratio; and on as many nodes as rows, with the pressure of the half-space on a grid
+# of NORMAL times as many elements, on random ellipses, other shapes and wheels
 ROWS_ON_ELLIPSE = {
-    6: 0.026, 7: 0.014, 9: 0.011, 10: 0.0075, 11: 0.006, 12: 0.0053, 14: 0.0041, 16: 0.0035,
-    18: 0.0028, 20: 0.0024,
+    6: 0.026, 7: 0.0173, 9: 0.0111, 10: 0.0091, 11: 0.008, 12: 0.0063, 14: 0.0058, 16: 0.0043,
+    18: 0.0039, 20: 0.0032,
 }  # fmt: skip
-ROWS_ON_PRESSURE = {6: 0.023, 7: 0.02, 8: 0.015, 9: 0.012, 10: 0.0112, 11: 0.01}
+ROWS_ON_PRESSURE = {6: 0.0292, 7: 0.0255, 8: 0.0169, 9: 0.0161, 10: 0.0128, 11: 0.01}
 NORMAL = 2
-# error of what no finer grid makes better, FAST_ELEMENTS across: theories of the tangential problem
-# on 50 Hertzian cases, of the normal problem on set B; of the table on other shapes it is not known
+# error of what no finer grid makes better, FAST_ELEMENTS across, on the same cases (FASTSIM, Polach
+# and ANALYN: the greater one on the benchmark's); of the table on other shapes it is not known
 REACHED = {
     "table": inf,
     "linear": inf,
     "polach": 0.42,
     "fastsim": 0.09,
     "fastrip": 0.06,
-    "kik_piotrowski": 0.04,
+    "kik_piotrowski": 0.045,
     "analyn": 0.04,
 }
 FAST_ELEMENTS = 20
 # of the table of creep forces on a Hertzian patch, and the a/b that it holds
-TABLE_ON_ELLIPSE, TABLE_RATIOS = 0.0027, (0.1, 10.0)
+TABLE_ON_ELLIPSE, TABLE_RATIOS = 0.0039, (0.1, 10.0)
 QUADRATIC = ("semi_axes", "curvatures")
 
 

@@ -107,12 +107,16 @@ def with_room(theory: str, **method: Any) -> Callable[[AnyBatch, int], Overrides
     """Overrides for normal theories whose contact areas are larger than the half-space's."""
 
     def overrides(batch: AnyBatch, elements: int) -> Overrides:
-        own = tangential(theory, **method)
-        if isinstance(batch, Batch) and isinstance(batch.shape, Surface):
-            own.update(batch.shape.tables(elements, ROOM))
-        return own
+        return {**tangential(theory, **method), **room(batch, elements)}
 
     return overrides
+
+
+def room(batch: AnyBatch, elements: int) -> Overrides:
+    """Tables with a wider undeformed distance, where the shape is one."""
+    if isinstance(batch, Batch) and isinstance(batch.shape, Surface):
+        return batch.shape.tables(elements, ROOM)
+    return {}
 
 
 def without_grid(theory: str, **method: Any) -> Overrides:

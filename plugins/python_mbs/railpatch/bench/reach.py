@@ -1,21 +1,31 @@
 """What force error each method and grid reaches: the figures that ``accuracy`` chooses by.
 
-``python -m railpatch.bench.reach`` prints the 95th percentile of the error in creep force over
-friction coefficient times normal force, in per cent, on sets A and B and on random problems (those
-of ``railpatch.bench.samples``). ``railpatch.choice`` holds the greatest of each line, rounded up.
+``python -m railpatch.bench.reach [PROCESSES]`` prints the 95th percentile of the error in creep
+force over friction coefficient times normal force, in per cent, on problems of
+``railpatch.bench.samples``, which are not the benchmark's: random ellipses, random shapes, and
+wheels at random positions; none with a layer. ``railpatch.choice`` holds the greatest of each line,
+rounded up.
 """
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
 from typing import Any
 
 import numpy as np
 
 from railpatch.accuracy import fitted_size
-from railpatch.bench.samples import SEED, Problem, measured, other_problems, problems
+from railpatch.bench.samples import SEED, Problem, measured, problems
 from railpatch.bench.statistics import percentile
-from railpatch.choice import FAST_ELEMENTS, NORMAL, ROWS_ON_ELLIPSE, ROWS_ON_PRESSURE
+from railpatch.choice import (
+    FAST_ELEMENTS,
+    NORMAL,
+    ROWS_ON_ELLIPSE,
+    ROWS_ON_PRESSURE,
+    TABLE_RATIOS,
+)
 
 FAST = ("linear", "polach", "fastsim", "fastrip")
 
@@ -39,17 +49,21 @@ def errors(
 ) -> Iterator[tuple[str, float]]:
     """Source and percentile of the error of one choice."""
     sources = dict.fromkeys(problem.source for problem in every)
+    low, high = TABLE_RATIOS
     for source in sources:
         chosen = [p for p in every if p.source == source]
+        if source == "random":
+            chosen = [p for p in chosen if low <= p.axis_ratio <= high]
         if ellipses and not chosen[0].batch.exact_pressure:
             continue
         found = [measured(problem, choose(problem)).errors[:, 0] for problem in chosen]
         yield source, percentile(np.concatenate(found), 95)
 
 
-def main() -> None:
+def main(arguments: list[str]) -> None:
     """Prints one line for each method and grid."""
-    every = [*problems(SEED), *(p for p in other_problems() if p.source == "B")]
+    with ProcessPoolExecutor(max_workers=int(arguments[0]) if arguments else 1) as pool:
+        every = [p for p in problems(SEED + 1, pool.map) if p.batch.layer is None]
     lines: list[tuple[str, Any, bool]] = []
     for scale in ROWS_ON_ELLIPSE:
         lines.append((f"rows on ellipse, {scale}", lambda p, s=scale: fitted(s, p, "hertz"), True))
@@ -61,10 +75,11 @@ def main() -> None:
         lines.append((f"rows on {normal}, 16", lambda p, n=normal: fitted(16, p, n), False))
     for name in FAST:
         lines.append((name, lambda p, n=name: fast(n, "half_space"), False))
+    lines.append(("table", lambda _: fast("table", "hertz"), True))
     for title, choose, ellipses in lines:
         cells = [f"{source} {100 * e:.3g}" for source, e in errors(every, choose, ellipses)]
         print(f"{title:24}", "  ".join(cells), flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

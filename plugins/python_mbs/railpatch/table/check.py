@@ -7,15 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from railpatch import _core
 from railpatch.table.recipe import Recipe
 from railpatch.table.solves import (
-    FRICTION,
-    NORMAL_FORCE,
-    SHEAR_MODULUS,
-    SIZE,
-    UNIT,
     Accurate,
+    contact_on,
+    forces_of,
+    input_of,
     scales_of,
     slopes,
 )
@@ -64,33 +61,11 @@ class Interpolated:
     """Creep forces of one a/b and Poisson's ratio from a table."""
 
     def __init__(self, table: np.ndarray, ratio: float, poisson: float) -> None:
-        self._contact = _core.Contact(
-            {
-                "kind": "patch",
-                "geometry": "semi_axes",
-                "semi_axes": [SIZE * ratio**0.5, SIZE / ratio**0.5],
-                "shear_modulus": [SHEAR_MODULUS] * 2,
-                "poisson_ratio": [poisson] * 2,
-                "normal": "hertz",
-                "tangential": "table",
-                "creep_table": table,
-                "friction_coefficient": FRICTION,
-            },
-            False,
-        )
+        self._contact = contact_on(ratio, poisson, tangential="table", creep_table=table)
 
     def __call__(self, w: np.ndarray, direction: int = 1) -> np.ndarray:
         """(Fx, Fy, Mz/c)/B at w."""
-        values = {
-            "normal_force": NORMAL_FORCE,
-            "creepage": [float(UNIT * w[0]), float(UNIT * w[1])],
-            "spin_creepage": float(UNIT * w[2] / SIZE),
-            "direction": direction,
-        }
-        patch = self._contact.step(values)["right"]["patches"][0]
-        return np.array([*patch["creep_force"], patch["spin_moment"] / SIZE]) / (
-            FRICTION * NORMAL_FORCE
-        )
+        return forces_of(self._contact.step(input_of(w, direction)))
 
 
 def errors(table: bytes, sample: np.ndarray) -> np.ndarray:

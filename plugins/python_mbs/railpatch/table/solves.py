@@ -6,6 +6,8 @@ For an ellipse with c = sqrt(a b) and the bound B = mu Fn: w = (G c^2/B) (xi, et
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from railpatch import _core
@@ -23,6 +25,43 @@ class NotSolved(RuntimeError):
     """A case of the table that the full theory did not solve."""
 
 
+def contact_on(ratio: float, poisson: float, **theory: Any) -> _core.Contact:
+    """The core's handle of an elliptic contact with Hertz's pressure.
+
+    theory: fields of the core's config for the tangential problem.
+    """
+    return _core.Contact(
+        {
+            "kind": "patch",
+            "geometry": "semi_axes",
+            "semi_axes": [SIZE * ratio**0.5, SIZE / ratio**0.5],
+            "shear_modulus": [SHEAR_MODULUS] * 2,
+            "poisson_ratio": [poisson] * 2,
+            "normal": "hertz",
+            "friction_coefficient": FRICTION,
+            **theory,
+        },
+        False,
+    )
+
+
+def input_of(w: np.ndarray, direction: int) -> dict[str, Any]:
+    """Fields of a step at w."""
+    return {
+        "normal_force": NORMAL_FORCE,
+        "creepage": [float(UNIT * w[0]), float(UNIT * w[1])],
+        "spin_creepage": float(UNIT * w[2] / SIZE),
+        "direction": direction,
+    }
+
+
+def forces_of(result: dict[str, Any]) -> np.ndarray:
+    """(Fx, Fy, Mz/c)/B of a step's result."""
+    patch = result["right"]["patches"][0]
+    force = [*patch["creep_force"], patch["spin_moment"] / SIZE]
+    return np.array(force) / (FRICTION * NORMAL_FORCE)
+
+
 class Ellipse:
     """Creep forces of one a/b and Poisson's ratio on one grid of fitted rows."""
 
@@ -30,21 +69,13 @@ class Ellipse:
         self, ratio: float, poisson: float, grid: tuple[int, int], tolerance: float = 1e-5
     ) -> None:
         self.about = f"a/b = {ratio:.4g}, Poisson's ratio {poisson:.4g}, grid {grid}"
-        self._contact = _core.Contact(
-            {
-                "kind": "patch",
-                "geometry": "semi_axes",
-                "semi_axes": [SIZE * ratio**0.5, SIZE / ratio**0.5],
-                "shear_modulus": [SHEAR_MODULUS] * 2,
-                "poisson_ratio": [poisson] * 2,
-                "normal": "hertz",
-                "tangential": "full",
-                "fitted": list(grid),
-                "friction_coefficient": FRICTION,
-                "tolerance": tolerance,
-                "max_iterations": 1000,
-            },
-            False,
+        self._contact = contact_on(
+            ratio,
+            poisson,
+            tangential="full",
+            fitted=list(grid),
+            tolerance=tolerance,
+            max_iterations=1000,
         )
 
     def reset(self) -> None:
@@ -53,21 +84,14 @@ class Ellipse:
 
     def __call__(self, w: np.ndarray, direction: int = 1) -> np.ndarray:
         """(Fx, Fy, Mz/c)/B at w; starts from the last solution."""
-        values = {
-            "normal_force": NORMAL_FORCE,
-            "creepage": [float(UNIT * w[0]), float(UNIT * w[1])],
-            "spin_creepage": float(UNIT * w[2] / SIZE),
-            "direction": direction,
-        }
+        values = input_of(w, direction)
         result = self._contact.step(values)
         if result["status"] != "converged":
             self._contact.reset()
             result = self._contact.step(values)
         if result["status"] != "converged":
             raise NotSolved(f"{self.about}, w = {np.asarray(w).tolist()}: {result['status']}")
-        patch = result["right"]["patches"][0]
-        force = [*patch["creep_force"], patch["spin_moment"] / SIZE]
-        return np.array(force) / (FRICTION * NORMAL_FORCE)
+        return forces_of(result)
 
 
 class Accurate:
