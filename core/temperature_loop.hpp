@@ -61,8 +61,10 @@ class temperature_loop {
   aligned_buffer<double> next_, best_mu_, heat_, f_[2], g_[2];
 };
 
-// The root of mu = law(a + b mu), b >= 0; of a rising law's two stable ones the one nearest to mu.
-double consistent_coefficient(const temperature_law &law, double a, double b, double mu);
+// The root of mu = law(a + b mu), b >= 0. A rising law may have three where the own heat of one
+// element is great (b goes with the root of its size): the cold one then, from which material
+// enters the element.
+double consistent_coefficient(const temperature_law &law, double a, double b);
 
 template <class Tangential>
 temperature_loop_result temperature_loop::solve(const problem &p,
