@@ -82,19 +82,21 @@ double levelled(double touched, double since, double depth) {
   return 2.0 / pi * sum;
 }
 
-void heat_kernel::set(const heat_rows &rows, double distance) {
+void heat_kernel::set(const heat_rows &rows, double distance, double root_depth) {
   count_ = 0;
   if (!(rows.speed > 0) || !(distance > 0)) return;
   const double reach = distance / rows.dx;
-  const double unit = std::sqrt(rows.dx / rows.speed);
+  const double unit = rows.dx / rows.speed, root = std::sqrt(unit);
   double last = 0;
   for (int m = 0; m < rows.nx; ++m) {
     const double end = std::min(m + 0.5, reach);
-    // root(end) - root(begin) without cancellation far ahead
     const double span = end - last;
     if (!(span > 0)) break;
+    // at the surface the difference of roots without cancellation
     weight_[static_cast<size_t>(m)] =
-        2.0 * inv_sqrtpi * unit * span / (std::sqrt(end) + std::sqrt(last));
+        root_depth > 0
+            ? constant_flux(end * unit, root_depth) - constant_flux(last * unit, root_depth)
+            : 2.0 * inv_sqrtpi * root * span / (std::sqrt(end) + std::sqrt(last));
     count_ = m + 1;
     last = end;
   }
@@ -168,7 +170,8 @@ void friction_heat(int count, double speed, const double *px, const double *py, 
   if (plastic_power) add_shifted(count, fraction, plastic_power, q);
 }
 
-steady_temperature::steady_temperature(int max_nx, bool exchanges) : kernel_(max_nx) {
+steady_temperature::steady_temperature(int max_nx, bool exchanges, bool deep) : kernel_(max_nx) {
+  if (deep) deep_ = heat_kernel(max_nx);
   if (exchanges) exchange_ = heat_exchange(max_nx);
 }
 
@@ -177,34 +180,28 @@ void steady_temperature::set(const heat_rows &rows) {
   kernel_.set(rows, rows.dx * (rows.nx + 1));
 }
 
-void steady_temperature::exchange(const double *pressure, double *e) {
+void steady_temperature::exchange(const double *pressure, double *e, double depth) {
   for (int j = 0; j < rows_.ny; ++j) {
     const ptrdiff_t row = static_cast<ptrdiff_t>(j) * rows_.nx;
     exchange_.set_row(rows_, pressure + row);
     for (int k = 0; k < rows_.nx; ++k)
-      e[row + (rows_.direction > 0 ? rows_.nx - 1 - k : k)] = exchange_.at(k);
+      e[row + (rows_.direction > 0 ? rows_.nx - 1 - k : k)] = exchange_.at(k, depth);
   }
 }
 
-double steady_temperature::at_depth(const thermal_pair &pair, int k, const double *q,
-                                    const double *pressure, int i, double z) {
-  const double unit = rows_.speed > 0 ? rows_.dx / rows_.speed : 0.0;
+void steady_temperature::at_depth(const thermal_pair &pair, int k, double z, const double *q,
+                                  const double *pressure, double *temperature) {
+  const int n = rows_.nx * rows_.ny;
   const double kappa = pair.body[k].diffusivity();
-  double rise = 0, last = 0;
-  for (int m = 0; unit > 0; ++m) {
-    const int at = i + rows_.direction * m;
-    if (at < 0 || at >= rows_.nx) break;
-    const double now = constant_flux((m + 0.5) * unit, z / std::sqrt(kappa));
-    rise += q[at] * (now - last);
-    last = now;
-  }
-  double e = 0;
-  if (pair.exchanges()) {
-    exchange_.set_row(rows_, pressure);
-    e = exchange_.at(rows_.direction > 0 ? rows_.nx - 1 - i : i,
-                     unit > 0 ? z / std::sqrt(kappa * unit) : 0.0);
-  }
-  return pair.surface(k, e, rise / pair.effusivity());
+  // standing still heat has all time to spread: no depth differs from the surface
+  const double depth = rows_.speed > 0 ? z / std::sqrt(kappa * rows_.dx / rows_.speed) : 0.0;
+  std::fill_n(temperature, n, 0.0);
+  if (pair.exchanges()) exchange(pressure, temperature, depth);
+  for (int i = 0; i < n; ++i)
+    temperature[i] = (pair.surface(k, temperature[i], 0.0)) * pair.effusivity();
+  deep_.set(rows_, rows_.dx * (rows_.nx + 1), z / std::sqrt(kappa));
+  deep_.apply(rows_, q, temperature, temperature);
+  for (int i = 0; i < n; ++i) temperature[i] /= pair.effusivity();
 }
 
 }  // namespace railpatch

@@ -67,8 +67,9 @@ class heat_kernel {
  public:
   heat_kernel() = default;
   explicit heat_kernel(int max_nx) : weight_(static_cast<size_t>(max_nx)) {}
-  // distance: rolled while the flux acted, m; infinite in steady rolling.
-  void set(const heat_rows &rows, double distance);
+  // distance: rolled while the flux acted, m; infinite in steady rolling. root_depth: z/sqrt(kappa)
+  // of the observer, sqrt(s).
+  void set(const heat_rows &rows, double distance, double root_depth = 0);
   // sqrt(s), of the flux m elements ahead of the observer; zero from count on
   double weight(int m) const { return weight_[static_cast<size_t>(m)]; }
   int count() const { return count_; }
@@ -118,22 +119,23 @@ void friction_heat(int count, double speed, const double *px, const double *py, 
 class steady_temperature {
  public:
   steady_temperature() = default;
-  steady_temperature(int max_nx, bool exchanges);
+  // deep: for at_depth.
+  steady_temperature(int max_nx, bool exchanges, bool deep = false);
   void set(const heat_rows &rows);
   void rise(const double *q, const double *known, double *y) const {
     kernel_.apply(rows_, q, known, y);
   }
-  void exchange(const double *pressure, double *e);
-  // Temperature (degrees C) of body k at depth z (m) below the element centre (i, row): the row's
-  // flux and pressure.
-  double at_depth(const thermal_pair &pair, int k, const double *q, const double *pressure, int i,
-                  double z);
+  // E, at a depth in sqrt(kappa dx/V).
+  void exchange(const double *pressure, double *e, double depth = 0);
+  // Temperature (degrees C) of body k at depth z (m), of whole fields.
+  void at_depth(const thermal_pair &pair, int k, double z, const double *q, const double *pressure,
+                double *temperature);
   const heat_kernel &kernel() const { return kernel_; }
-  size_t bytes() const { return kernel_.bytes() + exchange_.bytes(); }
+  size_t bytes() const { return kernel_.bytes() + deep_.bytes() + exchange_.bytes(); }
 
  private:
   heat_rows rows_;
-  heat_kernel kernel_;
+  heat_kernel kernel_, deep_;
   heat_exchange exchange_;
 };
 

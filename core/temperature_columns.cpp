@@ -39,18 +39,16 @@ RAILPATCH_DISPATCH void scale(int n, double decay, double *y) {
   for (int i = 0; i < n; ++i) y[i] *= decay;
 }
 
-// value of a function of a whole argument k, even in k, between: Lagrange's polynomial on 6 points
+// f(k, share): the value at `at` of a function even in k, by Lagrange's polynomial on 6 points.
 template <class F>
-double interpolate(double at, F &&f) {
+void for_each_point(double at, F &&f) {
   const int begin = static_cast<int>(std::floor(at)) - 2;
-  double sum = 0;
   for (int i = 0; i < 6; ++i) {
-    double product = f(std::abs(begin + i));
+    double share = 1;
     for (int k = 0; k < 6; ++k)
-      if (k != i) product *= (at - begin - k) / (i - k);
-    sum += product;
+      if (k != i) share *= (at - begin - k) / (i - k);
+    f(std::abs(begin + i), share);
   }
-  return sum;
 }
 
 }  // namespace
@@ -357,17 +355,9 @@ void heat_columns::exchange(const double *pressure, const double *state) {
     });
     sum_[static_cast<size_t>(c)] = column.touches() ? 1.0 : value(column);
   }
-  const double w = std::fabs(movement_.offset) / rows_.dx;
-  const int other = movement_.offset > 0 ? -1 : 1;
-  for (int c = 0; c < n; ++c) {
-    const int i = c % nx, k = i + other;
-    const bool ahead = rows_.direction > 0 ? k >= nx : k < 0;
-    const double here = sum_[static_cast<size_t>(c)];
-    const double there =
-        ahead ? 0.0 : (k >= 0 && k < nx ? sum_[static_cast<size_t>(c + other)] : here);
-    exchanged_[static_cast<size_t>(c)] =
-        pressure[c] > 0 ? 1.0 : (w == 0 ? here : (1.0 - w) * here + w * there);
-  }
+  to_centres(sum_.data(), 0.0, exchanged_.data());
+  for (int c = 0; c < n; ++c)
+    if (pressure[c] > 0) exchanged_[static_cast<size_t>(c)] = 1.0;
 }
 
 void heat_columns::set_unit(double unit, double *state) {
@@ -389,49 +379,70 @@ void heat_columns::convert_modes(double factor, double *modes, const double *flu
   for (size_t k = 0; k < node_.size(); ++k) scratch_[k] = y[k * capacity_];
   for (size_t k = 0; k < node_.size(); ++k) {
     const double at = std::asinh(factor * node_[k] / x0) / step;
+    double moved = 0;
+    for_each_point(std::min(at, modes_ - 4.0),
+                   [&](int i, double share) { moved += share * scratch_[static_cast<size_t>(i)]; });
     if (at <= modes_ - 4.0)
-      y[k * capacity_] = interpolate(at, [&](int i) { return scratch_[static_cast<size_t>(i)]; });
+      y[k * capacity_] = moved;
     else
       y[k * capacity_] = flux ? flux[column] / (factor * factor * rate_[k]) : 0.0;
   }
 }
 
-// 2/pi int y(x) cos(x depth) dx over the modes y in scratch_. They are smooth in u but the cosine
-// is not: sixteen points a mode.
-double heat_columns::sum_at(double depth) const {
+// Weights of the modes in scratch_ for 2/pi int y(x) cos(x depth) dx. The modes are smooth in u but
+// the cosine is not: sixteen points a mode, each from six modes.
+void heat_columns::weigh(double depth) {
   constexpr int finer = 16;
   const double x0 = node_[1] / std::sinh(step), root_unit = std::sqrt(unit_);
-  double sum = 0;
+  std::fill(scratch_.begin(), scratch_.end(), 0.0);
   for (int m = 0; m <= finer * (modes_ - 4); ++m) {
-    const double u = step * m / finer, weight = (m == 0 ? 1.0 : 2.0) * x0 * std::cosh(u);
-    const double y =
-        interpolate(1.0 * m / finer, [&](int k) { return scratch_[static_cast<size_t>(k)]; });
-    sum += weight * y * std::cos(x0 * std::sinh(u) * depth / root_unit);
+    const double u = step * m / finer;
+    const double w = (m == 0 ? 1.0 : 2.0) * x0 * std::cosh(u) * step / (finer * pi * root_unit) *
+                     std::cos(x0 * std::sinh(u) * depth / root_unit);
+    for_each_point(1.0 * m / finer,
+                   [&](int k, double share) { scratch_[static_cast<size_t>(k)] += w * share; });
   }
-  return sum * step / (finer * pi * root_unit);
 }
 
-double heat_columns::at_depth(const thermal_pair &pair, int k, int i, int j, double z,
-                              const double *state) {
-  const double depth = z / std::sqrt(pair.body[k].diffusivity());
-  const int at = j * static_cast<int>(state[at_nx]) + i;
-  double y = 0, e = 0;
+void heat_columns::at_depth(const thermal_pair &pair, int body, double z, const double *state,
+                            double *temperature) {
+  const int nx = static_cast<int>(state[at_nx]), n = nx * static_cast<int>(state[at_ny]);
+  const double depth = z / std::sqrt(pair.body[body].diffusivity());
+  std::fill_n(temperature, n, 0.0);
   if (state[at_unit] > 0) {
     if (state[at_unit] != unit_) set_rates(state[at_unit]);
+    weigh(depth);
     // the present flux over one unit of time makes the kink at the surface, which no mode has
-    const double flux = state[flux_at() + static_cast<size_t>(at)];
+    double kink = constant_flux(unit_, depth);
     set_factors(unit_);
-    for (size_t m = 0; m < node_.size(); ++m)
-      scratch_[m] = state[head_size + m * capacity_ + static_cast<size_t>(at)] - flux * gain_[m];
-    y = flux * constant_flux(unit_, depth) + sum_at(depth);
+    for (size_t m = 0; m < node_.size(); ++m) {
+      kink -= scratch_[m] * gain_[m];
+      accumulate(n, scratch_[m], state + head_size + m * capacity_, temperature);
+    }
+    accumulate(n, kink, state + flux_at(), temperature);
   }
-  if (exchanges_) {
-    const exchange_column c = load(state, at);
-    e = c.touched > 0 ? c.jump * levelled(c.touched, c.since, depth) : 0.0;
-    std::copy(column_.begin(), column_.end(), scratch_.begin());
-    if (c.again) e += sum_at(depth);
+  for (int i = 0; i < n; ++i) {
+    double e = 0;
+    if (exchanges_) {
+      const exchange_column c = load(state, i);
+      e = c.touched > 0 ? c.jump * levelled(c.touched, c.since, depth) : 0.0;
+      for (size_t m = 0; c.again && m < node_.size(); ++m) e += scratch_[m] * column_[m];
+    }
+    temperature[i] = pair.surface(body, e, temperature[i] / pair.effusivity());
   }
-  return pair.surface(k, e, y / pair.effusivity());
+}
+
+// From the columns to the element centres, between which they stand.
+void heat_columns::to_centres(const double *columns, double fresh, double *centres) const {
+  const int nx = rows_.nx, n = nx * rows_.ny;
+  const double w = std::fabs(movement_.offset) / rows_.dx;
+  const int other = movement_.offset > 0 ? -1 : 1;
+  for (int c = 0; c < n; ++c) {
+    const int k = c % nx + other;
+    const bool ahead = rows_.direction > 0 ? k >= nx : k < 0;
+    const double there = ahead ? fresh : (k >= 0 && k < nx ? columns[c + other] : columns[c]);
+    centres[c] = w == 0 ? columns[c] : (1.0 - w) * columns[c] + w * there;
+  }
 }
 
 }  // namespace railpatch

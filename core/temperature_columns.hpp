@@ -42,9 +42,12 @@ class heat_columns {
   // Takes the step over into the state.
   void commit(const double *q, const double *pressure, double *state);
 
-  // Temperature (degrees C) of body k at depth z (m) in the column of element (i, j), whose place
-  // is offset(state) (m) from the element's centre along x.
-  double at_depth(const thermal_pair &pair, int k, int i, int j, double z, const double *state);
+  // After commit: temperature (degrees C) of a body at depth z (m) in each column, [ny][nx]; the
+  // columns stand offset(state) (m) from the element centres along x.
+  void at_depth(const thermal_pair &pair, int body, double z, const double *state,
+                double *temperature);
+  // After begin: from columns to element centres; fresh: the value of material that enters.
+  void to_centres(const double *columns, double fresh, double *centres) const;
   static double offset(const double *state);
   // J/m^2 of the friction in a column, both bodies together, since it entered.
   double stored(int i, int j, const double *state) const;
@@ -74,7 +77,7 @@ class heat_columns {
   double value(const exchange_column &c) const;
   bool touched_by(const double *pressure, int row, int i) const;
   double local_part(double age) const;
-  double sum_at(double depth) const;
+  void weigh(double depth);
   size_t flux_at() const;  // blocks of the state
   size_t exchange_at() const;
 

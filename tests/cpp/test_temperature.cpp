@@ -16,6 +16,35 @@ namespace {
 using namespace railpatch;
 using std::numbers::pi;
 
+// Temperatures of a body at a depth, of a field of rows or of a moving grid's columns.
+std::vector<double> deep(const heat_rows &rows, const thermal_pair &pair, int k, double z,
+                         const std::vector<double> &q, const std::vector<double> &pressure) {
+  steady_temperature t(rows.nx, pair.exchanges(), true);
+  t.set(rows);
+  std::vector<double> temperature(q.size());
+  t.at_depth(pair, k, z, q.data(), pressure.data(), temperature.data());
+  return temperature;
+}
+std::vector<double> deep(heat_columns &columns, const thermal_pair &pair, int k, double z,
+                         const std::vector<double> &state, size_t count) {
+  std::vector<double> temperature(count);
+  columns.at_depth(pair, k, z, state.data(), temperature.data());
+  return temperature;
+}
+
+// J/m^2 below a point, down to where no heat has come; f(body, depth) in degrees C above bulk.
+template <class F>
+double heat_below(const thermal_pair &pair, const heat_rows &rows, F &&f) {
+  double stored = 0;
+  for (int k : {0, 1}) {
+    const thermal_body &body = pair.body[k];
+    const double end = 12 * std::sqrt(body.diffusivity() * rows.nx * rows.dx / rows.speed);
+    for (int s = 0; s < 400; ++s)
+      stored += body.density * body.heat_capacity * end / 400 * f(k, (s + 0.5) * end / 400);
+  }
+  return stored;
+}
+
 // Two closed forms against each other.
 constexpr double rounded = 1e-10;
 // Sum of exponentials against the kernel (head of temperature_columns.hpp), with room for sums of
@@ -118,8 +147,6 @@ TEST(Steady, ConstantFluxAtDepthIsIerfc) {
   row r(20, 1.0);
   std::fill(r.q.begin(), r.q.end(), 1e7);
   const thermal_pair pair{{steel(20), cast_iron(20)}};
-  steady_temperature t(r.rows.nx, false);
-  t.set(r.rows);
   for (int k : {0, 1})
     for (double z : {0.0, 1e-6, 3e-5, 1e-4}) {
       const double age = (r.rows.nx - 3.5) * r.rows.dx / r.rows.speed;
@@ -128,7 +155,7 @@ TEST(Steady, ConstantFluxAtDepthIsIerfc) {
       const double rise = 2 * pair.share(k) * 1e7 / pair.body[k].conductivity *
                           std::sqrt(kappa * age) *
                           (std::exp(-u * u) / std::sqrt(pi) - u * std::erfc(u));
-      const double found = t.at_depth(pair, k, r.q.data(), r.pressure.data(), 3, z);
+      const double found = deep(r.rows, pair, k, z, r.q, r.pressure)[3];
       EXPECT_NEAR(found, 20 + rise, rounded * 100) << k << z;
     }
 }
@@ -224,9 +251,8 @@ TEST(Steady, EveryAllowedSpeedGivesNumbers) {
     for (size_t i = 0; i < y.size(); ++i) {
       EXPECT_TRUE(std::isfinite(y[i]) && std::isfinite(e[i])) << speed;
       greatest = std::max(greatest, y[i] / pair.effusivity());
-      const int at = static_cast<int>(i);
-      EXPECT_TRUE(std::isfinite(t.at_depth(pair, 0, r.q.data(), r.pressure.data(), at, 1e-5)));
     }
+    for (double v : deep(r.rows, pair, 0, 1e-5, r.q, r.pressure)) EXPECT_TRUE(std::isfinite(v));
     // at equal creepage the rise goes with the root of the speed; 16 elements: 2 %
     EXPECT_NEAR(greatest, 150.30 * std::sqrt(speed / 30), 0.02 * 150.30 * std::sqrt(speed / 30));
   }
@@ -235,19 +261,11 @@ TEST(Steady, EveryAllowedSpeedGivesNumbers) {
 TEST(Steady, DepthHoldsTheHeatPutIn) {
   row r(40, 3.0);
   const thermal_pair pair{{steel(), cast_iron()}};
-  steady_temperature t(r.rows.nx, false);
-  t.set(r.rows);
   double put = 0;
   for (int i = 10; i < r.rows.nx; ++i) put += r.q[static_cast<size_t>(i)] * r.rows.dx / 30;
   // column 9 lies behind the contact
-  double stored = 0;
-  for (int k : {0, 1}) {
-    const thermal_body &body = pair.body[k];
-    const double deep = 12 * std::sqrt(body.diffusivity() * r.rows.nx * r.rows.dx / 30);
-    for (int s = 0; s < 400; ++s)
-      stored += body.density * body.heat_capacity * deep / 400 *
-                t.at_depth(pair, k, r.q.data(), r.pressure.data(), 9, (s + 0.5) * deep / 400);
-  }
+  const double stored = heat_below(
+      pair, r.rows, [&](int k, double z) { return deep(r.rows, pair, k, z, r.q, r.pressure)[9]; });
   EXPECT_NEAR(stored, put, 0.005 * put);
 }
 
@@ -396,31 +414,47 @@ TEST(Transient, ReversalAndChangesOfSpeed) {
 TEST(Transient, DepthAndStoredHeat) {
   row r(24, 3.0);
   const thermal_pair pair{{steel(), cast_iron()}};
-  steady_temperature t(r.rows.nx, false);
-  t.set(r.rows);
   rolling moving(r.rows, false);
   for (int k = 0; k < 75; ++k) moving.step(r.rows.dx, r.q, r.pressure);
   double top = 0;
   for (double y : moving.y) top = std::max(top, y / pair.effusivity());
   // the modes between those kept: six points of step 1/4 in u
   const double root = std::sqrt(pair.body[0].diffusivity() * r.rows.nx * r.rows.dx / 30);
-  for (int i : {5, 20, 30, 36, 45})
-    for (double z : {0.0, 0.05, 0.2, 0.5, 1.0, 1.5, 2.5, 4.0, 8.0, 12.0})
-      EXPECT_NEAR(moving.columns.at_depth(pair, 0, i, 0, z * root, moving.state.data()),
-                  t.at_depth(pair, 0, r.q.data(), r.pressure.data(), i, z * root), 2e-4 * top)
-          << i << " " << z;
+  for (double z : {0.0, 0.05, 0.2, 0.5, 1.0, 1.5, 2.5, 4.0, 8.0, 12.0}) {
+    const auto found = deep(moving.columns, pair, 0, z * root, moving.state, r.q.size());
+    const auto steady = deep(r.rows, pair, 0, z * root, r.q, r.pressure);
+    for (size_t i = 0; i < found.size(); ++i)
+      EXPECT_NEAR(found[i], steady[i], 2e-4 * top) << i << " " << z;
+  }
   double put = 0;
   for (int i = 7; i < r.rows.nx; ++i) put += r.q[static_cast<size_t>(i)] * r.rows.dx / 30;
   EXPECT_NEAR(moving.columns.stored(6, 0, moving.state.data()), put, 1e-10 * put);
-  double stored = 0;
-  for (int k : {0, 1}) {
-    const thermal_body &body = pair.body[k];
-    const double deep = 12 * std::sqrt(body.diffusivity() * r.rows.nx * r.rows.dx / 30);
-    for (int s = 0; s < 400; ++s)
-      stored += body.density * body.heat_capacity * deep / 400 *
-                moving.columns.at_depth(pair, k, 6, 0, (s + 0.5) * deep / 400, moving.state.data());
-  }
+  const double stored = heat_below(pair, r.rows, [&](int k, double z) {
+    return deep(moving.columns, pair, k, z, moving.state, r.q.size())[6];
+  });
   EXPECT_NEAR(stored, put, 0.005 * put);
+}
+
+TEST(Transient, ChillAtDepthIsTheSteadyOne) {
+  row r(24, 2.5);
+  const thermal_pair pair{{steel(150), cast_iron(10)}};
+  const std::vector<double> none(r.q.size());
+  rolling moving(r.rows, true);
+  for (int k = 0; k < 65; ++k) moving.step(r.rows.dx, none, r.pressure);
+  for (double z : {0.0, 1e-5, 1e-4})
+    for (int k : {0, 1}) {
+      const auto found = deep(moving.columns, pair, k, z, moving.state, r.q.size());
+      const auto steady = deep(r.rows, pair, k, z, none, r.pressure);
+      for (size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], steady[i], 1e-9) << i << z;
+      // the first element's centre, half an element since the bodies met: 1 - erf (Carslaw, 2.15)
+      const size_t first = static_cast<size_t>((r.rows.nx + 24) / 2 - 1);
+      const double age = 0.5 * r.rows.dx / r.rows.speed;
+      const double other = pair.body[1 - k].bulk, own = pair.body[k].bulk;
+      EXPECT_NEAR(steady[first],
+                  own + (other - own) * pair.share(1 - k) *
+                            std::erfc(z / (2 * std::sqrt(pair.body[k].diffusivity() * age))),
+                  1e-9);
+    }
 }
 
 TEST(Transient, SurfacesThatTouchAgainAreEqual) {
