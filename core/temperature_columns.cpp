@@ -51,6 +51,13 @@ void for_each_point(double at, F &&f) {
   }
 }
 
+double least_node(int max_nx) { return std::sqrt(8.0 / (longest * max_nx)); }
+
+int mode_count(int max_nx) {
+  const double top = std::sqrt(20.0 / shortest) / least_node(max_nx);
+  return 1 + static_cast<int>(std::ceil(std::asinh(top) / step));
+}
+
 }  // namespace
 
 double dawson(double x) {
@@ -82,8 +89,8 @@ heat_columns::heat_columns(int max_nx, int max_ny, bool exchanges)
       capacity_(static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny)),
       exchanges_(exchanges),
       kernel_(max_nx) {
-  const double x0 = std::sqrt(8.0 / (longest * max_nx));
-  modes_ = 1 + static_cast<int>(std::ceil(std::asinh(std::sqrt(20.0 / shortest) / x0) / step));
+  const double x0 = least_node(max_nx);
+  modes_ = mode_count(max_nx);
   const auto m = static_cast<size_t>(modes_);
   for (auto *b : {&node_, &node_weight_, &rate_, &weight_, &decay_, &gain_, &column_, &scratch_})
     *b = aligned_buffer<double>(m);
@@ -107,6 +114,12 @@ size_t heat_columns::exchange_at() const { return flux_at() + capacity_; }
 size_t heat_columns::state_size() const {
   const size_t exchange = (4 + static_cast<size_t>(modes_)) * capacity_;
   return modes_ == 0 ? 0 : exchange_at() + (exchanges_ ? exchange : 0);
+}
+
+size_t heat_columns::state_size(int max_nx, int max_ny, bool exchanges) {
+  const auto n = static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny);
+  const auto modes = static_cast<size_t>(mode_count(max_nx));
+  return head_size + (modes + 1 + (exchanges ? 4 + modes : 0)) * n;
 }
 
 void heat_columns::reset(double *state) const { std::fill_n(state, state_size(), 0.0); }

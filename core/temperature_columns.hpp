@@ -25,6 +25,7 @@ class heat_columns {
   heat_columns(int max_nx, int max_ny, bool exchanges);
 
   // The memory is outside, one block of numbers of this length, so that it can be saved and copied.
+  static size_t state_size(int max_nx, int max_ny, bool exchanges);
   size_t state_size() const;
   // All at bulk temperature.
   void reset(double *state) const;

@@ -76,6 +76,7 @@ temperature_loop_result temperature_loop::solve(const problem &p,
   former_ = since_best_ = 0;
   damping_ = 1;
   temperature_loop_result result;
+  int failures = 0;  // in a row
   for (;;) {
     const bool solved = tangential(static_cast<const double *>(mu), q);
     ++result.iterations;
@@ -91,7 +92,8 @@ temperature_loop_result temperature_loop::solve(const problem &p,
     } else {
       ++since_best_;
     }
-    if (result.iterations >= options.max_iterations) break;
+    failures = solved ? 0 : failures + 1;
+    if (result.iterations >= options.max_iterations || failures > 2) break;
     if (now > 2.0 * best_ || since_best_ > 4)
       restart(n, mu);
     else
