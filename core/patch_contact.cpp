@@ -161,6 +161,7 @@ void patch_contact::start_from(patch_memory &memory, const grid &g) {
         }
     };
     carry(memory.pressure);
+    if (memory.heat) memory.heat->forget_friction();
     if (!memory.fitted()) {
       carry(memory.px);
       carry(memory.py);
@@ -168,6 +169,7 @@ void patch_contact::start_from(patch_memory &memory, const grid &g) {
   }
   memory.g = g;
   if (memory.warm) return;
+  if (memory.heat) memory.heat->forget_friction();
   if (memory.pressure.size()) std::fill_n(memory.pressure.data(), g.count(), 0.0);
   if (memory.px.size() == 0) return;
   for (auto *field : {&memory.px, &memory.py})
@@ -495,7 +497,7 @@ void patch_contact::begin_heat(const patch_problem &problem, patch_memory &memor
   observe(RP_STAGE_TEMPERATURE, true);
   heat_->begin({g.nx, g.ny, g.dx, rolling.direction, problem.rolling_speed},
                rolling.regime == motion::transient ? rolling.distance : 0.0, memory.pressure.data(),
-               memory.warm, *memory.heat);
+               *memory.heat);
   observe(RP_STAGE_TEMPERATURE, false);
 }
 

@@ -13,7 +13,12 @@ heat_memory::heat_memory(int max_nx, int max_ny, const heat_scene &scene) {
         aligned_buffer<double>(heat_columns::state_size(max_nx, max_ny, scene.bodies.exchanges()));
 }
 
-void heat_memory::clear() { std::fill(columns.begin(), columns.end(), 0.0); }
+void heat_memory::clear() {
+  std::fill(columns.begin(), columns.end(), 0.0);
+  forget_friction();
+}
+
+void heat_memory::forget_friction() { std::fill(friction.begin(), friction.end(), 0.0); }
 
 temperature_stage::temperature_stage(const heat_scene &scene, int max_nx, int max_ny)
     : scene_(scene) {
@@ -41,7 +46,7 @@ const double *temperature_stage::exchanged() const {
 }
 
 void temperature_stage::begin(const heat_rows &rows, double distance, const double *pressure,
-                              bool warm, heat_memory &memory) {
+                              heat_memory &memory) {
   rows_ = rows;
   if (columns_) {
     columns_->begin(rows, distance, pressure, memory.columns.data());
@@ -58,8 +63,7 @@ void temperature_stage::begin(const heat_rows &rows, double distance, const doub
     const double level = e ? e[i] : 0.0, rise = columns_ ? columns_->memory()[i] * per_body : 0.0;
     background_[at] =
         std::max(scene_.bodies.surface(0, level, rise), scene_.bodies.surface(1, level, rise));
-    const bool known = warm && memory.friction[at] > 0;
-    if (!known) memory.friction[at] = scene_.law.coefficient(background_[at]);
+    if (!(memory.friction[at] > 0)) memory.friction[at] = scene_.law.coefficient(background_[at]);
   }
 }
 

@@ -26,6 +26,7 @@ struct heat_memory {
   aligned_buffer<double> friction;        // -, of a law of temperature
   aligned_buffer<double> columns;         // transient: the state of heat_columns
   void clear();
+  void forget_friction();  // it starts at the law of what is there without friction's heat
   size_t bytes() const { return 2 * temperature[0].bytes() + friction.bytes() + columns.bytes(); }
 };
 
@@ -35,9 +36,8 @@ class temperature_stage {
 
   bool feeds_back() const { return scene_.by_temperature; }
   // Before the tangential problem: what the surfaces have without this step's heat. distance (m)
-  // counts in transient rolling only. warm: the memory's friction may serve as a start.
-  void begin(const heat_rows &rows, double distance, const double *pressure, bool warm,
-             heat_memory &memory);
+  // counts in transient rolling only. The memory's friction is the start.
+  void begin(const heat_rows &rows, double distance, const double *pressure, heat_memory &memory);
   // Heat of a tangential solution: W/m^2, [ny][nx]; plastic: of plastic work, or null.
   void heat(const double *px, const double *py, const double *sx, const double *sy,
             const double *plastic, double *q) const;
