@@ -40,7 +40,7 @@ def ertz_case(elements: list[int], direction: int = 1, **tables) -> dict:
 
 
 def central_row(result: railpatch.Result) -> tuple[np.ndarray, np.ndarray]:
-    fields = result["fields"]
+    fields = result
     return np.array(fields["x"]) / A, np.array(fields["temperature"])[0][
         len(fields["y"]) // 2
     ]
@@ -109,7 +109,7 @@ def test_unlike_materials_have_equal_surfaces_in_contact() -> None:
         "heat_capacity": [450.0, 540.0],
         "density": [7850.0, 7200.0],
     }
-    fields = solve(ertz_case([40, 31], temperature=heat), fields=True)["fields"]
+    fields = solve(ertz_case([40, 31], temperature=heat), fields=True)
     wheel, rail = np.array(fields["temperature"])
     touching = np.array(fields["pressure"]) > 0
     np.testing.assert_allclose(wheel[touching], rail[touching], rtol=1e-12)
@@ -121,11 +121,11 @@ def test_heat_of_a_stick_zone_and_standstill() -> None:
     rest = solve({**case, "motion": {"rolling_speed": 0.0}})
     # equal materials: the mean, report Eq. 6; the warmer body's bulk stays beside the contact
     assert rest["max_temperature"] == pytest.approx(80.0, abs=1e-10)
-    fields = solve({**case, "motion": {"rolling_speed": 0.0}}, fields=True)["fields"]
+    fields = solve({**case, "motion": {"rolling_speed": 0.0}}, fields=True)
     touching = np.array(fields["pressure"]) > 0
     np.testing.assert_allclose(np.array(fields["temperature"])[0][touching], 50.0, atol=1e-10)
     free = solve({**case, "motion": {"creepage": [0.0, 0.0], "rolling_speed": SPEED}}, fields=True)
-    temperature = np.array(free["fields"]["temperature"])
+    temperature = np.array(free["temperature"])
     np.testing.assert_allclose(temperature[:, touching], 50.0, atol=1e-10)
 
 
@@ -149,7 +149,7 @@ def test_rail_chill_in_and_behind_the_contact(direction: int) -> None:
         "friction": {"coefficient": 0.3},
         "temperature": {"wheel": wheel_bulk, "rail": rail_bulk, **heat},
     }
-    fields = solve(case, fields=True)["fields"]
+    fields = solve(case, fields=True)
     pressure, temperature = np.array(fields["pressure"]), np.array(fields["temperature"])
     effusivity = np.sqrt([50.0 * 450 * 7850, 30.0 * 540 * 7200])
     share = effusivity / effusivity.sum()

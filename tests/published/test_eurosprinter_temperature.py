@@ -86,7 +86,7 @@ def test_temperature_and_its_known_bias(table: list[dict[str, float]]) -> None:
         if row["cksi"] < 0.01:
             continue
         result = run(row["cksi"], None, fields=True)
-        fields = result["fields"]
+        fields = result
         flux = SPEED * np.hypot(*fields["traction"]) * np.hypot(*fields["micro_slip"])
         own = np.sqrt(2 * 2 * A / ACROSS / (SPEED * np.pi)) * flux
         rise = np.array(fields["temperature"])[0] + own / (2 * np.sqrt(50.0 * 450.0 * 7850.0))
