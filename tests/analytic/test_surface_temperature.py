@@ -85,7 +85,7 @@ def test_transient_heats_up_from_bulk_temperature() -> None:
     contact = railpatch.Contact(heated(motion=moving, temperature={}))
     before = 0.0
     for _ in range(6):
-        result = contact.step(distance=2e-4)
+        result = contact.step(distance=8e-4)
         assert result.status == "converged"
         assert result["max_temperature"] > before
         before = result["max_temperature"]

@@ -41,9 +41,7 @@ def ertz_case(elements: list[int], direction: int = 1, **tables) -> dict:
 
 def central_row(result: railpatch.Result) -> tuple[np.ndarray, np.ndarray]:
     fields = result
-    return np.array(fields["x"]) / A, np.array(fields["temperature"])[0][
-        len(fields["y"]) // 2
-    ]
+    return np.array(fields["x"]) / A, np.array(fields["temperature"])[0][len(fields["y"]) // 2]
 
 
 @pytest.mark.parametrize("direction", [1, -1])

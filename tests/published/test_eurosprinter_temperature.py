@@ -80,7 +80,7 @@ def test_creep_force(table: list[dict[str, float]], name: str) -> None:
 
 
 def test_temperature_and_its_known_bias(table: list[dict[str, float]]) -> None:
-    """Ours from the table's creepage on where all slides, and what the own heat twice makes of it."""
+    """Where all slides: ours, and what the own heat twice makes of it."""
     lines = []
     for row in table:
         if row["cksi"] < 0.01:
