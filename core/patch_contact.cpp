@@ -450,7 +450,9 @@ tangential_result patch_contact::solve_on_grid(const patch_problem &problem,
     for (auto i = static_cast<size_t>(j * g.nx); i < static_cast<size_t>((j + 1) * g.nx); ++i)
       bound_[i] = (mu ? mu[i] : friction) * factor * memory.pressure[i];
   }
-  const tangential_options options{scene_.tolerance, scene_.max_iterations};
+  // the outer loop sees the tractions' errors as changes of the heat
+  const double tolerance = mu ? std::max(0.1 * scene_.tolerance, 1e-12) : scene_.tolerance;
+  const tangential_options options{tolerance, scene_.max_iterations};
   if (!scene_.law)
     return tangential_->solve(*influence_, g, memory.pressure.data(), bound_.data(), rolling,
                               options, memory.fields());

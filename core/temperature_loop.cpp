@@ -8,18 +8,20 @@ temperature_loop::temperature_loop(int max_count) {
     *b = aligned_buffer<double>(n);
 }
 
-double consistent_coefficient(const temperature_law &law, double a, double b) {
+double consistent_coefficient(const temperature_law &law, double a, double b, double mu) {
   const double cold = law.reference, hot = law.reference + law.change;
   const double begin = law.reference_temperature, end = begin + law.range;
-  if (a + b * cold <= begin) return cold;
-  if (a + b * hot >= end) return hot;
+  const bool stays_cold = a + b * cold <= begin, gets_hot = a + b * hot >= end;
+  if (stays_cold && gets_hot) return std::fabs(mu - cold) <= std::fabs(mu - hot) ? cold : hot;
+  if (stays_cold) return cold;
+  if (gets_hot) return hot;
   const double slope = law.change / law.range;
   const double root = (cold + slope * (a - begin)) / (1.0 - slope * b);
   return std::clamp(root, std::min(cold, hot), std::max(cold, hot));
 }
 
 // next_ = coefficients consistent with the heat per coefficient of (mu, q).
-void temperature_loop::pass(const problem &p, const double *mu, const double *q) {
+void temperature_loop::pass(const problem &p, const double *mu, const double *q, bool keep) {
   const int nx = p.rows.nx, ahead = p.rows.direction;
   const double per_body = 1.0 / p.effusivity;
   const heat_kernel &kernel = *p.kernel;
@@ -37,7 +39,7 @@ void temperature_loop::pass(const problem &p, const double *mu, const double *q)
         temperature +=
             per_body * kernel.weight(m) * heat_[static_cast<size_t>(row + i + ahead * m)];
       const double own = kernel.count() > 0 ? per_body * kernel.weight(0) * h : 0.0;
-      next_[at] = consistent_coefficient(p.law, temperature, own);
+      next_[at] = consistent_coefficient(p.law, temperature, own, keep ? mu[at] : p.law.reference);
       heat_[at] = mu[at] > 0 ? h * next_[at] : q[at];
     }
   }

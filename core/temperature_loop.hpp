@@ -49,7 +49,7 @@ class temperature_loop {
   size_t bytes() const { return 7 * next_.bytes(); }
 
  private:
-  void pass(const problem &p, const double *mu, const double *q);
+  void pass(const problem &p, const double *mu, const double *q, bool keep);
   double change(int n, const double *mu) const;
   void advance(const problem &p, double *mu);
   void restart(int n, double *mu);
@@ -62,9 +62,8 @@ class temperature_loop {
 };
 
 // The root of mu = law(a + b mu), b >= 0. A rising law may have three where the own heat of one
-// element is great (b goes with the root of its size): the cold one then, from which material
-// enters the element.
-double consistent_coefficient(const temperature_law &law, double a, double b);
+// element is great (b goes with the root of its size): of the two stable ones that nearest to mu.
+double consistent_coefficient(const temperature_law &law, double a, double b, double mu);
 
 template <class Tangential>
 temperature_loop_result temperature_loop::solve(const problem &p,
@@ -76,16 +75,20 @@ temperature_loop_result temperature_loop::solve(const problem &p,
   former_ = since_best_ = 0;
   damping_ = 1;
   temperature_loop_result result;
-  int failures = 0;  // in a row
+  int failures = 0;    // in a row
+  bool again = false;  // the best coefficients for the second time
   for (;;) {
     const bool solved = tangential(static_cast<const double *>(mu), q);
     ++result.iterations;
-    pass(p, mu, q);
+    // an element with two roots takes the cold one, from which material enters it, until the
+    // passes should have settled: then each keeps its own
+    pass(p, mu, q, result.iterations > 6);
     const double now = change(n, mu);
     result.residual = scale > 0 ? now / scale : now;
     result.converged = solved && result.residual <= options.tolerance;
     if (result.converged || !(now >= 0)) return result;
-    if (result.iterations == 1 || now < best_) {
+    // tractions that are only so exact give the best coefficients another change the second time
+    if (result.iterations == 1 || again || now < best_) {
       best_ = now;
       since_best_ = 0;
       std::copy_n(mu, n, best_mu_.data());
@@ -94,7 +97,8 @@ temperature_loop_result temperature_loop::solve(const problem &p,
     }
     failures = solved ? 0 : failures + 1;
     if (result.iterations >= options.max_iterations || failures > 2) break;
-    if (now > 2.0 * best_ || since_best_ > 4)
+    again = now > 2.0 * best_ || since_best_ > 4;
+    if (again)
       restart(n, mu);
     else
       advance(p, mu);
@@ -104,7 +108,7 @@ temperature_loop_result temperature_loop::solve(const problem &p,
     std::copy_n(best_mu_.data(), n, mu);
     tangential(static_cast<const double *>(mu), q);
     ++result.iterations;
-    pass(p, mu, q);
+    pass(p, mu, q, true);
     result.residual = scale > 0 ? change(n, mu) / scale : change(n, mu);
   }
   return result;

@@ -147,7 +147,7 @@ TEST(Loop, RootsOfOneElement) {
   for (double a : {0.0, 90.0, 120.0, 400.0})
     for (double b : {0.0, 10.0, 300.0, 1e6})
       for (const temperature_law &law : {falls, rises}) {
-        const double mu = consistent_coefficient(law, a, b);
+        const double mu = consistent_coefficient(law, a, b, 0.2);
         const double slope = std::fabs(law.change / law.range) * b;
         EXPECT_NEAR(mu, law.coefficient(a + b * mu), 1e-13 * (1 + slope)) << a << " " << b;
       }
