@@ -45,6 +45,22 @@ std::optional<bound_law> make_law(const rp_config &c) {
   return law;
 }
 
+// Where temperatures are asked for.
+std::optional<heat_scene> make_heat(const rp_config &c) {
+  if (c.temperature == 0 || c.tangential == RP_TANGENTIAL_NONE) return std::nullopt;
+  heat_scene heat;
+  for (int k = 0; k < 2; ++k)
+    heat.bodies.body[k] = {c.conductivity[k], c.heat_capacity[k], c.density[k],
+                           c.bulk_temperature[k]};
+  heat.by_temperature = c.friction_law == RP_TEMPERATURE;
+  heat.law = {c.friction_reference, c.friction_change, c.friction_reference_temperature,
+              c.friction_temperature_range};
+  heat.depth = c.temperature_depth;
+  heat.plastic_fraction = c.plastic_heat_fraction;
+  heat.transient = c.regime == RP_TRANSIENT_ROLLING;
+  return heat;
+}
+
 patch_scene make_scene(const rp_config &c) {
   patch_scene scene;
   scene.elastic = combine(c.shear_modulus, c.poisson_ratio);
@@ -64,6 +80,7 @@ patch_scene make_scene(const rp_config &c) {
     if (c.regime == RP_SHIFT) scene.regime = motion::shift;
     if (c.regime == RP_TRANSIENT_ROLLING) scene.regime = motion::transient;
   }
+  scene.heat = make_heat(c);
   for (int k = 0; k < 2; ++k) scene.fitted[k] = c.fitted[k];
   for (int k = 0; k < 2; ++k) scene.prescribed[k] = c.force_prescribed[k] != 0;
   scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
@@ -276,7 +293,7 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
       in.approach < least_approach) {
     result.approach = in.approach;
     set_unloaded(solver_.scene(), result);
-    solver_.leave_contact(step_of(in), memory(RP_RIGHT, 0));
+    solver_.leave_contact(step_of(in), memory(RP_RIGHT, 0), result);
     return finish(RP_NO_CONTACT);
   }
   patch_memory &m = memory(RP_RIGHT, 0);
@@ -428,6 +445,7 @@ void contact::reset() {
   for (auto &m : memory_) {
     m.warm = m.solved = false;
     m.history.clear();
+    if (m.heat) m.heat->clear();
   }
   depth_ = 0;
 }
@@ -460,7 +478,8 @@ struct plastic_path {
 
 // Whether a field belongs to laws beyond Coulomb's, and this patch has none such.
 bool lacks_law(const patch_memory &m, rp_field name) {
-  if (name == RP_FIELD_FRICTION) return m.history.friction.size() == 0;
+  if (name == RP_FIELD_FRICTION)
+    return m.history.friction.size() == 0 && !(m.heat && m.heat->friction.size() > 0);
   const bool plastic = name == RP_FIELD_PLASTIC_DISPLACEMENT || name == RP_FIELD_PLASTIC_PATH ||
                        name == RP_FIELD_YIELD_STRESS;
   return plastic && m.history.yield_stress.size() == 0;
@@ -479,12 +498,13 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
   const bool missing =
       (of_tangential && m.px.size() == 0) || lacks_law(m, name) || m.columns() * m.rows() == 0 ||
       (name == RP_FIELD_PRESSURE && m.pressure.size() + m.node_pressure.size() == 0);
-  if (!m.solved || missing) return RP_ERROR_NO_FIELD;
+  const bool no_heat = name == RP_FIELD_TEMPERATURE && !m.heat;
+  if (!m.solved || missing || no_heat) return RP_ERROR_NO_FIELD;
   if (m.fitted() && name == RP_FIELD_UNDEFORMED_DISTANCE) return RP_ERROR_NO_FIELD;
   const int nx = m.columns(), ny = m.rows();
   const bool of_axis = (name == RP_FIELD_X && !m.fitted()) || name == RP_FIELD_Y;
   const bool of_vectors = name == RP_FIELD_TRACTION || name == RP_FIELD_MICRO_SLIP ||
-                          name == RP_FIELD_PLASTIC_DISPLACEMENT;
+                          name == RP_FIELD_PLASTIC_DISPLACEMENT || name == RP_FIELD_TEMPERATURE;
   const auto plane = static_cast<size_t>(nx * ny);
   const size_t needed = of_axis ? static_cast<size_t>(name == RP_FIELD_X ? nx : ny)
                                 : (of_vectors ? 2 * plane : plane);
@@ -528,8 +548,12 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
     case RP_FIELD_ELEMENT_DIVISION:
       copy(m.division, values, 1.0);
       break;
+    case RP_FIELD_TEMPERATURE:
+      for (int k = 0; k < 2; ++k)
+        copy(m.heat->temperature[k], values + static_cast<size_t>(k) * plane, 1.0);
+      break;
     case RP_FIELD_FRICTION:
-      copy(m.history.friction, values, 1.0);
+      copy(m.history.friction.size() ? m.history.friction : m.heat->friction, values, 1.0);
       break;
     case RP_FIELD_PLASTIC_DISPLACEMENT:
       copy(m.history.plastic[0], values, 1.0);
@@ -593,17 +617,28 @@ const char *tangential_reason(const patch_scene &scene) {
   return "";
 }
 
+const char *temperature_reason(const patch_scene &scene) {
+  if (!scene.heat) return "no surface temperature in the scene";
+  if (scene.heat->by_temperature)
+    return scene.heat->transient
+               ? "friction depends on temperature: columns with memory, outer loop"
+               : "friction depends on temperature: outer loop";
+  return scene.heat->transient ? "temperature is asked for: columns with memory"
+                               : "temperature is asked for: steady rolling";
+}
+
 }  // namespace
 
 void contact::describe(rp_stage_info *info) const {
   const patch_scene &scene = solver_.scene();
   const bool tangential = scene.tangential != RP_TANGENTIAL_NONE;
   const bool wheels = config_.kind != RP_PATCH;
-  size_t distance = 0, normal = 0, traction = 0;
+  size_t distance = 0, normal = 0, traction = 0, heat = 0;
   for (const auto &m : memory_) {
     distance += m.undeformed_distance.bytes();
     normal += m.pressure.bytes();
     traction += m.bytes() - m.undeformed_distance.bytes() - m.pressure.bytes();
+    if (m.heat) heat += m.heat->bytes();
   }
   for (const auto &wheel : wheels_) distance += wheel.bytes();
   info[RP_STAGE_GEOMETRY] = {"geometry", 1,
@@ -620,7 +655,8 @@ void contact::describe(rp_stage_info *info) const {
   const char *why = config_.regime == RP_REGIME_NONE ? "regime = none" : tangential_reason(scene);
   info[RP_STAGE_TANGENTIAL] = {"tangential", tangential, why,
                                tangential ? traction + solver_.tangential_bytes() : 0};
-  info[RP_STAGE_TEMPERATURE] = {"temperature", 0, "no surface temperature in the scene", 0};
+  info[RP_STAGE_TEMPERATURE] = {"temperature", scene.heat.has_value(), temperature_reason(scene),
+                                heat + solver_.heat_bytes()};
   info[RP_STAGE_FORCES] = {"forces", 1, "resultants of pressure and traction", 0};
 }
 

@@ -149,7 +149,11 @@ uint64_t fingerprint_of_arrays(const rp_config &c, const aligned_buffer<double> 
 // the fields that a later step starts from
 template <class Memory, class F>
 void for_each_start_field(Memory &m, F &&f) {
+  if (m.heat && m.heat->columns.size())
+    f(m.heat->columns.data(), m.heat->columns.size() * sizeof(double));
   if (!m.warm && !m.history.begun) return;
+  if (m.heat && m.heat->friction.size())
+    f(m.heat->friction.data(), static_cast<size_t>(m.g.count()) * sizeof(double));
   if (m.pressure.size()) f(m.pressure.data(), static_cast<size_t>(m.g.count()) * sizeof(double));
   if (m.px.size() == 0) return;
   const auto traction = static_cast<size_t>(m.columns() * m.rows()) * sizeof(double);
@@ -234,7 +238,10 @@ bool contact::state_fits(const unsigned char *at, size_t size) const {
     const size_t traction = m.creepage.size() + fields;
     if (patch.begun && !m.history.keeps_steps()) return false;
     const bool kept = patch.warm || patch.begun;
-    const size_t bytes = sizeof patch + (kept ? count + traction : 0) * sizeof(double) +
+    const size_t friction = m.heat && m.heat->friction.size() ? count : 0;
+    const size_t columns = m.heat ? m.heat->columns.size() : 0;
+    const size_t bytes = sizeof patch + columns * sizeof(double) +
+                         (kept ? count + traction + friction : 0) * sizeof(double) +
                          (patch.begun ? m.history.kept_bytes(count) : 0);
     if (size < bytes) return false;
     at += bytes;

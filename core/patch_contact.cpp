@@ -40,6 +40,9 @@ rp_patch_result empty_patch_result() {
 void set_unloaded(const patch_scene &scene, rp_patch_result &result) {
   result.normal_force = result.max_pressure = result.contact_area = result.elastic_energy = 0;
   result.error_estimate[2] = 0;
+  if (scene.heat)
+    result.max_temperature =
+        std::max(scene.heat->bodies.body[0].bulk, scene.heat->bodies.body[1].bulk);
   if (scene.tangential == RP_TANGENTIAL_NONE) return;
   result.creep_force[0] = result.creep_force[1] = result.spin_moment = result.friction_power = 0;
   if (scene.law && scene.law->plastic()) result.plastic_power = 0;
@@ -48,7 +51,8 @@ void set_unloaded(const patch_scene &scene, rp_patch_result &result) {
 
 bool patch_scene::estimates_force() const {
   // of a prescribed force the creepage errs
-  if (spin_offset || is_forced() || law || keeps_steps()) return false;
+  const bool by_temperature = heat && heat->by_temperature;
+  if (spin_offset || is_forced() || law || keeps_steps() || by_temperature) return false;
   if (!is_fast(tangential)) return true;
   const polach_factors &p = fast.polach;
   const stiffness_reduction &r = fast.reduction;
@@ -70,6 +74,7 @@ patch_memory::patch_memory(int max_count, int max_rows, const patch_scene &scene
   division = aligned_buffer<unsigned char>(count);
   if (scene.is_forced()) creepage = aligned_buffer<double>(2);
   history = patch_history(max_count, scene.keeps_steps(), scene.law ? &*scene.law : nullptr);
+  if (scene.heat) heat.emplace(max_count / std::max(max_rows, 1), max_rows, *scene.heat);
   if (!scene.is_fitted()) return;
   node_x = aligned_buffer<double>(count);
   node_y = aligned_buffer<double>(static_cast<size_t>(scene.fitted[1]));
@@ -113,6 +118,7 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
     fitted_.emplace(scene.elastic, scene.layer_flexibility, scene.line_width > 0, scene.is_forced(),
                     *fitted_rows_);
   }
+  if (scene.heat) heat_.emplace(*scene.heat, max_nx, max_ny);
   if (scene.closed_form()) return;
   scratch_[0] = aligned_buffer<double>(count);
   scratch_[1] = aligned_buffer<double>(count);
@@ -126,13 +132,19 @@ size_t patch_contact::tangential_bytes() const {
          (fitted_ ? fitted_rows_->bytes() + fitted_->bytes() : 0);
 }
 
-void patch_contact::leave_contact(const rolling_input &step, patch_memory &memory) {
+void patch_contact::leave_contact(const rolling_input &step, patch_memory &memory,
+                                  rp_patch_result &result) {
   memory.warm = false;
   if (!memory.history.begun) return;
   memory.history.begin(memory.g, step.upstream(), memory.px.data(), memory.py.data());
   patch_problem nothing;
   nothing.g = memory.g;
+  nothing.rolling = step;
+  nothing.rolling_speed = step.speed;
   leave_unloaded(nothing, memory);
+  if (!heat_) return;
+  begin_heat(nothing, memory);
+  result.max_temperature = finish_heat(nothing, memory);
 }
 
 void patch_contact::start_from(patch_memory &memory, const grid &g) {
@@ -154,6 +166,7 @@ void patch_contact::start_from(patch_memory &memory, const grid &g) {
         }
     };
     carry(memory.pressure);
+    if (memory.heat) memory.heat->forget_friction();
     if (!memory.fitted()) {
       carry(memory.px);
       carry(memory.py);
@@ -161,6 +174,7 @@ void patch_contact::start_from(patch_memory &memory, const grid &g) {
   }
   memory.g = g;
   if (memory.warm) return;
+  if (memory.heat) memory.heat->forget_friction();
   if (memory.pressure.size()) std::fill_n(memory.pressure.data(), g.count(), 0.0);
   if (memory.px.size() == 0) return;
   for (auto *field : {&memory.px, &memory.py})
@@ -188,14 +202,18 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   if (!loaded) {
     set_unloaded(scene_, result);
     leave_unloaded(problem, memory);
+    if (heat_) begin_heat(problem, memory);
+    if (heat_) result.max_temperature = finish_heat(problem, memory);
     wrench = {};
     return;
   }
+  if (heat_) begin_heat(problem, memory);
   if (scene_.tangential != RP_TANGENTIAL_NONE) {
     observe(RP_STAGE_TANGENTIAL, true);
     memory.warm = solve_tangential(problem, memory, result) && memory.warm;
     observe(RP_STAGE_TANGENTIAL, false);
   }
+  if (heat_) result.max_temperature = finish_heat(problem, memory);
   observe(RP_STAGE_FORCES, true);
   if (scene_.closed_form()) {
     // the ellipse's pressure is symmetric about the reference
@@ -397,7 +415,8 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   } else if (fitted_) {
     t = solve_fitted(problem, rolling, memory);
   } else {
-    t = solve_on_grid(problem, rolling, memory, result);
+    t = heat_ && heat_->feeds_back() ? solve_with_heat(problem, rolling, memory, result)
+                                     : solve_on_grid(problem, rolling, memory, result, nullptr);
   }
   for (int c = 0; c < 2; ++c) {
     if (!scene_.prescribed[c]) continue;
@@ -424,19 +443,20 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
 
 tangential_result patch_contact::solve_on_grid(const patch_problem &problem,
                                                const rolling_input &rolling, patch_memory &memory,
-                                               rp_patch_result &result) {
+                                               rp_patch_result &result, const double *mu) {
   const grid &g = problem.g;
   const bool varies = scene_.friction_variation.varies();
   // where the law says mu, what it is multiplied by
   const bool by_velocity = scene_.law && scene_.law->by_velocity;
   const double friction = by_velocity ? 1.0 : scene_.friction_coefficient;
   for (int j = 0; j < g.ny; ++j) {
-    const double coefficient =
-        friction * (varies ? memory.row_friction[static_cast<size_t>(j)] : 1.0);
+    const double factor = varies ? memory.row_friction[static_cast<size_t>(j)] : 1.0;
     for (auto i = static_cast<size_t>(j * g.nx); i < static_cast<size_t>((j + 1) * g.nx); ++i)
-      bound_[i] = coefficient * memory.pressure[i];
+      bound_[i] = (mu ? mu[i] : friction) * factor * memory.pressure[i];
   }
-  const tangential_options options{scene_.tolerance, scene_.max_iterations};
+  // the outer loop sees the tractions' errors as changes of the heat
+  const double tolerance = mu ? std::max(0.1 * scene_.tolerance, 1e-12) : scene_.tolerance;
+  const tangential_options options{tolerance, scene_.max_iterations};
   const auto zero = [&](const double *p) {
     return std::all_of(p, p + g.count(), [](double v) { return v == 0; });
   };
@@ -459,6 +479,60 @@ tangential_result patch_contact::solve_on_grid(const patch_problem &problem,
   result.ambiguous_elements = sums.ambiguous;
   if (scene_.law->plastic()) result.plastic_power = sums.plastic_work;
   return t;
+}
+
+// Each pass of the outer loop starts from the tractions of the last one.
+tangential_result patch_contact::solve_with_heat(const patch_problem &problem,
+                                                 const rolling_input &rolling, patch_memory &memory,
+                                                 rp_patch_result &result) {
+  tangential_result last{};
+  int newton = 0, products = 0;
+  const auto pass = [&](const double *mu, double *q) {
+    last = solve_on_grid(problem, rolling, memory, result, mu);
+    newton += last.newton_iterations;
+    products += last.products;
+    flux_of(problem, memory, q);
+    return last.converged;
+  };
+  const temperature_loop_result loop = heat_->solve(
+      memory.pressure.data(), {scene_.tolerance, scene_.max_iterations}, *memory.heat, pass);
+  result.outer_iterations += loop.iterations;
+  last.newton_iterations = newton;
+  last.products = products;
+  last.converged = last.converged && loop.converged;
+  if (!(loop.residual <= last.residual)) last.residual = loop.residual;
+  return last;
+}
+
+void patch_contact::begin_heat(const patch_problem &problem, patch_memory &memory) {
+  const grid &g = problem.g;
+  const rolling_input &rolling = problem.rolling;
+  observe(RP_STAGE_TEMPERATURE, true);
+  heat_->begin({g.nx, g.ny, g.dx, rolling.direction, problem.rolling_speed},
+               rolling.regime == motion::transient ? rolling.distance : 0.0, memory.pressure.data(),
+               *memory.heat);
+  observe(RP_STAGE_TEMPERATURE, false);
+}
+
+double patch_contact::finish_heat(const patch_problem &problem, patch_memory &memory) {
+  observe(RP_STAGE_TEMPERATURE, true);
+  flux_of(problem, memory, heat_->flux());
+  const double greatest = heat_->finish(memory.pressure.data(), *memory.heat);
+  observe(RP_STAGE_TEMPERATURE, false);
+  return greatest;
+}
+
+void patch_contact::flux_of(const patch_problem &problem, const patch_memory &memory, double *q) {
+  const double *plastic = nullptr;
+  if (scene_.law && scene_.law->plastic()) {
+    const bool steps = problem.rolling.regime == motion::transient;
+    memory.history.plastic_work(problem.g, problem.rolling.direction, memory.px.data(),
+                                memory.py.data(), scratch_[0].data());
+    const double rate = problem.rolling_speed / (steps ? problem.rolling.distance : problem.g.dx);
+    for (int i = 0; i < problem.g.count(); ++i) scratch_[0][static_cast<size_t>(i)] *= rate;
+    plastic = scratch_[0].data();
+  }
+  heat_->heat(memory.px.data(), memory.py.data(), memory.sx.data(), memory.sy.data(), plastic, q);
 }
 
 tangential_result patch_contact::solve_fitted(const patch_problem &problem,

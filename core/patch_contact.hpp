@@ -17,6 +17,7 @@
 #include "railpatch.h"
 #include "row_contact.hpp"
 #include "tangential.hpp"
+#include "temperature_stage.hpp"
 
 namespace railpatch {
 
@@ -38,6 +39,7 @@ struct patch_scene {
   bool spin_offset = false;  // x + dq/6 in the spin term
   int fitted[2] = {0, 0};    // nodes and strips of the tangential problem; 0: on the uniform grid
   fast_options fast;         // where the tangential theory is a fast one
+  std::optional<heat_scene> heat;       // where temperatures are asked for
   bool prescribed[2] = {false, false};  // components of the creep force: their creepage is found
   bool is_forced() const { return prescribed[0] || prescribed[1]; }
   // false: beside the exact theory, by choice
@@ -81,6 +83,7 @@ struct patch_memory {
   aligned_buffer<double> creepage;                       // [2], of a prescribed creep force only
   std::array<double, error_feature_count> error_features{};
   patch_history history;
+  std::optional<heat_memory> heat;
   bool fitted() const { return node_x.size() > 0; }
   // elements of the tangential problem along rolling and lateral
   int columns() const { return fitted() ? static_cast<int>(node_x.size() / node_y.size()) : g.nx; }
@@ -106,7 +109,7 @@ class patch_contact {
     memory.history.begin(problem.g, problem.rolling.upstream(), memory.px.data(), memory.py.data());
   }
   // A step without contact: the material moves on and bears no traction.
-  void leave_contact(const rolling_input &step, patch_memory &memory);
+  void leave_contact(const rolling_input &step, patch_memory &memory, rp_patch_result &result);
   // Carries the memory's solution over to another grid, or clears it.
   void start_from(patch_memory &memory, const grid &g);
 
@@ -118,6 +121,7 @@ class patch_contact {
     return (normal_ ? normal_->bytes() : 0) + (rows_ ? rows_->bytes() : 0);
   }
   size_t tangential_bytes() const;
+  size_t heat_bytes() const { return heat_ ? heat_->bytes() : 0; }
   void observe(rp_stage stage, bool entering) const {
     if (observer_) observer_(observer_user_, stage, entering);
   }
@@ -134,8 +138,15 @@ class patch_contact {
   void leave_unloaded(const patch_problem &problem, patch_memory &memory);
   tangential_result solve_fitted(const patch_problem &problem, const rolling_input &rolling,
                                  patch_memory &memory);
+  // mu: of each element, null: as in the scene
   tangential_result solve_on_grid(const patch_problem &problem, const rolling_input &rolling,
-                                  patch_memory &memory, rp_patch_result &result);
+                                  patch_memory &memory, rp_patch_result &result, const double *mu);
+  void begin_heat(const patch_problem &problem, patch_memory &memory);
+  double finish_heat(const patch_problem &problem, patch_memory &memory);
+  // W/m^2, of the tractions in memory
+  void flux_of(const patch_problem &problem, const patch_memory &memory, double *q);
+  tangential_result solve_with_heat(const patch_problem &problem, const rolling_input &rolling,
+                                    patch_memory &memory, rp_patch_result &result);
   double tangential_energy(const patch_problem &problem, const patch_memory &memory);
   void estimate_error(const patch_problem &problem, patch_memory &memory,
                       rp_patch_result &result) const;
@@ -152,6 +163,7 @@ class patch_contact {
   std::optional<contact_rows> fitted_rows_;
   std::optional<fitted_solver> fitted_;
   std::optional<fast_solver> fast_;
+  std::optional<temperature_stage> heat_;
   error_model errors_;
   creep_resultants sums_;  // of the last step, where the theory has no tractions
   aligned_buffer<double> bound_, scratch_[2];

@@ -85,6 +85,26 @@ void patch_history::start_from_before(const grid &g, const bound_law &law) {
   }
 }
 
+void patch_history::plastic_work(const grid &g, int direction, const double *px, const double *py,
+                                 double *work) const {
+  std::fill_n(work, g.count(), 0.0);
+  for (int j = 0; j < g.ny; ++j) {
+    double carried[2] = {0, 0};
+    for (int k = 0; k < g.nx; ++k) {
+      const auto at = static_cast<size_t>(j * g.nx + (direction > 0 ? g.nx - 1 - k : k));
+      const double p[2] = {px[at], py[at]};
+      if (p[0] == 0 && p[1] == 0) continue;
+      for (int c = 0; c < 2; ++c) {
+        const double now = plastic[c][at];
+        work[at] += p[c] * (now - (before.size() ? plastic_before[c][at] : carried[c]));
+        carried[c] = now;
+      }
+      // of the sign of p; what is left is rounding
+      work[at] = std::max(work[at], 0.0);
+    }
+  }
+}
+
 inelastic_fields patch_history::fields(bound_law &law) {
   const bool steps = before.size() > 0;
   return {&law,

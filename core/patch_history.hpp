@@ -24,6 +24,9 @@ struct patch_history {
   void begin(const grid &g, double upstream, const double *px, const double *py);
   // Sets what is carried as no contact leaves it, for elements that then are in contact to differ.
   void start_from_before(const grid &g, const bound_law &law);
+  // J/m^2 of the step's plastic displacement, in steady rolling over one element; traction p.
+  void plastic_work(const grid &g, int direction, const double *px, const double *py,
+                    double *work) const;
   // Nothing has happened yet.
   void clear() { begun = false; }
   inelastic_fields fields(bound_law &law);

@@ -74,6 +74,23 @@ inline rp_config forced_patch(int nodes = 0) {
   return c;
 }
 
+// Friction that falls with temperature, a wheel warmer than the rail, temperatures below the
+// surface; the inputs of transient rolling need a distance.
+inline rp_config heated_patch(rp_regime regime, int elements = 16) {
+  rp_config c = patch(RP_NORMAL_HERTZ, RP_TANGENTIAL_FULL, elements);
+  c.regime = regime;
+  c.temperature = 1;
+  c.bulk_temperature[0] = 80;
+  c.bulk_temperature[1] = 20;
+  c.temperature_depth = 1e-5;
+  c.friction_law = RP_TEMPERATURE;
+  c.friction_reference = 0.4;
+  c.friction_change = -0.3;
+  c.friction_reference_temperature = 40;
+  c.friction_temperature_range = 100;
+  return c;
+}
+
 // Wheel kinds with the profiles of profiles.hpp on both sides; `wheel` and `rail` must stay alive.
 struct profile_pair {
   profiles::curve wheel = profiles::wheel(), rail = profiles::rail();

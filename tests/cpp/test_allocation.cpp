@@ -221,6 +221,17 @@ TEST(Step, OfAPatchAllocatesNothing) {
             << "normal " << normal << " tangential " << tangential << " elements " << elements;
 }
 
+TEST(Step, OfHeatedPatchesAllocatesNothing) {
+  for (rp_regime regime : {RP_STEADY_ROLLING, RP_TRANSIENT_ROLLING}) {
+    std::vector<rp_input> inputs = patch_inputs();
+    for (size_t i = 0; i < inputs.size(); ++i) {
+      inputs[i].distance = 3e-4 * static_cast<double>(1 + i % 4);
+      inputs[i].rolling_speed = i % 5 == 4 ? 500.0 : 10.0;  // the columns' modes move
+    }
+    EXPECT_EQ(run(scenes::heated_patch(regime), inputs).allocated, 0) << regime;
+  }
+}
+
 TEST(Step, OfFittedRowsAllocatesNothing) {
   for (rp_normal_method normal :
        {RP_NORMAL_HERTZ, RP_NORMAL_HALF_SPACE, RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN})

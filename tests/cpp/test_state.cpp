@@ -73,6 +73,11 @@ std::vector<scene> all_scenes() {
   add("prescribed_force", forced, forces);
   forced.fitted[0] = forced.fitted[1] = 8;
   add("prescribed_force_fitted", forced, forces);
+  std::vector<rp_input> steps = patch_inputs();
+  for (rp_input &in : steps) in.distance = 4e-4 * static_cast<double>(1 + (&in - steps.data()));
+  steps[2].direction = -1;
+  add("heated_steady", scenes::heated_patch(RP_STEADY_ROLLING), patch_inputs());
+  add("heated_transient", scenes::heated_patch(RP_TRANSIENT_ROLLING), steps);
   rp_config sized = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL);
   sized.geometry = RP_CURVATURES;
   sized.elements[0] = sized.elements[1] = 0;

@@ -135,9 +135,7 @@ class Contact:
         """The fields of one patch of the last step."""
         found: dict[str, Any] = {}
         for name in FIELDS:
-            values = None
-            if name != "temperature":
-                values = self._core.field(SIDE_INDEX[side], patch, name)
+            values = self._core.field(SIDE_INDEX[side], patch, name)
             if values is None and name in LAW_FIELDS:
                 continue
             found[name] = shaped_field(name, values, grid)

@@ -45,7 +45,7 @@ FIELDS = {
     "traction": 2,
     "micro_slip": 2,
     "element_division": 1,
-    "temperature": 1,
+    "temperature": 2,
     "friction": 1,
     "plastic_displacement": 2,
     "plastic_path": 1,
@@ -62,7 +62,8 @@ class Result:
     ``data`` and ``result[key]`` hold the quantities of the JSON result (SI units); fields are numpy
     arrays there: x [nx] (fitted rows: [ny, nx]) and y [ny] in m, pressure [ny, nx] in Pa, traction
     [2, ny, nx] in Pa, micro_slip [2, ny, nx] relative to the rolling speed, element_division
-    [ny, nx] as 0 exterior, 1 stick, 2 slip, 3 plastic. ``iterations`` is the sum of
+    [ny, nx] as 0 exterior, 1 stick, 2 slip, 3 plastic, temperature [2, ny, nx] of wheel and rail in
+    degrees C. ``iterations`` is the sum of
     conjugate-gradient steps of the normal and Newton steps of the tangential problem.
     ``error_estimate`` holds what 95 % of the errors of creep_force (N, length of the vector),
     spin_moment (N m) and max_pressure (Pa) stay below. What the scene left out is NaN or None.

@@ -91,8 +91,8 @@ class Friction(Table):
     factor: Points | None = Field(
         default=None,
         description="m or rad and -, [[place, factor], ...]: factor of the law over the lateral "
-        "position in a patch (m) or over the angle of the rail's surface (rad, > 0 towards the gauge "
-        "face on either side)",
+        "position in a patch (m) or over the angle of the rail's surface (rad, > 0 towards the "
+        "gauge face on either side)",
     )
 
     @model_validator(mode="after")
