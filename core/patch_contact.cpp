@@ -12,6 +12,9 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 using std::numbers::pi;
 
+// of unlike bodies' tangential problem, after which it is given up
+constexpr int most_failures = 5;
+
 // Worse of two outcomes, for results that several stages contribute to.
 void degrade(rp_patch_result &result, rp_status status) {
   if (result.status == RP_CONVERGED) result.status = status;
@@ -103,6 +106,9 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
                         tangential_solver::setup{scene.is_forced(), scene.law.has_value(),
                                                  scene.keeps_steps(), rolls_on ? &plans : nullptr});
   }
+  if (scene.couples())
+    coupled_.emplace(scene.elastic, scene.line_width > 0, plans, max_nx * max_ny,
+                     scene.keeps_steps());
   if (is_fast(scene.tangential)) fast_.emplace(scene.elastic, scene.fast, max_nx, max_ny);
   if (scene.is_fitted()) {
     fitted_rows_.emplace(scene.fitted[0], scene.fitted[1], max_ny);
@@ -174,8 +180,16 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
     influence_->set_grid(problem.g);
     observe(RP_STAGE_INFLUENCE, false);
   }
+  if (coupled_)
+    coupled_->begin(problem.g, memory.undeformed_distance.data(), memory.px.data(),
+                    memory.py.data());
   observe(RP_STAGE_NORMAL, true);
-  const bool loaded = solve_normal(problem, memory, result);
+  bool loaded = solve_normal(problem, memory, result);
+  if (!loaded && coupled_ && coupled_->forget()) {
+    // the last step's tractions held the bodies apart
+    result.status = RP_CONVERGED;
+    loaded = solve_normal(problem, memory, result);
+  }
   observe(RP_STAGE_NORMAL, false);
   memory.beyond = result.status == RP_OUT_OF_RANGE;
   memory.warm =
@@ -188,7 +202,9 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   }
   if (scene_.tangential != RP_TANGENTIAL_NONE) {
     observe(RP_STAGE_TANGENTIAL, true);
-    memory.warm = solve_tangential(problem, memory, result) && memory.warm;
+    const bool solved = coupled_ ? solve_in_turn(problem, memory, result)
+                                 : solve_tangential(problem, memory, result);
+    memory.warm = solved && (memory.warm || coupled_);
     observe(RP_STAGE_TANGENTIAL, false);
   }
   observe(RP_STAGE_FORCES, true);
@@ -223,7 +239,7 @@ void patch_contact::estimate_error(const patch_problem &problem, patch_memory &m
   // linear theory beyond its bound is what it is; other results are no solutions
   const bool linear = scene_.tangential == RP_TANGENTIAL_LINEAR;
   if (result.status != RP_CONVERGED && !(linear && result.status == RP_OUT_OF_RANGE)) return;
-  if (scene_.line_width > 0) return;
+  if (scene_.line_width > 0 || coupled_) return;
   solved_patch patch{scene_.normal,      scene_.tangential,           problem.hertz,  {}, {0, 0},
                      scene_.is_fitted(), scene_.friction_coefficient, problem.rolling};
   if (!scene_.estimates_force()) patch.tangential = RP_TANGENTIAL_NONE;
@@ -290,14 +306,17 @@ bool patch_contact::solve_normal(const patch_problem &problem, patch_memory &mem
 void patch_contact::solve_half_space(const patch_problem &problem, patch_memory &memory,
                                      rp_patch_result &result) {
   const grid &g = problem.g;
-  const normal_options options{scene_.normal_tolerance, scene_.max_iterations};
+  // both halves of the gap's error: of this solve, and of the tractions' part
+  const double share = coupled_ ? 0.5 : 1.0;
+  const normal_options options{share * scene_.normal_tolerance, scene_.max_iterations};
   double *p = memory.pressure.data();
-  const double *h = memory.undeformed_distance.data();
+  const double *h = coupled_ ? coupled_->distance() : memory.undeformed_distance.data();
   const normal_result n =
       problem.force_given
           ? normal_->with_force(*influence_, g, h, problem.force, options, p, problem.parts)
           : normal_->with_approach(*influence_, g, h, problem.approach, options, p, problem.parts);
   if (!n.converged) degrade(result, RP_NOT_CONVERGED);
+  if (coupled_) coupled_->set_scale(n.scale);
   if (n.touches_border) degrade(result, RP_OUT_OF_RANGE);
   result.normal_force = n.normal_force;
   result.approach = n.approach;
@@ -379,6 +398,10 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
     }
     rolling.force = &force;
   }
+  if (coupled_ && (problem.rolling_speed > 0 || rolling.regime != motion::steady)) {
+    coupled_->set_slip(memory.pressure.data(), rolling);
+    for (int c = 0; c < 2; ++c) rolling.coupled[c] = coupled_->slip(c);
+  }
   if (scene_.spin_offset) rolling.spin_offset = rolling.direction * g.dx / 6.0;
   tangential_result t;
   if (fast_) {
@@ -448,6 +471,37 @@ tangential_result patch_contact::solve_on_grid(const patch_problem &problem,
   result.ambiguous_elements = sums.ambiguous;
   if (scene_.law->plastic()) result.plastic_power = sums.plastic_work;
   return t;
+}
+
+// The tangential problem of unlike bodies, and the normal one again until both agree.
+bool patch_contact::solve_in_turn(const patch_problem &problem, patch_memory &memory,
+                                  rp_patch_result &result) {
+  const double *pressure = memory.pressure.data();
+  int normal = result.normal_iterations, newton = 0, products = 0, failures = 0;
+  for (int round = 1;; ++round) {
+    const double gap_error = result.residual;
+    const bool solved = solve_tangential(problem, memory, result);
+    const double disagreement =
+        coupled_->error(pressure, memory.px.data(), memory.py.data(), problem.force_given);
+    const bool agreed = disagreement <= 0.5 * scene_.normal_tolerance;
+    result.normal_iterations = normal;
+    result.newton_iterations = newton += result.newton_iterations;
+    result.inner_iterations = products += result.inner_iterations;
+    result.outer_iterations = round;
+    result.elastic_energy += coupled_->energy(pressure);
+    if (!(gap_error + disagreement <= result.residual)) result.residual = gap_error + disagreement;
+    failures += !solved;
+    if (agreed || failures == most_failures || round >= scene_.max_iterations) {
+      if (!agreed) degrade(result, RP_NOT_CONVERGED);
+      return solved && result.status == RP_CONVERGED;
+    }
+    result.status = RP_CONVERGED;
+    coupled_->advance();
+    // tractions too great in between, which part the bodies, are none
+    if (!solve_normal(problem, memory, result)) leave_unloaded(problem, memory);
+    memory.beyond = result.status == RP_OUT_OF_RANGE;
+    normal += result.normal_iterations;
+  }
 }
 
 tangential_result patch_contact::solve_fitted(const patch_problem &problem,
