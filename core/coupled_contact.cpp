@@ -7,6 +7,13 @@
 
 namespace railpatch {
 
+namespace {
+
+constexpr double least_share = 1.0 / 32;
+constexpr double least_tolerance = 1e-12;  // that rounding allows to ask for
+
+}  // namespace
+
 coupled_contact::coupled_contact(const elastic_constants &elastic, bool line,
                                  const fft_plans &plans, int max_count, bool keeps_steps)
     : coupling_(elastic, line, plans), outer_(static_cast<size_t>(max_count)) {
@@ -23,6 +30,7 @@ void coupled_contact::begin(const grid &g, const double *distance, const double 
                             const double *py) {
   grid_ = g;
   undeformed_ = distance;
+  rounds_ = 0;
   coupling_.set_grid(g);
   outer_.begin(static_cast<size_t>(g.count()));
   const auto loaded = [&](const double *p) {
@@ -94,7 +102,13 @@ double coupled_contact::error(const double *pressure, const double *px, const do
   return scale_ > 0 ? worst / scale_ : worst > 0 ? 1.0 : 0.0;
 }
 
+double coupled_contact::tolerance(double whole) const {
+  const double share = std::max(0.5 * std::pow(0.5, rounds_ / 4), least_share);
+  return std::max(share * whole, std::min(whole, least_tolerance));
+}
+
 void coupled_contact::advance() {
+  ++rounds_;
   outer_.advance(now_.data(), next_.data());
   moved_ = true;
   set_distance();

@@ -33,6 +33,9 @@ class coupled_contact {
   void set_scale(double value) { scale_ = value; }
   // The greatest d' - d over the scale; a constant part counts only where the approach is given.
   double error(const double *pressure, const double *px, const double *py, bool force_given);
+  // Of a tolerance, what the problems on the way are solved to: as long as rounds go on, ever more
+  // exactly, since their errors come back multiplied.
+  double tolerance(double whole) const;
   // Goes on to the next d.
   void advance();
   // J, energy of pressure and traction by each other
@@ -48,6 +51,7 @@ class coupled_contact {
   const double *undeformed_ = nullptr;
   bool moved_ = false;  // d is not 0
   double scale_ = 0;
+  int rounds_ = 0;
   aligned_buffer<double> distance_, slip_[2], now_, next_, last_pressure_;
 };
 

@@ -306,9 +306,9 @@ bool patch_contact::solve_normal(const patch_problem &problem, patch_memory &mem
 void patch_contact::solve_half_space(const patch_problem &problem, patch_memory &memory,
                                      rp_patch_result &result) {
   const grid &g = problem.g;
-  // both halves of the gap's error: of this solve, and of the tractions' part
-  const double share = coupled_ ? 0.5 : 1.0;
-  const normal_options options{share * scene_.normal_tolerance, scene_.max_iterations};
+  double tolerance = scene_.normal_tolerance;
+  if (coupled_) tolerance = coupled_->tolerance(tolerance);
+  const normal_options options{tolerance, scene_.max_iterations};
   double *p = memory.pressure.data();
   const double *h = coupled_ ? coupled_->distance() : memory.undeformed_distance.data();
   const normal_result n =
@@ -455,7 +455,8 @@ tangential_result patch_contact::solve_on_grid(const patch_problem &problem,
     for (auto i = static_cast<size_t>(j * g.nx); i < static_cast<size_t>((j + 1) * g.nx); ++i)
       bound_[i] = coefficient * memory.pressure[i];
   }
-  const tangential_options options{scene_.tolerance, scene_.max_iterations};
+  tangential_options options{scene_.tolerance, scene_.max_iterations};
+  if (coupled_) options.tolerance = coupled_->tolerance(options.tolerance);
   if (!scene_.law)
     return tangential_->solve(*influence_, g, memory.pressure.data(), bound_.data(), rolling,
                               options, memory.fields());
@@ -478,12 +479,13 @@ bool patch_contact::solve_in_turn(const patch_problem &problem, patch_memory &me
                                   rp_patch_result &result) {
   const double *pressure = memory.pressure.data();
   int normal = result.normal_iterations, newton = 0, products = 0, failures = 0;
+  // the gap's error is that of the normal problem and of the tractions' part
   for (int round = 1;; ++round) {
     const double gap_error = result.residual;
     const bool solved = solve_tangential(problem, memory, result);
     const double disagreement =
         coupled_->error(pressure, memory.px.data(), memory.py.data(), problem.force_given);
-    const bool agreed = disagreement <= 0.5 * scene_.normal_tolerance;
+    const bool agreed = gap_error + disagreement <= scene_.normal_tolerance;
     result.normal_iterations = normal;
     result.newton_iterations = newton += result.newton_iterations;
     result.inner_iterations = products += result.inner_iterations;
