@@ -7,9 +7,9 @@
 #include <limits>
 #include <utility>
 
+#include "coupling.hpp"
 #include "creep_table.hpp"
 #include "fast.hpp"
-#include "influence.hpp"
 
 namespace railpatch {
 
@@ -399,11 +399,12 @@ rp_error check_config(const rp_config &c, rp_message *message) {
                 "a fast theory has no line contact: use tangential = full");
   check.require(!(rolling && fast && c.layer_thickness > 0),
                 "a fast theory has no third-body layer: use tangential = full");
-  if (rolling && check.error() == RP_OK)
+  if (rolling && check.error() == RP_OK && is_coupled(combine(c.shear_modulus, c.poisson_ratio)))
     check.require(
-        std::abs(combine(c.shear_modulus, c.poisson_ratio).mismatch) < 1e-12,
-        "shear_modulus and poisson_ratio: bodies with (1-2nu)/G not equal couple the normal "
-        "and tangential directions, which this version solves for regime = none only");
+        c.normal == RP_NORMAL_HALF_SPACE && c.tangential == RP_TANGENTIAL_FULL && c.fitted[0] == 0,
+        "shear_modulus and poisson_ratio: bodies with (1-2nu)/G not equal couple normal "
+        "and tangential directions, which needs normal = half_space, tangential = full "
+        "and no fitted rows");
   c.kind == RP_PATCH ? check_patch(c, check) : check_wheels(c, check);
   return check.error();
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstring>
 #include <limits>
+#include <numbers>
 
 #include "check.hpp"
 #include "force_search.hpp"
@@ -114,6 +115,20 @@ double relative_size(const rp_config &c, const hertz_contact &hertz, int k) {
   return load * std::max(size, half[k] / hertz.semi_axes[k]);
 }
 
+// n elements across Hertz's contact and those to add on either side: tractions of unlike bodies
+// shift and stretch the contact area. Full sliding is farthest, in plane strain to 1 + 2 e and by
+// (1 - 4 e^2)^-1/2 with tan(pi e) = mu K/(1 - nu) (Hills, Nowell and Sackfield 1993, chapter 7).
+int with_margin(const rp_config &c, int n) {
+  const patch_scene scene = make_scene(c);
+  if (!scene.couples()) return n;
+  const elastic_constants &e = scene.elastic;
+  const double share =
+      std::atan(c.friction_coefficient * std::abs(e.mismatch) / (1.0 - e.poisson_ratio)) /
+      std::numbers::pi;
+  const double reach = (1.0 + 2.0 * share) / std::sqrt(1.0 - 4.0 * share * share);
+  return n + 2 * static_cast<int>(std::ceil(0.5 * (reach - 1.0) * n));
+}
+
 // Elements of one patch's grid, with a border of one element that stays free of contact.
 capacity grid_capacity(const rp_config &c) {
   if (!needs_grid(c)) return {0, 0};
@@ -129,10 +144,11 @@ capacity grid_capacity(const rp_config &c) {
     if (line)
       n = 1;
     else if (!sized)
-      n = c.elements[k] + 2;
+      n = with_margin(c, c.elements[k]) + 2;
     else if (ellipse)
-      n = static_cast<int>(std::min(2000.0, std::ceil(2.0 * relative_size(c, unit, k) *
-                                                      c.semi_axes[k] / c.element_size[k]))) +
+      n = with_margin(c, static_cast<int>(
+                             std::min(2000.0, std::ceil(2.0 * relative_size(c, unit, k) *
+                                                        c.semi_axes[k] / c.element_size[k])))) +
           3;
     else if (n == 0)
       // wheel on rail: overlaps up to 60 mm long and 50 mm wide; else a square of 128
@@ -196,10 +212,13 @@ grid hertz_grid(const rp_config &c, const hertz_contact &hertz) {
     const double length = 2.0 * relative_size(c, hertz, k) * hertz.semi_axes[k];
     if (c.element_size[0] > 0) {
       size = c.element_size[k];
-      return static_cast<int>(std::clamp(std::ceil(length / size - 1e-9), 1.0, 1e6)) + 2;
+      const int n = static_cast<int>(std::clamp(std::ceil(length / size - 1e-9), 1.0, 1e6));
+      // a grid of given capacity holds what fits
+      const int most = k == 0 ? grid_capacity(c).nx : grid_capacity(c).ny;
+      return std::max(n + 2, std::min(with_margin(c, n) + 2, most));
     }
     size = length / c.elements[k];
-    return c.elements[k] + 2;
+    return with_margin(c, c.elements[k]) + 2;
   };
   g.nx = cells(0, g.dx);
   g.ny = line ? 1 : cells(1, g.dy);

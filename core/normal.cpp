@@ -61,6 +61,7 @@ normal_result normal_solver::solve(problem &s, double *p) {
   }
   result.residual = s.scale > 0 ? s.worst / s.scale : 0.0;
   result.converged = s.worst <= s.options.tolerance * s.scale;
+  result.scale = s.scale;
   result.approach = s.approach;
   result.normal_force = total(p, s.n) * s.g.dx * s.g.dy;
   for (int j = 0; j < s.g.ny; ++j)

@@ -30,6 +30,7 @@ struct normal_result {
   double approach = 0;          // m, rigid shift added to the undeformed distance
   double normal_force = 0;      // N
   double residual = 0;          // -
+  double scale = 0;             // m, greatest displacement
   int iterations = 0;
   int contact_count = 0;
 };

@@ -12,6 +12,9 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 using std::numbers::pi;
 
+// of unlike bodies' tangential problem, after which it is given up
+constexpr int most_failures = 5;
+
 // Worse of two outcomes, for results that several stages contribute to.
 void degrade(rp_patch_result &result, rp_status status) {
   if (result.status == RP_CONVERGED) result.status = status;
@@ -108,10 +111,13 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
                         tangential_solver::setup{scene.is_forced(), scene.law.has_value(),
                                                  scene.keeps_steps(), rolls_on ? &plans : nullptr});
     // with a prescribed force no creepage is known to start from
-    const bool plain = !scene.is_forced() && !scene.law && !scene.keeps_steps();
+    const bool plain = !scene.is_forced() && !scene.law && !scene.keeps_steps() && !scene.couples();
     if (plain && coarse_start::serves(max_nx, max_ny))
       coarse_start_.emplace(elastic, plans, max_nx, max_ny);
   }
+  if (scene.couples())
+    coupled_.emplace(scene.elastic, scene.line_width > 0, plans, max_nx * max_ny,
+                     scene.keeps_steps());
   if (is_fast(scene.tangential)) fast_.emplace(scene.elastic, scene.fast, max_nx, max_ny);
   if (scene.is_fitted()) {
     fitted_rows_.emplace(scene.fitted[0], scene.fitted[1], max_ny);
@@ -193,8 +199,16 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
     influence_->set_grid(problem.g);
     observe(RP_STAGE_INFLUENCE, false);
   }
+  if (coupled_)
+    coupled_->begin(problem.g, memory.undeformed_distance.data(), memory.px.data(),
+                    memory.py.data());
   observe(RP_STAGE_NORMAL, true);
-  const bool loaded = solve_normal(problem, memory, result);
+  bool loaded = solve_normal(problem, memory, result);
+  if (!loaded && coupled_ && coupled_->forget()) {
+    // the last step's tractions held the bodies apart
+    result.status = RP_CONVERGED;
+    loaded = solve_normal(problem, memory, result);
+  }
   observe(RP_STAGE_NORMAL, false);
   memory.beyond = result.status == RP_OUT_OF_RANGE;
   memory.warm =
@@ -210,7 +224,9 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   if (heat_) begin_heat(problem, memory);
   if (scene_.tangential != RP_TANGENTIAL_NONE) {
     observe(RP_STAGE_TANGENTIAL, true);
-    memory.warm = solve_tangential(problem, memory, result) && memory.warm;
+    const bool solved = coupled_ ? solve_in_turn(problem, memory, result)
+                                 : solve_tangential(problem, memory, result);
+    memory.warm = solved && (memory.warm || coupled_);
     observe(RP_STAGE_TANGENTIAL, false);
   }
   if (heat_) result.max_temperature = finish_heat(problem, memory);
@@ -246,7 +262,7 @@ void patch_contact::estimate_error(const patch_problem &problem, patch_memory &m
   // linear theory beyond its bound is what it is; other results are no solutions
   const bool linear = scene_.tangential == RP_TANGENTIAL_LINEAR;
   if (result.status != RP_CONVERGED && !(linear && result.status == RP_OUT_OF_RANGE)) return;
-  if (scene_.line_width > 0) return;
+  if (scene_.line_width > 0 || coupled_) return;
   solved_patch patch{scene_.normal,  scene_.tangential,  problem.hertz, {},
                      {0, 0},         scene_.is_fitted(), {1, 1},        scene_.friction_coefficient,
                      problem.rolling};
@@ -312,14 +328,17 @@ bool patch_contact::solve_normal(const patch_problem &problem, patch_memory &mem
 void patch_contact::solve_half_space(const patch_problem &problem, patch_memory &memory,
                                      rp_patch_result &result) {
   const grid &g = problem.g;
-  const normal_options options{scene_.normal_tolerance, scene_.max_iterations};
+  double tolerance = scene_.normal_tolerance;
+  if (coupled_) tolerance = coupled_->tolerance(tolerance);
+  const normal_options options{tolerance, scene_.max_iterations};
   double *p = memory.pressure.data();
-  const double *h = memory.undeformed_distance.data();
+  const double *h = coupled_ ? coupled_->distance() : memory.undeformed_distance.data();
   const normal_result n =
       problem.force_given
           ? normal_->with_force(*influence_, g, h, problem.force, options, p, problem.parts)
           : normal_->with_approach(*influence_, g, h, problem.approach, options, p, problem.parts);
   if (!n.converged) degrade(result, RP_NOT_CONVERGED);
+  if (coupled_) coupled_->set_scale(n.scale);
   if (n.touches_border) degrade(result, RP_OUT_OF_RANGE);
   result.normal_force = n.normal_force;
   result.approach = n.approach;
@@ -401,6 +420,10 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
     }
     rolling.force = &force;
   }
+  if (coupled_ && (problem.rolling_speed > 0 || rolling.regime != motion::steady)) {
+    coupled_->set_slip(memory.pressure.data(), rolling);
+    for (int c = 0; c < 2; ++c) rolling.coupled[c] = coupled_->slip(c);
+  }
   if (scene_.spin_offset) rolling.spin_offset = rolling.direction * g.dx / 6.0;
   tangential_result t;
   if (fast_) {
@@ -454,9 +477,10 @@ tangential_result patch_contact::solve_on_grid(const patch_problem &problem,
     for (auto i = static_cast<size_t>(j * g.nx); i < static_cast<size_t>((j + 1) * g.nx); ++i)
       bound_[i] = (mu ? mu[i] : friction) * factor * memory.pressure[i];
   }
-  // the outer loop sees the tractions' errors as changes of the heat
+  // the outer loops see the tractions' errors as changes of the heat and of the gap
   const double tolerance = mu ? std::max(0.1 * scene_.tolerance, 1e-12) : scene_.tolerance;
-  const tangential_options options{tolerance, scene_.max_iterations};
+  tangential_options options{tolerance, scene_.max_iterations};
+  if (coupled_) options.tolerance = coupled_->tolerance(options.tolerance);
   const auto zero = [&](const double *p) {
     return std::all_of(p, p + g.count(), [](double v) { return v == 0; });
   };
@@ -533,6 +557,38 @@ void patch_contact::flux_of(const patch_problem &problem, const patch_memory &me
     plastic = scratch_[0].data();
   }
   heat_->heat(memory.px.data(), memory.py.data(), memory.sx.data(), memory.sy.data(), plastic, q);
+}
+
+// The tangential problem of unlike bodies, and the normal one again until both agree.
+bool patch_contact::solve_in_turn(const patch_problem &problem, patch_memory &memory,
+                                  rp_patch_result &result) {
+  const double *pressure = memory.pressure.data();
+  int normal = result.normal_iterations, newton = 0, products = 0, failures = 0;
+  // the gap's error is that of the normal problem and of the tractions' part
+  for (int round = 1;; ++round) {
+    const double gap_error = result.residual;
+    const bool solved = solve_tangential(problem, memory, result);
+    const double disagreement =
+        coupled_->error(pressure, memory.px.data(), memory.py.data(), problem.force_given);
+    const bool agreed = gap_error + disagreement <= scene_.normal_tolerance;
+    result.normal_iterations = normal;
+    result.newton_iterations = newton += result.newton_iterations;
+    result.inner_iterations = products += result.inner_iterations;
+    result.outer_iterations = round;
+    result.elastic_energy += coupled_->energy(pressure);
+    if (!(gap_error + disagreement <= result.residual)) result.residual = gap_error + disagreement;
+    failures += !solved;
+    if (agreed || failures == most_failures || round >= scene_.max_iterations) {
+      if (!agreed) degrade(result, RP_NOT_CONVERGED);
+      return solved && result.status == RP_CONVERGED;
+    }
+    result.status = RP_CONVERGED;
+    coupled_->advance();
+    // tractions too great in between, which part the bodies, are none
+    if (!solve_normal(problem, memory, result)) leave_unloaded(problem, memory);
+    memory.beyond = result.status == RP_OUT_OF_RANGE;
+    normal += result.normal_iterations;
+  }
 }
 
 tangential_result patch_contact::solve_fitted(const patch_problem &problem,

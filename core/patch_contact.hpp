@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "coarse_start.hpp"
+#include "coupled_contact.hpp"
 #include "error_estimate.hpp"
 #include "fast.hpp"
 #include "fitted.hpp"
@@ -45,6 +46,8 @@ struct patch_scene {
   // false: beside the exact theory, by choice
   bool estimates_force() const;
   bool is_fitted() const { return tangential == RP_TANGENTIAL_FULL && fitted[0] > 0; }
+  // Pressure and traction act on each other, and both are there.
+  bool couples() const { return tangential == RP_TANGENTIAL_FULL && is_coupled(elastic); }
   // No pressure and no traction on a uniform grid: all is closed form or on rows of its own.
   bool closed_form() const {
     return normal == RP_NORMAL_HERTZ &&
@@ -106,6 +109,8 @@ class patch_contact {
              patch_wrench &wrench);
   // Begins a step on the grid of the last one, in shift and transient rolling; before start_from.
   void begin_step(const patch_problem &problem, patch_memory &memory) {
+    if (coupled_ && scene_.keeps_steps())
+      coupled_->remember(problem.g, memory.history.begun ? memory.pressure.data() : nullptr);
     memory.history.begin(problem.g, problem.rolling.upstream(), memory.px.data(), memory.py.data());
   }
   // A step without contact: the material moves on and bears no traction.
@@ -116,7 +121,9 @@ class patch_contact {
   bool fits(const grid &g) const { return g.nx <= max_nx_ && g.ny <= max_ny_; }
   const patch_scene &scene() const { return scene_; }
   void set_friction_coefficient(double value) { scene_.friction_coefficient = value; }
-  size_t influence_bytes() const { return influence_ ? influence_->bytes() : 0; }
+  size_t influence_bytes() const {
+    return (influence_ ? influence_->bytes() : 0) + (coupled_ ? coupled_->bytes() : 0);
+  }
   size_t normal_bytes() const {
     return (normal_ ? normal_->bytes() : 0) + (rows_ ? rows_->bytes() : 0);
   }
@@ -135,6 +142,7 @@ class patch_contact {
   void solve_hertz(const patch_problem &problem, patch_memory &memory, rp_patch_result &result);
   bool solve_tangential(const patch_problem &problem, patch_memory &memory,
                         rp_patch_result &result);
+  bool solve_in_turn(const patch_problem &problem, patch_memory &memory, rp_patch_result &result);
   void leave_unloaded(const patch_problem &problem, patch_memory &memory);
   tangential_result solve_fitted(const patch_problem &problem, const rolling_input &rolling,
                                  patch_memory &memory);
@@ -164,6 +172,7 @@ class patch_contact {
   std::optional<fitted_solver> fitted_;
   std::optional<fast_solver> fast_;
   std::optional<temperature_stage> heat_;
+  std::optional<coupled_contact> coupled_;
   error_model errors_;
   creep_resultants sums_;  // of the last step, where the theory has no tractions
   aligned_buffer<double> bound_, scratch_[2];

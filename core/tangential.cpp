@@ -329,6 +329,11 @@ void tangential_solver::collect(const grid &g, const double *pressure, const dou
     p_[ix] = fields.px[at];
     p_[iy] = fields.py[at];
   });
+  if (!input.coupled[0]) return;
+  for_each_element([&](size_t, size_t at, size_t ix, size_t iy) {
+    rigid_[ix] += input.coupled[0][at];
+    rigid_[iy] += input.coupled[1][at];
+  });
 }
 
 void tangential_solver::release(const grid &g, tangential_fields fields) const {

@@ -33,6 +33,7 @@ struct rolling_input {
   const double *px = nullptr, *py = nullptr;  // Pa, tractions of the last step on the same grid
   // m, to where the material was in the last step
   double upstream() const { return regime == motion::transient ? direction * distance : 0.0; }
+  const double *coupled[2] = {nullptr, nullptr};  // null: none; slip from pressure, [ny][nx]
   double slip(int component, double x, double y) const {
     return component == 0 ? creepage[0] - spin_creepage * y
                           : creepage[1] + spin_creepage * (x + spin_offset);

@@ -37,9 +37,19 @@ def xy_over_r3(x: Array, y: Array) -> Array:
     return -np.hypot(x, y)
 
 
+def x_over_r2(x: Array, y: Array) -> Array:
+    """Primitive of x / r^2 in x and y."""
+    return y * np.log(np.hypot(x, y)) + x * np.arctan(y / x)
+
+
+def y_over_r2(x: Array, y: Array) -> Array:
+    return x * np.log(np.hypot(x, y)) + y * np.arctan(x / y)
+
+
 @dataclass
 class HalfSpace:
-    """Displacement differences of two equal bodies from tractions on the elements of a mask."""
+    """Displacement differences of two bodies, with their combined constants (Kalker 1990, eq.
+    1.44), from tractions on the elements of a mask."""
 
     x: Array
     y: Array
@@ -47,6 +57,7 @@ class HalfSpace:
     shear_modulus: float
     poisson_ratio: float
     layer: float = 0.0  # m/Pa
+    mismatch: float = 0.0  # K of unlike bodies
 
     def __post_init__(self) -> None:
         self.dx, self.dy = self.x[1] - self.x[0], self.y[1] - self.y[0]
@@ -99,6 +110,32 @@ class HalfSpace:
         return np.array(
             [self.matrix(xx) @ px + coupling @ py, coupling @ px + self.matrix(yy) @ py]
         )
+
+    def coupling(self, ahead: int) -> tuple[Array, Array]:
+        """u_x and u_y from p_n by offset, as in `table`; with the other sign u_n from p_x, p_y."""
+        ny, nx = self.mask.shape
+        x = (np.arange(-nx + 1, nx) + ahead) * self.dx
+        y = np.arange(-ny + 1, ny)[:, None] * self.dy
+        c = -self.mismatch / (np.pi * self.shear_modulus)
+        along = corners(x_over_r2, x, y, self.dx, self.dy)
+        across = corners(y_over_r2, x, y, self.dx, self.dy)
+        return c * along, c * across
+
+    def from_pressure(self, pressure: Array, ahead: int = 0) -> Array:
+        """[2, N] on the mask, tangential displacement seen from `ahead` elements further on."""
+        p = pressure[self.mask]
+        return np.array([self.matrix(table) @ p for table in self.coupling(ahead)])
+
+    def from_traction(self, traction: Array) -> Array:
+        """u_n in the whole grid from the tractions."""
+        ny, nx = self.mask.shape
+        rows, columns = (k.ravel() for k in np.indices((ny, nx)))
+        dj = rows[:, None] - self.rows[None, :] + ny - 1
+        di = columns[:, None] - self.columns[None, :] + nx - 1
+        sum_ = np.zeros(ny * nx)
+        for table, t in zip(self.coupling(0), traction, strict=True):
+            sum_ -= table[dj, di] @ t[self.mask]
+        return sum_.reshape(ny, nx)
 
     def stiffness(self) -> float:
         """Pa, dx over the jump of displacement at one loaded element: turns slip to traction."""

@@ -313,7 +313,8 @@ typedef struct rp_patch_result {
   double contact_area;       /* m^2 */
   int32_t elements[4];       /* exterior, stick, slip, plastic; indexed by rp_element */
   double max_temperature;    /* degrees C; NaN: not part of the scene */
-  double friction_power;     /* W, >= 0: power that the creepages supply (Polach: without spin); of
+  double friction_power;     /* W, >= 0: power that the creepages supply (Polach: without spin) and,
+                                of unlike bodies, the pressure by its moment against rolling; of
                                 FASTSIM traction times micro-slip */
   double plastic_power;      /* W, >= 0, of the layer's plastic displacement; RP_SHIFT: both in J */
   double elastic_energy;     /* J; NaN for a line contact on fitted rows */
@@ -328,8 +329,8 @@ typedef struct rp_patch_result {
                                  of the vector), spin moment and greatest pressure stay below, by
                                  measured errors of each method; against the exact theory, without
                                  errors of the case. NaN: no solution, no such stage, or not
-                                 measured (line contact, force prescribed, factors of fast theories
-                                 other than 1, spin_offset) */
+                                 measured (line contact, force prescribed, unlike bodies, factors of
+                                 fast theories other than 1, spin_offset) */
   double position[3];         /* m, contact reference in track axes (wheel kinds) */
   double contact_angle;       /* rad */
   double creepage[2];         /* -; found where the force is prescribed */

@@ -282,6 +282,17 @@ TEST(Step, OfALineContactAllocatesNothing) {
   EXPECT_EQ(run(c, patch_inputs()).allocated, 0);
 }
 
+TEST(Step, OfUnlikeBodiesAllocatesNothing) {
+  for (rp_patch_geometry geometry : {RP_SEMI_AXES, RP_CURVATURES, RP_LINE_CONTACT}) {
+    rp_config c = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL);
+    c.shear_modulus[0] = 26e9;
+    c.poisson_ratio[0] = 0.33;
+    c.geometry = geometry;
+    if (geometry == RP_LINE_CONTACT) c.elements[1] = 1;
+    EXPECT_EQ(run(c, patch_inputs()).allocated, 0) << "geometry " << geometry;
+  }
+}
+
 TEST(Step, WithAPrescribedForceAllocatesNothing) {
   for (int nodes : {0, 7}) {
     rp_config c = scenes::forced_patch(nodes);

@@ -306,8 +306,23 @@ TEST(Config, RelationsAreChecked) {
   c.tangential = RP_TANGENTIAL_POLACH;
   c.fastsim_beta = 0.6;
   expect_refused(c, RP_ERROR_VALUE, "fastsim_beta");
+  // unlike bodies: what else couples the normal and the tangential problem
+  for (rp_normal_method normal : {RP_NORMAL_HERTZ, RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN}) {
+    c = default_config();
+    c.shear_modulus[0] = 26e9;
+    c.normal = normal;
+    expect_refused(c, RP_ERROR_VALUE, "shear_modulus");
+  }
+  for (rp_tangential_method tangential : {RP_TANGENTIAL_FASTSIM, RP_TANGENTIAL_POLACH}) {
+    c = default_config();
+    c.shear_modulus[0] = 26e9;
+    c.normal = RP_NORMAL_HALF_SPACE;
+    c.tangential = tangential;
+    expect_refused(c, RP_ERROR_VALUE, "shear_modulus");
+  }
   c = default_config();
   c.shear_modulus[0] = 26e9;
+  c.fitted[0] = c.fitted[1] = 8;
   expect_refused(c, RP_ERROR_VALUE, "shear_modulus");
   const scenes::profile_pair pair;
   c = scenes::wheels(RP_WHEELSET, RP_ROLLER, pair);

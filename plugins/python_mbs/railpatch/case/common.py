@@ -324,7 +324,11 @@ def check_table(method: Method) -> None:
 
 
 def check_tangential(
-    material: Material, friction: Friction | None, layer: Layer | None, method: Method
+    material: Material,
+    friction: Friction | None,
+    layer: Layer | None,
+    grid: Grid | None,
+    method: Method,
 ) -> None:
     """What a tangential problem needs, and what this version cannot combine."""
     if friction is None:
@@ -334,9 +338,25 @@ def check_tangential(
         raise relation(
             "method.tangential", repr(method.tangential), "'full' with a layer of thickness > 0"
         )
+    if couples(material):
+        check_coupled(material, grid, method)
+
+
+def couples(material: Material) -> bool:
+    """Whether pressure moves the surfaces along each other: Kalker 1990, eq. 1.44, K not 0."""
     (g_wheel, g_rail), (nu_wheel, nu_rail) = material.shear_modulus, material.poisson_ratio
     wheel, rail = (1 - 2 * nu_wheel) / g_wheel, (1 - 2 * nu_rail) / g_rail
-    # otherwise pressure moves the surfaces along each other: Kalker 1990, eq. 1.44
-    if abs(wheel - rail) > 1e-12 * max(wheel, rail):
-        shown = f"{material.shear_modulus}, {material.poisson_ratio}"
-        raise relation("material", shown, "equal (1 - 2 nu)/G of wheel and rail in this version")
+    return abs(wheel - rail) > 1e-12 * max(wheel, rail)
+
+
+def check_coupled(material: Material, grid: Grid | None, method: Method) -> None:
+    """Bodies whose normal and tangential problem go together: the exact theory on the grid."""
+    why = "with unlike (1 - 2 nu)/G of wheel and rail in 'material'"
+    if method.tangential != "full":
+        raise relation("method.tangential", repr(method.tangential), f"'full' {why}")
+    if method.normal != "half_space":
+        raise relation("method.normal", repr(method.normal), f"'half_space' {why}")
+    if grid is not None and grid.fitted is not None:
+        raise relation("grid.fitted", str(grid.fitted), f"to be left out {why}")
+    if method.accuracy is not None:
+        raise relation("method.accuracy", method.accuracy, f"to be left out {why}: give 'grid'")
