@@ -150,6 +150,20 @@ bound_law::slipping bound_law::friction_at(double normal, double carried,
   return {normal * (rest + now), normal * by_slip, normal * d / sum, now, by_slip, d / sum};
 }
 
+// Where the layer yields, friction that rises over a step does so for the next one: else both
+// bounds could take turns within the step.
+bound_law::slipping bound_law::friction_on_layer(double normal, double carried,
+                                                 double slip_length) const {
+  slipping s = friction_at(normal, carried, slip_length);
+  if (!plastic() || !by_velocity) return s;
+  const slipping rest = friction_at(normal, carried, 0);
+  if (s.bound <= rest.bound) return s;
+  s.bound = rest.bound;
+  s.by_slip = 0;
+  s.by_before = rest.by_before;
+  return s;
+}
+
 struct bound_law::yielding {
   double stress, by_slip, by_angle, by_state[2];
   double slip;  // m, and its derivatives where it ends at a given stress
@@ -249,7 +263,7 @@ double bound_law::value(double friction, const carried_state &before, const doub
     slope = y.by_slip;
     return y.stress;
   }
-  const slipping s = friction_at(friction, before.v[0], m - limit);
+  const slipping s = friction_on_layer(friction, before.v[0], m - limit);
   slope = s.by_slip;
   return s.bound;
 }
@@ -297,7 +311,7 @@ bound_point bound_law::evaluate(double friction, const carried_state &before, co
     b.yield_stress = y.stress;
   }
   b.plastic = std::min(m, limit);
-  const slipping s = friction_at(friction, before.v[0], m - b.plastic);
+  const slipping s = friction_on_layer(friction, before.v[0], m - b.plastic);
   b.friction = s.bound;
   if (yields) {
     b.bound = y.stress;

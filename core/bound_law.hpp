@@ -8,6 +8,7 @@
 // Coulomb: g constant. Slip velocity: g = mu(s) p_n with the slip's speed s = V slip/dq, and with a
 // memory of the friction coefficient over the distance d_c
 //   mu = (d_c mu_before + D mu(s))/(d_c + D),  D = max(s, s_0) dq/V.
+// On a layer that yields friction may fall over a step and rises only from step to step.
 // Accumulated plastic displacement u*: length of the path (eq. 37) or length of the vector sum
 // (eq. 38).
 //
@@ -97,6 +98,7 @@ class bound_law {
   struct slipping;
   struct yielding;
   slipping friction_at(double normal, double carried, double slip) const;
+  slipping friction_on_layer(double normal, double carried, double slip) const;
   yielding yield_at(const carried_state &before, const double e[2], double m) const;
   yielding until(const carried_state &before, const double e[2], double level) const;
   double value(double friction, const carried_state &before, const double e[2], double limit,

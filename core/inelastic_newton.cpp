@@ -75,8 +75,8 @@ inelastic_newton::inelastic_newton(int max_row, int max_rows, bool forced)
   if (forced) force_.emplace(max_row * max_rows);
   const auto row = static_cast<size_t>(max_row), n = row * static_cast<size_t>(max_rows);
   for (auto *b : {&r_, &most_}) *b = aligned_buffer<double>(n);
-  for (auto *b :
-       {&f_, &step_, &best_p_, &right_, &unknowns_, &trial_p_, &trial_s_, &trial_f_, &started_})
+  for (auto *b : {&f_, &step_, &best_p_, &right_, &unknowns_, &trial_p_, &trial_s_, &trial_f_,
+                  &started_, &kept_})
     *b = aligned_buffer<double>(2 * n + 2);
   for (auto &m : row_matrix_) m = aligned_buffer<double>::uninitialized(row * row);
   for (auto *l : {&linear_, &factored_}) *l = aligned_buffer<linearisation>(n);
@@ -84,7 +84,7 @@ inelastic_newton::inelastic_newton(int max_row, int max_rows, bool forced)
 }
 
 size_t inelastic_newton::bytes() const {
-  return blocks_.bytes() + linear_solver_.bytes() + 2 * r_.bytes() + 9 * f_.bytes() +
+  return blocks_.bytes() + linear_solver_.bytes() + 2 * r_.bytes() + 10 * f_.bytes() +
          2 * row_matrix_[0].bytes() + 2 * linear_.bytes() + has_factors_.bytes() +
          (force_ ? force_->bytes() : 0);
 }
@@ -114,10 +114,7 @@ inelastic_result inelastic_newton::solve(rolling_operator &b, const rolling_prob
     double error = start(t);
     if (t.falls) std::copy_n(p, t.size(), started_.data());
     error = iterate(t, error, goal, options.max_iterations);
-    for (int k = 0; k < max_returns && error <= goal && t.falls && leave_unstable(t); ++k) {
-      micro_slip(t, p, s);
-      error = iterate(t, residual(t, p, s, f_.data()), goal, options.max_iterations);
-    }
+    if (t.falls && !t.force) error = choose_branch(t, error, goal, options.max_iterations);
     result.residual = error / size;
     result.converged = error <= goal;
     result.out_of_range = !result.converged && t.force && t.force->beyond();
@@ -175,27 +172,51 @@ double inelastic_newton::own_stiffness(task &t, int row, size_t element, const d
   return 1.0 / (own * t.law.step);
 }
 
-// An element on the branch between stick and slip, where friction falls faster than elasticity can
-// follow, is at no rest: it goes to stick or slip, whichever is on the side of the start. Returns
-// whether there was one.
-bool inelastic_newton::leave_unstable(task &t) {
+// Of several solutions the one next to the last step's; returns |F|.
+double inelastic_newton::choose_branch(task &t, double error, double goal, int max_iterations) {
+  double *p = t.problem.traction, *s = t.problem.micro_slip;
+  for (int k = 0; k < max_returns && error <= goal; ++k) {
+    std::copy_n(p, t.size(), kept_.data());
+    if (!go_to_branch(t)) break;
+    micro_slip(t, p, s);
+    const double other = iterate(t, residual(t, p, s, f_.data()), goal, max_iterations);
+    if (other <= goal) {
+      error = other;
+      continue;
+    }
+    std::copy_n(kept_.data(), t.size(), p);
+    micro_slip(t, p, s);
+    return residual(t, p, s, f_.data());
+  }
+  return error;
+}
+
+// An element between stick and slip, where friction falls faster than elasticity can follow, is at
+// no rest: it goes to the side of the start. One that slips, but can stick and did so more nearly,
+// sticks. Returns whether there was one.
+bool inelastic_newton::go_to_branch(task &t) {
   double *p = t.problem.traction;
   bool any = false;
   t.row = -1;
   std::copy_n(p, t.size(), trial_p_.data());
   apply_law(t, trial_p_.data(), t.problem.micro_slip, 1.0, [&](const element_at &at) {
     if (at.stick) return;
-    const double stiffness = own_stiffness(t, at.row, at.k, at.e);
     const bound_point b =
         t.carried() ? at.point : t.law.evaluate(t.friction[at.k], *at.before, at.e, at.m);
-    if (stiffness + b.by_slip >= 0) return;
-    any = true;
+    if (b.by_slip >= 0) return;
+    const double stiffness = own_stiffness(t, at.row, at.k, at.e);
     const double size = b.bound + stiffness * at.m;
+    const double rest = t.law.at_rest(t.friction[at.k], *at.before);
     const double before = std::hypot(started_[at.ix], started_[at.iy]);
-    double bound = std::min(size, t.law.at_rest(t.friction[at.k], *at.before));
-    if (before < b.bound)
-      bound = size - stiffness * t.law.resolve(t.friction[at.k], *at.before, at.e, size, stiffness,
-                                               at.m * (1.0 + 1e-6));
+    const bool unstable = stiffness + b.by_slip < 0;
+    const bool sticks =
+        unstable ? before >= b.bound : size <= rest && size - before < before - b.bound;
+    if (!sticks && !unstable) return;
+    any = true;
+    const double bound =
+        sticks ? std::min(size, rest)
+               : size - stiffness * t.law.resolve(t.friction[at.k], *at.before, at.e, size,
+                                                  stiffness, at.m * (1.0 + 1e-6));
     p[at.ix] = bound * at.e[0];
     p[at.iy] = bound * at.e[1];
   });

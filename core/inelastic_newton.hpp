@@ -63,7 +63,8 @@ class inelastic_newton {
   };
   double start(task &t);
   double iterate(task &t, double error, double goal, int max_iterations);
-  bool leave_unstable(task &t);
+  double choose_branch(task &t, double error, double goal, int max_iterations);
+  bool go_to_branch(task &t);
   double own_stiffness(task &t, int row, size_t element, const double e[2]);
   void find_flexibility(task &t);
   void try_march(task &t, double &error);
@@ -90,7 +91,7 @@ class inelastic_newton {
 
   aligned_buffer<double> r_, most_;  // per element: r, greatest b
   aligned_buffer<double> f_, step_, best_p_, right_, unknowns_, trial_p_, trial_s_, trial_f_,
-      started_;
+      started_, kept_;
   aligned_buffer<double> row_matrix_[2];
   aligned_buffer<linearisation> linear_, factored_;
   aligned_buffer<unsigned char> has_factors_;  // per row

@@ -1,8 +1,8 @@
 """Friction that falls with the speed of slip: one element, where all is known in closed form.
 
-One loaded element in steady rolling: s = xi + B p with the number B and
-|p| = mu(|s| V) p_n in slip. A law that falls faster than 1/B has up to three solutions for a
-creepage, stick, slip, and one between that is unstable: history decides (physics of stick-slip; Rabinowicz 1958).
+One loaded element in steady rolling: s = xi + B p with the number B, |p| = mu(|s| V) p_n in slip.
+A law that falls faster than 1/B has up to three solutions for a creepage, stick, slip, and one
+between that is unstable: history decides (physics of stick-slip; Rabinowicz 1958).
 """
 
 from __future__ import annotations

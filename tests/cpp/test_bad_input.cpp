@@ -230,7 +230,7 @@ TEST(Config, ChoicesAndCountsAreChecked) {
       {"kind", [](rp_config &c, int v) { put(c.kind, v); }, -1, 3},
       {"geometry", [](rp_config &c, int v) { put(c.geometry, v); }, -1, 4},
       {"load", [](rp_config &c, int v) { put(c.load, v); }, -1, 2},
-      {"regime", [](rp_config &c, int v) { put(c.regime, v); }, -1, 2},
+      {"regime", [](rp_config &c, int v) { put(c.regime, v); }, -1, 4},
       {"normal", [](rp_config &c, int v) { put(c.normal, v); }, -1, 4},
       {"tangential", [](rp_config &c, int v) { put(c.tangential, v); }, -1, 6},
       {"traction_bound", [](rp_config &c, int v) { put(c.traction_bound, v); }, -1, 3},

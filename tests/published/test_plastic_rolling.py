@@ -1,6 +1,6 @@
 """Two-dimensional rolling with a plastic layer.
 
-The program CONTACT's values for Carter's case (reference README: R = 500 mm, steel, a 1 mm,
+The program CONTACT's values for Carter's case (reference README: R = 500 mm, steel, a = 1 mm,
 mu = 0.5, tau_c0 = 35 MPa, no elastic layer, creepage -4e-4, elements of 0.02 mm), and the
 behaviours of the report DOT/FRA/ORD-24/18 (Vollebregt 2024), sections 4.4.4 and 4.4.5, for the
 case of Meierhofer et al. 2014 in its table 3.

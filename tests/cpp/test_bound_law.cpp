@@ -1,0 +1,128 @@
+// The bound law: its derivatives against central differences, and its resolvent put back into the
+// law, for random laws and states.
+#include "bound_law.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace {
+
+using namespace railpatch;
+
+struct draw {
+  bound_law law;
+  carried_state before{};
+  double friction, e[2], m;
+};
+
+// In units of 1: pressure, lengths, speeds.
+draw random_draw(std::mt19937_64 &random) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  draw d;
+  bound_law &law = d.law;
+  law.step = 0.5 + unit(random);
+  law.speed = 0.5 + unit(random);
+  const auto kind = random() % 3;
+  law.by_velocity = kind != 0;
+  if (law.by_velocity) {
+    law.slip.kind = static_cast<slip_velocity_law::shape>(random() % 3);
+    law.slip.kinetic = 0.2 + unit(random);
+    for (int i = 0; i < 2; ++i) {
+      law.slip.amplitude[i] = unit(random) - (i == 1 ? 0.3 : 0.0) * law.slip.kinetic;
+      law.slip.halving_speed[i] = 0.2 + unit(random);
+    }
+    law.slip.memory_distance = random() % 2 ? unit(random) : 0.0;
+    law.slip.memory_speed = 0.05;
+    if (law.remembers()) d.before.v[0] = -0.5 * unit(random) * law.slip.amplitude[0];
+  }
+  if (kind != 1) {
+    law.by_magnitude = random() % 2;
+    law.yield = hardening_curve::straight(0.1 + unit(random), 3 * (unit(random) - 0.4));
+    if (random() % 2) {
+      law.yield = {};
+      law.yield.points = 4;
+      for (int i = 0; i < 4; ++i) {
+        law.yield.displacement[i] = i * (0.2 + 0.3 * unit(random));
+        law.yield.stress[i] = 0.1 + unit(random);
+      }
+      std::sort(law.yield.displacement, law.yield.displacement + 4);
+    }
+    d.before.v[1] = unit(random) - (law.by_magnitude ? 0.5 : 0.0);
+    if (law.by_magnitude) d.before.v[2] = unit(random) - 0.5;
+  }
+  d.friction = 0.5 + unit(random);
+  const double angle = 6.283 * unit(random);
+  d.e[0] = std::cos(angle);
+  d.e[1] = std::sin(angle);
+  d.m = 0.8 * unit(random);
+  return d;
+}
+
+bound_point at(const draw &d, double m, double turn, int state, double change) {
+  carried_state before = d.before;
+  if (state >= 0) before.v[state] += change;
+  const double c = std::cos(turn), s = std::sin(turn);
+  const double e[2] = {d.e[0] * c - d.e[1] * s, d.e[0] * s + d.e[1] * c};
+  return d.law.evaluate(d.friction, before, e, m);
+}
+
+// The derivative is that of one side where a kink lies between.
+bool near_one_side(double found, double left, double middle, double right, double h) {
+  const double slopes[] = {(right - left) / (2 * h), (right - middle) / h, (middle - left) / h};
+  return std::any_of(slopes, slopes + 3, [&](double slope) {
+    return std::abs(found - slope) <= 2e-4 * (1 + std::abs(slope));
+  });
+}
+
+TEST(BoundLaw, DerivativesAreThoseOfDifferences) {
+  std::mt19937_64 random(20261121);
+  constexpr double h = 1e-6;
+  for (int i = 0; i < 20000; ++i) {
+    const draw d = random_draw(random);
+    const bound_point b = at(d, d.m, 0, -1, 0);
+    const auto check = [&](const char *what, const bound_point &left, const bound_point &right,
+                           double bound, const double *state, int stride) {
+      EXPECT_TRUE(near_one_side(bound, left.bound, b.bound, right.bound, h)) << what << " " << i;
+      for (int k = 0; k < 3; ++k)
+        EXPECT_TRUE(
+            near_one_side(state[k * stride], left.state.v[k], b.state.v[k], right.state.v[k], h))
+            << what << " of state " << k << " " << i;
+    };
+    check("slip", at(d, d.m - h, 0, -1, 0), at(d, d.m + h, 0, -1, 0), b.by_slip, b.state_by_slip,
+          1);
+    check("angle", at(d, d.m, -h, -1, 0), at(d, d.m, h, -1, 0), b.by_angle, b.state_by_angle, 1);
+    for (int k = 0; k < 3; ++k) {
+      const bool carried = k == 0   ? d.law.remembers()
+                           : k == 1 ? d.law.plastic()
+                                    : d.law.plastic() && d.law.by_magnitude;
+      if (carried)
+        check("state", at(d, d.m, 0, k, -h), at(d, d.m, 0, k, h), b.by_state[k],
+              &b.state_by_state[0][k], 3);
+    }
+  }
+}
+
+TEST(BoundLaw, ResolventSolvesTheLaw) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 20000; ++i) {
+    const draw d = random_draw(random);
+    const double stiffness = 0.1 + 2 * d.law.steepest_fall(d.friction);
+    const double size = d.law.at_rest(d.friction, d.before) * (1 + unit(random)) + 1e-6;
+    const double m = d.law.resolve(d.friction, d.before, d.e, size, stiffness);
+    ASSERT_GT(m, 0) << i;
+    const bound_point b = d.law.evaluate(d.friction, d.before, d.e, m);
+    ASSERT_NEAR(b.bound, size - stiffness * m, 1e-12 * size) << i;
+    // never above either bound
+    EXPECT_LE(b.bound, std::min(b.friction, b.yield_stress) * (1 + 1e-9)) << i;
+    EXPECT_GE(b.plastic, 0);
+    EXPECT_LE(b.plastic, m);
+    // b falls nowhere faster than what makes it unique
+    EXPECT_GE(b.by_slip, -d.law.steepest_fall(d.friction) * (1 + 1e-9)) << i;
+  }
+}
+
+}  // namespace
