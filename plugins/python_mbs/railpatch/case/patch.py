@@ -204,9 +204,7 @@ class PatchCase(Table):
     @model_validator(mode="after")
     def _relations(self) -> PatchCase:
         if self.has_tangential:
-            check_tangential(
-                self.material, self.friction, self.layer, self.grid, self.method
-            )
+            check_tangential(self.material, self.friction, self.layer, self.grid, self.method)
             check_physics(self.friction, self.layer, self.temperature, self.grid, self.method)
             self._check_regime()
         if any(self.motion.prescribed):

@@ -205,9 +205,7 @@ class _WheelCase(Table):
     @model_validator(mode="after")
     def _relations(self) -> _WheelCase:
         if self.has_tangential:
-            check_tangential(
-                self.material, self.friction, self.layer, self.grid, self.method
-            )
+            check_tangential(self.material, self.friction, self.layer, self.grid, self.method)
             check_physics(self.friction, self.layer, self.temperature, self.grid, self.method)
         check_fitted(self.grid, self.method)
         check_accuracy(self.grid, self.method)
