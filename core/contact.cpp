@@ -669,8 +669,10 @@ void contact::describe(rp_stage_info *info) const {
                               influence > 0 ? "a method on the half-space is asked for"
                                             : "neither normal nor tangential method needs it",
                               influence};
-  info[RP_STAGE_NORMAL] = {"normal", 1, normal_reason(scene.normal),
-                           normal + solver_.normal_bytes()};
+  const char *how = scene.couples() ? "normal = half_space, in turn with the tangential problem: "
+                                      "unlike bodies"
+                                    : normal_reason(scene.normal);
+  info[RP_STAGE_NORMAL] = {"normal", 1, how, normal + solver_.normal_bytes()};
   const char *why = config_.regime == RP_REGIME_NONE ? "regime = none" : tangential_reason(scene);
   info[RP_STAGE_TANGENTIAL] = {"tangential", tangential, why,
                                tangential ? traction + solver_.tangential_bytes() : 0};

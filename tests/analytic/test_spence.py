@@ -1,8 +1,9 @@
 """A ball pressed on a rigid plane with friction.
 
-Spence 1968, Proc. R. Soc. Lond. A 305; 1975, J. Elast. 5: the ball's surface would move inwards
-and is held back by friction, in a disc whose radius is the same share of the contact's at every
-load. With friction 0.2986 and nu = 0 it is a half, and the central pressure 1.31 times Hertz's.
+Spence 1968, Proc. R. Soc. Lond. A 305; 1975, J. Elast. 5: the surface of the ball would move
+inwards and is held back by friction, in a disc whose radius is the same share of the contact's at
+every load. With friction 0.2986 and nu = 0 it is a half, and the central pressure 1.31 times
+Hertz's.
 """
 
 from __future__ import annotations

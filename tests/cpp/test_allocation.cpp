@@ -283,7 +283,7 @@ TEST(Step, OfALineContactAllocatesNothing) {
 }
 
 TEST(Step, OfUnlikeBodiesAllocatesNothing) {
-  for (rp_patch_geometry geometry : {RP_SEMI_AXES, RP_CURVATURES, RP_LINE_CONTACT}) {
+  for (rp_geometry geometry : {RP_SEMI_AXES, RP_CURVATURES, RP_LINE_CONTACT}) {
     rp_config c = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL);
     c.shear_modulus[0] = 26e9;
     c.poisson_ratio[0] = 0.33;

@@ -54,8 +54,9 @@ double over_element(double x, double y, double dx, double dy) {
   });
 }
 
-// (u_x, u_y) at (x, y) from the middle of an element of unit pressure. A point load P draws a body's
-// surface towards it by (1 - 2 nu)/(4 pi G) P/r (Johnson 1985, eq. 3.18); wheel minus rail counts.
+// (u_x, u_y) at (x, y) from the middle of an element of unit pressure. A point load P draws a
+// body's surface towards it by (1 - 2 nu)/(4 pi G) P/r (Johnson 1985, eq. 3.18); wheel minus rail
+// counts.
 std::array<double, 2> by_quadrature(double x, double y, const grid &g, bool line, bool exchanged) {
   double factor = 0;
   for (int body = 0; body < 2; ++body) {

@@ -64,8 +64,8 @@ def draw(seed: int) -> Draw:
     if seed % 3 == 0:  # a rigid rail or wheel, the other compressible
         bodies = Bodies([82e9, 1e15], [float(rng.uniform(0, 0.3)), 0.3])
     else:
-        ratios = [float(v) for v in rng.uniform(0, 0.5, 2)]
-        bodies = Bodies([82e9, 82e9 * 10 ** rng.uniform(-2, 2)], ratios)
+        other = 82e9 * 10 ** rng.uniform(-2, 2)
+        bodies = Bodies([82e9, other], [float(v) for v in rng.uniform(0, 0.5, 2)])
     if rng.random() < 0.5:
         bodies = bodies.exchanged()
     g, nu, _ = bodies.combined
