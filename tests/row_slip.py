@@ -1,8 +1,9 @@
 """Micro-slip of rows of nodes by direct summation, in numpy; shares nothing with the solver.
 
 Each row's traction is interpolated in the angle of its nodes by sines and cut into rectangles much
-finer than the nodes; their displacements are Kalker's closed forms (half_space.py), whose slope is
-taken by central differences where a rectangle lies around the point.
+finer than the nodes; their displacements are Kalker's closed forms (half_space.py of the package's
+stress program), whose slope is taken by central differences where a rectangle lies around the
+point.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from half_space import Array, corners, x2_over_r3, xy_over_r3, y2_over_r3
+from railpatch.stress.half_space import Array, corners, x2_over_r3, xy_over_r3, y2_over_r3
 
 FINE = 15  # rectangles for each node: an odd number, so that one lies around each point
 

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 import railpatch
-from half_space import Array
 from patch_cases import patch_case, solve
+from railpatch.stress.half_space import Array
 from row_slip import Rows, rigid_slip
 
 SEEDS = range(40)

@@ -14,7 +14,12 @@ import numpy as np
 
 from railpatch.case.patch import PatchCase
 from railpatch.stress.half_space import Array
-from railpatch.stress.inelastic import bound_of, inelastic_findings
+from railpatch.stress.inelastic import (
+    bound_of,
+    friction_of,
+    inelastic_findings,
+    plastic_increment,
+)
 from railpatch.stress.step import Finding, Step, curvatures_of
 
 # a solver measures its residual in its own way: over all elements together, by its own scale
@@ -223,8 +228,12 @@ def slip_findings(step: Step) -> Iterator[Finding]:
         difference = np.where(division == SLIP, stiffness * (given - slip), 0.0)
         # of the displacements alone: rounding, and single precision where the solver allows itself
         yield Finding("micro-slip", float(np.linalg.norm(difference)) / size, 1.0)
-    still = np.abs(given[:, division != SLIP]).max(initial=0.0)
+    # a plastic element may slip too: state S* of the report
+    still = np.abs(given[:, (division != SLIP) & (division != PLASTIC)]).max(initial=0.0)
     yield Finding("micro-slip outside slip", float(still), 0.0)
+    friction = (friction_of(step) * step["pressure"])[contact]
+    short = np.minimum(friction - np.hypot(*traction), stiffness * np.hypot(*given))
+    yield Finding("slip below friction", float(np.linalg.norm(np.maximum(short, 0))) / size, 1.0)
     along = (traction * given).sum(axis=0)
     worst = float((along / np.maximum(bound, 1e-300)).max(initial=0.0))
     yield Finding("micro-slip along the traction", worst * stiffness / size, 1.0)
@@ -247,8 +256,6 @@ def energy_balance(step: Step) -> float:
     work = -float((traction * step.rigid_slip).sum()) * rolled
     taken = -float((traction * step["micro_slip"]).sum()) * rolled
     if step.has("plastic_displacement"):
-        from railpatch.stress.inelastic import plastic_increment
-
         taken += float((traction * plastic_increment(step)).sum())
     stored = float((traction * (step.displacement - step.displacement_before)).sum())
     # energy that could be turned over: traction by the greatest slip asked for

@@ -151,7 +151,8 @@ class Step:
     @property
     def ahead(self) -> float:
         """m along x, from where material is to where it was one step before."""
-        return 0.0 if self.regime == "shift" else self.direction * self.rolled
+        stands = self.regime == "transient_rolling" and not self.patch["rolling_speed"] > 0
+        return 0.0 if self.regime == "shift" or stands else self.direction * self.rolled
 
     @property
     def motion(self) -> tuple[float, float, float]:
