@@ -27,6 +27,23 @@ def by_speed(friction: Friction, speed: Array) -> Array:
     return value
 
 
+def steepest_fall(friction: Friction) -> float:
+    """s/m, of the coefficient with the speed of micro-slip: of each term at rest, without
+    memory."""
+    slopes = {"rational": 1.0, "linear": 0.5}
+    slope = slopes.get(friction.shape, np.log(2.0))
+    terms = zip(*friction.terms, strict=True)
+    return sum(slope * max(amplitude, 0.0) / halving for amplitude, halving in terms)
+
+
+def steepest_softening(layer: Layer) -> float:
+    """Pa/m, of the yield stress with plastic displacement."""
+    if layer.hardening_table is None:
+        return max(-(layer.hardening or 0.0), 0.0)
+    places, values = np.array(layer.hardening_table).T
+    return float(max(0.0, *(-np.diff(values) / np.diff(places))))
+
+
 def by_temperature(friction: Friction, temperature: Array) -> Array:
     """-, at a surface temperature (degrees C): straight over the range (report, eq. 19)."""
     assert friction.reference is not None

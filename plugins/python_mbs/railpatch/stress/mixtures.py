@@ -25,7 +25,7 @@ from railpatch.stress.trial import (
 
 COUNT, QUICK_COUNT = 10_000, 200
 # elements across: mostly few, for the time; now and then many
-USUAL, MOST = 32, 100
+USUAL, MOST = 40, 128
 Random = np.random.Generator
 
 

@@ -14,7 +14,7 @@ from railpatch.case.load import Case, load_scene
 from railpatch.case.patch import PatchCase
 from railpatch.config import config_of, input_of
 from railpatch.errors import CaseError, ProfileError
-from railpatch.stress.conditions import energy_balance, findings
+from railpatch.stress.conditions import energy_balance, findings, line_of
 from railpatch.stress.step import FIELDS, VECTORS, Finding, Step
 from railpatch.stress.trial import Move, Trial
 
@@ -26,6 +26,14 @@ DEFAULT_ITERATIONS = 100
 # products of the tangential operator in one of its iterations: of the linear system, and of the
 # steps that follow where it does not help
 PRODUCTS = 2000
+# why fast theories may say that they are out of range
+ENDS = {
+    "linear": "no bound: ends where the force reaches friction",
+    "polach": "ends where Kalker's coefficients are tabulated",
+    "fastsim": "ends where Kalker's coefficients are tabulated",
+    "fastrip": "ends where Kalker's coefficients are tabulated",
+    "table": "ends with its table",
+}
 # not given where the scene has no such stage
 NUMBERS = ("normal_force", "max_pressure", "contact_area", "residual")
 TANGENTIAL_NUMBERS = ("creep_force", "spin_moment", "friction_power")
@@ -123,7 +131,9 @@ def fields_of(contact: Any, side: int, patch: int, grid: list[int]) -> dict[str,
             values = contact.field(side, patch, name)
         except RuntimeError:
             values = None
-        if values is not None and name not in ("x", "y"):
+        # nodes of fitted rows have their own x in each row
+        of_axis = name == "y" or (name == "x" and values is not None and values.size == nx)
+        if values is not None and not of_axis:
             values = values.reshape((2, ny, nx) if name in VECTORS else (ny, nx))
         found[name] = values
     return found
@@ -141,7 +151,7 @@ def row_of(trial: Trial, outcomes: list[Outcome], nominal_time: float) -> Row:
             iterations += step.patch["normal_iterations"] + step.patch["newton_iterations"]
             products += step.patch["inner_iterations"]
             if step.good:
-                for finding in findings(step):
+                for finding in findings(step, trial.family != "mixture"):
                     if not finding.share <= share:
                         share, worst = float(finding.share), finding
                 balance = energy_balance(step)
@@ -158,7 +168,7 @@ def row_of(trial: Trial, outcomes: list[Outcome], nominal_time: float) -> Row:
         seconds / len(outcomes) / nominal_time,
         FAULT if faults else SAYS_SO if told else CLEAN,
         all(outcome.status in outcome.move.expects for outcome in outcomes),
-        "; ".join(faults or told), trial.note,
+        "; ".join(faults or told), trial.note or (ENDS.get(trial.method, "") if told else ""),
     )  # fmt: skip
 
 
@@ -201,8 +211,7 @@ def no_numbers(step: Step) -> Iterator[str]:
     names: list[str] = list(NUMBERS)
     if step.regime != "none" and step.case.method.tangential != "none":
         names += TANGENTIAL_NUMBERS
-    line = isinstance(step.case, PatchCase) and step.case.geometry.line_contact_radius is not None
-    if not line:
+    if not line_of(step):
         names.append("approach")
     if patch["status"] != "no_contact":
         for name in names:

@@ -11,6 +11,7 @@ from scipy.special import ellipe, ellipk
 
 from railpatch.case.load import Case
 from railpatch.case.patch import PatchCase
+from railpatch.stress import laws
 from railpatch.stress.half_space import Array, HalfSpace
 
 FIELDS = (
@@ -228,6 +229,19 @@ class Step:
         """Pa, of a single element: turns slip to traction."""
         ahead = self.ahead if self.regime == "steady_rolling" else None
         return self.rolled / self.half_space.flexibility(ahead)
+
+    @cached_property
+    def steepness(self) -> float:
+        """Pa, the least stiffness by which slip tells traction where the law falls with slip: a
+        residual is known to tractions, and slip to tractions over this."""
+        found = self.stiffness
+        friction, layer = self.case.friction, self.case.layer
+        if friction is not None and friction.law == "slip_velocity":
+            fall = laws.steepest_fall(friction) * float(self["pressure"].max())
+            found = max(found, 2 * fall * self.patch["rolling_speed"])
+        if layer is not None and layer.is_plastic:
+            found = max(found, 2 * laws.steepest_softening(layer) * self.rolled)
+        return found
 
 
 def curvatures_of(step: Step) -> tuple[float, float] | None:
