@@ -13,6 +13,7 @@ from railpatch.stress.run import FAULT, Row, run_trial
 from railpatch.stress.trial import Trial, nominal
 
 LIMIT = 120.0  # s, that a trial may take
+START = 300.0  # s, that the process may take to get ready
 NOMINAL_RUNS = 25
 
 
@@ -23,8 +24,9 @@ def nominal_time() -> float:
 
 
 def serve(pipe: Connection, plan: Plan) -> None:
-    """In the other process: a row for each number, until there is None."""
+    """In the other process: says that it is there, then a row for each number, until None."""
     usual = nominal_time()
+    pipe.send(usual)
     for index in iter(pipe.recv, None):
         pipe.send(run_trial(plan[index], usual))
 
@@ -39,6 +41,8 @@ def run_plan(plan: Plan, limit: float = LIMIT) -> Iterator[Row]:
         worker.start()
         other.close()
         try:
+            if not pipe.poll(START) or not pipe.recv():
+                raise TimeoutError("the process that runs the trials does not start")
             while index < total:
                 index += 1
                 row = ask(pipe, index - 1, limit)
