@@ -133,3 +133,45 @@ def temperature_findings(step: Step) -> Iterator[Finding]:
         abs(step.patch["max_temperature"] - float(step["temperature"].max())) / size,
         1e-9,
     )
+    if step.regime == "steady_rolling" and heat.depth == 0 and step.patch["rolling_speed"] > 0:
+        wanted = surface_temperature(step)
+        error = np.abs(step["temperature"] - wanted)[:, gapless(step)]
+        yield Finding("temperature", float(error.max(initial=0.0)) / size, FORMULA)
+
+
+def gapless(step: Step) -> Array:
+    """Elements in contact in rows whose contact has no gap, [ny, nx]."""
+    edges = np.abs(np.diff(step.contact.astype(int), axis=1)).sum(axis=1)
+    return step.contact & (edges <= 2)[:, None]
+
+
+def heat_flux(step: Step) -> Array:
+    """W/m^2, [ny, nx], that friction and the layer's plastic work give to both bodies."""
+    layer = step.case.layer
+    speed, traction = step.patch["rolling_speed"], step["traction"]
+    flux = -(traction * step["micro_slip"]).sum(axis=0) * speed
+    if layer is not None and layer.is_plastic:
+        work = (traction * plastic_increment(step)).sum(axis=0)
+        flux = flux + layer.plastic_heat_fraction * work * speed / step.rolled
+    return flux
+
+
+def surface_temperature(step: Step) -> Array:
+    """Degrees C, [2, ny, nx] of wheel and rail in contact, of flux that is constant on elements.
+
+    Carslaw and Jaeger 1959, section 2.9: columns that have been heated for the time x/V since the
+    leading edge; a body takes heat by its effusivity, and both surfaces become equally warm.
+    """
+    heat = step.case.temperature
+    assert heat is not None
+    products = zip(heat.conductivity, heat.heat_capacity, heat.density, strict=True)
+    wheel, rail = (float(np.sqrt(np.prod(values))) for values in products)
+    mixed = (wheel * heat.wheel + rail * heat.rail) / (wheel + rail)
+    flux = heat_flux(step)[:, :: -step.direction]  # from the leading edge on
+    nx = flux.shape[1]
+    # roots of the times since an element's edges passed the centre of another one
+    root = np.sqrt(np.concatenate([[0.0], np.arange(nx) + 0.5]))
+    weight = 2 * np.sqrt(step.half_space.dx / (np.pi * step.patch["rolling_speed"]))
+    kernel = weight * np.diff(root) / (wheel + rail)
+    rise = np.array([np.convolve(row, kernel)[:nx] for row in flux])[:, :: -step.direction]
+    return np.broadcast_to(mixed + rise, (2, *rise.shape))
