@@ -31,12 +31,12 @@ def test_pattern() -> None:
     assert len(Plan(only="no such trial")) == 0
 
 
-# the ranges that a steady elastic contact has
 @pytest.mark.parametrize(
     "pattern",
     ["shape: *", "grid: *", "friction: coefficient*", "creepage: *", "spin: *", "speed: *",
      "load: *", "layer: *", "prescribed force: *", "sequence: *", "distance: *",
-     "line contact: *", "option: *", "wheel: *"],
+     "line contact: *", "option: *", "wheel: *", "shift: *", "transient: *", "plastic: *",
+     "slip velocity: *"],
 )  # fmt: skip
 def test_no_faults(pattern: str) -> None:
     rows = [run_trial(trial) for trial in Plan(quick=True, only=pattern)]
