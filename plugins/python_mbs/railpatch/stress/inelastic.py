@@ -128,8 +128,10 @@ def plastic_findings(step: Step) -> Iterator[Finding]:
     yield Finding(
         "plastic work", -float(work.min()) / max(float((size * grown).max()), 1e-300), FORMULA
     )
-    # where there is an increment, the traction has the yield stress
-    short = np.where(grown > FORMULA * highest, (stress - size) / stress, 0.0)
+    # where there is an increment and no slip, the traction has the yield stress; friction that
+    # falls with slip may end below it
+    yields = (grown > FORMULA * highest) & (np.hypot(*step["micro_slip"][:, contact]) == 0)
+    short = np.where(yields, (stress - size) / stress, 0.0)
     yield Finding("yield without its stress", float(short.max()), 10 * step.tolerance)
     if layer.plastic_rule == "magnitude":
         total = np.hypot(*step["plastic_displacement"])[contact]

@@ -23,7 +23,7 @@ from railpatch.stress.trial import (
     nominal,
 )
 
-COUNT, QUICK_COUNT = 10_000, 200
+COUNT, QUICK_COUNT = 10_000, 150
 # elements across: mostly few, for the time; now and then many
 USUAL, MOST = 40, 128
 Random = np.random.Generator

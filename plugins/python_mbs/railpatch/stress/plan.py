@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fnmatch
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,6 +15,7 @@ from railpatch.stress.trial import Trial
 from railpatch.stress.wheel_trials import wheel_trials
 
 SEED = 20250117
+LARGE = 30  # trials of a family, of which a quick run takes a part
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,10 @@ class Plan:
     def listed(self) -> list[Trial]:
         """All trials but the mixtures."""
         parts = (steady_trials, wheel_trials, inelastic_trials)
-        return [trial for part in parts for trial in part(self.quick) if self.takes(trial)]
+        trials = [trial for part in parts for trial in part(self.quick)]
+        if self.quick:
+            trials = thinned(trials)
+        return [trial for trial in trials if self.takes(trial)]
 
     @cached_property
     def mixtures(self) -> list[int]:
@@ -56,3 +61,15 @@ class Plan:
 
     def __iter__(self) -> Iterator[Trial]:
         return (self[index] for index in range(len(self)))
+
+
+def thinned(trials: list[Trial]) -> list[Trial]:
+    """Every third of the large families."""
+    sizes = Counter(trial.family for trial in trials)
+    seen: Counter[str] = Counter()
+    kept = []
+    for trial in trials:
+        if sizes[trial.family] <= LARGE or seen[trial.family] % 3 == 0:
+            kept.append(trial)
+        seen[trial.family] += 1
+    return kept
