@@ -14,7 +14,7 @@ def run(*arguments: object):
 
 
 def test_files(tmp_path: Path) -> None:
-    result = run("-o", tmp_path, "--quick", "--only", "shape: a/b = 5*")
+    result = run("-o", tmp_path, "--only", "shape: a/b = 5*")
     assert result.exit_code == 0, result.output
     assert "0 faults" in result.output
     with (tmp_path / "stress.csv").open(encoding="utf-8") as file:
@@ -37,7 +37,7 @@ def test_nothing_matches(tmp_path: Path) -> None:
 
 
 def test_quiet(tmp_path: Path) -> None:
-    result = run("-o", tmp_path, "--quick", "--only", "load: 1 N, full", "--quiet")
+    result = run("-o", tmp_path, "--only", "load: 1 N, full", "--quiet")
     assert (result.exit_code, result.output) == (0, "")
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "stress.csv", "stress.html", "stress.md",
