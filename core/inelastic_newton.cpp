@@ -671,10 +671,18 @@ void inelastic_newton::finish(task &t) {
     const bound_point b =
         t.carried() ? at.point : t.law.evaluate(t.friction[at.k], *at.before, at.e, at.m);
     const int ix = static_cast<int>(at.ix), iy = static_cast<int>(at.iy);
-    // in stick the traction may have grown to the bound by less than the tolerance
-    const double bound = at.stick ? at.size : b.bound, slip = (at.m - b.plastic) / t.law.step;
-    p[ix] = bound * at.e[0];
-    p[iy] = bound * at.e[1];
+    // a sticking element keeps its traction: r s, below the tolerance where it slides, can be much
+    // greater than the traction itself where r is that of a steep law
+    const double traction = std::hypot(p[ix], p[iy]);
+    const double bound = at.stick ? std::min(traction, b.bound) : b.bound;
+    const double slip = (at.m - b.plastic) / t.law.step;
+    if (!at.stick) {
+      p[ix] = bound * at.e[0];
+      p[iy] = bound * at.e[1];
+    } else if (traction > bound) {
+      p[ix] *= bound / traction;
+      p[iy] *= bound / traction;
+    }
     s[ix] = at.stick ? 0.0 : -slip * at.e[0];
     s[iy] = at.stick ? 0.0 : -slip * at.e[1];
     const bool yields = !at.stick && b.plastic > 0;
@@ -700,7 +708,8 @@ void inelastic_newton::finish(task &t) {
   // proportion of the two sums, which lose part of it on coarse grids
   const double spent = slipped + plastic;
   const double whole = t.carried() && spent > 0 ? std::max(0.0, supplied) / spent : 1.0;
-  sum.friction = whole * slipped;
+  // where all sticks as friction's, like with Coulomb's law
+  sum.friction = t.carried() && !(spent > 0) ? std::max(0.0, supplied) : whole * slipped;
   t.result.plastic_work = whole * plastic;
 }
 

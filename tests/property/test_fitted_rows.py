@@ -1,8 +1,8 @@
 """Fitted rows in random cases: their conditions by code that shares nothing with the solver.
 
 Kalker 1990, Three-dimensional elastic bodies in rolling contact, chapter 1, on the nodes of rows
-(row_slip.py): stick has no slip at the point half a step ahead, slip has the bound against a slip
-between those of the two points around the node.
+(fitted_rows.py of the package's stress program): stick has no slip at the point half a step ahead,
+slip has the bound against a slip between those of the two points around the node.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 import pytest
 import railpatch
-from half_space import Array
 from patch_cases import patch_case, solve
-from row_slip import Rows, rigid_slip
+from railpatch.stress.fitted_rows import Rows, rigid_slip
+from railpatch.stress.half_space import Array
 
 SEEDS = range(40)
 TOLERANCE = 1e-7

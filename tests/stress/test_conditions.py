@@ -1,0 +1,115 @@
+"""The independent check finds what is wrong: each field of a good solution spoilt in turn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from railpatch import _core
+from railpatch.case.load import load_scene
+from railpatch.config import config_of, input_of
+from railpatch.stress.conditions import energy_balance, findings
+from railpatch.stress.half_space import Array
+from railpatch.stress.run import no_numbers, steps_of, too_many_iterations
+from railpatch.stress.step import Step
+from railpatch.stress.trial import CREEPAGE, SPIN, nominal
+
+
+def solved(*changes: dict[str, Any]) -> Step:
+    scene = load_scene(nominal(*changes))
+    contact, values = _core.Contact(config_of(scene), False), input_of(scene.case)
+    return steps_of(contact, scene.case, values, contact.step(values), None)[0]
+
+
+MOTION = {"creepage": [0.5 * CREEPAGE, 0.2 * CREEPAGE], "spin_creepage": 0.3 * SPIN}
+
+
+@pytest.fixture(scope="module")
+def step() -> Step:
+    return solved({"motion": MOTION, "grid": {"elements": [16, 20]}})
+
+
+def worst(step: Step) -> dict[str, float]:
+    return {finding.name: finding.share for finding in findings(step)}
+
+
+def spoilt(step: Step, name: str, change: Callable[[Array], Array]) -> Step:
+    return replace(step, fields={**step.fields, name: change(step[name])})
+
+
+def test_a_solution_is_clean(step: Step) -> None:
+    shares = worst(step)
+    assert step.good
+    assert {"gap in contact", "interpenetration", "stick and slip", "micro-slip"} <= set(shares)
+    assert max(shares.values()) <= 1
+    assert energy_balance(step) <= 1e-4
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "found"),
+    [
+        ("pressure", lambda p: np.where(p == p.max(), -p, p), "negative pressure"),
+        ("pressure", lambda p: 1.001 * p, "sum of pressure"),
+        ("pressure", lambda p: np.roll(p, 1, axis=1), "gap in contact"),
+        ("traction", lambda p: 1.001 * p, "traction over its bound"),
+        ("traction", lambda p: 0.999 * p, "sum of tractions"),
+        ("traction", lambda p: 0.999 * p, "stick and slip"),
+        ("traction", lambda p: -p, "micro-slip along the traction"),
+        ("traction", lambda p: p + 1.0, "traction outside"),
+        ("micro_slip", lambda s: -s, "micro-slip along the traction"),
+        ("micro_slip", lambda s: 1.01 * s, "micro-slip"),
+        ("micro_slip", lambda s: s + 1e-9, "micro-slip outside slip"),
+        ("element_division", lambda d: np.where(d == 1, 2, d), "count of elements"),
+    ],
+)
+def test_a_spoilt_field_is_found(
+    step: Step, name: str, change: Callable[[Array], Array], found: str
+) -> None:
+    assert worst(spoilt(step, name, change))[found] > 1
+
+
+@pytest.mark.parametrize(
+    ("key", "factor", "found"),
+    [
+        ("creep_force", 1.01, "sum of tractions"),
+        ("creep_force", 100.0, "creep force over friction"),
+        ("spin_moment", 1.01, "moment of tractions"),
+        ("friction_power", 1.01, "power supplied"),
+        ("friction_power", -1.0, "friction takes power"),
+        ("normal_force", 1.01, "normal force"),
+        ("max_pressure", -1.0, "pressure of contact"),
+    ],
+)
+def test_a_spoilt_number_is_found(step: Step, key: str, factor: float, found: str) -> None:
+    value = (factor * np.array(step.patch[key])).tolist()
+    assert worst(replace(step, patch={**step.patch, key: value}))[found] > 1
+
+
+def test_energy_of_a_spoilt_field(step: Step) -> None:
+    assert energy_balance(spoilt(step, "micro_slip", lambda s: 1.1 * s)) > 1e-3
+
+
+def test_no_number_is_found(step: Step) -> None:
+    assert not list(no_numbers(step))
+    hole = spoilt(step, "traction", lambda p: np.where(p == p.min(), np.nan, p))
+    assert list(no_numbers(hole)) == ["traction holds 1 that are no numbers"]
+    for name in ("creep_force", "friction_power", "approach"):
+        found = list(no_numbers(replace(step, patch={**step.patch, name: float("nan")})))
+        assert found == [f"{name} is no number"]
+
+
+def test_iterations_are_bounded(step: Step) -> None:
+    assert not list(too_many_iterations(step))
+    many = replace(step, patch={**step.patch, "newton_iterations": 101})
+    assert list(too_many_iterations(many)) == ["newton_iterations are 101, allowed 100"]
+
+
+def test_prescribed_force_is_met() -> None:
+    force = {"motion": {"creepage": None, "tangential_force": [1e4, "creepage"]}}
+    step = solved(force)
+    assert worst(step)["prescribed force"] <= 1
+    values = {**step.values, "tangential_force": [1.001e4, 0.0]}
+    assert worst(replace(step, values=values))["prescribed force"] > 1
