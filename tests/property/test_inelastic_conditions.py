@@ -1,7 +1,7 @@
 """Contact conditions with plastic layers and slip-velocity laws, checked again in numpy.
 
 |p| <= min(g, tau_c); slip opposite to traction and only where |p| = g; plastic displacement along
-traction and only where tau_c was met; rigid slip, elastic displacement by other code than the solver's
+traction and only where tau_c was met; rigid slip, elastic displacement by code of its own
 (railpatch/stress/half_space.py), slip and plastic displacement add up; friction coefficient and
 yield stress from recurrences along the rows (report DOT/FRA/ORD-24/18, eqs. 39 to 49). Powers are
 not negative.

@@ -67,7 +67,8 @@ class HalfSpace:
     """Displacement differences of two bodies.
 
     shape: elements [ny, nx]. dx, dy: m. shear_modulus, poisson_ratio, mismatch: of both together
-    (G, nu and K of Kalker 1990, eq. 1.44; K is 0 with (1 - 2 nu)/G in common). layer: m/Pa, flexibility of a third-body layer. width: m, of a line contact.
+    (G, nu and K of Kalker 1990, eq. 1.44; K is 0 with (1 - 2 nu)/G in common). layer: m/Pa,
+    flexibility of a third-body layer. width: m, of a line contact.
     """
 
     shape: tuple[int, int]
