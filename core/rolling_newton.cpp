@@ -185,7 +185,7 @@ double rolling_newton::slide(task &t, double error, double goal) {
     if (!fast) return error;
     micro_slip(t, trial_p_.data(), trial_s_.data());
     const double slid = residual(t, trial_p_.data(), trial_s_.data(), trial_f_.data());
-    if (!(slid <= 0.5 * error)) {
+    if (!(slid < 0.5 * error)) {
       micro_slip(t, p, s);
       return residual(t, p, s, f_.data());
     }
