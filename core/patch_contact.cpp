@@ -221,7 +221,9 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
     wrench = {};
     return;
   }
-  if (heat_) begin_heat(problem, memory);
+  // the contact area of unlike bodies is known only after the tractions
+  const bool late = coupled_ && heat_ && !heat_->feeds_back();
+  if (heat_ && !late) begin_heat(problem, memory);
   if (scene_.tangential != RP_TANGENTIAL_NONE) {
     observe(RP_STAGE_TANGENTIAL, true);
     const bool solved = coupled_ ? solve_in_turn(problem, memory, result)
@@ -229,6 +231,7 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
     memory.warm = solved && (memory.warm || coupled_);
     observe(RP_STAGE_TANGENTIAL, false);
   }
+  if (late) begin_heat(problem, memory);
   if (heat_) result.max_temperature = finish_heat(problem, memory);
   observe(RP_STAGE_FORCES, true);
   if (scene_.closed_form()) {
@@ -563,10 +566,11 @@ void patch_contact::flux_of(const patch_problem &problem, const patch_memory &me
 bool patch_contact::solve_in_turn(const patch_problem &problem, patch_memory &memory,
                                   rp_patch_result &result) {
   const double *pressure = memory.pressure.data();
-  int normal = result.normal_iterations, newton = 0, products = 0, failures = 0;
+  int normal = result.normal_iterations, newton = 0, products = 0, outer = 0, failures = 0;
   // the gap's error is that of the normal problem and of the tractions' part
   for (int round = 1;; ++round) {
     const double gap_error = result.residual;
+    result.outer_iterations = 0;
     const bool solved = solve_tangential(problem, memory, result);
     const double disagreement =
         coupled_->error(pressure, memory.px.data(), memory.py.data(), problem.force_given);
@@ -574,7 +578,8 @@ bool patch_contact::solve_in_turn(const patch_problem &problem, patch_memory &me
     result.normal_iterations = normal;
     result.newton_iterations = newton += result.newton_iterations;
     result.inner_iterations = products += result.inner_iterations;
-    result.outer_iterations = round;
+    // with those of friction and temperature
+    result.outer_iterations = outer += result.outer_iterations + 1;
     result.elastic_energy += coupled_->energy(pressure);
     if (!(gap_error + disagreement <= result.residual)) result.residual = gap_error + disagreement;
     failures += !solved;
@@ -586,6 +591,8 @@ bool patch_contact::solve_in_turn(const patch_problem &problem, patch_memory &me
     coupled_->advance();
     // tractions too great in between, which part the bodies, are none
     if (!solve_normal(problem, memory, result)) leave_unloaded(problem, memory);
+    // in steady rolling it begins as often as one likes; others do not feed back, see check.cpp
+    if (heat_ && heat_->feeds_back()) begin_heat(problem, memory);
     memory.beyond = result.status == RP_OUT_OF_RANGE;
     normal += result.normal_iterations;
   }
