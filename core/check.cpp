@@ -332,6 +332,20 @@ void check_force(const rp_config &c, double friction, const rp_input &in, checke
                  {0, friction * in.normal_force * (1.0 + 1e-12), false, false});
 }
 
+// Bodies whose pressure and traction act on each other.
+void check_coupled(const rp_config &c, checker &check) {
+  if (!is_coupled(combine(c.shear_modulus, c.poisson_ratio))) return;
+  check.require(
+      c.normal == RP_NORMAL_HALF_SPACE && c.tangential == RP_TANGENTIAL_FULL && c.fitted[0] == 0,
+      "shear_modulus and poisson_ratio: bodies with (1-2nu)/G not equal couple normal and "
+      "tangential directions, which needs normal = half_space, tangential = full and no fitted "
+      "rows");
+  // what heats the material before depends on a contact area that is only being found
+  check.require(c.friction_law != RP_TEMPERATURE || c.regime == RP_STEADY_ROLLING,
+                "friction_law = temperature with bodies with (1-2nu)/G not equal needs regime = "
+                "steady_rolling");
+}
+
 void check_wheels(const rp_config &c, checker &check) {
   check.integer("side", c.side, RP_LEFT, RP_RIGHT);
   check.number("nominal_radius", c.nominal_radius, {0.01, 10, false, false});
@@ -399,12 +413,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
                 "a fast theory has no line contact: use tangential = full");
   check.require(!(rolling && fast && c.layer_thickness > 0),
                 "a fast theory has no third-body layer: use tangential = full");
-  if (rolling && check.error() == RP_OK && is_coupled(combine(c.shear_modulus, c.poisson_ratio)))
-    check.require(
-        c.normal == RP_NORMAL_HALF_SPACE && c.tangential == RP_TANGENTIAL_FULL && c.fitted[0] == 0,
-        "shear_modulus and poisson_ratio: bodies with (1-2nu)/G not equal couple normal "
-        "and tangential directions, which needs normal = half_space, tangential = full "
-        "and no fitted rows");
+  if (rolling && check.error() == RP_OK) check_coupled(c, check);
   c.kind == RP_PATCH ? check_patch(c, check) : check_wheels(c, check);
   return check.error();
 }

@@ -115,15 +115,28 @@ double relative_size(const rp_config &c, const hertz_contact &hertz, int k) {
   return load * std::max(size, half[k] / hertz.semi_axes[k]);
 }
 
+// The greatest coefficient that a friction law reaches.
+double most_friction(const rp_config &c) {
+  double most = c.friction_coefficient, factor = 1;
+  if (c.friction_law == RP_TEMPERATURE)
+    most = std::max(c.friction_reference, c.friction_reference + c.friction_change);
+  if (c.friction_law == RP_SLIP_VELOCITY) {
+    most = c.friction_kinetic;
+    for (double amplitude : c.friction_amplitude) most += std::max(amplitude, 0.0);
+  }
+  for (int k = 0; k < c.friction_points; ++k) factor = std::max(factor, c.friction_factor[k]);
+  return factor * most;
+}
+
 // n elements across Hertz's contact and those to add on either side: tractions of unlike bodies
 // shift and stretch the contact area. Full sliding is farthest, in plane strain to 1 + 2 e and by
 // (1 - 4 e^2)^-1/2 with tan(pi e) = mu K/(1 - nu) (Hills, Nowell and Sackfield 1993, chapter 7).
 int with_margin(const rp_config &c, int n) {
-  const patch_scene scene = make_scene(c);
-  if (!scene.couples()) return n;
-  const elastic_constants &e = scene.elastic;
+  const elastic_constants e = combine(c.shear_modulus, c.poisson_ratio);
+  const bool tangential = c.regime != RP_REGIME_NONE && c.tangential == RP_TANGENTIAL_FULL;
+  if (!tangential || !is_coupled(e)) return n;
   const double share =
-      std::atan(c.friction_coefficient * std::abs(e.mismatch) / (1.0 - e.poisson_ratio)) /
+      std::atan(most_friction(c) * std::abs(e.mismatch) / (1.0 - e.poisson_ratio)) /
       std::numbers::pi;
   const double reach = (1.0 + 2.0 * share) / std::sqrt(1.0 - 4.0 * share * share);
   return n + 2 * static_cast<int>(std::ceil(0.5 * (reach - 1.0) * n));

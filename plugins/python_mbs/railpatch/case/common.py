@@ -339,7 +339,7 @@ def check_tangential(
             "method.tangential", repr(method.tangential), "'full' with a layer of thickness > 0"
         )
     if couples(material):
-        check_coupled(material, grid, method)
+        check_coupled(grid, method)
 
 
 def couples(material: Material) -> bool:
@@ -349,7 +349,7 @@ def couples(material: Material) -> bool:
     return abs(wheel - rail) > 1e-12 * max(wheel, rail)
 
 
-def check_coupled(material: Material, grid: Grid | None, method: Method) -> None:
+def check_coupled(grid: Grid | None, method: Method) -> None:
     """Bodies whose normal and tangential problem go together: the exact theory on the grid."""
     why = "with unlike (1 - 2 nu)/G of wheel and rail in 'material'"
     if method.tangential != "full":

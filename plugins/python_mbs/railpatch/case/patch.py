@@ -18,6 +18,7 @@ from railpatch.case.common import (
     check_fitted,
     check_physics,
     check_tangential,
+    couples,
 )
 from railpatch.case.types import (
     Curvatures,
@@ -246,6 +247,10 @@ class PatchCase(Table):
                     raise relation("motion.regime", "'shift'", f"a regime that rolls with {key}")
         if regime == "steady_rolling":
             return
+        by_heat = self.friction is not None and self.friction.law == "temperature"
+        if by_heat and couples(self.material):
+            allowed = "'steady_rolling' with friction.law = 'temperature' and unlike (1 - 2 nu)/G"
+            raise relation("motion.regime", f"'{regime}'", f"{allowed} in 'material'")
         if self.method.tangential != "full":
             shown = repr(self.method.tangential)
             raise relation("method.tangential", shown, f"'full' with regime = '{regime}'")
