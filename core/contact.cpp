@@ -15,6 +15,9 @@ namespace railpatch {
 namespace {
 
 constexpr int max_searches = 60;
+// of grids of unlike bodies: over Hertz's contact, and elements
+constexpr double most_reach = 2.5;
+constexpr int most_elements = 1000;
 // m; below it the squares of the patch's size vanish, and with them all meaning
 constexpr double least_approach = 1e-100;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -138,8 +141,11 @@ int with_margin(const rp_config &c, int n) {
   const double share =
       std::atan(most_friction(c) * std::abs(e.mismatch) / (1.0 - e.poisson_ratio)) /
       std::numbers::pi;
-  const double reach = (1.0 + 2.0 * share) / std::sqrt(1.0 - 4.0 * share * share);
-  return n + 2 * static_cast<int>(std::ceil(0.5 * (reach - 1.0) * n));
+  // contacts that reach beyond are reported: mu K/(1 - nu) of more than 2
+  const double reach =
+      std::min(most_reach, (1.0 + 2.0 * share) / std::sqrt(1.0 - 4.0 * share * share));
+  const int wanted = n + 2 * static_cast<int>(std::ceil(0.5 * (reach - 1.0) * n));
+  return std::max(n, std::min(wanted, most_elements));
 }
 
 // Elements of one patch's grid, with a border of one element that stays free of contact.
