@@ -27,7 +27,7 @@ from railpatch.bench.truth import TruthFile, batches_of
 from railpatch.table.blob import default_table, describe_table
 
 SEED = 20261122
-SHAPES, SURFACES, POSITIONS, STEPS = 160, 60, 200, 14  # random ones, and motions of each
+SHAPES, SURFACES, POSITIONS, STEPS = 160, 60, 130, 14  # random ones, and motions of each
 LAYERED = 0.2  # share of the random ellipses that have a third-body layer
 # share of motions at which a contact slides for the greater part, and of those of a wheel's own
 SLIDING, OWN = 0.4, 0.6
