@@ -22,7 +22,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // Where friction is more than Coulomb's, or the layer yields.
 std::optional<bound_law> make_law(const rp_config &c) {
   const bool by_velocity = c.friction_law == RP_SLIP_VELOCITY;
-  if (!by_velocity && !(c.layer_yield_stress > 0)) return std::nullopt;
+  if (!has_physics || (!by_velocity && !(c.layer_yield_stress > 0))) return std::nullopt;
   bound_law law;
   law.by_velocity = by_velocity;
   if (by_velocity) {

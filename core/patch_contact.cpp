@@ -488,7 +488,7 @@ tangential_result patch_contact::solve_on_grid(const patch_problem &problem,
       zero(memory.py.data()))
     coarse_start_->find(g, memory.pressure.data(), bound_.data(), rolling, options,
                         memory.fields());
-  if (!scene_.law)
+  if (!has_physics || !scene_.law)
     return tangential_->solve(*influence_, g, memory.pressure.data(), bound_.data(), rolling,
                               options, memory.fields());
   memory.history.start_from_before(g, *scene_.law);

@@ -15,6 +15,7 @@
 #include "hertz.hpp"
 #include "normal.hpp"
 #include "patch_history.hpp"
+#include "physics.hpp"
 #include "railpatch.h"
 #include "row_contact.hpp"
 #include "tangential.hpp"
@@ -33,7 +34,9 @@ struct patch_scene {
   rp_tangential_method tangential = RP_TANGENTIAL_FULL;  // NONE: no tangential stage
   motion regime = motion::steady;
   std::optional<bound_law> law;  // beyond Coulomb's, or a layer that yields
-  bool keeps_steps() const { return tangential == RP_TANGENTIAL_FULL && regime != motion::steady; }
+  bool keeps_steps() const {
+    return has_physics && tangential == RP_TANGENTIAL_FULL && regime != motion::steady;
+  }
   double tolerance = 1e-5;
   double normal_tolerance = 1e-5;
   int max_iterations = 100;
@@ -47,7 +50,9 @@ struct patch_scene {
   bool estimates_force() const;
   bool is_fitted() const { return tangential == RP_TANGENTIAL_FULL && fitted[0] > 0; }
   // Pressure and traction act on each other, and both are there.
-  bool couples() const { return tangential == RP_TANGENTIAL_FULL && is_coupled(elastic); }
+  bool couples() const {
+    return has_physics && tangential == RP_TANGENTIAL_FULL && is_coupled(elastic);
+  }
   // No pressure and no traction on a uniform grid: all is closed form or on rows of its own.
   bool closed_form() const {
     return normal == RP_NORMAL_HERTZ &&
@@ -86,7 +91,7 @@ struct patch_memory {
   aligned_buffer<double> creepage;                       // [2], of a prescribed creep force only
   std::array<double, error_feature_count> error_features{};
   patch_history history;
-  std::optional<heat_memory> heat;
+  physics_part<heat_memory> heat;
   bool fitted() const { return node_x.size() > 0; }
   // elements of the tangential problem along rolling and lateral
   int columns() const { return fitted() ? static_cast<int>(node_x.size() / node_y.size()) : g.nx; }
@@ -171,8 +176,8 @@ class patch_contact {
   std::optional<contact_rows> fitted_rows_;
   std::optional<fitted_solver> fitted_;
   std::optional<fast_solver> fast_;
-  std::optional<temperature_stage> heat_;
-  std::optional<coupled_contact> coupled_;
+  physics_part<temperature_stage> heat_;
+  physics_part<coupled_contact> coupled_;
   error_model errors_;
   creep_resultants sums_;  // of the last step, where the theory has no tractions
   aligned_buffer<double> bound_, scratch_[2];

@@ -3,6 +3,7 @@
 // the scene needs is there.
 #pragma once
 
+#include "physics.hpp"
 #include "tangential.hpp"
 
 namespace railpatch {
@@ -11,8 +12,8 @@ struct patch_history {
   patch_history() = default;
   // steps: the last step's tractions count; law: null for Coulomb friction without plasticity.
   patch_history(int max_count, bool steps, const bound_law *law);
-  bool keeps_steps() const { return last_px.size() > 0; }
-  bool has_law() const { return after.size() > 0; }
+  bool keeps_steps() const { return has_physics && last_px.size() > 0; }
+  bool has_law() const { return has_physics && after.size() > 0; }
 
   bool begun = false;  // a step has been made on this grid
   aligned_buffer<double> last_px, last_py;

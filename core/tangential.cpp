@@ -228,7 +228,7 @@ tangential_result tangential_solver::solve(influence &a, const grid &g, const do
                       : newton_->solve(b, problem, options);
   };
   tangential_result result;
-  if (input.regime == motion::steady) {
+  if (!has_physics || input.regime == motion::steady) {
     grid_operator b(*this, a, g, input.direction);
     result = run(b);
   } else {

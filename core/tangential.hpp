@@ -15,6 +15,7 @@
 #include "inelastic_newton.hpp"
 #include "influence.hpp"
 #include "offset_influence.hpp"
+#include "physics.hpp"
 #include "rolling_newton.hpp"
 
 namespace railpatch {
@@ -99,8 +100,8 @@ class tangential_solver {
   aligned_buffer<double> grid_px_, grid_py_, grid_sx_, grid_sy_;
   aligned_buffer<double> line_[2];  // the preconditioner's B in a row by offset, xx and yy
   std::optional<rolling_newton> newton_;
-  std::optional<inelastic_newton> inelastic_;
-  std::optional<offset_influence> offset_;
+  physics_part<inelastic_newton> inelastic_;
+  physics_part<offset_influence> offset_;
   aligned_buffer<carried_state> before_, after_;
   aligned_buffer<double> plastic_slip_, yield_stress_, friction_;
   aligned_buffer<unsigned char> state_;
