@@ -37,6 +37,7 @@ struct patch_scene {
   bool keeps_steps() const {
     return has_physics && tangential == RP_TANGENTIAL_FULL && regime != motion::steady;
   }
+  bool yields() const { return law && law->plastic(); }
   double tolerance = 1e-5;
   double normal_tolerance = 1e-5;
   int max_iterations = 100;
@@ -114,9 +115,12 @@ class patch_contact {
              patch_wrench &wrench);
   // Begins a step on the grid of the last one, in shift and transient rolling; before start_from.
   void begin_step(const patch_problem &problem, patch_memory &memory) {
-    if (coupled_ && scene_.keeps_steps())
+    if (!scene_.keeps_steps()) return;
+    observe(RP_STAGE_HISTORY, true);
+    if (coupled_)
       coupled_->remember(problem.g, memory.history.begun ? memory.pressure.data() : nullptr);
     memory.history.begin(problem.g, problem.rolling.upstream(), memory.px.data(), memory.py.data());
+    observe(RP_STAGE_HISTORY, false);
   }
   // A step without contact: the material moves on and bears no traction.
   void leave_contact(const rolling_input &step, patch_memory &memory, rp_patch_result &result);
@@ -126,12 +130,14 @@ class patch_contact {
   bool fits(const grid &g) const { return g.nx <= max_nx_ && g.ny <= max_ny_; }
   const patch_scene &scene() const { return scene_; }
   void set_friction_coefficient(double value) { scene_.friction_coefficient = value; }
-  size_t influence_bytes() const {
-    return (influence_ ? influence_->bytes() : 0) + (coupled_ ? coupled_->bytes() : 0);
-  }
+  size_t influence_bytes() const { return influence_ ? influence_->bytes() : 0; }
+  size_t coupling_bytes() const { return coupled_ ? coupled_->bytes() : 0; }
+  size_t history_bytes() const { return tangential_ ? tangential_->history_bytes() : 0; }
+  size_t plastic_bytes() const { return tangential_ ? tangential_->plastic_bytes() : 0; }
   size_t normal_bytes() const {
     return (normal_ ? normal_->bytes() : 0) + (rows_ ? rows_->bytes() : 0);
   }
+  // with the last two
   size_t tangential_bytes() const;
   size_t heat_bytes() const { return heat_ ? heat_->bytes() : 0; }
   void observe(rp_stage stage, bool entering) const {

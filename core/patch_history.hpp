@@ -45,7 +45,12 @@ struct patch_history {
     for_each_kept(count, [&](const double *, size_t bytes) { sum += bytes; });
     return sum;
   }
+  // all, and what of it is the last step's and the plastic layer's
   size_t bytes() const;
+  size_t step_bytes() const {
+    return 2 * last_px.bytes() + before.bytes() + 2 * plastic_before[0].bytes();
+  }
+  size_t plastic_bytes() const { return 2 * plastic[0].bytes() + yield_stress.bytes(); }
 
  private:
   template <class History, class F>

@@ -35,6 +35,10 @@ struct rolling_input {
   // m, to where the material was in the last step
   double upstream() const { return regime == motion::transient ? direction * distance : 0.0; }
   const double *coupled[2] = {nullptr, nullptr};  // null: none; slip from pressure, [ny][nx]
+  // Whether anything can move a traction away from zero, or to it.
+  bool drives() const {
+    return creepage[0] != 0 || creepage[1] != 0 || spin_creepage != 0 || force || px || coupled[0];
+  }
   double slip(int component, double x, double y) const {
     return component == 0 ? creepage[0] - spin_creepage * y
                           : creepage[1] + spin_creepage * (x + spin_offset);
@@ -66,6 +70,7 @@ class tangential_solver {
   struct setup {
     bool forced = false;                   // for inputs with a prescribed force
     bool inelastic = false;                // for laws beyond Coulomb's
+    bool plastic = false;                  // of these, for a layer that yields
     bool history = false;                  // for shift and transient rolling
     const fft_plans *transient = nullptr;  // transient rolling: those of the influence
   };
@@ -76,7 +81,10 @@ class tangential_solver {
                           const rolling_input &input, const tangential_options &options,
                           tangential_fields fields, const inelastic_fields *inelastic = nullptr,
                           inelastic_sums *sums = nullptr);
+  // all, and what of it serves the last step and the plastic layer
   size_t bytes() const;
+  size_t history_bytes() const { return (offset_ ? offset_->bytes() : 0) + before_.bytes(); }
+  size_t plastic_bytes() const { return plastic_slip_.bytes() + yield_stress_.bytes(); }
 
  private:
   class grid_operator;
