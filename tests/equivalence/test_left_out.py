@@ -191,3 +191,25 @@ def test_no_contact_ends_early(name: str) -> None:
     case = with_values(PATCH, **RUN_TIME[name])
     case["load"] = {"approach": -1e-6}
     assert not any(iterations_of(case).values())
+
+
+@pytest.mark.parametrize(
+    ("case", "stage", "part"),
+    [
+        (with_values(PATCH, **PLAIN["no motion"]), "tangential", "regime = none"),
+        (with_values(PATCH, **PLAIN["frictionless"]), "tangential", "tangential = none"),
+        (with_values(WHEELSET, method__tangential="none"), "tangential", "tangential = none"),
+        (with_values(PATCH, **PLAIN["table"]), "influence", "neither"),
+        (with_values(PATCH, **PLAIN["Hertz"]), "influence", "tangential = full"),
+        (with_values(PATCH, **PLAIN["frictionless"]), "influence", "normal = half_space"),
+        (PATCH, "plasticity", "no third-body layer"),
+        (with_values(PATCH, **PLAIN["elastic layer"]), "plasticity", "no yield stress"),
+        (with_values(PATCH, **PLAIN["unlike, frictionless"]), "coupling", "no tangential problem"),
+        (PATCH, "history", "steady rolling"),
+        (with_values(PATCH, **FEATURES["shift"][0]), "history", "regime = shift"),
+        (with_values(PATCH, **PLAIN["slip velocity"]), "tangential", "slip-velocity law"),
+        (PATCH, "temperature", "no surface temperature"),
+    ],
+)
+def test_reasons_name_what_decides(case: dict[str, Any], stage: str, part: str) -> None:
+    assert part in stages_of(railpatch.Contact(case))[stage]["reason"]
