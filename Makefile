@@ -24,7 +24,7 @@ CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
 SOURCES := $(shell find core plugins rig_model wheelset_demo -type f -not -name '*.pyc' 2>/dev/null) \
 	CMakeLists.txt README.md
 
-.PHONY: help demo fmu test lint format clean setup system test-cpp test-python test-asan
+.PHONY: help demo fmu test lint format clean setup system test-cpp test-python test-asan pruning
 
 help: ## this list
 	@echo "make targets:"
@@ -48,7 +48,7 @@ fmu: setup ## the FMUs of the default scene: permissive, and with FFTW under the
 	$(BIN)/railpatch fmu -o build/fmu/railpatch.fmu
 	$(BIN)/railpatch fmu --fft fftw -o build/fmu/railpatch_fftw_gpl.fmu
 
-test: setup lint test-cpp test-python test-asan ## set-up and every check
+test: setup lint test-cpp test-python test-asan pruning ## set-up and every check
 	@printf '\nall checks passed:\n'
 	@$(BIN)/python .ci/summary.py $(addprefix build/junit/,cpp.xml python.xml asan.xml)
 
@@ -79,6 +79,15 @@ test-asan: $(VENV)/tools ## the same with address and undefined-behaviour saniti
 test-python: setup ## pytest, against the installed package
 	@mkdir -p build/junit
 	$(BIN)/python -m pytest --junit-xml=build/junit/python.xml
+
+PRUNING := -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAILPATCH_TESTS=OFF -DRAILPATCH_PRUNING=ON
+pruning: $(VENV)/tools ## what plain cases pay for physics that they leave out
+	@.ci/system-packages valgrind
+	cmake -S . -B build/pruning/with $(PRUNING) -DRAILPATCH_PHYSICS=ON
+	cmake --build build/pruning/with --target pruning_steps
+	cmake -S . -B build/pruning/without $(PRUNING) -DRAILPATCH_PHYSICS=OFF
+	cmake --build build/pruning/without --target pruning_steps
+	$(BIN)/python tests/pruning/compare.py build/pruning/{with,without}/tests/pruning/pruning_steps
 
 clean: ## removes build/
 	rm -rf build

@@ -10,6 +10,7 @@
 #include "coupling.hpp"
 #include "creep_table.hpp"
 #include "fast.hpp"
+#include "physics.hpp"
 
 namespace railpatch {
 
@@ -223,6 +224,23 @@ void check_temperature(const rp_config &c, checker &check) {
                 "temperature needs tangential = full and no fitted rows");
 }
 
+// What a build without further physics cannot solve.
+void check_build(const rp_config &c, checker &check) {
+  if (has_physics || !has_tangential(c) || check.error() != RP_OK) return;
+  const auto without = [&](bool asked, const char *text) { check.require(!asked, text); };
+  without(
+      c.regime != RP_STEADY_ROLLING,
+      "regime must be none or steady_rolling: this build has no shift and no transient rolling");
+  without(c.friction_law != RP_COULOMB,
+          "friction_law must be coulomb: this build has no other friction laws");
+  without(c.layer_yield_stress > 0,
+          "layer_yield_stress must be 0: this build has no plastic layers");
+  without(c.temperature != 0, "temperature must be 0: this build has no surface temperature");
+  without(is_coupled(combine(c.shear_modulus, c.poisson_ratio)),
+          "shear_modulus and poisson_ratio: (1-2nu)/G must be equal, this build has no coupling of "
+          "normal and tangential directions");
+}
+
 // Shift and transient rolling keep their grid in the frame of the contact.
 void check_regime(const rp_config &c, checker &check) {
   if (!has_tangential(c) || c.regime == RP_STEADY_ROLLING) return;
@@ -400,6 +418,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   check_plastic(c, check);
   check_temperature(c, check);
   check_regime(c, check);
+  check_build(c, check);
   check.number("layer_thickness", c.layer_thickness, {0, 0.1, false, false});
   if (c.layer_thickness > 0)
     check.number("layer_shear_modulus", c.layer_shear_modulus, {1.0, 1e15, false, false});

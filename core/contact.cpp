@@ -25,7 +25,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // Where friction is more than Coulomb's, or the layer yields.
 std::optional<bound_law> make_law(const rp_config &c) {
   const bool by_velocity = c.friction_law == RP_SLIP_VELOCITY;
-  if (!by_velocity && !(c.layer_yield_stress > 0)) return std::nullopt;
+  if (!has_physics || (!by_velocity && !(c.layer_yield_stress > 0))) return std::nullopt;
   bound_law law;
   law.by_velocity = by_velocity;
   if (by_velocity) {
@@ -384,6 +384,7 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
   solver_.start_from(m, problem.g);
   const grid &g = problem.g;
   const hertz_contact &hertz = problem.hertz;
+  solver_.observe(RP_STAGE_GEOMETRY, true);
   for (int j = 0; j < g.ny; ++j)
     for (int i = 0; i < g.nx; ++i) {
       const auto at = static_cast<size_t>(j * g.nx + i);
@@ -393,6 +394,7 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
     }
   for (size_t j = 0; j < m.row_friction.size() && j < static_cast<size_t>(g.ny); ++j)
     m.row_friction[j] = solver_.scene().friction_variation.at(g.y(static_cast<int>(j)));
+  solver_.observe(RP_STAGE_GEOMETRY, false);
   patch_wrench wrench;
   solver_.solve(problem, m, result, wrench);
   finish(result.status);
@@ -488,7 +490,7 @@ void contact::reset() {
   depth_ = 0;
 }
 
-// --- fields and stages -------------------------------------------------------------------------
+// --- fields -------------------------------------------------------------------------
 
 namespace {
 
@@ -607,97 +609,6 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
       return RP_ERROR_NO_FIELD;
   }
   return RP_OK;
-}
-
-namespace {
-
-const char *normal_reason(rp_normal_method method) {
-  switch (method) {
-    case RP_NORMAL_HERTZ:
-      return "normal = hertz: closed form";
-    case RP_NORMAL_KIK_PIOTROWSKI:
-      return "normal = kik_piotrowski: virtual interpenetration, row by row";
-    case RP_NORMAL_ANALYN:
-      return "normal = analyn: assumed deformation, row by row";
-    case RP_NORMAL_HALF_SPACE:
-      break;
-  }
-  return "normal = half_space: conjugate gradients";
-}
-
-const char *tangential_reason(const patch_scene &scene) {
-  switch (scene.tangential) {
-    case RP_TANGENTIAL_NONE:
-      return "tangential = none";
-    case RP_TANGENTIAL_FASTSIM:
-      return "tangential = fastsim: simplified theory";
-    case RP_TANGENTIAL_FULL:
-      if (scene.law)
-        return !scene.law->plastic() ? "tangential = full: semi-smooth Newton, slip-velocity law"
-               : scene.law->by_velocity
-                   ? "tangential = full: semi-smooth Newton, slip-velocity law and plastic layer"
-                   : "tangential = full: semi-smooth Newton, plastic layer";
-      if (scene.is_forced())
-        return scene.is_fitted()
-                   ? "tangential = full: semi-smooth Newton on fitted rows, creepage from the force"
-                   : "tangential = full: semi-smooth Newton, creepage from the force";
-      return scene.is_fitted() ? "tangential = full: semi-smooth Newton on fitted rows"
-                               : "tangential = full: semi-smooth Newton";
-    case RP_TANGENTIAL_LINEAR:
-      return "tangential = linear: creepage coefficients, no traction field";
-    case RP_TANGENTIAL_POLACH:
-      return "tangential = polach: closed form, no traction field";
-    case RP_TANGENTIAL_FASTRIP:
-      return "tangential = fastrip: strip theory";
-    case RP_TANGENTIAL_TABLE:
-      return "tangential = table: full theory, interpolated; the table is the caller's";
-  }
-  return "";
-}
-
-const char *temperature_reason(const patch_scene &scene) {
-  if (!scene.heat) return "no surface temperature in the scene";
-  if (scene.heat->by_temperature)
-    return scene.heat->transient
-               ? "friction depends on temperature: columns with memory, outer loop"
-               : "friction depends on temperature: outer loop";
-  return scene.heat->transient ? "temperature is asked for: columns with memory"
-                               : "temperature is asked for: steady rolling";
-}
-
-}  // namespace
-
-void contact::describe(rp_stage_info *info) const {
-  const patch_scene &scene = solver_.scene();
-  const bool tangential = scene.tangential != RP_TANGENTIAL_NONE;
-  const bool wheels = config_.kind != RP_PATCH;
-  size_t distance = 0, normal = 0, traction = 0, heat = 0;
-  for (const auto &m : memory_) {
-    distance += m.undeformed_distance.bytes();
-    normal += m.pressure.bytes();
-    traction += m.bytes() - m.undeformed_distance.bytes() - m.pressure.bytes();
-    if (m.heat) heat += m.heat->bytes();
-  }
-  for (const auto &wheel : wheels_) distance += wheel.bytes();
-  info[RP_STAGE_GEOMETRY] = {"geometry", 1,
-                             wheels ? "kind is wheel_rail or wheelset: placement and contact search"
-                                    : "undeformed distance of the given shape",
-                             distance};
-  const size_t influence = solver_.influence_bytes();
-  info[RP_STAGE_INFLUENCE] = {"influence", influence > 0,
-                              influence > 0 ? "a method on the half-space is asked for"
-                                            : "neither normal nor tangential method needs it",
-                              influence};
-  const char *how = scene.couples() ? "normal = half_space, in turn with the tangential problem: "
-                                      "unlike bodies"
-                                    : normal_reason(scene.normal);
-  info[RP_STAGE_NORMAL] = {"normal", 1, how, normal + solver_.normal_bytes()};
-  const char *why = config_.regime == RP_REGIME_NONE ? "regime = none" : tangential_reason(scene);
-  info[RP_STAGE_TANGENTIAL] = {"tangential", tangential, why,
-                               tangential ? traction + solver_.tangential_bytes() : 0};
-  info[RP_STAGE_TEMPERATURE] = {"temperature", scene.heat.has_value(), temperature_reason(scene),
-                                heat + solver_.heat_bytes()};
-  info[RP_STAGE_FORCES] = {"forces", 1, "resultants of pressure and traction", 0};
 }
 
 }  // namespace railpatch

@@ -10,9 +10,6 @@ namespace {
 
 using std::numbers::pi;
 
-// of 1/Pa times G: below it, rounding in the combination of equal bodies
-constexpr double least_mismatch = 1e-12;
-
 // y ln r + x atan(y/x); lengths over a typical one, which the alternating sum takes out again
 double primitive(double x, double y, double length) {
   const double r = std::hypot(x, y);
@@ -24,8 +21,6 @@ double primitive(double x, double y, double length) {
 double strip_sign(double x, double dx) { return std::abs(x + 0.5 * dx) - std::abs(x - 0.5 * dx); }
 
 }  // namespace
-
-bool is_coupled(const elastic_constants &e) { return !(std::abs(e.mismatch) < least_mismatch); }
 
 coupling_influence::coupling_influence(const elastic_constants &elastic, bool line,
                                        const fft_plans &plans)

@@ -9,6 +9,7 @@
 // du_x/dx = -2 K/G p where the pressure acts (Johnson 1985, eq. 2.25); u_y = 0.
 #pragma once
 
+#include <cmath>
 #include <complex>
 
 #include "batch_fft.hpp"
@@ -16,8 +17,9 @@
 
 namespace railpatch {
 
-// Whether pressure and traction act on each other at all.
-bool is_coupled(const elastic_constants &e);
+// Whether pressure and traction act on each other at all. A mismatch below the limit, of 1/Pa times
+// G, is rounding in the combination of equal bodies.
+inline bool is_coupled(const elastic_constants &e) { return !(std::abs(e.mismatch) < 1e-12); }
 
 class coupling_influence {
  public:

@@ -689,8 +689,10 @@ void inelastic_newton::finish(task &t) {
     const rp_element state = at.stick ? RP_STICK : yields ? RP_PLASTIC : RP_SLIP;
     out.state[at.k] = static_cast<unsigned char>(state);
     out.after[at.k] = b.state;
-    out.plastic_slip[at.k] = b.plastic;
-    out.yield_stress[at.k] = b.yield_stress;
+    if (out.plastic_slip) {
+      out.plastic_slip[at.k] = b.plastic;
+      out.yield_stress[at.k] = b.yield_stress;
+    }
     out.friction[at.k] = b.friction;
     ++(at.stick ? sum.stick : yields ? t.result.plastic : sum.slip);
     const double area = problem.area[at.k];

@@ -35,10 +35,11 @@ struct inelastic_problem {
   const bound_law *law = nullptr;
   const carried_state *before = nullptr;  // null: carried along each row from its first element
   carried_state *after = nullptr;         // out
-  double *plastic_slip = nullptr;         // out, m, plastic displacement of the step along p
-  double *yield_stress = nullptr;         // out, Pa
-  double *friction = nullptr;             // out, Pa, g
-  unsigned char *state = nullptr;         // out, rp_element
+  // null without plasticity
+  double *plastic_slip = nullptr;  // out, m, plastic displacement of the step along p
+  double *yield_stress = nullptr;  // out, Pa
+  double *friction = nullptr;      // out, Pa, g
+  unsigned char *state = nullptr;  // out, rp_element
 };
 
 struct inelastic_result {

@@ -48,7 +48,7 @@ void set_unloaded(const patch_scene &scene, rp_patch_result &result) {
         std::max(scene.heat->bodies.body[0].bulk, scene.heat->bodies.body[1].bulk);
   if (scene.tangential == RP_TANGENTIAL_NONE) return;
   result.creep_force[0] = result.creep_force[1] = result.spin_moment = result.friction_power = 0;
-  if (scene.law && scene.law->plastic()) result.plastic_power = 0;
+  if (scene.yields()) result.plastic_power = 0;
   result.error_estimate[0] = result.error_estimate[1] = 0;
 }
 
@@ -107,9 +107,10 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
     rows_.emplace(scene.normal, scene.modulus(), max_ny);
   if (full) {
     const bool rolls_on = scene.regime == motion::transient;
-    tangential_.emplace(max_nx, max_ny,
-                        tangential_solver::setup{scene.is_forced(), scene.law.has_value(),
-                                                 scene.keeps_steps(), rolls_on ? &plans : nullptr});
+    tangential_.emplace(
+        max_nx, max_ny,
+        tangential_solver::setup{scene.is_forced(), scene.law.has_value(), scene.yields(),
+                                 scene.keeps_steps(), rolls_on ? &plans : nullptr});
     // with a prescribed force no creepage is known to start from
     const bool plain = !scene.is_forced() && !scene.law && !scene.keeps_steps() && !scene.couples();
     if (plain && coarse_start::serves(max_nx, max_ny))
@@ -199,9 +200,12 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
     influence_->set_grid(problem.g);
     observe(RP_STAGE_INFLUENCE, false);
   }
-  if (coupled_)
+  if (coupled_) {
+    observe(RP_STAGE_COUPLING, true);
     coupled_->begin(problem.g, memory.undeformed_distance.data(), memory.px.data(),
                     memory.py.data());
+    observe(RP_STAGE_COUPLING, false);
+  }
   observe(RP_STAGE_NORMAL, true);
   bool loaded = solve_normal(problem, memory, result);
   if (!loaded && coupled_ && coupled_->forget()) {
@@ -424,7 +428,9 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
     rolling.force = &force;
   }
   if (coupled_ && (problem.rolling_speed > 0 || rolling.regime != motion::steady)) {
+    observe(RP_STAGE_COUPLING, true);
     coupled_->set_slip(memory.pressure.data(), rolling);
+    observe(RP_STAGE_COUPLING, false);
     for (int c = 0; c < 2; ++c) rolling.coupled[c] = coupled_->slip(c);
   }
   if (scene_.spin_offset) rolling.spin_offset = rolling.direction * g.dx / 6.0;
@@ -457,7 +463,7 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   if (!(t.residual <= result.residual)) result.residual = t.residual;
   const double rate = scene_.regime == motion::shift ? 1.0 : problem.rolling_speed;
   result.friction_power = rate * t.friction;
-  if (scene_.law && scene_.law->plastic()) result.plastic_power *= rate;
+  if (scene_.yields()) result.plastic_power *= rate;
   if (!t.converged)
     degrade(result, scene_.tangential != RP_TANGENTIAL_FULL || t.out_of_range ? RP_OUT_OF_RANGE
                                                                               : RP_NOT_CONVERGED);
@@ -487,11 +493,11 @@ tangential_result patch_contact::solve_on_grid(const patch_problem &problem,
   const auto zero = [&](const double *p) {
     return std::all_of(p, p + g.count(), [](double v) { return v == 0; });
   };
-  if (coarse_start_ && coarse_start::serves(g.nx, g.ny) && zero(memory.px.data()) &&
-      zero(memory.py.data()))
+  if (coarse_start_ && rolling.drives() && coarse_start::serves(g.nx, g.ny) &&
+      zero(memory.px.data()) && zero(memory.py.data()))
     coarse_start_->find(g, memory.pressure.data(), bound_.data(), rolling, options,
                         memory.fields());
-  if (!scene_.law)
+  if (!has_physics || !scene_.law)
     return tangential_->solve(*influence_, g, memory.pressure.data(), bound_.data(), rolling,
                               options, memory.fields());
   memory.history.start_from_before(g, *scene_.law);
@@ -515,14 +521,18 @@ tangential_result patch_contact::solve_with_heat(const patch_problem &problem,
   tangential_result last{};
   int newton = 0, products = 0;
   const auto pass = [&](const double *mu, double *q) {
+    observe(RP_STAGE_TANGENTIAL, true);
     last = solve_on_grid(problem, rolling, memory, result, mu);
+    observe(RP_STAGE_TANGENTIAL, false);
     newton += last.newton_iterations;
     products += last.products;
     flux_of(problem, memory, q);
     return last.converged;
   };
+  observe(RP_STAGE_TEMPERATURE, true);
   const temperature_loop_result loop = heat_->solve(
       memory.pressure.data(), {scene_.tolerance, scene_.max_iterations}, *memory.heat, pass);
+  observe(RP_STAGE_TEMPERATURE, false);
   result.outer_iterations += loop.iterations;
   last.newton_iterations = newton;
   last.products = products;
@@ -551,7 +561,7 @@ double patch_contact::finish_heat(const patch_problem &problem, patch_memory &me
 
 void patch_contact::flux_of(const patch_problem &problem, const patch_memory &memory, double *q) {
   const double *plastic = nullptr;
-  if (scene_.law && scene_.law->plastic()) {
+  if (scene_.yields()) {
     const bool steps = problem.rolling.regime == motion::transient;
     memory.history.plastic_work(problem.g, problem.rolling.direction, memory.px.data(),
                                 memory.py.data(), scratch_[0].data());
@@ -572,8 +582,10 @@ bool patch_contact::solve_in_turn(const patch_problem &problem, patch_memory &me
     const double gap_error = result.residual;
     result.outer_iterations = 0;
     const bool solved = solve_tangential(problem, memory, result);
+    observe(RP_STAGE_COUPLING, true);
     const double disagreement =
         coupled_->error(pressure, memory.px.data(), memory.py.data(), problem.force_given);
+    observe(RP_STAGE_COUPLING, false);
     const bool agreed = gap_error + disagreement <= scene_.normal_tolerance;
     result.normal_iterations = normal;
     result.newton_iterations = newton += result.newton_iterations;
@@ -588,9 +600,14 @@ bool patch_contact::solve_in_turn(const patch_problem &problem, patch_memory &me
       return solved && result.status == RP_CONVERGED;
     }
     result.status = RP_CONVERGED;
+    observe(RP_STAGE_COUPLING, true);
     coupled_->advance();
+    observe(RP_STAGE_COUPLING, false);
+    observe(RP_STAGE_NORMAL, true);
+    const bool loaded = solve_normal(problem, memory, result);
+    observe(RP_STAGE_NORMAL, false);
     // tractions too great in between, which part the bodies, are none
-    if (!solve_normal(problem, memory, result)) leave_unloaded(problem, memory);
+    if (!loaded) leave_unloaded(problem, memory);
     // in steady rolling it begins as often as one likes; others do not feed back, see check.cpp
     if (heat_ && heat_->feeds_back()) begin_heat(problem, memory);
     memory.beyond = result.status == RP_OUT_OF_RANGE;
@@ -613,6 +630,10 @@ tangential_result patch_contact::solve_fitted(const patch_problem &problem,
 
 double patch_contact::tangential_energy(const patch_problem &problem, const patch_memory &memory) {
   const grid &g = problem.g;
+  const auto loaded = [&](const aligned_buffer<double> &p) {
+    return std::any_of(p.data(), p.data() + g.count(), [](double v) { return v != 0; });
+  };
+  if (!loaded(memory.px) && !loaded(memory.py)) return 0.0;
   influence_->tangential_product(memory.px.data(), memory.py.data(), scratch_[0].data(),
                                  scratch_[1].data());
   double sum = 0;

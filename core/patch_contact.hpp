@@ -15,6 +15,7 @@
 #include "hertz.hpp"
 #include "normal.hpp"
 #include "patch_history.hpp"
+#include "physics.hpp"
 #include "railpatch.h"
 #include "row_contact.hpp"
 #include "tangential.hpp"
@@ -33,7 +34,10 @@ struct patch_scene {
   rp_tangential_method tangential = RP_TANGENTIAL_FULL;  // NONE: no tangential stage
   motion regime = motion::steady;
   std::optional<bound_law> law;  // beyond Coulomb's, or a layer that yields
-  bool keeps_steps() const { return tangential == RP_TANGENTIAL_FULL && regime != motion::steady; }
+  bool keeps_steps() const {
+    return has_physics && tangential == RP_TANGENTIAL_FULL && regime != motion::steady;
+  }
+  bool yields() const { return law && law->plastic(); }
   double tolerance = 1e-5;
   double normal_tolerance = 1e-5;
   int max_iterations = 100;
@@ -47,7 +51,9 @@ struct patch_scene {
   bool estimates_force() const;
   bool is_fitted() const { return tangential == RP_TANGENTIAL_FULL && fitted[0] > 0; }
   // Pressure and traction act on each other, and both are there.
-  bool couples() const { return tangential == RP_TANGENTIAL_FULL && is_coupled(elastic); }
+  bool couples() const {
+    return has_physics && tangential == RP_TANGENTIAL_FULL && is_coupled(elastic);
+  }
   // No pressure and no traction on a uniform grid: all is closed form or on rows of its own.
   bool closed_form() const {
     return normal == RP_NORMAL_HERTZ &&
@@ -86,7 +92,7 @@ struct patch_memory {
   aligned_buffer<double> creepage;                       // [2], of a prescribed creep force only
   std::array<double, error_feature_count> error_features{};
   patch_history history;
-  std::optional<heat_memory> heat;
+  physics_part<heat_memory> heat;
   bool fitted() const { return node_x.size() > 0; }
   // elements of the tangential problem along rolling and lateral
   int columns() const { return fitted() ? static_cast<int>(node_x.size() / node_y.size()) : g.nx; }
@@ -109,9 +115,12 @@ class patch_contact {
              patch_wrench &wrench);
   // Begins a step on the grid of the last one, in shift and transient rolling; before start_from.
   void begin_step(const patch_problem &problem, patch_memory &memory) {
-    if (coupled_ && scene_.keeps_steps())
+    if (!scene_.keeps_steps()) return;
+    observe(RP_STAGE_HISTORY, true);
+    if (coupled_)
       coupled_->remember(problem.g, memory.history.begun ? memory.pressure.data() : nullptr);
     memory.history.begin(problem.g, problem.rolling.upstream(), memory.px.data(), memory.py.data());
+    observe(RP_STAGE_HISTORY, false);
   }
   // A step without contact: the material moves on and bears no traction.
   void leave_contact(const rolling_input &step, patch_memory &memory, rp_patch_result &result);
@@ -121,12 +130,14 @@ class patch_contact {
   bool fits(const grid &g) const { return g.nx <= max_nx_ && g.ny <= max_ny_; }
   const patch_scene &scene() const { return scene_; }
   void set_friction_coefficient(double value) { scene_.friction_coefficient = value; }
-  size_t influence_bytes() const {
-    return (influence_ ? influence_->bytes() : 0) + (coupled_ ? coupled_->bytes() : 0);
-  }
+  size_t influence_bytes() const { return influence_ ? influence_->bytes() : 0; }
+  size_t coupling_bytes() const { return coupled_ ? coupled_->bytes() : 0; }
+  size_t history_bytes() const { return tangential_ ? tangential_->history_bytes() : 0; }
+  size_t plastic_bytes() const { return tangential_ ? tangential_->plastic_bytes() : 0; }
   size_t normal_bytes() const {
     return (normal_ ? normal_->bytes() : 0) + (rows_ ? rows_->bytes() : 0);
   }
+  // with the last two
   size_t tangential_bytes() const;
   size_t heat_bytes() const { return heat_ ? heat_->bytes() : 0; }
   void observe(rp_stage stage, bool entering) const {
@@ -171,8 +182,8 @@ class patch_contact {
   std::optional<contact_rows> fitted_rows_;
   std::optional<fitted_solver> fitted_;
   std::optional<fast_solver> fast_;
-  std::optional<temperature_stage> heat_;
-  std::optional<coupled_contact> coupled_;
+  physics_part<temperature_stage> heat_;
+  physics_part<coupled_contact> coupled_;
   error_model errors_;
   creep_resultants sums_;  // of the last step, where the theory has no tractions
   aligned_buffer<double> bound_, scratch_[2];

@@ -22,8 +22,7 @@ patch_history::patch_history(int max_count, bool steps, const bound_law *law) {
 }
 
 size_t patch_history::bytes() const {
-  return 2 * last_px.bytes() + before.bytes() + after.bytes() + 2 * plastic[0].bytes() +
-         2 * plastic_before[0].bytes() + yield_stress.bytes() + friction.bytes();
+  return step_bytes() + plastic_bytes() + after.bytes() + friction.bytes();
 }
 
 void patch_history::begin(const grid &g, double upstream, const double *px, const double *py) {

@@ -3,6 +3,7 @@
 // the scene needs is there.
 #pragma once
 
+#include "physics.hpp"
 #include "tangential.hpp"
 
 namespace railpatch {
@@ -11,8 +12,8 @@ struct patch_history {
   patch_history() = default;
   // steps: the last step's tractions count; law: null for Coulomb friction without plasticity.
   patch_history(int max_count, bool steps, const bound_law *law);
-  bool keeps_steps() const { return last_px.size() > 0; }
-  bool has_law() const { return after.size() > 0; }
+  bool keeps_steps() const { return has_physics && last_px.size() > 0; }
+  bool has_law() const { return has_physics && after.size() > 0; }
 
   bool begun = false;  // a step has been made on this grid
   aligned_buffer<double> last_px, last_py;
@@ -44,7 +45,12 @@ struct patch_history {
     for_each_kept(count, [&](const double *, size_t bytes) { sum += bytes; });
     return sum;
   }
+  // all, and what of it is the last step's and the plastic layer's
   size_t bytes() const;
+  size_t step_bytes() const {
+    return 2 * last_px.bytes() + before.bytes() + 2 * plastic_before[0].bytes();
+  }
+  size_t plastic_bytes() const { return 2 * plastic[0].bytes() + yield_stress.bytes(); }
 
  private:
   template <class History, class F>

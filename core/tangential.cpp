@@ -203,15 +203,17 @@ tangential_solver::tangential_solver(int max_nx, int max_ny, const setup &setup)
   if (!setup.inelastic) return;
   if (setup.history) before_ = aligned_buffer<carried_state>(n);
   after_ = aligned_buffer<carried_state>(n);
-  for (auto *b : {&plastic_slip_, &yield_stress_, &friction_}) *b = aligned_buffer<double>(n);
+  friction_ = aligned_buffer<double>(n);
+  if (setup.plastic)
+    for (auto *b : {&plastic_slip_, &yield_stress_}) *b = aligned_buffer<double>(n);
   state_ = aligned_buffer<unsigned char>(n);
 }
 
 size_t tangential_solver::bytes() const {
   return (newton_ ? newton_->bytes() : 0) + (inelastic_ ? inelastic_->bytes() : 0) +
          (offset_ ? offset_->bytes() : 0) + before_.bytes() + after_.bytes() +
-         3 * plastic_slip_.bytes() + state_.bytes() + 3 * p_.bytes() + 6 * bound_.bytes() +
-         at_.bytes() + row_start_.bytes() + 2 * line_[0].bytes();
+         2 * plastic_slip_.bytes() + friction_.bytes() + state_.bytes() + 3 * p_.bytes() +
+         6 * bound_.bytes() + at_.bytes() + row_start_.bytes() + 2 * line_[0].bytes();
 }
 
 tangential_result tangential_solver::solve(influence &a, const grid &g, const double *pressure,
@@ -228,7 +230,7 @@ tangential_result tangential_solver::solve(influence &a, const grid &g, const do
                       : newton_->solve(b, problem, options);
   };
   tangential_result result;
-  if (input.regime == motion::steady) {
+  if (!has_physics || input.regime == motion::steady) {
     grid_operator b(*this, a, g, input.direction);
     result = run(b);
   } else {

@@ -15,6 +15,7 @@
 #include "inelastic_newton.hpp"
 #include "influence.hpp"
 #include "offset_influence.hpp"
+#include "physics.hpp"
 #include "rolling_newton.hpp"
 
 namespace railpatch {
@@ -34,6 +35,10 @@ struct rolling_input {
   // m, to where the material was in the last step
   double upstream() const { return regime == motion::transient ? direction * distance : 0.0; }
   const double *coupled[2] = {nullptr, nullptr};  // null: none; slip from pressure, [ny][nx]
+  // Whether anything can move a traction away from zero, or to it.
+  bool drives() const {
+    return creepage[0] != 0 || creepage[1] != 0 || spin_creepage != 0 || force || px || coupled[0];
+  }
   double slip(int component, double x, double y) const {
     return component == 0 ? creepage[0] - spin_creepage * y
                           : creepage[1] + spin_creepage * (x + spin_offset);
@@ -65,6 +70,7 @@ class tangential_solver {
   struct setup {
     bool forced = false;                   // for inputs with a prescribed force
     bool inelastic = false;                // for laws beyond Coulomb's
+    bool plastic = false;                  // of these, for a layer that yields
     bool history = false;                  // for shift and transient rolling
     const fft_plans *transient = nullptr;  // transient rolling: those of the influence
   };
@@ -75,7 +81,10 @@ class tangential_solver {
                           const rolling_input &input, const tangential_options &options,
                           tangential_fields fields, const inelastic_fields *inelastic = nullptr,
                           inelastic_sums *sums = nullptr);
+  // all, and what of it serves the last step and the plastic layer
   size_t bytes() const;
+  size_t history_bytes() const { return (offset_ ? offset_->bytes() : 0) + before_.bytes(); }
+  size_t plastic_bytes() const { return plastic_slip_.bytes() + yield_stress_.bytes(); }
 
  private:
   class grid_operator;
@@ -99,8 +108,8 @@ class tangential_solver {
   aligned_buffer<double> grid_px_, grid_py_, grid_sx_, grid_sy_;
   aligned_buffer<double> line_[2];  // the preconditioner's B in a row by offset, xx and yy
   std::optional<rolling_newton> newton_;
-  std::optional<inelastic_newton> inelastic_;
-  std::optional<offset_influence> offset_;
+  physics_part<inelastic_newton> inelastic_;
+  physics_part<offset_influence> offset_;
   aligned_buffer<carried_state> before_, after_;
   aligned_buffer<double> plastic_slip_, yield_stress_, friction_;
   aligned_buffer<unsigned char> state_;

@@ -161,7 +161,10 @@ typedef enum rp_stage {
   RP_STAGE_TANGENTIAL = 3,
   RP_STAGE_TEMPERATURE = 4,
   RP_STAGE_FORCES = 5,
-  RP_STAGE_COUNT = 6
+  RP_STAGE_COUPLING = 6,   /* normal and tangential problem of unlike bodies, by each other */
+  RP_STAGE_HISTORY = 7,    /* last step's tractions and states, in shift and transient rolling */
+  RP_STAGE_PLASTICITY = 8, /* of the third-body layer; its time is that of the tangential problem */
+  RP_STAGE_COUNT = 9
 } rp_stage;
 
 /* Called when a stage begins (entering = 1) and ends (0); for time shares. The core has no clock.

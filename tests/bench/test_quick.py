@@ -19,7 +19,15 @@ from railpatch.bench.sets import SETS
 from railpatch.bench.targets import TARGETS
 from railpatch.cli import cli
 
-FILES = ("report.html", "summary.csv", "cases.csv.gz", "cost.csv", "run.json", "frontier.svg")
+FILES = (
+    "report.html",
+    "summary.csv",
+    "cases.csv.gz",
+    "cost.csv",
+    "features.csv",
+    "run.json",
+    "frontier.svg",
+)
 # 95th percentiles of the force error. Uniform elements: the contact's edge, and with it the length
 # of each row, is uncertain by an element of the n across. Fast theories err by 5 to 30 %. Fitted
 # rows of scale 14: below a per cent, what they are for

@@ -282,6 +282,9 @@ def test_stages_tell_reason_memory_and_time() -> None:
         "tangential",
         "temperature",
         "forces",
+        "coupling",
+        "history",
+        "plasticity",
     ]
     assert stages["normal"]["seconds"] > 0
     assert stages["normal"]["bytes"] > 0

@@ -23,6 +23,7 @@ PATCH_UNITS = {
     "plastic_power": "W",
     "elastic_energy": "J",
     "iterations": "",
+    "outer_iterations": "",
     "ambiguous_elements": "",
     "residual": "",
     "error_estimate": "N, N m, Pa",

@@ -90,7 +90,9 @@ def print_stages(
         table.add_column(name, justify="left" if name in ("stage", "needed") else "right")
     table.add_column("why", overflow="fold")
     for stage in stages:
-        share = f"{100 * stage['seconds'] / total:.1f} %" if total > 0 else ""
+        # what is part of another stage has no time of its own
+        timed = stage["seconds"] > 0
+        share = f"{100 * stage['seconds'] / total:.1f} %" if timed else "-"
         used = (memory(stage["bytes"]), share) if stage["present"] else ("", "")
         needed = "yes" if stage["present"] else "no"
         table.add_row(stage["name"], needed, *used, stage["reason"])

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from railpatch.bench.curves import cost_curves, curves, frontier_curve
+from railpatch.bench.features import SIZE
 from railpatch.bench.figures import cost_over_elements, error_over_time
 from railpatch.bench.machine import FFT_SIZE
 from railpatch.bench.sets import SEED, SETS
@@ -43,7 +44,7 @@ def page(report: Report) -> str:
     """The HTML text."""
     parts = [head(report), targets(report), *figures(report)]
     parts += [set_section(report, name) for name in report.plan.sets]
-    parts += [calibration(report), truth(report)]
+    parts += [features(report), calibration(report), truth(report)]
     return document("error against run time", "".join(parts))
 
 
@@ -154,6 +155,31 @@ def work_row(summary: Summary) -> list[object]:
     return [
         summary.label, *times, *work, start, number(values["bytes"] / 1024), summary.not_converged,
     ]  # fmt: skip
+
+
+def features(report: Report) -> str:
+    """Cost of each piece of physics beside a plain scene."""
+    lines = [
+        [
+            f.name,
+            milliseconds(f.cold),
+            milliseconds(f.warm),
+            f"{f.cold_ratio:.2f}",
+            f"{f.warm_ratio:.2f}",
+            number(f.bytes / 1024),
+            "" if f.good else "not converged",
+        ]
+        for f in report.features
+    ]
+    return (
+        "<h2>Physics</h2><p>A step with one thing more (the last ones with several) than a plain "
+        f"scene: {SIZE} x {SIZE} elements on the half-space, circular contact, partial slip. "
+        "Ratios are medians of the times over those of the plain scene in the same pass.</p>"
+        + table(
+            ("scene", "cold [ms]", "warm [ms]", "cold, ratio", "warm, ratio", "memory [kB]", ""),
+            lines,
+        )
+    )
 
 
 def calibration(report: Report) -> str:

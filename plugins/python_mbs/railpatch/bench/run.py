@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from railpatch.bench import cost
+from railpatch.bench.features import FeatureCost, feature_costs
 from railpatch.bench.machine import Machine, this_machine
 from railpatch.bench.measure import COLUMNS, Measured, measure
 from railpatch.bench.methods import Method
@@ -48,7 +49,7 @@ class Plan:
     @property
     def total(self) -> int:
         """Steps of the progress bar."""
-        return len(self.points()) + len(self.sizes()) + 2
+        return len(self.points()) + len(self.sizes()) + 3
 
     def check(self) -> None:
         """Makes one contact of every method and set. Raises CaseError where a case is refused."""
@@ -65,6 +66,7 @@ class Report:
     truth: TruthFile
     measured: list[Measured]
     outcome: Outcome
+    features: list[FeatureCost]
 
 
 def run_bench(
@@ -87,11 +89,13 @@ def run_bench(
     wheel = cost.wheel_cost(QUICK_RIG_POSITIONS if plan.quick else cost.RIG_POSITIONS)
     progress(wheel)
     outcome = Outcome([summarize(m) for m in measured], costs, normal, wheel)
-    return Report(plan, machine, truth, measured, outcome)
+    features = feature_costs(plan.quick, progress)
+    return Report(plan, machine, truth, measured, outcome, features)
 
 
 def write_report(report: Report, folder: Path) -> list[Path]:
-    """Writes report.html, summary.csv, cases.csv.gz, cost.csv, run.json, frontier.svg and .png."""
+    """Writes report.html, summary.csv, cases.csv.gz, cost.csv, features.csv, run.json, frontier.svg
+    and .png."""
     from railpatch.bench.page import page
     from railpatch.bench.picture import write_pictures
 
@@ -100,6 +104,7 @@ def write_report(report: Report, folder: Path) -> list[Path]:
         write_summary(report, folder / "summary.csv"),
         write_cases(report.measured, folder / "cases.csv.gz"),
         write_cost(report, folder / "cost.csv"),
+        write_features(report.features, folder / "features.csv"),
         write_run(report, folder / "run.json"),
         *write_pictures(report, folder),
     ]
@@ -140,6 +145,15 @@ def write_cost(report: Report, path: Path) -> Path:
         writer.writerow(["method", "across", "elements", "cold_s", "warm_s"])
         for c in report.outcome.costs:
             writer.writerow([c.method.name, c.across, c.elements, c.cold, c.warm])
+    return path
+
+
+def write_features(features: list[FeatureCost], path: Path) -> Path:
+    """Cost of each piece of physics; columns as in ``features.FeatureCost``."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, list(asdict(features[0])))
+        writer.writeheader()
+        writer.writerows(asdict(feature) for feature in features)
     return path
 
 

@@ -159,6 +159,9 @@ PATCH = Message(
         _number("residual", "-", "residual at the end"),
         _number("wall_time", "s", "wall-clock time of the solution"),
         Field("error_estimate", ERROR_ESTIMATE, "", "estimated errors"),
+        _number("plastic_power", "W", "power of the layer's plastic displacement, >= 0"),
+        _count("outer_iterations", "rounds of stages that act on each other"),
+        _count("ambiguous_elements", "elements whose friction law has further solutions"),
     ),
 )
 
