@@ -150,20 +150,6 @@ bound_law::slipping bound_law::friction_at(double normal, double carried,
   return {normal * (rest + now), normal * by_slip, normal * d / sum, now, by_slip, d / sum};
 }
 
-// Where the layer yields, friction that rises over a step does so for the next one: else both
-// bounds could take turns within the step.
-bound_law::slipping bound_law::friction_on_layer(double normal, double carried,
-                                                 double slip_length) const {
-  slipping s = friction_at(normal, carried, slip_length);
-  if (!plastic() || !by_velocity) return s;
-  const slipping rest = friction_at(normal, carried, 0);
-  if (s.bound <= rest.bound) return s;
-  s.bound = rest.bound;
-  s.by_slip = 0;
-  s.by_before = rest.by_before;
-  return s;
-}
-
 struct bound_law::yielding {
   double stress, by_slip, by_angle, by_state[2];
   double slip;  // m, and its derivatives where it ends at a given stress
@@ -255,16 +241,47 @@ double bound_law::steepest_fall(double friction) const {
   return std::max(fall, falls);
 }
 
-// b at m; limit: plastic part at which g(0) is reached.
+// Plastic part of m >= limit, where the surfaces slip; limit: plastic part at which g(0) is reached.
+// Friction that rises with slip takes the layer on: the first split with tau = g.
+double bound_law::split(double friction, const carried_state &before, const double e[2],
+                        double limit, double m) const {
+  if (!plastic() || !by_velocity) return limit;
+  const auto excess = [&](double part, double &slope) {
+    const yielding y = yield_at(before, e, part);
+    const slipping s = friction_at(friction, before.v[0], m - part);
+    slope = y.by_slip + s.by_slip;
+    return y.stress - s.bound;
+  };
+  double slope, low = limit, high = m, part = limit, last = excess(limit, slope);
+  // up to rounding both are equal at the limit itself
+  if (!(last < -4e-16 * friction)) return limit;
+  if (excess(m, slope) <= 0) return m;
+  for (int i = 0; i < 100; ++i) {
+    last = excess(part, slope);
+    (last < 0 ? low : high) = part;
+    if (std::abs(last) <= 4e-16 * friction) break;
+    const double next = part - last / slope;
+    const double to = slope > 0 && next > low && next < high ? next : 0.5 * (low + high);
+    if (to == part) break;
+    part = to;
+  }
+  return part;
+}
+
+// b at m
 double bound_law::value(double friction, const carried_state &before, const double e[2],
                         double limit, double m, double &slope) const {
-  if (m < limit) {
+  const double part = m < limit ? m : split(friction, before, e, limit, m);
+  if (m < limit || (part == m && m > limit)) {
     const yielding y = yield_at(before, e, m);
     slope = y.by_slip;
     return y.stress;
   }
-  const slipping s = friction_on_layer(friction, before.v[0], m - limit);
+  const slipping s = friction_at(friction, before.v[0], m - part);
   slope = s.by_slip;
+  if (part == limit) return s.bound;
+  const double layer = yield_at(before, e, part).by_slip, sum = layer + slope;
+  slope = sum > 0 ? layer * slope / sum : layer;
   return s.bound;
 }
 
@@ -293,12 +310,11 @@ double bound_law::resolve(double friction, const carried_state &before, const do
 bound_point bound_law::evaluate(double friction, const carried_state &before, const double e[2],
                                 double m) const {
   bound_point b{};
-  const slipping rest = friction_at(friction, before.v[0], 0);
-  const double across[2] = {-e[1], e[0]};
-  double limit = 0;
-  yielding y{};
   b.yield_stress = HUGE_VAL;
+  const slipping rest = friction_at(friction, before.v[0], 0);
+  double limit = 0;
   bool yields = false, met = false;  // below g; both bounds met
+  yielding y{};
   if (plastic()) {
     y = yield_at(before, e, 0);
     if (y.stress < rest.bound) {
@@ -308,11 +324,23 @@ bound_point bound_law::evaluate(double friction, const carried_state &before, co
       met = !yields;
       y = yields ? yield_at(before, e, m) : end;
     }
-    b.yield_stress = y.stress;
   }
-  b.plastic = std::min(m, limit);
-  const slipping s = friction_on_layer(friction, before.v[0], m - b.plastic);
+  b.plastic = yields ? m : split(friction, before, e, limit, m);
+  // friction rose with slip: until the layer yields again, or as much as it hardens
+  const bool rises = !yields && b.plastic > limit;
+  if (rises) y = yield_at(before, e, b.plastic);
+  if (plastic()) b.yield_stress = y.stress;
+  yields = yields || (rises && b.plastic == m);
+  const slipping s = friction_at(friction, before.v[0], m - b.plastic);
   b.friction = s.bound;
+  plastic_part part{};
+  if (yields) {
+    part.by_slip = 1.0;
+  } else if (rises) {
+    part = shared(y, s);
+  } else if (met) {
+    part = ended(y, rest);
+  }
   if (yields) {
     b.bound = y.stress;
     b.by_slip = y.by_slip;
@@ -320,40 +348,59 @@ bound_point bound_law::evaluate(double friction, const carried_state &before, co
     for (int c = 0; c < 2; ++c) b.by_state[1 + c] = y.by_state[c];
   } else {
     b.bound = s.bound;
-    b.by_slip = s.by_slip;
-    b.by_state[0] = s.by_before;
-    if (met) {
-      b.by_angle = -s.by_slip * y.slip_by_angle;
-      b.by_state[0] -= s.by_slip * y.slip_by_level * rest.by_before;
-      for (int c = 0; c < 2; ++c) b.by_state[1 + c] = -s.by_slip * y.slip_by_state[c];
-    }
+    b.by_slip = s.by_slip * (1.0 - part.by_slip);
+    b.by_angle = -s.by_slip * part.by_angle;
+    for (int i = 0; i < 3; ++i) b.by_state[i] = -s.by_slip * part.by_state[i];
+    b.by_state[0] += s.by_before;
   }
-  // what is carried on
+  carry_on(b, before, e, part, s);
+  return b;
+}
+
+// The split where tau = g with both beyond their values at rest.
+bound_law::plastic_part bound_law::shared(const yielding &y, const slipping &s) {
+  const double sum = y.by_slip + s.by_slip;
+  plastic_part part{};
+  part.by_slip = 1.0;
+  if (!(sum > 0)) return part;
+  part.by_slip = s.by_slip / sum;
+  part.by_angle = -y.by_angle / sum;
+  part.by_state[0] = s.by_before / sum;
+  for (int c = 0; c < 2; ++c) part.by_state[1 + c] = -y.by_state[c] / sum;
+  return part;
+}
+
+// The plastic part that ends at g(0).
+bound_law::plastic_part bound_law::ended(const yielding &y, const slipping &rest) {
+  plastic_part part{};
+  part.by_angle = y.slip_by_angle;
+  part.by_state[0] = y.slip_by_level * rest.by_before;
+  for (int c = 0; c < 2; ++c) part.by_state[1 + c] = y.slip_by_state[c];
+  return part;
+}
+
+// State after, with its derivatives.
+void bound_law::carry_on(bound_point &b, const carried_state &before, const double e[2],
+                         const plastic_part &part, const slipping &s) const {
   b.state = before;
   if (by_velocity) {
     b.state.v[0] = s.coefficient;
-    b.state_by_slip[0] = yields ? 0.0 : s.c_by_slip;
-    b.state_by_state[0][0] = s.c_before;
-    if (met) {
-      b.state_by_angle[0] = -s.c_by_slip * y.slip_by_angle;
-      b.state_by_state[0][0] -= s.c_by_slip * y.slip_by_level * rest.by_before;
-      for (int c = 0; c < 2; ++c) b.state_by_state[0][1 + c] = -s.c_by_slip * y.slip_by_state[c];
-    }
+    b.state_by_slip[0] = s.c_by_slip * (1.0 - part.by_slip);
+    b.state_by_angle[0] = -s.c_by_slip * part.by_angle;
+    for (int i = 0; i < 3; ++i) b.state_by_state[0][i] = -s.c_by_slip * part.by_state[i];
+    b.state_by_state[0][0] += s.c_before;
   }
+  const double across[2] = {-e[1], e[0]};
   const int parts = by_magnitude ? 2 : 1;
   for (int c = 0; c < parts; ++c) {
     const double way = by_magnitude ? e[c] : 1.0, turn = by_magnitude ? across[c] : 0.0;
     double *by_state = b.state_by_state[1 + c];
     b.state.v[1 + c] += b.plastic * way;
-    by_state[1 + c] = 1.0;
-    b.state_by_slip[1 + c] = yields ? way : 0.0;
-    b.state_by_angle[1 + c] = b.plastic * turn;
-    if (!met) continue;
-    b.state_by_angle[1 + c] += way * y.slip_by_angle;
-    by_state[0] = way * y.slip_by_level * rest.by_before;
-    for (int d = 0; d < parts; ++d) by_state[1 + d] += way * y.slip_by_state[d];
+    b.state_by_slip[1 + c] = way * part.by_slip;
+    b.state_by_angle[1 + c] = b.plastic * turn + way * part.by_angle;
+    for (int i = 0; i < 3; ++i) by_state[i] = way * part.by_state[i];
+    by_state[1 + c] += 1.0;
   }
-  return b;
 }
 
 bool bound_law::ambiguous(double friction, const carried_state &before, const double e[2],

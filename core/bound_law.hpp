@@ -4,11 +4,11 @@
 // Inelastic slip m (m) over a step: plastic displacement of the layer first, as long as the yield
 // stress is below the traction bound, then slip of the surfaces (Vollebregt 2024,
 // DOT/FRA/ORD-24/18, section 4.3, with the state S* in which both bounds are met):
-//   b(m) = tau(u* after m) while below g(0), else g(m - m_p) with tau = g(0) at m_p.
+//   b(m) = tau(u* after m) while below g(0), else g(m - m_p) with tau = g(0) at m_p; where friction
+//   has risen with slip above that, with tau = g(m - m_p) at m_p: the layer goes on to yield.
 // Coulomb: g constant. Slip velocity: g = mu(s) p_n with the slip's speed s = V slip/dq, and with a
 // memory of the friction coefficient over the distance d_c
 //   mu = (d_c mu_before + D mu(s))/(d_c + D),  D = max(s, s_0) dq/V.
-// On a layer that yields friction may fall over a step and rises only from step to step.
 // Accumulated plastic displacement u*: length of the path (eq. 37) or length of the vector sum
 // (eq. 38).
 //
@@ -97,10 +97,19 @@ class bound_law {
  private:
   struct slipping;
   struct yielding;
+  // derivatives of the plastic part of m
+  struct plastic_part {
+    double by_slip, by_angle, by_state[3];
+  };
   slipping friction_at(double normal, double carried, double slip) const;
-  slipping friction_on_layer(double normal, double carried, double slip) const;
   yielding yield_at(const carried_state &before, const double e[2], double m) const;
   yielding until(const carried_state &before, const double e[2], double level) const;
+  double split(double friction, const carried_state &before, const double e[2], double limit,
+               double m) const;
+  static plastic_part shared(const yielding &y, const slipping &s);
+  static plastic_part ended(const yielding &y, const slipping &rest);
+  void carry_on(bound_point &b, const carried_state &before, const double e[2],
+                const plastic_part &part, const slipping &s) const;
   double value(double friction, const carried_state &before, const double e[2], double limit,
                double m, double &slope) const;
 };

@@ -115,8 +115,9 @@ inelastic_result inelastic_newton::solve(rolling_operator &b, const rolling_prob
     if (t.falls) std::copy_n(p, t.size(), started_.data());
     error = iterate(t, error, goal, options.max_iterations);
     if (t.falls && !t.force) error = choose_branch(t, error, goal, options.max_iterations);
-    result.residual = error / size;
-    result.converged = error <= goal;
+    const double found = settle(t, error, options, size);
+    result.residual = error / found;
+    result.converged = error <= options.tolerance * found;
     result.out_of_range = !result.converged && t.force && t.force->beyond();
   } else {
     std::fill_n(p, t.size(), 0.0);
@@ -126,6 +127,21 @@ inelastic_result inelastic_newton::solve(rolling_operator &b, const rolling_prob
   }
   finish(t);
   return t.result;
+}
+
+// Where the laws leave far less traction than their greatest bounds, the solution itself says to
+// which size its error is small: goes on until it is. Returns the size, sets |F|.
+double inelastic_newton::settle(task &t, double &error, const tangential_options &options,
+                                double size) {
+  const int most = options.max_iterations;
+  for (int k = 0; k < max_returns && error <= options.tolerance * size; ++k) {
+    const double own = std::min(size, scale_of_solution(t));
+    if (!(own > 0)) break;
+    size = own;
+    if (error <= options.tolerance * size) break;
+    error = iterate(t, error, options.tolerance * size, most);
+  }
+  return size;
 }
 
 // Newton's steps and their safeguard; returns the best |F|, which the traction then has.
@@ -351,6 +367,21 @@ double inelastic_newton::scale(const task &t) const {
   t.for_each_element([&](size_t k, size_t ix, size_t iy) {
     const double f = std::min(most_[k], r_[k] * std::hypot(w[ix], w[iy]));
     sum += f * f;
+  });
+  return t.force ? std::hypot(std::sqrt(sum), t.force->size()) : std::sqrt(sum);
+}
+
+// The same with the bounds of the tractions found, and the stiffness of a single element.
+double inelastic_newton::scale_of_solution(const task &t) const {
+  const double *w = t.problem.rigid_slip;
+  double sum = 0;
+  apply_law(t, t.problem.traction, t.problem.micro_slip, 1.0, [&](const element_at &at) {
+    const double bound =
+        at.stick ? t.law.at_rest(t.friction[at.k], *at.before) : std::min(at.bound(), most_[at.k]);
+    const double asked =
+        t.b.projection_scale(at.row) *
+        std::hypot(w[at.ix] + t.problem.creepage(0), w[at.iy] + t.problem.creepage(1));
+    sum += square(std::min(bound, asked));
   });
   return t.force ? std::hypot(std::sqrt(sum), t.force->size()) : std::sqrt(sum);
 }

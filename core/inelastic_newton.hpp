@@ -70,6 +70,8 @@ class inelastic_newton {
   void find_flexibility(task &t);
   void try_march(task &t, double &error);
   double scale(const task &t) const;
+  double scale_of_solution(const task &t) const;
+  double settle(task &t, double &error, const tangential_options &options, double size);
   void micro_slip(task &t, const double *p, double *s);
   template <class Each>
   void apply_law(const task &t, const double *p, const double *s, double length, Each &&each) const;

@@ -75,6 +75,8 @@ temperature_loop_result temperature_loop::solve(const problem &p,
   former_ = since_best_ = 0;
   damping_ = 1;
   temperature_loop_result result;
+  // one is left for going back to the best
+  const int most = std::max(options.max_iterations - 1, 1);
   int failures = 0;    // in a row
   bool again = false;  // the best coefficients for the second time
   for (;;) {
@@ -96,7 +98,7 @@ temperature_loop_result temperature_loop::solve(const problem &p,
       ++since_best_;
     }
     failures = solved ? 0 : failures + 1;
-    if (result.iterations >= options.max_iterations || failures > 2) break;
+    if (result.iterations >= most || failures > 2) break;
     again = now > 2.0 * best_ || since_best_ > 4;
     if (again)
       restart(n, mu);
