@@ -31,6 +31,7 @@ PATCH_KEYS = [
     "plastic_power",
     "elastic_energy",
     "iterations",
+    "outer_iterations",
     "ambiguous_elements",
     "residual",
     "wall_time",
