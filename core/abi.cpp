@@ -69,6 +69,7 @@ void rp_default_input(rp_input *input) {
   input->vertical_force = 1e5;
   input->rolling_speed = 10.0;
   input->direction = 1;
+  for (double &bulk : input->bulk_temperature) bulk = std::numeric_limits<double>::quiet_NaN();
 }
 
 rp_error rp_create(const rp_config *config, rp_contact **contact_out, rp_message *message) {

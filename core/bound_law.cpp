@@ -241,8 +241,8 @@ double bound_law::steepest_fall(double friction) const {
   return std::max(fall, falls);
 }
 
-// Plastic part of m >= limit, where the surfaces slip; limit: plastic part at which g(0) is reached.
-// Friction that rises with slip takes the layer on: the first split with tau = g.
+// Plastic part of m >= limit, where the surfaces slip; limit: plastic part at which g(0) is
+// reached. Friction that rises with slip takes the layer on: the first split with tau = g.
 double bound_law::split(double friction, const carried_state &before, const double e[2],
                         double limit, double m) const {
   if (!plastic() || !by_velocity) return limit;

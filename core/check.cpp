@@ -30,6 +30,7 @@ constexpr range not_negative{0, inf, false, true};
 constexpr range finite{-inf, inf, true, true};
 constexpr range angle{-1.5, 1.5, false, false};
 constexpr range friction{0, 10, false, false};
+constexpr range bulk{-273.15, 1e4, false, false};  // degrees C
 
 // Remembers the first field that is out of range.
 class checker {
@@ -211,7 +212,8 @@ void check_plastic(const rp_config &c, checker &check) {
 
 void check_temperature(const rp_config &c, checker &check) {
   check.integer("temperature", c.temperature, 0, 1);
-  check.numbers("bulk_temperature", c.bulk_temperature, 2, {-273.15, 1e4, false, false});
+  check.numbers("bulk_temperature", c.bulk_temperature, 2, bulk);
+  check.integer("heat_exchange", c.heat_exchange, 0, 1);
   check.numbers("conductivity", c.conductivity, 2, {1e-6, 1e6, false, false});
   check.numbers("heat_capacity", c.heat_capacity, 2, {1e-3, 1e6, false, false});
   check.numbers("density", c.density, 2, {1e-3, 1e6, false, false});
@@ -326,6 +328,22 @@ void check_patch(const rp_config &c, checker &check) {
   if (check.error() == RP_OK)
     check.numbers("undeformed_distance", c.undeformed_distance,
                   c.distance_shape[0] * c.distance_shape[1], {-1, 1, false, false});
+}
+
+// Temperatures of a step; NaN stands for the config's.
+void check_bulk(const rp_config &c, const rp_input &in, checker &check) {
+  double step[2];
+  for (int k = 0; k < 2; ++k) {
+    const bool given = !std::isnan(in.bulk_temperature[k]);
+    step[k] = given ? in.bulk_temperature[k] : c.bulk_temperature[k];
+    check.require(!given || c.temperature == 1,
+                  "bulk_temperature must be left NaN in a scene without temperature");
+  }
+  check.numbers("bulk_temperature", step, 2, bulk);
+  const bool exchanges = c.heat_exchange == 1 || c.bulk_temperature[0] != c.bulk_temperature[1];
+  check.require(exchanges || step[0] == step[1],
+                "bulk_temperature of wheel and rail must be equal in a scene with equal ones and "
+                "heat_exchange = 0");
 }
 
 // Where the normal force follows from the approach, only the solve can tell what friction carries.
@@ -450,6 +468,7 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
     return RP_ERROR_NOT_DEFAULTED;
   }
   checker check(message);
+  check_bulk(c, in, check);
   if (c.kind == RP_PATCH) {
     if (c.load == RP_FORCE)
       check.number("normal_force", in.normal_force, positive);

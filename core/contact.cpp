@@ -56,6 +56,7 @@ std::optional<heat_scene> make_heat(const rp_config &c) {
   for (int k = 0; k < 2; ++k)
     heat.bodies.body[k] = {c.conductivity[k], c.heat_capacity[k], c.density[k],
                            c.bulk_temperature[k]};
+  heat.exchanges = c.heat_exchange == 1 || heat.bodies.exchanges();
   heat.by_temperature = c.friction_law == RP_TEMPERATURE;
   heat.law = {c.friction_reference, c.friction_change, c.friction_reference_temperature,
               c.friction_temperature_range};
@@ -300,6 +301,11 @@ void contact::step(const rp_input &input, rp_result &result) {
     for (auto &patch : side.patch) patch = empty;
   }
   for (auto &m : memory_) m.solved = false;
+  for (int k = 0; k < 2; ++k) {
+    const double bulk = std::isnan(input.bulk_temperature[k]) ? config_.bulk_temperature[k]
+                                                              : input.bulk_temperature[k];
+    solver_.set_bulk_temperature(k, bulk);
+  }
   config_.kind == RP_PATCH ? step_patch(input, out) : step_wheels(input, out);
   result = out;
 }

@@ -91,6 +91,7 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            static_cast<double>(c.temperature),
                            c.bulk_temperature[0],
                            c.bulk_temperature[1],
+                           static_cast<double>(c.heat_exchange),
                            c.conductivity[0],
                            c.conductivity[1],
                            c.heat_capacity[0],

@@ -130,6 +130,12 @@ class patch_contact {
   bool fits(const grid &g) const { return g.nx <= max_nx_ && g.ny <= max_ny_; }
   const patch_scene &scene() const { return scene_; }
   void set_friction_coefficient(double value) { scene_.friction_coefficient = value; }
+  // degrees C, of body k: wheel, rail
+  void set_bulk_temperature(int k, double value) {
+    if (!heat_) return;
+    scene_.heat->bodies.body[k].bulk = value;
+    heat_->set_bulk(k, value);
+  }
   size_t influence_bytes() const { return influence_ ? influence_->bytes() : 0; }
   size_t coupling_bytes() const { return coupled_ ? coupled_->bytes() : 0; }
   size_t history_bytes() const { return tangential_ ? tangential_->history_bytes() : 0; }

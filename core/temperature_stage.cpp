@@ -9,8 +9,7 @@ heat_memory::heat_memory(int max_nx, int max_ny, const heat_scene &scene) {
   for (auto &t : temperature) t = aligned_buffer<double>(n);
   if (scene.by_temperature) friction = aligned_buffer<double>(n);
   if (scene.transient)
-    columns =
-        aligned_buffer<double>(heat_columns::state_size(max_nx, max_ny, scene.bodies.exchanges()));
+    columns = aligned_buffer<double>(heat_columns::state_size(max_nx, max_ny, scene.exchanges));
 }
 
 void heat_memory::clear() {
@@ -23,7 +22,7 @@ void heat_memory::forget_friction() { std::fill(friction.begin(), friction.end()
 temperature_stage::temperature_stage(const heat_scene &scene, int max_nx, int max_ny)
     : scene_(scene) {
   const auto n = static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny);
-  const bool exchanges = scene.bodies.exchanges();
+  const bool exchanges = scene.exchanges;
   if (scene.transient)
     columns_.emplace(max_nx, max_ny, exchanges);
   else

@@ -11,6 +11,7 @@ namespace railpatch {
 
 struct heat_scene {
   thermal_pair bodies;
+  bool exchanges = false;       // bulk temperatures may be unequal
   bool by_temperature = false;  // friction follows the law
   temperature_law law;
   double depth = 0;             // m, of the temperatures given
@@ -34,6 +35,7 @@ class temperature_stage {
  public:
   temperature_stage(const heat_scene &scene, int max_nx, int max_ny);
 
+  void set_bulk(int body, double temperature) { scene_.bodies.body[body].bulk = temperature; }
   bool feeds_back() const { return scene_.by_temperature; }
   // Before the tangential problem: what the surfaces have without this step's heat. distance (m)
   // counts in transient rolling only. The memory's friction is the start.

@@ -233,7 +233,9 @@ typedef struct rp_config {
 
   /* surface temperature */
   int32_t temperature;          /* 1: computed, 0: no such stage */
-  double bulk_temperature[2];   /* degrees C */
+  double bulk_temperature[2];   /* degrees C, where an input has none */
+  int32_t heat_exchange;        /* 1: bodies of unequal bulk temperature may come into contact, as
+                                   they may where those above are unequal; 0: equal ones only */
   double conductivity[2];       /* W/(m K) */
   double heat_capacity[2];      /* J/(kg K) */
   double density[2];            /* kg/m^3 */
@@ -289,6 +291,7 @@ typedef struct rp_input {
   double spin_creepage;       /* rad/m; RP_SHIFT: rad, rotation in this step */
   double rolling_speed;       /* m/s, >= 0; 0 is standstill: no creep force */
   int32_t direction;          /* rolling towards +x (1) or -x (-1) */
+  double bulk_temperature[2]; /* degrees C; NaN: the config's */
   double distance;            /* m, > 0, rolled in this step where regime = RP_TRANSIENT_ROLLING */
 
   /* wheelset: position, attitude (roll-yaw-pitch) and velocity in track axes */

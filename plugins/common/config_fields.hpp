@@ -44,6 +44,7 @@
   X(plastic_rule)                   \
   X(temperature)                    \
   X(bulk_temperature)               \
+  X(heat_exchange)                  \
   X(conductivity)                   \
   X(heat_capacity)                  \
   X(density)                        \

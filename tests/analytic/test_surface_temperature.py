@@ -198,3 +198,29 @@ def test_no_table_no_stage() -> None:
     warm = next(s for s in railpatch.Contact(heated()).stages() if s["name"] == "temperature")
     assert warm["present"]
     assert warm["bytes"] > 0
+
+
+@pytest.mark.parametrize("friction", [{"coefficient": 0.3}, law(-0.2, 300.0)])
+def test_bulk_temperatures_are_inputs_of_a_step(friction: dict[str, Any]) -> None:
+    """A wheel that the brakes warm: as a case with that temperature from the start."""
+    contact = railpatch.Contact(
+        heated(friction=friction, temperature={"wheel": 20.0, "rail": 20.0, "exchange": True})
+    )
+    contact.step()
+    contact.reset()
+    moved = contact.step(temperature={"wheel": 180.0}, fields=True)
+    fresh = solve(
+        heated(friction=friction, temperature={"wheel": 180.0, "rail": 20.0}), fields=True
+    )
+    assert moved["creep_force"] == fresh["creep_force"]
+    np.testing.assert_array_equal(moved["temperature"], fresh["temperature"])
+    assert contact.case.temperature.wheel == 180.0
+
+
+def test_unequal_bulk_temperatures_need_an_exchange() -> None:
+    contact = railpatch.Contact(heated(temperature={"wheel": 20.0, "rail": 20.0}))
+    assert contact.step(temperature={"wheel": 50.0, "rail": 50.0})["max_temperature"] > 50
+    with pytest.raises(railpatch.CaseError, match="bulk_temperature of wheel and rail"):
+        contact.step(temperature={"wheel": 60.0})
+    with pytest.raises(railpatch.CaseError, match=r"temperature\.depth: value is 0\.1, but"):
+        contact.step(temperature={"depth": 0.1})

@@ -98,6 +98,7 @@ def temperature_config(heat: Temperature | None) -> dict[str, Any]:
     return {
         "temperature": 1,
         "bulk_temperature": [heat.wheel, heat.rail],
+        "heat_exchange": int(heat.exchange),
         "conductivity": heat.conductivity,
         "heat_capacity": heat.heat_capacity,
         "density": heat.density,
@@ -198,7 +199,7 @@ def input_of(case: Case) -> dict[str, Any]:
         if case.motion.distance is not None:
             values["distance"] = case.motion.distance / (case.motion.steps or 1)
         values.update(case.load.model_dump(exclude_none=True))
-        return values
+        return {**values, **bulk_of(case)}
     wheelset, track = case.wheelset, case.track
     values = {name: getattr(wheelset, name) for name in WHEELSET_STATE}
     if wheelset.z is not None:
@@ -210,4 +211,10 @@ def input_of(case: Case) -> dict[str, Any]:
     for name, table in (("wheel", wheelset), ("rail", track)):
         values[f"{name}_offset"] = [table.left.offset, table.right.offset]
         values[f"{name}_rotation"] = [table.left.rotation, table.right.rotation]
-    return values
+    return {**values, **bulk_of(case)}
+
+
+def bulk_of(case: Case) -> dict[str, Any]:
+    """Bulk temperatures of a step, in a scene that has them."""
+    heat = case.temperature
+    return {} if heat is None else {"bulk_temperature": [heat.wheel, heat.rail]}

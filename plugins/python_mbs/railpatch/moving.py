@@ -13,10 +13,13 @@ from railpatch.errors import CaseError
 
 MOTION_KEYS = ("creepage", "spin_creepage", "rolling_speed", "direction")
 DEVIATION_KEYS = ("left", "right")
+BODY_KEYS = ("wheel", "rail")  # of [temperature]
 
 
 def moving_keys(case: Case) -> dict[str, str]:
-    """Moving key -> table of the case that holds it. 'track' takes a table of track keys."""
+    """Moving key -> table of the case that holds it. 'track' and 'temperature' take a table of
+    keys of theirs."""
+    heat = {} if case.temperature is None else {"temperature": "temperature"}
     if isinstance(case, PatchCase):
         load = "normal_force" if case.load.normal_force is not None else "approach"
         prescribed = case.motion.prescribed
@@ -27,12 +30,12 @@ def moving_keys(case: Case) -> dict[str, str]:
             keys["tangential_force"] = "motion"
         if case.motion.regime == "transient_rolling":
             keys.update(distance="motion", steps="motion")
-        return keys
+        return {**keys, **heat}
     height = "z" if case.wheelset.z is not None else "vertical_force"
     keys = dict.fromkeys((*WHEELSET_STATE, height, *DEVIATION_KEYS), "wheelset")
     if case.track.kind == "roller":
         keys["roller_pitch_rate"] = "track"
-    return {**keys, "track": "track"}
+    return {**keys, "track": "track", **heat}
 
 
 def changed_case(case: Case, changes: Mapping[str, Any]) -> Case:
@@ -47,13 +50,14 @@ def changed_case(case: Case, changes: Mapping[str, Any]) -> Case:
     tables: dict[str, dict[str, Any]] = {}
     for key, value in plain(changes).items():
         values = tables.setdefault(keys[key], {})
-        if key != "track":
+        if key not in ("track", "temperature"):
             values[key] = value
             continue
         if not isinstance(value, dict):
-            raise CaseError(f"track: value is {show(value)}, allowed a table")
+            raise CaseError(f"{key}: value is {show(value)}, allowed a table")
         allowed = [name for name in ("roller_pitch_rate",) if name in keys]
-        refuse_unknown(value, dict.fromkeys((*DEVIATION_KEYS, *allowed)), "track.")
+        movable = BODY_KEYS if key == "temperature" else (*DEVIATION_KEYS, *allowed)
+        refuse_unknown(value, dict.fromkeys(movable), f"{key}.")
         values.update(value)
     changed = case.model_copy(
         update={name: changed_table(case, name, values) for name, values in tables.items()}

@@ -302,6 +302,7 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.name("plastic_rule", c.plastic_rule);
   reader.scalar("temperature", c.temperature);
   reader.array("bulk_temperature", c.bulk_temperature);
+  reader.scalar("heat_exchange", c.heat_exchange);
   reader.array("conductivity", c.conductivity);
   reader.array("heat_capacity", c.heat_capacity);
   reader.array("density", c.density);
@@ -351,6 +352,7 @@ void fill_input(const nb::dict &from, rp_input &to) {
   reader.scalar("rolling_speed", to.rolling_speed);
   reader.scalar("direction", to.direction);
   reader.scalar("distance", to.distance);
+  reader.array("bulk_temperature", to.bulk_temperature);
   reader.scalar("y", to.y);
   reader.scalar("z", to.z);
   reader.scalar("vertical_force", to.vertical_force);

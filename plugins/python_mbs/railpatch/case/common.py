@@ -151,6 +151,11 @@ class Temperature(Table):
 
     wheel: Celsius = Field(default=0.0, description="degrees C, bulk temperature of the wheel")
     rail: Celsius = Field(default=0.0, description="degrees C, bulk temperature of the rail")
+    exchange: bool = Field(
+        default=False,
+        description="whether wheel and rail may become unequally warm in later steps (no unit); "
+        "where they are unequal from the start they may anyway",
+    )
     conductivity: HeatPair = Field(
         default=[50.0, 50.0], description="W/(m K), thermal conductivity, or [wheel, rail]"
     )
