@@ -228,17 +228,19 @@ double bound_law::greatest(double friction) const {
 }
 
 double bound_law::steepest_fall(double friction) const {
+  const double ahead = fall_ahead(friction);
+  // only where plastic displacement is undone does a hardening layer soften
+  return plastic() && by_magnitude ? std::max(ahead, yield.steepest()) : ahead;
+}
+
+double bound_law::fall_ahead(double friction) const {
   double fall = by_velocity ? friction * slip.steepest_fall(speed / step) : 0.0;
   if (!plastic()) return fall;
-  double falls = yield.steepest();
-  // only where plastic displacement is undone does a hardening layer soften
-  if (!by_magnitude) {
-    falls = std::max(0.0, -yield.last_slope);
-    for (int i = 1; i < yield.points; ++i)
-      falls = std::max(falls, (yield.stress[i - 1] - yield.stress[i]) /
-                                  (yield.displacement[i] - yield.displacement[i - 1]));
-  }
-  return std::max(fall, falls);
+  fall = std::max(fall, -yield.last_slope);
+  for (int i = 1; i < yield.points; ++i)
+    fall = std::max(fall, (yield.stress[i - 1] - yield.stress[i]) /
+                              (yield.displacement[i] - yield.displacement[i - 1]));
+  return fall;
 }
 
 // Plastic part of m >= limit, where the surfaces slip; limit: plastic part at which g(0) is

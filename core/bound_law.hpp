@@ -90,6 +90,8 @@ class bound_law {
   // of b in any state, Pa and Pa/m
   double greatest(double friction) const;
   double steepest_fall(double friction) const;
+  // the same while plastic displacement grows
+  double fall_ahead(double friction) const;
   // Whether more than one m, stick among them, solves size - stiffness m = b(m).
   bool ambiguous(double friction, const carried_state &before, const double e[2], double size,
                  double stiffness) const;

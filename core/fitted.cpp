@@ -42,7 +42,20 @@ tangential_result fitted_solver::solve(const contact_rows &rows, double friction
   collect(rows, friction_coefficient, input, fields);
   const rolling_problem problem{rows.count(),  row_start_.data(), bound_.data(), area_.data(),
                                 rigid_.data(), p_.data(),         s_.data(),     input.force};
-  const tangential_result result = newton_.solve(operator_, problem, options);
+  // the last solution under another load may lead Newton's steps astray where none at all does not
+  const auto size = static_cast<size_t>(2 * problem.count());
+  const bool warm = std::any_of(p_.data(), p_.data() + size, [](double p) { return p != 0; });
+  const bool twice = warm && !input.force && options.max_iterations > 1;
+  const int most = twice ? options.max_iterations / 2 : options.max_iterations;
+  tangential_result result = newton_.solve(operator_, problem, {options.tolerance, most});
+  if (twice && !result.converged) {
+    const tangential_result first = result;
+    std::fill_n(p_.data(), size, 0.0);
+    result = newton_.solve(operator_, problem,
+                           {options.tolerance, options.max_iterations - first.newton_iterations});
+    result.newton_iterations += first.newton_iterations;
+    result.products += first.products;
+  }
   release(rows, input.direction, fields);
   return result;
 }

@@ -20,6 +20,8 @@ constexpr double enough = 0.9;
 constexpr int max_projections = 100, max_sweeps = 20, all_projections = 400;
 // times that elements are taken off unstable branches
 constexpr int max_returns = 5;
+// times that the size of the solution may turn out less
+constexpr int max_settlings = 5;
 constexpr double far_away = 0.3;
 // r over the steepest fall of b: 1 would do for uniqueness
 constexpr double steepness_margin = 2.0;
@@ -76,7 +78,7 @@ inelastic_newton::inelastic_newton(int max_row, int max_rows, bool forced)
   const auto row = static_cast<size_t>(max_row), n = row * static_cast<size_t>(max_rows);
   for (auto *b : {&r_, &most_}) *b = aligned_buffer<double>(n);
   for (auto *b : {&f_, &step_, &best_p_, &right_, &unknowns_, &trial_p_, &trial_s_, &trial_f_,
-                  &started_, &kept_})
+                  &started_, &kept_, &first_})
     *b = aligned_buffer<double>(2 * n + 2);
   for (auto &m : row_matrix_) m = aligned_buffer<double>::uninitialized(row * row);
   for (auto *l : {&linear_, &factored_}) *l = aligned_buffer<linearisation>(n);
@@ -84,7 +86,7 @@ inelastic_newton::inelastic_newton(int max_row, int max_rows, bool forced)
 }
 
 size_t inelastic_newton::bytes() const {
-  return blocks_.bytes() + linear_solver_.bytes() + 2 * r_.bytes() + 10 * f_.bytes() +
+  return blocks_.bytes() + linear_solver_.bytes() + 2 * r_.bytes() + 11 * f_.bytes() +
          2 * row_matrix_[0].bytes() + 2 * linear_.bytes() + has_factors_.bytes() +
          (force_ ? force_->bytes() : 0);
 }
@@ -93,31 +95,25 @@ inelastic_result inelastic_newton::solve(rolling_operator &b, const rolling_prob
                                          const inelastic_problem &inelastic,
                                          const tangential_options &options) {
   task t{b, problem, inelastic, *inelastic.law, problem.bound, problem.force ? &*force_ : nullptr};
-  for (int row = 0; row < problem.rows; ++row) {
-    const double typical = b.projection_scale(row);
-    for (int k = problem.row_start[row]; k < problem.row_start[row + 1]; ++k) {
-      const auto at = static_cast<size_t>(k);
-      most_[at] = t.law.greatest(problem.bound[k]);
-      const double fall = t.law.steepest_fall(problem.bound[k]);
-      t.falls = t.falls || fall > 0;
-      r_[at] = std::max(typical, steepness_margin * t.law.step * fall);
-    }
+  bool undone = false;
+  for (int k = 0; k < problem.count(); ++k) {
+    most_[static_cast<size_t>(k)] = t.law.greatest(problem.bound[k]);
+    const double fall = t.law.steepest_fall(problem.bound[k]);
+    t.falls = t.falls || fall > 0;
+    undone = undone || fall > t.law.fall_ahead(problem.bound[k]);
   }
   t.problem.bound = most_.data();
+  set_stiffness(t, false);
   tangential_result &result = t.result.tangential;
   double *p = problem.traction, *s = problem.micro_slip;
   if (t.force) t.force->begin(t.problem, options.tolerance);
-  const double size = scale(t);
-  if (size > 0) {
-    std::fill_n(has_factors_.data(), problem.rows, static_cast<unsigned char>(0));
-    const double goal = options.tolerance * size;
-    double error = start(t);
-    if (t.falls) std::copy_n(p, t.size(), started_.data());
-    error = iterate(t, error, goal, options.max_iterations);
-    if (t.falls && !t.force) error = choose_branch(t, error, goal, options.max_iterations);
-    const double found = settle(t, error, options, size);
-    result.residual = error / found;
-    result.converged = error <= options.tolerance * found;
+  if (scale(t) > 0) {
+    const bool twice = undone && !t.force;
+    const int most = options.max_iterations;
+    outcome found = attempt(t, options.tolerance, twice ? std::max(most / 2, 1) : most);
+    if (twice && !found.within(options.tolerance)) found = attempt_steeply(t, found, options);
+    result.residual = found.error / found.size;
+    result.converged = found.within(options.tolerance);
     result.out_of_range = !result.converged && t.force && t.force->beyond();
   } else {
     std::fill_n(p, t.size(), 0.0);
@@ -129,19 +125,61 @@ inelastic_result inelastic_newton::solve(rolling_operator &b, const rolling_prob
   return t.result;
 }
 
+// r of all elements. undone: plastic displacement may be.
+void inelastic_newton::set_stiffness(const task &t, bool undone) {
+  for (int row = 0; row < t.problem.rows; ++row) {
+    const double typical = t.b.projection_scale(row);
+    for (int k = t.problem.row_start[row]; k < t.problem.row_start[row + 1]; ++k) {
+      const double friction = t.friction[k];
+      const double fall = undone ? t.law.steepest_fall(friction) : t.law.fall_ahead(friction);
+      r_[static_cast<size_t>(k)] = std::max(typical, steepness_margin * t.law.step * fall);
+    }
+  }
+}
+
+// From the tractions given to the best found.
+inelastic_newton::outcome inelastic_newton::attempt(task &t, double tolerance, int max_iterations) {
+  outcome found{0, scale(t)};
+  std::fill_n(has_factors_.data(), t.problem.rows, static_cast<unsigned char>(0));
+  const double goal = tolerance * found.size;
+  double error = start(t);
+  if (t.falls) std::copy_n(t.problem.traction, t.size(), started_.data());
+  error = iterate(t, error, goal, max_iterations);
+  if (t.falls && !t.force) error = choose_branch(t, error, goal, max_iterations);
+  found.error = error;
+  settle(t, found, tolerance, max_iterations);
+  return found;
+}
+
+// Again from the start, with r for plastic displacement undone; the better one where both fail.
+inelastic_newton::outcome inelastic_newton::attempt_steeply(task &t, const outcome &before,
+                                                            const tangential_options &options) {
+  double *p = t.problem.traction, *s = t.problem.micro_slip;
+  std::copy_n(p, t.size(), first_.data());
+  std::copy_n(started_.data(), t.size(), p);
+  t.projections = 0;
+  set_stiffness(t, true);
+  const outcome found = attempt(t, options.tolerance, options.max_iterations);
+  if (found.within(options.tolerance)) return found;
+  set_stiffness(t, false);
+  micro_slip(t, p, s);
+  const double error = residual(t, p, s, f_.data());
+  if (error <= before.error) return {error, before.size};
+  std::copy_n(first_.data(), t.size(), p);
+  micro_slip(t, p, s);
+  return {residual(t, p, s, f_.data()), before.size};
+}
+
 // Where the laws leave far less traction than their greatest bounds, the solution itself says to
 // which size its error is small: goes on until it is. Returns the size, sets |F|.
-double inelastic_newton::settle(task &t, double &error, const tangential_options &options,
-                                double size) {
-  const int most = options.max_iterations;
-  for (int k = 0; k < max_returns && error <= options.tolerance * size; ++k) {
-    const double own = std::min(size, scale_of_solution(t));
-    if (!(own > 0)) break;
-    size = own;
-    if (error <= options.tolerance * size) break;
-    error = iterate(t, error, options.tolerance * size, most);
+void inelastic_newton::settle(task &t, outcome &found, double tolerance, int max_iterations) {
+  for (int k = 0; k < max_settlings && found.within(tolerance); ++k) {
+    const double own = std::min(found.size, scale_of_solution(t));
+    if (!(own > 0)) return;
+    found.size = own;
+    if (found.within(tolerance)) return;
+    found.error = iterate(t, found.error, tolerance * own, max_iterations);
   }
-  return size;
 }
 
 // Newton's steps and their safeguard; returns the best |F|, which the traction then has.

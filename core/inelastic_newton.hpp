@@ -6,7 +6,9 @@
 //   F = p - P(q),  dP = e dh + (h/Q) (I - e e^T) dq,  h = Q - R m,  R = r/dq,
 //   (R + b_m) dm = dQ - b_angle dangle - b_U dU.
 // r is at least a typical inverse diagonal entry of B and at least twice b's steepest fall, so that
-// P is one-valued and smooth on either side of its kinks whatever the law. Every element keeps two
+// P is one-valued and smooth on either side of its kinks. A hardening layer falls only where
+// plastic displacement is undone (magnitude rule), as steeply as it hardens but not far: such an r,
+// which makes the equations stiff, is for where the other one fails. Every element keeps two
 // unknowns. In steady rolling U, what material carries along its row from the leading edge, is a
 // scalar recurrence, and so is its derivative: dU_i = A_i dU_(i-1) + E_i dq_i, a running sum in
 // each product with the Jacobian and in each column of the row blocks.
@@ -62,6 +64,14 @@ class inelastic_newton {
   struct linearisation {
     double m[2][2], h[2][3], e[3][2], a[3][3];
   };
+  struct outcome {
+    double error, size;  // |F|, and the size against which it is measured
+    bool within(double tolerance) const { return error <= tolerance * size; }
+  };
+  void set_stiffness(const task &t, bool undone);
+  outcome attempt(task &t, double tolerance, int max_iterations);
+  outcome attempt_steeply(task &t, const outcome &before, const tangential_options &options);
+  void settle(task &t, outcome &found, double tolerance, int max_iterations);
   double start(task &t);
   double iterate(task &t, double error, double goal, int max_iterations);
   double choose_branch(task &t, double error, double goal, int max_iterations);
@@ -71,7 +81,6 @@ class inelastic_newton {
   void try_march(task &t, double &error);
   double scale(const task &t) const;
   double scale_of_solution(const task &t) const;
-  double settle(task &t, double &error, const tangential_options &options, double size);
   void micro_slip(task &t, const double *p, double *s);
   template <class Each>
   void apply_law(const task &t, const double *p, const double *s, double length, Each &&each) const;
@@ -94,7 +103,7 @@ class inelastic_newton {
 
   aligned_buffer<double> r_, most_;  // per element: r, greatest b
   aligned_buffer<double> f_, step_, best_p_, right_, unknowns_, trial_p_, trial_s_, trial_f_,
-      started_, kept_;
+      started_, kept_, first_;
   aligned_buffer<double> row_matrix_[2];
   aligned_buffer<linearisation> linear_, factored_;
   aligned_buffer<unsigned char> has_factors_;  // per row

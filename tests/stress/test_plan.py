@@ -36,7 +36,7 @@ def test_pattern() -> None:
     ["shape: *", "grid: *", "friction: coefficient*", "creepage: *", "spin: *", "speed: *",
      "load: *", "layer: *", "prescribed force: *", "sequence: *", "distance: *",
      "line contact: *", "option: *", "wheel: *", "shift: *", "transient: *", "plastic: *",
-     "slip velocity: *"],
+     "slip velocity: *", "temperature: *"],
 )  # fmt: skip
 def test_no_faults(pattern: str) -> None:
     rows = [run_trial(trial) for trial in Plan(quick=True, only=pattern)]
