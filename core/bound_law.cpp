@@ -49,15 +49,17 @@ double slip_velocity_law::greatest() const {
 
 double slip_velocity_law::steepest_fall(double rate) const {
   const double at_rest = kind == exponential ? ln2 : kind == rational ? 1.0 : 0.5;
-  double at_once = 0, height = 0;
+  double at_once = 0, height = 0, rise = 0;
   for (int i = 0; i < 2; ++i) {
     at_once += at_rest * std::max(amplitude[i], 0.0) / halving_speed[i] * rate;
     height += std::max(amplitude[i], 0.0);
+    rise += std::max(-amplitude[i], 0.0);
   }
   if (!(memory_distance > 0)) return at_once;
   // with D the way: d (mu_before - mu)/(d + D)^2 + D/(d + D) |dmu/dD|, mu_before not above the
-  // law's greatest, and D |dmu/dD| not above the height for any of the laws
-  return std::min(1.25 * at_once, 2.0 * height / memory_distance);
+  // law's greatest, and D |dmu/dD| not above the height for any of the laws; mu_before may be as
+  // much above mu as the law rises
+  return std::min(1.25 * at_once, 2.0 * height / memory_distance) + rise / memory_distance;
 }
 
 // --- yield stress --------------------------------------------------------------------------------
@@ -257,7 +259,11 @@ double bound_law::split(double friction, const carried_state &before, const doub
   double slope, low = limit, high = m, part = limit, last = excess(limit, slope);
   // up to rounding both are equal at the limit itself
   if (!(last < -4e-16 * friction)) return limit;
-  if (excess(m, slope) <= 0) return m;
+  // a table may rise and fall again before m
+  double share = excess(m, slope) > 0 ? 1.0 : 0x1p-20;
+  while (share < 1.0 && excess(limit + share * (m - limit), slope) <= 0) share *= 2.0;
+  high = limit + share * (m - limit);
+  if (excess(high, slope) <= 0) return m;
   for (int i = 0; i < 100; ++i) {
     last = excess(part, slope);
     (last < 0 ? low : high) = part;

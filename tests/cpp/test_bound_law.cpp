@@ -34,6 +34,9 @@ draw random_draw(std::mt19937_64 &random) {
       law.slip.amplitude[i] = unit(random) - (i == 1 ? 0.3 : 0.0) * law.slip.kinetic;
       law.slip.halving_speed[i] = 0.2 + unit(random);
     }
+    // rising: one in four
+    if (random() % 4 == 0)
+      for (double &a : law.slip.amplitude) a = -0.4 * unit(random) * law.slip.kinetic;
     law.slip.memory_distance = random() % 2 ? unit(random) : 0.0;
     law.slip.memory_speed = 0.05;
     if (law.remembers()) d.before.v[0] = -0.5 * unit(random) * law.slip.amplitude[0];
@@ -103,6 +106,31 @@ TEST(BoundLaw, DerivativesAreThoseOfDifferences) {
               &b.state_by_state[0][k], 3);
     }
   }
+}
+
+// Traction within both bounds after the step, and with the bound of each part that is there: only
+// friction that falls may leave the yield stress that was reached before.
+TEST(BoundLaw, PartsHaveTheirBounds) {
+  std::mt19937_64 random(20);
+  int shared = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const draw d = random_draw(random);
+    const bound_point b = d.law.evaluate(d.friction, d.before, d.e, d.m);
+    const double close = 1e-12 * d.friction;
+    EXPECT_LE(b.bound, b.yield_stress + close) << i;
+    EXPECT_LE(b.bound, b.friction + close) << i;
+    EXPECT_GE(b.plastic, 0.0) << i;
+    EXPECT_LE(b.plastic, d.m) << i;
+    if (b.plastic < d.m) {
+      EXPECT_NEAR(b.bound, b.friction, close) << i;
+    }
+    const double rest = d.law.plastic() ? d.law.evaluate(d.friction, d.before, d.e, 0).friction : 0;
+    if (b.plastic > 0 && b.friction >= rest) {
+      EXPECT_NEAR(b.bound, b.yield_stress, close) << i;
+    }
+    shared += b.plastic > 0 && b.plastic < d.m && b.friction > rest + close;
+  }
+  EXPECT_GT(shared, 20);
 }
 
 TEST(BoundLaw, ResolventSolvesTheLaw) {
