@@ -57,6 +57,8 @@ bool patch_scene::estimates_force() const {
   const bool by_temperature = heat && heat->by_temperature;
   if (spin_offset || is_forced() || law || keeps_steps() || by_temperature) return false;
   if (!is_fast(tangential)) return true;
+  // what an ellipse in place of another shape does was not measured
+  if (tangential == RP_TANGENTIAL_TABLE && normal != RP_NORMAL_HERTZ) return false;
   const polach_factors &p = fast.polach;
   const stiffness_reduction &r = fast.reduction;
   const bool reduced = p.adhesion != 1 || p.slip != 1 || r.k0 != 1 || (r.alpha != 1 && r.beta != 0);

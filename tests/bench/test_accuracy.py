@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import railpatch
 from railpatch.accuracy import fitted_size
 from railpatch.bench.reach import fitted
 from railpatch.bench.samples import STEPS, Problem, fine_truth, measured, random_position
@@ -24,6 +25,20 @@ def test_sizes() -> None:
 def test_sizes_that_no_grid_takes(scale: float, ratio: float) -> None:
     with pytest.raises(ValueError, match="allowed"):
         fitted_size(scale, ratio)
+
+
+@pytest.mark.parametrize("axes", [[0.02, 0.0019], [0.001, 0.011]])
+def test_long_ellipses_are_refused(axes: list[float]) -> None:
+    case = {
+        "kind": "patch",
+        "geometry": {"semi_axes": axes},
+        "load": {"normal_force": 1e4},
+        "motion": {"creepage": [1e-3, 0.0]},
+        "friction": {"coefficient": 0.3},
+        "method": {"accuracy": 0.01},
+    }
+    with pytest.raises(railpatch.CaseError, match=r"a/b of 0\.1 \.\.\. 10; for others give"):
+        railpatch.solve(case)
 
 
 def test_accuracy_is_reached_on_wheels() -> None:

@@ -142,6 +142,9 @@ def test_what_has_no_estimate() -> None:
     # a theory made different on purpose
     softer = railpatch.solve(random_case(random, tangential="fastsim", percent_kalker=60.0))
     assert softer.to_dict()["error_estimate"]["creep_force"] is None
+    by_table = railpatch.solve(with_values(WHEELSET, method__tangential="table"))
+    for patch in by_table.to_dict()["right"]["patches"]:
+        assert patch["error_estimate"]["creep_force"] is None
     apart = with_values(random_case(random), load={"approach": -1e-5})
     assert set(railpatch.solve(apart)["error_estimate"].values()) == {0.0}
     still = with_values(random_case(random), motion__rolling_speed=0.0)

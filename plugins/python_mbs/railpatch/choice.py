@@ -40,8 +40,12 @@ REACHED = {
     "analyn": 0.04,
 }
 FAST_ELEMENTS = 20
-# of the table of creep forces on a Hertzian patch, and the a/b that it holds
-TABLE_ON_ELLIPSE, TABLE_RATIOS = 0.0039, (0.1, 10.0)
+# rows on the pressure of Kik-Piotrowski and ANALYN, and elements of that, as those were measured
+ROWS_ON_APPROXIMATE = 16
+# of the table of creep forces on a Hertzian patch
+TABLE_ON_ELLIPSE = 0.0039
+# a/b of the ellipses that all were measured on
+RATIOS = (0.1, 10.0)
 QUADRATIC = ("semi_axes", "curvatures")
 
 
@@ -97,8 +101,7 @@ def takes_table(case: Case, ratio: float | None, normal: str) -> bool:
     ):
         return False
     prescribed = isinstance(case, PatchCase) and any(case.motion.prescribed)
-    low, high = TABLE_RATIOS
-    return accuracy >= TABLE_ON_ELLIPSE and low <= ratio <= high and not prescribed
+    return accuracy >= TABLE_ON_ELLIPSE and not prescribed
 
 
 def choose(case: Case) -> Choice | None:
@@ -118,8 +121,11 @@ def choose(case: Case) -> Choice | None:
     if tangential != "full":
         elements = FAST_ELEMENTS if tangential in REACHED else NORMAL * scale
         return Choice(normal, tangential, elements, None, max(errors, default=rows[scale]))
-    size = fitted_size(scale, ratio or 1.0)
-    return Choice(normal, tangential, NORMAL * scale, size, max([rows[scale], *errors]))
+    if normal in REACHED:
+        size = (ROWS_ON_APPROXIMATE, ROWS_ON_APPROXIMATE)
+        return Choice(normal, tangential, NORMAL * ROWS_ON_APPROXIMATE, size, REACHED[normal])
+    size = fitted_size(scale, ratio if normal == "hertz" and ratio else 1.0)
+    return Choice(normal, tangential, NORMAL * scale, size, rows[scale])
 
 
 def axis_ratio(case: Case) -> float | None:

@@ -22,9 +22,9 @@ from railpatch.bench.statistics import percentile
 from railpatch.choice import (
     FAST_ELEMENTS,
     NORMAL,
+    RATIOS,
     ROWS_ON_ELLIPSE,
     ROWS_ON_PRESSURE,
-    TABLE_RATIOS,
 )
 
 FAST = ("linear", "polach", "fastsim", "fastrip")
@@ -49,7 +49,7 @@ def errors(
 ) -> Iterator[tuple[str, float]]:
     """Source and percentile of the error of one choice."""
     sources = dict.fromkeys(problem.source for problem in every)
-    low, high = TABLE_RATIOS
+    low, high = RATIOS
     for source in sources:
         chosen = [p for p in every if p.source == source]
         if source == "random":

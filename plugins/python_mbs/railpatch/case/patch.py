@@ -35,6 +35,7 @@ from railpatch.case.types import (
     exactly_one,
     relation,
 )
+from railpatch.choice import RATIOS, axis_ratio
 
 SHAPES = ("semi_axes", "curvatures", "line_contact_radius", "undeformed_distance")
 
@@ -214,6 +215,8 @@ class PatchCase(Table):
         check_fitted(self.grid, self.method, line=line)
         ellipse = not line and self.geometry.undeformed_distance is None
         check_accuracy(self.grid, self.method, ellipse=ellipse, line=line)
+        if ellipse and self.method.accuracy is not None:
+            self._check_ratio()
         if line:
             self._check_line()
         gap = self.geometry.undeformed_distance
@@ -234,6 +237,15 @@ class PatchCase(Table):
                 "'half_space', 'kik_piotrowski' or 'analyn' with undeformed_distance",
             )
         return self
+
+    def _check_ratio(self) -> None:
+        """Where the errors that an accuracy is chosen by were measured."""
+        ratio = axis_ratio(self)
+        low, high = RATIOS
+        if ratio is not None and not low * (1 - 1e-9) <= ratio <= high * (1 + 1e-9):
+            shown = f"{self.method.accuracy!r} with a/b = {ratio:.3g}"
+            allowed = f"a/b of {low:g} ... {high:g}; for others give 'grid'"
+            raise relation("method.accuracy", shown, allowed)
 
     def _check_regime(self) -> None:
         """What shift and transient rolling need: a grid that is fixed in the contact frame."""
