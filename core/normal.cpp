@@ -21,6 +21,7 @@ struct normal_solver::problem {
   double worst = 0;  // m, greatest violation of the contact conditions
   double gamma = 0;  // r . z of the last step
   bool set_changed = true;
+  bool exact = false;  // the displacement is a product, not followed by steps
 };
 
 normal_solver::normal_solver(int max_count) {
@@ -54,11 +55,19 @@ normal_result normal_solver::solve(problem &s, double *p) {
   evaluate(s, p);
   // iterate until the conditions hold on a settled contact area
   for (; result.iterations < s.options.max_iterations; ++result.iterations) {
-    if (s.worst <= s.options.tolerance * s.scale) break;
+    if (s.worst <= s.options.tolerance * s.scale) {
+      if (!s.exact) evaluate(s, p);
+      if (s.worst <= s.options.tolerance * s.scale) break;
+    }
     if (!search_direction(s, s.set_changed) && !search_direction(s, true)) break;
-    if (advance(s, p)) scale_to_force(s, p);
-    evaluate(s, p);
+    if (advance(s, p)) {
+      scale_to_force(s, p);
+      evaluate(s, p);
+    } else {
+      check_conditions(s, p);
+    }
   }
+  if (!s.exact) evaluate(s, p);
   result.residual = s.scale > 0 ? s.worst / s.scale : 0.0;
   result.converged = s.worst <= s.options.tolerance * s.scale;
   result.scale = s.scale;
@@ -137,6 +146,12 @@ void normal_solver::scale_to_force(problem &s, double *p) {
 
 void normal_solver::evaluate(problem &s, const double *p) {
   product(s, p, displacement_.data(), precision::full);
+  s.exact = true;
+  check_conditions(s, p);
+}
+
+// Sets the error, its size and the free elements from the displacement.
+void normal_solver::check_conditions(problem &s, const double *p) {
   s.scale = *std::max_element(displacement_.data(), displacement_.data() + s.n);
   if (s.force_given) {
     // the approach that leaves no mean error where the bodies touch
@@ -193,6 +208,8 @@ bool normal_solver::search_direction(problem &s, bool restart) {
 }
 
 // One step along the direction, exact on the free elements; true where an element lost contact.
+// Else the displacement follows by the product of the step, to single precision of what the step
+// changes.
 bool normal_solver::advance(problem &s, double *p) {
   product(s, direction_.data(), product_.data(), precision::single);
   const double slope = dot(residual_.data(), direction_.data(), s.n);
@@ -207,7 +224,10 @@ bool normal_solver::advance(problem &s, double *p) {
       clipped = true;
     }
   }
-  return clipped;
+  if (clipped) return true;
+  for (size_t i = 0; i < s.n; ++i) displacement_[i] += step * product_[i];
+  s.exact = false;
+  return false;
 }
 
 }  // namespace railpatch

@@ -57,6 +57,7 @@ class normal_solver {
   void product(problem &state, const double *pressure, double *displacement, precision digits);
   void cold_start(problem &state, double *pressure);
   void evaluate(problem &state, const double *pressure);
+  void check_conditions(problem &state, const double *pressure);
   bool search_direction(problem &state, bool restart);
   bool advance(problem &state, double *pressure);
   void scale_to_force(problem &state, double *pressure);
