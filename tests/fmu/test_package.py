@@ -196,6 +196,15 @@ def test_a_scene_that_the_core_refuses_is_not_packed(tmp_path: Path) -> None:
     assert "rail_rotation" in refused(turned, tmp_path)
 
 
+@pytest.mark.parametrize("regime", [{"regime": "shift"}, {"regime": "transient_rolling"}])
+def test_regimes_with_steps_of_their_own_are_not_packed(
+    regime: dict[str, str], tmp_path: Path
+) -> None:
+    rolled = {} if regime["regime"] == "shift" else {"distance": 1e-2}
+    case = with_values(PATCH, motion={**regime, **rolled, "creepage": [1e-4, 0.0]})
+    assert "motion.regime" in refused(case, tmp_path)
+
+
 def test_a_start_that_cannot_be_solved_is_not_packed(tmp_path: Path) -> None:
     assert "out_of_range" in refused(with_values(RAIL, wheelset__z=0.02), tmp_path)
 

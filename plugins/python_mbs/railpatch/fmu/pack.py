@@ -76,6 +76,7 @@ def contents_of(scene: Scene, stem: str, name: str, backend: Backend) -> Content
     """Everything that is known before the GUID."""
     library = library_of(backend)
     table = Table(Path(str(resources.files("railpatch.fmu") / "variables.toml")))
+    check_regime(scene)
     config = config_of(scene)
     kind = kind_of(scene.case, _core.config_numbers(config))
     labels = Labels(
@@ -94,6 +95,15 @@ def contents_of(scene: Scene, stem: str, name: str, backend: Backend) -> Content
         raise CaseError(f"{name}: the start values cannot be solved: {status}")
     creep_table = config["creep_table"].tobytes() if "creep_table" in config else None
     return Contents(labels, table, kind, variables, scene, backend, library, creep_table)
+
+
+def check_regime(scene: Scene) -> None:
+    """A step of a slave has no distance of its own. Raises CaseError."""
+    regime = getattr(getattr(scene.case, "motion", None), "regime", "none")
+    if regime in ("shift", "transient_rolling"):
+        raise CaseError(
+            f"motion.regime: value is {regime!r}, allowed 'none' or 'steady_rolling' in an FMU"
+        )
 
 
 def describe(kind: Kind, backend: Backend) -> str:
