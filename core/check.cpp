@@ -1,5 +1,6 @@
 #include "check.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -188,6 +189,8 @@ void check_friction(const rp_config &c, checker &check) {
                 "friction_law must be coulomb but with tangential = full and no fitted rows");
   check.require(c.friction_points == 0 || grid,
                 "friction_points must be 0 but with tangential = full and no fitted rows");
+  check.require(c.friction_law != RP_TEMPERATURE || c.friction_memory_distance == 0,
+                "friction_memory_distance must be 0 with friction_law = temperature");
   check.require(c.friction_law != RP_TEMPERATURE || c.temperature == 1,
                 "friction_law = temperature needs temperature = 1");
   check.require(c.friction_law == RP_COULOMB || c.regime != RP_SHIFT,
@@ -365,7 +368,7 @@ void check_force(const rp_config &c, double friction, const rp_input &in, checke
   if (c.load == RP_FORCE)
     check.number("tangential_force, by the friction coefficient times normal_force, in magnitude",
                  std::hypot(in.tangential_force[0], in.tangential_force[1]),
-                 {0, friction * in.normal_force * (1.0 + 1e-12), false, false});
+                 {0, most_friction(c, friction) * in.normal_force * (1.0 + 1e-12), false, false});
 }
 
 // Bodies whose pressure and traction act on each other.
@@ -453,6 +456,18 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   if (rolling && check.error() == RP_OK) check_coupled(c, check);
   c.kind == RP_PATCH ? check_patch(c, check) : check_wheels(c, check);
   return check.error();
+}
+
+double most_friction(const rp_config &c, double coefficient) {
+  double most = coefficient;
+  if (c.friction_law == RP_TEMPERATURE)
+    most = std::max(c.friction_reference, c.friction_reference + c.friction_change);
+  if (c.friction_law == RP_SLIP_VELOCITY) {
+    most = c.friction_kinetic;
+    for (double amplitude : c.friction_amplitude) most += std::max(amplitude, 0.0);
+  }
+  if (c.friction_points == 0) return most;
+  return most * *std::max_element(c.friction_factor, c.friction_factor + c.friction_points);
 }
 
 rp_error check_friction_coefficient(double value, rp_message *message) {

@@ -20,6 +20,9 @@ rp_error check_friction_coefficient(double value, rp_message *message);
 rp_error check_input(const rp_config &config, double friction_coefficient, const rp_input &input,
                      rp_message *message);
 
+// The greatest friction coefficient that the law gives at any place; coefficient: of Coulomb's law.
+double most_friction(const rp_config &config, double coefficient);
+
 // Writes a formatted text, cut to size; does nothing where message is null.
 #if defined(__GNUC__)
 __attribute__((format(printf, 2, 3)))

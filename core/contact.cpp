@@ -119,19 +119,6 @@ double relative_size(const rp_config &c, const hertz_contact &hertz, int k) {
   return load * std::max(size, half[k] / hertz.semi_axes[k]);
 }
 
-// The greatest coefficient that a friction law reaches.
-double most_friction(const rp_config &c) {
-  double most = c.friction_coefficient, factor = 1;
-  if (c.friction_law == RP_TEMPERATURE)
-    most = std::max(c.friction_reference, c.friction_reference + c.friction_change);
-  if (c.friction_law == RP_SLIP_VELOCITY) {
-    most = c.friction_kinetic;
-    for (double amplitude : c.friction_amplitude) most += std::max(amplitude, 0.0);
-  }
-  for (int k = 0; k < c.friction_points; ++k) factor = std::max(factor, c.friction_factor[k]);
-  return factor * most;
-}
-
 // n elements across Hertz's contact and those to add on either side: tractions of unlike bodies
 // shift and stretch the contact area. Full sliding is farthest, in plane strain to 1 + 2 e and by
 // (1 - 4 e^2)^-1/2 with tan(pi e) = mu K/(1 - nu) (Hills, Nowell and Sackfield 1993, chapter 7).
@@ -139,9 +126,9 @@ int with_margin(const rp_config &c, int n) {
   const elastic_constants e = combine(c.shear_modulus, c.poisson_ratio);
   const bool tangential = c.regime != RP_REGIME_NONE && c.tangential == RP_TANGENTIAL_FULL;
   if (!tangential || !is_coupled(e)) return n;
-  const double share =
-      std::atan(most_friction(c) * std::abs(e.mismatch) / (1.0 - e.poisson_ratio)) /
-      std::numbers::pi;
+  const double share = std::atan(most_friction(c, c.friction_coefficient) * std::abs(e.mismatch) /
+                                 (1.0 - e.poisson_ratio)) /
+                       std::numbers::pi;
   // contacts that reach beyond are reported: mu K/(1 - nu) of more than 2
   const double reach =
       std::min(most_reach, (1.0 + 2.0 * share) / std::sqrt(1.0 - 4.0 * share * share));
@@ -522,6 +509,15 @@ struct plastic_path {
   }
 };
 
+// The coefficient of a law of temperature with the factor of each row.
+struct friction_of_heat {
+  const patch_memory &m;
+  double operator[](size_t i) const {
+    const double mu = m.heat->friction[i];
+    return m.row_friction.size() > 0 ? mu * m.row_friction[i / static_cast<size_t>(m.g.nx)] : mu;
+  }
+};
+
 // Whether a field belongs to laws beyond Coulomb's, and this patch has none such.
 bool lacks_law(const patch_memory &m, rp_field name) {
   if (name == RP_FIELD_FRICTION)
@@ -599,7 +595,10 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
         copy(m.heat->temperature[k], values + static_cast<size_t>(k) * plane, 1.0);
       break;
     case RP_FIELD_FRICTION:
-      copy(m.history.friction.size() ? m.history.friction : m.heat->friction, values, 1.0);
+      if (m.history.friction.size() > 0)
+        copy(m.history.friction, values, 1.0);
+      else
+        copy(friction_of_heat{m}, values, 1.0);
       break;
     case RP_FIELD_PLASTIC_DISPLACEMENT:
       copy(m.history.plastic[0], values, 1.0);

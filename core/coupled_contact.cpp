@@ -97,9 +97,11 @@ double coupled_contact::error(const double *pressure, const double *px, const do
   double worst = 0;
   for (int i = 0; i < grid_.count(); ++i) {
     const auto at = static_cast<size_t>(i);
-    worst = std::max(worst, std::abs(next_[at] - now_[at] - mean));
+    const double change = std::abs(next_[at] - now_[at] - mean);
+    // written so that a displacement that is no number stays visible
+    if (!(change <= worst)) worst = change;
   }
-  return scale_ > 0 ? worst / scale_ : worst > 0 ? 1.0 : 0.0;
+  return scale_ > 0 ? worst / scale_ : worst == 0 ? 0.0 : 1.0;
 }
 
 double coupled_contact::tolerance(double whole) const {

@@ -78,7 +78,8 @@ inelastic_result inelastic_newton::solve(rolling_operator &b, const rolling_prob
     std::fill_n(p, t.size(), 0.0);
     std::copy_n(problem.rigid_slip, t.size(), s);
     if (t.force) problem.force->creepage[0] = problem.force->creepage[1] = 0;
-    result.converged = true;
+    result.residual = scale(t);
+    result.converged = result.residual == 0;
   }
   finish(t);
   return t.result;

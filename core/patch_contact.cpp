@@ -55,7 +55,9 @@ void set_unloaded(const patch_scene &scene, rp_patch_result &result) {
 bool patch_scene::estimates_force() const {
   // of a prescribed force the creepage errs
   const bool by_temperature = heat && heat->by_temperature;
-  if (spin_offset || is_forced() || law || keeps_steps() || by_temperature) return false;
+  if (spin_offset || is_forced() || law || keeps_steps() || by_temperature ||
+      friction_variation.varies())
+    return false;
   if (!is_fast(tangential)) return true;
   // what an ellipse in place of another shape does was not measured
   if (tangential == RP_TANGENTIAL_TABLE && normal != RP_NORMAL_HERTZ) return false;

@@ -336,8 +336,9 @@ typedef struct rp_patch_result {
                                  measured errors of each method; against the exact theory, without
                                  errors of the case. NaN: no solution, no such stage, or not
                                  measured (line contact, force prescribed, unlike bodies, laws beyond
-                                 Coulomb's, layers that yield, shift, transient rolling, table but
-                                 with Hertz, factors of fast theories other than 1, spin_offset) */
+                                 Coulomb's, layers that yield, shift, transient rolling,
+                                 friction_points, table   but   with Hertz, factors of fast theories other
+                                 than 1, spin_offset) */
   double position[3];         /* m, contact reference in track axes (wheel kinds) */
   double contact_angle;       /* rad */
   double creepage[2];         /* -; found where the force is prescribed */
@@ -408,7 +409,8 @@ RP_API void rp_destroy(rp_contact *contact); /* null is allowed */
  * handle are untouched. */
 RP_API rp_error rp_step(rp_contact *contact, const rp_input *input, rp_result *result,
                         rp_message *message);
-/* Changes the friction coefficient (0 ... 10) for the steps that follow; part of the state. */
+/* Changes the coefficient of Coulomb's law (0 ... 10) for the steps that follow; part of the state.
+ * Other laws have their own numbers and do not read it. */
 RP_API rp_error rp_set_friction_coefficient(rp_contact *contact, double value, rp_message *message);
 /* Forgets the warm start: the next step is the same as the first one after rp_create. */
 RP_API void rp_reset(rp_contact *contact);

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 import railpatch
@@ -49,3 +51,56 @@ def test_the_angle_counts_towards_the_gauge_face_on_either_side() -> None:
     )
     plain = with_values(case, friction={"coefficient": 0.3}, wheelset__y=2e-3, wheelset__yaw=1e-3)
     assert abs(railpatch.solve(plain)["force"][1] - right["force"][1]) > 100
+
+
+def test_the_field_of_a_temperature_law_has_the_factor() -> None:
+    """Full sliding: |p| is friction times pressure in every element."""
+    law = {
+        "law": "temperature",
+        "reference": 0.3,
+        "change": -0.1,
+        "reference_temperature": 20.0,
+        "temperature_range": 500.0,
+        "factor": [[-0.004, 0.5], [0.004, 1.5]],
+    }
+    case = with_values(
+        PATCH,
+        friction=law,
+        temperature={"wheel": 20.0, "rail": 20.0},
+        motion={"creepage": [0.3, 0.0]},
+    )
+    result = railpatch.solve(case, fields=True)
+    assert result.status == "converged"
+    bound = result["friction"] * result["pressure"]
+    np.testing.assert_allclose(np.hypot(*result["traction"]), bound, rtol=1e-5, atol=1.0)
+
+
+@pytest.mark.parametrize(
+    ("law", "most"),
+    [
+        ({"coefficient": 0.3, "factor": [[-1.0, 0.5], [1.0, 2.0]]}, 0.6),
+        ({"law": "slip_velocity", "kinetic": 0.1, "amplitude": 0.05, "halving_speed": 1.0}, 0.15),
+    ],
+)
+def test_a_prescribed_force_is_bounded_by_the_law(law: dict[str, Any], most: float) -> None:
+    force = PATCH["load"]["normal_force"]
+    beyond = with_values(
+        PATCH, friction=law, motion={"tangential_force": [-1.01 * most * force, 0.0]}
+    )
+    with pytest.raises(railpatch.CaseError, match="the greatest friction coefficient"):
+        railpatch.solve(beyond)
+    within = with_values(
+        PATCH, friction=law, motion={"tangential_force": [-0.5 * most * force, 0.0]}
+    )
+    found = railpatch.solve(within)
+    assert found.status in ("converged", "out_of_range")
+
+
+def test_a_step_takes_one_creepage() -> None:
+    motion = {"regime": "shift", "creepage": [[1e-6, 0.0], [2e-6, 0.0]], "steps": 2}
+    case = with_values(PATCH, motion=motion)
+    assert railpatch.solve(case).status == "converged"
+    contact = railpatch.Contact(case)
+    with pytest.raises(railpatch.CaseError, match="one pair for a step"):
+        contact.step()
+    assert contact.step(creepage=[1e-6, 0.0]).status == "converged"

@@ -96,6 +96,18 @@ def problems_of(case: Any, **options: Any) -> list[str]:
         ("friction", None, "friction: value is missing, allowed the table [friction]"),
         ("friction__law", "viscous", "friction.law: value is 'viscous', allowed 'coulomb', 'slip"),
         ("friction__law", "temperature", "friction.reference: value is missing, allowed a number"),
+        (
+            "friction",
+            {
+                "law": "temperature",
+                "reference": 0.3,
+                "change": -0.1,
+                "reference_temperature": 0.0,
+                "temperature_range": 100.0,
+                "memory_distance": 1e-5,
+            },
+            "friction.memory_distance: value is 1e-05, allowed to be left out with law = ",
+        ),
         ("friction__kinetic", 0.2, "friction.kinetic: value is 0.2, allowed to be left out with "),
         (
             "friction",

@@ -52,3 +52,10 @@ def test_figures_are_there() -> None:
     assert figures
     for name in figures:
         assert 1000 < (DOCS / name).stat().st_size < 150_000
+
+
+def test_the_shift_goes_to_seven_eighths_of_friction(tmp_path: Path) -> None:
+    """Cattaneo 1938: 4.72e-7 m in each of five steps, 2.36e-6 m in all, for 7/8 of 400 N."""
+    path = tmp_path / "case.toml"
+    path.write_text(blocks()[0][1], encoding="utf-8")
+    assert railpatch.solve(path)["creep_force"][0] == pytest.approx(-350.0, rel=0.01)

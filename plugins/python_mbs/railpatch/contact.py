@@ -11,7 +11,8 @@ from typing import Any
 
 from railpatch import _core
 from railpatch.case.load import Case, Scene, check_table, load_scene
-from railpatch.case.patch import Motion
+from railpatch.case.messages import show
+from railpatch.case.patch import Motion, PatchCase
 from railpatch.config import config_of, input_of
 from railpatch.errors import CaseError
 from railpatch.moving import changed_case, moving_keys
@@ -68,7 +69,11 @@ class Contact:
         roller_pitch_rate, track = {"left": ..., "right": ...}; left and right in part or whole.
         fields: add the fields of each patch. Other keys raise CaseError and nothing changes.
         """
-        return self._solve(changed_case(self._case, changes), None, fields=fields)
+        case = changed_case(self._case, changes)
+        if isinstance(case, PatchCase) and len(case.motion.creepages) > 1:
+            shown = show(case.motion.creepage)
+            raise CaseError(f"motion.creepage: value is {shown}, allowed one pair for a step")
+        return self._solve(case, None, fields=fields)
 
     def _solve(self, case: Case, creepage: list[float] | None, *, fields: bool) -> Result:
         """One step; creepage: of this step, where the case has one for each."""

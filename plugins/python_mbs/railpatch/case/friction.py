@@ -29,7 +29,7 @@ KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "slip_velocity": ((), ("memory_distance", "memory_speed")),
     "temperature": (
         ("reference", "change", "reference_temperature", "temperature_range"),
-        ("memory_distance", "memory_speed"),
+        (),
     ),
 }
 SHAPES: dict[str, tuple[str, ...]] = {
@@ -160,7 +160,12 @@ class Friction(Table):
 
     @property
     def greatest(self) -> float:
-        """-, greatest coefficient that the law may give, without factor."""
+        """-, greatest coefficient that the law may give at any place."""
+        factor = 1.0 if self.factor is None else max(value for _, value in self.factor)
+        return factor * self._greatest_of_law
+
+    @property
+    def _greatest_of_law(self) -> float:
         if self.law == "coulomb":
             assert self.coefficient is not None
             return self.coefficient

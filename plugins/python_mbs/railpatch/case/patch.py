@@ -286,12 +286,12 @@ class PatchCase(Table):
             raise relation("method.tangential", shown, "'full' with motion.tangential_force")
         if self.load.normal_force is None or self.friction is None:
             return
-        if self.friction.law != "coulomb" or self.friction.coefficient is None:
-            return
-        most = self.friction.coefficient * self.load.normal_force
+        most = self.friction.greatest * self.load.normal_force
         if math.hypot(*self.motion.forces) > most * (1 + 1e-12):
             shown = str(self.motion.tangential_force)
-            allowed = f"at most friction.coefficient * load.normal_force = {most:g} N in magnitude"
+            plain = self.friction.law == "coulomb" and self.friction.factor is None
+            which = "friction.coefficient" if plain else "the greatest friction coefficient"
+            allowed = f"at most {which} * load.normal_force = {most:g} N in magnitude"
             raise relation("motion.tangential_force", shown, allowed)
 
     def _check_line(self) -> None:
