@@ -336,9 +336,9 @@ typedef struct rp_patch_result {
                                  measured errors of each method; against the exact theory, without
                                  errors of the case. NaN: no solution, no such stage, or not
                                  measured (line contact, force prescribed, unlike bodies, laws beyond
-                                 Coulomb's, layers that yield, shift, transient rolling,
-                                 friction_points, table   but   with Hertz, factors of fast theories other
-                                 than 1, spin_offset) */
+                                 Coulomb's, friction_points, layers that yield, shift, transient
+                                 rolling, table but with Hertz, factors of fast theories other than
+                                 1, spin_offset) */
   double position[3];         /* m, contact reference in track axes (wheel kinds) */
   double contact_angle;       /* rad */
   double creepage[2];         /* -; found where the force is prescribed */
