@@ -159,13 +159,14 @@ class Friction(Table):
         return self.kinetic
 
     @property
-    def greatest(self) -> float:
+    def greatest_anywhere(self) -> float:
         """-, greatest coefficient that the law may give at any place."""
         factor = 1.0 if self.factor is None else max(value for _, value in self.factor)
-        return factor * self._greatest_of_law
+        return factor * self.greatest
 
     @property
-    def _greatest_of_law(self) -> float:
+    def greatest(self) -> float:
+        """-, greatest coefficient that the law may give, without factor."""
         if self.law == "coulomb":
             assert self.coefficient is not None
             return self.coefficient

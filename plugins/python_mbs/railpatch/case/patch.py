@@ -286,7 +286,7 @@ class PatchCase(Table):
             raise relation("method.tangential", shown, "'full' with motion.tangential_force")
         if self.load.normal_force is None or self.friction is None:
             return
-        most = self.friction.greatest * self.load.normal_force
+        most = self.friction.greatest_anywhere * self.load.normal_force
         if math.hypot(*self.motion.forces) > most * (1 + 1e-12):
             shown = str(self.motion.tangential_force)
             plain = self.friction.law == "coulomb" and self.friction.factor is None
