@@ -30,6 +30,11 @@ def default_scene_text() -> str:
 @click.option("--positions", type=int, metavar="NUMBER", help="Replaces rig.positions.")
 @click.option("--rate", type=float, metavar="HZ", help="Replaces rig.rate: positions per second.")
 @click.option("--duration", type=float, metavar="SECONDS", help="Replaces rig.duration.")
+@click.option(
+    "--method",
+    type=click.Choice(["broyden", "newton"]),
+    help="Replaces rig.balance.method: how balances are searched.",
+)
 @show_scene_option(default_scene_text)
 @click.option("--quiet", is_flag=True, help="Print no summary and no progress.")
 @click.pass_context
@@ -46,6 +51,7 @@ def rig(
     from rig_model.run import replay
     from rig_model.scene import load_rig_scene
 
+    overrides["balance.method"] = overrides.pop("method")
     try:
         loaded = load_rig_scene(scene, overrides)
         if not quiet:
