@@ -34,7 +34,7 @@ def test_newton_takes_few_evaluations(found):
 
 def test_both_methods_find_the_same(found):
     for newton, broyden in zip(found["newton"], found["broyden"], strict=True):
-        # residuals of 6 N over the stiffness of a contact, some 1 kN/um, and of a flange, 1 kN/20 um
+        # 6 N over the stiffness of a contact, some 1 kN/um, and of a flange, 1 kN/20 um
         close = [5e-6, 2e-7, 5e-7, 2e-5, 5e-3]
         assert (np.abs(newton.unknowns - broyden.unknowns) <= close).all()
 
