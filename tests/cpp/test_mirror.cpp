@@ -16,14 +16,17 @@ constexpr double imposed = 1e-12;  // relative
 
 rp_input mirrored(rp_input in) {
   for (double *v : {&in.y, &in.roll, &in.yaw, &in.vy, &in.roll_rate, &in.yaw_rate}) *v = -*v;
-  for (auto *offset : {&in.wheel_offset, &in.rail_offset})
+  for (auto *offset : {&in.wheel_offset, &in.rail_offset, &in.wheel_velocity, &in.rail_velocity})
     for (auto &side : *offset) side[1] = -side[1];
-  for (auto *rotation : {&in.wheel_rotation, &in.rail_rotation})
+  for (auto *rotation : {&in.wheel_rotation, &in.rail_rotation, &in.wheel_angular_velocity,
+                         &in.rail_angular_velocity})
     for (auto &side : *rotation) {
       side[0] = -side[0];
       side[2] = -side[2];
     }
-  for (auto *pairs : {&in.wheel_offset, &in.rail_offset, &in.wheel_rotation, &in.rail_rotation})
+  for (auto *pairs : {&in.wheel_offset, &in.rail_offset, &in.wheel_rotation, &in.rail_rotation,
+                      &in.wheel_velocity, &in.rail_velocity, &in.wheel_angular_velocity,
+                      &in.rail_angular_velocity})
     std::swap_ranges((*pairs)[0], (*pairs)[0] + 3, (*pairs)[1]);
   return in;
 }
@@ -153,6 +156,10 @@ class Mirror : public testing::TestWithParam<scene> {
         in.wheel_rotation[side][k] = 2e-3 * u(random);
         in.rail_offset[side][k] = 3e-4 * u(random);
         if (k == 0) in.rail_rotation[side][k] = 2e-3 * u(random);
+        in.wheel_velocity[side][k] = 0.02 * u(random);
+        in.rail_velocity[side][k] = 0.02 * u(random);
+        in.wheel_angular_velocity[side][k] = 0.05 * u(random);
+        in.rail_angular_velocity[side][k] = 0.05 * u(random);
       }
     return in;
   }
