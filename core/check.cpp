@@ -504,14 +504,20 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
     check.number("z", in.z, {-1, 1, false, false});
   check.number("roll", in.roll, angle);
   check.number("yaw", in.yaw, angle);
-  const char *names[] = {"speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate"};
-  const double values[] = {in.speed, in.vy, in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
-  for (int i = 0; i < 6; ++i) check.number(names[i], values[i], finite);
+  const char *names[] = {"x", "pitch", "speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate"};
+  const double values[] = {in.x,  in.pitch,     in.speed,    in.vy,
+                           in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
+  for (int i = 0; i < 8; ++i) check.number(names[i], values[i], finite);
+  check.number("time_step", in.time_step, not_negative);
   for (int side = 0; side < 2; ++side) {
     check.numbers("wheel_offset", in.wheel_offset[side], 3, {-1, 1, false, false});
     check.numbers("wheel_rotation", in.wheel_rotation[side], 3, angle);
     check.numbers("rail_offset", in.rail_offset[side], 3, {-1, 1, false, false});
     check.numbers("rail_rotation", in.rail_rotation[side], 3, angle);
+    check.numbers("wheel_velocity", in.wheel_velocity[side], 3, finite);
+    check.numbers("wheel_angular_velocity", in.wheel_angular_velocity[side], 3, finite);
+    check.numbers("rail_velocity", in.rail_velocity[side], 3, finite);
+    check.numbers("rail_angular_velocity", in.rail_angular_velocity[side], 3, finite);
     check.require(in.rail_rotation[side][1] == 0 && in.rail_rotation[side][2] == 0,
                   "rail_rotation about y and z must be 0: this version turns rails and rollers "
                   "about x only");

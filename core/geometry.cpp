@@ -149,6 +149,8 @@ void fill_row(const surface &f, const surface_grid &g, int row, int column, cons
   march(f, g, row, column - 1, -1, middle, heights);
 }
 
+bool moves(const deviation &d) { return d.velocity != vec3{} || d.angular_velocity != vec3{}; }
+
 int clamp_index(double position, int count) {
   const double last = count - 1;
   return static_cast<int>(std::clamp(std::round(position), 0.0, last));
@@ -187,7 +189,10 @@ wheelset_state mirrored(wheelset_state w) {
   return w;
 }
 
-deviation mirrored(deviation d) { return {mirrored_vector(d.offset), mirrored_axial(d.rotation)}; }
+deviation mirrored(deviation d) {
+  return {mirrored_vector(d.offset), mirrored_axial(d.rotation), mirrored_vector(d.velocity),
+          mirrored_axial(d.angular_velocity)};
+}
 
 side_motion mirrored(side_motion m) {
   return {mirrored(m.wheelset), mirrored(m.wheel), mirrored(m.rail), m.roller_pitch_rate};
@@ -230,9 +235,10 @@ void side_geometry::place(const side_motion &motion) {
   const vec3 &off = motion.wheel.offset, &rail_off = motion.rail.offset;
   const bool roller = track_.kind == track_kind::roller;
   const double marker = 0.5 * sizes_.flange_back_distance - sizes_.flange_back_position;
+  wheelset_axes_ = roll_yaw(w.roll, w.yaw);
   wheel_axes_ = roll_yaw(w.roll, w.yaw + motion.wheel.rotation[2]);
   // the wheel's own yaw turns about its marker's plane, where u = 0 then lies
-  axis_offset_ = turn(roll_yaw(w.roll, w.yaw), {off[0], marker, 0});
+  axis_offset_ = turn(wheelset_axes_, {off[0], marker, 0});
   wheel_.place(motion.wheel.rotation[0], off[1], off[2]);
   const double lean = motion.rail.rotation[0] - (roller ? 0 : track_.cant);
   rail_.place(lean, marker_y_ + rail_off[1], marker_z_ + rail_off[2]);
@@ -389,6 +395,25 @@ void side_geometry::distances(const contact_frame &frame, const double *x, const
   }
 }
 
+// Velocity of the wheel's material by the rates of its deviation, but for the one about its axis.
+vec3 side_geometry::wheel_rate(const vec3 &at) const {
+  const deviation &d = motion_.wheel;
+  const vec3 own = turn_back(wheelset_axes_, at - axis_origin_);
+  const vec3 below = own - vec3{0, d.offset[1], sizes_.nominal_radius + d.offset[2]};
+  const vec3 rate = d.velocity + cross({d.angular_velocity[0], 0, 0}, below) +
+                    cross({0, 0, d.angular_velocity[2]}, own);
+  return turn(wheelset_axes_, rate);
+}
+
+// The same of the rail; of a roller without the rate about its axle.
+vec3 side_geometry::rail_rate(const vec3 &at) const {
+  const deviation &d = motion_.rail;
+  const vec3 origin = vec3{0, marker_y_, marker_z_} + d.offset;
+  vec3 spin = d.angular_velocity;
+  if (track_.kind == track_kind::roller) spin[1] = 0;
+  return d.velocity + cross(spin, at - origin);
+}
+
 creepage_state side_geometry::creepages(const contact_frame &frame, double approach) const {
   const wheelset_state &w = motion_.wheelset;
   const frame_axes f = axes_of(frame);
@@ -397,16 +422,27 @@ creepage_state side_geometry::creepages(const contact_frame &frame, double appro
   // the track frame follows the centre line: in a curve it turns about its z axis
   const vec3 frame_spin{0, 0, track_.curvature * w.speed};
   const vec3 swing = vec3{w.roll_rate, 0, 0} + w.yaw_rate * vec3{0, -s, c};
-  const vec3 roll = w.pitch_rate * column(wheel_axes_, 1);
-  const vec3 carried =
-      vec3{w.speed, w.vy, w.vz} + cross(frame_spin, at) + cross(swing, at - centre_);
+  const vec3 &wheel_spin = motion_.wheel.angular_velocity,
+             &rail_spin = motion_.rail.angular_velocity;
+  const bool wheel_moves = moves(motion_.wheel), rail_moves = moves(motion_.rail);
+  const vec3 roll = (w.pitch_rate + wheel_spin[1]) * column(wheel_axes_, 1);
+  vec3 carried = vec3{w.speed, w.vy, w.vz} + cross(frame_spin, at) + cross(swing, at - centre_);
+  if (wheel_moves) carried = carried + wheel_rate(at);
   const vec3 turned = cross(roll, at - axis_origin_);
-  const vec3 roller_spin{0, motion_.roller_pitch_rate, 0};
+  const vec3 roller_spin{0, motion_.roller_pitch_rate + rail_spin[1], 0};
   const bool roller = track_.kind == track_kind::roller;
   vec3 slip = carried + turned, spin = frame_spin + swing + roll;
+  if (wheel_moves) spin = spin + turn(wheelset_axes_, {wheel_spin[0], 0, wheel_spin[2]});
+  if (rail_moves) spin = spin - (roller ? vec3{rail_spin[0], 0, rail_spin[2]} : rail_spin);
   double forward = carried[0], backward = turned[0];
+  if (rail_moves && !roller) {
+    const vec3 below = rail_rate(frame.origin);
+    forward -= below[0];
+    slip = slip - below;
+  }
   if (roller) {
-    const vec3 below = cross(roller_spin, frame.origin - vec3{axle_x_, 0, axle_z_});
+    vec3 below = cross(roller_spin, frame.origin - vec3{axle_x_, 0, axle_z_});
+    if (rail_moves) below = below + rail_rate(frame.origin);
     forward = -below[0];
     backward = slip[0];
     slip = slip - below;

@@ -14,6 +14,9 @@
 // A rail's offset y, z and rotation about x move it; offset x and rotations about y, z have no
 // effect on a prismatic rail. A roller's offset moves its axle, the rotation about x turns its
 // profile in its meridian plane; rotations about y, z have no effect.
+// Their rates give the material velocities that the offsets and rotations would have: about the
+// profile's origin, of a wheel or roller about the axis (y), of a wheel about the point of its axis
+// in the plane of that origin (z).
 #pragma once
 
 #include <array>
@@ -34,8 +37,10 @@ struct wheelset_state {
 };
 
 struct deviation {
-  vec3 offset{};    // m
-  vec3 rotation{};  // rad
+  vec3 offset{};            // m
+  vec3 rotation{};          // rad
+  vec3 velocity{};          // m/s
+  vec3 angular_velocity{};  // rad/s
 };
 
 enum class track_kind { rail, roller };
@@ -150,6 +155,8 @@ class side_geometry {
   double sampled_gap(double s) const;
   void set_rates(const curve_point &p, double sine, locus_point &l) const;
   vec3 wheel_point(const curve_point &p, double sine) const;
+  vec3 wheel_rate(const vec3 &at) const;
+  vec3 rail_rate(const vec3 &at) const;
 
   wheel_config sizes_;
   track_config track_;
@@ -160,7 +167,7 @@ class side_geometry {
   double axle_z_ = 0, axle_x_ = 0;      // roller
   vec3 centre_{};                       // wheelset
   vec3 axis_origin_{}, axis_offset_{};  // of this wheel, from track origin and wheelset centre
-  mat3 wheel_axes_{};
+  mat3 wheelset_axes_{}, wheel_axes_{};
   bool overlap_ = false;
 };
 

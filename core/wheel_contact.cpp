@@ -26,8 +26,10 @@ track_config track_of(const rp_config &c, int side) {
           c.roller_radius};
 }
 
-deviation deviation_of(const double offset[3], const double rotation[3]) {
-  return {{offset[0], offset[1], offset[2]}, {rotation[0], rotation[1], rotation[2]}};
+deviation deviation_of(const double offset[3], const double rotation[3], const double velocity[3],
+                       const double angular_velocity[3]) {
+  const auto vector = [](const double v[3]) { return vec3{v[0], v[1], v[2]}; };
+  return {vector(offset), vector(rotation), vector(velocity), vector(angular_velocity)};
 }
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -63,8 +65,10 @@ void wheel_contact::place(const rp_input &in) {
   side_motion motion;
   motion.wheelset = {in.y,  in.z,  in.roll,      in.yaw,      in.speed,
                      in.vy, in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
-  motion.wheel = deviation_of(in.wheel_offset[side_], in.wheel_rotation[side_]);
-  motion.rail = deviation_of(in.rail_offset[side_], in.rail_rotation[side_]);
+  motion.wheel = deviation_of(in.wheel_offset[side_], in.wheel_rotation[side_],
+                              in.wheel_velocity[side_], in.wheel_angular_velocity[side_]);
+  motion.rail = deviation_of(in.rail_offset[side_], in.rail_rotation[side_],
+                             in.rail_velocity[side_], in.rail_angular_velocity[side_]);
   motion.roller_pitch_rate = in.roller_pitch_rate;
   geometry_->place(side_ == RP_LEFT ? mirrored(motion) : motion);
 }

@@ -295,6 +295,7 @@ typedef struct rp_input {
   double distance;            /* m, > 0, rolled in this step where regime = RP_TRANSIENT_ROLLING */
 
   /* wheelset: position, attitude (roll-yaw-pitch) and velocity in track axes */
+  double x, pitch;       /* m, along the track; rad, about the axle: for what varies with them */
   double y, z;           /* m; z where load = RP_POSITION */
   double vertical_force; /* N on the wheel or on both, > 0, where load = RP_FORCE */
   double roll, yaw;      /* rad */
@@ -303,7 +304,13 @@ typedef struct rp_input {
   double wheel_offset[2][3], wheel_rotation[2][3]; /* m, rad: from the rigid wheelset, its axes */
   double rail_offset[2][3], rail_rotation[2][3];   /* m, rad: from design, track axes; of the
                                                       rotations only that about x may differ from 0 */
-  double roller_pitch_rate;                        /* rad/s */
+  /* m/s, rad/s: rates of the deviations above, same axes. A wheel turns about its profile's origin
+   * (x), and about its axis where the origin's plane meets it (y, z); a rail or roller about its
+   * profile's origin, a roller about its axle (y). */
+  double wheel_velocity[2][3], wheel_angular_velocity[2][3];
+  double rail_velocity[2][3], rail_angular_velocity[2][3];
+  double time_step;         /* s, >= 0, since the last step, for rails on dampers; 0: at rest */
+  double roller_pitch_rate; /* rad/s */
 } rp_input;
 
 /* One patch. Values of stages that the scene leaves out are NaN (element counts 0). Linear theory

@@ -13,7 +13,12 @@ from railpatch.choice import resolved
 from railpatch.profiles import load_profile
 from railpatch.table import default_table
 
-WHEELSET_STATE = ("y", "roll", "yaw", "speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate")
+WHEELSET_STATE = (
+    *("x", "y", "roll", "pitch", "yaw"),
+    *("speed", "vy", "vz", "roll_rate", "pitch_rate", "yaw_rate"),
+    "time_step",
+)
+DEVIATION = ("offset", "rotation", "velocity", "angular_velocity")
 
 
 def config_of(scene: Scene) -> dict[str, Any]:
@@ -209,8 +214,8 @@ def input_of(case: Case) -> dict[str, Any]:
     if track.roller_pitch_rate is not None:
         values["roller_pitch_rate"] = track.roller_pitch_rate
     for name, table in (("wheel", wheelset), ("rail", track)):
-        values[f"{name}_offset"] = [table.left.offset, table.right.offset]
-        values[f"{name}_rotation"] = [table.left.rotation, table.right.rotation]
+        for key in DEVIATION:
+            values[f"{name}_{key}"] = [getattr(table.left, key), getattr(table.right, key)]
     return {**values, **bulk_of(case)}
 
 

@@ -353,6 +353,8 @@ void fill_input(const nb::dict &from, rp_input &to) {
   reader.scalar("direction", to.direction);
   reader.scalar("distance", to.distance);
   reader.array("bulk_temperature", to.bulk_temperature);
+  reader.scalar("x", to.x);
+  reader.scalar("pitch", to.pitch);
   reader.scalar("y", to.y);
   reader.scalar("z", to.z);
   reader.scalar("vertical_force", to.vertical_force);
@@ -368,6 +370,11 @@ void fill_input(const nb::dict &from, rp_input &to) {
   reader.matrix("wheel_rotation", to.wheel_rotation);
   reader.matrix("rail_offset", to.rail_offset);
   reader.matrix("rail_rotation", to.rail_rotation);
+  reader.matrix("wheel_velocity", to.wheel_velocity);
+  reader.matrix("wheel_angular_velocity", to.wheel_angular_velocity);
+  reader.matrix("rail_velocity", to.rail_velocity);
+  reader.matrix("rail_angular_velocity", to.rail_angular_velocity);
+  reader.scalar("time_step", to.time_step);
   reader.scalar("roller_pitch_rate", to.roller_pitch_rate);
   reader.finish();
 }

@@ -152,6 +152,8 @@ class ForceElement {
   }
 
   static void fill(const TrackState &s, rp_input &input) {
+    input.x = s.x;
+    input.pitch = s.pitch;
     input.y = s.y;
     input.z = s.z;
     input.roll = s.roll;

@@ -22,11 +22,13 @@ from railpatch.case.types import (
     Angle,
     AngleVector,
     Dimension,
+    NotNegative,
     Number,
     Positive,
     Shift,
     ShiftVector,
     Table,
+    Vector,
     between,
     exactly_one,
     relation,
@@ -44,11 +46,20 @@ class Deviation(Table):
     rotation: AngleVector = Field(
         default=[0.0, 0.0, 0.0], description="rad, rotation about x, y, z"
     )
+    velocity: Vector = Field(
+        default=[0.0, 0.0, 0.0], description="m/s, rate of offset, into the creepages"
+    )
+    angular_velocity: Vector = Field(
+        default=[0.0, 0.0, 0.0], description="rad/s, rate of rotation, into the creepages"
+    )
 
 
 class Wheelset(Table):
     """Position, attitude and velocity of the wheelset in track axes, and its dimensions."""
 
+    x: Number = Field(
+        default=0.0, description="m, position along the track, for what varies along it"
+    )
     y: Shift = Field(default=0.0, description="m, lateral position of its centre, to the right")
     z: Shift | None = Field(
         default=None, description="m, vertical position of its centre, down; or vertical_force"
@@ -59,6 +70,9 @@ class Wheelset(Table):
         "(wheelset); z is then found",
     )
     roll: Angle = Field(default=0.0, description="rad, about x")
+    pitch: Number = Field(
+        default=0.0, description="rad, about the axle, for what varies around the wheels"
+    )
     yaw: Angle = Field(default=0.0, description="rad, about z")
     speed: Number = Field(default=0.0, description="m/s, forward speed; 0 on a rig")
     vy: Number = Field(default=0.0, description="m/s, lateral speed")
@@ -67,6 +81,9 @@ class Wheelset(Table):
     yaw_rate: Number = Field(default=0.0, description="rad/s, about z")
     pitch_rate: Number = Field(
         default=0.0, description="rad/s, about the axle; below 0 for rolling forward"
+    )
+    time_step: NotNegative = Field(
+        default=0.0, description="s, since the last step, for rails on dampers; 0: at rest"
     )
     nominal_radius: Dimension = Field(description="m, wheel radius at the profile's z = 0")
     flange_back_distance: Dimension = Field(description="m, between the flange backs")
