@@ -34,6 +34,15 @@ mat3 roll_yaw(double roll, double yaw) {
 
 constexpr mat3 identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
+// what slip is divided by, and the part of spin near the turn of the heading: see the header
+double divisor(double speed, double slow) {
+  return speed < slow ? 0.5 * (speed * speed + slow * slow) / slow : speed;
+}
+double turning(double heading, double slow) {
+  const double t = std::fabs(heading);
+  return t < slow ? 0.5 * (t / slow) * (3.0 - (t / slow) * (t / slow)) : 1.0;
+}
+
 struct frame_axes {
   vec3 x, s, n;
 };
@@ -377,18 +386,6 @@ void side_geometry::undeformed_distance(const contact_frame &frame, const surfac
   }
 }
 
-void side_geometry::distances(const contact_frame &frame, const double *x, const double *s,
-                              int count, double *h) const {
-  const surface wheel = wheel_seen_from(frame), rail = rail_seen_from(frame);
-  hit on_wheel = nearest(wheel), on_rail = nearest(rail);
-  for (int i = 0; i < count; ++i) {
-    hit a = on_wheel, b = on_rail;
-    const bool met = meet(wheel, wheel.at(x[i], s[i]), a) && meet(rail, rail.at(x[i], s[i]), b);
-    h[i] = met ? b.n - a.n : no_surface;
-    if (met) on_wheel = a, on_rail = b;
-  }
-}
-
 creepage_state side_geometry::creepages(const contact_frame &frame, double approach) const {
   const wheelset_state &w = motion_.wheelset;
   const frame_axes f = axes_of(frame);
@@ -413,14 +410,18 @@ creepage_state side_geometry::creepages(const contact_frame &frame, double appro
     spin = spin - roller_spin;
   }
   creepage_state out;
-  const double speed = 0.5 * (std::fabs(forward) + std::fabs(backward));
-  if (!(speed > standstill)) return out;
+  out.rolling_speed = 0.5 * (std::fabs(forward) + std::fabs(backward));
+  const double slow = sizes_.standstill_speed;
+  const bool at_rest = !(out.rolling_speed > standstill);
+  if (at_rest) out.rolling_speed = 0;
+  if (at_rest && slow == 0) return out;
   const double heading = std::fabs(forward - backward) > standstill ? forward - backward : forward;
-  out.rolling_speed = speed;
-  out.direction = heading > 0 ? 1 : -1;
+  if (!at_rest) out.direction = heading > 0 ? 1 : -1;
+  const double speed = divisor(out.rolling_speed, slow);
+  out.creepage_speed = speed;
   out.xi = slip[0] / speed;
   out.eta = dot(f.s, slip) / speed;
-  out.phi = dot(f.n, spin) / speed;
+  out.phi = dot(f.n, spin) / speed * turning(0.5 * (forward - backward), slow);
   return out;
 }
 
