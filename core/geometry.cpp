@@ -410,15 +410,14 @@ creepage_state side_geometry::creepages(const contact_frame &frame, double appro
     spin = spin - roller_spin;
   }
   creepage_state out;
-  out.rolling_speed = 0.5 * (std::fabs(forward) + std::fabs(backward));
+  const double mean = 0.5 * (std::fabs(forward) + std::fabs(backward));
   const double slow = sizes_.standstill_speed;
-  const bool at_rest = !(out.rolling_speed > standstill);
-  if (at_rest) out.rolling_speed = 0;
-  if (at_rest && slow == 0) return out;
+  const bool rolls = mean > standstill;
+  if (!rolls && slow == 0) return out;
   const double heading = std::fabs(forward - backward) > standstill ? forward - backward : forward;
-  if (!at_rest) out.direction = heading > 0 ? 1 : -1;
-  const double speed = divisor(out.rolling_speed, slow);
-  out.creepage_speed = speed;
+  if (rolls) out.direction = heading > 0 ? 1 : -1;
+  const double speed = divisor(mean, slow);
+  out.rolling_speed = speed;
   out.xi = slip[0] / speed;
   out.eta = dot(f.s, slip) / speed;
   out.phi = dot(f.n, spin) / speed * turning(0.5 * (forward - backward), slow);

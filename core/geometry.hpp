@@ -78,9 +78,8 @@ struct surface_grid {
 struct creepage_state {
   double xi = 0, eta = 0;     // -, longitudinal, lateral
   double phi = 0;             // rad/m, spin
-  double rolling_speed = 0;   // m/s, >= 0
-  double creepage_speed = 0;  // m/s, what slip is divided by: the same but near standstill
-  int direction = 0;          // rolling towards +x (1), -x (-1); 0 at standstill
+  double rolling_speed = 0;  // m/s, >= 0, what slip is divided by: see the head on standstill
+  int direction = 0;         // rolling towards +x (1), -x (-1); 0 at standstill
 };
 
 wheelset_state mirrored(wheelset_state w);

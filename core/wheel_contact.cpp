@@ -209,8 +209,7 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
   if (memory.row_friction.size() > 0) set_friction(solver, region.frame, memory);
   solver.observe(RP_STAGE_GEOMETRY, false);
 
-  // creepage times this speed is slip, near standstill too: powers and friction laws need that
-  problem.rolling_speed = rolling.creepage_speed;
+  problem.rolling_speed = rolling.rolling_speed;
   problem.rolling = {{rolling.xi, rolling.eta}, rolling.phi, rolling.direction < 0 ? -1 : 1, 0.0};
   problem.parts = parts_on(region, g);
   if (solver.scene().normal == RP_NORMAL_HERTZ) {

@@ -358,8 +358,8 @@ typedef struct rp_patch_result {
   double contact_angle;       /* rad */
   double creepage[2];         /* -; found where the force is prescribed */
   double spin_creepage;       /* rad/m */
-  double rolling_speed;       /* m/s, mean of the two surface speeds; what slip is divided by is
-                                 greater below standstill_speed */
+  double rolling_speed;       /* m/s, that creepages are slip over: mean V of the two surface
+                                 speeds; below standstill_speed V0 (V^2 + V0^2)/(2 V0) */
   int32_t direction;          /* 1 or -1; 0 at standstill */
   int32_t grid[2];            /* elements of the potential contact along rolling, lateral; of
                                  fitted rows the nodes and rows */
