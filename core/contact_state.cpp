@@ -53,6 +53,8 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            static_cast<double>(c.max_elements[1]),
                            static_cast<double>(c.max_iterations),
                            static_cast<double>(c.max_patches),
+                           static_cast<double>(c.patch_rule),
+                           c.standstill_speed,
                            static_cast<double>(c.force_prescribed[0]),
                            static_cast<double>(c.force_prescribed[1]),
                            c.element_size[0],

@@ -37,6 +37,7 @@ rp_patch_result empty_patch_result() {
         &r.position[2],       &r.contact_angle,     &r.creepage[0],    &r.creepage[1],
         &r.spin_creepage,     &r.rolling_speed})
     *v = nan;
+  r.share = 1;
   return r;
 }
 

@@ -36,12 +36,15 @@ class wheel_contact {
   void set_friction(const patch_contact &solver, const contact_frame &frame,
                     patch_memory &memory) const;
   grid choose_grid(const patch_region &region) const;
+  void match_memory(patch_memory *memory, int count) const;
 
   rp_config config_;
   int side_;
   bool beyond_ = false;
   std::unique_ptr<profile> wheel_, rail_;
   std::unique_ptr<side_geometry> geometry_;
+  patch_rules rules_;
+  part_set parts_;
   std::array<patch_region, RP_MAX_PATCHES> regions_;
 };
 

@@ -73,4 +73,6 @@
   X(cant)                           \
   X(curvature)                      \
   X(roller_radius)                  \
-  X(max_patches)
+  X(max_patches)                    \
+  X(patch_rule)                     \
+  X(standstill_speed)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from railpatch.case.common import FAST_NUMBERS, Friction, Layer, Temperature
+from railpatch.case.common import FAST_NUMBERS, WHEEL_METHOD, Friction, Layer, Temperature
 from railpatch.case.load import Case, Scene
 from railpatch.case.patch import SHAPES, PatchCase
 from railpatch.case.types import MOST_POINTS
@@ -176,6 +176,8 @@ def wheel_config(scene: Scene, case: WheelRailCase | WheelsetCase) -> dict[str, 
         config["roller_radius"] = track.roller_radius
     if wheelset.max_patches is not None:
         config["max_patches"] = wheelset.max_patches
+    chosen = {name: getattr(case.method, name) for name in WHEEL_METHOD}
+    config.update({name: value for name, value in chosen.items() if value is not None})
     if isinstance(case, WheelRailCase):
         config["side"] = case.wheel.side
     return config
