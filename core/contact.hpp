@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "patch_contact.hpp"
+#include "rail_support.hpp"
 #include "wheel_contact.hpp"
 
 namespace railpatch {
@@ -38,16 +39,21 @@ class contact {
   void step_wheels(const rp_input &input, rp_result &result);
   template <class Evaluate>
   void find_z(double vertical_force, Evaluate &&evaluate, rp_result &result);
+  double evaluate_wheels(double z, rp_result &result);
+  void solve_supported(const rp_input &input, rp_result &result);
+  void report_search(bool converged, rp_status otherwise, double residual, rp_result &result) const;
   bool state_fits(const unsigned char *patches, size_t size) const;
 
   rp_config config_;
   fft_plans plans_;
   patch_contact solver_;
-  std::vector<patch_memory> memory_;   // of the sides in use, max_patches each
-  std::vector<wheel_contact> wheels_;  // of the sides in use
-  double depth_ = 0;                   // m, last z found minus first touch; 0: none
-  uint64_t scene_ = 0;                 // fingerprint of the config
-  aligned_buffer<double> shape_;       // undeformed distance of the case
+  std::vector<patch_memory> memory_;       // of the sides in use, max_patches each
+  std::vector<wheel_contact> wheels_;      // of the sides in use
+  std::unique_ptr<rail_support> support_;  // where rails are on springs
+  friction_factor friction_along_;
+  double depth_ = 0;              // m, last z found minus first touch; 0: none
+  uint64_t scene_ = 0;            // fingerprint of the config
+  aligned_buffer<double> shape_;  // undeformed distance of the case
 };
 
 }  // namespace railpatch
