@@ -130,6 +130,10 @@ void contact::describe(rp_stage_info *info) const {
   info[RP_STAGE_COUPLING] = {"coupling", scene.couples(), coupling_reason(scene),
                              solver_.coupling_bytes()};
   info[RP_STAGE_HISTORY] = {"history", scene.keeps_steps(), history_reason(scene), history};
+  info[RP_STAGE_SUPPORT] = {
+      "rail_support", support_ != nullptr,
+      support_ ? "rails have a stiffness: deflections by Newton's method" : "the rails are rigid",
+      support_ ? support_->bytes() : 0};
   info[RP_STAGE_PLASTICITY] = {"plasticity", scene.yields(), plasticity_reason(config_, scene),
                                plastic};
   const bool asked = config_.derivatives != 0;

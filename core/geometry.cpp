@@ -238,6 +238,11 @@ void side_geometry::place_rail_marker() {
   marker_z_ = roller ? 0 : -rail_.evaluate(rail_.extreme()).z;
 }
 
+void side_geometry::reload_rail() {
+  rail_.reload();
+  place_rail_marker();
+}
+
 void side_geometry::place(const side_motion &motion) {
   motion_ = motion;
   const wheelset_state &w = motion.wheelset;

@@ -119,6 +119,8 @@ class side_geometry {
                 const track_config &track);
 
   void place(const side_motion &motion);
+  // The rail's profile has changed; place() must follow.
+  void reload_rail();
   // Only z changes: the locus stays as it is, so this is nearly free.
   void move_to(double z);
   const side_motion &motion() const { return motion_; }

@@ -303,7 +303,7 @@ void patch_contact::estimate_error(const patch_problem &problem, patch_memory &m
   if (result.status != RP_CONVERGED && !(linear && result.status == RP_OUT_OF_RANGE)) return;
   if (scene_.line_width > 0 || coupled_) return;
   solved_patch patch{scene_.normal,  scene_.tangential,  problem.hertz, {},
-                     {0, 0},         scene_.is_fitted(), {1, 1},        scene_.friction_coefficient,
+                     {0, 0},         scene_.is_fitted(), {1, 1},        scene_.friction(),
                      problem.rolling};
   if (fast_ && fast_->table()) {
     patch.stated[0] = fast_->table()->force_error();
@@ -474,7 +474,7 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
                            rows_ ? &*rows_ : nullptr,
                            result.normal_force,
                            result.contact_area,
-                           scene_.friction_coefficient};
+                           scene_.friction()};
     t = fast_->solve(patch, rolling, fields, sums_);
   } else if (fitted_) {
     t = solve_fitted(problem, rolling, memory);
@@ -514,7 +514,8 @@ tangential_result patch_contact::solve_on_grid(const patch_problem &problem,
   const bool by_velocity = scene_.law && scene_.law->by_velocity;
   const double friction = by_velocity ? 1.0 : scene_.friction_coefficient;
   for (int j = 0; j < g.ny; ++j) {
-    const double factor = varies ? memory.row_friction[static_cast<size_t>(j)] : 1.0;
+    const double factor =
+        (varies ? memory.row_friction[static_cast<size_t>(j)] : 1.0) * scene_.friction_scale;
     for (auto i = static_cast<size_t>(j * g.nx); i < static_cast<size_t>((j + 1) * g.nx); ++i)
       bound_[i] = (mu ? mu[i] : friction) * factor * memory.pressure[i];
   }
@@ -656,7 +657,7 @@ tangential_result patch_contact::solve_fitted(const patch_problem &problem,
     fitted_rows_->set_line(hertz.semi_axes[0], scene_.line_width, hertz.normal_force);
   else
     fitted_rows_->set_ellipse(hertz.semi_axes, hertz.normal_force);
-  return fitted_->solve(*fitted_rows_, scene_.friction_coefficient, rolling,
+  return fitted_->solve(*fitted_rows_, scene_.friction(), rolling,
                         {scene_.tolerance, scene_.max_iterations}, memory.nodes());
 }
 

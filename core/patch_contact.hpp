@@ -24,11 +24,12 @@
 
 namespace railpatch {
 
-// Constant over the life of a handle, but for the friction coefficient.
+// Constant over the life of a handle, but for the friction coefficient and its scale.
 struct patch_scene {
   elastic_constants elastic;
   double friction_coefficient = 0;
   friction_factor friction_variation;
+  double friction_scale = 1.0;   // of the law, in this step
   double layer_flexibility = 0;  // m/Pa
   double line_width = 0;         // m, > 0: line contact
   rp_normal_method normal = RP_NORMAL_HALF_SPACE;
@@ -49,6 +50,7 @@ struct patch_scene {
   fast_options fast;         // where the tangential theory is a fast one
   std::optional<heat_scene> heat;       // where temperatures are asked for
   bool prescribed[2] = {false, false};  // components of the creep force: their creepage is found
+  double friction() const { return friction_coefficient * friction_scale; }
   bool is_forced() const { return prescribed[0] || prescribed[1]; }
   // false: beside the exact theory, by choice
   bool estimates_force() const;
@@ -142,6 +144,7 @@ class patch_contact {
   bool fits(const grid &g) const { return g.nx <= max_nx_ && g.ny <= max_ny_; }
   const patch_scene &scene() const { return scene_; }
   void set_friction_coefficient(double value) { scene_.friction_coefficient = value; }
+  void set_friction_scale(double value) { scene_.friction_scale = value; }
   // degrees C, of body k: wheel, rail
   void set_bulk_temperature(int k, double value) {
     if (!heat_) return;

@@ -8,18 +8,45 @@ namespace railpatch {
 
 namespace {
 
-std::unique_ptr<profile> make_profile(const rp_profile &p, const char *field) {
+profile_view checked_view(const rp_profile &p, const char *field) {
   if (!p.arc_length || !p.y || !p.z || !p.dy || !p.dz) throw profile_error{field, "is not given"};
   const profile_view view{p.arc_length, p.y, p.z, p.dy, p.dz, p.count};
   if (const profile_fault fault = validate(view); fault != profile_fault::none)
     throw profile_error{field, text(fault)};
-  return std::make_unique<profile>(view);
+  return view;
+}
+
+std::unique_ptr<profile> make_profile(const rp_profile &p, const char *field) {
+  return std::make_unique<profile>(checked_view(p, field));
+}
+
+// Profiles of a rail along the track; none where it has one profile.
+std::unique_ptr<rail_sections> make_sections(const rp_config &c, int side) {
+  const int count = c.section_count[side];
+  if (count == 0) return nullptr;
+  const char *field = side == RP_LEFT ? "rail_sections[0]" : "rail_sections[1]";
+  if (!c.rail_sections[side] || !c.section_position[side]) throw profile_error{field, "are null"};
+  std::vector<profile_view> views;
+  for (int k = 0; k < count; ++k) {
+    views.push_back(checked_view(c.rail_sections[side][k], field));
+    if (!rail_sections::belong_together(views.front(), views.back()))
+      throw profile_error{field, "must have as many knots at the same shares of the arc length"};
+  }
+  return std::make_unique<rail_sections>(views.data(), c.section_position[side], count);
+}
+
+// The rail's profile, that of the first section where there are several.
+std::unique_ptr<profile> make_rail(const rp_config &c, int side) {
+  if (c.section_count[side] > 0)
+    return make_profile(c.rail_sections[side][0],
+                        side == RP_LEFT ? "rail_sections[0]" : "rail_sections[1]");
+  return make_profile(c.rail[side], side == RP_LEFT ? "rail_left" : "rail_right");
 }
 
 // Both rails lean inwards by the same cant; a right-hand curve is a left-hand one in the mirror.
 track_config track_of(const rp_config &c, int side) {
   return {c.track == RP_ROLLER ? track_kind::roller : track_kind::rail,
-          c.gauge,
+          c.gauge + c.gauge_widening,
           c.gauge_height,
           c.cant,
           side == RP_LEFT ? -c.curvature : c.curvature,
@@ -62,8 +89,9 @@ contact_parts parts_on(const patch_region &region, const grid &g) {
 wheel_contact::wheel_contact(const rp_config &c, int side)
     : config_(c),
       side_(side),
+      sections_(make_sections(c, side)),
       wheel_(make_profile(c.wheel[side], side == RP_LEFT ? "wheel_left" : "wheel_right")),
-      rail_(make_profile(c.rail[side], side == RP_LEFT ? "rail_left" : "rail_right")) {
+      rail_(make_rail(c, side)) {
   rules_.blended = c.patch_rule == RP_PATCHES_BLENDED;
   const wheel_config sizes{c.nominal_radius, c.flange_back_distance, c.flange_back_position,
                            c.standstill_speed};
@@ -71,6 +99,14 @@ wheel_contact::wheel_contact(const rp_config &c, int side)
 }
 
 void wheel_contact::place(const rp_input &in) {
+  if (sections_) {
+    bool changed = false;
+    const profile_view now = sections_->at(in.x, changed);
+    if (changed) {
+      rail_->assign(now);
+      geometry_->reload_rail();
+    }
+  }
   side_motion motion;
   motion.wheelset = {in.y,  in.z,  in.roll,      in.yaw,      in.speed,
                      in.vy, in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
@@ -122,6 +158,7 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
   out.patch_count = count;
   for (int k = 0; k < 3; ++k) out.force[k] = out.moment[k] = 0;
   out.rolling_radius = 0;
+  for (int k = 0; k < 2; ++k) out.rail_deflection[k] = out.rail_deflection_rate[k] = nan;
   for (auto &patch : out.patch) patch = empty_patch_result();
   beyond_ = found.status == search_status::out_of_range ||
             found.status == search_status::too_many_patches;
@@ -262,7 +299,8 @@ void wheel_contact::set_friction(const patch_contact &solver, const contact_fram
 bool wheel_contact::first_touch(double &z) const { return railpatch::first_touch(*geometry_, z); }
 
 size_t wheel_contact::bytes() const {
-  return wheel_->bytes() + rail_->bytes() + geometry_->bytes();
+  return wheel_->bytes() + rail_->bytes() + geometry_->bytes() +
+         (sections_ ? sections_->bytes() : 0);
 }
 
 rp_status combine_status(rp_status a, rp_status b) {

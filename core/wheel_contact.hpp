@@ -10,6 +10,7 @@
 #include "geometry.hpp"
 #include "patch.hpp"
 #include "patch_contact.hpp"
+#include "rail_sections.hpp"
 #include "railpatch.h"
 
 namespace railpatch {
@@ -41,6 +42,7 @@ class wheel_contact {
   rp_config config_;
   int side_;
   bool beyond_ = false;
+  std::unique_ptr<rail_sections> sections_;  // where the rail's profile varies along the track
   std::unique_ptr<profile> wheel_, rail_;
   std::unique_ptr<side_geometry> geometry_;
   patch_rules rules_;

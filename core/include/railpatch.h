@@ -172,7 +172,8 @@ typedef enum rp_stage {
   RP_STAGE_HISTORY = 7,    /* last step's tractions and states, in shift and transient rolling */
   RP_STAGE_PLASTICITY = 8, /* of the third-body layer; its time is that of the tangential problem */
   RP_STAGE_DERIVATIVES = 9, /* rp_differentiate */
-  RP_STAGE_COUNT = 10
+  RP_STAGE_SUPPORT = 10,    /* rails on springs and dampers; its time is that of the contacts */
+  RP_STAGE_COUNT = 11
 } rp_stage;
 
 /* Called when a stage begins (entering = 1) and ends (0); for time shares. The core has no clock.
@@ -228,6 +229,11 @@ typedef struct rp_config {
   int32_t friction_points;                 /* 0: none, else 2 ... RP_MAX_POINTS */
   double friction_position[RP_MAX_POINTS]; /* m or rad, increasing */
   double friction_factor[RP_MAX_POINTS];   /* -, >= 0 */
+  /* factor of the friction law along the track, by input.x (wheels, any method), beside the one
+   * above; linear between the points, constant beyond */
+  int32_t friction_along_points;                 /* 0: none, else 2 ... RP_MAX_POINTS */
+  double friction_along_position[RP_MAX_POINTS]; /* m, increasing */
+  double friction_along_factor[RP_MAX_POINTS];   /* -, >= 0 */
 
   /* third-body layer: elastic where its thickness is not 0, plastic where it has a yield stress */
   double layer_shear_modulus; /* Pa */
@@ -277,6 +283,7 @@ typedef struct rp_config {
   double flange_back_position; /* m, of the flange back on the profile's y axis */
   rp_track track;
   double gauge, gauge_height;   /* m */
+  double gauge_widening;        /* m, > 0: each rail or roller lies half of it further out */
   double cant;                  /* rad, rail; > 0 leans both rails towards the track centre */
   double curvature;             /* 1/m, right-hand curve > 0, rail */
   double roller_radius;         /* m, roller */
@@ -287,6 +294,18 @@ typedef struct rp_config {
                               instead of the rolling speed V, and spin_creepage fades as the heading
                               turns, so that forces pass through standstill without a jump. 0: slip
                               over V, and at V = 0 no creep force */
+  /* a rail's profile along the track, by input.x: by side, section_count profiles (0: the one
+   * above, else 1 or more; copied) at increasing positions (m). All have as many knots, at the same
+   * shares of the arc length; between two sections the knots are interpolated linearly, beyond the
+   * ends the profile is constant. The rail's place follows from the profile at x. */
+  const rp_profile *rail_sections[2];
+  const double *section_position[2];
+  int32_t section_count[2];
+  /* rails or rollers on springs and dampers without mass; lateral, vertical. A deflection u adds to
+   * rail_offset, its rate to rail_velocity; k u + c (u - that of the last step)/time_step is the
+   * force of the wheel in that direction, without the second term where time_step is 0 */
+  double rail_stiffness[2]; /* N/m, 0: rigid in this direction */
+  double rail_damping[2];   /* N s/m, 0 in a rigid direction */
 
   rp_observer observer; /* may be null */
   void *observer_user;
@@ -385,6 +404,8 @@ typedef struct rp_side_result {
   double force[3];       /* N on the wheel, track axes */
   double moment[3];      /* N m about the wheelset centre, track axes */
   double rolling_radius; /* m, of the wheel at the mean contact reference; NaN without contact */
+  double rail_deflection[2];      /* m, lateral, vertical, track axes; NaN: the scene has none */
+  double rail_deflection_rate[2]; /* m/s, in this step; 0 where time_step is 0 */
   int32_t patch_count;
   rp_patch_result patch[RP_MAX_PATCHES];
 } rp_side_result;
