@@ -97,6 +97,13 @@ struct locus_point {
   double curvature = 0;      // 1/m, the gap grows with curvature x^2
 };
 
+// Both surfaces on the line along n through a frame's origin.
+struct section_point {
+  bool valid = false;
+  double wheel = 0, rail = 0;              // m, heights along n
+  double wheel_angle = 0, rail_angle = 0;  // rad, about x from the frame's s to the surface
+};
+
 struct surface;
 
 class side_geometry {
@@ -127,6 +134,10 @@ class side_geometry {
   // Undeformed distance at points (x, s) of the frame, neighbours following each other.
   void distances(const contact_frame &frame, const double *x, const double *s, int count,
                  double *h) const;
+
+  // start: arc lengths of wheel and rail profile to search from, NaN where they are not known; out
+  // those found.
+  section_point section(const contact_frame &frame, double start[2]) const;
 
   // h[ny][nx], x fastest; no_surface beyond the profiles.
   void undeformed_distance(const contact_frame &frame, const surface_grid &grid, double *h) const;
