@@ -93,6 +93,7 @@ void check_choices(const rp_config &c, checker &check) {
   check.choice("normal", c.normal, RP_NORMAL_HERTZ, RP_NORMAL_ANALYN);
   check.choice("tangential", c.tangential, RP_TANGENTIAL_NONE, RP_TANGENTIAL_TABLE);
   check.choice("spin_offset", c.spin_offset, RP_SPIN_OFFSET_NONE, RP_SPIN_OFFSET_SIXTH);
+  check.choice("reference_surface", c.reference_surface, RP_REFERENCE_PLANE, RP_REFERENCE_CURVED);
   check.choice("traction_bound", c.traction_bound, RP_BOUND_AUTOMATIC, RP_BOUND_ELLIPTIC);
   check.choice("flexibility_blending", c.flexibility_blending, RP_BLENDING_SLIDING,
                RP_BLENDING_CONTACT);
@@ -412,6 +413,29 @@ void check_sections(const rp_config &c, checker &check) {
   }
 }
 
+// What goes with a curved reference surface.
+void check_reference(const rp_config &c, checker &check) {
+  if (c.reference_surface == RP_REFERENCE_PLANE) return;
+  const char *wrong = nullptr;
+  if (c.kind == RP_PATCH)
+    wrong = "reference_surface must be plane with kind = patch: its shape has no normals";
+  else if (c.normal != RP_NORMAL_HALF_SPACE)
+    wrong = "reference_surface = curved needs normal = half_space";
+  else if (has_tangential(c) && c.tangential != RP_TANGENTIAL_FULL)
+    wrong = "reference_surface = curved needs tangential = full or none";
+  else if (c.fitted[0] > 0)
+    wrong = "reference_surface = curved needs fitted = 0, 0";
+  else if (has_tangential(c) && (c.friction_law != RP_COULOMB || c.layer_yield_stress > 0))
+    wrong = "reference_surface = curved needs friction_law = coulomb and layer_yield_stress = 0";
+  else if (c.temperature == 1)
+    wrong = "reference_surface = curved needs temperature = 0";
+  else if (has_tangential(c) && is_coupled(combine(c.shear_modulus, c.poisson_ratio)))
+    wrong = "reference_surface = curved needs bodies with equal (1-2nu)/G";
+  else if (!has_physics)
+    wrong = "reference_surface must be plane: this build has no curved ones";
+  check.require(wrong == nullptr, wrong ? wrong : "");
+}
+
 void check_wheels(const rp_config &c, checker &check) {
   check.integer("side", c.side, RP_LEFT, RP_RIGHT);
   check.number("nominal_radius", c.nominal_radius, {0.01, 10, false, false});
@@ -494,6 +518,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   check.require(!(rolling && fast && c.layer_thickness > 0),
                 "a fast theory has no third-body layer: use tangential = full");
   if (rolling && check.error() == RP_OK) check_coupled(c, check);
+  if (check.error() == RP_OK) check_reference(c, check);
   c.kind == RP_PATCH ? check_patch(c, check) : check_wheels(c, check);
   return check.error();
 }

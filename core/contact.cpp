@@ -93,6 +93,7 @@ patch_scene make_scene(const rp_config &c) {
   scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
   scene.derivatives = c.derivatives != 0;
   scene.stretches = c.kind != RP_PATCH && c.elements[0] > 0;
+  scene.curved = c.reference_surface == RP_REFERENCE_CURVED;
   scene.fast.theory = scene.tangential;
   if (uses_table(c)) scene.fast.creep_table = c.creep_table;
   scene.fast.coefficient_factor = 0.01 * c.percent_kalker;
@@ -576,15 +577,17 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
       (of_tangential && m.px.size() == 0) || lacks_law(m, name) || m.columns() * m.rows() == 0 ||
       (name == RP_FIELD_PRESSURE && m.pressure.size() + m.node_pressure.size() == 0);
   const bool no_heat = name == RP_FIELD_TEMPERATURE && !m.heat;
-  if (!m.solved || missing || no_heat) return RP_ERROR_NO_FIELD;
+  const bool of_rows = name == RP_FIELD_ROW_POSITION || name == RP_FIELD_ROW_ANGLE;
+  if (!m.solved || missing || no_heat || (of_rows && !m.curved)) return RP_ERROR_NO_FIELD;
   if (m.fitted() && name == RP_FIELD_UNDEFORMED_DISTANCE) return RP_ERROR_NO_FIELD;
   const int nx = m.columns(), ny = m.rows();
   const bool of_axis = (name == RP_FIELD_X && !m.fitted()) || name == RP_FIELD_Y;
   const bool of_vectors = name == RP_FIELD_TRACTION || name == RP_FIELD_MICRO_SLIP ||
                           name == RP_FIELD_PLASTIC_DISPLACEMENT || name == RP_FIELD_TEMPERATURE;
   const auto plane = static_cast<size_t>(nx * ny);
-  const size_t needed = of_axis ? static_cast<size_t>(name == RP_FIELD_X ? nx : ny)
-                                : (of_vectors ? 2 * plane : plane);
+  const size_t needed = of_axis   ? static_cast<size_t>(name == RP_FIELD_X ? nx : ny)
+                        : of_rows ? static_cast<size_t>(name == RP_FIELD_ROW_POSITION ? 2 * ny : ny)
+                                  : (of_vectors ? 2 * plane : plane);
   const size_t capacity = *count;
   *count = needed;
   if (capacity < needed || !values) return RP_ERROR_SIZE;
@@ -644,6 +647,16 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
       break;
     case RP_FIELD_YIELD_STRESS:
       copy(m.history.yield_stress, values, 1.0);
+      break;
+    case RP_FIELD_ROW_POSITION:
+      for (int j = 0; j < ny; ++j) {
+        const int row = left ? ny - 1 - j : j;
+        values[j] = lateral * m.curved->y(row);
+        values[ny + j] = m.curved->z(row);
+      }
+      break;
+    case RP_FIELD_ROW_ANGLE:
+      for (int j = 0; j < ny; ++j) values[j] = lateral * m.curved->angle(left ? ny - 1 - j : j);
       break;
     default:
       return RP_ERROR_NO_FIELD;

@@ -69,7 +69,9 @@ const char *influence_reason(const patch_scene &scene) {
 }
 
 const char *coupling_reason(const patch_scene &scene) {
-  if (scene.couples()) return "unlike bodies, (1 - 2 nu)/G differs: outer loop";
+  if (scene.couples())
+    return scene.curved ? "reference_surface = curved: outer loop"
+                        : "unlike bodies, (1 - 2 nu)/G differs: outer loop";
   return is_coupled(scene.elastic) ? "unlike bodies, but no tangential problem"
                                    : "(1 - 2 nu)/G of both bodies is the same";
 }

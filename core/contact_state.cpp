@@ -43,6 +43,7 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            static_cast<double>(c.normal),
                            static_cast<double>(c.tangential),
                            static_cast<double>(c.spin_offset),
+                           static_cast<double>(c.reference_surface),
                            static_cast<double>(c.traction_bound),
                            static_cast<double>(c.flexibility_blending),
                            static_cast<double>(c.track),

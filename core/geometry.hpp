@@ -81,8 +81,8 @@ struct surface_grid {
 };
 
 struct creepage_state {
-  double xi = 0, eta = 0;     // -, longitudinal, lateral
-  double phi = 0;             // rad/m, spin
+  double xi = 0, eta = 0;    // -, longitudinal, lateral
+  double phi = 0;            // rad/m, spin
   double rolling_speed = 0;  // m/s, >= 0, what slip is divided by: see the head on standstill
   int direction = 0;         // rolling towards +x (1), -x (-1); 0 at standstill
 };
@@ -105,6 +105,13 @@ struct locus_point {
   double rail_z = 0;         // m, of the rail surface there
   double contact_angle = 0;  // rad, of the rail surface
   double curvature = 0;      // 1/m, the gap grows with curvature x^2
+};
+
+// Both surfaces on the line along n through a frame's origin.
+struct section_point {
+  bool valid = false;
+  double wheel = 0, rail = 0;              // m, heights along n
+  double wheel_angle = 0, rail_angle = 0;  // rad, about x from the frame's s to the surface
 };
 
 struct surface;
@@ -136,6 +143,10 @@ class side_geometry {
   locus_point locus(double s) const;
   // The rail surface at (x, y): z, and the angle of its profile; false beyond the profile.
   bool rail_surface(double x, double y, double &z, double &angle) const;
+  // start: arc lengths of wheel and rail profile to search from, NaN where they are not known; out
+  // those found.
+  section_point section(const contact_frame &frame, double start[2]) const;
+
   // h[ny][nx], x fastest; no_surface beyond the profiles.
   void undeformed_distance(const contact_frame &frame, const surface_grid &grid, double *h) const;
 

@@ -6,7 +6,9 @@
 #include <optional>
 
 #include "coarse_start.hpp"
+#include "conformal_rows.hpp"
 #include "coupled_contact.hpp"
+#include "coupling.hpp"
 #include "error_estimate.hpp"
 #include "fast.hpp"
 #include "fitted.hpp"
@@ -46,6 +48,7 @@ struct patch_scene {
   bool spin_offset = false;  // x + dq/6 in the spin term
   bool derivatives = false;  // patch_contact::differentiate is asked for
   bool stretches = false;    // grids whose dx and dy change at different rates
+  bool curved = false;       // reference surface, of wheels
   int fitted[2] = {0, 0};    // nodes and strips of the tangential problem; 0: on the uniform grid
   fast_options fast;         // where the tangential theory is a fast one
   std::optional<heat_scene> heat;       // where temperatures are asked for
@@ -57,7 +60,7 @@ struct patch_scene {
   bool is_fitted() const { return tangential == RP_TANGENTIAL_FULL && fitted[0] > 0; }
   // Pressure and traction act on each other, and both are there.
   bool couples() const {
-    return has_physics && tangential == RP_TANGENTIAL_FULL && is_coupled(elastic);
+    return has_physics && tangential == RP_TANGENTIAL_FULL && (curved || is_coupled(elastic));
   }
   // No pressure and no traction on a uniform grid: all is closed form or on rows of its own.
   bool closed_form() const {
@@ -101,6 +104,7 @@ struct patch_memory {
   std::array<double, error_feature_count> error_features{};
   patch_history history;
   physics_part<heat_memory> heat;
+  physics_part<conformal_rows> curved;
   bool fitted() const { return node_x.size() > 0; }
   // elements of the tangential problem along rolling and lateral
   int columns() const { return fitted() ? static_cast<int>(node_x.size() / node_y.size()) : g.nx; }
@@ -177,6 +181,7 @@ class patch_contact {
                         rp_patch_result &result);
   bool solve_in_turn(const patch_problem &problem, patch_memory &memory, rp_patch_result &result);
   void leave_unloaded(const patch_problem &problem, patch_memory &memory);
+  void add_slip_of_rows(const grid &g, const conformal_rows &rows, rolling_input &rolling);
   tangential_result solve_fitted(const patch_problem &problem, const rolling_input &rolling,
                                  patch_memory &memory);
   // mu: of each element, null: as in the scene

@@ -219,12 +219,13 @@ void wheel_contact::match_memory(patch_memory *memory, int count) const {
   }
 }
 
-rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &region, int index,
+rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region, int index,
                                      patch_memory &memory, rp_side_result &out) {
   rp_patch_result &result = out.patch[index];
   result.share = region.share;
   patch_problem problem;
-  problem.g = choose_grid(region);
+  const bool reached = !memory.curved || memory.curved->begin(*geometry_, region);
+  problem.g = reached ? choose_grid(region) : grid{};
   const grid &g = problem.g;
   const bool usable = g.nx > 0 && g.ny > 0 && g.dx > 0 && g.dy > 0 && std::isfinite(g.x0 + g.y0);
   if (!usable || !solver.fits(g)) {
@@ -244,9 +245,13 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
 
   solver.observe(RP_STAGE_GEOMETRY, true);
   double *h = memory.undeformed_distance.data();
-  geometry_->undeformed_distance(region.frame, {g.nx, g.ny, g.x0, g.y0, g.dx, g.dy}, h);
+  if (memory.curved)
+    memory.curved->place(*geometry_, g, h);
+  else
+    geometry_->undeformed_distance(region.frame, {g.nx, g.ny, g.x0, g.y0, g.dx, g.dy}, h);
   const double depth = -*std::min_element(h, h + g.count());
   const creepage_state rolling = geometry_->creepages(region.frame, depth);
+  if (memory.curved) memory.curved->set_slip(*geometry_, depth, rolling.rolling_speed);
   if (memory.row_friction.size() > 0) set_friction(solver, region.frame, memory);
   solver.observe(RP_STAGE_GEOMETRY, false);
 
@@ -285,13 +290,17 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
 }
 
 // The factor of each row by the angle of the rail's surface there, > 0 towards the gauge face; a
-// row beyond the profile has no contact, and any factor.
+// row beyond the profile has no contact, and any factor. Rows of a curved reference surface have
+// an angle of their own.
 void wheel_contact::set_friction(const patch_contact &solver, const contact_frame &frame,
                                  patch_memory &memory) const {
   for (int j = 0; j < memory.g.ny; ++j) {
     const double across = std::cos(frame.contact_angle) * memory.g.y(j);
     double z = 0, slope = frame.contact_angle;
-    geometry_->rail_surface(frame.origin[0], frame.origin[1] + across, z, slope);
+    if (memory.curved)
+      slope = memory.curved->angle(j);
+    else
+      geometry_->rail_surface(frame.origin[0], frame.origin[1] + across, z, slope);
     memory.row_friction[static_cast<size_t>(j)] = solver.scene().friction_variation.at(-slope);
   }
 }

@@ -32,7 +32,7 @@ class wheel_contact {
   size_t bytes() const;
 
  private:
-  rp_status solve_patch(patch_contact &solver, const patch_region &region, int index,
+  rp_status solve_patch(patch_contact &solver, patch_region &region, int index,
                         patch_memory &memory, rp_side_result &result);
   void set_friction(const patch_contact &solver, const contact_frame &frame,
                     patch_memory &memory) const;

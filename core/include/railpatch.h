@@ -143,6 +143,13 @@ typedef enum rp_patch_rule {
   RP_PATCHES_CONTACT = 1  /* as in the program CONTACT: one patch below 8 mm, with part of the
                              interaction from 4 mm on, and angles turned together up to 12 mm */
 } rp_patch_rule;
+/* of the half-space theories for wheels */
+typedef enum rp_reference_surface {
+  RP_REFERENCE_PLANE = 0, /* tangent to the contact reference */
+  RP_REFERENCE_CURVED = 1 /* midway between wheel and rail: rows with normals of their own, for
+                             conformal contact. Needs normal = half_space, tangential = full or
+                             none, a uniform grid, Coulomb friction, like bodies */
+} rp_reference_surface;
 typedef enum rp_track { RP_RAIL = 0, RP_ROLLER = 1 } rp_track;
 typedef enum rp_element { RP_EXTERIOR = 0, RP_STICK = 1, RP_SLIP = 2, RP_PLASTIC = 3 } rp_element;
 
@@ -262,6 +269,7 @@ typedef struct rp_config {
   double tolerance;       /* -, relative, 1e-12 ... 1e-1 */
   int32_t max_iterations; /* of each solver */
   rp_spin_offset spin_offset;
+  rp_reference_surface reference_surface;
   double percent_kalker; /* %, 0 < ... 200: of the creepage coefficients of the fast theories */
   rp_traction_bound traction_bound;
   rp_flexibility_blending flexibility_blending;
@@ -351,9 +359,10 @@ typedef struct rp_input {
  * 0. */
 typedef struct rp_patch_result {
   rp_status status;
-  double normal_force;       /* N */
+  double normal_force;       /* N, along n at the contact reference */
   double approach;           /* m, greatest rigid interpenetration along n */
-  double creep_force[2];     /* N on the wheel, longitudinal, lateral */
+  double creep_force[2];     /* N on the wheel, longitudinal, lateral; on a curved reference surface
+                                along s at the contact reference, with what pressure adds to it */
   double spin_moment;        /* N m on the wheel about n at the contact reference */
   double max_pressure;       /* Pa */
   double contact_area;       /* m^2 */
@@ -432,7 +441,11 @@ typedef enum rp_field {
   RP_FIELD_FRICTION = 9,              /* -, friction coefficient of each element, [ny][nx] */
   RP_FIELD_PLASTIC_DISPLACEMENT = 10, /* m, accumulated vector, [2][ny][nx] */
   RP_FIELD_PLASTIC_PATH = 11,         /* m, what the yield stress depends on, [ny][nx] */
-  RP_FIELD_YIELD_STRESS = 12          /* Pa, [ny][nx] */
+  RP_FIELD_YIELD_STRESS = 12,         /* Pa, [ny][nx] */
+  /* of a curved reference surface, where y above is its arc length; lateral tractions and slips act
+   * along each row's own s, pressure and undeformed distance along its own n */
+  RP_FIELD_ROW_POSITION = 13, /* m, [2][ny], y and z of each row in track axes */
+  RP_FIELD_ROW_ANGLE = 14     /* rad, [ny], contact angle of each row */
 } rp_field;
 
 typedef struct rp_stage_info {

@@ -58,6 +58,7 @@
   X(tolerance)                      \
   X(max_iterations)                 \
   X(spin_offset)                    \
+  X(reference_surface)              \
   X(percent_kalker)                 \
   X(traction_bound)                 \
   X(flexibility_blending)           \
