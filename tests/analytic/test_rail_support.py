@@ -233,7 +233,9 @@ def test_a_restored_state_steps_to_the_same_bits(load: dict[str, float]) -> None
     contact.reset()
     assert contact.step(y=1e-3).to_dict()["left"] == first.to_dict()["left"]
     with pytest.raises(CaseError, match="state"):
-        Contact(wheelset(**load, track__rail_support=support([2e7, 6e7], [2e4, 5e4]))).restore(state)
+        Contact(wheelset(**load, track__rail_support=support([2e7, 6e7], [2e4, 5e4]))).restore(
+            state
+        )
 
 
 def test_left_and_right_are_mirror_images() -> None:
@@ -269,7 +271,10 @@ def test_a_solve_that_fails_says_so() -> None:
 
 
 def test_the_stage_is_there_where_rails_deflect() -> None:
-    for values, present in ({}, False), ({"track__rail_support": support([0.0, 5e7], [0, 0.0])}, True):
+    for values, present in (
+        ({}, False),
+        ({"track__rail_support": support([0.0, 5e7], [0, 0.0])}, True),
+    ):
         contact = Contact(wheelset(**values))
         stage = next(s for s in contact.stages() if s["name"] == "rail_support")
         assert stage["present"] is present

@@ -222,9 +222,7 @@ def sections_config(scene: Scene, case: WheelRailCase | WheelsetCase) -> dict[st
     profiles = []
     for sections in found:
         loaded = [
-            load_profile(
-                s.profile, "rail", folder=scene.folder, smoothing=case.profiles.smoothing
-            )
+            load_profile(s.profile, "rail", folder=scene.folder, smoothing=case.profiles.smoothing)
             for s in sections
         ]
         profiles.append([profile_arrays(p) for p in matching_sections(loaded)] if loaded else [])

@@ -142,9 +142,10 @@ class Friction(Table):
                 raise relation("change", self.change, "reference + change within 0 ... 10")
         for name in ("factor", "along_track"):
             points = getattr(self, name)
-            if points is not None and not 0 <= min(v for _, v in points) <= max(
-                v for _, v in points
-            ) <= 100:
+            if (
+                points is not None
+                and not 0 <= min(v for _, v in points) <= max(v for _, v in points) <= 100
+            ):
                 raise relation(name, str(points), "factors within 0 ... 100")
 
     @property
