@@ -260,13 +260,12 @@ def sections(*pairs: tuple[float, str]) -> dict[str, Any]:
 def test_equal_sections_are_one_profile() -> None:
     contact = Contact(wheel(**sections((0.0, "UIC60@1:40"), (4.0, "UIC60@1:40"))))
     plain = solve(wheel("UIC60@1:40"))
-    for x in (-1.0, 0.0, 0.7, 3.9, 4.0, 9.0):
+    first = contact.step(x=-1.0)
+    assert first.status == "converged"
+    for x in (0.0, 0.7, 3.9, 4.0, 9.0):
         contact.reset()
         found = contact.step(x=x)
-        assert found.status == "converged"
-        if x > -1:
-            assert found["force"] == first["force"]
-        first = found
+        assert found["force"] == first["force"]
     # other knots on the same curve: at kinks of its curvature within 1e-4 m
     same(found["force"], plain["force"], 1e-4)
 
