@@ -11,6 +11,7 @@
 #include "coupling.hpp"
 #include "creep_table.hpp"
 #include "fast.hpp"
+#include "input_numbers.hpp"
 #include "physics.hpp"
 
 namespace railpatch {
@@ -92,6 +93,7 @@ void check_choices(const rp_config &c, checker &check) {
   check.choice("normal", c.normal, RP_NORMAL_HERTZ, RP_NORMAL_ANALYN);
   check.choice("tangential", c.tangential, RP_TANGENTIAL_NONE, RP_TANGENTIAL_TABLE);
   check.choice("spin_offset", c.spin_offset, RP_SPIN_OFFSET_NONE, RP_SPIN_OFFSET_SIXTH);
+  check.choice("reference_surface", c.reference_surface, RP_REFERENCE_PLANE, RP_REFERENCE_CURVED);
   check.choice("traction_bound", c.traction_bound, RP_BOUND_AUTOMATIC, RP_BOUND_ELLIPTIC);
   check.choice("flexibility_blending", c.flexibility_blending, RP_BLENDING_SLIDING,
                RP_BLENDING_CONTACT);
@@ -100,6 +102,7 @@ void check_choices(const rp_config &c, checker &check) {
     check.choice("geometry", c.geometry, RP_SEMI_AXES, RP_UNDEFORMED_DISTANCE);
   else
     check.choice("track", c.track, RP_RAIL, RP_ROLLER);
+  check.choice("patch_rule", c.patch_rule, RP_PATCHES_BLENDED, RP_PATCHES_CONTACT);
 }
 
 void check_fitted(const rp_config &c, checker &check) {
@@ -410,6 +413,29 @@ void check_sections(const rp_config &c, checker &check) {
   }
 }
 
+// What goes with a curved reference surface.
+void check_reference(const rp_config &c, checker &check) {
+  if (c.reference_surface == RP_REFERENCE_PLANE) return;
+  const char *wrong = nullptr;
+  if (c.kind == RP_PATCH)
+    wrong = "reference_surface must be plane with kind = patch: its shape has no normals";
+  else if (c.normal != RP_NORMAL_HALF_SPACE)
+    wrong = "reference_surface = curved needs normal = half_space";
+  else if (has_tangential(c) && c.tangential != RP_TANGENTIAL_FULL)
+    wrong = "reference_surface = curved needs tangential = full or none";
+  else if (c.fitted[0] > 0)
+    wrong = "reference_surface = curved needs fitted = 0, 0";
+  else if (has_tangential(c) && (c.friction_law != RP_COULOMB || c.layer_yield_stress > 0))
+    wrong = "reference_surface = curved needs friction_law = coulomb and layer_yield_stress = 0";
+  else if (c.temperature == 1)
+    wrong = "reference_surface = curved needs temperature = 0";
+  else if (has_tangential(c) && is_coupled(combine(c.shear_modulus, c.poisson_ratio)))
+    wrong = "reference_surface = curved needs bodies with equal (1-2nu)/G";
+  else if (!has_physics)
+    wrong = "reference_surface must be plane: this build has no curved ones";
+  check.require(wrong == nullptr, wrong ? wrong : "");
+}
+
 void check_wheels(const rp_config &c, checker &check) {
   check.integer("side", c.side, RP_LEFT, RP_RIGHT);
   check.number("nominal_radius", c.nominal_radius, {0.01, 10, false, false});
@@ -426,6 +452,7 @@ void check_wheels(const rp_config &c, checker &check) {
     check.require(c.curvature == 0, "curvature must be 0 on rollers");
   }
   check.integer("max_patches", c.max_patches, 1, RP_MAX_PATCHES);
+  check.number("standstill_speed", c.standstill_speed, {0, 1, false, false});
   check_sections(c, check);
   check.numbers("rail_stiffness", c.rail_stiffness, 2, {0, 1e15, false, false});
   check.numbers("rail_damping", c.rail_damping, 2, {0, 1e15, false, false});
@@ -481,6 +508,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
     check.number("layer_shear_modulus", c.layer_shear_modulus, {1.0, 1e15, false, false});
   check.number("tolerance", c.tolerance, {1e-12, 0.1, false, false});
   check.integer("max_iterations", c.max_iterations, 1, 100000);
+  check.integer("derivatives", c.derivatives, 0, 1);
   const bool rolling = has_tangential(c);
   const bool fast = is_fast(c.tangential);
   check_fast(c, check);
@@ -490,6 +518,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   check.require(!(rolling && fast && c.layer_thickness > 0),
                 "a fast theory has no third-body layer: use tangential = full");
   if (rolling && check.error() == RP_OK) check_coupled(c, check);
+  if (check.error() == RP_OK) check_reference(c, check);
   c.kind == RP_PATCH ? check_patch(c, check) : check_wheels(c, check);
   return check.error();
 }
@@ -562,6 +591,19 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
                   "about x only");
   }
   check.number("roller_pitch_rate", in.roller_pitch_rate, finite);
+  return check.error();
+}
+
+rp_error check_direction(const rp_input &d, rp_message *message) {
+  if (d.cookie != input_cookie) {
+    set_message(message, "the direction was never filled by rp_default_input");
+    return RP_ERROR_NOT_DEFAULTED;
+  }
+  checker check(message);
+  for_each_number(d, [&](const char *name, const double &value, double) {
+    const bool bulk = std::strcmp(name, "bulk_temperature") == 0;
+    if (!(bulk && std::isnan(value))) check.number(name, value, finite);
+  });
   return check.error();
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "check.hpp"
+#include "contact_derivative.hpp"
 #include "force_search.hpp"
 
 namespace railpatch {
@@ -90,6 +91,9 @@ patch_scene make_scene(const rp_config &c) {
   for (int k = 0; k < 2; ++k) scene.fitted[k] = c.fitted[k];
   for (int k = 0; k < 2; ++k) scene.prescribed[k] = c.force_prescribed[k] != 0;
   scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
+  scene.derivatives = c.derivatives != 0;
+  scene.stretches = c.kind != RP_PATCH && c.elements[0] > 0;
+  scene.curved = c.reference_surface == RP_REFERENCE_CURVED;
   scene.fast.theory = scene.tangential;
   if (uses_table(c)) scene.fast.creep_table = c.creep_table;
   scene.fast.coefficient_factor = 0.01 * c.percent_kalker;
@@ -265,6 +269,10 @@ contact::contact(const rp_config &config)
     friction_along_ = friction_factor(config.friction_along_points, config.friction_along_position,
                                       config.friction_along_factor);
   scene_ = fingerprint(config, shape_);
+  if (config.derivatives != 0) {
+    const auto count = config.kind == RP_PATCH ? static_cast<size_t>(size.nx * size.ny) : 0;
+    derivative_ = std::make_unique<derivative_record>(config, solver_.scene(), count);
+  }
   // nothing else of the caller's memory is kept than the creep table
   config_.undeformed_distance = nullptr;
   for (auto *p : {&config_.wheel[0], &config_.wheel[1], &config_.rail[0], &config_.rail[1]})
@@ -272,6 +280,8 @@ contact::contact(const rp_config &config)
   for (int side = 0; side < 2; ++side)
     config_.rail_sections[side] = nullptr, config_.section_position[side] = nullptr;
 }
+
+contact::~contact() = default;
 
 bool contact::has_side(int side) const {
   if (config_.kind == RP_PATCH) return side == RP_RIGHT;
@@ -288,6 +298,7 @@ const patch_memory &contact::memory(int side, int patch) const {
 }
 
 void contact::step(const rp_input &input, rp_result &result) {
+  if (derivative_) begin_record();
   rp_result out{};
   out.z = nan;
   const rp_patch_result empty = empty_patch_result();
@@ -305,6 +316,7 @@ void contact::step(const rp_input &input, rp_result &result) {
   }
   config_.kind == RP_PATCH ? step_patch(input, out) : step_wheels(input, out);
   result = out;
+  if (derivative_) end_record(input, out);
 }
 
 rolling_input contact::step_of(const rp_input &in) const {
@@ -400,6 +412,7 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
   solver_.observe(RP_STAGE_GEOMETRY, false);
   patch_wrench wrench;
   solver_.solve(problem, m, result, wrench);
+  if (derivative_) derivative_->problem = problem;
   finish(result.status);
 }
 
@@ -501,6 +514,7 @@ void contact::reset() {
     if (m.heat) m.heat->clear();
   }
   depth_ = 0;
+  if (derivative_) derivative_->solved = false;
   if (support_) support_->reset();
 }
 
@@ -563,15 +577,17 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
       (of_tangential && m.px.size() == 0) || lacks_law(m, name) || m.columns() * m.rows() == 0 ||
       (name == RP_FIELD_PRESSURE && m.pressure.size() + m.node_pressure.size() == 0);
   const bool no_heat = name == RP_FIELD_TEMPERATURE && !m.heat;
-  if (!m.solved || missing || no_heat) return RP_ERROR_NO_FIELD;
+  const bool of_rows = name == RP_FIELD_ROW_POSITION || name == RP_FIELD_ROW_ANGLE;
+  if (!m.solved || missing || no_heat || (of_rows && !m.curved)) return RP_ERROR_NO_FIELD;
   if (m.fitted() && name == RP_FIELD_UNDEFORMED_DISTANCE) return RP_ERROR_NO_FIELD;
   const int nx = m.columns(), ny = m.rows();
   const bool of_axis = (name == RP_FIELD_X && !m.fitted()) || name == RP_FIELD_Y;
   const bool of_vectors = name == RP_FIELD_TRACTION || name == RP_FIELD_MICRO_SLIP ||
                           name == RP_FIELD_PLASTIC_DISPLACEMENT || name == RP_FIELD_TEMPERATURE;
   const auto plane = static_cast<size_t>(nx * ny);
-  const size_t needed = of_axis ? static_cast<size_t>(name == RP_FIELD_X ? nx : ny)
-                                : (of_vectors ? 2 * plane : plane);
+  const size_t needed = of_axis   ? static_cast<size_t>(name == RP_FIELD_X ? nx : ny)
+                        : of_rows ? static_cast<size_t>(name == RP_FIELD_ROW_POSITION ? 2 * ny : ny)
+                                  : (of_vectors ? 2 * plane : plane);
   const size_t capacity = *count;
   *count = needed;
   if (capacity < needed || !values) return RP_ERROR_SIZE;
@@ -631,6 +647,16 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
       break;
     case RP_FIELD_YIELD_STRESS:
       copy(m.history.yield_stress, values, 1.0);
+      break;
+    case RP_FIELD_ROW_POSITION:
+      for (int j = 0; j < ny; ++j) {
+        const int row = left ? ny - 1 - j : j;
+        values[j] = lateral * m.curved->y(row);
+        values[ny + j] = m.curved->z(row);
+      }
+      break;
+    case RP_FIELD_ROW_ANGLE:
+      for (int j = 0; j < ny; ++j) values[j] = lateral * m.curved->angle(left ? ny - 1 - j : j);
       break;
     default:
       return RP_ERROR_NO_FIELD;

@@ -6,6 +6,7 @@
 
 #include "check.hpp"
 #include "contact.hpp"
+#include "contact_derivative.hpp"
 
 namespace railpatch {
 
@@ -42,6 +43,7 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            static_cast<double>(c.normal),
                            static_cast<double>(c.tangential),
                            static_cast<double>(c.spin_offset),
+                           static_cast<double>(c.reference_surface),
                            static_cast<double>(c.traction_bound),
                            static_cast<double>(c.flexibility_blending),
                            static_cast<double>(c.track),
@@ -54,6 +56,8 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            static_cast<double>(c.max_elements[1]),
                            static_cast<double>(c.max_iterations),
                            static_cast<double>(c.max_patches),
+                           static_cast<double>(c.patch_rule),
+                           c.standstill_speed,
                            static_cast<double>(c.force_prescribed[0]),
                            static_cast<double>(c.force_prescribed[1]),
                            c.element_size[0],
@@ -173,7 +177,8 @@ size_t support_bytes(const std::unique_ptr<rail_support> &support) {
   return support ? 2 * sizeof(rail_support::rail) : 0;
 }
 
-// the fields that a later step starts from
+// the fields that a later step starts from, at most
+constexpr size_t max_start_fields = 16;
 template <class Memory, class F>
 void for_each_start_field(Memory &m, F &&f) {
   if (m.heat && m.heat->columns.size())
@@ -252,7 +257,27 @@ bool contact::restore_state(const unsigned char *buffer, size_t size) {
   if (support_) std::memcpy(support_->rails(), at, support_bytes(support_));
   depth_ = header.depth;
   solver_.set_friction_coefficient(header.friction_coefficient);
+  if (derivative_) derivative_->solved = false;
   return true;
+}
+
+void contact::copy_state(const contact &from) {
+  for (size_t k = 0; k < memory_.size(); ++k) {
+    const patch_memory &source = from.memory_[k];
+    patch_memory &m = memory_[k];
+    m.g = source.g;
+    m.reference = source.reference;
+    m.warm = source.warm;
+    m.history.begun = source.history.begun;
+    m.solved = false;
+    const double *fields[max_start_fields];
+    size_t count = 0, next = 0;
+    for_each_start_field(source, [&](const double *data, size_t) { fields[count++] = data; });
+    for_each_start_field(
+        m, [&](double *data, size_t bytes) { std::memcpy(data, fields[next++], bytes); });
+  }
+  depth_ = from.depth_;
+  solver_.set_friction_coefficient(from.friction_coefficient());
 }
 
 // Walks the patches without changing anything: every grid must fit this handle's memory.

@@ -34,6 +34,15 @@ mat3 roll_yaw(double roll, double yaw) {
 
 constexpr mat3 identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
+// what slip is divided by, and the part of spin near the turn of the heading: see the header
+double divisor(double speed, double slow) {
+  return speed < slow ? 0.5 * (speed * speed + slow * slow) / slow : speed;
+}
+double turning(double heading, double slow) {
+  const double t = std::fabs(heading);
+  return t < slow ? 0.5 * (t / slow) * (3.0 - (t / slow) * (t / slow)) : 1.0;
+}
+
 struct frame_axes {
   vec3 x, s, n;
 };
@@ -97,6 +106,17 @@ bool meet(const surface &f, const vec3 &base, hit &h) {
     if (std::fabs(dp) < 4e-7 && std::fabs(dn) < 4e-7) return h.valid = curve.covers(h.p);
   }
   return h.valid = false;
+}
+
+// Angle of the surface in the plane across x: the gradient of (distance from the axis - r(u)) is
+// normal to it, as (q_x/r, -dr/du, q_z/r) in the surface's axes.
+double across(const surface &f, const hit &h) {
+  const curve_point m = f.meridian->evaluate(h.p, f.meridian->curve().interval(h.p, h.interval));
+  const vec3 q = f.q0 + h.n * f.qn;
+  const double r = f.radius + f.sign * m.z, dr = f.sign * m.dz;
+  const vec3 normal =
+      f.prismatic ? vec3{0, -dr, m.dy} : vec3{q[0] / r * m.dy, -dr, q[2] / r * m.dy};
+  return std::atan(-dot(normal, f.qs) / dot(normal, f.qn));
 }
 
 // the sample of the meridian nearest to the frame's origin starts the search
@@ -388,18 +408,6 @@ void side_geometry::undeformed_distance(const contact_frame &frame, const surfac
   }
 }
 
-void side_geometry::distances(const contact_frame &frame, const double *x, const double *s,
-                              int count, double *h) const {
-  const surface wheel = wheel_seen_from(frame), rail = rail_seen_from(frame);
-  hit on_wheel = nearest(wheel), on_rail = nearest(rail);
-  for (int i = 0; i < count; ++i) {
-    hit a = on_wheel, b = on_rail;
-    const bool met = meet(wheel, wheel.at(x[i], s[i]), a) && meet(rail, rail.at(x[i], s[i]), b);
-    h[i] = met ? b.n - a.n : no_surface;
-    if (met) on_wheel = a, on_rail = b;
-  }
-}
-
 // Velocity of the wheel's material by the rates of its deviation, but for the one about its axis.
 vec3 side_geometry::wheel_rate(const vec3 &at) const {
   const deviation &d = motion_.wheel;
@@ -417,6 +425,24 @@ vec3 side_geometry::rail_rate(const vec3 &at) const {
   vec3 spin = d.angular_velocity;
   if (track_.kind == track_kind::roller) spin[1] = 0;
   return d.velocity + cross(spin, at - origin);
+}
+
+section_point side_geometry::section(const contact_frame &frame, double start[2]) const {
+  const surface both[2] = {wheel_seen_from(frame), rail_seen_from(frame)};
+  double height[2], turn[2];
+  for (int k = 0; k < 2; ++k) {
+    const surface &f = both[k];
+    hit h;
+    if (std::isnan(start[k]))
+      h = nearest(f);
+    else
+      h.p = start[k];
+    if (!meet(f, f.at(0, 0), h)) return {};
+    start[k] = h.p;
+    height[k] = h.n;
+    turn[k] = across(f, h);
+  }
+  return {true, height[0], height[1], turn[0], turn[1]};
 }
 
 creepage_state side_geometry::creepages(const contact_frame &frame, double approach) const {
@@ -454,14 +480,17 @@ creepage_state side_geometry::creepages(const contact_frame &frame, double appro
     spin = spin - roller_spin;
   }
   creepage_state out;
-  const double speed = 0.5 * (std::fabs(forward) + std::fabs(backward));
-  if (!(speed > standstill)) return out;
+  const double mean = 0.5 * (std::fabs(forward) + std::fabs(backward));
+  const double slow = sizes_.standstill_speed;
+  const bool rolls = mean > standstill;
+  if (!rolls && slow == 0) return out;
   const double heading = std::fabs(forward - backward) > standstill ? forward - backward : forward;
+  if (rolls) out.direction = heading > 0 ? 1 : -1;
+  const double speed = divisor(mean, slow);
   out.rolling_speed = speed;
-  out.direction = heading > 0 ? 1 : -1;
   out.xi = slip[0] / speed;
   out.eta = dot(f.s, slip) / speed;
-  out.phi = dot(f.n, spin) / speed;
+  out.phi = dot(f.n, spin) / speed * turning(0.5 * (forward - backward), slow);
   return out;
 }
 

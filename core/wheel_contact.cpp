@@ -64,6 +64,13 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // greatest distance a reference may move between steps for its solution to be a useful start
 constexpr double warm_distance = 2e-3;
 
+void scale(patch_wrench &wrench, double share) {
+  for (int k = 0; k < 3; ++k) {
+    wrench.force[k] *= share;
+    wrench.moment[k] *= share;
+  }
+}
+
 // The rows of a patch's parts on its grid.
 contact_parts parts_on(const patch_region &region, const grid &g) {
   static_assert(max_parts <= contact_parts::capacity);
@@ -85,7 +92,9 @@ wheel_contact::wheel_contact(const rp_config &c, int side)
       sections_(make_sections(c, side)),
       wheel_(make_profile(c.wheel[side], side == RP_LEFT ? "wheel_left" : "wheel_right")),
       rail_(make_rail(c, side)) {
-  const wheel_config sizes{c.nominal_radius, c.flange_back_distance, c.flange_back_position};
+  rules_.blended = c.patch_rule == RP_PATCHES_BLENDED;
+  const wheel_config sizes{c.nominal_radius, c.flange_back_distance, c.flange_back_position,
+                           c.standstill_speed};
   geometry_ = std::make_unique<side_geometry>(*wheel_, *rail_, sizes, track_of(c, side));
 }
 
@@ -142,7 +151,7 @@ grid wheel_contact::choose_grid(const patch_region &r) const {
 void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_side_result &out) {
   solver.observe(RP_STAGE_GEOMETRY, true);
   const search_result found =
-      find_patches(*geometry_, patch_rules{}, regions_.data(), config_.max_patches);
+      find_patches(*geometry_, rules_, parts_, regions_.data(), config_.max_patches);
   solver.observe(RP_STAGE_GEOMETRY, false);
   out.status = RP_NO_CONTACT;
   const int count = found.count;
@@ -154,23 +163,69 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
   beyond_ = found.status == search_status::out_of_range ||
             found.status == search_status::too_many_patches;
   if (beyond_) out.status = RP_OUT_OF_RANGE;
+  match_memory(memory, count);
   for (int i = 0; i < count; ++i)
     out.status = combine_status(
         out.status, solve_patch(solver, regions_[static_cast<size_t>(i)], i, memory[i], out));
   for (int i = count; i < config_.max_patches; ++i) memory[i].warm = memory[i].solved = false;
-  // of several patches the mean radius, each weighted with its load
+  // of several patches the mean radius, each weighted with the load it adds to the sum
   double load = 0;
   for (int i = 0; i < count; ++i)
-    if (out.patch[i].normal_force > 0) load += out.patch[i].normal_force;
+    if (out.patch[i].normal_force > 0) load += out.patch[i].share * out.patch[i].normal_force;
   out.rolling_radius = load > 0 ? out.rolling_radius / load : nan;
   if (side_ == RP_LEFT) mirror(out);
 }
 
-rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &region, int index,
+// Moves the memories so that each patch finds the one of the last solution that lay nearest to it
+// and was most alike in extent; patches appear, vanish, join and part beside it. Ties go to the
+// first, so the order is a function of the last solution only.
+void wheel_contact::match_memory(patch_memory *memory, int count) const {
+  const int slots = config_.max_patches;
+  if (slots == 1) return;
+  const auto unlike = [&](const patch_region &region, const patch_memory &m) {
+    const vec3 &at = region.frame.origin;
+    const double moved = std::hypot(at[1] - m.reference[1], at[2] - m.reference[2]);
+    if (!m.warm || moved > warm_distance) return HUGE_VAL;
+    const double low = m.g.y0, high = m.g.y(m.g.ny - 1);
+    return moved + std::fabs(region.s_min - low) + std::fabs(region.s_max - high);
+  };
+  std::array<int, RP_MAX_PATCHES> taken;  // slot of each patch
+  std::array<bool, RP_MAX_PATCHES> used{};
+  taken.fill(-1);
+  const auto at = [](int i) { return static_cast<size_t>(i); };
+  for (int round = 0; round < count; ++round) {
+    double best = HUGE_VAL;
+    int patch = -1, slot = -1;
+    for (int i = 0; i < count; ++i)
+      for (int k = 0; k < slots; ++k) {
+        if (taken[at(i)] >= 0 || used[at(k)]) continue;
+        const double u = unlike(regions_[at(i)], memory[k]);
+        if (u < best) best = u, patch = i, slot = k;
+      }
+    if (patch < 0) break;
+    taken[at(patch)] = slot;
+    used[at(slot)] = true;
+  }
+  for (int i = 0; i < count; ++i)
+    for (int k = 0; k < slots && taken[at(i)] < 0; ++k)
+      if (!used[at(k)]) taken[at(i)] = k, used[at(k)] = true;
+  for (int i = 0; i < count; ++i) {
+    const int from = taken[at(i)];
+    if (from == i) continue;
+    std::swap(memory[i], memory[from]);
+    // what was here now lies there
+    for (int j = i + 1; j < count; ++j)
+      if (taken[at(j)] == i) taken[at(j)] = from;
+  }
+}
+
+rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region, int index,
                                      patch_memory &memory, rp_side_result &out) {
   rp_patch_result &result = out.patch[index];
+  result.share = region.share;
   patch_problem problem;
-  problem.g = choose_grid(region);
+  const bool reached = !memory.curved || memory.curved->begin(*geometry_, region);
+  problem.g = reached ? choose_grid(region) : grid{};
   const grid &g = problem.g;
   const bool usable = g.nx > 0 && g.ny > 0 && g.dx > 0 && g.dy > 0 && std::isfinite(g.x0 + g.y0);
   if (!usable || !solver.fits(g)) {
@@ -190,9 +245,13 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
 
   solver.observe(RP_STAGE_GEOMETRY, true);
   double *h = memory.undeformed_distance.data();
-  geometry_->undeformed_distance(region.frame, {g.nx, g.ny, g.x0, g.y0, g.dx, g.dy}, h);
+  if (memory.curved)
+    memory.curved->place(*geometry_, g, h);
+  else
+    geometry_->undeformed_distance(region.frame, {g.nx, g.ny, g.x0, g.y0, g.dx, g.dy}, h);
   const double depth = -*std::min_element(h, h + g.count());
   const creepage_state rolling = geometry_->creepages(region.frame, depth);
+  if (memory.curved) memory.curved->set_slip(*geometry_, depth, rolling.rolling_speed);
   if (memory.row_friction.size() > 0) set_friction(solver, region.frame, memory);
   solver.observe(RP_STAGE_GEOMETRY, false);
 
@@ -209,7 +268,9 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
   patch_wrench wrench;
   solver.solve(problem, memory, result, wrench);
 
-  out.rolling_radius += result.normal_force * geometry_->rolling_radius(region.frame, depth);
+  scale(wrench, region.share);
+  out.rolling_radius +=
+      region.share * result.normal_force * geometry_->rolling_radius(region.frame, depth);
   const vec3 lever = geometry_->lever(region.frame);
   add_wrench(wrench, region.frame.contact_angle, lever.data(), out.force, out.moment);
   std::copy_n(origin.begin(), 3, result.position);
@@ -229,13 +290,17 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
 }
 
 // The factor of each row by the angle of the rail's surface there, > 0 towards the gauge face; a
-// row beyond the profile has no contact, and any factor.
+// row beyond the profile has no contact, and any factor. Rows of a curved reference surface have
+// an angle of their own.
 void wheel_contact::set_friction(const patch_contact &solver, const contact_frame &frame,
                                  patch_memory &memory) const {
   for (int j = 0; j < memory.g.ny; ++j) {
     const double across = std::cos(frame.contact_angle) * memory.g.y(j);
     double z = 0, slope = frame.contact_angle;
-    geometry_->rail_surface(frame.origin[0], frame.origin[1] + across, z, slope);
+    if (memory.curved)
+      slope = memory.curved->angle(j);
+    else
+      geometry_->rail_surface(frame.origin[0], frame.origin[1] + across, z, slope);
     memory.row_friction[static_cast<size_t>(j)] = solver.scene().friction_variation.at(-slope);
   }
 }

@@ -32,11 +32,12 @@ class wheel_contact {
   size_t bytes() const;
 
  private:
-  rp_status solve_patch(patch_contact &solver, const patch_region &region, int index,
+  rp_status solve_patch(patch_contact &solver, patch_region &region, int index,
                         patch_memory &memory, rp_side_result &result);
   void set_friction(const patch_contact &solver, const contact_frame &frame,
                     patch_memory &memory) const;
   grid choose_grid(const patch_region &region) const;
+  void match_memory(patch_memory *memory, int count) const;
 
   rp_config config_;
   int side_;
@@ -44,6 +45,8 @@ class wheel_contact {
   std::unique_ptr<rail_sections> sections_;  // where the rail's profile varies along the track
   std::unique_ptr<profile> wheel_, rail_;
   std::unique_ptr<side_geometry> geometry_;
+  patch_rules rules_;
+  part_set parts_;
   std::array<patch_region, RP_MAX_PATCHES> regions_;
 };
 

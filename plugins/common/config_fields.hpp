@@ -58,6 +58,7 @@
   X(tolerance)                      \
   X(max_iterations)                 \
   X(spin_offset)                    \
+  X(reference_surface)              \
   X(percent_kalker)                 \
   X(traction_bound)                 \
   X(flexibility_blending)           \
@@ -66,6 +67,7 @@
   X(fastsim_k0)                     \
   X(fastsim_alpha)                  \
   X(fastsim_beta)                   \
+  X(derivatives)                    \
   X(side)                           \
   X(nominal_radius)                 \
   X(flange_back_distance)           \
@@ -79,4 +81,6 @@
   X(cant)                           \
   X(curvature)                      \
   X(roller_radius)                  \
-  X(max_patches)
+  X(max_patches)                    \
+  X(patch_rule)                     \
+  X(standstill_speed)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from railpatch.case.common import FAST_NUMBERS, Friction, Layer, Temperature
+from railpatch.case.common import FAST_NUMBERS, WHEEL_METHOD, Friction, Layer, Temperature
 from railpatch.case.load import Case, Scene
 from railpatch.case.patch import SHAPES, PatchCase
 from railpatch.case.types import MOST_POINTS
@@ -34,6 +34,7 @@ def config_of(scene: Scene) -> dict[str, Any]:
         "tangential": case.method.tangential,
         "tolerance": case.method.tolerance,
         "spin_offset": case.method.spin_offset,
+        "reference_surface": case.method.reference_surface,
         "flexibility_blending": case.method.flexibility_blending,
         **{name: getattr(case.method, name) for name in FAST_NUMBERS},
     }
@@ -185,6 +186,8 @@ def wheel_config(scene: Scene, case: WheelRailCase | WheelsetCase) -> dict[str, 
     config.update(sections_config(scene, case))
     if wheelset.max_patches is not None:
         config["max_patches"] = wheelset.max_patches
+    chosen = {name: getattr(case.method, name) for name in WHEEL_METHOD}
+    config.update({name: value for name, value in chosen.items() if value is not None})
     if isinstance(case, WheelRailCase):
         config["side"] = case.wheel.side
     return config

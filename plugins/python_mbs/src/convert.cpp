@@ -61,6 +61,10 @@ constexpr Name kNames[] = {
     {"tangential", "table", RP_TANGENTIAL_TABLE},
     {"spin_offset", "none", RP_SPIN_OFFSET_NONE},
     {"spin_offset", "sixth", RP_SPIN_OFFSET_SIXTH},
+    {"patch_rule", "blended", RP_PATCHES_BLENDED},
+    {"patch_rule", "contact", RP_PATCHES_CONTACT},
+    {"reference_surface", "plane", RP_REFERENCE_PLANE},
+    {"reference_surface", "curved", RP_REFERENCE_CURVED},
     {"track", "rail", RP_RAIL},
     {"track", "roller", RP_ROLLER},
     {"side", "left", RP_LEFT},
@@ -84,6 +88,8 @@ constexpr struct {
     {"plastic_displacement", RP_FIELD_PLASTIC_DISPLACEMENT},
     {"plastic_path", RP_FIELD_PLASTIC_PATH},
     {"yield_stress", RP_FIELD_YIELD_STRESS},
+    {"row_position", RP_FIELD_ROW_POSITION},
+    {"row_angle", RP_FIELD_ROW_ANGLE},
 };
 
 // --- from Python -------------------------------------------------------------------------------
@@ -251,6 +257,7 @@ nb::dict patch_dict(const rp_patch_result &patch) {
   errors["spin_moment"] = patch.error_estimate[1];
   errors["max_pressure"] = patch.error_estimate[2];
   to["error_estimate"] = errors;
+  to["share"] = patch.share;
   to["position"] = list_of(patch.position);
   to["contact_angle"] = patch.contact_angle;
   to["creepage"] = list_of(patch.creepage);
@@ -338,6 +345,7 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.scalar("tolerance", c.tolerance);
   reader.scalar("max_iterations", c.max_iterations);
   reader.name("spin_offset", c.spin_offset);
+  reader.name("reference_surface", c.reference_surface);
   reader.scalar("percent_kalker", c.percent_kalker);
   reader.name("traction_bound", c.traction_bound);
   reader.name("flexibility_blending", c.flexibility_blending);
@@ -346,6 +354,7 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.scalar("fastsim_k0", c.fastsim_k0);
   reader.scalar("fastsim_alpha", c.fastsim_alpha);
   reader.scalar("fastsim_beta", c.fastsim_beta);
+  reader.scalar("derivatives", c.derivatives);
   if (reader.has("creep_table")) {
     to.table = nb::cast<Bytes>(reader.at("creep_table"));
     c.creep_table = to.table.data();
@@ -365,6 +374,8 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.scalar("curvature", c.curvature);
   reader.scalar("roller_radius", c.roller_radius);
   reader.scalar("max_patches", c.max_patches);
+  reader.name("patch_rule", c.patch_rule);
+  reader.scalar("standstill_speed", c.standstill_speed);
   fill_profiles(reader, "wheel", c.wheel, to.profiles);
   fill_profiles(reader, "rail", c.rail, to.profiles);
   fill_sections(reader, to);
