@@ -77,6 +77,8 @@ def changed_table(case: Case, name: str, values: dict[str, Any]) -> Any:
     content = table.model_dump()
     for key, value in values.items():
         if key in DEVIATION_KEYS and isinstance(value, dict):
+            if "sections" in value:
+                raise CaseError(f"{name}.{key}.sections: this is no moving input of the case")
             value = {**content[key], **value}
         content[key] = value
     return check_table(type(table), content, name)

@@ -136,6 +136,11 @@ def patch_data(
     return {name: data[name] for name in names}
 
 
+def known(values: list[float]) -> list[float] | None:
+    """None for what the scene does not have."""
+    return None if all(map(math.isnan, values)) else values
+
+
 def wheel_data(side: dict[str, Any], z: float) -> dict[str, Any]:
     """The quantities of one wheel, from the core's rp_side_result."""
     return {
@@ -144,6 +149,8 @@ def wheel_data(side: dict[str, Any], z: float) -> dict[str, Any]:
         "moment": side["moment"],
         "z": z,
         "rolling_radius": side["rolling_radius"],
+        "rail_deflection": known(side["rail_deflection"]),
+        "rail_deflection_rate": known(side["rail_deflection_rate"]),
         "patches": [patch_data(patch, of_wheel=True) for patch in side["patches"]],
     }
 

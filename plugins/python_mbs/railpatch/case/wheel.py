@@ -19,6 +19,7 @@ from railpatch.case.common import (
     check_reference,
     check_tangential,
 )
+from railpatch.case.rails import RailSupport, Sections, check_sections
 from railpatch.case.types import (
     Angle,
     AngleVector,
@@ -108,6 +109,21 @@ class Wheelset(Table):
         return self
 
 
+class Rail(Deviation):
+    """A rail's deviation, and its profiles where they vary along the track."""
+
+    sections: Sections | None = Field(
+        default=None,
+        description="profiles along the track (m, file), interpolated linearly in between and "
+        "constant beyond, instead of one in [profiles]",
+    )
+
+    @model_validator(mode="after")
+    def _increasing(self) -> Rail:
+        check_sections(self.sections)
+        return self
+
+
 class Track(Table):
     """Rails or rollers."""
 
@@ -115,6 +131,9 @@ class Track(Table):
     gauge: Dimension = Field(default=1.435, description="m, track gauge")
     gauge_height: Annotated[float, between(0, 0.1)] = Field(
         default=0.014, description="m, height below the rail's top at which the gauge is measured"
+    )
+    gauge_widening: Annotated[float, between(-0.1, 0.1)] = Field(
+        default=0.0, description="m, each rail lies half of it further out than the gauge says"
     )
     cant: Annotated[float, between(-0.5, 0.5)] = Field(
         default=0.0,
@@ -129,12 +148,11 @@ class Track(Table):
     roller_pitch_rate: Number | None = Field(
         default=None, description="rad/s, about the roller's axle, above 0 forward (roller)"
     )
-    left: Deviation = Field(
-        default=Deviation(), description="left rail's deviation (m, rad), track axes"
+    rail_support: RailSupport | None = Field(
+        default=None, description="springs and dampers under the rails (N/m, N s/m)"
     )
-    right: Deviation = Field(
-        default=Deviation(), description="right rail's deviation (m, rad), track axes"
-    )
+    left: Rail = Field(default=Rail(), description="left rail's deviation (m, rad), track axes")
+    right: Rail = Field(default=Rail(), description="right rail's deviation (m, rad), track axes")
 
     @model_validator(mode="after")
     def _keys_of_kind(self) -> Track:
@@ -233,11 +251,20 @@ class _WheelCase(Table):
         for side in self.sides:
             for body in ("wheel", "rail"):
                 key, value = self.profiles.of(body, side)
-                if value is None:
+                if body == "rail" and getattr(self.track, side).sections is not None:
+                    self._check_sections(key, value)
+                elif value is None:
                     raise relation(
                         f"profiles.{key}", "missing", f"'{key}', or '{body}' for both sides"
                     )
         return self
+
+    def _check_sections(self, key: str, value: str | None) -> None:
+        """A rail has one profile or sections."""
+        every = all(getattr(self.track, side).sections is not None for side in self.sides)
+        if value is not None and (every or key != "rail"):
+            allowed = "to be left out where the track's rail has 'sections'"
+            raise relation(f"profiles.{key}", repr(value), allowed)
 
 
 class WheelRailCase(_WheelCase):
