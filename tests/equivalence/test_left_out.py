@@ -228,3 +228,18 @@ def test_rails_on_springs_and_profiles_along_the_track_add_their_own_bytes_alone
     changed = [name for name in plain if varying[name]["bytes"] != plain[name]["bytes"]]
     assert changed == ["geometry"]
     assert varying["geometry"]["bytes"] > plain["geometry"]["bytes"]
+
+
+def test_plane_reference_holds_nothing_of_the_curved_one() -> None:
+    case = with_values(WHEELSET, grid__element_size=[1e-3, 1e-3])
+    plain = stages_of(railpatch.Contact(case))
+    curved_case = with_values(case, method__reference_surface="curved")
+    curved = stages_of(railpatch.Contact(curved_case))
+    assert not plain["coupling"]["present"] and plain["coupling"]["bytes"] == 0
+    assert curved["coupling"]["present"]
+    assert curved["coupling"]["reason"] == "reference_surface = curved: outer loop"
+    for stage in ("influence", "coupling", "geometry"):
+        assert curved[stage]["bytes"] > plain[stage]["bytes"], stage
+    # without friction there is nothing to go round
+    normal = stages_of(railpatch.Contact(with_values(curved_case, method__tangential="none")))
+    assert not normal["coupling"]["present"]
