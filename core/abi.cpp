@@ -59,6 +59,7 @@ void rp_default_config(rp_config *config) {
   c.gauge_height = 0.014;
   c.roller_radius = 1.0;
   c.max_patches = 3;
+  c.rail_height_spacing = 1e-3;
 }
 
 void rp_default_input(rp_input *input) {

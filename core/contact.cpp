@@ -136,6 +136,13 @@ int with_margin(const rp_config &c, int n) {
   return std::max(n, std::min(wanted, most_elements));
 }
 
+// m, of wheel on rail; flats and joints touch at both ends
+double overlap_size(const rp_config &c, int k) {
+  const bool shaped =
+      longitudinal_shape::wanted(c, RP_LEFT) || longitudinal_shape::wanted(c, RP_RIGHT);
+  return k == 1 ? 0.050 : shaped ? 0.120 : 0.060;
+}
+
 // Elements of one patch's grid, with a border of one element that stays free of contact.
 capacity grid_capacity(const rp_config &c) {
   if (!needs_grid(c)) return {0, 0};
@@ -158,11 +165,10 @@ capacity grid_capacity(const rp_config &c) {
                                                         c.semi_axes[k] / c.element_size[k])))) +
           3;
     else if (n == 0)
-      // wheel on rail: overlaps up to 60 mm long and 50 mm wide; else a square of 128
-      n = c.kind == RP_PATCH
-              ? 130
-              : static_cast<int>(std::clamp(std::ceil((k == 0 ? 0.060 : 0.050) / c.element_size[k]),
-                                            16.0, 400.0));
+      // wheel on rail, see above; else a square of 128
+      n = c.kind == RP_PATCH ? 130
+                             : static_cast<int>(std::clamp(
+                                   std::ceil(overlap_size(c, k) / c.element_size[k]), 16.0, 400.0));
   }
   return size;
 }
@@ -262,6 +268,7 @@ contact::contact(const rp_config &config)
   config_.undeformed_distance = nullptr;
   for (auto *p : {&config_.wheel[0], &config_.wheel[1], &config_.rail[0], &config_.rail[1]})
     *p = rp_profile{};
+  for (int side = 0; side < 2; ++side) config_.runout[side] = config_.rail_height[side] = nullptr;
 }
 
 bool contact::has_side(int side) const {

@@ -114,7 +114,13 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            c.gauge_height,
                            c.cant,
                            c.curvature,
-                           c.roller_radius};
+                           c.roller_radius,
+                           static_cast<double>(c.runout_count[0]),
+                           static_cast<double>(c.runout_count[1]),
+                           static_cast<double>(c.rail_height_count[0]),
+                           static_cast<double>(c.rail_height_count[1]),
+                           c.rail_height_start,
+                           c.rail_height_spacing};
   unsigned char bytes[sizeof values];
   std::memcpy(bytes, values, sizeof values);
   return checksum(bytes, sizeof bytes);
@@ -144,6 +150,10 @@ uint64_t fingerprint_of_arrays(const rp_config &c, const aligned_buffer<double> 
   for (const rp_profile *p : {&c.wheel[0], &c.wheel[1], &c.rail[0], &c.rail[1]})
     for (const double *values : {p->arc_length, p->y, p->z, p->dy, p->dz})
       add(values, static_cast<size_t>(std::max(p->count, 0)));
+  for (int side = 0; side < 2; ++side) {
+    add(c.runout[side], static_cast<size_t>(c.runout_count[side]));
+    add(c.rail_height[side], static_cast<size_t>(c.rail_height_count[side]));
+  }
   return hash;
 }
 

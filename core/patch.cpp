@@ -124,6 +124,22 @@ class part_list {
   double last_ = side_geometry::far_apart, before_ = last_;
 };
 
+// A row whose overlap has any shape along x, see longitudinal_shape.hpp.
+bool add_shaped(const side_geometry &side, double s, double width, double angle, bool any,
+                part &p) {
+  double y = 0, dy = 0;
+  const row_overlap o = side.overlap(s, y, dy);
+  if (!(o.weight > 0)) return false;
+  const double weight = o.weight * width * dy;
+  p.weight += weight;
+  p.x += weight * o.x;
+  p.y += weight * y;
+  p.angle += weight * angle;
+  p.x_min = any ? std::min(p.x_min, o.x_min) : o.x_min;
+  p.x_max = any ? std::max(p.x_max, o.x_max) : o.x_max;
+  return true;
+}
+
 // Rows at s = m - h cos t for equally spaced t: the weight's d^2.5 at the edges becomes smooth, so
 // that few rows give the means to many digits. Their number is fixed and a row is as wide as the
 // lateral distance of its neighbours, so the means move smoothly with the wheelset, kinks in the
@@ -141,6 +157,14 @@ void sum_rows(const side_geometry &side, part &p) {
   for (int i = 1; i <= rows; ++i) {
     const locus_point &l = row[i];
     if (!l.valid || !(l.gap < 0)) continue;
+    if (side.shaped()) {
+      const auto at = [&](int k) {
+        return middle -
+               half * std::cos(std::numbers::pi * std::clamp(k - 0.5, 0.0, 1.0 * rows) / rows);
+      };
+      any |= add_shaped(side, at(i), 0.5 * (at(i + 1) - at(i - 1)), l.contact_angle, any, p);
+      continue;
+    }
     const double depth = -l.gap, reach = std::sqrt(depth / l.curvature);
     const double width = 0.5 * (row[i + 1].wheel[1] - row[i - 1].wheel[1]);
     const double weight = depth * depth * reach * width;

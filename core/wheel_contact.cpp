@@ -59,6 +59,9 @@ wheel_contact::wheel_contact(const rp_config &c, int side)
       rail_(make_profile(c.rail[side], side == RP_LEFT ? "rail_left" : "rail_right")) {
   const wheel_config sizes{c.nominal_radius, c.flange_back_distance, c.flange_back_position};
   geometry_ = std::make_unique<side_geometry>(*wheel_, *rail_, sizes, track_of(c, side));
+  if (!longitudinal_shape::wanted(c, side)) return;
+  shape_ = std::make_unique<longitudinal_shape>(c, side);
+  geometry_->set_shape(shape_.get());
 }
 
 void wheel_contact::place(const rp_input &in) {
@@ -70,6 +73,7 @@ void wheel_contact::place(const rp_input &in) {
   motion.rail = deviation_of(in.rail_offset[side_], in.rail_rotation[side_],
                              in.rail_velocity[side_], in.rail_angular_velocity[side_]);
   motion.roller_pitch_rate = in.roller_pitch_rate;
+  if (shape_) shape_->place(in.pitch + in.wheel_rotation[side_][1], in.x, config_.nominal_radius);
   geometry_->place(side_ == RP_LEFT ? mirrored(motion) : motion);
 }
 
@@ -206,7 +210,7 @@ void wheel_contact::set_friction(const patch_contact &solver, const contact_fram
 bool wheel_contact::first_touch(double &z) const { return railpatch::first_touch(*geometry_, z); }
 
 size_t wheel_contact::bytes() const {
-  return wheel_->bytes() + rail_->bytes() + geometry_->bytes();
+  return wheel_->bytes() + rail_->bytes() + geometry_->bytes() + (shape_ ? shape_->bytes() : 0);
 }
 
 rp_status combine_status(rp_status a, rp_status b) {

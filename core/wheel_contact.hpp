@@ -41,6 +41,7 @@ class wheel_contact {
   int side_;
   bool beyond_ = false;
   std::unique_ptr<profile> wheel_, rail_;
+  std::unique_ptr<longitudinal_shape> shape_;  // null: round wheel, level rail
   std::unique_ptr<side_geometry> geometry_;
   std::array<patch_region, RP_MAX_PATCHES> regions_;
 };

@@ -273,6 +273,14 @@ typedef struct rp_config {
   double roller_radius;         /* m, roller */
   rp_profile wheel[2], rail[2]; /* by side; the roller's profile as rail */
   int32_t max_patches;          /* of one wheel, 1 ... RP_MAX_PATCHES */
+  /* shape along rolling by side, copied; C2 splines. The wheel's radius at its lowest point is that
+   * of its profile plus runout at the input's pitch (a rotation about y of its deviation added) */
+  const double *runout[2];      /* m, at pitch angles 2 pi i/runout_count, > 0: greater radius */
+  int32_t runout_count[2];      /* 0: round, else 8 ... 1000000 */
+  const double *rail_height[2]; /* m, of the running surface at x = rail_height_start + i
+                                   rail_height_spacing, > 0 up, constant beyond; rails only */
+  int32_t rail_height_count[2]; /* 0: level, else 4 ... 10000000 */
+  double rail_height_start, rail_height_spacing; /* m; > 0 */
 
   rp_observer observer; /* may be null */
   void *observer_user;

@@ -73,4 +73,8 @@
   X(cant)                           \
   X(curvature)                      \
   X(roller_radius)                  \
-  X(max_patches)
+  X(max_patches)                    \
+  X(runout_count)                   \
+  X(rail_height_count)              \
+  X(rail_height_start)              \
+  X(rail_height_spacing)

@@ -12,6 +12,8 @@ ELSEWHERE = {
     "undeformed_distance",
     "wheel",
     "rail",
+    "runout",
+    "rail_height",
     "creep_table",
     "creep_table_size",
     "observer",
