@@ -246,6 +246,24 @@ void check_build(const rp_config &c, checker &check) {
           "normal and tangential directions");
 }
 
+// Wheels roll on from tractions, and nothing else that the material would carry along.
+const char *wheels_cannot_roll(const rp_config &c) {
+  if (c.regime == RP_SHIFT)
+    return "regime must be none, steady_rolling or transient_rolling for wheels";
+  if (!(c.element_size[0] > 0))
+    return "regime = transient_rolling of wheels needs element_size in place of elements";
+  if (c.friction_law != RP_COULOMB)
+    return "regime = transient_rolling of wheels needs friction_law = coulomb in this version";
+  if (c.layer_yield_stress > 0)
+    return "layer_yield_stress must be 0 with regime = transient_rolling of wheels in this version";
+  if (c.temperature != 0)
+    return "temperature must be 0 with regime = transient_rolling of wheels in this version";
+  if (is_coupled(combine(c.shear_modulus, c.poisson_ratio)))
+    return "regime = transient_rolling of wheels needs equal (1-2nu)/G of both bodies in this "
+           "version";
+  return nullptr;
+}
+
 // Shift and transient rolling keep their grid in the frame of the contact.
 void check_regime(const rp_config &c, checker &check) {
   if (!has_tangential(c) || c.regime == RP_STEADY_ROLLING) return;
@@ -253,7 +271,7 @@ void check_regime(const rp_config &c, checker &check) {
   if (c.tangential != RP_TANGENTIAL_FULL || c.fitted[0] > 0)
     wrong = "regime = shift and transient_rolling need tangential = full and no fitted rows";
   else if (c.kind != RP_PATCH)
-    wrong = "regime must be none or steady_rolling for wheels in this version";
+    wrong = wheels_cannot_roll(c);
   else if (c.spin_offset != RP_SPIN_OFFSET_NONE)
     wrong = "spin_offset must be none but with regime = steady_rolling";
   else if (c.geometry == RP_CURVATURES && !(c.element_size[0] > 0 && c.max_elements[0] > 0))
@@ -537,7 +555,8 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
   const double values[] = {in.x,  in.pitch,     in.speed,    in.vy,
                            in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
   for (int i = 0; i < 8; ++i) check.number(names[i], values[i], finite);
-  check.number("time_step", in.time_step, not_negative);
+  const bool rolls_on = c.regime == RP_TRANSIENT_ROLLING && has_tangential(c);
+  check.number("time_step", in.time_step, rolls_on ? positive : not_negative);
   for (int side = 0; side < 2; ++side) {
     check.numbers("wheel_offset", in.wheel_offset[side], 3, {-1, 1, false, false});
     check.numbers("wheel_rotation", in.wheel_rotation[side], 3, angle);

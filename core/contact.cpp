@@ -84,6 +84,7 @@ patch_scene make_scene(const rp_config &c) {
     scene.law = make_law(c);
     if (c.regime == RP_SHIFT) scene.regime = motion::shift;
     if (c.regime == RP_TRANSIENT_ROLLING) scene.regime = motion::transient;
+    scene.moves = c.kind != RP_PATCH;
   }
   scene.heat = make_heat(c);
   for (int k = 0; k < 2; ++k) scene.fitted[k] = c.fitted[k];
@@ -415,6 +416,8 @@ void contact::step_wheels(const rp_input &in, rp_result &out) {
     out.status = status;
     return vertical;
   };
+  if (solver_.scene().keeps_steps())
+    for (auto &m : memory_) solver_.remember(m);
   solver_.observe(RP_STAGE_GEOMETRY, true);
   for (auto &wheel : wheels_) wheel.place(in);
   solver_.observe(RP_STAGE_GEOMETRY, false);

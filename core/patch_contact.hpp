@@ -33,6 +33,7 @@ struct patch_scene {
   rp_normal_method normal = RP_NORMAL_HALF_SPACE;
   rp_tangential_method tangential = RP_TANGENTIAL_FULL;  // NONE: no tangential stage
   motion regime = motion::steady;
+  bool moves = false;            // the grid moves between steps: of wheels
   std::optional<bound_law> law;  // beyond Coulomb's, or a layer that yields
   bool keeps_steps() const {
     return has_physics && tangential == RP_TANGENTIAL_FULL && regime != motion::steady;
@@ -62,6 +63,14 @@ struct patch_scene {
   double modulus() const { return elastic.shear_modulus / (1.0 - elastic.poisson_ratio); }
 };
 
+// Tractions of a wheel's last step, in rows of what a patch remembers, as seen from the grid of a
+// problem: its element (0, 0) was at offset from that of the first row.
+struct past_tractions {
+  const patch_history *history;
+  int first_row, rows;
+  double offset[2];  // m
+};
+
 // One step's problem; the undeformed distance is in patch_memory.
 struct patch_problem {
   grid g;
@@ -72,6 +81,8 @@ struct patch_problem {
   double tangential_force[2] = {0, 0};  // N, of the components prescribed
   hertz_contact hertz;                  // where the surfaces are quadratic, else all zero
   contact_parts parts;
+  const past_tractions *past = nullptr;  // of wheels in transient rolling, with their number
+  int past_count = 0;
 };
 
 // Fields of the last solution, [ny][nx] of the grid or, for what belongs to the tangential problem
@@ -122,6 +133,10 @@ class patch_contact {
     memory.history.begin(problem.g, problem.rolling.upstream(), memory.px.data(), memory.py.data());
     observe(RP_STAGE_HISTORY, false);
   }
+  // The same for patches of wheels, whose grids move.
+  void remember(patch_memory &memory) const {
+    memory.history.remember(memory.g, memory.reference, memory.px.data(), memory.py.data());
+  }
   // A step without contact: the material moves on and bears no traction.
   void leave_contact(const rolling_input &step, patch_memory &memory, rp_patch_result &result);
   // Carries the memory's solution over to another grid, or clears it.
@@ -167,6 +182,7 @@ class patch_contact {
   tangential_result solve_on_grid(const patch_problem &problem, const rolling_input &rolling,
                                   patch_memory &memory, rp_patch_result &result, const double *mu);
   void begin_heat(const patch_problem &problem, patch_memory &memory);
+  void find_before(const patch_problem &problem, rolling_input &rolling);
   double finish_heat(const patch_problem &problem, patch_memory &memory);
   // W/m^2, of the tractions in memory
   void flux_of(const patch_problem &problem, const patch_memory &memory, double *q);
@@ -192,7 +208,7 @@ class patch_contact {
   physics_part<coupled_contact> coupled_;
   error_model errors_;
   creep_resultants sums_;  // of the last step, where the theory has no tractions
-  aligned_buffer<double> bound_, scratch_[2];
+  aligned_buffer<double> bound_, scratch_[2], before_[2];
 };
 
 // Sets what the scene's stages give where nothing touches: zeros.

@@ -65,6 +65,7 @@ wheel_contact::wheel_contact(const rp_config &c, int side)
 }
 
 void wheel_contact::place(const rp_input &in) {
+  time_step_ = in.time_step;
   side_motion motion;
   motion.wheelset = {in.y,  in.z,  in.roll,      in.yaw,      in.speed,
                      in.vy, in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
@@ -113,7 +114,7 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
       find_patches(*geometry_, patch_rules{}, regions_.data(), config_.max_patches);
   solver.observe(RP_STAGE_GEOMETRY, false);
   out.status = RP_NO_CONTACT;
-  const int count = found.count;
+  const int count = found_ = found.count;
   out.patch_count = count;
   for (int k = 0; k < 3; ++k) out.force[k] = out.moment[k] = 0;
   out.rolling_radius = 0;
@@ -123,8 +124,11 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
   if (beyond_) out.status = RP_OUT_OF_RANGE;
   for (int i = 0; i < count; ++i)
     out.status = combine_status(
-        out.status, solve_patch(solver, regions_[static_cast<size_t>(i)], i, memory[i], out));
-  for (int i = count; i < config_.max_patches; ++i) memory[i].warm = memory[i].solved = false;
+        out.status, solve_patch(solver, regions_[static_cast<size_t>(i)], i, memory, out));
+  for (int i = count; i < config_.max_patches; ++i) {
+    memory[i].warm = memory[i].solved = false;
+    memory[i].history.clear_now();
+  }
   // of several patches the mean radius, each weighted with its load
   double load = 0;
   for (int i = 0; i < count; ++i)
@@ -134,8 +138,9 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
 }
 
 rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &region, int index,
-                                     patch_memory &memory, rp_side_result &out) {
+                                     patch_memory *memories, rp_side_result &out) {
   rp_patch_result &result = out.patch[index];
+  patch_memory &memory = memories[index];
   patch_problem problem;
   problem.g = choose_grid(region);
   const grid &g = problem.g;
@@ -145,6 +150,7 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
     std::fill_n(out.force, 3, nan);
     std::fill_n(out.moment, 3, nan);
     beyond_ = true;
+    memory.history.clear_now();
     return result.status = RP_OUT_OF_RANGE;
   }
 
@@ -166,6 +172,8 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
   problem.rolling_speed = rolling.rolling_speed;
   problem.rolling = {{rolling.xi, rolling.eta}, rolling.phi, rolling.direction < 0 ? -1 : 1, 0.0};
   problem.parts = parts_on(region, g);
+  past_tractions past[RP_MAX_PATCHES];
+  if (solver.scene().keeps_steps()) set_past(memories, index, region.frame, problem, past);
   if (solver.scene().normal == RP_NORMAL_HERTZ) {
     // the paraboloid whose overlap has the same depth, length and width
     const double half[2] = {0.5 * (region.x_max - region.x_min),
@@ -175,6 +183,7 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
   }
   patch_wrench wrench;
   solver.solve(problem, memory, result, wrench);
+  memory.history.begun = solver.scene().keeps_steps();
 
   out.rolling_radius += result.normal_force * geometry_->rolling_radius(region.frame, depth);
   const vec3 lever = geometry_->lever(region.frame);
@@ -193,6 +202,51 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
     result.spin_creepage = rolling.phi;
   }
   return result.status;
+}
+
+// The rail's material stays where it is on the rail, while the wheel moves on by the distance
+// rolled and the reference by what its place has changed; the wheel's differs from it by creepage
+// only. Rows go to the patch that is nearest, where it is near at all.
+void wheel_contact::set_past(const patch_memory *memory, int patch, const contact_frame &frame,
+                             patch_problem &problem, past_tractions *past) const {
+  rolling_input &rolling = problem.rolling;
+  rolling.speed = problem.rolling_speed;
+  // what stands still does not roll on
+  rolling.regime = problem.rolling_speed > 0 ? motion::transient : motion::shift;
+  if (rolling.regime == motion::transient) rolling.distance = problem.rolling_speed * time_step_;
+  problem.past = past;
+  const auto lateral = [&](const vec3 &at) {
+    return std::cos(frame.contact_angle) * (at[1] - frame.origin[1]) +
+           std::sin(frame.contact_angle) * (at[2] - frame.origin[2]);
+  };
+  // half way to the edges of the neighbours
+  const auto edge = [&](int k, bool last) {
+    const patch_region &r = regions_[static_cast<size_t>(k)];
+    const double s = last ? r.s_max : r.s_min, angle = r.frame.contact_angle;
+    return lateral(
+        {0, r.frame.origin[1] + s * std::cos(angle), r.frame.origin[2] + s * std::sin(angle)});
+  };
+  const patch_region &own = regions_[static_cast<size_t>(patch)];
+  double low = own.s_min - patch_rules{}.separate, high = own.s_max + patch_rules{}.separate;
+  if (patch > 0) low = std::max(low, 0.5 * (own.s_min + edge(patch - 1, true)));
+  if (patch + 1 < found_) high = std::min(high, 0.5 * (own.s_max + edge(patch + 1, false)));
+  for (int k = 0; k < config_.max_patches; ++k) {
+    const patch_history &h = memory[k].history;
+    if (!h.held) continue;
+    const grid &g = h.last_grid;
+    const double place = lateral(h.last_reference);  // in this frame
+    const double first = std::ceil((low - place - g.y0) / g.dy),
+                 last = std::floor((high - place - g.y0) / g.dy);
+    const int begin = static_cast<int>(std::clamp(first, 0.0, static_cast<double>(g.ny)));
+    const int end = static_cast<int>(std::clamp(last + 1, 0.0, static_cast<double>(g.ny)));
+    if (end <= begin) continue;
+    past[problem.past_count++] = {
+        &h,
+        begin,
+        end - begin,
+        {frame.origin[0] + problem.g.x0 + rolling.upstream() - h.last_reference[0] - g.x0,
+         problem.g.y0 - place - g.y(begin)}};
+  }
 }
 
 // The factor of each row by the angle of the rail's surface there, > 0 towards the gauge face; a

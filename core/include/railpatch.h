@@ -317,7 +317,8 @@ typedef struct rp_input {
    * profile's origin, a roller about its axle (y). */
   double wheel_velocity[2][3], wheel_angular_velocity[2][3];
   double rail_velocity[2][3], rail_angular_velocity[2][3];
-  double time_step;         /* s, >= 0, since the last step, for rails on dampers; 0: at rest */
+  double time_step;         /* s, >= 0, since the last step, for rails on dampers (0: at rest)
+                               and for regime = RP_TRANSIENT_ROLLING (> 0) */
   double roller_pitch_rate; /* rad/s */
 } rp_input;
 
