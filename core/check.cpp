@@ -100,6 +100,7 @@ void check_choices(const rp_config &c, checker &check) {
     check.choice("geometry", c.geometry, RP_SEMI_AXES, RP_UNDEFORMED_DISTANCE);
   else
     check.choice("track", c.track, RP_RAIL, RP_ROLLER);
+  check.choice("patch_rule", c.patch_rule, RP_PATCHES_BLENDED, RP_PATCHES_CONTACT);
 }
 
 void check_fitted(const rp_config &c, checker &check) {
@@ -446,6 +447,7 @@ void check_wheels(const rp_config &c, checker &check) {
     check.require(c.curvature == 0, "curvature must be 0 on rollers");
   }
   check.integer("max_patches", c.max_patches, 1, RP_MAX_PATCHES);
+  check.number("standstill_speed", c.standstill_speed, {0, 1, false, false});
   check_longitudinal(c, check);
 }
 

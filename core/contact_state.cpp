@@ -23,6 +23,7 @@ constexpr size_t checked_from = offsetof(state_header, scene);
 struct patch_header {
   grid g;
   vec3 reference;
+  double share;
   uint64_t warm, begun;
 };
 
@@ -53,6 +54,8 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            static_cast<double>(c.max_elements[1]),
                            static_cast<double>(c.max_iterations),
                            static_cast<double>(c.max_patches),
+                           static_cast<double>(c.patch_rule),
+                           c.standstill_speed,
                            static_cast<double>(c.force_prescribed[0]),
                            static_cast<double>(c.force_prescribed[1]),
                            c.element_size[0],
@@ -195,7 +198,8 @@ void contact::save_state(unsigned char *buffer) const {
     at += size;
   };
   for (const auto &m : memory_) {
-    const patch_header header{m.g, m.reference, m.warm ? 1u : 0u, m.history.begun ? 1u : 0u};
+    const patch_header header{m.g, m.reference, m.share, m.warm ? 1u : 0u,
+                              m.history.begun ? 1u : 0u};
     put(&header, sizeof header);
     for_each_start_field(m, put);
   }
@@ -223,6 +227,7 @@ bool contact::restore_state(const unsigned char *buffer, size_t size) {
     at += sizeof patch;
     m.g = patch.g;
     m.reference = patch.reference;
+    m.share = patch.share;
     m.warm = patch.warm != 0;
     m.history.begun = patch.begun != 0;
     m.solved = false;

@@ -34,6 +34,15 @@ mat3 roll_yaw(double roll, double yaw) {
 
 constexpr mat3 identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
+// what slip is divided by, and the part of spin near the turn of the heading: see the header
+double divisor(double speed, double slow) {
+  return speed < slow ? 0.5 * (speed * speed + slow * slow) / slow : speed;
+}
+double turning(double heading, double slow) {
+  const double t = std::fabs(heading);
+  return t < slow ? 0.5 * (t / slow) * (3.0 - (t / slow) * (t / slow)) : 1.0;
+}
+
 struct frame_axes {
   vec3 x, s, n;
 };
@@ -452,18 +461,6 @@ void side_geometry::undeformed_distance(const contact_frame &frame, const surfac
   }
 }
 
-void side_geometry::distances(const contact_frame &frame, const double *x, const double *s,
-                              int count, double *h) const {
-  const surface wheel = wheel_seen_from(frame), rail = rail_seen_from(frame);
-  hit on_wheel = nearest(wheel), on_rail = nearest(rail);
-  for (int i = 0; i < count; ++i) {
-    hit a = on_wheel, b = on_rail;
-    const bool met = meet(wheel, wheel.at(x[i], s[i]), a) && meet(rail, rail.at(x[i], s[i]), b);
-    h[i] = met ? b.n - a.n : no_surface;
-    if (met) on_wheel = a, on_rail = b;
-  }
-}
-
 // Velocity of the wheel's material by the rates of its deviation, but for the one about its axis.
 vec3 side_geometry::wheel_rate(const vec3 &at) const {
   const deviation &d = motion_.wheel;
@@ -518,14 +515,17 @@ creepage_state side_geometry::creepages(const contact_frame &frame, double appro
     spin = spin - roller_spin;
   }
   creepage_state out;
-  const double speed = 0.5 * (std::fabs(forward) + std::fabs(backward));
-  if (!(speed > standstill)) return out;
+  const double mean = 0.5 * (std::fabs(forward) + std::fabs(backward));
+  const double slow = sizes_.standstill_speed;
+  const bool rolls = mean > standstill;
+  if (!rolls && slow == 0) return out;
   const double heading = std::fabs(forward - backward) > standstill ? forward - backward : forward;
+  if (rolls) out.direction = heading > 0 ? 1 : -1;
+  const double speed = divisor(mean, slow);
   out.rolling_speed = speed;
-  out.direction = heading > 0 ? 1 : -1;
   out.xi = slip[0] / speed;
   out.eta = dot(f.s, slip) / speed;
-  out.phi = dot(f.n, spin) / speed;
+  out.phi = dot(f.n, spin) / speed * turning(0.5 * (forward - backward), slow);
   return out;
 }
 

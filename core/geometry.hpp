@@ -4,6 +4,10 @@
 // Wheelset: turned by Rx(roll) Rz(yaw), centre one nominal radius above that plane at z = 0.
 // Contact frame: x as the track's, s lateral along the surface, n into the rail; turned by the
 // contact angle about x: s = (0, cos, sin), n = (0, -sin, cos).
+// Standstill. Slip over the rolling speed V has no limit there. Below V0 = standstill_speed it is
+// divided by (V^2 + V0^2)/(2 V0), which joins V with equal slope at V0 and is V0/2 at rest; and
+// where the heading h, the mean of the forward speeds, is below V0, the spin creepage is scaled by
+// u = |h| (3 V0^2 - h^2)/(2 V0^3): its lateral force changes sign with the direction of rolling.
 // Signs. Undeformed distance > 0 is a gap. Creepages are wheel minus rail, divided by the rolling
 // speed. Everything here is a right-hand side; a left one is its mirror image: feed mirrored
 // inputs, mirror the results back. Mirroring changes signs only, so it is exact.
@@ -56,6 +60,7 @@ struct track_config {
 
 struct wheel_config {
   double nominal_radius = 0, flange_back_distance = 0, flange_back_position = 0;  // m
+  double standstill_speed = 0;                                                    // m/s
 };
 
 // All that moves in a step, for one side.
@@ -79,8 +84,8 @@ struct surface_grid {
 struct creepage_state {
   double xi = 0, eta = 0;    // -, longitudinal, lateral
   double phi = 0;            // rad/m, spin
-  double rolling_speed = 0;  // m/s, >= 0
-  int direction = 0;         // rolling towards +x (1), -x (-1); 0 at standstill: creepages are 0
+  double rolling_speed = 0;  // m/s, >= 0, what slip is divided by: see the head on standstill
+  int direction = 0;         // rolling towards +x (1), -x (-1); 0 at standstill
 };
 
 wheelset_state mirrored(wheelset_state w);
@@ -137,10 +142,6 @@ class side_geometry {
   locus_point locus(double s) const;
   // The rail surface at (x, y): z, and the angle of its profile; false beyond the profile.
   bool rail_surface(double x, double y, double &z, double &angle) const;
-  // Undeformed distance at points (x, s) of the frame, neighbours following each other.
-  void distances(const contact_frame &frame, const double *x, const double *s, int count,
-                 double *h) const;
-
   // h[ny][nx], x fastest; no_surface beyond the profiles.
   void undeformed_distance(const contact_frame &frame, const surface_grid &grid, double *h) const;
 

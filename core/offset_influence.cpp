@@ -190,8 +190,8 @@ offset_influence::lines offset_influence::transfer(const grid &from, const grid 
 }
 
 void offset_influence::add_moved(const influence &a, const grid &from, const grid &to,
-                                 const double offset[2], const double *px, const double *py,
-                                 double *ux, double *uy) {
+                                 const double offset[2], double share, const double *px,
+                                 const double *py, double *ux, double *uy) {
   const int nx = std::max(from.nx, to.nx), ny = std::max(from.ny, to.ny);
   const int plan = plans_.find(2 * nx + 1, ny > 1 ? 2 * ny - 1 : 1);
   const bool same = plan == plan_ && offset[0] == offset_ && offset[1] == lateral_offset_ &&
@@ -207,11 +207,11 @@ void offset_influence::add_moved(const influence &a, const grid &from, const gri
   }
   const lines u = transfer(from, to, px, py);
   const int columns = fft::whole_packs(to.nx);
-  const double flexibility = a.bodies().layer_flexibility;
+  const double flexibility = share * a.bodies().layer_flexibility;
   for (int j = 0; j < to.ny; ++j)
     for (int i = 0; i < to.nx; ++i) {
-      ux[j * to.nx + i] += u.re[j * columns + i];
-      uy[j * to.nx + i] += u.im[j * columns + i];
+      ux[j * to.nx + i] += share * u.re[j * columns + i];
+      uy[j * to.nx + i] += share * u.im[j * columns + i];
       if (!(flexibility > 0)) continue;
       const double x = (offset[0] / to.dx) + i, y = (offset[1] / to.dy) + j;
       ux[j * to.nx + i] += flexibility * between(from, px, x, y);

@@ -19,10 +19,10 @@ class offset_influence {
   // element size or transform change.
   void product(const influence &a, const grid &g, double offset, const double *px, const double *py,
                double *ux, double *uy);
-  // Adds (u_x, u_y) at the elements of `to`, whose element (0, 0) lies at offset from that of
+  // Adds share (u_x, u_y) at the elements of `to`, whose element (0, 0) lies at offset from that of
   // `from`, with elements of the same size. Needs `moves`.
   void add_moved(const influence &a, const grid &from, const grid &to, const double offset[2],
-                 const double *px, const double *py, double *ux, double *uy);
+                 double share, const double *px, const double *py, double *ux, double *uy);
   size_t bytes() const;
 
  private:

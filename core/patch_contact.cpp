@@ -37,6 +37,7 @@ rp_patch_result empty_patch_result() {
         &r.position[2],       &r.contact_angle,     &r.creepage[0],    &r.creepage[1],
         &r.spin_creepage,     &r.rolling_speed})
     *v = nan;
+  r.share = 1;
   return r;
 }
 
@@ -493,9 +494,10 @@ void patch_contact::find_before(const patch_problem &problem, rolling_input &rol
     grid from = past.history->last_grid;
     const auto first = static_cast<ptrdiff_t>(past.first_row) * from.nx;
     from.ny = past.rows;
-    tangential_->add_moved(
-        *influence_, from, problem.g, past.offset, past.history->last_px.data() + first,
-        past.history->last_py.data() + first, before_[0].data(), before_[1].data());
+    tangential_->add_moved(*influence_, from, problem.g, past.offset, past.history->last_share,
+                           past.history->last_px.data() + first,
+                           past.history->last_py.data() + first, before_[0].data(),
+                           before_[1].data());
   }
   observe(RP_STAGE_HISTORY, false);
 }

@@ -21,6 +21,7 @@ struct patch_history {
   // of wheels, whose grid moves: where last_px and last_py lie, false: nowhere
   bool held = false;
   grid last_grid;
+  double last_share = 1;
   std::array<double, 3> last_reference{};
   aligned_buffer<double> last_px, last_py;
   aligned_buffer<carried_state> before, after;
@@ -30,8 +31,8 @@ struct patch_history {
   // x + upstream to x. Also where there is no law.
   void begin(const grid &g, double upstream, const double *px, const double *py);
   // The same for wheels: keeps the last step's tractions while this one is solved, once or often.
-  void remember(const grid &g, const std::array<double, 3> &reference, const double *px,
-                const double *py);
+  void remember(const grid &g, const std::array<double, 3> &reference, double share,
+                const double *px, const double *py);
   // Sets what is carried as no contact leaves it, for elements that then are in contact to differ.
   void start_from_before(const grid &g, const bound_law &law);
   // J/m^2 of the step's plastic displacement, in steady rolling over one element; traction p.

@@ -87,8 +87,8 @@ class tangential_solver {
                           inelastic_sums *sums = nullptr);
   // See offset_influence.hpp; on the grid of a.
   void add_moved(const influence &a, const grid &from, const grid &to, const double offset[2],
-                 const double *px, const double *py, double *ux, double *uy) {
-    offset_->add_moved(a, from, to, offset, px, py, ux, uy);
+                 double share, const double *px, const double *py, double *ux, double *uy) {
+    offset_->add_moved(a, from, to, offset, share, px, py, ux, uy);
   }
   // all, and what of it serves the last step and the plastic layer
   size_t bytes() const;

@@ -36,6 +36,15 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // greatest distance a reference may move between steps for its solution to be a useful start
 constexpr double warm_distance = 2e-3;
+// m, of a patch's bounds, within which the last step's tractions are taken for its own
+constexpr double near = 4e-3;
+
+void scale(patch_wrench &wrench, double share) {
+  for (int k = 0; k < 3; ++k) {
+    wrench.force[k] *= share;
+    wrench.moment[k] *= share;
+  }
+}
 
 // The rows of a patch's parts on its grid.
 contact_parts parts_on(const patch_region &region, const grid &g) {
@@ -57,7 +66,9 @@ wheel_contact::wheel_contact(const rp_config &c, int side)
       side_(side),
       wheel_(make_profile(c.wheel[side], side == RP_LEFT ? "wheel_left" : "wheel_right")),
       rail_(make_profile(c.rail[side], side == RP_LEFT ? "rail_left" : "rail_right")) {
-  const wheel_config sizes{c.nominal_radius, c.flange_back_distance, c.flange_back_position};
+  rules_.blended = c.patch_rule == RP_PATCHES_BLENDED;
+  const wheel_config sizes{c.nominal_radius, c.flange_back_distance, c.flange_back_position,
+                           c.standstill_speed};
   geometry_ = std::make_unique<side_geometry>(*wheel_, *rail_, sizes, track_of(c, side));
   if (!longitudinal_shape::wanted(c, side)) return;
   shape_ = std::make_unique<longitudinal_shape>(c, side);
@@ -111,10 +122,10 @@ grid wheel_contact::choose_grid(const patch_region &r) const {
 void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_side_result &out) {
   solver.observe(RP_STAGE_GEOMETRY, true);
   const search_result found =
-      find_patches(*geometry_, patch_rules{}, regions_.data(), config_.max_patches);
+      find_patches(*geometry_, rules_, parts_, regions_.data(), config_.max_patches);
   solver.observe(RP_STAGE_GEOMETRY, false);
   out.status = RP_NO_CONTACT;
-  const int count = found_ = found.count;
+  const int count = found.count;
   out.patch_count = count;
   for (int k = 0; k < 3; ++k) out.force[k] = out.moment[k] = 0;
   out.rolling_radius = 0;
@@ -122,6 +133,7 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
   beyond_ = found.status == search_status::out_of_range ||
             found.status == search_status::too_many_patches;
   if (beyond_) out.status = RP_OUT_OF_RANGE;
+  match_memory(memory, count);
   for (int i = 0; i < count; ++i)
     out.status = combine_status(
         out.status, solve_patch(solver, regions_[static_cast<size_t>(i)], i, memory, out));
@@ -129,18 +141,62 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
     memory[i].warm = memory[i].solved = false;
     memory[i].history.clear_now();
   }
-  // of several patches the mean radius, each weighted with its load
+  // of several patches the mean radius, each weighted with the load it adds to the sum
   double load = 0;
   for (int i = 0; i < count; ++i)
-    if (out.patch[i].normal_force > 0) load += out.patch[i].normal_force;
+    if (out.patch[i].normal_force > 0) load += out.patch[i].share * out.patch[i].normal_force;
   out.rolling_radius = load > 0 ? out.rolling_radius / load : nan;
   if (side_ == RP_LEFT) mirror(out);
+}
+
+// Moves the memories so that each patch finds the one of the last solution that lay nearest to it
+// and was most alike in extent; patches appear, vanish, join and part beside it. Ties go to the
+// first, so the order is a function of the last solution only.
+void wheel_contact::match_memory(patch_memory *memory, int count) const {
+  const int slots = config_.max_patches;
+  if (slots == 1) return;
+  const auto unlike = [&](const patch_region &region, const patch_memory &m) {
+    const vec3 &at = region.frame.origin;
+    const double moved = std::hypot(at[1] - m.reference[1], at[2] - m.reference[2]);
+    if (!m.warm || moved > warm_distance) return HUGE_VAL;
+    const double low = m.g.y0, high = m.g.y(m.g.ny - 1);
+    return moved + std::fabs(region.s_min - low) + std::fabs(region.s_max - high);
+  };
+  std::array<int, RP_MAX_PATCHES> taken;  // slot of each patch
+  std::array<bool, RP_MAX_PATCHES> used{};
+  taken.fill(-1);
+  const auto at = [](int i) { return static_cast<size_t>(i); };
+  for (int round = 0; round < count; ++round) {
+    double best = HUGE_VAL;
+    int patch = -1, slot = -1;
+    for (int i = 0; i < count; ++i)
+      for (int k = 0; k < slots; ++k) {
+        if (taken[at(i)] >= 0 || used[at(k)]) continue;
+        const double u = unlike(regions_[at(i)], memory[k]);
+        if (u < best) best = u, patch = i, slot = k;
+      }
+    if (patch < 0) break;
+    taken[at(patch)] = slot;
+    used[at(slot)] = true;
+  }
+  for (int i = 0; i < count; ++i)
+    for (int k = 0; k < slots && taken[at(i)] < 0; ++k)
+      if (!used[at(k)]) taken[at(i)] = k, used[at(k)] = true;
+  for (int i = 0; i < count; ++i) {
+    const int from = taken[at(i)];
+    if (from == i) continue;
+    std::swap(memory[i], memory[from]);
+    // what was here now lies there
+    for (int j = i + 1; j < count; ++j)
+      if (taken[at(j)] == i) taken[at(j)] = from;
+  }
 }
 
 rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &region, int index,
                                      patch_memory *memories, rp_side_result &out) {
   rp_patch_result &result = out.patch[index];
   patch_memory &memory = memories[index];
+  result.share = region.share;
   patch_problem problem;
   problem.g = choose_grid(region);
   const grid &g = problem.g;
@@ -173,7 +229,7 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
   problem.rolling = {{rolling.xi, rolling.eta}, rolling.phi, rolling.direction < 0 ? -1 : 1, 0.0};
   problem.parts = parts_on(region, g);
   past_tractions past[RP_MAX_PATCHES];
-  if (solver.scene().keeps_steps()) set_past(memories, index, region.frame, problem, past);
+  if (solver.scene().keeps_steps()) set_past(memories, region, rolling.direction, problem, past);
   if (solver.scene().normal == RP_NORMAL_HERTZ) {
     // the paraboloid whose overlap has the same depth, length and width
     const double half[2] = {0.5 * (region.x_max - region.x_min),
@@ -184,8 +240,11 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
   patch_wrench wrench;
   solver.solve(problem, memory, result, wrench);
   memory.history.begun = solver.scene().keeps_steps();
+  memory.share = region.share;
 
-  out.rolling_radius += result.normal_force * geometry_->rolling_radius(region.frame, depth);
+  scale(wrench, region.share);
+  out.rolling_radius +=
+      region.share * result.normal_force * geometry_->rolling_radius(region.frame, depth);
   const vec3 lever = geometry_->lever(region.frame);
   add_wrench(wrench, region.frame.contact_angle, lever.data(), out.force, out.moment);
   std::copy_n(origin.begin(), 3, result.position);
@@ -206,46 +265,45 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
 
 // The rail's material stays where it is on the rail, while the wheel moves on by the distance
 // rolled and the reference by what its place has changed; the wheel's differs from it by creepage
-// only. Rows go to the patch that is nearest, where it is near at all.
-void wheel_contact::set_past(const patch_memory *memory, int patch, const contact_frame &frame,
+// only. What solutions of the last step left counts with their shares, as it did in the force, and
+// goes to a patch where it lies nearer to its parts than to others, and near at all.
+void wheel_contact::set_past(const patch_memory *memory, const patch_region &region, int direction,
                              patch_problem &problem, past_tractions *past) const {
   rolling_input &rolling = problem.rolling;
-  rolling.speed = problem.rolling_speed;
-  // what stands still does not roll on
-  rolling.regime = problem.rolling_speed > 0 ? motion::transient : motion::shift;
-  if (rolling.regime == motion::transient) rolling.distance = problem.rolling_speed * time_step_;
+  const double speed = problem.rolling_speed, slow = config_.standstill_speed;
+  rolling.speed = speed;
+  // what stands still does not roll on; near standstill creepages refer to another speed
+  rolling.regime = speed > 0 ? motion::transient : motion::shift;
+  if (speed > 0) rolling.distance = speed * time_step_;
+  const double moved = speed < slow ? std::sqrt(std::max(slow * (2 * speed - slow), 0.0)) : speed;
+  const double rolled = direction * moved * time_step_;
   problem.past = past;
+  const contact_frame &frame = region.frame;
   const auto lateral = [&](const vec3 &at) {
-    return std::cos(frame.contact_angle) * (at[1] - frame.origin[1]) +
-           std::sin(frame.contact_angle) * (at[2] - frame.origin[2]);
+    return lateral_in(frame.origin, frame.contact_angle, at);
   };
-  // half way to the edges of the neighbours
-  const auto edge = [&](int k, bool last) {
-    const patch_region &r = regions_[static_cast<size_t>(k)];
-    const double s = last ? r.s_max : r.s_min, angle = r.frame.contact_angle;
-    return lateral(
-        {0, r.frame.origin[1] + s * std::cos(angle), r.frame.origin[2] + s * std::sin(angle)});
-  };
-  const patch_region &own = regions_[static_cast<size_t>(patch)];
-  double low = own.s_min - patch_rules{}.separate, high = own.s_max + patch_rules{}.separate;
-  if (patch > 0) low = std::max(low, 0.5 * (own.s_min + edge(patch - 1, true)));
-  if (patch + 1 < found_) high = std::min(high, 0.5 * (own.s_max + edge(patch + 1, false)));
+  double low = region.s_min - near, high = region.s_max + near;
+  const int first_part = region.first_part, last_part = first_part + region.parts - 1;
+  const auto part_at = [&](int k) -> const part & { return parts_.parts[k]; };
+  if (first_part > 0)
+    low = std::max(low, 0.5 * (region.s_min + lateral(part_at(first_part - 1).last)));
+  if (last_part + 1 < parts_.count)
+    high = std::min(high, 0.5 * (region.s_max + lateral(part_at(last_part + 1).first)));
   for (int k = 0; k < config_.max_patches; ++k) {
     const patch_history &h = memory[k].history;
     if (!h.held) continue;
     const grid &g = h.last_grid;
     const double place = lateral(h.last_reference);  // in this frame
-    const double first = std::ceil((low - place - g.y0) / g.dy),
-                 last = std::floor((high - place - g.y0) / g.dy);
-    const int begin = static_cast<int>(std::clamp(first, 0.0, static_cast<double>(g.ny)));
-    const int end = static_cast<int>(std::clamp(last + 1, 0.0, static_cast<double>(g.ny)));
+    const auto row = [&](double s) {
+      return static_cast<int>(
+          std::clamp(std::ceil((s - place - g.y0) / g.dy), 0.0, static_cast<double>(g.ny)));
+    };
+    const int begin = row(low), end = row(high);
     if (end <= begin) continue;
-    past[problem.past_count++] = {
-        &h,
-        begin,
-        end - begin,
-        {frame.origin[0] + problem.g.x0 + rolling.upstream() - h.last_reference[0] - g.x0,
-         problem.g.y0 - place - g.y(begin)}};
+    past_tractions &p = past[problem.past_count++];
+    p = {&h, begin, end - begin, {0, 0}};
+    p.offset[0] = frame.origin[0] + problem.g.x0 + rolled - h.last_reference[0] - g.x0;
+    p.offset[1] = problem.g.y0 - place - g.y(begin);
   }
 }
 

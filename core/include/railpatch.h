@@ -136,6 +136,13 @@ typedef enum rp_spin_offset {
   RP_SPIN_OFFSET_NONE = 0,
   RP_SPIN_OFFSET_SIXTH = 1 /* x + dq/6 in the spin term, as the program CONTACT does */
 } rp_spin_offset;
+/* which parts of contact of a wheel, the stretches where the profiles overlap, are one patch */
+typedef enum rp_patch_rule {
+  RP_PATCHES_BLENDED = 0, /* force without jumps: neighbours go over from one patch to two smoothly;
+                             in between both solutions count, each with its share */
+  RP_PATCHES_CONTACT = 1  /* as in the program CONTACT: one patch below 8 mm, with part of the
+                             interaction from 4 mm on, and angles turned together up to 12 mm */
+} rp_patch_rule;
 typedef enum rp_track { RP_RAIL = 0, RP_ROLLER = 1 } rp_track;
 typedef enum rp_element { RP_EXTERIOR = 0, RP_STICK = 1, RP_SLIP = 2, RP_PLASTIC = 3 } rp_element;
 
@@ -272,7 +279,12 @@ typedef struct rp_config {
   double curvature;             /* 1/m, right-hand curve > 0, rail */
   double roller_radius;         /* m, roller */
   rp_profile wheel[2], rail[2]; /* by side; the roller's profile as rail */
-  int32_t max_patches;          /* of one wheel, 1 ... RP_MAX_PATCHES */
+  int32_t max_patches;          /* solved on one wheel, 1 ... RP_MAX_PATCHES */
+  rp_patch_rule patch_rule;
+  double standstill_speed; /* m/s, 0 ... 1, V0: below it creepages are slip over (V^2 + V0^2)/(2 V0)
+                              instead of the rolling speed V, and spin_creepage fades as the heading
+                              turns, so that forces pass through standstill without a jump. 0: slip
+                              over V, and at V = 0 no creep force */
   /* shape along rolling by side, copied; C2 splines. The wheel's radius at its lowest point is that
    * of its profile plus runout at the input's pitch (a rotation about y of its deviation added) */
   const double *runout[2];      /* m, at pitch angles 2 pi i/runout_count, > 0: greater radius */
@@ -355,11 +367,15 @@ typedef struct rp_patch_result {
                                  Coulomb's, friction_points, layers that yield, shift, transient
                                  rolling, table but with Hertz, factors of fast theories other than
                                  1, spin_offset) */
+  double share;               /* -, 0 < ... 1, of this solution in the wheel's force, moment and
+                                 rolling radius: below 1 where patches join or part. All else here
+                                 is of the solution itself */
   double position[3];         /* m, contact reference in track axes (wheel kinds) */
   double contact_angle;       /* rad */
   double creepage[2];         /* -; found where the force is prescribed */
   double spin_creepage;       /* rad/m */
-  double rolling_speed;       /* m/s, mean of the two surface speeds */
+  double rolling_speed;       /* m/s, that creepages are slip over: mean V of the two surface
+                                 speeds; below standstill_speed V0 (V^2 + V0^2)/(2 V0) */
   int32_t direction;          /* 1 or -1; 0 at standstill */
   int32_t grid[2];            /* elements of the potential contact along rolling, lateral; of
                                  fitted rows the nodes and rows */

@@ -74,6 +74,8 @@
   X(curvature)                      \
   X(roller_radius)                  \
   X(max_patches)                    \
+  X(patch_rule)                     \
+  X(standstill_speed)               \
   X(runout_count)                   \
   X(rail_height_count)              \
   X(rail_height_start)              \

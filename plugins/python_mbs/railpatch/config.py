@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from railpatch.case.common import FAST_NUMBERS, Friction, Layer, Temperature
+from railpatch.case.common import FAST_NUMBERS, WHEEL_METHOD, Friction, Layer, Temperature
 from railpatch.case.load import Case, Scene
 from railpatch.case.patch import SHAPES, PatchCase
 from railpatch.case.types import MOST_POINTS
 from railpatch.case.wheel import SIDES, WheelRailCase, WheelsetCase
 from railpatch.choice import resolved
+from railpatch.longitudinal import shape_config
 from railpatch.profiles import load_profile
 from railpatch.table import default_table
 
@@ -160,7 +161,7 @@ def wheel_config(scene: Scene, case: WheelRailCase | WheelsetCase) -> dict[str, 
     wheelset, track = case.wheelset, case.track
     config: dict[str, Any] = {
         "load": "position" if wheelset.z is not None else "force",
-        "regime": "steady_rolling" if case.has_tangential else "none",
+        "regime": case.motion.regime if case.has_tangential else "none",
         "nominal_radius": wheelset.nominal_radius,
         "flange_back_distance": wheelset.flange_back_distance,
         "flange_back_position": wheelset.flange_back_position,
@@ -176,9 +177,11 @@ def wheel_config(scene: Scene, case: WheelRailCase | WheelsetCase) -> dict[str, 
         config["roller_radius"] = track.roller_radius
     if wheelset.max_patches is not None:
         config["max_patches"] = wheelset.max_patches
+    chosen = {name: getattr(case.method, name) for name in WHEEL_METHOD}
+    config.update({name: value for name, value in chosen.items() if value is not None})
     if isinstance(case, WheelRailCase):
         config["side"] = case.wheel.side
-    return config
+    return {**config, **shape_config(case, scene.folder)}
 
 
 def profile_pair(scene: Scene, case: WheelRailCase | WheelsetCase, body: Any) -> list[Any]:

@@ -61,6 +61,8 @@ constexpr Name kNames[] = {
     {"tangential", "table", RP_TANGENTIAL_TABLE},
     {"spin_offset", "none", RP_SPIN_OFFSET_NONE},
     {"spin_offset", "sixth", RP_SPIN_OFFSET_SIXTH},
+    {"patch_rule", "blended", RP_PATCHES_BLENDED},
+    {"patch_rule", "contact", RP_PATCHES_CONTACT},
     {"track", "rail", RP_RAIL},
     {"track", "roller", RP_ROLLER},
     {"side", "left", RP_LEFT},
@@ -245,6 +247,7 @@ nb::dict patch_dict(const rp_patch_result &patch) {
   errors["spin_moment"] = patch.error_estimate[1];
   errors["max_pressure"] = patch.error_estimate[2];
   to["error_estimate"] = errors;
+  to["share"] = patch.share;
   to["position"] = list_of(patch.position);
   to["contact_angle"] = patch.contact_angle;
   to["creepage"] = list_of(patch.creepage);
@@ -351,6 +354,8 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.scalar("curvature", c.curvature);
   reader.scalar("roller_radius", c.roller_radius);
   reader.scalar("max_patches", c.max_patches);
+  reader.name("patch_rule", c.patch_rule);
+  reader.scalar("standstill_speed", c.standstill_speed);
   fill_values(reader, "runout", c.runout, c.runout_count, to.profiles);
   fill_values(reader, "rail_height", c.rail_height, c.rail_height_count, to.profiles);
   reader.scalar("rail_height_start", c.rail_height_start);

@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from railpatch.case.common import (
+    WHEEL_METHOD,
     Friction,
     Grid,
     Layer,
@@ -211,6 +212,10 @@ class PatchCase(Table):
             self._check_regime()
         if any(self.motion.prescribed):
             self._check_force()
+        for name in WHEEL_METHOD:
+            value = getattr(self.method, name)
+            if value is not None:
+                raise relation(f"method.{name}", repr(value), "only with wheels")
         line = self.geometry.line_contact_radius is not None
         check_fitted(self.grid, self.method, line=line)
         ellipse = not line and self.geometry.undeformed_distance is None

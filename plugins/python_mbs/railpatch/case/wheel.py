@@ -18,6 +18,7 @@ from railpatch.case.common import (
     check_physics,
     check_tangential,
 )
+from railpatch.case.rolling import RailShape, WheelMotion, WheelShape, check_rolling
 from railpatch.case.types import (
     Angle,
     AngleVector,
@@ -54,6 +55,14 @@ class Deviation(Table):
     )
 
 
+class WheelDeviation(Deviation, WheelShape):
+    """Deviation of a wheel, and its shape around the circumference."""
+
+
+class RailDeviation(Deviation, RailShape):
+    """Deviation of a rail or roller, and a rail's shape along the track."""
+
+
 class Wheelset(Table):
     """Position, attitude and velocity of the wheelset in track axes, and its dimensions."""
 
@@ -83,7 +92,9 @@ class Wheelset(Table):
         default=0.0, description="rad/s, about the axle; below 0 for rolling forward"
     )
     time_step: NotNegative = Field(
-        default=0.0, description="s, since the last step, for rails on dampers; 0: at rest"
+        default=0.0,
+        description="s, since the last step, for rails on dampers (0: at rest) "
+        "and transient rolling (> 0)",
     )
     nominal_radius: Dimension = Field(description="m, wheel radius at the profile's z = 0")
     flange_back_distance: Dimension = Field(description="m, between the flange backs")
@@ -94,11 +105,11 @@ class Wheelset(Table):
     max_patches: Annotated[int, Field(ge=1, le=6)] | None = Field(
         default=None, description="-, capacity: most patches of one wheel"
     )
-    left: Deviation = Field(
-        default=Deviation(), description="left wheel's deviation (m, rad), wheelset axes"
+    left: WheelDeviation = Field(
+        default=WheelDeviation(), description="left wheel's deviation (m, rad), wheelset axes"
     )
-    right: Deviation = Field(
-        default=Deviation(), description="right wheel's deviation (m, rad), wheelset axes"
+    right: WheelDeviation = Field(
+        default=WheelDeviation(), description="right wheel's deviation (m, rad), wheelset axes"
     )
 
     @model_validator(mode="after")
@@ -128,11 +139,11 @@ class Track(Table):
     roller_pitch_rate: Number | None = Field(
         default=None, description="rad/s, about the roller's axle, above 0 forward (roller)"
     )
-    left: Deviation = Field(
-        default=Deviation(), description="left rail's deviation (m, rad), track axes"
+    left: RailDeviation = Field(
+        default=RailDeviation(), description="left rail's deviation (m, rad), track axes"
     )
-    right: Deviation = Field(
-        default=Deviation(), description="right rail's deviation (m, rad), track axes"
+    right: RailDeviation = Field(
+        default=RailDeviation(), description="right rail's deviation (m, rad), track axes"
     )
 
     @model_validator(mode="after")
@@ -205,6 +216,7 @@ class _WheelCase(Table):
         default=None, description="surface temperature (degrees C, W/(m K), J/(kg K), kg/m^3)"
     )
     method: Method = Field(default=Method(), description="theories and tolerances (-)")
+    motion: WheelMotion = Field(default=WheelMotion(), description="how wheels roll (no unit)")
     wheelset: Wheelset = Field(description="position, velocity, dimensions (m, rad, m/s, rad/s)")
     track: Track = Field(description="rails or rollers (m, rad, rad/s)")
     profiles: Profiles = Field(description="profiles by file or name (no unit)")
@@ -226,6 +238,7 @@ class _WheelCase(Table):
             check_physics(self.friction, self.layer, self.temperature, self.grid, self.method)
         check_fitted(self.grid, self.method)
         check_accuracy(self.grid, self.method)
+        check_rolling(self)
         for side in self.sides:
             for body in ("wheel", "rail"):
                 key, value = self.profiles.of(body, side)
