@@ -12,6 +12,7 @@ namespace {
 const double decay = std::sqrt(3.0) - 2.0;
 constexpr int far_nodes = 32;  // beyond which nothing of it is left in double precision
 constexpr double fine = 1e-3;  // m, between trial places of the least gap
+constexpr int most_places = 100;
 
 }  // namespace
 
@@ -104,7 +105,10 @@ void longitudinal_shape::place(double pitch, double x, double radius) {
   // the closest point of a yawed round wheel lies ahead, too
   const double reach = 2 * widest;
   greatest_ = 0;
-  if (has_runout()) greatest_ += runout_.greatest(pitch - reach, pitch + reach);
+  if (has_runout()) {
+    const double runout = runout_.greatest(pitch - reach, pitch + reach);
+    greatest_ += runout > 0 ? runout : runout * std::cos(reach);
+  }
   if (has_height()) greatest_ += height_.greatest(x - reach * radius, x + reach * radius);
 }
 
@@ -120,7 +124,7 @@ double longitudinal_row::x(double a) const {
 
 double longitudinal_row::at(double a) const {
   const double half = std::sin(0.5 * (a - angle)), place = x(a), apart = place - x0;
-  return gap + 2 * radius * half * half + bend * apart * apart - shape->runout(a) -
+  return gap + 2 * radius * half * half + bend * apart * apart - shape->runout(a) * std::cos(a) -
          shape->height(place);
 }
 
@@ -131,20 +135,50 @@ double longitudinal_row::half_width(double level) const {
                   longitudinal_shape::widest);
 }
 
+// The least gap within step of middle, where it is lower than there: by the parabola through all
+// three where that is true of the gap, by golden section where not.
+double longitudinal_row::dip(double middle, double step, const double gaps[3], double &best) const {
+  constexpr double ratio = 0.6180339887498949, smooth = 1e-8;  // -, m
+  const double bend = gaps[0] - 2 * gaps[1] + gaps[2], rise = 0.5 * (gaps[0] - gaps[2]);
+  best = middle + (bend > 0 ? rise / bend * step : 0.0);
+  double least = at(best);
+  if (bend > 0 && std::fabs(gaps[1] - 0.5 * rise * rise / bend - least) < smooth) return least;
+  double a = middle - step, c = middle + step;
+  double p = c - ratio * (c - a), q = a + ratio * (c - a), fp = at(p), fq = at(q);
+  for (int i = 0; i < 16; ++i) {
+    if (fp < fq) {
+      c = q, q = p, fq = fp;
+      p = c - ratio * (c - a), fp = at(p);
+    } else {
+      a = p, p = q, fp = fq;
+      q = a + ratio * (c - a), fq = at(q);
+    }
+  }
+  best = fp < fq ? p : q;
+  return std::min(fp, fq);
+}
+
 double longitudinal_row::least(double &best) const {
   best = angle;
-  double least = at(angle);
-  const double width = half_width(least);
-  const int n = std::max(4, static_cast<int>(std::ceil(width * radius / fine)));
+  const double level = at(angle), width = half_width(level);
+  const int n = std::clamp(static_cast<int>(std::ceil(width * radius / fine)), 4, most_places);
   const double step = width / n;
-  if (!(step > 0)) return least;
-  for (int i = -n; i <= n; ++i)
-    if (const double g = at(angle + i * step); g < least) least = g, best = angle + i * step;
-  // the parabola through its neighbours
-  const double a = at(best - step), c = at(best + step), bend = a - 2 * least + c;
-  if (!(bend > 0)) return least;
-  const double shift = 0.5 * (a - c) / bend * step;
-  if (const double g = at(best + shift); g < least) least = g, best += shift;
+  if (!(step > 0)) return level;
+  double gaps[2 * most_places + 3];
+  double coarse = level;
+  for (int i = 0; i < 2 * n + 3; ++i) {
+    gaps[i] = i == n + 1 ? level : at(angle + (i - n - 1) * step);
+    coarse = std::min(coarse, gaps[i]);
+  }
+  // between two places the gap falls by less than a wheel's slope there
+  const double reach = coarse + 2 * (width + step) * step * radius;
+  double least = level;
+  for (int i = 1; i < 2 * n + 2; ++i) {
+    if (gaps[i] > reach || gaps[i] > gaps[i - 1] || gaps[i] > gaps[i + 1]) continue;
+    double a;
+    const double g = dip(angle + (i - n - 1) * step, step, gaps + i - 1, a);
+    if (g < least) least = g, best = a;
+  }
   return least;
 }
 
@@ -204,9 +238,10 @@ row_overlap longitudinal_row::overlap() const {
       open = false;
     } else if (g >= 0 && last <= before && last <= g && before < HUGE_VAL) {
       // a dip between the places looked at
-      const double bend = before - 2 * last + g;
-      const double m = a - step + (bend > 0 ? 0.5 * (before - g) / bend * step : 0.0);
-      if (at(m) < 0) add(edge(a - 2 * step, m), edge(a, m), sum);
+      const double gaps[3] = {before, last, g};
+      double m;
+      if (last < 0.1 * radius * step && dip(a - step, step, gaps, m) < 0)
+        add(edge(a - 2 * step, m), edge(a, m), sum);
     }
     before = last;
     last = g;

@@ -8,7 +8,8 @@
 //
 // In one row of the contact locus (geometry.hpp), a meridian of the wheel, the vertical gap is that
 // of the round wheel on the level rail less both:
-//   gap(a) = gap0 + r (1 - cos(a - a0)) + c (x(a) - x(a0))^2 - runout(pitch - a) - height(x + x(a))
+//   gap(a) = gap0 + r (1 - cos(a - a0)) + c (x(a) - x(a0))^2 - runout(pitch - a) cos a - height(x +
+//   x(a))
 // with a0 where the round wheel comes closest and c the half curvature of a roller. It may have
 // several minima, for example at the two ends of a flat.
 #pragma once
@@ -95,6 +96,7 @@ struct longitudinal_row {
 
  private:
   double half_width(double level) const;
+  double dip(double middle, double step, const double gaps[3], double &best) const;
   double edge(double outside, double inside) const;
   void add(double from, double to, row_overlap &sum) const;
 };

@@ -15,24 +15,32 @@ from railpatch.longitudinal import flat_runout, joint_height
 RADIUS = 0.46
 DEPTH = 5e-4
 EDGE = np.arccos(1 - DEPTH / RADIUS)  # rad, half the angle of the flat
-LIGHT = 5.0  # N, on one wheel: a rigid contact within 0.1 um
 
 
 def one_wheel(**values: Any) -> dict[str, Any]:
-    case = copy.deepcopy(WHEELSET)
-    del case["wheelset"]["z"]
-    light = {"wheelset__vertical_force": LIGHT, "method__tangential": "none"}
-    case = with_values(case, **light, grid__element_size=[2.5e-4, 2.5e-4], **values)
+    case = with_values(
+        copy.deepcopy(WHEELSET),
+        **{"method__tangential": "none", "grid__element_size": [5e-4, 5e-4], **values},
+    )
     case["kind"] = "wheel_rail"
     return case
 
 
 def heights(case: dict[str, Any], steps: list[dict[str, float]]) -> np.ndarray:
-    """m, the wheelset's z in each step."""
+    """m, the wheelset's z at which wheel and rail begin to touch, within 1e-8 m."""
     contact = railpatch.Contact(case)
-    results = [contact.step(**step) for step in steps]
-    assert {result["status"] for result in results} == {"converged"}
-    return np.array([result["z"] for result in results])
+
+    def onset(step: dict[str, float]) -> float:
+        apart, touching = -1e-3, 3e-3
+        while touching - apart > 1e-8:
+            z = 0.5 * (apart + touching)
+            if contact.step(z=z, **step)["status"] == "no_contact":
+                apart = z
+            else:
+                touching = z
+        return touching
+
+    return np.array([onset(step) for step in steps])
 
 
 def test_depth_of_a_flat_is_recovered() -> None:
@@ -45,7 +53,7 @@ def test_depth_of_a_flat_is_recovered() -> None:
 def test_a_rigid_wheel_turns_over_the_end_of_its_flat() -> None:
     """On the end of the chord the centre lies R cos(edge - |pitch|) above the rail; the rounded end
     takes away at most b/4, b as in flat_runout."""
-    rounding = 5e-4
+    rounding = 2e-3
     pitches = np.concatenate([np.linspace(0.1, 1.0, 6), -np.linspace(0.05, 0.95, 6)]) * EDGE
     case = one_wheel(wheelset__right={"flat": {"depth": DEPTH, "rounding": rounding}})
     z = heights(case, [{"pitch": float(p)} for p in [1.0, *pitches]])
@@ -60,8 +68,8 @@ def test_a_rigid_wheel_turns_over_the_end_of_its_flat() -> None:
                   * np.cos(a)).max()
         for p in pitches
     ]  # fmt: skip
-    # splines through points half a millimetre apart cut the rounded ends
-    assert drop == pytest.approx(np.array(drawn), abs=2e-6)
+    # splines through points half a millimetre apart hardly cut the rounded ends
+    assert drop == pytest.approx(np.array(drawn), abs=3e-7)
 
 
 def test_length_of_a_flat() -> None:
@@ -109,15 +117,14 @@ def test_forces_are_continuous_over_a_flat() -> None:
     """No jump above 0.2 % of the load per micrometre of rolling beyond what the slope explains: at
     a fixed height, steps of 2 um where contact comes to, is on and leaves the ends."""
     case = one_wheel(
-        wheelset__vertical_force=None,
         wheelset__z=4e-4,
         wheelset__right={"flat": {"depth": DEPTH, "rounding": 5e-3}},
         grid__element_size=[1e-3, 1e-3],
     )
     contact = railpatch.Contact(case)
-    load = contact.step(pitch=1.0)["right"]["force"][2]
+    load = contact.step(pitch=1.0)["force"][2]
     for start in (-2.0 * EDGE, -EDGE, -0.35 * EDGE, -1e-5, 0.4 * EDGE, EDGE, 1.6 * EDGE):
         pitches = start + 2e-6 / RADIUS * np.arange(40)
-        force = np.array([contact.step(pitch=float(p))["right"]["force"][2] for p in pitches])
+        force = np.array([contact.step(pitch=float(p))["force"][2] for p in pitches])
         jump = np.abs(np.diff(force, 2)).max()
         assert jump < 2 * 0.002 * abs(load), f"from {start}: {jump / load}"
