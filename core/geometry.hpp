@@ -25,6 +25,7 @@
 
 #include <array>
 
+#include "longitudinal_shape.hpp"
 #include "profile.hpp"
 
 namespace railpatch {
@@ -139,7 +140,14 @@ class side_geometry {
   double sample_s(int i) const { return wheel_.sample_s(i); }
   bool no_overlap() const { return !overlap_; }
 
-  // Exact, at arc length s of the wheel's profile.
+  // What varies along the rolling direction, null: nothing; place it before place().
+  void set_shape(const longitudinal_shape *shape) { shape_ = shape; }
+  bool shaped() const { return shape_ != nullptr; }
+  // With a shape: the overlap along x in the row at s, y at its mean and dy/ds of the meridian.
+  row_overlap overlap(double s, double &y, double &dy) const;
+
+  // Exact, at arc length s of the wheel's profile; with a shape the gap is the least one of the
+  // row, see longitudinal_shape.hpp.
   locus_point locus(double s) const;
   // The rail surface at (x, y): z, and the angle of its profile; false beyond the profile.
   bool rail_surface(double x, double y, double &z, double &angle) const;
@@ -169,6 +177,9 @@ class side_geometry {
   double sampled_gap(double s) const;
   void set_rates(const curve_point &p, double sine, locus_point &l) const;
   vec3 wheel_point(const curve_point &p, double sine) const;
+  longitudinal_row row_of(const curve_point &p, double sine, double gap) const;
+  double sideways(double x, double sine, const curve_point &p) const;
+  void find_closest(const curve_point &p, double sine, locus_point &l) const;
   vec3 wheel_rate(const vec3 &at) const;
   vec3 rail_rate(const vec3 &at) const;
 
@@ -183,6 +194,7 @@ class side_geometry {
   vec3 axis_origin_{}, axis_offset_{};  // of this wheel, from track origin and wheelset centre
   mat3 wheelset_axes_{}, wheel_axes_{};
   bool overlap_ = false;
+  const longitudinal_shape *shape_ = nullptr;
 };
 
 }  // namespace railpatch

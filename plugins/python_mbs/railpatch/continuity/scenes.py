@@ -103,9 +103,7 @@ def standstill(radius: float = RADIUS) -> Path:
         slip = 2 * MICRO
         return {"speed": speed, "pitch_rate": -speed / radius * 1.0005, "vy": slip, "y": 0.004}
 
-    return Path(
-        "speed through standstill", changes, -3e-3, 3e-3, 10 * MICRO, MICRO, "speed [mm/s]"
-    )
+    return Path("speed through standstill", changes, -3e-3, 3e-3, 10 * MICRO, MICRO, "speed [mm/s]")
 
 
 def scenes(quick: bool = False) -> Iterator[Scene]:
