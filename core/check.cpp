@@ -11,6 +11,7 @@
 #include "coupling.hpp"
 #include "creep_table.hpp"
 #include "fast.hpp"
+#include "input_numbers.hpp"
 #include "physics.hpp"
 
 namespace railpatch {
@@ -447,6 +448,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
     check.number("layer_shear_modulus", c.layer_shear_modulus, {1.0, 1e15, false, false});
   check.number("tolerance", c.tolerance, {1e-12, 0.1, false, false});
   check.integer("max_iterations", c.max_iterations, 1, 100000);
+  check.integer("derivatives", c.derivatives, 0, 1);
   const bool rolling = has_tangential(c);
   const bool fast = is_fast(c.tangential);
   check_fast(c, check);
@@ -525,6 +527,19 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
                   "about x only");
   }
   check.number("roller_pitch_rate", in.roller_pitch_rate, finite);
+  return check.error();
+}
+
+rp_error check_direction(const rp_input &d, rp_message *message) {
+  if (d.cookie != input_cookie) {
+    set_message(message, "the direction was never filled by rp_default_input");
+    return RP_ERROR_NOT_DEFAULTED;
+  }
+  checker check(message);
+  for_each_number(d, [&](const char *name, const double &value, double) {
+    const bool bulk = std::strcmp(name, "bulk_temperature") == 0;
+    if (!(bulk && std::isnan(value))) check.number(name, value, finite);
+  });
   return check.error();
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "check.hpp"
+#include "contact_derivative.hpp"
 #include "force_search.hpp"
 
 namespace railpatch {
@@ -89,6 +90,8 @@ patch_scene make_scene(const rp_config &c) {
   for (int k = 0; k < 2; ++k) scene.fitted[k] = c.fitted[k];
   for (int k = 0; k < 2; ++k) scene.prescribed[k] = c.force_prescribed[k] != 0;
   scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
+  scene.derivatives = c.derivatives != 0;
+  scene.stretches = c.kind != RP_PATCH && c.elements[0] > 0;
   scene.fast.theory = scene.tangential;
   if (uses_table(c)) scene.fast.creep_table = c.creep_table;
   scene.fast.coefficient_factor = 0.01 * c.percent_kalker;
@@ -258,11 +261,17 @@ contact::contact(const rp_config &config)
     }
   }
   scene_ = fingerprint(config, shape_);
+  if (config.derivatives != 0) {
+    const auto count = config.kind == RP_PATCH ? static_cast<size_t>(size.nx * size.ny) : 0;
+    derivative_ = std::make_unique<derivative_record>(config, solver_.scene(), count);
+  }
   // nothing else of the caller's memory is kept than the creep table
   config_.undeformed_distance = nullptr;
   for (auto *p : {&config_.wheel[0], &config_.wheel[1], &config_.rail[0], &config_.rail[1]})
     *p = rp_profile{};
 }
+
+contact::~contact() = default;
 
 bool contact::has_side(int side) const {
   if (config_.kind == RP_PATCH) return side == RP_RIGHT;
@@ -279,6 +288,7 @@ const patch_memory &contact::memory(int side, int patch) const {
 }
 
 void contact::step(const rp_input &input, rp_result &result) {
+  if (derivative_) begin_record();
   rp_result out{};
   out.z = nan;
   const rp_patch_result empty = empty_patch_result();
@@ -295,6 +305,7 @@ void contact::step(const rp_input &input, rp_result &result) {
   }
   config_.kind == RP_PATCH ? step_patch(input, out) : step_wheels(input, out);
   result = out;
+  if (derivative_) end_record(input, out);
 }
 
 rolling_input contact::step_of(const rp_input &in) const {
@@ -390,6 +401,7 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
   solver_.observe(RP_STAGE_GEOMETRY, false);
   patch_wrench wrench;
   solver_.solve(problem, m, result, wrench);
+  if (derivative_) derivative_->problem = problem;
   finish(result.status);
 }
 
@@ -481,6 +493,7 @@ void contact::reset() {
     if (m.heat) m.heat->clear();
   }
   depth_ = 0;
+  if (derivative_) derivative_->solved = false;
 }
 
 // --- fields -------------------------------------------------------------------------

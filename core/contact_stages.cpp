@@ -88,6 +88,12 @@ const char *plasticity_reason(const rp_config &config, const patch_scene &scene)
                                     : "no third-body layer";
 }
 
+const char *derivative_reason(bool asked, const patch_scene &scene) {
+  if (!asked) return "derivatives are not asked for";
+  return scene.differentiates() ? "derivatives are asked for: from the solved conditions"
+                                : "derivatives are asked for: by differences of further steps";
+}
+
 }  // namespace
 
 void contact::describe(rp_stage_info *info) const {
@@ -126,6 +132,9 @@ void contact::describe(rp_stage_info *info) const {
   info[RP_STAGE_HISTORY] = {"history", scene.keeps_steps(), history_reason(scene), history};
   info[RP_STAGE_PLASTICITY] = {"plasticity", scene.yields(), plasticity_reason(config_, scene),
                                plastic};
+  const bool asked = config_.derivatives != 0;
+  info[RP_STAGE_DERIVATIVES] = {"derivatives", asked, derivative_reason(asked, scene),
+                                derivative_bytes()};
 }
 
 }  // namespace railpatch

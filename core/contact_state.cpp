@@ -5,6 +5,7 @@
 
 #include "check.hpp"
 #include "contact.hpp"
+#include "contact_derivative.hpp"
 
 namespace railpatch {
 
@@ -149,7 +150,8 @@ uint64_t fingerprint_of_arrays(const rp_config &c, const aligned_buffer<double> 
   return hash;
 }
 
-// the fields that a later step starts from
+// the fields that a later step starts from, at most
+constexpr size_t max_start_fields = 16;
 template <class Memory, class F>
 void for_each_start_field(Memory &m, F &&f) {
   if (m.heat && m.heat->columns.size())
@@ -225,7 +227,27 @@ bool contact::restore_state(const unsigned char *buffer, size_t size) {
   }
   depth_ = header.depth;
   solver_.set_friction_coefficient(header.friction_coefficient);
+  if (derivative_) derivative_->solved = false;
   return true;
+}
+
+void contact::copy_state(const contact &from) {
+  for (size_t k = 0; k < memory_.size(); ++k) {
+    const patch_memory &source = from.memory_[k];
+    patch_memory &m = memory_[k];
+    m.g = source.g;
+    m.reference = source.reference;
+    m.warm = source.warm;
+    m.history.begun = source.history.begun;
+    m.solved = false;
+    const double *fields[max_start_fields];
+    size_t count = 0, next = 0;
+    for_each_start_field(source, [&](const double *data, size_t) { fields[count++] = data; });
+    for_each_start_field(
+        m, [&](double *data, size_t bytes) { std::memcpy(data, fields[next++], bytes); });
+  }
+  depth_ = from.depth_;
+  solver_.set_friction_coefficient(from.friction_coefficient());
 }
 
 // Walks the patches without changing anything: every grid must fit this handle's memory.

@@ -26,6 +26,14 @@ class friction_factor {
     const double part = (place - place_[below]) / (place_[next] - place_[below]);
     return factor_[below] + part * (factor_[next] - factor_[below]);
   }
+  // by the place; where two lines meet that of the upper one
+  double slope(double place) const {
+    const auto begin = place_.begin(), end = begin + count_;
+    const auto above = std::upper_bound(begin, end, place) - begin;
+    if (above == 0 || above == count_) return 0.0;
+    const auto below = static_cast<size_t>(above - 1), next = static_cast<size_t>(above);
+    return (factor_[next] - factor_[below]) / (place_[next] - place_[below]);
+  }
 
  private:
   int count_ = 0;

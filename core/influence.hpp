@@ -49,6 +49,8 @@ class influence {
     double layer_flexibility = 0;  // m/Pa, thickness over shear modulus
     double line_width = 0;         // m, > 0: plane strain
     bool tangential = true;        // false: no xx, yy, xy at all
+    // the coefficients' derivatives by dx instead, offsets in elements kept (not plane strain)
+    bool by_length = false;
   };
 
   influence(const scene &scene, const fft_plans &plans);
@@ -84,6 +86,7 @@ class influence {
   void make_kernels(int half_x, int half_y);
   void make_half_space_kernels();
   void make_line_kernels();
+  void make_rates(double x, double y, double moves, size_t at);
   void make_spectra();
   void transform_kernel(kernel k);
 

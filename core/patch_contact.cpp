@@ -69,6 +69,13 @@ bool patch_scene::estimates_force() const {
          fast.bound == RP_BOUND_AUTOMATIC;
 }
 
+bool patch_scene::differentiates() const {
+  if (normal != RP_NORMAL_HALF_SPACE && normal != RP_NORMAL_HERTZ) return false;
+  if (tangential == RP_TANGENTIAL_NONE) return true;
+  return tangential == RP_TANGENTIAL_FULL && !is_fitted() && !law && !keeps_steps() && !heat &&
+         !is_forced() && !couples();
+}
+
 patch_memory::patch_memory(int max_count, int max_rows, const patch_scene &scene) {
   const auto n = static_cast<size_t>(max_count);
   undeformed_distance = aligned_buffer<double>(n);
@@ -131,6 +138,8 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
                     *fitted_rows_);
   }
   if (scene.heat) heat_.emplace(*scene.heat, max_nx, max_ny);
+  if (scene.derivatives && scene.differentiates())
+    derivative_.emplace(scene, plans, max_nx, max_ny, scene.stretches);
   if (scene.closed_form()) return;
   scratch_[0] = aligned_buffer<double>(count);
   scratch_[1] = aligned_buffer<double>(count);
@@ -219,6 +228,7 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
     loaded = solve_normal(problem, memory, result);
   }
   observe(RP_STAGE_NORMAL, false);
+  memory.approach = result.approach;
   memory.beyond = result.status == RP_OUT_OF_RANGE;
   memory.warm =
       loaded && result.status == RP_CONVERGED && memory.pressure.size() + memory.px.size() > 0;
@@ -267,6 +277,23 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   }
   estimate_error(problem, memory, result);
   observe(RP_STAGE_FORCES, false);
+}
+
+derivative_outcome patch_contact::differentiate(const patch_problem &problem,
+                                                const patch_memory &memory,
+                                                const patch_variation *in, int count,
+                                                const derivative_options &options,
+                                                patch_change *out) {
+  observe(RP_STAGE_DERIVATIVES, true);
+  const patch_derivative::solved solved{scene_,
+                                        problem,
+                                        memory,
+                                        influence_ ? &*influence_ : nullptr,
+                                        normal_ ? &*normal_ : nullptr,
+                                        tangential_ ? tangential_->blocks() : nullptr};
+  const derivative_outcome outcome = derivative_->solve(solved, in, count, options, out);
+  observe(RP_STAGE_DERIVATIVES, false);
+  return outcome;
 }
 
 void patch_contact::estimate_error(const patch_problem &problem, patch_memory &memory,

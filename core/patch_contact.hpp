@@ -14,6 +14,7 @@
 #include "friction_factor.hpp"
 #include "hertz.hpp"
 #include "normal.hpp"
+#include "patch_derivative.hpp"
 #include "patch_history.hpp"
 #include "physics.hpp"
 #include "railpatch.h"
@@ -42,6 +43,8 @@ struct patch_scene {
   double normal_tolerance = 1e-5;
   int max_iterations = 100;
   bool spin_offset = false;  // x + dq/6 in the spin term
+  bool derivatives = false;  // patch_contact::differentiate is asked for
+  bool stretches = false;    // grids whose dx and dy change at different rates
   int fitted[2] = {0, 0};    // nodes and strips of the tangential problem; 0: on the uniform grid
   fast_options fast;         // where the tangential theory is a fast one
   std::optional<heat_scene> heat;       // where temperatures are asked for
@@ -59,6 +62,8 @@ struct patch_scene {
     return normal == RP_NORMAL_HERTZ &&
            (is_fitted() || (is_fast(tangential) && !has_tractions(tangential)));
   }
+  // Whether the solution's derivatives come from its equations (patch_derivative.hpp).
+  bool differentiates() const;
   double modulus() const { return elastic.shear_modulus / (1.0 - elastic.poisson_ratio); }
 };
 
@@ -84,6 +89,7 @@ struct patch_memory {
   bool warm = false;    // pressure and traction may serve as a start
   bool beyond = false;  // the normal problem left its range: what the patch carries is not known
   grid g;
+  double approach = 0;                // m, of the last step's normal problem on the half-space
   std::array<double, 3> reference{};  // m, contact reference, track axes of a right wheel
   aligned_buffer<double> undeformed_distance, pressure, px, py, sx, sy;
   aligned_buffer<unsigned char> division;
@@ -127,6 +133,12 @@ class patch_contact {
   // Carries the memory's solution over to another grid, or clears it.
   void start_from(patch_memory &memory, const grid &g);
 
+  // Derivatives of the last step's solution, which `memory` holds, in `count` directions; for
+  // scenes with derivatives, which differentiate. The memory and later steps stay as they are.
+  bool differentiates() const { return derivative_.has_value(); }
+  derivative_outcome differentiate(const patch_problem &problem, const patch_memory &memory,
+                                   const patch_variation *in, int count,
+                                   const derivative_options &options, patch_change *out);
   bool fits(const grid &g) const { return g.nx <= max_nx_ && g.ny <= max_ny_; }
   const patch_scene &scene() const { return scene_; }
   void set_friction_coefficient(double value) { scene_.friction_coefficient = value; }
@@ -145,6 +157,7 @@ class patch_contact {
   }
   // with the last two
   size_t tangential_bytes() const;
+  size_t derivative_bytes() const { return derivative_ ? derivative_->bytes() : 0; }
   size_t heat_bytes() const { return heat_ ? heat_->bytes() : 0; }
   void observe(rp_stage stage, bool entering) const {
     if (observer_) observer_(observer_user_, stage, entering);
@@ -190,6 +203,7 @@ class patch_contact {
   std::optional<fast_solver> fast_;
   physics_part<temperature_stage> heat_;
   physics_part<coupled_contact> coupled_;
+  std::optional<patch_derivative> derivative_;
   error_model errors_;
   creep_resultants sums_;  // of the last step, where the theory has no tractions
   aligned_buffer<double> bound_, scratch_[2];

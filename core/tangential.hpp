@@ -81,6 +81,8 @@ class tangential_solver {
                           const rolling_input &input, const tangential_options &options,
                           tangential_fields fields, const inelastic_fields *inelastic = nullptr,
                           inelastic_sums *sums = nullptr);
+  // The preconditioner's, for linear systems of the same rows between solves; null: other laws.
+  row_blocks *blocks() { return newton_ ? &newton_->blocks() : nullptr; }
   // all, and what of it serves the last step and the plastic layer
   size_t bytes() const;
   size_t history_bytes() const { return (offset_ ? offset_->bytes() : 0) + before_.bytes(); }

@@ -171,7 +171,8 @@ typedef enum rp_stage {
   RP_STAGE_COUPLING = 6,   /* normal and tangential problem of unlike bodies, by each other */
   RP_STAGE_HISTORY = 7,    /* last step's tractions and states, in shift and transient rolling */
   RP_STAGE_PLASTICITY = 8, /* of the third-body layer; its time is that of the tangential problem */
-  RP_STAGE_COUNT = 9
+  RP_STAGE_DERIVATIVES = 9, /* rp_differentiate */
+  RP_STAGE_COUNT = 10
 } rp_stage;
 
 /* Called when a stage begins (entering = 1) and ends (0); for time shares. The core has no clock.
@@ -267,6 +268,7 @@ typedef struct rp_config {
    * any threads may share it. Aligned to 8 bytes. */
   const void *creep_table;
   size_t creep_table_size;
+  int32_t derivatives; /* 1: rp_differentiate may be called, 0: it has no memory */
 
   /* wheel_rail, wheelset */
   int32_t side;                /* RP_LEFT or RP_RIGHT, kind = RP_WHEEL_RAIL */
@@ -432,6 +434,29 @@ RP_API void rp_destroy(rp_contact *contact); /* null is allowed */
  * handle are untouched. */
 RP_API rp_error rp_step(rp_contact *contact, const rp_input *input, rp_result *result,
                         rp_message *message);
+/* How a derivative was found. */
+typedef enum rp_derivative_kind {
+  RP_DERIVATIVE_EXACT = 0, /* from the solved conditions, by the implicit function theorem */
+  RP_DERIVATIVE_BY_DIFFERENCES = 1 /* central differences of steps beside the last one */
+} rp_derivative_kind;
+
+/* Derivative of the last step's result in one direction: each double of `direction` holds the rate
+ * of that input, its integers are ignored and so is a bulk_temperature that is NaN. Each double of
+ * `change` is the rate of that number of the result: NaN where the number itself is NaN, and of
+ * residual and error_estimate; counts are 0, statuses those of the result, or RP_NOT_CONVERGED
+ * where the rates did not converge. kind (may be null) says how they were found. Needs
+ * config.derivatives = 1 and a step since rp_create, rp_reset or rp_restore_state; the state, the
+ * last solution and its fields stay as they are.
+ *
+ * Exact ones are those of the returned solution's active sets: elements in contact, in stick and in
+ * slip stay what they are. Where an element is just about to change, that is the one-sided
+ * derivative towards the side on which it does not. They exist with normal = half_space or hertz
+ * and without a tangential problem, or with tangential = full on the uniform grid in steady
+ * rolling, Coulomb's law (friction_points included), bodies alike, no prescribed creep force, no
+ * layer that yields and no temperature. */
+RP_API rp_error rp_differentiate(rp_contact *contact, const rp_input *direction, rp_result *change,
+                                 rp_derivative_kind *kind, rp_message *message);
+
 /* Changes the coefficient of Coulomb's law (0 ... 10) for the steps that follow; part of the state.
  * Other laws have their own numbers and do not read it. */
 RP_API rp_error rp_set_friction_coefficient(rp_contact *contact, double value, rp_message *message);

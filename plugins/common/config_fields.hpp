@@ -63,6 +63,7 @@
   X(fastsim_k0)                     \
   X(fastsim_alpha)                  \
   X(fastsim_beta)                   \
+  X(derivatives)                    \
   X(side)                           \
   X(nominal_radius)                 \
   X(flange_back_distance)           \

@@ -324,6 +324,7 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.scalar("fastsim_k0", c.fastsim_k0);
   reader.scalar("fastsim_alpha", c.fastsim_alpha);
   reader.scalar("fastsim_beta", c.fastsim_beta);
+  reader.scalar("derivatives", c.derivatives);
   if (reader.has("creep_table")) {
     to.table = nb::cast<Bytes>(reader.at("creep_table"));
     c.creep_table = to.table.data();
