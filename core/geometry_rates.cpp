@@ -66,7 +66,7 @@ rated solved(double value, const rated &residual, size_t slot) {
 }  // namespace
 
 moving_geometry::moving_geometry(const side_geometry &side, const motion_rates &motion)
-    : side_(side), count_(motion.count) {
+    : side_(side) {
   sizes_ = side.sizes_;
   track_ = side.track_;
   marker_y_ = side.marker_y_;
@@ -240,8 +240,9 @@ class moving_surface final : public surface_visitor {
 }  // namespace
 
 void moving_geometry::distance_rates(const rated_frame &frame, const surface_grid &grid,
-                                     const lattice_rates *lattice, double *const *rates) const {
-  for (int k = 0; k < count_; ++k) std::fill_n(rates[k], grid.nx * grid.ny, 0.0);
+                                     const lattice_rates *lattice, int count,
+                                     double *const *rates) const {
+  for (int k = 0; k < count; ++k) std::fill_n(rates[k], grid.nx * grid.ny, 0.0);
   const bool roller = track_.kind == track_kind::roller;
   const frame_axes<rated> f = axes_of(frame);
   mat<rated> identity{};
@@ -267,9 +268,9 @@ void moving_geometry::distance_rates(const rated_frame &frame, const surface_gri
       see(wheel_, axis_origin_, wheel_axes_, rated(sizes_.nominal_radius), 1.0, false);
   const auto on_rail =
       see(rail_, axle, identity, roller ? axle_z_ : rated(0.0), roller ? -1.0 : 1.0, !roller);
-  moving_surface wheel(on_wheel, grid, lattice, count_, -1.0, rates);
+  moving_surface wheel(on_wheel, grid, lattice, count, -1.0, rates);
   side_.meet_surface(body::wheel, fixed, grid, wheel);
-  moving_surface rail(on_rail, grid, lattice, count_, 1.0, rates);
+  moving_surface rail(on_rail, grid, lattice, count, 1.0, rates);
   side_.meet_surface(body::rail, fixed, grid, rail);
 }
 

@@ -49,11 +49,11 @@ class moving_geometry : private placement<rated> {
 
   // A part found there.
   basic_part<rated> part_of(const part &found) const;
-  // rates[k][ny][nx] of the undeformed distance, for each direction; the elements move with the
-  // lattice, whose rates are by direction too (null: it stands still in the frame). Where there is
-  // no surface they mean nothing.
+  // rates[k][ny][nx] of the undeformed distance, for the first `count` directions; the elements
+  // move with the lattice, whose rates are by direction too (null: it stands still in the frame).
+  // Where there is no surface they mean nothing.
   void distance_rates(const rated_frame &frame, const surface_grid &grid,
-                      const lattice_rates *lattice, double *const *rates) const;
+                      const lattice_rates *lattice, int count, double *const *rates) const;
 
  private:
   // The profile in its meridian plane.
@@ -69,7 +69,6 @@ class moving_geometry : private placement<rated> {
   rated edge(double s) const;
 
   const side_geometry &side_;
-  int count_;
   meridian wheel_, rail_;
 };
 

@@ -68,9 +68,11 @@ wheel_contact::wheel_contact(const rp_config &c, int side)
   const wheel_config sizes{c.nominal_radius, c.flange_back_distance, c.flange_back_position,
                            c.standstill_speed};
   geometry_ = std::make_unique<side_geometry>(*wheel_, *rail_, sizes, track_of(c, side));
+  if (c.derivatives != 0) solutions_.resize(static_cast<size_t>(c.max_patches));
 }
 
-void wheel_contact::place(const rp_input &in) {
+// Of the inputs, or of their rates: what a right-hand wheel does.
+side_motion wheel_contact::motion_of(const rp_input &in) const {
   side_motion motion;
   motion.wheelset = {in.y,  in.z,  in.roll,      in.yaw,      in.speed,
                      in.vy, in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
@@ -79,8 +81,10 @@ void wheel_contact::place(const rp_input &in) {
   motion.rail = deviation_of(in.rail_offset[side_], in.rail_rotation[side_],
                              in.rail_velocity[side_], in.rail_angular_velocity[side_]);
   motion.roller_pitch_rate = in.roller_pitch_rate;
-  geometry_->place(side_ == RP_LEFT ? mirrored(motion) : motion);
+  return side_ == RP_LEFT ? mirrored(motion) : motion;
 }
+
+void wheel_contact::place(const rp_input &in) { geometry_->place(motion_of(in)); }
 
 grid wheel_contact::choose_grid(const patch_region &r) const {
   grid g;
@@ -118,7 +122,7 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
       find_patches(*geometry_, rules_, parts_, regions_.data(), config_.max_patches);
   solver.observe(RP_STAGE_GEOMETRY, false);
   out.status = RP_NO_CONTACT;
-  const int count = found.count;
+  const int count = patches_ = found.count;
   out.patch_count = count;
   for (int k = 0; k < 3; ++k) out.force[k] = out.moment[k] = 0;
   out.rolling_radius = 0;
@@ -186,6 +190,7 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
                                      patch_memory &memory, rp_side_result &out) {
   rp_patch_result &result = out.patch[index];
   result.share = region.share;
+  if (!solutions_.empty()) solutions_[static_cast<size_t>(index)].solved = false;
   patch_problem problem;
   problem.g = choose_grid(region);
   const grid &g = problem.g;
@@ -226,6 +231,8 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
   patch_wrench wrench;
   solver.solve(problem, memory, result, wrench);
 
+  if (!solutions_.empty()) solutions_[static_cast<size_t>(index)] = {true, problem, wrench, depth};
+
   scale(wrench, region.share);
   out.rolling_radius +=
       region.share * result.normal_force * geometry_->rolling_radius(region.frame, depth);
@@ -259,10 +266,32 @@ void wheel_contact::set_friction(const patch_contact &solver, const contact_fram
   }
 }
 
+derivative_outcome wheel_contact::differentiate(patch_contact &solver, const patch_memory *memory,
+                                                wheel_derivative &work, const rp_input *directions,
+                                                int count, const rp_side_result &result,
+                                                rp_side_result *changes) const {
+  side_motion motions[wheel_derivative::most_directions];
+  for (int k = 0; k < count; ++k) motions[k] = motion_of(directions[k]);
+  const wheel_solution solution{*geometry_,
+                                rules_,
+                                parts_,
+                                regions_.data(),
+                                solutions_.data(),
+                                memory,
+                                patches_,
+                                config_.element_size[0] > 0 ? nullptr : config_.elements};
+  const derivative_outcome outcome =
+      work.solve(solution, solver, motions, count, {}, result, changes);
+  for (int k = 0; k < count; ++k)
+    if (side_ == RP_LEFT) mirror(changes[k]);
+  return outcome;
+}
+
 bool wheel_contact::first_touch(double &z) const { return railpatch::first_touch(*geometry_, z); }
 
 size_t wheel_contact::bytes() const {
-  return wheel_->bytes() + rail_->bytes() + geometry_->bytes();
+  return wheel_->bytes() + rail_->bytes() + geometry_->bytes() +
+         solutions_.size() * sizeof(patch_solution);
 }
 
 rp_status combine_status(rp_status a, rp_status b) {
