@@ -11,6 +11,7 @@ namespace railpatch {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double exact_tolerance = 1e-8, coarse_tolerance = 1e-6;  // of the linear systems
 constexpr int columns = 12, z_column = 2;
 
 double *pose_and_velocity(rp_input &in, int column) {
@@ -54,8 +55,9 @@ void contact::differentiate_wheels(const rp_input &direction, rp_result &out) {
   for (const auto &wheel : wheels_) {
     const int side = wheel.side();
     rp_side_result *changes = &record.changes[static_cast<size_t>(side * count)];
-    const derivative_outcome outcome = wheel.differentiate(
-        solver_, &memory(side, 0), *record.wheels, both, count, record.result.side[side], changes);
+    const derivative_outcome outcome =
+        wheel.differentiate(solver_, &memory(side, 0), *record.wheels, both, count, {},
+                            record.result.side[side], changes);
     missing -= changes[0].force[2];
     if (forced) slope += changes[1].force[2];
     degrade(out.side[side].status, outcome.converged);
@@ -100,12 +102,15 @@ void contact::exact_jacobian(rp_jacobian &out) {
   out.kind = RP_DERIVATIVE_EXACT;
   rp_input inputs[direction_count];
   for (int k = 0; k < direction_count; ++k) inputs[k] = unit_direction(record.input, directions[k]);
+  // no better than the solution they belong to
+  const double tolerance = std::clamp(0.1 * config_.tolerance, exact_tolerance, coarse_tolerance);
+  const derivative_options options{tolerance, false};
   double vertical[columns] = {};
   for (const auto &wheel : wheels_) {
     const int side = wheel.side();
     const derivative_outcome outcome =
         wheel.differentiate(solver_, &memory(side, 0), *record.wheels, inputs, direction_count,
-                            record.result.side[side], record.changes.data());
+                            options, record.result.side[side], record.changes.data());
     degrade(out.status, outcome.converged);
     for (int k = 0; k < direction_count; ++k) {
       const rp_side_result &change = record.changes[static_cast<size_t>(k)];

@@ -6,7 +6,9 @@
 #include <optional>
 
 #include "coarse_start.hpp"
+#include "conformal_rows.hpp"
 #include "coupled_contact.hpp"
+#include "coupling.hpp"
 #include "error_estimate.hpp"
 #include "fast.hpp"
 #include "fitted.hpp"
@@ -24,11 +26,12 @@
 
 namespace railpatch {
 
-// Constant over the life of a handle, but for the friction coefficient.
+// Constant over the life of a handle, but for the friction coefficient and its scale.
 struct patch_scene {
   elastic_constants elastic;
   double friction_coefficient = 0;
   friction_factor friction_variation;
+  double friction_scale = 1.0;   // of the law, in this step
   double layer_flexibility = 0;  // m/Pa
   double line_width = 0;         // m, > 0: line contact
   rp_normal_method normal = RP_NORMAL_HALF_SPACE;
@@ -45,17 +48,19 @@ struct patch_scene {
   bool spin_offset = false;  // x + dq/6 in the spin term
   bool derivatives = false;  // patch_contact::differentiate is asked for
   bool stretches = false;    // grids whose dx and dy change at different rates
+  bool curved = false;       // reference surface, of wheels
   int fitted[2] = {0, 0};    // nodes and strips of the tangential problem; 0: on the uniform grid
   fast_options fast;         // where the tangential theory is a fast one
   std::optional<heat_scene> heat;       // where temperatures are asked for
   bool prescribed[2] = {false, false};  // components of the creep force: their creepage is found
+  double friction() const { return friction_coefficient * friction_scale; }
   bool is_forced() const { return prescribed[0] || prescribed[1]; }
   // false: beside the exact theory, by choice
   bool estimates_force() const;
   bool is_fitted() const { return tangential == RP_TANGENTIAL_FULL && fitted[0] > 0; }
   // Pressure and traction act on each other, and both are there.
   bool couples() const {
-    return has_physics && tangential == RP_TANGENTIAL_FULL && is_coupled(elastic);
+    return has_physics && tangential == RP_TANGENTIAL_FULL && (curved || is_coupled(elastic));
   }
   // No pressure and no traction on a uniform grid: all is closed form or on rows of its own.
   bool closed_form() const {
@@ -99,6 +104,7 @@ struct patch_memory {
   std::array<double, error_feature_count> error_features{};
   patch_history history;
   physics_part<heat_memory> heat;
+  physics_part<conformal_rows> curved;
   bool fitted() const { return node_x.size() > 0; }
   // elements of the tangential problem along rolling and lateral
   int columns() const { return fitted() ? static_cast<int>(node_x.size() / node_y.size()) : g.nx; }
@@ -142,6 +148,7 @@ class patch_contact {
   bool fits(const grid &g) const { return g.nx <= max_nx_ && g.ny <= max_ny_; }
   const patch_scene &scene() const { return scene_; }
   void set_friction_coefficient(double value) { scene_.friction_coefficient = value; }
+  void set_friction_scale(double value) { scene_.friction_scale = value; }
   // degrees C, of body k: wheel, rail
   void set_bulk_temperature(int k, double value) {
     if (!heat_) return;
@@ -174,6 +181,7 @@ class patch_contact {
                         rp_patch_result &result);
   bool solve_in_turn(const patch_problem &problem, patch_memory &memory, rp_patch_result &result);
   void leave_unloaded(const patch_problem &problem, patch_memory &memory);
+  void add_slip_of_rows(const grid &g, const conformal_rows &rows, rolling_input &rolling);
   tangential_result solve_fitted(const patch_problem &problem, const rolling_input &rolling,
                                  patch_memory &memory);
   // mu: of each element, null: as in the scene

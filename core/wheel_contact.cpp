@@ -8,18 +8,45 @@ namespace railpatch {
 
 namespace {
 
-std::unique_ptr<profile> make_profile(const rp_profile &p, const char *field) {
+profile_view checked_view(const rp_profile &p, const char *field) {
   if (!p.arc_length || !p.y || !p.z || !p.dy || !p.dz) throw profile_error{field, "is not given"};
   const profile_view view{p.arc_length, p.y, p.z, p.dy, p.dz, p.count};
   if (const profile_fault fault = validate(view); fault != profile_fault::none)
     throw profile_error{field, text(fault)};
-  return std::make_unique<profile>(view);
+  return view;
+}
+
+std::unique_ptr<profile> make_profile(const rp_profile &p, const char *field) {
+  return std::make_unique<profile>(checked_view(p, field));
+}
+
+// Profiles of a rail along the track; none where it has one profile.
+std::unique_ptr<rail_sections> make_sections(const rp_config &c, int side) {
+  const int count = c.section_count[side];
+  if (count == 0) return nullptr;
+  const char *field = side == RP_LEFT ? "rail_sections[0]" : "rail_sections[1]";
+  if (!c.rail_sections[side] || !c.section_position[side]) throw profile_error{field, "are null"};
+  std::vector<profile_view> views;
+  for (int k = 0; k < count; ++k) {
+    views.push_back(checked_view(c.rail_sections[side][k], field));
+    if (!rail_sections::belong_together(views.front(), views.back()))
+      throw profile_error{field, "must have as many knots at the same shares of the arc length"};
+  }
+  return std::make_unique<rail_sections>(views.data(), c.section_position[side], count);
+}
+
+// The rail's profile, that of the first section where there are several.
+std::unique_ptr<profile> make_rail(const rp_config &c, int side) {
+  if (c.section_count[side] > 0)
+    return make_profile(c.rail_sections[side][0],
+                        side == RP_LEFT ? "rail_sections[0]" : "rail_sections[1]");
+  return make_profile(c.rail[side], side == RP_LEFT ? "rail_left" : "rail_right");
 }
 
 // Both rails lean inwards by the same cant; a right-hand curve is a left-hand one in the mirror.
 track_config track_of(const rp_config &c, int side) {
   return {c.track == RP_ROLLER ? track_kind::roller : track_kind::rail,
-          c.gauge,
+          c.gauge + c.gauge_widening,
           c.gauge_height,
           c.cant,
           side == RP_LEFT ? -c.curvature : c.curvature,
@@ -62,8 +89,9 @@ contact_parts parts_on(const patch_region &region, const grid &g) {
 wheel_contact::wheel_contact(const rp_config &c, int side)
     : config_(c),
       side_(side),
+      sections_(make_sections(c, side)),
       wheel_(make_profile(c.wheel[side], side == RP_LEFT ? "wheel_left" : "wheel_right")),
-      rail_(make_profile(c.rail[side], side == RP_LEFT ? "rail_left" : "rail_right")) {
+      rail_(make_rail(c, side)) {
   rules_.blended = c.patch_rule == RP_PATCHES_BLENDED;
   const wheel_config sizes{c.nominal_radius, c.flange_back_distance, c.flange_back_position,
                            c.standstill_speed};
@@ -84,7 +112,17 @@ side_motion wheel_contact::motion_of(const rp_input &in) const {
   return side_ == RP_LEFT ? mirrored(motion) : motion;
 }
 
-void wheel_contact::place(const rp_input &in) { geometry_->place(motion_of(in)); }
+void wheel_contact::place(const rp_input &in) {
+  if (sections_) {
+    bool changed = false;
+    const profile_view now = sections_->at(in.x, changed);
+    if (changed) {
+      rail_->assign(now);
+      geometry_->reload_rail();
+    }
+  }
+  geometry_->place(motion_of(in));
+}
 
 grid wheel_contact::choose_grid(const patch_region &r) const {
   grid g;
@@ -126,6 +164,7 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
   out.patch_count = count;
   for (int k = 0; k < 3; ++k) out.force[k] = out.moment[k] = 0;
   out.rolling_radius = 0;
+  for (int k = 0; k < 2; ++k) out.rail_deflection[k] = out.rail_deflection_rate[k] = nan;
   for (auto &patch : out.patch) patch = empty_patch_result();
   beyond_ = found.status == search_status::out_of_range ||
             found.status == search_status::too_many_patches;
@@ -186,13 +225,14 @@ void wheel_contact::match_memory(patch_memory *memory, int count) const {
   }
 }
 
-rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &region, int index,
+rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region, int index,
                                      patch_memory &memory, rp_side_result &out) {
   rp_patch_result &result = out.patch[index];
   result.share = region.share;
   if (!solutions_.empty()) solutions_[static_cast<size_t>(index)].solved = false;
   patch_problem problem;
-  problem.g = choose_grid(region);
+  const bool reached = !memory.curved || memory.curved->begin(*geometry_, region);
+  problem.g = reached ? choose_grid(region) : grid{};
   const grid &g = problem.g;
   const bool usable = g.nx > 0 && g.ny > 0 && g.dx > 0 && g.dy > 0 && std::isfinite(g.x0 + g.y0);
   if (!usable || !solver.fits(g)) {
@@ -212,9 +252,13 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
 
   solver.observe(RP_STAGE_GEOMETRY, true);
   double *h = memory.undeformed_distance.data();
-  geometry_->undeformed_distance(region.frame, {g.nx, g.ny, g.x0, g.y0, g.dx, g.dy}, h);
+  if (memory.curved)
+    memory.curved->place(*geometry_, g, h);
+  else
+    geometry_->undeformed_distance(region.frame, {g.nx, g.ny, g.x0, g.y0, g.dx, g.dy}, h);
   const double depth = -*std::min_element(h, h + g.count());
   const creepage_state rolling = geometry_->creepages(region.frame, depth);
+  if (memory.curved) memory.curved->set_slip(*geometry_, depth, rolling.rolling_speed);
   if (memory.row_friction.size() > 0) set_friction(solver, region.frame, memory);
   solver.observe(RP_STAGE_GEOMETRY, false);
 
@@ -255,20 +299,32 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
 }
 
 // The factor of each row by the angle of the rail's surface there, > 0 towards the gauge face; a
-// row beyond the profile has no contact, and any factor.
+// row beyond the profile has no contact, and any factor. Rows of a curved reference surface have
+// an angle of their own.
 void wheel_contact::set_friction(const patch_contact &solver, const contact_frame &frame,
                                  patch_memory &memory) const {
   for (int j = 0; j < memory.g.ny; ++j) {
     const double across = std::cos(frame.contact_angle) * memory.g.y(j);
     double z = 0, slope = frame.contact_angle;
-    geometry_->rail_surface(frame.origin[0], frame.origin[1] + across, z, slope);
+    if (memory.curved)
+      slope = memory.curved->angle(j);
+    else
+      geometry_->rail_surface(frame.origin[0], frame.origin[1] + across, z, slope);
     memory.row_friction[static_cast<size_t>(j)] = solver.scene().friction_variation.at(-slope);
   }
 }
 
+// What varies along the track, or makes rails give way, is left to differences.
+bool wheel_contact::differentiates() const {
+  const bool gives_way = config_.rail_stiffness[0] > 0 || config_.rail_stiffness[1] > 0;
+  return wheel_derivative::covers(rules_) && !sections_ && config_.friction_along_points == 0 &&
+         config_.reference_surface == RP_REFERENCE_PLANE && !gives_way;
+}
+
 derivative_outcome wheel_contact::differentiate(patch_contact &solver, const patch_memory *memory,
                                                 wheel_derivative &work, const rp_input *directions,
-                                                int count, const rp_side_result &result,
+                                                int count, const derivative_options &options,
+                                                const rp_side_result &result,
                                                 rp_side_result *changes) const {
   side_motion motions[wheel_derivative::most_directions];
   for (int k = 0; k < count; ++k) motions[k] = motion_of(directions[k]);
@@ -281,7 +337,7 @@ derivative_outcome wheel_contact::differentiate(patch_contact &solver, const pat
                                 patches_,
                                 config_.element_size[0] > 0 ? nullptr : config_.elements};
   const derivative_outcome outcome =
-      work.solve(solution, solver, motions, count, {}, result, changes);
+      work.solve(solution, solver, motions, count, options, result, changes);
   for (int k = 0; k < count; ++k)
     if (side_ == RP_LEFT) mirror(changes[k]);
   return outcome;
@@ -291,7 +347,7 @@ bool wheel_contact::first_touch(double &z) const { return railpatch::first_touch
 
 size_t wheel_contact::bytes() const {
   return wheel_->bytes() + rail_->bytes() + geometry_->bytes() +
-         solutions_.size() * sizeof(patch_solution);
+         solutions_.size() * sizeof(patch_solution) + (sections_ ? sections_->bytes() : 0);
 }
 
 rp_status combine_status(rp_status a, rp_status b) {

@@ -10,6 +10,7 @@
 #include "geometry.hpp"
 #include "patch.hpp"
 #include "patch_contact.hpp"
+#include "rail_sections.hpp"
 #include "railpatch.h"
 #include "wheel_derivative.hpp"
 
@@ -28,18 +29,19 @@ class wheel_contact {
   // Solves the contact at the placed position. memory: of this side's patches, max_patches.
   void evaluate(patch_contact &solver, patch_memory *memory, rp_side_result &result);
   // Whether the geometry's derivatives are known.
-  bool differentiates() const { return wheel_derivative::covers(rules_); }
+  bool differentiates() const;
   // Derivatives of that solution by rates of the inputs: changes[k] those of its numbers in
   // direction k, of which only the first rate_directions may be more than velocities.
   derivative_outcome differentiate(patch_contact &solver, const patch_memory *memory,
                                    wheel_derivative &work, const rp_input *directions, int count,
-                                   const rp_side_result &result, rp_side_result *changes) const;
+                                   const derivative_options &options, const rp_side_result &result,
+                                   rp_side_result *changes) const;
   // The last state is out of range for its geometry or normal problem, so its force is not known.
   bool beyond() const { return beyond_; }
   size_t bytes() const;
 
  private:
-  rp_status solve_patch(patch_contact &solver, const patch_region &region, int index,
+  rp_status solve_patch(patch_contact &solver, patch_region &region, int index,
                         patch_memory &memory, rp_side_result &result);
   void set_friction(const patch_contact &solver, const contact_frame &frame,
                     patch_memory &memory) const;
@@ -50,6 +52,7 @@ class wheel_contact {
   rp_config config_;
   int side_;
   bool beyond_ = false;
+  std::unique_ptr<rail_sections> sections_;  // where the rail's profile varies along the track
   std::unique_ptr<profile> wheel_, rail_;
   std::unique_ptr<side_geometry> geometry_;
   patch_rules rules_;
