@@ -27,6 +27,7 @@ def config_of(scene: Scene) -> dict[str, Any]:
         "normal": case.method.normal,
         "tangential": case.method.tangential,
         "tolerance": case.method.tolerance,
+        "derivatives": int(case.method.derivatives),
         "spin_offset": case.method.spin_offset,
         "flexibility_blending": case.method.flexibility_blending,
         **{name: getattr(case.method, name) for name in FAST_NUMBERS},

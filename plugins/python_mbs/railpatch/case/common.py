@@ -243,6 +243,11 @@ class Method(Table):
         default=0.0, description="-, beta of modified fastsim"
     )
 
+    derivatives: bool = Field(
+        default=False,
+        description="true: the contact gives derivatives of its last step (no unit)",
+    )
+
     @model_validator(mode="after")
     def _read_by_theory(self) -> Method:
         if self.tangential == "none":
