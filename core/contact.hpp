@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "patch_contact.hpp"
+#include "rail_support.hpp"
 #include "wheel_contact.hpp"
 
 namespace railpatch {
@@ -46,6 +47,9 @@ class contact {
   void step_wheels(const rp_input &input, rp_result &result);
   template <class Evaluate>
   void find_z(double vertical_force, Evaluate &&evaluate, rp_result &result);
+  double evaluate_wheels(double z, rp_result &result);
+  void solve_supported(const rp_input &input, rp_result &result);
+  void report_search(bool converged, rp_status otherwise, double residual, rp_result &result) const;
   bool state_fits(const unsigned char *patches, size_t size) const;
   // Takes over what later steps of another handle of the same scene depend on.
   void copy_state(const contact &from);
@@ -64,6 +68,8 @@ class contact {
   uint64_t scene_ = 0;                             // fingerprint of the config
   aligned_buffer<double> shape_;                   // undeformed distance of the case
   std::unique_ptr<derivative_record> derivative_;  // null: no derivatives
+  std::unique_ptr<rail_support> support_;          // where rails are on springs
+  friction_factor friction_along_;
 };
 
 }  // namespace railpatch

@@ -69,7 +69,9 @@ const char *influence_reason(const patch_scene &scene) {
 }
 
 const char *coupling_reason(const patch_scene &scene) {
-  if (scene.couples()) return "unlike bodies, (1 - 2 nu)/G differs: outer loop";
+  if (scene.couples())
+    return scene.curved ? "reference_surface = curved: outer loop"
+                        : "unlike bodies, (1 - 2 nu)/G differs: outer loop";
   return is_coupled(scene.elastic) ? "unlike bodies, but no tangential problem"
                                    : "(1 - 2 nu)/G of both bodies is the same";
 }
@@ -109,6 +111,10 @@ void contact::describe(rp_stage_info *info) const {
     history += m.history.step_bytes();
     plastic += m.history.plastic_bytes();
     if (m.heat) heat += m.heat->bytes();
+    if (m.curved) {
+      distance += m.curved->bytes();
+      traction -= m.curved->bytes();
+    }
   }
   for (const auto &wheel : wheels_) distance += wheel.bytes();
   if (tangential)
@@ -130,6 +136,10 @@ void contact::describe(rp_stage_info *info) const {
   info[RP_STAGE_COUPLING] = {"coupling", scene.couples(), coupling_reason(scene),
                              solver_.coupling_bytes()};
   info[RP_STAGE_HISTORY] = {"history", scene.keeps_steps(), history_reason(scene), history};
+  info[RP_STAGE_SUPPORT] = {
+      "rail_support", support_ != nullptr,
+      support_ ? "rails have a stiffness: deflections by Newton's method" : "the rails are rigid",
+      support_ ? support_->bytes() : 0};
   info[RP_STAGE_PLASTICITY] = {"plasticity", scene.yields(), plasticity_reason(config_, scene),
                                plastic};
   const bool asked = config_.derivatives != 0;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <type_traits>
 
 #include "check.hpp"
 #include "contact.hpp"
@@ -24,6 +25,7 @@ constexpr size_t checked_from = offsetof(state_header, scene);
 struct patch_header {
   grid g;
   vec3 reference;
+  double share;
   uint64_t warm, begun;
 };
 
@@ -42,6 +44,7 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            static_cast<double>(c.normal),
                            static_cast<double>(c.tangential),
                            static_cast<double>(c.spin_offset),
+                           static_cast<double>(c.reference_surface),
                            static_cast<double>(c.traction_bound),
                            static_cast<double>(c.flexibility_blending),
                            static_cast<double>(c.track),
@@ -54,6 +57,8 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            static_cast<double>(c.max_elements[1]),
                            static_cast<double>(c.max_iterations),
                            static_cast<double>(c.max_patches),
+                           static_cast<double>(c.patch_rule),
+                           c.standstill_speed,
                            static_cast<double>(c.force_prescribed[0]),
                            static_cast<double>(c.force_prescribed[1]),
                            c.element_size[0],
@@ -113,9 +118,23 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            c.flange_back_position,
                            c.gauge,
                            c.gauge_height,
+                           c.gauge_widening,
+                           static_cast<double>(c.friction_along_points),
+                           static_cast<double>(c.section_count[0]),
+                           static_cast<double>(c.section_count[1]),
+                           c.rail_stiffness[0],
+                           c.rail_stiffness[1],
+                           c.rail_damping[0],
+                           c.rail_damping[1],
                            c.cant,
                            c.curvature,
-                           c.roller_radius};
+                           c.roller_radius,
+                           static_cast<double>(c.runout_count[0]),
+                           static_cast<double>(c.runout_count[1]),
+                           static_cast<double>(c.rail_height_count[0]),
+                           static_cast<double>(c.rail_height_count[1]),
+                           c.rail_height_start,
+                           c.rail_height_spacing};
   unsigned char bytes[sizeof values];
   std::memcpy(bytes, values, sizeof values);
   return checksum(bytes, sizeof bytes);
@@ -133,6 +152,9 @@ uint64_t fingerprint_of_arrays(const rp_config &c, const aligned_buffer<double> 
   const auto points = static_cast<size_t>(c.friction_points);
   add(c.friction_position, points);
   add(c.friction_factor, points);
+  const auto along = static_cast<size_t>(c.friction_along_points);
+  add(c.friction_along_position, along);
+  add(c.friction_along_factor, along);
   const auto hardening = static_cast<size_t>(c.hardening_points);
   add(c.hardening_displacement, hardening);
   add(c.hardening_stress, hardening);
@@ -142,10 +164,26 @@ uint64_t fingerprint_of_arrays(const rp_config &c, const aligned_buffer<double> 
     hash = hash * 31 + header.checksum;
   }
   if (c.kind == RP_PATCH) return hash;
-  for (const rp_profile *p : {&c.wheel[0], &c.wheel[1], &c.rail[0], &c.rail[1]})
-    for (const double *values : {p->arc_length, p->y, p->z, p->dy, p->dz})
-      add(values, static_cast<size_t>(std::max(p->count, 0)));
+  const auto add_profile = [&](const rp_profile &p) {
+    for (const double *values : {p.arc_length, p.y, p.z, p.dy, p.dz})
+      add(values, static_cast<size_t>(std::max(p.count, 0)));
+  };
+  for (const rp_profile *p : {&c.wheel[0], &c.wheel[1], &c.rail[0], &c.rail[1]}) add_profile(*p);
+  for (int side = 0; side < 2; ++side) {
+    add(c.runout[side], static_cast<size_t>(c.runout_count[side]));
+    add(c.rail_height[side], static_cast<size_t>(c.rail_height_count[side]));
+    // of a side without a wheel nothing has been looked at
+    if (c.kind == RP_WHEEL_RAIL && side != c.side) continue;
+    add(c.section_position[side], static_cast<size_t>(c.section_count[side]));
+    for (int k = 0; k < c.section_count[side]; ++k) add_profile(c.rail_sections[side][k]);
+  }
   return hash;
+}
+
+// of both rails, where they are on springs
+size_t support_bytes(const std::unique_ptr<rail_support> &support) {
+  static_assert(std::is_trivially_copyable_v<rail_support::rail>);
+  return support ? 2 * sizeof(rail_support::rail) : 0;
 }
 
 // the fields that a later step starts from, at most
@@ -174,7 +212,8 @@ uint64_t contact::fingerprint(const rp_config &c, const aligned_buffer<double> &
 }
 
 size_t contact::state_size() const {
-  size_t size = sizeof(state_header) + memory_.size() * sizeof(patch_header);
+  size_t size =
+      sizeof(state_header) + support_bytes(support_) + memory_.size() * sizeof(patch_header);
   for (const auto &m : memory_)
     for_each_start_field(m, [&](const double *, size_t bytes) { size += bytes; });
   return size;
@@ -187,10 +226,12 @@ void contact::save_state(unsigned char *buffer) const {
     at += size;
   };
   for (const auto &m : memory_) {
-    const patch_header header{m.g, m.reference, m.warm ? 1u : 0u, m.history.begun ? 1u : 0u};
+    const patch_header header{m.g, m.reference, m.share, m.warm ? 1u : 0u,
+                              m.history.begun ? 1u : 0u};
     put(&header, sizeof header);
     for_each_start_field(m, put);
   }
+  if (support_) put(support_->rails(), support_bytes(support_));
   const auto bytes = static_cast<size_t>(at - buffer);
   state_header header{state_magic, static_cast<uint32_t>(config_.kind), bytes, 0, scene_,
                       depth_,      solver_.scene().friction_coefficient};
@@ -215,6 +256,7 @@ bool contact::restore_state(const unsigned char *buffer, size_t size) {
     at += sizeof patch;
     m.g = patch.g;
     m.reference = patch.reference;
+    m.share = patch.share;
     m.warm = patch.warm != 0;
     m.history.begun = patch.begun != 0;
     m.solved = false;
@@ -223,6 +265,7 @@ bool contact::restore_state(const unsigned char *buffer, size_t size) {
       at += bytes;
     });
   }
+  if (support_) std::memcpy(support_->rails(), at, support_bytes(support_));
   depth_ = header.depth;
   solver_.set_friction_coefficient(header.friction_coefficient);
   if (derivative_) derivative_->solved = false;
@@ -270,7 +313,7 @@ bool contact::state_fits(const unsigned char *at, size_t size) const {
     at += bytes;
     size -= bytes;
   }
-  return size == 0;
+  return size == support_bytes(support_);
 }
 
 }  // namespace railpatch

@@ -1,5 +1,5 @@
-// Factor of the friction law over the lateral position or the angle of the rail's surface: linear
-// between points, constant beyond the first and the last.
+// Factor of the friction law over the lateral position, the angle of the rail's surface or the
+// position along the track: linear between points, constant beyond the first and the last.
 #pragma once
 
 #include <algorithm>
@@ -12,9 +12,12 @@ namespace railpatch {
 class friction_factor {
  public:
   friction_factor() = default;
-  explicit friction_factor(const rp_config &c) : count_(c.friction_points) {
-    std::copy_n(c.friction_position, RP_MAX_POINTS, place_.begin());
-    std::copy_n(c.friction_factor, RP_MAX_POINTS, factor_.begin());
+  explicit friction_factor(const rp_config &c)
+      : friction_factor(c.friction_points, c.friction_position, c.friction_factor) {}
+  // place, factor: RP_MAX_POINTS values
+  friction_factor(int count, const double *place, const double *factor) : count_(count) {
+    std::copy_n(place, RP_MAX_POINTS, place_.begin());
+    std::copy_n(factor, RP_MAX_POINTS, factor_.begin());
   }
   bool varies() const { return count_ > 0; }
   double at(double place) const {

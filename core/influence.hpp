@@ -18,9 +18,11 @@
 
 #include <complex>
 
+#include "conformal_influence.hpp"
 #include "convolution.hpp"
 #include "fft.hpp"
 #include "memory.hpp"
+#include "physics.hpp"
 
 namespace railpatch {
 
@@ -51,6 +53,7 @@ class influence {
     bool tangential = true;        // false: no xx, yy, xy at all
     // the coefficients' derivatives by dx instead, offsets in elements kept (not plane strain)
     bool by_length = false;
+    bool curved = false;  // rows on a curved reference surface
   };
 
   influence(const scene &scene, const fft_plans &plans);
@@ -58,6 +61,11 @@ class influence {
   // Prepares kernels and spectra for a grid; false where the grid exceeds the plans. Cheap when
   // neither element size nor transform size changes.
   bool set_grid(const grid &g);
+
+  // Of a curved reference surface: the inclination of each row (conformal_influence.hpp), before
+  // the products. Their inverses and single coefficients stay those of the plane.
+  void set_rows(const double *cosine, const double *sine) { curved_->set_rows(cosine, sine); }
+  conformal_influence &curved() { return *curved_; }
 
   // u = A p for the normal direction, [ny][nx].
   void normal_product(const double *pressure, double *displacement);
@@ -78,6 +86,10 @@ class influence {
   const scene &bodies() const { return scene_; }
   // xx, yy and xy of the bodies at any offset (m), observer minus source.
   void bodies_at(double x, double y, double values[3]) const;
+  // The same of the half-space in two steps, for many elements that share corners: primitives at a
+  // corner, and the coefficients from their alternating sums.
+  static void corner_at(double x, double y, double values[3]);
+  void from_corners(const double sum[3], double values[3]) const;
   // One coefficient at offset (i, j) elements, observer minus source.
   double coefficient(kernel k, int i, int j) const;
   size_t bytes() const;
@@ -89,6 +101,7 @@ class influence {
   void make_rates(double x, double y, double moves, size_t at);
   void make_spectra();
   void transform_kernel(kernel k);
+  void give_spectrum(kernel k);
 
   scene scene_;
   const fft_plans &plans_;
@@ -103,6 +116,7 @@ class influence {
   aligned_buffer<std::complex<double>> transform_;
   convolution<double> full_;
   convolution<float> single_;
+  physics_part<conformal_influence> curved_;
 };
 
 }  // namespace railpatch
