@@ -378,7 +378,9 @@ TEST(Derivatives, OfAWheelsetAllocateNothing) {
         EXPECT_EQ(n, 0) << "rule " << rule << " y " << y;
         for (rp_error error : errors) EXPECT_EQ(error, RP_OK);
       }
-      if (rule == RP_PATCHES_BLENDED) EXPECT_GE(greatest, 2);
+      if (rule == RP_PATCHES_BLENDED) {
+        EXPECT_GE(greatest, 2);
+      }
     }
 }
 
