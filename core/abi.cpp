@@ -60,6 +60,7 @@ void rp_default_config(rp_config *config) {
   c.roller_radius = 1.0;
   c.max_patches = 4;
   c.standstill_speed = 1e-3;
+  c.rail_height_spacing = 1e-3;
 }
 
 void rp_default_input(rp_input *input) {

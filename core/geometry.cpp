@@ -22,6 +22,7 @@ struct surface {
   vec3 q0, qx, qs, qn;  // frame origin and axes in the surface's own axes
   double radius, sign;  // r = radius + sign z
   bool prismatic;
+  const longitudinal_shape *shape = nullptr;  // null: round, or level
 
   vec3 at(double x, double s) const { return q0 + x * qx + s * qs; }
 };
@@ -41,6 +42,18 @@ surface seen_from(const contact_frame &frame, const placed_profile &meridian, co
           prismatic};
 }
 
+// What the shape adds to the radius or height of a surface at a point in its axes, and its
+// derivative along n.
+double added(const surface &f, const vec3 &q, double &slope) {
+  if (f.prismatic) {
+    slope = 0;
+    return -f.shape->height(q[0]);
+  }
+  const double added = f.shape->runout(std::atan2(q[0], q[2]), slope);
+  slope *= (q[2] * f.qn[0] - q[0] * f.qn[2]) / (q[0] * q[0] + q[2] * q[2]);
+  return added;
+}
+
 // Where the line along n through a point meets a surface.
 struct hit {
   double p = 0, n = 0;  // m, arc length of the meridian, height along n
@@ -56,10 +69,13 @@ bool meet(const surface &f, const vec3 &base, hit &h) {
     h.interval = curve.interval(h.p, h.interval);
     const curve_point m = f.meridian->evaluate(h.p, h.interval);
     const vec3 q = base + h.n * f.qn;
-    const double r = f.radius + f.sign * m.z, dr = f.sign * m.dz;
+    double r = f.radius + f.sign * m.z, added_slope = 0;
+    const double dr = f.sign * m.dz;
+    if (f.shape) r += added(f, q, added_slope);
     const double f1 = m.y - q[1];
     const double f2 = f.prismatic ? q[2] - r : 0.5 * (q[0] * q[0] + q[2] * q[2] - r * r) / r;
-    const double g = f.prismatic ? f.qn[2] : (q[0] * f.qn[0] + q[2] * f.qn[2]) / r;
+    double g = f.prismatic ? f.qn[2] : (q[0] * f.qn[0] + q[2] * f.qn[2]) / r;
+    if (f.shape) g -= added_slope;
     const double det = m.dy * g - dr * f.qn[1];
     if (!(std::fabs(det) > grazing)) return h.valid = false;
     const double dp = -(f1 * g + f.qn[1] * f2) / det, dn = -(m.dy * f2 + dr * f1) / det;
@@ -124,7 +140,7 @@ void march(const surface &f, const surface_grid &g, int row, int from, int step,
 template <class Put>
 void follow_row(const surface &f, const surface_grid &g, int row, int column, const hit &middle,
                 Put put) {
-  if (!middle.valid || f.prismatic) {
+  if (!middle.valid || (f.prismatic && !f.shape)) {
     for (int i = 0; i < g.nx; ++i) put(i, middle);
     return;
   }
@@ -296,6 +312,10 @@ void side_geometry::scan() {
     const double x = p[0] - axle_x_, r = axle_z_ - z;
     if (roller) z = axle_z_ - std::sqrt(std::max(r * r - x * x, 0.0));
     gaps_[static_cast<size_t>(i)] = z - p[2];
+    if (shape_) {
+      double angle;
+      gaps_[static_cast<size_t>(i)] = row_of(wheel_.sample(i), sine, z - p[2]).least(angle);
+    }
     overlap_ = true;
   }
 }
@@ -306,6 +326,7 @@ bool side_geometry::rail_surface(double x, double y, double &z, double &angle) c
   const curve_point p = rail_.evaluate(s);
   z = p.z;
   angle = inclination(p);
+  if (shape_) z -= shape_->height(x);
   if (track_.kind == track_kind::rail) return true;
   const double r = axle_z_ - p.z, dx = x - axle_x_;
   if (!(r * r > dx * dx)) return false;
@@ -327,7 +348,50 @@ locus_point side_geometry::locus(double s) const {
   // how the gap opens in x
   l.curvature = 0.5 / (sizes_.nominal_radius + p.z);
   if (track_.kind == track_kind::roller) l.curvature += 0.5 / (axle_z_ - l.rail_z);
+  if (shape_) find_closest(p, sine, l);
   return l;
+}
+
+longitudinal_row side_geometry::row_of(const curve_point &p, double sine, double gap) const {
+  const double r = sizes_.nominal_radius + p.z;
+  longitudinal_row row;
+  row.shape = shape_;
+  row.angle = std::asin(sine);
+  row.radius = r;
+  row.gap = gap;
+  row.x0 = wheel_point(p, sine)[0];
+  row.advance = wheel_axes_[0][0] * r;
+  row.bend = track_.kind == track_kind::roller ? 0.5 / axle_z_ : 0.0;
+  return row;
+}
+
+// What a yawed wheel's meridian plane moves sideways on the way to x.
+double side_geometry::sideways(double x, double sine, const curve_point &p) const {
+  return wheel_axes_[1][0] / wheel_axes_[0][0] * (x - wheel_point(p, sine)[0]);
+}
+
+// From the round wheel on the level rail to the least gap of the row.
+void side_geometry::find_closest(const curve_point &p, double sine, locus_point &l) const {
+  const double level = l.gap + shape_->height(l.wheel[0]);
+  const longitudinal_row row = row_of(p, sine, level);
+  double angle;
+  l.gap = row.least(angle);
+  const double x = row.x(angle);
+  l.wheel[1] += sideways(x, sine, p);
+  l.wheel[0] = x;
+}
+
+row_overlap side_geometry::overlap(double s, double &y, double &dy) const {
+  const curve_point p = wheel_.evaluate(s);
+  dy = p.dy;
+  const double sine = locus_sine(p, sampled_gap(s), 1e-9);
+  const vec3 at = wheel_point(p, sine);
+  double z, angle;
+  if (!rail_surface(at[0], at[1], z, angle)) return {};
+  const longitudinal_row row = row_of(p, sine, z + shape_->height(at[0]) - at[2]);
+  const row_overlap sum = row.overlap();
+  y = at[1] + sideways(sum.x, sine, p);
+  return sum;
 }
 
 // by chords between the samples: near enough where only the roller's slope depends on it
@@ -339,12 +403,17 @@ double side_geometry::sampled_gap(double s) const {
 }
 
 surface side_geometry::wheel_seen_from(const contact_frame &frame) const {
-  return seen_from(frame, wheel_, axis_origin_, wheel_axes_, sizes_.nominal_radius, 1, false);
+  surface f = seen_from(frame, wheel_, axis_origin_, wheel_axes_, sizes_.nominal_radius, 1, false);
+  if (shape_ && shape_->has_runout()) f.shape = shape_;
+  return f;
 }
 
 surface side_geometry::rail_seen_from(const contact_frame &frame) const {
-  if (track_.kind == track_kind::rail)
-    return seen_from(frame, rail_, {0, 0, 0}, identity, 0, 1, true);
+  if (track_.kind == track_kind::rail) {
+    surface f = seen_from(frame, rail_, {0, 0, 0}, identity, 0, 1, true);
+    if (shape_ && shape_->has_height()) f.shape = shape_;
+    return f;
+  }
   return seen_from(frame, rail_, {axle_x_, 0, axle_z_}, identity, axle_z_, -1, false);
 }
 

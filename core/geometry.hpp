@@ -23,6 +23,7 @@
 // in the plane of that origin (z).
 #pragma once
 
+#include "longitudinal_shape.hpp"
 #include "placement.hpp"
 #include "profile.hpp"
 
@@ -93,7 +94,14 @@ class side_geometry : private placement<double> {
   double sample_s(int i) const { return wheel_.sample_s(i); }
   bool no_overlap() const { return !overlap_; }
 
-  // Exact, at arc length s of the wheel's profile.
+  // What varies along the rolling direction, null: nothing; place it before place().
+  void set_shape(const longitudinal_shape *shape) { shape_ = shape; }
+  bool shaped() const { return shape_ != nullptr; }
+  // With a shape: the overlap along x in the row at s, y at its mean and dy/ds of the meridian.
+  row_overlap overlap(double s, double &y, double &dy) const;
+
+  // Exact, at arc length s of the wheel's profile; with a shape the gap is the least one of the
+  // row, see longitudinal_shape.hpp.
   locus_point locus(double s) const;
   // The rail surface at (x, y): z, and the angle of its profile; false beyond the profile.
   bool rail_surface(double x, double y, double &z, double &angle) const;
@@ -127,12 +135,16 @@ class side_geometry : private placement<double> {
   double sampled_gap(double s) const;
   void set_rates(const curve_point &p, double sine, locus_point &l) const;
   vec3 wheel_point(const curve_point &p, double sine) const;
+  longitudinal_row row_of(const curve_point &p, double sine, double gap) const;
+  double sideways(double x, double sine, const curve_point &p) const;
+  void find_closest(const curve_point &p, double sine, locus_point &l) const;
 
   friend class moving_geometry;  // geometry_rates.hpp
 
   placed_profile wheel_, rail_;
   std::vector<double> gaps_;  // by sample of the wheel, for z = 0
   bool overlap_ = false;
+  const longitudinal_shape *shape_ = nullptr;
 };
 
 }  // namespace railpatch

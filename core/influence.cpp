@@ -151,6 +151,20 @@ void influence::bodies_at(double x, double y, double values[3]) const {
   values[2] = c * nu * sum[2];
 }
 
+void influence::corner_at(double x, double y, double values[3]) {
+  values[0] = y != 0 ? y_log(x, y) : 0.0;
+  values[1] = x != 0 ? y_log(y, x) : 0.0;
+  values[2] = -std::hypot(x, y);
+}
+
+void influence::from_corners(const double sum[3], double values[3]) const {
+  const double nu = scene_.elastic.poisson_ratio;
+  const double c = 1.0 / (pi * scene_.elastic.shear_modulus);
+  values[0] = c * (sum[0] + (1.0 - nu) * sum[1]);
+  values[1] = c * (sum[1] + (1.0 - nu) * sum[0]);
+  values[2] = c * nu * sum[2];
+}
+
 double influence::coefficient(kernel k, int i, int j) const {
   const auto at = static_cast<size_t>(std::abs(j) * stride_ + std::abs(i));
   const double value = table_[static_cast<int>(k)][at];

@@ -86,6 +86,10 @@ class influence {
   const scene &bodies() const { return scene_; }
   // xx, yy and xy of the bodies at any offset (m), observer minus source.
   void bodies_at(double x, double y, double values[3]) const;
+  // The same of the half-space in two steps, for many elements that share corners: primitives at a
+  // corner, and the coefficients from their alternating sums.
+  static void corner_at(double x, double y, double values[3]);
+  void from_corners(const double sum[3], double values[3]) const;
   // One coefficient at offset (i, j) elements, observer minus source.
   double coefficient(kernel k, int i, int j) const;
   size_t bytes() const;

@@ -314,6 +314,14 @@ typedef struct rp_config {
    * force of the wheel in that direction, without the second term where time_step is 0 */
   double rail_stiffness[2]; /* N/m, 0: rigid in this direction */
   double rail_damping[2];   /* N s/m, 0 in a rigid direction */
+  /* shape along rolling by side, copied; C2 splines. The wheel's radius at its lowest point is that
+   * of its profile plus runout at the input's pitch (a rotation about y of its deviation added) */
+  const double *runout[2];      /* m, at pitch angles 2 pi i/runout_count, > 0: greater radius */
+  int32_t runout_count[2];      /* 0: round, else 8 ... 1000000 */
+  const double *rail_height[2]; /* m, of the running surface at x = rail_height_start + i
+                                   rail_height_spacing, > 0 up, constant beyond; rails only */
+  int32_t rail_height_count[2]; /* 0: level, else 4 ... 10000000 */
+  double rail_height_start, rail_height_spacing; /* m; > 0 */
 
   rp_observer observer; /* may be null */
   void *observer_user;
@@ -350,7 +358,8 @@ typedef struct rp_input {
    * profile's origin, a roller about its axle (y). */
   double wheel_velocity[2][3], wheel_angular_velocity[2][3];
   double rail_velocity[2][3], rail_angular_velocity[2][3];
-  double time_step;         /* s, >= 0, since the last step, for rails on dampers; 0: at rest */
+  double time_step;         /* s, >= 0, since the last step, for rails on dampers (0: at rest)
+                               and for regime = RP_TRANSIENT_ROLLING (> 0) */
   double roller_pitch_rate; /* rad/s */
 } rp_input;
 
