@@ -387,6 +387,41 @@ TEST(Step, OfALargeGridAllocatesNothing) {
   EXPECT_EQ(run(c, std::vector{scenes::patch_input(1e5, 1e-2, 0, 0)}).allocated, 0);
 }
 
+// Derivatives of wheelsets with one and several patches, exact ones and differences.
+TEST(Derivatives, OfAWheelsetAllocateNothing) {
+  const scenes::profile_pair pair;
+  for (rp_patch_rule rule : {RP_PATCHES_BLENDED, RP_PATCHES_CONTACT})
+    for (int elements : {0, 10}) {
+      rp_config c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+      c.derivatives = 1;
+      c.patch_rule = rule;
+      c.elements[0] = c.elements[1] = elements;
+      if (elements > 0) c.element_size[0] = c.element_size[1] = 0;
+      scenes::handle contact(c);
+      int greatest = 0;
+      auto result = std::make_unique<rp_result>(), change = std::make_unique<rp_result>();
+      rp_jacobian whole{};
+      for (double y : {0.0, 5.9e-3, 6e-3}) {
+        rp_input in = scenes::running(RP_RAIL);
+        in.y = y;
+        in.vertical_force = 1.2e5;
+        *result = contact.step(in);
+        for (const rp_side_result &side : result->side)
+          greatest = std::max(greatest, side.patch_count);
+        rp_error errors[2] = {RP_ERROR_INTERNAL, RP_ERROR_INTERNAL};
+        const int n = allocations([&] {
+          errors[0] = rp_get_jacobian(contact.get(), &whole, nullptr);
+          errors[1] = rp_differentiate(contact.get(), &in, change.get(), nullptr, nullptr);
+        });
+        EXPECT_EQ(n, 0) << "rule " << rule << " y " << y;
+        for (rp_error error : errors) EXPECT_EQ(error, RP_OK);
+      }
+      if (rule == RP_PATCHES_BLENDED) {
+        EXPECT_GE(greatest, 2);
+      }
+    }
+}
+
 // Sideways until the flange touches, then at the heights found, off the rails and back.
 TEST(Step, OfAWheelsetAllocatesNothing) {
   const scenes::profile_pair pair;
