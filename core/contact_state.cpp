@@ -276,6 +276,7 @@ void contact::copy_state(const contact &from) {
     for_each_start_field(
         m, [&](double *data, size_t bytes) { std::memcpy(data, fields[next++], bytes); });
   }
+  if (support_) std::memcpy(support_->rails(), from.support_->rails(), support_bytes(support_));
   depth_ = from.depth_;
   solver_.set_friction_coefficient(from.friction_coefficient());
 }
