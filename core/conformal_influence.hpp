@@ -5,8 +5,8 @@
 // displacement is felt in row i in those of i. Half-space coefficients A at the distance (x, arc
 // length), corrected by the difference of inclination d = a_i - a_j, the vectors turned by R(d)
 // (Li 2002, thesis, Delft; Vollebregt and Segal 2014, Veh. Syst. Dyn. 52 suppl.). The half-space
-// may stand along the source's surface, u = R(d) A p, or along the observer's, u = A R(d) p. Neither
-// alone obeys Maxwell's and Betti's law, the mean of both does:
+// may stand along the source's surface, u = R(d) A p, or along the observer's, u = A R(d) p.
+// Neither alone obeys Maxwell's and Betti's law, the mean of both does:
 //   x from x: A_xx            x from s, s from x: (1 + cos d)/2 A_xs
 //   s from s: cos d A_ss      n from n: cos d A_nn
 //   gap from s:  sin d (A_ss + A_nn)/2,   gap from x:  sin d A_xs/2,
