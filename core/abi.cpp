@@ -58,7 +58,9 @@ void rp_default_config(rp_config *config) {
   c.gauge = 1.435;
   c.gauge_height = 0.014;
   c.roller_radius = 1.0;
-  c.max_patches = 3;
+  c.max_patches = 4;
+  c.standstill_speed = 1e-3;
+  c.rail_height_spacing = 1e-3;
 }
 
 void rp_default_input(rp_input *input) {
@@ -109,6 +111,34 @@ rp_error rp_step(rp_contact *contact, const rp_input *input, rp_result *result,
     return RP_OK;
   } catch (...) {
     set_message(message, "internal error in rp_step");
+    return RP_ERROR_INTERNAL;
+  }
+}
+
+rp_error rp_differentiate(rp_contact *contact, const rp_input *direction, rp_result *change,
+                          rp_derivative_kind *kind, rp_message *message) {
+  if (!contact || !direction || !change) {
+    set_message(message, "%s is null",
+                !contact ? "contact" : (!direction ? "direction" : "change"));
+    return RP_ERROR_NULL;
+  }
+  if (!contact->scene.has_derivatives()) {
+    set_message(message, "derivatives is 0, rp_differentiate needs 1");
+    return RP_ERROR_VALUE;
+  }
+  if (const rp_error error = check_direction(*direction, message); error != RP_OK) return error;
+  if (!contact->scene.has_solution()) {
+    set_message(message,
+                "rp_differentiate needs a step since rp_create, rp_reset or "
+                "rp_restore_state");
+    return RP_ERROR_STATE;
+  }
+  try {
+    const rp_derivative_kind found = contact->scene.differentiate(*direction, *change);
+    if (kind) *kind = found;
+    return RP_OK;
+  } catch (...) {
+    set_message(message, "internal error in rp_differentiate");
     return RP_ERROR_INTERNAL;
   }
 }

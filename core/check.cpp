@@ -11,6 +11,7 @@
 #include "coupling.hpp"
 #include "creep_table.hpp"
 #include "fast.hpp"
+#include "input_numbers.hpp"
 #include "physics.hpp"
 
 namespace railpatch {
@@ -101,6 +102,7 @@ void check_choices(const rp_config &c, checker &check) {
     check.choice("geometry", c.geometry, RP_SEMI_AXES, RP_UNDEFORMED_DISTANCE);
   else
     check.choice("track", c.track, RP_RAIL, RP_ROLLER);
+  check.choice("patch_rule", c.patch_rule, RP_PATCHES_BLENDED, RP_PATCHES_CONTACT);
 }
 
 void check_fitted(const rp_config &c, checker &check) {
@@ -180,6 +182,11 @@ void check_friction(const rp_config &c, checker &check) {
   check.number("friction_temperature_range", c.friction_temperature_range, {0, 1e5, true, false});
   check_points("friction_points", c.friction_points, "friction_position", c.friction_position,
                "friction_factor", c.friction_factor, {0, 100, false, false}, check);
+  check_points("friction_along_points", c.friction_along_points, "friction_along_position",
+               c.friction_along_position, "friction_along_factor", c.friction_along_factor,
+               {0, 100, false, false}, check);
+  check.require(c.friction_along_points == 0 || c.kind != RP_PATCH,
+                "friction_along_points must be 0 for kind = patch: it has no place along a track");
   if (check.error() != RP_OK || !has_tangential(c)) return;
   double least = c.friction_kinetic;
   for (double amplitude : c.friction_amplitude) least += std::min(amplitude, 0.0);
@@ -247,6 +254,24 @@ void check_build(const rp_config &c, checker &check) {
           "normal and tangential directions");
 }
 
+// Wheels roll on from tractions, and nothing else that the material would carry along.
+const char *wheels_cannot_roll(const rp_config &c) {
+  if (c.regime == RP_SHIFT)
+    return "regime must be none, steady_rolling or transient_rolling for wheels";
+  if (!(c.element_size[0] > 0))
+    return "regime = transient_rolling of wheels needs element_size in place of elements";
+  if (c.friction_law != RP_COULOMB)
+    return "regime = transient_rolling of wheels needs friction_law = coulomb in this version";
+  if (c.layer_yield_stress > 0)
+    return "layer_yield_stress must be 0 with regime = transient_rolling of wheels in this version";
+  if (c.temperature != 0)
+    return "temperature must be 0 with regime = transient_rolling of wheels in this version";
+  if (is_coupled(combine(c.shear_modulus, c.poisson_ratio)))
+    return "regime = transient_rolling of wheels needs equal (1-2nu)/G of both bodies in this "
+           "version";
+  return nullptr;
+}
+
 // Shift and transient rolling keep their grid in the frame of the contact.
 void check_regime(const rp_config &c, checker &check) {
   if (!has_tangential(c) || c.regime == RP_STEADY_ROLLING) return;
@@ -254,7 +279,7 @@ void check_regime(const rp_config &c, checker &check) {
   if (c.tangential != RP_TANGENTIAL_FULL || c.fitted[0] > 0)
     wrong = "regime = shift and transient_rolling need tangential = full and no fitted rows";
   else if (c.kind != RP_PATCH)
-    wrong = "regime must be none or steady_rolling for wheels in this version";
+    wrong = wheels_cannot_roll(c);
   else if (c.spin_offset != RP_SPIN_OFFSET_NONE)
     wrong = "spin_offset must be none but with regime = steady_rolling";
   else if (c.geometry == RP_CURVATURES && !(c.element_size[0] > 0 && c.max_elements[0] > 0))
@@ -386,6 +411,26 @@ void check_coupled(const rp_config &c, checker &check) {
                 "steady_rolling");
 }
 
+// A rail's profiles along the track; the profiles themselves are looked at where they are read.
+void check_sections(const rp_config &c, checker &check) {
+  for (int side = 0; side < 2; ++side) {
+    const bool left = side == RP_LEFT;
+    const int count = c.section_count[side];
+    check.integer(left ? "section_count[0]" : "section_count[1]", count, 0, 100000);
+    if (check.error() != RP_OK || count == 0) continue;
+    if (c.kind == RP_WHEEL_RAIL && side != c.side) continue;
+    const char *name = left ? "section_position[0]" : "section_position[1]";
+    const double *place = c.section_position[side];
+    check.require(c.rail_sections[side] != nullptr && place != nullptr,
+                  "rail_sections and section_position must be given where section_count is not 0");
+    if (check.error() != RP_OK) return;
+    for (int k = 0; k < count; ++k) {
+      check.number(name, place[k], finite);
+      if (k > 0) check.number(name, place[k], {place[k - 1], inf, true, true});
+    }
+  }
+}
+
 // What goes with a curved reference surface.
 void check_reference(const rp_config &c, checker &check) {
   if (c.reference_surface == RP_REFERENCE_PLANE) return;
@@ -409,6 +454,34 @@ void check_reference(const rp_config &c, checker &check) {
   check.require(wrong == nullptr, wrong ? wrong : "");
 }
 
+// Out-of-round wheels and running surfaces that are not level.
+void check_longitudinal(const rp_config &c, checker &check) {
+  const auto values = [&](const char *name, int side, const double *v, int count, int least,
+                          int most) {
+    char label[40];
+    std::snprintf(label, sizeof label, "%s_count[%d]", name, side);
+    if (count != 0) check.integer(label, count, least, most);
+    std::snprintf(label, sizeof label, "%s[%d]", name, side);
+    if (count == 0 || check.error() != RP_OK) return;
+    char text[80];
+    std::snprintf(text, sizeof text, "%s is null", label);
+    check.require(v != nullptr, text);
+    if (check.error() == RP_OK) check.numbers(label, v, count, {-0.1, 0.1, false, false});
+  };
+  bool shaped = false, heights = false;
+  for (int side = 0; side < 2; ++side) {
+    values("runout", side, c.runout[side], c.runout_count[side], 8, 1000000);
+    values("rail_height", side, c.rail_height[side], c.rail_height_count[side], 4, 10000000);
+    heights |= c.rail_height_count[side] > 0;
+    shaped |= c.runout_count[side] > 0 || heights;
+  }
+  check.number("rail_height_start", c.rail_height_start, finite);
+  check.number("rail_height_spacing", c.rail_height_spacing, {1e-6, 1e3, false, false});
+  check.require(!heights || c.track == RP_RAIL, "rail_height_count must be 0 on rollers");
+  check.require(!shaped || c.normal == RP_NORMAL_HALF_SPACE,
+                "runout and rail_height need normal = half_space: the shape is not quadratic");
+}
+
 void check_wheels(const rp_config &c, checker &check) {
   check.integer("side", c.side, RP_LEFT, RP_RIGHT);
   check.number("nominal_radius", c.nominal_radius, {0.01, 10, false, false});
@@ -416,6 +489,7 @@ void check_wheels(const rp_config &c, checker &check) {
   check.number("flange_back_position", c.flange_back_position, {-1, 1, false, false});
   check.number("gauge", c.gauge, {0.01, 10, false, false});
   check.number("gauge_height", c.gauge_height, {0, 0.1, false, false});
+  check.number("gauge_widening", c.gauge_widening, {-0.1, 0.1, false, false});
   check.number("cant", c.cant, {-0.5, 0.5, false, false});
   check.number("curvature", c.curvature, {-0.1, 0.1, false, false});
   if (c.track == RP_ROLLER) {
@@ -424,6 +498,18 @@ void check_wheels(const rp_config &c, checker &check) {
     check.require(c.curvature == 0, "curvature must be 0 on rollers");
   }
   check.integer("max_patches", c.max_patches, 1, RP_MAX_PATCHES);
+  check.number("standstill_speed", c.standstill_speed, {0, 1, false, false});
+  check_sections(c, check);
+  check.numbers("rail_stiffness", c.rail_stiffness, 2, {0, 1e15, false, false});
+  check.numbers("rail_damping", c.rail_damping, 2, {0, 1e15, false, false});
+  for (int k = 0; k < 2; ++k) {
+    check.require(c.rail_damping[k] == 0 || c.rail_stiffness[k] > 0,
+                  "rail_damping must be 0 in a direction whose rail_stiffness is 0: there the rail "
+                  "is rigid");
+    check.require(c.rail_stiffness[k] == 0 || c.rail_stiffness[k] >= 1,
+                  "rail_stiffness must be 0 or at least 1 N/m");
+  }
+  check_longitudinal(c, check);
 }
 
 }  // namespace
@@ -469,6 +555,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
     check.number("layer_shear_modulus", c.layer_shear_modulus, {1.0, 1e15, false, false});
   check.number("tolerance", c.tolerance, {1e-12, 0.1, false, false});
   check.integer("max_iterations", c.max_iterations, 1, 100000);
+  check.integer("derivatives", c.derivatives, 0, 1);
   const bool rolling = has_tangential(c);
   const bool fast = is_fast(c.tangential);
   check_fast(c, check);
@@ -491,8 +578,11 @@ double most_friction(const rp_config &c, double coefficient) {
     most = c.friction_kinetic;
     for (double amplitude : c.friction_amplitude) most += std::max(amplitude, 0.0);
   }
-  if (c.friction_points == 0) return most;
-  return most * *std::max_element(c.friction_factor, c.friction_factor + c.friction_points);
+  const auto greatest = [](const double *factor, int points) {
+    return points == 0 ? 1.0 : *std::max_element(factor, factor + points);
+  };
+  return most * greatest(c.friction_factor, c.friction_points) *
+         greatest(c.friction_along_factor, c.friction_along_points);
 }
 
 rp_error check_friction_coefficient(double value, rp_message *message) {
@@ -529,19 +619,39 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
     check.number("z", in.z, {-1, 1, false, false});
   check.number("roll", in.roll, angle);
   check.number("yaw", in.yaw, angle);
-  const char *names[] = {"speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate"};
-  const double values[] = {in.speed, in.vy, in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
-  for (int i = 0; i < 6; ++i) check.number(names[i], values[i], finite);
+  const char *names[] = {"x", "pitch", "speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate"};
+  const double values[] = {in.x,  in.pitch,     in.speed,    in.vy,
+                           in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
+  for (int i = 0; i < 8; ++i) check.number(names[i], values[i], finite);
+  const bool rolls_on = c.regime == RP_TRANSIENT_ROLLING && has_tangential(c);
+  check.number("time_step", in.time_step, rolls_on ? positive : not_negative);
   for (int side = 0; side < 2; ++side) {
     check.numbers("wheel_offset", in.wheel_offset[side], 3, {-1, 1, false, false});
     check.numbers("wheel_rotation", in.wheel_rotation[side], 3, angle);
     check.numbers("rail_offset", in.rail_offset[side], 3, {-1, 1, false, false});
     check.numbers("rail_rotation", in.rail_rotation[side], 3, angle);
+    check.numbers("wheel_velocity", in.wheel_velocity[side], 3, finite);
+    check.numbers("wheel_angular_velocity", in.wheel_angular_velocity[side], 3, finite);
+    check.numbers("rail_velocity", in.rail_velocity[side], 3, finite);
+    check.numbers("rail_angular_velocity", in.rail_angular_velocity[side], 3, finite);
     check.require(in.rail_rotation[side][1] == 0 && in.rail_rotation[side][2] == 0,
                   "rail_rotation about y and z must be 0: this version turns rails and rollers "
                   "about x only");
   }
   check.number("roller_pitch_rate", in.roller_pitch_rate, finite);
+  return check.error();
+}
+
+rp_error check_direction(const rp_input &d, rp_message *message) {
+  if (d.cookie != input_cookie) {
+    set_message(message, "the direction was never filled by rp_default_input");
+    return RP_ERROR_NOT_DEFAULTED;
+  }
+  checker check(message);
+  for_each_number(d, [&](const char *name, const double &value, double) {
+    const bool bulk = std::strcmp(name, "bulk_temperature") == 0;
+    if (!(bulk && std::isnan(value))) check.number(name, value, finite);
+  });
   return check.error();
 }
 

@@ -90,6 +90,12 @@ const char *plasticity_reason(const rp_config &config, const patch_scene &scene)
                                     : "no third-body layer";
 }
 
+const char *derivative_reason(bool asked, const patch_scene &scene) {
+  if (!asked) return "derivatives are not asked for";
+  return scene.differentiates() ? "derivatives are asked for: from the solved conditions"
+                                : "derivatives are asked for: by differences of further steps";
+}
+
 }  // namespace
 
 void contact::describe(rp_stage_info *info) const {
@@ -130,8 +136,15 @@ void contact::describe(rp_stage_info *info) const {
   info[RP_STAGE_COUPLING] = {"coupling", scene.couples(), coupling_reason(scene),
                              solver_.coupling_bytes()};
   info[RP_STAGE_HISTORY] = {"history", scene.keeps_steps(), history_reason(scene), history};
+  info[RP_STAGE_SUPPORT] = {
+      "rail_support", support_ != nullptr,
+      support_ ? "rails have a stiffness: deflections by Newton's method" : "the rails are rigid",
+      support_ ? support_->bytes() : 0};
   info[RP_STAGE_PLASTICITY] = {"plasticity", scene.yields(), plasticity_reason(config_, scene),
                                plastic};
+  const bool asked = config_.derivatives != 0;
+  info[RP_STAGE_DERIVATIVES] = {"derivatives", asked, derivative_reason(asked, scene),
+                                derivative_bytes()};
 }
 
 }  // namespace railpatch

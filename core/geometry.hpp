@@ -4,6 +4,10 @@
 // Wheelset: turned by Rx(roll) Rz(yaw), centre one nominal radius above that plane at z = 0.
 // Contact frame: x as the track's, s lateral along the surface, n into the rail; turned by the
 // contact angle about x: s = (0, cos, sin), n = (0, -sin, cos).
+// Standstill. Slip over the rolling speed V has no limit there. Below V0 = standstill_speed it is
+// divided by (V^2 + V0^2)/(2 V0), which joins V with equal slope at V0 and is V0/2 at rest; and
+// where the heading h, the mean of the forward speeds, is below V0, the spin creepage is scaled by
+// u = |h| (3 V0^2 - h^2)/(2 V0^3): its lateral force changes sign with the direction of rolling.
 // Signs. Undeformed distance > 0 is a gap. Creepages are wheel minus rail, divided by the rolling
 // speed. Everything here is a right-hand side; a left one is its mirror image: feed mirrored
 // inputs, mirror the results back. Mirroring changes signs only, so it is exact.
@@ -14,10 +18,14 @@
 // A rail's offset y, z and rotation about x move it; offset x and rotations about y, z have no
 // effect on a prismatic rail. A roller's offset moves its axle, the rotation about x turns its
 // profile in its meridian plane; rotations about y, z have no effect.
+// Their rates give the material velocities that the offsets and rotations would have: about the
+// profile's origin, of a wheel or roller about the axis (y), of a wheel about the point of its axis
+// in the plane of that origin (z).
 #pragma once
 
 #include <array>
 
+#include "longitudinal_shape.hpp"
 #include "profile.hpp"
 
 namespace railpatch {
@@ -34,8 +42,10 @@ struct wheelset_state {
 };
 
 struct deviation {
-  vec3 offset{};    // m
-  vec3 rotation{};  // rad
+  vec3 offset{};            // m
+  vec3 rotation{};          // rad
+  vec3 velocity{};          // m/s
+  vec3 angular_velocity{};  // rad/s
 };
 
 enum class track_kind { rail, roller };
@@ -50,6 +60,7 @@ struct track_config {
 
 struct wheel_config {
   double nominal_radius = 0, flange_back_distance = 0, flange_back_position = 0;  // m
+  double standstill_speed = 0;                                                    // m/s
 };
 
 // All that moves in a step, for one side.
@@ -73,8 +84,8 @@ struct surface_grid {
 struct creepage_state {
   double xi = 0, eta = 0;    // -, longitudinal, lateral
   double phi = 0;            // rad/m, spin
-  double rolling_speed = 0;  // m/s, >= 0
-  int direction = 0;         // rolling towards +x (1), -x (-1); 0 at standstill: creepages are 0
+  double rolling_speed = 0;  // m/s, >= 0, what slip is divided by: see the head on standstill
+  int direction = 0;         // rolling towards +x (1), -x (-1); 0 at standstill
 };
 
 wheelset_state mirrored(wheelset_state w);
@@ -116,6 +127,8 @@ class side_geometry {
                 const track_config &track);
 
   void place(const side_motion &motion);
+  // The rail's profile has changed; place() must follow.
+  void reload_rail();
   // Only z changes: the locus stays as it is, so this is nearly free.
   void move_to(double z);
   const side_motion &motion() const { return motion_; }
@@ -127,14 +140,17 @@ class side_geometry {
   double sample_s(int i) const { return wheel_.sample_s(i); }
   bool no_overlap() const { return !overlap_; }
 
-  // Exact, at arc length s of the wheel's profile.
+  // What varies along the rolling direction, null: nothing; place it before place().
+  void set_shape(const longitudinal_shape *shape) { shape_ = shape; }
+  bool shaped() const { return shape_ != nullptr; }
+  // With a shape: the overlap along x in the row at s, y at its mean and dy/ds of the meridian.
+  row_overlap overlap(double s, double &y, double &dy) const;
+
+  // Exact, at arc length s of the wheel's profile; with a shape the gap is the least one of the
+  // row, see longitudinal_shape.hpp.
   locus_point locus(double s) const;
   // The rail surface at (x, y): z, and the angle of its profile; false beyond the profile.
   bool rail_surface(double x, double y, double &z, double &angle) const;
-  // Undeformed distance at points (x, s) of the frame, neighbours following each other.
-  void distances(const contact_frame &frame, const double *x, const double *s, int count,
-                 double *h) const;
-
   // start: arc lengths of wheel and rail profile to search from, NaN where they are not known; out
   // those found.
   section_point section(const contact_frame &frame, double start[2]) const;
@@ -161,6 +177,11 @@ class side_geometry {
   double sampled_gap(double s) const;
   void set_rates(const curve_point &p, double sine, locus_point &l) const;
   vec3 wheel_point(const curve_point &p, double sine) const;
+  longitudinal_row row_of(const curve_point &p, double sine, double gap) const;
+  double sideways(double x, double sine, const curve_point &p) const;
+  void find_closest(const curve_point &p, double sine, locus_point &l) const;
+  vec3 wheel_rate(const vec3 &at) const;
+  vec3 rail_rate(const vec3 &at) const;
 
   wheel_config sizes_;
   track_config track_;
@@ -171,8 +192,9 @@ class side_geometry {
   double axle_z_ = 0, axle_x_ = 0;      // roller
   vec3 centre_{};                       // wheelset
   vec3 axis_origin_{}, axis_offset_{};  // of this wheel, from track origin and wheelset centre
-  mat3 wheel_axes_{};
+  mat3 wheelset_axes_{}, wheel_axes_{};
   bool overlap_ = false;
+  const longitudinal_shape *shape_ = nullptr;
 };
 
 }  // namespace railpatch

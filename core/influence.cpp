@@ -83,6 +83,7 @@ void influence::make_half_space_kernels() {
       corner_[0][at] = y_log(x, y);
       corner_[1][at] = y_log(y, x);
       corner_[2][at] = -std::hypot(x, y);
+      if (scene_.by_length) make_rates(x, y, i - 0.5, at);
     }
   const double nu = scene_.elastic.poisson_ratio;
   const double c = 1.0 / (pi * scene_.elastic.shear_modulus);
@@ -100,6 +101,14 @@ void influence::make_half_space_kernels() {
       table_[2][at] = c * (sum[1] + (1.0 - nu) * sum[0]);
       table_[3][at] = c * nu * sum[2];
     }
+}
+
+// A corner at (i - 1/2) dx moves by i - 1/2 with dx.
+void influence::make_rates(double x, double y, double moves, size_t at) {
+  const double r = std::hypot(x, y);
+  corner_[0][at] = moves * y / r;
+  corner_[1][at] = moves * (std::asinh(y / std::abs(x)) - y / r);
+  corner_[2][at] = -moves * x / r;
 }
 
 void influence::make_line_kernels() {
@@ -139,6 +148,20 @@ void influence::bodies_at(double x, double y, double values[3]) const {
     sum[1] += sign * (u != 0 ? y_log(v, u) : 0.0);
     sum[2] -= sign * std::hypot(u, v);
   }
+  values[0] = c * (sum[0] + (1.0 - nu) * sum[1]);
+  values[1] = c * (sum[1] + (1.0 - nu) * sum[0]);
+  values[2] = c * nu * sum[2];
+}
+
+void influence::corner_at(double x, double y, double values[3]) {
+  values[0] = y != 0 ? y_log(x, y) : 0.0;
+  values[1] = x != 0 ? y_log(y, x) : 0.0;
+  values[2] = -std::hypot(x, y);
+}
+
+void influence::from_corners(const double sum[3], double values[3]) const {
+  const double nu = scene_.elastic.poisson_ratio;
+  const double c = 1.0 / (pi * scene_.elastic.shear_modulus);
   values[0] = c * (sum[0] + (1.0 - nu) * sum[1]);
   values[1] = c * (sum[1] + (1.0 - nu) * sum[0]);
   values[2] = c * nu * sum[2];

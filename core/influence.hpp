@@ -52,7 +52,9 @@ class influence {
     double layer_flexibility = 0;  // m/Pa, thickness over shear modulus
     double line_width = 0;         // m, > 0: plane strain
     bool tangential = true;        // false: no xx, yy, xy at all
-    bool curved = false;           // rows on a curved reference surface
+    // the coefficients' derivatives by dx instead, offsets in elements kept (not plane strain)
+    bool by_length = false;
+    bool curved = false;  // rows on a curved reference surface
   };
 
   influence(const scene &scene, const fft_plans &plans);
@@ -85,6 +87,10 @@ class influence {
   const scene &bodies() const { return scene_; }
   // xx, yy and xy of the bodies at any offset (m), observer minus source.
   void bodies_at(double x, double y, double values[3]) const;
+  // The same of the half-space in two steps, for many elements that share corners: primitives at a
+  // corner, and the coefficients from their alternating sums.
+  static void corner_at(double x, double y, double values[3]);
+  void from_corners(const double sum[3], double values[3]) const;
   // One coefficient at offset (i, j) elements, observer minus source.
   double coefficient(kernel k, int i, int j) const;
   size_t bytes() const;
@@ -93,6 +99,7 @@ class influence {
   void make_kernels(int half_x, int half_y);
   void make_half_space_kernels();
   void make_line_kernels();
+  void make_rates(double x, double y, double moves, size_t at);
   void make_spectra();
   void transform_kernel(kernel k);
   void give_spectrum(kernel k);

@@ -8,17 +8,8 @@ namespace railpatch {
 
 namespace {
 
-constexpr double closeness = 2e-5;  // m, sampled gaps below this are looked at closely
-constexpr int rows = 64;            // of one part, for its means
-
-// One part of contact, with its sums over rows.
-struct part {
-  double begin = 0, end = 0;                   // m, arc length on the wheel
-  bool cut_off = false;                        // by the end of a profile
-  vec3 first{}, last{};                        // edges, track axes, on the surfaces
-  double weight = 0, x = 0, y = 0, angle = 0;  // weighted means
-  double x_min = 0, x_max = 0;
-};
+constexpr double closeness = 2e-5;    // m, sampled gaps below this are looked at closely
+constexpr double least_share = 1e-8;  // what counts less is below any tolerance and left out
 
 double gap_at(const side_geometry &side, double s) {
   const locus_point l = side.locus(s);
@@ -124,135 +115,126 @@ class part_list {
   double last_ = side_geometry::far_apart, before_ = last_;
 };
 
-// Rows at s = m - h cos t for equally spaced t: the weight's d^2.5 at the edges becomes smooth, so
-// that few rows give the means to many digits. Their number is fixed and a row is as wide as the
-// lateral distance of its neighbours, so the means move smoothly with the wheelset, kinks in the
-// profiles' curvature included.
-void sum_rows(const side_geometry &side, part &p) {
+// A row whose overlap has any shape along x, see longitudinal_shape.hpp.
+void add_shaped(const side_geometry &side, double s, double width, part &p) {
+  const locus_point l = side.locus(s);
+  if (!l.valid || !(l.gap < 0)) return;
+  double y = 0, dy = 0;
+  const row_overlap o = side.overlap(s, y, dy);
+  if (!(o.weight > 0)) return;
+  const double weight = o.weight * width * dy;
+  p.x_min = p.weight > 0 ? std::min(p.x_min, o.x_min) : o.x_min;
+  p.x_max = p.weight > 0 ? std::max(p.x_max, o.x_max) : o.x_max;
+  p.weight += weight;
+  p.x += weight * o.x;
+  p.y += weight * y;
+  p.angle += weight * l.contact_angle;
+}
+
+// The sums over rows, as in patch_parts.hpp, where wheel or rail are shaped along x. A row is as
+// wide as the arc length of its neighbours says: on a yawed wheel they may be touched elsewhere.
+void sum_shaped_rows(const side_geometry &side, part &p) {
   const double half = 0.5 * (p.end - p.begin), middle = 0.5 * (p.end + p.begin);
-  locus_point row[rows + 2];
-  for (int i = 1; i <= rows; ++i)
-    row[i] = side.locus(middle - half * std::cos(std::numbers::pi * (i - 0.5) / rows));
-  row[0] = side.locus(p.begin);
-  row[rows + 1] = side.locus(p.end);
-  p.first = row[0].wheel;
-  p.last = row[rows + 1].wheel;
-  bool any = false;
-  for (int i = 1; i <= rows; ++i) {
-    const locus_point &l = row[i];
-    if (!l.valid || !(l.gap < 0)) continue;
-    const double depth = -l.gap, reach = std::sqrt(depth / l.curvature);
-    const double width = 0.5 * (row[i + 1].wheel[1] - row[i - 1].wheel[1]);
-    const double weight = depth * depth * reach * width;
-    p.weight += weight;
-    p.x += weight * l.wheel[0];
-    p.y += weight * l.wheel[1];
-    p.angle += weight * l.contact_angle;
-    p.x_min = any ? std::min(p.x_min, l.wheel[0] - reach) : l.wheel[0] - reach;
-    p.x_max = any ? std::max(p.x_max, l.wheel[0] + reach) : l.wheel[0] + reach;
-    any = true;
-  }
+  const auto at = [&](int i) {
+    const double share = std::clamp((i - 0.5) / part_rows, 0.0, 1.0);
+    return middle - half * std::cos(std::numbers::pi * share);
+  };
+  p.first = side.locus(p.begin).wheel;
+  p.last = side.locus(p.end).wheel;
+  for (int i = 1; i <= part_rows; ++i) add_shaped(side, at(i), 0.5 * (at(i + 1) - at(i - 1)), p);
   for (double *v : {&p.x, &p.y, &p.angle}) *v /= p.weight;
 }
 
-double distance(const part &a, const part &b) {
-  return std::hypot(b.first[1] - a.last[1], b.first[2] - a.last[2]);
-}
-
 bool together(const patch_rules &r, const part &a, const part &b) {
-  return distance(a, b) < r.separate && std::fabs(b.angle - a.angle) < r.max_angle;
+  return facing_distance(a, b) < r.separate && std::fabs(b.angle - a.angle) < r.max_angle;
 }
 
 // Angles of neighbouring patches approach their mean as their distance falls from turn to separate.
-struct group {
-  int begin, end;  // parts
-  double weight, x, y, angle, turned;
-};
-
-group sum_parts(const part *parts, int begin, int end) {
-  group g{begin, end, 0, 0, 0, 0, 0};
-  for (int i = begin; i < end; ++i) {
-    const part &p = parts[i];
-    g.weight += p.weight;
-    g.x += p.weight * p.x;
-    g.y += p.weight * p.y;
-    g.angle += p.weight * p.angle;
-  }
-  for (double *v : {&g.x, &g.y, &g.angle}) *v /= g.weight;
-  g.turned = g.angle;
-  return g;
-}
-
-void turn_neighbours(const patch_rules &r, const part *parts, group *groups, int count) {
+void turn_neighbours(const patch_rules &r, const part *parts, const part_interval *groups,
+                     int count, double *angles) {
+  for (int k = 0; k < count; ++k) angles[k] = groups[k].angle;
   for (int k = 0; k + 1 < count; ++k) {
-    group &a = groups[k], &b = groups[k + 1];
-    const double d = distance(parts[a.end - 1], parts[b.begin]);
+    const part_interval &a = groups[k], &b = groups[k + 1];
+    const double d = facing_distance(parts[a.end - 1], parts[b.begin]);
     if (d >= r.turn || std::fabs(b.angle - a.angle) >= r.max_angle) continue;
     const double share = std::min(1.0, (r.turn - d) / (r.turn - r.separate));
     const double mean = (a.weight * a.angle + b.weight * b.angle) / (a.weight + b.weight);
-    a.turned += share * (mean - a.angle);
-    b.turned += share * (mean - b.angle);
+    angles[k] += share * (mean - a.angle);
+    angles[k + 1] += share * (mean - b.angle);
   }
 }
 
 double lateral(const contact_frame &f, const vec3 &p) {
-  return std::cos(f.contact_angle) * (p[1] - f.origin[1]) +
-         std::sin(f.contact_angle) * (p[2] - f.origin[2]);
-}
-
-// greatest overlap along n on the locus, refined by the parabola through the three greatest rows
-double deepest(const side_geometry &side, const contact_frame &f, const part &p) {
-  constexpr int rows = 24;
-  double x[rows], s[rows], h[rows], best = 0;
-  for (int i = 0; i < rows; ++i) {
-    const locus_point l = side.locus(p.begin + (p.end - p.begin) * (i + 0.5) / rows);
-    x[i] = l.wheel[0] - f.origin[0];
-    s[i] = lateral(f, l.wheel);
-  }
-  side.distances(f, x, s, rows, h);
-  for (int i = 0; i < rows; ++i) best = std::max(best, -h[i]);
-  for (int i = 1; i + 1 < rows; ++i) {
-    const double bend = h[i - 1] - 2 * h[i] + h[i + 1], rise = 0.5 * (h[i + 1] - h[i - 1]);
-    if (-h[i] == best && bend > 0) return best + 0.5 * rise * rise / bend;
-  }
-  return best;
+  return lateral_in(f.origin, f.contact_angle, p);
 }
 
 patch_region describe(const side_geometry &side, const patch_rules &r, const part *parts,
-                      const group &g) {
+                      const part_interval &g, double contact_angle) {
   patch_region out;
   double angle;
   out.frame.origin = {g.x, g.y, 0};
-  out.frame.contact_angle = g.turned;
+  out.frame.contact_angle = contact_angle;
   // between two parts the reference can lie where the rail is not touched, but never beyond it
   side.rail_surface(g.x, g.y, out.frame.origin[2], angle);
   out.weight = g.weight;
+  out.share = g.share;
+  out.first_part = g.begin;
   out.parts = g.end - g.begin;
-  const part &first = parts[g.begin], &last = parts[g.end - 1];
-  out.s_min = lateral(out.frame, first.first);
-  out.s_max = lateral(out.frame, last.last);
+  const basic_bounds<double> bounds = bounds_of(parts, g, out.frame.origin, contact_angle);
+  out.x_min = bounds.x_min;
+  out.x_max = bounds.x_max;
+  out.s_min = bounds.s_min;
+  out.s_max = bounds.s_max;
   for (int i = g.begin; i < g.end; ++i) {
     const part &p = parts[i];
-    const double x_min = p.x_min - g.x, x_max = p.x_max - g.x;
-    out.x_min = i > g.begin ? std::min(out.x_min, x_min) : x_min;
-    out.x_max = i > g.begin ? std::max(out.x_max, x_max) : x_max;
     out.at_profile_end |= p.cut_off;
-    out.max_interpenetration = std::max(out.max_interpenetration, deepest(side, out.frame, p));
     if (i + 1 == g.end) break;
     const part &next = parts[i + 1];
-    const double d = distance(p, next);
     out.cut[i - g.begin] = 0.5 * (lateral(out.frame, p.last) + lateral(out.frame, next.first));
+    out.coupling[i - g.begin] = 1.0;
+    if (r.blended) continue;
+    const double d = facing_distance(p, next);
     const double share = std::clamp((r.separate - d) / (r.separate - r.combine), 0.0, 1.0);
     out.coupling[i - g.begin] = std::pow(share, r.coupling_exponent);
   }
   return out;
 }
 
+// All intervals of parts that count, with their shares, in the order of their first and last part.
+int blend(const blend_rules &rules, const part_set &found, part_interval *out) {
+  double join[max_parts];
+  for (int k = 0; k + 1 < found.count; ++k)
+    join[k] = joined(rules, found.parts[k], found.parts[k + 1]);
+  int count = 0;
+  for (int begin = 0; begin < found.count; ++begin)
+    for (int end = begin + 1; end <= found.count; ++end) {
+      const double share = interval_share(join, found.count, begin, end);
+      if (!(share > least_share)) continue;
+      out[count] = sum_parts(found.parts, begin, end);
+      out[count++].share = share;
+    }
+  return count;
+}
+
+// Neighbours that are near enough as one, all others on their own.
+int divide(const patch_rules &rules, const part_set &found, part_interval *out) {
+  int count = 0;
+  for (int i = 0, begin = 0; i < found.count; ++i) {
+    if (i + 1 < found.count && together(rules, found.parts[i], found.parts[i + 1])) continue;
+    out[count++] = sum_parts(found.parts, begin, i + 1);
+    begin = i + 1;
+  }
+  return count;
+}
+
 // the heaviest patches first to stay, in their order along the rail
-void keep_heaviest(group *groups, int &count, int limit) {
+void keep_heaviest(part_interval *groups, double *angles, int &count, int limit) {
   while (count > limit) {
-    const auto less = [](const group &a, const group &b) { return a.weight < b.weight; };
-    group *least = std::min_element(groups, groups + count, less);
+    const auto less = [](const part_interval &a, const part_interval &b) {
+      return a.share * a.weight < b.share * b.weight;
+    };
+    part_interval *least = std::min_element(groups, groups + count, less);
+    std::move(angles + (least - groups) + 1, angles + count, angles + (least - groups));
     std::move(least + 1, groups + count, least);
     --count;
   }
@@ -260,29 +242,38 @@ void keep_heaviest(group *groups, int &count, int limit) {
 
 }  // namespace
 
-search_result find_patches(const side_geometry &side, const patch_rules &rules, patch_region *out,
-                           int max_patches) {
-  if (side.no_overlap()) return {search_status::out_of_range, 0};
-  part parts[max_parts];
-  part_list list(side, parts);
+void find_parts(const side_geometry &side, part_set &found) {
+  part_list list(side, found.parts);
   list.search();
-  int count = 0;
+  found.count = 0;
+  found.overflow = list.overflow();
+  const auto locus = [&](double s) { return side.locus(s); };
   for (int i = 0; i < list.count(); ++i) {
-    sum_rows(side, parts[i]);
-    if (parts[i].weight > 0) parts[count++] = parts[i];
+    if (side.shaped())
+      sum_shaped_rows(side, found.parts[i]);
+    else
+      sum_rows(locus, found.parts[i]);
+    if (found.parts[i].weight > 0) found.parts[found.count++] = found.parts[i];
   }
-  if (count == 0) return {search_status::no_contact, 0};
-  group groups[max_parts];
-  int patches = 0;
-  for (int i = 0, begin = 0; i < count; ++i) {
-    if (i + 1 < count && together(rules, parts[i], parts[i + 1])) continue;
-    groups[patches++] = sum_parts(parts, begin, i + 1);
-    begin = i + 1;
-  }
-  turn_neighbours(rules, parts, groups, patches);
-  const bool too_many = list.overflow() || patches > max_patches;
-  keep_heaviest(groups, patches, max_patches);
-  for (int k = 0; k < patches; ++k) out[k] = describe(side, rules, parts, groups[k]);
+}
+
+search_result find_patches(const side_geometry &side, const patch_rules &rules, part_set &found,
+                           patch_region *out, int max_patches) {
+  found.count = 0;
+  if (side.no_overlap()) return {search_status::out_of_range, 0};
+  find_parts(side, found);
+  if (found.count == 0) return {search_status::no_contact, 0};
+  part_interval groups[max_parts * (max_parts + 1) / 2];
+  double angles[max_parts * (max_parts + 1) / 2];
+  int patches = rules.blended ? blend(rules.blend, found, groups) : divide(rules, found, groups);
+  if (rules.blended)
+    for (int k = 0; k < patches; ++k) angles[k] = groups[k].angle;
+  else
+    turn_neighbours(rules, found.parts, groups, patches, angles);
+  const bool too_many = found.overflow || patches > max_patches;
+  keep_heaviest(groups, angles, patches, max_patches);
+  for (int k = 0; k < patches; ++k)
+    out[k] = describe(side, rules, found.parts, groups[k], angles[k]);
   return {too_many ? search_status::too_many_patches : search_status::contact, patches};
 }
 

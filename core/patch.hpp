@@ -7,9 +7,10 @@
 // means over the rows: they move smoothly with the wheelset, and a part that appears or vanishes
 // does so with weight zero.
 //
-// Parts close to each other share a patch, by the distance d between facing edges; the default
-// distances are those of the program CONTACT, so that results compare.
-// Up to `combine` they influence each other fully; up to `separate` by a factor
+// Parts close to each other share a patch. By the blended rule (patch_parts.hpp) several divisions
+// into patches may count at once, each with its share. By the rule of the program CONTACT, so that
+// results compare, the distance d between facing edges decides:
+// up to `combine` they influence each other fully; up to `separate` by a factor
 // ((separate - d)/(separate - combine))^0.8; up to `turn` they are patches of their own, with
 // angles turned towards their weighted mean, by all at `separate`, by nothing at `turn`.
 //
@@ -17,27 +18,28 @@
 #pragma once
 
 #include "geometry.hpp"
+#include "patch_parts.hpp"
 
 namespace railpatch {
 
 struct patch_rules {
+  bool blended = true;  // else by the distances below
+  blend_rules blend;
   double combine = 4e-3, separate = 8e-3, turn = 12e-3;  // m
   double max_angle = 1.5707963267948966;  // rad, a greater difference always separates
   double coupling_exponent = 0.8;
 };
 
-constexpr int max_parts = 8;  // of one patch, and of one wheel
-
 struct patch_region {
   contact_frame frame;
   // bounds of the interpenetration in the frame; leave a margin of an element around them
   double x_min = 0, x_max = 0, s_min = 0, s_max = 0;  // m
-  double max_interpenetration = 0;                    // m, along n
   double weight = 0;                                  // of all rows, to compare patches
+  double share = 1;                                   // that this solution has in the wheel's force
   bool at_profile_end = false;                        // cut off by the end of a profile
   // parts follow each other in s: between part k and k + 1 lies s = cut[k], and there tractions
   // on one side act on the other with the factor coupling[k]
-  int parts = 1;
+  int first_part = 0, parts = 1;  // of those found on the wheel
   double cut[max_parts - 1] = {};
   double coupling[max_parts - 1] = {};
 };
@@ -49,8 +51,16 @@ struct search_result {
   int count = 0;  // patches written; where there are too many, those of greatest weight
 };
 
-search_result find_patches(const side_geometry &side, const patch_rules &rules, patch_region *out,
-                           int max_patches);
+// The parts of contact of one wheel, with their sums over rows, in the order of s.
+struct part_set {
+  int count = 0;
+  bool overflow = false;  // there are more
+  part parts[max_parts];
+};
+
+void find_parts(const side_geometry &side, part_set &found);
+search_result find_patches(const side_geometry &side, const patch_rules &rules, part_set &found,
+                           patch_region *out, int max_patches);
 
 // The wheelset's z at which this wheel first touches; false where the profiles do not overlap.
 bool first_touch(const side_geometry &side, double &z);

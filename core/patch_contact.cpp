@@ -39,6 +39,7 @@ rp_patch_result empty_patch_result() {
         &r.position[2],       &r.contact_angle,     &r.creepage[0],    &r.creepage[1],
         &r.spin_creepage,     &r.rolling_speed})
     *v = nan;
+  r.share = 1;
   return r;
 }
 
@@ -68,6 +69,13 @@ bool patch_scene::estimates_force() const {
   const bool reduced = p.adhesion != 1 || p.slip != 1 || r.k0 != 1 || (r.alpha != 1 && r.beta != 0);
   return fast.coefficient_factor == 1 && !reduced && fast.blending == RP_BLENDING_SLIDING &&
          fast.bound == RP_BOUND_AUTOMATIC;
+}
+
+bool patch_scene::differentiates() const {
+  if (normal != RP_NORMAL_HALF_SPACE && normal != RP_NORMAL_HERTZ) return false;
+  if (tangential == RP_TANGENTIAL_NONE) return true;
+  return tangential == RP_TANGENTIAL_FULL && !is_fitted() && !law && !keeps_steps() && !heat &&
+         !is_forced() && !couples();
 }
 
 patch_memory::patch_memory(int max_count, int max_rows, const patch_scene &scene) {
@@ -118,7 +126,7 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
     tangential_.emplace(
         max_nx, max_ny,
         tangential_solver::setup{scene.is_forced(), scene.law.has_value(), scene.yields(),
-                                 scene.keeps_steps(), rolls_on ? &plans : nullptr});
+                                 scene.keeps_steps(), rolls_on ? &plans : nullptr, scene.moves});
     // with a prescribed force no creepage is known to start from
     const bool plain = !scene.is_forced() && !scene.law && !scene.keeps_steps() && !scene.couples();
     if (plain && coarse_start::serves(max_nx, max_ny))
@@ -139,14 +147,18 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
                     *fitted_rows_);
   }
   if (scene.heat) heat_.emplace(*scene.heat, max_nx, max_ny);
+  if (scene.derivatives && scene.differentiates())
+    derivative_.emplace(scene, plans, max_nx, max_ny, scene.stretches);
   if (scene.closed_form()) return;
   scratch_[0] = aligned_buffer<double>(count);
   scratch_[1] = aligned_buffer<double>(count);
   if (full) bound_ = aligned_buffer<double>(count);
+  if (!scene.keeps_steps() || !scene.moves) return;
+  for (auto &b : before_) b = aligned_buffer<double>(count);
 }
 
 size_t patch_contact::tangential_bytes() const {
-  return bound_.bytes() + (tangential_ ? tangential_->bytes() : 0) +
+  return bound_.bytes() + 2 * before_[0].bytes() + (tangential_ ? tangential_->bytes() : 0) +
          (coarse_start_ ? coarse_start_->bytes() : 0) +
          (fast_ ? sizeof(fast_solver) + fast_->bytes() : 0) +
          (fitted_ ? fitted_rows_->bytes() + fitted_->bytes() : 0);
@@ -228,6 +240,7 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
     loaded = solve_normal(problem, memory, result);
   }
   observe(RP_STAGE_NORMAL, false);
+  memory.approach = result.approach;
   memory.beyond = result.status == RP_OUT_OF_RANGE;
   memory.warm =
       loaded && result.status == RP_CONVERGED && memory.pressure.size() + memory.px.size() > 0;
@@ -284,6 +297,23 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   observe(RP_STAGE_FORCES, false);
 }
 
+derivative_outcome patch_contact::differentiate(const patch_problem &problem,
+                                                const patch_memory &memory,
+                                                const patch_variation *in, int count,
+                                                const derivative_options &options,
+                                                patch_change *out) {
+  observe(RP_STAGE_DERIVATIVES, true);
+  const patch_derivative::solved solved{scene_,
+                                        problem,
+                                        memory,
+                                        influence_ ? &*influence_ : nullptr,
+                                        normal_ ? &*normal_ : nullptr,
+                                        tangential_ ? tangential_->blocks() : nullptr};
+  const derivative_outcome outcome = derivative_->solve(solved, in, count, options, out);
+  observe(RP_STAGE_DERIVATIVES, false);
+  return outcome;
+}
+
 void patch_contact::estimate_error(const patch_problem &problem, patch_memory &memory,
                                    rp_patch_result &result) const {
   // linear theory beyond its bound is what it is; other results are no solutions
@@ -291,7 +321,7 @@ void patch_contact::estimate_error(const patch_problem &problem, patch_memory &m
   if (result.status != RP_CONVERGED && !(linear && result.status == RP_OUT_OF_RANGE)) return;
   if (scene_.line_width > 0 || coupled_ || scene_.curved) return;
   solved_patch patch{scene_.normal,  scene_.tangential,  problem.hertz, {},
-                     {0, 0},         scene_.is_fitted(), {1, 1},        scene_.friction_coefficient,
+                     {0, 0},         scene_.is_fitted(), {1, 1},        scene_.friction(),
                      problem.rolling};
   if (fast_ && fast_->table()) {
     patch.stated[0] = fast_->table()->force_error();
@@ -428,7 +458,9 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   const grid &g = problem.g;
   const tangential_fields fields = memory.fields();
   rolling_input rolling = problem.rolling;
-  if (scene_.keeps_steps()) {
+  if (problem.past) {
+    find_before(problem, rolling);
+  } else if (scene_.keeps_steps()) {
     rolling.px = memory.history.last_px.data();
     rolling.py = memory.history.last_py.data();
   }
@@ -463,7 +495,7 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
                            rows_ ? &*rows_ : nullptr,
                            result.normal_force,
                            result.contact_area,
-                           scene_.friction_coefficient};
+                           scene_.friction()};
     t = fast_->solve(patch, rolling, fields, sums_);
   } else if (fitted_) {
     t = solve_fitted(problem, rolling, memory);
@@ -506,6 +538,26 @@ void patch_contact::add_slip_of_rows(const grid &g, const conformal_rows &rows,
   }
 }
 
+// The displacement by the last step's tractions where each element's material was then.
+void patch_contact::find_before(const patch_problem &problem, rolling_input &rolling) {
+  observe(RP_STAGE_HISTORY, true);
+  for (int c = 0; c < 2; ++c) {
+    std::fill_n(before_[c].data(), problem.g.count(), 0.0);
+    rolling.before[c] = before_[c].data();
+  }
+  for (int k = 0; k < problem.past_count; ++k) {
+    const past_tractions &past = problem.past[k];
+    grid from = past.history->last_grid;
+    const auto first = static_cast<ptrdiff_t>(past.first_row) * from.nx;
+    from.ny = past.rows;
+    tangential_->add_moved(*influence_, from, problem.g, past.offset, past.history->last_share,
+                           past.history->last_px.data() + first,
+                           past.history->last_py.data() + first, before_[0].data(),
+                           before_[1].data());
+  }
+  observe(RP_STAGE_HISTORY, false);
+}
+
 tangential_result patch_contact::solve_on_grid(const patch_problem &problem,
                                                const rolling_input &rolling, patch_memory &memory,
                                                rp_patch_result &result, const double *mu) {
@@ -515,7 +567,8 @@ tangential_result patch_contact::solve_on_grid(const patch_problem &problem,
   const bool by_velocity = scene_.law && scene_.law->by_velocity;
   const double friction = by_velocity ? 1.0 : scene_.friction_coefficient;
   for (int j = 0; j < g.ny; ++j) {
-    const double factor = varies ? memory.row_friction[static_cast<size_t>(j)] : 1.0;
+    const double factor =
+        (varies ? memory.row_friction[static_cast<size_t>(j)] : 1.0) * scene_.friction_scale;
     for (auto i = static_cast<size_t>(j * g.nx); i < static_cast<size_t>((j + 1) * g.nx); ++i)
       bound_[i] = (mu ? mu[i] : friction) * factor * memory.pressure[i];
   }
@@ -657,7 +710,7 @@ tangential_result patch_contact::solve_fitted(const patch_problem &problem,
     fitted_rows_->set_line(hertz.semi_axes[0], scene_.line_width, hertz.normal_force);
   else
     fitted_rows_->set_ellipse(hertz.semi_axes, hertz.normal_force);
-  return fitted_->solve(*fitted_rows_, scene_.friction_coefficient, rolling,
+  return fitted_->solve(*fitted_rows_, scene_.friction(), rolling,
                         {scene_.tolerance, scene_.max_iterations}, memory.nodes());
 }
 

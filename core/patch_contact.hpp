@@ -16,6 +16,7 @@
 #include "friction_factor.hpp"
 #include "hertz.hpp"
 #include "normal.hpp"
+#include "patch_derivative.hpp"
 #include "patch_history.hpp"
 #include "physics.hpp"
 #include "railpatch.h"
@@ -25,16 +26,18 @@
 
 namespace railpatch {
 
-// Constant over the life of a handle, but for the friction coefficient.
+// Constant over the life of a handle, but for the friction coefficient and its scale.
 struct patch_scene {
   elastic_constants elastic;
   double friction_coefficient = 0;
   friction_factor friction_variation;
+  double friction_scale = 1.0;   // of the law, in this step
   double layer_flexibility = 0;  // m/Pa
   double line_width = 0;         // m, > 0: line contact
   rp_normal_method normal = RP_NORMAL_HALF_SPACE;
   rp_tangential_method tangential = RP_TANGENTIAL_FULL;  // NONE: no tangential stage
   motion regime = motion::steady;
+  bool moves = false;            // the grid moves between steps: of wheels
   std::optional<bound_law> law;  // beyond Coulomb's, or a layer that yields
   bool keeps_steps() const {
     return has_physics && tangential == RP_TANGENTIAL_FULL && regime != motion::steady;
@@ -44,11 +47,14 @@ struct patch_scene {
   double normal_tolerance = 1e-5;
   int max_iterations = 100;
   bool spin_offset = false;  // x + dq/6 in the spin term
+  bool derivatives = false;  // patch_contact::differentiate is asked for
+  bool stretches = false;    // grids whose dx and dy change at different rates
   bool curved = false;       // reference surface, of wheels
   int fitted[2] = {0, 0};    // nodes and strips of the tangential problem; 0: on the uniform grid
   fast_options fast;         // where the tangential theory is a fast one
   std::optional<heat_scene> heat;       // where temperatures are asked for
   bool prescribed[2] = {false, false};  // components of the creep force: their creepage is found
+  double friction() const { return friction_coefficient * friction_scale; }
   bool is_forced() const { return prescribed[0] || prescribed[1]; }
   // false: beside the exact theory, by choice
   bool estimates_force() const;
@@ -62,7 +68,17 @@ struct patch_scene {
     return normal == RP_NORMAL_HERTZ &&
            (is_fitted() || (is_fast(tangential) && !has_tractions(tangential)));
   }
+  // Whether the solution's derivatives come from its equations (patch_derivative.hpp).
+  bool differentiates() const;
   double modulus() const { return elastic.shear_modulus / (1.0 - elastic.poisson_ratio); }
+};
+
+// Tractions of a wheel's last step, in rows of what a patch remembers, as seen from the grid of a
+// problem: its element (0, 0) was at offset from that of the first row.
+struct past_tractions {
+  const patch_history *history;
+  int first_row, rows;
+  double offset[2];  // m
 };
 
 // One step's problem; the undeformed distance is in patch_memory.
@@ -75,6 +91,8 @@ struct patch_problem {
   double tangential_force[2] = {0, 0};  // N, of the components prescribed
   hertz_contact hertz;                  // where the surfaces are quadratic, else all zero
   contact_parts parts;
+  const past_tractions *past = nullptr;  // of wheels in transient rolling, with their number
+  int past_count = 0;
 };
 
 // Fields of the last solution, [ny][nx] of the grid or, for what belongs to the tangential problem
@@ -87,6 +105,8 @@ struct patch_memory {
   bool warm = false;    // pressure and traction may serve as a start
   bool beyond = false;  // the normal problem left its range: what the patch carries is not known
   grid g;
+  double approach = 0;                // m, of the last step's normal problem on the half-space
+  double share = 1;                   // in the wheel's force
   std::array<double, 3> reference{};  // m, contact reference, track axes of a right wheel
   aligned_buffer<double> undeformed_distance, pressure, px, py, sx, sy;
   aligned_buffer<unsigned char> division;
@@ -126,14 +146,26 @@ class patch_contact {
     memory.history.begin(problem.g, problem.rolling.upstream(), memory.px.data(), memory.py.data());
     observe(RP_STAGE_HISTORY, false);
   }
+  // The same for patches of wheels, whose grids move.
+  void remember(patch_memory &memory) const {
+    memory.history.remember(memory.g, memory.reference, memory.share, memory.px.data(),
+                            memory.py.data());
+  }
   // A step without contact: the material moves on and bears no traction.
   void leave_contact(const rolling_input &step, patch_memory &memory, rp_patch_result &result);
   // Carries the memory's solution over to another grid, or clears it.
   void start_from(patch_memory &memory, const grid &g);
 
+  // Derivatives of the last step's solution, which `memory` holds, in `count` directions; for
+  // scenes with derivatives, which differentiate. The memory and later steps stay as they are.
+  bool differentiates() const { return derivative_.has_value(); }
+  derivative_outcome differentiate(const patch_problem &problem, const patch_memory &memory,
+                                   const patch_variation *in, int count,
+                                   const derivative_options &options, patch_change *out);
   bool fits(const grid &g) const { return g.nx <= max_nx_ && g.ny <= max_ny_; }
   const patch_scene &scene() const { return scene_; }
   void set_friction_coefficient(double value) { scene_.friction_coefficient = value; }
+  void set_friction_scale(double value) { scene_.friction_scale = value; }
   // degrees C, of body k: wheel, rail
   void set_bulk_temperature(int k, double value) {
     if (!heat_) return;
@@ -149,6 +181,7 @@ class patch_contact {
   }
   // with the last two
   size_t tangential_bytes() const;
+  size_t derivative_bytes() const { return derivative_ ? derivative_->bytes() : 0; }
   size_t heat_bytes() const { return heat_ ? heat_->bytes() : 0; }
   void observe(rp_stage stage, bool entering) const {
     if (observer_) observer_(observer_user_, stage, entering);
@@ -172,6 +205,7 @@ class patch_contact {
   tangential_result solve_on_grid(const patch_problem &problem, const rolling_input &rolling,
                                   patch_memory &memory, rp_patch_result &result, const double *mu);
   void begin_heat(const patch_problem &problem, patch_memory &memory);
+  void find_before(const patch_problem &problem, rolling_input &rolling);
   double finish_heat(const patch_problem &problem, patch_memory &memory);
   // W/m^2, of the tractions in memory
   void flux_of(const patch_problem &problem, const patch_memory &memory, double *q);
@@ -195,9 +229,10 @@ class patch_contact {
   std::optional<fast_solver> fast_;
   physics_part<temperature_stage> heat_;
   physics_part<coupled_contact> coupled_;
+  std::optional<patch_derivative> derivative_;
   error_model errors_;
   creep_resultants sums_;  // of the last step, where the theory has no tractions
-  aligned_buffer<double> bound_, scratch_[2];
+  aligned_buffer<double> bound_, scratch_[2], before_[2];
 };
 
 // Sets what the scene's stages give where nothing touches: zeros.

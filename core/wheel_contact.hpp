@@ -10,6 +10,7 @@
 #include "geometry.hpp"
 #include "patch.hpp"
 #include "patch_contact.hpp"
+#include "rail_sections.hpp"
 #include "railpatch.h"
 
 namespace railpatch {
@@ -32,17 +33,26 @@ class wheel_contact {
 
  private:
   rp_status solve_patch(patch_contact &solver, patch_region &region, int index,
-                        patch_memory &memory, rp_side_result &result);
+                        patch_memory *memories, rp_side_result &result);
+  // Sets what the last step left behind for the patch of a region; past: of max_patches.
+  void set_past(const patch_memory *memory, const patch_region &region, int direction,
+                patch_problem &problem, past_tractions *past) const;
   void set_friction(const patch_contact &solver, const contact_frame &frame,
                     patch_memory &memory) const;
   grid choose_grid(const patch_region &region) const;
+  void match_memory(patch_memory *memory, int count) const;
 
   rp_config config_;
   int side_;
   bool beyond_ = false;
+  std::unique_ptr<rail_sections> sections_;  // where the rail's profile varies along the track
   std::unique_ptr<profile> wheel_, rail_;
+  std::unique_ptr<longitudinal_shape> shape_;  // null: round wheel, level rail
   std::unique_ptr<side_geometry> geometry_;
+  patch_rules rules_;
+  part_set parts_;
   std::array<patch_region, RP_MAX_PATCHES> regions_;
+  double time_step_ = 0;  // s
 };
 
 struct profile_error {

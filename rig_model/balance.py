@@ -34,16 +34,17 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from railpatch import Contact, Result
 
-from rig_model.broyden import Broyden, Evaluation, Root, Settings
+from rig_model.broyden import Broyden
+from rig_model.newton import Newton
 from rig_model.predict import Predictor
 from rig_model.programme import Position
 from rig_model.scene import SIDES, RigScene
+from rig_model.search import Evaluation, Root, Settings, Vector
 from rig_model.start import Baseline, Estimate, Frictionless
 
-Vector = NDArray[np.float64]
+UNKNOWNS = ("z", "roll", "pitch_rate")
 
 # differences for a Jacobian, in parts of the approach and of the pitch rate
 APPROACH_SHARE = 0.02
@@ -60,8 +61,8 @@ class Balance:
     status: "converged" only if the residuals are small and both wheels' contact was solved; else
     "not_converged", or "out_of_range" where no state with both wheels in contact was found; the
     values are then those of the best try. residuals: [3], N m, N, N m; None without contact.
-    evaluations: of both wheels; iterations: steps of Broyden's method; restarts: Jacobians by
-    differences beyond the first one. result: of the contact.
+    evaluations: of both wheels; iterations: steps of the search; restarts: Jacobians by
+    differences beyond the first one, of Broyden's method. result: of the contact.
     """
 
     position: Position
@@ -88,11 +89,13 @@ class Balancer:
         """Raises CaseError, ProfileError."""
         positions = scene.positions()
         self._scene = scene
-        self._contact = Contact(scene.at_height())
+        self._exact = scene.rig.balance.method == "newton"
+        self._contact = Contact(scene.at_height(derivatives=self._exact))
         self._frictionless = Frictionless(scene)
         first = self._frictionless.estimate(positions[0].y, positions[0].yaw)
         settings = settings_of(scene, first)
-        self._solver = Broyden(settings)
+        self._broyden = None if self._exact else Broyden(settings)
+        self._solver = self._broyden or Newton(settings)
         baseline = Baseline(scene, self._frictionless, [position.y for position in positions])
         self._predictor = Predictor(baseline, settings.difference)
 
@@ -104,7 +107,8 @@ class Balancer:
             estimate = self._frictionless.estimate(position.y, position.yaw)
             root = best_of(root, self._search(position, estimate.unknowns))
         if root.converged:
-            self._predictor.remember(position, root.x, self._solver.jacobian)
+            jacobian = self._broyden.jacobian if self._broyden else None
+            self._predictor.remember(position, root.x, jacobian)
         if root.payload is None:
             root = replace(root, payload=self._contact.step(**moved(position, root.x)))
         return balance_of(position, root)
@@ -115,13 +119,13 @@ class Balancer:
         return self._contact.step(**moved(balance.position, unknowns), fields=True)
 
     def _start(self, position: Position) -> Vector:
-        """Where the search starts; sets the Jacobian where that is known."""
+        """Where the search starts; sets Broyden's Jacobian where that is known."""
         given = self._scene.rig.start
         if given is not None and position.index == 0:
             return np.array([given.z, given.roll, given.pitch_rate])
         prediction = self._predictor.predict(position)
-        if prediction.jacobian is not None:
-            self._solver.jacobian = prediction.jacobian
+        if self._broyden and prediction.jacobian is not None:
+            self._broyden.jacobian = prediction.jacobian
         return prediction.unknowns
 
     def _search(self, position: Position, start: Vector) -> Root:
@@ -133,7 +137,20 @@ class Balancer:
         if not all(result[side]["patches"] for side in SIDES) or result.status == "out_of_range":
             return Evaluation(None, False, result)
         solved = all(result[side]["status"] == "converged" for side in SIDES)
-        return Evaluation(residuals(self._scene, position, result), solved, result)
+        return Evaluation(
+            residuals(self._scene, position, result),
+            solved,
+            result,
+            lambda: self._slope(position, result),
+        )
+
+    def _slope(self, position: Position, result: Result) -> Vector:
+        """[3, 3], of the residuals at the last state solved, with respect to the unknowns."""
+        columns = []
+        for name in UNKNOWNS:
+            rates = self._contact.differentiate(**{name: 1.0})
+            columns.append(residual_rates(self._scene, position, result, rates))
+        return np.column_stack(columns)
 
 
 def balance_of(position: Position, root: Root) -> Balance:
@@ -156,8 +173,8 @@ def balance_of(position: Position, root: Root) -> Balance:
 
 def moved(position: Position, unknowns: Vector) -> dict[str, float]:
     """The moving inputs of the contact."""
-    z, roll, pitch_rate = (float(value) for value in unknowns)
-    return {"y": position.y, "yaw": position.yaw, "z": z, "roll": roll, "pitch_rate": pitch_rate}
+    found = dict(zip(UNKNOWNS, map(float, unknowns), strict=True))
+    return {"y": position.y, "yaw": position.yaw, **found}
 
 
 def settings_of(scene: RigScene, estimate: Estimate) -> Settings:
@@ -186,33 +203,76 @@ def best_of(first: Root, second: Root) -> Root:
 
 def residuals(scene: RigScene, position: Position, result: Result) -> Vector:
     """f1, f2, f3 in N m, N, N m, [3]; see the head of this file."""
-    torque = wheelset_torque if scene.rig.balance.axle_torque == "wheelset" else track_torque
+    along = wheelset_force if scene.rig.balance.axle_torque == "wheelset" else track_force
     return np.array(
         [
-            math.fsum(torque(scene, position, result[side]) for side in SIDES),
+            math.fsum(
+                along(scene, position, result[side]) * result[side]["rolling_radius"]
+                for side in SIDES
+            ),
             -result["force"][2] - scene.vertical_force,
             result["moment"][0],
         ]
     )
 
 
-def wheelset_torque(_scene: RigScene, position: Position, wheel: dict) -> float:
-    """N m, longitudinal force in wheelset axes times the rolling radius."""
+def residual_rates(scene: RigScene, position: Position, result: Result, rates: Result) -> Vector:
+    """Rates of f1, f2, f3, [3], where those of the result are known."""
+    torque = scene.rig.balance.axle_torque
+    force = wheelset_force_rate if torque == "wheelset" else track_force_rate
+    along = wheelset_force if torque == "wheelset" else track_force
+    axle = 0.0
+    for side in SIDES:
+        wheel, rate = result[side], rates[side]
+        axle += force(scene, position, wheel, rate) * wheel["rolling_radius"]
+        axle += along(scene, position, wheel) * rate["rolling_radius"]
+    return np.array([axle, -rates["force"][2], rates["moment"][0]])
+
+
+def wheelset_force(_scene: RigScene, position: Position, wheel: dict) -> float:
+    """N, longitudinal force in wheelset axes."""
     x, y, _ = wheel["force"]
-    along = math.cos(position.yaw) * x + math.sin(position.yaw) * y
-    return along * wheel["rolling_radius"]
+    return math.cos(position.yaw) * x + math.sin(position.yaw) * y
 
 
-def track_torque(scene: RigScene, _position: Position, wheel: dict) -> float:
-    """N m, longitudinal force in track axes, the normal force's part included, times the radius.
+def wheelset_force_rate(scene: RigScene, position: Position, _wheel: dict, rate: dict) -> float:
+    """The force is linear in those of the wheel."""
+    return wheelset_force(scene, position, rate)
+
+
+def track_force(scene: RigScene, _position: Position, wheel: dict) -> float:
+    """N, longitudinal force in track axes, the normal force's part included.
 
     The contact's own axes leave that part out: their x axis is the track's. On a roller of radius R
     the normal through a point at x, z of the track is inclined by x/(R - z) along x.
     """
-    track = scene.case.track
-    total = wheel["force"][0]
-    for patch in wheel["patches"]:
-        x, _, z = patch["position"]
-        inclination = x / (track.roller_radius - z)
-        total += patch["normal_force"] * math.cos(patch["contact_angle"]) * inclination
-    return total * wheel["rolling_radius"]
+    return wheel["force"][0] + math.fsum(
+        patch["share"]
+        * patch["normal_force"]
+        * math.cos(patch["contact_angle"])
+        * inclination(scene, patch)
+        for patch in wheel["patches"]
+    )
+
+
+def track_force_rate(scene: RigScene, _position: Position, wheel: dict, rate: dict) -> float:
+    """Of the same."""
+    total = rate["force"][0]
+    for patch, change in zip(wheel["patches"], rate["patches"], strict=True):
+        height = scene.case.track.roller_radius - patch["position"][2]
+        angle = patch["contact_angle"]
+        force = patch["share"] * patch["normal_force"]
+        force_rate = change["share"] * patch["normal_force"]
+        force_rate += patch["share"] * change["normal_force"]
+        inclined = inclination(scene, patch)
+        inclined_rate = (change["position"][0] + inclined * change["position"][2]) / height
+        total += force_rate * math.cos(angle) * inclined
+        total -= force * math.sin(angle) * change["contact_angle"] * inclined
+        total += force * math.cos(angle) * inclined_rate
+    return total
+
+
+def inclination(scene: RigScene, patch: dict) -> float:
+    """-, of the roller's surface along x."""
+    x, _, z = patch["position"]
+    return x / (scene.case.track.roller_radius - z)

@@ -12,71 +12,16 @@ scaled by the caller.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Vector = NDArray[np.float64]
+from rig_model.search import Evaluation, Function, Root, Settings, Vector
 
 # the search starts anew when this many evaluations did not halve the residual
 PATIENCE = 5
 # shorter steps towards the best point before a direction is given up
 MOST_HALVINGS = 6
-
-
-@dataclass(frozen=True)
-class Evaluation:
-    """f at one point.
-
-    residual: [n], or None where f has no value there. solved: whether the value may be relied on;
-    a point that is not solved guides the search, but is no root. payload: what the caller wants
-    back with the root.
-    """
-
-    residual: Vector | None
-    solved: bool = True
-    payload: Any = None
-
-
-Function = Callable[[Vector], Evaluation]
-
-
-@dataclass(frozen=True)
-class Settings:
-    """How f is searched; all arrays have shape [n].
-
-    residual_scale: f / residual_scale is compared with tolerance, its largest component counts.
-    difference: steps of x for the Jacobian by differences. step_limit: largest change of x in one
-    step. max_evaluations: of f in one solve. max_restarts: Jacobians by differences in one solve,
-    beyond the first one.
-    """
-
-    residual_scale: Vector
-    difference: Vector
-    step_limit: Vector
-    tolerance: float = 1e-5
-    max_evaluations: int = 40
-    max_restarts: int = 2
-
-
-@dataclass(frozen=True)
-class Root:
-    """How a solve ended: the best point found, converged or not.
-
-    x, residual: [n], not scaled; residual is None where f had no value at the start. iterations:
-    steps taken. restarts: Jacobians by differences beyond the first one.
-    """
-
-    converged: bool
-    x: Vector
-    residual: Vector | None
-    evaluations: int
-    iterations: int
-    restarts: int
-    payload: Any = None
 
 
 @dataclass(frozen=True)

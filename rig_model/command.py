@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +31,11 @@ def default_scene_text() -> str:
 @click.option("--positions", type=int, metavar="NUMBER", help="Replaces rig.positions.")
 @click.option("--rate", type=float, metavar="HZ", help="Replaces rig.rate: positions per second.")
 @click.option("--duration", type=float, metavar="SECONDS", help="Replaces rig.duration.")
+@click.option(
+    "--method",
+    type=click.Choice(["broyden", "newton"]),
+    help="Replaces rig.balance.method: how balances are searched.",
+)
 @show_scene_option(default_scene_text)
 @click.option("--quiet", is_flag=True, help="Print no summary and no progress.")
 @click.pass_context
@@ -46,6 +52,7 @@ def rig(
     from rig_model.run import replay
     from rig_model.scene import load_rig_scene
 
+    overrides["balance.method"] = overrides.pop("method")
     try:
         loaded = load_rig_scene(scene, overrides)
         if not quiet:
@@ -75,3 +82,65 @@ def profiles_used(scene: Any, *, chosen: bool) -> str:
     if scene.name == NOMINAL:
         return f"nominal ({names}); set {REFERENCE_VARIABLE} for the measured ones: not found"
     return f"measured ({names})"
+
+
+def default_curve_text() -> str:
+    """The curves that are found by default."""
+    from rig_model.curve import DEFAULT
+
+    return DEFAULT.read_text(encoding="utf-8")
+
+
+@click.command("curve")
+@scene_argument()
+@click.option(
+    "--radius",
+    type=float,
+    multiple=True,
+    metavar="METRES",
+    help="Replaces curve.radius; may be given several times; above 0: to the right.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@show_scene_option(default_curve_text)
+@click.option("--quiet", is_flag=True, help="Print nothing.")
+@click.pass_context
+def curve(
+    context: click.Context,
+    scene: Path | None,
+    radius: tuple[float, ...],
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Find the steady position of a wheelset in curves, by Newton's and by Broyden's method.
+
+    Without a scene it has S1002 profiles on UIC60 rails inclined 1:40, in curves of 600 and 175 m.
+    """
+    from rig_model.curve import METHODS, load_curve_scene, steady_curves
+
+    try:
+        loaded = load_curve_scene(scene, radius=list(radius) or None)
+        found = {method: steady_curves(loaded, method) for method in METHODS}
+    except (CaseError, ProfileError, OSError) as error:
+        raise WrongCall(str(error)) from None
+    curves = [item for method in METHODS for item in found[method]]
+    if as_json:
+        rows = {method: [item.to_dict() for item in found[method]] for method in METHODS}
+        click.echo(json.dumps(rows, allow_nan=False))
+    elif not quiet:
+        print_curves(found)
+    if not all(item.converged for item in curves):
+        context.exit(EXIT_NOT_CONVERGED)
+
+
+def print_curves(found: dict[str, Any]) -> None:
+    """One column for each curve and method."""
+    from railpatch.tables import new_table, spell
+    from rich.console import Console
+
+    rows = {method: [item.to_dict() for item in items] for method, items in found.items()}
+    columns = [row for items in rows.values() for row in items]
+    names = [f"{method} {row['radius']:g} m" for method, items in rows.items() for row in items]
+    table = new_table(names, "curve")
+    for key, unit in next(iter(found.values()))[0].UNITS.items():
+        table.add_row(key, unit, *(spell(row[key]) for row in columns))
+    Console().print(table)

@@ -44,6 +44,11 @@ class Start(Table):
 class BalanceTable(Table):
     """How the balance is searched."""
 
+    method: Literal["broyden", "newton"] = Field(
+        default="broyden",
+        description="(no unit): broyden, as in the set-up of NRC's machine; newton, with exact "
+        "derivatives of the contact forces",
+    )
     axle_torque: Literal["track", "wheelset"] = Field(
         default="wheelset",
         description="which longitudinal forces balance about the axle (no unit): those in wheelset "
@@ -146,10 +151,13 @@ class RigScene:
             return self.rig.snapshot_every
         return -(-self.rig.count // SNAPSHOTS)
 
-    def at_height(self) -> Scene:
+    def at_height(self, *, derivatives: bool = False) -> Scene:
         """The case with z prescribed in place of the vertical force."""
         wheelset = self.case.wheelset.model_copy(update={"vertical_force": None, "z": 0.0})
-        return self._scene(self.case.model_dump() | {"wheelset": wheelset.model_dump()})
+        content = self.case.model_dump() | {"wheelset": wheelset.model_dump()}
+        if derivatives:
+            content["method"]["derivatives"] = True
+        return self._scene(content)
 
     def frictionless(self, side: str) -> Scene:
         """One wheel without friction, with half the load."""
@@ -176,8 +184,9 @@ def load_rig_scene(
 ) -> RigScene:
     """Checks a scene; without ``path`` that of the package: NRC's profiles if found, else nominal.
 
-    overrides: keys of [rig] that replace the file's. Profiles are looked for beside the file, then
-    among the reference data (see ``reference_profiles``). Raises CaseError with every problem.
+    overrides: keys of [rig] ("balance.method": of a table in it) that replace the file's. Profiles
+    are looked for beside the file, then among the reference data (see ``reference_profiles``).
+    Raises CaseError with every problem.
     """
     path = default_scene() if path is None else Path(path)
     given = {key: value for key, value in (overrides or {}).items() if value is not None}
@@ -210,8 +219,13 @@ def load_rig_scene(
 
 
 def merged(rig: dict[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
-    """The table with some keys replaced; positions and rate replace each other."""
-    rig = {**rig, **given}
+    """The table with some keys replaced; positions and rate replace each other. A key with a dot
+    is one of a table in it."""
+    rig = {**rig, **{key: value for key, value in given.items() if "." not in key}}
+    for name in given:
+        table, dot, key = name.partition(".")
+        if dot:
+            rig[table] = {**rig.get(table, {}), key: given[name]}
     for key, other in (("positions", "rate"), ("rate", "positions")):
         if key in given and other not in given:
             rig.pop(other, None)

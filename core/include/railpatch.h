@@ -136,6 +136,13 @@ typedef enum rp_spin_offset {
   RP_SPIN_OFFSET_NONE = 0,
   RP_SPIN_OFFSET_SIXTH = 1 /* x + dq/6 in the spin term, as the program CONTACT does */
 } rp_spin_offset;
+/* which parts of contact of a wheel, the stretches where the profiles overlap, are one patch */
+typedef enum rp_patch_rule {
+  RP_PATCHES_BLENDED = 0, /* force without jumps: neighbours go over from one patch to two smoothly;
+                             in between both solutions count, each with its share */
+  RP_PATCHES_CONTACT = 1  /* as in the program CONTACT: one patch below 8 mm, with part of the
+                             interaction from 4 mm on, and angles turned together up to 12 mm */
+} rp_patch_rule;
 /* of the half-space theories for wheels */
 typedef enum rp_reference_surface {
   RP_REFERENCE_PLANE = 0, /* tangent to the contact reference */
@@ -171,7 +178,9 @@ typedef enum rp_stage {
   RP_STAGE_COUPLING = 6,   /* normal and tangential problem of unlike bodies, by each other */
   RP_STAGE_HISTORY = 7,    /* last step's tractions and states, in shift and transient rolling */
   RP_STAGE_PLASTICITY = 8, /* of the third-body layer; its time is that of the tangential problem */
-  RP_STAGE_COUNT = 9
+  RP_STAGE_DERIVATIVES = 9, /* rp_differentiate */
+  RP_STAGE_SUPPORT = 10,    /* rails on springs and dampers; its time is that of the contacts */
+  RP_STAGE_COUNT = 11
 } rp_stage;
 
 /* Called when a stage begins (entering = 1) and ends (0); for time shares. The core has no clock.
@@ -227,6 +236,11 @@ typedef struct rp_config {
   int32_t friction_points;                 /* 0: none, else 2 ... RP_MAX_POINTS */
   double friction_position[RP_MAX_POINTS]; /* m or rad, increasing */
   double friction_factor[RP_MAX_POINTS];   /* -, >= 0 */
+  /* factor of the friction law along the track, by input.x (wheels, any method), beside the one
+   * above; linear between the points, constant beyond */
+  int32_t friction_along_points;                 /* 0: none, else 2 ... RP_MAX_POINTS */
+  double friction_along_position[RP_MAX_POINTS]; /* m, increasing */
+  double friction_along_factor[RP_MAX_POINTS];   /* -, >= 0 */
 
   /* third-body layer: elastic where its thickness is not 0, plastic where it has a yield stress */
   double layer_shear_modulus; /* Pa */
@@ -268,6 +282,7 @@ typedef struct rp_config {
    * any threads may share it. Aligned to 8 bytes. */
   const void *creep_table;
   size_t creep_table_size;
+  int32_t derivatives; /* 1: rp_differentiate may be called, 0: it has no memory */
 
   /* wheel_rail, wheelset */
   int32_t side;                /* RP_LEFT or RP_RIGHT, kind = RP_WHEEL_RAIL */
@@ -276,11 +291,37 @@ typedef struct rp_config {
   double flange_back_position; /* m, of the flange back on the profile's y axis */
   rp_track track;
   double gauge, gauge_height;   /* m */
+  double gauge_widening;        /* m, > 0: each rail or roller lies half of it further out */
   double cant;                  /* rad, rail; > 0 leans both rails towards the track centre */
   double curvature;             /* 1/m, right-hand curve > 0, rail */
   double roller_radius;         /* m, roller */
   rp_profile wheel[2], rail[2]; /* by side; the roller's profile as rail */
-  int32_t max_patches;          /* of one wheel, 1 ... RP_MAX_PATCHES */
+  int32_t max_patches;          /* solved on one wheel, 1 ... RP_MAX_PATCHES */
+  rp_patch_rule patch_rule;
+  double standstill_speed; /* m/s, 0 ... 1, V0: below it creepages are slip over (V^2 + V0^2)/(2 V0)
+                              instead of the rolling speed V, and spin_creepage fades as the heading
+                              turns, so that forces pass through standstill without a jump. 0: slip
+                              over V, and at V = 0 no creep force */
+  /* a rail's profile along the track, by input.x: by side, section_count profiles (0: the one
+   * above, else 1 or more; copied) at increasing positions (m). All have as many knots, at the same
+   * shares of the arc length; between two sections the knots are interpolated linearly, beyond the
+   * ends the profile is constant. The rail's place follows from the profile at x. */
+  const rp_profile *rail_sections[2];
+  const double *section_position[2];
+  int32_t section_count[2];
+  /* rails or rollers on springs and dampers without mass; lateral, vertical. A deflection u adds to
+   * rail_offset, its rate to rail_velocity; k u + c (u - that of the last step)/time_step is the
+   * force of the wheel in that direction, without the second term where time_step is 0 */
+  double rail_stiffness[2]; /* N/m, 0: rigid in this direction */
+  double rail_damping[2];   /* N s/m, 0 in a rigid direction */
+  /* shape along rolling by side, copied; C2 splines. The wheel's radius at its lowest point is that
+   * of its profile plus runout at the input's pitch (a rotation about y of its deviation added) */
+  const double *runout[2];      /* m, at pitch angles 2 pi i/runout_count, > 0: greater radius */
+  int32_t runout_count[2];      /* 0: round, else 8 ... 1000000 */
+  const double *rail_height[2]; /* m, of the running surface at x = rail_height_start + i
+                                   rail_height_spacing, > 0 up, constant beyond; rails only */
+  int32_t rail_height_count[2]; /* 0: level, else 4 ... 10000000 */
+  double rail_height_start, rail_height_spacing; /* m; > 0 */
 
   rp_observer observer; /* may be null */
   void *observer_user;
@@ -303,6 +344,7 @@ typedef struct rp_input {
   double distance;            /* m, > 0, rolled in this step where regime = RP_TRANSIENT_ROLLING */
 
   /* wheelset: position, attitude (roll-yaw-pitch) and velocity in track axes */
+  double x, pitch;       /* m, along the track; rad, about the axle: for what varies with them */
   double y, z;           /* m; z where load = RP_POSITION */
   double vertical_force; /* N on the wheel or on both, > 0, where load = RP_FORCE */
   double roll, yaw;      /* rad */
@@ -311,7 +353,14 @@ typedef struct rp_input {
   double wheel_offset[2][3], wheel_rotation[2][3]; /* m, rad: from the rigid wheelset, its axes */
   double rail_offset[2][3], rail_rotation[2][3];   /* m, rad: from design, track axes; of the
                                                       rotations only that about x may differ from 0 */
-  double roller_pitch_rate;                        /* rad/s */
+  /* m/s, rad/s: rates of the deviations above, same axes. A wheel turns about its profile's origin
+   * (x), and about its axis where the origin's plane meets it (y, z); a rail or roller about its
+   * profile's origin, a roller about its axle (y). */
+  double wheel_velocity[2][3], wheel_angular_velocity[2][3];
+  double rail_velocity[2][3], rail_angular_velocity[2][3];
+  double time_step;         /* s, >= 0, since the last step, for rails on dampers (0: at rest)
+                               and for regime = RP_TRANSIENT_ROLLING (> 0) */
+  double roller_pitch_rate; /* rad/s */
 } rp_input;
 
 /* One patch. Values of stages that the scene leaves out are NaN (element counts 0). Linear theory
@@ -348,11 +397,15 @@ typedef struct rp_patch_result {
                                  Coulomb's, friction_points, layers that yield, shift, transient
                                  rolling, table but with Hertz, factors of fast theories other than
                                  1, spin_offset) */
+  double share;               /* -, 0 < ... 1, of this solution in the wheel's force, moment and
+                                 rolling radius: below 1 where patches join or part. All else here
+                                 is of the solution itself */
   double position[3];         /* m, contact reference in track axes (wheel kinds) */
   double contact_angle;       /* rad */
   double creepage[2];         /* -; found where the force is prescribed */
   double spin_creepage;       /* rad/m */
-  double rolling_speed;       /* m/s, mean of the two surface speeds */
+  double rolling_speed;       /* m/s, that creepages are slip over: mean V of the two surface
+                                 speeds; below standstill_speed V0 (V^2 + V0^2)/(2 V0) */
   int32_t direction;          /* 1 or -1; 0 at standstill */
   int32_t grid[2];            /* elements of the potential contact along rolling, lateral; of
                                  fitted rows the nodes and rows */
@@ -369,6 +422,8 @@ typedef struct rp_side_result {
   double force[3];       /* N on the wheel, track axes */
   double moment[3];      /* N m about the wheelset centre, track axes */
   double rolling_radius; /* m, of the wheel at the mean contact reference; NaN without contact */
+  double rail_deflection[2];      /* m, lateral, vertical, track axes; NaN: the scene has none */
+  double rail_deflection_rate[2]; /* m/s, in this step; 0 where time_step is 0 */
   int32_t patch_count;
   rp_patch_result patch[RP_MAX_PATCHES];
 } rp_side_result;
@@ -422,6 +477,29 @@ RP_API void rp_destroy(rp_contact *contact); /* null is allowed */
  * handle are untouched. */
 RP_API rp_error rp_step(rp_contact *contact, const rp_input *input, rp_result *result,
                         rp_message *message);
+/* How a derivative was found. */
+typedef enum rp_derivative_kind {
+  RP_DERIVATIVE_EXACT = 0, /* from the solved conditions, by the implicit function theorem */
+  RP_DERIVATIVE_BY_DIFFERENCES = 1 /* central differences of steps beside the last one */
+} rp_derivative_kind;
+
+/* Derivative of the last step's result in one direction: each double of `direction` holds the rate
+ * of that input, its integers are ignored and so is a bulk_temperature that is NaN. Each double of
+ * `change` is the rate of that number of the result: NaN where the number itself is NaN, and of
+ * residual and error_estimate; counts are 0, statuses those of the result, or RP_NOT_CONVERGED
+ * where the rates did not converge. kind (may be null) says how they were found. Needs
+ * config.derivatives = 1 and a step since rp_create, rp_reset or rp_restore_state; the state, the
+ * last solution and its fields stay as they are.
+ *
+ * Exact ones are those of the returned solution's active sets: elements in contact, in stick and in
+ * slip stay what they are. Where an element is just about to change, that is the one-sided
+ * derivative towards the side on which it does not. They exist with normal = half_space or hertz
+ * and without a tangential problem, or with tangential = full on the uniform grid in steady
+ * rolling, Coulomb's law (friction_points included), bodies alike, no prescribed creep force, no
+ * layer that yields and no temperature. */
+RP_API rp_error rp_differentiate(rp_contact *contact, const rp_input *direction, rp_result *change,
+                                 rp_derivative_kind *kind, rp_message *message);
+
 /* Changes the coefficient of Coulomb's law (0 ... 10) for the steps that follow; part of the state.
  * Other laws have their own numbers and do not read it. */
 RP_API rp_error rp_set_friction_coefficient(rp_contact *contact, double value, rp_message *message);

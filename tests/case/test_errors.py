@@ -215,8 +215,8 @@ def test_every_problem_is_told_at_once_with_a_hint() -> None:
         "load.normal_force: value is -1.0, allowed > 0.0",
         "friction.coeficient: value is 0.3, but the key is unknown, allowed law, coefficient, "
         "shape, kinetic, amplitude, halving_speed, polach_a, polach_b, memory_distance, "
-        "memory_speed, reference, change, reference_temperature, temperature_range, factor; "
-        "did you mean 'coefficient'?",
+        "memory_speed, reference, change, reference_temperature, temperature_range, factor, "
+        "along_track; did you mean 'coefficient'?",
         "method.tolerance: value is 'small', allowed a number",
     ]
 

@@ -323,7 +323,45 @@ TEST(Step, OfAWheelsetWithRowsAllocatesNothing) {
     }
 }
 
+TEST(Step, OnATrackThatVariesAllocatesNothing) {
+  const scenes::varying_track track;
+  for (rp_kind kind : {RP_WHEELSET, RP_WHEEL_RAIL})
+    for (rp_load load : {RP_FORCE, RP_POSITION}) {
+      rp_config c = track.config(kind);
+      c.load = load;
+      std::vector<rp_input> inputs = scenes::varying_track::inputs();
+      for (rp_input &in : inputs) in.z = 1.5e-3;
+      EXPECT_EQ(run(c, inputs).allocated, 0) << "kind " << kind << " load " << load;
+    }
+}
+
 // The transforms alone, in sizes up to grids of 250 elements.
+// A flat wheel and a rail with a dip, with patches that move over the rail.
+TEST(Step, OfTransientRollingWheelsAllocatesNothing) {
+  const scenes::profile_pair pair;
+  std::vector<double> runout(1500, 0.0), height(100, 0.0);
+  for (int i = 0; i < 20; ++i) runout[static_cast<size_t>(i)] = -1e-5 * i * (20 - i) / 10;
+  for (int i = 40; i < 60; ++i) height[static_cast<size_t>(i)] = -1e-4;
+  rp_config c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+  c.regime = RP_TRANSIENT_ROLLING;
+  for (int side = 0; side < 2; ++side) {
+    c.runout[side] = runout.data();
+    c.runout_count[side] = 1500;
+    c.rail_height[side] = height.data();
+    c.rail_height_count[side] = 100;
+  }
+  std::vector<rp_input> inputs;
+  for (int k = 0; k < 12; ++k) {
+    rp_input in = scenes::running(RP_RAIL);
+    in.time_step = 1e-4;
+    in.x = in.speed * in.time_step * k;
+    in.pitch = in.pitch_rate * in.time_step * k + 0.02;
+    in.y = 1e-4 * k;
+    inputs.push_back(in);
+  }
+  EXPECT_EQ(run(c, inputs).allocated, 0);
+}
+
 TEST(Transforms, AllocateNothing) {
   std::vector<int> sizes;
   for (int n = 4; n <= 500; n = railpatch::smooth_size(n + 1)) sizes.push_back(n);

@@ -148,6 +148,9 @@ const number_field wheel_numbers[] = {
     {"gauge_height", [](rp_config &c) -> double & { return c.gauge_height; }, -0.014, 14},
     {"cant", [](rp_config &c) -> double & { return c.cant; }, -2, 2},
     {"curvature", [](rp_config &c) -> double & { return c.curvature; }, -1, 1},
+    {"gauge_widening", [](rp_config &c) -> double & { return c.gauge_widening; }, -1, 1},
+    {"rail_stiffness[0]", [](rp_config &c) -> double & { return c.rail_stiffness[0]; }, -1, 1e30},
+    {"rail_damping[1]", [](rp_config &c) -> double & { return c.rail_damping[1]; }, -1, 1e30},
     {"shear_modulus[0]", [](rp_config &c) -> double & { return c.shear_modulus[0]; }, 0, 1e30},
     {"friction_coefficient", [](rp_config &c) -> double & { return c.friction_coefficient; }, -0.1,
      100},
@@ -195,6 +198,49 @@ TEST(Config, NumbersOfWheelsAreChecked) {
   const rp_config roller = scenes::wheels(RP_WHEELSET, RP_ROLLER, pair);
   expect_numbers_checked(
       roller, {"roller_radius", [](rp_config &k) -> double & { return k.roller_radius; }, 0, 1e9});
+}
+
+TEST(Config, OfATrackThatVariesIsChecked) {
+  const scenes::varying_track track;
+  const rp_config good = track.config(RP_WHEELSET);
+  for (const number_field &f : wheel_numbers) expect_numbers_checked(good, f);
+  const auto refuse = [&](const char *field, rp_error error, auto &&spoil) {
+    rp_config c = good;
+    spoil(c);
+    expect_refused(c, error, field);
+  };
+  refuse("rail_damping", RP_ERROR_VALUE, [](rp_config &c) { c.rail_stiffness[0] = 0; });
+  refuse("rail_stiffness", RP_ERROR_VALUE, [](rp_config &c) { c.rail_stiffness[1] = 0.5; });
+  refuse("section_count[0]", RP_ERROR_VALUE, [](rp_config &c) { c.section_count[0] = -1; });
+  refuse("rail_sections", RP_ERROR_VALUE, [](rp_config &c) { c.rail_sections[1] = nullptr; });
+  refuse("rail_sections", RP_ERROR_VALUE, [](rp_config &c) { c.section_position[1] = nullptr; });
+  refuse("rail_sections", RP_ERROR_VALUE, [](rp_config &c) { c.section_count[0] = 1; });
+  const double equal[2] = {1.0, 1.0}, wild[2] = {nan, 1.0};
+  refuse("section_position[1]", RP_ERROR_VALUE,
+         [&](rp_config &c) { c.section_position[1] = equal; });
+  refuse("section_position[1]", RP_ERROR_VALUE,
+         [&](rp_config &c) { c.section_position[1] = wild; });
+  refuse("friction_along_points", RP_ERROR_VALUE,
+         [](rp_config &c) { c.friction_along_points = 1; });
+  refuse("friction_along_points", RP_ERROR_VALUE, [](rp_config &c) { c.kind = RP_PATCH; });
+  refuse("friction_along_position[1]", RP_ERROR_VALUE,
+         [](rp_config &c) { c.friction_along_position[1] = -1; });
+  refuse("friction_along_factor[0]", RP_ERROR_VALUE,
+         [](rp_config &c) { c.friction_along_factor[0] = -0.1; });
+  // a section that is no profile, and one whose knots lie elsewhere
+  rp_profile sections[2] = {track.sections[0], track.sections[1]};
+  sections[1].y = nullptr;
+  refuse("rail_sections[1]", RP_ERROR_PROFILE,
+         [&](rp_config &c) { c.rail_sections[1] = sections; });
+  sections[1] = track.sections[1];
+  sections[1].count -= 1;
+  refuse("rail_sections[1]", RP_ERROR_PROFILE,
+         [&](rp_config &c) { c.rail_sections[1] = sections; });
+  // of a side without a wheel nothing is read
+  rp_config left = track.config(RP_WHEEL_RAIL);
+  left.side = RP_LEFT;
+  left.rail_sections[RP_RIGHT] = nullptr;
+  EXPECT_EQ(scenes::handle(left).step(scenes::running(RP_RAIL)).status, RP_CONVERGED);
 }
 
 TEST(Config, FittedRowsAreChecked) {
@@ -594,6 +640,17 @@ TEST(Input, OfAWheelsetIsChecked) {
       {"wheel_rotation[0]", [](rp_input &in) -> double & { return in.wheel_rotation[0][0]; }, {2}},
       {"rail_offset[0]", [](rp_input &in) -> double & { return in.rail_offset[1][0]; }, {-2}},
       {"rail_rotation[2]", [](rp_input &in) -> double & { return in.rail_rotation[1][2]; }, {2}},
+      {"x", [](rp_input &in) -> double & { return in.x; }, {}},
+      {"pitch", [](rp_input &in) -> double & { return in.pitch; }, {}},
+      {"wheel_velocity[0]", [](rp_input &in) -> double & { return in.wheel_velocity[0][0]; }, {}},
+      {"wheel_angular_velocity[1]",
+       [](rp_input &in) -> double & { return in.wheel_angular_velocity[1][1]; },
+       {}},
+      {"rail_velocity[2]", [](rp_input &in) -> double & { return in.rail_velocity[0][2]; }, {}},
+      {"rail_angular_velocity[2]",
+       [](rp_input &in) -> double & { return in.rail_angular_velocity[1][2]; },
+       {}},
+      {"time_step", [](rp_input &in) -> double & { return in.time_step; }, {-1e-3}},
       {"roller_pitch_rate", [](rp_input &in) -> double & { return in.roller_pitch_rate; }, {}}};
   expect_inputs_checked(c, scenes::running(RP_RAIL), fields);
   rp_config position = c;
@@ -736,6 +793,11 @@ class Garbage : public testing::Test {
                                &in.yaw_rate,
                                &in.pitch_rate,
                                &in.roller_pitch_rate,
+                               &in.x,
+                               &in.pitch,
+                               &in.time_step,
+                               &in.wheel_velocity[0][1],
+                               &in.rail_angular_velocity[1][2],
                                &in.wheel_offset[0][1],
                                &in.wheel_rotation[1][0],
                                &in.wheel_rotation[0][2],

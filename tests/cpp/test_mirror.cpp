@@ -16,14 +16,17 @@ constexpr double imposed = 1e-12;  // relative
 
 rp_input mirrored(rp_input in) {
   for (double *v : {&in.y, &in.roll, &in.yaw, &in.vy, &in.roll_rate, &in.yaw_rate}) *v = -*v;
-  for (auto *offset : {&in.wheel_offset, &in.rail_offset})
+  for (auto *offset : {&in.wheel_offset, &in.rail_offset, &in.wheel_velocity, &in.rail_velocity})
     for (auto &side : *offset) side[1] = -side[1];
-  for (auto *rotation : {&in.wheel_rotation, &in.rail_rotation})
+  for (auto *rotation : {&in.wheel_rotation, &in.rail_rotation, &in.wheel_angular_velocity,
+                         &in.rail_angular_velocity})
     for (auto &side : *rotation) {
       side[0] = -side[0];
       side[2] = -side[2];
     }
-  for (auto *pairs : {&in.wheel_offset, &in.rail_offset, &in.wheel_rotation, &in.rail_rotation})
+  for (auto *pairs : {&in.wheel_offset, &in.rail_offset, &in.wheel_rotation, &in.rail_rotation,
+                      &in.wheel_velocity, &in.rail_velocity, &in.wheel_angular_velocity,
+                      &in.rail_angular_velocity})
     std::swap_ranges((*pairs)[0], (*pairs)[0] + 3, (*pairs)[1]);
   return in;
 }
@@ -140,7 +143,7 @@ const scene all_scenes[] = {
 class Mirror : public testing::TestWithParam<scene> {
  protected:
   // random motion and deviations; the load leaves the flange lightly loaded at most
-  rp_input random_input(std::mt19937_64 &random) const {
+  rp_input random_input(std::mt19937_64 &random) {
     std::uniform_real_distribution<double> u(-1, 1);
     rp_input in = scenes::running(GetParam().track);
     in.vertical_force = GetParam().kind == RP_WHEELSET ? 1.2e5 : 6e4;
@@ -159,10 +162,17 @@ class Mirror : public testing::TestWithParam<scene> {
         in.rail_offset[side][k] = 3e-4 * u(random);
         if (k == 0) in.rail_rotation[side][k] = 2e-3 * u(random);
       }
+    for (auto *rates : {&in.wheel_velocity, &in.rail_velocity, &in.wheel_angular_velocity,
+                        &in.rail_angular_velocity})
+      for (auto &side : *rates)
+        for (double &rate : side) rate = 0.03 * u(rates_);
     return in;
   }
 
   scenes::profile_pair one, two;
+
+ private:
+  std::mt19937_64 rates_{20240609};
 };
 
 TEST_P(Mirror, EqualsTheMirroredMotion) {

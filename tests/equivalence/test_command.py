@@ -39,7 +39,14 @@ PATCH_KEYS = [
     "stages",
 ]
 WHEEL_KEYS = ("force", "moment", "z", "status", "wall_time", "patches")
-PLACE_KEYS = ("position", "contact_angle", "creepage", "spin_creepage", "rolling_speed")
+PLACE_KEYS = (
+    "share",
+    "position",
+    "contact_angle",
+    "creepage",
+    "spin_creepage",
+    "rolling_speed",
+)
 
 
 def toml(case: dict[str, Any]) -> str:

@@ -13,6 +13,8 @@ EVERY = [
     ("S1002", "wheel"),
     ("UIC60", "rail"),
     ("UIC60@1:20", "rail"),
+    ("60E1", "rail"),
+    ("54E1@1:20", "rail"),
     ("cone@1:20", "wheel"),
     ("cylinder", "rail"),
     ("arc@0.3", "rail"),
@@ -79,6 +81,32 @@ def test_canted_rail_has_its_highest_point_at_the_origin() -> None:
     # inclined towards the track's centre: the gauge side hangs over, the field side falls back
     assert rail.y[0] == pytest.approx(-0.0437109, abs=1e-6)
     assert rail.y[-1] == pytest.approx(0.0305900, abs=1e-6)
+
+
+@pytest.mark.parametrize(("name", "width"), [("60E1", 0.072), ("54E1", 0.070)])
+def test_drawn_heads_are_as_wide_as_drawn(name: str, width: float) -> None:
+    """The arcs follow from radii and inner widths; the head's width then is a check of them."""
+    rail = load_profile(name, "rail")
+    side = np.hypot(1, 1 / 20)
+    # where the straight sides begin: the first and last knots with their direction
+    straight = np.abs(np.abs(rail.dy) - 1 / 20 / side) < 1e-9
+    assert 2 * np.abs(rail.y[straight]).min() == pytest.approx(width, abs=1e-6)
+    np.testing.assert_allclose(rail.y, -rail.y[::-1], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(rail.z, rail.z[::-1], rtol=0, atol=1e-12)
+    # EN 13674-1: crown of 300 mm
+    crown = np.abs(rail.y) < 0.010
+    expected = 0.3 - np.sqrt(0.3**2 - rail.y[crown] ** 2)
+    np.testing.assert_allclose(rail.z[crown], expected, rtol=0, atol=1e-12)
+
+
+def test_60e1_against_the_benchmarks_uic60() -> None:
+    """R80 begins at 10.228 mm in place of 10.5 mm, which inclines it by that times the change of
+    curvature."""
+    new, old = (load_profile(name, "rail") for name in ("60E1", "UIC60"))
+    y = np.linspace(0.012, 0.025, 50)
+    depth = [np.interp(y, rail.y, rail.z) for rail in (new, old)]
+    inclined = (0.0105 - 0.010228) * (1 / 0.080 - 1 / 0.300)
+    np.testing.assert_allclose(depth[0] - depth[1], inclined * (y - 0.010364), rtol=0.08)
 
 
 @pytest.mark.parametrize(("role", "sign"), [("rail", 1), ("wheel", -1)])

@@ -8,6 +8,7 @@ of the wheel load, peak pressure 2 %, z 5 um, contact position 0.2 mm.
 
 import csv
 
+import numpy as np
 import pytest
 import railpatch
 
@@ -43,6 +44,8 @@ def manchester_case(wheel, rail):
         "wheel": {"side": "right"},
         "grid": {"element_size": [2e-4, 2e-4]},
         "friction": {"law": "coulomb", "coefficient": 0.3},
+        # at y = 5 mm the wheel touches in two places; the published patch is one
+        "method": {"patch_rule": "contact"},
     }
 
 
@@ -119,7 +122,7 @@ PUBLISHED_ERRORS = {"kik_piotrowski": (0.31, 0.16), "analyn": (0.12, 0.13)}
 @pytest.mark.parametrize("normal", PUBLISHED_ERRORS)
 def test_fast_normal_theories(reference, normal, tangential):
     case = manchester_case("S1002", "UIC60@1:40")
-    case["method"] = {"normal": normal, "tangential": tangential}
+    case["method"].update(normal=normal, tangential=tangential)
     contact = railpatch.Contact(case)
     print(f"\n{normal}, {tangential}: y (mm), z (um), peak pressure, Fx and Fy (of the load), Fy")
     for row in positions(reference):
@@ -144,3 +147,45 @@ def test_fast_normal_theories(reference, normal, tangential):
         peak, force = PUBLISHED_ERRORS[normal]
         assert abs(found["max_pressure"]) < peak
         assert abs(lateral) < force
+
+
+# factor of friction over the rail's angle, > 0 towards the gauge face: a lubricated gauge face
+BY_ANGLE = [[-0.5, 1.4], [-0.1, 1.2], [0.0, 1.0], [0.1, 0.8], [0.5, 0.5], [1.2, 0.3]]
+
+
+def forces(reference, side, size, factor):
+    """[21, 3], N, at the benchmark's positions; both wheels carry the same load."""
+    case = manchester_case("S1002", "UIC60@1:40")
+    case["wheel"] = {"side": side}
+    case["grid"] = {"element_size": [size, size]}
+    if factor is not None:
+        case["friction"]["factor"] = factor
+    contact = railpatch.Contact(case)
+    found = []
+    for row in positions(reference):
+        result = contact.step(
+            y=1e-3 * row["y_ws"],
+            roll=row["roll"],
+            yaw=row["yaw"],
+            pitch_rate=row["vpitch"],
+        )
+        assert result.status == "converged"
+        found.append(result["force"])
+    return np.array(found)
+
+
+@pytest.mark.parametrize("factor", [None, BY_ANGLE], ids=["constant", "by angle"])
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_coarse_grids(reference, side, factor):
+    """0.5 and 1 mm elements against 0.2 mm: within 2 % of the wheel load."""
+    fine = forces(reference, side, 2e-4, factor)
+    for size in (5e-4, 1e-3):
+        coarse = forces(reference, side, size, factor)
+        assert np.abs(coarse - fine).max() <= 0.02 * WHEEL_LOAD
+
+
+def test_friction_by_angle_matters(reference):
+    """Else the test above would show nothing about the factor."""
+    constant, by_angle = (forces(reference, "right", 5e-4, f) for f in (None, BY_ANGLE))
+    creep = [np.hypot(f[:, 0], f[:, 1]) for f in (constant, by_angle)]
+    assert np.abs(creep[0] - creep[1]).max() > 0.02 * WHEEL_LOAD

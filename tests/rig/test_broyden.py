@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rig_model.broyden import Broyden, Evaluation, Settings
+from rig_model.broyden import Broyden
+from rig_model.search import Evaluation, Settings
 
 MATRIX = np.array([[4.0, 1.0, 0.0], [1.0, 3.0, -1.0], [0.5, -1.0, 5.0]])
 

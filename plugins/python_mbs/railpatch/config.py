@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from typing import Any
 
-from railpatch.case.common import FAST_NUMBERS, Friction, Layer, Temperature
+from railpatch.case.common import FAST_NUMBERS, WHEEL_METHOD, Friction, Layer, Temperature
 from railpatch.case.load import Case, Scene
 from railpatch.case.patch import SHAPES, PatchCase
 from railpatch.case.types import MOST_POINTS
 from railpatch.case.wheel import SIDES, WheelRailCase, WheelsetCase
 from railpatch.choice import resolved
-from railpatch.profiles import load_profile
+from railpatch.longitudinal import shape_config
+from railpatch.profiles import Profile, load_profile
+from railpatch.profiles.sections import matching_sections
 from railpatch.table import default_table
 
-WHEELSET_STATE = ("y", "roll", "yaw", "speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate")
+WHEELSET_STATE = (
+    *("x", "y", "roll", "pitch", "yaw"),
+    *("speed", "vy", "vz", "roll_rate", "pitch_rate", "yaw_rate"),
+    "time_step",
+)
+DEVIATION = ("offset", "rotation", "velocity", "angular_velocity")
 
 
 def config_of(scene: Scene) -> dict[str, Any]:
@@ -66,8 +73,11 @@ def friction_config(friction: Friction | None) -> dict[str, Any]:
     if friction.law != "coulomb":
         config["friction_memory_distance"] = friction.memory_distance
         config["friction_memory_speed"] = friction.memory_speed
+    names = ("position", "factor")
     if friction.factor is not None:
-        config.update(points_config("friction", ("position", "factor"), friction.factor))
+        config.update(points_config("friction", names, friction.factor))
+    if friction.along_track is not None:
+        config.update(points_config("friction_along", names, friction.along_track))
     return config
 
 
@@ -156,13 +166,14 @@ def wheel_config(scene: Scene, case: WheelRailCase | WheelsetCase) -> dict[str, 
     wheelset, track = case.wheelset, case.track
     config: dict[str, Any] = {
         "load": "position" if wheelset.z is not None else "force",
-        "regime": "steady_rolling" if case.has_tangential else "none",
+        "regime": case.motion.regime if case.has_tangential else "none",
         "nominal_radius": wheelset.nominal_radius,
         "flange_back_distance": wheelset.flange_back_distance,
         "flange_back_position": wheelset.flange_back_position,
         "track": track.kind,
         "gauge": track.gauge,
         "gauge_height": track.gauge_height,
+        "gauge_widening": track.gauge_widening,
         "cant": track.cant,
         "curvature": track.curvature,
         "wheel": profile_pair(scene, case, "wheel"),
@@ -170,25 +181,57 @@ def wheel_config(scene: Scene, case: WheelRailCase | WheelsetCase) -> dict[str, 
     }
     if track.roller_radius is not None:
         config["roller_radius"] = track.roller_radius
+    if track.rail_support is not None:
+        config["rail_stiffness"] = track.rail_support.stiffness
+        config["rail_damping"] = track.rail_support.damping
+    config.update(sections_config(scene, case))
     if wheelset.max_patches is not None:
         config["max_patches"] = wheelset.max_patches
+    chosen = {name: getattr(case.method, name) for name in WHEEL_METHOD}
+    config.update({name: value for name, value in chosen.items() if value is not None})
     if isinstance(case, WheelRailCase):
         config["side"] = case.wheel.side
-    return config
+    return {**config, **shape_config(case, scene.folder)}
 
 
 def profile_pair(scene: Scene, case: WheelRailCase | WheelsetCase, body: Any) -> list[Any]:
     """[left, right] of the wheels or the rails; None for a side that has no wheel."""
     pair: list[Any] = []
     for side in SIDES:
-        if side not in case.sides:
+        by_sections = body == "rail" and getattr(case.track, side).sections is not None
+        if side not in case.sides or by_sections:
             pair.append(None)
             continue
         _, name = case.profiles.of(body, side)
         assert name is not None
         profile = load_profile(name, body, folder=scene.folder, smoothing=case.profiles.smoothing)
-        pair.append({key: getattr(profile, key) for key in ("arc_length", "y", "z", "dy", "dz")})
+        pair.append(profile_arrays(profile))
     return pair
+
+
+def profile_arrays(profile: Profile) -> dict[str, Any]:
+    """The arrays of rp_profile."""
+    return {key: getattr(profile, key) for key in ("arc_length", "y", "z", "dy", "dz")}
+
+
+def sections_config(scene: Scene, case: WheelRailCase | WheelsetCase) -> dict[str, Any]:
+    """Profiles of the rails along the track, where they vary; [left, right]."""
+    rails = [getattr(case.track, side) for side in SIDES]
+    found = [
+        rail.sections if rail.sections and side in case.sides else []
+        for side, rail in zip(SIDES, rails, strict=True)
+    ]
+    if not any(found):
+        return {}
+    profiles = []
+    for sections in found:
+        loaded = [
+            load_profile(s.profile, "rail", folder=scene.folder, smoothing=case.profiles.smoothing)
+            for s in sections
+        ]
+        profiles.append([profile_arrays(p) for p in matching_sections(loaded)] if loaded else [])
+    positions = [[section.position for section in sections] for sections in found]
+    return {"rail_sections": profiles, "section_position": positions}
 
 
 def input_of(case: Case) -> dict[str, Any]:
@@ -210,8 +253,8 @@ def input_of(case: Case) -> dict[str, Any]:
     if track.roller_pitch_rate is not None:
         values["roller_pitch_rate"] = track.roller_pitch_rate
     for name, table in (("wheel", wheelset), ("rail", track)):
-        values[f"{name}_offset"] = [table.left.offset, table.right.offset]
-        values[f"{name}_rotation"] = [table.left.rotation, table.right.rotation]
+        for key in DEVIATION:
+            values[f"{name}_{key}"] = [getattr(table.left, key), getattr(table.right, key)]
     return {**values, **bulk_of(case)}
 
 

@@ -61,6 +61,8 @@ constexpr Name kNames[] = {
     {"tangential", "table", RP_TANGENTIAL_TABLE},
     {"spin_offset", "none", RP_SPIN_OFFSET_NONE},
     {"spin_offset", "sixth", RP_SPIN_OFFSET_SIXTH},
+    {"patch_rule", "blended", RP_PATCHES_BLENDED},
+    {"patch_rule", "contact", RP_PATCHES_CONTACT},
     {"reference_surface", "plane", RP_REFERENCE_PLANE},
     {"reference_surface", "curved", RP_REFERENCE_CURVED},
     {"track", "rail", RP_RAIL},
@@ -179,6 +181,40 @@ void fill_profiles(Reader &reader, const char *key, rp_profile (&to)[2],
   for (size_t side = 0; side < 2; ++side) fill_profile(nb::object(sides[side]), to[side], keep);
 }
 
+// of each side a list of profiles and of their positions
+void fill_sections(Reader &reader, Config &to) {
+  if (!reader.has("rail_sections") || !reader.has("section_position")) return;
+  const auto sides = nb::cast<nb::list>(reader.at("rail_sections"));
+  const auto places = nb::cast<nb::list>(reader.at("section_position"));
+  for (size_t side = 0; side < 2; ++side) {
+    const auto profiles = nb::cast<nb::list>(nb::object(sides[side]));
+    const auto positions = nb::cast<nb::list>(nb::object(places[side]));
+    if (nb::len(profiles) != nb::len(positions)) throw nb::value_error("section_position");
+    for (size_t k = 0; k < nb::len(profiles); ++k) {
+      to.sections[side].emplace_back();
+      fill_profile(nb::object(profiles[k]), to.sections[side].back(), to.profiles);
+      to.section_position[side].push_back(nb::cast<double>(positions[k]));
+    }
+    to.values.rail_sections[side] = to.sections[side].data();
+    to.values.section_position[side] = to.section_position[side].data();
+    to.values.section_count[side] = static_cast<int32_t>(to.sections[side].size());
+  }
+}
+
+// [left, right], None where there is none
+void fill_values(Reader &reader, const char *key, const double *(&to)[2], int32_t (&count)[2],
+                 std::vector<Values> &keep) {
+  if (!reader.has(key)) return;
+  const auto sides = nb::cast<nb::list>(reader.at(key));
+  for (size_t side = 0; side < 2; ++side) {
+    const nb::object values(sides[side]);
+    if (values.is_none()) continue;
+    keep.push_back(nb::cast<Values>(values));
+    to[side] = keep.back().data();
+    count[side] = static_cast<int32_t>(keep.back().shape(0));
+  }
+}
+
 void fill_gap(Reader &reader, Config &to) {
   if (!reader.has("undeformed_distance")) return;
   to.gap = nb::cast<Grid>(reader.at("undeformed_distance"));
@@ -235,6 +271,7 @@ nb::dict patch_dict(const rp_patch_result &patch) {
   errors["spin_moment"] = patch.error_estimate[1];
   errors["max_pressure"] = patch.error_estimate[2];
   to["error_estimate"] = errors;
+  to["share"] = patch.share;
   to["position"] = list_of(patch.position);
   to["contact_angle"] = patch.contact_angle;
   to["creepage"] = list_of(patch.creepage);
@@ -255,6 +292,8 @@ nb::dict side_dict(const rp_side_result &side) {
   to["force"] = list_of(side.force);
   to["moment"] = list_of(side.moment);
   to["rolling_radius"] = side.rolling_radius;
+  to["rail_deflection"] = list_of(side.rail_deflection);
+  to["rail_deflection_rate"] = list_of(side.rail_deflection_rate);
   to["patches"] = patches;
   return to;
 }
@@ -293,6 +332,9 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.scalar("friction_change", c.friction_change);
   reader.scalar("friction_reference_temperature", c.friction_reference_temperature);
   reader.scalar("friction_temperature_range", c.friction_temperature_range);
+  reader.scalar("friction_along_points", c.friction_along_points);
+  reader.array("friction_along_position", c.friction_along_position);
+  reader.array("friction_along_factor", c.friction_along_factor);
   reader.scalar("friction_points", c.friction_points);
   reader.array("friction_position", c.friction_position);
   reader.array("friction_factor", c.friction_factor);
@@ -326,6 +368,7 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.scalar("fastsim_k0", c.fastsim_k0);
   reader.scalar("fastsim_alpha", c.fastsim_alpha);
   reader.scalar("fastsim_beta", c.fastsim_beta);
+  reader.scalar("derivatives", c.derivatives);
   if (reader.has("creep_table")) {
     to.table = nb::cast<Bytes>(reader.at("creep_table"));
     c.creep_table = to.table.data();
@@ -338,12 +381,22 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.name("track", c.track);
   reader.scalar("gauge", c.gauge);
   reader.scalar("gauge_height", c.gauge_height);
+  reader.scalar("gauge_widening", c.gauge_widening);
+  reader.array("rail_stiffness", c.rail_stiffness);
+  reader.array("rail_damping", c.rail_damping);
   reader.scalar("cant", c.cant);
   reader.scalar("curvature", c.curvature);
   reader.scalar("roller_radius", c.roller_radius);
   reader.scalar("max_patches", c.max_patches);
+  reader.name("patch_rule", c.patch_rule);
+  reader.scalar("standstill_speed", c.standstill_speed);
+  fill_values(reader, "runout", c.runout, c.runout_count, to.profiles);
+  fill_values(reader, "rail_height", c.rail_height, c.rail_height_count, to.profiles);
+  reader.scalar("rail_height_start", c.rail_height_start);
+  reader.scalar("rail_height_spacing", c.rail_height_spacing);
   fill_profiles(reader, "wheel", c.wheel, to.profiles);
   fill_profiles(reader, "rail", c.rail, to.profiles);
+  fill_sections(reader, to);
   reader.finish();
 }
 
@@ -358,6 +411,8 @@ void fill_input(const nb::dict &from, rp_input &to) {
   reader.scalar("direction", to.direction);
   reader.scalar("distance", to.distance);
   reader.array("bulk_temperature", to.bulk_temperature);
+  reader.scalar("x", to.x);
+  reader.scalar("pitch", to.pitch);
   reader.scalar("y", to.y);
   reader.scalar("z", to.z);
   reader.scalar("vertical_force", to.vertical_force);
@@ -373,6 +428,11 @@ void fill_input(const nb::dict &from, rp_input &to) {
   reader.matrix("wheel_rotation", to.wheel_rotation);
   reader.matrix("rail_offset", to.rail_offset);
   reader.matrix("rail_rotation", to.rail_rotation);
+  reader.matrix("wheel_velocity", to.wheel_velocity);
+  reader.matrix("wheel_angular_velocity", to.wheel_angular_velocity);
+  reader.matrix("rail_velocity", to.rail_velocity);
+  reader.matrix("rail_angular_velocity", to.rail_angular_velocity);
+  reader.scalar("time_step", to.time_step);
   reader.scalar("roller_pitch_rate", to.roller_pitch_rate);
   reader.finish();
 }

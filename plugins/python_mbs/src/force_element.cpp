@@ -152,6 +152,8 @@ class ForceElement {
   }
 
   static void fill(const TrackState &s, rp_input &input) {
+    input.x = s.x;
+    input.pitch = s.pitch;
     input.y = s.y;
     input.z = s.z;
     input.roll = s.roll;
@@ -173,9 +175,9 @@ class ForceElement {
     for (const rp_side_result &side : result.side)
       for (int i = 0; i < side.patch_count; ++i) {
         const rp_patch_result &patch = side.patch[i];
-        power[1] += patch.elastic_energy;
+        power[1] += patch.share * patch.elastic_energy;
         // NaN where the scene has no tangential problem: no friction
-        if (!std::isnan(patch.creep_force[0])) power[2] += friction_power(patch);
+        if (!std::isnan(patch.creep_force[0])) power[2] += patch.share * friction_power(patch);
       }
   }
 

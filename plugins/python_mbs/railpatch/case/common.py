@@ -183,6 +183,9 @@ FAST_NUMBERS = tuple(
     name for name in READERS if name not in ("traction_bound", "flexibility_blending")
 )
 
+# what only wheels read
+WHEEL_METHOD = ("patch_rule", "standstill_speed")
+
 
 class Method(Table):
     """Which theory solves which problem."""
@@ -246,6 +249,18 @@ class Method(Table):
     )
     fastsim_beta: Annotated[float, between(0, 1000)] = Field(
         default=0.0, description="-, beta of modified fastsim"
+    )
+    patch_rule: Literal["blended", "contact"] | None = Field(
+        default=None,
+        description="of wheels (no unit): blended, the default, neighbouring areas of contact go "
+        "over from one patch to two smoothly, both solved in between, each with its share; or "
+        "contact, by distances as in the program CONTACT, for comparisons",
+    )
+    standstill_speed: Annotated[float, between(0, 1)] | None = Field(
+        default=None,
+        description="m/s, of wheels: rolling speed below which creepages tend to finite values, so "
+        "that forces pass through standstill without a jump; 0: slip over speed, nothing at rest; "
+        "left out: 0.001",
     )
 
     @model_validator(mode="after")

@@ -34,28 +34,29 @@ def read_gap(value: str | list[list[float]] | None, folder: Path) -> NDArray[np.
     return np.array([row for _, row in rows], dtype=float)
 
 
-def read_rows(path: Path) -> list[tuple[int, list[float]]]:
+def read_rows(path: Path, key: str = KEY) -> list[tuple[int, list[float]]]:
     """Line numbers and values; '#' starts a comment."""
     try:
         text = path.read_text(encoding="utf-8-sig")
     except OSError as error:
-        raise CaseError(f"{KEY}: {path} cannot be read: {error.strerror or error}") from None
+        raise CaseError(f"{key}: {path} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
-        raise CaseError(f"{KEY}: {path} is not a text file") from None
+        raise CaseError(f"{key}: {path} is not a text file") from None
     rows: list[tuple[int, list[float]]] = []
     for line, words in enumerate(text.splitlines(), 1):
         words = words.split("#", 1)[0].strip()
         if words:
-            rows.append((line, [parse(path, line, word) for word in re.split(r"[\s,;]+", words)]))
+            values = [parse(path, line, word, key) for word in re.split(r"[\s,;]+", words)]
+            rows.append((line, values))
     return rows
 
 
-def parse(path: Path, line: int, word: Any) -> float:
+def parse(path: Path, line: int, word: Any, key: str = KEY) -> float:
     """One finite number."""
     try:
         value = float(word)
     except ValueError:
         value = np.nan
     if not np.isfinite(value):
-        raise CaseError(f"{KEY}: {path}:{line}: value is {word!r}, allowed a finite number")
+        raise CaseError(f"{key}: {path}:{line}: value is {word!r}, allowed a finite number")
     return value

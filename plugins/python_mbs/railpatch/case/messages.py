@@ -8,9 +8,7 @@ from typing import Any, get_args
 from pydantic import BaseModel, ValidationError
 
 # keys of the interface that this version does not have yet
-LATER_KEYS = {
-    "method": ("patch_rule",),
-}
+LATER_KEYS: dict[str, tuple[str, ...]] = {}
 
 ALLOWED = {
     "greater_than": "> {gt}",

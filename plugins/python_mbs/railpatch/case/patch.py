@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from railpatch.case.common import (
+    WHEEL_METHOD,
     Friction,
     Grid,
     Layer,
@@ -210,8 +211,15 @@ class PatchCase(Table):
             check_tangential(self.material, self.friction, self.layer, self.grid, self.method)
             check_physics(self.friction, self.layer, self.temperature, self.grid, self.method)
             self._check_regime()
+        if self.friction is not None and self.friction.along_track is not None:
+            shown = str(self.friction.along_track)
+            raise relation("friction.along_track", shown, "to be left out with kind = 'patch'")
         if any(self.motion.prescribed):
             self._check_force()
+        for name in WHEEL_METHOD:
+            value = getattr(self.method, name)
+            if value is not None:
+                raise relation(f"method.{name}", repr(value), "only with wheels")
         line = self.geometry.line_contact_radius is not None
         check_fitted(self.grid, self.method, line=line)
         check_plane(self.method)

@@ -54,6 +54,7 @@ RatioPair = Annotated[list[Ratio], exactly(2)]
 ElementSize = Annotated[list[Annotated[float, between(1e-9, 1)]], exactly(2)]
 SemiAxes = Annotated[list[Annotated[float, between(1e-7, 1)]], exactly(2)]
 Curvatures = Annotated[list[Annotated[float, between(1e-9, 1e6)]], exactly(2)]
+Vector = Annotated[list[Number], exactly(3)]
 ShiftVector = Annotated[list[Shift], exactly(3)]
 AngleVector = Annotated[list[Angle], exactly(3)]
 

@@ -19,15 +19,19 @@ from railpatch.case.common import (
     check_reference,
     check_tangential,
 )
+from railpatch.case.rails import RailSupport, Sections, check_sections
+from railpatch.case.rolling import RailShape, WheelMotion, WheelShape, check_rolling
 from railpatch.case.types import (
     Angle,
     AngleVector,
     Dimension,
+    NotNegative,
     Number,
     Positive,
     Shift,
     ShiftVector,
     Table,
+    Vector,
     between,
     exactly_one,
     relation,
@@ -45,11 +49,24 @@ class Deviation(Table):
     rotation: AngleVector = Field(
         default=[0.0, 0.0, 0.0], description="rad, rotation about x, y, z"
     )
+    velocity: Vector = Field(
+        default=[0.0, 0.0, 0.0], description="m/s, rate of offset, into the creepages"
+    )
+    angular_velocity: Vector = Field(
+        default=[0.0, 0.0, 0.0], description="rad/s, rate of rotation, into the creepages"
+    )
+
+
+class WheelDeviation(Deviation, WheelShape):
+    """Deviation of a wheel, and its shape around the circumference."""
 
 
 class Wheelset(Table):
     """Position, attitude and velocity of the wheelset in track axes, and its dimensions."""
 
+    x: Number = Field(
+        default=0.0, description="m, position along the track, for what varies along it"
+    )
     y: Shift = Field(default=0.0, description="m, lateral position of its centre, to the right")
     z: Shift | None = Field(
         default=None, description="m, vertical position of its centre, down; or vertical_force"
@@ -60,6 +77,9 @@ class Wheelset(Table):
         "(wheelset); z is then found",
     )
     roll: Angle = Field(default=0.0, description="rad, about x")
+    pitch: Number = Field(
+        default=0.0, description="rad, about the axle, for what varies around the wheels"
+    )
     yaw: Angle = Field(default=0.0, description="rad, about z")
     speed: Number = Field(default=0.0, description="m/s, forward speed; 0 on a rig")
     vy: Number = Field(default=0.0, description="m/s, lateral speed")
@@ -68,6 +88,11 @@ class Wheelset(Table):
     yaw_rate: Number = Field(default=0.0, description="rad/s, about z")
     pitch_rate: Number = Field(
         default=0.0, description="rad/s, about the axle; below 0 for rolling forward"
+    )
+    time_step: NotNegative = Field(
+        default=0.0,
+        description="s, since the last step, for rails on dampers (0: at rest) "
+        "and transient rolling (> 0)",
     )
     nominal_radius: Dimension = Field(description="m, wheel radius at the profile's z = 0")
     flange_back_distance: Dimension = Field(description="m, between the flange backs")
@@ -78,16 +103,31 @@ class Wheelset(Table):
     max_patches: Annotated[int, Field(ge=1, le=6)] | None = Field(
         default=None, description="-, capacity: most patches of one wheel"
     )
-    left: Deviation = Field(
-        default=Deviation(), description="left wheel's deviation (m, rad), wheelset axes"
+    left: WheelDeviation = Field(
+        default=WheelDeviation(), description="left wheel's deviation (m, rad), wheelset axes"
     )
-    right: Deviation = Field(
-        default=Deviation(), description="right wheel's deviation (m, rad), wheelset axes"
+    right: WheelDeviation = Field(
+        default=WheelDeviation(), description="right wheel's deviation (m, rad), wheelset axes"
     )
 
     @model_validator(mode="after")
     def _one_height(self) -> Wheelset:
         exactly_one(self, ("z", "vertical_force"))
+        return self
+
+
+class Rail(Deviation, RailShape):
+    """A rail's deviation, running surface, and its profiles where they vary along the track."""
+
+    sections: Sections | None = Field(
+        default=None,
+        description="profiles along the track (m, file), interpolated linearly in between and "
+        "constant beyond, instead of one in [profiles]",
+    )
+
+    @model_validator(mode="after")
+    def _increasing(self) -> Rail:
+        check_sections(self.sections)
         return self
 
 
@@ -98,6 +138,9 @@ class Track(Table):
     gauge: Dimension = Field(default=1.435, description="m, track gauge")
     gauge_height: Annotated[float, between(0, 0.1)] = Field(
         default=0.014, description="m, height below the rail's top at which the gauge is measured"
+    )
+    gauge_widening: Annotated[float, between(-0.1, 0.1)] = Field(
+        default=0.0, description="m, each rail lies half of it further out than the gauge says"
     )
     cant: Annotated[float, between(-0.5, 0.5)] = Field(
         default=0.0,
@@ -112,12 +155,11 @@ class Track(Table):
     roller_pitch_rate: Number | None = Field(
         default=None, description="rad/s, about the roller's axle, above 0 forward (roller)"
     )
-    left: Deviation = Field(
-        default=Deviation(), description="left rail's deviation (m, rad), track axes"
+    rail_support: RailSupport | None = Field(
+        default=None, description="springs and dampers under the rails (N/m, N s/m)"
     )
-    right: Deviation = Field(
-        default=Deviation(), description="right rail's deviation (m, rad), track axes"
-    )
+    left: Rail = Field(default=Rail(), description="left rail's deviation (m, rad), track axes")
+    right: Rail = Field(default=Rail(), description="right rail's deviation (m, rad), track axes")
 
     @model_validator(mode="after")
     def _keys_of_kind(self) -> Track:
@@ -189,6 +231,7 @@ class _WheelCase(Table):
         default=None, description="surface temperature (degrees C, W/(m K), J/(kg K), kg/m^3)"
     )
     method: Method = Field(default=Method(), description="theories and tolerances (-)")
+    motion: WheelMotion = Field(default=WheelMotion(), description="how wheels roll (no unit)")
     wheelset: Wheelset = Field(description="position, velocity, dimensions (m, rad, m/s, rad/s)")
     track: Track = Field(description="rails or rollers (m, rad, rad/s)")
     profiles: Profiles = Field(description="profiles by file or name (no unit)")
@@ -213,14 +256,24 @@ class _WheelCase(Table):
         check_reference(
             self.material, self.friction, self.layer, self.temperature, self.grid, self.method
         )
+        check_rolling(self)
         for side in self.sides:
             for body in ("wheel", "rail"):
                 key, value = self.profiles.of(body, side)
-                if value is None:
+                if body == "rail" and getattr(self.track, side).sections is not None:
+                    self._check_sections(key, value)
+                elif value is None:
                     raise relation(
                         f"profiles.{key}", "missing", f"'{key}', or '{body}' for both sides"
                     )
         return self
+
+    def _check_sections(self, key: str, value: str | None) -> None:
+        """A rail has one profile or sections."""
+        every = all(getattr(self.track, side).sections is not None for side in self.sides)
+        if value is not None and (every or key != "rail"):
+            allowed = "to be left out where the track's rail has 'sections'"
+            raise relation(f"profiles.{key}", repr(value), allowed)
 
 
 class WheelRailCase(_WheelCase):

@@ -162,6 +162,7 @@ PATCH = Message(
         _number("plastic_power", "W", "power of the layer's plastic displacement, >= 0"),
         _count("outer_iterations", "rounds of stages that act on each other"),
         _count("ambiguous_elements", "elements whose friction law has further solutions"),
+        _number("share", "-", "share of this solution in the wheel's force"),
     ),
 )
 

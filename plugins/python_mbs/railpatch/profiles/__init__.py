@@ -36,8 +36,8 @@ def load_profile(
 ) -> Profile:
     """A profile by built-in name or file, ready for the core.
 
-    source: built-in name ("S1002", "UIC60", "UIC60@1:40", "cone@1:20", "arc@0.3", "cylinder") or
-        path; a relative path starts at ``folder``.
+    source: built-in name ("S1002", "UIC60", "60E1", "54E1", "UIC60@1:40", "cone@1:20", "arc@0.3",
+        "cylinder") or path; a relative path starts at ``folder``.
     role: "wheel" or "rail" (a roller's profile is a rail).
     smoothing: m, wave length of which half the amplitude is kept; 0 interpolates the points;
         default MEASURED_WAVELENGTH for MiniProf files, 0 for others. Not for built-in names.

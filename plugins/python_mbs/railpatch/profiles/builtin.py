@@ -13,6 +13,7 @@ from railpatch.profiles.curve import Profile
 from railpatch.profiles.formulas import (
     Piece,
     arc_piece,
+    head_pieces,
     s1002_pieces,
     straight_piece,
     uic60_pieces,
@@ -25,15 +26,20 @@ SPACING = 0.25
 HALF_WIDTH = 70.0
 # -, an "arc" ends where it is inclined by asin of this
 ARC_END = 0.9
-NAMES = '"S1002", "UIC60", "UIC60@1:40", "cone@1:20", "arc@0.3" (radius in m), "cylinder"'
-PATTERN = re.compile(r"(S1002|UIC60|cone|arc|cylinder)(?:@(.*))?")
+NAMES = (
+    '"S1002", "UIC60", "60E1", "54E1", "UIC60@1:40", "cone@1:20", "arc@0.3" (radius in m), '
+    '"cylinder"'
+)
+RAILS = ("UIC60", "60E1", "54E1")
+PATTERN = re.compile(r"(S1002|UIC60|60E1|54E1|cone|arc|cylinder)(?:@(.*))?")
 
 
 def builtin_profile(name: str, role: Role) -> Profile | None:
     """The built-in profile of that name, or None where the name is not built in.
 
     "S1002": wheel, y = 0 at the tread circle, flange back at -0.070 m. "UIC60": rail, uncanted;
-    "UIC60@1:40": inclined towards the track's centre by atan(1/40); highest point at (0, 0).
+    "60E1", "54E1": rails of EN 13674-1, uncanted. "UIC60@1:40", "60E1@1:20", ...: inclined towards
+    the track's centre by atan(1/40), ...; highest point at (0, 0).
     "cone@1:20": line z = -y/20, wheel or roller. "cylinder": z = 0. "arc@R": crown of radius R in m
     for a rail, the same convex shape for a wheel. The last three are 0.14 m wide at most.
     Raises ProfileError where the name is known, but not for this role or not with this number.
@@ -45,9 +51,9 @@ def builtin_profile(name: str, role: Role) -> Profile | None:
     if kind == "S1002":
         require(name, role == "wheel" and argument is None, "is a wheel, written 'S1002'")
         return from_pieces(name, s1002_pieces())
-    if kind == "UIC60":
+    if kind in RAILS:
         require(name, role == "rail", "is a rail, not a wheel")
-        rail = from_pieces(name, uic60_pieces())
+        rail = from_pieces(name, uic60_pieces() if kind == "UIC60" else head_pieces(kind))
         return rail if argument is None else inclined(rail, 1 / ratio(name, argument))
     if kind == "cylinder":
         require(name, argument is None, "is written 'cylinder'")

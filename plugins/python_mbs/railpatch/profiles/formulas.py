@@ -1,7 +1,8 @@
 """S1002 wheel and UIC60 rail as formulas. Millimetres in here, z down, right-hand orientation.
 
 S1002: EN 13715 / UIC 510-2, y from the flange back (-70) to the field side (+60), z = 0 at the
-tread circle (y = 0). UIC60: head of the Manchester benchmark, uncanted, z = 0 at the crown.
+tread circle (y = 0). UIC60: head of the Manchester benchmark, uncanted, z = 0 at the crown. 60E1,
+54E1: heads of EN 13674-1 by the radii and widths of its drawings.
 """
 
 from __future__ import annotations
@@ -70,6 +71,14 @@ UIC60_ARCS = (
 # side: |y| = UIC60_SIDE[0] + UIC60_SIDE[1] z, down to UIC60_DEPTH
 UIC60_SIDE = (35.287010, 0.05)
 UIC60_DEPTH = 37.5
+
+# EN 13674-1: radius and full width where each arc ends, from the crown outwards; arcs touch each
+# other, the last one the side of HEAD_SIDE, at the full width of the head but for 1e-3 mm
+HEADS = {
+    "60E1": ((300.0, 20.456), (80.0, 52.053), (13.0, 72.0)),
+    "54E1": ((300.0, 20.024), (80.0, 49.727), (13.0, 70.0)),
+}
+HEAD_SIDE = 1 / 20
 
 
 def arc_depth(arc: tuple[float, ...], y: Array) -> Array:
@@ -208,7 +217,40 @@ def uic60_pieces() -> list[Piece]:
         centre_z = depth + drop
         arcs.append((inner, outer, (centre_y, centre_z, radius, -1.0)))
         inner, depth = outer, centre_z - math.sqrt(radius**2 - (outer - centre_y) ** 2)
-    foot = (inner + UIC60_SIDE[1] * (UIC60_DEPTH - depth), UIC60_DEPTH)
+    return head(arcs, depth, UIC60_SIDE[1])
+
+
+def head_pieces(name: str) -> list[Piece]:
+    """A head of HEADS from one side's lower end to the other's, uncanted."""
+    arcs = []
+    inner = centre_y = centre_z = radius = 0.0
+    drawn = HEADS[name]
+    for number, (next_radius, width) in enumerate(drawn):
+        # centres lie on the normal at the joint, the first one below the crown
+        sine = (inner - centre_y) / radius if radius else 0.0
+        centre_y += (radius - next_radius) * sine
+        centre_z -= (radius - next_radius) * math.sqrt(1 - sine**2)
+        radius = next_radius
+        if number + 1 < len(drawn):
+            outer = 0.5 * width
+        else:
+            outer = centre_y + radius * math.cos(math.atan(HEAD_SIDE))
+        arcs.append((inner, outer, (centre_y, centre_z, radius, -1.0)))
+        inner = outer
+    depth = centre_z - math.sqrt(radius**2 - (inner - centre_y) ** 2)
+    return head(arcs, depth, HEAD_SIDE)
+
+
+def head(
+    arcs: list[tuple[float, float, tuple[float, ...]]], depth: float, side: float
+) -> list[Piece]:
+    """Both halves of a rail's head down to UIC60_DEPTH.
+
+    arcs: of one half, from the crown outwards: inner and outer |y|, arc. depth: z where they end.
+    side: inclination of the straight sides to the vertical.
+    """
+    inner = arcs[-1][1]
+    foot = (inner + side * (UIC60_DEPTH - depth), UIC60_DEPTH)
     left = [straight_piece((-foot[0], foot[1]), (-inner, depth))]
     right = [straight_piece((inner, depth), foot)]
     for inner, outer, (centre_y, *rest) in reversed(arcs[1:]):

@@ -1,0 +1,199 @@
+// From parts of contact to the patches that are solved: the smooth half of the contact search.
+//
+// The discrete half (patch.cpp) finds the parts, the stretches of negative gap along the contact
+// locus, as pairs of arc lengths [begin, end] of the wheel's profile at whose ends the gap is zero.
+// All that follows is here, as functions of these edges and of the locus, and a template on the
+// scalar T, so that it can be differentiated forward with numbers that carry derivatives:
+//   sum_rows           edges and locus -> weight, reference, angle, extent of a part
+//   facing_distance, joined   two neighbours -> how far they are one patch, 0 ... 1
+//   interval_share     joined of all gaps -> share of an interval of parts
+//   sum_parts          interval -> weighted means
+//   place_frame        means and rail -> contact frame
+//   bounds_of          parts and frame -> bounds of the interpenetration
+// Choices by value (comparisons, min, max) keep to one smooth branch each.
+//
+// T: double, or a type with its operators, comparisons with itself and double, and sqrt, hypot,
+// cos, sin, fabs found by argument. Locus: locus(T s) gives .valid, .wheel[3], .gap, .contact_angle
+// and .curvature, as side_geometry::locus does.
+//
+// Blended rule. Every interval [i ... j] of neighbouring parts may be solved as one patch, and
+// counts with the share
+//   (product of joined_k over the gaps k inside) (1 - joined_{i-1}) (1 - joined_j),
+// as if each gap were joined by chance, independently of the others. So the shares of the intervals
+// that hold a part sum up to one, for each part. joined falls from one to zero as the distance d of
+// the facing edges goes from d1 = min(3 mm, 1.5 w) to d2 = min(12 mm, 12 w), w the lateral width of
+// the smaller part; at 12 mm neighbours lose their influence in the program CONTACT. A part that
+// appears (w = 0, d > 0) begins as a patch of its own with no force, one that splits (d = 0, w > 0)
+// as one patch; so d1 falls with the difference of contact angles too, but not to zero. Two parts
+// lie on either side of a bump of the gap whose height goes with d^2: within a few micrometres of
+// motion they part by millimetres, so the range of d must be wide for the forces to follow
+// smoothly.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace railpatch {
+
+constexpr int max_parts = 8;  // of one patch, and of one wheel
+
+// How parts become patches without jumps: the distances up to which they are one, and from which on
+// each is a patch of its own.
+struct blend_rules {
+  double one = 3e-3, two = 12e-3;                    // m, at most
+  double one_in_widths = 1.5, two_in_widths = 12.0;  // -, over the width of the smaller part
+  // rad; between these differences of contact angles the distances fall to a fraction
+  double angle_from = std::numbers::pi / 3, angle_to = std::numbers::pi / 2;
+  double angle_fraction = 0.1;
+};
+
+// One part of contact, with its sums over rows.
+template <class T>
+struct basic_part {
+  T begin{}, end{};                  // m, arc length on the wheel
+  bool cut_off = false;              // by the end of a profile
+  std::array<T, 3> first{}, last{};  // edges, track axes, on the surfaces
+  T weight{}, x{}, y{}, angle{};     // weighted means
+  T x_min{}, x_max{};
+};
+using part = basic_part<double>;
+
+// Parts [begin, end) as one patch.
+template <class T>
+struct basic_interval {
+  int begin = 0, end = 0;
+  T weight{}, x{}, y{}, angle{};  // weighted means
+  T share{};
+};
+using part_interval = basic_interval<double>;
+
+template <class T>
+struct basic_bounds {
+  T x_min{}, x_max{}, s_min{}, s_max{};
+};
+
+constexpr int part_rows = 64;  // of one part, for its means
+
+// Rows at s = m - h cos t for equally spaced t: the weight's d^2.5 at the edges becomes smooth, so
+// that few rows give the means to many digits. Their number is fixed and a row is as wide as the
+// lateral distance of its neighbours, so the means move smoothly with the wheelset, kinks in the
+// profiles' curvature included.
+template <class T, class Locus>
+void sum_rows(const Locus &locus, basic_part<T> &p) {
+  using std::sqrt;
+  const T half = 0.5 * (p.end - p.begin), middle = 0.5 * (p.end + p.begin);
+  decltype(locus(p.begin)) row[part_rows + 2];
+  for (int i = 1; i <= part_rows; ++i)
+    row[i] = locus(middle - half * std::cos(std::numbers::pi * (i - 0.5) / part_rows));
+  row[0] = locus(p.begin);
+  row[part_rows + 1] = locus(p.end);
+  p.first = row[0].wheel;
+  p.last = row[part_rows + 1].wheel;
+  bool any = false;
+  for (int i = 1; i <= part_rows; ++i) {
+    const auto &l = row[i];
+    if (!l.valid || !(l.gap < 0)) continue;
+    const T depth = -l.gap, reach = sqrt(depth / l.curvature);
+    const T width = 0.5 * (row[i + 1].wheel[1] - row[i - 1].wheel[1]);
+    const T weight = depth * depth * reach * width;
+    p.weight += weight;
+    p.x += weight * l.wheel[0];
+    p.y += weight * l.wheel[1];
+    p.angle += weight * l.contact_angle;
+    const T low = l.wheel[0] - reach, high = l.wheel[0] + reach;
+    if (!any || low < p.x_min) p.x_min = low;
+    if (!any || p.x_max < high) p.x_max = high;
+    any = true;
+  }
+  for (T *v : {&p.x, &p.y, &p.angle}) *v /= p.weight;
+}
+
+template <class T>
+T facing_distance(const basic_part<T> &a, const basic_part<T> &b) {
+  using std::hypot;
+  return hypot(b.first[1] - a.last[1], b.first[2] - a.last[2]);
+}
+
+template <class T>
+T lateral_width(const basic_part<T> &p) {
+  using std::hypot;
+  return hypot(p.last[1] - p.first[1], p.last[2] - p.first[2]);
+}
+
+// From 1 at t <= 0 to 0 at t >= 1, with two continuous derivatives.
+template <class T>
+T fade(const T &t) {
+  if (!(t > 0)) return T(1);
+  if (!(t < 1)) return T(0);
+  return 1.0 - t * t * t * (10.0 - t * (15.0 - 6.0 * t));
+}
+
+// How far two neighbours are one patch: 1, or 0 for patches of their own.
+template <class T>
+T joined(const blend_rules &rule, const basic_part<T> &a, const basic_part<T> &b) {
+  using std::fabs;
+  using std::min;
+  const T d = facing_distance(a, b), w = min(lateral_width(a), lateral_width(b));
+  const T apart = (fabs(b.angle - a.angle) - rule.angle_from) / (rule.angle_to - rule.angle_from);
+  const T alike = rule.angle_fraction + (1.0 - rule.angle_fraction) * fade(apart);
+  const T near = alike * min(T(rule.one), rule.one_in_widths * w);
+  const T far = alike * min(T(rule.two), rule.two_in_widths * w);
+  // before the division: both are zero where a part has no width
+  if (!(d < far)) return T(0);
+  if (!(d > near)) return T(1);
+  return fade((d - near) / (far - near));
+}
+
+// Share of the interval [begin, end) of `count` parts; joined[k] is that of parts k and k + 1.
+template <class T>
+T interval_share(const T *joined, int count, int begin, int end) {
+  T share(1);
+  if (begin > 0) share *= 1.0 - joined[begin - 1];
+  for (int k = begin; k + 1 < end; ++k) share *= joined[k];
+  if (end < count) share *= 1.0 - joined[end - 1];
+  return share;
+}
+
+template <class T>
+basic_interval<T> sum_parts(const basic_part<T> *parts, int begin, int end) {
+  basic_interval<T> g;
+  g.begin = begin;
+  g.end = end;
+  g.share = T(1);
+  for (int i = begin; i < end; ++i) {
+    const basic_part<T> &p = parts[i];
+    g.weight += p.weight;
+    g.x += p.weight * p.x;
+    g.y += p.weight * p.y;
+    g.angle += p.weight * p.angle;
+  }
+  for (T *v : {&g.x, &g.y, &g.angle}) *v /= g.weight;
+  return g;
+}
+
+// Lateral position in a frame of origin and contact angle.
+template <class T>
+T lateral_in(const std::array<T, 3> &origin, const T &contact_angle, const std::array<T, 3> &p) {
+  using std::cos;
+  using std::sin;
+  return cos(contact_angle) * (p[1] - origin[1]) + sin(contact_angle) * (p[2] - origin[2]);
+}
+
+// Bounds of the interpenetration in the frame: an interval's edges and rows.
+template <class T>
+basic_bounds<T> bounds_of(const basic_part<T> *parts, const basic_interval<T> &g,
+                          const std::array<T, 3> &origin, const T &contact_angle) {
+  basic_bounds<T> out;
+  out.s_min = lateral_in(origin, contact_angle, parts[g.begin].first);
+  out.s_max = lateral_in(origin, contact_angle, parts[g.end - 1].last);
+  for (int i = g.begin; i < g.end; ++i) {
+    const T low = parts[i].x_min - g.x, high = parts[i].x_max - g.x;
+    if (i == g.begin || low < out.x_min) out.x_min = low;
+    if (i == g.begin || out.x_max < high) out.x_max = high;
+  }
+  return out;
+}
+
+}  // namespace railpatch

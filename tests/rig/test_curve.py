@@ -1,0 +1,117 @@
+"""The steady position in a curve: balance checked by other code, mirror image, what is refused."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from railpatch import CaseError, Contact
+
+from rig_model.command import curve as command
+from rig_model.curve import DEFAULT, load_curve_scene, steady_curves
+
+LOAD = 120e3
+STIFFNESS = 5e6
+
+
+@pytest.fixture(scope="module")
+def found():
+    return {method: steady_curves(load_curve_scene(), method) for method in ("newton", "broyden")}
+
+
+def test_newton_takes_few_evaluations(found):
+    """Of the full theory: it starts from a balance with FASTSIM."""
+    for item in found["newton"]:
+        assert item.converged
+        assert item.evaluations <= 5, item.radius
+    for newton, broyden in zip(found["newton"], found["broyden"], strict=True):
+        assert broyden.converged
+        assert newton.evaluations < broyden.evaluations
+
+
+def test_both_methods_find_the_same(found):
+    for newton, broyden in zip(found["newton"], found["broyden"], strict=True):
+        # 6 N over the stiffness of a contact, some 1 kN/um, and of a flange, 1 kN/20 um
+        close = [5e-6, 2e-7, 5e-7, 2e-5, 5e-3]
+        assert (np.abs(newton.unknowns - broyden.unknowns) <= close).all()
+
+
+def test_balance(found):
+    """Solved again from a cold start, and summed patch by patch."""
+    scene = load_curve_scene()
+    for item in found["newton"]:
+        contact = Contact(scene.at_height(item.radius))
+        y, z, roll, yaw, pitch_rate = map(float, item.unknowns)
+        result = contact.step(y=y, z=z, roll=roll, yaw=yaw, pitch_rate=pitch_rate)
+        lateral = vertical = yaw_moment = axle = 0.0
+        for side in ("left", "right"):
+            for patch in result[side]["patches"]:
+                c, s = math.cos(patch["contact_angle"]), math.sin(patch["contact_angle"])
+                fx, fs = (patch["share"] * value for value in patch["creep_force"])
+                normal = patch["share"] * patch["normal_force"]
+                lateral += c * fs + s * normal
+                vertical += s * fs - c * normal
+                px, py, _ = patch["position"]
+                yaw_moment += px * (c * fs + s * normal) - (py - y) * fx
+                axle += fx * math.cos(yaw) * result[side]["rolling_radius"]
+        tolerance = 1.2 * 5e-5 * LOAD
+        assert lateral == pytest.approx(0, abs=tolerance)
+        assert vertical == pytest.approx(-LOAD, abs=tolerance)
+        # the patches' own moments, up to 30 N m each, and lateral forces beside the axle
+        assert yaw_moment == pytest.approx(STIFFNESS * yaw, abs=100)
+        assert axle == pytest.approx(0, abs=100)
+
+
+def test_a_tighter_curve_takes_the_flange(found):
+    wide, tight = found["newton"]
+    assert tight.unknowns[0] < wide.unknowns[0] < 0
+    angles = [max(abs(a) for a in c.to_dict()["left_contact_angle"]) for c in (wide, tight)]
+    assert angles[1] > 2 * angles[0]
+
+
+def test_left_curve_is_the_mirror_image(found):
+    scene = load_curve_scene(radius=[-600.0])
+    (left,) = steady_curves(scene, "newton")
+    right = found["newton"][0]
+    mirror = np.array([-1, 1, -1, -1, 1])
+    # brentq ends within a micrometre on either side
+    assert (np.abs(left.unknowns - mirror * right.unknowns) <= [2e-6, 1e-7, 2e-7, 1e-5, 2e-3]).all()
+
+
+def test_wide_curve_is_nearly_straight():
+    (straight,) = steady_curves(load_curve_scene(radius=[1e6]), "newton")
+    assert abs(straight.unknowns[0]) < 2e-5
+    assert abs(straight.unknowns[3]) < 1e-5
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "key"),
+    [
+        ('kind = "rail"', 'kind = "rail"\ncurvature = 0.001', "track.curvature"),
+        ("speed = 12.0", "speed = 0.0", "wheelset.speed"),
+        ("radius = [600.0, 175.0]", "radius = [5.0]", "curve.radius"),
+        ("yaw_stiffness = 5e6", "yaw_stifness = 5e6", "curve.yaw_stifness"),
+        ("vertical_force = 120e3", "z = 0.0", "wheelset.z"),
+    ],
+)
+def test_bad_scenes_are_refused(tmp_path, old, new, key):
+    text = DEFAULT.read_text()
+    assert text.count(old) == 1
+    path = tmp_path / "curve.toml"
+    path.write_text(text.replace(old, new))
+    with pytest.raises(CaseError) as error:
+        load_curve_scene(path)
+    assert key in str(error.value)
+
+
+def test_command():
+    run = CliRunner().invoke(command, ["--radius", "600", "--json"])
+    assert run.exit_code == 0
+    rows = json.loads(run.output)
+    assert rows["newton"][0]["radius"] == 600
+    assert rows["newton"][0]["evaluations"] < rows["broyden"][0]["evaluations"]
+    table = CliRunner().invoke(command, ["--radius", "600"])
+    assert "newton 600 m" in table.output
