@@ -115,6 +115,34 @@ rp_error rp_step(rp_contact *contact, const rp_input *input, rp_result *result,
   }
 }
 
+rp_error rp_differentiate(rp_contact *contact, const rp_input *direction, rp_result *change,
+                          rp_derivative_kind *kind, rp_message *message) {
+  if (!contact || !direction || !change) {
+    set_message(message, "%s is null",
+                !contact ? "contact" : (!direction ? "direction" : "change"));
+    return RP_ERROR_NULL;
+  }
+  if (!contact->scene.has_derivatives()) {
+    set_message(message, "derivatives is 0, rp_differentiate needs 1");
+    return RP_ERROR_VALUE;
+  }
+  if (const rp_error error = check_direction(*direction, message); error != RP_OK) return error;
+  if (!contact->scene.has_solution()) {
+    set_message(message,
+                "rp_differentiate needs a step since rp_create, rp_reset or "
+                "rp_restore_state");
+    return RP_ERROR_STATE;
+  }
+  try {
+    const rp_derivative_kind found = contact->scene.differentiate(*direction, *change);
+    if (kind) *kind = found;
+    return RP_OK;
+  } catch (...) {
+    set_message(message, "internal error in rp_differentiate");
+    return RP_ERROR_INTERNAL;
+  }
+}
+
 rp_error rp_set_friction_coefficient(rp_contact *contact, double value, rp_message *message) {
   if (!contact) {
     set_message(message, "contact is null");

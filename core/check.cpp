@@ -11,6 +11,7 @@
 #include "coupling.hpp"
 #include "creep_table.hpp"
 #include "fast.hpp"
+#include "input_numbers.hpp"
 #include "physics.hpp"
 
 namespace railpatch {
@@ -92,6 +93,7 @@ void check_choices(const rp_config &c, checker &check) {
   check.choice("normal", c.normal, RP_NORMAL_HERTZ, RP_NORMAL_ANALYN);
   check.choice("tangential", c.tangential, RP_TANGENTIAL_NONE, RP_TANGENTIAL_TABLE);
   check.choice("spin_offset", c.spin_offset, RP_SPIN_OFFSET_NONE, RP_SPIN_OFFSET_SIXTH);
+  check.choice("reference_surface", c.reference_surface, RP_REFERENCE_PLANE, RP_REFERENCE_CURVED);
   check.choice("traction_bound", c.traction_bound, RP_BOUND_AUTOMATIC, RP_BOUND_ELLIPTIC);
   check.choice("flexibility_blending", c.flexibility_blending, RP_BLENDING_SLIDING,
                RP_BLENDING_CONTACT);
@@ -180,6 +182,11 @@ void check_friction(const rp_config &c, checker &check) {
   check.number("friction_temperature_range", c.friction_temperature_range, {0, 1e5, true, false});
   check_points("friction_points", c.friction_points, "friction_position", c.friction_position,
                "friction_factor", c.friction_factor, {0, 100, false, false}, check);
+  check_points("friction_along_points", c.friction_along_points, "friction_along_position",
+               c.friction_along_position, "friction_along_factor", c.friction_along_factor,
+               {0, 100, false, false}, check);
+  check.require(c.friction_along_points == 0 || c.kind != RP_PATCH,
+                "friction_along_points must be 0 for kind = patch: it has no place along a track");
   if (check.error() != RP_OK || !has_tangential(c)) return;
   double least = c.friction_kinetic;
   for (double amplitude : c.friction_amplitude) least += std::min(amplitude, 0.0);
@@ -257,6 +264,8 @@ const char *wheels_cannot_roll(const rp_config &c) {
     return "regime = transient_rolling of wheels needs friction_law = coulomb in this version";
   if (c.layer_yield_stress > 0)
     return "layer_yield_stress must be 0 with regime = transient_rolling of wheels in this version";
+  if (c.reference_surface != RP_REFERENCE_PLANE)
+    return "reference_surface must be plane with regime = transient_rolling of wheels";
   if (c.temperature != 0)
     return "temperature must be 0 with regime = transient_rolling of wheels in this version";
   if (is_coupled(combine(c.shear_modulus, c.poisson_ratio)))
@@ -428,8 +437,53 @@ void check_longitudinal(const rp_config &c, checker &check) {
   check.number("rail_height_start", c.rail_height_start, finite);
   check.number("rail_height_spacing", c.rail_height_spacing, {1e-6, 1e3, false, false});
   check.require(!heights || c.track == RP_RAIL, "rail_height_count must be 0 on rollers");
+  check.require(!shaped || c.reference_surface == RP_REFERENCE_PLANE,
+                "runout and rail_height need reference_surface = plane in this version");
   check.require(!shaped || c.normal == RP_NORMAL_HALF_SPACE,
                 "runout and rail_height need normal = half_space: the shape is not quadratic");
+}
+
+// A rail's profiles along the track; the profiles themselves are looked at where they are read.
+void check_sections(const rp_config &c, checker &check) {
+  for (int side = 0; side < 2; ++side) {
+    const bool left = side == RP_LEFT;
+    const int count = c.section_count[side];
+    check.integer(left ? "section_count[0]" : "section_count[1]", count, 0, 100000);
+    if (check.error() != RP_OK || count == 0) continue;
+    if (c.kind == RP_WHEEL_RAIL && side != c.side) continue;
+    const char *name = left ? "section_position[0]" : "section_position[1]";
+    const double *place = c.section_position[side];
+    check.require(c.rail_sections[side] != nullptr && place != nullptr,
+                  "rail_sections and section_position must be given where section_count is not 0");
+    if (check.error() != RP_OK) return;
+    for (int k = 0; k < count; ++k) {
+      check.number(name, place[k], finite);
+      if (k > 0) check.number(name, place[k], {place[k - 1], inf, true, true});
+    }
+  }
+}
+
+// What goes with a curved reference surface.
+void check_reference(const rp_config &c, checker &check) {
+  if (c.reference_surface == RP_REFERENCE_PLANE) return;
+  const char *wrong = nullptr;
+  if (c.kind == RP_PATCH)
+    wrong = "reference_surface must be plane with kind = patch: its shape has no normals";
+  else if (c.normal != RP_NORMAL_HALF_SPACE)
+    wrong = "reference_surface = curved needs normal = half_space";
+  else if (has_tangential(c) && c.tangential != RP_TANGENTIAL_FULL)
+    wrong = "reference_surface = curved needs tangential = full or none";
+  else if (c.fitted[0] > 0)
+    wrong = "reference_surface = curved needs fitted = 0, 0";
+  else if (has_tangential(c) && (c.friction_law != RP_COULOMB || c.layer_yield_stress > 0))
+    wrong = "reference_surface = curved needs friction_law = coulomb and layer_yield_stress = 0";
+  else if (c.temperature == 1)
+    wrong = "reference_surface = curved needs temperature = 0";
+  else if (has_tangential(c) && is_coupled(combine(c.shear_modulus, c.poisson_ratio)))
+    wrong = "reference_surface = curved needs bodies with equal (1-2nu)/G";
+  else if (!has_physics)
+    wrong = "reference_surface must be plane: this build has no curved ones";
+  check.require(wrong == nullptr, wrong ? wrong : "");
 }
 
 void check_wheels(const rp_config &c, checker &check) {
@@ -439,6 +493,7 @@ void check_wheels(const rp_config &c, checker &check) {
   check.number("flange_back_position", c.flange_back_position, {-1, 1, false, false});
   check.number("gauge", c.gauge, {0.01, 10, false, false});
   check.number("gauge_height", c.gauge_height, {0, 0.1, false, false});
+  check.number("gauge_widening", c.gauge_widening, {-0.1, 0.1, false, false});
   check.number("cant", c.cant, {-0.5, 0.5, false, false});
   check.number("curvature", c.curvature, {-0.1, 0.1, false, false});
   if (c.track == RP_ROLLER) {
@@ -449,6 +504,16 @@ void check_wheels(const rp_config &c, checker &check) {
   check.integer("max_patches", c.max_patches, 1, RP_MAX_PATCHES);
   check.number("standstill_speed", c.standstill_speed, {0, 1, false, false});
   check_longitudinal(c, check);
+  check_sections(c, check);
+  check.numbers("rail_stiffness", c.rail_stiffness, 2, {0, 1e15, false, false});
+  check.numbers("rail_damping", c.rail_damping, 2, {0, 1e15, false, false});
+  for (int k = 0; k < 2; ++k) {
+    check.require(c.rail_damping[k] == 0 || c.rail_stiffness[k] > 0,
+                  "rail_damping must be 0 in a direction whose rail_stiffness is 0: there the rail "
+                  "is rigid");
+    check.require(c.rail_stiffness[k] == 0 || c.rail_stiffness[k] >= 1,
+                  "rail_stiffness must be 0 or at least 1 N/m");
+  }
 }
 
 }  // namespace
@@ -494,6 +559,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
     check.number("layer_shear_modulus", c.layer_shear_modulus, {1.0, 1e15, false, false});
   check.number("tolerance", c.tolerance, {1e-12, 0.1, false, false});
   check.integer("max_iterations", c.max_iterations, 1, 100000);
+  check.integer("derivatives", c.derivatives, 0, 1);
   const bool rolling = has_tangential(c);
   const bool fast = is_fast(c.tangential);
   check_fast(c, check);
@@ -503,6 +569,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   check.require(!(rolling && fast && c.layer_thickness > 0),
                 "a fast theory has no third-body layer: use tangential = full");
   if (rolling && check.error() == RP_OK) check_coupled(c, check);
+  if (check.error() == RP_OK) check_reference(c, check);
   c.kind == RP_PATCH ? check_patch(c, check) : check_wheels(c, check);
   return check.error();
 }
@@ -515,8 +582,11 @@ double most_friction(const rp_config &c, double coefficient) {
     most = c.friction_kinetic;
     for (double amplitude : c.friction_amplitude) most += std::max(amplitude, 0.0);
   }
-  if (c.friction_points == 0) return most;
-  return most * *std::max_element(c.friction_factor, c.friction_factor + c.friction_points);
+  const auto greatest = [](const double *factor, int points) {
+    return points == 0 ? 1.0 : *std::max_element(factor, factor + points);
+  };
+  return most * greatest(c.friction_factor, c.friction_points) *
+         greatest(c.friction_along_factor, c.friction_along_points);
 }
 
 rp_error check_friction_coefficient(double value, rp_message *message) {
@@ -573,6 +643,19 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
                   "about x only");
   }
   check.number("roller_pitch_rate", in.roller_pitch_rate, finite);
+  return check.error();
+}
+
+rp_error check_direction(const rp_input &d, rp_message *message) {
+  if (d.cookie != input_cookie) {
+    set_message(message, "the direction was never filled by rp_default_input");
+    return RP_ERROR_NOT_DEFAULTED;
+  }
+  checker check(message);
+  for_each_number(d, [&](const char *name, const double &value, double) {
+    const bool bulk = std::strcmp(name, "bulk_temperature") == 0;
+    if (!(bulk && std::isnan(value))) check.number(name, value, finite);
+  });
   return check.error();
 }
 

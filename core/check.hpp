@@ -20,6 +20,9 @@ rp_error check_friction_coefficient(double value, rp_message *message);
 rp_error check_input(const rp_config &config, double friction_coefficient, const rp_input &input,
                      rp_message *message);
 
+// Rates of an input: finite, but of a bulk temperature NaN too.
+rp_error check_direction(const rp_input &direction, rp_message *message);
+
 // The greatest friction coefficient that the law gives at any place; coefficient: of Coulomb's law.
 double most_friction(const rp_config &config, double coefficient);
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "check.hpp"
+#include "contact_derivative.hpp"
 #include "force_search.hpp"
 
 namespace railpatch {
@@ -77,8 +78,9 @@ patch_scene make_scene(const rp_config &c) {
   scene.tangential = c.regime == RP_REGIME_NONE ? RP_TANGENTIAL_NONE : c.tangential;
   scene.tolerance = scene.normal_tolerance = c.tolerance;
   // the search for z sees the force change only where each force is known better than it asks for
-  if (c.kind != RP_PATCH && c.load == RP_FORCE)
+  if (c.kind != RP_PATCH && (c.load == RP_FORCE || rail_support::asked(c)))
     scene.normal_tolerance = std::max(0.1 * c.tolerance, 1e-12);
+  if (rail_support::asked(c)) scene.tolerance = scene.normal_tolerance;
   scene.max_iterations = c.max_iterations;
   if (scene.tangential == RP_TANGENTIAL_FULL && c.fitted[0] == 0) {
     scene.law = make_law(c);
@@ -90,6 +92,9 @@ patch_scene make_scene(const rp_config &c) {
   for (int k = 0; k < 2; ++k) scene.fitted[k] = c.fitted[k];
   for (int k = 0; k < 2; ++k) scene.prescribed[k] = c.force_prescribed[k] != 0;
   scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
+  scene.derivatives = c.derivatives != 0;
+  scene.stretches = c.kind != RP_PATCH && c.elements[0] > 0;
+  scene.curved = c.reference_surface == RP_REFERENCE_CURVED;
   scene.fast.theory = scene.tangential;
   if (uses_table(c)) scene.fast.creep_table = c.creep_table;
   scene.fast.coefficient_factor = 0.01 * c.percent_kalker;
@@ -264,13 +269,27 @@ contact::contact(const rp_config &config)
         memory_.emplace_back(size.nx * size.ny, size.ny, solver_.scene());
     }
   }
+  if (rail_support::asked(config))
+    support_ = std::make_unique<rail_support>(config, static_cast<int>(wheels_.size()),
+                                              solver_.scene().modulus());
+  if (config.kind != RP_PATCH && config.friction_along_points > 0)
+    friction_along_ = friction_factor(config.friction_along_points, config.friction_along_position,
+                                      config.friction_along_factor);
   scene_ = fingerprint(config, shape_);
+  if (config.derivatives != 0) {
+    const auto count = config.kind == RP_PATCH ? static_cast<size_t>(size.nx * size.ny) : 0;
+    derivative_ = std::make_unique<derivative_record>(config, solver_.scene(), count);
+  }
   // nothing else of the caller's memory is kept than the creep table
   config_.undeformed_distance = nullptr;
   for (auto *p : {&config_.wheel[0], &config_.wheel[1], &config_.rail[0], &config_.rail[1]})
     *p = rp_profile{};
   for (int side = 0; side < 2; ++side) config_.runout[side] = config_.rail_height[side] = nullptr;
+  for (int side = 0; side < 2; ++side)
+    config_.rail_sections[side] = nullptr, config_.section_position[side] = nullptr;
 }
+
+contact::~contact() = default;
 
 bool contact::has_side(int side) const {
   if (config_.kind == RP_PATCH) return side == RP_RIGHT;
@@ -287,12 +306,14 @@ const patch_memory &contact::memory(int side, int patch) const {
 }
 
 void contact::step(const rp_input &input, rp_result &result) {
+  if (derivative_) begin_record();
   rp_result out{};
   out.z = nan;
   const rp_patch_result empty = empty_patch_result();
   for (auto &side : out.side) {
     side.status = RP_NO_CONTACT;
     side.rolling_radius = nan;
+    for (int k = 0; k < 2; ++k) side.rail_deflection[k] = side.rail_deflection_rate[k] = nan;
     for (auto &patch : side.patch) patch = empty;
   }
   for (auto &m : memory_) m.solved = false;
@@ -303,6 +324,7 @@ void contact::step(const rp_input &input, rp_result &result) {
   }
   config_.kind == RP_PATCH ? step_patch(input, out) : step_wheels(input, out);
   result = out;
+  if (derivative_) end_record(input, out);
 }
 
 rolling_input contact::step_of(const rp_input &in) const {
@@ -398,30 +420,37 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
   solver_.observe(RP_STAGE_GEOMETRY, false);
   patch_wrench wrench;
   solver_.solve(problem, m, result, wrench);
+  if (derivative_) derivative_->problem = problem;
   finish(result.status);
 }
 
+// Solves all wheels at z; returns their vertical force on the rails.
+double contact::evaluate_wheels(double z, rp_result &out) {
+  double vertical = 0;
+  rp_status status = RP_NO_CONTACT;
+  for (auto &wheel : wheels_) {
+    rp_side_result &side = out.side[wheel.side()];
+    wheel.move_to(z);
+    wheel.evaluate(solver_, &memory(wheel.side(), 0), side);
+    vertical -= side.force[2];
+    status = combine_status(status, side.status);
+  }
+  ++out.evaluations;
+  out.status = status;
+  return vertical;
+}
+
 void contact::step_wheels(const rp_input &in, rp_result &out) {
-  const auto evaluate = [&](double z) {
-    double vertical = 0;
-    rp_status status = RP_NO_CONTACT;
-    for (auto &wheel : wheels_) {
-      rp_side_result &side = out.side[wheel.side()];
-      wheel.move_to(z);
-      wheel.evaluate(solver_, &memory(wheel.side(), 0), side);
-      vertical -= side.force[2];
-      status = combine_status(status, side.status);
-    }
-    ++out.evaluations;
-    out.status = status;
-    return vertical;
-  };
   if (solver_.scene().keeps_steps())
     for (auto &m : memory_) solver_.remember(m);
+  if (friction_along_.varies()) solver_.set_friction_scale(friction_along_.at(in.x));
+  const auto evaluate = [&](double z) { return evaluate_wheels(z, out); };
   solver_.observe(RP_STAGE_GEOMETRY, true);
   for (auto &wheel : wheels_) wheel.place(in);
   solver_.observe(RP_STAGE_GEOMETRY, false);
-  if (config_.load == RP_POSITION) {
+  if (support_) {
+    solve_supported(in, out);
+  } else if (config_.load == RP_POSITION) {
     out.z = in.z;
     evaluate(in.z);
   } else {
@@ -466,10 +495,15 @@ void contact::find_z(double target, Evaluate &&evaluate, rp_result &out) {
     if (search.converged() || search.exhausted()) break;
   }
   out.z = touch + depth;
-  // what does not carry the force asked for is no solution of the case, wheel by wheel
-  const rp_status found = search.converged()  ? RP_CONVERGED
-                          : search.too_deep() ? RP_OUT_OF_RANGE
-                                              : RP_NOT_CONVERGED;
+  report_search(search.converged(), search.too_deep() ? RP_OUT_OF_RANGE : RP_NOT_CONVERGED,
+                search.residual(), out);
+  depth_ = search.converged() ? depth : 0.0;
+}
+
+// What does not carry the force asked for is no solution of the case, wheel by wheel.
+void contact::report_search(bool converged, rp_status otherwise, double residual,
+                            rp_result &out) const {
+  const rp_status found = converged ? RP_CONVERGED : otherwise;
   const auto degrade = [&](rp_status &status) {
     if (status == RP_CONVERGED) status = found;
   };
@@ -477,11 +511,10 @@ void contact::find_z(double target, Evaluate &&evaluate, rp_result &out) {
     degrade(side.status);
     for (int i = 0; i < side.patch_count; ++i) {
       degrade(side.patch[i].status);
-      side.patch[i].residual = std::max(side.patch[i].residual, search.residual());
+      side.patch[i].residual = std::max(side.patch[i].residual, residual);
     }
   }
   if (found != RP_CONVERGED && out.status != RP_OUT_OF_RANGE) out.status = found;
-  depth_ = search.converged() ? depth : 0.0;
 }
 
 void contact::reset() {
@@ -491,6 +524,8 @@ void contact::reset() {
     if (m.heat) m.heat->clear();
   }
   depth_ = 0;
+  if (derivative_) derivative_->solved = false;
+  if (support_) support_->reset();
 }
 
 // --- fields -------------------------------------------------------------------------
@@ -522,8 +557,9 @@ struct plastic_path {
 // The coefficient of a law of temperature with the factor of each row.
 struct friction_of_heat {
   const patch_memory &m;
+  double scale;
   double operator[](size_t i) const {
-    const double mu = m.heat->friction[i];
+    const double mu = scale * m.heat->friction[i];
     return m.row_friction.size() > 0 ? mu * m.row_friction[i / static_cast<size_t>(m.g.nx)] : mu;
   }
 };
@@ -551,15 +587,17 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
       (of_tangential && m.px.size() == 0) || lacks_law(m, name) || m.columns() * m.rows() == 0 ||
       (name == RP_FIELD_PRESSURE && m.pressure.size() + m.node_pressure.size() == 0);
   const bool no_heat = name == RP_FIELD_TEMPERATURE && !m.heat;
-  if (!m.solved || missing || no_heat) return RP_ERROR_NO_FIELD;
+  const bool of_rows = name == RP_FIELD_ROW_POSITION || name == RP_FIELD_ROW_ANGLE;
+  if (!m.solved || missing || no_heat || (of_rows && !m.curved)) return RP_ERROR_NO_FIELD;
   if (m.fitted() && name == RP_FIELD_UNDEFORMED_DISTANCE) return RP_ERROR_NO_FIELD;
   const int nx = m.columns(), ny = m.rows();
   const bool of_axis = (name == RP_FIELD_X && !m.fitted()) || name == RP_FIELD_Y;
   const bool of_vectors = name == RP_FIELD_TRACTION || name == RP_FIELD_MICRO_SLIP ||
                           name == RP_FIELD_PLASTIC_DISPLACEMENT || name == RP_FIELD_TEMPERATURE;
   const auto plane = static_cast<size_t>(nx * ny);
-  const size_t needed = of_axis ? static_cast<size_t>(name == RP_FIELD_X ? nx : ny)
-                                : (of_vectors ? 2 * plane : plane);
+  const size_t needed = of_axis   ? static_cast<size_t>(name == RP_FIELD_X ? nx : ny)
+                        : of_rows ? static_cast<size_t>(name == RP_FIELD_ROW_POSITION ? 2 * ny : ny)
+                                  : (of_vectors ? 2 * plane : plane);
   const size_t capacity = *count;
   *count = needed;
   if (capacity < needed || !values) return RP_ERROR_SIZE;
@@ -608,7 +646,7 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
       if (m.history.friction.size() > 0)
         copy(m.history.friction, values, 1.0);
       else
-        copy(friction_of_heat{m}, values, 1.0);
+        copy(friction_of_heat{m, solver_.scene().friction_scale}, values, 1.0);
       break;
     case RP_FIELD_PLASTIC_DISPLACEMENT:
       copy(m.history.plastic[0], values, 1.0);
@@ -619,6 +657,16 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
       break;
     case RP_FIELD_YIELD_STRESS:
       copy(m.history.yield_stress, values, 1.0);
+      break;
+    case RP_FIELD_ROW_POSITION:
+      for (int j = 0; j < ny; ++j) {
+        const int row = left ? ny - 1 - j : j;
+        values[j] = lateral * m.curved->y(row);
+        values[ny + j] = m.curved->z(row);
+      }
+      break;
+    case RP_FIELD_ROW_ANGLE:
+      for (int j = 0; j < ny; ++j) values[j] = lateral * m.curved->angle(left ? ny - 1 - j : j);
       break;
     default:
       return RP_ERROR_NO_FIELD;

@@ -2,20 +2,29 @@
 // or for the wheels of a wheelset.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "patch_contact.hpp"
+#include "rail_support.hpp"
 #include "wheel_contact.hpp"
 
 namespace railpatch {
+
+struct derivative_record;  // contact_derivative.hpp
 
 class contact {
  public:
   // The config has been checked; throws profile_error or std::bad_alloc.
   explicit contact(const rp_config &config);
+  ~contact();
 
   void step(const rp_input &input, rp_result &result);
   void reset();
+  // Whether rp_differentiate may be called, and whether there is a step to differentiate.
+  bool has_derivatives() const { return derivative_ != nullptr; }
+  bool has_solution() const;
+  rp_derivative_kind differentiate(const rp_input &direction, rp_result &change);
   double friction_coefficient() const { return solver_.scene().friction_coefficient; }
   void set_friction_coefficient(double value) { solver_.set_friction_coefficient(value); }
 
@@ -38,16 +47,29 @@ class contact {
   void step_wheels(const rp_input &input, rp_result &result);
   template <class Evaluate>
   void find_z(double vertical_force, Evaluate &&evaluate, rp_result &result);
+  double evaluate_wheels(double z, rp_result &result);
+  void solve_supported(const rp_input &input, rp_result &result);
+  void report_search(bool converged, rp_status otherwise, double residual, rp_result &result) const;
   bool state_fits(const unsigned char *patches, size_t size) const;
+  // Takes over what later steps of another handle of the same scene depend on.
+  void copy_state(const contact &from);
+  void begin_record();
+  void end_record(const rp_input &input, const rp_result &result);
+  void differentiate_patch(const rp_input &direction, rp_result &change);
+  void differentiate_by_differences(const rp_input &direction, rp_result &change);
+  size_t derivative_bytes() const;
 
   rp_config config_;
   fft_plans plans_;
   patch_contact solver_;
-  std::vector<patch_memory> memory_;   // of the sides in use, max_patches each
-  std::vector<wheel_contact> wheels_;  // of the sides in use
-  double depth_ = 0;                   // m, last z found minus first touch; 0: none
-  uint64_t scene_ = 0;                 // fingerprint of the config
-  aligned_buffer<double> shape_;       // undeformed distance of the case
+  std::vector<patch_memory> memory_;               // of the sides in use, max_patches each
+  std::vector<wheel_contact> wheels_;              // of the sides in use
+  double depth_ = 0;                               // m, last z found minus first touch; 0: none
+  uint64_t scene_ = 0;                             // fingerprint of the config
+  aligned_buffer<double> shape_;                   // undeformed distance of the case
+  std::unique_ptr<derivative_record> derivative_;  // null: no derivatives
+  std::unique_ptr<rail_support> support_;          // where rails are on springs
+  friction_factor friction_along_;
 };
 
 }  // namespace railpatch

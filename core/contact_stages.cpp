@@ -69,7 +69,9 @@ const char *influence_reason(const patch_scene &scene) {
 }
 
 const char *coupling_reason(const patch_scene &scene) {
-  if (scene.couples()) return "unlike bodies, (1 - 2 nu)/G differs: outer loop";
+  if (scene.couples())
+    return scene.curved ? "reference_surface = curved: outer loop"
+                        : "unlike bodies, (1 - 2 nu)/G differs: outer loop";
   return is_coupled(scene.elastic) ? "unlike bodies, but no tangential problem"
                                    : "(1 - 2 nu)/G of both bodies is the same";
 }
@@ -86,6 +88,12 @@ const char *plasticity_reason(const rp_config &config, const patch_scene &scene)
   if (scene.yields()) return "the third-body layer has a yield stress";
   return config.layer_thickness > 0 ? "the third-body layer has no yield stress"
                                     : "no third-body layer";
+}
+
+const char *derivative_reason(bool asked, const patch_scene &scene) {
+  if (!asked) return "derivatives are not asked for";
+  return scene.differentiates() ? "derivatives are asked for: from the solved conditions"
+                                : "derivatives are asked for: by differences of further steps";
 }
 
 }  // namespace
@@ -124,8 +132,15 @@ void contact::describe(rp_stage_info *info) const {
   info[RP_STAGE_COUPLING] = {"coupling", scene.couples(), coupling_reason(scene),
                              solver_.coupling_bytes()};
   info[RP_STAGE_HISTORY] = {"history", scene.keeps_steps(), history_reason(scene), history};
+  info[RP_STAGE_SUPPORT] = {
+      "rail_support", support_ != nullptr,
+      support_ ? "rails have a stiffness: deflections by Newton's method" : "the rails are rigid",
+      support_ ? support_->bytes() : 0};
   info[RP_STAGE_PLASTICITY] = {"plasticity", scene.yields(), plasticity_reason(config_, scene),
                                plastic};
+  const bool asked = config_.derivatives != 0;
+  info[RP_STAGE_DERIVATIVES] = {"derivatives", asked, derivative_reason(asked, scene),
+                                derivative_bytes()};
 }
 
 }  // namespace railpatch

@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <type_traits>
 
 #include "check.hpp"
 #include "contact.hpp"
+#include "contact_derivative.hpp"
 
 namespace railpatch {
 
@@ -23,7 +25,7 @@ constexpr size_t checked_from = offsetof(state_header, scene);
 struct patch_header {
   grid g;
   vec3 reference;
-  double share;
+  double share, rail[2];
   uint64_t warm, begun;
 };
 
@@ -42,6 +44,7 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            static_cast<double>(c.normal),
                            static_cast<double>(c.tangential),
                            static_cast<double>(c.spin_offset),
+                           static_cast<double>(c.reference_surface),
                            static_cast<double>(c.traction_bound),
                            static_cast<double>(c.flexibility_blending),
                            static_cast<double>(c.track),
@@ -115,6 +118,14 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            c.flange_back_position,
                            c.gauge,
                            c.gauge_height,
+                           c.gauge_widening,
+                           static_cast<double>(c.friction_along_points),
+                           static_cast<double>(c.section_count[0]),
+                           static_cast<double>(c.section_count[1]),
+                           c.rail_stiffness[0],
+                           c.rail_stiffness[1],
+                           c.rail_damping[0],
+                           c.rail_damping[1],
                            c.cant,
                            c.curvature,
                            c.roller_radius,
@@ -141,6 +152,9 @@ uint64_t fingerprint_of_arrays(const rp_config &c, const aligned_buffer<double> 
   const auto points = static_cast<size_t>(c.friction_points);
   add(c.friction_position, points);
   add(c.friction_factor, points);
+  const auto along = static_cast<size_t>(c.friction_along_points);
+  add(c.friction_along_position, along);
+  add(c.friction_along_factor, along);
   const auto hardening = static_cast<size_t>(c.hardening_points);
   add(c.hardening_displacement, hardening);
   add(c.hardening_stress, hardening);
@@ -150,17 +164,30 @@ uint64_t fingerprint_of_arrays(const rp_config &c, const aligned_buffer<double> 
     hash = hash * 31 + header.checksum;
   }
   if (c.kind == RP_PATCH) return hash;
-  for (const rp_profile *p : {&c.wheel[0], &c.wheel[1], &c.rail[0], &c.rail[1]})
-    for (const double *values : {p->arc_length, p->y, p->z, p->dy, p->dz})
-      add(values, static_cast<size_t>(std::max(p->count, 0)));
+  const auto add_profile = [&](const rp_profile &p) {
+    for (const double *values : {p.arc_length, p.y, p.z, p.dy, p.dz})
+      add(values, static_cast<size_t>(std::max(p.count, 0)));
+  };
+  for (const rp_profile *p : {&c.wheel[0], &c.wheel[1], &c.rail[0], &c.rail[1]}) add_profile(*p);
   for (int side = 0; side < 2; ++side) {
+    // of a side without a wheel nothing has been looked at
+    if (c.kind == RP_WHEEL_RAIL && side != c.side) continue;
+    add(c.section_position[side], static_cast<size_t>(c.section_count[side]));
+    for (int k = 0; k < c.section_count[side]; ++k) add_profile(c.rail_sections[side][k]);
     add(c.runout[side], static_cast<size_t>(c.runout_count[side]));
     add(c.rail_height[side], static_cast<size_t>(c.rail_height_count[side]));
   }
   return hash;
 }
 
-// the fields that a later step starts from
+// of both rails, where they are on springs
+size_t support_bytes(const std::unique_ptr<rail_support> &support) {
+  static_assert(std::is_trivially_copyable_v<rail_support::rail>);
+  return support ? 2 * sizeof(rail_support::rail) : 0;
+}
+
+// the fields that a later step starts from, at most
+constexpr size_t max_start_fields = 16;
 template <class Memory, class F>
 void for_each_start_field(Memory &m, F &&f) {
   if (m.heat && m.heat->columns.size())
@@ -185,7 +212,8 @@ uint64_t contact::fingerprint(const rp_config &c, const aligned_buffer<double> &
 }
 
 size_t contact::state_size() const {
-  size_t size = sizeof(state_header) + memory_.size() * sizeof(patch_header);
+  size_t size =
+      sizeof(state_header) + support_bytes(support_) + memory_.size() * sizeof(patch_header);
   for (const auto &m : memory_)
     for_each_start_field(m, [&](const double *, size_t bytes) { size += bytes; });
   return size;
@@ -198,11 +226,16 @@ void contact::save_state(unsigned char *buffer) const {
     at += size;
   };
   for (const auto &m : memory_) {
-    const patch_header header{m.g, m.reference, m.share, m.warm ? 1u : 0u,
+    const patch_header header{m.g,
+                              m.reference,
+                              m.share,
+                              {m.rail[0], m.rail[1]},
+                              m.warm ? 1u : 0u,
                               m.history.begun ? 1u : 0u};
     put(&header, sizeof header);
     for_each_start_field(m, put);
   }
+  if (support_) put(support_->rails(), support_bytes(support_));
   const auto bytes = static_cast<size_t>(at - buffer);
   state_header header{state_magic, static_cast<uint32_t>(config_.kind), bytes, 0, scene_,
                       depth_,      solver_.scene().friction_coefficient};
@@ -228,6 +261,7 @@ bool contact::restore_state(const unsigned char *buffer, size_t size) {
     m.g = patch.g;
     m.reference = patch.reference;
     m.share = patch.share;
+    for (int k = 0; k < 2; ++k) m.rail[k] = patch.rail[k];
     m.warm = patch.warm != 0;
     m.history.begun = patch.begun != 0;
     m.solved = false;
@@ -236,9 +270,30 @@ bool contact::restore_state(const unsigned char *buffer, size_t size) {
       at += bytes;
     });
   }
+  if (support_) std::memcpy(support_->rails(), at, support_bytes(support_));
   depth_ = header.depth;
   solver_.set_friction_coefficient(header.friction_coefficient);
+  if (derivative_) derivative_->solved = false;
   return true;
+}
+
+void contact::copy_state(const contact &from) {
+  for (size_t k = 0; k < memory_.size(); ++k) {
+    const patch_memory &source = from.memory_[k];
+    patch_memory &m = memory_[k];
+    m.g = source.g;
+    m.reference = source.reference;
+    m.warm = source.warm;
+    m.history.begun = source.history.begun;
+    m.solved = false;
+    const double *fields[max_start_fields];
+    size_t count = 0, next = 0;
+    for_each_start_field(source, [&](const double *data, size_t) { fields[count++] = data; });
+    for_each_start_field(
+        m, [&](double *data, size_t bytes) { std::memcpy(data, fields[next++], bytes); });
+  }
+  depth_ = from.depth_;
+  solver_.set_friction_coefficient(from.friction_coefficient());
 }
 
 // Walks the patches without changing anything: every grid must fit this handle's memory.
@@ -263,7 +318,7 @@ bool contact::state_fits(const unsigned char *at, size_t size) const {
     at += bytes;
     size -= bytes;
   }
-  return size == 0;
+  return size == support_bytes(support_);
 }
 
 }  // namespace railpatch

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sums.hpp"
 
@@ -14,16 +15,16 @@ constexpr double least_tolerance = 1e-12;  // that rounding allows to ask for
 
 }  // namespace
 
-coupled_contact::coupled_contact(const elastic_constants &elastic, bool line,
-                                 const fft_plans &plans, int max_count, bool keeps_steps)
-    : coupling_(elastic, line, plans), outer_(static_cast<size_t>(max_count)) {
+coupled_contact::coupled_contact(std::unique_ptr<coupling_operator> coupling, int max_count,
+                                 bool keeps_steps)
+    : coupling_(std::move(coupling)), outer_(static_cast<size_t>(max_count)) {
   for (auto *b : {&distance_, &slip_[0], &slip_[1], &now_, &next_})
     *b = aligned_buffer<double>(static_cast<size_t>(max_count));
   if (keeps_steps) last_pressure_ = aligned_buffer<double>(static_cast<size_t>(max_count));
 }
 
 size_t coupled_contact::bytes() const {
-  return coupling_.bytes() + outer_.bytes() + 5 * distance_.bytes() + last_pressure_.bytes();
+  return coupling_->bytes() + outer_.bytes() + 5 * distance_.bytes() + last_pressure_.bytes();
 }
 
 void coupled_contact::begin(const grid &g, const double *distance, const double *px,
@@ -31,14 +32,14 @@ void coupled_contact::begin(const grid &g, const double *distance, const double 
   grid_ = g;
   undeformed_ = distance;
   rounds_ = 0;
-  coupling_.set_grid(g);
+  coupling_->set_grid(g);
   outer_.begin(static_cast<size_t>(g.count()));
   const auto loaded = [&](const double *p) {
     return std::any_of(p, p + g.count(), [](double v) { return v != 0; });
   };
   moved_ = loaded(px) || loaded(py);
   if (moved_)
-    coupling_.from_traction(px, py, now_.data());
+    coupling_->from_traction(px, py, now_.data());
   else
     std::fill_n(now_.data(), g.count(), 0.0);
   set_distance();
@@ -69,13 +70,13 @@ void coupled_contact::remember(const grid &g, const double *pressure) {
 
 void coupled_contact::set_slip(const double *pressure, const rolling_input &rolling) {
   double *here[2] = {slip_[0].data(), slip_[1].data()};
-  coupling_.from_pressure(0.0, pressure, here[0], here[1]);
+  coupling_->from_pressure(0.0, pressure, here[0], here[1]);
   // distance_ is free until the next round
   const bool steady = rolling.regime == motion::steady;
   const double upstream = steady ? rolling.direction * grid_.dx : rolling.upstream();
   const double way = rolling.regime == motion::shift ? 1.0 : std::abs(upstream);
-  coupling_.from_pressure(upstream, steady ? pressure : last_pressure_.data(), next_.data(),
-                          distance_.data());
+  coupling_->from_pressure(upstream, steady ? pressure : last_pressure_.data(), next_.data(),
+                           distance_.data());
   for (int i = 0; i < grid_.count(); ++i) {
     const auto at = static_cast<size_t>(i);
     here[0][i] = (here[0][i] - next_[at]) / way;
@@ -85,7 +86,7 @@ void coupled_contact::set_slip(const double *pressure, const rolling_input &roll
 
 double coupled_contact::error(const double *pressure, const double *px, const double *py,
                               bool force_given) {
-  coupling_.from_traction(px, py, next_.data());
+  coupling_->from_traction(px, py, next_.data());
   double mean = 0;
   int count = 0;
   for (int i = 0; force_given && i < grid_.count(); ++i) {

@@ -1,13 +1,15 @@
-// Normal and tangential problem of unlike bodies (K not 0) together: solved in turn, each with the
-// other's part given (Panagiotopoulos 1975, Ing.-Arch. 44; Kalker 1990, section 4.3). What goes
-// around is the normal displacement d from the tractions, which the normal problem takes as part of
-// the undeformed distance:
+// Normal and tangential problem of unlike bodies (K not 0), or on a curved reference surface,
+// together: solved in turn, each with the other's part given (Panagiotopoulos 1975, Ing.-Arch. 44;
+// Kalker 1990, section 4.3). What goes around is the normal displacement d from the tractions,
+// which the normal problem takes as part of the undeformed distance:
 //   d -> pressure(h + d) -> slip from pressure -> traction -> d'.
 // All contact conditions hold but the gap's, which errs by d' - d: that over the greatest normal
 // displacement is the remaining error. Steps are accelerated (fixed_point.hpp).
 #pragma once
 
-#include "coupling.hpp"
+#include <memory>
+
+#include "coupling_operator.hpp"
 #include "fixed_point.hpp"
 #include "tangential.hpp"
 
@@ -15,8 +17,7 @@ namespace railpatch {
 
 class coupled_contact {
  public:
-  coupled_contact(const elastic_constants &elastic, bool line, const fft_plans &plans,
-                  int max_count, bool keeps_steps);
+  coupled_contact(std::unique_ptr<coupling_operator> coupling, int max_count, bool keeps_steps);
 
   // Starts from the tractions given; distance: undeformed, of the grid.
   void begin(const grid &g, const double *distance, const double *px, const double *py);
@@ -26,8 +27,8 @@ class coupled_contact {
   const double *distance() const { return distance_.data(); }
   // The last step's pressure, where that counts; null: none.
   void remember(const grid &g, const double *pressure);
-  // Slip that the pressure adds to the rigid slip, [2][ny][nx].
-  const double *slip(int component) const { return slip_[component].data(); }
+  // Slip that the pressure adds to the rigid slip, [2][ny][nx]; what else does may be added to it.
+  double *slip(int component) { return slip_[component].data(); }
   void set_slip(const double *pressure, const rolling_input &rolling);
   // m, greatest normal displacement from the pressure
   void set_scale(double value) { scale_ = value; }
@@ -45,7 +46,7 @@ class coupled_contact {
  private:
   void set_distance();
 
-  coupling_influence coupling_;
+  std::unique_ptr<coupling_operator> coupling_;
   fixed_point outer_;
   grid grid_;
   const double *undeformed_ = nullptr;

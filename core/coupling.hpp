@@ -13,7 +13,7 @@
 #include <complex>
 
 #include "batch_fft.hpp"
-#include "influence.hpp"
+#include "coupling_operator.hpp"
 
 namespace railpatch {
 
@@ -21,18 +21,18 @@ namespace railpatch {
 // G, is rounding in the combination of equal bodies.
 inline bool is_coupled(const elastic_constants &e) { return !(std::abs(e.mismatch) < 1e-12); }
 
-class coupling_influence {
+class coupling_influence final : public coupling_operator {
  public:
   coupling_influence(const elastic_constants &elastic, bool line, const fft_plans &plans);
 
   // false where the grid exceeds the plans.
-  bool set_grid(const grid &g);
+  bool set_grid(const grid &g) override;
   // Tangential displacement (m) from pressure, seen from `offset` (m) further along x. Kernels are
   // kept for offset 0 and for the last other one.
-  void from_pressure(double offset, const double *p, double *ux, double *uy);
+  void from_pressure(double offset, const double *p, double *ux, double *uy) override;
   // Normal displacement (m) from traction.
-  void from_traction(const double *px, const double *py, double *un);
-  size_t bytes() const;
+  void from_traction(const double *px, const double *py, double *un) override;
+  size_t bytes() const override;
 
  private:
   using fft = batch_fft<double>;

@@ -124,6 +124,17 @@ bool meet(const surface &f, const vec3 &base, hit &h) {
   return h.valid = false;
 }
 
+// Angle of the surface in the plane across x: the gradient of (distance from the axis - r(u)) is
+// normal to it, as (q_x/r, -dr/du, q_z/r) in the surface's axes.
+double across(const surface &f, const hit &h) {
+  const curve_point m = f.meridian->evaluate(h.p, f.meridian->curve().interval(h.p, h.interval));
+  const vec3 q = f.q0 + h.n * f.qn;
+  const double r = f.radius + f.sign * m.z, dr = f.sign * m.dz;
+  const vec3 normal =
+      f.prismatic ? vec3{0, -dr, m.dy} : vec3{q[0] / r * m.dy, -dr, q[2] / r * m.dy};
+  return std::atan(-dot(normal, f.qs) / dot(normal, f.qn));
+}
+
 // the sample of the meridian nearest to the frame's origin starts the search
 hit nearest(const surface &f) {
   const placed_profile &m = *f.meridian;
@@ -252,6 +263,11 @@ void side_geometry::place_rail_marker() {
   rail_.place(roller ? 0 : -track_.cant, 0, 0);
   marker_y_ = 0.5 * track_.gauge - rail_.innermost(track_.gauge_height);
   marker_z_ = roller ? 0 : -rail_.evaluate(rail_.extreme()).z;
+}
+
+void side_geometry::reload_rail() {
+  rail_.reload();
+  place_rail_marker();
 }
 
 void side_geometry::place(const side_motion &motion) {
@@ -478,6 +494,24 @@ vec3 side_geometry::rail_rate(const vec3 &at) const {
   vec3 spin = d.angular_velocity;
   if (track_.kind == track_kind::roller) spin[1] = 0;
   return d.velocity + cross(spin, at - origin);
+}
+
+section_point side_geometry::section(const contact_frame &frame, double start[2]) const {
+  const surface both[2] = {wheel_seen_from(frame), rail_seen_from(frame)};
+  double height[2], turn[2];
+  for (int k = 0; k < 2; ++k) {
+    const surface &f = both[k];
+    hit h;
+    if (std::isnan(start[k]))
+      h = nearest(f);
+    else
+      h.p = start[k];
+    if (!meet(f, f.at(0, 0), h)) return {};
+    start[k] = h.p;
+    height[k] = h.n;
+    turn[k] = across(f, h);
+  }
+  return {true, height[0], height[1], turn[0], turn[1]};
 }
 
 creepage_state side_geometry::creepages(const contact_frame &frame, double approach) const {

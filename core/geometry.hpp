@@ -108,6 +108,13 @@ struct locus_point {
   double curvature = 0;      // 1/m, the gap grows with curvature x^2
 };
 
+// Both surfaces on the line along n through a frame's origin.
+struct section_point {
+  bool valid = false;
+  double wheel = 0, rail = 0;              // m, heights along n
+  double wheel_angle = 0, rail_angle = 0;  // rad, about x from the frame's s to the surface
+};
+
 struct surface;
 
 class side_geometry {
@@ -120,6 +127,8 @@ class side_geometry {
                 const track_config &track);
 
   void place(const side_motion &motion);
+  // The rail's profile has changed; place() must follow.
+  void reload_rail();
   // Only z changes: the locus stays as it is, so this is nearly free.
   void move_to(double z);
   const side_motion &motion() const { return motion_; }
@@ -142,6 +151,10 @@ class side_geometry {
   locus_point locus(double s) const;
   // The rail surface at (x, y): z, and the angle of its profile; false beyond the profile.
   bool rail_surface(double x, double y, double &z, double &angle) const;
+  // start: arc lengths of wheel and rail profile to search from, NaN where they are not known; out
+  // those found.
+  section_point section(const contact_frame &frame, double start[2]) const;
+
   // h[ny][nx], x fastest; no_surface beyond the profiles.
   void undeformed_distance(const contact_frame &frame, const surface_grid &grid, double *h) const;
 

@@ -49,6 +49,39 @@ double carlson_rd(double x, double y, double z) {
   }
 }
 
+// d R_D(0, y, z)/dy, which is symmetric in y and z. From the integral, by partial fractions,
+// (R_D(0, y, z) - R_D(0, z, y))/(2 (z - y)); for nearly equal ones the integrand's series about
+// their mean.
+double carlson_rd_rate(double y, double z) {
+  const double mean = 0.5 * (y + z), apart = 0.5 * (z - y), ratio = apart / mean;
+  if (std::abs(ratio) > 1e-3) return (carlson_rd(0, y, z) - carlson_rd(0, z, y)) / (4.0 * apart);
+  const double power = mean * mean * std::sqrt(mean);
+  return -(9.0 * pi / 32.0) * (1.0 + 35.0 / 32.0 * ratio * ratio) / power;
+}
+
+// Logarithmic rates of c0, c1 and approach at constant force, by ln a and ln b.
+struct log_rates {
+  double c0[2], c1[2], approach[2];
+};
+
+log_rates rates_of(const double semi_axes[2]) {
+  const double a2 = semi_axes[0] * semi_axes[0], b2 = semi_axes[1] * semi_axes[1];
+  const double d0 = carlson_rd(0, b2, a2), d1 = carlson_rd(0, a2, b2), f = carlson_rf(0, a2, b2);
+  const double rate = carlson_rd_rate(a2, b2);
+  const double m0 = 2.0 * b2 * rate / d0, m1 = 2.0 * a2 * rate / d1;
+  return {{-3.0 - m0, m0}, {m1, -3.0 - m1}, {-a2 * d0 / (3.0 * f), -b2 * d1 / (3.0 * f)}};
+}
+
+// Rates from those of ln a, ln b and ln F.
+hertz_contact from_logs(const hertz_contact &c, const double curvatures[2], const double axes[2],
+                        double force, double approach) {
+  return {{c.semi_axes[0] * axes[0], c.semi_axes[1] * axes[1]},
+          {curvatures[0], curvatures[1]},
+          c.normal_force * force,
+          approach,
+          c.max_pressure * (force - axes[0] - axes[1])};
+}
+
 // ln(c0/c1) of an ellipse with ln(a/b) = t, falling from +inf to -inf.
 double log_curvature_ratio(double t) {
   const double a2 = std::exp(t), b2 = std::exp(-t);
@@ -121,6 +154,41 @@ hertz_contact hertz_line(double radius, double width, double modulus, double for
   result.semi_axes[0] = std::sqrt(4.0 * force / width * radius / (pi * modulus));
   result.max_pressure = 2.0 * force / (pi * width * result.semi_axes[0]);
   return result;
+}
+
+// d ln(c0/c1) fixes d ln(a/b), then d ln c0 the size.
+hertz_contact hertz_rate_of_force(const hertz_contact &c, const double curvatures[2],
+                                  double force) {
+  const log_rates r = rates_of(c.semi_axes);
+  const double k0 = curvatures[0] / c.curvatures[0], k1 = curvatures[1] / c.curvatures[1];
+  const double load = force / c.normal_force;
+  const double ratio = (k0 - k1) / (r.c0[0] - r.c1[0]);  // d ln(a/b)
+  // d ln c0 = c0[0] (ratio + d ln b) + c0[1] d ln b + d ln F, with c0[0] + c0[1] = -3
+  const double b = (k0 - load - r.c0[0] * ratio) / -3.0, axes[2] = {b + ratio, b};
+  return from_logs(c, curvatures, axes, load,
+                   c.approach * (load + r.approach[0] * axes[0] + r.approach[1] * axes[1]));
+}
+
+hertz_contact hertz_rate_of_approach(const hertz_contact &c, const double curvatures[2],
+                                     double approach) {
+  // linear in the force: what the approach wants beyond that of no change in force
+  const hertz_contact still = hertz_rate_of_force(c, curvatures, 0.0);
+  const double none[2] = {0, 0};
+  const hertz_contact loaded = hertz_rate_of_force(c, none, 1.0);
+  const double force = (approach - still.approach) / loaded.approach;
+  return hertz_rate_of_force(c, curvatures, force);
+}
+
+hertz_contact hertz_rate_of_line(const hertz_contact &c, double force) {
+  const double load = force / c.normal_force, curvatures[2] = {0, 0};
+  const double axes[2] = {0.5 * load, 0.0};
+  return from_logs(c, curvatures, axes, load, 0.0);
+}
+
+hertz_contact hertz_rate_of_ellipse(const hertz_contact &c, double force) {
+  const double load = force / c.normal_force, axes[2] = {0, 0};
+  const double curvatures[2] = {c.curvatures[0] * load, c.curvatures[1] * load};
+  return from_logs(c, curvatures, axes, load, c.approach * load);
 }
 
 }  // namespace railpatch

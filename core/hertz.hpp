@@ -28,4 +28,12 @@ hertz_contact hertz_ellipse_from_approach(const double semi_axes[2], double modu
 // Line contact, force and approach-free: semi_axes[1] and the approach stay zero.
 hertz_contact hertz_line(double radius, double width, double modulus, double force);
 
+// Rates of everything above, by the rates of curvatures and of either force or approach; of a line
+// contact or where the ellipse stays as it is, of the force alone.
+hertz_contact hertz_rate_of_force(const hertz_contact &c, const double curvatures[2], double force);
+hertz_contact hertz_rate_of_approach(const hertz_contact &c, const double curvatures[2],
+                                     double approach);
+hertz_contact hertz_rate_of_line(const hertz_contact &c, double force);
+hertz_contact hertz_rate_of_ellipse(const hertz_contact &c, double force);
+
 }  // namespace railpatch

@@ -39,6 +39,7 @@ influence::influence(const scene &scene, const fft_plans &plans)
   padded_ = aligned_buffer<double>(nx * ny);
   spectrum_ = aligned_buffer<double>(half);
   transform_ = aligned_buffer<std::complex<double>>(half);
+  if (scene.curved) curved_.emplace(plans, scene.tangential, scene.layer_flexibility);
 }
 
 bool influence::set_grid(const grid &g) {
@@ -50,6 +51,7 @@ bool influence::set_grid(const grid &g) {
   grid_ = g;
   full_.set_size(g.nx, g.ny, plans_.nx(plan), plans_.ny(plan));
   single_.set_size(g.nx, g.ny, plans_.nx(plan), plans_.ny(plan));
+  if (curved_) curved_->set_size(g.nx, g.ny, plans_.nx(plan), plans_.ny(plan));
   if (same_elements && plan == plan_) return true;
   if (!same_elements || half_x > half_x_ || half_y > half_y_) make_kernels(half_x, half_y);
   plan_ = plan;
@@ -79,6 +81,7 @@ void influence::make_half_space_kernels() {
       corner_[0][at] = y_log(x, y);
       corner_[1][at] = y_log(y, x);
       corner_[2][at] = -std::hypot(x, y);
+      if (scene_.by_length) make_rates(x, y, i - 0.5, at);
     }
   const double nu = scene_.elastic.poisson_ratio;
   const double c = 1.0 / (pi * scene_.elastic.shear_modulus);
@@ -96,6 +99,14 @@ void influence::make_half_space_kernels() {
       table_[2][at] = c * (sum[1] + (1.0 - nu) * sum[0]);
       table_[3][at] = c * nu * sum[2];
     }
+}
+
+// A corner at (i - 1/2) dx moves by i - 1/2 with dx.
+void influence::make_rates(double x, double y, double moves, size_t at) {
+  const double r = std::hypot(x, y);
+  corner_[0][at] = moves * y / r;
+  corner_[1][at] = moves * (std::asinh(y / std::abs(x)) - y / r);
+  corner_[2][at] = -moves * x / r;
 }
 
 void influence::make_line_kernels() {
@@ -182,6 +193,7 @@ void influence::make_spectra() {
     transform_kernel(static_cast<kernel>(k));
     full_.set_spectrum(names[k], spectrum_.data());
     single_.set_spectrum(static_cast<convolution<float>::kernel_name>(names[k]), spectrum_.data());
+    if (curved_) give_spectrum(static_cast<kernel>(k));
   }
   // zz came last; truncation can make small entries negative, and a floor keeps the preconditioner
   // positive
@@ -194,12 +206,35 @@ void influence::make_spectra() {
   single_.set_spectrum(convolution<float>::zz_inverse, spectrum_.data());
 }
 
+void influence::give_spectrum(kernel k) {
+  const auto count = static_cast<size_t>((plans_.nx(plan_) / 2 + 1) * plans_.ny(plan_));
+  const double *s = spectrum_.data();
+  switch (k) {
+    case kernel::xx:
+      return curved_->take_xx(s, count);
+    case kernel::yy:
+      return curved_->take_yy(s, count);
+    case kernel::xy:
+      return curved_->take_xy(s, count);
+    case kernel::zz:
+      return curved_->take_zz(s, count);
+  }
+}
+
 void influence::normal_product(const double *pressure, double *displacement) {
-  full_.product(convolution<double>::zz, pressure, displacement);
+  const auto flat = [&](const double *p, double *u) {
+    full_.product(convolution<double>::zz, p, u);
+  };
+  if (curved_) return curved_->normal(pressure, displacement, flat);
+  flat(pressure, displacement);
 }
 
 void influence::normal_product_single(const double *pressure, double *displacement) {
-  single_.product(convolution<float>::zz, pressure, displacement);
+  const auto flat = [&](const double *p, double *u) {
+    single_.product(convolution<float>::zz, p, u);
+  };
+  if (curved_) return curved_->normal(pressure, displacement, flat);
+  flat(pressure, displacement);
 }
 
 void influence::normal_inverse(const double *displacement, double *pressure) {
@@ -207,27 +242,31 @@ void influence::normal_inverse(const double *displacement, double *pressure) {
 }
 
 void influence::tangential_product(const double *px, const double *py, double *ux, double *uy) {
+  if (curved_) return curved_->tangential(px, py, ux, uy);
   full_.tangential_product(px, py, ux, uy);
 }
 
 void influence::tangential_product_single(const double *px, const double *py, double *ux,
                                           double *uy) {
+  if (curved_) return curved_->tangential_single(px, py, ux, uy);
   single_.tangential_product(px, py, ux, uy);
 }
 
 void influence::rolling_product(const double *px, const double *py, int direction, double *sx,
                                 double *sy) {
+  if (curved_) return curved_->rolling(px, py, direction, grid_.dx, sx, sy);
   full_.rolling_product(px, py, direction, grid_.dx, sx, sy);
 }
 
 void influence::rolling_product_single(const double *px, const double *py, int direction,
                                        double *sx, double *sy) {
+  if (curved_) return curved_->rolling_single(px, py, direction, grid_.dx, sx, sy);
   single_.rolling_product(px, py, direction, grid_.dx, sx, sy);
 }
 
 size_t influence::bytes() const {
   size_t sum = plans_.bytes() + padded_.bytes() + spectrum_.bytes() + transform_.bytes() +
-               full_.bytes() + single_.bytes();
+               full_.bytes() + single_.bytes() + (curved_ ? curved_->bytes() : 0);
   for (const auto &b : table_) sum += b.bytes();
   for (const auto &b : corner_) sum += b.bytes();
   return sum;

@@ -18,9 +18,11 @@
 
 #include <complex>
 
+#include "conformal_influence.hpp"
 #include "convolution.hpp"
 #include "fft.hpp"
 #include "memory.hpp"
+#include "physics.hpp"
 
 namespace railpatch {
 
@@ -49,6 +51,9 @@ class influence {
     double layer_flexibility = 0;  // m/Pa, thickness over shear modulus
     double line_width = 0;         // m, > 0: plane strain
     bool tangential = true;        // false: no xx, yy, xy at all
+    // the coefficients' derivatives by dx instead, offsets in elements kept (not plane strain)
+    bool by_length = false;
+    bool curved = false;  // rows on a curved reference surface
   };
 
   influence(const scene &scene, const fft_plans &plans);
@@ -56,6 +61,11 @@ class influence {
   // Prepares kernels and spectra for a grid; false where the grid exceeds the plans. Cheap when
   // neither element size nor transform size changes.
   bool set_grid(const grid &g);
+
+  // Of a curved reference surface: the inclination of each row (conformal_influence.hpp), before
+  // the products. Their inverses and single coefficients stay those of the plane.
+  void set_rows(const double *cosine, const double *sine) { curved_->set_rows(cosine, sine); }
+  conformal_influence &curved() { return *curved_; }
 
   // u = A p for the normal direction, [ny][nx].
   void normal_product(const double *pressure, double *displacement);
@@ -88,8 +98,10 @@ class influence {
   void make_kernels(int half_x, int half_y);
   void make_half_space_kernels();
   void make_line_kernels();
+  void make_rates(double x, double y, double moves, size_t at);
   void make_spectra();
   void transform_kernel(kernel k);
+  void give_spectrum(kernel k);
 
   scene scene_;
   const fft_plans &plans_;
@@ -104,6 +116,7 @@ class influence {
   aligned_buffer<std::complex<double>> transform_;
   convolution<double> full_;
   convolution<float> single_;
+  physics_part<conformal_influence> curved_;
 };
 
 }  // namespace railpatch

@@ -91,23 +91,27 @@ void normal_solver::start(problem &s, double *p) {
   std::fill_n(free_.data(), s.n, static_cast<unsigned char>(0));
 }
 
-// u = A p, the influence between separate parts reduced.
 void normal_solver::product(problem &s, const double *p, double *u, precision digits) {
-  const auto product =
-      digits == precision::full ? &influence::normal_product : &influence::normal_product_single;
-  if (s.parts.count == 1) return (s.a.*product)(p, u);
-  std::fill_n(u, s.n, 0.0);
+  product(s.a, s.g, s.parts, p, u, digits == precision::full);
+}
+
+void normal_solver::product(influence &a, const grid &g, const contact_parts &parts,
+                            const double *p, double *u, bool exact) {
+  const auto product = exact ? &influence::normal_product : &influence::normal_product_single;
+  if (parts.count == 1) return (a.*product)(p, u);
+  const auto n = static_cast<size_t>(g.count());
+  std::fill_n(u, n, 0.0);
   const auto row_begin = [&](int part) {
-    return static_cast<size_t>((part < s.parts.count ? s.parts.first_row[part] : s.g.ny) * s.g.nx);
+    return static_cast<size_t>((part < parts.count ? parts.first_row[part] : g.ny) * g.nx);
   };
-  for (int source = 0; source < s.parts.count; ++source) {
-    std::fill_n(part_pressure_.data(), s.n, 0.0);
+  for (int source = 0; source < parts.count; ++source) {
+    std::fill_n(part_pressure_.data(), n, 0.0);
     for (size_t i = row_begin(source); i < row_begin(source + 1); ++i) part_pressure_[i] = p[i];
-    (s.a.*product)(part_pressure_.data(), part_displacement_.data());
-    for (int part = 0; part < s.parts.count; ++part) {
+    (a.*product)(part_pressure_.data(), part_displacement_.data());
+    for (int part = 0; part < parts.count; ++part) {
       double factor = 1;
       for (int k = std::min(source, part); k < std::max(source, part); ++k)
-        factor *= s.parts.factor[k];
+        factor *= parts.factor[k];
       for (size_t i = row_begin(part); i < row_begin(part + 1); ++i)
         u[i] += factor * part_displacement_[i];
     }

@@ -46,6 +46,9 @@ class normal_solver {
   normal_result with_force(influence &a, const grid &g, const double *undeformed_distance,
                            double force, const normal_options &options, double *pressure,
                            const contact_parts &parts = {});
+  // u = A p, the influence between separate parts reduced; single precision where not exact.
+  void product(influence &a, const grid &g, const contact_parts &parts, const double *pressure,
+               double *displacement, bool exact);
   size_t bytes() const;
 
  private:

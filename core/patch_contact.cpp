@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "conformal_coupling.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -69,10 +71,18 @@ bool patch_scene::estimates_force() const {
          fast.bound == RP_BOUND_AUTOMATIC;
 }
 
+bool patch_scene::differentiates() const {
+  if (normal != RP_NORMAL_HALF_SPACE && normal != RP_NORMAL_HERTZ) return false;
+  if (tangential == RP_TANGENTIAL_NONE) return true;
+  return tangential == RP_TANGENTIAL_FULL && !is_fitted() && !law && !keeps_steps() && !heat &&
+         !is_forced() && !couples();
+}
+
 patch_memory::patch_memory(int max_count, int max_rows, const patch_scene &scene) {
   const auto n = static_cast<size_t>(max_count);
   undeformed_distance = aligned_buffer<double>(n);
   if (!scene.closed_form()) pressure = aligned_buffer<double>(n);
+  if (scene.curved) curved.emplace(max_rows);
   if (!has_tractions(scene.tangential)) return;
   if (scene.friction_variation.varies())
     row_friction = aligned_buffer<double>(static_cast<size_t>(max_rows));
@@ -92,7 +102,7 @@ patch_memory::patch_memory(int max_count, int max_rows, const patch_scene &scene
 size_t patch_memory::bytes() const {
   return undeformed_distance.bytes() + pressure.bytes() + 4 * px.bytes() + division.bytes() +
          2 * node_x.bytes() + node_y.bytes() + row_friction.bytes() + creepage.bytes() +
-         history.bytes();
+         history.bytes() + (curved ? curved->bytes() : 0);
 }
 
 patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, int max_nx,
@@ -105,7 +115,8 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
       errors_(scene.elastic, scene.layer_flexibility) {
   const bool full = scene.tangential == RP_TANGENTIAL_FULL && !scene.is_fitted();
   const auto count = static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny);
-  const influence::scene elastic{scene.elastic, scene.layer_flexibility, scene.line_width, full};
+  const influence::scene elastic{scene.elastic, scene.layer_flexibility, scene.line_width, full,
+                                 scene.curved};
   if (full || scene.normal == RP_NORMAL_HALF_SPACE) influence_.emplace(elastic, plans);
   if (scene.normal == RP_NORMAL_HALF_SPACE) normal_.emplace(max_nx * max_ny);
   if (scene.normal == RP_NORMAL_KIK_PIOTROWSKI || scene.normal == RP_NORMAL_ANALYN)
@@ -121,9 +132,14 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
     if (plain && coarse_start::serves(max_nx, max_ny))
       coarse_start_.emplace(elastic, plans, max_nx, max_ny);
   }
-  if (scene.couples())
-    coupled_.emplace(scene.elastic, scene.line_width > 0, plans, max_nx * max_ny,
-                     scene.keeps_steps());
+  if (scene.couples()) {
+    std::unique_ptr<coupling_operator> coupling;
+    if (scene.curved)
+      coupling = std::make_unique<conformal_coupling>(*influence_, max_nx * max_ny);
+    else
+      coupling = std::make_unique<coupling_influence>(scene.elastic, scene.line_width > 0, plans);
+    coupled_.emplace(std::move(coupling), max_nx * max_ny, scene.keeps_steps());
+  }
   if (is_fast(scene.tangential)) fast_.emplace(scene.elastic, scene.fast, max_nx, max_ny);
   if (scene.is_fitted()) {
     fitted_rows_.emplace(scene.fitted[0], scene.fitted[1], max_ny);
@@ -131,6 +147,8 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
                     *fitted_rows_);
   }
   if (scene.heat) heat_.emplace(*scene.heat, max_nx, max_ny);
+  if (scene.derivatives && scene.differentiates())
+    derivative_.emplace(scene, plans, max_nx, max_ny, scene.stretches);
   if (scene.closed_form()) return;
   scratch_[0] = aligned_buffer<double>(count);
   scratch_[1] = aligned_buffer<double>(count);
@@ -205,6 +223,7 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   if (influence_) {
     observe(RP_STAGE_INFLUENCE, true);
     influence_->set_grid(problem.g);
+    if (memory.curved) influence_->set_rows(memory.curved->cosine(), memory.curved->sine());
     observe(RP_STAGE_INFLUENCE, false);
   }
   if (coupled_) {
@@ -221,6 +240,7 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
     loaded = solve_normal(problem, memory, result);
   }
   observe(RP_STAGE_NORMAL, false);
+  memory.approach = result.approach;
   memory.beyond = result.status == RP_OUT_OF_RANGE;
   memory.warm =
       loaded && result.status == RP_CONVERGED && memory.pressure.size() + memory.px.size() > 0;
@@ -251,8 +271,14 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
     wrench.force[2] = -result.normal_force;
   } else {
     const bool on_grid = memory.px.size() && !fitted_;
-    wrench = sum_tractions(problem.g, memory.pressure.data(), on_grid ? memory.px.data() : nullptr,
-                           memory.py.data());
+    const double *px = on_grid ? memory.px.data() : nullptr;
+    if (memory.curved) {
+      wrench =
+          memory.curved->sum_tractions(problem.g, memory.pressure.data(), px, memory.py.data());
+      result.normal_force = -wrench.force[2];
+    } else {
+      wrench = sum_tractions(problem.g, memory.pressure.data(), px, memory.py.data());
+    }
   }
   if (fitted_ || (fast_ && !has_tractions(scene_.tangential))) {
     const patch_wrench creep =
@@ -271,14 +297,31 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   observe(RP_STAGE_FORCES, false);
 }
 
+derivative_outcome patch_contact::differentiate(const patch_problem &problem,
+                                                const patch_memory &memory,
+                                                const patch_variation *in, int count,
+                                                const derivative_options &options,
+                                                patch_change *out) {
+  observe(RP_STAGE_DERIVATIVES, true);
+  const patch_derivative::solved solved{scene_,
+                                        problem,
+                                        memory,
+                                        influence_ ? &*influence_ : nullptr,
+                                        normal_ ? &*normal_ : nullptr,
+                                        tangential_ ? tangential_->blocks() : nullptr};
+  const derivative_outcome outcome = derivative_->solve(solved, in, count, options, out);
+  observe(RP_STAGE_DERIVATIVES, false);
+  return outcome;
+}
+
 void patch_contact::estimate_error(const patch_problem &problem, patch_memory &memory,
                                    rp_patch_result &result) const {
   // linear theory beyond its bound is what it is; other results are no solutions
   const bool linear = scene_.tangential == RP_TANGENTIAL_LINEAR;
   if (result.status != RP_CONVERGED && !(linear && result.status == RP_OUT_OF_RANGE)) return;
-  if (scene_.line_width > 0 || coupled_) return;
+  if (scene_.line_width > 0 || coupled_ || scene_.curved) return;
   solved_patch patch{scene_.normal,  scene_.tangential,  problem.hertz, {},
-                     {0, 0},         scene_.is_fitted(), {1, 1},        scene_.friction_coefficient,
+                     {0, 0},         scene_.is_fitted(), {1, 1},        scene_.friction(),
                      problem.rolling};
   if (fast_ && fast_->table()) {
     patch.stated[0] = fast_->table()->force_error();
@@ -443,6 +486,7 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
     for (int c = 0; c < 2; ++c) rolling.coupled[c] = coupled_->slip(c);
   }
   if (scene_.spin_offset) rolling.spin_offset = rolling.direction * g.dx / 6.0;
+  if (memory.curved && problem.rolling_speed > 0) add_slip_of_rows(g, *memory.curved, rolling);
   tangential_result t;
   if (fast_) {
     const fast_patch patch{g,
@@ -451,7 +495,7 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
                            rows_ ? &*rows_ : nullptr,
                            result.normal_force,
                            result.contact_area,
-                           scene_.friction_coefficient};
+                           scene_.friction()};
     t = fast_->solve(patch, rolling, fields, sums_);
   } else if (fitted_) {
     t = solve_fitted(problem, rolling, memory);
@@ -502,6 +546,18 @@ void patch_contact::find_before(const patch_problem &problem, rolling_input &rol
   observe(RP_STAGE_HISTORY, false);
 }
 
+// On a curved reference surface every row has a rigid slip of its own.
+void patch_contact::add_slip_of_rows(const grid &g, const conformal_rows &rows,
+                                     rolling_input &rolling) {
+  rolling.creepage[0] = rolling.creepage[1] = rolling.spin_creepage = 0;
+  for (int c = 0; c < 2; ++c) {
+    double *slip = coupled_->slip(c);
+    for (int j = 0; j < g.ny; ++j)
+      for (int i = 0; i < g.nx; ++i)
+        slip[j * g.nx + i] += rows.slip(c, j, g.x(i) + rolling.spin_offset);
+  }
+}
+
 tangential_result patch_contact::solve_on_grid(const patch_problem &problem,
                                                const rolling_input &rolling, patch_memory &memory,
                                                rp_patch_result &result, const double *mu) {
@@ -511,7 +567,8 @@ tangential_result patch_contact::solve_on_grid(const patch_problem &problem,
   const bool by_velocity = scene_.law && scene_.law->by_velocity;
   const double friction = by_velocity ? 1.0 : scene_.friction_coefficient;
   for (int j = 0; j < g.ny; ++j) {
-    const double factor = varies ? memory.row_friction[static_cast<size_t>(j)] : 1.0;
+    const double factor =
+        (varies ? memory.row_friction[static_cast<size_t>(j)] : 1.0) * scene_.friction_scale;
     for (auto i = static_cast<size_t>(j * g.nx); i < static_cast<size_t>((j + 1) * g.nx); ++i)
       bound_[i] = (mu ? mu[i] : friction) * factor * memory.pressure[i];
   }
@@ -653,7 +710,7 @@ tangential_result patch_contact::solve_fitted(const patch_problem &problem,
     fitted_rows_->set_line(hertz.semi_axes[0], scene_.line_width, hertz.normal_force);
   else
     fitted_rows_->set_ellipse(hertz.semi_axes, hertz.normal_force);
-  return fitted_->solve(*fitted_rows_, scene_.friction_coefficient, rolling,
+  return fitted_->solve(*fitted_rows_, scene_.friction(), rolling,
                         {scene_.tolerance, scene_.max_iterations}, memory.nodes());
 }
 

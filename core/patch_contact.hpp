@@ -6,7 +6,9 @@
 #include <optional>
 
 #include "coarse_start.hpp"
+#include "conformal_rows.hpp"
 #include "coupled_contact.hpp"
+#include "coupling.hpp"
 #include "error_estimate.hpp"
 #include "fast.hpp"
 #include "fitted.hpp"
@@ -14,6 +16,7 @@
 #include "friction_factor.hpp"
 #include "hertz.hpp"
 #include "normal.hpp"
+#include "patch_derivative.hpp"
 #include "patch_history.hpp"
 #include "physics.hpp"
 #include "railpatch.h"
@@ -23,11 +26,12 @@
 
 namespace railpatch {
 
-// Constant over the life of a handle, but for the friction coefficient.
+// Constant over the life of a handle, but for the friction coefficient and its scale.
 struct patch_scene {
   elastic_constants elastic;
   double friction_coefficient = 0;
   friction_factor friction_variation;
+  double friction_scale = 1.0;   // of the law, in this step
   double layer_flexibility = 0;  // m/Pa
   double line_width = 0;         // m, > 0: line contact
   rp_normal_method normal = RP_NORMAL_HALF_SPACE;
@@ -43,23 +47,29 @@ struct patch_scene {
   double normal_tolerance = 1e-5;
   int max_iterations = 100;
   bool spin_offset = false;  // x + dq/6 in the spin term
+  bool derivatives = false;  // patch_contact::differentiate is asked for
+  bool stretches = false;    // grids whose dx and dy change at different rates
+  bool curved = false;       // reference surface, of wheels
   int fitted[2] = {0, 0};    // nodes and strips of the tangential problem; 0: on the uniform grid
   fast_options fast;         // where the tangential theory is a fast one
   std::optional<heat_scene> heat;       // where temperatures are asked for
   bool prescribed[2] = {false, false};  // components of the creep force: their creepage is found
+  double friction() const { return friction_coefficient * friction_scale; }
   bool is_forced() const { return prescribed[0] || prescribed[1]; }
   // false: beside the exact theory, by choice
   bool estimates_force() const;
   bool is_fitted() const { return tangential == RP_TANGENTIAL_FULL && fitted[0] > 0; }
   // Pressure and traction act on each other, and both are there.
   bool couples() const {
-    return has_physics && tangential == RP_TANGENTIAL_FULL && is_coupled(elastic);
+    return has_physics && tangential == RP_TANGENTIAL_FULL && (curved || is_coupled(elastic));
   }
   // No pressure and no traction on a uniform grid: all is closed form or on rows of its own.
   bool closed_form() const {
     return normal == RP_NORMAL_HERTZ &&
            (is_fitted() || (is_fast(tangential) && !has_tractions(tangential)));
   }
+  // Whether the solution's derivatives come from its equations (patch_derivative.hpp).
+  bool differentiates() const;
   double modulus() const { return elastic.shear_modulus / (1.0 - elastic.poisson_ratio); }
 };
 
@@ -96,6 +106,8 @@ struct patch_memory {
   bool beyond = false;  // the normal problem left its range: what the patch carries is not known
   grid g;
   double share = 1;                   // in the wheel's force
+  double rail[2] = {0, 0};            // m, lateral and vertical offset of the rail
+  double approach = 0;                // m, of the last step's normal problem on the half-space
   std::array<double, 3> reference{};  // m, contact reference, track axes of a right wheel
   aligned_buffer<double> undeformed_distance, pressure, px, py, sx, sy;
   aligned_buffer<unsigned char> division;
@@ -105,6 +117,7 @@ struct patch_memory {
   std::array<double, error_feature_count> error_features{};
   patch_history history;
   physics_part<heat_memory> heat;
+  physics_part<conformal_rows> curved;
   bool fitted() const { return node_x.size() > 0; }
   // elements of the tangential problem along rolling and lateral
   int columns() const { return fitted() ? static_cast<int>(node_x.size() / node_y.size()) : g.nx; }
@@ -136,17 +149,26 @@ class patch_contact {
   }
   // The same for patches of wheels, whose grids move.
   void remember(patch_memory &memory) const {
-    memory.history.remember(memory.g, memory.reference, memory.share, memory.px.data(),
-                            memory.py.data());
+    memory.history.remember(memory.g,
+                            {memory.reference[0], memory.reference[1] - memory.rail[0],
+                             memory.reference[2] - memory.rail[1]},
+                            memory.share, memory.px.data(), memory.py.data());
   }
   // A step without contact: the material moves on and bears no traction.
   void leave_contact(const rolling_input &step, patch_memory &memory, rp_patch_result &result);
   // Carries the memory's solution over to another grid, or clears it.
   void start_from(patch_memory &memory, const grid &g);
 
+  // Derivatives of the last step's solution, which `memory` holds, in `count` directions; for
+  // scenes with derivatives, which differentiate. The memory and later steps stay as they are.
+  bool differentiates() const { return derivative_.has_value(); }
+  derivative_outcome differentiate(const patch_problem &problem, const patch_memory &memory,
+                                   const patch_variation *in, int count,
+                                   const derivative_options &options, patch_change *out);
   bool fits(const grid &g) const { return g.nx <= max_nx_ && g.ny <= max_ny_; }
   const patch_scene &scene() const { return scene_; }
   void set_friction_coefficient(double value) { scene_.friction_coefficient = value; }
+  void set_friction_scale(double value) { scene_.friction_scale = value; }
   // degrees C, of body k: wheel, rail
   void set_bulk_temperature(int k, double value) {
     if (!heat_) return;
@@ -162,6 +184,7 @@ class patch_contact {
   }
   // with the last two
   size_t tangential_bytes() const;
+  size_t derivative_bytes() const { return derivative_ ? derivative_->bytes() : 0; }
   size_t heat_bytes() const { return heat_ ? heat_->bytes() : 0; }
   void observe(rp_stage stage, bool entering) const {
     if (observer_) observer_(observer_user_, stage, entering);
@@ -178,6 +201,7 @@ class patch_contact {
                         rp_patch_result &result);
   bool solve_in_turn(const patch_problem &problem, patch_memory &memory, rp_patch_result &result);
   void leave_unloaded(const patch_problem &problem, patch_memory &memory);
+  void add_slip_of_rows(const grid &g, const conformal_rows &rows, rolling_input &rolling);
   tangential_result solve_fitted(const patch_problem &problem, const rolling_input &rolling,
                                  patch_memory &memory);
   // mu: of each element, null: as in the scene
@@ -208,6 +232,7 @@ class patch_contact {
   std::optional<fast_solver> fast_;
   physics_part<temperature_stage> heat_;
   physics_part<coupled_contact> coupled_;
+  std::optional<patch_derivative> derivative_;
   error_model errors_;
   creep_resultants sums_;  // of the last step, where the theory has no tractions
   aligned_buffer<double> bound_, scratch_[2], before_[2];

@@ -85,7 +85,7 @@ double curvature(const curve_point &p) {
   return (p.dy * p.d2z - p.dz * p.d2y) / (speed * speed * speed);
 }
 
-profile::profile(const profile_view &v) {
+void profile::assign(const profile_view &v) {
   const auto count = static_cast<size_t>(v.n - 1);
   pieces_.resize(count);
   for (size_t i = 0; i < count; ++i) {
@@ -140,12 +140,18 @@ placed_profile::placed_profile(const profile &curve, body kind) : curve_(&curve)
   const double length = curve.end() - curve.begin();
   const int count =
       std::clamp(static_cast<int>(std::ceil(length / sample_spacing)), 16, max_samples);
-  step_ = length / count;
   raw_.resize(static_cast<size_t>(count) + 1);
   samples_.resize(raw_.size());
-  for (int i = 0; i <= count; ++i)
-    raw_[static_cast<size_t>(i)] = curve.evaluate(std::min(sample_s(i), curve.end()));
+  reload();
   place(0, 0, 0);
+}
+
+void placed_profile::reload() {
+  const auto count = static_cast<int>(raw_.size()) - 1;
+  step_ = (curve_->end() - curve_->begin()) / count;
+  for (int i = 0; i <= count; ++i)
+    raw_[static_cast<size_t>(i)] = curve_->evaluate(std::min(sample_s(i), curve_->end()));
+  placed_ = false;
 }
 
 curve_point placed_profile::turned(const curve_point &p) const {

@@ -40,7 +40,9 @@ double curvature(const curve_point &p);
 class profile {
  public:
   // The view must have passed validate(); its values are copied.
-  explicit profile(const profile_view &view);
+  explicit profile(const profile_view &view) { assign(view); }
+  // Another curve; allocates only where it has more points.
+  void assign(const profile_view &view);
 
   double begin() const { return begin_; }
   double end() const { return end_; }
@@ -67,6 +69,8 @@ enum class body { wheel, rail };
 class placed_profile {
  public:
   placed_profile(const profile &curve, body kind);
+  // The curve has changed: place() must follow.
+  void reload();
 
   void place(double angle, double y, double z);
   curve_point evaluate(double s, int interval) const;

@@ -118,6 +118,7 @@ class rolling_newton {
                           const tangential_options &options);
   // Whether an element sticks, after solve.
   bool sticks(int element) const { return stick_[static_cast<size_t>(element)] != 0; }
+  row_blocks &blocks() { return blocks_; }
   size_t bytes() const;
 
  private:

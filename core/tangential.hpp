@@ -90,6 +90,8 @@ class tangential_solver {
                  double share, const double *px, const double *py, double *ux, double *uy) {
     offset_->add_moved(a, from, to, offset, share, px, py, ux, uy);
   }
+  // The preconditioner's, for linear systems of the same rows between solves; null: other laws.
+  row_blocks *blocks() { return newton_ ? &newton_->blocks() : nullptr; }
   // all, and what of it serves the last step and the plastic layer
   size_t bytes() const;
   size_t history_bytes() const { return (offset_ ? offset_->bytes() : 0) + before_.bytes(); }

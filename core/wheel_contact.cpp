@@ -8,18 +8,45 @@ namespace railpatch {
 
 namespace {
 
-std::unique_ptr<profile> make_profile(const rp_profile &p, const char *field) {
+profile_view checked_view(const rp_profile &p, const char *field) {
   if (!p.arc_length || !p.y || !p.z || !p.dy || !p.dz) throw profile_error{field, "is not given"};
   const profile_view view{p.arc_length, p.y, p.z, p.dy, p.dz, p.count};
   if (const profile_fault fault = validate(view); fault != profile_fault::none)
     throw profile_error{field, text(fault)};
-  return std::make_unique<profile>(view);
+  return view;
+}
+
+std::unique_ptr<profile> make_profile(const rp_profile &p, const char *field) {
+  return std::make_unique<profile>(checked_view(p, field));
+}
+
+// Profiles of a rail along the track; none where it has one profile.
+std::unique_ptr<rail_sections> make_sections(const rp_config &c, int side) {
+  const int count = c.section_count[side];
+  if (count == 0) return nullptr;
+  const char *field = side == RP_LEFT ? "rail_sections[0]" : "rail_sections[1]";
+  if (!c.rail_sections[side] || !c.section_position[side]) throw profile_error{field, "are null"};
+  std::vector<profile_view> views;
+  for (int k = 0; k < count; ++k) {
+    views.push_back(checked_view(c.rail_sections[side][k], field));
+    if (!rail_sections::belong_together(views.front(), views.back()))
+      throw profile_error{field, "must have as many knots at the same shares of the arc length"};
+  }
+  return std::make_unique<rail_sections>(views.data(), c.section_position[side], count);
+}
+
+// The rail's profile, that of the first section where there are several.
+std::unique_ptr<profile> make_rail(const rp_config &c, int side) {
+  if (c.section_count[side] > 0)
+    return make_profile(c.rail_sections[side][0],
+                        side == RP_LEFT ? "rail_sections[0]" : "rail_sections[1]");
+  return make_profile(c.rail[side], side == RP_LEFT ? "rail_left" : "rail_right");
 }
 
 // Both rails lean inwards by the same cant; a right-hand curve is a left-hand one in the mirror.
 track_config track_of(const rp_config &c, int side) {
   return {c.track == RP_ROLLER ? track_kind::roller : track_kind::rail,
-          c.gauge,
+          c.gauge + c.gauge_widening,
           c.gauge_height,
           c.cant,
           side == RP_LEFT ? -c.curvature : c.curvature,
@@ -64,8 +91,9 @@ contact_parts parts_on(const patch_region &region, const grid &g) {
 wheel_contact::wheel_contact(const rp_config &c, int side)
     : config_(c),
       side_(side),
+      sections_(make_sections(c, side)),
       wheel_(make_profile(c.wheel[side], side == RP_LEFT ? "wheel_left" : "wheel_right")),
-      rail_(make_profile(c.rail[side], side == RP_LEFT ? "rail_left" : "rail_right")) {
+      rail_(make_rail(c, side)) {
   rules_.blended = c.patch_rule == RP_PATCHES_BLENDED;
   const wheel_config sizes{c.nominal_radius, c.flange_back_distance, c.flange_back_position,
                            c.standstill_speed};
@@ -77,6 +105,14 @@ wheel_contact::wheel_contact(const rp_config &c, int side)
 
 void wheel_contact::place(const rp_input &in) {
   time_step_ = in.time_step;
+  if (sections_) {
+    bool changed = false;
+    const profile_view now = sections_->at(in.x, changed);
+    if (changed) {
+      rail_->assign(now);
+      geometry_->reload_rail();
+    }
+  }
   side_motion motion;
   motion.wheelset = {in.y,  in.z,  in.roll,      in.yaw,      in.speed,
                      in.vy, in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
@@ -129,6 +165,7 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
   out.patch_count = count;
   for (int k = 0; k < 3; ++k) out.force[k] = out.moment[k] = 0;
   out.rolling_radius = 0;
+  for (int k = 0; k < 2; ++k) out.rail_deflection[k] = out.rail_deflection_rate[k] = nan;
   for (auto &patch : out.patch) patch = empty_patch_result();
   beyond_ = found.status == search_status::out_of_range ||
             found.status == search_status::too_many_patches;
@@ -192,13 +229,14 @@ void wheel_contact::match_memory(patch_memory *memory, int count) const {
   }
 }
 
-rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &region, int index,
+rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region, int index,
                                      patch_memory *memories, rp_side_result &out) {
   rp_patch_result &result = out.patch[index];
   patch_memory &memory = memories[index];
   result.share = region.share;
   patch_problem problem;
-  problem.g = choose_grid(region);
+  const bool reached = !memory.curved || memory.curved->begin(*geometry_, region);
+  problem.g = reached ? choose_grid(region) : grid{};
   const grid &g = problem.g;
   const bool usable = g.nx > 0 && g.ny > 0 && g.dx > 0 && g.dy > 0 && std::isfinite(g.x0 + g.y0);
   if (!usable || !solver.fits(g)) {
@@ -219,9 +257,13 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
 
   solver.observe(RP_STAGE_GEOMETRY, true);
   double *h = memory.undeformed_distance.data();
-  geometry_->undeformed_distance(region.frame, {g.nx, g.ny, g.x0, g.y0, g.dx, g.dy}, h);
+  if (memory.curved)
+    memory.curved->place(*geometry_, g, h);
+  else
+    geometry_->undeformed_distance(region.frame, {g.nx, g.ny, g.x0, g.y0, g.dx, g.dy}, h);
   const double depth = -*std::min_element(h, h + g.count());
   const creepage_state rolling = geometry_->creepages(region.frame, depth);
+  if (memory.curved) memory.curved->set_slip(*geometry_, depth, rolling.rolling_speed);
   if (memory.row_friction.size() > 0) set_friction(solver, region.frame, memory);
   solver.observe(RP_STAGE_GEOMETRY, false);
 
@@ -241,6 +283,7 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, const patch_region &
   solver.solve(problem, memory, result, wrench);
   memory.history.begun = solver.scene().keeps_steps();
   memory.share = region.share;
+  for (size_t k = 0; k < 2; ++k) memory.rail[k] = geometry_->motion().rail.offset[k + 1];
 
   scale(wrench, region.share);
   out.rolling_radius +=
@@ -278,6 +321,7 @@ void wheel_contact::set_past(const patch_memory *memory, const patch_region &reg
   const double moved = speed < slow ? std::sqrt(std::max(slow * (2 * speed - slow), 0.0)) : speed;
   const double rolled = direction * moved * time_step_;
   problem.past = past;
+  const vec3 &rail = geometry_->motion().rail.offset;
   const contact_frame &frame = region.frame;
   const auto lateral = [&](const vec3 &at) {
     return lateral_in(frame.origin, frame.contact_angle, at);
@@ -293,7 +337,8 @@ void wheel_contact::set_past(const patch_memory *memory, const patch_region &reg
     const patch_history &h = memory[k].history;
     if (!h.held) continue;
     const grid &g = h.last_grid;
-    const double place = lateral(h.last_reference);  // in this frame
+    // in this frame; the rail has taken its material along
+    const double place = lateral({0, h.last_reference[1] + rail[1], h.last_reference[2] + rail[2]});
     const auto row = [&](double s) {
       return static_cast<int>(
           std::clamp(std::ceil((s - place - g.y0) / g.dy), 0.0, static_cast<double>(g.ny)));
@@ -308,13 +353,17 @@ void wheel_contact::set_past(const patch_memory *memory, const patch_region &reg
 }
 
 // The factor of each row by the angle of the rail's surface there, > 0 towards the gauge face; a
-// row beyond the profile has no contact, and any factor.
+// row beyond the profile has no contact, and any factor. Rows of a curved reference surface have
+// an angle of their own.
 void wheel_contact::set_friction(const patch_contact &solver, const contact_frame &frame,
                                  patch_memory &memory) const {
   for (int j = 0; j < memory.g.ny; ++j) {
     const double across = std::cos(frame.contact_angle) * memory.g.y(j);
     double z = 0, slope = frame.contact_angle;
-    geometry_->rail_surface(frame.origin[0], frame.origin[1] + across, z, slope);
+    if (memory.curved)
+      slope = memory.curved->angle(j);
+    else
+      geometry_->rail_surface(frame.origin[0], frame.origin[1] + across, z, slope);
     memory.row_friction[static_cast<size_t>(j)] = solver.scene().friction_variation.at(-slope);
   }
 }
@@ -322,7 +371,8 @@ void wheel_contact::set_friction(const patch_contact &solver, const contact_fram
 bool wheel_contact::first_touch(double &z) const { return railpatch::first_touch(*geometry_, z); }
 
 size_t wheel_contact::bytes() const {
-  return wheel_->bytes() + rail_->bytes() + geometry_->bytes() + (shape_ ? shape_->bytes() : 0);
+  return wheel_->bytes() + rail_->bytes() + geometry_->bytes() +
+         (sections_ ? sections_->bytes() : 0) + (shape_ ? shape_->bytes() : 0);
 }
 
 rp_status combine_status(rp_status a, rp_status b) {

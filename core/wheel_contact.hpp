@@ -10,6 +10,7 @@
 #include "geometry.hpp"
 #include "patch.hpp"
 #include "patch_contact.hpp"
+#include "rail_sections.hpp"
 #include "railpatch.h"
 
 namespace railpatch {
@@ -31,7 +32,7 @@ class wheel_contact {
   size_t bytes() const;
 
  private:
-  rp_status solve_patch(patch_contact &solver, const patch_region &region, int index,
+  rp_status solve_patch(patch_contact &solver, patch_region &region, int index,
                         patch_memory *memories, rp_side_result &result);
   // Sets what the last step left behind for the patch of a region; past: of max_patches.
   void set_past(const patch_memory *memory, const patch_region &region, int direction,
@@ -44,6 +45,7 @@ class wheel_contact {
   rp_config config_;
   int side_;
   bool beyond_ = false;
+  std::unique_ptr<rail_sections> sections_;  // where the rail's profile varies along the track
   std::unique_ptr<profile> wheel_, rail_;
   std::unique_ptr<longitudinal_shape> shape_;  // null: round wheel, level rail
   std::unique_ptr<side_geometry> geometry_;

@@ -13,7 +13,8 @@ with the forces on both wheels and their moments about the wheelset's centre, in
 
 The search begins where a wheelset without friction would run: sideways where the rolling radii are
 in the ratio of the rails' lengths, or as near to it as the flange lets it come; each wheel alone
-under half the load then gives z and roll angle. No creep force is solved for that.
+under half the load then gives z and roll angle. From there the balance with FASTSIM's creep forces
+is found where FASTSIM serves, with cheap evaluations, and that is where the scene's theory starts.
 """
 
 from __future__ import annotations
@@ -97,13 +98,13 @@ class CurveScene:
         assert self.case.wheelset.vertical_force is not None
         return self.case.wheelset.vertical_force
 
-    def at_height(self, radius: float, *, derivatives: bool) -> Scene:
-        """The case in a curve with z prescribed in place of the vertical force."""
+    def at_height(self, radius: float, **method: Any) -> Scene:
+        """The case in a curve with z prescribed in place of the vertical force. method: keys of
+        [method] that replace the case's."""
         content = self.case.model_dump()
         content["wheelset"] |= {"vertical_force": None, "z": 0.0}
         content["track"]["curvature"] = 1.0 / radius
-        if derivatives:
-            content["method"]["derivatives"] = True
+        content["method"] |= method
         return Scene(check_case(content), self.folder)
 
     def frictionless(self, side: str) -> Scene:
@@ -122,8 +123,9 @@ class SteadyCurve:
     status: "converged" only if the residuals are small and both wheels' contact was solved; else
     "not_converged", or "out_of_range" where no state with both wheels in contact was found.
     unknowns: [5], y, z (m), roll, yaw (rad), pitch rate (rad/s). residuals: [5], N, N, N m, N m,
-    N m; None without contact. evaluations: of both wheels. wall_time: s, of the search; start_time:
-    s, of the start without friction. result: of the contact.
+    N m; None without contact. evaluations: of both wheels; start_evaluations: of both wheels with
+    FASTSIM, before. wall_time: s, of the search; start_time: s, of finding its start. result: of
+    the contact.
     """
 
     radius: float
@@ -131,6 +133,7 @@ class SteadyCurve:
     unknowns: Vector
     residuals: Vector | None
     evaluations: int
+    start_evaluations: int
     wall_time: float
     start_time: float
     result: Result
@@ -144,6 +147,7 @@ class SteadyCurve:
         "pitch_rate": "rad/s",
         "residuals": "N, N m",
         "evaluations": "",
+        "start_evaluations": "",
         "wall_time": "s",
         "start_time": "s",
         "left_force": "N",
@@ -163,7 +167,7 @@ class SteadyCurve:
         data: dict[str, Any] = {"radius": self.radius, "status": self.status}
         data |= dict(zip(UNKNOWNS, map(float, self.unknowns), strict=True))
         data["residuals"] = None if self.residuals is None else self.residuals.tolist()
-        for key in ("evaluations", "wall_time", "start_time"):
+        for key in ("evaluations", "start_evaluations", "wall_time", "start_time"):
             data[key] = getattr(self, key)
         for side in SIDES:
             wheel = self.result[side]
@@ -232,10 +236,15 @@ def steady_curve(
     """The balance in one curve."""
     exact = method == "newton"
     contact = Contact(scene.at_height(radius, derivatives=exact))
+    fast = fast_contact(scene, radius)
     begin = time.perf_counter()
     start, approach, width = frictionless.start(radius)
-    between = time.perf_counter()
     settings = settings_of(scene, start, approach, width)
+    tried = 0
+    if fast is not None:
+        before = Broyden(settings).solve(lambda unknowns: evaluate(scene, fast, unknowns), start)
+        start, tried = before.x, before.evaluations
+    between = time.perf_counter()
     solver = Newton(settings) if exact else Broyden(settings)
     root = solver.solve(lambda unknowns: evaluate(scene, contact, unknowns), start)
     end = time.perf_counter()
@@ -246,10 +255,19 @@ def steady_curve(
         root.x,
         root.residual,
         root.evaluations,
+        tried,
         end - between,
         between - begin,
         root.payload,
     )
+
+
+def fast_contact(scene: CurveScene, radius: float) -> Contact | None:
+    """The contact with FASTSIM; None where the scene has what FASTSIM has not (a layer, ...)."""
+    try:
+        return Contact(scene.at_height(radius, tangential="fastsim"))
+    except CaseError:
+        return None
 
 
 def settings_of(scene: CurveScene, start: Vector, approach: float, width: float) -> Settings:

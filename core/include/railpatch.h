@@ -143,6 +143,13 @@ typedef enum rp_patch_rule {
   RP_PATCHES_CONTACT = 1  /* as in the program CONTACT: one patch below 8 mm, with part of the
                              interaction from 4 mm on, and angles turned together up to 12 mm */
 } rp_patch_rule;
+/* of the half-space theories for wheels */
+typedef enum rp_reference_surface {
+  RP_REFERENCE_PLANE = 0, /* tangent to the contact reference */
+  RP_REFERENCE_CURVED = 1 /* midway between wheel and rail: rows with normals of their own, for
+                             conformal contact. Needs normal = half_space, tangential = full or
+                             none, a uniform grid, Coulomb friction, like bodies */
+} rp_reference_surface;
 typedef enum rp_track { RP_RAIL = 0, RP_ROLLER = 1 } rp_track;
 typedef enum rp_element { RP_EXTERIOR = 0, RP_STICK = 1, RP_SLIP = 2, RP_PLASTIC = 3 } rp_element;
 
@@ -171,7 +178,9 @@ typedef enum rp_stage {
   RP_STAGE_COUPLING = 6,   /* normal and tangential problem of unlike bodies, by each other */
   RP_STAGE_HISTORY = 7,    /* last step's tractions and states, in shift and transient rolling */
   RP_STAGE_PLASTICITY = 8, /* of the third-body layer; its time is that of the tangential problem */
-  RP_STAGE_COUNT = 9
+  RP_STAGE_DERIVATIVES = 9, /* rp_differentiate */
+  RP_STAGE_SUPPORT = 10,    /* rails on springs and dampers; its time is that of the contacts */
+  RP_STAGE_COUNT = 11
 } rp_stage;
 
 /* Called when a stage begins (entering = 1) and ends (0); for time shares. The core has no clock.
@@ -227,6 +236,11 @@ typedef struct rp_config {
   int32_t friction_points;                 /* 0: none, else 2 ... RP_MAX_POINTS */
   double friction_position[RP_MAX_POINTS]; /* m or rad, increasing */
   double friction_factor[RP_MAX_POINTS];   /* -, >= 0 */
+  /* factor of the friction law along the track, by input.x (wheels, any method), beside the one
+   * above; linear between the points, constant beyond */
+  int32_t friction_along_points;                 /* 0: none, else 2 ... RP_MAX_POINTS */
+  double friction_along_position[RP_MAX_POINTS]; /* m, increasing */
+  double friction_along_factor[RP_MAX_POINTS];   /* -, >= 0 */
 
   /* third-body layer: elastic where its thickness is not 0, plastic where it has a yield stress */
   double layer_shear_modulus; /* Pa */
@@ -255,6 +269,7 @@ typedef struct rp_config {
   double tolerance;       /* -, relative, 1e-12 ... 1e-1 */
   int32_t max_iterations; /* of each solver */
   rp_spin_offset spin_offset;
+  rp_reference_surface reference_surface;
   double percent_kalker; /* %, 0 < ... 200: of the creepage coefficients of the fast theories */
   rp_traction_bound traction_bound;
   rp_flexibility_blending flexibility_blending;
@@ -267,6 +282,7 @@ typedef struct rp_config {
    * any threads may share it. Aligned to 8 bytes. */
   const void *creep_table;
   size_t creep_table_size;
+  int32_t derivatives; /* 1: rp_differentiate may be called, 0: it has no memory */
 
   /* wheel_rail, wheelset */
   int32_t side;                /* RP_LEFT or RP_RIGHT, kind = RP_WHEEL_RAIL */
@@ -275,6 +291,7 @@ typedef struct rp_config {
   double flange_back_position; /* m, of the flange back on the profile's y axis */
   rp_track track;
   double gauge, gauge_height;   /* m */
+  double gauge_widening;        /* m, > 0: each rail or roller lies half of it further out */
   double cant;                  /* rad, rail; > 0 leans both rails towards the track centre */
   double curvature;             /* 1/m, right-hand curve > 0, rail */
   double roller_radius;         /* m, roller */
@@ -285,6 +302,18 @@ typedef struct rp_config {
                               instead of the rolling speed V, and spin_creepage fades as the heading
                               turns, so that forces pass through standstill without a jump. 0: slip
                               over V, and at V = 0 no creep force */
+  /* a rail's profile along the track, by input.x: by side, section_count profiles (0: the one
+   * above, else 1 or more; copied) at increasing positions (m). All have as many knots, at the same
+   * shares of the arc length; between two sections the knots are interpolated linearly, beyond the
+   * ends the profile is constant. The rail's place follows from the profile at x. */
+  const rp_profile *rail_sections[2];
+  const double *section_position[2];
+  int32_t section_count[2];
+  /* rails or rollers on springs and dampers without mass; lateral, vertical. A deflection u adds to
+   * rail_offset, its rate to rail_velocity; k u + c (u - that of the last step)/time_step is the
+   * force of the wheel in that direction, without the second term where time_step is 0 */
+  double rail_stiffness[2]; /* N/m, 0: rigid in this direction */
+  double rail_damping[2];   /* N s/m, 0 in a rigid direction */
   /* shape along rolling by side, copied; C2 splines. The wheel's radius at its lowest point is that
    * of its profile plus runout at the input's pitch (a rotation about y of its deviation added) */
   const double *runout[2];      /* m, at pitch angles 2 pi i/runout_count, > 0: greater radius */
@@ -339,9 +368,10 @@ typedef struct rp_input {
  * 0. */
 typedef struct rp_patch_result {
   rp_status status;
-  double normal_force;       /* N */
+  double normal_force;       /* N, along n at the contact reference */
   double approach;           /* m, greatest rigid interpenetration along n */
-  double creep_force[2];     /* N on the wheel, longitudinal, lateral */
+  double creep_force[2];     /* N on the wheel, longitudinal, lateral; on a curved reference surface
+                                along s at the contact reference, with what pressure adds to it */
   double spin_moment;        /* N m on the wheel about n at the contact reference */
   double max_pressure;       /* Pa */
   double contact_area;       /* m^2 */
@@ -392,6 +422,8 @@ typedef struct rp_side_result {
   double force[3];       /* N on the wheel, track axes */
   double moment[3];      /* N m about the wheelset centre, track axes */
   double rolling_radius; /* m, of the wheel at the mean contact reference; NaN without contact */
+  double rail_deflection[2];      /* m, lateral, vertical, track axes; NaN: the scene has none */
+  double rail_deflection_rate[2]; /* m/s, in this step; 0 where time_step is 0 */
   int32_t patch_count;
   rp_patch_result patch[RP_MAX_PATCHES];
 } rp_side_result;
@@ -418,7 +450,11 @@ typedef enum rp_field {
   RP_FIELD_FRICTION = 9,              /* -, friction coefficient of each element, [ny][nx] */
   RP_FIELD_PLASTIC_DISPLACEMENT = 10, /* m, accumulated vector, [2][ny][nx] */
   RP_FIELD_PLASTIC_PATH = 11,         /* m, what the yield stress depends on, [ny][nx] */
-  RP_FIELD_YIELD_STRESS = 12          /* Pa, [ny][nx] */
+  RP_FIELD_YIELD_STRESS = 12,         /* Pa, [ny][nx] */
+  /* of a curved reference surface, where y above is its arc length; lateral tractions and slips act
+   * along each row's own s, pressure and undeformed distance along its own n */
+  RP_FIELD_ROW_POSITION = 13, /* m, [2][ny], y and z of each row in track axes */
+  RP_FIELD_ROW_ANGLE = 14     /* rad, [ny], contact angle of each row */
 } rp_field;
 
 typedef struct rp_stage_info {
@@ -441,6 +477,29 @@ RP_API void rp_destroy(rp_contact *contact); /* null is allowed */
  * handle are untouched. */
 RP_API rp_error rp_step(rp_contact *contact, const rp_input *input, rp_result *result,
                         rp_message *message);
+/* How a derivative was found. */
+typedef enum rp_derivative_kind {
+  RP_DERIVATIVE_EXACT = 0, /* from the solved conditions, by the implicit function theorem */
+  RP_DERIVATIVE_BY_DIFFERENCES = 1 /* central differences of steps beside the last one */
+} rp_derivative_kind;
+
+/* Derivative of the last step's result in one direction: each double of `direction` holds the rate
+ * of that input, its integers are ignored and so is a bulk_temperature that is NaN. Each double of
+ * `change` is the rate of that number of the result: NaN where the number itself is NaN, and of
+ * residual and error_estimate; counts are 0, statuses those of the result, or RP_NOT_CONVERGED
+ * where the rates did not converge. kind (may be null) says how they were found. Needs
+ * config.derivatives = 1 and a step since rp_create, rp_reset or rp_restore_state; the state, the
+ * last solution and its fields stay as they are.
+ *
+ * Exact ones are those of the returned solution's active sets: elements in contact, in stick and in
+ * slip stay what they are. Where an element is just about to change, that is the one-sided
+ * derivative towards the side on which it does not. They exist with normal = half_space or hertz
+ * and without a tangential problem, or with tangential = full on the uniform grid in steady
+ * rolling, Coulomb's law (friction_points included), bodies alike, no prescribed creep force, no
+ * layer that yields and no temperature. */
+RP_API rp_error rp_differentiate(rp_contact *contact, const rp_input *direction, rp_result *change,
+                                 rp_derivative_kind *kind, rp_message *message);
+
 /* Changes the coefficient of Coulomb's law (0 ... 10) for the steps that follow; part of the state.
  * Other laws have their own numbers and do not read it. */
 RP_API rp_error rp_set_friction_coefficient(rp_contact *contact, double value, rp_message *message);

@@ -34,6 +34,9 @@
   X(friction_points)                \
   X(friction_position)              \
   X(friction_factor)                \
+  X(friction_along_points)          \
+  X(friction_along_position)        \
+  X(friction_along_factor)          \
   X(layer_shear_modulus)            \
   X(layer_thickness)                \
   X(layer_yield_stress)             \
@@ -55,6 +58,7 @@
   X(tolerance)                      \
   X(max_iterations)                 \
   X(spin_offset)                    \
+  X(reference_surface)              \
   X(percent_kalker)                 \
   X(traction_bound)                 \
   X(flexibility_blending)           \
@@ -63,6 +67,7 @@
   X(fastsim_k0)                     \
   X(fastsim_alpha)                  \
   X(fastsim_beta)                   \
+  X(derivatives)                    \
   X(side)                           \
   X(nominal_radius)                 \
   X(flange_back_distance)           \
@@ -70,6 +75,9 @@
   X(track)                          \
   X(gauge)                          \
   X(gauge_height)                   \
+  X(gauge_widening)                 \
+  X(rail_stiffness)                 \
+  X(rail_damping)                   \
   X(cant)                           \
   X(curvature)                      \
   X(roller_radius)                  \

@@ -378,8 +378,12 @@ TEST(Step, OfALargeGridAllocatesNothing) {
 // Sideways until the flange touches, then at the heights found, off the rails and back.
 TEST(Step, OfAWheelsetAllocatesNothing) {
   const scenes::profile_pair pair;
-  for (rp_track track : {RP_RAIL, RP_ROLLER}) {
+  const std::pair<rp_track, rp_reference_surface> scene_of[] = {{RP_RAIL, RP_REFERENCE_PLANE},
+                                                                {RP_ROLLER, RP_REFERENCE_PLANE},
+                                                                {RP_RAIL, RP_REFERENCE_CURVED}};
+  for (const auto &[track, surface] : scene_of) {
     rp_config c = scenes::wheels(RP_WHEELSET, track, pair);
+    c.reference_surface = surface;
     std::vector<rp_input> inputs;
     for (double y : {0.0, 5e-4, 2e-3, 5e-3, 5.9e-3, 6e-3, 6.05e-3, -4e-3}) {
       rp_input in = scenes::running(track);

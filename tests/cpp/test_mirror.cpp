@@ -118,6 +118,7 @@ struct scene {
   double curvature;
   rp_normal_method normal = RP_NORMAL_HALF_SPACE;
   int fitted = 0;
+  rp_reference_surface surface = RP_REFERENCE_PLANE;
 };
 
 void PrintTo(const scene &s, std::ostream *out) { *out << s.name; }
@@ -133,6 +134,10 @@ const scene all_scenes[] = {
     {"fitted_half_space", RP_WHEELSET, RP_RAIL, RP_FORCE, 0.0, RP_NORMAL_HALF_SPACE, 7},
     {"fitted_kik_piotrowski", RP_WHEELSET, RP_ROLLER, RP_FORCE, 0.0, RP_NORMAL_KIK_PIOTROWSKI, 8},
     {"fitted_hertz", RP_WHEEL_RAIL, RP_RAIL, RP_POSITION, 0.0, RP_NORMAL_HERTZ, 8},
+    {"curved_rail", RP_WHEELSET, RP_RAIL, RP_FORCE, 1.0 / 500, RP_NORMAL_HALF_SPACE, 0,
+     RP_REFERENCE_CURVED},
+    {"curved_roller", RP_WHEEL_RAIL, RP_ROLLER, RP_POSITION, 0.0, RP_NORMAL_HALF_SPACE, 0,
+     RP_REFERENCE_CURVED},
 };
 
 class Mirror : public testing::TestWithParam<scene> {
@@ -176,6 +181,7 @@ TEST_P(Mirror, EqualsTheMirroredMotion) {
   rp_config c = scenes::wheels(GetParam().kind, GetParam().track, one);
   c.curvature = GetParam().curvature;
   c.normal = GetParam().normal;
+  c.reference_surface = GetParam().surface;
   c.fitted[0] = GetParam().fitted;
   c.fitted[1] = GetParam().fitted > 0 ? GetParam().fitted + 1 : 0;
   c.load = RP_FORCE;

@@ -85,6 +85,9 @@ std::vector<scene> all_scenes() {
   sized.max_elements[0] = sized.max_elements[1] = 30;
   add("growing_grid", sized, patch_inputs());
   add("wheelset_rail", scenes::wheels(RP_WHEELSET, RP_RAIL, pair()), wheel_inputs(RP_RAIL));
+  rp_config curved = scenes::wheels(RP_WHEELSET, RP_RAIL, pair());
+  curved.reference_surface = RP_REFERENCE_CURVED;
+  add("wheelset_curved_surface", curved, wheel_inputs(RP_RAIL));
   add("wheelset_roller", scenes::wheels(RP_WHEELSET, RP_ROLLER, pair()), wheel_inputs(RP_ROLLER));
   rp_config one = scenes::wheels(RP_WHEEL_RAIL, RP_RAIL, pair());
   one.side = RP_LEFT;

@@ -23,7 +23,7 @@ def found():
 
 
 def test_newton_takes_few_evaluations(found):
-    """From the start without friction, the straight track's with other radii and rails."""
+    """Of the full theory: it starts from a balance with FASTSIM."""
     for item in found["newton"]:
         assert item.converged
         assert item.evaluations <= 5, item.radius
@@ -43,7 +43,7 @@ def test_balance(found):
     """Solved again from a cold start, and summed patch by patch."""
     scene = load_curve_scene()
     for item in found["newton"]:
-        contact = Contact(scene.at_height(item.radius, derivatives=False))
+        contact = Contact(scene.at_height(item.radius))
         y, z, roll, yaw, pitch_rate = map(float, item.unknowns)
         result = contact.step(y=y, z=z, roll=roll, yaw=yaw, pitch_rate=pitch_rate)
         lateral = vertical = yaw_moment = axle = 0.0

@@ -16,7 +16,16 @@ from railpatch.case.patch import Motion, PatchCase
 from railpatch.config import config_of, input_of
 from railpatch.errors import CaseError
 from railpatch.moving import changed_case, moving_keys
-from railpatch.result import FIELDS, GOOD, LAW_FIELDS, Result, patch_data, shaped_field, wheel_data
+from railpatch.result import (
+    FIELDS,
+    GOOD,
+    LAW_FIELDS,
+    ROW_FIELDS,
+    Result,
+    patch_data,
+    shaped_field,
+    wheel_data,
+)
 
 SIDE_INDEX = {"left": 0, "right": 1}
 # saved state: mark, length of the moving tables as JSON, the JSON, the core's state
@@ -141,7 +150,7 @@ class Contact:
         found: dict[str, Any] = {}
         for name in FIELDS:
             values = self._core.field(SIDE_INDEX[side], patch, name)
-            if values is None and name in LAW_FIELDS:
+            if values is None and name in (*LAW_FIELDS, *ROW_FIELDS):
                 continue
             found[name] = shaped_field(name, values, grid)
         return found

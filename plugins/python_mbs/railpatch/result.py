@@ -52,9 +52,12 @@ FIELDS = {
     "plastic_displacement": 2,
     "plastic_path": 1,
     "yield_stress": 1,
+    "row_position": 2,
+    "row_angle": 1,
 }
 # only where the scene has such a law
 LAW_FIELDS = ("friction", "plastic_displacement", "plastic_path", "yield_stress")
+ROW_FIELDS = ("row_position", "row_angle")  # of curved reference surfaces
 GOOD = ("converged", "no_contact")
 
 
@@ -65,7 +68,8 @@ class Result:
     arrays there: x [nx] (fitted rows: [ny, nx]) and y [ny] in m, pressure [ny, nx] in Pa, traction
     [2, ny, nx] in Pa, micro_slip [2, ny, nx] relative to the rolling speed, element_division
     [ny, nx] as 0 exterior, 1 stick, 2 slip, 3 plastic, temperature [2, ny, nx] of wheel and rail in
-    degrees C. ``iterations`` is the sum of
+    degrees C. Curved reference surfaces have row_position [2, ny], y and z of each row of elements
+    in track axes (m), and row_angle [ny], its contact angle (rad). ``iterations`` is the sum of
     conjugate-gradient steps of the normal and Newton steps of the tangential problem.
     ``error_estimate`` holds what 95 % of the errors of creep_force (N, length of the vector),
     spin_moment (N m) and max_pressure (Pa) stay below. ``share`` is the part that a patch's solution
@@ -150,6 +154,8 @@ def field_shape(name: str, grid: list[int]) -> tuple[int, ...]:
     components = FIELDS[name]
     if name in ("x", "y"):
         return (nx,) if name == "x" else (ny,)
+    if name in ROW_FIELDS:
+        return (ny,) if components == 1 else (components, ny)
     return (ny, nx) if components == 1 else (components, ny, nx)
 
 

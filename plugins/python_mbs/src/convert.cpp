@@ -63,6 +63,8 @@ constexpr Name kNames[] = {
     {"spin_offset", "sixth", RP_SPIN_OFFSET_SIXTH},
     {"patch_rule", "blended", RP_PATCHES_BLENDED},
     {"patch_rule", "contact", RP_PATCHES_CONTACT},
+    {"reference_surface", "plane", RP_REFERENCE_PLANE},
+    {"reference_surface", "curved", RP_REFERENCE_CURVED},
     {"track", "rail", RP_RAIL},
     {"track", "roller", RP_ROLLER},
     {"side", "left", RP_LEFT},
@@ -86,6 +88,8 @@ constexpr struct {
     {"plastic_displacement", RP_FIELD_PLASTIC_DISPLACEMENT},
     {"plastic_path", RP_FIELD_PLASTIC_PATH},
     {"yield_stress", RP_FIELD_YIELD_STRESS},
+    {"row_position", RP_FIELD_ROW_POSITION},
+    {"row_angle", RP_FIELD_ROW_ANGLE},
 };
 
 // --- from Python -------------------------------------------------------------------------------
@@ -330,6 +334,7 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.scalar("tolerance", c.tolerance);
   reader.scalar("max_iterations", c.max_iterations);
   reader.name("spin_offset", c.spin_offset);
+  reader.name("reference_surface", c.reference_surface);
   reader.scalar("percent_kalker", c.percent_kalker);
   reader.name("traction_bound", c.traction_bound);
   reader.name("flexibility_blending", c.flexibility_blending);
@@ -338,6 +343,7 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.scalar("fastsim_k0", c.fastsim_k0);
   reader.scalar("fastsim_alpha", c.fastsim_alpha);
   reader.scalar("fastsim_beta", c.fastsim_beta);
+  reader.scalar("derivatives", c.derivatives);
   if (reader.has("creep_table")) {
     to.table = nb::cast<Bytes>(reader.at("creep_table"));
     c.creep_table = to.table.data();

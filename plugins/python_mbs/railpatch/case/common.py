@@ -213,6 +213,11 @@ class Method(Table):
         description="-, shift of the spin term in elements along rolling: none, or a sixth as in "
         "the program CONTACT, for comparisons",
     )
+    reference_surface: Literal["plane", "curved"] = Field(
+        default="plane",
+        description="of half_space on wheels (no unit): plane, or curved between wheel and rail, "
+        "with a normal for each row of elements, for conformal contact",
+    )
     percent_kalker: Annotated[float, more_than(0, 200)] = Field(
         default=100.0, description="%, of Kalker's creepage coefficients in the fast theories"
     )
@@ -335,6 +340,45 @@ def check_fitted(grid: Grid | None, method: Method, *, line: bool = False) -> No
         raise relation("grid.fitted", str(grid.fitted), "[n, 1] with a line contact")
     if not line and grid.fitted[1] < 3:
         raise relation("grid.fitted", str(grid.fitted), "3 to 64 rows")
+
+
+def check_reference(
+    material: Material,
+    friction: Friction | None,
+    layer: Layer | None,
+    heat: Temperature | None,
+    grid: Grid | None,
+    method: Method,
+) -> None:
+    """What a curved reference surface is not combined with."""
+    if method.reference_surface == "plane":
+        return
+    with_it = "with reference_surface = 'curved'"
+    if method.normal != "half_space":
+        raise relation("method.normal", repr(method.normal), f"'half_space' {with_it}")
+    if method.tangential not in ("full", "none"):
+        raise relation("method.tangential", repr(method.tangential), f"'full' or 'none' {with_it}")
+    if method.accuracy is not None:
+        raise relation("method.accuracy", method.accuracy, f"to be left out {with_it}: give 'grid'")
+    if grid is not None and grid.fitted is not None:
+        raise relation("grid.fitted", str(grid.fitted), f"to be left out {with_it}")
+    if heat is not None:
+        raise relation("temperature", "given", f"to be left out {with_it}")
+    if method.tangential == "none":
+        return
+    if friction is not None and friction.law != "coulomb":
+        raise relation("friction.law", repr(friction.law), f"'coulomb' {with_it}")
+    if layer is not None and layer.is_plastic:
+        raise relation("layer.yield_stress", layer.yield_stress, f"to be left out {with_it}")
+    if couples(material):
+        raise relation("material", "unlike bodies", f"equal (1 - 2 nu)/G {with_it}")
+
+
+def check_plane(method: Method) -> None:
+    """Patches given directly have no normals of their own."""
+    if method.reference_surface != "plane":
+        shown = repr(method.reference_surface)
+        raise relation("method.reference_surface", shown, "'plane' with kind = 'patch'")
 
 
 def check_table(method: Method) -> None:

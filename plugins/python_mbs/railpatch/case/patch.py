@@ -18,6 +18,7 @@ from railpatch.case.common import (
     check_accuracy,
     check_fitted,
     check_physics,
+    check_plane,
     check_tangential,
     couples,
 )
@@ -218,6 +219,7 @@ class PatchCase(Table):
                 raise relation(f"method.{name}", repr(value), "only with wheels")
         line = self.geometry.line_contact_radius is not None
         check_fitted(self.grid, self.method, line=line)
+        check_plane(self.method)
         ellipse = not line and self.geometry.undeformed_distance is None
         check_accuracy(self.grid, self.method, ellipse=ellipse, line=line)
         if ellipse and self.method.accuracy is not None:

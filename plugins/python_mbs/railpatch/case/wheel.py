@@ -16,6 +16,7 @@ from railpatch.case.common import (
     check_accuracy,
     check_fitted,
     check_physics,
+    check_reference,
     check_tangential,
 )
 from railpatch.case.rolling import RailShape, WheelMotion, WheelShape, check_rolling
@@ -238,6 +239,9 @@ class _WheelCase(Table):
             check_physics(self.friction, self.layer, self.temperature, self.grid, self.method)
         check_fitted(self.grid, self.method)
         check_accuracy(self.grid, self.method)
+        check_reference(
+            self.material, self.friction, self.layer, self.temperature, self.grid, self.method
+        )
         check_rolling(self)
         for side in self.sides:
             for body in ("wheel", "rail"):

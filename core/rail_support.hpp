@@ -1,0 +1,109 @@
+// Rails on springs and dampers without mass, lateral and vertical.
+//
+// Deflection u of a rail, track axes, k its stiffness and c its damping in one direction, F the
+// force of the wheel on it:  k u + c (u - u_before)/dt = F  (implicit Euler; dt = 0: k u = F). A
+// stiffness of 0 stands for a rigid rail. The unknowns are both deflections of each rail and, where
+// the vertical force is prescribed, the wheelset's z. Contact sees z - u_z, so the slopes of F by
+// z and by u_z are opposite, and each wheel has a 2 x 2 matrix of slopes. They are found by
+// differences, updated by Broyden's rule (Broyden 1965, Math. Comp. 19, eq. 4.5) and kept from step
+// to step. A step is taken where it makes the residual smaller; else it is shortened, then the
+// slopes are found afresh.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "railpatch.h"
+
+namespace railpatch {
+
+using lateral_vertical = std::array<double, 2>;
+
+// The contact of the wheels as the support needs it.
+class supported_wheels {
+ public:
+  struct contact {
+    lateral_vertical force{};  // N, of the wheel on the rail
+    double rolling_speed = 0;  // m/s
+  };
+  virtual ~supported_wheels() = default;
+  // Moves the rails: deflection (m) and rate (m/s) of each.
+  virtual void move_rails(const lateral_vertical *deflection, const lateral_vertical *rate) = 0;
+  // z where this wheel first touches its rail as it stands; false: nowhere.
+  virtual bool first_touch(int wheel, double &z) = 0;
+  // Solves the contacts at z; false where a force is not known.
+  virtual bool evaluate(double z, contact *out) = 0;
+};
+
+struct support_load {
+  bool prescribed = false;
+  double force = 0, z = 0;  // N; m where not prescribed
+  double time_step = 0;     // s
+};
+
+struct support_result {
+  bool converged = false, beyond = false;
+  double residual = 0;  // relative
+  double z = 0;         // m
+};
+
+class rail_support {
+ public:
+  // wheels: 1 or 2; modulus: Pa, G/(1 - nu) of the bodies.
+  rail_support(const rp_config &config, int wheels, double modulus);
+  static bool asked(const rp_config &config) {
+    return config.kind != RP_PATCH &&
+           (config.rail_stiffness[0] > 0 || config.rail_stiffness[1] > 0);
+  }
+
+  support_result solve(supported_wheels &wheels, const support_load &load);
+  // Of the last step; rate 0 without a time step.
+  const lateral_vertical &deflection(int wheel) const { return rails_[at(wheel)].deflection; }
+  const lateral_vertical &rate(int wheel) const { return rates_[at(wheel)]; }
+  void reset();
+
+  // What later steps depend on: plain numbers.
+  struct rail {
+    lateral_vertical deflection{};
+    std::array<lateral_vertical, 2> slope{};  // N/m, force by lateral, vertical deflection
+    double hertz = 0;                         // N/m^1.5, of the last contact; 0: none yet
+    lateral_vertical difference{};            // m, the slopes were found with
+    double time_step = -1;                    // s, of the slopes; < 0: none yet
+  };
+  rail *rails() { return rails_.data(); }
+  const rail *rails() const { return rails_.data(); }
+  std::size_t bytes() const { return sizeof *this; }
+
+ private:
+  struct trial {
+    double z = 0;
+    std::array<lateral_vertical, 2> deflection{};
+    std::array<supported_wheels::contact, 2> contact{};
+    std::array<lateral_vertical, 2> gap{};  // N, of each rail's equation
+    double missing = 0;                     // N, of the prescribed force
+    double merit = 0, residual = 0;         // N; relative
+  };
+  static std::size_t at(int wheel) { return static_cast<std::size_t>(wheel); }
+  bool rigid(std::size_t k) const { return !(stiffness_[k] > 0); }
+  double total(std::size_t k) const;                       // N/m, k + c/dt
+  double carried(std::size_t wheel, std::size_t k) const;  // N, c/dt u_before
+  bool evaluate(supported_wheels &wheels, trial &t);
+  trial first_guess() const;
+  double guessed_depth(std::size_t wheel, double z) const;
+  bool start(supported_wheels &wheels, trial &t);
+  bool find_slopes(supported_wheels &wheels, const trial &base);
+  trial newton_step(const trial &base, double share) const;
+  void learn(const trial &base, const trial &next);
+  void keep(const trial &last);
+
+  int count_;
+  std::array<double, 2> stiffness_, damping_;
+  double tolerance_, modulus_, radius_;
+  std::array<rail, 2> rails_{};
+  std::array<lateral_vertical, 2> rates_{}, before_{};
+  support_load load_;
+  std::array<double, 2> touch_{};  // m, z of first touch with the rail not deflected
+  int evaluations_ = 0;
+};
+
+}  // namespace railpatch
