@@ -144,10 +144,11 @@ def run_over(shape: dict[str, Any], speed: float) -> tuple[list[Any], Any]:
     coarse = {"grid__element_size": [1e-3, 1e-3]}
     still = {"wheelset__z": None, "wheelset__vertical_force": STATIC}
     steady = railpatch.solve(with_values(one_wheel(speed, **still), **coarse))
-    time_step = min(1e-3 / speed, 1e-4)
+    time_step = min(2e-3 / speed, 4e-4)
+    length = 0.45 if speed < 5 else 1.8  # m, for it to settle
     contact = railpatch.Contact(with_values(rolling(time_step, **shape), **coarse))
-    z, vz, x, results = steady["z"], 0.0, -0.1, []
-    for _ in range(int(0.9 / speed / time_step) if speed > 5 else int(0.25 / speed / time_step)):
+    z, vz, x, results = steady["z"], 0.0, -0.2, []
+    for _ in range(int(length / speed / time_step)):
         result = contact.step(
             z=z, vz=vz, x=x, pitch=-x / RADIUS, speed=speed, pitch_rate=-1.001 * speed / RADIUS
         )

@@ -78,7 +78,7 @@ def changed_table(case: Case, name: str, values: dict[str, Any]) -> Any:
     content = table.model_dump()
     for key, value in values.items():
         if key in DEVIATION_KEYS and isinstance(value, dict):
-            fixed = {k: v for k, v in value.items() if k in SHAPE_KEYS and v != content[key].get(k)}
+            fixed = {k: v for k, v in value.items() if k in SHAPE_KEYS}
             refuse_unknown(fixed, movable_of(content[key]), f"{name}.{key}.")
             value = {**content[key], **value}
         content[key] = value
