@@ -413,36 +413,6 @@ void check_coupled(const rp_config &c, checker &check) {
                 "steady_rolling");
 }
 
-// Out-of-round wheels and running surfaces that are not level.
-void check_longitudinal(const rp_config &c, checker &check) {
-  const auto values = [&](const char *name, int side, const double *v, int count, int least,
-                          int most) {
-    char label[40];
-    std::snprintf(label, sizeof label, "%s_count[%d]", name, side);
-    if (count != 0) check.integer(label, count, least, most);
-    std::snprintf(label, sizeof label, "%s[%d]", name, side);
-    if (count == 0 || check.error() != RP_OK) return;
-    char text[80];
-    std::snprintf(text, sizeof text, "%s is null", label);
-    check.require(v != nullptr, text);
-    if (check.error() == RP_OK) check.numbers(label, v, count, {-0.1, 0.1, false, false});
-  };
-  bool shaped = false, heights = false;
-  for (int side = 0; side < 2; ++side) {
-    values("runout", side, c.runout[side], c.runout_count[side], 8, 1000000);
-    values("rail_height", side, c.rail_height[side], c.rail_height_count[side], 4, 10000000);
-    heights |= c.rail_height_count[side] > 0;
-    shaped |= c.runout_count[side] > 0 || heights;
-  }
-  check.number("rail_height_start", c.rail_height_start, finite);
-  check.number("rail_height_spacing", c.rail_height_spacing, {1e-6, 1e3, false, false});
-  check.require(!heights || c.track == RP_RAIL, "rail_height_count must be 0 on rollers");
-  check.require(!shaped || c.reference_surface == RP_REFERENCE_PLANE,
-                "runout and rail_height need reference_surface = plane in this version");
-  check.require(!shaped || c.normal == RP_NORMAL_HALF_SPACE,
-                "runout and rail_height need normal = half_space: the shape is not quadratic");
-}
-
 // A rail's profiles along the track; the profiles themselves are looked at where they are read.
 void check_sections(const rp_config &c, checker &check) {
   for (int side = 0; side < 2; ++side) {
@@ -486,6 +456,36 @@ void check_reference(const rp_config &c, checker &check) {
   check.require(wrong == nullptr, wrong ? wrong : "");
 }
 
+// Out-of-round wheels and running surfaces that are not level.
+void check_longitudinal(const rp_config &c, checker &check) {
+  const auto values = [&](const char *name, int side, const double *v, int count, int least,
+                          int most) {
+    char label[40];
+    std::snprintf(label, sizeof label, "%s_count[%d]", name, side);
+    if (count != 0) check.integer(label, count, least, most);
+    std::snprintf(label, sizeof label, "%s[%d]", name, side);
+    if (count == 0 || check.error() != RP_OK) return;
+    char text[80];
+    std::snprintf(text, sizeof text, "%s is null", label);
+    check.require(v != nullptr, text);
+    if (check.error() == RP_OK) check.numbers(label, v, count, {-0.1, 0.1, false, false});
+  };
+  bool shaped = false, heights = false;
+  for (int side = 0; side < 2; ++side) {
+    values("runout", side, c.runout[side], c.runout_count[side], 8, 1000000);
+    values("rail_height", side, c.rail_height[side], c.rail_height_count[side], 4, 10000000);
+    heights |= c.rail_height_count[side] > 0;
+    shaped |= c.runout_count[side] > 0 || heights;
+  }
+  check.number("rail_height_start", c.rail_height_start, finite);
+  check.number("rail_height_spacing", c.rail_height_spacing, {1e-6, 1e3, false, false});
+  check.require(!heights || c.track == RP_RAIL, "rail_height_count must be 0 on rollers");
+  check.require(!shaped || c.reference_surface == RP_REFERENCE_PLANE,
+                "runout and rail_height need reference_surface = plane in this version");
+  check.require(!shaped || c.normal == RP_NORMAL_HALF_SPACE,
+                "runout and rail_height need normal = half_space: the shape is not quadratic");
+}
+
 void check_wheels(const rp_config &c, checker &check) {
   check.integer("side", c.side, RP_LEFT, RP_RIGHT);
   check.number("nominal_radius", c.nominal_radius, {0.01, 10, false, false});
@@ -503,7 +503,6 @@ void check_wheels(const rp_config &c, checker &check) {
   }
   check.integer("max_patches", c.max_patches, 1, RP_MAX_PATCHES);
   check.number("standstill_speed", c.standstill_speed, {0, 1, false, false});
-  check_longitudinal(c, check);
   check_sections(c, check);
   check.numbers("rail_stiffness", c.rail_stiffness, 2, {0, 1e15, false, false});
   check.numbers("rail_damping", c.rail_damping, 2, {0, 1e15, false, false});
@@ -514,6 +513,7 @@ void check_wheels(const rp_config &c, checker &check) {
     check.require(c.rail_stiffness[k] == 0 || c.rail_stiffness[k] >= 1,
                   "rail_stiffness must be 0 or at least 1 N/m");
   }
+  check_longitudinal(c, check);
 }
 
 }  // namespace

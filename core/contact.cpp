@@ -284,9 +284,9 @@ contact::contact(const rp_config &config)
   config_.undeformed_distance = nullptr;
   for (auto *p : {&config_.wheel[0], &config_.wheel[1], &config_.rail[0], &config_.rail[1]})
     *p = rp_profile{};
-  for (int side = 0; side < 2; ++side) config_.runout[side] = config_.rail_height[side] = nullptr;
   for (int side = 0; side < 2; ++side)
     config_.rail_sections[side] = nullptr, config_.section_position[side] = nullptr;
+  for (int side = 0; side < 2; ++side) config_.runout[side] = config_.rail_height[side] = nullptr;
 }
 
 contact::~contact() = default;
@@ -441,10 +441,10 @@ double contact::evaluate_wheels(double z, rp_result &out) {
 }
 
 void contact::step_wheels(const rp_input &in, rp_result &out) {
-  if (solver_.scene().keeps_steps())
-    for (auto &m : memory_) solver_.remember(m);
   if (friction_along_.varies()) solver_.set_friction_scale(friction_along_.at(in.x));
   const auto evaluate = [&](double z) { return evaluate_wheels(z, out); };
+  if (solver_.scene().keeps_steps())
+    for (auto &m : memory_) solver_.remember(m);
   solver_.observe(RP_STAGE_GEOMETRY, true);
   for (auto &wheel : wheels_) wheel.place(in);
   solver_.observe(RP_STAGE_GEOMETRY, false);

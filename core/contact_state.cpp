@@ -170,12 +170,12 @@ uint64_t fingerprint_of_arrays(const rp_config &c, const aligned_buffer<double> 
   };
   for (const rp_profile *p : {&c.wheel[0], &c.wheel[1], &c.rail[0], &c.rail[1]}) add_profile(*p);
   for (int side = 0; side < 2; ++side) {
+    add(c.runout[side], static_cast<size_t>(c.runout_count[side]));
+    add(c.rail_height[side], static_cast<size_t>(c.rail_height_count[side]));
     // of a side without a wheel nothing has been looked at
     if (c.kind == RP_WHEEL_RAIL && side != c.side) continue;
     add(c.section_position[side], static_cast<size_t>(c.section_count[side]));
     for (int k = 0; k < c.section_count[side]; ++k) add_profile(c.rail_sections[side][k]);
-    add(c.runout[side], static_cast<size_t>(c.runout_count[side]));
-    add(c.rail_height[side], static_cast<size_t>(c.rail_height_count[side]));
   }
   return hash;
 }

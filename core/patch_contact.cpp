@@ -526,6 +526,18 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   return t.converged;
 }
 
+// On a curved reference surface every row has a rigid slip of its own.
+void patch_contact::add_slip_of_rows(const grid &g, const conformal_rows &rows,
+                                     rolling_input &rolling) {
+  rolling.creepage[0] = rolling.creepage[1] = rolling.spin_creepage = 0;
+  for (int c = 0; c < 2; ++c) {
+    double *slip = coupled_->slip(c);
+    for (int j = 0; j < g.ny; ++j)
+      for (int i = 0; i < g.nx; ++i)
+        slip[j * g.nx + i] += rows.slip(c, j, g.x(i) + rolling.spin_offset);
+  }
+}
+
 // The displacement by the last step's tractions where each element's material was then.
 void patch_contact::find_before(const patch_problem &problem, rolling_input &rolling) {
   observe(RP_STAGE_HISTORY, true);
@@ -544,18 +556,6 @@ void patch_contact::find_before(const patch_problem &problem, rolling_input &rol
                            before_[1].data());
   }
   observe(RP_STAGE_HISTORY, false);
-}
-
-// On a curved reference surface every row has a rigid slip of its own.
-void patch_contact::add_slip_of_rows(const grid &g, const conformal_rows &rows,
-                                     rolling_input &rolling) {
-  rolling.creepage[0] = rolling.creepage[1] = rolling.spin_creepage = 0;
-  for (int c = 0; c < 2; ++c) {
-    double *slip = coupled_->slip(c);
-    for (int j = 0; j < g.ny; ++j)
-      for (int i = 0; i < g.nx; ++i)
-        slip[j * g.nx + i] += rows.slip(c, j, g.x(i) + rolling.spin_offset);
-  }
 }
 
 tangential_result patch_contact::solve_on_grid(const patch_problem &problem,

@@ -27,10 +27,7 @@ rail_support::rail_support(const rp_config &c, int wheels, double modulus)
       modulus_(modulus),
       radius_(0.5 * c.nominal_radius) {}
 
-void rail_support::reset() {
-  rails_ = {};
-  rates_ = {};
-}
+void rail_support::reset() { rails_ = {}; }
 
 double rail_support::total(std::size_t k) const {
   return stiffness_[k] + (load_.time_step > 0 ? damping_[k] / load_.time_step : 0.0);
@@ -45,9 +42,10 @@ bool rail_support::evaluate(supported_wheels &wheels, trial &t) {
   ++evaluations_;
   for (std::size_t w = 0; w < at(count_); ++w)
     for (std::size_t k = 0; k < 2; ++k)
-      rates_[w][k] =
+      rails_[w].rate[k] =
           load_.time_step > 0 ? (t.deflection[w][k] - before_[w][k]) / load_.time_step : 0.0;
-  wheels.move_rails(t.deflection.data(), rates_.data());
+  const std::array<lateral_vertical, 2> rates{rails_[0].rate, rails_[1].rate};
+  wheels.move_rails(t.deflection.data(), rates.data());
   if (!wheels.evaluate(t.z, t.contact.data())) return false;
   double squares = 0, carrying = 0;
   t.residual = 0;
@@ -113,7 +111,7 @@ rail_support::trial rail_support::first_guess() const {
     t.z = 0.5 * (low + high);
   }
   for (std::size_t w = 0; w < at(count_); ++w) {
-    if (!rigid(0)) t.deflection[w][0] = before_[w][0];
+    if (!rigid(0)) t.deflection[w][0] = before_[w][0] + last_rate_[w] * load_.time_step;
     if (rigid(1)) continue;
     const double depth = touch_[w] < nowhere ? guessed_depth(w, t.z) : 0;
     const double pressed = rails_[w].hertz * depth * std::sqrt(depth);
@@ -185,7 +183,9 @@ rail_support::trial rail_support::newton_step(const trial &base, double share) c
   std::array<lateral_vertical, 2> fixed{}, by_z{};  // dp = fixed + by_z dz
   double constant = 0, slope = 0;
   for (std::size_t w = 0; w < at(count_); ++w) {
-    const auto &s = rails_[w].slope;
+    // a wheel out of contact has no slopes
+    static constexpr std::array<lateral_vertical, 2> none{};
+    const auto &s = length(base.contact[w].force) > 0 ? rails_[w].slope : none;
     double m[2][2] = {{1, 0}, {0, 1}};
     lateral_vertical right{}, right_z{0, -1};
     for (std::size_t k = 0; k < 2; ++k) {
@@ -196,8 +196,8 @@ rail_support::trial rail_support::newton_step(const trial &base, double share) c
       if (k == 1) right_z[1] = -total(1);
     }
     double det = m[0][0] * m[1][1] - m[0][1] * m[1][0];
-    if (!(m[0][0] > 0 && m[1][1] > 0 && det > 1e-6 * m[0][0] * m[1][1])) {
-      // slopes of no stable contact: the springs, and sizes
+    if (!(std::fabs(det) > 1e-9 * (std::fabs(m[0][0] * m[1][1]) + std::fabs(m[0][1] * m[1][0])))) {
+      // no slopes to go by: the springs, and sizes
       for (std::size_t k = 0; k < 2; ++k) {
         m[k][1 - k] = 0;
         if (!rigid(k)) m[k][k] = total(k) + std::fabs(s[k][k]);
@@ -239,6 +239,7 @@ rail_support::trial rail_support::newton_step(const trial &base, double share) c
 // Broyden's update, each direction measured by its difference.
 void rail_support::learn(const trial &base, const trial &next) {
   for (std::size_t w = 0; w < at(count_); ++w) {
+    if (!(length(base.contact[w].force) > 0)) continue;
     const lateral_vertical way{next.deflection[w][0] - base.deflection[w][0],
                                next.deflection[w][1] - next.z - base.deflection[w][1] + base.z};
     lateral_vertical scaled{};
@@ -262,7 +263,10 @@ void rail_support::learn(const trial &base, const trial &next) {
 support_result rail_support::solve(supported_wheels &wheels, const support_load &load) {
   load_ = load;
   evaluations_ = 0;
-  for (std::size_t w = 0; w < at(count_); ++w) before_[w] = rails_[w].deflection;
+  for (std::size_t w = 0; w < at(count_); ++w) {
+    before_[w] = rails_[w].deflection;
+    last_rate_[w] = rails_[w].rate[0];
+  }
   trial base;
   if (!start(wheels, base)) {
     // the rails stay where they were
@@ -288,8 +292,10 @@ support_result rail_support::solve(supported_wheels &wheels, const support_load 
     trial next = newton_step(base, share);
     const bool solved = evaluate(wheels, next);
     last_is_base = false;
-    if (solved) learn(base, next);
-    if (solved && next.merit < (1 - 1e-4 * share) * base.merit) {
+    const bool better = solved && next.merit < (1 - 1e-4 * share) * base.merit;
+    // along the direction of true slopes a shorter step is better: they are left as they are
+    if (solved && (better || !fresh)) learn(base, next);
+    if (better) {
       base = next;
       last_is_base = true;
       fresh = false;

@@ -59,12 +59,12 @@ class rail_support {
   support_result solve(supported_wheels &wheels, const support_load &load);
   // Of the last step; rate 0 without a time step.
   const lateral_vertical &deflection(int wheel) const { return rails_[at(wheel)].deflection; }
-  const lateral_vertical &rate(int wheel) const { return rates_[at(wheel)]; }
+  const lateral_vertical &rate(int wheel) const { return rails_[at(wheel)].rate; }
   void reset();
 
   // What later steps depend on: plain numbers.
   struct rail {
-    lateral_vertical deflection{};
+    lateral_vertical deflection{}, rate{};
     std::array<lateral_vertical, 2> slope{};  // N/m, force by lateral, vertical deflection
     double hertz = 0;                         // N/m^1.5, of the last contact; 0: none yet
     lateral_vertical difference{};            // m, the slopes were found with
@@ -100,7 +100,8 @@ class rail_support {
   std::array<double, 2> stiffness_, damping_;
   double tolerance_, modulus_, radius_;
   std::array<rail, 2> rails_{};
-  std::array<lateral_vertical, 2> rates_{}, before_{};
+  std::array<lateral_vertical, 2> before_{};
+  std::array<double, 2> last_rate_{};  // m/s, lateral
   support_load load_;
   std::array<double, 2> touch_{};  // m, z of first touch with the rail not deflected
   int evaluations_ = 0;

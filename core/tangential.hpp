@@ -85,13 +85,13 @@ class tangential_solver {
                           const rolling_input &input, const tangential_options &options,
                           tangential_fields fields, const inelastic_fields *inelastic = nullptr,
                           inelastic_sums *sums = nullptr);
+  // The preconditioner's, for linear systems of the same rows between solves; null: other laws.
+  row_blocks *blocks() { return newton_ ? &newton_->blocks() : nullptr; }
   // See offset_influence.hpp; on the grid of a.
   void add_moved(const influence &a, const grid &from, const grid &to, const double offset[2],
                  double share, const double *px, const double *py, double *ux, double *uy) {
     offset_->add_moved(a, from, to, offset, share, px, py, ux, uy);
   }
-  // The preconditioner's, for linear systems of the same rows between solves; null: other laws.
-  row_blocks *blocks() { return newton_ ? &newton_->blocks() : nullptr; }
   // all, and what of it serves the last step and the plastic layer
   size_t bytes() const;
   size_t history_bytes() const { return (offset_ ? offset_->bytes() : 0) + before_.bytes(); }

@@ -104,7 +104,6 @@ wheel_contact::wheel_contact(const rp_config &c, int side)
 }
 
 void wheel_contact::place(const rp_input &in) {
-  time_step_ = in.time_step;
   if (sections_) {
     bool changed = false;
     const profile_view now = sections_->at(in.x, changed);
@@ -113,6 +112,7 @@ void wheel_contact::place(const rp_input &in) {
       geometry_->reload_rail();
     }
   }
+  time_step_ = in.time_step;
   side_motion motion;
   motion.wheelset = {in.y,  in.z,  in.roll,      in.yaw,      in.speed,
                      in.vy, in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};

@@ -141,6 +141,61 @@ inline rp_input running(rp_track track, double radius = 0.46, double roller_radi
   return in;
 }
 
+// Track that varies in all ways at once: rails on springs whose right profile turns inwards over
+// 2 m, with friction that falls; must stay alive as long as its configs are read.
+struct varying_track {
+  profile_pair pair;
+  profiles::curve turned = profiles::rail();
+  rp_profile sections[2];
+  double positions[2] = {1.0, 3.0};
+
+  varying_track() {
+    const double c = std::cos(0.01), s = std::sin(0.01);
+    const auto turn = [&](std::vector<double> &y, std::vector<double> &z) {
+      for (size_t i = 0; i < y.size(); ++i) {
+        const double v = c * y[i] - s * z[i];
+        z[i] = s * y[i] + c * z[i];
+        y[i] = v;
+      }
+    };
+    turn(turned.y, turned.z);
+    turn(turned.dy, turned.dz);
+    sections[0] = pair.rail.view();
+    sections[1] = turned.view();
+  }
+  varying_track(const varying_track &) = delete;
+  varying_track &operator=(const varying_track &) = delete;
+
+  rp_config config(rp_kind kind) const {
+    rp_config c = wheels(kind, RP_RAIL, pair);
+    c.rail[RP_RIGHT] = rp_profile{};
+    c.rail_sections[RP_RIGHT] = sections;
+    c.section_position[RP_RIGHT] = positions;
+    c.section_count[RP_RIGHT] = 2;
+    c.friction_along_points = 2;
+    c.friction_along_position[1] = 4.0;
+    c.friction_along_factor[0] = 1.0;
+    c.friction_along_factor[1] = 0.5;
+    c.rail_stiffness[0] = 2e7;
+    c.rail_stiffness[1] = 5e7;
+    c.rail_damping[0] = 2e4;
+    c.rail_damping[1] = 5e4;
+    return c;
+  }
+  // along the track at 20 m/s
+  static std::vector<rp_input> inputs() {
+    std::vector<rp_input> all;
+    for (int i = 0; i < 6; ++i) {
+      all.push_back(running(RP_RAIL));
+      all.back().x = 0.8 * i;
+      all.back().y = 5e-4 * i;
+      all.back().yaw = 1e-3;
+      all.back().time_step = i > 0 ? 1e-3 : 0.0;
+    }
+    return all;
+  }
+};
+
 // --- comparison ----------------------------------------------------------------------------
 
 // Every number of a result, in order; padding left out.
@@ -179,6 +234,8 @@ void visit(const rp_side_result &s, Add &&add) {
   for (double v : s.force) add("force", v);
   for (double v : s.moment) add("moment", v);
   add("rolling_radius", s.rolling_radius);
+  for (double v : s.rail_deflection) add("rail_deflection", v);
+  for (double v : s.rail_deflection_rate) add("rail_deflection_rate", v);
   add("patch_count", s.patch_count);
   for (const rp_patch_result &p : s.patch) visit(p, add);
 }

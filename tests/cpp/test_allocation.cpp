@@ -323,6 +323,18 @@ TEST(Step, OfAWheelsetWithRowsAllocatesNothing) {
     }
 }
 
+TEST(Step, OnATrackThatVariesAllocatesNothing) {
+  const scenes::varying_track track;
+  for (rp_kind kind : {RP_WHEELSET, RP_WHEEL_RAIL})
+    for (rp_load load : {RP_FORCE, RP_POSITION}) {
+      rp_config c = track.config(kind);
+      c.load = load;
+      std::vector<rp_input> inputs = scenes::varying_track::inputs();
+      for (rp_input &in : inputs) in.z = 1.5e-3;
+      EXPECT_EQ(run(c, inputs).allocated, 0) << "kind " << kind << " load " << load;
+    }
+}
+
 // The transforms alone, in sizes up to grids of 250 elements.
 // A flat wheel and a rail with a dip, with patches that move over the rail.
 TEST(Step, OfTransientRollingWheelsAllocatesNothing) {

@@ -148,6 +148,9 @@ const number_field wheel_numbers[] = {
     {"gauge_height", [](rp_config &c) -> double & { return c.gauge_height; }, -0.014, 14},
     {"cant", [](rp_config &c) -> double & { return c.cant; }, -2, 2},
     {"curvature", [](rp_config &c) -> double & { return c.curvature; }, -1, 1},
+    {"gauge_widening", [](rp_config &c) -> double & { return c.gauge_widening; }, -1, 1},
+    {"rail_stiffness[0]", [](rp_config &c) -> double & { return c.rail_stiffness[0]; }, -1, 1e30},
+    {"rail_damping[1]", [](rp_config &c) -> double & { return c.rail_damping[1]; }, -1, 1e30},
     {"shear_modulus[0]", [](rp_config &c) -> double & { return c.shear_modulus[0]; }, 0, 1e30},
     {"friction_coefficient", [](rp_config &c) -> double & { return c.friction_coefficient; }, -0.1,
      100},
@@ -197,6 +200,49 @@ TEST(Config, NumbersOfWheelsAreChecked) {
       roller, {"roller_radius", [](rp_config &k) -> double & { return k.roller_radius; }, 0, 1e9});
 }
 
+TEST(Config, OfATrackThatVariesIsChecked) {
+  const scenes::varying_track track;
+  const rp_config good = track.config(RP_WHEELSET);
+  for (const number_field &f : wheel_numbers) expect_numbers_checked(good, f);
+  const auto refuse = [&](const char *field, rp_error error, auto &&spoil) {
+    rp_config c = good;
+    spoil(c);
+    expect_refused(c, error, field);
+  };
+  refuse("rail_damping", RP_ERROR_VALUE, [](rp_config &c) { c.rail_stiffness[0] = 0; });
+  refuse("rail_stiffness", RP_ERROR_VALUE, [](rp_config &c) { c.rail_stiffness[1] = 0.5; });
+  refuse("section_count[0]", RP_ERROR_VALUE, [](rp_config &c) { c.section_count[0] = -1; });
+  refuse("rail_sections", RP_ERROR_VALUE, [](rp_config &c) { c.rail_sections[1] = nullptr; });
+  refuse("rail_sections", RP_ERROR_VALUE, [](rp_config &c) { c.section_position[1] = nullptr; });
+  refuse("rail_sections", RP_ERROR_VALUE, [](rp_config &c) { c.section_count[0] = 1; });
+  const double equal[2] = {1.0, 1.0}, wild[2] = {nan, 1.0};
+  refuse("section_position[1]", RP_ERROR_VALUE,
+         [&](rp_config &c) { c.section_position[1] = equal; });
+  refuse("section_position[1]", RP_ERROR_VALUE,
+         [&](rp_config &c) { c.section_position[1] = wild; });
+  refuse("friction_along_points", RP_ERROR_VALUE,
+         [](rp_config &c) { c.friction_along_points = 1; });
+  refuse("friction_along_points", RP_ERROR_VALUE, [](rp_config &c) { c.kind = RP_PATCH; });
+  refuse("friction_along_position[1]", RP_ERROR_VALUE,
+         [](rp_config &c) { c.friction_along_position[1] = -1; });
+  refuse("friction_along_factor[0]", RP_ERROR_VALUE,
+         [](rp_config &c) { c.friction_along_factor[0] = -0.1; });
+  // a section that is no profile, and one whose knots lie elsewhere
+  rp_profile sections[2] = {track.sections[0], track.sections[1]};
+  sections[1].y = nullptr;
+  refuse("rail_sections[1]", RP_ERROR_PROFILE,
+         [&](rp_config &c) { c.rail_sections[1] = sections; });
+  sections[1] = track.sections[1];
+  sections[1].count -= 1;
+  refuse("rail_sections[1]", RP_ERROR_PROFILE,
+         [&](rp_config &c) { c.rail_sections[1] = sections; });
+  // of a side without a wheel nothing is read
+  rp_config left = track.config(RP_WHEEL_RAIL);
+  left.side = RP_LEFT;
+  left.rail_sections[RP_RIGHT] = nullptr;
+  EXPECT_EQ(scenes::handle(left).step(scenes::running(RP_RAIL)).status, RP_CONVERGED);
+}
+
 TEST(Config, FittedRowsAreChecked) {
   const auto expect = [](int nodes, int rows, const char *field, const auto &change) {
     rp_config c = default_config();
@@ -221,6 +267,26 @@ TEST(Config, FittedRowsAreChecked) {
   expect(8, 8, "spin_offset", [](rp_config &c) { c.spin_offset = RP_SPIN_OFFSET_SIXTH; });
 }
 
+TEST(Config, CurvedReferenceSurfaceIsChecked) {
+  const scenes::profile_pair pair;
+  const auto expect = [&](const char *what, const std::function<void(rp_config &)> &change) {
+    rp_config c = scenes::wheels(RP_WHEEL_RAIL, RP_RAIL, pair);
+    c.reference_surface = RP_REFERENCE_CURVED;
+    change(c);
+    expect_refused(c, RP_ERROR_VALUE, "reference_surface");
+    expect_refused(c, RP_ERROR_VALUE, what);
+  };
+  expect("kind = patch", [](rp_config &c) { c.kind = RP_PATCH; });
+  expect("half_space", [](rp_config &c) { c.normal = RP_NORMAL_HERTZ; });
+  expect("half_space", [](rp_config &c) { c.normal = RP_NORMAL_ANALYN; });
+  expect("full or none", [](rp_config &c) { c.tangential = RP_TANGENTIAL_FASTSIM; });
+  expect("fitted", [](rp_config &c) { c.fitted[0] = c.fitted[1] = 8; });
+  expect("coulomb", [](rp_config &c) { c.friction_law = RP_SLIP_VELOCITY; });
+  expect("layer_yield_stress", [](rp_config &c) { c.layer_yield_stress = 1e8; });
+  expect("temperature", [](rp_config &c) { c.temperature = 1; });
+  expect("(1-2nu)/G", [](rp_config &c) { c.shear_modulus[0] = 2e9; });
+}
+
 TEST(Config, ChoicesAndCountsAreChecked) {
   struct {
     const char *name;
@@ -236,6 +302,7 @@ TEST(Config, ChoicesAndCountsAreChecked) {
       {"traction_bound", [](rp_config &c, int v) { put(c.traction_bound, v); }, -1, 3},
       {"flexibility_blending", [](rp_config &c, int v) { put(c.flexibility_blending, v); }, -1, 3},
       {"spin_offset", [](rp_config &c, int v) { put(c.spin_offset, v); }, -1, 2},
+      {"reference_surface", [](rp_config &c, int v) { put(c.reference_surface, v); }, -1, 2},
       {"elements[0]", [](rp_config &c, int v) { c.elements[0] = v; }, -5, 100000},
       {"force_prescribed[0]", [](rp_config &c, int v) { c.force_prescribed[0] = v; }, -1, 2},
       {"force_prescribed[1]", [](rp_config &c, int v) { c.force_prescribed[1] = v; }, -1, 2},

@@ -92,6 +92,8 @@ std::vector<scene> all_scenes() {
   rp_config one = scenes::wheels(RP_WHEEL_RAIL, RP_RAIL, pair());
   one.side = RP_LEFT;
   add("left_wheel", one, wheel_inputs(RP_RAIL));
+  static const scenes::varying_track track;
+  add("varying_track", track.config(RP_WHEELSET), scenes::varying_track::inputs());
   return all;
 }
 

@@ -213,3 +213,34 @@ def test_no_contact_ends_early(name: str) -> None:
 )
 def test_reasons_name_what_decides(case: dict[str, Any], stage: str, part: str) -> None:
     assert part in stages_of(railpatch.Contact(case))[stage]["reason"]
+
+
+def test_rails_on_springs_and_profiles_along_the_track_add_their_own_bytes_alone() -> None:
+    plain = stages_of(railpatch.Contact(WHEELSET))
+    assert not plain["rail_support"]["present"]
+    assert plain["rail_support"]["bytes"] == 0
+    rails = {"track__rail_support": {"stiffness": [2e7, 5e7]}}
+    supported = stages_of(railpatch.Contact(with_values(WHEELSET, **rails)))
+    assert total(supported) - total(plain) == supported["rail_support"]["bytes"] > 0
+    uic = [{"position": x, "profile": "UIC60@1:40"} for x in (0.0, 1.0)]
+    along = {"track__right": {"sections": uic}, "track__left": {"sections": uic}}
+    varying = stages_of(railpatch.Contact(with_values(WHEELSET, **along, profiles__rail=None)))
+    changed = [name for name in plain if varying[name]["bytes"] != plain[name]["bytes"]]
+    assert changed == ["geometry"]
+    assert varying["geometry"]["bytes"] > plain["geometry"]["bytes"]
+
+
+def test_plane_reference_holds_nothing_of_the_curved_one() -> None:
+    case = with_values(WHEELSET, grid__element_size=[1e-3, 1e-3])
+    plain = stages_of(railpatch.Contact(case))
+    curved_case = with_values(case, method__reference_surface="curved")
+    curved = stages_of(railpatch.Contact(curved_case))
+    assert not plain["coupling"]["present"]
+    assert plain["coupling"]["bytes"] == 0
+    assert curved["coupling"]["present"]
+    assert curved["coupling"]["reason"] == "reference_surface = curved: outer loop"
+    for stage in ("influence", "coupling", "geometry"):
+        assert curved[stage]["bytes"] > plain[stage]["bytes"], stage
+    # without friction there is nothing to go round
+    normal = stages_of(railpatch.Contact(with_values(curved_case, method__tangential="none")))
+    assert not normal["coupling"]["present"]

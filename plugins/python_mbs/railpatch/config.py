@@ -11,7 +11,8 @@ from railpatch.case.types import MOST_POINTS
 from railpatch.case.wheel import SIDES, WheelRailCase, WheelsetCase
 from railpatch.choice import resolved
 from railpatch.longitudinal import shape_config
-from railpatch.profiles import load_profile
+from railpatch.profiles import Profile, load_profile
+from railpatch.profiles.sections import matching_sections
 from railpatch.table import default_table
 
 WHEELSET_STATE = (
@@ -72,8 +73,11 @@ def friction_config(friction: Friction | None) -> dict[str, Any]:
     if friction.law != "coulomb":
         config["friction_memory_distance"] = friction.memory_distance
         config["friction_memory_speed"] = friction.memory_speed
+    names = ("position", "factor")
     if friction.factor is not None:
-        config.update(points_config("friction", ("position", "factor"), friction.factor))
+        config.update(points_config("friction", names, friction.factor))
+    if friction.along_track is not None:
+        config.update(points_config("friction_along", names, friction.along_track))
     return config
 
 
@@ -169,6 +173,7 @@ def wheel_config(scene: Scene, case: WheelRailCase | WheelsetCase) -> dict[str, 
         "track": track.kind,
         "gauge": track.gauge,
         "gauge_height": track.gauge_height,
+        "gauge_widening": track.gauge_widening,
         "cant": track.cant,
         "curvature": track.curvature,
         "wheel": profile_pair(scene, case, "wheel"),
@@ -176,6 +181,10 @@ def wheel_config(scene: Scene, case: WheelRailCase | WheelsetCase) -> dict[str, 
     }
     if track.roller_radius is not None:
         config["roller_radius"] = track.roller_radius
+    if track.rail_support is not None:
+        config["rail_stiffness"] = track.rail_support.stiffness
+        config["rail_damping"] = track.rail_support.damping
+    config.update(sections_config(scene, case))
     if wheelset.max_patches is not None:
         config["max_patches"] = wheelset.max_patches
     chosen = {name: getattr(case.method, name) for name in WHEEL_METHOD}
@@ -189,14 +198,40 @@ def profile_pair(scene: Scene, case: WheelRailCase | WheelsetCase, body: Any) ->
     """[left, right] of the wheels or the rails; None for a side that has no wheel."""
     pair: list[Any] = []
     for side in SIDES:
-        if side not in case.sides:
+        by_sections = body == "rail" and getattr(case.track, side).sections is not None
+        if side not in case.sides or by_sections:
             pair.append(None)
             continue
         _, name = case.profiles.of(body, side)
         assert name is not None
         profile = load_profile(name, body, folder=scene.folder, smoothing=case.profiles.smoothing)
-        pair.append({key: getattr(profile, key) for key in ("arc_length", "y", "z", "dy", "dz")})
+        pair.append(profile_arrays(profile))
     return pair
+
+
+def profile_arrays(profile: Profile) -> dict[str, Any]:
+    """The arrays of rp_profile."""
+    return {key: getattr(profile, key) for key in ("arc_length", "y", "z", "dy", "dz")}
+
+
+def sections_config(scene: Scene, case: WheelRailCase | WheelsetCase) -> dict[str, Any]:
+    """Profiles of the rails along the track, where they vary; [left, right]."""
+    rails = [getattr(case.track, side) for side in SIDES]
+    found = [
+        rail.sections if rail.sections and side in case.sides else []
+        for side, rail in zip(SIDES, rails, strict=True)
+    ]
+    if not any(found):
+        return {}
+    profiles = []
+    for sections in found:
+        loaded = [
+            load_profile(s.profile, "rail", folder=scene.folder, smoothing=case.profiles.smoothing)
+            for s in sections
+        ]
+        profiles.append([profile_arrays(p) for p in matching_sections(loaded)] if loaded else [])
+    positions = [[section.position for section in sections] for sections in found]
+    return {"rail_sections": profiles, "section_position": positions}
 
 
 def input_of(case: Case) -> dict[str, Any]:

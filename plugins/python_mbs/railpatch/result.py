@@ -72,8 +72,9 @@ class Result:
     in track axes (m), and row_angle [ny], its contact angle (rad). ``iterations`` is the sum of
     conjugate-gradient steps of the normal and Newton steps of the tangential problem.
     ``error_estimate`` holds what 95 % of the errors of creep_force (N, length of the vector),
-    spin_moment (N m) and max_pressure (Pa) stay below. ``share`` is the part that a patch's solution
-    has in the force, moment and rolling radius of its wheel: below 1 where patches join or part. What the scene left out is NaN or None.
+    spin_moment (N m) and max_pressure (Pa) stay below. ``share`` is the part that a patch's
+    solution has in the force, moment and rolling radius of its wheel: below 1 where patches join or
+    part. What the scene left out is NaN or None.
     """
 
     def __init__(self, data: dict[str, Any]) -> None:
@@ -136,6 +137,11 @@ def patch_data(
     return {name: data[name] for name in names}
 
 
+def known(values: list[float]) -> list[float] | None:
+    """None for what the scene does not have."""
+    return None if all(map(math.isnan, values)) else values
+
+
 def wheel_data(side: dict[str, Any], z: float) -> dict[str, Any]:
     """The quantities of one wheel, from the core's rp_side_result."""
     return {
@@ -144,6 +150,8 @@ def wheel_data(side: dict[str, Any], z: float) -> dict[str, Any]:
         "moment": side["moment"],
         "z": z,
         "rolling_radius": side["rolling_radius"],
+        "rail_deflection": known(side["rail_deflection"]),
+        "rail_deflection_rate": known(side["rail_deflection_rate"]),
         "patches": [patch_data(patch, of_wheel=True) for patch in side["patches"]],
     }
 

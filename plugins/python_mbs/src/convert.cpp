@@ -181,6 +181,26 @@ void fill_profiles(Reader &reader, const char *key, rp_profile (&to)[2],
   for (size_t side = 0; side < 2; ++side) fill_profile(nb::object(sides[side]), to[side], keep);
 }
 
+// of each side a list of profiles and of their positions
+void fill_sections(Reader &reader, Config &to) {
+  if (!reader.has("rail_sections") || !reader.has("section_position")) return;
+  const auto sides = nb::cast<nb::list>(reader.at("rail_sections"));
+  const auto places = nb::cast<nb::list>(reader.at("section_position"));
+  for (size_t side = 0; side < 2; ++side) {
+    const auto profiles = nb::cast<nb::list>(nb::object(sides[side]));
+    const auto positions = nb::cast<nb::list>(nb::object(places[side]));
+    if (nb::len(profiles) != nb::len(positions)) throw nb::value_error("section_position");
+    for (size_t k = 0; k < nb::len(profiles); ++k) {
+      to.sections[side].emplace_back();
+      fill_profile(nb::object(profiles[k]), to.sections[side].back(), to.profiles);
+      to.section_position[side].push_back(nb::cast<double>(positions[k]));
+    }
+    to.values.rail_sections[side] = to.sections[side].data();
+    to.values.section_position[side] = to.section_position[side].data();
+    to.values.section_count[side] = static_cast<int32_t>(to.sections[side].size());
+  }
+}
+
 // [left, right], None where there is none
 void fill_values(Reader &reader, const char *key, const double *(&to)[2], int32_t (&count)[2],
                  std::vector<Values> &keep) {
@@ -272,6 +292,8 @@ nb::dict side_dict(const rp_side_result &side) {
   to["force"] = list_of(side.force);
   to["moment"] = list_of(side.moment);
   to["rolling_radius"] = side.rolling_radius;
+  to["rail_deflection"] = list_of(side.rail_deflection);
+  to["rail_deflection_rate"] = list_of(side.rail_deflection_rate);
   to["patches"] = patches;
   return to;
 }
@@ -310,6 +332,9 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.scalar("friction_change", c.friction_change);
   reader.scalar("friction_reference_temperature", c.friction_reference_temperature);
   reader.scalar("friction_temperature_range", c.friction_temperature_range);
+  reader.scalar("friction_along_points", c.friction_along_points);
+  reader.array("friction_along_position", c.friction_along_position);
+  reader.array("friction_along_factor", c.friction_along_factor);
   reader.scalar("friction_points", c.friction_points);
   reader.array("friction_position", c.friction_position);
   reader.array("friction_factor", c.friction_factor);
@@ -356,6 +381,9 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.name("track", c.track);
   reader.scalar("gauge", c.gauge);
   reader.scalar("gauge_height", c.gauge_height);
+  reader.scalar("gauge_widening", c.gauge_widening);
+  reader.array("rail_stiffness", c.rail_stiffness);
+  reader.array("rail_damping", c.rail_damping);
   reader.scalar("cant", c.cant);
   reader.scalar("curvature", c.curvature);
   reader.scalar("roller_radius", c.roller_radius);
@@ -368,6 +396,7 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.scalar("rail_height_spacing", c.rail_height_spacing);
   fill_profiles(reader, "wheel", c.wheel, to.profiles);
   fill_profiles(reader, "rail", c.rail, to.profiles);
+  fill_sections(reader, to);
   reader.finish();
 }
 

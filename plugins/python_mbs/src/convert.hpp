@@ -21,6 +21,8 @@ using Grid = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cp
 struct Config {
   rp_config values;
   std::vector<Values> profiles;
+  std::vector<rp_profile> sections[2];
+  std::vector<double> section_position[2];
   Grid gap;
   Bytes table;
 };

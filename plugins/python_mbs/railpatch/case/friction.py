@@ -95,12 +95,18 @@ class Friction(Table):
         "gauge face on either side)",
     )
 
+    along_track: Points | None = Field(
+        default=None,
+        description="m and -, [[x, factor], ...]: factor of the law over the position along the "
+        "track, wheelset.x (wheel_rail, wheelset)",
+    )
+
     @model_validator(mode="after")
     def _by_law(self) -> Friction:
         needed, optional = KEYS[self.law]
         if self.law == "slip_velocity":
             needed = SHAPES[self.shape]
-        allowed = {"law", "factor", *needed, *optional}
+        allowed = {"law", "factor", "along_track", *needed, *optional}
         if self.law == "slip_velocity":
             allowed.add("shape")
         for name in needed:
@@ -110,8 +116,9 @@ class Friction(Table):
             if name not in allowed and getattr(self, name) != field.default:
                 shown = repr(getattr(self, name))
                 raise relation(name, shown, f"to be left out with {self._named()}")
-        if self.factor is not None:
-            check_increasing("factor", self.factor)
+        for name in ("factor", "along_track"):
+            if getattr(self, name) is not None:
+                check_increasing(name, getattr(self, name))
         self._check_values()
         return self
 
@@ -133,8 +140,13 @@ class Friction(Table):
             assert self.change is not None
             if not 0 <= self.reference + self.change <= 10:
                 raise relation("change", self.change, "reference + change within 0 ... 10")
-        if self.factor is not None and min(value for _, value in self.factor) < 0:
-            raise relation("factor", str(self.factor), "factors >= 0")
+        for name in ("factor", "along_track"):
+            points = getattr(self, name)
+            if (
+                points is not None
+                and not 0 <= min(v for _, v in points) <= max(v for _, v in points) <= 100
+            ):
+                raise relation(name, str(points), "factors within 0 ... 100")
 
     @property
     def terms(self) -> tuple[list[float], list[float]]:

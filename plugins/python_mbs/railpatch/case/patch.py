@@ -211,6 +211,9 @@ class PatchCase(Table):
             check_tangential(self.material, self.friction, self.layer, self.grid, self.method)
             check_physics(self.friction, self.layer, self.temperature, self.grid, self.method)
             self._check_regime()
+        if self.friction is not None and self.friction.along_track is not None:
+            shown = str(self.friction.along_track)
+            raise relation("friction.along_track", shown, "to be left out with kind = 'patch'")
         if any(self.motion.prescribed):
             self._check_force()
         for name in WHEEL_METHOD:

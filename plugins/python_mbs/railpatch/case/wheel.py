@@ -19,6 +19,7 @@ from railpatch.case.common import (
     check_reference,
     check_tangential,
 )
+from railpatch.case.rails import RailSupport, Sections, check_sections
 from railpatch.case.rolling import RailShape, WheelMotion, WheelShape, check_rolling
 from railpatch.case.types import (
     Angle,
@@ -58,10 +59,6 @@ class Deviation(Table):
 
 class WheelDeviation(Deviation, WheelShape):
     """Deviation of a wheel, and its shape around the circumference."""
-
-
-class RailDeviation(Deviation, RailShape):
-    """Deviation of a rail or roller, and a rail's shape along the track."""
 
 
 class Wheelset(Table):
@@ -119,6 +116,21 @@ class Wheelset(Table):
         return self
 
 
+class Rail(Deviation, RailShape):
+    """A rail's deviation, running surface, and its profiles where they vary along the track."""
+
+    sections: Sections | None = Field(
+        default=None,
+        description="profiles along the track (m, file), interpolated linearly in between and "
+        "constant beyond, instead of one in [profiles]",
+    )
+
+    @model_validator(mode="after")
+    def _increasing(self) -> Rail:
+        check_sections(self.sections)
+        return self
+
+
 class Track(Table):
     """Rails or rollers."""
 
@@ -126,6 +138,9 @@ class Track(Table):
     gauge: Dimension = Field(default=1.435, description="m, track gauge")
     gauge_height: Annotated[float, between(0, 0.1)] = Field(
         default=0.014, description="m, height below the rail's top at which the gauge is measured"
+    )
+    gauge_widening: Annotated[float, between(-0.1, 0.1)] = Field(
+        default=0.0, description="m, each rail lies half of it further out than the gauge says"
     )
     cant: Annotated[float, between(-0.5, 0.5)] = Field(
         default=0.0,
@@ -140,12 +155,11 @@ class Track(Table):
     roller_pitch_rate: Number | None = Field(
         default=None, description="rad/s, about the roller's axle, above 0 forward (roller)"
     )
-    left: RailDeviation = Field(
-        default=RailDeviation(), description="left rail's deviation (m, rad), track axes"
+    rail_support: RailSupport | None = Field(
+        default=None, description="springs and dampers under the rails (N/m, N s/m)"
     )
-    right: RailDeviation = Field(
-        default=RailDeviation(), description="right rail's deviation (m, rad), track axes"
-    )
+    left: Rail = Field(default=Rail(), description="left rail's deviation (m, rad), track axes")
+    right: Rail = Field(default=Rail(), description="right rail's deviation (m, rad), track axes")
 
     @model_validator(mode="after")
     def _keys_of_kind(self) -> Track:
@@ -246,11 +260,20 @@ class _WheelCase(Table):
         for side in self.sides:
             for body in ("wheel", "rail"):
                 key, value = self.profiles.of(body, side)
-                if value is None:
+                if body == "rail" and getattr(self.track, side).sections is not None:
+                    self._check_sections(key, value)
+                elif value is None:
                     raise relation(
                         f"profiles.{key}", "missing", f"'{key}', or '{body}' for both sides"
                     )
         return self
+
+    def _check_sections(self, key: str, value: str | None) -> None:
+        """A rail has one profile or sections."""
+        every = all(getattr(self.track, side).sections is not None for side in self.sides)
+        if value is not None and (every or key != "rail"):
+            allowed = "to be left out where the track's rail has 'sections'"
+            raise relation(f"profiles.{key}", repr(value), allowed)
 
 
 class WheelRailCase(_WheelCase):

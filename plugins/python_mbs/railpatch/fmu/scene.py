@@ -90,6 +90,7 @@ def scene_text(scene: Scene, variables: list[Variable], guid: str) -> str:
 
 def lines_of(config: dict[str, Any], variables: list[Variable], guid: str) -> Iterator[str]:
     """All lines but the last."""
+    refuse_track(config)
     yield "railpatch-fmu-scene 1"
     yield f"guid {guid}"
     for name, numbers in _core.config_numbers(config).items():
@@ -104,6 +105,17 @@ def lines_of(config: dict[str, Any], variables: list[Variable], guid: str) -> It
         yield f"distance {values.size} {spell(values)}"
     for v in variables:
         yield f"variable {v.reference} {v.name} {spell([v.start or 0])}"
+
+
+def refuse_track(config: dict[str, Any]) -> None:
+    """Raises CaseError for what needs inputs that an FMU does not have: x and time_step."""
+    for field, key in (
+        ("rail_sections", "track.left.sections, track.right.sections"),
+        ("friction_along_points", "friction.along_track"),
+        ("rail_stiffness", "track.rail_support"),
+    ):
+        if field in config:
+            raise CaseError(f"{key}: given, allowed in an FMU none")
 
 
 def spell(numbers: Any) -> str:

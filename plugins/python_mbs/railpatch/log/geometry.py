@@ -166,6 +166,9 @@ def scene_geometry(case: WheelsetCase) -> SceneGeometry:
 def curve(case: WheelsetCase, role: Role, side: str, deviation: Deviation) -> np.ndarray:
     """m, [n, 2], y and z of a profile, a right-hand one for both sides, with its deviation."""
     _, name = case.profiles.of(role, side)
+    sections = getattr(case.track, side).sections if role == "rail" else None
+    if sections is not None:  # drawn as it begins
+        name = sections[0].profile
     assert name is not None
     mirror = -1.0 if side == "left" else 1.0
     _, y, z = deviation.offset
