@@ -143,6 +143,32 @@ rp_error rp_differentiate(rp_contact *contact, const rp_input *direction, rp_res
   }
 }
 
+rp_error rp_get_jacobian(rp_contact *contact, rp_jacobian *out, rp_message *message) {
+  if (!contact || !out) {
+    set_message(message, "%s is null", contact ? "out" : "contact");
+    return RP_ERROR_NULL;
+  }
+  const rp_config &config = contact->scene.config();
+  if (!contact->scene.has_derivatives() || config.kind == RP_PATCH) {
+    set_message(message, config.kind == RP_PATCH
+                             ? "kind is patch, rp_get_jacobian needs wheel_rail or wheelset"
+                             : "derivatives is 0, rp_get_jacobian needs 1");
+    return RP_ERROR_VALUE;
+  }
+  if (!contact->scene.has_solution()) {
+    set_message(message,
+                "rp_get_jacobian needs a step since rp_create, rp_reset or rp_restore_state");
+    return RP_ERROR_STATE;
+  }
+  try {
+    contact->scene.jacobian(*out);
+    return RP_OK;
+  } catch (...) {
+    set_message(message, "internal error in rp_get_jacobian");
+    return RP_ERROR_INTERNAL;
+  }
+}
+
 rp_error rp_set_friction_coefficient(rp_contact *contact, double value, rp_message *message) {
   if (!contact) {
     set_message(message, "contact is null");

@@ -41,8 +41,9 @@ struct patch_change {
 };
 
 struct derivative_options {
-  double tolerance = 1e-8;  // of the linear systems, relative to their right sides
-  bool energy = true;       // false: elastic_energy is not asked for, and NaN
+  // of the linear systems, relative to their right sides; 0: as the scene's tolerance asks for
+  double tolerance = 0;
+  bool energy = true;  // false: elastic_energy is not asked for, and NaN
 };
 
 // How the systems ended.
