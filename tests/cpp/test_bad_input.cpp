@@ -98,6 +98,56 @@ TEST(Null, PointersAreErrors) {
   rp_destroy(nullptr);
 }
 
+TEST(Derivatives, CallsAreChecked) {
+  rp_config c = default_config();
+  rp_message message{};
+  rp_result change{};
+  rp_input direction;
+  rp_default_direction(&direction);
+  direction.creepage[0] = 1;
+  const auto refused = [&](rp_contact *contact, rp_error expected, const char *word) {
+    change.z = 7;
+    EXPECT_EQ(rp_differentiate(contact, &direction, &change, nullptr, &message), expected);
+    EXPECT_NE(std::string(message.text).find(word), std::string::npos) << message.text;
+    EXPECT_EQ(change.z, 7) << "outputs of an error stay untouched";
+  };
+  scenes::handle without(c);
+  without.step(default_input());
+  refused(without.get(), RP_ERROR_VALUE, "derivatives is 0");
+  for (int bad : {-1, 2}) {
+    c.derivatives = bad;
+    expect_refused(c, RP_ERROR_VALUE, "derivatives");
+  }
+  c.derivatives = 1;
+  scenes::handle contact(c);
+  refused(nullptr, RP_ERROR_NULL, "contact");
+  refused(contact.get(), RP_ERROR_STATE, "step");
+  contact.step(default_input());
+  EXPECT_EQ(rp_differentiate(contact.get(), &direction, &change, nullptr, nullptr), RP_OK);
+  rp_derivative_kind kind = RP_DERIVATIVE_BY_DIFFERENCES;
+  EXPECT_EQ(rp_differentiate(contact.get(), &direction, &change, &kind, &message), RP_OK);
+  EXPECT_EQ(kind, RP_DERIVATIVE_EXACT);
+  EXPECT_LT(change.side[RP_RIGHT].patch[0].creep_force[0], 0);
+  EXPECT_EQ(rp_differentiate(contact.get(), nullptr, &change, nullptr, &message), RP_ERROR_NULL);
+  EXPECT_EQ(rp_differentiate(contact.get(), &direction, nullptr, nullptr, &message), RP_ERROR_NULL);
+  for (double bad : {nan, HUGE_VAL}) {
+    direction.spin_creepage = bad;
+    refused(contact.get(), RP_ERROR_VALUE, "spin_creepage");
+  }
+  direction.spin_creepage = 0;
+  direction.cookie = 0;
+  refused(contact.get(), RP_ERROR_NOT_DEFAULTED, "direction");
+  rp_default_direction(&direction);
+  const std::vector<unsigned char> state = contact.state();
+  EXPECT_EQ(contact.restore(state), RP_OK);
+  refused(contact.get(), RP_ERROR_STATE, "step");
+  contact.step(default_input());
+  EXPECT_EQ(rp_differentiate(contact.get(), &direction, &change, nullptr, nullptr), RP_OK);
+  rp_reset(contact.get());
+  refused(contact.get(), RP_ERROR_STATE, "step");
+  rp_default_direction(nullptr);
+}
+
 TEST(Cookie, StructsMustBeDefaulted) {
   rp_config zero{};
   expect_refused(zero, RP_ERROR_NOT_DEFAULTED, "config");
