@@ -121,7 +121,8 @@ void contact::exact_jacobian(rp_jacobian &out) {
   out.z[z_column] = 1.0;
   if (config_.load == RP_POSITION) return;
   out.z[z_column] = 0.0;
-  const double slope = vertical[z_column];
+  // without contact no height carries anything
+  const double slope = vertical[z_column] != 0 ? vertical[z_column] : nan;
   out.z_force = -1.0 / slope;
   for (int column : directions) {
     if (column == z_column) continue;

@@ -124,7 +124,8 @@ def compare(contact: Contact, state: dict[str, float], speed: float) -> tuple[in
     """Columns compared, and left out."""
     contact.step(**state)
     found = contact.jacobian()
-    assert found["kind"] == "exact" and found["status"] == "converged"
+    assert found["kind"] == "exact"
+    assert found["status"] == "converged"
     usual = np.array(list(USUAL.values()))
     compared = left_out = 0
     for column, expected in differences(contact, state, speed):
@@ -147,7 +148,7 @@ def compare(contact: Contact, state: dict[str, float], speed: float) -> tuple[in
 
 def random_rail_state(rng: np.random.Generator, find: Contact) -> dict[str, float] | None:
     speed = rng.uniform(2.0, 40.0)
-    state = {name: 0.0 for name in POSE_AND_VELOCITY}
+    state = dict.fromkeys(POSE_AND_VELOCITY, 0.0)
     y = rng.uniform(-6e-3, 6e-3)
     state.update(
         y=y,
@@ -173,7 +174,8 @@ def check_rail(profiles: dict[str, str], count: int) -> None:
         state = random_rail_state(rng, find)
         if state is not None:
             totals += compare(contact, state, state["speed"])
-    assert totals[0] > 6 * count and totals[1] < totals[0] / 4
+    assert totals[0] > 6 * count
+    assert totals[1] < totals[0] / 4
 
 
 def test_built_in_profiles():
@@ -194,7 +196,7 @@ def test_tread_and_flange_at_once():
     find, contact = contacts(rail_case(BUILT_IN))
     speed, shares, totals = 20.0, set(), np.zeros(2, dtype=int)
     for y in np.arange(5.9e-3, 6.8e-3, 2e-5):
-        state = {name: 0.0 for name in POSE_AND_VELOCITY}
+        state = dict.fromkeys(POSE_AND_VELOCITY, 0.0)
         state.update(y=float(y), roll=-0.03 * float(y), yaw=2e-3, speed=speed)
         state.update(pitch_rate=-speed / 0.46, vy=0.01)
         moving = {name: v for name, v in state.items() if name != "z"}
@@ -203,7 +205,8 @@ def test_tread_and_flange_at_once():
             continue
         shares |= {patch["share"] for side in SIDES for patch in result[side]["patches"]}
         totals += compare(contact, {**state, "z": result["z"]}, speed)
-    assert totals[0] > 40 and totals[1] < totals[0]
+    assert totals[0] > 40
+    assert totals[1] < totals[0]
     assert 1.0 in shares
 
 
@@ -219,7 +222,7 @@ def test_rollers(reference):
     find, contact = contacts({**ROLLER, "profiles": names})
     totals = np.zeros(2, dtype=int)
     for _ in range(40):
-        state = {name: 0.0 for name in POSE_AND_VELOCITY}
+        state = dict.fromkeys(POSE_AND_VELOCITY, 0.0)
         state.update(
             y=rng.uniform(-6.6e-3, 2.3e-3),
             roll=rng.uniform(-1e-4, 1e-4),
@@ -231,7 +234,8 @@ def test_rollers(reference):
         result = find.step(**{name: v for name, v in state.items() if name != "z"})
         if result["status"] == "converged":
             totals += compare(contact, {**state, "z": result["z"]}, 4.47)
-    assert totals[0] > 240 and totals[1] < totals[0] / 4
+    assert totals[0] > 240
+    assert totals[1] < totals[0] / 4
 
 
 def test_with_vertical_force_the_height_follows():

@@ -126,12 +126,10 @@ class Contact:
         of the step, or "not_converged". Needs method.derivatives = true and a step; changes
         nothing. Raises CaseError.
         """
-        if self._case.kind == "patch" or not self._case.method.derivatives:
-            raise CaseError(
-                f"kind: value is {show(self._case.kind)}, allowed wheel_rail, wheelset for jacobian()"
-                if self._case.kind == "patch"
-                else "method.derivatives: value is False, allowed True for jacobian()"
-            )
+        if self._case.kind == "patch":
+            raise CaseError("kind: value is 'patch', allowed wheel_rail, wheelset for jacobian()")
+        if not self._case.method.derivatives:
+            raise CaseError("method.derivatives: value is False, allowed True for jacobian()")
         raw = self._core.jacobian()
         shape = (len(FORCE_AND_MOMENT), len(POSE_AND_VELOCITY))
         arrays = {side: np.array(raw[side]).reshape(shape) for side in self._case.sides}
