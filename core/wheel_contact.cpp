@@ -290,6 +290,7 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
   solver.solve(problem, memory, result, wrench);
   memory.history.begun = solver.scene().keeps_steps();
   memory.share = region.share;
+  for (size_t k = 0; k < 2; ++k) memory.rail[k] = geometry_->motion().rail.offset[k + 1];
 
   if (!solutions_.empty()) solutions_[static_cast<size_t>(index)] = {true, problem, wrench, depth};
 
@@ -329,6 +330,7 @@ void wheel_contact::set_past(const patch_memory *memory, const patch_region &reg
   const double moved = speed < slow ? std::sqrt(std::max(slow * (2 * speed - slow), 0.0)) : speed;
   const double rolled = direction * moved * time_step_;
   problem.past = past;
+  const vec3 &rail = geometry_->motion().rail.offset;
   const contact_frame &frame = region.frame;
   const auto lateral = [&](const vec3 &at) {
     return lateral_in(frame.origin, frame.contact_angle, at);
@@ -344,7 +346,8 @@ void wheel_contact::set_past(const patch_memory *memory, const patch_region &reg
     const patch_history &h = memory[k].history;
     if (!h.held) continue;
     const grid &g = h.last_grid;
-    const double place = lateral(h.last_reference);  // in this frame
+    // in this frame; the rail has taken its material along
+    const double place = lateral({0, h.last_reference[1] + rail[1], h.last_reference[2] + rail[2]});
     const auto row = [&](double s) {
       return static_cast<int>(
           std::clamp(std::ceil((s - place - g.y0) / g.dy), 0.0, static_cast<double>(g.ny)));

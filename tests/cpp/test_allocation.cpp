@@ -456,4 +456,58 @@ TEST(Step, OfAWheelsetAllocatesNothing) {
   }
 }
 
+// --- derivatives ---------------------------------------------------------------------------
+
+// Of every number of the input that the kind reads, after each step.
+template <class Inputs>
+int allocated_by_derivatives(rp_config config, const Inputs &inputs, rp_derivative_kind expected) {
+  config.derivatives = 1;
+  scenes::handle contact(config);
+  auto change = std::make_unique<rp_result>();
+  int sum = 0;
+  for (const rp_input &in : inputs) {
+    rp_message message{};
+    rp_error error = RP_OK;
+    sum += allocations([&] { contact.step(in); });
+    rp_input direction;
+    rp_default_direction(&direction);
+    if (config.load == RP_FORCE) direction.normal_force = direction.vertical_force = 1;
+    direction.creepage[0] = direction.creepage[1] = direction.spin_creepage = 1;
+    direction.y = direction.yaw = direction.speed = direction.approach = 1;
+    rp_derivative_kind kind = RP_DERIVATIVE_EXACT;
+    sum += allocations([&] {
+      error = rp_differentiate(contact.get(), &direction, change.get(), &kind, &message);
+    });
+    EXPECT_EQ(error, RP_OK) << message.text;
+    EXPECT_EQ(kind, expected);
+    EXPECT_NE(change->status, RP_NOT_CONVERGED);
+  }
+  return sum;
+}
+
+TEST(Derivatives, OfAPatchAllocateNothing) {
+  for (rp_normal_method normal : {RP_NORMAL_HERTZ, RP_NORMAL_HALF_SPACE})
+    for (rp_tangential_method tangential : {RP_TANGENTIAL_NONE, RP_TANGENTIAL_FULL})
+      for (rp_load load : {RP_FORCE, RP_POSITION})
+        for (rp_geometry geometry : {RP_SEMI_AXES, RP_CURVATURES}) {
+          rp_config c = scenes::patch(normal, tangential, 14);
+          c.load = load;
+          c.geometry = geometry;
+          std::vector<rp_input> inputs = patch_inputs();
+          for (auto &in : inputs) in.approach = 1e-9 * in.normal_force;
+          EXPECT_EQ(allocated_by_derivatives(c, inputs, RP_DERIVATIVE_EXACT), 0)
+              << "normal " << normal << " tangential " << tangential << " load " << load;
+        }
+}
+
+TEST(Derivatives, ByDifferencesAllocateNothing) {
+  rp_config fast = scenes::patch(RP_NORMAL_HERTZ, RP_TANGENTIAL_FASTSIM, 12);
+  EXPECT_EQ(allocated_by_derivatives(fast, patch_inputs(), RP_DERIVATIVE_BY_DIFFERENCES), 0);
+  rp_config shift = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL, 12);
+  shift.regime = RP_SHIFT;
+  std::vector<rp_input> inputs = patch_inputs();
+  for (auto &in : inputs) in.creepage[0] *= 1e-3, in.creepage[1] *= 1e-3, in.spin_creepage = 0;
+  EXPECT_EQ(allocated_by_derivatives(shift, inputs, RP_DERIVATIVE_BY_DIFFERENCES), 0);
+}
+
 }  // namespace

@@ -29,6 +29,7 @@ from railpatch.result import (
     shaped_field,
     wheel_data,
 )
+from railpatch.track import add_irregularity, irregularity_of
 
 SIDE_INDEX = {"left": 0, "right": 1}
 # saved state: mark, length of the moving tables as JSON, the JSON, the core's state
@@ -64,6 +65,7 @@ class Contact:
     ) -> None:
         scene = case if isinstance(case, Scene) else load_scene(case, folder)
         self._case = scene.case
+        self._irregularity = irregularity_of(scene)
         self._core = _core.Contact(config_of(scene), timing)
         self._stages = [stage["name"] for stage in self.stages() if stage["present"]]
 
@@ -90,6 +92,8 @@ class Contact:
     def _solve(self, case: Case, creepage: list[float] | None, *, fields: bool) -> Result:
         """One step; creepage: of this step, where the case has one for each."""
         values = input_of(case)
+        if self._irregularity is not None:
+            add_irregularity(values, self._irregularity)
         if creepage is not None:
             values["creepage"] = creepage
         begin = time.perf_counter()
