@@ -21,8 +21,8 @@ double *pose_and_velocity(rp_input &in, int column) {
   return numbers[column];
 }
 
-// the columns that a round wheel on a rail without end depends on
-constexpr int directions[] = {1, z_column, 3, 4, 6, 7, 8, 9, 10, 11};
+// the columns that a round wheel on a rail without end depends on; x by its friction at most
+constexpr int directions[] = {1, z_column, 3, 4, 6, 7, 8, 9, 10, 11, 0};
 constexpr int direction_count = static_cast<int>(std::size(directions));
 static_assert(direction_count <= wheel_derivative::most_directions);
 
@@ -44,6 +44,13 @@ void degrade(rp_status &status, bool converged) {
 
 }  // namespace
 
+// Of the friction coefficient, where it varies along the track.
+double contact::friction_rate(const rp_input &direction) const {
+  if (!friction_along_.varies()) return 0.0;
+  const double slope = friction_along_.slope(derivative_->input.x);
+  return solver_.scene().friction_coefficient * slope * direction.x;
+}
+
 void contact::differentiate_wheels(const rp_input &direction, rp_result &out) {
   derivative_record &record = *derivative_;
   // z is an input, or found with the rates of the vertical force
@@ -51,12 +58,13 @@ void contact::differentiate_wheels(const rp_input &direction, rp_result &out) {
   rp_input both[2] = {direction, unit_direction(direction, z_column)};
   if (forced) both[0].z = 0;
   const int count = forced ? 2 : 1;
+  const double friction[2] = {friction_rate(direction), 0};
   double missing = -direction.vertical_force, slope = 0;
   for (const auto &wheel : wheels_) {
     const int side = wheel.side();
     rp_side_result *changes = &record.changes[static_cast<size_t>(side * count)];
     const derivative_outcome outcome =
-        wheel.differentiate(solver_, &memory(side, 0), *record.wheels, both, count, {},
+        wheel.differentiate(solver_, &memory(side, 0), *record.wheels, both, friction, count, {},
                             record.result.side[side], changes);
     missing -= changes[0].force[2];
     if (forced) slope += changes[1].force[2];
@@ -101,7 +109,12 @@ void contact::exact_jacobian(rp_jacobian &out) {
   derivative_record &record = *derivative_;
   out.kind = RP_DERIVATIVE_EXACT;
   rp_input inputs[direction_count];
-  for (int k = 0; k < direction_count; ++k) inputs[k] = unit_direction(record.input, directions[k]);
+  double friction[direction_count];
+  const int count = friction_along_.varies() ? direction_count : direction_count - 1;
+  for (int k = 0; k < count; ++k) {
+    inputs[k] = unit_direction(record.input, directions[k]);
+    friction[k] = friction_rate(inputs[k]);
+  }
   // no better than the solution they belong to
   const double tolerance = std::clamp(0.1 * config_.tolerance, exact_tolerance, coarse_tolerance);
   const derivative_options options{tolerance, false};
@@ -109,10 +122,10 @@ void contact::exact_jacobian(rp_jacobian &out) {
   for (const auto &wheel : wheels_) {
     const int side = wheel.side();
     const derivative_outcome outcome =
-        wheel.differentiate(solver_, &memory(side, 0), *record.wheels, inputs, direction_count,
+        wheel.differentiate(solver_, &memory(side, 0), *record.wheels, inputs, friction, count,
                             options, record.result.side[side], record.changes.data());
     degrade(out.status, outcome.converged);
-    for (int k = 0; k < direction_count; ++k) {
+    for (int k = 0; k < count; ++k) {
       const rp_side_result &change = record.changes[static_cast<size_t>(k)];
       for (int i = 0; i < 6; ++i) out.side[side][i][directions[k]] = component(change, i);
       vertical[directions[k]] += change.force[2];
@@ -121,7 +134,8 @@ void contact::exact_jacobian(rp_jacobian &out) {
   out.z[z_column] = 1.0;
   if (config_.load == RP_POSITION) return;
   out.z[z_column] = 0.0;
-  const double slope = vertical[z_column];
+  // without contact no height carries anything
+  const double slope = vertical[z_column] != 0 ? vertical[z_column] : nan;
   out.z_force = -1.0 / slope;
   for (int column : directions) {
     if (column == z_column) continue;

@@ -377,17 +377,17 @@ void wheel_contact::set_friction(const patch_contact &solver, const contact_fram
   }
 }
 
-// What varies along the track or the wheel, or makes rails give way, is left to differences.
+// Shapes that vary along the track or the wheel, and rails that give way, are left to differences.
 bool wheel_contact::differentiates() const {
   const bool gives_way = config_.rail_stiffness[0] > 0 || config_.rail_stiffness[1] > 0;
   return wheel_derivative::covers(rules_) && !sections_ && !shape_ &&
-         config_.friction_along_points == 0 && config_.reference_surface == RP_REFERENCE_PLANE &&
-         !gives_way;
+         config_.reference_surface == RP_REFERENCE_PLANE && !gives_way;
 }
 
 derivative_outcome wheel_contact::differentiate(patch_contact &solver, const patch_memory *memory,
                                                 wheel_derivative &work, const rp_input *directions,
-                                                int count, const derivative_options &options,
+                                                const double *friction, int count,
+                                                const derivative_options &options,
                                                 const rp_side_result &result,
                                                 rp_side_result *changes) const {
   side_motion motions[wheel_derivative::most_directions];
@@ -401,7 +401,7 @@ derivative_outcome wheel_contact::differentiate(patch_contact &solver, const pat
                                 patches_,
                                 config_.element_size[0] > 0 ? nullptr : config_.elements};
   const derivative_outcome outcome =
-      work.solve(solution, solver, motions, count, options, result, changes);
+      work.solve(solution, solver, motions, friction, count, options, result, changes);
   for (int k = 0; k < count; ++k)
     if (side_ == RP_LEFT) mirror(changes[k]);
   return outcome;

@@ -30,10 +30,12 @@ class wheel_contact {
   void evaluate(patch_contact &solver, patch_memory *memory, rp_side_result &result);
   // Whether the geometry's derivatives are known.
   bool differentiates() const;
-  // Derivatives of that solution by rates of the inputs: changes[k] those of its numbers in
-  // direction k, of which only the first rate_directions may be more than velocities.
+  // Derivatives of that solution by rates of the inputs and of the friction coefficient: changes[k]
+  // those of its numbers in direction k, of which only the first rate_directions may be more than
+  // velocities.
   derivative_outcome differentiate(patch_contact &solver, const patch_memory *memory,
-                                   wheel_derivative &work, const rp_input *directions, int count,
+                                   wheel_derivative &work, const rp_input *directions,
+                                   const double *friction, int count,
                                    const derivative_options &options, const rp_side_result &result,
                                    rp_side_result *changes) const;
   // The last state is out of range for its geometry or normal problem, so its force is not known.

@@ -50,6 +50,7 @@ struct wheel_derivative::step {
   patch_contact &solver;
   int count;
   const derivative_options &options;
+  const double *friction;
   const rp_side_result &result;
   rp_side_result *changes;
   derivative_outcome outcome{};
@@ -66,9 +67,9 @@ struct wheel_derivative::step {
   lattice_rates lattice[rate_directions];
   basic_bounds<rated> bounds;
 
-  step(const wheel_solution &w, patch_contact &p, int n, const derivative_options &o,
-       const rp_side_result &found, rp_side_result *out)
-      : wheel(w), solver(p), count(n), options(o), result(found), changes(out) {}
+  step(const wheel_solution &w, patch_contact &p, const double *f, int n,
+       const derivative_options &o, const rp_side_result &found, rp_side_result *out)
+      : wheel(w), solver(p), count(n), options(o), friction(f), result(found), changes(out) {}
 
   // sums over the patches
   vec<rated> force[blocks], moment[blocks];
@@ -91,10 +92,10 @@ struct wheel_derivative::step {
 };
 
 derivative_outcome wheel_derivative::solve(const wheel_solution &wheel, patch_contact &solver,
-                                           const side_motion *directions, int count,
-                                           const derivative_options &o,
+                                           const side_motion *directions, const double *friction,
+                                           int count, const derivative_options &o,
                                            const rp_side_result &result, rp_side_result *changes) {
-  step s(wheel, solver, count, o, result, changes);
+  step s(wheel, solver, friction, count, o, result, changes);
   s.begin(directions);
   for (int k = 0; k < count; ++k) {
     changes[k] = {};
@@ -212,6 +213,7 @@ void wheel_derivative::solve_patch(step &s, int index) {
       v.creepage[1] = rolling[b].eta.rate[slot];
       v.spin_creepage = rolling[b].phi.rate[slot];
       v.rolling_speed = rolling[b].rolling_speed.rate[slot];
+      v.friction_coefficient = s.friction[b * rate_directions + k];
     }
   }
   if (scene.normal == RP_NORMAL_HERTZ && s.moving > 0) {

@@ -45,11 +45,12 @@ class wheel_derivative {
   // The rules of patch.hpp whose shares are smooth, and all else this differentiates.
   static bool covers(const patch_rules &rules) { return rules.blended; }
 
-  // result: of the right-hand wheel. changes[k]: rates of its doubles; statuses and counts are not
-  // set, but the grid's that of the result.
+  // friction: rates of the friction coefficient. result: of the right-hand wheel. changes[k]: rates
+  // of its doubles; statuses and counts are not set, but the grid's that of the result.
   derivative_outcome solve(const wheel_solution &wheel, patch_contact &solver,
-                           const side_motion *directions, int count, const derivative_options &o,
-                           const rp_side_result &result, rp_side_result *changes);
+                           const side_motion *directions, const double *friction, int count,
+                           const derivative_options &o, const rp_side_result &result,
+                           rp_side_result *changes);
   size_t bytes() const;
 
  private:

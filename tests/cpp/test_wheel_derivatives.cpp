@@ -25,7 +25,7 @@ std::array<double *, columns> pose_and_velocity(rp_input &in) {
 // what changes an input by a good part of what matters, and a part of it for differences
 constexpr double usual[columns] = {1e-3, 1e-3, 1e-4, 1e-4, 1e-3, 1e-3,
                                    1.0,  0.01, 0.01, 0.01, 0.01, 1.0};
-constexpr double length[columns] = {1e-7, 2e-8, 1e-9, 1e-8, 4e-7, 1e-7,
+constexpr double length[columns] = {1e-6, 2e-8, 1e-9, 1e-8, 4e-7, 1e-7,
                                     1e-4, 8e-5, 8e-5, 8e-5, 8e-5, 2e-4};
 
 rp_input no_direction() {
@@ -85,7 +85,7 @@ const scene all_scenes[] = {
     {"rail", RP_RAIL, RP_POSITION, 0},
     {"rail_with_vertical_force", RP_RAIL, RP_FORCE, 0},
     {"rail_with_elements", RP_RAIL, RP_POSITION, 14},
-    {"rail_with_friction_by_angle", RP_RAIL, RP_POSITION, 12, true},
+    {"rail_with_friction_by_angle_and_x", RP_RAIL, RP_POSITION, 12, true},
     {"rail_without_friction", RP_RAIL, RP_POSITION, 0, false, RP_NORMAL_HALF_SPACE, RP_REGIME_NONE},
     {"rail_by_hertz", RP_RAIL, RP_POSITION, 12, false, RP_NORMAL_HERTZ},
     {"roller", RP_ROLLER, RP_POSITION, 0},
@@ -115,6 +115,11 @@ class WheelDerivatives : public testing::TestWithParam<scene> {
       c.friction_position[1] = 0.5;
       c.friction_factor[0] = 1.0;
       c.friction_factor[1] = 0.5;
+      c.friction_along_points = 2;
+      c.friction_along_position[0] = -1.0;
+      c.friction_along_position[1] = 1.0;
+      c.friction_along_factor[0] = 0.9;
+      c.friction_along_factor[1] = 1.1;
     }
     return c;
   }

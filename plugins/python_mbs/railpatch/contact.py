@@ -9,12 +9,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from railpatch import _core
 from railpatch.case.load import Case, Scene, check_table, load_scene
 from railpatch.case.messages import show
 from railpatch.case.patch import Motion, PatchCase
 from railpatch.config import config_of, input_of
-from railpatch.derivative import rates_of
+from railpatch.derivative import FORCE_AND_MOMENT, POSE_AND_VELOCITY, rates_of
 from railpatch.errors import CaseError
 from railpatch.moving import changed_case, moving_keys
 from railpatch.result import (
@@ -115,6 +117,28 @@ class Contact:
         raw, exact = self._core.differentiate(rates)
         data = self._data(raw, time.perf_counter() - begin, False)
         return Result({**data, "kind": "exact" if exact else "differences"})
+
+    def jacobian(self) -> dict[str, Any]:
+        """Derivatives of the last step's forces by pose and velocity, for wheel_rail and wheelset.
+
+        ``left``, ``right``: arrays [6, 12] of force and moment of each wheel in use, rows
+        ``railpatch.derivative.FORCE_AND_MOMENT`` (N, N m, track axes), columns
+        ``railpatch.derivative.POSE_AND_VELOCITY`` (m, rad, m/s, rad/s). ``z``: [12], of the height.
+        They are those of what step() gives: with vertical_force, z follows; column z then is that
+        of a wheel whose vertical force does not stay, NaN by differences, and ``z_force`` (m/N) the
+        height's by the vertical force (else NaN). ``kind``: as of differentiate(); ``status``: as
+        of the step, or "not_converged". Needs method.derivatives = true and a step; changes
+        nothing. Raises CaseError.
+        """
+        if self._case.kind == "patch":
+            raise CaseError("kind: value is 'patch', allowed wheel_rail, wheelset for jacobian()")
+        if not self._case.method.derivatives:
+            raise CaseError("method.derivatives: value is False, allowed True for jacobian()")
+        raw = self._core.jacobian()
+        shape = (len(FORCE_AND_MOMENT), len(POSE_AND_VELOCITY))
+        arrays = {side: np.array(raw[side]).reshape(shape) for side in self._case.sides}
+        rest = {name: raw[name] for name in ("z_force", "kind", "status")}
+        return {**arrays, "z": np.array(raw["z"]), **rest}
 
     def reset(self) -> None:
         """Forgets the last solution: the next step starts as the first one did."""

@@ -15,8 +15,15 @@ from railpatch.moving import BODY_KEYS, DEVIATION_KEYS, moving_keys, refuse_unkn
 # moving inputs that are no continuous numbers
 STEPWISE = ("direction", "steps")
 # numbers of each input; the others are single ones
-LENGTHS = {"creepage": 2, "tangential_force": 2, "offset": 3, "rotation": 3}
+DEVIATION = ("offset", "rotation", "velocity", "angular_velocity")
+LENGTHS = {"creepage": 2, "tangential_force": 2, **dict.fromkeys(DEVIATION, 3)}
 BODY_OF_TABLE = {"wheelset": "wheel", "track": "rail"}
+# columns and rows of rp_jacobian
+POSE_AND_VELOCITY = (
+    *("x", "y", "z", "roll", "yaw", "pitch"),
+    *("speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate"),
+)
+FORCE_AND_MOMENT = ("fx", "fy", "fz", "mx", "my", "mz")
 
 
 def rates_of(case: Case, direction: Mapping[str, Any]) -> dict[str, Any]:
@@ -46,7 +53,7 @@ def add_rate(rates: dict[str, Any], key: str, value: Any, table: str) -> None:
     if key not in DEVIATION_KEYS:
         rates[key] = numbers(value, key)
         return
-    for name, item in part_of(value, ("offset", "rotation"), key).items():
+    for name, item in part_of(value, DEVIATION, key).items():
         sides = rates.setdefault(f"{BODY_OF_TABLE[table]}_{name}", [[0.0] * 3, [0.0] * 3])
         sides[DEVIATION_KEYS.index(key)] = numbers(item, name)
 

@@ -445,6 +445,24 @@ nb::dict config_dict(const rp_config &config) {
   return to;
 }
 
+nb::dict jacobian_dict(const rp_jacobian &found) {
+  nb::dict to;
+  const char *const names[] = {"left", "right"};
+  for (int side = 0; side < 2; ++side) {
+    nb::list numbers;
+    for (const auto &row : found.side[side])
+      for (double v : row) numbers.append(v);
+    to[names[side]] = numbers;
+  }
+  nb::list z;
+  for (double v : found.z) z.append(v);
+  to["z"] = z;
+  to["z_force"] = found.z_force;
+  to["kind"] = found.kind == RP_DERIVATIVE_EXACT ? "exact" : "differences";
+  to["status"] = rp_status_text(found.status);
+  return to;
+}
+
 nb::dict result_dict(const rp_result &result) {
   nb::dict to;
   to["status"] = rp_status_text(result.status);

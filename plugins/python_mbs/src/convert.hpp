@@ -35,6 +35,7 @@ void fill_input(const nb::dict &from, rp_input &to);
 // every plain field as a list of numbers, defaults filled in, enumerations as their values
 nb::dict config_dict(const rp_config &config);
 nb::dict result_dict(const rp_result &result);
+nb::dict jacobian_dict(const rp_jacobian &found);
 nb::list stage_list(const rp_stage_info *info, const double *seconds);
 
 // the field's name in the JSON result; raises KeyError

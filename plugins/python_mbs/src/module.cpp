@@ -112,6 +112,17 @@ class Contact : public Steppable {
     return nb::make_tuple(result_dict(change), kind == RP_DERIVATIVE_EXACT);
   }
 
+  nb::dict jacobian() {
+    rp_jacobian found;
+    {
+      nb::gil_scoped_release unlocked;
+      rp_message message = {};
+      std::lock_guard<std::mutex> guard(mutex_);
+      check(rp_get_jacobian(contact_.get(), &found, &message), &message);
+    }
+    return jacobian_dict(found);
+  }
+
   void solve(const rp_input &input, rp_result &result) override {
     rp_message message = {};
     std::lock_guard<std::mutex> guard(mutex_);
@@ -242,6 +253,9 @@ NB_MODULE(_core, m) {
       .def("differentiate", &Contact::differentiate, nb::arg("rates"),
            "The rates of the last step's rp_result for rates of the fields of rp_input, zero where "
            "left out, and whether they are exact. The interpreter's lock is released.")
+      .def("jacobian", &Contact::jacobian,
+           "rp_jacobian of the last step, rows after each other. The interpreter's lock is "
+           "released.")
       .def("time_steps", &Contact::time_steps, nb::arg("inputs"), nb::arg("reset"),
            nb::arg("repeat") = 1,
            "Steps through a list of inputs `repeat` times, each time forgetting the last solution "

@@ -44,7 +44,7 @@ def page(report: Report) -> str:
     """The HTML text."""
     parts = [head(report), targets(report), *figures(report)]
     parts += [set_section(report, name) for name in report.plan.sets]
-    parts += [features(report), calibration(report), truth(report)]
+    parts += [features(report), wheel_evaluations(report), calibration(report), truth(report)]
     return document("error against run time", "".join(parts))
 
 
@@ -179,6 +179,27 @@ def features(report: Report) -> str:
             ("scene", "cold [ms]", "warm [ms]", "cold, ratio", "warm, ratio", "memory [kB]", ""),
             lines,
         )
+    )
+
+
+def wheel_evaluations(report: Report) -> str:
+    """One wheel's contact search, evaluation and derivatives."""
+    lines = [
+        [
+            e.name,
+            milliseconds(e.evaluation),
+            milliseconds(e.matrix),
+            f"{e.ratio:.2f}",
+            number(e.bytes / 1024),
+            "" if e.good else "not converged",
+        ]
+        for e in report.evaluations
+    ]
+    return (
+        "<h2>One wheel</h2><p>S1002 on UIC60, one patch: a warm evaluation of the force at a new "
+        "position, and its derivatives by pose and velocity (6 x 12). Contact search with "
+        f"placement, profiles sampled every 0.2 mm: {number(1e6 * report.search)} µs (median).</p>"
+        + table(("grid", "force [ms]", "derivatives [ms]", "ratio", "their memory [kB]", ""), lines)
     )
 
 

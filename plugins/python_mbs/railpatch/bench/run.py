@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from railpatch.bench import cost
+from railpatch.bench.evaluations import Evaluation, evaluations, search_time
 from railpatch.bench.features import FeatureCost, feature_costs
 from railpatch.bench.machine import Machine, this_machine
 from railpatch.bench.measure import COLUMNS, Measured, measure
@@ -49,7 +50,7 @@ class Plan:
     @property
     def total(self) -> int:
         """Steps of the progress bar."""
-        return len(self.points()) + len(self.sizes()) + 3
+        return len(self.points()) + len(self.sizes()) + 4
 
     def check(self) -> None:
         """Makes one contact of every method and set. Raises CaseError where a case is refused."""
@@ -67,6 +68,8 @@ class Report:
     measured: list[Measured]
     outcome: Outcome
     features: list[FeatureCost]
+    evaluations: list[Evaluation]
+    search: float  # s, contact search of one wheel
 
 
 def run_bench(
@@ -90,7 +93,9 @@ def run_bench(
     progress(wheel)
     outcome = Outcome([summarize(m) for m in measured], costs, normal, wheel)
     features = feature_costs(plan.quick, progress)
-    return Report(plan, machine, truth, measured, outcome, features)
+    wheels = evaluations(plan.quick, progress)
+    search = search_time(plan.quick)
+    return Report(plan, machine, truth, measured, outcome, features, wheels, search)
 
 
 def write_report(report: Report, folder: Path) -> list[Path]:
@@ -168,6 +173,8 @@ def write_run(report: Report, path: Path) -> Path:
         "truth": report.truth.recipes,
         "normal_problem_s": report.outcome.normal,
         "rig": asdict(report.outcome.wheel),
+        "contact_search_s": report.search,
+        "wheel_evaluations": [asdict(one) for one in report.evaluations],
         "targets": [asdict(row) for row in rows(report.outcome)],
     }
     path.write_text(json.dumps(content, indent=2), encoding="utf-8")
