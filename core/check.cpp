@@ -254,6 +254,26 @@ void check_build(const rp_config &c, checker &check) {
           "normal and tangential directions");
 }
 
+// Wheels roll on from tractions, and nothing else that the material would carry along.
+const char *wheels_cannot_roll(const rp_config &c) {
+  if (c.regime == RP_SHIFT)
+    return "regime must be none, steady_rolling or transient_rolling for wheels";
+  if (!(c.element_size[0] > 0))
+    return "regime = transient_rolling of wheels needs element_size in place of elements";
+  if (c.friction_law != RP_COULOMB)
+    return "regime = transient_rolling of wheels needs friction_law = coulomb in this version";
+  if (c.layer_yield_stress > 0)
+    return "layer_yield_stress must be 0 with regime = transient_rolling of wheels in this version";
+  if (c.reference_surface != RP_REFERENCE_PLANE)
+    return "reference_surface must be plane with regime = transient_rolling of wheels";
+  if (c.temperature != 0)
+    return "temperature must be 0 with regime = transient_rolling of wheels in this version";
+  if (is_coupled(combine(c.shear_modulus, c.poisson_ratio)))
+    return "regime = transient_rolling of wheels needs equal (1-2nu)/G of both bodies in this "
+           "version";
+  return nullptr;
+}
+
 // Shift and transient rolling keep their grid in the frame of the contact.
 void check_regime(const rp_config &c, checker &check) {
   if (!has_tangential(c) || c.regime == RP_STEADY_ROLLING) return;
@@ -261,7 +281,7 @@ void check_regime(const rp_config &c, checker &check) {
   if (c.tangential != RP_TANGENTIAL_FULL || c.fitted[0] > 0)
     wrong = "regime = shift and transient_rolling need tangential = full and no fitted rows";
   else if (c.kind != RP_PATCH)
-    wrong = "regime must be none or steady_rolling for wheels in this version";
+    wrong = wheels_cannot_roll(c);
   else if (c.spin_offset != RP_SPIN_OFFSET_NONE)
     wrong = "spin_offset must be none but with regime = steady_rolling";
   else if (c.geometry == RP_CURVATURES && !(c.element_size[0] > 0 && c.max_elements[0] > 0))
@@ -436,6 +456,36 @@ void check_reference(const rp_config &c, checker &check) {
   check.require(wrong == nullptr, wrong ? wrong : "");
 }
 
+// Out-of-round wheels and running surfaces that are not level.
+void check_longitudinal(const rp_config &c, checker &check) {
+  const auto values = [&](const char *name, int side, const double *v, int count, int least,
+                          int most) {
+    char label[40];
+    std::snprintf(label, sizeof label, "%s_count[%d]", name, side);
+    if (count != 0) check.integer(label, count, least, most);
+    std::snprintf(label, sizeof label, "%s[%d]", name, side);
+    if (count == 0 || check.error() != RP_OK) return;
+    char text[80];
+    std::snprintf(text, sizeof text, "%s is null", label);
+    check.require(v != nullptr, text);
+    if (check.error() == RP_OK) check.numbers(label, v, count, {-0.1, 0.1, false, false});
+  };
+  bool shaped = false, heights = false;
+  for (int side = 0; side < 2; ++side) {
+    values("runout", side, c.runout[side], c.runout_count[side], 8, 1000000);
+    values("rail_height", side, c.rail_height[side], c.rail_height_count[side], 4, 10000000);
+    heights |= c.rail_height_count[side] > 0;
+    shaped |= c.runout_count[side] > 0 || heights;
+  }
+  check.number("rail_height_start", c.rail_height_start, finite);
+  check.number("rail_height_spacing", c.rail_height_spacing, {1e-6, 1e3, false, false});
+  check.require(!heights || c.track == RP_RAIL, "rail_height_count must be 0 on rollers");
+  check.require(!shaped || c.reference_surface == RP_REFERENCE_PLANE,
+                "runout and rail_height need reference_surface = plane in this version");
+  check.require(!shaped || c.normal == RP_NORMAL_HALF_SPACE,
+                "runout and rail_height need normal = half_space: the shape is not quadratic");
+}
+
 void check_wheels(const rp_config &c, checker &check) {
   check.integer("side", c.side, RP_LEFT, RP_RIGHT);
   check.number("nominal_radius", c.nominal_radius, {0.01, 10, false, false});
@@ -463,6 +513,7 @@ void check_wheels(const rp_config &c, checker &check) {
     check.require(c.rail_stiffness[k] == 0 || c.rail_stiffness[k] >= 1,
                   "rail_stiffness must be 0 or at least 1 N/m");
   }
+  check_longitudinal(c, check);
 }
 
 }  // namespace
@@ -576,7 +627,8 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
   const double values[] = {in.x,  in.pitch,     in.speed,    in.vy,
                            in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
   for (int i = 0; i < 8; ++i) check.number(names[i], values[i], finite);
-  check.number("time_step", in.time_step, not_negative);
+  const bool rolls_on = c.regime == RP_TRANSIENT_ROLLING && has_tangential(c);
+  check.number("time_step", in.time_step, rolls_on ? positive : not_negative);
   for (int side = 0; side < 2; ++side) {
     check.numbers("wheel_offset", in.wheel_offset[side], 3, {-1, 1, false, false});
     check.numbers("wheel_rotation", in.wheel_rotation[side], 3, angle);

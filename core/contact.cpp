@@ -86,6 +86,7 @@ patch_scene make_scene(const rp_config &c) {
     scene.law = make_law(c);
     if (c.regime == RP_SHIFT) scene.regime = motion::shift;
     if (c.regime == RP_TRANSIENT_ROLLING) scene.regime = motion::transient;
+    scene.moves = c.kind != RP_PATCH;
   }
   scene.heat = make_heat(c);
   for (int k = 0; k < 2; ++k) scene.fitted[k] = c.fitted[k];
@@ -141,6 +142,13 @@ int with_margin(const rp_config &c, int n) {
   return std::max(n, std::min(wanted, most_elements));
 }
 
+// m, of wheel on rail; flats and joints touch at both ends
+double overlap_size(const rp_config &c, int k) {
+  const bool shaped =
+      longitudinal_shape::wanted(c, RP_LEFT) || longitudinal_shape::wanted(c, RP_RIGHT);
+  return k == 1 ? 0.050 : shaped ? 0.120 : 0.060;
+}
+
 // Elements of one patch's grid, with a border of one element that stays free of contact.
 capacity grid_capacity(const rp_config &c) {
   if (!needs_grid(c)) return {0, 0};
@@ -163,11 +171,10 @@ capacity grid_capacity(const rp_config &c) {
                                                         c.semi_axes[k] / c.element_size[k])))) +
           3;
     else if (n == 0)
-      // wheel on rail: overlaps up to 60 mm long and 50 mm wide; else a square of 128
-      n = c.kind == RP_PATCH
-              ? 130
-              : static_cast<int>(std::clamp(std::ceil((k == 0 ? 0.060 : 0.050) / c.element_size[k]),
-                                            16.0, 400.0));
+      // wheel on rail, see above; else a square of 128
+      n = c.kind == RP_PATCH ? 130
+                             : static_cast<int>(std::clamp(
+                                   std::ceil(overlap_size(c, k) / c.element_size[k]), 16.0, 400.0));
   }
   return size;
 }
@@ -270,8 +277,11 @@ contact::contact(const rp_config &config)
                                       config.friction_along_factor);
   scene_ = fingerprint(config, shape_);
   if (config.derivatives != 0) {
-    const auto count = config.kind == RP_PATCH ? static_cast<size_t>(size.nx * size.ny) : 0;
-    derivative_ = std::make_unique<derivative_record>(config, solver_.scene(), count);
+    const bool exact = std::all_of(wheels_.begin(), wheels_.end(), [](const wheel_contact &wheel) {
+      return wheel.differentiates();
+    });
+    derivative_ =
+        std::make_unique<derivative_record>(config, solver_.scene(), exact, size.nx, size.ny);
   }
   // nothing else of the caller's memory is kept than the creep table
   config_.undeformed_distance = nullptr;
@@ -279,6 +289,7 @@ contact::contact(const rp_config &config)
     *p = rp_profile{};
   for (int side = 0; side < 2; ++side)
     config_.rail_sections[side] = nullptr, config_.section_position[side] = nullptr;
+  for (int side = 0; side < 2; ++side) config_.runout[side] = config_.rail_height[side] = nullptr;
 }
 
 contact::~contact() = default;
@@ -435,6 +446,8 @@ double contact::evaluate_wheels(double z, rp_result &out) {
 void contact::step_wheels(const rp_input &in, rp_result &out) {
   if (friction_along_.varies()) solver_.set_friction_scale(friction_along_.at(in.x));
   const auto evaluate = [&](double z) { return evaluate_wheels(z, out); };
+  if (solver_.scene().keeps_steps())
+    for (auto &m : memory_) solver_.remember(m);
   solver_.observe(RP_STAGE_GEOMETRY, true);
   for (auto &wheel : wheels_) wheel.place(in);
   solver_.observe(RP_STAGE_GEOMETRY, false);

@@ -111,6 +111,10 @@ void contact::describe(rp_stage_info *info) const {
     history += m.history.step_bytes();
     plastic += m.history.plastic_bytes();
     if (m.heat) heat += m.heat->bytes();
+    if (m.curved) {
+      distance += m.curved->bytes();
+      traction -= m.curved->bytes();
+    }
   }
   for (const auto &wheel : wheels_) distance += wheel.bytes();
   if (tangential)

@@ -25,6 +25,7 @@ constexpr size_t checked_from = offsetof(state_header, scene);
 struct patch_header {
   grid g;
   vec3 reference;
+  double share, rail[2];
   uint64_t warm, begun;
 };
 
@@ -127,7 +128,13 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            c.rail_damping[1],
                            c.cant,
                            c.curvature,
-                           c.roller_radius};
+                           c.roller_radius,
+                           static_cast<double>(c.runout_count[0]),
+                           static_cast<double>(c.runout_count[1]),
+                           static_cast<double>(c.rail_height_count[0]),
+                           static_cast<double>(c.rail_height_count[1]),
+                           c.rail_height_start,
+                           c.rail_height_spacing};
   unsigned char bytes[sizeof values];
   std::memcpy(bytes, values, sizeof values);
   return checksum(bytes, sizeof bytes);
@@ -163,6 +170,8 @@ uint64_t fingerprint_of_arrays(const rp_config &c, const aligned_buffer<double> 
   };
   for (const rp_profile *p : {&c.wheel[0], &c.wheel[1], &c.rail[0], &c.rail[1]}) add_profile(*p);
   for (int side = 0; side < 2; ++side) {
+    add(c.runout[side], static_cast<size_t>(c.runout_count[side]));
+    add(c.rail_height[side], static_cast<size_t>(c.rail_height_count[side]));
     // of a side without a wheel nothing has been looked at
     if (c.kind == RP_WHEEL_RAIL && side != c.side) continue;
     add(c.section_position[side], static_cast<size_t>(c.section_count[side]));
@@ -217,7 +226,12 @@ void contact::save_state(unsigned char *buffer) const {
     at += size;
   };
   for (const auto &m : memory_) {
-    const patch_header header{m.g, m.reference, m.warm ? 1u : 0u, m.history.begun ? 1u : 0u};
+    const patch_header header{m.g,
+                              m.reference,
+                              m.share,
+                              {m.rail[0], m.rail[1]},
+                              m.warm ? 1u : 0u,
+                              m.history.begun ? 1u : 0u};
     put(&header, sizeof header);
     for_each_start_field(m, put);
   }
@@ -246,6 +260,8 @@ bool contact::restore_state(const unsigned char *buffer, size_t size) {
     at += sizeof patch;
     m.g = patch.g;
     m.reference = patch.reference;
+    m.share = patch.share;
+    for (int k = 0; k < 2; ++k) m.rail[k] = patch.rail[k];
     m.warm = patch.warm != 0;
     m.history.begun = patch.begun != 0;
     m.solved = false;
@@ -267,6 +283,7 @@ void contact::copy_state(const contact &from) {
     patch_memory &m = memory_[k];
     m.g = source.g;
     m.reference = source.reference;
+    m.share = source.share;
     m.warm = source.warm;
     m.history.begun = source.history.begun;
     m.solved = false;

@@ -17,6 +17,7 @@
 #pragma once
 
 #include <complex>
+#include <memory>
 
 #include "conformal_influence.hpp"
 #include "convolution.hpp"
@@ -86,6 +87,10 @@ class influence {
   const scene &bodies() const { return scene_; }
   // xx, yy and xy of the bodies at any offset (m), observer minus source.
   void bodies_at(double x, double y, double values[3]) const;
+  // The same of the half-space in two steps, for many elements that share corners: primitives at a
+  // corner, and the coefficients from their alternating sums.
+  static void corner_at(double x, double y, double values[3]);
+  void from_corners(const double sum[3], double values[3]) const;
   // One coefficient at offset (i, j) elements, observer minus source.
   double coefficient(kernel k, int i, int j) const;
   size_t bytes() const;
@@ -98,6 +103,7 @@ class influence {
   void make_spectra();
   void transform_kernel(kernel k);
   void give_spectrum(kernel k);
+  bool is_curved() const { return has_physics && curved_; }
 
   scene scene_;
   const fft_plans &plans_;
@@ -112,7 +118,7 @@ class influence {
   aligned_buffer<std::complex<double>> transform_;
   convolution<double> full_;
   convolution<float> single_;
-  physics_part<conformal_influence> curved_;
+  std::unique_ptr<conformal_influence> curved_;
 };
 
 }  // namespace railpatch

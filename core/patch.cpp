@@ -61,7 +61,7 @@ class part_list {
   void search() {
     for (int i = 0; i < side_.sample_count(); ++i) {
       const double sampled = side_.sample_gap(i);
-      const double g = sampled < closeness ? gap_at(side_, side_.sample_s(i)) : sampled;
+      const double g = std::fabs(sampled) < closeness ? gap_at(side_, side_.sample_s(i)) : sampled;
       advance(i, g);
       before_ = last_;
       last_ = g;
@@ -114,6 +114,36 @@ class part_list {
   bool open_ = false, overflow_ = false;
   double last_ = side_geometry::far_apart, before_ = last_;
 };
+
+// A row whose overlap has any shape along x, see longitudinal_shape.hpp.
+void add_shaped(const side_geometry &side, double s, double width, part &p) {
+  const locus_point l = side.locus(s);
+  if (!l.valid || !(l.gap < 0)) return;
+  double y = 0, dy = 0;
+  const row_overlap o = side.overlap(s, y, dy);
+  if (!(o.weight > 0)) return;
+  const double weight = o.weight * width * dy;
+  p.x_min = p.weight > 0 ? std::min(p.x_min, o.x_min) : o.x_min;
+  p.x_max = p.weight > 0 ? std::max(p.x_max, o.x_max) : o.x_max;
+  p.weight += weight;
+  p.x += weight * o.x;
+  p.y += weight * y;
+  p.angle += weight * l.contact_angle;
+}
+
+// The sums over rows, as in patch_parts.hpp, where wheel or rail are shaped along x. A row is as
+// wide as the arc length of its neighbours says: on a yawed wheel they may be touched elsewhere.
+void sum_shaped_rows(const side_geometry &side, part &p) {
+  const double half = 0.5 * (p.end - p.begin), middle = 0.5 * (p.end + p.begin);
+  const auto at = [&](int i) {
+    const double share = std::clamp((i - 0.5) / part_rows, 0.0, 1.0);
+    return middle - half * std::cos(std::numbers::pi * share);
+  };
+  p.first = side.locus(p.begin).wheel;
+  p.last = side.locus(p.end).wheel;
+  for (int i = 1; i <= part_rows; ++i) add_shaped(side, at(i), 0.5 * (at(i + 1) - at(i - 1)), p);
+  for (double *v : {&p.x, &p.y, &p.angle}) *v /= p.weight;
+}
 
 bool together(const patch_rules &r, const part &a, const part &b) {
   return facing_distance(a, b) < r.separate && std::fabs(b.angle - a.angle) < r.max_angle;
@@ -219,7 +249,10 @@ void find_parts(const side_geometry &side, part_set &found) {
   found.overflow = list.overflow();
   const auto locus = [&](double s) { return side.locus(s); };
   for (int i = 0; i < list.count(); ++i) {
-    sum_rows(locus, found.parts[i]);
+    if (side.shaped())
+      sum_shaped_rows(side, found.parts[i]);
+    else
+      sum_rows(locus, found.parts[i]);
     if (found.parts[i].weight > 0) found.parts[found.count++] = found.parts[i];
   }
 }

@@ -72,7 +72,7 @@ bool patch_scene::estimates_force() const {
 }
 
 bool patch_scene::differentiates() const {
-  if (normal != RP_NORMAL_HALF_SPACE && normal != RP_NORMAL_HERTZ) return false;
+  if (curved || (normal != RP_NORMAL_HALF_SPACE && normal != RP_NORMAL_HERTZ)) return false;
   if (tangential == RP_TANGENTIAL_NONE) return true;
   return tangential == RP_TANGENTIAL_FULL && !is_fitted() && !law && !keeps_steps() && !heat &&
          !is_forced() && !couples();
@@ -115,8 +115,8 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
       errors_(scene.elastic, scene.layer_flexibility) {
   const bool full = scene.tangential == RP_TANGENTIAL_FULL && !scene.is_fitted();
   const auto count = static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny);
-  const influence::scene elastic{scene.elastic, scene.layer_flexibility, scene.line_width, full,
-                                 scene.curved};
+  influence::scene elastic{scene.elastic, scene.layer_flexibility, scene.line_width, full};
+  elastic.curved = scene.curved;
   if (full || scene.normal == RP_NORMAL_HALF_SPACE) influence_.emplace(elastic, plans);
   if (scene.normal == RP_NORMAL_HALF_SPACE) normal_.emplace(max_nx * max_ny);
   if (scene.normal == RP_NORMAL_KIK_PIOTROWSKI || scene.normal == RP_NORMAL_ANALYN)
@@ -126,7 +126,7 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
     tangential_.emplace(
         max_nx, max_ny,
         tangential_solver::setup{scene.is_forced(), scene.law.has_value(), scene.yields(),
-                                 scene.keeps_steps(), rolls_on ? &plans : nullptr});
+                                 scene.keeps_steps(), rolls_on ? &plans : nullptr, scene.moves});
     // with a prescribed force no creepage is known to start from
     const bool plain = !scene.is_forced() && !scene.law && !scene.keeps_steps() && !scene.couples();
     if (plain && coarse_start::serves(max_nx, max_ny))
@@ -153,10 +153,12 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
   scratch_[0] = aligned_buffer<double>(count);
   scratch_[1] = aligned_buffer<double>(count);
   if (full) bound_ = aligned_buffer<double>(count);
+  if (!scene.keeps_steps() || !scene.moves) return;
+  for (auto &b : before_) b = aligned_buffer<double>(count);
 }
 
 size_t patch_contact::tangential_bytes() const {
-  return bound_.bytes() + (tangential_ ? tangential_->bytes() : 0) +
+  return bound_.bytes() + 2 * before_[0].bytes() + (tangential_ ? tangential_->bytes() : 0) +
          (coarse_start_ ? coarse_start_->bytes() : 0) +
          (fast_ ? sizeof(fast_solver) + fast_->bytes() : 0) +
          (fitted_ ? fitted_rows_->bytes() + fitted_->bytes() : 0);
@@ -456,7 +458,9 @@ bool patch_contact::solve_tangential(const patch_problem &problem, patch_memory 
   const grid &g = problem.g;
   const tangential_fields fields = memory.fields();
   rolling_input rolling = problem.rolling;
-  if (scene_.keeps_steps()) {
+  if (problem.past) {
+    find_before(problem, rolling);
+  } else if (scene_.keeps_steps()) {
     rolling.px = memory.history.last_px.data();
     rolling.py = memory.history.last_py.data();
   }
@@ -532,6 +536,26 @@ void patch_contact::add_slip_of_rows(const grid &g, const conformal_rows &rows,
       for (int i = 0; i < g.nx; ++i)
         slip[j * g.nx + i] += rows.slip(c, j, g.x(i) + rolling.spin_offset);
   }
+}
+
+// The displacement by the last step's tractions where each element's material was then.
+void patch_contact::find_before(const patch_problem &problem, rolling_input &rolling) {
+  observe(RP_STAGE_HISTORY, true);
+  for (int c = 0; c < 2; ++c) {
+    std::fill_n(before_[c].data(), problem.g.count(), 0.0);
+    rolling.before[c] = before_[c].data();
+  }
+  for (int k = 0; k < problem.past_count; ++k) {
+    const past_tractions &past = problem.past[k];
+    grid from = past.history->last_grid;
+    const auto first = static_cast<ptrdiff_t>(past.first_row) * from.nx;
+    from.ny = past.rows;
+    tangential_->add_moved(*influence_, from, problem.g, past.offset, past.history->last_share,
+                           past.history->last_px.data() + first,
+                           past.history->last_py.data() + first, before_[0].data(),
+                           before_[1].data());
+  }
+  observe(RP_STAGE_HISTORY, false);
 }
 
 tangential_result patch_contact::solve_on_grid(const patch_problem &problem,

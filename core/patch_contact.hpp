@@ -37,6 +37,7 @@ struct patch_scene {
   rp_normal_method normal = RP_NORMAL_HALF_SPACE;
   rp_tangential_method tangential = RP_TANGENTIAL_FULL;  // NONE: no tangential stage
   motion regime = motion::steady;
+  bool moves = false;            // the grid moves between steps: of wheels
   std::optional<bound_law> law;  // beyond Coulomb's, or a layer that yields
   bool keeps_steps() const {
     return has_physics && tangential == RP_TANGENTIAL_FULL && regime != motion::steady;
@@ -72,6 +73,14 @@ struct patch_scene {
   double modulus() const { return elastic.shear_modulus / (1.0 - elastic.poisson_ratio); }
 };
 
+// Tractions of a wheel's last step, in rows of what a patch remembers, as seen from the grid of a
+// problem: its element (0, 0) was at offset from that of the first row.
+struct past_tractions {
+  const patch_history *history;
+  int first_row, rows;
+  double offset[2];  // m
+};
+
 // One step's problem; the undeformed distance is in patch_memory.
 struct patch_problem {
   grid g;
@@ -82,6 +91,8 @@ struct patch_problem {
   double tangential_force[2] = {0, 0};  // N, of the components prescribed
   hertz_contact hertz;                  // where the surfaces are quadratic, else all zero
   contact_parts parts;
+  const past_tractions *past = nullptr;  // of wheels in transient rolling, with their number
+  int past_count = 0;
 };
 
 // Fields of the last solution, [ny][nx] of the grid or, for what belongs to the tangential problem
@@ -94,6 +105,8 @@ struct patch_memory {
   bool warm = false;    // pressure and traction may serve as a start
   bool beyond = false;  // the normal problem left its range: what the patch carries is not known
   grid g;
+  double share = 1;                   // in the wheel's force
+  double rail[2] = {0, 0};            // m, lateral and vertical offset of the rail
   double approach = 0;                // m, of the last step's normal problem on the half-space
   std::array<double, 3> reference{};  // m, contact reference, track axes of a right wheel
   aligned_buffer<double> undeformed_distance, pressure, px, py, sx, sy;
@@ -133,6 +146,13 @@ class patch_contact {
       coupled_->remember(problem.g, memory.history.begun ? memory.pressure.data() : nullptr);
     memory.history.begin(problem.g, problem.rolling.upstream(), memory.px.data(), memory.py.data());
     observe(RP_STAGE_HISTORY, false);
+  }
+  // The same for patches of wheels, whose grids move.
+  void remember(patch_memory &memory) const {
+    memory.history.remember(memory.g,
+                            {memory.reference[0], memory.reference[1] - memory.rail[0],
+                             memory.reference[2] - memory.rail[1]},
+                            memory.share, memory.px.data(), memory.py.data());
   }
   // A step without contact: the material moves on and bears no traction.
   void leave_contact(const rolling_input &step, patch_memory &memory, rp_patch_result &result);
@@ -188,6 +208,7 @@ class patch_contact {
   tangential_result solve_on_grid(const patch_problem &problem, const rolling_input &rolling,
                                   patch_memory &memory, rp_patch_result &result, const double *mu);
   void begin_heat(const patch_problem &problem, patch_memory &memory);
+  void find_before(const patch_problem &problem, rolling_input &rolling);
   double finish_heat(const patch_problem &problem, patch_memory &memory);
   // W/m^2, of the tractions in memory
   void flux_of(const patch_problem &problem, const patch_memory &memory, double *q);
@@ -214,7 +235,7 @@ class patch_contact {
   std::optional<patch_derivative> derivative_;
   error_model errors_;
   creep_resultants sums_;  // of the last step, where the theory has no tractions
-  aligned_buffer<double> bound_, scratch_[2];
+  aligned_buffer<double> bound_, scratch_[2], before_[2];
 };
 
 // Sets what the scene's stages give where nothing touches: zeros.

@@ -45,6 +45,17 @@ void patch_history::begin(const grid &g, double upstream, const double *px, cons
   begun = true;
 }
 
+void patch_history::remember(const grid &g, const std::array<double, 3> &reference, double share,
+                             const double *px, const double *py) {
+  held = begun;
+  if (!held) return;
+  last_grid = g;
+  last_reference = reference;
+  last_share = share;
+  std::copy_n(px, g.count(), last_px.data());
+  std::copy_n(py, g.count(), last_py.data());
+}
+
 void patch_history::shift_states(const grid &g, double upstream) {
   const double elements = upstream / g.dx, whole = std::floor(elements), share = elements - whole;
   const int step = static_cast<int>(std::clamp(whole, -1.0 - g.nx, 1.0 + g.nx));

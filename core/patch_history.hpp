@@ -3,6 +3,8 @@
 // the scene needs is there.
 #pragma once
 
+#include <array>
+
 #include "physics.hpp"
 #include "tangential.hpp"
 
@@ -15,7 +17,12 @@ struct patch_history {
   bool keeps_steps() const { return has_physics && last_px.size() > 0; }
   bool has_law() const { return has_physics && after.size() > 0; }
 
-  bool begun = false;  // a step has been made on this grid
+  bool begun = false;  // a step has been made on this grid; of wheels: tractions are those of one
+  // of wheels, whose grid moves: where last_px and last_py lie, false: nowhere
+  bool held = false;
+  grid last_grid;
+  double last_share = 1;
+  std::array<double, 3> last_reference{};  // m, without the rail's offset
   aligned_buffer<double> last_px, last_py;
   aligned_buffer<carried_state> before, after;
   aligned_buffer<double> plastic_before[2], plastic[2], yield_stress, friction;
@@ -23,13 +30,18 @@ struct patch_history {
   // Begins a step: what the last one left becomes what was before, moved with the material from
   // x + upstream to x. Also where there is no law.
   void begin(const grid &g, double upstream, const double *px, const double *py);
+  // The same for wheels: keeps the last step's tractions while this one is solved, once or often.
+  void remember(const grid &g, const std::array<double, 3> &reference, double share,
+                const double *px, const double *py);
   // Sets what is carried as no contact leaves it, for elements that then are in contact to differ.
   void start_from_before(const grid &g, const bound_law &law);
   // J/m^2 of the step's plastic displacement, in steady rolling over one element; traction p.
   void plastic_work(const grid &g, int direction, const double *px, const double *py,
                     double *work) const;
   // Nothing has happened yet.
-  void clear() { begun = false; }
+  void clear() { begun = held = false; }
+  // The tractions are none of a step.
+  void clear_now() { begun = false; }
   inelastic_fields fields(bound_law &law);
   // f(data, bytes) of what later steps depend on besides the tractions, on a grid of count elements
   template <class F>

@@ -21,9 +21,13 @@
 //   (product of joined_k over the gaps k inside) (1 - joined_{i-1}) (1 - joined_j),
 // as if each gap were joined by chance, independently of the others. So the shares of the intervals
 // that hold a part sum up to one, for each part. joined falls from one to zero as the distance d of
-// the facing edges goes from d1 to 2 d1, d1 = min(4 mm, 2 w), w the lateral width of the smaller
-// part: 4 and 8 mm are the distances of the program CONTACT; a part that appears (w = 0, d > 0)
-// begins as a patch of its own with no force, one that splits (d = 0, w > 0) as one patch.
+// the facing edges goes from d1 = min(3 mm, 1.5 w) to d2 = min(12 mm, 12 w), w the lateral width of
+// the smaller part; at 12 mm neighbours lose their influence in the program CONTACT. A part that
+// appears (w = 0, d > 0) begins as a patch of its own with no force, one that splits (d = 0, w > 0)
+// as one patch; so d1 falls with the difference of contact angles too, but not to zero. Two parts
+// lie on either side of a bump of the gap whose height goes with d^2: within a few micrometres of
+// motion they part by millimetres, so the range of d must be wide for the forces to follow
+// smoothly.
 #pragma once
 
 #include <algorithm>
@@ -35,12 +39,14 @@ namespace railpatch {
 
 constexpr int max_parts = 8;  // of one patch, and of one wheel
 
-// How parts become patches without jumps.
+// How parts become patches without jumps: the distances up to which they are one, and from which on
+// each is a patch of its own.
 struct blend_rules {
-  double distance = 4e-3;  // m, up to which parts are one, at most; from twice that they are two
-  double widths = 2.0;     // -, the same over the width of the smaller part
-  // rad, from where on unlike contact angles part them
+  double one = 3e-3, two = 12e-3;                    // m, at most
+  double one_in_widths = 1.5, two_in_widths = 12.0;  // -, over the width of the smaller part
+  // rad; between these differences of contact angles the distances fall to a fraction
   double angle_from = std::numbers::pi / 3, angle_to = std::numbers::pi / 2;
+  double angle_fraction = 0.1;
 };
 
 // One part of contact, with its sums over rows.
@@ -128,14 +134,16 @@ T fade(const T &t) {
 template <class T>
 T joined(const blend_rules &rule, const basic_part<T> &a, const basic_part<T> &b) {
   using std::fabs;
-  const T angle = fabs(b.angle - a.angle);
-  if (!(angle < rule.angle_to)) return T(0);
-  const T d = facing_distance(a, b), w = std::min(lateral_width(a), lateral_width(b));
-  const T near = std::min(T(rule.distance), rule.widths * w);
-  // here and not below: near is zero where a part has no width
-  if (!(d < 2.0 * near)) return T(0);
-  const T by_angle = fade((angle - rule.angle_from) / (rule.angle_to - rule.angle_from));
-  return d > near ? by_angle * fade(d / near - 1.0) : by_angle;
+  using std::min;
+  const T d = facing_distance(a, b), w = min(lateral_width(a), lateral_width(b));
+  const T apart = (fabs(b.angle - a.angle) - rule.angle_from) / (rule.angle_to - rule.angle_from);
+  const T alike = rule.angle_fraction + (1.0 - rule.angle_fraction) * fade(apart);
+  const T near = alike * min(T(rule.one), rule.one_in_widths * w);
+  const T far = alike * min(T(rule.two), rule.two_in_widths * w);
+  // before the division: both are zero where a part has no width
+  if (!(d < far)) return T(0);
+  if (!(d > near)) return T(1);
+  return fade((d - near) / (far - near));
 }
 
 // Share of the interval [begin, end) of `count` parts; joined[k] is that of parts k and k + 1.

@@ -192,7 +192,7 @@ tangential_solver::tangential_solver(int max_nx, int max_ny, const setup &setup)
     inelastic_.emplace(max_nx, max_ny, setup.forced);
   else
     newton_.emplace(max_nx, max_ny, setup.forced);
-  if (setup.transient) offset_.emplace(*setup.transient);
+  if (setup.transient) offset_.emplace(*setup.transient, setup.moves);
   const auto n = static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny);
   at_ = aligned_buffer<int>(n);
   row_start_ = aligned_buffer<int>(static_cast<size_t>(max_ny) + 1);
@@ -251,6 +251,13 @@ tangential_result tangential_solver::solve(influence &a, const grid &g, const do
 
 // The displacement of the last step, as a part of the rigid slip.
 void tangential_solver::add_history(influence &a, const grid &g, const rolling_input &input) {
+  if (input.before[0]) {
+    for_each_element([&](size_t, size_t at, size_t ix, size_t iy) {
+      rigid_[ix] -= input.before[0][at] / input.distance;
+      rigid_[iy] -= input.before[1][at] / input.distance;
+    });
+    return;
+  }
   if (!input.px) return;
   if (input.upstream() != 0)
     offset_->product(a, g, input.upstream(), input.px, input.py, grid_sx_.data(), grid_sy_.data());

@@ -34,10 +34,13 @@ struct rolling_input {
   const double *px = nullptr, *py = nullptr;  // Pa, tractions of the last step on the same grid
   // m, to where the material was in the last step
   double upstream() const { return regime == motion::transient ? direction * distance : 0.0; }
+  // m, of wheels in place of px, py: displacement of the last step where the material was, [ny][nx]
+  const double *before[2] = {nullptr, nullptr};
   const double *coupled[2] = {nullptr, nullptr};  // null: none; slip from pressure, [ny][nx]
   // Whether anything can move a traction away from zero, or to it.
   bool drives() const {
-    return creepage[0] != 0 || creepage[1] != 0 || spin_creepage != 0 || force || px || coupled[0];
+    return creepage[0] != 0 || creepage[1] != 0 || spin_creepage != 0 || force || px || before[0] ||
+           coupled[0];
   }
   double slip(int component, double x, double y) const {
     return component == 0 ? creepage[0] - spin_creepage * y
@@ -73,6 +76,7 @@ class tangential_solver {
     bool plastic = false;                  // of these, for a layer that yields
     bool history = false;                  // for shift and transient rolling
     const fft_plans *transient = nullptr;  // transient rolling: those of the influence
+    bool moves = false;                    // of patches whose grid moves: add_moved()
   };
   tangential_solver(int max_nx, int max_ny, const setup &setup);
 
@@ -83,6 +87,11 @@ class tangential_solver {
                           inelastic_sums *sums = nullptr);
   // The preconditioner's, for linear systems of the same rows between solves; null: other laws.
   row_blocks *blocks() { return newton_ ? &newton_->blocks() : nullptr; }
+  // See offset_influence.hpp; on the grid of a.
+  void add_moved(const influence &a, const grid &from, const grid &to, const double offset[2],
+                 double share, const double *px, const double *py, double *ux, double *uy) {
+    offset_->add_moved(a, from, to, offset, share, px, py, ux, uy);
+  }
   // all, and what of it serves the last step and the plastic layer
   size_t bytes() const;
   size_t history_bytes() const { return (offset_ ? offset_->bytes() : 0) + before_.bytes(); }

@@ -63,6 +63,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // greatest distance a reference may move between steps for its solution to be a useful start
 constexpr double warm_distance = 2e-3;
+// m, of a patch's bounds, within which the last step's tractions are taken for its own
+constexpr double near = 4e-3;
 
 void scale(patch_wrench &wrench, double share) {
   for (int k = 0; k < 3; ++k) {
@@ -96,6 +98,23 @@ wheel_contact::wheel_contact(const rp_config &c, int side)
   const wheel_config sizes{c.nominal_radius, c.flange_back_distance, c.flange_back_position,
                            c.standstill_speed};
   geometry_ = std::make_unique<side_geometry>(*wheel_, *rail_, sizes, track_of(c, side));
+  if (c.derivatives != 0) solutions_.resize(static_cast<size_t>(c.max_patches));
+  if (!longitudinal_shape::wanted(c, side)) return;
+  shape_ = std::make_unique<longitudinal_shape>(c, side);
+  geometry_->set_shape(shape_.get());
+}
+
+// Of the inputs, or of their rates: what a right-hand wheel does.
+side_motion wheel_contact::motion_of(const rp_input &in) const {
+  side_motion motion;
+  motion.wheelset = {in.y,  in.z,  in.roll,      in.yaw,      in.speed,
+                     in.vy, in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
+  motion.wheel = deviation_of(in.wheel_offset[side_], in.wheel_rotation[side_],
+                              in.wheel_velocity[side_], in.wheel_angular_velocity[side_]);
+  motion.rail = deviation_of(in.rail_offset[side_], in.rail_rotation[side_],
+                             in.rail_velocity[side_], in.rail_angular_velocity[side_]);
+  motion.roller_pitch_rate = in.roller_pitch_rate;
+  return side_ == RP_LEFT ? mirrored(motion) : motion;
 }
 
 void wheel_contact::place(const rp_input &in) {
@@ -107,15 +126,9 @@ void wheel_contact::place(const rp_input &in) {
       geometry_->reload_rail();
     }
   }
-  side_motion motion;
-  motion.wheelset = {in.y,  in.z,  in.roll,      in.yaw,      in.speed,
-                     in.vy, in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
-  motion.wheel = deviation_of(in.wheel_offset[side_], in.wheel_rotation[side_],
-                              in.wheel_velocity[side_], in.wheel_angular_velocity[side_]);
-  motion.rail = deviation_of(in.rail_offset[side_], in.rail_rotation[side_],
-                             in.rail_velocity[side_], in.rail_angular_velocity[side_]);
-  motion.roller_pitch_rate = in.roller_pitch_rate;
-  geometry_->place(side_ == RP_LEFT ? mirrored(motion) : motion);
+  time_step_ = in.time_step;
+  if (shape_) shape_->place(in.pitch + in.wheel_rotation[side_][1], in.x, config_.nominal_radius);
+  geometry_->place(motion_of(in));
 }
 
 grid wheel_contact::choose_grid(const patch_region &r) const {
@@ -154,7 +167,7 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
       find_patches(*geometry_, rules_, parts_, regions_.data(), config_.max_patches);
   solver.observe(RP_STAGE_GEOMETRY, false);
   out.status = RP_NO_CONTACT;
-  const int count = found.count;
+  const int count = patches_ = found.count;
   out.patch_count = count;
   for (int k = 0; k < 3; ++k) out.force[k] = out.moment[k] = 0;
   out.rolling_radius = 0;
@@ -166,8 +179,11 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
   match_memory(memory, count);
   for (int i = 0; i < count; ++i)
     out.status = combine_status(
-        out.status, solve_patch(solver, regions_[static_cast<size_t>(i)], i, memory[i], out));
-  for (int i = count; i < config_.max_patches; ++i) memory[i].warm = memory[i].solved = false;
+        out.status, solve_patch(solver, regions_[static_cast<size_t>(i)], i, memory, out));
+  for (int i = count; i < config_.max_patches; ++i) {
+    memory[i].warm = memory[i].solved = false;
+    memory[i].history.clear_now();
+  }
   // of several patches the mean radius, each weighted with the load it adds to the sum
   double load = 0;
   for (int i = 0; i < count; ++i)
@@ -220,9 +236,11 @@ void wheel_contact::match_memory(patch_memory *memory, int count) const {
 }
 
 rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region, int index,
-                                     patch_memory &memory, rp_side_result &out) {
+                                     patch_memory *memories, rp_side_result &out) {
   rp_patch_result &result = out.patch[index];
+  patch_memory &memory = memories[index];
   result.share = region.share;
+  if (!solutions_.empty()) solutions_[static_cast<size_t>(index)].solved = false;
   patch_problem problem;
   const bool reached = !memory.curved || memory.curved->begin(*geometry_, region);
   problem.g = reached ? choose_grid(region) : grid{};
@@ -233,6 +251,7 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
     std::fill_n(out.force, 3, nan);
     std::fill_n(out.moment, 3, nan);
     beyond_ = true;
+    memory.history.clear_now();
     return result.status = RP_OUT_OF_RANGE;
   }
 
@@ -258,6 +277,8 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
   problem.rolling_speed = rolling.rolling_speed;
   problem.rolling = {{rolling.xi, rolling.eta}, rolling.phi, rolling.direction < 0 ? -1 : 1, 0.0};
   problem.parts = parts_on(region, g);
+  past_tractions past[RP_MAX_PATCHES];
+  if (solver.scene().keeps_steps()) set_past(memories, region, rolling.direction, problem, past);
   if (solver.scene().normal == RP_NORMAL_HERTZ) {
     // the paraboloid whose overlap has the same depth, length and width
     const double half[2] = {0.5 * (region.x_max - region.x_min),
@@ -267,6 +288,11 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
   }
   patch_wrench wrench;
   solver.solve(problem, memory, result, wrench);
+  memory.history.begun = solver.scene().keeps_steps();
+  memory.share = region.share;
+  for (size_t k = 0; k < 2; ++k) memory.rail[k] = geometry_->motion().rail.offset[k + 1];
+
+  if (!solutions_.empty()) solutions_[static_cast<size_t>(index)] = {true, problem, wrench, depth};
 
   scale(wrench, region.share);
   out.rolling_radius +=
@@ -289,6 +315,52 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
   return result.status;
 }
 
+// The rail's material stays where it is on the rail, while the wheel moves on by the distance
+// rolled and the reference by what its place has changed; the wheel's differs from it by creepage
+// only. What solutions of the last step left counts with their shares, as it did in the force, and
+// goes to a patch where it lies nearer to its parts than to others, and near at all.
+void wheel_contact::set_past(const patch_memory *memory, const patch_region &region, int direction,
+                             patch_problem &problem, past_tractions *past) const {
+  rolling_input &rolling = problem.rolling;
+  const double speed = problem.rolling_speed, slow = config_.standstill_speed;
+  rolling.speed = speed;
+  // what stands still does not roll on; near standstill creepages refer to another speed
+  rolling.regime = speed > 0 ? motion::transient : motion::shift;
+  if (speed > 0) rolling.distance = speed * time_step_;
+  const double moved = speed < slow ? std::sqrt(std::max(slow * (2 * speed - slow), 0.0)) : speed;
+  const double rolled = direction * moved * time_step_;
+  problem.past = past;
+  const vec3 &rail = geometry_->motion().rail.offset;
+  const contact_frame &frame = region.frame;
+  const auto lateral = [&](const vec3 &at) {
+    return lateral_in(frame.origin, frame.contact_angle, at);
+  };
+  double low = region.s_min - near, high = region.s_max + near;
+  const int first_part = region.first_part, last_part = first_part + region.parts - 1;
+  const auto part_at = [&](int k) -> const part & { return parts_.parts[k]; };
+  if (first_part > 0)
+    low = std::max(low, 0.5 * (region.s_min + lateral(part_at(first_part - 1).last)));
+  if (last_part + 1 < parts_.count)
+    high = std::min(high, 0.5 * (region.s_max + lateral(part_at(last_part + 1).first)));
+  for (int k = 0; k < config_.max_patches; ++k) {
+    const patch_history &h = memory[k].history;
+    if (!h.held) continue;
+    const grid &g = h.last_grid;
+    // in this frame; the rail has taken its material along
+    const double place = lateral({0, h.last_reference[1] + rail[1], h.last_reference[2] + rail[2]});
+    const auto row = [&](double s) {
+      return static_cast<int>(
+          std::clamp(std::ceil((s - place - g.y0) / g.dy), 0.0, static_cast<double>(g.ny)));
+    };
+    const int begin = row(low), end = row(high);
+    if (end <= begin) continue;
+    past_tractions &p = past[problem.past_count++];
+    p = {&h, begin, end - begin, {0, 0}};
+    p.offset[0] = frame.origin[0] + problem.g.x0 + rolled - h.last_reference[0] - g.x0;
+    p.offset[1] = problem.g.y0 - place - g.y(begin);
+  }
+}
+
 // The factor of each row by the angle of the rail's surface there, > 0 towards the gauge face; a
 // row beyond the profile has no contact, and any factor. Rows of a curved reference surface have
 // an angle of their own.
@@ -305,11 +377,42 @@ void wheel_contact::set_friction(const patch_contact &solver, const contact_fram
   }
 }
 
+// What varies along the track or the wheel, or makes rails give way, is left to differences.
+bool wheel_contact::differentiates() const {
+  const bool gives_way = config_.rail_stiffness[0] > 0 || config_.rail_stiffness[1] > 0;
+  return wheel_derivative::covers(rules_) && !sections_ && !shape_ &&
+         config_.friction_along_points == 0 && config_.reference_surface == RP_REFERENCE_PLANE &&
+         !gives_way;
+}
+
+derivative_outcome wheel_contact::differentiate(patch_contact &solver, const patch_memory *memory,
+                                                wheel_derivative &work, const rp_input *directions,
+                                                int count, const derivative_options &options,
+                                                const rp_side_result &result,
+                                                rp_side_result *changes) const {
+  side_motion motions[wheel_derivative::most_directions];
+  for (int k = 0; k < count; ++k) motions[k] = motion_of(directions[k]);
+  const wheel_solution solution{*geometry_,
+                                rules_,
+                                parts_,
+                                regions_.data(),
+                                solutions_.data(),
+                                memory,
+                                patches_,
+                                config_.element_size[0] > 0 ? nullptr : config_.elements};
+  const derivative_outcome outcome =
+      work.solve(solution, solver, motions, count, options, result, changes);
+  for (int k = 0; k < count; ++k)
+    if (side_ == RP_LEFT) mirror(changes[k]);
+  return outcome;
+}
+
 bool wheel_contact::first_touch(double &z) const { return railpatch::first_touch(*geometry_, z); }
 
 size_t wheel_contact::bytes() const {
   return wheel_->bytes() + rail_->bytes() + geometry_->bytes() +
-         (sections_ ? sections_->bytes() : 0);
+         solutions_.size() * sizeof(patch_solution) + (sections_ ? sections_->bytes() : 0) +
+         (shape_ ? shape_->bytes() : 0);
 }
 
 rp_status combine_status(rp_status a, rp_status b) {

@@ -12,6 +12,7 @@
 #include "patch_contact.hpp"
 #include "rail_sections.hpp"
 #include "railpatch.h"
+#include "wheel_derivative.hpp"
 
 namespace railpatch {
 
@@ -27,16 +28,28 @@ class wheel_contact {
   bool first_touch(double &z) const;
   // Solves the contact at the placed position. memory: of this side's patches, max_patches.
   void evaluate(patch_contact &solver, patch_memory *memory, rp_side_result &result);
+  // Whether the geometry's derivatives are known.
+  bool differentiates() const;
+  // Derivatives of that solution by rates of the inputs: changes[k] those of its numbers in
+  // direction k, of which only the first rate_directions may be more than velocities.
+  derivative_outcome differentiate(patch_contact &solver, const patch_memory *memory,
+                                   wheel_derivative &work, const rp_input *directions, int count,
+                                   const derivative_options &options, const rp_side_result &result,
+                                   rp_side_result *changes) const;
   // The last state is out of range for its geometry or normal problem, so its force is not known.
   bool beyond() const { return beyond_; }
   size_t bytes() const;
 
  private:
   rp_status solve_patch(patch_contact &solver, patch_region &region, int index,
-                        patch_memory &memory, rp_side_result &result);
+                        patch_memory *memories, rp_side_result &result);
+  // Sets what the last step left behind for the patch of a region; past: of max_patches.
+  void set_past(const patch_memory *memory, const patch_region &region, int direction,
+                patch_problem &problem, past_tractions *past) const;
   void set_friction(const patch_contact &solver, const contact_frame &frame,
                     patch_memory &memory) const;
   grid choose_grid(const patch_region &region) const;
+  side_motion motion_of(const rp_input &input) const;
   void match_memory(patch_memory *memory, int count) const;
 
   rp_config config_;
@@ -44,10 +57,14 @@ class wheel_contact {
   bool beyond_ = false;
   std::unique_ptr<rail_sections> sections_;  // where the rail's profile varies along the track
   std::unique_ptr<profile> wheel_, rail_;
+  std::unique_ptr<longitudinal_shape> shape_;  // null: round wheel, level rail
   std::unique_ptr<side_geometry> geometry_;
   patch_rules rules_;
   part_set parts_;
   std::array<patch_region, RP_MAX_PATCHES> regions_;
+  int patches_ = 0;                        // of the last state
+  std::vector<patch_solution> solutions_;  // of these; only where derivatives are asked for
+  double time_step_ = 0;                   // s
 };
 
 struct profile_error {

@@ -83,4 +83,8 @@
   X(roller_radius)                  \
   X(max_patches)                    \
   X(patch_rule)                     \
-  X(standstill_speed)
+  X(standstill_speed)               \
+  X(runout_count)                   \
+  X(rail_height_count)              \
+  X(rail_height_start)              \
+  X(rail_height_spacing)

@@ -420,3 +420,66 @@ def test_fastrip_has_no_compatible_blending() -> None:
 def test_wrong_accuracies(values: dict[str, Any], line: str) -> None:
     found = problems_of(with_values(PATCH, grid=None, **values))
     assert any(text.startswith(line) for text in found), found
+
+
+@pytest.mark.parametrize(
+    ("values", "line"),
+    [
+        (
+            {"method__normal": "hertz"},
+            "method.normal: value is 'hertz', allowed 'half_space' with reference_surface = "
+            "'curved'",
+        ),
+        (
+            {"method__tangential": "fastsim"},
+            "method.tangential: value is 'fastsim', allowed 'full' or 'none' with "
+            "reference_surface = 'curved'",
+        ),
+        (
+            {"grid": {"fitted": [8, 8]}},
+            "grid.fitted: value is [8, 8], allowed to be left out with reference_surface = "
+            "'curved'",
+        ),
+        (
+            {"grid": None, "method__accuracy": 0.05},
+            "method.accuracy: value is 0.05, allowed to be left out with reference_surface = "
+            "'curved': give 'grid'",
+        ),
+        (
+            {
+                "friction": {
+                    "law": "slip_velocity",
+                    "kinetic": 0.2,
+                    "amplitude": 0.1,
+                    "halving_speed": 1.0,
+                }
+            },
+            "friction.law: value is 'slip_velocity', allowed 'coulomb' with reference_surface = "
+            "'curved'",
+        ),
+        (
+            {"layer": {"thickness": 1e-5, "shear_modulus": 1e9, "yield_stress": 1e8}},
+            "layer.yield_stress: value is 100000000.0, allowed to be left out with "
+            "reference_surface = 'curved'",
+        ),
+        (
+            {"temperature": {"wheel": 20.0, "rail": 20.0}},
+            "temperature: value is given, allowed to be left out with reference_surface = 'curved'",
+        ),
+        (
+            {"material__shear_modulus": [82e9, 8e9]},
+            "material: value is unlike bodies, allowed equal (1 - 2 nu)/G with reference_surface "
+            "= 'curved'",
+        ),
+    ],
+)
+def test_curved_surfaces_stand_alone(values: dict[str, Any], line: str) -> None:
+    case = with_values(WHEELSET, method__reference_surface="curved")
+    load_scene(case)
+    assert problems_of(with_values(case, **values)) == [line]
+
+
+def test_patches_have_no_curved_surface() -> None:
+    assert problems_of(with_values(PATCH, method__reference_surface="curved")) == [
+        "method.reference_surface: value is 'curved', allowed 'plane' with kind = 'patch'"
+    ]

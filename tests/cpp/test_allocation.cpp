@@ -336,6 +336,32 @@ TEST(Step, OnATrackThatVariesAllocatesNothing) {
 }
 
 // The transforms alone, in sizes up to grids of 250 elements.
+// A flat wheel and a rail with a dip, with patches that move over the rail.
+TEST(Step, OfTransientRollingWheelsAllocatesNothing) {
+  const scenes::profile_pair pair;
+  std::vector<double> runout(1500, 0.0), height(100, 0.0);
+  for (int i = 0; i < 20; ++i) runout[static_cast<size_t>(i)] = -1e-5 * i * (20 - i) / 10;
+  for (int i = 40; i < 60; ++i) height[static_cast<size_t>(i)] = -1e-4;
+  rp_config c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+  c.regime = RP_TRANSIENT_ROLLING;
+  for (int side = 0; side < 2; ++side) {
+    c.runout[side] = runout.data();
+    c.runout_count[side] = 1500;
+    c.rail_height[side] = height.data();
+    c.rail_height_count[side] = 100;
+  }
+  std::vector<rp_input> inputs;
+  for (int k = 0; k < 12; ++k) {
+    rp_input in = scenes::running(RP_RAIL);
+    in.time_step = 1e-4;
+    in.x = in.speed * in.time_step * k;
+    in.pitch = in.pitch_rate * in.time_step * k + 0.02;
+    in.y = 1e-4 * k;
+    inputs.push_back(in);
+  }
+  EXPECT_EQ(run(c, inputs).allocated, 0);
+}
+
 TEST(Transforms, AllocateNothing) {
   std::vector<int> sizes;
   for (int n = 4; n <= 500; n = railpatch::smooth_size(n + 1)) sizes.push_back(n);
@@ -359,6 +385,41 @@ TEST(Step, OfALargeGridAllocatesNothing) {
   c.tangential = RP_TANGENTIAL_FULL;
   c.elements[0] = c.elements[1] = 70;
   EXPECT_EQ(run(c, std::vector{scenes::patch_input(1e5, 1e-2, 0, 0)}).allocated, 0);
+}
+
+// Derivatives of wheelsets with one and several patches, exact ones and differences.
+TEST(Derivatives, OfAWheelsetAllocateNothing) {
+  const scenes::profile_pair pair;
+  for (rp_patch_rule rule : {RP_PATCHES_BLENDED, RP_PATCHES_CONTACT})
+    for (int elements : {0, 10}) {
+      rp_config c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+      c.derivatives = 1;
+      c.patch_rule = rule;
+      c.elements[0] = c.elements[1] = elements;
+      if (elements > 0) c.element_size[0] = c.element_size[1] = 0;
+      scenes::handle contact(c);
+      int greatest = 0;
+      auto result = std::make_unique<rp_result>(), change = std::make_unique<rp_result>();
+      rp_jacobian whole{};
+      for (double y : {0.0, 5.9e-3, 6e-3}) {
+        rp_input in = scenes::running(RP_RAIL);
+        in.y = y;
+        in.vertical_force = 1.2e5;
+        *result = contact.step(in);
+        for (const rp_side_result &side : result->side)
+          greatest = std::max(greatest, side.patch_count);
+        rp_error errors[2] = {RP_ERROR_INTERNAL, RP_ERROR_INTERNAL};
+        const int n = allocations([&] {
+          errors[0] = rp_get_jacobian(contact.get(), &whole, nullptr);
+          errors[1] = rp_differentiate(contact.get(), &in, change.get(), nullptr, nullptr);
+        });
+        EXPECT_EQ(n, 0) << "rule " << rule << " y " << y;
+        for (rp_error error : errors) EXPECT_EQ(error, RP_OK);
+      }
+      if (rule == RP_PATCHES_BLENDED) {
+        EXPECT_GE(greatest, 2);
+      }
+    }
 }
 
 // Sideways until the flange touches, then at the heights found, off the rails and back.
@@ -393,6 +454,60 @@ TEST(Step, OfAWheelsetAllocatesNothing) {
     EXPECT_EQ(position.allocated, 0) << "track " << track << " position prescribed";
     EXPECT_TRUE(position.lifted);
   }
+}
+
+// --- derivatives ---------------------------------------------------------------------------
+
+// Of every number of the input that the kind reads, after each step.
+template <class Inputs>
+int allocated_by_derivatives(rp_config config, const Inputs &inputs, rp_derivative_kind expected) {
+  config.derivatives = 1;
+  scenes::handle contact(config);
+  auto change = std::make_unique<rp_result>();
+  int sum = 0;
+  for (const rp_input &in : inputs) {
+    rp_message message{};
+    rp_error error = RP_OK;
+    sum += allocations([&] { contact.step(in); });
+    rp_input direction;
+    rp_default_direction(&direction);
+    if (config.load == RP_FORCE) direction.normal_force = direction.vertical_force = 1;
+    direction.creepage[0] = direction.creepage[1] = direction.spin_creepage = 1;
+    direction.y = direction.yaw = direction.speed = direction.approach = 1;
+    rp_derivative_kind kind = RP_DERIVATIVE_EXACT;
+    sum += allocations([&] {
+      error = rp_differentiate(contact.get(), &direction, change.get(), &kind, &message);
+    });
+    EXPECT_EQ(error, RP_OK) << message.text;
+    EXPECT_EQ(kind, expected);
+    EXPECT_NE(change->status, RP_NOT_CONVERGED);
+  }
+  return sum;
+}
+
+TEST(Derivatives, OfAPatchAllocateNothing) {
+  for (rp_normal_method normal : {RP_NORMAL_HERTZ, RP_NORMAL_HALF_SPACE})
+    for (rp_tangential_method tangential : {RP_TANGENTIAL_NONE, RP_TANGENTIAL_FULL})
+      for (rp_load load : {RP_FORCE, RP_POSITION})
+        for (rp_geometry geometry : {RP_SEMI_AXES, RP_CURVATURES}) {
+          rp_config c = scenes::patch(normal, tangential, 14);
+          c.load = load;
+          c.geometry = geometry;
+          std::vector<rp_input> inputs = patch_inputs();
+          for (auto &in : inputs) in.approach = 1e-9 * in.normal_force;
+          EXPECT_EQ(allocated_by_derivatives(c, inputs, RP_DERIVATIVE_EXACT), 0)
+              << "normal " << normal << " tangential " << tangential << " load " << load;
+        }
+}
+
+TEST(Derivatives, ByDifferencesAllocateNothing) {
+  rp_config fast = scenes::patch(RP_NORMAL_HERTZ, RP_TANGENTIAL_FASTSIM, 12);
+  EXPECT_EQ(allocated_by_derivatives(fast, patch_inputs(), RP_DERIVATIVE_BY_DIFFERENCES), 0);
+  rp_config shift = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL, 12);
+  shift.regime = RP_SHIFT;
+  std::vector<rp_input> inputs = patch_inputs();
+  for (auto &in : inputs) in.creepage[0] *= 1e-3, in.creepage[1] *= 1e-3, in.spin_creepage = 0;
+  EXPECT_EQ(allocated_by_derivatives(shift, inputs, RP_DERIVATIVE_BY_DIFFERENCES), 0);
 }
 
 }  // namespace

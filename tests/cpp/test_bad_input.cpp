@@ -267,6 +267,26 @@ TEST(Config, FittedRowsAreChecked) {
   expect(8, 8, "spin_offset", [](rp_config &c) { c.spin_offset = RP_SPIN_OFFSET_SIXTH; });
 }
 
+TEST(Config, CurvedReferenceSurfaceIsChecked) {
+  const scenes::profile_pair pair;
+  const auto expect = [&](const char *what, const std::function<void(rp_config &)> &change) {
+    rp_config c = scenes::wheels(RP_WHEEL_RAIL, RP_RAIL, pair);
+    c.reference_surface = RP_REFERENCE_CURVED;
+    change(c);
+    expect_refused(c, RP_ERROR_VALUE, "reference_surface");
+    expect_refused(c, RP_ERROR_VALUE, what);
+  };
+  expect("kind = patch", [](rp_config &c) { c.kind = RP_PATCH; });
+  expect("half_space", [](rp_config &c) { c.normal = RP_NORMAL_HERTZ; });
+  expect("half_space", [](rp_config &c) { c.normal = RP_NORMAL_ANALYN; });
+  expect("full or none", [](rp_config &c) { c.tangential = RP_TANGENTIAL_FASTSIM; });
+  expect("fitted", [](rp_config &c) { c.fitted[0] = c.fitted[1] = 8; });
+  expect("coulomb", [](rp_config &c) { c.friction_law = RP_SLIP_VELOCITY; });
+  expect("layer_yield_stress", [](rp_config &c) { c.layer_yield_stress = 1e8; });
+  expect("temperature", [](rp_config &c) { c.temperature = 1; });
+  expect("(1-2nu)/G", [](rp_config &c) { c.shear_modulus[0] = 2e9; });
+}
+
 TEST(Config, ChoicesAndCountsAreChecked) {
   struct {
     const char *name;
@@ -282,6 +302,7 @@ TEST(Config, ChoicesAndCountsAreChecked) {
       {"traction_bound", [](rp_config &c, int v) { put(c.traction_bound, v); }, -1, 3},
       {"flexibility_blending", [](rp_config &c, int v) { put(c.flexibility_blending, v); }, -1, 3},
       {"spin_offset", [](rp_config &c, int v) { put(c.spin_offset, v); }, -1, 2},
+      {"reference_surface", [](rp_config &c, int v) { put(c.reference_surface, v); }, -1, 2},
       {"elements[0]", [](rp_config &c, int v) { c.elements[0] = v; }, -5, 100000},
       {"force_prescribed[0]", [](rp_config &c, int v) { c.force_prescribed[0] = v; }, -1, 2},
       {"force_prescribed[1]", [](rp_config &c, int v) { c.force_prescribed[1] = v; }, -1, 2},

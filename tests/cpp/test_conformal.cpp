@@ -12,6 +12,7 @@
 
 #include "conformal_coupling.hpp"
 #include "conformal_rows.hpp"
+#include "normal.hpp"
 #include "scenes.hpp"
 
 namespace {
@@ -415,6 +416,137 @@ TEST(CurvedSurface, IsSolvedFromTreadToFlange) {
     }
   }
   EXPECT_EQ(solved, steps);
+}
+
+// A ball of 10 mm in grooves, rolling freely (the deep grooves of Li 2002), against the program
+// CONTACT (Vtech CMCC, open source version of 2023, its example groove_li: curved reference
+// surface, 10 kN, wheel radius 420 mm, friction 0.3, G = 80 GPa, nu = 0.28, elements of 0.0958 by
+// 0.25 mm). It has half-space coefficients of the arc length alone, and others fitted to finite
+// elements of such bodies (Blanco-Lorenzo). Signs and rates are ours.
+struct rolling_state {
+  double pitch_rate;          // rad/s, of free rolling
+  double approach, pressure;  // m, Pa
+  int elements;               // in contact
+  double energy, power;       // J, W
+};
+struct groove {
+  double radius;      // m
+  double last_angle;  // degrees, of the outermost row in contact, with half-spaces
+  rolling_state half_space, fitted;
+};
+constexpr groove grooves[] = {
+    {10.25e-3,
+     15.56,
+     {-1.0002301, 2.237e-5, 530.2e6, 1187, 8.958e-2, 8.395e-2},
+     {-1.0002342, 2.224e-5, 527.4e6, 1199, 9.029e-2, 8.402e-2}},
+    {10.10e-3,
+     24.23,
+     {-1.0004411, 1.939e-5, 409.3e6, 1559, 7.848e-2, 0.3018},
+     {-1.0004586, 1.911e-5, 405.9e6, 1569, 7.887e-2, 0.3113}},
+    {10.05e-3,
+     31.43,
+     {-1.0006495, 1.743e-5, 348.7e6, 1843, 7.171e-2, 0.6444},
+     {-1.0006824, 1.700e-5, 344.9e6, 1867, 7.146e-2, 0.6789}},
+    {10.02e-3,
+     42.93,
+     {-1.0009761, 1.541e-5, 296.8e6, 2265, 6.552e-2, 1.389},
+     {-1.0010425, 1.476e-5, 292.0e6, 2317, 6.398e-2, 1.519}},
+};
+
+struct groove_profiles {
+  static constexpr double end = 1.3;  // rad, inclination of the arcs' ends
+  profiles::curve rail, wheel;
+
+  explicit groove_profiles(double radius) {
+    profiles::pen r(end), w(end);
+    r.turn_to(0, radius);
+    w.turn_to(0, 0.010);
+    const double origin[] = {r.y(), w.y()};
+    r.turn_to(-end, radius);
+    w.turn_to(-end, 0.010);
+    rail = r.moved_to_origin(origin[0]);
+    wheel = w.moved_to_origin(origin[1]);
+  }
+};
+constexpr double groove_dx = 0.095833e-3, groove_dy = 0.25e-3;
+
+// The curve, its normals and the undeformed distance along them: with half-space coefficients of
+// the arc length alone the normal problem is CONTACT's, to the four digits that it prints.
+TEST(ConformalRows, OfGroovesAreThoseOfContact) {
+  const double g_steel[] = {80e9, 80e9};
+  for (const groove &one : grooves) {
+    const rolling_state &peer = one.half_space;
+    const groove_profiles curves(one.radius);
+    const profile wheel(pair_of_arcs::view(curves.wheel)), rail(pair_of_arcs::view(curves.rail));
+    side_geometry side(wheel, rail, {0.42, 1.36, 0.0}, {track_kind::rail, 1.435, 0.014, 0, 0, 0});
+    side_motion m;
+    m.wheelset.y = side.rail_marker_y() - 0.68;
+    m.wheelset.z = side.rail_marker_z() + peer.approach;
+    side.place(m);
+    patch_region region;
+    ASSERT_EQ(find_patches(side, patch_rules{}, &region, 1).status, search_status::contact);
+    conformal_rows rows(101);
+    ASSERT_TRUE(rows.begin(side, region));
+    const grid g{141, 101, groove_dx, groove_dy, -70 * groove_dx, -50 * groove_dy};
+    std::vector<double> h(static_cast<size_t>(g.count())), p = h;
+    rows.place(side, g, h.data());
+    const fft_plans plans({smooth_size(2 * g.nx + 1)}, {smooth_size(2 * g.ny - 1)});
+    influence flat({combine(g_steel, poisson_ratio), 0.0, 0.0, false}, plans);
+    flat.set_grid(g);
+    normal_solver solver(g.count());
+    const normal_result n = solver.with_approach(flat, g, h.data(), 0.0, {1e-7, 200}, p.data());
+    ASSERT_TRUE(n.converged);
+    EXPECT_NEAR(*std::max_element(p.begin(), p.end()) / peer.pressure, 1, 1e-3) << one.radius;
+    EXPECT_NEAR(n.contact_count, peer.elements, 0.005 * peer.elements) << one.radius;
+    int last = g.ny - 1;
+    while (*std::max_element(p.begin() + last * g.nx, p.begin() + (last + 1) * g.nx) <= 0) --last;
+    EXPECT_NEAR(-rows.angle(last) * 180 / pi, one.last_angle, 0.01) << one.radius;
+  }
+}
+
+// With inclination the result moves from half-spaces towards the coefficients of finite elements.
+TEST(CurvedSurface, OfGroovesIsNearFiniteElements) {
+  for (const groove &one : grooves) {
+    const rolling_state &peer = one.fitted;
+    const groove_profiles curves(one.radius);
+    const scenes::profile_pair pair;
+    rp_config c = scenes::wheels(RP_WHEEL_RAIL, RP_RAIL, pair);
+    c.wheel[RP_RIGHT] = curves.wheel.view();
+    c.rail[RP_RIGHT] = curves.rail.view();
+    c.reference_surface = RP_REFERENCE_CURVED;
+    c.cant = 0;
+    c.nominal_radius = 0.42;
+    c.flange_back_position = 0;
+    c.shear_modulus[0] = c.shear_modulus[1] = 80e9;
+    c.element_size[0] = groove_dx;
+    c.element_size[1] = groove_dy;
+    c.max_elements[0] = 160;
+    c.max_elements[1] = 100;
+    rp_input in = scenes::running(RP_RAIL);
+    // the groove's gauge face is the end of its arc
+    in.y =
+        0.5 * c.gauge + one.radius * std::sin(groove_profiles::end) - 0.5 * c.flange_back_distance;
+    in.speed = 0.42;
+    in.pitch_rate = peer.pitch_rate;
+    in.vertical_force = 1e4;
+    scenes::handle contact(c);
+    const rp_result result = contact.step(in);
+    ASSERT_EQ(result.status, RP_CONVERGED);
+    const rp_patch_result &p = result.side[RP_RIGHT].patch[0];
+    const std::string where = std::to_string(one.radius);
+    EXPECT_NEAR(p.approach / peer.approach, 1, 0.012) << where;
+    EXPECT_NEAR(p.max_pressure / peer.pressure, 1, 0.03) << where;
+    EXPECT_NEAR((p.elements[1] + p.elements[2]) / static_cast<double>(peer.elements), 1, 0.02);
+    EXPECT_NEAR(p.elastic_energy / peer.energy, 1, 0.012) << where;
+    EXPECT_NEAR(p.creep_force[0], 0, 0.03 * 0.3 * 1e4) << where;
+    // CONTACT's power is traction times micro-slip
+    const field t = contact.field(RP_RIGHT, 0, RP_FIELD_TRACTION);
+    const field s = contact.field(RP_RIGHT, 0, RP_FIELD_MICRO_SLIP);
+    double power = 0;
+    for (size_t i = 0; i < t.size(); ++i)
+      power -= t[i] * s[i] * p.rolling_speed * groove_dx * groove_dy;
+    EXPECT_NEAR(power / peer.power, 1, 0.1) << where;
+  }
 }
 
 }  // namespace

@@ -15,6 +15,8 @@ ELSEWHERE = {
     "rail_sections",
     "section_position",
     "section_count",
+    "runout",
+    "rail_height",
     "creep_table",
     "creep_table_size",
     "observer",

@@ -108,7 +108,7 @@ def test_contact_that_fails_ends_the_run(tmp_path: Path):
     text = scenes.text_of("s1002.toml", y=0.0, speed=40.0, distance=20.0)
     file, log = tmp_path / "climb.toml", tmp_path / "run.mcap"
     file.write_text(text.replace("[wheelset]\n", "[wheelset]\nyaw = 0.08\n"))
-    ran = invoke(file, "-o", log)
+    ran = invoke(file, "-o", log, "--step", 2e-4)
     assert ran.exit_code == 3
     assert "status: contact failed at" in ran.stderr
     assert "out_of_range" in ran.stderr

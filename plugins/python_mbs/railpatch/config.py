@@ -10,6 +10,7 @@ from railpatch.case.patch import SHAPES, PatchCase
 from railpatch.case.types import MOST_POINTS
 from railpatch.case.wheel import SIDES, WheelRailCase, WheelsetCase
 from railpatch.choice import resolved
+from railpatch.longitudinal import shape_config
 from railpatch.profiles import Profile, load_profile
 from railpatch.profiles.sections import matching_sections
 from railpatch.table import default_table
@@ -33,6 +34,7 @@ def config_of(scene: Scene) -> dict[str, Any]:
         "normal": case.method.normal,
         "tangential": case.method.tangential,
         "tolerance": case.method.tolerance,
+        "derivatives": int(case.method.derivatives),
         "spin_offset": case.method.spin_offset,
         "reference_surface": case.method.reference_surface,
         "flexibility_blending": case.method.flexibility_blending,
@@ -165,7 +167,7 @@ def wheel_config(scene: Scene, case: WheelRailCase | WheelsetCase) -> dict[str, 
     wheelset, track = case.wheelset, case.track
     config: dict[str, Any] = {
         "load": "position" if wheelset.z is not None else "force",
-        "regime": "steady_rolling" if case.has_tangential else "none",
+        "regime": case.motion.regime if case.has_tangential else "none",
         "nominal_radius": wheelset.nominal_radius,
         "flange_back_distance": wheelset.flange_back_distance,
         "flange_back_position": wheelset.flange_back_position,
@@ -190,7 +192,7 @@ def wheel_config(scene: Scene, case: WheelRailCase | WheelsetCase) -> dict[str, 
     config.update({name: value for name, value in chosen.items() if value is not None})
     if isinstance(case, WheelRailCase):
         config["side"] = case.wheel.side
-    return config
+    return {**config, **shape_config(case, scene.folder)}
 
 
 def profile_pair(scene: Scene, case: WheelRailCase | WheelsetCase, body: Any) -> list[Any]:

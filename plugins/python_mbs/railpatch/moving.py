@@ -8,12 +8,14 @@ from typing import Any
 from railpatch.case.load import Case, check_table, plain
 from railpatch.case.messages import show
 from railpatch.case.patch import PatchCase
+from railpatch.case.rolling import SHAPE_KEYS
 from railpatch.config import WHEELSET_STATE
 from railpatch.errors import CaseError
 
 MOTION_KEYS = ("creepage", "spin_creepage", "rolling_speed", "direction")
 DEVIATION_KEYS = ("left", "right")
 BODY_KEYS = ("wheel", "rail")  # of [temperature]
+FIXED = (*SHAPE_KEYS, "sections")  # of a deviation
 
 
 def moving_keys(case: Case) -> dict[str, str]:
@@ -77,11 +79,16 @@ def changed_table(case: Case, name: str, values: dict[str, Any]) -> Any:
     content = table.model_dump()
     for key, value in values.items():
         if key in DEVIATION_KEYS and isinstance(value, dict):
-            if "sections" in value:
-                raise CaseError(f"{name}.{key}.sections: this is no moving input of the case")
+            fixed = {k: v for k, v in value.items() if k in FIXED and v != content[key].get(k)}
+            refuse_unknown(fixed, movable_of(content[key]), f"{name}.{key}.")
             value = {**content[key], **value}
         content[key] = value
     return check_table(type(table), content, name)
+
+
+def movable_of(deviation: Mapping[str, Any]) -> dict[str, Any]:
+    """The keys of a deviation that move: not its shape."""
+    return {key: value for key, value in deviation.items() if key not in FIXED}
 
 
 def refuse_unknown(changes: Mapping[str, Any], keys: Mapping[str, Any], prefix: str) -> None:

@@ -72,8 +72,9 @@ class Result:
     in track axes (m), and row_angle [ny], its contact angle (rad). ``iterations`` is the sum of
     conjugate-gradient steps of the normal and Newton steps of the tangential problem.
     ``error_estimate`` holds what 95 % of the errors of creep_force (N, length of the vector),
-    spin_moment (N m) and max_pressure (Pa) stay below. ``share`` is the part that a patch's solution
-    has in the force, moment and rolling radius of its wheel: below 1 where patches join or part. What the scene left out is NaN or None.
+    spin_moment (N m) and max_pressure (Pa) stay below. ``share`` is the part that a patch's
+    solution has in the force, moment and rolling radius of its wheel: below 1 where patches join or
+    part. What the scene left out is NaN or None.
     """
 
     def __init__(self, data: dict[str, Any]) -> None:

@@ -201,6 +201,20 @@ void fill_sections(Reader &reader, Config &to) {
   }
 }
 
+// [left, right], None where there is none
+void fill_values(Reader &reader, const char *key, const double *(&to)[2], int32_t (&count)[2],
+                 std::vector<Values> &keep) {
+  if (!reader.has(key)) return;
+  const auto sides = nb::cast<nb::list>(reader.at(key));
+  for (size_t side = 0; side < 2; ++side) {
+    const nb::object values(sides[side]);
+    if (values.is_none()) continue;
+    keep.push_back(nb::cast<Values>(values));
+    to[side] = keep.back().data();
+    count[side] = static_cast<int32_t>(keep.back().shape(0));
+  }
+}
+
 void fill_gap(Reader &reader, Config &to) {
   if (!reader.has("undeformed_distance")) return;
   to.gap = nb::cast<Grid>(reader.at("undeformed_distance"));
@@ -376,6 +390,10 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.scalar("max_patches", c.max_patches);
   reader.name("patch_rule", c.patch_rule);
   reader.scalar("standstill_speed", c.standstill_speed);
+  fill_values(reader, "runout", c.runout, c.runout_count, to.profiles);
+  fill_values(reader, "rail_height", c.rail_height, c.rail_height_count, to.profiles);
+  reader.scalar("rail_height_start", c.rail_height_start);
+  reader.scalar("rail_height_spacing", c.rail_height_spacing);
   fill_profiles(reader, "wheel", c.wheel, to.profiles);
   fill_profiles(reader, "rail", c.rail, to.profiles);
   fill_sections(reader, to);

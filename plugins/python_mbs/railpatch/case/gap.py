@@ -46,9 +46,8 @@ def read_rows(path: Path, key: str = KEY) -> list[tuple[int, list[float]]]:
     for line, words in enumerate(text.splitlines(), 1):
         words = words.split("#", 1)[0].strip()
         if words:
-            rows.append(
-                (line, [parse(path, line, word, key) for word in re.split(r"[\s,;]+", words)])
-            )
+            values = [parse(path, line, word, key) for word in re.split(r"[\s,;]+", words)]
+            rows.append((line, values))
     return rows
 
 

@@ -20,6 +20,7 @@ from railpatch.case.common import (
     check_tangential,
 )
 from railpatch.case.rails import RailSupport, Sections, check_sections
+from railpatch.case.rolling import RailShape, WheelMotion, WheelShape, check_rolling
 from railpatch.case.types import (
     Angle,
     AngleVector,
@@ -56,6 +57,10 @@ class Deviation(Table):
     )
 
 
+class WheelDeviation(Deviation, WheelShape):
+    """Deviation of a wheel, and its shape around the circumference."""
+
+
 class Wheelset(Table):
     """Position, attitude and velocity of the wheelset in track axes, and its dimensions."""
 
@@ -85,7 +90,9 @@ class Wheelset(Table):
         default=0.0, description="rad/s, about the axle; below 0 for rolling forward"
     )
     time_step: NotNegative = Field(
-        default=0.0, description="s, since the last step, for rails on dampers; 0: at rest"
+        default=0.0,
+        description="s, since the last step, for rails on dampers (0: at rest) "
+        "and transient rolling (> 0)",
     )
     nominal_radius: Dimension = Field(description="m, wheel radius at the profile's z = 0")
     flange_back_distance: Dimension = Field(description="m, between the flange backs")
@@ -96,11 +103,11 @@ class Wheelset(Table):
     max_patches: Annotated[int, Field(ge=1, le=6)] | None = Field(
         default=None, description="-, capacity: most patches of one wheel"
     )
-    left: Deviation = Field(
-        default=Deviation(), description="left wheel's deviation (m, rad), wheelset axes"
+    left: WheelDeviation = Field(
+        default=WheelDeviation(), description="left wheel's deviation (m, rad), wheelset axes"
     )
-    right: Deviation = Field(
-        default=Deviation(), description="right wheel's deviation (m, rad), wheelset axes"
+    right: WheelDeviation = Field(
+        default=WheelDeviation(), description="right wheel's deviation (m, rad), wheelset axes"
     )
 
     @model_validator(mode="after")
@@ -109,8 +116,8 @@ class Wheelset(Table):
         return self
 
 
-class Rail(Deviation):
-    """A rail's deviation, and its profiles where they vary along the track."""
+class Rail(Deviation, RailShape):
+    """A rail's deviation, running surface, and its profiles where they vary along the track."""
 
     sections: Sections | None = Field(
         default=None,
@@ -229,6 +236,7 @@ class _WheelCase(Table):
         default=None, description="surface temperature (degrees C, W/(m K), J/(kg K), kg/m^3)"
     )
     method: Method = Field(default=Method(), description="theories and tolerances (-)")
+    motion: WheelMotion = Field(default=WheelMotion(), description="how wheels roll (no unit)")
     wheelset: Wheelset = Field(description="position, velocity, dimensions (m, rad, m/s, rad/s)")
     track: Track = Field(description="rails or rollers (m, rad, rad/s)")
     profiles: Profiles = Field(description="profiles by file or name (no unit)")
@@ -253,6 +261,7 @@ class _WheelCase(Table):
         check_reference(
             self.material, self.friction, self.layer, self.temperature, self.grid, self.method
         )
+        check_rolling(self)
         for side in self.sides:
             for body in ("wheel", "rail"):
                 key, value = self.profiles.of(body, side)

@@ -1,0 +1,1 @@
+"""How continuous a wheel's forces are in position and velocity: ``railpatch continuity``."""
