@@ -306,6 +306,7 @@ def test_transient_contact_on_springs() -> None:
         grid={"element_size": [1.5e-3, 1.5e-3], "max_elements": [40, 40]},
         method={"normal": "half_space", "tangential": "full", "tolerance": TOLERANCE},
         motion={"regime": "transient_rolling"},
+        wheelset__time_step=1e-4,
     )
     dt, old, results = 1e-4, None, []
     contact = Contact(case)
