@@ -74,6 +74,12 @@ void rp_default_input(rp_input *input) {
   for (double &bulk : input->bulk_temperature) bulk = std::numeric_limits<double>::quiet_NaN();
 }
 
+void rp_default_direction(rp_input *direction) {
+  if (!direction) return;
+  std::memset(direction, 0, sizeof *direction);
+  direction->cookie = input_cookie;
+}
+
 rp_error rp_create(const rp_config *config, rp_contact **contact_out, rp_message *message) {
   if (!config || !contact_out) {
     set_message(message, "%s is null", config ? "contact" : "config");

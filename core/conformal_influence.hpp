@@ -4,10 +4,9 @@
 // j is inclined by a_j, its axes x, s_j, n_j. A traction in row j acts in its own axes, and a
 // displacement is felt in row i in those of i. Half-space coefficients A at the distance (x, arc
 // length), corrected by the difference of inclination d = a_i - a_j, the vectors turned by R(d)
-// (Li 2002, "Wheel-rail conformal contact"; Vollebregt and Segal 2014, Veh. Syst. Dyn. 52 suppl.;
-// half-spaces in place of the quasi-quarter-spaces of Blanco-Lorenzo et al. 2011, which they follow
-// closely for steel on steel). The half-space may stand along the source's surface, u = R(d) A p,
-// or along the observer's, u = A R(d) p. Only the mean of both obeys Maxwell's and Betti's law:
+// (Li 2002, thesis, Delft; Vollebregt and Segal 2014, Veh. Syst. Dyn. 52 suppl.). The half-space
+// may stand along the source's surface, u = R(d) A p, or along the observer's, u = A R(d) p.
+// Neither alone obeys Maxwell's and Betti's law, the mean of both does:
 //   x from x: A_xx            x from s, s from x: (1 + cos d)/2 A_xs
 //   s from s: cos d A_ss      n from n: cos d A_nn
 //   gap from s:  sin d (A_ss + A_nn)/2,   gap from x:  sin d A_xs/2,

@@ -283,6 +283,7 @@ void contact::copy_state(const contact &from) {
     patch_memory &m = memory_[k];
     m.g = source.g;
     m.reference = source.reference;
+    m.share = source.share;
     m.warm = source.warm;
     m.history.begun = source.history.begun;
     m.solved = false;
@@ -292,6 +293,7 @@ void contact::copy_state(const contact &from) {
     for_each_start_field(
         m, [&](double *data, size_t bytes) { std::memcpy(data, fields[next++], bytes); });
   }
+  if (support_) std::memcpy(support_->rails(), from.support_->rails(), support_bytes(support_));
   depth_ = from.depth_;
   solver_.set_friction_coefficient(from.friction_coefficient());
 }

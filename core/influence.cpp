@@ -39,7 +39,9 @@ influence::influence(const scene &scene, const fft_plans &plans)
   padded_ = aligned_buffer<double>(nx * ny);
   spectrum_ = aligned_buffer<double>(half);
   transform_ = aligned_buffer<std::complex<double>>(half);
-  if (scene.curved) curved_.emplace(plans, scene.tangential, scene.layer_flexibility);
+  if (scene.curved)
+    curved_ =
+        std::make_unique<conformal_influence>(plans, scene.tangential, scene.layer_flexibility);
 }
 
 bool influence::set_grid(const grid &g) {
@@ -51,7 +53,7 @@ bool influence::set_grid(const grid &g) {
   grid_ = g;
   full_.set_size(g.nx, g.ny, plans_.nx(plan), plans_.ny(plan));
   single_.set_size(g.nx, g.ny, plans_.nx(plan), plans_.ny(plan));
-  if (curved_) curved_->set_size(g.nx, g.ny, plans_.nx(plan), plans_.ny(plan));
+  if (is_curved()) curved_->set_size(g.nx, g.ny, plans_.nx(plan), plans_.ny(plan));
   if (same_elements && plan == plan_) return true;
   if (!same_elements || half_x > half_x_ || half_y > half_y_) make_kernels(half_x, half_y);
   plan_ = plan;
@@ -193,7 +195,7 @@ void influence::make_spectra() {
     transform_kernel(static_cast<kernel>(k));
     full_.set_spectrum(names[k], spectrum_.data());
     single_.set_spectrum(static_cast<convolution<float>::kernel_name>(names[k]), spectrum_.data());
-    if (curved_) give_spectrum(static_cast<kernel>(k));
+    if (is_curved()) give_spectrum(static_cast<kernel>(k));
   }
   // zz came last; truncation can make small entries negative, and a floor keeps the preconditioner
   // positive
@@ -225,7 +227,7 @@ void influence::normal_product(const double *pressure, double *displacement) {
   const auto flat = [&](const double *p, double *u) {
     full_.product(convolution<double>::zz, p, u);
   };
-  if (curved_) return curved_->normal(pressure, displacement, flat);
+  if (is_curved()) return curved_->normal(pressure, displacement, flat);
   flat(pressure, displacement);
 }
 
@@ -233,7 +235,7 @@ void influence::normal_product_single(const double *pressure, double *displaceme
   const auto flat = [&](const double *p, double *u) {
     single_.product(convolution<float>::zz, p, u);
   };
-  if (curved_) return curved_->normal(pressure, displacement, flat);
+  if (is_curved()) return curved_->normal(pressure, displacement, flat);
   flat(pressure, displacement);
 }
 
@@ -242,31 +244,31 @@ void influence::normal_inverse(const double *displacement, double *pressure) {
 }
 
 void influence::tangential_product(const double *px, const double *py, double *ux, double *uy) {
-  if (curved_) return curved_->tangential(px, py, ux, uy);
+  if (is_curved()) return curved_->tangential(px, py, ux, uy);
   full_.tangential_product(px, py, ux, uy);
 }
 
 void influence::tangential_product_single(const double *px, const double *py, double *ux,
                                           double *uy) {
-  if (curved_) return curved_->tangential_single(px, py, ux, uy);
+  if (is_curved()) return curved_->tangential_single(px, py, ux, uy);
   single_.tangential_product(px, py, ux, uy);
 }
 
 void influence::rolling_product(const double *px, const double *py, int direction, double *sx,
                                 double *sy) {
-  if (curved_) return curved_->rolling(px, py, direction, grid_.dx, sx, sy);
+  if (is_curved()) return curved_->rolling(px, py, direction, grid_.dx, sx, sy);
   full_.rolling_product(px, py, direction, grid_.dx, sx, sy);
 }
 
 void influence::rolling_product_single(const double *px, const double *py, int direction,
                                        double *sx, double *sy) {
-  if (curved_) return curved_->rolling_single(px, py, direction, grid_.dx, sx, sy);
+  if (is_curved()) return curved_->rolling_single(px, py, direction, grid_.dx, sx, sy);
   single_.rolling_product(px, py, direction, grid_.dx, sx, sy);
 }
 
 size_t influence::bytes() const {
   size_t sum = plans_.bytes() + padded_.bytes() + spectrum_.bytes() + transform_.bytes() +
-               full_.bytes() + single_.bytes() + (curved_ ? curved_->bytes() : 0);
+               full_.bytes() + single_.bytes() + (is_curved() ? curved_->bytes() : 0);
   for (const auto &b : table_) sum += b.bytes();
   for (const auto &b : corner_) sum += b.bytes();
   return sum;

@@ -17,6 +17,7 @@
 #pragma once
 
 #include <complex>
+#include <memory>
 
 #include "conformal_influence.hpp"
 #include "convolution.hpp"
@@ -102,6 +103,7 @@ class influence {
   void make_spectra();
   void transform_kernel(kernel k);
   void give_spectrum(kernel k);
+  bool is_curved() const { return has_physics && curved_; }
 
   scene scene_;
   const fft_plans &plans_;
@@ -116,7 +118,7 @@ class influence {
   aligned_buffer<std::complex<double>> transform_;
   convolution<double> full_;
   convolution<float> single_;
-  physics_part<conformal_influence> curved_;
+  std::unique_ptr<conformal_influence> curved_;
 };
 
 }  // namespace railpatch

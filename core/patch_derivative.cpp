@@ -79,7 +79,7 @@ tangential_point patch_derivative::point_of(const solved &s) const {
           *s.blocks,
           s.problem.g,
           rolling_,
-          s.scene.friction_coefficient,
+          s.scene.friction(),
           m.row_friction.size() ? m.row_friction.data() : nullptr,
           m.pressure.data(),
           m.px.data(),

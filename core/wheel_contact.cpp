@@ -377,7 +377,7 @@ void wheel_contact::set_friction(const patch_contact &solver, const contact_fram
   }
 }
 
-// What varies along the track or around the wheel, or makes rails give way, is left to differences.
+// What varies along the track or the wheel, or makes rails give way, is left to differences.
 bool wheel_contact::differentiates() const {
   const bool gives_way = config_.rail_stiffness[0] > 0 || config_.rail_stiffness[1] > 0;
   return wheel_derivative::covers(rules_) && !sections_ && !shape_ &&

@@ -62,9 +62,9 @@ class wheel_contact {
   patch_rules rules_;
   part_set parts_;
   std::array<patch_region, RP_MAX_PATCHES> regions_;
-  double time_step_ = 0;                   // s
   int patches_ = 0;                        // of the last state
   std::vector<patch_solution> solutions_;  // of these; only where derivatives are asked for
+  double time_step_ = 0;                   // s
 };
 
 struct profile_error {

@@ -98,7 +98,10 @@ derivative_outcome wheel_derivative::solve(const wheel_solution &wheel, patch_co
   s.begin(directions);
   for (int k = 0; k < count; ++k) {
     changes[k] = {};
-    for (auto &patch : changes[k].patch) patch = empty_patch_result();
+    for (auto &patch : changes[k].patch) {
+      patch = empty_patch_result();
+      patch.share = 0;
+    }
   }
   for (int i = 0; i < wheel.count; ++i) solve_patch(s, i);
   for (int k = 0; k < count; ++k) {

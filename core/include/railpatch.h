@@ -467,6 +467,8 @@ typedef struct rp_stage_info {
 /* Fills every field with a valid default: steel, wheelset of S1002-like size, no profiles. */
 RP_API void rp_default_config(rp_config *config);
 RP_API void rp_default_input(rp_input *input);
+/* An input of zeros, for rp_differentiate: no rate at all. */
+RP_API void rp_default_direction(rp_input *direction);
 
 /* Makes the handle; checks every field. On error *contact is untouched and message (may be null)
  * names the field. */
