@@ -115,8 +115,8 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
       errors_(scene.elastic, scene.layer_flexibility) {
   const bool full = scene.tangential == RP_TANGENTIAL_FULL && !scene.is_fitted();
   const auto count = static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny);
-  const influence::scene elastic{scene.elastic, scene.layer_flexibility, scene.line_width, full,
-                                 scene.curved};
+  influence::scene elastic{scene.elastic, scene.layer_flexibility, scene.line_width, full};
+  elastic.curved = scene.curved;
   if (full || scene.normal == RP_NORMAL_HALF_SPACE) influence_.emplace(elastic, plans);
   if (scene.normal == RP_NORMAL_HALF_SPACE) normal_.emplace(max_nx * max_ny);
   if (scene.normal == RP_NORMAL_KIK_PIOTROWSKI || scene.normal == RP_NORMAL_ANALYN)
