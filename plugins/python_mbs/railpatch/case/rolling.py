@@ -118,6 +118,8 @@ def check_rolling(case: Any) -> None:
     ]
     if shaped and case.method.normal != "half_space":
         raise relation(shaped[0], "given", "only with method.normal = 'half_space'")
+    if shaped and case.method.reference_surface != "plane":
+        raise relation(shaped[0], "given", "only with method.reference_surface = 'plane'")
     heights = [key for key in shaped if key.startswith("track")]
     if heights and case.track.kind == "roller":
         raise relation(heights[0], "given", "only with track.kind = 'rail'")
@@ -128,6 +130,9 @@ def check_rolling(case: Any) -> None:
         raise relation("wheelset.time_step", case.wheelset.time_step, f"> 0 {where}")
     if case.method.tangential != "full":
         raise relation("method.tangential", repr(case.method.tangential), f"'full' {where}")
+    if case.method.reference_surface != "plane":
+        shown = repr(case.method.reference_surface)
+        raise relation("method.reference_surface", shown, f"'plane' {where}")
     if case.grid is None or case.grid.element_size is None or case.grid.fitted is not None:
         raise relation("grid.element_size", "missing", f"a size, and no fitted rows, {where}")
     if case.friction is not None and case.friction.law != "coulomb":
