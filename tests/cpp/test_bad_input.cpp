@@ -335,6 +335,13 @@ TEST(Config, CurvedReferenceSurfaceIsChecked) {
   expect("layer_yield_stress", [](rp_config &c) { c.layer_yield_stress = 1e8; });
   expect("temperature", [](rp_config &c) { c.temperature = 1; });
   expect("(1-2nu)/G", [](rp_config &c) { c.shear_modulus[0] = 2e9; });
+  expect("regime", [](rp_config &c) { c.regime = RP_TRANSIENT_ROLLING; });
+  expect("derivatives", [](rp_config &c) { c.derivatives = 1; });
+  const std::vector<double> level(16, 1e-4);
+  expect("runout", [&](rp_config &c) {
+    c.runout[RP_RIGHT] = level.data();
+    c.runout_count[RP_RIGHT] = 16;
+  });
 }
 
 TEST(Config, ChoicesAndCountsAreChecked) {
