@@ -189,6 +189,32 @@ bool rail_support::find_slopes(supported_wheels &wheels, const trial &base) {
   return true;
 }
 
+// The part of a step dp = fixed + by_z dz that may be taken at once.
+double rail_support::allowed_part(const trial &base, const std::array<lateral_vertical, 2> &fixed,
+                                  const std::array<lateral_vertical, 2> &by_z, double dz,
+                                  double share) const {
+  double part = share;
+  for (std::size_t w = 0; w < at(count_); ++w) {
+    const double side = std::fabs(fixed[w][0] + by_z[w][0] * dz);
+    const double deeper = -(fixed[w][1] + by_z[w][1] * dz);
+    const double depth = std::max(base.z - base.deflection[w][1] - touch_[w], 0.0);
+    if (part * side > lateral_limit) part = lateral_limit / side;
+    if (touch_[w] < nowhere && part * deeper > 2 * depth + 2e-5) part = (2 * depth + 2e-5) / deeper;
+  }
+  // a prescribed load needs a contact
+  const auto deepest = [&](double taken) {
+    double most = 0;
+    for (std::size_t w = 0; w < at(count_); ++w) {
+      const double depth = base.z - base.deflection[w][1] - touch_[w];
+      most = std::max(most, depth - taken * (fixed[w][1] + by_z[w][1] * dz));
+    }
+    return most;
+  };
+  const double now = deepest(0);
+  while (load_.prescribed && now > 0 && deepest(part) < 0.1 * now) part *= 0.5;
+  return part;
+}
+
 // Newton's step with the present slopes. With p_z = u_z - z and the slopes S of F by (u_y, p_z):
 // (K - S) dp + K e_z dz = -gap for each wheel, and the sum of S_z dp is what is missing of the
 // load.
@@ -232,25 +258,7 @@ rail_support::trial rail_support::newton_step(const trial &base, double share) c
     // out of contact: towards it
     if (!(slope > 0)) dz = base.missing < 0 ? 1e-5 : -1e-5;
   }
-  double part = share;
-  for (std::size_t w = 0; w < at(count_); ++w) {
-    const double side = std::fabs(fixed[w][0] + by_z[w][0] * dz);
-    const double deeper = -(fixed[w][1] + by_z[w][1] * dz);
-    const double depth = std::max(base.z - base.deflection[w][1] - touch_[w], 0.0);
-    if (part * side > lateral_limit) part = lateral_limit / side;
-    if (touch_[w] < nowhere && part * deeper > 2 * depth + 2e-5) part = (2 * depth + 2e-5) / deeper;
-  }
-  // a prescribed load needs a contact
-  const auto deepest = [&](double share) {
-    double most = 0;
-    for (std::size_t w = 0; w < at(count_); ++w) {
-      const double depth = base.z - base.deflection[w][1] - touch_[w];
-      most = std::max(most, depth - share * (fixed[w][1] + by_z[w][1] * dz));
-    }
-    return most;
-  };
-  const double now = deepest(0);
-  while (load_.prescribed && now > 0 && deepest(part) < 0.1 * now) part *= 0.5;
+  const double part = allowed_part(base, fixed, by_z, dz, share);
   trial next = base;
   next.z += part * dz;
   for (std::size_t w = 0; w < at(count_); ++w) {

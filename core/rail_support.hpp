@@ -96,6 +96,8 @@ class rail_support {
   void stay();
   bool find_slopes(supported_wheels &wheels, const trial &base);
   trial newton_step(const trial &base, double share) const;
+  double allowed_part(const trial &base, const std::array<lateral_vertical, 2> &fixed,
+                      const std::array<lateral_vertical, 2> &by_z, double dz, double share) const;
   void learn(const trial &base, const trial &next);
   void keep(const trial &last);
 
