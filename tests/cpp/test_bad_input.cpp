@@ -385,6 +385,12 @@ TEST(Config, ChoicesAndCountsAreChecked) {
     c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
     c.max_patches = bad == 2 ? 0 : bad;
     expect_refused(c, RP_ERROR_VALUE, "max_patches");
+    c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+    put(c.patch_rule, bad);
+    expect_refused(c, RP_ERROR_VALUE, "patch_rule");
+    c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+    c.standstill_speed = bad;
+    expect_refused(c, RP_ERROR_VALUE, "standstill_speed");
   }
 }
 
