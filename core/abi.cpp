@@ -74,6 +74,12 @@ void rp_default_input(rp_input *input) {
   for (double &bulk : input->bulk_temperature) bulk = std::numeric_limits<double>::quiet_NaN();
 }
 
+void rp_default_direction(rp_input *direction) {
+  if (!direction) return;
+  std::memset(direction, 0, sizeof *direction);
+  direction->cookie = input_cookie;
+}
+
 rp_error rp_create(const rp_config *config, rp_contact **contact_out, rp_message *message) {
   if (!config || !contact_out) {
     set_message(message, "%s is null", config ? "contact" : "config");
@@ -139,6 +145,32 @@ rp_error rp_differentiate(rp_contact *contact, const rp_input *direction, rp_res
     return RP_OK;
   } catch (...) {
     set_message(message, "internal error in rp_differentiate");
+    return RP_ERROR_INTERNAL;
+  }
+}
+
+rp_error rp_get_jacobian(rp_contact *contact, rp_jacobian *out, rp_message *message) {
+  if (!contact || !out) {
+    set_message(message, "%s is null", contact ? "out" : "contact");
+    return RP_ERROR_NULL;
+  }
+  const rp_config &config = contact->scene.config();
+  if (!contact->scene.has_derivatives() || config.kind == RP_PATCH) {
+    set_message(message, config.kind == RP_PATCH
+                             ? "kind is patch, rp_get_jacobian needs wheel_rail or wheelset"
+                             : "derivatives is 0, rp_get_jacobian needs 1");
+    return RP_ERROR_VALUE;
+  }
+  if (!contact->scene.has_solution()) {
+    set_message(message,
+                "rp_get_jacobian needs a step since rp_create, rp_reset or rp_restore_state");
+    return RP_ERROR_STATE;
+  }
+  try {
+    contact->scene.jacobian(*out);
+    return RP_OK;
+  } catch (...) {
+    set_message(message, "internal error in rp_get_jacobian");
     return RP_ERROR_INTERNAL;
   }
 }

@@ -265,6 +265,8 @@ const char *wheels_cannot_roll(const rp_config &c) {
     return "regime = transient_rolling of wheels needs friction_law = coulomb in this version";
   if (c.layer_yield_stress > 0)
     return "layer_yield_stress must be 0 with regime = transient_rolling of wheels in this version";
+  if (c.reference_surface != RP_REFERENCE_PLANE)
+    return "reference_surface must be plane with regime = transient_rolling of wheels";
   if (c.temperature != 0)
     return "temperature must be 0 with regime = transient_rolling of wheels in this version";
   if (is_coupled(combine(c.shear_modulus, c.poisson_ratio)))
@@ -485,6 +487,8 @@ void check_longitudinal(const rp_config &c, checker &check) {
   check.number("rail_height_start", c.rail_height_start, finite);
   check.number("rail_height_spacing", c.rail_height_spacing, {1e-6, 1e3, false, false});
   check.require(!heights || c.track == RP_RAIL, "rail_height_count must be 0 on rollers");
+  check.require(!shaped || c.reference_surface == RP_REFERENCE_PLANE,
+                "runout and rail_height need reference_surface = plane in this version");
   check.require(!shaped || c.normal == RP_NORMAL_HALF_SPACE,
                 "runout and rail_height need normal = half_space: the shape is not quadratic");
 }

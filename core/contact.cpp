@@ -277,8 +277,11 @@ contact::contact(const rp_config &config)
                                       config.friction_along_factor);
   scene_ = fingerprint(config, shape_);
   if (config.derivatives != 0) {
-    const auto count = config.kind == RP_PATCH ? static_cast<size_t>(size.nx * size.ny) : 0;
-    derivative_ = std::make_unique<derivative_record>(config, solver_.scene(), count);
+    const bool exact = std::all_of(wheels_.begin(), wheels_.end(), [](const wheel_contact &wheel) {
+      return wheel.differentiates();
+    });
+    derivative_ =
+        std::make_unique<derivative_record>(config, solver_.scene(), exact, size.nx, size.ny);
   }
   // nothing else of the caller's memory is kept than the creep table
   config_.undeformed_distance = nullptr;

@@ -25,6 +25,8 @@ class contact {
   bool has_derivatives() const { return derivative_ != nullptr; }
   bool has_solution() const;
   rp_derivative_kind differentiate(const rp_input &direction, rp_result &change);
+  // Of wheels.
+  void jacobian(rp_jacobian &out);
   double friction_coefficient() const { return solver_.scene().friction_coefficient; }
   void set_friction_coefficient(double value) { solver_.set_friction_coefficient(value); }
 
@@ -56,6 +58,9 @@ class contact {
   void begin_record();
   void end_record(const rp_input &input, const rp_result &result);
   void differentiate_patch(const rp_input &direction, rp_result &change);
+  void differentiate_wheels(const rp_input &direction, rp_result &change);
+  void exact_jacobian(rp_jacobian &out);
+  void jacobian_by_differences(rp_jacobian &out);
   void differentiate_by_differences(const rp_input &direction, rp_result &change);
   size_t derivative_bytes() const;
 

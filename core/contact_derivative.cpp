@@ -16,23 +16,6 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // of rounding and of curvature alike (Press et al. 2007, "Numerical recipes", section 5.7)
 constexpr double fine_tolerance = 1e-9;
 
-// The result with rates of nothing: NaN where it has NaN, else zero.
-rp_result still(const rp_result &result) {
-  rp_result change = result;
-  for_each_result_number(change, [](double &v) { v = std::isnan(v) ? nan : 0.0; });
-  change.evaluations = 0;
-  for (auto &side : change.side)
-    for (auto &p : side.patch) {
-      for (int32_t *v : {&p.normal_iterations, &p.newton_iterations, &p.inner_iterations,
-                         &p.outer_iterations, &p.ambiguous_elements})
-        *v = 0;
-      std::fill_n(p.elements, 4, 0);
-      p.residual = nan;
-      std::fill_n(p.error_estimate, 3, nan);
-    }
-  return change;
-}
-
 // Of ellipse, curvatures and line contact with the load's rate.
 hertz_contact hertz_rate(const rp_config &c, const hertz_contact &hertz, const rp_input &d) {
   const double none[2] = {0, 0};
@@ -54,8 +37,30 @@ hertz_contact hertz_rate(const rp_config &c, const hertz_contact &hertz, const r
 
 }  // namespace
 
-derivative_record::derivative_record(const rp_config &config, const patch_scene &scene,
-                                     size_t count) {
+rp_result rates_of_nothing(const rp_result &result) {
+  rp_result change = result;
+  for_each_result_number(change, [](double &v) { v = std::isnan(v) ? nan : 0.0; });
+  change.evaluations = 0;
+  for (auto &side : change.side)
+    for (auto &p : side.patch) {
+      for (int32_t *v : {&p.normal_iterations, &p.newton_iterations, &p.inner_iterations,
+                         &p.outer_iterations, &p.ambiguous_elements})
+        *v = 0;
+      std::fill_n(p.elements, 4, 0);
+      p.residual = nan;
+      std::fill_n(p.error_estimate, 3, nan);
+    }
+  return change;
+}
+
+derivative_record::derivative_record(const rp_config &config, const patch_scene &scene, bool exact,
+                                     int max_nx, int max_ny) {
+  const auto count = static_cast<size_t>(max_nx * max_ny);
+  if (scene.differentiates() && exact && config.kind != RP_PATCH) {
+    wheels = std::make_unique<wheel_derivative>(scene, max_nx * max_ny, max_ny);
+    changes.resize(2 * static_cast<size_t>(wheel_derivative::most_directions));
+    return;
+  }
   if (scene.differentiates() && config.kind == RP_PATCH) {
     distance = aligned_buffer<double>(count);
     if (scene.friction_variation.varies()) row_friction = aligned_buffer<double>(count);
@@ -70,7 +75,8 @@ derivative_record::derivative_record(const rp_config &config, const patch_scene 
 }
 
 size_t derivative_record::bytes() const {
-  size_t sum = sizeof *this + distance.bytes() + row_friction.bytes();
+  size_t sum = sizeof *this + distance.bytes() + row_friction.bytes() +
+               (wheels ? wheels->bytes() : 0) + changes.size() * sizeof(rp_side_result);
   for (const auto *handle : {&beside, &before}) {
     if (!*handle) continue;
     rp_stage_info stages[RP_STAGE_COUNT];
@@ -99,13 +105,14 @@ void contact::end_record(const rp_input &input, const rp_result &result) {
 }
 
 rp_derivative_kind contact::differentiate(const rp_input &direction, rp_result &change) {
-  rp_result out = still(derivative_->result);
+  rp_result out = rates_of_nothing(derivative_->result);
   if (derivative_->beside) {
     differentiate_by_differences(direction, out);
     change = out;
     return RP_DERIVATIVE_BY_DIFFERENCES;
   }
-  differentiate_patch(direction, out);
+  config_.kind == RP_PATCH ? differentiate_patch(direction, out)
+                           : differentiate_wheels(direction, out);
   change = out;
   return RP_DERIVATIVE_EXACT;
 }
@@ -195,7 +202,7 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
     if (std::isnan(rate)) rate = 0;
   // the length of the step in the direction's own unit
   double reach = 0;
-  const double *values[128];
+  const double *values[most_input_numbers];
   int numbers = 0;
   for_each_number(record.input,
                   [&](const char *, const double &v, double) { values[numbers++] = &v; });
@@ -212,7 +219,7 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
   rp_status worst = RP_CONVERGED;
   for (int k = 0; k < 2; ++k) {
     rp_input in = record.input;
-    const double *rate[128];
+    const double *rate[most_input_numbers];
     int count = 0, next = 0;
     for_each_number(rates, [&](const char *, const double &v, double) { rate[count++] = &v; });
     for_each_number(in, [&](const char *, double &v, double) { v += places[k] * *rate[next++]; });
@@ -232,10 +239,10 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
     for_each_result_number(out, [](double &v) { v = nan; });
     return;
   }
-  double *to[8 * 64];
+  double *to[most_result_numbers];
   int count = 0, next = 0;
   for_each_result_number(out, [&](double &v) { to[count++] = &v; });
-  const double *low[8 * 64];
+  const double *low[most_result_numbers];
   for_each_result_number(ends[0], [&](double &v) { low[next++] = &v; });
   next = 0;
   for_each_result_number(ends[1], [&](double &v) {

@@ -25,7 +25,7 @@ constexpr size_t checked_from = offsetof(state_header, scene);
 struct patch_header {
   grid g;
   vec3 reference;
-  double share;
+  double share, rail[2];
   uint64_t warm, begun;
 };
 
@@ -226,7 +226,11 @@ void contact::save_state(unsigned char *buffer) const {
     at += size;
   };
   for (const auto &m : memory_) {
-    const patch_header header{m.g, m.reference, m.share, m.warm ? 1u : 0u,
+    const patch_header header{m.g,
+                              m.reference,
+                              m.share,
+                              {m.rail[0], m.rail[1]},
+                              m.warm ? 1u : 0u,
                               m.history.begun ? 1u : 0u};
     put(&header, sizeof header);
     for_each_start_field(m, put);
@@ -257,6 +261,7 @@ bool contact::restore_state(const unsigned char *buffer, size_t size) {
     m.g = patch.g;
     m.reference = patch.reference;
     m.share = patch.share;
+    for (int k = 0; k < 2; ++k) m.rail[k] = patch.rail[k];
     m.warm = patch.warm != 0;
     m.history.begun = patch.begun != 0;
     m.solved = false;
@@ -278,6 +283,7 @@ void contact::copy_state(const contact &from) {
     patch_memory &m = memory_[k];
     m.g = source.g;
     m.reference = source.reference;
+    m.share = source.share;
     m.warm = source.warm;
     m.history.begun = source.history.begun;
     m.solved = false;
@@ -287,6 +293,7 @@ void contact::copy_state(const contact &from) {
     for_each_start_field(
         m, [&](double *data, size_t bytes) { std::memcpy(data, fields[next++], bytes); });
   }
+  if (support_) std::memcpy(support_->rails(), from.support_->rails(), support_bytes(support_));
   depth_ = from.depth_;
   solver_.set_friction_coefficient(from.friction_coefficient());
 }

@@ -1,7 +1,5 @@
 #include "forces.hpp"
 
-#include <cmath>
-
 namespace railpatch {
 
 patch_wrench sum_tractions(const grid &g, const double *pressure, const double *px,
@@ -25,24 +23,6 @@ patch_wrench sum_tractions(const grid &g, const double *pressure, const double *
     w.moment[k] *= area;
   }
   return w;
-}
-
-void add_wrench(const patch_wrench &wrench, double contact_angle, const double lever[3],
-                double force[3], double moment[3]) {
-  const double c = std::cos(contact_angle), s = std::sin(contact_angle);
-  const auto rotate = [&](const double v[3], double out[3]) {
-    out[0] = v[0];
-    out[1] = c * v[1] - s * v[2];
-    out[2] = s * v[1] + c * v[2];
-  };
-  double f[3], m[3];
-  rotate(wrench.force, f);
-  rotate(wrench.moment, m);
-  for (int k = 0; k < 3; ++k) {
-    const int l = (k + 1) % 3, n = (k + 2) % 3;
-    force[k] += f[k];
-    moment[k] += m[k] + lever[l] * f[n] - lever[n] * f[l];
-  }
 }
 
 }  // namespace railpatch

@@ -8,48 +8,11 @@ namespace railpatch {
 
 namespace {
 
-constexpr double standstill = 1e-12;  // m/s
-constexpr double grazing = 0.03;      // least cosine between n and a surface's normal
-constexpr double aside = 0.02;        // m, what yaw may move the locus sideways
-constexpr double step_limit = 2e-3;   // m, of a newton step along a profile
-
-vec3 operator+(const vec3 &a, const vec3 &b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-vec3 operator-(const vec3 &a, const vec3 &b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-vec3 operator*(double c, const vec3 &a) { return {c * a[0], c * a[1], c * a[2]}; }
-double dot(const vec3 &a, const vec3 &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-vec3 cross(const vec3 &a, const vec3 &b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-vec3 turn(const mat3 &m, const vec3 &a) { return {dot(m[0], a), dot(m[1], a), dot(m[2], a)}; }
-vec3 column(const mat3 &m, size_t j) { return {m[0][j], m[1][j], m[2][j]}; }
-vec3 turn_back(const mat3 &m, const vec3 &a) {
-  return {dot(column(m, 0), a), dot(column(m, 1), a), dot(column(m, 2), a)};
-}
-
-// Rx(roll) Rz(yaw): its first row has no z component, which keeps the locus in closed form
-mat3 roll_yaw(double roll, double yaw) {
-  const double c = std::cos(roll), s = std::sin(roll), d = std::cos(yaw), t = std::sin(yaw);
-  return {{{d, -t, 0}, {c * t, c * d, -s}, {s * t, s * d, c}}};
-}
+constexpr double grazing = 0.03;     // least cosine between n and a surface's normal
+constexpr double aside = 0.02;       // m, what yaw may move the locus sideways
+constexpr double step_limit = 2e-3;  // m, of a newton step along a profile
 
 constexpr mat3 identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-
-// what slip is divided by, and the part of spin near the turn of the heading: see the header
-double divisor(double speed, double slow) {
-  return speed < slow ? 0.5 * (speed * speed + slow * slow) / slow : speed;
-}
-double turning(double heading, double slow) {
-  const double t = std::fabs(heading);
-  return t < slow ? 0.5 * (t / slow) * (3.0 - (t / slow) * (t / slow)) : 1.0;
-}
-
-struct frame_axes {
-  vec3 x, s, n;
-};
-frame_axes axes_of(const contact_frame &f) {
-  const double c = std::cos(f.contact_angle), s = std::sin(f.contact_angle);
-  return {{1, 0, 0}, {0, c, s}, {0, -s, c}};
-}
 
 }  // namespace
 
@@ -68,7 +31,7 @@ namespace {
 
 surface seen_from(const contact_frame &frame, const placed_profile &meridian, const vec3 &origin,
                   const mat3 &axes, double radius, double sign, bool prismatic) {
-  const frame_axes f = axes_of(frame);
+  const frame_axes<double> f = axes_of(frame);
   return {&meridian,
           turn_back(axes, frame.origin - origin),
           turn_back(axes, f.x),
@@ -152,40 +115,45 @@ hit nearest(const surface &f) {
   return h;
 }
 
-// One row of heights from its middle column outwards; each start extrapolates its neighbours, so
-// that one newton step is nearly always enough.
+// One row from its middle column outwards, put(column, hit) for each; each start extrapolates its
+// neighbours, so that one newton step is nearly always enough.
+template <class Put>
 void march(const surface &f, const surface_grid &g, int row, int from, int step, const hit &middle,
-           double *heights) {
+           Put put) {
   const double s = g.y0 + row * g.dy;
   hit a = middle, b = middle, c = middle;
   for (int i = from, k = 0; i >= 0 && i < g.nx; i += step, ++k) {
     hit h = a;
     if (k > 1) h.p = 2 * a.p - b.p;
     if (k > 2) h.n = 3 * (a.n - b.n) + c.n;
-    const bool met = meet(f, f.at(g.x0 + i * g.dx, s), h);
-    heights[i] = met ? h.n : std::numeric_limits<double>::quiet_NaN();
-    if (!met) {
-      for (; i >= 0 && i < g.nx; i += step) heights[i] = std::numeric_limits<double>::quiet_NaN();
+    if (!meet(f, f.at(g.x0 + i * g.dx, s), h)) {
+      for (; i >= 0 && i < g.nx; i += step) put(i, h);
       return;
     }
+    put(i, h);
     c = b;
     b = a;
     a = h;
   }
 }
 
-void fill_row(const surface &f, const surface_grid &g, int row, int column, const hit &middle,
-              double *heights) {
+template <class Put>
+void follow_row(const surface &f, const surface_grid &g, int row, int column, const hit &middle,
+                Put put) {
   if (!middle.valid || (f.prismatic && !f.shape)) {
-    const double n = middle.valid ? middle.n : std::numeric_limits<double>::quiet_NaN();
-    std::fill(heights, heights + g.nx, n);
+    for (int i = 0; i < g.nx; ++i) put(i, middle);
     return;
   }
-  march(f, g, row, column, 1, middle, heights);
-  march(f, g, row, column - 1, -1, middle, heights);
+  march(f, g, row, column, 1, middle, put);
+  march(f, g, row, column - 1, -1, middle, put);
 }
 
-bool moves(const deviation &d) { return d.velocity != vec3{} || d.angular_velocity != vec3{}; }
+void fill_row(const surface &f, const surface_grid &g, int row, int column, const hit &middle,
+              double *heights) {
+  follow_row(f, g, row, column, middle, [heights](int i, const hit &h) {
+    heights[i] = h.valid ? h.n : std::numeric_limits<double>::quiet_NaN();
+  });
+}
 
 int clamp_index(double position, int count) {
   const double last = count - 1;
@@ -252,7 +220,9 @@ vec3 mirrored_axial(vec3 v) { return {-v[0], v[1], -v[2]}; }
 
 side_geometry::side_geometry(const profile &wheel, const profile &rail,
                              const wheel_config &wheel_sizes, const track_config &track)
-    : sizes_(wheel_sizes), track_(track), wheel_(wheel, body::wheel), rail_(rail, body::rail) {
+    : wheel_(wheel, body::wheel), rail_(rail, body::rail) {
+  sizes_ = wheel_sizes;
+  track_ = track;
   gaps_.resize(static_cast<size_t>((wheel.end() - wheel.begin()) / wheel_.step() + 1.5));
   place_rail_marker();
   place({});
@@ -271,30 +241,21 @@ void side_geometry::reload_rail() {
 }
 
 void side_geometry::place(const side_motion &motion) {
-  motion_ = motion;
-  const wheelset_state &w = motion.wheelset;
+  place_axes(motion);
   const vec3 &off = motion.wheel.offset, &rail_off = motion.rail.offset;
   const bool roller = track_.kind == track_kind::roller;
-  const double marker = 0.5 * sizes_.flange_back_distance - sizes_.flange_back_position;
-  wheelset_axes_ = roll_yaw(w.roll, w.yaw);
-  wheel_axes_ = roll_yaw(w.roll, w.yaw + motion.wheel.rotation[2]);
-  // the wheel's own yaw turns about its marker's plane, where u = 0 then lies
-  axis_offset_ = turn(wheelset_axes_, {off[0], marker, 0});
   wheel_.place(motion.wheel.rotation[0], off[1], off[2]);
   const double lean = motion.rail.rotation[0] - (roller ? 0 : track_.cant);
   rail_.place(lean, marker_y_ + rail_off[1], marker_z_ + rail_off[2]);
-  axle_x_ = rail_off[0];
-  axle_z_ = track_.roller_radius + rail_off[2];
   // scanned at z = 0, so that a position reached by move_to() gives the same bits
   move_to(0);
   scan();
-  move_to(w.z);
+  move_to(motion.wheelset.z);
 }
 
 void side_geometry::move_to(double z) {
   motion_.wheelset.z = z;
-  centre_ = {0, motion_.wheelset.y, z - sizes_.nominal_radius};
-  axis_origin_ = centre_ + axis_offset_;
+  place_centre();
 }
 
 // Sine of the angle along the circumference. With P = (r sin, u, r cos) and the normal
@@ -339,7 +300,8 @@ void side_geometry::scan() {
     // where the profiles have no lateral position in common there is nothing to find
     const double y = wheel_point(wheel_.sample(i), 0)[1];
     if (y < from || y > to) continue;
-    const double sine = locus_sine(wheel_.sample(i), 0, 1e-5);
+    // the gap is least there, so that its error is that of the sine squared
+    const double sine = locus_sine(wheel_.sample(i), 0, 3e-2);
     if (!(std::fabs(sine) < 0.9)) continue;
     const vec3 p = wheel_point(wheel_.sample(i), sine);
     while (k + 2 <= rail_.last() && rail_.sample(k + 1).y < p[1]) ++k;
@@ -376,8 +338,9 @@ locus_point side_geometry::locus(double s) const {
   locus_point l;
   const curve_point p = wheel_.evaluate(s);
   if (!wheel_.curve().covers(s) || !(p.dy > 0)) return l;
-  const double sine = locus_sine(p, sampled_gap(s), 1e-9);
+  const double sine = locus_sine(p, sampled_gap(s), 1e-7);
   if (!(std::fabs(sine) < 0.9)) return l;
+  l.sine = sine;
   l.wheel = wheel_point(p, sine);
   l.valid = rail_surface(l.wheel[0], l.wheel[1], l.rail_z, l.contact_angle);
   if (!l.valid) return l;
@@ -477,23 +440,15 @@ void side_geometry::undeformed_distance(const contact_frame &frame, const surfac
   }
 }
 
-// Velocity of the wheel's material by the rates of its deviation, but for the one about its axis.
-vec3 side_geometry::wheel_rate(const vec3 &at) const {
-  const deviation &d = motion_.wheel;
-  const vec3 own = turn_back(wheelset_axes_, at - axis_origin_);
-  const vec3 below = own - vec3{0, d.offset[1], sizes_.nominal_radius + d.offset[2]};
-  const vec3 rate = d.velocity + cross({d.angular_velocity[0], 0, 0}, below) +
-                    cross({0, 0, d.angular_velocity[2]}, own);
-  return turn(wheelset_axes_, rate);
-}
-
-// The same of the rail; of a roller without the rate about its axle.
-vec3 side_geometry::rail_rate(const vec3 &at) const {
-  const deviation &d = motion_.rail;
-  const vec3 origin = vec3{0, marker_y_, marker_z_} + d.offset;
-  vec3 spin = d.angular_velocity;
-  if (track_.kind == track_kind::roller) spin[1] = 0;
-  return d.velocity + cross(spin, at - origin);
+void side_geometry::meet_surface(body which, const contact_frame &frame, const surface_grid &g,
+                                 surface_visitor &visitor) const {
+  const int column = clamp_index(-g.x0 / g.dx, g.nx);
+  const surface f = which == body::wheel ? wheel_seen_from(frame) : rail_seen_from(frame);
+  for_rows(f, g, column, [&](int row, const hit &middle) {
+    follow_row(f, g, row, column, middle, [&](int i, const hit &h) {
+      if (h.valid) visitor.meet(i, row, h.p, h.n);
+    });
+  });
 }
 
 section_point side_geometry::section(const contact_frame &frame, double start[2]) const {
@@ -512,64 +467,6 @@ section_point side_geometry::section(const contact_frame &frame, double start[2]
     turn[k] = across(f, h);
   }
   return {true, height[0], height[1], turn[0], turn[1]};
-}
-
-creepage_state side_geometry::creepages(const contact_frame &frame, double approach) const {
-  const wheelset_state &w = motion_.wheelset;
-  const frame_axes f = axes_of(frame);
-  const vec3 at = frame.origin + approach * f.n;  // of the wheel's undeformed surface
-  const double c = std::cos(w.roll), s = std::sin(w.roll);
-  // the track frame follows the centre line: in a curve it turns about its z axis
-  const vec3 frame_spin{0, 0, track_.curvature * w.speed};
-  const vec3 swing = vec3{w.roll_rate, 0, 0} + w.yaw_rate * vec3{0, -s, c};
-  const vec3 &wheel_spin = motion_.wheel.angular_velocity,
-             &rail_spin = motion_.rail.angular_velocity;
-  const bool wheel_moves = moves(motion_.wheel), rail_moves = moves(motion_.rail);
-  const vec3 roll = (w.pitch_rate + wheel_spin[1]) * column(wheel_axes_, 1);
-  vec3 carried = vec3{w.speed, w.vy, w.vz} + cross(frame_spin, at) + cross(swing, at - centre_);
-  if (wheel_moves) carried = carried + wheel_rate(at);
-  const vec3 turned = cross(roll, at - axis_origin_);
-  const vec3 roller_spin{0, motion_.roller_pitch_rate + rail_spin[1], 0};
-  const bool roller = track_.kind == track_kind::roller;
-  vec3 slip = carried + turned, spin = frame_spin + swing + roll;
-  if (wheel_moves) spin = spin + turn(wheelset_axes_, {wheel_spin[0], 0, wheel_spin[2]});
-  if (rail_moves) spin = spin - (roller ? vec3{rail_spin[0], 0, rail_spin[2]} : rail_spin);
-  double forward = carried[0], backward = turned[0];
-  if (rail_moves && !roller) {
-    const vec3 below = rail_rate(frame.origin);
-    forward -= below[0];
-    slip = slip - below;
-  }
-  if (roller) {
-    vec3 below = cross(roller_spin, frame.origin - vec3{axle_x_, 0, axle_z_});
-    if (rail_moves) below = below + rail_rate(frame.origin);
-    forward = -below[0];
-    backward = slip[0];
-    slip = slip - below;
-    spin = spin - roller_spin;
-  }
-  creepage_state out;
-  const double mean = 0.5 * (std::fabs(forward) + std::fabs(backward));
-  const double slow = sizes_.standstill_speed;
-  const bool rolls = mean > standstill;
-  if (!rolls && slow == 0) return out;
-  const double heading = std::fabs(forward - backward) > standstill ? forward - backward : forward;
-  if (rolls) out.direction = heading > 0 ? 1 : -1;
-  const double speed = divisor(mean, slow);
-  out.rolling_speed = speed;
-  out.xi = slip[0] / speed;
-  out.eta = dot(f.s, slip) / speed;
-  out.phi = dot(f.n, spin) / speed * turning(0.5 * (forward - backward), slow);
-  return out;
-}
-
-vec3 side_geometry::lever(const contact_frame &frame) const { return frame.origin - centre_; }
-
-double side_geometry::rolling_radius(const contact_frame &frame, double approach) const {
-  const vec3 at = frame.origin + approach * axes_of(frame).n - axis_origin_;
-  const vec3 axis = column(wheel_axes_, 1);
-  const vec3 off_axis = at - dot(at, axis) * axis;
-  return std::sqrt(dot(off_axis, off_axis));
 }
 
 size_t side_geometry::bytes() const {

@@ -23,69 +23,16 @@
 // in the plane of that origin (z).
 #pragma once
 
-#include <array>
-
 #include "longitudinal_shape.hpp"
+#include "placement.hpp"
 #include "profile.hpp"
 
 namespace railpatch {
-
-using vec3 = std::array<double, 3>;
-using mat3 = std::array<vec3, 3>;  // rows
-
-struct wheelset_state {
-  double y = 0, z = 0;       // m
-  double roll = 0, yaw = 0;  // rad
-  double speed = 0;          // m/s, of the track frame along the centre line
-  double vy = 0, vz = 0;     // m/s
-  double roll_rate = 0, yaw_rate = 0, pitch_rate = 0;  // rad/s, relative to the track frame
-};
-
-struct deviation {
-  vec3 offset{};            // m
-  vec3 rotation{};          // rad
-  vec3 velocity{};          // m/s
-  vec3 angular_velocity{};  // rad/s
-};
-
-enum class track_kind { rail, roller };
-
-struct track_config {
-  track_kind kind = track_kind::rail;
-  double gauge = 0, gauge_height = 0;  // m
-  double cant = 0;                     // rad, rail; > 0 leans towards the track centre
-  double curvature = 0;                // 1/m, right-hand curve > 0
-  double roller_radius = 0;            // m
-};
-
-struct wheel_config {
-  double nominal_radius = 0, flange_back_distance = 0, flange_back_position = 0;  // m
-  double standstill_speed = 0;                                                    // m/s
-};
-
-// All that moves in a step, for one side.
-struct side_motion {
-  wheelset_state wheelset;
-  deviation wheel, rail;
-  double roller_pitch_rate = 0;  // rad/s, > 0 forward
-};
-
-struct contact_frame {
-  vec3 origin{};             // track axes, on the rail surface
-  double contact_angle = 0;  // rad
-};
 
 struct surface_grid {
   int nx = 0, ny = 0;
   double x0 = 0, y0 = 0;  // centre of element (0, 0): x, s
   double dx = 0, dy = 0;
-};
-
-struct creepage_state {
-  double xi = 0, eta = 0;    // -, longitudinal, lateral
-  double phi = 0;            // rad/m, spin
-  double rolling_speed = 0;  // m/s, >= 0, what slip is divided by: see the head on standstill
-  int direction = 0;         // rolling towards +x (1), -x (-1); 0 at standstill
 };
 
 wheelset_state mirrored(wheelset_state w);
@@ -102,6 +49,7 @@ vec3 mirrored_axial(vec3 v);   // moment, rotation
 struct locus_point {
   bool valid = false;        // both profiles reach there
   vec3 wheel{};              // m, track axes, on the wheel
+  double sine = 0;           // of the angle along the wheel's circumference
   double gap = 0;            // m, vertical, rail minus wheel
   double rail_z = 0;         // m, of the rail surface there
   double contact_angle = 0;  // rad, of the rail surface
@@ -117,7 +65,13 @@ struct section_point {
 
 struct surface;
 
-class side_geometry {
+struct surface_visitor {
+  virtual ~surface_visitor() = default;
+  // p: arc length of the surface's profile; n: height along n, m
+  virtual void meet(int column, int row, double p, double n) = 0;
+};
+
+class side_geometry : private placement<double> {
  public:
   static constexpr double no_surface = 0.01;  // m, undeformed distance where a profile has ended
   static constexpr double far_apart = 1.0;    // m, gap along the locus there
@@ -158,11 +112,15 @@ class side_geometry {
   // h[ny][nx], x fastest; no_surface beyond the profiles.
   void undeformed_distance(const contact_frame &frame, const surface_grid &grid, double *h) const;
 
-  creepage_state creepages(const contact_frame &frame, double approach) const;
+  // Where the lines along n through a grid's elements meet one of the surfaces.
+  void meet_surface(body which, const contact_frame &frame, const surface_grid &grid,
+                    surface_visitor &visitor) const;
+
+  using placement<double>::creepages;
   // From the wheelset centre to the contact reference, track axes: for moments.
-  vec3 lever(const contact_frame &frame) const;
+  using placement<double>::lever;
   // Distance of the wheel's contact point from the wheelset's axis.
-  double rolling_radius(const contact_frame &frame, double approach) const;
+  using placement<double>::rolling_radius;
 
   double rail_marker_y() const { return marker_y_; }
   double rail_marker_z() const { return marker_z_; }
@@ -180,19 +138,11 @@ class side_geometry {
   longitudinal_row row_of(const curve_point &p, double sine, double gap) const;
   double sideways(double x, double sine, const curve_point &p) const;
   void find_closest(const curve_point &p, double sine, locus_point &l) const;
-  vec3 wheel_rate(const vec3 &at) const;
-  vec3 rail_rate(const vec3 &at) const;
 
-  wheel_config sizes_;
-  track_config track_;
-  side_motion motion_;
+  friend class moving_geometry;  // geometry_rates.hpp
+
   placed_profile wheel_, rail_;
   std::vector<double> gaps_;  // by sample of the wheel, for z = 0
-  double marker_y_ = 0, marker_z_ = 0;
-  double axle_z_ = 0, axle_x_ = 0;      // roller
-  vec3 centre_{};                       // wheelset
-  vec3 axis_origin_{}, axis_offset_{};  // of this wheel, from track origin and wheelset centre
-  mat3 wheelset_axes_{}, wheel_axes_{};
   bool overlap_ = false;
   const longitudinal_shape *shape_ = nullptr;
 };

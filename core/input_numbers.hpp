@@ -7,6 +7,9 @@
 
 namespace railpatch {
 
+// at most, for arrays of them
+constexpr int most_input_numbers = 128, most_result_numbers = 512;
+
 // f(name, number, scale): scale is what changes it by a good part of what matters, of numbers that
 // are zero at rest; 0: the number itself is its scale.
 template <class Input, class F>
@@ -19,6 +22,8 @@ void for_each_number(Input &in, F &&f) {
   f("rolling_speed", in.rolling_speed, 0.0);
   for (auto &v : in.bulk_temperature) f("bulk_temperature", v, 10.0);
   f("distance", in.distance, 0.0);
+  f("x", in.x, 1e-3);
+  f("pitch", in.pitch, 1e-3);
   f("y", in.y, 1e-3);
   f("z", in.z, 1e-4);
   f("vertical_force", in.vertical_force, 0.0);
@@ -38,6 +43,15 @@ void for_each_number(Input &in, F &&f) {
     for (auto &v : row) f("rail_offset", v, 1e-4);
   for (auto &row : in.rail_rotation)
     for (auto &v : row) f("rail_rotation", v, 1e-3);
+  for (auto &row : in.wheel_velocity)
+    for (auto &v : row) f("wheel_velocity", v, 0.01);
+  for (auto &row : in.wheel_angular_velocity)
+    for (auto &v : row) f("wheel_angular_velocity", v, 0.01);
+  for (auto &row : in.rail_velocity)
+    for (auto &v : row) f("rail_velocity", v, 0.01);
+  for (auto &row : in.rail_angular_velocity)
+    for (auto &v : row) f("rail_angular_velocity", v, 0.01);
+  f("time_step", in.time_step, 1e-3);
   f("roller_pitch_rate", in.roller_pitch_rate, 1.0);
 }
 
@@ -53,6 +67,7 @@ void for_each_patch_number(Result &p, F &&f) {
   f(p.friction_power);
   f(p.plastic_power);
   f(p.elastic_energy);
+  f(p.share);
   for (auto &v : p.position) f(v);
   f(p.contact_angle);
   for (auto &v : p.creepage) f(v);
@@ -62,18 +77,21 @@ void for_each_patch_number(Result &p, F &&f) {
   for (auto &v : p.element_size) f(v);
 }
 
+template <class Result, class F>
+void for_each_side_number(Result &side, F &&f) {
+  for (auto &v : side.force) f(v);
+  for (auto &v : side.moment) f(v);
+  f(side.rolling_radius);
+  for (auto &patch : side.patch) for_each_patch_number(patch, f);
+}
+
 // All but residuals and error estimates.
 template <class Result, class F>
 void for_each_result_number(Result &r, F &&f) {
   f(r.z);
   for (auto &v : r.force) f(v);
   for (auto &v : r.moment) f(v);
-  for (auto &side : r.side) {
-    for (auto &v : side.force) f(v);
-    for (auto &v : side.moment) f(v);
-    f(side.rolling_radius);
-    for (auto &patch : side.patch) for_each_patch_number(patch, f);
-  }
+  for (auto &side : r.side) for_each_side_number(side, f);
 }
 
 }  // namespace railpatch

@@ -11,7 +11,7 @@ namespace railpatch {
 namespace {
 
 // of products in single precision, relative
-constexpr double single_rounding = 1e-6;
+constexpr double single_rounding = 3e-7;
 // directions of search kept, and made at most
 constexpr int kept = 64, most = 400;
 
@@ -44,15 +44,16 @@ double normal_derivative::solve(const normal_point &point, const normal_variatio
   products_ = 0;
   const auto n = static_cast<size_t>(count_), all = static_cast<size_t>(g.count());
   std::fill_n(pressure, all * static_cast<size_t>(count), 0.0);
-  // the last right side is that of an approach of one
+  // where the approach changes, the last right side is that of an approach of one
   int sides = 0, side_of[64];
-  bool loaded = false;
+  bool loaded = false, rises = false;
   for (int k = 0; k < count; ++k) {
     const normal_variation &v = in[k];
     approach[k] = 0;
     side_of[k] = -1;
     if (v.still(point.force_given)) continue;
     loaded = true;
+    rises = rises || point.force_given || v.approach != 0;
     bool zero = true;
     double *right = right_.data() + static_cast<size_t>(sides) * n;
     for (size_t i = 0; i < n; ++i) right[i] = v.distance ? -v.distance[at_[i]] : 0.0;
@@ -62,9 +63,9 @@ double normal_derivative::solve(const normal_point &point, const normal_variatio
     side_of[k] = zero ? -2 : sides++;
   }
   if (!loaded || n == 0) return 0.0;
-  std::fill_n(right_.data() + static_cast<size_t>(sides) * n, n, 1.0);
+  if (rises) std::fill_n(right_.data() + static_cast<size_t>(sides) * n, n, 1.0);
   std::fill_n(grid_in_.data(), all, 0.0);
-  const auto apply = [&](const double *v, double *out, bool exact) {
+  const auto apply = [&](const double *v, double *out, bool exact, int) {
     for (size_t i = 0; i < n; ++i) grid_in_[static_cast<size_t>(at_[i])] = v[i];
     point.solver.product(point.a, g, point.parts, grid_in_.data(), grid_out_.data(), exact);
     for (size_t i = 0; i < n; ++i) out[i] = grid_out_[static_cast<size_t>(at_[i])];
@@ -74,10 +75,11 @@ double normal_derivative::solve(const normal_point &point, const normal_variatio
     point.a.normal_inverse(grid_in_.data(), grid_out_.data());
     for (size_t i = 0; i < n; ++i) v[i] = grid_out_[static_cast<size_t>(at_[i])];
   };
-  const auto outcome = systems_.solve(n, sides + 1, n, right_.data(), solution_.data(),
-                                      {tolerance, single_rounding, most}, apply, precondition);
+  const auto outcome =
+      systems_.solve(n, sides + rises, n, right_.data(), solution_.data(),
+                     {tolerance, single_rounding, most, false}, apply, precondition);
   products_ = outcome.exact + outcome.inexact;
-  const double *ones = solution_.data() + static_cast<size_t>(sides) * n;
+  const double *ones = rises ? solution_.data() + static_cast<size_t>(sides) * n : nullptr;
   const double area = g.dx * g.dy, load = total(point.pressure, all);
   for (int k = 0; k < count; ++k) {
     if (side_of[k] == -1) continue;
@@ -92,7 +94,8 @@ double normal_derivative::solve(const normal_point &point, const normal_variatio
     }
     approach[k] = rise;
     double *out = pressure + static_cast<size_t>(k) * all;
-    for (size_t i = 0; i < n; ++i) out[at_[i]] = rise * ones[i] + (own ? own[i] : 0.0);
+    for (size_t i = 0; i < n; ++i)
+      out[at_[i]] = (ones ? rise * ones[i] : 0.0) + (own ? own[i] : 0.0);
   }
   return outcome.residual;
 }

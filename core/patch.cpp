@@ -61,7 +61,7 @@ class part_list {
   void search() {
     for (int i = 0; i < side_.sample_count(); ++i) {
       const double sampled = side_.sample_gap(i);
-      const double g = sampled < closeness ? gap_at(side_, side_.sample_s(i)) : sampled;
+      const double g = std::fabs(sampled) < closeness ? gap_at(side_, side_.sample_s(i)) : sampled;
       advance(i, g);
       before_ = last_;
       last_ = g;

@@ -72,7 +72,7 @@ bool patch_scene::estimates_force() const {
 }
 
 bool patch_scene::differentiates() const {
-  if (normal != RP_NORMAL_HALF_SPACE && normal != RP_NORMAL_HERTZ) return false;
+  if (curved || (normal != RP_NORMAL_HALF_SPACE && normal != RP_NORMAL_HERTZ)) return false;
   if (tangential == RP_TANGENTIAL_NONE) return true;
   return tangential == RP_TANGENTIAL_FULL && !is_fitted() && !law && !keeps_steps() && !heat &&
          !is_forced() && !couples();

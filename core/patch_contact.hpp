@@ -105,8 +105,9 @@ struct patch_memory {
   bool warm = false;    // pressure and traction may serve as a start
   bool beyond = false;  // the normal problem left its range: what the patch carries is not known
   grid g;
-  double approach = 0;                // m, of the last step's normal problem on the half-space
   double share = 1;                   // in the wheel's force
+  double rail[2] = {0, 0};            // m, lateral and vertical offset of the rail
+  double approach = 0;                // m, of the last step's normal problem on the half-space
   std::array<double, 3> reference{};  // m, contact reference, track axes of a right wheel
   aligned_buffer<double> undeformed_distance, pressure, px, py, sx, sy;
   aligned_buffer<unsigned char> division;
@@ -148,8 +149,10 @@ class patch_contact {
   }
   // The same for patches of wheels, whose grids move.
   void remember(patch_memory &memory) const {
-    memory.history.remember(memory.g, memory.reference, memory.share, memory.px.data(),
-                            memory.py.data());
+    memory.history.remember(memory.g,
+                            {memory.reference[0], memory.reference[1] - memory.rail[0],
+                             memory.reference[2] - memory.rail[1]},
+                            memory.share, memory.px.data(), memory.py.data());
   }
   // A step without contact: the material moves on and bears no traction.
   void leave_contact(const rolling_input &step, patch_memory &memory, rp_patch_result &result);

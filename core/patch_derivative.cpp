@@ -45,8 +45,11 @@ double *patch_derivative::rate_of(const solved &s, int k) {
 }
 
 derivative_outcome patch_derivative::solve(const solved &s, const patch_variation *in, int count,
-                                           const derivative_options &o, patch_change *out) {
+                                           const derivative_options &options, patch_change *out) {
   derivative_outcome outcome;
+  derivative_options o = options;
+  // rates are needed no better than the solution is known, and no worse than differences give them
+  if (!(o.tolerance > 0)) o.tolerance = std::clamp(0.1 * s.scene.tolerance, 1e-9, 1e-6);
   const grid &g = s.problem.g;
   for (int k = 0; k < count; ++k) out[k] = {};
   const double *p = s.memory.pressure.data();
@@ -76,7 +79,7 @@ tangential_point patch_derivative::point_of(const solved &s) const {
           *s.blocks,
           s.problem.g,
           rolling_,
-          s.scene.friction_coefficient,
+          s.scene.friction(),
           m.row_friction.size() ? m.row_friction.data() : nullptr,
           m.pressure.data(),
           m.px.data(),

@@ -28,7 +28,8 @@ struct patch_variation {
   hertz_contact hertz;                                   // with normal = hertz, hertz_rate_of_*
   double normal_force = 0, approach = 0;                 // of the one that is prescribed
   double creepage[2] = {0, 0}, spin_creepage = 0;
-  double rolling_speed = 0, friction_coefficient = 0;
+  double rolling_speed = 0;
+  double friction_coefficient = 0;  // with the scene's scale, patch_scene::friction()
 };
 
 // What follows for the patch's wrench, in the contact frame, and for its result.
@@ -41,8 +42,9 @@ struct patch_change {
 };
 
 struct derivative_options {
-  double tolerance = 1e-8;  // of the linear systems, relative to their right sides
-  bool energy = true;       // false: elastic_energy is not asked for, and NaN
+  // of the linear systems, relative to their right sides; 0: as the scene's tolerance asks for
+  double tolerance = 0;
+  bool energy = true;  // false: elastic_energy is not asked for, and NaN
 };
 
 // How the systems ended.

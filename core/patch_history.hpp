@@ -22,7 +22,7 @@ struct patch_history {
   bool held = false;
   grid last_grid;
   double last_share = 1;
-  std::array<double, 3> last_reference{};
+  std::array<double, 3> last_reference{};  // m, without the rail's offset
   aligned_buffer<double> last_px, last_py;
   aligned_buffer<carried_state> before, after;
   aligned_buffer<double> plastic_before[2], plastic[2], yield_stress, friction;

@@ -208,7 +208,8 @@ bool placed_profile::find(double y, double &s) const {
     if (!(next >= lo && next <= hi)) next = 0.5 * (lo + hi);
     const double change = std::fabs(next - s);
     s = next;
-    if (change < 1e-13) break;
+    // its error falls with the square: less than 1e-13 m remains of radii above 1 mm
+    if (change < 1e-8) break;
     k = curve_->interval(s, k);
   }
   return true;

@@ -29,16 +29,19 @@ class shared_krylov {
     w_ = aligned_buffer<double>::uninitialized(n * most);
     residual_ = aligned_buffer<double>::uninitialized(n * static_cast<size_t>(max_sides));
     work_ = aligned_buffer<double>(n);
+    sum_ = aligned_buffer<double>(n);
     triangle_ = aligned_buffer<double>(most * most);
     shares_ = aligned_buffer<double>(most * static_cast<size_t>(max_sides));
     size_ = aligned_buffer<double>(static_cast<size_t>(max_sides));
     left_ = aligned_buffer<double>(static_cast<size_t>(max_sides));
+    part_ = aligned_buffer<double>(static_cast<size_t>(max_sides));
   }
 
   struct options {
     double tolerance;    // of each residual, relative to its right side
     double rounding;     // relative error of products that need not be exact
     int max_directions;  // in all
+    bool each = true;    // every residual is formed afresh, else that of their sum where it will do
   };
   struct outcome {
     bool converged = false;
@@ -47,7 +50,8 @@ class shared_krylov {
   };
 
   // Solves J x = b for every right side; b and x hold one after the other, `stride` apart.
-  // apply(z, w, exact): w = J z; precondition(v): v <- about J^-1 v.
+  // apply(z, w, exact, side): w = J z, side: of whose solution, -1: of none; precondition(v): v <-
+  // about J^-1 v. The last call of a side is that of its solution as it is returned.
   template <class Apply, class Precondition>
   outcome solve(size_t n, int sides, size_t stride, const double *b, double *x, const options &o,
                 Apply &&apply, Precondition &&precondition) {
@@ -70,6 +74,12 @@ class shared_krylov {
         ++made;
       }
       add_solutions(count, stride, x);
+      if (!o.each && sides_ > 1) {
+        const double drift = measure_sum(stride, b, x, out, apply);
+        out.residual = left_[at(worst())] + drift;
+        out.converged = out.residual <= o.tolerance;
+        if (out.converged) break;
+      }
       for (int k = 0; k < sides_; ++k)
         if (size_[at(k)] > 0) measure(k, b + at(k) * stride, x + at(k) * stride, out, apply);
       out.residual = left_[at(worst())];
@@ -80,8 +90,8 @@ class shared_krylov {
   }
 
   size_t bytes() const {
-    return z_.bytes() + w_.bytes() + residual_.bytes() + work_.bytes() + triangle_.bytes() +
-           shares_.bytes() + size_.bytes() + left_.bytes();
+    return z_.bytes() + w_.bytes() + residual_.bytes() + 2 * work_.bytes() + triangle_.bytes() +
+           shares_.bytes() + 3 * size_.bytes();
   }
 
  private:
@@ -108,39 +118,50 @@ class shared_krylov {
     std::copy_n(residual(k), n_, z);
     precondition(z);
     const bool exact = o.rounding * left_[at(k)] > 0.1 * o.tolerance;
-    apply(z, w, exact);
+    apply(z, w, exact, -1);
     ++(exact ? out.exact : out.inexact);
-    for (int i = 0; i < count; ++i) {
-      const double h = dot(image(i), w, n_);
-      triangle(i, count) = h;
-      subtract(h, image(i), w);
-    }
+    dots(w_.data(), n_, count, w, n_, &triangle(0, count));
+    subtract(w_.data(), n_, count, &triangle(0, count), w, n_);
     const double length = std::sqrt(dot(w, w, n_));
     triangle(count, count) = length;
     if (!(length > 0)) return false;
-    for (size_t i = 0; i < n_; ++i) w[i] /= length;
+    const double scale = 1.0 / length;
+    for (size_t i = 0; i < n_; ++i) w[i] *= scale;
+    dots(residual_.data(), n_, sides_, w, n_, part_.data());
     for (int side = 0; side < sides_; ++side) {
-      const double a = dot(w, residual(side), n_);
-      share(count, side) = a;
-      subtract(a, w, residual(side));
+      share(count, side) = part_[at(side)];
+      subtract(w, n_, 1, &part_[at(side)], residual(side), n_);
       const double left = std::sqrt(dot(residual(side), residual(side), n_));
       left_[at(side)] = size_[at(side)] > 0 ? left / size_[at(side)] : 0.0;
     }
     return true;
   }
 
-  void subtract(double factor, const double *v, double *from) const {
-    for (size_t i = 0; i < n_; ++i) from[i] -= factor * v[i];
-  }
-
   // The residual as it is.
   template <class Apply>
   void measure(int k, const double *b, const double *x, outcome &out, Apply &&apply) {
-    apply(x, work_.data(), true);
+    apply(x, work_.data(), true, k);
     ++out.exact;
     double *r = residual(k);
     for (size_t i = 0; i < n_; ++i) r[i] = b[i] - work_[i];
     left_[at(k)] = std::sqrt(dot(r, r, n_)) / size_[at(k)];
+  }
+
+  // By how much the residual of the sum of all systems, each over its size, is not what the single
+  // ones say: what inexact products did to all of them.
+  template <class Apply>
+  double measure_sum(size_t stride, const double *b, const double *x, outcome &out, Apply &&apply) {
+    double *sum = work_.data(), *image = sum_.data();
+    std::fill_n(sum, n_, 0.0);
+    for (int k = 0; k < sides_; ++k)
+      for (size_t i = 0; i < n_ && size_[at(k)] > 0; ++i)
+        sum[i] += x[at(k) * stride + i] / size_[at(k)];
+    apply(sum, image, true, -1);
+    ++out.exact;
+    for (int k = 0; k < sides_; ++k)
+      for (size_t i = 0; i < n_ && size_[at(k)] > 0; ++i)
+        image[i] -= (b[at(k) * stride + i] - residual(k)[i]) / size_[at(k)];
+    return std::sqrt(dot(image, image, n_));
   }
 
   // x += Z R^-1 W^T b
@@ -149,16 +170,17 @@ class shared_krylov {
       double *to = x + at(k) * stride;
       for (int i = count - 1; i >= 0; --i) {
         double y = share(i, k);
-        for (int j = i + 1; j < count; ++j) y -= triangle(i, j) * share(j, k);
-        share(i, k) = y / triangle(i, i);
+        // what is subtracted has the other sign
+        for (int j = i + 1; j < count; ++j) y += triangle(i, j) * share(j, k);
+        share(i, k) = -y / triangle(i, i);
       }
-      for (int i = 0; i < count; ++i) subtract(-share(i, k), direction(i), to);
+      subtract(z_.data(), n_, count, &share(0, k), to, n_);
     }
   }
 
   int directions_, max_sides_, sides_ = 0;
   size_t n_ = 0;
-  aligned_buffer<double> z_, w_, residual_, work_, triangle_, shares_, size_, left_;
+  aligned_buffer<double> z_, w_, residual_, work_, sum_, triangle_, shares_, size_, left_, part_;
 };
 
 }  // namespace railpatch

@@ -31,4 +31,32 @@ double total(const double *a, size_t n) {
   return sum(n, [=](size_t i) { return a[i]; });
 }
 
+RAILPATCH_DISPATCH
+void dots(const double *a, size_t stride, int count, const double *v, size_t n, double *out) {
+  for (int m = 0; m < count; ++m) {
+    const double *own = a + static_cast<size_t>(m) * stride;
+    out[m] = sum(n, [=](size_t i) { return own[i] * v[i]; });
+  }
+}
+
+// vectors at once, so that the one they all change is read once for all of them
+constexpr int together = 4;
+
+RAILPATCH_DISPATCH
+void subtract(const double *a, size_t stride, int count, const double *factor, double *__restrict v,
+              size_t n) {
+  int m = 0;
+  for (; m + together <= count; m += together) {
+    const double *__restrict b = a + static_cast<size_t>(m) * stride;
+    const double f[together] = {factor[m], factor[m + 1], factor[m + 2], factor[m + 3]};
+    for (size_t i = 0; i < n; ++i)
+      v[i] -= (f[0] * b[i] + f[1] * b[stride + i]) +
+              (f[2] * b[2 * stride + i] + f[3] * b[3 * stride + i]);
+  }
+  for (; m < count; ++m) {
+    const double *__restrict b = a + static_cast<size_t>(m) * stride;
+    for (size_t i = 0; i < n; ++i) v[i] -= factor[m] * b[i];
+  }
+}
+
 }  // namespace railpatch

@@ -9,4 +9,9 @@ namespace railpatch {
 double dot(const double *a, const double *b, size_t n);
 double total(const double *a, size_t n);
 
+// The same for several vectors, `stride` apart: out[m] = a_m . v
+void dots(const double *a, size_t stride, int count, const double *v, size_t n, double *out);
+// v -= sum over m of factor[m] a_m
+void subtract(const double *a, size_t stride, int count, const double *factor, double *v, size_t n);
+
 }  // namespace railpatch

@@ -13,11 +13,11 @@ namespace railpatch {
 namespace {
 
 // of products in single precision, relative
-constexpr double single_rounding = 1e-6;
+constexpr double single_rounding = 3e-7;
 // directions of search kept, and made at most
 constexpr int kept = 96, most = 600;
 // as in tangential.cpp
-constexpr int strips = 8;
+constexpr int strips = 24;
 constexpr int most_weights = 4;
 
 }  // namespace
@@ -210,10 +210,11 @@ void tangential_derivative::expand(const double *z, double *dp) const {
 double tangential_derivative::solve_systems(const tangential_point &point, int sides,
                                             bool transposed, double tolerance) {
   factor(point, transposed);
-  const auto apply = [&](const double *z, double *out, bool exact) {
+  const auto apply = [&](const double *z, double *out, bool exact, int solution) {
     expand(z, work_.data());
     product(point, work_.data(), unknown_.data(), transposed, exact);
     const double *s = unknown_.data();
+    if (solution >= 0 && transposed) std::copy_n(s, vector_, side(back_, solution));
     for_each_unknown([&](const element_linearisation &e, size_t i, size_t j, size_t ix, size_t iy) {
       out[i] = e.keep * z[i] + e.stiff * (e.c[0] * s[ix] + e.c[1] * s[iy]);
       if (e.stick) out[j] = e.stiff * s[iy];
@@ -227,7 +228,7 @@ double tangential_derivative::solve_systems(const tangential_point &point, int s
   };
   return systems_
       .solve(unknowns_, sides, vector_, right_.data(), solution_.data(),
-             {tolerance, single_rounding, most}, apply, precondition)
+             {tolerance, single_rounding, most, transposed}, apply, precondition)
       .residual;
 }
 
@@ -376,11 +377,12 @@ double tangential_derivative::begin_resultants(const tangential_point &point, co
   collect(point);
   set_weights(point, o);
   for (int k = 0; k < weights_; ++k) restrict_to_unknowns(side(weight_, k), 1.0, side(right_, k));
+  // products of solutions, B^T m, are left in back_; of l = 0 there is none
+  for (int k = 0; k < weights_; ++k) std::fill_n(side(back_, k), vector_, 0.0);
   const double residual = solve_systems(point, weights_, true, o.tolerance);
   for (int k = 0; k < weights_; ++k) {
     double *m = side(dual_, k), *back = side(back_, k);
     expand(side(solution_, k), m);
-    product(point, m, back, true, true);
     const double *l = side(weight_, k);
     for (size_t i = 0; i < vector_; ++i) back[i] = l[i] - back[i];
   }

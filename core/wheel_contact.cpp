@@ -98,9 +98,23 @@ wheel_contact::wheel_contact(const rp_config &c, int side)
   const wheel_config sizes{c.nominal_radius, c.flange_back_distance, c.flange_back_position,
                            c.standstill_speed};
   geometry_ = std::make_unique<side_geometry>(*wheel_, *rail_, sizes, track_of(c, side));
+  if (c.derivatives != 0) solutions_.resize(static_cast<size_t>(c.max_patches));
   if (!longitudinal_shape::wanted(c, side)) return;
   shape_ = std::make_unique<longitudinal_shape>(c, side);
   geometry_->set_shape(shape_.get());
+}
+
+// Of the inputs, or of their rates: what a right-hand wheel does.
+side_motion wheel_contact::motion_of(const rp_input &in) const {
+  side_motion motion;
+  motion.wheelset = {in.y,  in.z,  in.roll,      in.yaw,      in.speed,
+                     in.vy, in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
+  motion.wheel = deviation_of(in.wheel_offset[side_], in.wheel_rotation[side_],
+                              in.wheel_velocity[side_], in.wheel_angular_velocity[side_]);
+  motion.rail = deviation_of(in.rail_offset[side_], in.rail_rotation[side_],
+                             in.rail_velocity[side_], in.rail_angular_velocity[side_]);
+  motion.roller_pitch_rate = in.roller_pitch_rate;
+  return side_ == RP_LEFT ? mirrored(motion) : motion;
 }
 
 void wheel_contact::place(const rp_input &in) {
@@ -113,16 +127,8 @@ void wheel_contact::place(const rp_input &in) {
     }
   }
   time_step_ = in.time_step;
-  side_motion motion;
-  motion.wheelset = {in.y,  in.z,  in.roll,      in.yaw,      in.speed,
-                     in.vy, in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
-  motion.wheel = deviation_of(in.wheel_offset[side_], in.wheel_rotation[side_],
-                              in.wheel_velocity[side_], in.wheel_angular_velocity[side_]);
-  motion.rail = deviation_of(in.rail_offset[side_], in.rail_rotation[side_],
-                             in.rail_velocity[side_], in.rail_angular_velocity[side_]);
-  motion.roller_pitch_rate = in.roller_pitch_rate;
   if (shape_) shape_->place(in.pitch + in.wheel_rotation[side_][1], in.x, config_.nominal_radius);
-  geometry_->place(side_ == RP_LEFT ? mirrored(motion) : motion);
+  geometry_->place(motion_of(in));
 }
 
 grid wheel_contact::choose_grid(const patch_region &r) const {
@@ -161,7 +167,7 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
       find_patches(*geometry_, rules_, parts_, regions_.data(), config_.max_patches);
   solver.observe(RP_STAGE_GEOMETRY, false);
   out.status = RP_NO_CONTACT;
-  const int count = found.count;
+  const int count = patches_ = found.count;
   out.patch_count = count;
   for (int k = 0; k < 3; ++k) out.force[k] = out.moment[k] = 0;
   out.rolling_radius = 0;
@@ -234,6 +240,7 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
   rp_patch_result &result = out.patch[index];
   patch_memory &memory = memories[index];
   result.share = region.share;
+  if (!solutions_.empty()) solutions_[static_cast<size_t>(index)].solved = false;
   patch_problem problem;
   const bool reached = !memory.curved || memory.curved->begin(*geometry_, region);
   problem.g = reached ? choose_grid(region) : grid{};
@@ -283,6 +290,9 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
   solver.solve(problem, memory, result, wrench);
   memory.history.begun = solver.scene().keeps_steps();
   memory.share = region.share;
+  for (size_t k = 0; k < 2; ++k) memory.rail[k] = geometry_->motion().rail.offset[k + 1];
+
+  if (!solutions_.empty()) solutions_[static_cast<size_t>(index)] = {true, problem, wrench, depth};
 
   scale(wrench, region.share);
   out.rolling_radius +=
@@ -320,6 +330,7 @@ void wheel_contact::set_past(const patch_memory *memory, const patch_region &reg
   const double moved = speed < slow ? std::sqrt(std::max(slow * (2 * speed - slow), 0.0)) : speed;
   const double rolled = direction * moved * time_step_;
   problem.past = past;
+  const vec3 &rail = geometry_->motion().rail.offset;
   const contact_frame &frame = region.frame;
   const auto lateral = [&](const vec3 &at) {
     return lateral_in(frame.origin, frame.contact_angle, at);
@@ -335,7 +346,8 @@ void wheel_contact::set_past(const patch_memory *memory, const patch_region &reg
     const patch_history &h = memory[k].history;
     if (!h.held) continue;
     const grid &g = h.last_grid;
-    const double place = lateral(h.last_reference);  // in this frame
+    // in this frame; the rail has taken its material along
+    const double place = lateral({0, h.last_reference[1] + rail[1], h.last_reference[2] + rail[2]});
     const auto row = [&](double s) {
       return static_cast<int>(
           std::clamp(std::ceil((s - place - g.y0) / g.dy), 0.0, static_cast<double>(g.ny)));
@@ -365,11 +377,42 @@ void wheel_contact::set_friction(const patch_contact &solver, const contact_fram
   }
 }
 
+// What varies along the track or the wheel, or makes rails give way, is left to differences.
+bool wheel_contact::differentiates() const {
+  const bool gives_way = config_.rail_stiffness[0] > 0 || config_.rail_stiffness[1] > 0;
+  return wheel_derivative::covers(rules_) && !sections_ && !shape_ &&
+         config_.friction_along_points == 0 && config_.reference_surface == RP_REFERENCE_PLANE &&
+         !gives_way;
+}
+
+derivative_outcome wheel_contact::differentiate(patch_contact &solver, const patch_memory *memory,
+                                                wheel_derivative &work, const rp_input *directions,
+                                                int count, const derivative_options &options,
+                                                const rp_side_result &result,
+                                                rp_side_result *changes) const {
+  side_motion motions[wheel_derivative::most_directions];
+  for (int k = 0; k < count; ++k) motions[k] = motion_of(directions[k]);
+  const wheel_solution solution{*geometry_,
+                                rules_,
+                                parts_,
+                                regions_.data(),
+                                solutions_.data(),
+                                memory,
+                                patches_,
+                                config_.element_size[0] > 0 ? nullptr : config_.elements};
+  const derivative_outcome outcome =
+      work.solve(solution, solver, motions, count, options, result, changes);
+  for (int k = 0; k < count; ++k)
+    if (side_ == RP_LEFT) mirror(changes[k]);
+  return outcome;
+}
+
 bool wheel_contact::first_touch(double &z) const { return railpatch::first_touch(*geometry_, z); }
 
 size_t wheel_contact::bytes() const {
   return wheel_->bytes() + rail_->bytes() + geometry_->bytes() +
-         (sections_ ? sections_->bytes() : 0) + (shape_ ? shape_->bytes() : 0);
+         solutions_.size() * sizeof(patch_solution) + (sections_ ? sections_->bytes() : 0) +
+         (shape_ ? shape_->bytes() : 0);
 }
 
 rp_status combine_status(rp_status a, rp_status b) {

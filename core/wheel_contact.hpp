@@ -12,6 +12,7 @@
 #include "patch_contact.hpp"
 #include "rail_sections.hpp"
 #include "railpatch.h"
+#include "wheel_derivative.hpp"
 
 namespace railpatch {
 
@@ -27,6 +28,14 @@ class wheel_contact {
   bool first_touch(double &z) const;
   // Solves the contact at the placed position. memory: of this side's patches, max_patches.
   void evaluate(patch_contact &solver, patch_memory *memory, rp_side_result &result);
+  // Whether the geometry's derivatives are known.
+  bool differentiates() const;
+  // Derivatives of that solution by rates of the inputs: changes[k] those of its numbers in
+  // direction k, of which only the first rate_directions may be more than velocities.
+  derivative_outcome differentiate(patch_contact &solver, const patch_memory *memory,
+                                   wheel_derivative &work, const rp_input *directions, int count,
+                                   const derivative_options &options, const rp_side_result &result,
+                                   rp_side_result *changes) const;
   // The last state is out of range for its geometry or normal problem, so its force is not known.
   bool beyond() const { return beyond_; }
   size_t bytes() const;
@@ -40,6 +49,7 @@ class wheel_contact {
   void set_friction(const patch_contact &solver, const contact_frame &frame,
                     patch_memory &memory) const;
   grid choose_grid(const patch_region &region) const;
+  side_motion motion_of(const rp_input &input) const;
   void match_memory(patch_memory *memory, int count) const;
 
   rp_config config_;
@@ -52,7 +62,9 @@ class wheel_contact {
   patch_rules rules_;
   part_set parts_;
   std::array<patch_region, RP_MAX_PATCHES> regions_;
-  double time_step_ = 0;  // s
+  int patches_ = 0;                        // of the last state
+  std::vector<patch_solution> solutions_;  // of these; only where derivatives are asked for
+  double time_step_ = 0;                   // s
 };
 
 struct profile_error {

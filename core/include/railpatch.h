@@ -467,6 +467,8 @@ typedef struct rp_stage_info {
 /* Fills every field with a valid default: steel, wheelset of S1002-like size, no profiles. */
 RP_API void rp_default_config(rp_config *config);
 RP_API void rp_default_input(rp_input *input);
+/* An input of zeros, for rp_differentiate: no rate at all. */
+RP_API void rp_default_direction(rp_input *direction);
 
 /* Makes the handle; checks every field. On error *contact is untouched and message (may be null)
  * names the field. */
@@ -499,6 +501,24 @@ typedef enum rp_derivative_kind {
  * layer that yields and no temperature. */
 RP_API rp_error rp_differentiate(rp_contact *contact, const rp_input *direction, rp_result *change,
                                  rp_derivative_kind *kind, rp_message *message);
+
+/* Derivatives of the last step of wheels by pose and velocity, columns in this order:
+ *   x, y, z, roll, yaw, pitch, speed, vy, vz, roll_rate, yaw_rate, pitch_rate;
+ * all other inputs held. They are those of what rp_step returns: where the vertical force is
+ * prescribed z follows. NaN where the result is. */
+typedef struct rp_jacobian {
+  rp_derivative_kind kind;
+  rp_status status;      /* of the step, or RP_NOT_CONVERGED where the derivatives are not */
+  double side[2][6][12]; /* of force, moment (rp_side_result) of each wheel in use, else 0. Column z
+                            with load = RP_FORCE, where z is no input: the wheel's alone, as z moves
+                            and the vertical force does not stay; NaN by differences */
+  double z[12];          /* of rp_result.z */
+  double z_force;        /* m/N, of rp_result.z by the vertical force, load = RP_FORCE, else NaN */
+} rp_jacobian;
+
+/* Needs the same as rp_differentiate, and leaves the same as it is. Kinds RP_WHEEL_RAIL and
+ * RP_WHEELSET. Costs less than three warm steps where the derivatives are exact. */
+RP_API rp_error rp_get_jacobian(rp_contact *contact, rp_jacobian *out, rp_message *message);
 
 /* Changes the coefficient of Coulomb's law (0 ... 10) for the steps that follow; part of the state.
  * Other laws have their own numbers and do not read it. */

@@ -119,7 +119,8 @@ def test_a_wheels_rate_about_its_axle_is_a_pitch_rate() -> None:
 
 @pytest.mark.parametrize("kind", ["rail", "roller"])
 def test_wheel_and_rail_moving_together_do_not_slip(kind: str) -> None:
-    """A rigid motion of both about the wheelset's centre changes the slip by the approach alone."""
+    """A rigid motion of both about the wheelset's centre leaves the slip as it was, but for the
+    approach."""
     roller = {"kind": "roller", "roller_radius": 0.5, "roller_pitch_rate": SPEED / 0.5}
     track = {"gauge": GAUGE, **(roller if kind == "roller" else {})}
     speed = 0.0 if kind == "roller" else SPEED

@@ -387,6 +387,41 @@ TEST(Step, OfALargeGridAllocatesNothing) {
   EXPECT_EQ(run(c, std::vector{scenes::patch_input(1e5, 1e-2, 0, 0)}).allocated, 0);
 }
 
+// Derivatives of wheelsets with one and several patches, exact ones and differences.
+TEST(Derivatives, OfAWheelsetAllocateNothing) {
+  const scenes::profile_pair pair;
+  for (rp_patch_rule rule : {RP_PATCHES_BLENDED, RP_PATCHES_CONTACT})
+    for (int elements : {0, 10}) {
+      rp_config c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+      c.derivatives = 1;
+      c.patch_rule = rule;
+      c.elements[0] = c.elements[1] = elements;
+      if (elements > 0) c.element_size[0] = c.element_size[1] = 0;
+      scenes::handle contact(c);
+      int greatest = 0;
+      auto result = std::make_unique<rp_result>(), change = std::make_unique<rp_result>();
+      rp_jacobian whole{};
+      for (double y : {0.0, 5.9e-3, 6e-3}) {
+        rp_input in = scenes::running(RP_RAIL);
+        in.y = y;
+        in.vertical_force = 1.2e5;
+        *result = contact.step(in);
+        for (const rp_side_result &side : result->side)
+          greatest = std::max(greatest, side.patch_count);
+        rp_error errors[2] = {RP_ERROR_INTERNAL, RP_ERROR_INTERNAL};
+        const int n = allocations([&] {
+          errors[0] = rp_get_jacobian(contact.get(), &whole, nullptr);
+          errors[1] = rp_differentiate(contact.get(), &in, change.get(), nullptr, nullptr);
+        });
+        EXPECT_EQ(n, 0) << "rule " << rule << " y " << y;
+        for (rp_error error : errors) EXPECT_EQ(error, RP_OK);
+      }
+      if (rule == RP_PATCHES_BLENDED) {
+        EXPECT_GE(greatest, 2);
+      }
+    }
+}
+
 // Sideways until the flange touches, then at the heights found, off the rails and back.
 TEST(Step, OfAWheelsetAllocatesNothing) {
   const scenes::profile_pair pair;
@@ -419,6 +454,60 @@ TEST(Step, OfAWheelsetAllocatesNothing) {
     EXPECT_EQ(position.allocated, 0) << "track " << track << " position prescribed";
     EXPECT_TRUE(position.lifted);
   }
+}
+
+// --- derivatives ---------------------------------------------------------------------------
+
+// Of every number of the input that the kind reads, after each step.
+template <class Inputs>
+int allocated_by_derivatives(rp_config config, const Inputs &inputs, rp_derivative_kind expected) {
+  config.derivatives = 1;
+  scenes::handle contact(config);
+  auto change = std::make_unique<rp_result>();
+  int sum = 0;
+  for (const rp_input &in : inputs) {
+    rp_message message{};
+    rp_error error = RP_OK;
+    sum += allocations([&] { contact.step(in); });
+    rp_input direction;
+    rp_default_direction(&direction);
+    if (config.load == RP_FORCE) direction.normal_force = direction.vertical_force = 1;
+    direction.creepage[0] = direction.creepage[1] = direction.spin_creepage = 1;
+    direction.y = direction.yaw = direction.speed = direction.approach = 1;
+    rp_derivative_kind kind = RP_DERIVATIVE_EXACT;
+    sum += allocations([&] {
+      error = rp_differentiate(contact.get(), &direction, change.get(), &kind, &message);
+    });
+    EXPECT_EQ(error, RP_OK) << message.text;
+    EXPECT_EQ(kind, expected);
+    EXPECT_NE(change->status, RP_NOT_CONVERGED);
+  }
+  return sum;
+}
+
+TEST(Derivatives, OfAPatchAllocateNothing) {
+  for (rp_normal_method normal : {RP_NORMAL_HERTZ, RP_NORMAL_HALF_SPACE})
+    for (rp_tangential_method tangential : {RP_TANGENTIAL_NONE, RP_TANGENTIAL_FULL})
+      for (rp_load load : {RP_FORCE, RP_POSITION})
+        for (rp_geometry geometry : {RP_SEMI_AXES, RP_CURVATURES}) {
+          rp_config c = scenes::patch(normal, tangential, 14);
+          c.load = load;
+          c.geometry = geometry;
+          std::vector<rp_input> inputs = patch_inputs();
+          for (auto &in : inputs) in.approach = 1e-9 * in.normal_force;
+          EXPECT_EQ(allocated_by_derivatives(c, inputs, RP_DERIVATIVE_EXACT), 0)
+              << "normal " << normal << " tangential " << tangential << " load " << load;
+        }
+}
+
+TEST(Derivatives, ByDifferencesAllocateNothing) {
+  rp_config fast = scenes::patch(RP_NORMAL_HERTZ, RP_TANGENTIAL_FASTSIM, 12);
+  EXPECT_EQ(allocated_by_derivatives(fast, patch_inputs(), RP_DERIVATIVE_BY_DIFFERENCES), 0);
+  rp_config shift = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL, 12);
+  shift.regime = RP_SHIFT;
+  std::vector<rp_input> inputs = patch_inputs();
+  for (auto &in : inputs) in.creepage[0] *= 1e-3, in.creepage[1] *= 1e-3, in.spin_creepage = 0;
+  EXPECT_EQ(allocated_by_derivatives(shift, inputs, RP_DERIVATIVE_BY_DIFFERENCES), 0);
 }
 
 }  // namespace

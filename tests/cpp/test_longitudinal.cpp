@@ -34,7 +34,9 @@ TEST(Splines, OfOneWaveConvergeWithFourthOrder) {
     }
     // interpolation by a C2 cubic spline errs by h^4 |f''''|/384 (Hall and Meyer 1976)
     EXPECT_LT(worst, 5.0 / 384 * std::pow(2 * pi / n, 4) * 81);
-    if (last > 0) EXPECT_NEAR(last / worst, 16, 2);
+    if (last > 0) {
+      EXPECT_NEAR(last / worst, 16, 2);
+    }
     last = worst;
   }
 }

@@ -38,6 +38,7 @@ FEATURES: dict[str, tuple[dict[str, Any], str, str | None]] = {
         None,
     ),
     "unlike bodies": ({"material__shear_modulus": [82e9, 2e9]}, "coupling", None),
+    "derivatives": ({"method__derivatives": True}, "derivatives", None),
 }
 # scenes that have none of the above
 PLAIN: dict[str, dict[str, Any]] = {
@@ -68,7 +69,7 @@ PLAIN: dict[str, dict[str, Any]] = {
         for theory in ("linear", "polach", "fastsim", "fastrip", "table")
     },
 }
-OPTIONAL_STAGES = ("temperature", "plasticity", "history", "coupling")
+OPTIONAL_STAGES = ("temperature", "plasticity", "history", "coupling", "derivatives")
 
 
 def stages_of(contact: railpatch.Contact) -> dict[str, dict[str, Any]]:
@@ -111,6 +112,12 @@ def test_temperature_adds_its_own_bytes_alone() -> None:
     plain = stages_of(railpatch.Contact(PATCH))
     heated = stages_of(railpatch.Contact(with_values(PATCH, temperature=WARM)))
     assert total(heated) - total(plain) == heated["temperature"]["bytes"]
+
+
+def test_derivatives_add_their_own_bytes_alone() -> None:
+    plain = stages_of(railpatch.Contact(PATCH))
+    asked = stages_of(railpatch.Contact(with_values(PATCH, method__derivatives=True)))
+    assert total(asked) - total(plain) == asked["derivatives"]["bytes"] > 0
 
 
 def test_yield_stress_adds_its_own_bytes_alone() -> None:

@@ -285,6 +285,7 @@ def test_stages_tell_reason_memory_and_time() -> None:
         "coupling",
         "history",
         "plasticity",
+        "derivatives",
         "rail_support",
     ]
     assert stages["normal"]["seconds"] > 0

@@ -34,6 +34,7 @@ def config_of(scene: Scene) -> dict[str, Any]:
         "normal": case.method.normal,
         "tangential": case.method.tangential,
         "tolerance": case.method.tolerance,
+        "derivatives": int(case.method.derivatives),
         "spin_offset": case.method.spin_offset,
         "reference_surface": case.method.reference_surface,
         "flexibility_blending": case.method.flexibility_blending,

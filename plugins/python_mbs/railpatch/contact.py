@@ -14,6 +14,7 @@ from railpatch.case.load import Case, Scene, check_table, load_scene
 from railpatch.case.messages import show
 from railpatch.case.patch import Motion, PatchCase
 from railpatch.config import config_of, input_of
+from railpatch.derivative import rates_of
 from railpatch.errors import CaseError
 from railpatch.moving import changed_case, moving_keys
 from railpatch.result import (
@@ -26,6 +27,7 @@ from railpatch.result import (
     shaped_field,
     wheel_data,
 )
+from railpatch.track import add_irregularity, irregularity_of
 
 SIDE_INDEX = {"left": 0, "right": 1}
 # saved state: mark, length of the moving tables as JSON, the JSON, the core's state
@@ -61,6 +63,7 @@ class Contact:
     ) -> None:
         scene = case if isinstance(case, Scene) else load_scene(case, folder)
         self._case = scene.case
+        self._irregularity = irregularity_of(scene)
         self._core = _core.Contact(config_of(scene), timing)
         self._stages = [stage["name"] for stage in self.stages() if stage["present"]]
 
@@ -87,6 +90,8 @@ class Contact:
     def _solve(self, case: Case, creepage: list[float] | None, *, fields: bool) -> Result:
         """One step; creepage: of this step, where the case has one for each."""
         values = input_of(case)
+        if self._irregularity is not None:
+            add_irregularity(values, self._irregularity)
         if creepage is not None:
             values["creepage"] = creepage
         begin = time.perf_counter()
@@ -94,6 +99,22 @@ class Contact:
         wall_time = time.perf_counter() - begin
         self._case = case
         return Result(self._data(raw, wall_time, fields))
+
+    def differentiate(self, **direction: Any) -> Result:
+        """Rates of the last step's result, for rates of moving inputs: zero where left out.
+
+        The keys are those of step(), without direction and steps; those of left, right, track and
+        temperature take tables in part or whole. The result has the keys of step()'s with rates,
+        NaN where it has none, and ``kind``: "exact", from the solved conditions, or "differences"
+        of further steps, for methods without exact ones. Where an element is about to change
+        between stick, slip and no contact, exact rates are those of its present state. Needs
+        method.derivatives = true and a step; changes nothing. Raises CaseError.
+        """
+        rates = rates_of(self._case, direction)
+        begin = time.perf_counter()
+        raw, exact = self._core.differentiate(rates)
+        data = self._data(raw, time.perf_counter() - begin, False)
+        return Result({**data, "kind": "exact" if exact else "differences"})
 
     def reset(self) -> None:
         """Forgets the last solution: the next step starts as the first one did."""

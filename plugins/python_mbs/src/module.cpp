@@ -97,6 +97,21 @@ class Contact : public Steppable {
     return result_dict(result);
   }
 
+  nb::tuple differentiate(const nb::dict &rates) {
+    rp_input direction;
+    rp_default_direction(&direction);
+    fill_input(rates, direction);
+    rp_result change;
+    rp_derivative_kind kind = RP_DERIVATIVE_EXACT;
+    {
+      nb::gil_scoped_release unlocked;
+      rp_message message = {};
+      std::lock_guard<std::mutex> guard(mutex_);
+      check(rp_differentiate(contact_.get(), &direction, &change, &kind, &message), &message);
+    }
+    return nb::make_tuple(result_dict(change), kind == RP_DERIVATIVE_EXACT);
+  }
+
   void solve(const rp_input &input, rp_result &result) override {
     rp_message message = {};
     std::lock_guard<std::mutex> guard(mutex_);
@@ -224,6 +239,9 @@ NB_MODULE(_core, m) {
       .def("step", &Contact::step, nb::arg("input"),
            "Solves for the fields of rp_input, defaults where left out, and returns rp_result. "
            "The interpreter's lock is released.")
+      .def("differentiate", &Contact::differentiate, nb::arg("rates"),
+           "The rates of the last step's rp_result for rates of the fields of rp_input, zero where "
+           "left out, and whether they are exact. The interpreter's lock is released.")
       .def("time_steps", &Contact::time_steps, nb::arg("inputs"), nb::arg("reset"),
            nb::arg("repeat") = 1,
            "Steps through a list of inputs `repeat` times, each time forgetting the last solution "

@@ -263,6 +263,11 @@ class Method(Table):
         "left out: 0.001",
     )
 
+    derivatives: bool = Field(
+        default=False,
+        description="true: the contact gives derivatives of its last step (no unit)",
+    )
+
     @model_validator(mode="after")
     def _read_by_theory(self) -> Method:
         if self.tangential == "none":

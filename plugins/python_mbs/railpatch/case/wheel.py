@@ -155,6 +155,11 @@ class Track(Table):
     roller_pitch_rate: Number | None = Field(
         default=None, description="rad/s, about the roller's axle, above 0 forward (roller)"
     )
+    irregularity: Text | None = Field(
+        default=None,
+        description="record of the rails' deviations (file, no unit), m: x, left lateral, left "
+        "vertical, right lateral, right vertical; added to their offsets at wheelset.x",
+    )
     rail_support: RailSupport | None = Field(
         default=None, description="springs and dampers under the rails (N/m, N s/m)"
     )

@@ -1,1 +1,1 @@
-"""How continuous the forces of a wheel are in its position and velocity: ``railpatch continuity``."""
+"""How continuous a wheel's forces are in position and velocity: ``railpatch continuity``."""

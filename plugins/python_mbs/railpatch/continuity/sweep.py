@@ -6,16 +6,17 @@ samples i and i + 1, a distance h apart, the jump is
 
     |F[i+1] - F[i] - h (slope before i + slope after i + 1)/2|.
 
-It is not divided by h, so at fine steps it is the jump within a micrometre, and at coarse ones, where
-none is above the limit, a bound of it. A jump keeps its size when the step becomes smaller; what is
-steep or bends sharply does not: so what is above the limit is looked at again at a tenth of the fine
-step.
+It is not divided by h, so at fine steps it is the jump within a micrometre, and at coarse ones,
+where none is above the limit, a bound of it. A jump keeps its size when the step becomes smaller;
+what is steep or bends sharply does not: so what is above the limit is looked at again at a tenth of
+the fine step.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -92,6 +93,11 @@ class Sweep:
         return max((float(jumps_of(part).max()) for part in self.closer), default=0.0)
 
     @property
+    def jump(self) -> float:
+        """% of the wheel load: the worst, or what is left of it at smaller steps."""
+        return min(self.worst, self.remaining) if self.closer else self.worst
+
+    @property
     def worst_at(self) -> tuple[float, str]:
         """Position and component of the worst."""
         index, _, component = np.unravel_index(int(self.jumps.argmax()), self.jumps.shape)
@@ -123,15 +129,12 @@ def jumps_of(samples: list[Sample]) -> np.ndarray:
 class Measure:
     """Solves the positions of a path of one case."""
 
-    def __init__(self, case: Mapping[str, Any], path: Path) -> None:
+    def __init__(self, case: Mapping[str, Any], path: Path, load: float) -> None:
         self.contact = Contact(case)
         self.path = path
-        wheelset = case["wheelset"]
-        sides = [side for side in SIDES if side in self.contact.case.sides]
-        self.sides = sides
-        load = wheelset.get("vertical_force", case.get("load"))
-        self.load = float(load) / len(sides)
-        self.radius = float(wheelset["nominal_radius"])
+        self.sides = [side for side in SIDES if side in self.contact.case.sides]
+        self.load = load / len(self.sides)
+        self.radius = float(case["wheelset"]["nominal_radius"])
 
     def sample(self, at: float) -> Sample:
         """The forces at one position."""
@@ -153,7 +156,7 @@ class Measure:
         jumps = jumps_of(coarse).max(axis=(1, 2))
         wanted = np.zeros(len(coarse) - 1, dtype=bool)
         wanted[1:-1] |= jumps > LIMIT
-        wanted |= [a.is_event(b) for a, b in zip(coarse, coarse[1:], strict=False)]
+        wanted |= [a.is_event(b) for a, b in pairwise(coarse)]
         # what happens may end just beyond the interval
         wanted = np.convolve(wanted, [1, 1, 1], "same") > 0
         samples = [coarse[0]]
@@ -177,6 +180,6 @@ class Measure:
             found.closer.append(self.samples(a, b, step))
 
 
-def measure(case: Mapping[str, Any], path: Path) -> Sweep:
-    """The sweep of one case along one path."""
-    return Measure(case, path).sweep()
+def measure(case: Mapping[str, Any], path: Path, load: float | None = None) -> Sweep:
+    """The sweep of one case along one path; load: N, of all wheels, where the case has none."""
+    return Measure(case, path, float(load or case["wheelset"]["vertical_force"])).sweep()

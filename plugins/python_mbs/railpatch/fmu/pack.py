@@ -15,6 +15,8 @@ from typing import Literal
 
 from railpatch import _core
 from railpatch.case.load import Scene
+from railpatch.case.patch import PatchCase
+from railpatch.case.rolling import shape_keys
 from railpatch.config import config_of
 from railpatch.contact import Contact
 from railpatch.errors import CaseError
@@ -98,12 +100,15 @@ def contents_of(scene: Scene, stem: str, name: str, backend: Backend) -> Content
 
 
 def check_regime(scene: Scene) -> None:
-    """A step of a slave has no distance of its own. Raises CaseError."""
+    """A step of a slave has no distance and no place of its own. Raises CaseError."""
     regime = getattr(getattr(scene.case, "motion", None), "regime", "none")
     if regime in ("shift", "transient_rolling"):
         raise CaseError(
             f"motion.regime: value is {regime!r}, allowed 'none' or 'steady_rolling' in an FMU"
         )
+    shaped = [] if isinstance(scene.case, PatchCase) else shape_keys(scene.case)
+    if shaped:
+        raise CaseError(f"{shaped[0]}: value is given, allowed to be left out in an FMU")
 
 
 def describe(kind: Kind, backend: Backend) -> str:

@@ -83,6 +83,8 @@ def split_name(name: str) -> tuple[str, int | None]:
 
 def scene_text(scene: Scene, variables: list[Variable], guid: str) -> str:
     """resources/scene.txt; plugins/fmu/src/scene.hpp tells its form."""
+    if getattr(getattr(scene.case, "track", None), "irregularity", None) is not None:
+        raise CaseError("track.irregularity: given, allowed in an FMU none")
     config = config_of(scene)
     body = "\n".join([*lines_of(config, variables, guid), ""])
     return f"{body}end {zlib.crc32(body.encode('ascii')):08x}\n"

@@ -77,6 +77,8 @@ class ForceElement:
         self.contacts = [Contact(one, folder=folder, timing=timing) for one in cases]
         for contact in self.contacts:
             check_case(contact.case)
+            if contact.case.track.irregularity is not None:
+                raise CaseError("track.irregularity: given, allowed in a multibody model none")
         self.frame_speed = float(frame_speed)
         self._core = _core.ForceElement(
             [contact._core for contact in self.contacts],

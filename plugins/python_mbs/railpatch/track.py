@@ -1,0 +1,88 @@
+"""Irregularities of the rails along the track, from a record.
+
+A record holds the rails' deviations at positions along the track. Under a wheelset at x the rails
+lie where the record says; the rail itself stands still, so these deviations add to its offset and
+not to its velocity, which the creepages see.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import CubicSpline
+
+from railpatch.case.gap import read_rows
+from railpatch.case.load import Scene
+from railpatch.case.patch import PatchCase
+from railpatch.errors import CaseError
+
+KEY = "track.irregularity"
+COLUMNS = ("x", "left lateral", "left vertical", "right lateral", "right vertical")
+
+
+class Irregularity:
+    """Lateral (to the right) and vertical (down) deviations of both rails over x, m.
+
+    A C2 cubic spline through the record, without slope at its ends and constant beyond them.
+    x: [n], increasing; deviations: [n, 4], left lateral, left vertical, right lateral, right
+    vertical. Raises CaseError.
+    """
+
+    def __init__(self, x: ArrayLike, deviations: ArrayLike) -> None:
+        positions, values = np.asarray(x, dtype=float), np.asarray(deviations, dtype=float)
+        if positions.ndim != 1 or positions.size < 2 or values.shape != (positions.size, 4):
+            shapes = f"{positions.shape} and {values.shape}"
+            raise CaseError(f"{KEY}: shapes are {shapes}, allowed n >= 2 and n rows of 4")
+        if not (np.isfinite(positions).all() and np.isfinite(values).all()):
+            raise CaseError(f"{KEY}: values are not all finite, allowed finite numbers")
+        if (np.diff(positions) <= 0).any():
+            first = positions[1:][np.diff(positions) <= 0][0]
+            raise CaseError(f"{KEY}: x is {first:g} after a greater one, allowed increasing values")
+        self._spline = CubicSpline(positions, values, bc_type="clamped")
+
+    def at(self, x: float) -> NDArray[np.float64]:
+        """m, [2, 2]: of the left and right rail, lateral and vertical."""
+        return self._spline(self._inside(x)).reshape(2, 2)
+
+    def slope(self, x: float) -> NDArray[np.float64]:
+        """-, [2, 2]: the same by x; 0 beyond the record."""
+        inside = self._inside(x)
+        return (self._spline(inside, 1) * (inside == x)).reshape(2, 2)
+
+    def _inside(self, x: float) -> float:
+        return float(np.clip(x, self._spline.x[0], self._spline.x[-1]))
+
+
+def read_irregularity(path: str | Path) -> Irregularity:
+    """A record of five columns, m: x, left lateral, left vertical, right lateral, right vertical.
+
+    Columns are separated by commas, semicolons or spaces; '#' starts a comment. Raises CaseError.
+    """
+    rows = read_rows(Path(path), KEY)
+    for line, row in rows:
+        if len(row) != len(COLUMNS):
+            named = ", ".join(COLUMNS)
+            raise CaseError(f"{KEY}: {path}:{line}: {len(row)} values, allowed 5: {named}")
+    if len(rows) < 2:
+        raise CaseError(f"{KEY}: {path}: {len(rows)} rows, allowed 2 or more")
+    values = np.array([row for _, row in rows])
+    return Irregularity(values[:, 0], values[:, 1:])
+
+
+def irregularity_of(scene: Scene) -> Irregularity | None:
+    """The record of a scene that has one. Raises CaseError."""
+    if isinstance(scene.case, PatchCase) or scene.case.track.irregularity is None:
+        return None
+    return read_irregularity(scene.folder / scene.case.track.irregularity)
+
+
+def add_irregularity(values: dict[str, Any], irregularity: Irregularity) -> None:
+    """Into the rails' offsets of rp_input."""
+    moved = irregularity.at(values["x"])
+    values["rail_offset"] = [
+        [x, y + lateral, z + vertical]
+        for (x, y, z), (lateral, vertical) in zip(values["rail_offset"], moved, strict=True)
+    ]
