@@ -12,6 +12,7 @@
 #include "creep_table.hpp"
 #include "fast.hpp"
 #include "input_numbers.hpp"
+#include "longitudinal_shape.hpp"
 #include "physics.hpp"
 
 namespace railpatch {
@@ -451,6 +452,12 @@ void check_reference(const rp_config &c, checker &check) {
     wrong = "reference_surface = curved needs temperature = 0";
   else if (has_tangential(c) && is_coupled(combine(c.shear_modulus, c.poisson_ratio)))
     wrong = "reference_surface = curved needs bodies with equal (1-2nu)/G";
+  else if (c.regime == RP_TRANSIENT_ROLLING)
+    wrong = "reference_surface = curved needs regime = steady_rolling or none";
+  else if (c.derivatives != 0)
+    wrong = "reference_surface = curved needs derivatives = 0 in this version";
+  else if (longitudinal_shape::wanted(c, RP_LEFT) || longitudinal_shape::wanted(c, RP_RIGHT))
+    wrong = "reference_surface = curved needs wheels without runout and rails without rail_height";
   else if (!has_physics)
     wrong = "reference_surface must be plane: this build has no curved ones";
   check.require(wrong == nullptr, wrong ? wrong : "");

@@ -17,6 +17,8 @@ constexpr double negligible = 1e-12;
 constexpr double density_base = 0.1, density_power = 0.2;
 // Grid rows from which on the ends of an area follow from its outermost rows.
 constexpr int least_rows = 4;
+// Load of an outermost row over that of the next one, below which its own place counts less.
+constexpr double barely_loaded = 0.1;
 
 // Peak of the elliptic pressure that carries the load of a strip.
 double peak_of(double load, double half_length, double height) {
@@ -144,12 +146,12 @@ void contact_rows::close_area(const grid &g, int first, int last) {
     low = std::max(p[first + 1].y + middle - half, p[first + 1].y - 0.75 * g.dy);
     high = std::min(p[first + 1].y + middle + half, p[last - 1].y + 0.75 * g.dy);
   } else {
-    low = edge(p + first + 1, 1, g.dy);
-    high = edge(p + last - 1, -1, g.dy);
+    low = edge(p + first + 1, 1, count, g.dy);
+    high = edge(p + last - 1, -1, count, g.dy);
   }
-  // a row whose middle lies beyond the end gives way to it
-  if (!(p[first + 1].y > low)) ++first;
-  if (!(p[last - 1].y < high)) --last;
+  // rows whose middle lies beyond the end give way to it
+  while (first + 2 < last && !(p[first + 1].y > low)) ++first;
+  while (first + 2 < last && !(p[last - 1].y < high)) --last;
   const int inner = std::min(first + 1, last - 1);
   p[first] = {low, 0.0, p[inner].x, 0.0};
   p[last] = {high, 0.0, p[last - 1].x, 0.0};
@@ -182,9 +184,19 @@ double contact_rows::place(const contact_area &p, double weight) const {
   return points_[at].y + std::clamp(t, 0.0, 1.0) * length;
 }
 
-// y where the load vanishes: the parabola through the three rows next to the outermost one, whose
-// own element is only partly in contact; never beyond that element.
-double contact_rows::edge(const profile_point *first, int step, double dy) const {
+// y where the load vanishes. As the outermost row loses its load, the edge goes over to that of the
+// rows without it: so it does not jump when that row is gone.
+double contact_rows::edge(const profile_point *first, int step, int rows, double dy) const {
+  const double share = first->load / (barely_loaded * first[step].load);
+  const double with = edge_beyond(first, step, dy);
+  if (share >= 1 || rows <= least_rows) return with;
+  const double part = share * share * (3.0 - 2.0 * share);
+  return part * with + (1.0 - part) * edge(first + step, step, rows - 1, dy);
+}
+
+// The parabola through the three rows next to the outermost one, whose own element is only partly
+// in contact; never beyond that element.
+double contact_rows::edge_beyond(const profile_point *first, int step, double dy) const {
   const double l1 = first[step].load, l2 = first[2 * step].load, l3 = first[3 * step].load;
   // load = l1 + t (l2 - l1) + t (t - 1)/2 bend, t in rows from the first of the three inwards
   const double bend = std::min(0.0, l3 - 2.0 * l2 + l1), slope = l2 - l1 - 0.5 * bend;

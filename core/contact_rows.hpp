@@ -66,7 +66,8 @@ class contact_rows {
   };
   int collect(const grid &g, const double *pressure);
   void close_area(const grid &g, int first, int last);
-  double edge(const profile_point *first, int step, double dy) const;
+  double edge(const profile_point *first, int step, int rows, double dy) const;
+  double edge_beyond(const profile_point *first, int step, double dy) const;
   bends bend(const contact_area &area, int i) const;
   void share_strips(int points);
   double weigh(contact_area &p, double peak_load);

@@ -48,8 +48,8 @@ derivative_outcome patch_derivative::solve(const solved &s, const patch_variatio
                                            const derivative_options &options, patch_change *out) {
   derivative_outcome outcome;
   derivative_options o = options;
-  // rates are needed no better than the solution is known, and no worse than differences give them
-  if (!(o.tolerance > 0)) o.tolerance = std::clamp(0.1 * s.scene.tolerance, 1e-9, 1e-6);
+  // no better than the solution is known; at 3e-6 rates are good to 1e-5 of the greatest of a row
+  if (!(o.tolerance > 0)) o.tolerance = std::clamp(0.3 * s.scene.tolerance, 1e-9, 3e-6);
   const grid &g = s.problem.g;
   for (int k = 0; k < count; ++k) out[k] = {};
   const double *p = s.memory.pressure.data();

@@ -12,7 +12,8 @@ constexpr int most_rejected = 24;       // of one iterate, with slopes found the
 constexpr double lateral_limit = 5e-3;  // m, of one step
 // of a difference: m, and as creepage where the rail's velocity depends on it
 constexpr double lateral_difference = 1e-6, creepage_difference = 3e-5;
-constexpr double rounding = 1e-12;  // relative, of k u and c u_before/dt
+constexpr double most_residual = 1e-3;  // of a start for the next step
+constexpr double rounding = 1e-12;      // relative, of k u and c u_before/dt
 constexpr double nowhere = HUGE_VAL;
 
 double length(const lateral_vertical &v) { return std::hypot(v[0], v[1]); }
@@ -111,7 +112,7 @@ rail_support::trial rail_support::first_guess() const {
     t.z = 0.5 * (low + high);
   }
   for (std::size_t w = 0; w < at(count_); ++w) {
-    if (!rigid(0)) t.deflection[w][0] = before_[w][0] + last_rate_[w] * load_.time_step;
+    t.deflection[w][0] = lateral_[w];
     if (rigid(1)) continue;
     const double depth = touch_[w] < nowhere ? guessed_depth(w, t.z) : 0;
     const double pressed = rails_[w].hertz * depth * std::sqrt(depth);
@@ -122,28 +123,40 @@ rail_support::trial rail_support::first_guess() const {
 
 // A first iterate that can be evaluated; too great a depth is made smaller.
 bool rail_support::start(supported_wheels &wheels, trial &t) {
-  lateral_vertical still[2] = {};
-  wheels.move_rails(before_.data(), still);
+  for (const double share : {1.0, 0.0}) {
+    for (std::size_t w = 0; w < at(count_); ++w)
+      lateral_[w] = before_[w][0] + share * last_rate_[w] * load_.time_step;
+    if (start_beside(wheels, t)) return true;
+    if (!(load_.time_step > 0) || t.nowhere) return false;
+  }
+  return false;
+}
+
+bool rail_support::start_beside(supported_wheels &wheels, trial &t) {
+  const lateral_vertical still[2] = {};
+  const lateral_vertical moved[2] = {{lateral_[0], 0.0}, {lateral_[1], 0.0}};
+  wheels.move_rails(moved, still);
   bool anywhere = false;
   for (int w = 0; w < count_; ++w) {
     double z = 0;
     const bool touches = wheels.first_touch(w, z);
-    touch_[at(w)] = touches ? z - before_[at(w)][1] : nowhere;
+    touch_[at(w)] = touches ? z : nowhere;
     anywhere = anywhere || touches;
     // a ball on a plane, with a typical combined radius
     double &hertz = rails_[at(w)].hertz;
     if (!(hertz > 0)) hertz = 4.0 / 3.0 * modulus_ * std::sqrt(radius_);
   }
+  t.nowhere = !anywhere;
   if (!anywhere) {
     t.z = load_.z;
     evaluate(wheels, t);
     return false;
   }
-  for (int i = 0; i < 24; ++i) {
+  for (int i = 0; i < 12; ++i) {
     t = first_guess();
     if (evaluate(wheels, t)) return true;
     if (rigid(1) && !load_.prescribed) return false;
-    for (rail &r : rails_) r.hertz *= 3.0;
+    for (rail &r : rails_) r.hertz *= 8.0;
   }
   return false;
 }
@@ -174,6 +187,32 @@ bool rail_support::find_slopes(supported_wheels &wheels, const trial &base) {
   }
   for (rail &r : rails_) r.time_step = load_.time_step;
   return true;
+}
+
+// The part of a step dp = fixed + by_z dz that may be taken at once.
+double rail_support::allowed_part(const trial &base, const std::array<lateral_vertical, 2> &fixed,
+                                  const std::array<lateral_vertical, 2> &by_z, double dz,
+                                  double share) const {
+  double part = share;
+  for (std::size_t w = 0; w < at(count_); ++w) {
+    const double side = std::fabs(fixed[w][0] + by_z[w][0] * dz);
+    const double deeper = -(fixed[w][1] + by_z[w][1] * dz);
+    const double depth = std::max(base.z - base.deflection[w][1] - touch_[w], 0.0);
+    if (part * side > lateral_limit) part = lateral_limit / side;
+    if (touch_[w] < nowhere && part * deeper > 2 * depth + 2e-5) part = (2 * depth + 2e-5) / deeper;
+  }
+  // a prescribed load needs a contact
+  const auto deepest = [&](double taken) {
+    double most = 0;
+    for (std::size_t w = 0; w < at(count_); ++w) {
+      const double depth = base.z - base.deflection[w][1] - touch_[w];
+      most = std::max(most, depth - taken * (fixed[w][1] + by_z[w][1] * dz));
+    }
+    return most;
+  };
+  const double now = deepest(0);
+  while (load_.prescribed && now > 0 && deepest(part) < 0.1 * now) part *= 0.5;
+  return part;
 }
 
 // Newton's step with the present slopes. With p_z = u_z - z and the slopes S of F by (u_y, p_z):
@@ -219,14 +258,7 @@ rail_support::trial rail_support::newton_step(const trial &base, double share) c
     // out of contact: towards it
     if (!(slope > 0)) dz = base.missing < 0 ? 1e-5 : -1e-5;
   }
-  double part = share;
-  for (std::size_t w = 0; w < at(count_); ++w) {
-    const double side = std::fabs(fixed[w][0] + by_z[w][0] * dz);
-    const double deeper = -(fixed[w][1] + by_z[w][1] * dz);
-    const double depth = std::max(base.z - base.deflection[w][1] - touch_[w], 0.0);
-    if (part * side > lateral_limit) part = lateral_limit / side;
-    if (touch_[w] < nowhere && part * deeper > 2 * depth + 2e-5) part = (2 * depth + 2e-5) / deeper;
-  }
+  const double part = allowed_part(base, fixed, by_z, dz, share);
   trial next = base;
   next.z += part * dz;
   for (std::size_t w = 0; w < at(count_); ++w) {
@@ -269,11 +301,7 @@ support_result rail_support::solve(supported_wheels &wheels, const support_load 
   }
   trial base;
   if (!start(wheels, base)) {
-    // the rails stay where they were
-    for (rail &r : rails_) {
-      r.hertz = 0;
-      r.time_step = -1;
-    }
+    stay();
     return {false, true, HUGE_VAL, base.z};
   }
   bool fresh = false, last_is_base = true;
@@ -309,14 +337,23 @@ support_result rail_support::solve(supported_wheels &wheels, const support_load 
   // what is kept of the contact belongs to the place that is reported
   if (!last_is_base) evaluate(wheels, base);
   keep(base);
+  if (!(base.residual <= std::max(tolerance_, most_residual))) stay();
   return {base.residual <= tolerance_, false, base.residual, base.z};
+}
+
+// What is no solution is no start: the rails stay where they were.
+void rail_support::stay() {
+  for (std::size_t w = 0; w < at(count_); ++w) {
+    rails_[w] = rail{};
+    rails_[w].deflection = before_[w];
+  }
 }
 
 // The start of the next step.
 void rail_support::keep(const trial &last) {
   for (std::size_t w = 0; w < at(count_); ++w) {
     rail &r = rails_[w];
-    r.deflection = last.deflection[w];
+    reported_[w] = {r.deflection = last.deflection[w], r.rate};
     const double depth = last.z - last.deflection[w][1] - touch_[w];
     const double hertz = last.contact[w].force[1] / (depth * std::sqrt(depth));
     if (depth > 1e-7 && hertz > 1e6 && hertz < 1e14) r.hertz = hertz;

@@ -58,8 +58,8 @@ class rail_support {
 
   support_result solve(supported_wheels &wheels, const support_load &load);
   // Of the last step; rate 0 without a time step.
-  const lateral_vertical &deflection(int wheel) const { return rails_[at(wheel)].deflection; }
-  const lateral_vertical &rate(int wheel) const { return rails_[at(wheel)].rate; }
+  const lateral_vertical &deflection(int wheel) const { return reported_[at(wheel)].deflection; }
+  const lateral_vertical &rate(int wheel) const { return reported_[at(wheel)].rate; }
   void reset();
 
   // What later steps depend on: plain numbers.
@@ -82,6 +82,7 @@ class rail_support {
     std::array<lateral_vertical, 2> gap{};  // N, of each rail's equation
     double missing = 0;                     // N, of the prescribed force
     double merit = 0, residual = 0;         // N; relative
+    bool nowhere = false;                   // no wheel has a rail below it
   };
   static std::size_t at(int wheel) { return static_cast<std::size_t>(wheel); }
   bool rigid(std::size_t k) const { return !(stiffness_[k] > 0); }
@@ -91,8 +92,12 @@ class rail_support {
   trial first_guess() const;
   double guessed_depth(std::size_t wheel, double z) const;
   bool start(supported_wheels &wheels, trial &t);
+  bool start_beside(supported_wheels &wheels, trial &t);
+  void stay();
   bool find_slopes(supported_wheels &wheels, const trial &base);
   trial newton_step(const trial &base, double share) const;
+  double allowed_part(const trial &base, const std::array<lateral_vertical, 2> &fixed,
+                      const std::array<lateral_vertical, 2> &by_z, double dz, double share) const;
   void learn(const trial &base, const trial &next);
   void keep(const trial &last);
 
@@ -101,7 +106,12 @@ class rail_support {
   double tolerance_, modulus_, radius_;
   std::array<rail, 2> rails_{};
   std::array<lateral_vertical, 2> before_{};
+  struct motion {
+    lateral_vertical deflection{}, rate{};
+  };
+  std::array<motion, 2> reported_{};
   std::array<double, 2> last_rate_{};  // m/s, lateral
+  std::array<double, 2> lateral_{};    // m, first guess
   support_load load_;
   std::array<double, 2> touch_{};  // m, z of first touch with the rail not deflected
   int evaluations_ = 0;

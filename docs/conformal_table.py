@@ -29,7 +29,7 @@ def wheel_case(y: float, surface: str) -> dict[str, Any]:
         "profiles": {"wheel": "S1002", "rail": "UIC60"},
         "grid": {"element_size": [2.5e-4, 2.5e-4]},
         "friction": {"coefficient": 0.3},
-        "method": {"reference_surface": surface},
+        "method": {"reference_surface": surface, "patch_rule": "contact"},
     }
 
 

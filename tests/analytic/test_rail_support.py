@@ -296,3 +296,28 @@ def test_the_stage_is_there_where_rails_deflect() -> None:
 def test_what_is_refused(rails: dict[str, Any], key: str) -> None:
     with pytest.raises(CaseError, match=key):
         Contact(wheelset(track__rail_support=rails))
+
+
+def test_transient_contact_on_springs() -> None:
+    """Tractions of the last step and deflections of the rails go on together."""
+    rails = support([2e7, 5e7], [2e4, 5e4])
+    case = wheelset(
+        track__rail_support=rails,
+        grid={"element_size": [1.5e-3, 1.5e-3], "max_elements": [40, 40]},
+        method={"normal": "half_space", "tangential": "full", "tolerance": TOLERANCE},
+        motion={"regime": "transient_rolling"},
+        wheelset__time_step=1e-4,
+    )
+    dt, old, results = 1e-4, None, []
+    contact = Contact(case)
+    for step in range(6):
+        state = contact.save()
+        found = contact.step(y=2e-5 * step, vy=0.2, time_step=dt)
+        assert found.status == "converged"
+        for k, (stiffness, damping) in enumerate(((2e7, 2e4), (5e7, 5e4))):
+            assert max(residuals(found, stiffness, damping, k, dt, old)) <= 1.01 * TOLERANCE
+        old = {side: found[side]["rail_deflection"] for side in SIDES}
+        results.append(found)
+    contact.restore(state)
+    again = contact.step(y=1e-4, vy=0.2, time_step=dt)
+    assert again.to_dict()["left"] == results[-1].to_dict()["left"]

@@ -98,6 +98,56 @@ TEST(Null, PointersAreErrors) {
   rp_destroy(nullptr);
 }
 
+TEST(Derivatives, CallsAreChecked) {
+  rp_config c = default_config();
+  rp_message message{};
+  rp_result change{};
+  rp_input direction;
+  rp_default_direction(&direction);
+  direction.creepage[0] = 1;
+  const auto refused = [&](rp_contact *contact, rp_error expected, const char *word) {
+    change.z = 7;
+    EXPECT_EQ(rp_differentiate(contact, &direction, &change, nullptr, &message), expected);
+    EXPECT_NE(std::string(message.text).find(word), std::string::npos) << message.text;
+    EXPECT_EQ(change.z, 7) << "outputs of an error stay untouched";
+  };
+  scenes::handle without(c);
+  without.step(default_input());
+  refused(without.get(), RP_ERROR_VALUE, "derivatives is 0");
+  for (int bad : {-1, 2}) {
+    c.derivatives = bad;
+    expect_refused(c, RP_ERROR_VALUE, "derivatives");
+  }
+  c.derivatives = 1;
+  scenes::handle contact(c);
+  refused(nullptr, RP_ERROR_NULL, "contact");
+  refused(contact.get(), RP_ERROR_STATE, "step");
+  contact.step(default_input());
+  EXPECT_EQ(rp_differentiate(contact.get(), &direction, &change, nullptr, nullptr), RP_OK);
+  rp_derivative_kind kind = RP_DERIVATIVE_BY_DIFFERENCES;
+  EXPECT_EQ(rp_differentiate(contact.get(), &direction, &change, &kind, &message), RP_OK);
+  EXPECT_EQ(kind, RP_DERIVATIVE_EXACT);
+  EXPECT_LT(change.side[RP_RIGHT].patch[0].creep_force[0], 0);
+  EXPECT_EQ(rp_differentiate(contact.get(), nullptr, &change, nullptr, &message), RP_ERROR_NULL);
+  EXPECT_EQ(rp_differentiate(contact.get(), &direction, nullptr, nullptr, &message), RP_ERROR_NULL);
+  for (double bad : {nan, HUGE_VAL}) {
+    direction.spin_creepage = bad;
+    refused(contact.get(), RP_ERROR_VALUE, "spin_creepage");
+  }
+  direction.spin_creepage = 0;
+  direction.cookie = 0;
+  refused(contact.get(), RP_ERROR_NOT_DEFAULTED, "direction");
+  rp_default_direction(&direction);
+  const std::vector<unsigned char> state = contact.state();
+  EXPECT_EQ(contact.restore(state), RP_OK);
+  refused(contact.get(), RP_ERROR_STATE, "step");
+  contact.step(default_input());
+  EXPECT_EQ(rp_differentiate(contact.get(), &direction, &change, nullptr, nullptr), RP_OK);
+  rp_reset(contact.get());
+  refused(contact.get(), RP_ERROR_STATE, "step");
+  rp_default_direction(nullptr);
+}
+
 TEST(Cookie, StructsMustBeDefaulted) {
   rp_config zero{};
   expect_refused(zero, RP_ERROR_NOT_DEFAULTED, "config");
@@ -285,6 +335,13 @@ TEST(Config, CurvedReferenceSurfaceIsChecked) {
   expect("layer_yield_stress", [](rp_config &c) { c.layer_yield_stress = 1e8; });
   expect("temperature", [](rp_config &c) { c.temperature = 1; });
   expect("(1-2nu)/G", [](rp_config &c) { c.shear_modulus[0] = 2e9; });
+  expect("regime", [](rp_config &c) { c.regime = RP_TRANSIENT_ROLLING; });
+  expect("derivatives", [](rp_config &c) { c.derivatives = 1; });
+  const std::vector<double> level(16, 1e-4);
+  expect("runout", [&](rp_config &c) {
+    c.runout[RP_RIGHT] = level.data();
+    c.runout_count[RP_RIGHT] = 16;
+  });
 }
 
 TEST(Config, ChoicesAndCountsAreChecked) {
@@ -328,6 +385,12 @@ TEST(Config, ChoicesAndCountsAreChecked) {
     c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
     c.max_patches = bad == 2 ? 0 : bad;
     expect_refused(c, RP_ERROR_VALUE, "max_patches");
+    c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+    put(c.patch_rule, bad);
+    expect_refused(c, RP_ERROR_VALUE, "patch_rule");
+    c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+    c.standstill_speed = bad;
+    expect_refused(c, RP_ERROR_VALUE, "standstill_speed");
   }
 }
 

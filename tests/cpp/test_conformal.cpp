@@ -36,8 +36,12 @@ struct arc {
   influence a;
   field px, py, pn;
 
-  arc(double span, double layer, unsigned seed)
-      : a({combine(shear_modulus, poisson_ratio), layer, 0.0, true, true}, plans) {
+  static influence::scene elastic(double layer) {
+    influence::scene s{combine(shear_modulus, poisson_ratio), layer};
+    s.curved = true;
+    return s;
+  }
+  arc(double span, double layer, unsigned seed) : a(elastic(layer), plans) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> u(-1, 1);
     for (int j = 0; j < g.ny; ++j) {
@@ -257,8 +261,9 @@ TEST(ConformalRows, LieMidwayBetweenCircles) {
   pair_of_arcs arcs(0.013, 0.016, 0.6, tilt);
   const side_motion m = arcs.above(depth);
   arcs.side->place(m);
+  part_set parts;
   patch_region region;
-  const search_result found = find_patches(*arcs.side, patch_rules{}, &region, 1);
+  const search_result found = find_patches(*arcs.side, patch_rules{}, parts, &region, 1);
   ASSERT_EQ(found.status, search_status::contact);
   conformal_rows rows(40);
   const double s_min = region.s_min;
@@ -310,8 +315,10 @@ TEST(ConformalRows, TurnWithTheirSurroundings) {
   const double by = 0.3;
   const side_motion m = arcs.above(8e-5);
   arcs.side->place(m);
+  part_set parts;
   patch_region region, other;
-  ASSERT_EQ(find_patches(*arcs.side, patch_rules{}, &region, 1).status, search_status::contact);
+  ASSERT_EQ(find_patches(*arcs.side, patch_rules{}, parts, &region, 1).status,
+            search_status::contact);
   other = region;
   const vec3 at = region.frame.origin;
   other.frame.origin = {at[0], std::cos(by) * at[1] - std::sin(by) * at[2],
@@ -483,8 +490,9 @@ TEST(ConformalRows, OfGroovesAreThoseOfContact) {
     m.wheelset.y = side.rail_marker_y() - 0.68;
     m.wheelset.z = side.rail_marker_z() + peer.approach;
     side.place(m);
+    part_set parts;
     patch_region region;
-    ASSERT_EQ(find_patches(side, patch_rules{}, &region, 1).status, search_status::contact);
+    ASSERT_EQ(find_patches(side, patch_rules{}, parts, &region, 1).status, search_status::contact);
     conformal_rows rows(101);
     ASSERT_TRUE(rows.begin(side, region));
     const grid g{141, 101, groove_dx, groove_dy, -70 * groove_dx, -50 * groove_dy};

@@ -47,6 +47,7 @@ CONFIG_KEYS = [
     (WHEELSET, "wheelset.flange_back_distance", "flange_back_distance"),
     (WHEELSET, "wheelset.flange_back_position", "flange_back_position"),
     (WHEELSET, "wheelset.max_patches", "max_patches"),
+    (WHEELSET, "method.standstill_speed", "standstill_speed"),
     (WHEELSET, "track.gauge", "gauge"),
     (WHEELSET, "track.gauge_height", "gauge_height"),
     (WHEELSET, "track.cant", "cant"),

@@ -214,3 +214,25 @@ def test_a_start_outside_the_range_is_not_packed(tmp_path: Path) -> None:
     assert "rolling_speed" in text
     assert "2000" in text
     assert "1000" in text
+
+
+@pytest.mark.parametrize(
+    ("values", "key"),
+    [
+        ({"track__rail_support": {"stiffness": [0.0, 5e7]}}, "track.rail_support"),
+        ({"friction__along_track": [[0.0, 1.0], [1.0, 0.5]]}, "friction.along_track"),
+        ({"track__irregularity": "record.csv"}, "track.irregularity"),
+        (
+            {
+                "track__right": {"sections": [{"position": 0.0, "profile": "UIC60"}]},
+                "track__left": {"sections": [{"position": 0.0, "profile": "UIC60"}]},
+                "profiles__rail": None,
+            },
+            "sections",
+        ),
+    ],
+)
+def test_what_needs_a_position_or_a_time_step_is_not_packed(
+    values: dict[str, Any], key: str, tmp_path: Path
+) -> None:
+    assert key in refused(with_values(RAIL, **values), tmp_path)

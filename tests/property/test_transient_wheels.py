@@ -130,7 +130,7 @@ def test_a_saved_state_steps_to_the_same_bits() -> None:
 
 
 def test_patches_that_join_and_part_keep_their_tractions() -> None:
-    """From tread to flange, two and three solutions at a time: the creep forces of steps of half an
+    """From tread to flange, several solutions at a time: the creep forces of steps of half an
     element change no faster than those of steady rolling do, but for what is new to them."""
     force = {"wheelset__z": None, "wheelset__vertical_force": 6e4, "wheelset__yaw": 4e-3}
     coarse = {"grid__element_size": [1e-3, 1e-3]}
@@ -147,7 +147,7 @@ def test_patches_that_join_and_part_keep_their_tractions() -> None:
             assert result["status"] == "converged", (name, y)
             forces[name].append(result["force"])
             patches.add(len(result["patches"]))
-    assert patches >= {1, 2}
+    assert max(patches) > 1
     steady, transient = (np.array(forces[name])[60:] for name in ("steady", "transient"))
     change, reference = (np.abs(np.diff(f, axis=0)).max(axis=0) for f in (transient, steady))
     assert np.all(change[:2] < 1.2 * reference[:2]), (change, reference)

@@ -50,7 +50,7 @@ def conformal_case(reference: Path, surface: str) -> dict[str, Any]:
             "coefficient": 0.3,
             "factor": [[np.radians(10), 1.0], [np.radians(20), 2 / 3]],
         },
-        "method": {"reference_surface": surface},
+        "method": {"reference_surface": surface, "patch_rule": "contact"},
     }
 
 
