@@ -34,9 +34,10 @@ rated_frame fixed_frame(const contact_frame &f) {
 wheel_derivative::wheel_derivative(const patch_scene &scene, int max_count, int max_rows)
     : max_count_(max_count), max_rows_(max_rows) {
   const auto directions = static_cast<size_t>(rate_directions);
-  distance_ = aligned_buffer<double>(directions * static_cast<size_t>(max_count));
+  distance_ = aligned_buffer<double>::uninitialized(directions * static_cast<size_t>(max_count));
   if (scene.friction_variation.varies())
-    row_friction_ = aligned_buffer<double>(directions * static_cast<size_t>(max_rows));
+    row_friction_ =
+        aligned_buffer<double>::uninitialized(directions * static_cast<size_t>(max_rows));
 }
 
 size_t wheel_derivative::bytes() const {
