@@ -229,21 +229,23 @@ def test_powers_against_central_differences():
         bench.step(q, v)
         here = bench.choices()
         contact = bench.element.contact_power_derivatives()
-        damping = bench.suspension.damping_power_derivatives()
+        found = np.vstack([contact, bench.suspension.power_derivatives()])
+        scale = np.abs(found * USUAL).max(axis=1)
         compared = 0
         for column, step in enumerate(Composite.steps):
             powers, same = [], True
             for end in bench.ends(q, v, column, step):
                 bench.step(*end)
                 same = same and bench.choices() == here
-                powers.append([bench.element.contact_power, bench.suspension.damping_power])
+                spring = bench.suspension
+                power = [bench.element.contact_power, spring.damping_power, spring.drive_power]
+                powers.append(power)
             if not same:
                 continue
             compared += 1
-            expected = (np.array(powers[0]) - powers[1]) / (2 * step) * USUAL[column]
-            scale = np.abs(contact * USUAL).max(), np.abs(damping * USUAL).max()
-            missed = np.abs(np.array([contact, damping])[:, column] * USUAL[column] - expected)
-            assert (missed <= BOUND * np.array(scale)).all(), STATE[column]
+            expected = (np.array(powers[0]) - powers[1]) / (2 * step)
+            missed = np.abs(found[:, column] - expected) * USUAL[column]
+            assert (missed <= BOUND * scale).all(), STATE[column]
         assert compared >= 8
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 from collections.abc import Sequence
 from pathlib import Path
@@ -33,6 +34,7 @@ STATE = (
 )
 # of the core, by code; a test compares them
 STATUSES = ("converged", "no_contact", "not_converged", "out_of_range")
+SIDES = ("left", "right")
 LENGTH = struct.Struct("<I")
 
 
@@ -182,6 +184,24 @@ class ForceElement:
         found = motion @ self.derivatives(index)
         found[6:9] += wrench[:3]
         return found + wrench[3:] @ spin_by_state
+
+    def friction_power_derivatives(self, index: int = 0) -> NDArray[np.float64]:
+        """[12], W over units of STATE: of a wheelset's friction_power at the last step, nearly.
+
+        Friction takes what the contact forces give but for the power of the normal forces, which
+        the contacts store. Of that only the change with the velocities is counted, small beside it
+        is that of normal forces and normals at a wheelset that hardly moves along these.
+        """
+        found = -self.contact_power_derivatives(index)
+        centre = self._states[index, 2] - self.contacts[index].case.wheelset.nominal_radius
+        result = self._core.result(index)
+        for patch in (patch for side in SIDES for patch in result[side]["patches"]):
+            angle, load = patch["contact_angle"], patch["share"] * patch["normal_force"]
+            across, down = load * math.sin(angle), -load * math.cos(angle)
+            _, y, z = patch["position"]
+            lever = (y - self._states[index, 1]) * down - (z - centre) * across
+            found[7:10] += [across, down, lever]
+        return found
 
     def state(self, index: int = 0) -> dict[str, float]:
         """Position and velocity of a wheelset at the last step, track axes: see STATE.

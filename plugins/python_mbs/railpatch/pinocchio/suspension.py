@@ -103,10 +103,11 @@ class Suspension:
         states = chain.of(self._element, self._index)
         return [states.wrench(self.wrench, self.wrench_by_state(), self.wrench_by_time)]
 
-    def damping_power_derivatives(self) -> NDArray[np.float64]:
-        """[12], W over units of STATE."""
-        found = np.zeros(len(STATE))
-        found[RATES] = 2 * self._damping * self._rates
+    def power_derivatives(self) -> NDArray[np.float64]:
+        """[2, 12], W over units of STATE: of damping_power and drive_power at the last step."""
+        found = np.zeros((2, len(STATE)))
+        found[0, RATES] = 2 * self._damping * self._rates
+        found[1] = self.speed * self.wrench_by_state()[0]
         return found
 
     @property
