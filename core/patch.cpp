@@ -176,6 +176,7 @@ patch_region describe(const side_geometry &side, const patch_rules &r, const par
   out.frame.contact_angle = contact_angle;
   // between two parts the reference can lie where the rail is not touched, but never beyond it
   side.rail_surface(g.x, g.y, out.frame.origin[2], angle);
+  if (r.inclined) out.frame.inclination = side.roller_inclination(out.frame.origin);
   out.weight = g.weight;
   out.share = g.share;
   out.first_part = g.begin;
@@ -205,14 +206,20 @@ int blend(const blend_rules &rules, const part_set &found, part_interval *out) {
   double join[max_parts];
   for (int k = 0; k + 1 < found.count; ++k)
     join[k] = joined(rules, found.parts[k], found.parts[k + 1]);
+  // each gap is as it mostly is in the division that leads
+  double mostly[max_parts];
+  for (int k = 0; k + 1 < found.count; ++k) mostly[k] = join[k] < 0.5 ? 0.0 : 1.0;
   int count = 0;
-  for (int begin = 0; begin < found.count; ++begin)
-    for (int end = begin + 1; end <= found.count; ++end) {
-      const double share = interval_share(join, found.count, begin, end);
-      if (!(share > least_share)) continue;
-      out[count] = sum_parts(found.parts, begin, end);
-      out[count++].share = share;
-    }
+  for (const bool leading : {true, false})
+    for (int begin = 0; begin < found.count; ++begin)
+      for (int end = begin + 1; end <= found.count; ++end) {
+        const bool leads = interval_share(mostly, found.count, begin, end) > 0;
+        const double share = interval_share(join, found.count, begin, end);
+        if (leads != leading || !(share > least_share)) continue;
+        out[count] = sum_parts(found.parts, begin, end);
+        out[count].leads = leads;
+        out[count++].share = share;
+      }
   return count;
 }
 
@@ -272,9 +279,12 @@ search_result find_patches(const side_geometry &side, const patch_rules &rules, 
     turn_neighbours(rules, found.parts, groups, patches, angles);
   const bool too_many = found.overflow || patches > max_patches;
   keep_heaviest(groups, angles, patches, max_patches);
-  for (int k = 0; k < patches; ++k)
+  int lead = 0;
+  for (int k = 0; k < patches; ++k) {
     out[k] = describe(side, rules, found.parts, groups[k], angles[k]);
-  return {too_many ? search_status::too_many_patches : search_status::contact, patches};
+    lead += groups[k].leads;
+  }
+  return {too_many ? search_status::too_many_patches : search_status::contact, patches, lead};
 }
 
 bool first_touch(const side_geometry &side, double &z) {

@@ -64,6 +64,7 @@ using part = basic_part<double>;
 template <class T>
 struct basic_interval {
   int begin = 0, end = 0;
+  bool leads = true;              // belongs to the division of greatest share
   T weight{}, x{}, y{}, angle{};  // weighted means
   T share{};
 };
