@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -160,6 +160,12 @@ class WheelsetScene:
         method = method.model_copy(update={"derivatives": derivatives or method.derivatives})
         update = {"wheelset": wheelset, "method": method}
         return Scene(self.case.model_copy(update=update), Path())
+
+    def at_speed(self, speed: float, y: float) -> WheelsetScene:
+        """The scene at another speed (m/s), released straight at y (m)."""
+        update = {"speed": speed, "y": y, "yaw": 0.0}
+        wheelset = self.case.wheelset.model_copy(update=update)
+        return replace(self, case=self.case.model_copy(update={"wheelset": wheelset}))
 
     def at_rest(self) -> Scene:
         """The case with the load prescribed and without friction, for a first estimate."""

@@ -35,6 +35,7 @@ STATE = (
 # of the core, by code; a test compares them
 STATUSES = ("converged", "no_contact", "not_converged", "out_of_range")
 SIDES = ("left", "right")
+PATCHES = ("patches", "alternatives")
 LENGTH = struct.Struct("<I")
 
 
@@ -195,7 +196,7 @@ class ForceElement:
         found = -self.contact_power_derivatives(index)
         centre = self._states[index, 2] - self.contacts[index].case.wheelset.nominal_radius
         result = self._core.result(index)
-        for patch in (patch for side in SIDES for patch in result[side]["patches"]):
+        for patch in (p for side in SIDES for kind in PATCHES for p in result[side][kind]):
             angle, load = patch["contact_angle"], patch["share"] * patch["normal_force"]
             across, down = load * math.sin(angle), -load * math.cos(angle)
             _, y, z = patch["position"]
