@@ -19,6 +19,7 @@ from railpatch.pinocchio import (
 )
 from railpatch.pinocchio import powers as powers_of
 from railpatch.pinocchio.model import WHEELSET
+from railpatch.pinocchio.suspension import Carried
 
 from wheelset_demo.scene import GRAVITY, SIDES, WheelsetScene
 
@@ -89,26 +90,13 @@ class System:
 
         Raises CaseError, ProfileError.
         """
-        body = scene.body
-        wheelset = Body(body.mass, (body.roll_inertia, body.pitch_inertia, body.roll_inertia))
-        radius = scene.case.wheelset.nominal_radius
-        self.model = wheelset_model(
-            wheelset, radius, carrier_body=carrier_of(scene), gravity=GRAVITY
-        )
+        self.model = model_of(scene)
         self.data = self.model.createData()
         self.element = ForceElement(
             self.model, WHEELSET, scene.at_height(scene.run.exact if exact is None else exact)
         )
-        table = scene.suspension
-        self.suspension = Suspension(
-            self.element,
-            table.stiffness.model_dump(),
-            table.damping.model_dump(),
-            speed=scene.speed,
-            preload=scene.preload,
-        )
-        zeros = [pin.Force.Zero() for _ in range(self.model.njoints)]
-        self._fext = pin.StdVec_Force(zeros)
+        self.suspension = suspension_of(scene, self.element)
+        self._fext = no_forces(self.model)
         self._joint = self.model.getJointId(WHEELSET)
         self._torque = np.zeros(self.model.nv)
         self._weight = np.array([0.0, 0.0, scene.body.total_mass * GRAVITY, 0.0, 0.0, 0.0])
@@ -172,6 +160,26 @@ class System:
     def energies(self, state: State) -> Energies:
         """Of a state whose rates were the last ones asked for."""
         return energies(self.model, self.data, state.q, state.v, self.element, [self.suspension])
+
+
+def model_of(scene: WheelsetScene) -> pin.Model:
+    """The wheelset on a composite carrier."""
+    body = scene.body
+    wheelset = Body(body.mass, (body.roll_inertia, body.pitch_inertia, body.roll_inertia))
+    radius = scene.case.wheelset.nominal_radius
+    return wheelset_model(wheelset, radius, carrier_body=carrier_of(scene), gravity=GRAVITY)
+
+
+def suspension_of(scene: WheelsetScene, element: Carried) -> Suspension:
+    """The primary suspension of an element's wheelset."""
+    table = scene.suspension
+    stiffness, damping = table.stiffness.model_dump(), table.damping.model_dump()
+    return Suspension(element, stiffness, damping, speed=scene.speed, preload=scene.preload)
+
+
+def no_forces(model: pin.Model) -> pin.StdVec_Force:
+    """An fext of zeros."""
+    return pin.StdVec_Force([pin.Force.Zero() for _ in range(model.njoints)])
 
 
 def carrier_of(scene: WheelsetScene) -> Body | None:

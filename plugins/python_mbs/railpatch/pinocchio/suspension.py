@@ -3,19 +3,34 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import Protocol
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
 from railpatch.pinocchio.derivative import ROLL, YAW, StateChain, WrenchDerivatives
-from railpatch.pinocchio.element import STATE, ForceElement
+from railpatch.pinocchio.element import STATE
 
 DIRECTIONS = ("x", "y", "z", "roll", "yaw")
 # columns of the element's states
 POSITION = slice(0, 5)
 RATES = [6, 7, 8, 9, 10]
+
+
+class Carried(Protocol):
+    """What a suspension wants of the force element of its wheelset; see ForceElement."""
+
+    joints: list[int]
+    frame_speed: float
+
+    @property
+    def states(self) -> NDArray[np.float64]:
+        """[wheelsets, 12]."""
+
+    def place(self, index: int, force: Sequence[float], moment: Sequence[float]) -> NDArray:
+        """[6]."""
 
 
 class Suspension:
@@ -36,7 +51,7 @@ class Suspension:
 
     def __init__(
         self,
-        element: ForceElement,
+        element: Carried,
         stiffness: Mapping[str, float],
         damping: Mapping[str, float],
         *,
