@@ -164,6 +164,9 @@ void wheel_derivative::set_shape(step &s, int index, patch_variation *in) {
     in[k].distance = rates[k];
     std::copy_n(s.lattice[k].size, 2, in[k].size);
     std::copy_n(s.lattice[k].origin, 2, in[k].origin);
+    for (int i = region.first_part; i + 1 < end; ++i)
+      in[k].part_factor[i - region.first_part] =
+          interaction(s.wheel.rules.blend, s.parts[i], s.parts[i + 1]).rate[static_cast<size_t>(k)];
     s.depth.rate[static_cast<size_t>(k)] = -rates[k][deepest];
   }
 }

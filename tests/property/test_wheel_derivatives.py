@@ -83,7 +83,8 @@ def choices(contact: Contact, result: Any) -> list[Any]:
     found: list[Any] = []
     for side in SIDES:
         found.append(len(result[side]["patches"]))
-        for index, patch in enumerate(result[side]["patches"]):
+        solved = result[side]["patches"] + result[side]["alternatives"]
+        for index, patch in enumerate(solved):
             division = np.asarray(patch["element_division"])
             # lattice indices in half elements: a grid may begin elsewhere
             along, across = (
@@ -206,7 +207,7 @@ def test_tread_and_flange_at_once():
     totals, counts = np.zeros(2, dtype=int), set()
     for y in np.arange(6.1e-3, 6.34e-3, 2e-5):
         result = find.step(y=float(y), roll=-0.03 * float(y), **motion)
-        patches = result["right"]["patches"]
+        patches = result["right"]["patches"] + result["right"]["alternatives"]
         if result["status"] != "converged" or len(patches) < 2:
             continue
         counts.add(len(patches))
