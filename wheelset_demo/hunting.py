@@ -2,8 +2,8 @@
 
 Of the equations of motion, linearised at the wheelset that runs straight in the middle of the
 track with the contact's exact derivatives: the critical speed is where the first eigenvalue crosses
-the imaginary axis (Wickens, Fundamentals of Rail Vehicle Dynamics, 2003, chapter 3). And of runs in
-time: where the waves of a wheelset released beside the middle neither grow nor die.
+the imaginary axis (Wickens, Fundamentals of Rail Vehicle Dynamics, 2003). And of runs in time:
+where the waves of a wheelset released beside the middle neither grow nor die.
 """
 
 from __future__ import annotations

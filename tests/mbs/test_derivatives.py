@@ -249,6 +249,33 @@ def test_powers_against_central_differences():
         assert compared >= 8
 
 
+def test_two_wheelsets_of_one_model():
+    first, second = samples.model(), samples.model()
+    for index, name in enumerate(first.names):
+        second.names[index] = f"second {name}"
+    model = pin.appendModel(first, second, 0, pin.SE3(np.eye(3), np.array([2.5, 0.0, 0.0])))
+    joints = [model.getJointId(name) for name in model.names if "wheelset" in name]
+    both = ForceElement(model, joints, EXACT)
+    (qa, va), (qb, vb) = samples.random_motions(11, 2)
+    found = stepped(model, both, np.concatenate([qa, qb]), np.concatenate([va, vb]))
+    for index, (q, v) in enumerate(((qa, va), (qb, vb))):
+        alone = stepped(first, ForceElement(first, "wheelset", EXACT), q, v)
+        part = slice(6 * index, 6 * index + 6)
+        for name in ("by_q", "by_v"):
+            block, other = getattr(found, name)[part], getattr(alone, name)
+            np.testing.assert_allclose(block[:, part], other, rtol=0, atol=1e-7 * other.max())
+            # one wheelset's forces do not depend on the other
+            assert (np.delete(block, range(6 * index, 6 * index + 6), axis=1) == 0).all()
+
+
+def stepped(model: pin.Model, element: ForceElement, q: np.ndarray, v: np.ndarray):
+    """Derivatives of a model with an element alone."""
+    data, fext = model.createData(), samples.no_forces(model)
+    pin.forwardKinematics(model, data, q, v)
+    element.step(data, fext)
+    return acceleration_derivatives(model, data, q, v, np.zeros(model.nv), fext, [element])
+
+
 def test_nothing_changes():
     plain, bench = Bench(Composite()), Bench(Composite())
     motions = samples.random_motions(2, 5)
