@@ -98,6 +98,14 @@ class Trace:
         """[n, 6], N s, N m s, by IMPULSES: what is missing in the balance of momenta."""
         return np.array(self.momenta) - self.momenta[0] - np.array(self.impulses)
 
+    def momentum_errors(self) -> tuple[float, float]:
+        """Greatest parts missing of momentum and of moment of momentum, by those at the start."""
+        missing = np.abs(self.momentum_residual()).max(axis=0)
+        scale = np.abs(self.momenta[0])
+        return float(missing[:3].max() / scale[:3].max()), float(
+            missing[3:].max() / scale[3:].max()
+        )
+
 
 def lateral(patches: list[dict]) -> float:
     """m, lateral position of a wheel's contact; NaN without one."""

@@ -63,7 +63,7 @@ def test_one_millisecond(speed: float, tmp_path: Path, capsys):
         lost = found.work("friction")[-1] + found.work("damping")[-1]
         mechanical = np.abs(found.mechanical_residual()).max() / lost
         contact = np.abs(found.contact_residual()).max() / lost
-        linear, angular = momentum_errors(found)
+        linear, angular = found.momentum_errors()
         with capsys.disabled():
             print(
                 f"\n{speed} m/s, 1 ms, derivatives every {every}: {motion:.1e} off rk4; "
@@ -75,13 +75,6 @@ def test_one_millisecond(speed: float, tmp_path: Path, capsys):
         assert contact < 5e-3
         assert linear < 1e-12
         assert angular < 1e-6
-
-
-def momentum_errors(trace: Trace) -> tuple[float, float]:
-    """What is missing in momentum and moment of momentum, in parts of the wheelset's own."""
-    missing = np.abs(trace.momentum_residual()).max(axis=0)
-    scale = np.abs(trace.momenta[0])
-    return missing[:3].max() / scale[0], missing[3:].max() / scale[4]
 
 
 def test_explicit_steps_of_one_millisecond_fail_where_creep_is_stiff(tmp_path: Path):
