@@ -190,8 +190,10 @@ class ForceElement:
         """[12], W over units of STATE: of a wheelset's friction_power at the last step, nearly.
 
         Friction takes what the contact forces give but for the power of the normal forces, which
-        the contacts store. Of that only the change with the velocities is counted, small beside it
-        is that of normal forces and normals at a wheelset that hardly moves along these.
+        the contacts store. Of that only the change with the velocities is counted: at a wheelset
+        that hardly moves along the normals it is the greatest by far. What the contacts leave open
+        for being an approach apart, see railpatch.pinocchio.energy, is in it, by the spin mostly.
+        Enough for implicit steps, not for more.
         """
         found = -self.contact_power_derivatives(index)
         centre = self._states[index, 2] - self.contacts[index].case.wheelset.nominal_radius
