@@ -45,7 +45,6 @@ def manchester_case(wheel, rail):
         "grid": {"element_size": [2e-4, 2e-4]},
         "friction": {"law": "coulomb", "coefficient": 0.3},
         # at y = 5 mm the wheel touches in two places; the published patch is one
-        "method": {"patch_rule": "contact"},
     }
 
 
