@@ -36,6 +36,11 @@ class Kind:
         """Whether z is found, so that everything acts on everything."""
         return self.kind != "patch" and "force" in self.conditions
 
+    @property
+    def has_history(self) -> bool:
+        """Whether a step depends on earlier ones."""
+        return "history" in self.conditions
+
 
 @dataclass(frozen=True)
 class Variable:
@@ -161,8 +166,12 @@ def prefix_of(row: dict[str, Any], kind: Kind, side: int | None, patch: int | No
 def dependencies(output: Variable, inputs: list[Variable], kind: Kind) -> list[Variable]:
     """The inputs and parameters that act on an output."""
     level = LEVELS.index(output.level)
+    inputs = [v for v in inputs if v.level != "none"]
     if kind.coupled and level > 0:
         return inputs
+    # a rail that gives way moves by the force, on its side
+    if "supported" in kind.conditions and level > LEVELS.index("height"):
+        level = len(LEVELS)
     return [
         v
         for v in inputs
