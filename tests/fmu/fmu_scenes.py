@@ -41,6 +41,7 @@ PATCHES = {
         wheelset__z=None,
         wheelset__vertical_force=5e4,
         wheelset__y=5.5e-3,
+        wheelset__max_patches=6,
         profiles__rail="UIC60@1:20",
     ),
     "kind": "wheel_rail",
@@ -76,9 +77,7 @@ SCENES: dict[str, dict[str, Any]] = {
     "left_wheel": {**RAIL, "kind": "wheel_rail", "wheel": {"side": "left"}},
     "patches": PATCHES,
     "frictionless": with_values(RAIL, method={"tangential": "none"}, friction=None),
-    "transient": with_values(
-        RAIL, motion__regime="transient_rolling", wheelset__time_step=STEP, wheelset__z=1.5e-4
-    ),
+    "transient": with_values(RAIL, motion__regime="transient_rolling", wheelset__time_step=STEP),
     "transient_patch": with_values(
         PATCH, motion__regime="transient_rolling", motion__distance=1e-2, motion__steps=1
     ),
@@ -89,6 +88,7 @@ SCENES: dict[str, dict[str, Any]] = {
     ),
     "sections": with_values(
         RAIL,
+        wheelset__z=3e-4,
         profiles__rail=None,
         **{
             f"track__{side}__sections": [
@@ -101,8 +101,9 @@ SCENES: dict[str, dict[str, Any]] = {
     "along": with_values(RAIL, friction__along_track=[[0.0, 1.0], [1.0, 0.5]]),
     "flat": with_values(
         RAIL,
-        wheelset__left__flat={"depth": 2e-4, "rounding": 0.01},
-        track__right__joint={"position": 0.5, "depth": 5e-4},
+        wheelset__z=3e-4,
+        wheelset__left__flat={"depth": 1e-4, "rounding": 0.01},
+        track__right__joint={"position": 0.5, "depth": 1e-4},
     ),
 }
 # what is set before each step, by scene
@@ -141,7 +142,7 @@ MOTIONS: dict[str, list[dict[str, float]]] = {
     "left_wheel": [{"wheelset.yaw": -1e-3, "track.left.offset[2]": 1e-4}],
     "patches": [{"wheelset.y": y} for y in (5.75e-3, 6e-3, 6.25e-3, 5.5e-3, 0.0)],
     "frictionless": [{"wheelset.yaw": 1e-3}, {"wheelset.z": 2.1e-4}],
-    "transient": [{"wheelset.yaw": 1e-3}, {"wheelset.vy": 0.01}, {"wheelset.z": 1.6e-4}],
+    "transient": [{"wheelset.yaw": 1e-3}, {"wheelset.vy": 0.01}, {"wheelset.z": 2.1e-4}],
     "transient_patch": [{"creepage[1]": 5e-4}, {"creepage[2]": -5e-4, "normal_force": 6e4}],
     "supported": [{"wheelset.y": 1e-4}, {"wheelset.z": 2.2e-4, "track.left.velocity[2]": 0.01}],
     "sections": [{"wheelset.x": 0.4}, {"wheelset.x": 1.7, "wheelset.yaw": 1e-3}],

@@ -33,6 +33,7 @@ CHANGES: dict[str, tuple[float, ...]] = {
     "spin_creepage": (0.1, 1.0),
     "rolling_speed": (-1.0, -10.0),
     "direction": (-2,),
+    "substeps": (1,),
     "pitch_rate": (0.1, 0.4),
     "speed": (0.01, 0.1),
     "velocity[1]": (0.01, 0.1),
@@ -62,7 +63,8 @@ def place_of(fmu: Fmu) -> dict[str, float]:
     values = {}
     for causality in ("input", "parameter"):
         for name in fmu.names(causality):
-            values[name] = PLACE.get(name, float(fmu.variables[name][0].attrib["start"]))
+            number = int if fmu.variables[name][0].tag == "Integer" else float
+            values[name] = PLACE.get(name, number(fmu.variables[name][0].attrib["start"]))
     if "direction" in values:
         values["direction"] = 1
     return values
