@@ -79,6 +79,12 @@ def solved(fmu: Fmu, values: dict[str, float]) -> dict[str, float]:
         return slave.outputs()
 
 
+def other_side(output: str) -> str:
+    """ ".right." of an output of the left wheel, and so on."""
+    side = output.split(".")[0]
+    return {"left": ".right.", "right": ".left."}.get(side, "none")
+
+
 SOLVED = ("patch", "patch_approach", "patch_normal", "line", "fast", "rail", "roller", "loaded")
 SOLVED += ("frictionless", "transient", "supported", "sections", "along", "flat")
 
@@ -102,5 +108,7 @@ def test_dependencies_are_those_found_by_perturbation(name: str, unpacked: Unpac
         assert found <= initial[output], (output, found - initial[output])
         absent = any(f"patch[{number}]" in output for number in (2, 3, 4))
         if not absent and not any(word in output for word in SILENT):
-            assert initial[output] <= found, (output, initial[output] - found)
+            # rails that give way: the other side's come in by the common iteration only
+            iterated = {k for k in place if name == "supported" and other_side(output) in k}
+            assert initial[output] <= found | iterated, (output, initial[output] - found)
         assert steps[output] == initial[output] - {"friction.coefficient", "substeps"}

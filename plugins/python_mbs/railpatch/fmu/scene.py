@@ -65,15 +65,17 @@ def has_history(case: Case) -> bool:
 def along_conditions(case: WheelRailCase | WheelsetCase) -> set[str]:
     """What varies along the track or around the wheels, and rails that give way."""
     found = set()
-    rails = [getattr(case.track, side) for side in case.sides]
-    wheels = [getattr(case.wheelset, side) for side in case.sides]
-    shaped = any(r.sections or r.running_surface is not None or r.joint for r in rails)
-    if shaped:
-        found.add("shape along x")
-    elif case.has_tangential and case.friction is not None and case.friction.along_track:
+    along = case.has_tangential and case.friction is not None and case.friction.along_track
+    for side in case.sides:
+        rail, wheel = getattr(case.track, side), getattr(case.wheelset, side)
+        if rail.sections or rail.running_surface is not None or rail.joint:
+            found |= {"shape along x", f"x {side}"}
+        if along:
+            found.add(f"x {side}")
+        if wheel.runout is not None or wheel.flat:
+            found |= {"runout", f"pitch {side}"}
+    if along and "shape along x" not in found:
         found.add("friction along x")
-    if any(w.runout is not None or w.flat for w in wheels):
-        found.add("runout")
     if case.track.rail_support is not None:
         found.add("supported")
     return found

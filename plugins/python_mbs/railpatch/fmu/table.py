@@ -169,15 +169,23 @@ def dependencies(output: Variable, inputs: list[Variable], kind: Kind) -> list[V
     inputs = [v for v in inputs if v.level != "none"]
     if kind.coupled and level > 0:
         return inputs
-    # a rail that gives way moves by the force, on its side
+    # rails that give way move by the forces, both found by one iteration
     if "supported" in kind.conditions and level > LEVELS.index("height"):
-        level = len(LEVELS)
+        return inputs
     return [
         v
         for v in inputs
         if LEVELS.index(v.level) <= level
         and (v.side is None or output.side is None or v.side == output.side)
+        and has_shape(v, output.side, kind)
     ]
+
+
+def has_shape(known: Variable, side: int | None, kind: Kind) -> bool:
+    """Whether the side's wheel or rail varies with x or pitch, if it is one of these."""
+    if side is None or known.field not in ("x", "pitch"):
+        return True
+    return f"{known.field} {SIDES[side]}" in kind.conditions
 
 
 def with_start(variable: Variable, start: float | int) -> Variable:
