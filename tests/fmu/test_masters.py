@@ -11,6 +11,7 @@ import pytest
 import railpatch
 from case_samples import with_values
 from fmu_scenes import RAIL, SCENES, STEP, Packer
+from railpatch.errors import CaseError
 from scipy.integrate import trapezoid
 from slave import DISCARD, ERROR, OK, Fmu, Slave
 
@@ -184,6 +185,46 @@ def test_friction_takes_what_the_contact_gives(tmp_path: Path) -> None:
         assert lost > 0
         # beside it stands what the pressure does at the approach, on the tilted contact frame
         assert power == pytest.approx(-lost, rel=0.05)
+
+
+def test_the_largest_step_is_that_of_the_derivatives(tmp_path: Path) -> None:
+    """From directional derivatives, and for one freedom what the definition promises."""
+    option = {"largest_step": True}
+    case = with_values(RAIL, wheelset__y=3e-4, method__tolerance=1e-9)
+    fmu = Packer(tmp_path, {"rail": case}, rail=option)("rail")
+    mass = np.array([1200.0] * 3 + [700.0, 650.0, 80.0])
+    pose = [f"wheelset.{n}" for n in ("y", "z", "roll", "yaw")]
+    rates = ("speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate")
+    rows = [f"{n}[{k}]" for n in ("force", "moment") for k in (1, 2, 3)]
+    order = [0, 1, 2, 3, 5, 4]  # of moments as pose: roll, yaw, pitch
+    with Slave(fmu).initialize() as slave:
+        inertia = dict(zip((1, 2, 3), (700.0, 80.0, 650.0), strict=True))
+        values = {f"wheelset.inertia[{k}]": v for k, v in inertia.items()}
+        assert slave.set({"wheelset.mass": 1200.0, **values}) == OK
+        stiffness, damping = np.zeros((6, 6)), np.zeros((6, 6))
+        for column, name in zip((1, 2, 3, 4), pose, strict=True):
+            stiffness[:, column] = -np.array(slave.derivative(rows, {name: 1.0})[1])[order]
+        for column, name in enumerate(rates):
+            change = slave.derivative(rows, {f"wheelset.{name}": 1.0})[1]
+            damping[:, column] = -np.array(change)[order]
+        scale = 1 / np.sqrt(np.outer(mass, mass))
+        w = math.sqrt(np.linalg.norm(scale * stiffness, 2))
+        c = np.linalg.norm(scale * damping, 2)
+        [found] = slave.get("largest_step")
+        assert found == pytest.approx(min(0.1 / w, 1 / c), rel=1e-4)
+        # a hundred times the inertia: ten times the step on the stiffness
+        assert slave.set({"wheelset.mass": 1.2e5, **{k: 100 * v for k, v in values.items()}}) == OK
+        assert slave.get("largest_step")[0] == pytest.approx(min(1 / w, 100 / c), rel=1e-4)
+        assert slave.derivative(["largest_step"], {"wheelset.y": 1.0})[0] == ERROR
+        assert slave.set({"wheelset.z": -1e-3}) == OK
+        assert slave.step(0, STEP) == OK
+        assert slave.get("largest_step") == [1.0]  # nothing touches
+
+
+@pytest.mark.parametrize("name", ["patch", "transient"])
+def test_the_largest_step_needs_wheels_and_derivatives(name: str, tmp_path: Path) -> None:
+    with pytest.raises(CaseError, match="--largest-step"):
+        Packer(tmp_path, SCENES, **{name: {"largest_step": True}})(name)
 
 
 INPUTS = ("roll", "yaw", "speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate")

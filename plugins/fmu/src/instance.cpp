@@ -88,12 +88,13 @@ std::unique_ptr<Instance> Instance::create(Interface interface, const char *guid
   instance->contact_.reset(contact);
   instance->wheels_ = scene.config.kind != RP_PATCH;
   instance->derivatives_ = scene.config.derivatives != 0;
+  instance->with_z_ = scene.config.load == RP_POSITION;
   instance->interface_ = interface;
   instance->options_ = scene.options;
   instance->content_ = hash_of(scene.guid);
   instance->variables_ = std::move(scene.variables);
   if (!instance->index_variables()) {
-    instance->log_.error("fmi2Instantiate: the outputs of scene.txt do not come last");
+    instance->log_.error("fmi2Instantiate: the variables of scene.txt do not belong together");
     return nullptr;
   }
   instance->start_values();
@@ -109,6 +110,9 @@ bool Instance::index_variables() {
     if (known_ != i) return false;
     ++known_;
   }
+  // the step is found from four parameters
+  for (uint32_t k = 0; index_of(largest_step) >= 0 && k < 4; ++k)
+    if (index_of(wheelset_mass + k) < 0 || !wheels_ || !derivatives_) return false;
   for (size_t i = known_; i < variables_.size(); ++i) {
     const Variable &variable = *variables_[i].variable;
     const int of = is_mean(variable) ? index_of(variable.reference - mean_apart) : -1;
@@ -128,6 +132,7 @@ void Instance::start_values() {
   direction_.clear();
   pending_.clear();
   solution_ = Solution::none;
+  largest_known_ = false;
   changed_ = true;
 }
 
@@ -262,6 +267,7 @@ void Instance::publish() {
     values_[i] = output_of(outputs_, *variables_[i].variable);
   solved_ = at_;
   changed_ = false;
+  largest_known_ = false;
 }
 
 std::string Instance::failure(double time, const rp_result &result) const {
@@ -300,14 +306,19 @@ fmi2Status Instance::get(const Call &call, Type type, const fmi2ValueReference *
                          size_t count, T *values) {
   if (count > 0 && (references == nullptr || values == nullptr))
     return refuse(call, references == nullptr ? "vr is NULL" : "value is NULL");
-  bool of_output = false;
+  bool of_output = false, of_largest = false;
   for (size_t i = 0; i < count; ++i) {
     const int index = find(call, type, references[i]);
     if (index < 0) return fmi2Error;
     of_output |= variables_[static_cast<size_t>(index)].variable->role == Role::output;
+    of_largest |= references[i] == largest_step;
   }
   if (of_output && changed_ && follows()) {
     const fmi2Status status = solve(call);
+    if (status != fmi2OK) return status;
+  }
+  if (of_largest && !largest_known_ && solution_ != Solution::none) {
+    const fmi2Status status = find_largest_step(call);
     if (status != fmi2OK) return status;
   }
   for (size_t i = 0; i < count; ++i)
@@ -340,6 +351,8 @@ fmi2Status Instance::set(const Call &call, Type type, const fmi2ValueReference *
   for (size_t i = 0; i < count; ++i)
     values_[static_cast<size_t>(index_of(references[i]))] = static_cast<double>(values[i]);
   changed_ = changed_ || count > 0;
+  // its mass and inertia may be among them
+  if (count > 0) largest_known_ = false;
   return fmi2OK;
 }
 

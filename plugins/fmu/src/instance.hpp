@@ -80,7 +80,7 @@ class Instance {
   int find_input(const Call &call, fmi2ValueReference reference);
   int find_output(const Call &call, fmi2ValueReference reference);
   bool settable(const Call &call, int index, double value);
-  bool index_variables();  // false: the outputs do not come last
+  bool index_variables();  // false: they do not belong together
   void start_values();
   // outputs follow the inputs at once
   bool follows() const {
@@ -100,6 +100,7 @@ class Instance {
   // Sees to it that the contact holds the outputs' solution.
   fmi2Status hold_solution(const Call &call);
   fmi2Status differentiate(const Call &call, const std::vector<double> &rates);
+  fmi2Status find_largest_step(const Call &call);
   std::vector<double> saved_numbers() const;
   size_t number_count() const { return values_.size() + (2 + orders) * known_; }
   fmi2Status give_handle(const Call &call, std::unique_ptr<Snapshot> snapshot, fmi2FMUstate *state);
@@ -111,7 +112,7 @@ class Instance {
   uint64_t content_ = 0;        // tells this FMU's states from those of another
   Interface interface_ = Interface::co_simulation;
   Options options_;
-  bool wheels_ = false, derivatives_ = false;
+  bool wheels_ = false, derivatives_ = false, with_z_ = false;
   size_t known_ = 0;  // number of inputs and parameters, which come first
   std::vector<std::pair<size_t, size_t>> means_;  // mean over a step, and what it is the mean of
   std::string table_;  // of creep forces, which the contact uses in place
@@ -130,7 +131,8 @@ class Instance {
   Mode mode_ = Mode::instantiated;
   double time_ = 0, start_ = 0, stop_ = 0;
   bool stop_defined_ = false;
-  bool changed_ = true;  // an input or parameter was set after the last solve
+  bool largest_known_ = false;  // the largest step, which is found where it is read
+  bool changed_ = true;         // an input or parameter was set after the last solve
   Solution solution_ = Solution::none;
   std::vector<double> values_;
   std::vector<double> solved_;             // inputs and parameters of the outputs

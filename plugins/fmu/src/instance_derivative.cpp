@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "instance.hpp"
+#include "largest_step.hpp"
 
 namespace railpatch::fmu {
 
@@ -19,9 +20,10 @@ int Instance::find_output(const Call &call, fmi2ValueReference reference) {
   const int index = find(call, Type::real, reference);
   if (index < 0) return index;
   const SceneVariable &item = variables_[static_cast<size_t>(index)];
-  if (item.variable->role == Role::output && !is_mean(*item.variable)) return index;
-  refuse(call, item.name + (is_mean(*item.variable) ? " is a mean, without derivatives"
-                                                    : " is not an output"));
+  const bool output = item.variable->role == Role::output;
+  const bool alone = is_mean(*item.variable) || item.variable->reference == largest_step;
+  if (output && !alone) return index;
+  refuse(call, item.name + (output ? " has no derivatives" : " is not an output"));
   return -1;
 }
 
@@ -117,6 +119,26 @@ fmi2Status Instance::differentiate(const Call &call, const std::vector<double> &
   }
   if (wheels_) add_sum_rates(outputs_, input_, direction, change_);
   direction_ = rates;
+  return fmi2OK;
+}
+
+fmi2Status Instance::find_largest_step(const Call &call) {
+  const fmi2Status status = hold_solution(call);
+  if (status != fmi2OK) return status;
+  rp_jacobian jacobian;
+  rp_message message = {};
+  const rp_error error = rp_get_jacobian(contact_.get(), &jacobian, &message);
+  if (error != RP_OK)
+    return refuse(call, message.text[0] != '\0' ? message.text : rp_error_text(error));
+  Inertia inertia;
+  const auto value = [&](uint32_t reference) -> double & {
+    return values_[static_cast<size_t>(index_of(reference))];
+  };
+  inertia.mass = value(wheelset_mass);
+  for (uint32_t k = 0; k < 3; ++k) inertia.moment[k] = value(wheelset_inertia + k);
+  const bool good = jacobian.status != RP_NOT_CONVERGED;
+  value(largest_step) = good ? largest_step_of(jacobian, inertia, with_z_) : 0;
+  largest_known_ = true;
   return fmi2OK;
 }
 

@@ -51,6 +51,7 @@ fmi2Status Instance::get_state(fmi2FMUstate *state) {
   header.changed = changed_ ? 1 : 0;
   header.interface = static_cast<uint16_t>(interface_);
   header.solved = solution_ != Solution::none ? 1 : 0;
+  header.largest_known = largest_known_ ? 1 : 0;
   return give_handle(call::get_state,
                      std::make_unique<Snapshot>(pack(header, saved_numbers(), core)), state);
 }
@@ -87,6 +88,7 @@ fmi2Status Instance::set_state(fmi2FMUstate state) {
   stop_ = header.stop;
   stop_defined_ = header.stop_defined != 0;
   changed_ = header.changed != 0;
+  largest_known_ = header.largest_known != 0;
   mode_ = static_cast<Mode>(header.mode);
   return fmi2OK;
 }

@@ -38,6 +38,7 @@ const Variable *find_variable(uint32_t reference) {
 }
 
 double output_of(const Outputs &outputs, const Variable &variable) {
+  if (variable.field == no_field) return 0;
   const double value = read_field(outputs, variable.type, variable.field);
   if (variable.plus == no_field) return value;
   return value + read_field(outputs, variable.type, variable.plus);

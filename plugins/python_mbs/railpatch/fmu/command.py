@@ -28,9 +28,20 @@ from railpatch.commands import output_option, scene_argument
     help="Directional derivatives: where exact ones exist, always (else by differences), or none.",
 )
 @click.option("--averages", is_flag=True, help="Also give forces averaged over a step.")
+@click.option(
+    "--largest-step",
+    is_flag=True,
+    help="Also give the largest step that forces may be held for; takes two to three steps' time.",
+)
 @click.option("--quiet", is_flag=True, help="Print nothing.")
 def fmu(
-    scene: Path | None, output: Path, fft: Any, derivatives: Any, averages: bool, quiet: bool
+    scene: Path | None,
+    output: Path,
+    fft: Any,
+    derivatives: Any,
+    averages: bool,
+    largest_step: bool,
+    quiet: bool,
 ) -> None:
     """Pack a scene as an FMU: FMI 2.0, Linux on x86-64.
 
@@ -43,7 +54,13 @@ def fmu(
 
     name, loaded = scene_of(scene)
     written = pack_fmu(
-        loaded, output, name=name, backend=fft, derivatives=derivatives, averages=averages
+        loaded,
+        output,
+        name=name,
+        backend=fft,
+        derivatives=derivatives,
+        averages=averages,
+        largest_step=largest_step,
     )
     if not quiet:
         licence = ", under the GPL because of FFTW" if fft == "fftw" else ""

@@ -12,6 +12,9 @@ from railpatch.fmu.table import Kind, Table, Variable, dependencies
 BASE_UNITS = {
     "1": {},
     "m": {"m": 1},
+    "s": {"s": 1},
+    "kg": {"kg": 1},
+    "kg.m2": {"kg": 1, "m": 2},
     "rad": {"rad": 1},
     "m/s": {"m": 1, "s": -1},
     "rad/s": {"rad": 1, "s": -1},

@@ -80,6 +80,15 @@ move by derivatives they are found by the trapezoidal rule, from the outputs at 
 communication point over <code>substeps</code> intervals, else as means of the sub-steps' ends.
 Means have no directional derivatives.</p>
 """
+LARGEST_STEP = """
+<p><b>largest_step</b> is for masters that hold forces during a step. With K and C the negative
+derivatives of force and moment by pose and velocity, and M the mass and inertia (parameters),
+w<sup>2</sup> and c are the spectral norms of M<sup>-1/2</sup>KM<sup>-1/2</sup> and
+M<sup>-1/2</sup>CM<sup>-1/2</sup>. It is the least of 0.1/w, where the lag takes 2.5 % of critical
+damping from the contact's stiffest oscillation, of 1/c, above which creep forces overshoot, and of
+1 s. The rest of the model, its damping and further elasticity, is not in it. 0: a derivative is not
+known. It is found where it is read, and takes two to three steps' time.</p>
+"""
 DERIVATIVES = """
 <p><b>Directional derivatives</b> of Real outputs by Real inputs are those of the outputs as they
 are, at the inputs they were solved with: inputs set since then do not count in co-simulation before
@@ -150,6 +159,8 @@ def interfaces(labels: Labels, kind: Kind) -> str:
     parts = [HISTORY if kind.has_history else NO_HISTORY]
     if "averaged" in kind.conditions:
         parts.append(AVERAGED)
+    if "largest step" in kind.conditions:
+        parts.append(LARGEST_STEP)
     if labels.derivatives:
         parts.append(DERIVATIVES)
     return "".join(parts)

@@ -57,17 +57,20 @@ def pack_fmu(
     backend: Backend = "eigen",
     derivatives: Derivatives = "exact",
     averages: bool = False,
+    largest_step: bool = False,
 ) -> Path:
     """Writes the FMU of a scene.
 
     name: of the model. backend: "eigen" (permissive), or "fftw" (faster; then the FMU is under the
     GPL). derivatives: of the outputs; "exact": where they come from the solved conditions;
     "always": else by differences of further solves; a scene with a history has none. averages:
-    outputs of forces averaged over a step, and sub-steps for them (scenes with wheels). The
+    outputs of forces averaged over a step, and sub-steps for them (scenes with wheels).
+    largest_step: an output for masters, with mass and inertia of the wheelset as parameters, in
+    scenes with wheels and derivatives; it costs two to three steps where it is read. The
     same scene, library and SOURCE_DATE_EPOCH give the same bytes. Raises CaseError.
     """
     output = Path(output)
-    contents = contents_of(scene, output.stem, name, backend, derivatives, averages)
+    contents = contents_of(scene, output.stem, name, backend, derivatives, averages, largest_step)
     guid = guid_of(contents)
     files = files_of(contents, guid)
     temporary = output.with_name(f".{output.name}.{os.getpid()}")
@@ -90,6 +93,7 @@ def contents_of(
     backend: Backend,
     derivatives: Derivatives,
     averages: bool,
+    largest_step: bool,
 ) -> Contents:
     """Everything that is known before the GUID."""
     library = library_of(backend)
@@ -99,6 +103,11 @@ def contents_of(
     kind = kind_of(scene.case, _core.config_numbers(config), averages=averages)
     # solved once, so that an FMU is never made of a scene that the core refuses or cannot start
     kinds = derivative_kind(scene, name, asked=derivatives != "none" and not kind.has_history)
+    provided = kinds == "exact" or (kinds == "differences" and derivatives == "always")
+    if largest_step:
+        if not provided or kind.kind == "patch":
+            raise CaseError("--largest-step: given, allowed with wheels and derivatives only")
+        kind = replace(kind, conditions=kind.conditions | {"largest step"})
     labels = Labels(
         identifier=identifier_of(stem) + SUFFIXES[backend],
         name=name,
@@ -107,7 +116,7 @@ def contents_of(
         version=_core.version(),
         date=time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(epoch())),
         tolerance=scene.case.method.tolerance,
-        derivatives=kinds == "exact" or (kinds == "differences" and derivatives == "always"),
+        derivatives=provided,
     )
     variables = variables_of(table, kind, scene.case)
     creep_table = config["creep_table"].tobytes() if "creep_table" in config else None

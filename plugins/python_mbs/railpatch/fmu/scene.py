@@ -105,8 +105,8 @@ def within(variable: Variable) -> bool:
 
 def start_of(variable: Variable, case: Case) -> float | int:
     """The case's value of an input or parameter."""
-    if variable.name == "substeps":
-        return 1
+    if variable.start is not None:
+        return variable.start
     name, index = split_name(variable.name)
     path = name.split(".")
     if isinstance(case, PatchCase) and len(path) == 1:

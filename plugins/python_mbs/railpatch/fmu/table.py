@@ -117,6 +117,7 @@ class Table:
                     side=side,
                     range=self.range(row["type"]),
                     description=row["description"].format(**names),
+                    start=row.get("start"),
                 )
 
 
@@ -166,7 +167,12 @@ def prefix_of(row: dict[str, Any], kind: Kind, side: int | None, patch: int | No
 def dependencies(output: Variable, inputs: list[Variable], kind: Kind) -> list[Variable]:
     """The inputs and parameters that act on an output."""
     level = LEVELS.index(output.level)
-    inputs = [v for v in inputs if v.level != "none"]
+    found = ("wheelset.mass", "wheelset.inertia")
+    inputs = [
+        v
+        for v in inputs
+        if v.level != "none" or (output.name == "largest_step" and v.name.startswith(found))
+    ]
     if kind.coupled and level > 0:
         return inputs
     # rails that give way move by the forces, both found by one iteration
