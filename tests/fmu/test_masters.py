@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import railpatch
 from case_samples import with_values
+from fmpy.validation import validate_fmu
 from fmu_scenes import RAIL, SCENES, STEP, Packer
 from railpatch.errors import CaseError
 from scipy.integrate import trapezoid
@@ -219,6 +220,22 @@ def test_the_largest_step_is_that_of_the_derivatives(tmp_path: Path) -> None:
         assert slave.set({"wheelset.z": -1e-3}) == OK
         assert slave.step(0, STEP) == OK
         assert slave.get("largest_step") == [1.0]  # nothing touches
+
+
+def test_all_options_together_are_valid(tmp_path: Path) -> None:
+    """The description has no finding, and the page tells of every variable."""
+    fmu = Packer(tmp_path, {"a": SCENES["loaded"]}, a={"averages": True, "largest_step": True})("a")
+    assert validate_fmu(str(tmp_path / "a.fmu")) == []
+    page = (fmu.folder / "documentation" / "index.html").read_text()
+    for name in fmu.variables:
+        assert f"<code>{name}</code>" in page, name
+    with Slave(fmu).initialize() as slave:
+        assert 1e-6 < slave.get("largest_step")[0] < 0.1
+        state = slave.save()
+        expected = slave.outputs()
+        assert slave.step(0, STEP) == OK
+        assert slave.restore(state) == OK
+        assert slave.outputs() == expected
 
 
 @pytest.mark.parametrize("name", ["patch", "transient"])
