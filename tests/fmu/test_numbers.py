@@ -41,6 +41,11 @@ def changes_of(contact: railpatch.Contact, values: dict[str, float]) -> dict[str
     return changed
 
 
+def solutions(wheel: dict[str, Any]) -> list[dict[str, Any]]:
+    """All that count in a wheel's force."""
+    return wheel["patches"] + wheel["alternatives"]
+
+
 def summed(patches: list[dict[str, Any]], key: str) -> float:
     """Of a wheel's patches by their shares; the greatest residual."""
     values = [(p[key] or 0, p["share"]) for p in patches]
@@ -54,9 +59,9 @@ def expected(result: dict[str, Any], name: str) -> float:
     sums = re.fullmatch(r"((?:left|right)\.)?(friction_power|elastic_energy|residual)", name)
     if sums and "left" in result:
         sides = [sums[1][:-1]] if sums[1] else ["left", "right"]
-        return summed([p for side in sides for p in result[side]["patches"]], sums[2])
+        return summed([p for side in sides for p in solutions(result[side])], sums[2])
     if sums and "patches" in result:
-        return summed(result["patches"], sums[2])
+        return summed(solutions(result), sums[2])
     value: Any = result
     for part in re.findall(r"[a-z_]+|\d+", name.replace("patch[", "patches[")):
         if part == "patch_count":

@@ -254,17 +254,25 @@ fmi2Status Instance::run_contact(const Call &call, double time, double time_step
              std::string(call.name) + ": " + failure(time, outputs_.result));
     return fmi2Discard;
   }
-  for (rp_side_result &side : outputs_.result.side)
-    for (int i = wheels_ ? side.patch_count : RP_MAX_PATCHES; i < RP_MAX_PATCHES; ++i)
-      side.patch[i].status = RP_NO_CONTACT;
   if (wheels_) add_sums(outputs_, input_);
   solution_ = Solution::held;
   return fmi2OK;
 }
 
+bool Instance::absent(const Variable &variable) const {
+  const uint32_t side = variable.reference / 1000, patch = variable.reference % 1000 / 100;
+  if (!wheels_ || side == 0 || patch == 0) return false;
+  return static_cast<int32_t>(patch) > outputs_.result.side[side - 1].patch_count;
+}
+
 void Instance::publish() {
-  for (size_t i = known_; i < values_.size(); ++i)
-    values_[i] = output_of(outputs_, *variables_[i].variable);
+  for (size_t i = known_; i < values_.size(); ++i) {
+    const Variable &variable = *variables_[i].variable;
+    if (absent(variable))
+      values_[i] = is_status(variable) ? RP_NO_CONTACT : 0;
+    else
+      values_[i] = output_of(outputs_, variable);
+  }
   solved_ = at_;
   changed_ = false;
   largest_known_ = false;

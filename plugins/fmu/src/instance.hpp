@@ -92,6 +92,8 @@ class Instance {
   fmi2Status advance(const Call &call, double time, double time_step);
   fmi2Status run_contact(const Call &call, double time, double time_step);
   std::string failure(double time, const rp_result &result) const;
+  // of a patch that the last solve did not have
+  bool absent(const Variable &variable) const;
   void publish();
   fmi2Status extrapolate(const Call &call, double time, double past);
   void end_inputs(bool moving, double step);
@@ -100,6 +102,7 @@ class Instance {
   // Sees to it that the contact holds the outputs' solution.
   fmi2Status hold_solution(const Call &call);
   fmi2Status differentiate(const Call &call, const std::vector<double> &rates);
+  double rate_of(fmi2ValueReference reference) const;
   fmi2Status find_largest_step(const Call &call);
   std::vector<double> saved_numbers() const;
   size_t number_count() const { return values_.size() + (2 + orders) * known_; }

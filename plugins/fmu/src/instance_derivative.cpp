@@ -51,8 +51,7 @@ fmi2Status Instance::directional_derivative(const fmi2ValueReference *unknown, s
     rates[static_cast<size_t>(index)] += seed[i];
   }
   const fmi2Status status = differentiate(call, rates);
-  for (size_t i = 0; i < unknown_count && status == fmi2OK; ++i)
-    change[i] = output_of(change_, *variables_[static_cast<size_t>(index_of(unknown[i]))].variable);
+  for (size_t i = 0; i < unknown_count && status == fmi2OK; ++i) change[i] = rate_of(unknown[i]);
   return status;
 }
 
@@ -71,10 +70,13 @@ fmi2Status Instance::output_derivatives(const fmi2ValueReference *references, si
     if (order[i] != 1) return refuse(call, "order is " + std::to_string(order[i]) + ", allowed 1");
   }
   const fmi2Status status = differentiate(call, rates_);
-  for (size_t i = 0; i < count && status == fmi2OK; ++i)
-    values[i] =
-        output_of(change_, *variables_[static_cast<size_t>(index_of(references[i]))].variable);
+  for (size_t i = 0; i < count && status == fmi2OK; ++i) values[i] = rate_of(references[i]);
   return status;
+}
+
+double Instance::rate_of(fmi2ValueReference reference) const {
+  const Variable &variable = *variables_[static_cast<size_t>(index_of(reference))].variable;
+  return absent(variable) ? 0 : output_of(change_, variable);
 }
 
 fmi2Status Instance::hold_solution(const Call &call) {

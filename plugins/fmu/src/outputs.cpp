@@ -46,9 +46,9 @@ Dual power_of(const double (&force)[3], const double (&moment)[3], const double 
   return power;
 }
 
-// Adds a wheel's patches.
+// Adds a wheel's patches, and the alternatives that count in its force.
 void add_patches(const rp_side_result &side, const rp_side_result &rate, Sums &sums, Sums &rates) {
-  for (int i = 0; i < side.patch_count; ++i) {
+  for (int i = 0; i < side.patch_count + side.alternative_count; ++i) {
     const rp_patch_result &p = side.patch[i], &d = rate.patch[i];
     const Dual share = or_zero(p.share, d.share);
     const Dual friction = share * or_zero(p.friction_power, d.friction_power);

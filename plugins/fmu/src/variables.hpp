@@ -36,6 +36,9 @@ inline bool is_mean(const Variable &variable) {
   return variable.role == Role::output && within >= 61 && within <= 66;
 }
 
+// Of outputs of patches: the status.
+inline bool is_status(const Variable &variable) { return variable.reference % 100 == 1; }
+
 // null: there is no such variable in any scene
 const Variable *find_variable(uint32_t reference);
 
