@@ -20,9 +20,15 @@ from railpatch.commands import output_option, scene_argument
     show_default=True,
     help="The FFT library: fftw is faster, and makes the FMU one under the GPL.",
 )
+@click.option(
+    "--libraries",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    metavar="FOLDER",
+    help="Libraries for further systems and the sources, as made by `make fmu`.",
+)
 @click.option("--quiet", is_flag=True, help="Print nothing.")
-def fmu(scene: Path | None, output: Path, fft: Any, quiet: bool) -> None:
-    """Pack a scene as an FMU: FMI 2.0, co-simulation, Linux on x86-64.
+def fmu(scene: Path | None, output: Path, fft: Any, libraries: Path | None, quiet: bool) -> None:
+    """Pack a scene as an FMU: FMI 2.0, co-simulation, Linux on x86-64 unless --libraries has more.
 
     Position and velocity come in, forces and the patches' quantities go out; the FMU holds its own
     description in documentation/index.html. A scene is a case file, or that of a rig. Without one
@@ -32,7 +38,7 @@ def fmu(scene: Path | None, output: Path, fft: Any, quiet: bool) -> None:
     from railpatch.fmu.scenes import scene_of
 
     name, loaded = scene_of(scene)
-    written = pack_fmu(loaded, output, name=name, backend=fft)
+    written = pack_fmu(loaded, output, name=name, backend=fft, libraries=libraries)
     if not quiet:
         licence = ", under the GPL because of FFTW" if fft == "fftw" else ""
         click.echo(f"{written}: {name}{licence}")

@@ -21,13 +21,15 @@ from railpatch.config import config_of
 from railpatch.contact import Contact
 from railpatch.errors import CaseError
 from railpatch.fmu.description import Labels, description_xml
-from railpatch.fmu.document import index_html, notice
+from railpatch.fmu.document import index_html
+from railpatch.fmu.libraries import Libraries, libraries_of
+from railpatch.fmu.picture import model_png
 from railpatch.fmu.scene import kind_of, scene_text, variables_of
+from railpatch.fmu.sources import build_description, with_source_files
 from railpatch.fmu.table import Kind, Table, Variable
 from railpatch.result import GOOD
 
 Backend = Literal["eigen", "fftw"]
-PLATFORM = "linux64"
 LICENCES = {"eigen": "Apache-2.0 AND MPL-2.0", "fftw": "GPL-3.0-or-later"}
 # the name of the library tells the licence
 SUFFIXES = {"eigen": "", "fftw": "_fftw_gpl"}
@@ -45,20 +47,26 @@ class Contents:
     variables: list[Variable]
     scene: Scene
     backend: Backend
-    binary: bytes
+    libraries: Libraries
     creep_table: bytes | None
 
 
 def pack_fmu(
-    scene: Scene, output: str | Path, *, name: str = "scene", backend: Backend = "eigen"
+    scene: Scene,
+    output: str | Path,
+    *,
+    name: str = "scene",
+    backend: Backend = "eigen",
+    libraries: Path | None = None,
 ) -> Path:
     """Writes the FMU of a scene.
 
     name: of the model. backend: "eigen" (permissive), or "fftw" (faster; then the FMU is under the
-    GPL). The same scene, library and SOURCE_DATE_EPOCH give the same bytes. Raises CaseError.
+    GPL). libraries: a folder that `make fmu` made, with all platforms and sources; None: this one's
+    library. The same scene, libraries and SOURCE_DATE_EPOCH give the same bytes. Raises CaseError.
     """
     output = Path(output)
-    contents = contents_of(scene, output.stem, name, backend)
+    contents = contents_of(scene, output.stem, name, backend, libraries)
     guid = guid_of(contents)
     files = files_of(contents, guid)
     temporary = output.with_name(f".{output.name}.{os.getpid()}")
@@ -74,9 +82,11 @@ def pack_fmu(
     return output
 
 
-def contents_of(scene: Scene, stem: str, name: str, backend: Backend) -> Contents:
+def contents_of(
+    scene: Scene, stem: str, name: str, backend: Backend, folder: Path | None
+) -> Contents:
     """Everything that is known before the GUID."""
-    library = library_of(backend)
+    libraries = libraries_of(backend, folder)
     table = Table(Path(str(resources.files("railpatch.fmu") / "variables.toml")))
     check_regime(scene)
     config = config_of(scene)
@@ -96,7 +106,7 @@ def contents_of(scene: Scene, stem: str, name: str, backend: Backend) -> Content
     if status not in GOOD:
         raise CaseError(f"{name}: the start values cannot be solved: {status}")
     creep_table = config["creep_table"].tobytes() if "creep_table" in config else None
-    return Contents(labels, table, kind, variables, scene, backend, library, creep_table)
+    return Contents(labels, table, kind, variables, scene, backend, libraries, creep_table)
 
 
 def check_regime(scene: Scene) -> None:
@@ -129,40 +139,33 @@ def identifier_of(stem: str) -> str:
     return name if re.match(r"[A-Za-z_]", name) else f"fmu_{name}"
 
 
-def library_of(backend: Backend) -> bytes:
-    """The library that was built with the package."""
-    path = resources.files("railpatch.fmu") / "lib" / PLATFORM / f"railpatch_fmu_{backend}.so"
-    if not path.is_file():
-        raise CaseError(f"--fft: value is {backend!r}, but this package was built without it")
-    return path.read_bytes()
-
-
 def guid_of(contents: Contents) -> str:
     """A hash of everything but the date."""
     labels = replace(contents.labels, date="")
     text = description_xml(labels, contents.table, contents.kind, contents.variables, "")
     text += scene_text(contents.scene, contents.variables, "{}")
-    digest = hashlib.sha256(
-        text.encode() + contents.binary + (contents.creep_table or b"")
-    ).digest()
-    return "{" + str(uuid.UUID(bytes=digest[:16], version=4)) + "}"
+    digest = hashlib.sha256(text.encode() + (contents.creep_table or b""))
+    built = contents.libraries.files(labels.identifier, contents.backend)
+    for path, content in sorted(built.items()):
+        digest.update(path.encode() + content)
+    return "{" + str(uuid.UUID(bytes=digest.digest()[:16], version=4)) + "}"
 
 
 def files_of(contents: Contents, guid: str) -> dict[str, bytes]:
     """Path in the archive -> content."""
     c = contents
+    sources = c.libraries.sources
+    description = description_xml(c.labels, c.table, c.kind, c.variables, guid)
     texts = {
-        "modelDescription.xml": description_xml(c.labels, c.table, c.kind, c.variables, guid),
+        "modelDescription.xml": with_source_files(description, sources),
         "resources/scene.txt": scene_text(c.scene, c.variables, guid),
         "documentation/index.html": index_html(c.labels, c.table, c.kind, c.variables, guid),
-        "documentation/licenses/NOTICE.txt": notice(c.backend),
     }
+    if sources:
+        name = c.labels.identifier
+        texts["sources/buildDescription.xml"] = build_description(name, sources)
     files = {path: text.encode() for path, text in texts.items()}
-    folder = resources.files("railpatch.fmu") / "licenses"
-    for text in folder.iterdir() if folder.is_dir() else ():
-        if c.backend == "fftw" or not text.name.startswith("GPL"):
-            files[f"documentation/licenses/{text.name}"] = text.read_bytes()
-    files[f"binaries/{PLATFORM}/{c.labels.identifier}.so"] = c.binary
+    files |= {"model.png": model_png(), **c.libraries.files(c.labels.identifier, c.backend)}
     if c.creep_table is not None:
         files["resources/creep_table.bin"] = c.creep_table
     return files
