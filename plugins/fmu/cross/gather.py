@@ -16,12 +16,14 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
 OTHER_PROCESSORS = {"AltiVec", "ZVector", "MSA", "SYCL", "GPU", "HIP", "SVE"}
 EIGEN = ("/usr/include/eigen3", "/usr/local/include/eigen3", "/opt/homebrew/include/eigen3")
 FMI = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
+FIRST = b'#include "before_cxx20.hpp"\n'
 README = """Sources of this FMU's library, for importers that compile them.
 
-C++20 and a compiler with GCC's extensions (GCC 12 or Clang 15, or later) are needed; this folder is
-the only include folder. buildDescription.xml lists what to compile, and the options. With fmpy:
+A compiler with GCC's extensions is needed (GCC 12 or Clang 15, or later; not Visual C++), in C++20
+or in GCC's C++17; this folder is the only include folder. buildDescription.xml lists what to
+compile, and the options. With fmpy on Linux:
 
-  fmpy compile NAME.fmu --cmake-options CMAKE_CXX_STANDARD=20
+  fmpy compile NAME.fmu
 """
 
 
@@ -36,7 +38,10 @@ def sources(root: Path, variables: Path, headers: Path) -> dict[str, bytes]:
     ]
     for path in core + plugin:
         if path.name != "fft_fftw.cpp":  # the other backend
-            files[path.relative_to(root).as_posix()] = path.read_bytes()
+            first = FIRST if path.suffix == ".cpp" else b""
+            files[path.relative_to(root).as_posix()] = first + path.read_bytes()
+    older = "before_cxx20.hpp"
+    files[older] = Path(__file__).with_name(older).read_bytes()
     files["railpatch.h"] = (root / "core" / "include" / "railpatch.h").read_bytes()
     files |= {name: (headers / name).read_bytes() for name in FMI}
     files |= eigen_headers("unsupported/Eigen/FFT")

@@ -8,6 +8,6 @@ list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES RAILPATCH_ZIG RAILPATCH_TARGET)
 set(CMAKE_C_COMPILER "${RAILPATCH_ZIG}" cc -target "${RAILPATCH_TARGET}")
 set(CMAKE_CXX_COMPILER "${RAILPATCH_ZIG}" c++ -target "${RAILPATCH_TARGET}")
 # CMake asks for it where Windows is meant; there is nothing to compile with it
-set(CMAKE_RC_COMPILER "${RAILPATCH_ZIG}" rc)
+set(CMAKE_RC_COMPILER "${RAILPATCH_ZIG}")
 # Eigen has headers only, and those of this machine do
 set(CMAKE_PREFIX_PATH /usr)

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from xml.sax.saxutils import quoteattr
 
-LANGUAGE = "C++20"
+LANGUAGE, COMPILER = "C++20", "gcc"
 # the same inputs give the same bits only where no products and sums are fused
 OPTIONS = "-std=c++20 -ffp-contract=off -O3"
 
@@ -19,11 +19,13 @@ def compiled(paths: Iterable[str]) -> list[str]:
 def build_description(identifier: str, paths: Iterable[str]) -> str:
     """sources/buildDescription.xml, in the form of FMI 3.0, which FMI 2.0.4 recommends."""
     files = [f"      <SourceFile name={quoteattr(path)}/>" for path in compiled(paths)]
+    how = {"language": LANGUAGE, "compiler": COMPILER, "compilerOptions": OPTIONS}
+    attributes = " ".join(f"{key}={quoteattr(value)}" for key, value in how.items())
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',
         '<fmiBuildDescription fmiVersion="3.0">',
         f"  <BuildConfiguration modelIdentifier={quoteattr(identifier)}>",
-        f'    <SourceFileSet language="{LANGUAGE}" compilerOptions="{OPTIONS}">',
+        f"    <SourceFileSet {attributes}>",
         *files,
         '      <IncludeDirectory name="."/>',
         "    </SourceFileSet>",
