@@ -24,6 +24,7 @@ from railpatch.fmu.description import Labels, description_xml
 from railpatch.fmu.document import index_html
 from railpatch.fmu.libraries import Libraries, libraries_of
 from railpatch.fmu.picture import model_png
+from railpatch.fmu.reference import reference_csv
 from railpatch.fmu.scene import kind_of, scene_text, variables_of
 from railpatch.fmu.sources import build_description, with_source_files
 from railpatch.fmu.table import Kind, Table, Variable
@@ -159,6 +160,7 @@ def files_of(contents: Contents, guid: str) -> dict[str, bytes]:
     texts = {
         "modelDescription.xml": with_source_files(description, sources),
         "resources/scene.txt": scene_text(c.scene, c.variables, guid),
+        "documentation/reference.csv": reference_csv(c.scene, c.variables),
         "documentation/index.html": index_html(c.labels, c.table, c.kind, c.variables, guid),
     }
     if sources:
