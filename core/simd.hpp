@@ -2,10 +2,8 @@
 // every sum, and with it every bit, is the same on all machines (no FMA: -ffp-contract=off).
 #pragma once
 
-// Clang has this too, but not every runtime that it is linked with: where it does, the build says
-// RAILPATCH_CLONES.
-#if defined(__GNUC__) && defined(__x86_64__) && defined(__linux__) && \
-    (!defined(__clang__) || defined(RAILPATCH_CLONES)) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) && \
+    !defined(__SANITIZE_ADDRESS__)
 #define RAILPATCH_DISPATCH __attribute__((target_clones("avx2", "default")))
 #else
 #define RAILPATCH_DISPATCH
