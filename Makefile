@@ -24,7 +24,7 @@ CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
 SOURCES := $(shell find core plugins rig_model wheelset_demo -type f -not -name '*.pyc' 2>/dev/null) \
 	CMakeLists.txt README.md
 
-.PHONY: help demo fmu test lint format clean setup system test-cpp test-python test-asan pruning
+.PHONY: help demo fmu fmu-clients test lint format clean setup system test-cpp test-python test-asan pruning
 
 help: ## this list
 	@echo "make targets:"
@@ -43,10 +43,16 @@ demo: setup ## set-up, roller-rig replay, wheelset on track, an FMU; logs and re
 		"$(CURDIR)/build/demo/wheelset.mcap" "$(CURDIR)/build/demo/wheelset.html" \
 		"$(CURDIR)/build/demo/railpatch.fmu"
 
-fmu: setup ## the FMUs of the default scene: permissive, and with FFTW under the GPL
+fmu: setup ## FMU of the default scene for Linux, Windows, macOS, with sources; one with FFTW (GPL)
 	@mkdir -p build/fmu
-	$(BIN)/railpatch fmu -o build/fmu/railpatch.fmu
+	$(BIN)/python -m pip install --quiet --group cross
+	$(BIN)/python plugins/fmu/cross/build.py build/fmu
+	$(BIN)/railpatch fmu --libraries build/fmu/lib -o build/fmu/railpatch.fmu
 	$(BIN)/railpatch fmu --fft fftw -o build/fmu/railpatch_fftw_gpl.fmu
+	$(BIN)/python plugins/fmu/cross/check.py build/fmu/railpatch.fmu build/fmu/check --compile
+
+fmu-clients: fmu ## the same in clients that others wrote: fmpy, libcosimpy, ecospy, FMI4j, VDMCheck2
+	plugins/fmu/clients/run build/fmu/clients build/fmu/railpatch.fmu
 
 test: setup lint test-cpp test-python test-asan pruning ## set-up and every check
 	@printf '\nall checks passed:\n'

@@ -16,7 +16,9 @@ function(railpatch_object_options target)
     VISIBILITY_INLINES_HIDDEN ON
     POSITION_INDEPENDENT_CODE ON
   )
-  target_compile_definitions(${target} PRIVATE RP_BUILD)
+  if(NOT RAILPATCH_ZIG)  # a library of the FMU for Windows shows nothing but FMI's functions
+    target_compile_definitions(${target} PRIVATE RP_BUILD)
+  endif()
   target_include_directories(${target} PUBLIC
     "${PROJECT_SOURCE_DIR}/core"
     "${PROJECT_SOURCE_DIR}/core/include"

@@ -11,7 +11,11 @@ if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
   endif()
   # the baseline of a distributed binary: every x86-64 processor since about 2009
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
-    target_compile_options(railpatch_options INTERFACE -march=x86-64-v2)
+    if(RAILPATCH_ZIG)  # its name for the same
+      target_compile_options(railpatch_options INTERFACE -mcpu=x86_64_v2)
+    else()
+      target_compile_options(railpatch_options INTERFACE -march=x86-64-v2)
+    endif()
   endif()
   if(RAILPATCH_SANITIZE)
     target_compile_options(railpatch_options INTERFACE

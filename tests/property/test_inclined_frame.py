@@ -43,9 +43,9 @@ def moment_about(result: railpatch.Result, point: list[float], axis: list[float]
 def test_pressure_turns_neither_roller_nor_wheel() -> None:
     left_out = railpatch.solve(case("track", tangential="none"))
     whole = railpatch.solve(case("inclined", tangential="none"))
-    # 0.018 rad * 0.67 m ahead of the top: that lever is what the track's frame leaves
+    # some 0.018 rad * 0.7 m * R/(R + r) ahead of the top: that lever is what the track's frame leaves
     lever = abs(whole["patches"][0]["position"][0])
-    assert lever > 0.01
+    assert lever > 0.008
     roller = [0.0, 0.0, ROLLER], [0.0, 1.0, 0.0]
     assert abs(moment_about(left_out, *roller)) > 0.9 * LOAD * lever
     # to the patch's own breadth and the rounding of element sums
@@ -57,15 +57,20 @@ def test_pressure_turns_neither_roller_nor_wheel() -> None:
     )
 
 
-def test_friction_takes_what_the_bodies_supply() -> None:
-    """Power of the wheel's and the roller's rotation: moments about their axes times rates."""
-    result = railpatch.solve(case("inclined"))
+def open_power(frame: str) -> float:
+    """W, supplied by the wheel's and the roller's rotation, less what friction takes."""
+    result = railpatch.solve(case(frame))
     (patch,) = result["patches"]
     axle = [0.0, 0.002, result["z"] - RADIUS], [-sin(0.018), cos(0.018), 0.0]
     roller = [0.0, 0.0, ROLLER], [0.0, 1.0, 0.0]
+    # the contact acts on the roller with the opposite sign
     supplied = 12.562 * moment_about(result, *axle) + 5.587302 * moment_about(result, *roller)
-    # on the wheel the contact does -supplied, on the roller it acts with the opposite sign
-    assert supplied == pytest.approx(patch["friction_power"], rel=2e-3)
+    return supplied - patch["friction_power"]
+
+
+def test_friction_takes_what_the_bodies_supply() -> None:
+    """What is left is the load times the 0.02 mm between contact reference and centre of pressure."""
+    assert abs(open_power("inclined")) < 0.01 * abs(open_power("track"))
 
 
 def test_on_the_top_both_frames_are_one() -> None:

@@ -4,6 +4,11 @@
 #include <cstdio>
 #include <memory>
 
+#ifdef _WIN32
+#define WIN32_LEAN_AND_MEAN
+#include <windows.h>
+#endif
+
 namespace railpatch::fmu {
 
 namespace {
@@ -37,6 +42,25 @@ bool has_scheme(const std::string &text) {
   return true;
 }
 
+#ifdef _WIN32
+bool has_drive(const std::string &path, size_t at) {
+  return at + 1 < path.size() && path[at + 1] == ':' && (path[at] | 0x20) >= 'a' &&
+         (path[at] | 0x20) <= 'z';
+}
+
+// "C:/..." without slashes in front of it, "//host/share" with two; no slash at the end.
+std::string tidy(std::string path) {
+  std::replace(path.begin(), path.end(), '\\', '/');
+  const size_t first = path.find_first_not_of('/');
+  if (first == std::string::npos) return path;
+  if (first > 0 && has_drive(path, first))
+    path.erase(0, first);
+  else if (first > 2)
+    path.erase(0, first - 2);
+  while (path.back() == '/') path.pop_back();
+  return path;
+}
+#else
 // One leading slash instead of several; no slash at the end.
 std::string tidy(std::string path) {
   const size_t first = path.find_first_not_of('/');
@@ -45,6 +69,7 @@ std::string tidy(std::string path) {
   while (path.size() > 1 && path.back() == '/') path.pop_back();
   return path;
 }
+#endif
 
 void add(std::vector<std::string> &paths, const std::string &path) {
   if (path.empty() || std::find(paths.begin(), paths.end(), path) != paths.end()) return;
@@ -60,8 +85,22 @@ struct Close {
   void operator()(std::FILE *file) const { std::fclose(file); }
 };
 
+#ifdef _WIN32
+// fopen would read the path in the code page of the user.
+std::FILE *open_file(const std::string &path) {
+  const int length = static_cast<int>(path.size()) + 1;
+  std::vector<wchar_t> wide(path.size() + 1);
+  if (MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, path.c_str(), length, wide.data(),
+                          length) == 0)
+    return nullptr;
+  return _wfopen(wide.data(), L"rb");
+}
+#else
+std::FILE *open_file(const std::string &path) { return std::fopen(path.c_str(), "rb"); }
+#endif
+
 bool read_file(const std::string &path, std::string &content) {
-  const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
+  const std::unique_ptr<std::FILE, Close> file(open_file(path));
   if (!file) return false;
   content.clear();
   char buffer[65536];
@@ -87,11 +126,17 @@ std::vector<std::string> resource_folders(const std::string &location) {
   }
   const size_t slash = rest.find('/', 2);
   const std::string host = rest.substr(2, slash == std::string::npos ? slash : slash - 2);
-  if (slash != std::string::npos && (host.empty() || host == "localhost"))
+  if (slash != std::string::npos && (host.empty() || host == "localhost")) {
     add_both(paths, rest.substr(slash));
-  else
-    // "file://" in front of a path without a slash: the host is its first folder
-    add_both(paths, rest.substr(1));
+    return paths;
+  }
+#ifdef _WIN32
+  // a share, or a drive in the host's place
+  add_both(paths, rest);
+#else
+  // "file://" in front of a path without a slash: the host is its first folder
+  add_both(paths, rest.substr(1));
+#endif
   return paths;
 }
 

@@ -1,5 +1,8 @@
-// The C++ runtime that is linked in keeps a pool for exceptions that nobody frees when the library
-// is unloaded: 70 kB each time an importer loads and unloads it.
+// The GNU C++ runtime that is linked in keeps a pool for exceptions that nobody frees when the
+// library is unloaded: 70 kB each time an importer loads and unloads it.
+#include <version>
+
+#if defined(__GLIBCXX__)
 
 namespace __gnu_cxx {
 void __freeres();
@@ -10,3 +13,5 @@ namespace {
 [[gnu::destructor]] void free_pool() { __gnu_cxx::__freeres(); }
 
 }  // namespace
+
+#endif

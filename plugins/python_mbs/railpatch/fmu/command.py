@@ -33,6 +33,12 @@ from railpatch.commands import output_option, scene_argument
     is_flag=True,
     help="Also give the largest step that forces may be held for; takes two to three steps' time.",
 )
+@click.option(
+    "--libraries",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    metavar="FOLDER",
+    help="Libraries for further systems and the sources, as made by `make fmu`.",
+)
 @click.option("--quiet", is_flag=True, help="Print nothing.")
 def fmu(
     scene: Path | None,
@@ -41,9 +47,10 @@ def fmu(
     derivatives: Any,
     averages: bool,
     largest_step: bool,
+    libraries: Path | None,
     quiet: bool,
 ) -> None:
-    """Pack a scene as an FMU: FMI 2.0, Linux on x86-64.
+    """Pack a scene as an FMU: FMI 2.0, Linux on x86-64 unless --libraries has more.
 
     Position and velocity come in, forces and the patches' quantities go out; the FMU holds its own
     description in documentation/index.html. A scene is a case file, or that of a rig. Without one
@@ -61,6 +68,7 @@ def fmu(
         derivatives=derivatives,
         averages=averages,
         largest_step=largest_step,
+        libraries=libraries,
     )
     if not quiet:
         licence = ", under the GPL because of FFTW" if fft == "fftw" else ""

@@ -106,23 +106,25 @@ NOTICES = {
 
 - Eigen, Mozilla Public License 2.0, release 3.4, unchanged,
   source: https://gitlab.com/libeigen/eigen;
-- parts of the GCC runtime library, GPL-3.0 with the GCC Runtime Library Exception.
 """,
     "fftw": """The library in this FMU contains FFTW and is as a whole under the GNU General Public
 License, version 3 or later. It is made of
 
 - Railpatch, Apache License 2.0;
 - FFTW 3, GPL-2.0-or-later, source: https://www.fftw.org, unchanged;
-- parts of the GCC runtime library, GPL-3.0 with the GCC Runtime Library Exception.
-
-The same scene can be packed without FFTW: `railpatch fmu --fft eigen`.
 """,
+}
+RUNTIME = """- parts of the GCC runtime library, GPL-3.0 with the GCC Runtime Library Exception.
+"""
+LAST = {
+    "eigen": "",
+    "fftw": "\nThe same scene can be packed without FFTW: `railpatch fmu --fft eigen`.\n",
 }
 
 
-def notice(backend: str) -> str:
-    """Whose code the library holds."""
-    return NOTICES[backend]
+def notice(backend: str, runtime: str | None = None) -> str:
+    """Whose code the library holds. runtime: what the compiler added; None: that of GCC."""
+    return NOTICES[backend] + (RUNTIME if runtime is None else runtime) + LAST[backend]
 
 
 def index_html(

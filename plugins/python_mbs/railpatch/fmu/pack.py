@@ -19,20 +19,32 @@ from railpatch.config import config_of
 from railpatch.contact import Contact
 from railpatch.errors import CaseError
 from railpatch.fmu.description import Labels, description_xml
-from railpatch.fmu.document import index_html, notice
+from railpatch.fmu.document import index_html
+from railpatch.fmu.libraries import Libraries, libraries_of
+from railpatch.fmu.picture import model_png
+from railpatch.fmu.reference import reference_csv
 from railpatch.fmu.scene import kind_of, scene_text, variables_of
+from railpatch.fmu.sources import build_description, with_source_files
 from railpatch.fmu.table import Kind, Table, Variable
 from railpatch.result import GOOD
 
 Backend = Literal["eigen", "fftw"]
 # "exact": where the core has them without further solves
 Derivatives = Literal["exact", "always", "none"]
-PLATFORM = "linux64"
 LICENCES = {"eigen": "Apache-2.0 AND MPL-2.0", "fftw": "GPL-3.0-or-later"}
 # the name of the library tells the licence
 SUFFIXES = {"eigen": "", "fftw": "_fftw_gpl"}
 # ZIP knows no time before 1980
 FIRST_DATE = 315532800
+
+
+@dataclass(frozen=True)
+class Options:
+    """What an FMU offers beside a scene's outputs; see pack_fmu."""
+
+    derivatives: Derivatives
+    averages: bool
+    largest_step: bool
 
 
 @dataclass(frozen=True)
@@ -45,7 +57,7 @@ class Contents:
     variables: list[Variable]
     scene: Scene
     backend: Backend
-    binary: bytes
+    libraries: Libraries
     creep_table: bytes | None
 
 
@@ -58,6 +70,7 @@ def pack_fmu(
     derivatives: Derivatives = "exact",
     averages: bool = False,
     largest_step: bool = False,
+    libraries: Path | None = None,
 ) -> Path:
     """Writes the FMU of a scene.
 
@@ -66,11 +79,13 @@ def pack_fmu(
     "always": else by differences of further solves; a scene with a history has none. averages:
     outputs of forces averaged over a step, and sub-steps for them (scenes with wheels).
     largest_step: an output for masters, with mass and inertia of the wheelset as parameters, in
-    scenes with wheels and derivatives; it costs two to three steps where it is read. The
-    same scene, library and SOURCE_DATE_EPOCH give the same bytes. Raises CaseError.
+    scenes with wheels and derivatives; it costs two to three steps where it is read. libraries: a
+    folder that `make fmu` made, with all platforms and sources; None: this one's library. The same
+    scene, libraries and SOURCE_DATE_EPOCH give the same bytes. Raises CaseError.
     """
     output = Path(output)
-    contents = contents_of(scene, output.stem, name, backend, derivatives, averages, largest_step)
+    options = Options(derivatives, averages, largest_step)
+    contents = contents_of(scene, output.stem, name, backend, options, libraries)
     guid = guid_of(contents)
     files = files_of(contents, guid)
     temporary = output.with_name(f".{output.name}.{os.getpid()}")
@@ -91,20 +106,21 @@ def contents_of(
     stem: str,
     name: str,
     backend: Backend,
-    derivatives: Derivatives,
-    averages: bool,
-    largest_step: bool,
+    options: Options,
+    folder: Path | None,
 ) -> Contents:
     """Everything that is known before the GUID."""
-    library = library_of(backend)
+    libraries = libraries_of(backend, folder)
     table = Table(Path(str(resources.files("railpatch.fmu") / "variables.toml")))
     check_regime(scene)
     config = config_of(scene)
-    kind = kind_of(scene.case, _core.config_numbers(config), averages=averages)
+    kind = kind_of(scene.case, _core.config_numbers(config), averages=options.averages)
     # solved once, so that an FMU is never made of a scene that the core refuses or cannot start
-    kinds = derivative_kind(scene, name, asked=derivatives != "none" and not kind.has_history)
-    provided = kinds == "exact" or (kinds == "differences" and derivatives == "always")
-    if largest_step:
+    kinds = derivative_kind(
+        scene, name, asked=options.derivatives != "none" and not kind.has_history
+    )
+    provided = kinds == "exact" or (kinds == "differences" and options.derivatives == "always")
+    if options.largest_step:
         if not provided or kind.kind == "patch":
             raise CaseError("--largest-step: given, allowed with wheels and derivatives only")
         kind = replace(kind, conditions=kind.conditions | {"largest step"})
@@ -120,7 +136,7 @@ def contents_of(
     )
     variables = variables_of(table, kind, scene.case)
     creep_table = config["creep_table"].tobytes() if "creep_table" in config else None
-    return Contents(labels, table, kind, variables, scene, backend, library, creep_table)
+    return Contents(labels, table, kind, variables, scene, backend, libraries, creep_table)
 
 
 def check_regime(scene: Scene) -> None:
@@ -167,40 +183,34 @@ def identifier_of(stem: str) -> str:
     return name if re.match(r"[A-Za-z_]", name) else f"fmu_{name}"
 
 
-def library_of(backend: Backend) -> bytes:
-    """The library that was built with the package."""
-    path = resources.files("railpatch.fmu") / "lib" / PLATFORM / f"railpatch_fmu_{backend}.so"
-    if not path.is_file():
-        raise CaseError(f"--fft: value is {backend!r}, but this package was built without it")
-    return path.read_bytes()
-
-
 def guid_of(contents: Contents) -> str:
     """A hash of everything but the date."""
     labels = replace(contents.labels, date="")
     text = description_xml(labels, contents.table, contents.kind, contents.variables, "")
     text += scene_text(contents.scene, contents.variables, "{}", contents.kind, labels.derivatives)
-    digest = hashlib.sha256(
-        text.encode() + contents.binary + (contents.creep_table or b"")
-    ).digest()
-    return "{" + str(uuid.UUID(bytes=digest[:16], version=4)) + "}"
+    digest = hashlib.sha256(text.encode() + (contents.creep_table or b""))
+    built = contents.libraries.files(labels.identifier, contents.backend)
+    for path, content in sorted(built.items()):
+        digest.update(path.encode() + content)
+    return "{" + str(uuid.UUID(bytes=digest.digest()[:16], version=4)) + "}"
 
 
 def files_of(contents: Contents, guid: str) -> dict[str, bytes]:
     """Path in the archive -> content."""
     c = contents
+    sources = c.libraries.sources
+    description = description_xml(c.labels, c.table, c.kind, c.variables, guid)
     texts = {
-        "modelDescription.xml": description_xml(c.labels, c.table, c.kind, c.variables, guid),
+        "modelDescription.xml": with_source_files(description, sources),
         "resources/scene.txt": scene_text(c.scene, c.variables, guid, c.kind, c.labels.derivatives),
+        "documentation/reference.csv": reference_csv(c.scene, c.variables),
         "documentation/index.html": index_html(c.labels, c.table, c.kind, c.variables, guid),
-        "documentation/licenses/NOTICE.txt": notice(c.backend),
     }
+    if sources:
+        name = c.labels.identifier
+        texts["sources/buildDescription.xml"] = build_description(name, sources)
     files = {path: text.encode() for path, text in texts.items()}
-    folder = resources.files("railpatch.fmu") / "licenses"
-    for text in folder.iterdir() if folder.is_dir() else ():
-        if c.backend == "fftw" or not text.name.startswith("GPL"):
-            files[f"documentation/licenses/{text.name}"] = text.read_bytes()
-    files[f"binaries/{PLATFORM}/{c.labels.identifier}.so"] = c.binary
+    files |= {"model.png": model_png(), **c.libraries.files(c.labels.identifier, c.backend)}
     if c.creep_table is not None:
         files["resources/creep_table.bin"] = c.creep_table
     return files

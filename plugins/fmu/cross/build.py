@@ -1,0 +1,109 @@
+"""Builds the FMU's libraries for all platforms: python build.py FOLDER
+
+Everything is made below FOLDER; what `railpatch fmu --libraries` takes is in FOLDER/lib. Needs the
+Python packages ziglang (Clang for all systems, with their headers) and fmpy (the headers of FMI),
+CMake, Ninja and Eigen. --platforms names some of those below; default are all.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import gather
+
+ROOT = Path(__file__).parents[3]
+# FMI's name: target of the compiler, CMake's system and processor
+PLATFORMS = {
+    "linux64": ("x86_64-linux-gnu.2.17", "Linux", "x86_64", ".so"),
+    "win64": ("x86_64-windows-gnu", "Windows", "x86_64", ".dll"),
+    "aarch64-linux": ("aarch64-linux-gnu.2.17", "Linux", "aarch64", ".so"),
+    "darwin64": ("x86_64-macos", "Darwin", "x86_64", ".so"),
+    "aarch64-darwin": ("aarch64-macos", "Darwin", "aarch64", ".so"),
+}
+ENDINGS = {"Linux": ".so", "Windows": ".dll", "Darwin": ".dylib"}
+OPTIONS = {
+    "CMAKE_BUILD_TYPE": "Release",
+    "RAILPATCH_FFT": "eigen",
+    "RAILPATCH_FMU": "ON",
+    "RAILPATCH_PYTHON": "OFF",
+    "RAILPATCH_TESTS": "OFF",
+    "RAILPATCH_WERROR": "OFF",  # this Clang warns of more than the compilers that we check with
+}
+# what the compiler's own runtime, linked into each library, is under
+RUNTIME = """- parts of LLVM's runtime libraries (libc++, libc++abi, libunwind), Apache License 2.0
+  with LLVM Exceptions, and of Zig's compiler-rt, MIT License (all platforms);
+- on Windows parts of the MinGW-w64 runtime, Zope Public License 2.1 and others.
+"""
+
+
+def package(name: str) -> Path:
+    """Folder of an installed Python package."""
+    found = importlib.util.find_spec(name)
+    if found is None or found.origin is None:
+        sys.exit(f"the Python package {name} is missing: pip install {name}")
+    return Path(found.origin).parent
+
+
+def build(name: str, folder: Path, zig: Path) -> None:
+    """One platform's library, into FOLDER/lib."""
+    target, system, processor, suffix = PLATFORMS[name]
+    options = {
+        **OPTIONS,
+        "CMAKE_TOOLCHAIN_FILE": Path(__file__).with_name("toolchain.cmake"),
+        "CMAKE_SYSTEM_NAME": system,
+        "CMAKE_SYSTEM_PROCESSOR": processor,
+        "RAILPATCH_ZIG": zig,
+        "RAILPATCH_TARGET": target,
+        "Python_EXECUTABLE": sys.executable,
+    }
+    tree = folder / name
+    settings = [f"-D{key}={value}" for key, value in options.items()]
+    run("cmake", "-S", ROOT, "-B", tree, "-G", "Ninja", *settings)
+    run("cmake", "--build", tree, "--target", "railpatch_fmu")
+    made = tree / "plugins" / "fmu" / f"railpatch_fmu_eigen{suffix}"
+    place = folder / "lib" / name
+    place.mkdir(parents=True, exist_ok=True)
+    shutil.copy(made, place / f"railpatch_fmu_eigen{ENDINGS[system]}")
+
+
+def run(*command: str | Path) -> None:
+    """A program; ends where it fails."""
+    if subprocess.run([str(part) for part in command], check=False).returncode != 0:
+        sys.exit(f"failed: {' '.join(map(str, command))}")
+
+
+def add_licences(folder: Path, zig: Path) -> None:
+    """Texts for what the compiler links in."""
+    folder.mkdir(parents=True, exist_ok=True)
+    shutil.copy(zig / "lib" / "libcxx" / "LICENSE.TXT", folder / "LLVM.txt")
+    shutil.copy(zig / "lib" / "libc" / "mingw" / "COPYING", folder / "MinGW-w64.txt")
+    shutil.copy(zig / "LICENSE", folder / "Zig.txt")
+    (folder.parent / "runtime.txt").write_text(RUNTIME, encoding="utf-8")
+
+
+def main() -> None:
+    """All platforms, sources, licences."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--platforms", nargs="+", choices=PLATFORMS, default=list(PLATFORMS))
+    arguments = parser.parse_args()
+    folder = arguments.folder.resolve()
+    for cache in ("ZIG_GLOBAL_CACHE_DIR", "ZIG_LOCAL_CACHE_DIR"):
+        os.environ.setdefault(cache, str(folder / "cache"))
+    compiler = package("ziglang")
+    for name in arguments.platforms:
+        build(name, folder, compiler / "zig")
+    variables = folder / arguments.platforms[0] / "plugins" / "fmu" / "generated" / "variables.inc"
+    headers = package("fmpy") / "c-code"
+    gather.write(gather.sources(ROOT, variables, headers), folder / "lib" / "sources.zip")
+    add_licences(folder / "lib" / "licenses", compiler)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,186 @@
+"""What must hold of an FMU for many systems: python check.py NAME.fmu FOLDER [--compile]
+
+Looks at the libraries' symbols (binutils), runs those of this machine and, where Wine is installed,
+of Windows by steps.c, and compares their numbers; --compile: also the library that fmpy makes of
+the sources, with the compiler of this machine. FOLDER is for what is made here; it may stay.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+import zipfile
+from pathlib import Path
+
+from build import package
+
+GLIBC = (2, 17)
+SYSTEM = {
+    "linux64": r"lib(c|m|pthread|dl)\.so\.\d|ld-linux-x86-64\.so\.2",
+    "aarch64-linux": r"lib(c|m|pthread|dl)\.so\.\d|ld-linux-aarch64\.so\.1",
+    "win64": r"KERNEL32\.dll|api-ms-win-crt-[a-z0-9-]*\.dll|ucrtbase\.dll",
+}
+FUNCTIONS = re.compile(r"\bfmi2[A-Z]\w*")
+# relative, of the largest output of the same unit: libraries of different compilers round
+# differently, and an iteration carries that on
+SAME = 1e-9
+LOADS = 100
+
+
+def output(*command: str | Path, **options: object) -> str:
+    """What a program prints; ends where it fails."""
+    done = subprocess.run(
+        [str(part) for part in command], capture_output=True, text=True, check=False, **options
+    )
+    if done.returncode != 0:
+        sys.exit(f"failed: {' '.join(map(str, command))}\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def must(good: object, what: str) -> None:
+    """Ends where something does not hold."""
+    if not good:
+        sys.exit(f"does not hold: {what}")
+
+
+def check_elf(platform: str, path: Path) -> set[str]:
+    """Symbols of a Linux library, and what it needs; gives the exports."""
+    names = output("readelf", "-W", "--dyn-syms", path)
+    found = [tuple(map(int, v.split("."))) for v in re.findall(r"GLIBC_([0-9.]+)", names)]
+    must(max(found) <= GLIBC, f"{platform}: nothing newer than GLIBC {GLIBC}, found {max(found)}")
+    dynamic = output("readelf", "-dW", path)
+    for library in re.findall(r"\(NEEDED\).*\[(.*)\]", dynamic):
+        must(re.fullmatch(SYSTEM[platform], library), f"{platform}: {library} is of the system")
+    must(not re.search("RPATH|RUNPATH|TEXTREL", dynamic), f"{platform}: no RPATH, no TEXTREL")
+    must(re.search("GNU_STACK .* RW ", output("readelf", "-lW", path)), f"{platform}: stack")
+    defined = [line.split() for line in names.splitlines() if " UND " not in line]
+    print(f"{platform}: GLIBC_{'.'.join(map(str, max(found)))}, {path.stat().st_size} bytes")
+    return {words[7].split("@")[0] for words in defined if len(words) > 7 and words[4] == "GLOBAL"}
+
+
+def check_pe(platform: str, path: Path) -> set[str]:
+    """The same of a library for Windows."""
+    text = output("objdump", "-p", path)
+    libraries = re.findall(r"DLL Name: (\S+)", text)
+    for library in libraries:
+        must(re.fullmatch(SYSTEM[platform], library), f"{platform}: {library} is of the system")
+    print(f"{platform}: {' '.join(libraries)}, {path.stat().st_size} bytes")
+    names = text[text.index("[Ordinal/Name Pointer] Table") :]
+    return set(re.findall(r"^\s*\[\s*\d+\](?: \+base\[\s*\d+\]\s+[0-9a-f]+)? (\w+)", names, re.M))
+
+
+class Unpacked:
+    """An FMU in a folder."""
+
+    def __init__(self, path: Path, folder: Path) -> None:
+        shutil.rmtree(folder, ignore_errors=True)
+        zipfile.ZipFile(path).extractall(folder)
+        self.folder = folder
+        self.root = ET.parse(folder / "modelDescription.xml").getroot()
+        self.reals = [v for v in self.root.iter("ScalarVariable") if v[0].tag == "Real"]
+
+    def library(self, platform: str) -> Path:
+        """Of a platform; the only file there."""
+        return next((self.folder / "binaries" / platform).iterdir())
+
+    def platforms(self) -> list[str]:
+        """FMI's names."""
+        return sorted(p.name for p in (self.folder / "binaries").iterdir())
+
+    def arguments(self, platform: str, prefix: str) -> list[str]:
+        """Of steps.c; prefix: stands before a path."""
+        moved = next(v for v in self.reals if v.attrib["causality"] == "input")
+        outputs = [v for v in self.reals if v.attrib["causality"] == "output"]
+        library = f"{prefix}{self.library(platform)}"
+        resources = f"file://{'/' if prefix else ''}{prefix}{self.folder / 'resources'}"
+        numbers = [v.attrib["valueReference"] for v in outputs]
+        start = [moved.attrib["valueReference"], moved[0].attrib["start"]]
+        return [library, self.root.attrib["guid"], resources, str(LOADS), *start, *numbers]
+
+    def run(self, platform: str, program: list[str | Path], prefix: str = "") -> dict[str, float]:
+        """Reference -> the last value."""
+        environment = {"WINEDEBUG": "-all", "DISPLAY": "", **os.environ}
+        text = output(*program, *self.arguments(platform, prefix), env=environment)
+        rows = [line.split() for line in text.splitlines()]
+        return {reference: float.fromhex(value) for reference, value in rows}
+
+    def worst(self, one: dict[str, float], other: dict[str, float]) -> float:
+        """Largest difference, relative to the largest output of the same quantity."""
+        sizes: dict[str, float] = {}
+        for v in self.reals:
+            value = abs(one.get(v.attrib["valueReference"], 0.0))
+            quantity = v[0].attrib["quantity"]
+            sizes[quantity] = max(sizes.get(quantity, 0.0), value)
+        found = 0.0
+        for v in self.reals:
+            reference, quantity = v.attrib["valueReference"], v[0].attrib["quantity"]
+            # the residual is the rest that the solver left: rounding itself
+            if reference in one and quantity != "RelativeError" and sizes[quantity] > 0.0:
+                difference = abs(one[reference] - other[reference])
+                found = max(found, difference / sizes[quantity])
+        return found
+
+
+def compiled(path: Path, folder: Path) -> Unpacked:
+    """The FMU with the library for this machine that fmpy makes of the sources."""
+    from fmpy.build import build_platform_binary
+
+    fmu = Unpacked(path, folder)
+    shutil.rmtree(fmu.folder / "binaries")
+    build_platform_binary(fmu.folder)
+    return fmu
+
+
+def wine() -> str | None:
+    """The program, which Debian's wine64 has beside the path."""
+    return shutil.which("wine64") or shutil.which("wine") or shutil.which("/usr/lib/wine/wine64")
+
+
+def main() -> None:
+    """Everything, in the order of the cost."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("fmu", type=Path)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--compile", action="store_true")
+    arguments = parser.parse_args()
+    path, folder = arguments.fmu.resolve(), arguments.folder.resolve()
+    must(path.stat().st_size < 5e6, "the FMU is below 5 MB")
+    fmu = Unpacked(path, folder / path.stem)
+    expected = set(FUNCTIONS.findall((package("fmpy") / "c-code" / "fmi2Functions.h").read_text()))
+    for platform in fmu.platforms():
+        if "darwin" in platform:
+            print(f"{platform}: {fmu.library(platform).stat().st_size} bytes, not looked into")
+            continue
+        look = check_pe if platform == "win64" else check_elf
+        exports = look(platform, fmu.library(platform))
+        must(exports <= expected, f"{platform}: only FMI's functions, not {exports - expected}")
+        must(len(exports) >= 34, f"{platform}: all of FMI's functions, found {len(exports)}")
+    source, headers = Path(__file__).with_name("steps.c"), package("fmpy") / "c-code"
+    zig = [package("ziglang") / "zig", "cc", source, f"-I{headers}"]
+    output(*zig, "-ldl", "-o", folder / "steps")
+    here = fmu.run("linux64", [folder / "steps"])
+    print(f"linux64: {LOADS} loads, 100 steps here")
+    if "win64" in fmu.platforms() and (program := wine()) is not None:
+        output(*zig, "-target", "x86_64-windows-gnu", "-o", folder / "steps.exe")
+        os.environ.setdefault("WINEPREFIX", str(folder / "wine"))
+        there = fmu.run("win64", [program, folder / "steps.exe"], prefix="Z:")
+        compare(fmu, here, there, "win64 under Wine")
+    if arguments.compile:
+        own = compiled(path, folder / f"{path.stem}_compiled")
+        compare(fmu, here, own.run("linux64", [folder / "steps"]), "compiled by fmpy")
+
+
+def compare(fmu: Unpacked, here: dict[str, float], there: dict[str, float], name: str) -> None:
+    """Prints the difference to linux64's numbers; ends where it is too large."""
+    worst = fmu.worst(here, there)
+    print(f"{name}: {LOADS} loads, 100 steps, {worst:.1e} from linux64")
+    must(worst < SAME, f"{name}: {worst} is below {SAME}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,84 @@
+"""What was built beforehand: the libraries of all platforms, the sources, and their licences.
+
+A folder holds PLATFORM/railpatch_fmu_BACKEND.ENDING for every platform, by FMI's name; where it was
+made by `make fmu` also sources.zip, licenses/ and runtime.txt.
+"""
+
+from __future__ import annotations
+
+import zipfile
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from railpatch.errors import CaseError
+from railpatch.fmu.document import notice
+
+if TYPE_CHECKING:
+    from importlib.resources.abc import Traversable
+
+ENDINGS = {"win": ".dll", "lin": ".so", "dar": ".dylib"}
+
+
+@dataclass(frozen=True)
+class Libraries:
+    """Content of such a folder, for one backend."""
+
+    binaries: dict[str, bytes]  # by platform
+    sources: dict[str, bytes]  # path below sources/
+    licences: dict[str, bytes]  # name of the text
+    runtime: str | None  # what the compiler added; None: that of GCC
+
+    def files(self, identifier: str, backend: str) -> dict[str, bytes]:
+        """Path in the archive -> content."""
+        files = {f"sources/{path}": content for path, content in self.sources.items()}
+        for platform, content in self.binaries.items():
+            files[f"binaries/{platform}/{identifier}{ending(platform)}"] = content
+        for name, content in self.licences.items():
+            if backend == "fftw" or not name.startswith("GPL"):
+                files[f"documentation/licenses/{name}"] = content
+        text = notice(backend, self.runtime)
+        return {**files, "documentation/licenses/NOTICE.txt": text.encode()}
+
+
+def ending(platform: str) -> str:
+    """Of a library's name: win64 -> .dll, aarch64-linux -> .so."""
+    return ENDINGS[platform.rpartition("-")[2][:3]]
+
+
+def libraries_of(backend: str, folder: Path | None = None) -> Libraries:
+    """Those of a folder; without one those that were built with the package. Raises CaseError."""
+    own = resources.files("railpatch.fmu")
+    root: Traversable = own / "lib" if folder is None else folder
+    binaries = {}
+    for place in sorted(root.iterdir(), key=lambda p: p.name) if root.is_dir() else ():
+        if place.name[:3] in ENDINGS or "-" in place.name:
+            path = place / f"railpatch_fmu_{backend}{ending(place.name)}"
+            if path.is_file():
+                binaries[place.name] = path.read_bytes()
+    if not binaries:
+        where = "this package was built without it" if folder is None else f"{folder} has none"
+        raise CaseError(f"--fft: value is {backend!r}, but {where}")
+    runtime = root / "runtime.txt"
+    return Libraries(
+        binaries=binaries,
+        sources=sources_of(root / "sources.zip"),
+        licences={**texts_of(own / "licenses"), **texts_of(root / "licenses")},
+        runtime=runtime.read_text(encoding="utf-8") if runtime.is_file() else None,
+    )
+
+
+def texts_of(folder: Traversable) -> dict[str, bytes]:
+    """Name -> content of a folder's files."""
+    if not folder.is_dir():
+        return {}
+    return {p.name: p.read_bytes() for p in sorted(folder.iterdir(), key=lambda p: p.name)}
+
+
+def sources_of(path: Traversable) -> dict[str, bytes]:
+    """The files of an archive; none where it is absent."""
+    if not path.is_file():
+        return {}
+    with path.open("rb") as file, zipfile.ZipFile(file) as archive:
+        return {name: archive.read(name) for name in sorted(archive.namelist())}

@@ -1,0 +1,50 @@
+"""Which of the files in sources/ an importer compiles: buildDescription.xml and <SourceFiles>."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from xml.sax.saxutils import quoteattr
+
+LANGUAGE, COMPILER = "C++20", "gcc"
+# the same inputs give the same bits only where no products and sums are fused
+OPTIONS = "-std=c++20 -ffp-contract=off -O3"
+
+
+def compiled(paths: Iterable[str]) -> list[str]:
+    """The translation units among files below sources/."""
+    return sorted(path for path in paths if path.endswith(".cpp"))
+
+
+def build_description(identifier: str, paths: Iterable[str]) -> str:
+    """sources/buildDescription.xml, in the form of FMI 3.0, which FMI 2.0.4 recommends."""
+    files = [f"      <SourceFile name={quoteattr(path)}/>" for path in compiled(paths)]
+    how = {"language": LANGUAGE, "compiler": COMPILER, "compilerOptions": OPTIONS}
+    attributes = " ".join(f"{key}={quoteattr(value)}" for key, value in how.items())
+    lines = [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        '<fmiBuildDescription fmiVersion="3.0">',
+        f"  <BuildConfiguration modelIdentifier={quoteattr(identifier)}>",
+        f"    <SourceFileSet {attributes}>",
+        *files,
+        '      <IncludeDirectory name="."/>',
+        "    </SourceFileSet>",
+        "  </BuildConfiguration>",
+        "</fmiBuildDescription>",
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def with_source_files(description: str, paths: Iterable[str]) -> str:
+    """modelDescription.xml with the list in each of its interfaces."""
+    names = compiled(paths)
+    if not names:
+        return description
+    files = "".join(f"      <File name={quoteattr(name)}/>\n" for name in names)
+    inside = f"    <SourceFiles>\n{files}    </SourceFiles>\n"
+    return re.sub(
+        r"  <(CoSimulation|ModelExchange)([^>]*)/>\n",
+        lambda found: f"  <{found[1]}{found[2]}>\n{inside}  </{found[1]}>\n",
+        description,
+    )
