@@ -260,6 +260,8 @@ void check_build(const rp_config &c, checker &check) {
 const char *wheels_cannot_roll(const rp_config &c) {
   if (c.regime == RP_SHIFT)
     return "regime must be none, steady_rolling or transient_rolling for wheels";
+  if (c.spin_offset != RP_SPIN_OFFSET_NONE)
+    return "spin_offset must be none but with regime = steady_rolling";
   if (!(c.element_size[0] > 0))
     return "regime = transient_rolling of wheels needs element_size in place of elements";
   if (c.friction_law != RP_COULOMB)
@@ -638,7 +640,9 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
   const char *names[] = {"x", "pitch", "speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate"};
   const double values[] = {in.x,  in.pitch,     in.speed,    in.vy,
                            in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
-  for (int i = 0; i < 8; ++i) check.number(names[i], values[i], finite);
+  // beyond 1e9 m or rad a place has no micrometres left
+  for (int i = 0; i < 8; ++i)
+    check.number(names[i], values[i], i < 2 ? range{-1e9, 1e9, false, false} : finite);
   const bool rolls_on = c.regime == RP_TRANSIENT_ROLLING && has_tangential(c);
   check.number("time_step", in.time_step, rolls_on ? positive : not_negative);
   for (int side = 0; side < 2; ++side) {
@@ -660,7 +664,7 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
 
 rp_error check_direction(const rp_input &d, rp_message *message) {
   if (d.cookie != input_cookie) {
-    set_message(message, "the direction was never filled by rp_default_input");
+    set_message(message, "the direction was never filled by rp_default_direction");
     return RP_ERROR_NOT_DEFAULTED;
   }
   checker check(message);

@@ -520,6 +520,12 @@ void contact::report_search(bool converged, rp_status otherwise, double residual
   if (found != RP_CONVERGED && out.status != RP_OUT_OF_RANGE) out.status = found;
 }
 
+void contact::set_friction_coefficient(double value) {
+  // derivatives are those of the coefficient that the last step was solved with
+  if (derivative_ && value != friction_coefficient()) derivative_->solved = false;
+  solver_.set_friction_coefficient(value);
+}
+
 void contact::reset() {
   for (auto &m : memory_) {
     m.warm = m.solved = false;

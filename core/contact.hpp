@@ -28,7 +28,7 @@ class contact {
   // Of wheels.
   void jacobian(rp_jacobian &out);
   double friction_coefficient() const { return solver_.scene().friction_coefficient; }
-  void set_friction_coefficient(double value) { solver_.set_friction_coefficient(value); }
+  void set_friction_coefficient(double value);
 
   size_t state_size() const;
   void save_state(unsigned char *buffer) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "check.hpp"
@@ -71,7 +72,7 @@ derivative_record::derivative_record(const rp_config &config, const patch_scene 
   own.observer = nullptr;
   own.tolerance = std::min(own.tolerance, fine_tolerance);
   beside = std::make_unique<contact>(own);
-  if (scene.keeps_steps()) before = std::make_unique<contact>(own);
+  if (scene.keeps_steps() || rail_support::asked(config)) before = std::make_unique<contact>(own);
 }
 
 size_t derivative_record::bytes() const {
@@ -207,9 +208,11 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
   for_each_number(record.input,
                   [&](const char *, const double &v, double) { values[numbers++] = &v; });
   int at = 0;
-  for_each_number(rates, [&](const char *, const double &rate, double scale) {
+  for_each_number(rates, [&](const char *name, const double &rate, double scale) {
     const double v = *values[at++];
-    const double size = std::max(scale, std::isnan(v) ? 0.0 : std::fabs(v));
+    // how far along the track, or round the wheel, says nothing about the scale there
+    const bool place = std::strcmp(name, "x") == 0 || std::strcmp(name, "pitch") == 0;
+    const double size = place || std::isnan(v) ? scale : std::max(scale, std::fabs(v));
     if (rate != 0) reach = std::max(reach, std::fabs(rate) / (size > 0 ? size : 1.0));
   });
   if (!(reach > 0)) return;
@@ -233,7 +236,8 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
     }
     beside.copy_state(start);
     beside.step(in, ends[k]);
-    if (ends[k].status == RP_NOT_CONVERGED) worst = RP_NOT_CONVERGED;
+    if (ends[k].status == RP_NOT_CONVERGED || ends[k].status == RP_OUT_OF_RANGE)
+      worst = RP_NOT_CONVERGED;
   }
   if (!(places[1] > places[0])) {
     for_each_result_number(out, [](double &v) { v = nan; });
@@ -250,7 +254,10 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
     if (!std::isnan(rate)) rate = (v - *low[next]) / (places[1] - places[0]);
     ++next;
   });
-  if (worst != RP_CONVERGED && out.status == RP_CONVERGED) out.status = worst;
+  if (worst == RP_CONVERGED) return;
+  if (out.status == RP_CONVERGED) out.status = worst;
+  for (auto &side : out.side)
+    if (side.status == RP_CONVERGED) side.status = worst;
 }
 
 }  // namespace railpatch

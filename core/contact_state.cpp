@@ -285,6 +285,7 @@ void contact::copy_state(const contact &from) {
     m.g = source.g;
     m.reference = source.reference;
     m.share = source.share;
+    std::copy_n(source.rail, 2, m.rail);
     m.warm = source.warm;
     m.history.begun = source.history.begun;
     m.solved = false;

@@ -136,7 +136,6 @@ class side_geometry : private placement<double> {
   surface rail_seen_from(const contact_frame &frame) const;
   double locus_sine(const curve_point &p, double gap, double tolerance) const;
   double sampled_gap(double s) const;
-  void set_rates(const curve_point &p, double sine, locus_point &l) const;
   vec3 wheel_point(const curve_point &p, double sine) const;
   longitudinal_row row_of(const curve_point &p, double sine, double gap) const;
   double sideways(double x, double sine, const curve_point &p) const;

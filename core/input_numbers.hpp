@@ -82,6 +82,8 @@ void for_each_side_number(Result &side, F &&f) {
   for (auto &v : side.force) f(v);
   for (auto &v : side.moment) f(v);
   f(side.rolling_radius);
+  for (auto &v : side.rail_deflection) f(v);
+  for (auto &v : side.rail_deflection_rate) f(v);
   for (auto &patch : side.patch) for_each_patch_number(patch, f);
 }
 

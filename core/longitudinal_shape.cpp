@@ -48,7 +48,7 @@ int even_spline::cell(double x, double &share) const {
   double u = (x - start_) / spacing_;
   if (periodic_) {
     u -= (last + 1) * std::floor(u / (last + 1));
-    const int i = std::min(static_cast<int>(u), last);
+    const int i = std::clamp(static_cast<int>(u), 0, last);
     share = u - i;
     return i;
   }

@@ -47,7 +47,7 @@ class normal_derivative {
   // residual.
   double solve(const normal_point &point, const normal_variation *in, int count, double tolerance,
                double *pressure, double *approach);
-  // Solves the systems for tests and reports: products of the last call.
+  // Products of the last call, for tests and reports.
   int products() const { return products_; }
   size_t bytes() const;
 

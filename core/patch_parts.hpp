@@ -8,7 +8,6 @@
 //   facing_distance, joined   two neighbours -> how far they are one patch, 0 ... 1
 //   interval_share     joined of all gaps -> share of an interval of parts
 //   sum_parts          interval -> weighted means
-//   place_frame        means and rail -> contact frame
 //   bounds_of          parts and frame -> bounds of the interpenetration
 // Choices by value (comparisons, min, max) keep to one smooth branch each.
 //
@@ -25,9 +24,9 @@
 // distance of their edges will not do: it grows with the root of the gap, by millimetres in a few
 // micrometres of motion. joined falls at smaller gaps as contact angles differ by more than 60
 // degrees, and goes to zero with the width of the smaller part over the distance: a part that
-// appears (width 0) begins as a patch of its own with no force, one that splits (gap and distance 0)
-// as one patch. Within a patch neighbours interact as in the program CONTACT: fully up to a distance
-// of 4 mm, not at all from 8 mm on.
+// appears (width 0) begins as a patch of its own with no force, one that splits (gap and distance
+// 0) as one patch. Within a patch neighbours interact as in the program CONTACT: fully up to a
+// distance of 4 mm, not at all from 8 mm on.
 #pragma once
 
 #include <algorithm>

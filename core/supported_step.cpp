@@ -61,6 +61,7 @@ void contact::solve_supported(const rp_input &in, rp_result &out) {
   out.z = found.z;
   if (found.beyond) {
     if (load.prescribed) out.z = std::numeric_limits<double>::quiet_NaN();
+    report_search(false, RP_OUT_OF_RANGE, found.residual, out);
     out.status = RP_OUT_OF_RANGE;
     return;
   }

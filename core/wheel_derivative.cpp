@@ -200,7 +200,11 @@ void wheel_derivative::solve_patch(step &s, int index) {
   patch_change out[most_directions];
   if (!solution.solved) {
     // what it carries is not known
-    for (auto &force : s.force) force.fill(rated(nan));
+    rated unknown(nan);
+    unknown.rate.fill(nan);
+    for (auto *sums : {&s.force, &s.moment})
+      for (auto &sum : *sums) sum.fill(unknown);
+    for (auto &sum : s.loaded_radius) sum = unknown;
     return;
   }
   set_shape(s, index, in);

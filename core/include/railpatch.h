@@ -495,17 +495,20 @@ typedef enum rp_derivative_kind {
 /* Derivative of the last step's result in one direction (rp_default_direction): each double of
  * `direction` holds the rate of that input, its integers are ignored and so is a bulk_temperature
  * that is NaN. Each double of `change` is the rate of that number of the result: NaN where the
- * number itself is NaN, and of residual and error_estimate; counts are 0, statuses those of the
- * result, or RP_NOT_CONVERGED where the rates did not converge. kind (may be null) says how they
- * were found. Needs config.derivatives = 1 and a step since rp_create, rp_reset or
- * rp_restore_state; the state, the last solution and its fields stay as they are.
+ * number itself is NaN, and of residual and error_estimate; counts of elements and iterations are
+ * 0, other counts and statuses those of the result, or RP_NOT_CONVERGED where the rates did not
+ * converge. kind (may be null) says how they were found. Needs config.derivatives = 1 and a step
+ * since rp_create, rp_reset or rp_restore_state; the state, the last solution and its fields stay
+ * as they are.
  *
  * Exact ones are those of the returned solution's active sets: elements in contact, in stick and in
  * slip stay what they are. Where an element is just about to change, that is the one-sided
  * derivative towards the side on which it does not. They exist with normal = half_space or hertz
  * and without a tangential problem, or with tangential = full on the uniform grid in steady
  * rolling, Coulomb's law (friction_points included), bodies alike, a plane reference surface, no
- * prescribed creep force, no layer that yields and no temperature. */
+ * prescribed creep force, no layer that yields and no temperature; of wheels besides with
+ * patch_rule = blended, contact_frame = track, round wheels and rails that are level, of one
+ * profile and not on springs. */
 RP_API rp_error rp_differentiate(rp_contact *contact, const rp_input *direction, rp_result *change,
                                  rp_derivative_kind *kind, rp_message *message);
 

@@ -43,7 +43,7 @@ def moment_about(result: railpatch.Result, point: list[float], axis: list[float]
 def test_pressure_turns_neither_roller_nor_wheel() -> None:
     left_out = railpatch.solve(case("track", tangential="none"))
     whole = railpatch.solve(case("inclined", tangential="none"))
-    # some 0.018 rad * 0.7 m * R/(R + r) ahead of the top: that lever is what the track's frame leaves
+    # some 0.018 rad * 0.7 m * R/(R + r) ahead of the top: the lever that the track's frame leaves
     lever = abs(whole["patches"][0]["position"][0])
     assert lever > 0.008
     roller = [0.0, 0.0, ROLLER], [0.0, 1.0, 0.0]
@@ -69,7 +69,7 @@ def open_power(frame: str) -> float:
 
 
 def test_friction_takes_what_the_bodies_supply() -> None:
-    """What is left is the load times the 0.02 mm between contact reference and centre of pressure."""
+    """What is left is the load by the 0.02 mm from contact reference to centre of pressure."""
     assert abs(open_power("inclined")) < 0.01 * abs(open_power("track"))
 
 

@@ -143,3 +143,5 @@ def check_rolling(case: Any) -> None:
         raise relation("layer", "one that yields", f"an elastic layer {where}")
     if case.temperature is not None:
         raise relation("temperature", "given", f"to be left out {where}")
+    if case.method.spin_offset != "none":
+        raise relation("method.spin_offset", repr(case.method.spin_offset), f"'none' {where}")
