@@ -132,8 +132,7 @@ def test_several_patches_and_lift_off_are_among_them(unpacked: Callable[..., Fmu
             assert slave.set(values) == OK
             assert slave.step(k * STEP, STEP) == OK, slave.log
             counts += slave.get("patch_count")
-    # two contacts that join are three solutions
-    assert {1, 3} <= set(counts), counts
+    assert {1, 2} <= set(counts), counts
     with Slave(unpacked("rail")).initialize() as slave:
         assert slave.set({"wheelset.z": -1e-3}) == OK
         assert slave.step(0, STEP) == OK
