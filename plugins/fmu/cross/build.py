@@ -18,7 +18,7 @@ from pathlib import Path
 import gather
 
 ROOT = Path(__file__).parents[3]
-# FMI's name (2.0 has none for ARM: the tuple of 3.0): target of the compiler, CMake's system and processor
+# FMI's name (2.0 has none for ARM: that of 3.0): target of the compiler, CMake's system, processor
 PLATFORMS = {
     "linux64": ("x86_64-linux-gnu.2.17", "Linux", "x86_64"),
     "win64": ("x86_64-windows-gnu", "Windows", "x86_64"),
