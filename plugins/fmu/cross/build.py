@@ -26,7 +26,7 @@ PLATFORMS = {
     "darwin64": ("x86_64-macos", "Darwin", "x86_64"),
     "aarch64-darwin": ("aarch64-macos", "Darwin", "aarch64"),
 }
-DEFAULT = ("linux64", "win64")
+DEFAULT = ("linux64", "win64", "aarch64-linux")
 ENDINGS = {"Linux": ".so", "Windows": ".dll", "Darwin": ".dylib"}
 OPTIONS = {
     "CMAKE_BUILD_TYPE": "Release",
