@@ -58,7 +58,7 @@ void rp_default_config(rp_config *config) {
   c.gauge = 1.435;
   c.gauge_height = 0.014;
   c.roller_radius = 1.0;
-  c.max_patches = 4;
+  c.max_patches = RP_MAX_PATCHES;
   c.standstill_speed = 1e-3;
   c.rail_height_spacing = 1e-3;
 }

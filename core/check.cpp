@@ -104,6 +104,7 @@ void check_choices(const rp_config &c, checker &check) {
   else
     check.choice("track", c.track, RP_RAIL, RP_ROLLER);
   check.choice("patch_rule", c.patch_rule, RP_PATCHES_BLENDED, RP_PATCHES_CONTACT);
+  check.choice("contact_frame", c.contact_frame, RP_FRAME_TRACK, RP_FRAME_INCLINED);
 }
 
 void check_fitted(const rp_config &c, checker &check) {
@@ -508,6 +509,10 @@ void check_wheels(const rp_config &c, checker &check) {
     check.require(c.cant == 0, "cant must be 0 on rollers");
     check.require(c.curvature == 0, "curvature must be 0 on rollers");
   }
+  check.require(c.contact_frame == RP_FRAME_TRACK || c.track == RP_ROLLER,
+                "contact_frame must be track on rails");
+  check.require(c.contact_frame == RP_FRAME_TRACK || c.reference_surface == RP_REFERENCE_PLANE,
+                "contact_frame must be track with reference_surface = curved");
   check.integer("max_patches", c.max_patches, 1, RP_MAX_PATCHES);
   check.number("standstill_speed", c.standstill_speed, {0, 1, false, false});
   check_sections(c, check);

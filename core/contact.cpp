@@ -512,7 +512,7 @@ void contact::report_search(bool converged, rp_status otherwise, double residual
   };
   for (auto &side : out.side) {
     degrade(side.status);
-    for (int i = 0; i < side.patch_count; ++i) {
+    for (int i = 0; i < side.patch_count + side.alternative_count; ++i) {
       degrade(side.patch[i].status);
       side.patch[i].residual = std::max(side.patch[i].residual, residual);
     }

@@ -58,6 +58,7 @@ uint64_t fingerprint_of_numbers(const rp_config &c) {
                            static_cast<double>(c.max_iterations),
                            static_cast<double>(c.max_patches),
                            static_cast<double>(c.patch_rule),
+                           static_cast<double>(c.contact_frame),
                            c.standstill_speed,
                            static_cast<double>(c.force_prescribed[0]),
                            static_cast<double>(c.force_prescribed[1]),

@@ -20,10 +20,11 @@ using patch_wrench = basic_wrench<double>;
 // px, py may be null where the scene has no tangential stage.
 patch_wrench sum_tractions(const grid &g, const double *pressure, const double *px,
                            const double *py);
-// Adds the wrench at a contact reference `lever` away from the wheelset centre (track axes).
+// Adds the wrench at a contact reference `lever` away from the wheelset centre (track axes), in a
+// frame turned by the contact angle about x and then inclined about y.
 template <class T>
 void add_wrench(const basic_wrench<T> &wrench, const T &contact_angle, const T lever[3], T force[3],
-                T moment[3]) {
+                T moment[3], double inclination = 0) {
   using std::cos;
   using std::sin;
   const T c = cos(contact_angle), s = sin(contact_angle);
@@ -31,6 +32,11 @@ void add_wrench(const basic_wrench<T> &wrench, const T &contact_angle, const T l
     out[0] = v[0];
     out[1] = c * v[1] - s * v[2];
     out[2] = s * v[1] + c * v[2];
+    if (inclination == 0) return;
+    const double d = std::cos(inclination), t = std::sin(inclination);
+    const T along = out[0], down = out[2];
+    out[0] = d * along - t * down;
+    out[2] = t * along + d * down;
   };
   T f[3], m[3];
   rotate(wrench.force, f);

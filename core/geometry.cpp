@@ -207,7 +207,9 @@ track_config mirrored(track_config t) {
   return t;
 }
 
-contact_frame mirrored(contact_frame f) { return {mirrored_vector(f.origin), -f.contact_angle}; }
+contact_frame mirrored(contact_frame f) {
+  return {mirrored_vector(f.origin), -f.contact_angle, f.inclination};
+}
 
 creepage_state mirrored(creepage_state c) {
   c.eta = -c.eta;
@@ -332,6 +334,10 @@ bool side_geometry::rail_surface(double x, double y, double &z, double &angle) c
   if (!(r * r > dx * dx)) return false;
   z = axle_z_ - std::sqrt(r * r - dx * dx);
   return true;
+}
+
+double side_geometry::roller_inclination(const vec3 &at) const {
+  return std::atan2(at[0] - axle_x_, axle_z_ - at[2]);
 }
 
 locus_point side_geometry::locus(double s) const {

@@ -109,6 +109,9 @@ class side_geometry : private placement<double> {
   // those found.
   section_point section(const contact_frame &frame, double start[2]) const;
 
+  // Of a roller's surface along x, rad, > 0 where it falls.
+  double roller_inclination(const vec3 &at) const;
+
   // h[ny][nx], x fastest; no_surface beyond the profiles.
   void undeformed_distance(const contact_frame &frame, const surface_grid &grid, double *h) const;
 

@@ -152,6 +152,8 @@ basic_part<rated> moving_geometry::part_of(const part &found) const {
   out.end = edge(found.end);
   out.cut_off = found.cut_off;
   sum_rows([this](const rated &s) { return locus(s); }, out);
+  // its place is that of the greatest gap, so it may be held fixed
+  out.bump = found.bump > 0 ? locus(rated(found.bump_at)).gap : rated(0.0);
   return out;
 }
 

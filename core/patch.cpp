@@ -54,6 +54,26 @@ double lowest(const side_geometry &side, double a, double c) {
   return fp < fq ? p : q;
 }
 
+// greatest gap between two parts, and where
+void find_bump(const side_geometry &side, part &a, const part &b) {
+  constexpr int samples = 16;
+  const double step = (b.begin - a.end) / samples;
+  double at = a.end, most = 0;
+  for (int i = 1; i < samples; ++i) {
+    const double s = a.end + i * step, gap = gap_at(side, s);
+    if (gap > most) most = gap, at = s;
+  }
+  // golden section between the neighbours
+  constexpr double ratio = 0.6180339887498949;
+  double low = std::max(a.end, at - step), high = std::min(b.begin, at + step);
+  for (int i = 0; i < 24; ++i) {
+    const double p = high - ratio * (high - low), q = low + ratio * (high - low);
+    (gap_at(side, p) > gap_at(side, q) ? high : low) = gap_at(side, p) > gap_at(side, q) ? q : p;
+  }
+  a.bump_at = 0.5 * (low + high);
+  a.bump = std::max(gap_at(side, a.bump_at), 0.0);
+}
+
 class part_list {
  public:
   part_list(const side_geometry &side, part *parts) : side_(side), parts_(parts) {}
@@ -176,6 +196,7 @@ patch_region describe(const side_geometry &side, const patch_rules &r, const par
   out.frame.contact_angle = contact_angle;
   // between two parts the reference can lie where the rail is not touched, but never beyond it
   side.rail_surface(g.x, g.y, out.frame.origin[2], angle);
+  if (r.inclined) out.frame.inclination = side.roller_inclination(out.frame.origin);
   out.weight = g.weight;
   out.share = g.share;
   out.first_part = g.begin;
@@ -191,8 +212,10 @@ patch_region describe(const side_geometry &side, const patch_rules &r, const par
     if (i + 1 == g.end) break;
     const part &next = parts[i + 1];
     out.cut[i - g.begin] = 0.5 * (lateral(out.frame, p.last) + lateral(out.frame, next.first));
-    out.coupling[i - g.begin] = 1.0;
-    if (r.blended) continue;
+    if (r.blended) {
+      out.coupling[i - g.begin] = interaction(r.blend, p, next);
+      continue;
+    }
     const double d = facing_distance(p, next);
     const double share = std::clamp((r.separate - d) / (r.separate - r.combine), 0.0, 1.0);
     out.coupling[i - g.begin] = std::pow(share, r.coupling_exponent);
@@ -205,14 +228,20 @@ int blend(const blend_rules &rules, const part_set &found, part_interval *out) {
   double join[max_parts];
   for (int k = 0; k + 1 < found.count; ++k)
     join[k] = joined(rules, found.parts[k], found.parts[k + 1]);
+  // each gap is as it mostly is in the division that leads
+  double mostly[max_parts];
+  for (int k = 0; k + 1 < found.count; ++k) mostly[k] = join[k] < 0.5 ? 0.0 : 1.0;
   int count = 0;
-  for (int begin = 0; begin < found.count; ++begin)
-    for (int end = begin + 1; end <= found.count; ++end) {
-      const double share = interval_share(join, found.count, begin, end);
-      if (!(share > least_share)) continue;
-      out[count] = sum_parts(found.parts, begin, end);
-      out[count++].share = share;
-    }
+  for (const bool leading : {true, false})
+    for (int begin = 0; begin < found.count; ++begin)
+      for (int end = begin + 1; end <= found.count; ++end) {
+        const bool leads = interval_share(mostly, found.count, begin, end) > 0;
+        const double share = interval_share(join, found.count, begin, end);
+        if (leads != leading || !(share > least_share)) continue;
+        out[count] = sum_parts(found.parts, begin, end);
+        out[count].leads = leads;
+        out[count++].share = share;
+      }
   return count;
 }
 
@@ -255,6 +284,7 @@ void find_parts(const side_geometry &side, part_set &found) {
       sum_rows(locus, found.parts[i]);
     if (found.parts[i].weight > 0) found.parts[found.count++] = found.parts[i];
   }
+  for (int i = 0; i + 1 < found.count; ++i) find_bump(side, found.parts[i], found.parts[i + 1]);
 }
 
 search_result find_patches(const side_geometry &side, const patch_rules &rules, part_set &found,
@@ -272,9 +302,12 @@ search_result find_patches(const side_geometry &side, const patch_rules &rules, 
     turn_neighbours(rules, found.parts, groups, patches, angles);
   const bool too_many = found.overflow || patches > max_patches;
   keep_heaviest(groups, angles, patches, max_patches);
-  for (int k = 0; k < patches; ++k)
+  int lead = 0;
+  for (int k = 0; k < patches; ++k) {
     out[k] = describe(side, rules, found.parts, groups[k], angles[k]);
-  return {too_many ? search_status::too_many_patches : search_status::contact, patches};
+    lead += groups[k].leads;
+  }
+  return {too_many ? search_status::too_many_patches : search_status::contact, patches, lead};
 }
 
 bool first_touch(const side_geometry &side, double &z) {

@@ -23,7 +23,8 @@
 namespace railpatch {
 
 struct patch_rules {
-  bool blended = true;  // else by the distances below
+  bool blended = true;    // else by the distances below
+  bool inclined = false;  // frames follow a roller's surface along x
   blend_rules blend;
   double combine = 4e-3, separate = 8e-3, turn = 12e-3;  // m
   double max_angle = 1.5707963267948966;  // rad, a greater difference always separates
@@ -49,6 +50,7 @@ enum class search_status { contact, no_contact, out_of_range, too_many_patches }
 struct search_result {
   search_status status = search_status::no_contact;
   int count = 0;  // patches written; where there are too many, those of greatest weight
+  int lead = 0;   // of these, first: the division of greatest share, along the rail
 };
 
 // The parts of contact of one wheel, with their sums over rows, in the order of s.

@@ -20,14 +20,14 @@
 // counts with the share
 //   (product of joined_k over the gaps k inside) (1 - joined_{i-1}) (1 - joined_j),
 // as if each gap were joined by chance, independently of the others. So the shares of the intervals
-// that hold a part sum up to one, for each part. joined falls from one to zero as the distance d of
-// the facing edges goes from d1 = min(3 mm, 1.5 w) to d2 = min(12 mm, 12 w), w the lateral width of
-// the smaller part; at 12 mm neighbours lose their influence in the program CONTACT. A part that
-// appears (w = 0, d > 0) begins as a patch of its own with no force, one that splits (d = 0, w > 0)
-// as one patch; so d1 falls with the difference of contact angles too, but not to zero. Two parts
-// lie on either side of a bump of the gap whose height goes with d^2: within a few micrometres of
-// motion they part by millimetres, so the range of d must be wide for the forces to follow
-// smoothly.
+// that hold a part sum up to one, for each part. joined falls from one to zero as the greatest gap
+// between two parts grows from 25 to 75 um: a bump that elastic displacement closes or bridges. The
+// distance of their edges will not do: it grows with the root of the gap, by millimetres in a few
+// micrometres of motion. joined falls at smaller gaps as contact angles differ by more than 60
+// degrees, and goes to zero with the width of the smaller part over the distance: a part that
+// appears (width 0) begins as a patch of its own with no force, one that splits (gap and distance 0)
+// as one patch. Within a patch neighbours interact as in the program CONTACT: fully up to a distance
+// of 4 mm, not at all from 8 mm on.
 #pragma once
 
 #include <algorithm>
@@ -39,11 +39,12 @@ namespace railpatch {
 
 constexpr int max_parts = 8;  // of one patch, and of one wheel
 
-// How parts become patches without jumps: the distances up to which they are one, and from which on
-// each is a patch of its own.
+// How parts become patches without jumps: the gaps up to which they are one, and from which on each
+// is a patch of its own.
 struct blend_rules {
-  double one = 3e-3, two = 12e-3;                    // m, at most
-  double one_in_widths = 1.5, two_in_widths = 12.0;  // -, over the width of the smaller part
+  double low = 2.5e-5, high = 7.5e-5;  // m, greatest gap between
+  double grown = 0.15;                 // -, width of the smaller part over the distance
+  double full = 4e-3, none = 8e-3;     // m, of the interaction within a patch
   // rad; between these differences of contact angles the distances fall to a fraction
   double angle_from = std::numbers::pi / 3, angle_to = std::numbers::pi / 2;
   double angle_fraction = 0.1;
@@ -57,6 +58,9 @@ struct basic_part {
   std::array<T, 3> first{}, last{};  // edges, track axes, on the surfaces
   T weight{}, x{}, y{}, angle{};     // weighted means
   T x_min{}, x_max{};
+  // between this part and the next: the greatest gap, m, and its arc length on the wheel
+  T bump{};
+  double bump_at = 0;
 };
 using part = basic_part<double>;
 
@@ -64,6 +68,7 @@ using part = basic_part<double>;
 template <class T>
 struct basic_interval {
   int begin = 0, end = 0;
+  bool leads = true;              // belongs to the division of greatest share
   T weight{}, x{}, y{}, angle{};  // weighted means
   T share{};
 };
@@ -130,6 +135,17 @@ T fade(const T &t) {
   return 1.0 - t * t * t * (10.0 - t * (15.0 - 6.0 * t));
 }
 
+// With which factor the tractions of two neighbours in one patch act on each other.
+template <class T>
+T interaction(const blend_rules &rule, const basic_part<T> &a, const basic_part<T> &b) {
+  using std::max;
+  using std::min;
+  using std::pow;
+  const T near = (rule.none - facing_distance(a, b)) / (rule.none - rule.full);
+  if (!(near > 0)) return T(0);
+  return near < 1.0 ? pow(near, 0.8) : T(1);
+}
+
 // How far two neighbours are one patch: 1, or 0 for patches of their own.
 template <class T>
 T joined(const blend_rules &rule, const basic_part<T> &a, const basic_part<T> &b) {
@@ -138,12 +154,10 @@ T joined(const blend_rules &rule, const basic_part<T> &a, const basic_part<T> &b
   const T d = facing_distance(a, b), w = min(lateral_width(a), lateral_width(b));
   const T apart = (fabs(b.angle - a.angle) - rule.angle_from) / (rule.angle_to - rule.angle_from);
   const T alike = rule.angle_fraction + (1.0 - rule.angle_fraction) * fade(apart);
-  const T near = alike * min(T(rule.one), rule.one_in_widths * w);
-  const T far = alike * min(T(rule.two), rule.two_in_widths * w);
-  // before the division: both are zero where a part has no width
-  if (!(d < far)) return T(0);
-  if (!(d > near)) return T(1);
-  return fade((d - near) / (far - near));
+  const T low = alike * rule.low, high = alike * rule.high;
+  const T near = fade((a.bump - low) / (high - low));
+  const T share = w / (rule.grown * d);
+  return share < 1.0 ? near * (1.0 - fade(share)) : near;
 }
 
 // Share of the interval [begin, end) of `count` parts; joined[k] is that of parts k and k + 1.

@@ -66,6 +66,9 @@ template <class T>
 struct basic_contact_frame {
   vec<T> origin{};      // track axes, on the rail surface
   T contact_angle = 0;  // rad
+  // rad, of the x axis below the track's: where a contact lies ahead of a roller's top, if asked
+  // for
+  double inclination = 0;
 };
 using contact_frame = basic_contact_frame<double>;
 
@@ -129,7 +132,9 @@ frame_axes<T> axes_of(const basic_contact_frame<T> &f) {
   using std::cos;
   using std::sin;
   const T c = cos(f.contact_angle), s = sin(f.contact_angle);
-  return {{T(1), T(0), T(0)}, {T(0), c, s}, {T(0), -s, c}};
+  if (f.inclination == 0) return {{T(1), T(0), T(0)}, {T(0), c, s}, {T(0), -s, c}};
+  const double d = std::cos(f.inclination), t = std::sin(f.inclination);
+  return {{T(d), T(0), T(t)}, {-t * s, c, d * s}, {-t * c, -s, d * c}};
 }
 
 // whether its velocities are to be looked at

@@ -95,6 +95,7 @@ wheel_contact::wheel_contact(const rp_config &c, int side)
       wheel_(make_profile(c.wheel[side], side == RP_LEFT ? "wheel_left" : "wheel_right")),
       rail_(make_rail(c, side)) {
   rules_.blended = c.patch_rule == RP_PATCHES_BLENDED;
+  rules_.inclined = c.contact_frame == RP_FRAME_INCLINED;
   const wheel_config sizes{c.nominal_radius, c.flange_back_distance, c.flange_back_position,
                            c.standstill_speed};
   geometry_ = std::make_unique<side_geometry>(*wheel_, *rail_, sizes, track_of(c, side));
@@ -168,7 +169,8 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
   solver.observe(RP_STAGE_GEOMETRY, false);
   out.status = RP_NO_CONTACT;
   const int count = patches_ = found.count;
-  out.patch_count = count;
+  out.patch_count = found.lead;
+  out.alternative_count = count - found.lead;
   for (int k = 0; k < 3; ++k) out.force[k] = out.moment[k] = 0;
   out.rolling_radius = 0;
   for (int k = 0; k < 2; ++k) out.rail_deflection[k] = out.rail_deflection_rate[k] = nan;
@@ -298,7 +300,8 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
   out.rolling_radius +=
       region.share * result.normal_force * geometry_->rolling_radius(region.frame, depth);
   const vec3 lever = geometry_->lever(region.frame);
-  add_wrench(wrench, region.frame.contact_angle, lever.data(), out.force, out.moment);
+  add_wrench(wrench, region.frame.contact_angle, lever.data(), out.force, out.moment,
+             region.frame.inclination);
   std::copy_n(origin.begin(), 3, result.position);
   result.contact_angle = region.frame.contact_angle;
   result.approach = depth;

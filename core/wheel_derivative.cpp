@@ -34,9 +34,10 @@ rated_frame fixed_frame(const contact_frame &f) {
 wheel_derivative::wheel_derivative(const patch_scene &scene, int max_count, int max_rows)
     : max_count_(max_count), max_rows_(max_rows) {
   const auto directions = static_cast<size_t>(rate_directions);
-  distance_ = aligned_buffer<double>(directions * static_cast<size_t>(max_count));
+  distance_ = aligned_buffer<double>::uninitialized(directions * static_cast<size_t>(max_count));
   if (scene.friction_variation.varies())
-    row_friction_ = aligned_buffer<double>(directions * static_cast<size_t>(max_rows));
+    row_friction_ =
+        aligned_buffer<double>::uninitialized(directions * static_cast<size_t>(max_rows));
 }
 
 size_t wheel_derivative::bytes() const {
@@ -163,6 +164,9 @@ void wheel_derivative::set_shape(step &s, int index, patch_variation *in) {
     in[k].distance = rates[k];
     std::copy_n(s.lattice[k].size, 2, in[k].size);
     std::copy_n(s.lattice[k].origin, 2, in[k].origin);
+    for (int i = region.first_part; i + 1 < end; ++i)
+      in[k].part_factor[i - region.first_part] =
+          interaction(s.wheel.rules.blend, s.parts[i], s.parts[i + 1]).rate[static_cast<size_t>(k)];
     s.depth.rate[static_cast<size_t>(k)] = -rates[k][deepest];
   }
 }

@@ -43,7 +43,7 @@ class wheel_derivative {
   wheel_derivative(const patch_scene &scene, int max_count, int max_rows);
 
   // The rules of patch.hpp whose shares are smooth, and all else this differentiates.
-  static bool covers(const patch_rules &rules) { return rules.blended; }
+  static bool covers(const patch_rules &rules) { return rules.blended && !rules.inclined; }
 
   // friction: rates of the friction coefficient. result: of the right-hand wheel. changes[k]: rates
   // of its doubles; statuses and counts are not set, but the grid's that of the result.

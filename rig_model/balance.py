@@ -251,14 +251,14 @@ def track_force(scene: RigScene, _position: Position, wheel: dict) -> float:
         * patch["normal_force"]
         * math.cos(patch["contact_angle"])
         * inclination(scene, patch)
-        for patch in wheel["patches"]
+        for patch in solutions(wheel)
     )
 
 
 def track_force_rate(scene: RigScene, _position: Position, wheel: dict, rate: dict) -> float:
     """Of the same."""
     total = rate["force"][0]
-    for patch, change in zip(wheel["patches"], rate["patches"], strict=True):
+    for patch, change in zip(solutions(wheel), solutions(rate), strict=True):
         height = scene.case.track.roller_radius - patch["position"][2]
         angle = patch["contact_angle"]
         force = patch["share"] * patch["normal_force"]
@@ -270,6 +270,11 @@ def track_force_rate(scene: RigScene, _position: Position, wheel: dict, rate: di
         total -= force * math.sin(angle) * change["contact_angle"] * inclined
         total += force * math.cos(angle) * inclined_rate
     return total
+
+
+def solutions(wheel: dict) -> list[dict]:
+    """The patches, and others that count with their share in the wheel's force."""
+    return wheel["patches"] + wheel["alternatives"]
 
 
 def inclination(scene: RigScene, patch: dict) -> float:

@@ -248,6 +248,11 @@ def check_machine(case: Any, rig: Rig) -> None:
         )
     if not case.has_tangential:
         problems.append("method.tangential: value is 'none', allowed one with creep forces")
+    if rig.balance.axle_torque == "track" and case.method.contact_frame == "inclined":
+        problems.append(
+            "rig.balance.axle_torque: value is 'track', allowed 'wheelset' with "
+            "method.contact_frame = 'inclined': the normal force's part along x is in the force"
+        )
     if rig.balance.tolerance < 2 * case.method.tolerance:
         problems.append(
             f"rig.balance.tolerance: value is {rig.balance.tolerance}, allowed >= "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -85,10 +85,15 @@ class Run(Table):
     stepper: Literal["rk4", "ros2"] = Field(
         default="ros2",
         description="(no unit): rk4, explicit, Runge-Kutta of order 4; ros2, linearly implicit, "
-        "Rosenbrock of order 2 with contact derivatives by differences",
+        "Rosenbrock of order 2",
+    )
+    derivatives: Literal["exact", "differences"] = Field(
+        default="exact",
+        description="(no unit): derivatives of the accelerations (ros2), from those of the contact "
+        "or by differences of a dozen evaluations",
     )
     derivatives_every: Annotated[int, Field(ge=1, le=100_000)] = Field(
-        default=25, description="-, steps between new contact derivatives (ros2)"
+        default=25, description="-, steps between new derivatives (ros2)"
     )
     log_every: Annotated[int, Field(ge=1)] = Field(
         default=10, description="-, every n-th step is logged"
@@ -98,6 +103,11 @@ class Run(Table):
         description="-, the fields of every n-th logged step are logged, 0: none; left out: of "
         f"some {SNAPSHOTS} steps",
     )
+
+    @property
+    def exact(self) -> bool:
+        """Whether the contact's derivatives are asked for."""
+        return self.stepper == "ros2" and self.derivatives == "exact"
 
 
 MODELS: dict[str, type[Table]] = {"body": BodyTable, "suspension": SuspensionTable, "run": Run}
@@ -143,10 +153,19 @@ class WheelsetScene:
             return self.run.snapshot_every
         return -(-self.steps // (SNAPSHOTS * self.run.log_every))
 
-    def at_height(self) -> Scene:
-        """The case with z prescribed in place of the vertical force."""
+    def at_height(self, derivatives: bool = False) -> Scene:
+        """The case with z prescribed in place of the vertical force, with derivatives if asked."""
         wheelset = self.case.wheelset.model_copy(update={"vertical_force": None, "z": 0.0})
-        return Scene(self.case.model_copy(update={"wheelset": wheelset}), Path())
+        method = self.case.method
+        method = method.model_copy(update={"derivatives": derivatives or method.derivatives})
+        update = {"wheelset": wheelset, "method": method}
+        return Scene(self.case.model_copy(update=update), Path())
+
+    def at_speed(self, speed: float, y: float) -> WheelsetScene:
+        """The scene at another speed (m/s), released straight at y (m)."""
+        update = {"speed": speed, "y": y, "yaw": 0.0}
+        wheelset = self.case.wheelset.model_copy(update=update)
+        return replace(self, case=self.case.model_copy(update={"wheelset": wheelset}))
 
     def at_rest(self) -> Scene:
         """The case with the load prescribed and without friction, for a first estimate."""

@@ -35,7 +35,9 @@ class Simulation:
         last one in the log.
         """
         run, steps = self.scene.run, self.scene.steps
-        stepper = make_stepper(run.stepper, self.system, run.step, run.derivatives_every)
+        stepper = make_stepper(
+            run.stepper, self.system, run.step, run.derivatives_every, run.derivatives
+        )
         trace = Trace(self.scene)
         recorder = Recorder(self.scene, self.system)
         try:

@@ -11,20 +11,23 @@ ros2 (Verwer, Spee, Blom, Hundsdorfer, SIAM J. Sci. Comput. 20 (1999) 1456-1480)
     y <- y + 3/2 h k1 + 1/2 h k2,   gamma = 1 - 1/sqrt(2).
 
 It is of order 2 for any matrix A and L-stable where A is the Jacobian of f, so that A may be an old
-one: contact derivatives by differences cost a dozen evaluations.
+one. Exact derivatives cost two or three evaluations of the contact, those by differences a dozen.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Literal
 
 import numpy as np
 
-from wheelset_demo.system import COUNT, WORKS, Rates, State, System, Vector
+from wheelset_demo.system import COUNT, IMPULSES, WORKS, Rates, State, System, Vector
 
-# parts of a state as one vector: motion, work, time
+# parts of a state as one vector: motion, work, impulse, time
 MOTION = 2 * COUNT
-TIME = MOTION + len(WORKS)
+WORK = MOTION + len(WORKS)
+TIME = WORK + len(IMPULSES)
 
 GAMMA = 1 - 1 / math.sqrt(2)
 # m, of differences: small against the approach of wheel and rail, some 1e-4 m
@@ -32,6 +35,9 @@ LENGTH = 1e-7
 # -, of differences: small against the creepage at which friction is used up, some 1e-3
 CREEPAGE = 1e-5
 ARM = 0.75  # m, half the distance of the contacts: from lengths to angles
+
+
+Derivatives = Callable[[System, State, Rates, float], Vector]
 
 
 class Rk4:
@@ -48,19 +54,25 @@ class Rk4:
             motion = state.motion + share * stages[-1].motion
             stages.append(self._system.rates(state.time + share, motion))
         weights = [h / 6, h / 3, h / 3, h / 6]
-        motion = sum(w * k.motion for w, k in zip(weights, stages, strict=True))
-        work = sum(w * k.work for w, k in zip(weights, stages, strict=True))
-        return State(state.time + h, state.motion + motion, state.work + work)
+        change = sum(w * rates_of(k) for w, k in zip(weights, stages, strict=True))
+        return moved_by(state, h, change)
 
 
 class Ros2:
     """Linearly implicit Rosenbrock method of order 2 with a fixed step (s).
 
-    every: steps between new derivatives of the accelerations.
+    every: steps between new derivatives of the accelerations. derivatives: what finds them.
     """
 
-    def __init__(self, system: System, step: float, every: int = 25) -> None:
+    def __init__(
+        self,
+        system: System,
+        step: float,
+        every: int = 25,
+        derivatives: Derivatives | None = None,
+    ) -> None:
         self._system, self._step, self._every = system, step, every
+        self._derivatives = derivatives or by_differences
         self._age = 0
         self._inverse: Vector | None = None
 
@@ -73,28 +85,39 @@ class Ros2:
         first = self._inverse @ rates_of(rates)
         moved = self._system.rates(state.time + h, state.motion + h * first[:MOTION])
         second = self._inverse @ (rates_of(moved) - 2 * first)
-        change = h * (1.5 * first + 0.5 * second)
-        motion, work = state.motion + change[:MOTION], state.work + change[MOTION:TIME]
-        return State(state.time + h, motion, work)
+        return moved_by(state, h, h * (1.5 * first + 0.5 * second))
 
     def _renew(self, state: State, rates: Rates) -> None:
-        jacobian = derivatives(self._system, state, rates, self._step)
+        jacobian = self._derivatives(self._system, state, rates, self._step)
         self._inverse = np.linalg.inv(np.eye(TIME + 1) - GAMMA * self._step * jacobian)
         self._age = 0
 
 
 def rates_of(rates: Rates) -> Vector:
-    """[17], of motion, work and time."""
-    return np.concatenate([rates.motion, rates.work, [1.0]])
+    """[23], of motion, work, impulse and time."""
+    return np.concatenate([rates.motion, rates.work, rates.impulse, [1.0]])
 
 
-def derivatives(system: System, state: State, rates: Rates, time_step: float) -> Vector:
-    """[17, 17], of the rates of motion, work and time with respect to these, by differences.
+def moved_by(state: State, step: float, change: Vector) -> State:
+    """The state a step (s) later."""
+    motion, work = state.motion + change[:MOTION], state.work + change[MOTION:WORK]
+    return State(state.time + step, motion, work, state.impulse + change[WORK:TIME])
 
-    The works are part of it: they are then integrated with the same stiff accuracy as the motion,
-    or the balance of energies would not close. So is time, because the suspension's reference
-    moves. Nothing depends on the pitch angle.
+
+def exactly(system: System, state: State, rates: Rates, time_step: float) -> Vector:
+    """[23, 23], of the rates of motion, work, impulse and time with respect to these.
+
+    Works and impulses are part of it: they are then integrated with the same stiff accuracy as the
+    motion, or the balances would not close. So is time, because the suspension's reference moves.
     """
+    jacobian = np.zeros((TIME + 1, TIME + 1))
+    found = system.derivatives(state.motion)
+    jacobian[:TIME, :MOTION], jacobian[:TIME, TIME] = found.by_motion, found.by_time
+    return jacobian
+
+
+def by_differences(system: System, state: State, rates: Rates, time_step: float) -> Vector:
+    """The same by differences. Nothing depends on the pitch angle."""
     jacobian = np.zeros((TIME + 1, TIME + 1))
     known = rates_of(rates)
     for column, length in enumerate(differences(float(state.v[0]))):
@@ -115,6 +138,10 @@ def differences(speed: float) -> list[float]:
     return [*lengths, rate, rate, rate, rate / ARM, rate / ARM, rate / ARM]
 
 
-def make_stepper(name: str, system: System, step: float, every: int) -> Rk4 | Ros2:
-    """By the name in the scene."""
-    return Rk4(system, step) if name == "rk4" else Ros2(system, step, every)
+def make_stepper(
+    name: str, system: System, step: float, every: int, derivatives: Literal["exact", "differences"]
+) -> Rk4 | Ros2:
+    """By the names in the scene."""
+    if name == "rk4":
+        return Rk4(system, step)
+    return Ros2(system, step, every, exactly if derivatives == "exact" else by_differences)

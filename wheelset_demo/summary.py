@@ -38,7 +38,11 @@ class Waves:
 
 @dataclass(frozen=True)
 class Summary:
-    """A run in numbers. Energies in J since the start; wall_time in s."""
+    """A run in numbers. Energies in J since the start; wall_time in s.
+
+    Errors of the balances are parts of the energy lost, and of momentum and moment of momentum at
+    the start.
+    """
 
     good: bool
     message: str
@@ -49,6 +53,8 @@ class Summary:
     energies: dict[str, float]
     mechanical_error: float
     contact_error: float
+    momentum_error: float
+    turning_error: float
     in_the_air: dict[str, int]
     evaluations: int
     solve_seconds: float
@@ -74,6 +80,11 @@ class Summary:
                 f"open by {100 * self.mechanical_error:.2g} % (bodies and springs), "
                 f"{100 * self.contact_error:.2g} % (contacts) of what was lost",
             ),
+            (
+                "momentum",
+                f"open by {self.momentum_error:.2g}, about the centre by {self.turning_error:.2g} "
+                "of the wheelset's own",
+            ),
             ("in the air", ", ".join(f"{s} {n} steps" for s, n in self.in_the_air.items())),
             (
                 "wall time",
@@ -96,6 +107,7 @@ def summarise(trace: Trace, wall_time: float = math.nan) -> Summary:
     logged = bool(trace.times)
     energies = {name: last(trace.work(name)) for name in WORKS}
     lost = energies["friction"] + energies["damping"]
+    momentum, turning = trace.momentum_errors() if logged else (math.nan, math.nan)
     return Summary(
         good=trace.failure is None,
         message=str(trace.failure or ""),
@@ -106,6 +118,8 @@ def summarise(trace: Trace, wall_time: float = math.nan) -> Summary:
         energies=energies,
         mechanical_error=largest(trace.mechanical_residual()) / lost if lost > 0 else math.nan,
         contact_error=largest(trace.contact_residual()) / lost if lost > 0 else math.nan,
+        momentum_error=momentum,
+        turning_error=turning,
         in_the_air={
             side: sum(status[side] == "no_contact" for status in trace.statuses)
             for side in ("left", "right")

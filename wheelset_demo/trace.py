@@ -20,7 +20,8 @@ class Trace:
     """The n logged steps of a run.
 
     times: [n], s. motions: [n][12]. works: [n][4], J, by WORKS, since the start. energies: [n][4],
-    J, by STORES. radii: [n][2], m, rolling radii left and right. contacts: [n][2], m, lateral
+    J, by STORES. impulses, momenta: [n][6], N s, N m s, by IMPULSES, since the start and of all
+    bodies. radii: [n][2], m, rolling radii left and right. contacts: [n][2], m, lateral
     positions of the contacts, weighted with their load; NaN for a wheel in the air. statuses: [n],
     by side. result: of the last step. failure: what ended the run before its end. evaluations,
     solve_seconds: contact work of the whole run.
@@ -31,6 +32,8 @@ class Trace:
     motions: list[NDArray[np.float64]] = field(default_factory=list)
     works: list[NDArray[np.float64]] = field(default_factory=list)
     energies: list[list[float]] = field(default_factory=list)
+    impulses: list[NDArray[np.float64]] = field(default_factory=list)
+    momenta: list[NDArray[np.float64]] = field(default_factory=list)
     radii: list[list[float]] = field(default_factory=list)
     contacts: list[list[float]] = field(default_factory=list)
     statuses: list[dict[str, str]] = field(default_factory=list)
@@ -48,6 +51,8 @@ class Trace:
         self.motions.append(state.motion)
         self.works.append(state.work)
         self.energies.append([getattr(stored, name) for name in STORES])
+        self.impulses.append(state.impulse)
+        self.momenta.append(system.momentum(state))
         self.radii.append([result[side]["rolling_radius"] for side in SIDES])
         self.contacts.append([lateral(result[side]["patches"]) for side in SIDES])
         self.statuses.append({side: result[side]["status"] for side in SIDES})
@@ -88,6 +93,18 @@ class Trace:
     def balance_residual(self) -> NDArray[np.float64]:
         """[n], J, what is missing in the balance of all."""
         return self.mechanical_residual() + self.contact_residual()
+
+    def momentum_residual(self) -> NDArray[np.float64]:
+        """[n, 6], N s, N m s, by IMPULSES: what is missing in the balance of momenta."""
+        return np.array(self.momenta) - self.momenta[0] - np.array(self.impulses)
+
+    def momentum_errors(self) -> tuple[float, float]:
+        """Greatest parts missing of momentum and of moment of momentum, by those at the start."""
+        missing = np.abs(self.momentum_residual()).max(axis=0)
+        scale = np.abs(self.momenta[0])
+        return float(missing[:3].max() / scale[:3].max()), float(
+            missing[3:].max() / scale[3:].max()
+        )
 
 
 def lateral(patches: list[dict]) -> float:

@@ -143,6 +143,13 @@ typedef enum rp_patch_rule {
   RP_PATCHES_CONTACT = 1  /* as in the program CONTACT: one patch below 8 mm, with part of the
                              interaction from 4 mm on, and angles turned together up to 12 mm */
 } rp_patch_rule;
+/* x axis of the contact frame where a contact lies ahead of a roller's top, or behind */
+typedef enum rp_contact_frame {
+  RP_FRAME_TRACK = 0,   /* the track's: the part -Fn x/R of the normal force along track x is left
+                           out of force and moment, as in the published results of the program
+                           CONTACT */
+  RP_FRAME_INCLINED = 1 /* along the roller's surface: nothing is left out */
+} rp_contact_frame;
 /* of the half-space theories for wheels */
 typedef enum rp_reference_surface {
   RP_REFERENCE_PLANE = 0, /* tangent to the contact reference */
@@ -298,6 +305,7 @@ typedef struct rp_config {
   rp_profile wheel[2], rail[2]; /* by side; the roller's profile as rail */
   int32_t max_patches;          /* solved on one wheel, 1 ... RP_MAX_PATCHES */
   rp_patch_rule patch_rule;
+  rp_contact_frame contact_frame; /* rollers; derivatives with an inclined one are by differences */
   double standstill_speed; /* m/s, 0 ... 1, V0: below it creepages are slip over (V^2 + V0^2)/(2 V0)
                               instead of the rolling speed V, and spin_creepage fades as the heading
                               turns, so that forces pass through standstill without a jump. 0: slip
@@ -413,10 +421,7 @@ typedef struct rp_patch_result {
   double element_size[2];     /* m; fitted rows: 0 */
 } rp_patch_result;
 
-/* One wheel. On a roller the contact frame is not pitched: where the contact lies ahead of or
- * behind the roller's top, at x, the part -Fn x/R of the normal force along track x is left out of
- * force and moment, as in the published results of the program CONTACT. NaN where a patch could not
- * be solved. */
+/* One wheel; on a roller see rp_contact_frame. NaN where a patch could not be solved. */
 typedef struct rp_side_result {
   rp_status status;
   double force[3];       /* N on the wheel, track axes */
@@ -424,7 +429,9 @@ typedef struct rp_side_result {
   double rolling_radius; /* m, of the wheel at the mean contact reference; NaN without contact */
   double rail_deflection[2];      /* m, lateral, vertical, track axes; NaN: the scene has none */
   double rail_deflection_rate[2]; /* m/s, in this step; 0 where time_step is 0 */
-  int32_t patch_count;
+  /* patch_count patches, and after them alternative_count solutions of other divisions of the same
+   * areas, where neighbours join or part: the force is the sum of share times force of all */
+  int32_t patch_count, alternative_count;
   rp_patch_result patch[RP_MAX_PATCHES];
 } rp_side_result;
 

@@ -83,6 +83,7 @@
   X(roller_radius)                  \
   X(max_patches)                    \
   X(patch_rule)                     \
+  X(contact_frame)                  \
   X(standstill_speed)               \
   X(runout_count)                   \
   X(rail_height_count)              \

@@ -388,6 +388,9 @@ TEST(Config, ChoicesAndCountsAreChecked) {
     c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
     put(c.patch_rule, bad);
     expect_refused(c, RP_ERROR_VALUE, "patch_rule");
+    c = scenes::wheels(RP_WHEELSET, RP_ROLLER, pair);
+    put(c.contact_frame, bad);
+    expect_refused(c, RP_ERROR_VALUE, "contact_frame");
     c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
     c.standstill_speed = bad;
     expect_refused(c, RP_ERROR_VALUE, "standstill_speed");

@@ -20,8 +20,10 @@ part part_of(double begin, double end, double angle = 0) {
   return p;
 }
 
-double join_of(double width, double distance, double angle = 0) {
-  return joined(blend_rules{}, part_of(-0.005, 0), part_of(distance, distance + width, angle));
+double join_of(double width, double distance, double angle = 0, double bump = 0) {
+  part before = part_of(-0.005, 0);
+  before.bump = bump;
+  return joined(blend_rules{}, before, part_of(distance, distance + width, angle));
 }
 
 // A number with its derivative, as little as the templates need.
@@ -101,33 +103,44 @@ TEST(PatchParts, FadeHasTwoContinuousDerivatives) {
 TEST(PatchParts, APartIsBornOnItsOwnAndSplitsAsOne) {
   for (double d : {1e-6, 1e-4, 1e-2}) {
     EXPECT_EQ(join_of(0, d), 0) << d;
-    EXPECT_EQ(join_of(1e-3 * d, d), 0) << d;
+    // it joins with the third power of its width
+    const double share = 1e-3 / blend_rules{}.grown;
+    EXPECT_LT(join_of(1e-3 * d, d), 10 * share * share * share) << d;
   }
   for (double w : {1e-6, 1e-4, 1e-2})
     for (double angle : {0.0, 0.5, 1.2, 2.0}) EXPECT_EQ(join_of(w, 0, angle), 1) << w;
-  EXPECT_EQ(join_of(5e-3, 2.9e-3), 1);
-  EXPECT_EQ(join_of(5e-3, 12.1e-3), 0);
-  EXPECT_EQ(join_of(5e-3, 2.9e-3, 1.6), 0);
+  EXPECT_EQ(join_of(5e-3, 8e-3, 0, 2.4e-5), 1);
+  EXPECT_EQ(join_of(5e-3, 8e-3, 0, 7.6e-5), 0);
+  EXPECT_EQ(join_of(5e-3, 8e-3, 1.6, 2.4e-5), 0);
 }
 
 // no change greater than the steepest slope of the fade explains
-TEST(PatchParts, JoinedFollowsDistanceWidthAndAngle) {
+TEST(PatchParts, JoinedFollowsGapWidthDistanceAndAngle) {
   const blend_rules rule;
-  constexpr double steepest = 1.875, step = 1e-6;
-  for (double w = 1e-4; w < 8e-3; w += 7e-5) {
-    const double near = std::min(rule.one, rule.one_in_widths * w);
-    const double far = std::min(rule.two, rule.two_in_widths * w);
-    for (double d = 1e-5; d < 14e-3; d += 9.7e-5) {
-      EXPECT_LE(std::fabs(join_of(w, d + step) - join_of(w, d)),
-                1.01 * steepest * step / (far - near));
-      // t = (d - near)/(far - near) with both going with w: dt/dw <= (d/w)/(far - near)
-      EXPECT_LE(std::fabs(join_of(w + step, d) - join_of(w, d)),
-                1.01 * steepest * step * std::max(1.0, far / w) / (far - near));
-    }
-  }
-  for (double d = 1e-5; d < 14e-3; d += 9.7e-5)
+  constexpr double steepest = 1.01 * 1.875, step = 1e-7;
+  const auto change = [](double a, double b) { return std::fabs(a - b); };
+  for (double bump = 0; bump < 1e-4; bump += 1.3e-6) {
+    const double here = join_of(4e-3, 8e-3, 0, bump);
+    EXPECT_LE(change(join_of(4e-3, 8e-3, 0, bump + step), here),
+              steepest * step / (rule.high - rule.low));
     for (double angle = 0.9; angle < 1.7; angle += 0.01)
-      EXPECT_LE(std::fabs(join_of(4e-3, d, angle + step) - join_of(4e-3, d, angle)), 100 * step);
+      EXPECT_LE(change(join_of(4e-3, 8e-3, angle + step, bump), join_of(4e-3, 8e-3, angle, bump)),
+                100 * step);
+  }
+  for (double d = 1e-4; d < 14e-3; d += 9.7e-5)
+    for (double w = 1e-5; w < 3e-3; w += 7e-5) {
+      EXPECT_LE(change(join_of(w + step, d), join_of(w, d)), steepest * step / (rule.grown * d));
+      EXPECT_LE(change(join_of(w, d + step), join_of(w, d)), steepest * step / d);
+    }
+}
+
+TEST(PatchParts, NeighboursInteractAsInTheProgramContact) {
+  const auto at = [](double d) {
+    return interaction(blend_rules{}, part_of(-0.005, 0), part_of(d, d + 0.005));
+  };
+  EXPECT_EQ(at(3.9e-3), 1);
+  EXPECT_NEAR(at(6e-3), std::pow(0.5, 0.8), rounding);
+  EXPECT_EQ(at(8.1e-3), 0);
 }
 
 // with the symmetric gap of a bowl the means lie in its middle, and its width is known
@@ -158,6 +171,7 @@ TEST(PatchParts, DerivativesByForwardNumbers) {
       parts[k].end = middle[k] + half;
       sum_rows(bowl<T>{depth[k], half, middle[k]}, parts[k]);
     }
+    parts[0].bump = T(4e-5) + 2e-6 * u;
     const T join = joined(blend_rules{}, parts[0], parts[1]);
     const basic_interval<T> both = sum_parts(parts, 0, 2);
     const std::array<T, 3> origin{both.x, both.y, T(0)};

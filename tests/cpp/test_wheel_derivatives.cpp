@@ -45,7 +45,7 @@ std::vector<double> choices(const scenes::handle &h, const rp_result &r) {
   std::vector<double> all;
   for (int side = 0; side < 2; ++side) {
     all.push_back(r.side[side].patch_count);
-    for (int k = 0; k < r.side[side].patch_count; ++k) {
+    for (int k = 0; k < r.side[side].patch_count + r.side[side].alternative_count; ++k) {
       const rp_patch_result &p = r.side[side].patch[k];
       const auto distance = h.field(side, k, RP_FIELD_UNDEFORMED_DISTANCE);
       const auto division = h.field(side, k, RP_FIELD_ELEMENT_DIVISION);

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import zipfile
+from pathlib import Path
 from typing import Any
 
 from case_samples import PATCH, WHEELSET, with_values
 from railpatch import _core
-from slave import OK, Slave
+from railpatch.case import load_scene
+from railpatch.fmu import pack_fmu
+from slave import OK, Fmu, Slave
 
 
 def gap(count: int, size: float) -> list[list[float]]:
@@ -15,6 +19,8 @@ def gap(count: int, size: float) -> list[list[float]]:
     return [[x**2 + 2 * y**2 for x in axis] for y in axis]
 
 
+# s, communication step
+STEP = 1e-3
 # a wheelset of 20 kN, and one wheel near its flange, where contact jumps between patches
 LOADED = with_values(WHEELSET, wheelset__z=None, wheelset__vertical_force=2e4)
 RAIL = with_values(WHEELSET, wheelset__z=2.0e-4)
@@ -35,6 +41,7 @@ PATCHES = {
         wheelset__z=None,
         wheelset__vertical_force=5e4,
         wheelset__y=5.5e-3,
+        wheelset__max_patches=6,
         profiles__rail="UIC60@1:20",
     ),
     "kind": "wheel_rail",
@@ -70,9 +77,35 @@ SCENES: dict[str, dict[str, Any]] = {
     "left_wheel": {**RAIL, "kind": "wheel_rail", "wheel": {"side": "left"}},
     "patches": PATCHES,
     "frictionless": with_values(RAIL, method={"tangential": "none"}, friction=None),
+    "transient": with_values(RAIL, motion__regime="transient_rolling", wheelset__time_step=STEP),
+    "transient_patch": with_values(
+        PATCH, motion__regime="transient_rolling", motion__distance=1e-2, motion__steps=1
+    ),
+    "supported": with_values(
+        RAIL,
+        track__rail_support={"stiffness": [2e7, 5e7], "damping": [1e4, 5e4]},
+        wheelset__time_step=STEP,
+    ),
+    "sections": with_values(
+        RAIL,
+        wheelset__z=3e-4,
+        profiles__rail=None,
+        **{
+            f"track__{side}__sections": [
+                {"position": 0.0, "profile": "UIC60@1:40"},
+                {"position": 2.0, "profile": "UIC60@1:20"},
+            ]
+            for side in ("left", "right")
+        },
+    ),
+    "along": with_values(RAIL, friction__along_track=[[0.0, 1.0], [1.0, 0.5]]),
+    "flat": with_values(
+        RAIL,
+        wheelset__z=3e-4,
+        wheelset__left__flat={"depth": 1e-4, "rounding": 0.01},
+        track__right__joint={"position": 0.5, "depth": 1e-4},
+    ),
 }
-# s, communication step
-STEP = 1e-3
 # what is set before each step, by scene
 MOTIONS: dict[str, list[dict[str, float]]] = {
     "patch": [
@@ -109,8 +142,35 @@ MOTIONS: dict[str, list[dict[str, float]]] = {
     "left_wheel": [{"wheelset.yaw": -1e-3, "track.left.offset[2]": 1e-4}],
     "patches": [{"wheelset.y": y} for y in (5.75e-3, 6e-3, 6.25e-3, 5.5e-3, 0.0)],
     "frictionless": [{"wheelset.yaw": 1e-3}, {"wheelset.z": 2.1e-4}],
+    "transient": [{"wheelset.yaw": 1e-3}, {"wheelset.vy": 0.01}, {"wheelset.z": 2.1e-4}],
+    "transient_patch": [{"creepage[1]": 5e-4}, {"creepage[2]": -5e-4, "normal_force": 6e4}],
+    "supported": [{"wheelset.y": 1e-4}, {"wheelset.z": 2.2e-4, "track.left.velocity[2]": 0.01}],
+    "sections": [{"wheelset.x": 0.4}, {"wheelset.x": 1.7, "wheelset.yaw": 1e-3}],
+    "along": [{"wheelset.x": 0.4}, {"wheelset.x": 0.9, "wheelset.yaw": 1e-3}],
+    "flat": [
+        {"wheelset.x": 0.4, "wheelset.pitch": 0.5},
+        {"wheelset.x": 0.5, "wheelset.pitch": 1e-2, "wheelset.left.angular_velocity[3]": 0.02},
+    ],
 }
 OWN = _core.fft_backend()
+
+
+class Packer:
+    """FMUs of scenes by name, packed and unpacked once."""
+
+    def __init__(self, folder: Path, scenes: dict[str, Any], **options: dict[str, Any]) -> None:
+        """options: those of pack_fmu, by name of the scene."""
+        self._folder, self._scenes, self._options = folder, scenes, options
+        self._found: dict[str, Fmu] = {}
+
+    def __call__(self, name: str) -> Fmu:
+        if name not in self._found:
+            path = self._folder / f"{name}.fmu"
+            options = {"backend": OWN, **self._options.get(name, {})}
+            pack_fmu(load_scene(self._scenes[name]), path, name=name, **options)
+            zipfile.ZipFile(path).extractall(path.with_suffix(""))
+            self._found[name] = Fmu(path.with_suffix(""))
+        return self._found[name]
 
 
 def run(slave: Slave, motions: list[dict[str, float]], time: float) -> dict[str, float]:

@@ -73,6 +73,7 @@ class Slave:
         callbacks: bool = True,
         guid: str | None = "",
         name: str = "a slave",
+        exchange: bool = False,
     ) -> None:
         self.fmu = fmu
         self.log: list[tuple[int, str, str]] = []
@@ -80,7 +81,7 @@ class Slave:
         where = fmu.location if location == "" else location
         self.component = fmu.binary.fmi2Instantiate(
             name.encode(),
-            1,
+            0 if exchange else 1,
             None if guid is None else (guid or fmu.guid).encode(),
             None if where is None else where.encode(),
             ct.byref(self.callbacks) if callbacks else None,
@@ -132,6 +133,45 @@ class Slave:
             kind, call = (Real, "SetReal") if base == "Real" else (Integer, "SetInteger")
             status = max(status, self.call(call, number, Size(1), (kind * 1)(value)))
         return status
+
+    def derivative(self, unknown: list[str], seeds: dict[str, float]) -> tuple[int, list[float]]:
+        """fmi2GetDirectionalDerivative."""
+        of, by = len(unknown), len(seeds)
+        change = (Real * of)()
+        status = self.call(
+            "GetDirectionalDerivative",
+            (Reference * of)(*(self.fmu.references[n] for n in unknown)),
+            Size(of),
+            (Reference * by)(*(self.fmu.references[n] for n in seeds)),
+            Size(by),
+            (Real * by)(*seeds.values()),
+            change,
+        )
+        return status, list(change)
+
+    def set_derivatives(self, values: dict[str, float], order: int = 1) -> int:
+        """fmi2SetRealInputDerivatives."""
+        count = len(values)
+        return self.call(
+            "SetRealInputDerivatives",
+            (Reference * count)(*(self.fmu.references[n] for n in values)),
+            Size(count),
+            (Integer * count)(*[order] * count),
+            (Real * count)(*values.values()),
+        )
+
+    def output_derivatives(self, names: list[str], order: int = 1) -> tuple[int, list[float]]:
+        """fmi2GetRealOutputDerivatives."""
+        count = len(names)
+        found = (Real * count)()
+        status = self.call(
+            "GetRealOutputDerivatives",
+            (Reference * count)(*(self.fmu.references[n] for n in names)),
+            Size(count),
+            (Integer * count)(*[order] * count),
+            found,
+        )
+        return status, list(found)
 
     def get(self, *names: str) -> list[float]:
         """Values of variables of any type."""

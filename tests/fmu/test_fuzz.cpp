@@ -17,6 +17,11 @@
 namespace {
 
 constexpr const char *kGuid = "{00000000-0000-4000-8000-000000000001}";
+// The interface of a seed, so that both are tried.
+fmi2Type interface_of(unsigned seed) {
+  return seed % 2 == 0 ? fmi2CoSimulation : fmi2ModelExchange;
+}
+
 constexpr fmi2ValueReference kInputs[] = {22, 23, 24, 25, 26};
 constexpr fmi2ValueReference kOutputs[] = {2102, 2104, 2105, 2106, 2107};
 
@@ -26,6 +31,7 @@ std::filesystem::path write_scene() {
   std::ostringstream text;
   text << "railpatch-fmu-scene 1\nguid " << kGuid << "\nset kind 0\nset geometry 1\n"
        << "set curvatures 1.0 1.5\nset load 1\nset elements 6 6\nset normal 0\nset tangential 1\n"
+       << "set derivatives 1\n"
        << "variable 22 approach 5e-05\nvariable 23 creepage[1] 0.001\n"
        << "variable 24 creepage[2] 0.0\nvariable 25 spin_creepage 0.0\n"
        << "variable 26 rolling_speed 10.0\nvariable 27 direction 1\n"
@@ -55,12 +61,14 @@ class Fuzzer {
  public:
   Fuzzer(unsigned seed, const std::string &location)
       : random_(seed), functions_{hear, nullptr, nullptr, nullptr, &listener_} {
-    slave_ = fmi2Instantiate("fuzz", fmi2CoSimulation, kGuid, location.c_str(), &functions_,
+    slave_ = fmi2Instantiate("fuzz", interface_of(seed), kGuid, location.c_str(), &functions_,
                              fmi2False, fmi2True);
   }
   ~Fuzzer() { fmi2FreeInstance(slave_); }
   Fuzzer(const Fuzzer &) = delete;
   Fuzzer &operator=(const Fuzzer &) = delete;
+
+  int derivatives_found = 0;
 
   bool made() const { return slave_ != nullptr; }
 
@@ -128,7 +136,63 @@ class Fuzzer {
       case 6:
         return fmi2SetRealInputDerivatives(slave_, given, count, integers, reals);
       default:
+        return derivatives(given, count, array ? reals : nullptr);
+    }
+  }
+
+  // Mostly of outputs by inputs.
+  fmi2Status derivatives(const fmi2ValueReference *given, size_t count, fmi2Real *reals) {
+    fmi2ValueReference known[4], unknown[4];
+    fmi2Integer order[4];
+    fmi2Real seed[4];
+    for (int i = 0; i < 4; ++i) {
+      known[i] = pick(10) == 0 ? reference() : kInputs[pick(5)];
+      unknown[i] = pick(10) == 0 ? reference() : kOutputs[pick(5)];
+      order[i] = pick(10) == 0 ? pick(6) - 1 : 1;
+      seed[i] = pick(10) == 0 ? number() : 1e-5;
+    }
+    switch (pick(4)) {
+      case 0:
+        return fmi2GetRealOutputDerivatives(slave_, unknown, count, order, reals);
+      case 1:
+        return fmi2SetRealInputDerivatives(slave_, known, count, order, reals);
+      case 2:
         return fmi2GetDirectionalDerivative(slave_, given, count, given, count, reals, reals);
+      default:
+        const fmi2Status status =
+            fmi2GetDirectionalDerivative(slave_, unknown, count, known, count, seed, reals);
+        if (status == fmi2OK && count > 0) ++derivatives_found;
+        return status;
+    }
+  }
+
+  fmi2Status exchange() {
+    fmi2EventInfo info;
+    fmi2Boolean flags[2];
+    fmi2Real real;
+    const auto count = static_cast<size_t>(pick(10) == 0);
+    switch (pick(10)) {
+      case 0:
+        return fmi2EnterEventMode(slave_);
+      case 1:
+        return fmi2NewDiscreteStates(slave_, pick(10) == 0 ? nullptr : &info);
+      case 2:
+      case 3:
+        return fmi2EnterContinuousTimeMode(slave_);
+      case 4:
+        return fmi2CompletedIntegratorStep(slave_, fmi2True, pick(10) == 0 ? nullptr : flags,
+                                           flags + 1);
+      case 5:
+        return fmi2SetTime(slave_, number());
+      case 6:
+        return fmi2SetContinuousStates(slave_, &real, count);
+      case 7:
+        return fmi2GetDerivatives(slave_, &real, count);
+      case 8:
+        return fmi2GetEventIndicators(slave_, &real, count);
+      default:
+        return pick(2) == 0 ? fmi2GetContinuousStates(slave_, &real, count)
+                            : fmi2GetNominalsOfContinuousStates(slave_, &real, count);
     }
   }
 
@@ -179,7 +243,8 @@ class Fuzzer {
     fmi2Real real;
     fmi2Status status;
     const fmi2String category = pick(2) == 0 ? "logAll" : "none";
-    const int call = pick(40);
+    const int call = pick(46);
+    if (call >= 40) return exchange();
     if (call < 16) return values(call % 8);
     if (call < 24) return states(call % 5);
     if (call < 32) return step();
@@ -215,6 +280,7 @@ class Fuzzer {
 
 TEST(Fuzz, RandomCallsNeverCrash) {
   const std::string location = write_scene().string();
+  int derivatives_found[2] = {};
   for (unsigned seed = 0; seed < 10000; ++seed) {
     SCOPED_TRACE(seed);
     Fuzzer fuzzer(seed, location);
@@ -223,7 +289,11 @@ TEST(Fuzz, RandomCallsNeverCrash) {
       fuzzer.call();
       if (HasFatalFailure()) return;
     }
+    derivatives_found[interface_of(seed)] += fuzzer.derivatives_found;
   }
+  // the calls do come far
+  EXPECT_GT(derivatives_found[fmi2CoSimulation], 100);
+  EXPECT_GT(derivatives_found[fmi2ModelExchange], 100);
 }
 
 }  // namespace

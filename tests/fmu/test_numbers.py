@@ -41,8 +41,27 @@ def changes_of(contact: railpatch.Contact, values: dict[str, float]) -> dict[str
     return changed
 
 
+def solutions(wheel: dict[str, Any]) -> list[dict[str, Any]]:
+    """All that count in a wheel's force."""
+    return wheel["patches"] + wheel["alternatives"]
+
+
+def summed(patches: list[dict[str, Any]], key: str) -> float:
+    """Of a wheel's patches by their shares; the greatest residual."""
+    values = [(p[key] or 0, p["share"]) for p in patches]
+    if key == "residual":
+        return max((value for value, _ in values), default=0.0)
+    return sum(value * share for value, share in values)
+
+
 def expected(result: dict[str, Any], name: str) -> float:
     """The JSON result's number behind an output; 0 for what is not there."""
+    sums = re.fullmatch(r"((?:left|right)\.)?(friction_power|elastic_energy|residual)", name)
+    if sums and "left" in result:
+        sides = [sums[1][:-1]] if sums[1] else ["left", "right"]
+        return summed([p for side in sides for p in solutions(result[side])], sums[2])
+    if sums and "patches" in result:
+        return summed(solutions(result), sums[2])
     value: Any = result
     for part in re.findall(r"[a-z_]+|\d+", name.replace("patch[", "patches[")):
         if part == "patch_count":
@@ -81,6 +100,8 @@ def test_same_numbers_as_python(name: str, unpacked: Callable[..., Fmu]) -> None
             results.append(contact.step(**changes_of(contact, values)).to_dict())
     for k, (outputs, result) in enumerate(zip(found, results, strict=True)):
         for key, value in outputs.items():
+            if key.endswith("power") and not key.endswith("friction_power"):
+                continue  # test_masters.py
             wanted = expected(result, key)
             bound = 1e-12 * max(abs(wanted), scale_of(key, outputs))
             assert abs(value - wanted) <= bound, (name, k, key, value, wanted, bound)
@@ -111,7 +132,8 @@ def test_several_patches_and_lift_off_are_among_them(unpacked: Callable[..., Fmu
             assert slave.set(values) == OK
             assert slave.step(k * STEP, STEP) == OK, slave.log
             counts += slave.get("patch_count")
-    assert {1, 2} <= set(counts), counts
+    # two contacts that join are three solutions
+    assert {1, 3} <= set(counts), counts
     with Slave(unpacked("rail")).initialize() as slave:
         assert slave.set({"wheelset.z": -1e-3}) == OK
         assert slave.step(0, STEP) == OK

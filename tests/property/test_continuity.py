@@ -89,12 +89,13 @@ def test_creepage_speed_joins_the_rolling_speed(speed):
 def test_force_is_the_sum_of_shares():
     # where two divisions into patches count, the wheel's force is that of both with their shares
     contact = railpatch.Contact(wheel_case(LOAD))
-    wheel = contact.step(y=5.19e-3)
-    patches = wheel["patches"]
+    wheel = contact.step(y=5.21e-3)
+    # mostly one patch, else each alone
+    assert len(wheel["patches"]) == 1
+    patches = wheel["patches"] + wheel["alternatives"]
     shares = [patch["share"] for patch in patches]
     assert len(patches) == 3
-    # first alone, both, second alone
-    assert shares[0] == shares[2] == pytest.approx(1 - shares[1], rel=1e-12)
+    assert shares[1] == shares[2] == pytest.approx(1 - shares[0], rel=1e-12)
     total = np.zeros(3)
     for patch in patches:
         c, s = np.cos(patch["contact_angle"]), np.sin(patch["contact_angle"])

@@ -80,7 +80,7 @@ def test_fitted_rows_log_and_report(tmp_path: Path):
 def test_summary_text_and_quiet(tmp_path: Path):
     ran = invoke("-o", tmp_path / "run.mcap", "--distance", 0.1)
     assert ran.exit_code == 0
-    for word in ("s1002.toml", "wave length", "Klingel", "balance", "in friction"):
+    for word in ("s1002.toml", "wave length", "Klingel", "balance", "momentum", "in friction"):
         assert word in ran.stdout
     assert ran.stderr == ""
     quiet = invoke("-o", tmp_path / "run.mcap", "--distance", 0.1, "--quiet")

@@ -9,7 +9,7 @@ import pytest
 import wheelset_scenes as scenes
 
 from wheelset_demo.simulation import Simulation
-from wheelset_demo.steppers import Rk4, Ros2
+from wheelset_demo.steppers import Rk4, Ros2, by_differences, exactly
 from wheelset_demo.system import COUNT, WORKS, Rates, State
 
 
@@ -77,6 +77,30 @@ def test_work_keeps_the_balance_of_energies():
         state = run(make, 2e-3)
         residual = energy(state) - energy(start) - state.work[0] + state.work[2]
         assert abs(residual) < bound
+
+
+def test_exact_derivatives_are_those_by_differences(tmp_path: Path):
+    values = {"y": 1e-3, "speed": 20.0, "tolerance": 1e-10}
+    simulation = Simulation(scenes.scene(tmp_path, "hunting.toml", **values))
+    system, state = simulation.system, simulation.state
+    rates = system.rates(state.time, state.motion)
+    exact = exactly(system, state, rates, 1e-3)
+    differences_found = by_differences(system, state, rates, 1e-3)
+    # by what changes a force by a good part: lengths and angles, then rates; pitch changes nothing
+    usual = np.array([1e-3, 1e-3, 1e-4, 1e-4, 1e-3, 1e-3, *[0.02] * 6])
+    error = np.abs(exact - differences_found)[:, : 2 * COUNT] * usual
+    scale = np.abs(differences_found[:, : 2 * COUNT] * usual).max(axis=1) + 1e-9
+    friction, damping = (2 * COUNT + WORKS.index(name) for name in ("friction", "damping"))
+    relative = error.max(axis=1) / scale
+    # forward differences: half of 1e-5 of creepage over some 1e-3 where friction is used up; they
+    # say nothing of the dampers at rest, whose power is a square. Friction's row is no exact one
+    assert np.delete(relative, [friction, damping]).max() < 5e-3
+    # but has what makes it stiff: z, yaw and the rates of y, z and roll
+    stiff = [2, 4, COUNT + 1, COUNT + 2, COUNT + 3]
+    assert (error[friction, stiff] / scale[friction]).max() < 0.05
+    # as time goes on nothing but the reference moves
+    by_time = differences_found[:, -1]
+    np.testing.assert_allclose(exact[:, -1], by_time, rtol=1e-6, atol=1e-9 * by_time.max())
 
 
 def test_explicit_and_implicit_find_the_same_motion(tmp_path: Path):

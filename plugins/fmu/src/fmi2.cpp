@@ -1,34 +1,12 @@
-// The functions of FMI 2.0 for co-simulation: checks whether the state allows the call, and passes
-// it on. No exception leaves this file.
+// The functions of FMI 2.0 but for those of model exchange alone: checks whether the state allows
+// the call, and passes it on. No exception leaves this file.
 #include "fmi2Functions.h"
 
-#include <new>
-
-#include "floating_point.hpp"
-#include "instance.hpp"
+#include "run.hpp"
 
 using namespace railpatch::fmu;
 
 namespace {
-
-// Runs a call where the state allows it.
-template <class F>
-fmi2Status run(fmi2Component component, const Call &call, F &&function) noexcept {
-  auto *instance = static_cast<Instance *>(component);
-  if (instance == nullptr) return fmi2Error;
-  // a host may trap on NaN or flush to zero: nothing here, comparisons included, must feel it
-  const DefaultFloatingPoint environment;
-  try {
-    if (!instance->allows(call)) return fmi2Error;
-    return function(*instance);
-  } catch (...) {
-    try {
-      return instance->refuse(call, "out of memory");
-    } catch (...) {
-      return fmi2Error;
-    }
-  }
-}
 
 // A scene has no variables of this type.
 template <class T>
@@ -40,13 +18,6 @@ fmi2Status none(fmi2Component component, const Call &call, const char *type,
     if (values == nullptr) return i.refuse(call, "value is NULL");
     return i.refuse(call, std::string("there is no ") + type + " with value reference " +
                               std::to_string(references[0]));
-  });
-}
-
-fmi2Status not_provided(fmi2Component component, const Call &call, size_t count, const char *flag) {
-  return run(component, call, [&](Instance &i) {
-    if (count == 0) return fmi2OK;
-    return i.refuse(call, std::string("is not provided: see ") + flag + " in modelDescription.xml");
   });
 }
 
@@ -78,11 +49,13 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
       log.error("fmi2Instantiate: instanceName is missing");
       return nullptr;
     }
-    if (fmuType != fmi2CoSimulation) {
-      log.error("fmi2Instantiate: fmuType is not fmi2CoSimulation, the only one in this FMU");
+    if (fmuType != fmi2CoSimulation && fmuType != fmi2ModelExchange) {
+      log.error("fmi2Instantiate: fmuType is neither fmi2CoSimulation nor fmi2ModelExchange");
       return nullptr;
     }
-    return Instance::create(fmuGUID, fmuResourceLocation, std::move(log)).release();
+    const Interface interface =
+        fmuType == fmi2CoSimulation ? Interface::co_simulation : Interface::model_exchange;
+    return Instance::create(interface, fmuGUID, fmuResourceLocation, std::move(log)).release();
   } catch (...) {
     return nullptr;
   }
@@ -200,22 +173,27 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedSta
              [&](Instance &i) { return i.deserialize(serializedState, size, FMUstate); });
 }
 
-// --- derivatives: none -------------------------------------------------------------------------
+// --- derivatives -------------------------------------------------------------------------------
 
-fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference[],
-                                        size_t nUnknown, const fmi2ValueReference[], size_t,
-                                        const fmi2Real[], fmi2Real[]) {
-  return not_provided(c, call::derivative, nUnknown, "providesDirectionalDerivative");
+fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference vUnknown_ref[],
+                                        size_t nUnknown, const fmi2ValueReference vKnown_ref[],
+                                        size_t nKnown, const fmi2Real dvKnown[],
+                                        fmi2Real dvUnknown[]) {
+  return run(c, call::derivative, [&](Instance &i) {
+    return i.directional_derivative(vUnknown_ref, nUnknown, vKnown_ref, nKnown, dvKnown, dvUnknown);
+  });
 }
 
-fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference[], size_t nvr,
-                                       const fmi2Integer[], const fmi2Real[]) {
-  return not_provided(c, call::input_derivatives, nvr, "canInterpolateInputs");
+fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                                       const fmi2Integer order[], const fmi2Real value[]) {
+  return run(c, call::input_derivatives,
+             [&](Instance &i) { return i.set_input_derivatives(vr, nvr, order, value); });
 }
 
-fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference[], size_t nvr,
-                                        const fmi2Integer[], fmi2Real[]) {
-  return not_provided(c, call::output_derivatives, nvr, "maxOutputDerivativeOrder");
+fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                                        const fmi2Integer order[], fmi2Real value[]) {
+  return run(c, call::output_derivatives,
+             [&](Instance &i) { return i.output_derivatives(vr, nvr, order, value); });
 }
 
 // --- steps -------------------------------------------------------------------------------------

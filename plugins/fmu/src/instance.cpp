@@ -1,5 +1,6 @@
 #include "instance.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -62,12 +63,19 @@ bool load_table(const char *location, Log &log, Scene &scene, std::string &table
 
 }  // namespace
 
-std::unique_ptr<Instance> Instance::create(const char *guid, const char *location, Log log) {
+std::unique_ptr<Instance> Instance::create(Interface interface, const char *guid,
+                                           const char *location, Log log) {
   std::unique_ptr<Instance> instance(new Instance(std::move(log)));
   const DefaultFloatingPoint environment;  // numbers in text are rounded, too
   Scene scene;
   if (!load_scene(guid, location, instance->log_, scene)) return nullptr;
   if (!load_table(location, instance->log_, scene, instance->table_)) return nullptr;
+  if (interface == Interface::model_exchange && scene.options.history != 0) {
+    instance->log_.error(
+        "fmi2Instantiate: fmuType is fmi2ModelExchange, but this scene has a history: take "
+        "fmi2CoSimulation");
+    return nullptr;
+  }
   rp_contact *contact = nullptr;
   rp_message message = {};
   const rp_error error = rp_create(&scene.config, &contact, &message);
@@ -79,25 +87,61 @@ std::unique_ptr<Instance> Instance::create(const char *guid, const char *locatio
   }
   instance->contact_.reset(contact);
   instance->wheels_ = scene.config.kind != RP_PATCH;
+  instance->derivatives_ = scene.config.derivatives != 0;
+  instance->with_z_ = scene.config.load == RP_POSITION;
+  instance->interface_ = interface;
+  instance->options_ = scene.options;
   instance->content_ = hash_of(scene.guid);
   instance->variables_ = std::move(scene.variables);
-  for (size_t i = 0; i < instance->variables_.size(); ++i) {
-    const uint32_t reference = instance->variables_[i].variable->reference;
-    if (reference >= instance->index_.size()) instance->index_.resize(reference + 1, -1);
-    instance->index_[reference] = static_cast<int16_t>(i);
+  if (!instance->index_variables()) {
+    instance->log_.error("fmi2Instantiate: the variables of scene.txt do not belong together");
+    return nullptr;
   }
   instance->start_values();
   return instance;
+}
+
+bool Instance::index_variables() {
+  for (size_t i = 0; i < variables_.size(); ++i) {
+    const Variable &variable = *variables_[i].variable;
+    if (variable.reference >= index_.size()) index_.resize(variable.reference + 1, -1);
+    index_[variable.reference] = static_cast<int16_t>(i);
+    if (variable.role == Role::output) continue;
+    if (known_ != i) return false;
+    ++known_;
+  }
+  // the step is found from four parameters
+  for (uint32_t k = 0; index_of(largest_step) >= 0 && k < 4; ++k)
+    if (index_of(wheelset_mass + k) < 0 || !wheels_ || !derivatives_) return false;
+  for (size_t i = known_; i < variables_.size(); ++i) {
+    const Variable &variable = *variables_[i].variable;
+    const int of = is_mean(variable) ? index_of(variable.reference - mean_apart) : -1;
+    if (of >= 0) means_.emplace_back(i, static_cast<size_t>(of));
+  }
+  return true;
 }
 
 void Instance::start_values() {
   rp_default_input(&input_);
   values_.clear();
   for (const SceneVariable &item : variables_) values_.push_back(item.start);
+  at_.assign(known_, 0);
+  solved_.assign(known_, 0);
+  rates_.assign(known_, 0);
+  input_derivatives_.assign(orders * known_, 0);
+  direction_.clear();
+  pending_.clear();
+  solution_ = Solution::none;
+  largest_known_ = false;
   changed_ = true;
 }
 
 bool Instance::allows(const Call &call) {
+  if (call.interface != Interface::both && call.interface != interface_) {
+    refuse(call, interface_ == Interface::co_simulation ? "is a call of model exchange"
+                                                        : "is a call of co-simulation");
+    return false;
+  }
   if ((call.allowed & static_cast<uint32_t>(mode_)) != 0) return true;
   refuse(call, std::string("is not allowed in the state ") + mode_text(mode_));
   return false;
@@ -132,11 +176,12 @@ fmi2Status Instance::enter_initialization() {
 
 fmi2Status Instance::exit_initialization() {
   const Call &call = call::exit_initialization;
-  const fmi2Status status = changed_ ? solve(call, time_) : fmi2OK;
+  const fmi2Status status = changed_ ? solve(call) : fmi2OK;
   // FMI knows no discard here, so a start that cannot be solved is an error, and said as one
   if (status == fmi2Discard)
     log_.error(std::string(call.name) + ": the start values cannot be solved");
-  mode_ = status == fmi2OK ? Mode::step_complete : Mode::error;
+  const Mode next = interface_ == Interface::co_simulation ? Mode::step_complete : Mode::event;
+  mode_ = status == fmi2OK ? next : Mode::error;
   return status == fmi2OK ? fmi2OK : fmi2Error;
 }
 
@@ -154,59 +199,83 @@ fmi2Status Instance::reset() {
   return fmi2OK;
 }
 
-fmi2Status Instance::step(double time, double step) {
-  const Call &call = call::do_step;
-  if (!(step > 0) || !std::isfinite(step))
-    return refuse(call, "communicationStepSize is " + text_of(step) + ", allowed > 0");
-  // masters add up time in their own way
-  const double slack = 1e-6 * step + 1e-9 * std::abs(time_);
-  if (!(std::abs(time - time_) <= slack))
-    return refuse(call, "currentCommunicationPoint is " + text_of(time) + ", but the time is " +
-                            text_of(time_));
-  const double end = time + step;
-  if (stop_defined_ && end > stop_ + slack)
-    return refuse(call, "the step ends at " + text_of(end) + ", after stopTime " + text_of(stop_));
-  const fmi2Status status = solve(call, end);
-  if (status == fmi2OK) time_ = end;
-  if (status == fmi2Discard) mode_ = Mode::step_failed;
-  if (status == fmi2Error) mode_ = Mode::error;
-  return status;
+fmi2Status Instance::go_to(Mode mode) {
+  mode_ = mode;
+  return fmi2OK;
+}
+
+fmi2Status Instance::set_time(double time) {
+  if (!std::isfinite(time))
+    return refuse(call::set_time, "time is " + text_of(time) + ", allowed a finite number");
+  time_ = time;
+  return fmi2OK;
 }
 
 // --- solving -----------------------------------------------------------------------------------
 
-fmi2Status Instance::solve(const Call &call, double time) {
+fmi2Status Instance::solve(const Call &call) {
+  std::copy_n(values_.begin(), known_, at_.begin());
+  const fmi2Status status = advance(call, time_, options_.time_step);
+  if (status == fmi2OK) publish();
+  return status;
+}
+
+fmi2Status Instance::advance(const Call &call, double time, double time_step) {
+  if (!pending_.empty()) {
+    const rp_error error = rp_restore_state(contact_.get(), pending_.data(), pending_.size());
+    if (error != RP_OK) return refuse(call, rp_error_text(error));
+    pending_.clear();
+  }
   // before the first step a result depends on nothing but the values set
   if (mode_ == Mode::initialization) rp_reset(contact_.get());
+  return run_contact(call, time, time_step);
+}
+
+fmi2Status Instance::run_contact(const Call &call, double time, double time_step) {
+  solution_ = Solution::none;
+  direction_.clear();
   rp_message message = {};
   rp_error error = RP_OK;
-  for (size_t i = 0; i < values_.size() && error == RP_OK; ++i) {
+  for (size_t i = 0; i < known_ && error == RP_OK; ++i) {
     const Variable &variable = *variables_[i].variable;
-    if (variable.role == Role::input) put_input(input_, variable, values_[i]);
-    if (variable.role == Role::parameter)
-      error = rp_set_friction_coefficient(contact_.get(), values_[i], &message);
+    if (variable.role == Role::input) put_input(input_, variable, at_[i]);
+    if (variable.reference == friction_coefficient)
+      error = rp_set_friction_coefficient(contact_.get(), at_[i], &message);
   }
-  rp_result result = {};
-  if (error == RP_OK) error = rp_step(contact_.get(), &input_, &result, &message);
+  input_.time_step = time_step;
+  input_.distance =
+      mode_ == Mode::initialization ? options_.distance : input_.rolling_speed * time_step;
+  if (error == RP_OK) error = rp_step(contact_.get(), &input_, &outputs_.result, &message);
   if (error != RP_OK)
     return refuse(call, message.text[0] != '\0' ? message.text : rp_error_text(error));
-  if (result.status == RP_NOT_CONVERGED || result.status == RP_OUT_OF_RANGE) {
-    log_.say(fmi2Discard, Category::discard, std::string(call.name) + ": " + failure(time, result));
+  const rp_status status = outputs_.result.status;
+  if (status == RP_NOT_CONVERGED || status == RP_OUT_OF_RANGE) {
+    log_.say(fmi2Discard, Category::discard,
+             std::string(call.name) + ": " + failure(time, outputs_.result));
     return fmi2Discard;
   }
-  take(result);
+  if (wheels_) add_sums(outputs_, input_);
+  solution_ = Solution::held;
   return fmi2OK;
 }
 
-void Instance::take(rp_result &result) {
-  for (rp_side_result &side : result.side)
-    for (int i = wheels_ ? side.patch_count : RP_MAX_PATCHES; i < RP_MAX_PATCHES; ++i)
-      side.patch[i].status = RP_NO_CONTACT;
-  for (size_t i = 0; i < values_.size(); ++i) {
+bool Instance::absent(const Variable &variable) const {
+  const uint32_t side = variable.reference / 1000, patch = variable.reference % 1000 / 100;
+  if (!wheels_ || side == 0 || patch == 0) return false;
+  return static_cast<int32_t>(patch) > outputs_.result.side[side - 1].patch_count;
+}
+
+void Instance::publish() {
+  for (size_t i = known_; i < values_.size(); ++i) {
     const Variable &variable = *variables_[i].variable;
-    if (variable.role == Role::output) values_[i] = output_of(result, variable);
+    if (absent(variable))
+      values_[i] = is_status(variable) ? RP_NO_CONTACT : 0;
+    else
+      values_[i] = output_of(outputs_, variable);
   }
+  solved_ = at_;
   changed_ = false;
+  largest_known_ = false;
 }
 
 std::string Instance::failure(double time, const rp_result &result) const {
@@ -245,14 +314,19 @@ fmi2Status Instance::get(const Call &call, Type type, const fmi2ValueReference *
                          size_t count, T *values) {
   if (count > 0 && (references == nullptr || values == nullptr))
     return refuse(call, references == nullptr ? "vr is NULL" : "value is NULL");
-  bool of_output = false;
+  bool of_output = false, of_largest = false;
   for (size_t i = 0; i < count; ++i) {
     const int index = find(call, type, references[i]);
     if (index < 0) return fmi2Error;
     of_output |= variables_[static_cast<size_t>(index)].variable->role == Role::output;
+    of_largest |= references[i] == largest_step;
   }
-  if (of_output && changed_ && mode_ == Mode::initialization) {
-    const fmi2Status status = solve(call, time_);
+  if (of_output && changed_ && follows()) {
+    const fmi2Status status = solve(call);
+    if (status != fmi2OK) return status;
+  }
+  if (of_largest && !largest_known_ && solution_ != Solution::none) {
+    const fmi2Status status = find_largest_step(call);
     if (status != fmi2OK) return status;
   }
   for (size_t i = 0; i < count; ++i)
@@ -285,6 +359,8 @@ fmi2Status Instance::set(const Call &call, Type type, const fmi2ValueReference *
   for (size_t i = 0; i < count; ++i)
     values_[static_cast<size_t>(index_of(references[i]))] = static_cast<double>(values[i]);
   changed_ = changed_ || count > 0;
+  // its mass and inertia may be among them
+  if (count > 0) largest_known_ = false;
   return fmi2OK;
 }
 

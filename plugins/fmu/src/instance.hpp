@@ -3,11 +3,13 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calls.hpp"
 #include "fmi2FunctionTypes.h"
 #include "log.hpp"
+#include "outputs.hpp"
 #include "railpatch.h"
 #include "scene.hpp"
 #include "snapshot.hpp"
@@ -17,7 +19,8 @@ namespace railpatch::fmu {
 class Instance {
  public:
   // Null where it cannot be made; the log then says why.
-  static std::unique_ptr<Instance> create(const char *guid, const char *location, Log log);
+  static std::unique_ptr<Instance> create(Interface interface, const char *guid,
+                                          const char *location, Log log);
 
   Log &log() { return log_; }
   // False, with a message, where the state does not allow the call.
@@ -31,6 +34,8 @@ class Instance {
   fmi2Status terminate();
   fmi2Status reset();
   fmi2Status step(double time, double step);
+  fmi2Status go_to(Mode mode);  // event and continuous-time mode
+  fmi2Status set_time(double time);
 
   template <class T>
   fmi2Status get(const Call &call, Type type, const fmi2ValueReference *references, size_t count,
@@ -38,6 +43,14 @@ class Instance {
   template <class T>
   fmi2Status set(const Call &call, Type type, const fmi2ValueReference *references, size_t count,
                  const T *values);
+
+  fmi2Status directional_derivative(const fmi2ValueReference *unknown, size_t unknown_count,
+                                    const fmi2ValueReference *known, size_t known_count,
+                                    const double *seed, double *change);
+  fmi2Status set_input_derivatives(const fmi2ValueReference *references, size_t count,
+                                   const fmi2Integer *orders, const double *values);
+  fmi2Status output_derivatives(const fmi2ValueReference *references, size_t count,
+                                const fmi2Integer *orders, double *values);
 
   fmi2Status get_state(fmi2FMUstate *state);
   fmi2Status set_state(fmi2FMUstate state);
@@ -55,14 +68,44 @@ class Instance {
   };
   explicit Instance(Log log) : log_(std::move(log)) {}
 
+  // The contact's last solution: none that belongs to the outputs, one that a restored state was
+  // made of but does not hold, or the one that the contact holds.
+  enum class Solution : uint32_t { none, lost, held };
+  static constexpr size_t orders = 3;  // of input derivatives
+
   // index in values_, or -1
   int index_of(fmi2ValueReference reference) const;
   int find(const Call &call, Type type, fmi2ValueReference reference);
+  // finds a Real input, or a Real output that has derivatives
+  int find_input(const Call &call, fmi2ValueReference reference);
+  int find_output(const Call &call, fmi2ValueReference reference);
   bool settable(const Call &call, int index, double value);
+  bool index_variables();  // false: they do not belong together
   void start_values();
-  fmi2Status solve(const Call &call, double time);
+  // outputs follow the inputs at once
+  bool follows() const {
+    return mode_ == Mode::initialization || mode_ == Mode::event || mode_ == Mode::continuous;
+  }
+  // Solves at the values set and publishes the outputs.
+  fmi2Status solve(const Call &call);
+  // Solves at at_; the outputs stay.
+  fmi2Status advance(const Call &call, double time, double time_step);
+  fmi2Status run_contact(const Call &call, double time, double time_step);
   std::string failure(double time, const rp_result &result) const;
-  void take(rp_result &result);
+  // of a patch that the last solve did not have
+  bool absent(const Variable &variable) const;
+  void publish();
+  fmi2Status extrapolate(const Call &call, double time, double past);
+  void end_inputs(bool moving, double step);
+  int step_count(bool moving) const;
+  fmi2Status march(double time, double step);
+  // Sees to it that the contact holds the outputs' solution.
+  fmi2Status hold_solution(const Call &call);
+  fmi2Status differentiate(const Call &call, const std::vector<double> &rates);
+  double rate_of(fmi2ValueReference reference) const;
+  fmi2Status find_largest_step(const Call &call);
+  std::vector<double> saved_numbers() const;
+  size_t number_count() const { return values_.size() + (2 + orders) * known_; }
   fmi2Status give_handle(const Call &call, std::unique_ptr<Snapshot> snapshot, fmi2FMUstate *state);
   Snapshot *known(fmi2FMUstate state) const;
 
@@ -70,18 +113,34 @@ class Instance {
   std::vector<SceneVariable> variables_;
   std::vector<int16_t> index_;  // by value reference, -1: not in this scene
   uint64_t content_ = 0;        // tells this FMU's states from those of another
-  bool wheels_ = false;
+  Interface interface_ = Interface::co_simulation;
+  Options options_;
+  bool wheels_ = false, derivatives_ = false, with_z_ = false;
+  size_t known_ = 0;  // number of inputs and parameters, which come first
+  std::vector<std::pair<size_t, size_t>> means_;  // mean over a step, and what it is the mean of
   std::string table_;  // of creep forces, which the contact uses in place
   std::unique_ptr<rp_contact, Destroy> contact_;
-  rp_input input_ = {};
+  rp_input input_ = {};     // of the last solve
+  Outputs outputs_ = {};    // of the last solve
+  std::vector<double> at_;  // inputs and parameters of the solve to come
+  // the state to come back to, where the contact was brought to another one for derivatives
+  std::vector<unsigned char> pending_;
+  // the last direction, and what it gave
+  std::vector<double> direction_;
+  Outputs change_ = {};
   std::vector<std::unique_ptr<Snapshot>> snapshots_;
 
   // what a snapshot carries, besides the contact's own state
   Mode mode_ = Mode::instantiated;
   double time_ = 0, start_ = 0, stop_ = 0;
   bool stop_defined_ = false;
-  bool changed_ = true;  // an input or parameter was set after the last solve
+  bool largest_known_ = false;  // the largest step, which is found where it is read
+  bool changed_ = true;         // an input or parameter was set after the last solve
+  Solution solution_ = Solution::none;
   std::vector<double> values_;
+  std::vector<double> solved_;             // inputs and parameters of the outputs
+  std::vector<double> rates_;              // of the inputs, at the end of the last step
+  std::vector<double> input_derivatives_;  // for the next step, orders of them for each input
 };
 
 }  // namespace railpatch::fmu

@@ -26,11 +26,21 @@ fmi2Status Instance::give_handle(const Call &call, std::unique_ptr<Snapshot> sna
   return fmi2OK;
 }
 
+std::vector<double> Instance::saved_numbers() const {
+  std::vector<double> numbers = values_;
+  for (const auto *more : {&solved_, &rates_, &input_derivatives_})
+    numbers.insert(numbers.end(), more->begin(), more->end());
+  return numbers;
+}
+
 fmi2Status Instance::get_state(fmi2FMUstate *state) {
   if (state == nullptr) return refuse(call::get_state, "FMUstate is NULL");
-  std::vector<unsigned char> core(rp_state_size(contact_.get()));
-  const rp_error error = rp_save_state(contact_.get(), core.data(), core.size());
-  if (error != RP_OK) return refuse(call::get_state, rp_error_text(error));
+  std::vector<unsigned char> core = pending_;
+  if (core.empty()) {
+    core.resize(rp_state_size(contact_.get()));
+    const rp_error error = rp_save_state(contact_.get(), core.data(), core.size());
+    if (error != RP_OK) return refuse(call::get_state, rp_error_text(error));
+  }
   SnapshotHeader header = {};
   header.content = content_;
   header.time = time_;
@@ -39,8 +49,11 @@ fmi2Status Instance::get_state(fmi2FMUstate *state) {
   header.mode = static_cast<uint32_t>(mode_);
   header.stop_defined = stop_defined_ ? 1 : 0;
   header.changed = changed_ ? 1 : 0;
-  return give_handle(call::get_state, std::make_unique<Snapshot>(pack(header, values_, core)),
-                     state);
+  header.interface = static_cast<uint16_t>(interface_);
+  header.solved = solution_ != Solution::none ? 1 : 0;
+  header.largest_known = largest_known_ ? 1 : 0;
+  return give_handle(call::get_state,
+                     std::make_unique<Snapshot>(pack(header, saved_numbers(), core)), state);
 }
 
 fmi2Status Instance::set_state(fmi2FMUstate state) {
@@ -48,23 +61,34 @@ fmi2Status Instance::set_state(fmi2FMUstate state) {
   const Snapshot *snapshot = known(state);
   if (snapshot == nullptr) return refuse(call, "FMUstate is not a state of this instance");
   const unsigned char *bytes = snapshot->data();
-  const char *problem = check(bytes, snapshot->size(), content_, values_.size());
+  const char *problem = check(bytes, snapshot->size(), content_, number_count());
   if (problem != nullptr) return refuse(call, problem);
   const SnapshotHeader header = header_of(bytes);
-  std::vector<double> values(values_.size());
-  if (!values.empty()) std::memcpy(values.data(), values_of(bytes), values.size() * sizeof(double));
-  for (size_t i = 0; i < values.size(); ++i)
-    if (variables_[i].variable->role != Role::output &&
-        !settable(call, static_cast<int>(i), values[i]))
-      return fmi2Error;
+  if (header.interface != static_cast<uint16_t>(interface_))
+    return refuse(call,
+                  "the state is one of co-simulation, or of model exchange, where this "
+                  "instance is for the other");
+  std::vector<double> numbers(number_count());
+  if (!numbers.empty())
+    std::memcpy(numbers.data(), values_of(bytes), numbers.size() * sizeof(double));
+  for (size_t i = 0; i < known_; ++i)
+    if (!settable(call, static_cast<int>(i), numbers[i])) return fmi2Error;
   const rp_error error = rp_restore_state(contact_.get(), core_of(bytes), header.core);
   if (error != RP_OK) return refuse(call, rp_error_text(error));
-  values_ = std::move(values);
+  const double *from = numbers.data();
+  for (auto *to : {&values_, &solved_, &rates_, &input_derivatives_}) {
+    std::copy_n(from, to->size(), to->begin());
+    from += to->size();
+  }
+  pending_.clear();
+  direction_.clear();
+  solution_ = header.solved != 0 ? Solution::lost : Solution::none;
   time_ = header.time;
   start_ = header.start;
   stop_ = header.stop;
   stop_defined_ = header.stop_defined != 0;
   changed_ = header.changed != 0;
+  largest_known_ = header.largest_known != 0;
   mode_ = static_cast<Mode>(header.mode);
   return fmi2OK;
 }
@@ -110,7 +134,7 @@ fmi2Status Instance::deserialize(const fmi2Byte *bytes, size_t size, fmi2FMUstat
   if (bytes == nullptr) return refuse(call, "serializedState is NULL");
   if (state == nullptr) return refuse(call, "FMUstate is NULL");
   const auto *from = reinterpret_cast<const unsigned char *>(bytes);
-  const char *problem = check(from, size, content_, values_.size());
+  const char *problem = check(from, size, content_, number_count());
   if (problem != nullptr) return refuse(call, problem);
   return give_handle(call, std::make_unique<Snapshot>(from, from + size), state);
 }

@@ -100,6 +100,35 @@ bool read_profile(Words &words, Scene &scene) {
   return false;
 }
 
+bool read_side(Words &words, size_t &side) { return words.number(side) && side < 2; }
+
+bool read_section(Words &words, Scene &scene) {
+  size_t side = 0, index = 0;
+  if (!read_side(words, side) || !words.number(index)) return false;
+  auto &sections = scene.sections[side];
+  if (index > sections.size()) return false;
+  if (index == sections.size()) sections.emplace_back();
+  const std::string_view name = words.next();
+  if (name == "position") return read_values(words, sections[index].position);
+  for (size_t i = 0; i < 5; ++i)
+    if (name == kArrays[i]) return read_values(words, sections[index].arrays[i]);
+  return false;
+}
+
+bool read_shape(Words &words, std::vector<double> (&sides)[2]) {
+  size_t side = 0;
+  return read_side(words, side) && read_values(words, sides[side]);
+}
+
+bool read_option(Words &words, Scene &scene) {
+  const std::string_view name = words.next();
+  Options &o = scene.options;
+  if (name == "history") return words.number(o.history);
+  if (name == "averaged") return words.number(o.averaged);
+  if (name == "time_step") return words.number(o.time_step);
+  return name == "distance" && words.number(o.distance);
+}
+
 bool read_variable(Words &words, Scene &scene) {
   uint32_t reference = 0;
   SceneVariable item{};
@@ -124,27 +153,67 @@ bool read_line(std::string_view line, Scene &scene) {
     good = read_profile(words, scene);
   } else if (key == "distance") {
     good = read_values(words, scene.distance);
+  } else if (key == "section") {
+    good = read_section(words, scene);
+  } else if (key == "runout") {
+    good = read_shape(words, scene.runout);
+  } else if (key == "rail_height") {
+    good = read_shape(words, scene.rail_height);
+  } else if (key == "option") {
+    good = read_option(words, scene);
   } else if (key == "variable") {
     good = read_variable(words, scene);
   }
   return good && words.done();
 }
 
+// False where the arrays differ in length.
+bool make_profile(const std::vector<double> (&arrays)[5], rp_profile &profile) {
+  for (const auto &values : arrays)
+    if (values.size() != arrays[0].size() || values.size() > INT32_MAX) return false;
+  profile = {arrays[0].data(), arrays[1].data(), arrays[2].data(),
+             arrays[3].data(), arrays[4].data(), static_cast<int32_t>(arrays[0].size())};
+  return true;
+}
+
+bool connect_sections(Scene &scene, size_t side) {
+  if (scene.sections[side].empty()) return true;
+  for (const Section &section : scene.sections[side]) {
+    rp_profile profile = {};
+    if (section.position.size() != 1 || !make_profile(section.arrays, profile)) return false;
+    scene.section_profiles[side].push_back(profile);
+    scene.section_positions[side].push_back(section.position[0]);
+  }
+  scene.config.rail_sections[side] = scene.section_profiles[side].data();
+  scene.config.section_position[side] = scene.section_positions[side].data();
+  scene.config.section_count[side] = static_cast<int32_t>(scene.section_profiles[side].size());
+  return true;
+}
+
+// The counts are fields of the config, and must be those of the lines.
+bool connect_shape(const std::vector<double> &values, int32_t count, const double *&field) {
+  field = values.empty() ? nullptr : values.data();
+  return count >= 0 && values.size() == static_cast<size_t>(count);
+}
+
 // Lets the config point to the arrays.
 bool connect(Scene &scene) {
-  for (size_t body = 0; body < 2; ++body)
-    for (size_t side = 0; side < 2; ++side) {
-      auto &arrays = scene.arrays[body][side];
-      if (arrays[0].empty()) continue;
-      for (const auto &values : arrays)
-        if (values.size() != arrays[0].size() || values.size() > INT32_MAX) return false;
-      rp_profile &profile = (body == 0 ? scene.config.wheel : scene.config.rail)[side];
-      profile = {arrays[0].data(), arrays[1].data(), arrays[2].data(),
-                 arrays[3].data(), arrays[4].data(), static_cast<int32_t>(arrays[0].size())};
+  rp_config &config = scene.config;
+  for (size_t side = 0; side < 2; ++side) {
+    for (size_t body = 0; body < 2; ++body) {
+      const auto &arrays = scene.arrays[body][side];
+      rp_profile &profile = (body == 0 ? config.wheel : config.rail)[side];
+      if (!arrays[0].empty() && !make_profile(arrays, profile)) return false;
     }
+    if (!connect_sections(scene, side) ||
+        !connect_shape(scene.runout[side], config.runout_count[side], config.runout[side]) ||
+        !connect_shape(scene.rail_height[side], config.rail_height_count[side],
+                       config.rail_height[side]))
+      return false;
+  }
   if (scene.distance.empty()) return true;
-  scene.config.undeformed_distance = scene.distance.data();
-  const auto *shape = scene.config.distance_shape;
+  config.undeformed_distance = scene.distance.data();
+  const auto *shape = config.distance_shape;
   return shape[0] > 0 && shape[1] > 0 &&
          scene.distance.size() == static_cast<size_t>(shape[0]) * static_cast<size_t>(shape[1]);
 }

@@ -5,8 +5,14 @@
 //   guid {...}
 //   set FIELD VALUE...                          a field of rp_config
 //   profile wheel|rail SIDE ARRAY COUNT VALUE...
+//   section SIDE INDEX ARRAY COUNT VALUE...     a rail's profile along the track, indices from 0
+//   on;
+//                                               ARRAY may be position: one value
+//   runout|rail_height SIDE COUNT VALUE...      shapes along rolling
 //   distance COUNT VALUE...                     the undeformed distance
-//   variable REFERENCE NAME START               in the order of modelDescription.xml
+//   option NAME VALUE                           one of Options
+//   variable REFERENCE NAME START               in the order of modelDescription.xml: what is not
+//                                               an output first
 //   end CRC                                     CRC-32 of all bytes before this line, hexadecimal
 #pragma once
 
@@ -24,12 +30,30 @@ struct SceneVariable {
   double start;
 };
 
+struct Options {
+  int32_t history =
+      0;  // 1: later steps depend on earlier ones, not only through the solver's start
+  int32_t averaged = 0;  // 1: means over a step are asked for
+  double time_step = 0;  // s, of the solve at the start, where there is no step yet
+  double distance = 0;   // m, of that solve: distance rolled of a patch in transient rolling
+};
+
+struct Section {
+  std::vector<double> arrays[5], position;
+};
+
 struct Scene {
   std::string guid;
   rp_config config;
+  Options options;
   std::vector<SceneVariable> variables;
   std::vector<double> arrays[2][2][5];  // wheel or rail, side, arc_length y z dy dz
   std::vector<double> distance;
+  std::vector<Section> sections[2];
+  std::vector<double> runout[2], rail_height[2];
+  // what the config points to
+  std::vector<rp_profile> section_profiles[2];
+  std::vector<double> section_positions[2];
 };
 
 // False: problem says which line is wrong and why. The config then points into the scene's arrays,

@@ -10,12 +10,12 @@ namespace railpatch::fmu {
 namespace {
 
 constexpr char kMark[8] = {'R', 'P', 'F', 'M', 'U', 'S', 'T', '\n'};
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
 constexpr size_t kChecked = offsetof(SnapshotHeader, content);
 constexpr size_t kHeader = sizeof(SnapshotHeader);
 
 // exactly one of the states of calls.hpp
-bool known_mode(uint32_t mode) { return mode != 0 && mode <= 32 && (mode & (mode - 1)) == 0; }
+bool known_mode(uint32_t mode) { return mode != 0 && mode <= 128 && (mode & (mode - 1)) == 0; }
 
 }  // namespace
 
@@ -30,7 +30,6 @@ Snapshot pack(SnapshotHeader header, const std::vector<double> &values,
   header.size = snapshot.size();
   header.values = values.size();
   header.core = core.size();
-  header.reserved = 0;
   unsigned char *at = snapshot.data();
   std::memcpy(at, &header, kHeader);
   if (bytes > 0) std::memcpy(at + kHeader, values.data(), bytes);

@@ -16,7 +16,9 @@ struct SnapshotHeader {
   uint64_t content;             // of the FMU: a state of another one is refused
   uint64_t size, values, core;  // bytes in all, number of values, bytes of the contact's state
   double time, start, stop;
-  uint32_t mode, stop_defined, changed, reserved;
+  uint32_t mode, stop_defined, changed;
+  uint16_t interface;
+  uint8_t solved, largest_known;
 };
 
 // Fills mark, version, sizes and checksum; the other fields are the caller's.

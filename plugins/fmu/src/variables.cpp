@@ -14,8 +14,8 @@ constexpr Variable kVariables[] = {
 #include "variables.inc"
 };
 
-double read_field(const rp_result &result, Type type, size_t field) {
-  const unsigned char *from = reinterpret_cast<const unsigned char *>(&result) + field;
+double read_field(const Outputs &outputs, Type type, size_t field) {
+  const unsigned char *from = reinterpret_cast<const unsigned char *>(&outputs) + field;
   if (type == Type::integer) {
     int32_t value;
     std::memcpy(&value, from, sizeof value);
@@ -37,10 +37,11 @@ const Variable *find_variable(uint32_t reference) {
   return found != std::end(kVariables) && found->reference == reference ? found : nullptr;
 }
 
-double output_of(const rp_result &result, const Variable &variable) {
-  const double value = read_field(result, variable.type, variable.field);
+double output_of(const Outputs &outputs, const Variable &variable) {
+  if (variable.field == no_field) return 0;
+  const double value = read_field(outputs, variable.type, variable.field);
   if (variable.plus == no_field) return value;
-  return value + read_field(result, variable.type, variable.plus);
+  return value + read_field(outputs, variable.type, variable.plus);
 }
 
 void put_input(rp_input &input, const Variable &variable, double value) {

@@ -1,11 +1,11 @@
-// Variables by value reference: type, range and the field of rp_input or rp_result behind each. The
+// Variables by value reference: type, range and the field of rp_input or Outputs behind each. The
 // table itself is generated from variables.toml.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
-#include "railpatch.h"
+#include "outputs.hpp"
 
 namespace railpatch::fmu {
 
@@ -14,20 +14,36 @@ enum class Role : uint8_t { input, output, parameter };
 
 inline constexpr size_t no_field = SIZE_MAX;
 
+// value references of the parameters, which are no fields
+inline constexpr uint32_t friction_coefficient = 31, substeps = 32, wheelset_mass = 33,
+                          wheelset_inertia = 34;
+// and of an output that is none
+inline constexpr uint32_t largest_step = 59;
+
 struct Variable {
   uint32_t reference;
   Type type;
   Role role;
-  size_t field;  // offset in rp_input or rp_result
+  size_t field;  // offset in rp_input or Outputs
   size_t plus;   // of a second field that is added
   double low, high;
 };
 
+// Means over a step, and how far from their references are those of what they are the means of.
+inline constexpr uint32_t mean_apart = 18;
+inline bool is_mean(const Variable &variable) {
+  const uint32_t within = variable.reference % 1000;
+  return variable.role == Role::output && within >= 61 && within <= 66;
+}
+
+// Of outputs of patches: the status.
+inline bool is_status(const Variable &variable) { return variable.reference % 100 == 1; }
+
 // null: there is no such variable in any scene
 const Variable *find_variable(uint32_t reference);
 
-// A value of rp_result; 0 where the core has none (NaN).
-double output_of(const rp_result &result, const Variable &variable);
+// 0 where the core has none (NaN).
+double output_of(const Outputs &outputs, const Variable &variable);
 void put_input(rp_input &input, const Variable &variable, double value);
 
 }  // namespace railpatch::fmu

@@ -182,9 +182,9 @@ class Contact:
         wheels = {side: wheel_data(raw[side], raw["z"]) for side in self._case.sides}
         if fields:
             for side, wheel in wheels.items():
-                for index, patch in enumerate(wheel["patches"]):
-                    grid = raw[side]["patches"][index]["grid"]
-                    patch.update(self._fields(side, index, grid))
+                solved = raw[side]["patches"] + raw[side]["alternatives"]
+                for index, patch in enumerate(wheel["patches"] + wheel["alternatives"]):
+                    patch.update(self._fields(side, index, solved[index]["grid"]))
         if self._case.kind == "wheel_rail":
             return {**wheels[self._case.wheel.side], "status": raw["status"], **common}
         total = {key: raw[key] for key in ("status", "force", "moment", "z")}

@@ -72,9 +72,10 @@ class Result:
     in track axes (m), and row_angle [ny], its contact angle (rad). ``iterations`` is the sum of
     conjugate-gradient steps of the normal and Newton steps of the tangential problem.
     ``error_estimate`` holds what 95 % of the errors of creep_force (N, length of the vector),
-    spin_moment (N m) and max_pressure (Pa) stay below. ``share`` is the part that a patch's
-    solution has in the force, moment and rolling radius of its wheel: below 1 where patches join or
-    part. What the scene left out is NaN or None.
+    spin_moment (N m) and max_pressure (Pa) stay below. A wheel's ``alternatives`` are solutions of
+    its contact areas divided into other patches than ``patches``: where patches join or part, both
+    count, each with its ``share`` (1 elsewhere) in the force, moment and rolling radius. What the
+    scene left out is NaN or None.
     """
 
     def __init__(self, data: dict[str, Any]) -> None:
@@ -153,6 +154,7 @@ def wheel_data(side: dict[str, Any], z: float) -> dict[str, Any]:
         "rail_deflection": known(side["rail_deflection"]),
         "rail_deflection_rate": known(side["rail_deflection_rate"]),
         "patches": [patch_data(patch, of_wheel=True) for patch in side["patches"]],
+        "alternatives": [patch_data(patch, of_wheel=True) for patch in side["alternatives"]],
     }
 
 

@@ -63,6 +63,8 @@ constexpr Name kNames[] = {
     {"spin_offset", "sixth", RP_SPIN_OFFSET_SIXTH},
     {"patch_rule", "blended", RP_PATCHES_BLENDED},
     {"patch_rule", "contact", RP_PATCHES_CONTACT},
+    {"contact_frame", "track", RP_FRAME_TRACK},
+    {"contact_frame", "inclined", RP_FRAME_INCLINED},
     {"reference_surface", "plane", RP_REFERENCE_PLANE},
     {"reference_surface", "curved", RP_REFERENCE_CURVED},
     {"track", "rail", RP_RAIL},
@@ -285,8 +287,10 @@ nb::dict patch_dict(const rp_patch_result &patch) {
 }
 
 nb::dict side_dict(const rp_side_result &side) {
-  nb::list patches;
+  nb::list patches, alternatives;
   for (int i = 0; i < side.patch_count; ++i) patches.append(patch_dict(side.patch[i]));
+  for (int i = 0; i < side.alternative_count; ++i)
+    alternatives.append(patch_dict(side.patch[side.patch_count + i]));
   nb::dict to;
   to["status"] = rp_status_text(side.status);
   to["force"] = list_of(side.force);
@@ -295,6 +299,7 @@ nb::dict side_dict(const rp_side_result &side) {
   to["rail_deflection"] = list_of(side.rail_deflection);
   to["rail_deflection_rate"] = list_of(side.rail_deflection_rate);
   to["patches"] = patches;
+  to["alternatives"] = alternatives;
   return to;
 }
 
@@ -389,6 +394,7 @@ void fill_config(const nb::dict &from, Config &to) {
   reader.scalar("roller_radius", c.roller_radius);
   reader.scalar("max_patches", c.max_patches);
   reader.name("patch_rule", c.patch_rule);
+  reader.name("contact_frame", c.contact_frame);
   reader.scalar("standstill_speed", c.standstill_speed);
   fill_values(reader, "runout", c.runout, c.runout_count, to.profiles);
   fill_values(reader, "rail_height", c.rail_height, c.rail_height_count, to.profiles);

@@ -173,7 +173,7 @@ class ForceElement {
     std::fill_n(power, kPower, 0.0);
     power[0] = power_of(result, s, spin_of(s).data());
     for (const rp_side_result &side : result.side)
-      for (int i = 0; i < side.patch_count; ++i) {
+      for (int i = 0; i < side.patch_count + side.alternative_count; ++i) {
         const rp_patch_result &patch = side.patch[i];
         power[1] += patch.share * patch.elastic_energy;
         // NaN where the scene has no tangential problem: no friction

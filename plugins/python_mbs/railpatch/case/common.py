@@ -184,7 +184,7 @@ FAST_NUMBERS = tuple(
 )
 
 # what only wheels read
-WHEEL_METHOD = ("patch_rule", "standstill_speed")
+WHEEL_METHOD = ("patch_rule", "contact_frame", "standstill_speed")
 
 
 class Method(Table):
@@ -255,6 +255,12 @@ class Method(Table):
         description="of wheels (no unit): blended, the default, neighbouring areas of contact go "
         "over from one patch to two smoothly, both solved in between, each with its share; or "
         "contact, by distances as in the program CONTACT, for comparisons",
+    )
+    contact_frame: Literal["track", "inclined"] | None = Field(
+        default=None,
+        description="of wheels on rollers (no unit): track, the default, x along the track, which "
+        "leaves out the normal force's part along it where a contact lies ahead of the roller's "
+        "top, as published results do; or inclined, x along the roller's surface",
     )
     standstill_speed: Annotated[float, between(0, 1)] | None = Field(
         default=None,

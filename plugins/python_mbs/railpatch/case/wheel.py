@@ -251,6 +251,16 @@ class _WheelCase(Table):
         """Whether the scene has a tangential problem."""
         return self.method.tangential != "none"
 
+    def _check_frame(self) -> None:
+        if self.method.contact_frame != "inclined":
+            return
+        if self.track.kind != "roller":
+            raise relation("method.contact_frame", "'inclined'", "'track' with kind = 'rail'")
+        if self.method.reference_surface != "plane":
+            shown = repr(self.method.reference_surface)
+            where = "with contact_frame = 'inclined'"
+            raise relation("method.reference_surface", shown, f"'plane' {where}")
+
     @model_validator(mode="after")
     def _relations(self) -> _WheelCase:
         if self.has_tangential:
@@ -262,6 +272,7 @@ class _WheelCase(Table):
             self.material, self.friction, self.layer, self.temperature, self.grid, self.method
         )
         check_rolling(self)
+        self._check_frame()
         for side in self.sides:
             for body in ("wheel", "rail"):
                 key, value = self.profiles.of(body, side)

@@ -141,7 +141,7 @@ class Measure:
         result = self.contact.step(**self.path.changes(at))
         wheels = [result[side] for side in self.sides] if len(self.sides) > 1 else [result]
         forces = [[*w["force"], *(m / self.radius for m in w["moment"])] for w in wheels]
-        shares = tuple(tuple(p["share"] for p in w["patches"]) for w in wheels)
+        shares = tuple(tuple(p["share"] for p in w["patches"] + w["alternatives"]) for w in wheels)
         return Sample(at, 100 * np.array(forces) / self.load, shares, result.status)
 
     def samples(self, start: float, stop: float, step: float) -> list[Sample]:

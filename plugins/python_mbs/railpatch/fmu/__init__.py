@@ -1,4 +1,4 @@
-"""Makes an FMU (FMI 2.0, co-simulation) of a scene from libraries that were built before."""
+"""Makes an FMU (FMI 2.0) of a scene from libraries that were built before."""
 
 from railpatch.fmu.pack import Backend, pack_fmu
 

@@ -21,14 +21,36 @@ from railpatch.commands import output_option, scene_argument
     help="The FFT library: fftw is faster, and makes the FMU one under the GPL.",
 )
 @click.option(
+    "--derivatives",
+    type=click.Choice(["exact", "always", "none"]),
+    default="exact",
+    show_default=True,
+    help="Directional derivatives: where exact ones exist, always (else by differences), or none.",
+)
+@click.option("--averages", is_flag=True, help="Also give forces averaged over a step.")
+@click.option(
+    "--largest-step",
+    is_flag=True,
+    help="Also give the largest step that forces may be held for; takes two to three steps' time.",
+)
+@click.option(
     "--libraries",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
     metavar="FOLDER",
     help="Libraries for further systems and the sources, as made by `make fmu`.",
 )
 @click.option("--quiet", is_flag=True, help="Print nothing.")
-def fmu(scene: Path | None, output: Path, fft: Any, libraries: Path | None, quiet: bool) -> None:
-    """Pack a scene as an FMU: FMI 2.0, co-simulation, Linux on x86-64 unless --libraries has more.
+def fmu(
+    scene: Path | None,
+    output: Path,
+    fft: Any,
+    derivatives: Any,
+    averages: bool,
+    largest_step: bool,
+    libraries: Path | None,
+    quiet: bool,
+) -> None:
+    """Pack a scene as an FMU: FMI 2.0, Linux on x86-64 unless --libraries has more.
 
     Position and velocity come in, forces and the patches' quantities go out; the FMU holds its own
     description in documentation/index.html. A scene is a case file, or that of a rig. Without one
@@ -38,7 +60,16 @@ def fmu(scene: Path | None, output: Path, fft: Any, libraries: Path | None, quie
     from railpatch.fmu.scenes import scene_of
 
     name, loaded = scene_of(scene)
-    written = pack_fmu(loaded, output, name=name, backend=fft, libraries=libraries)
+    written = pack_fmu(
+        loaded,
+        output,
+        name=name,
+        backend=fft,
+        derivatives=derivatives,
+        averages=averages,
+        largest_step=largest_step,
+        libraries=libraries,
+    )
     if not quiet:
         licence = ", under the GPL because of FFTW" if fft == "fftw" else ""
         click.echo(f"{written}: {name}{licence}")

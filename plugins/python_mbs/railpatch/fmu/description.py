@@ -12,6 +12,9 @@ from railpatch.fmu.table import Kind, Table, Variable, dependencies
 BASE_UNITS = {
     "1": {},
     "m": {"m": 1},
+    "s": {"s": 1},
+    "kg": {"kg": 1},
+    "kg.m2": {"kg": 1, "m": 2},
     "rad": {"rad": 1},
     "m/s": {"m": 1, "s": -1},
     "rad/s": {"rad": 1, "s": -1},
@@ -25,15 +28,18 @@ BASE_UNITS = {
 }
 CAPABILITIES = {
     "canHandleVariableCommunicationStepSize": "true",
-    "canInterpolateInputs": "false",
-    "maxOutputDerivativeOrder": "0",
+    "canInterpolateInputs": "true",
     "canRunAsynchronuously": "false",
     "canBeInstantiatedOnlyOncePerProcess": "false",
     "canNotUseMemoryManagementFunctions": "true",
     "canGetAndSetFMUstate": "true",
     "canSerializeFMUstate": "true",
-    "providesDirectionalDerivative": "false",
 }
+OF_SLAVES = (
+    "canHandleVariableCommunicationStepSize",
+    "canInterpolateInputs",
+    "canRunAsynchronuously",
+)
 CATEGORIES = {
     "logStatusError": "The call was wrong, or cannot be carried out",
     "logStatusDiscard": "A step or value that the contact could not solve, and what to change",
@@ -52,6 +58,18 @@ class Labels:
     version: str
     date: str
     tolerance: float
+    derivatives: bool  # of the outputs, from the core's
+
+    def model(self) -> dict[str, str]:
+        """Attributes of both interfaces."""
+        own = {key: value for key, value in CAPABILITIES.items() if key not in OF_SLAVES}
+        provides = {"providesDirectionalDerivative": str(self.derivatives).lower()}
+        return {"modelIdentifier": self.identifier, **own, **provides}
+
+    def slave(self) -> dict[str, str]:
+        """Attributes of co-simulation."""
+        own = {key: CAPABILITIES[key] for key in OF_SLAVES}
+        return {**self.model(), **own, "maxOutputDerivativeOrder": str(int(self.derivatives))}
 
 
 def description_xml(
@@ -70,12 +88,14 @@ def description_xml(
         "variableNamingConvention": "structured",
         "numberOfEventIndicators": "0",
     }
-    slave = {"modelIdentifier": labels.identifier, **CAPABILITIES}
+    # states and events there are none, and what has a history cannot be asked twice
+    exchange = [] if kind.has_history else [f"  <ModelExchange{attributes(labels.model())}/>"]
     experiment = {"startTime": 0.0, "stopTime": 1.0, "tolerance": labels.tolerance}
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',
         f"<fmiModelDescription{attributes(head)}>",
-        f"  <CoSimulation{attributes(slave)}/>",
+        *exchange,
+        f"  <CoSimulation{attributes(labels.slave())}/>",
         *unit_lines(table, variables),
         *type_lines(table, variables),
         "  <LogCategories>",

@@ -25,19 +25,19 @@ Creepages are wheel minus rail over the rolling speed, so a positive creepage gi
 creep force. Vectors are counted from 1.</p>
 """
 MISSING = """
-<p>Inputs without effect do not exist: a wheel may be turned about its axle and a rail moved
-along x without any change. Rails and rollers turn about x only in this version. Outputs
+<p>Inputs without effect do not exist: the position along the track and the pitch angle are there
+where something varies with them. Rails and rollers turn about x only in this version. Outputs
 of a patch that is not there are 0, its status is no_contact.</p>
 """
 RANGE = """
-<p>The theory is that of elastic half-spaces in steady rolling with Coulomb friction: patches are
-small against the radii of wheel and rail, and motion changes little while the wheel rolls one
-patch length. Lift-off is a valid result: status no_contact, all forces 0. A step that does not
-converge, or in which contact leaves the profiles or needs more elements or patches than the FMU
-was made with, ends with fmi2Discard: the time stays at that of the last good step, outputs keep
-its values, and the message in the category logStatusDiscard says what to change. Go on from a saved
-state, or reset. Values outside
-the ranges below are refused with fmi2Error, and nothing is set.</p>
+<p>The theory is that of elastic half-spaces in rolling with the scene's law of friction: patches
+are small against the radii of wheel and rail; in steady rolling, motion changes little while the
+wheel rolls one patch length. Lift-off is a valid result: status no_contact, all forces 0. A step
+that does not converge, or in which contact leaves the profiles or needs more elements or patches
+than the FMU was made with, ends with fmi2Discard: the time stays at that of the last good step,
+outputs keep its values, and the message in the category logStatusDiscard says what to change. Go on
+from a saved state, or reset. Values outside the ranges below are refused with fmi2Error, and
+nothing is set.</p>
 """
 COUPLING = """
 <p>Co-simulation lags: the forces after a step belong to the motion that was set before it, so a
@@ -49,12 +49,57 @@ about 1e9 N/m and steps of 0.1 ms take 1e5 N s/m of damping out of the system. T
 results stay.</li>
 <li>Or iterate: save the state, step, correct the motion, restore, step again. States can be saved,
 restored and serialised at any time; a restored step gives the same bits.</li>
+<li>Or let inputs move during the step: set their time derivatives (fmi2SetRealInputDerivatives,
+orders 1 to 3) with their values before the step.</li>
+<li>Or use directional derivatives, where the FMU has them, for a linearly implicit master.</li>
+<li>Or take the model-exchange interface, where the FMU has it: no states, no lag.</li>
 <li>Or give the vertical force instead of z, in the scene: z is then found inside, and only the
 softer creep forces lag.</li>
 </ul>
 <p>The last solution is the start of the next one. It changes results only within the solver's
-tolerance, and is part of the saved state. Steps may vary in length; inputs are held during a step.
-In initialization mode outputs follow the inputs at once.</p>
+tolerance, and is part of the saved state. Steps may vary in length. In initialization mode, and in
+model exchange, outputs follow the inputs at once.</p>
+<p><b>Inputs in a step</b>: an input whose derivatives were set moves by them from the value it has
+at the step's start, and afterwards is held where it came to; derivatives hold for one step. Outputs
+are those at the step's end.</p>
+"""
+HISTORY = """
+<p><b>Sub-steps</b>: this scene has a history. The parameter <code>substeps</code> divides every
+communication step into that many steps of the contact, with inputs in between by their derivatives.
+The contact's time step is that of a communication step over their number; at the start, where there
+is no step yet, that of the scene. There is no model exchange, and there are no directional
+derivatives, as both would ask the same step twice.</p>
+"""
+NO_HISTORY = """
+<p><b>Model exchange</b>: without states and event indicators, as the scene has no history. A solve
+that fails gives fmi2Discard when outputs are read: the master then takes a smaller step.</p>
+"""
+AVERAGED = """
+<p><b>Means</b>: mean_force and mean_moment are those over the last communication step. Where inputs
+move by derivatives they are found by the trapezoidal rule, from the outputs at the last
+communication point over <code>substeps</code> intervals, else as means of the sub-steps' ends.
+Means have no directional derivatives.</p>
+"""
+LARGEST_STEP = """
+<p><b>largest_step</b> is for masters that hold forces during a step. With K and C the negative
+derivatives of force and moment by pose and velocity, and M the mass and inertia (parameters),
+w<sup>2</sup> and c are the spectral norms of M<sup>-1/2</sup>KM<sup>-1/2</sup> and
+M<sup>-1/2</sup>CM<sup>-1/2</sup>. It is the least of 0.1/w, where the lag takes 2.5 % of critical
+damping from the contact's stiffest oscillation, of 1/c, above which creep forces overshoot, and of
+1 s. The rest of the model, its damping and further elasticity, is not in it. 0: a derivative is not
+known. It is found where it is read, and takes two to three steps' time.</p>
+"""
+DERIVATIVES = """
+<p><b>Directional derivatives</b> of Real outputs by Real inputs are those of the outputs as they
+are, at the inputs they were solved with: inputs set since then do not count in co-simulation before
+the next step. They come from the contact's own derivatives, see the range of these there: elements
+that stick, slip or are apart stay so. Those of residual are 0: it is the solver's own. Tunable
+parameters are refused as knowns. After a failed step, or where the derivative does not converge,
+the answer is fmi2Discard. State and outputs stay as they are; after a restored state the first
+derivative solves once more, and agrees with the one before to the solver's tolerance. One more
+entry for the same direction costs nothing.</p>
+<p><b>Output derivatives</b>, of order 1, are these along the inputs' own derivatives at the last
+step's end, 0 where inputs were held.</p>
 """
 NOTICES = {
     "eigen": """Railpatch is under the Apache License 2.0. The library in this FMU also contains
@@ -98,7 +143,7 @@ def index_html(
 <h2>Frames and signs</h2>{FRAMES}
 <h2>Inputs and parameters</h2>
 <p>Start values are those of the scene: the FMU runs without any being set. Geometry, material and
-method are fixed in the FMU; the parameter may be changed between steps.</p>
+method are fixed in the FMU; parameters may be changed between steps.</p>
 {variable_table(table, known, None, kind)}{MISSING}
 <h2>Outputs</h2>
 <p>"Acts on it" names the inputs that an output depends on: all, or those of the geometry
@@ -106,9 +151,21 @@ method are fixed in the FMU; the parameter may be changed between steps.</p>
 friction.</p>
 {variable_table(table, outputs, known, kind)}
 <h2>Range of validity</h2>{RANGE}
-<h2>Coupling</h2>{COUPLING}
+<h2>Coupling</h2>{COUPLING}{interfaces(labels, kind)}
 </body></html>
 """
+
+
+def interfaces(labels: Labels, kind: Kind) -> str:
+    """What this FMU offers to masters."""
+    parts = [HISTORY if kind.has_history else NO_HISTORY]
+    if "averaged" in kind.conditions:
+        parts.append(AVERAGED)
+    if "largest step" in kind.conditions:
+        parts.append(LARGEST_STEP)
+    if labels.derivatives:
+        parts.append(DERIVATIVES)
+    return "".join(parts)
 
 
 def variable_table(

@@ -15,8 +15,6 @@ from typing import Literal
 
 from railpatch import _core
 from railpatch.case.load import Scene
-from railpatch.case.patch import PatchCase
-from railpatch.case.rolling import shape_keys
 from railpatch.config import config_of
 from railpatch.contact import Contact
 from railpatch.errors import CaseError
@@ -31,11 +29,22 @@ from railpatch.fmu.table import Kind, Table, Variable
 from railpatch.result import GOOD
 
 Backend = Literal["eigen", "fftw"]
+# "exact": where the core has them without further solves
+Derivatives = Literal["exact", "always", "none"]
 LICENCES = {"eigen": "Apache-2.0 AND MPL-2.0", "fftw": "GPL-3.0-or-later"}
 # the name of the library tells the licence
 SUFFIXES = {"eigen": "", "fftw": "_fftw_gpl"}
 # ZIP knows no time before 1980
 FIRST_DATE = 315532800
+
+
+@dataclass(frozen=True)
+class Options:
+    """What an FMU offers beside a scene's outputs; see pack_fmu."""
+
+    derivatives: Derivatives
+    averages: bool
+    largest_step: bool
 
 
 @dataclass(frozen=True)
@@ -58,16 +67,25 @@ def pack_fmu(
     *,
     name: str = "scene",
     backend: Backend = "eigen",
+    derivatives: Derivatives = "exact",
+    averages: bool = False,
+    largest_step: bool = False,
     libraries: Path | None = None,
 ) -> Path:
     """Writes the FMU of a scene.
 
     name: of the model. backend: "eigen" (permissive), or "fftw" (faster; then the FMU is under the
-    GPL). libraries: a folder that `make fmu` made, with all platforms and sources; None: this one's
-    library. The same scene, libraries and SOURCE_DATE_EPOCH give the same bytes. Raises CaseError.
+    GPL). derivatives: of the outputs; "exact": where they come from the solved conditions;
+    "always": else by differences of further solves; a scene with a history has none. averages:
+    outputs of forces averaged over a step, and sub-steps for them (scenes with wheels).
+    largest_step: an output for masters, with mass and inertia of the wheelset as parameters, in
+    scenes with wheels and derivatives; it costs two to three steps where it is read. libraries: a
+    folder that `make fmu` made, with all platforms and sources; None: this one's library. The same
+    scene, libraries and SOURCE_DATE_EPOCH give the same bytes. Raises CaseError.
     """
     output = Path(output)
-    contents = contents_of(scene, output.stem, name, backend, libraries)
+    options = Options(derivatives, averages, largest_step)
+    contents = contents_of(scene, output.stem, name, backend, options, libraries)
     guid = guid_of(contents)
     files = files_of(contents, guid)
     temporary = output.with_name(f".{output.name}.{os.getpid()}")
@@ -84,14 +102,28 @@ def pack_fmu(
 
 
 def contents_of(
-    scene: Scene, stem: str, name: str, backend: Backend, folder: Path | None
+    scene: Scene,
+    stem: str,
+    name: str,
+    backend: Backend,
+    options: Options,
+    folder: Path | None,
 ) -> Contents:
     """Everything that is known before the GUID."""
     libraries = libraries_of(backend, folder)
     table = Table(Path(str(resources.files("railpatch.fmu") / "variables.toml")))
     check_regime(scene)
     config = config_of(scene)
-    kind = kind_of(scene.case, _core.config_numbers(config))
+    kind = kind_of(scene.case, _core.config_numbers(config), averages=options.averages)
+    # solved once, so that an FMU is never made of a scene that the core refuses or cannot start
+    kinds = derivative_kind(
+        scene, name, asked=options.derivatives != "none" and not kind.has_history
+    )
+    provided = kinds == "exact" or (kinds == "differences" and options.derivatives == "always")
+    if options.largest_step:
+        if not provided or kind.kind == "patch":
+            raise CaseError("--largest-step: given, allowed with wheels and derivatives only")
+        kind = replace(kind, conditions=kind.conditions | {"largest step"})
     labels = Labels(
         identifier=identifier_of(stem) + SUFFIXES[backend],
         name=name,
@@ -100,26 +132,37 @@ def contents_of(
         version=_core.version(),
         date=time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(epoch())),
         tolerance=scene.case.method.tolerance,
+        derivatives=provided,
     )
     variables = variables_of(table, kind, scene.case)
-    # solved once, so that an FMU is never made of a scene that the core refuses or cannot start
-    status = Contact(scene).step().status
-    if status not in GOOD:
-        raise CaseError(f"{name}: the start values cannot be solved: {status}")
     creep_table = config["creep_table"].tobytes() if "creep_table" in config else None
     return Contents(labels, table, kind, variables, scene, backend, libraries, creep_table)
 
 
 def check_regime(scene: Scene) -> None:
-    """A step of a slave has no distance and no place of its own. Raises CaseError."""
+    """A step of a slave is one in time. Raises CaseError."""
     regime = getattr(getattr(scene.case, "motion", None), "regime", "none")
-    if regime in ("shift", "transient_rolling"):
+    if regime == "shift":
         raise CaseError(
-            f"motion.regime: value is {regime!r}, allowed 'none' or 'steady_rolling' in an FMU"
+            "motion.regime: value is 'shift', allowed 'none', 'steady_rolling' or "
+            "'transient_rolling' in an FMU"
         )
-    shaped = [] if isinstance(scene.case, PatchCase) else shape_keys(scene.case)
-    if shaped:
-        raise CaseError(f"{shaped[0]}: value is given, allowed to be left out in an FMU")
+    steps = getattr(getattr(scene.case, "motion", None), "steps", None) or 1
+    if steps != 1:
+        raise CaseError(f"motion.steps: value is {steps}, allowed 1 in an FMU: each step is one")
+
+
+def derivative_kind(scene: Scene, name: str, *, asked: bool) -> str:
+    """How derivatives are found: "exact", "differences" or "none". Raises CaseError where the start
+    cannot be solved."""
+    curved = scene.case.method.reference_surface == "curved"
+    asked = asked and not curved
+    method = scene.case.method.model_copy(update={"derivatives": asked})
+    contact = Contact(Scene(scene.case.model_copy(update={"method": method}), scene.folder))
+    status = contact.step().status
+    if status not in GOOD:
+        raise CaseError(f"{name}: the start values cannot be solved: {status}")
+    return contact.differentiate()["kind"] if asked else "none"
 
 
 def describe(kind: Kind, backend: Backend) -> str:
@@ -144,7 +187,7 @@ def guid_of(contents: Contents) -> str:
     """A hash of everything but the date."""
     labels = replace(contents.labels, date="")
     text = description_xml(labels, contents.table, contents.kind, contents.variables, "")
-    text += scene_text(contents.scene, contents.variables, "{}")
+    text += scene_text(contents.scene, contents.variables, "{}", contents.kind, labels.derivatives)
     digest = hashlib.sha256(text.encode() + (contents.creep_table or b""))
     built = contents.libraries.files(labels.identifier, contents.backend)
     for path, content in sorted(built.items()):
@@ -159,7 +202,7 @@ def files_of(contents: Contents, guid: str) -> dict[str, bytes]:
     description = description_xml(c.labels, c.table, c.kind, c.variables, guid)
     texts = {
         "modelDescription.xml": with_source_files(description, sources),
-        "resources/scene.txt": scene_text(c.scene, c.variables, guid),
+        "resources/scene.txt": scene_text(c.scene, c.variables, guid, c.kind, c.labels.derivatives),
         "documentation/reference.csv": reference_csv(c.scene, c.variables),
         "documentation/index.html": index_html(c.labels, c.table, c.kind, c.variables, guid),
     }

@@ -12,7 +12,8 @@ import numpy as np
 from railpatch import _core
 from railpatch.case.load import Case, Scene
 from railpatch.case.patch import PatchCase
-from railpatch.config import config_of
+from railpatch.case.wheel import WheelRailCase, WheelsetCase
+from railpatch.config import config_of, input_of
 from railpatch.errors import CaseError
 from railpatch.fmu.table import Kind, Table, Variable, with_start
 
@@ -20,9 +21,15 @@ SIDE_INDEX = {"left": 0, "right": 1}
 PROFILE_ARRAYS = ("arc_length", "y", "z", "dy", "dz")
 
 
-def kind_of(case: Case, config: dict[str, list[float]]) -> Kind:
-    """What the variables depend on. config: numbers of the core."""
+def kind_of(case: Case, config: dict[str, list[float]], *, averages: bool = False) -> Kind:
+    """What the variables depend on. config: numbers of the core; averages: means over a step."""
     conditions = {"tangential"} if case.has_tangential else set()
+    if has_history(case):
+        conditions.add("history")
+    if averages and not isinstance(case, PatchCase):
+        conditions.add("averaged")
+    if conditions & {"history", "averaged"}:
+        conditions.add("substeps")
     if case.has_tangential and case.method.tangential != "full":
         conditions.add("fast")
     if isinstance(case, PatchCase):
@@ -33,8 +40,45 @@ def kind_of(case: Case, config: dict[str, list[float]]) -> Kind:
     conditions.add("force" if case.wheelset.vertical_force is not None else "position")
     if case.track.kind == "roller":
         conditions.add("roller")
+    conditions |= along_conditions(case)
     sides = tuple(SIDE_INDEX[side] for side in case.sides)
     return Kind(case.kind, sides, int(config["max_patches"][0]), frozenset(conditions))
+
+
+def has_history(case: Case) -> bool:
+    """Whether a step depends on earlier ones, not only through the solver's start.
+
+    Laws of friction that fall, and layers that yield, may have several solutions: the one next to
+    the last step's is taken.
+    """
+    if case.has_tangential:
+        if case.motion.regime == "transient_rolling":
+            return True
+        if case.friction is not None and case.friction.law != "coulomb":
+            return True
+        if case.layer is not None and case.layer.is_plastic:
+            return True
+    support = None if isinstance(case, PatchCase) else case.track.rail_support
+    return support is not None and any(support.damping)
+
+
+def along_conditions(case: WheelRailCase | WheelsetCase) -> set[str]:
+    """What varies along the track or around the wheels, and rails that give way."""
+    found = set()
+    along = case.has_tangential and case.friction is not None and case.friction.along_track
+    for side in case.sides:
+        rail, wheel = getattr(case.track, side), getattr(case.wheelset, side)
+        if rail.sections or rail.running_surface is not None or rail.joint:
+            found |= {"shape along x", f"x {side}"}
+        if along:
+            found.add(f"x {side}")
+        if wheel.runout is not None or wheel.flat:
+            found |= {"runout", f"pitch {side}"}
+    if along and "shape along x" not in found:
+        found.add("friction along x")
+    if case.track.rail_support is not None:
+        found.add("supported")
+    return found
 
 
 def variables_of(table: Table, kind: Kind, case: Case) -> list[Variable]:
@@ -61,6 +105,8 @@ def within(variable: Variable) -> bool:
 
 def start_of(variable: Variable, case: Case) -> float | int:
     """The case's value of an input or parameter."""
+    if variable.start is not None:
+        return variable.start
     name, index = split_name(variable.name)
     path = name.split(".")
     if isinstance(case, PatchCase) and len(path) == 1:
@@ -81,18 +127,33 @@ def split_name(name: str) -> tuple[str, int | None]:
     return (match[1], int(match[2]) - 1) if match else (name, None)
 
 
-def scene_text(scene: Scene, variables: list[Variable], guid: str) -> str:
+def scene_text(
+    scene: Scene, variables: list[Variable], guid: str, kind: Kind, derivatives: bool
+) -> str:
     """resources/scene.txt; plugins/fmu/src/scene.hpp tells its form."""
     if getattr(getattr(scene.case, "track", None), "irregularity", None) is not None:
         raise CaseError("track.irregularity: given, allowed in an FMU none")
-    config = config_of(scene)
-    body = "\n".join([*lines_of(config, variables, guid), ""])
+    config = {**config_of(scene), "derivatives": int(derivatives)}
+    options = options_of(scene.case, kind)
+    body = "\n".join([*lines_of(config, options, variables, guid), ""])
     return f"{body}end {zlib.crc32(body.encode('ascii')):08x}\n"
 
 
-def lines_of(config: dict[str, Any], variables: list[Variable], guid: str) -> Iterator[str]:
+def options_of(case: Case, kind: Kind) -> dict[str, float]:
+    """What the core does not know: numbers of a step that a solve at the start has not got."""
+    start = input_of(case)
+    return {
+        "history": int("history" in kind.conditions),
+        "averaged": int("averaged" in kind.conditions),
+        "time_step": start.get("time_step", 0.0),
+        "distance": start.get("distance", 0.0),
+    }
+
+
+def lines_of(
+    config: dict[str, Any], options: dict[str, float], variables: list[Variable], guid: str
+) -> Iterator[str]:
     """All lines but the last."""
-    refuse_track(config)
     yield "railpatch-fmu-scene 1"
     yield f"guid {guid}"
     for name, numbers in _core.config_numbers(config).items():
@@ -100,24 +161,29 @@ def lines_of(config: dict[str, Any], variables: list[Variable], guid: str) -> It
     for body in ("wheel", "rail"):
         for side, profile in enumerate(config.get(body, ())):
             for array in PROFILE_ARRAYS if profile is not None else ():
-                values = profile[array]
-                yield f"profile {body} {side} {array} {len(values)} {spell(values)}"
+                yield f"profile {body} {side} {array} {spell_array(profile[array])}"
+    for side, sections in enumerate(config.get("rail_sections", ())):
+        for index, profile in enumerate(sections):
+            position = config["section_position"][side][index]
+            yield f"section {side} {index} position 1 {spell([position])}"
+            for array in PROFILE_ARRAYS:
+                yield f"section {side} {index} {array} {spell_array(profile[array])}"
+    for name in ("runout", "rail_height"):
+        for side, values in enumerate(config.get(name, ())):
+            if values is not None:
+                yield f"{name} {side} {spell_array(values)}"
     if config.get("undeformed_distance") is not None:
-        values = np.asarray(config["undeformed_distance"]).ravel()
-        yield f"distance {values.size} {spell(values)}"
+        yield f"distance {spell_array(np.asarray(config['undeformed_distance']).ravel())}"
+    for name, value in options.items():
+        if value:
+            yield f"option {name} {spell([value])}"
     for v in variables:
         yield f"variable {v.reference} {v.name} {spell([v.start or 0])}"
 
 
-def refuse_track(config: dict[str, Any]) -> None:
-    """Raises CaseError for what needs inputs that an FMU does not have: x and time_step."""
-    for field, key in (
-        ("rail_sections", "track.left.sections, track.right.sections"),
-        ("friction_along_points", "friction.along_track"),
-        ("rail_stiffness", "track.rail_support"),
-    ):
-        if field in config:
-            raise CaseError(f"{key}: given, allowed in an FMU none")
+def spell_array(values: Any) -> str:
+    """How many, and each."""
+    return f"{len(values)} {spell(values)}"
 
 
 def spell(numbers: Any) -> str:

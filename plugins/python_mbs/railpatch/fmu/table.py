@@ -36,6 +36,11 @@ class Kind:
         """Whether z is found, so that everything acts on everything."""
         return self.kind != "patch" and "force" in self.conditions
 
+    @property
+    def has_history(self) -> bool:
+        """Whether a step depends on earlier ones."""
+        return "history" in self.conditions
+
 
 @dataclass(frozen=True)
 class Variable:
@@ -112,6 +117,7 @@ class Table:
                     side=side,
                     range=self.range(row["type"]),
                     description=row["description"].format(**names),
+                    start=row.get("start"),
                 )
 
 
@@ -161,14 +167,31 @@ def prefix_of(row: dict[str, Any], kind: Kind, side: int | None, patch: int | No
 def dependencies(output: Variable, inputs: list[Variable], kind: Kind) -> list[Variable]:
     """The inputs and parameters that act on an output."""
     level = LEVELS.index(output.level)
+    found = ("wheelset.mass", "wheelset.inertia")
+    inputs = [
+        v
+        for v in inputs
+        if v.level != "none" or (output.name == "largest_step" and v.name.startswith(found))
+    ]
     if kind.coupled and level > 0:
+        return inputs
+    # rails that give way move by the forces, both found by one iteration
+    if "supported" in kind.conditions and level > LEVELS.index("height"):
         return inputs
     return [
         v
         for v in inputs
         if LEVELS.index(v.level) <= level
         and (v.side is None or output.side is None or v.side == output.side)
+        and has_shape(v, output.side, kind)
     ]
+
+
+def has_shape(known: Variable, side: int | None, kind: Kind) -> bool:
+    """Whether the side's wheel or rail varies with x or pitch, if it is one of these."""
+    if side is None or known.field not in ("x", "pitch"):
+        return True
+    return f"{known.field} {SIDES[side]}" in kind.conditions
 
 
 def with_start(variable: Variable, start: float | int) -> Variable:

@@ -177,6 +177,15 @@ WHEEL_CONTACT = Message(
         _number("rolling_radius", "m", "radius on which the wheel rolls"),
         _number("wall_time", "s", "wall-clock time of the solution"),
         Field("patches", PATCH, "", "the contact patches; none without contact", size=0),
+        _number("rail_deflection", "m", "of an elastic rail: lateral, vertical", "track", size=2),
+        _number("rail_deflection_rate", "m/s", "its rate in the step", "track", size=2),
+        Field(
+            "alternatives",
+            PATCH,
+            "",
+            "solutions of other divisions into patches, which count with their share in the force",
+            size=0,
+        ),
     ),
 )
 
@@ -188,7 +197,8 @@ LEFT_OUT = {
     | dict.fromkeys(
         ("x", "y", "pressure", "traction", "micro_slip", "element_division", "temperature"),
         _IN_FIELDS,
-    ),
+    )
+    | dict.fromkeys(("row_position", "row_angle"), "of a curved reference surface, not logged"),
 }
 
 PATCH_FIELDS = Message(

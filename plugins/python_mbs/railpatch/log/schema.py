@@ -53,7 +53,7 @@ def _describe(target: descriptor_pb2.DescriptorProto, message: Message, full_nam
     target.name = message.name
     for number, field in enumerate(message.fields, start=1):
         _describe_field(target, field, number, full_name)
-        if isinstance(field.kind, Message):
+        if isinstance(field.kind, Message) and _is_first(message, field):
             nested = f"{full_name}.{field.kind.name}"
             _describe(target.nested_type.add(), field.kind, nested)
     # protobuf wants the synthetic groups of optional fields after all others; there are no others
@@ -61,6 +61,11 @@ def _describe(target: descriptor_pb2.DescriptorProto, message: Message, full_nam
         if proto.proto3_optional:
             proto.oneof_index = len(target.oneof_decl)
             target.oneof_decl.add(name=f"_{proto.name}")
+
+
+def _is_first(message: Message, field: Field) -> bool:
+    """Whether no field before it is of the same message type, which is described once."""
+    return next(other for other in message.fields if other.kind is field.kind) is field
 
 
 def _describe_field(
@@ -91,6 +96,6 @@ def _comment(info: descriptor_pb2.SourceCodeInfo, message: Message, path: list[i
             span=[0, 0, 0],
             leading_comments=f" {note(field)}\n",
         )
-        if isinstance(field.kind, Message):
+        if isinstance(field.kind, Message) and _is_first(message, field):
             _comment(info, field.kind, [*path, _NESTED_MESSAGES, nested])
             nested += 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 from collections.abc import Sequence
 from pathlib import Path
@@ -18,7 +19,13 @@ from railpatch.case.wheel import WheelsetCase
 from railpatch.config import input_of
 from railpatch.contact import CaseSource, Contact
 from railpatch.errors import CaseError
-from railpatch.result import Result
+from railpatch.pinocchio.derivative import (
+    Matrix,
+    StateChain,
+    WrenchDerivatives,
+    angular_velocity,
+)
+from railpatch.result import GOOD, Result
 
 # names of the rows of `states`, in order
 STATE = (
@@ -27,6 +34,8 @@ STATE = (
 )
 # of the core, by code; a test compares them
 STATUSES = ("converged", "no_contact", "not_converged", "out_of_range")
+SIDES = ("left", "right")
+PATCHES = ("patches", "alternatives")
 LENGTH = struct.Struct("<I")
 
 
@@ -80,14 +89,18 @@ class ForceElement:
             if contact.case.track.irregularity is not None:
                 raise CaseError("track.irregularity: given, allowed in a multibody model none")
         self.frame_speed = float(frame_speed)
+        self.wheelset = pin.SE3.Identity() if wheelset is None else wheelset
+        self.track = pin.SE3.Identity() if track is None else track
         self._core = _core.ForceElement(
             [contact._core for contact in self.contacts],
             [input_of(contact.case) for contact in self.contacts],
             np.array([contact.case.wheelset.nominal_radius for contact in self.contacts]),
-            placements([wheelset] * len(joints)),
-            placements([track]),
+            placements([self.wheelset] * len(joints)),
+            placements([self.track]),
             self.frame_speed,
         )
+        # of each wheelset, and the number of solves at which they were found
+        self._derivatives = [(0, np.zeros((6, len(STATE)))) for _ in self.joints]
         self._joint_count = model.njoints
         self._states, self._power = self._core.state, self._core.power
         motion, wrench = self._core.motion, self._core.wrench
@@ -137,6 +150,61 @@ class ForceElement:
         """
         self._core.place(index, *force, *moment)
         return self._core.placed[index]
+
+    def derivatives(self, index: int = 0) -> Matrix:
+        """[6, 12], of a wheelset's contact_wrench at the last step by its state.
+
+        Rows in N and N m, columns STATE. Exact, or by differences of further contact solves, as
+        Contact.jacobian() says. Needs method.derivatives = true and a step; changes nothing. Raises
+        CaseError, also where they did not converge.
+        """
+        solves, matrix = self._derivatives[index]
+        if solves != self.solves:
+            found = self.contacts[index].jacobian()
+            if found["status"] not in GOOD:
+                raise CaseError(
+                    f"method.tolerance: the contact's derivatives are {found['status']}, allowed a "
+                    "tolerance at which they converge"
+                )
+            matrix = found["left"] + found["right"]
+            self._derivatives[index] = (self.solves, matrix)
+        return matrix
+
+    def wrench_derivatives(self, chain: StateChain) -> list[WrenchDerivatives]:
+        """Of the wrenches on all wheelsets at the last step; see acceleration_derivatives()."""
+        return [
+            chain.of(self, index).wrench(self.contact_wrench[index], self.derivatives(index))
+            for index in range(len(self.joints))
+        ]
+
+    def contact_power_derivatives(self, index: int = 0) -> NDArray[np.float64]:
+        """[12], W over units of STATE: of a wheelset's F.v + M.omega at the last step."""
+        state, wrench = self._states[index], self.contact_wrench[index]
+        spin, spin_by_state = angular_velocity(state)
+        motion = np.concatenate([state[6:9], spin])
+        found = motion @ self.derivatives(index)
+        found[6:9] += wrench[:3]
+        return found + wrench[3:] @ spin_by_state
+
+    def friction_power_derivatives(self, index: int = 0) -> NDArray[np.float64]:
+        """[12], W over units of STATE: of a wheelset's friction_power at the last step, nearly.
+
+        Friction takes what the contact forces give but for the power of the normal forces, which
+        the contacts store. Of that only the change with the velocities is counted: at a wheelset
+        that hardly moves along the normals it is the greatest by far. What the contacts leave open
+        for being an approach apart, see railpatch.pinocchio.energy, is in it, by the spin mostly.
+        Enough for implicit steps, not for more.
+        """
+        found = -self.contact_power_derivatives(index)
+        centre = self._states[index, 2] - self.contacts[index].case.wheelset.nominal_radius
+        result = self._core.result(index)
+        for patch in (p for side in SIDES for kind in PATCHES for p in result[side][kind]):
+            angle, load = patch["contact_angle"], patch["share"] * patch["normal_force"]
+            across, down = load * math.sin(angle), -load * math.cos(angle)
+            _, y, z = patch["position"]
+            lever = (y - self._states[index, 1]) * down - (z - centre) * across
+            found[7:10] += [across, down, lever]
+        return found
 
     def state(self, index: int = 0) -> dict[str, float]:
         """Position and velocity of a wheelset at the last step, track axes: see STATE.

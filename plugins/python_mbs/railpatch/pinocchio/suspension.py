@@ -3,18 +3,34 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import Protocol
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from railpatch.pinocchio.element import ForceElement
+from railpatch.pinocchio.derivative import ROLL, YAW, StateChain, WrenchDerivatives
+from railpatch.pinocchio.element import STATE
 
 DIRECTIONS = ("x", "y", "z", "roll", "yaw")
 # columns of the element's states
 POSITION = slice(0, 5)
 RATES = [6, 7, 8, 9, 10]
+
+
+class Carried(Protocol):
+    """What a suspension wants of the force element of its wheelset; see ForceElement."""
+
+    joints: list[int]
+    frame_speed: float
+
+    @property
+    def states(self) -> NDArray[np.float64]:
+        """[wheelsets, 12]."""
+
+    def place(self, index: int, force: Sequence[float], moment: Sequence[float]) -> NDArray:
+        """[6]."""
 
 
 class Suspension:
@@ -35,7 +51,7 @@ class Suspension:
 
     def __init__(
         self,
-        element: ForceElement,
+        element: Carried,
         stiffness: Mapping[str, float],
         damping: Mapping[str, float],
         *,
@@ -66,6 +82,48 @@ class Suspension:
         wrench = self._element.place(self._index, *wrench_of(self._force, state[3], state[4]))
         vector = fext[self._joint].vector
         vector += wrench
+
+    def wrench_by_state(self) -> NDArray[np.float64]:
+        """[6, 12], of the wrench at the centre in track axes at the last step, columns STATE."""
+        by_force = np.zeros((5, len(STATE)))
+        by_force[:, POSITION] = -np.diag(self._stiffness)
+        by_force[:, RATES] = -np.diag(self._damping)
+        m_roll, m_yaw = self._force[3:].tolist()
+        roll, yaw = self._element.states[self._index][[ROLL, YAW]].tolist()
+        c, s, level = math.cos(roll), math.sin(roll), math.cos(yaw)
+        across = m_roll * math.tan(yaw)
+        found = np.zeros((6, len(STATE)))
+        found[:3], found[3] = by_force[:3], by_force[3]
+        found[4] = c * math.tan(yaw) * by_force[3] - s * by_force[4]
+        found[5] = s * math.tan(yaw) * by_force[3] + c * by_force[4]
+        found[4:, ROLL] += [-across * s - m_yaw * c, across * c - m_yaw * s]
+        found[4:, YAW] += [m_roll * c / level**2, m_roll * s / level**2]
+        return found
+
+    @property
+    def wrench_by_time(self) -> NDArray[np.float64]:
+        """[6], N/s, N m/s: of the same by time at a held state, as the reference moves on."""
+        moving = self._stiffness[0] * (self.speed - self._element.frame_speed)
+        return np.array([moving, 0.0, 0.0, 0.0, 0.0, 0.0])
+
+    @property
+    def wrench(self) -> NDArray[np.float64]:
+        """[6], N, N m: at the centre in track axes, of the last step."""
+        state = self._element.states[self._index]
+        force, moment = wrench_of(self._force, state[ROLL], state[YAW])
+        return np.array([*force, *moment])
+
+    def wrench_derivatives(self, chain: StateChain) -> list[WrenchDerivatives]:
+        """Of the wrench at the last step; see acceleration_derivatives()."""
+        states = chain.of(self._element, self._index)
+        return [states.wrench(self.wrench, self.wrench_by_state(), self.wrench_by_time)]
+
+    def power_derivatives(self) -> NDArray[np.float64]:
+        """[2, 12], W over units of STATE: of damping_power and drive_power at the last step."""
+        found = np.zeros((2, len(STATE)))
+        found[0, RATES] = 2 * self._damping * self._rates
+        found[1] = self.speed * self.wrench_by_state()[0]
+        return found
 
     @property
     def force(self) -> NDArray[np.float64]:

@@ -118,7 +118,7 @@ def steps_of(
     return [
         Step(case, values, patch, fields_of(contact, SIDES[side], index, patch["grid"]), before)
         for side in SIDES
-        for index, patch in enumerate(raw[side]["patches"])
+        for index, patch in enumerate(raw[side]["patches"] + raw[side]["alternatives"])
     ]
 
 

@@ -1,0 +1,147 @@
+// Derivatives of the outputs, from those of the contact. State, outputs and later steps stay as
+// they are.
+#include <algorithm>
+#include <cmath>
+
+#include "instance.hpp"
+#include "largest_step.hpp"
+
+namespace railpatch::fmu {
+
+int Instance::find_input(const Call &call, fmi2ValueReference reference) {
+  const int index = find(call, Type::real, reference);
+  if (index < 0 || variables_[static_cast<size_t>(index)].variable->role == Role::input)
+    return index;
+  refuse(call, variables_[static_cast<size_t>(index)].name + " is not an input");
+  return -1;
+}
+
+int Instance::find_output(const Call &call, fmi2ValueReference reference) {
+  const int index = find(call, Type::real, reference);
+  if (index < 0) return index;
+  const SceneVariable &item = variables_[static_cast<size_t>(index)];
+  const bool output = item.variable->role == Role::output;
+  const bool alone = is_mean(*item.variable) || item.variable->reference == largest_step;
+  if (output && !alone) return index;
+  refuse(call, item.name + (output ? " has no derivatives" : " is not an output"));
+  return -1;
+}
+
+fmi2Status Instance::directional_derivative(const fmi2ValueReference *unknown, size_t unknown_count,
+                                            const fmi2ValueReference *known, size_t known_count,
+                                            const double *seed, double *change) {
+  const Call &call = call::derivative;
+  if (unknown_count == 0) return fmi2OK;
+  if (!derivatives_)
+    return refuse(call,
+                  "is not provided: see providesDirectionalDerivative in "
+                  "modelDescription.xml");
+  if (unknown == nullptr || change == nullptr)
+    return refuse(call, unknown == nullptr ? "vUnknown_ref is NULL" : "dvUnknown is NULL");
+  if (known_count > 0 && (known == nullptr || seed == nullptr))
+    return refuse(call, known == nullptr ? "vKnown_ref is NULL" : "dvKnown is NULL");
+  for (size_t i = 0; i < unknown_count; ++i)
+    if (find_output(call, unknown[i]) < 0) return fmi2Error;
+  std::vector<double> rates(known_);
+  for (size_t i = 0; i < known_count; ++i) {
+    const int index = find_input(call, known[i]);
+    if (index < 0) return fmi2Error;
+    if (!std::isfinite(seed[i]))
+      return refuse(call, "dvKnown is " + text_of(seed[i]) + ", allowed a finite number");
+    rates[static_cast<size_t>(index)] += seed[i];
+  }
+  const fmi2Status status = differentiate(call, rates);
+  for (size_t i = 0; i < unknown_count && status == fmi2OK; ++i) change[i] = rate_of(unknown[i]);
+  return status;
+}
+
+fmi2Status Instance::output_derivatives(const fmi2ValueReference *references, size_t count,
+                                        const fmi2Integer *order, double *values) {
+  const Call &call = call::output_derivatives;
+  if (count == 0) return fmi2OK;
+  if (!derivatives_)
+    return refuse(call, "is not provided: see maxOutputDerivativeOrder in modelDescription.xml");
+  if (references == nullptr || order == nullptr || values == nullptr)
+    return refuse(call, references == nullptr
+                            ? "vr is NULL"
+                            : (order == nullptr ? "order is NULL" : "value is NULL"));
+  for (size_t i = 0; i < count; ++i) {
+    if (find_output(call, references[i]) < 0) return fmi2Error;
+    if (order[i] != 1) return refuse(call, "order is " + std::to_string(order[i]) + ", allowed 1");
+  }
+  const fmi2Status status = differentiate(call, rates_);
+  for (size_t i = 0; i < count && status == fmi2OK; ++i) values[i] = rate_of(references[i]);
+  return status;
+}
+
+double Instance::rate_of(fmi2ValueReference reference) const {
+  const Variable &variable = *variables_[static_cast<size_t>(index_of(reference))].variable;
+  return absent(variable) ? 0 : output_of(change_, variable);
+}
+
+fmi2Status Instance::hold_solution(const Call &call) {
+  if (changed_ && follows()) return solve(call);
+  if (solution_ == Solution::lost && pending_.empty()) {
+    // what a restored state was made of is solved again; the next step starts from the state
+    pending_.resize(rp_state_size(contact_.get()));
+    const rp_error error = rp_save_state(contact_.get(), pending_.data(), pending_.size());
+    if (error != RP_OK) return refuse(call, rp_error_text(error));
+    at_ = solved_;
+    return run_contact(call, time_, options_.time_step);
+  }
+  if (solution_ == Solution::held) return fmi2OK;
+  log_.say(
+      fmi2Discard, Category::discard,
+      std::string(call.name) + ": the last solve failed: restore a state or reset, then ask again");
+  return fmi2Discard;
+}
+
+fmi2Status Instance::differentiate(const Call &call, const std::vector<double> &rates) {
+  const fmi2Status status = hold_solution(call);
+  if (status != fmi2OK) return status;
+  // importers ask for the columns' entries one by one
+  if (direction_ == rates && !rates.empty()) return fmi2OK;
+  direction_.clear();
+  rp_input direction;
+  rp_default_direction(&direction);
+  for (size_t i = 0; i < known_; ++i)
+    if (variables_[i].variable->type == Type::real && rates[i] != 0)
+      put_input(direction, *variables_[i].variable, rates[i]);
+  rp_message message = {};
+  const rp_error error =
+      rp_differentiate(contact_.get(), &direction, &change_.result, nullptr, &message);
+  if (error != RP_OK)
+    return refuse(call, message.text[0] != '\0' ? message.text : rp_error_text(error));
+  if (change_.result.status == RP_NOT_CONVERGED) {
+    log_.say(fmi2Discard, Category::discard,
+             std::string(call.name) +
+                 ": the derivative did not converge here: go on without it, or make the FMU of a "
+                 "scene with a larger method.max_iterations");
+    return fmi2Discard;
+  }
+  if (wheels_) add_sum_rates(outputs_, input_, direction, change_);
+  direction_ = rates;
+  return fmi2OK;
+}
+
+fmi2Status Instance::find_largest_step(const Call &call) {
+  const fmi2Status status = hold_solution(call);
+  if (status != fmi2OK) return status;
+  rp_jacobian jacobian;
+  rp_message message = {};
+  const rp_error error = rp_get_jacobian(contact_.get(), &jacobian, &message);
+  if (error != RP_OK)
+    return refuse(call, message.text[0] != '\0' ? message.text : rp_error_text(error));
+  Inertia inertia;
+  const auto value = [&](uint32_t reference) -> double & {
+    return values_[static_cast<size_t>(index_of(reference))];
+  };
+  inertia.mass = value(wheelset_mass);
+  for (uint32_t k = 0; k < 3; ++k) inertia.moment[k] = value(wheelset_inertia + k);
+  const bool good = jacobian.status != RP_NOT_CONVERGED;
+  value(largest_step) = good ? largest_step_of(jacobian, inertia, with_z_) : 0;
+  largest_known_ = true;
+  return fmi2OK;
+}
+
+}  // namespace railpatch::fmu

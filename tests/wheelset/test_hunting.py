@@ -1,0 +1,113 @@
+"""Hunting: critical speed from eigenvalues and from runs in time."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import wheelset_scenes as scenes
+from click.testing import CliRunner
+from railpatch.cli import cli
+
+from wheelset_demo.hunting import critical_mode, critical_speed_in_time, run_at, slowest_mode
+from wheelset_demo.scene import WheelsetScene, load_wheelset_scene, scene_file
+
+AGREEMENT = 0.03
+
+
+def fast(folder: Path, normal: str, tangential: str) -> WheelsetScene:
+    """The scene with a fast theory, whose derivatives are by differences, and longer steps."""
+    text = scenes.text_of("hunting.toml", step=2e-3)
+    methods = f'[method]\nnormal = "{normal}"\ntangential = "{tangential}"\n'
+    file = folder / "fast.toml"
+    file.write_text(text.replace("[method]\n", methods))
+    return load_wheelset_scene(file)
+
+
+@pytest.fixture(scope="module")
+def full() -> WheelsetScene:
+    """The scene of the package: full theory on the half-space."""
+    return load_wheelset_scene(scene_file("hunting.toml"))
+
+
+def test_full_theory_eigenvalues_and_runs_in_time(full: WheelsetScene, capsys):
+    mode = critical_mode(full, 10.0, 100.0)
+    assert mode is not None
+    speed, runs = critical_speed_in_time(full, 0.9 * mode.speed, 1.1 * mode.speed, mode.frequency)
+    # below it waves die, above it they grow: as the eigenvalues say
+    for run in runs:
+        expected = slowest_mode(full, run.speed)
+        assert run.growth == pytest.approx(expected.growth, abs=0.01)
+        assert run.frequency == pytest.approx(expected.frequency, rel=0.01)
+    below, above = runs[0], runs[1]
+    assert below.growth < -0.05
+    assert above.growth > 0.05
+    with capsys.disabled():
+        print(
+            f"\ncritical speed, full theory: {mode.speed:.3f} m/s of eigenvalues, {speed:.3f} m/s "
+            f"in time ({100 * (speed / mode.speed - 1):+.3f} %); {mode.frequency:.3f} Hz, waves of "
+            f"{mode.wave_length:.2f} m; growth {below.growth:+.4f} 1/s at {below.speed:.1f} m/s, "
+            f"{above.growth:+.4f} 1/s at {above.speed:.1f} m/s"
+        )
+    assert speed == pytest.approx(mode.speed, rel=AGREEMENT)
+
+
+@pytest.mark.parametrize("theory", [("hertz", "fastsim"), ("hertz", "polach")])
+def test_fast_theories(theory: tuple[str, str], tmp_path: Path, capsys):
+    scene = fast(tmp_path, *theory)
+    mode = critical_mode(scene, 10.0, 100.0)
+    assert mode is not None
+    speed, _ = critical_speed_in_time(scene, 0.85 * mode.speed, 1.2 * mode.speed, mode.frequency)
+    with capsys.disabled():
+        print(
+            f"\ncritical speed, {theory[1]}: {mode.speed:.3f} m/s of eigenvalues, {speed:.3f} m/s "
+            f"in time ({100 * (speed / mode.speed - 1):+.3f} %)"
+        )
+    assert speed == pytest.approx(mode.speed, rel=AGREEMENT)
+
+
+def test_hunting_grows_until_friction_bounds_it(full: WheelsetScene):
+    mode = critical_mode(full, 10.0, 100.0)
+    assert mode is not None
+    run = run_at(full, 1.6 * mode.speed, slowest_mode(full, 1.6 * mode.speed).frequency)
+    assert np.abs(run.y).max() > 5 * abs(run.y[0])
+
+
+def invoke(*arguments: object):
+    return CliRunner().invoke(cli, ["hunting", *map(str, arguments)])
+
+
+def test_command(full: WheelsetScene):
+    ran = invoke("--json", "--lowest", 30, "--highest", 70)
+    assert ran.exit_code == 0, ran.output
+    found = json.loads(ran.stdout)
+    mode = critical_mode(full, 30.0, 70.0)
+    assert found["critical_speed"] == mode.speed
+    assert [g["growth"] < 0 for g in found["growth"]] == [True, False]
+    shown = invoke("--lowest", 30, "--highest", 70)
+    assert f"{mode.speed:.2f} m/s" in shown.stdout
+    assert invoke("--show-scene").stdout == scene_file("hunting.toml").read_text()
+
+
+def test_command_in_time(tmp_path: Path):
+    scene = fast(tmp_path, "hertz", "polach")
+    ran = invoke(tmp_path / scene.name, "--simulate", "--json")
+    assert ran.exit_code == 0, ran.output
+    found = json.loads(ran.stdout)
+    assert found["critical_speed_in_time"] == pytest.approx(found["critical_speed"], rel=AGREEMENT)
+    assert "in time" in invoke(tmp_path / scene.name, "--simulate").stdout
+
+
+def test_no_critical_speed_is_no_error():
+    ran = invoke("--lowest", 10, "--highest", 20)
+    assert ran.exit_code == 0
+    assert "none between 10 and 20 m/s" in ran.stdout
+
+
+def test_wrong_calls(tmp_path: Path):
+    assert "allowed > 0 and below --highest" in invoke("--lowest", 90, "--highest", 20).stderr
+    ran = invoke(tmp_path / "none.toml")
+    assert ran.exit_code == 2
+    assert "none.toml" in ran.stderr
