@@ -43,7 +43,7 @@ demo: setup ## set-up, roller-rig replay, wheelset on track, an FMU; logs and re
 		"$(CURDIR)/build/demo/wheelset.mcap" "$(CURDIR)/build/demo/wheelset.html" \
 		"$(CURDIR)/build/demo/railpatch.fmu"
 
-fmu: setup ## FMU of the default scene for Linux, Windows, macOS, with sources; one with FFTW (GPL)
+fmu: setup ## FMU of the default scene for Linux, ARM, Windows, with sources; one with FFTW (GPL)
 	@mkdir -p build/fmu
 	$(BIN)/python -m pip install --quiet --group cross
 	$(BIN)/python plugins/fmu/cross/build.py build/fmu

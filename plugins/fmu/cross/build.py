@@ -2,7 +2,7 @@
 
 Everything is made below FOLDER; what `railpatch fmu --libraries` takes is in FOLDER/lib. Needs the
 Python packages ziglang (Clang for all systems, with their headers) and fmpy (the headers of FMI),
-CMake, Ninja and Eigen. --platforms names some of those below; default are all.
+CMake, Ninja and Eigen. --platforms names some of those below.
 """
 
 from __future__ import annotations
@@ -18,14 +18,15 @@ from pathlib import Path
 import gather
 
 ROOT = Path(__file__).parents[3]
-# FMI's name: target of the compiler, CMake's system and processor
+# FMI's name (2.0 has none for ARM: that of 3.0): target of the compiler, CMake's system, processor
 PLATFORMS = {
-    "linux64": ("x86_64-linux-gnu.2.17", "Linux", "x86_64", ".so"),
-    "win64": ("x86_64-windows-gnu", "Windows", "x86_64", ".dll"),
-    "aarch64-linux": ("aarch64-linux-gnu.2.17", "Linux", "aarch64", ".so"),
-    "darwin64": ("x86_64-macos", "Darwin", "x86_64", ".so"),
-    "aarch64-darwin": ("aarch64-macos", "Darwin", "aarch64", ".so"),
+    "linux64": ("x86_64-linux-gnu.2.17", "Linux", "x86_64"),
+    "win64": ("x86_64-windows-gnu", "Windows", "x86_64"),
+    "aarch64-linux": ("aarch64-linux-gnu.2.17", "Linux", "aarch64"),
+    "darwin64": ("x86_64-macos", "Darwin", "x86_64"),
+    "aarch64-darwin": ("aarch64-macos", "Darwin", "aarch64"),
 }
+DEFAULT = ("linux64", "win64", "aarch64-linux")
 ENDINGS = {"Linux": ".so", "Windows": ".dll", "Darwin": ".dylib"}
 OPTIONS = {
     "CMAKE_BUILD_TYPE": "Release",
@@ -52,7 +53,7 @@ def package(name: str) -> Path:
 
 def build(name: str, folder: Path, zig: Path) -> None:
     """One platform's library, into FOLDER/lib."""
-    target, system, processor, suffix = PLATFORMS[name]
+    target, system, processor = PLATFORMS[name]
     options = {
         **OPTIONS,
         "CMAKE_TOOLCHAIN_FILE": Path(__file__).with_name("toolchain.cmake"),
@@ -66,10 +67,10 @@ def build(name: str, folder: Path, zig: Path) -> None:
     settings = [f"-D{key}={value}" for key, value in options.items()]
     run("cmake", "-S", ROOT, "-B", tree, "-G", "Ninja", *settings)
     run("cmake", "--build", tree, "--target", "railpatch_fmu")
-    made = tree / "plugins" / "fmu" / f"railpatch_fmu_eigen{suffix}"
+    made = tree / "plugins" / "fmu" / f"railpatch_fmu_eigen{ENDINGS[system]}"
     place = folder / "lib" / name
     place.mkdir(parents=True, exist_ok=True)
-    shutil.copy(made, place / f"railpatch_fmu_eigen{ENDINGS[system]}")
+    shutil.copy(made, place)
 
 
 def run(*command: str | Path) -> None:
@@ -91,7 +92,7 @@ def main() -> None:
     """All platforms, sources, licences."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--platforms", nargs="+", choices=PLATFORMS, default=list(PLATFORMS))
+    parser.add_argument("--platforms", nargs="+", choices=PLATFORMS, default=list(DEFAULT))
     arguments = parser.parse_args()
     folder = arguments.folder.resolve()
     for cache in ("ZIG_GLOBAL_CACHE_DIR", "ZIG_LOCAL_CACHE_DIR"):

@@ -26,7 +26,7 @@ SYSTEM = {
     "win64": r"KERNEL32\.dll|api-ms-win-crt-[a-z0-9-]*\.dll|ucrtbase\.dll",
 }
 FUNCTIONS = re.compile(r"\bfmi2[A-Z]\w*")
-# relative, of the largest output of the same unit: libraries of different compilers round
+# relative, of the largest output of the same quantity: libraries of different compilers round
 # differently, and an iteration carries that on
 SAME = 1e-9
 LOADS = 100
@@ -110,19 +110,20 @@ class Unpacked:
         return {reference: float.fromhex(value) for reference, value in rows}
 
     def worst(self, one: dict[str, float], other: dict[str, float]) -> float:
-        """Largest difference, relative to the largest output of the same quantity."""
+        """Largest difference, relative to the largest output of the same quantity, or where that is
+        0 but for rounding, as a moment by symmetry, to a thousandth of the nominal value."""
+        outputs = [v for v in self.reals if v.attrib["valueReference"] in one]
         sizes: dict[str, float] = {}
-        for v in self.reals:
-            value = abs(one.get(v.attrib["valueReference"], 0.0))
-            quantity = v[0].attrib["quantity"]
-            sizes[quantity] = max(sizes.get(quantity, 0.0), value)
+        for v in outputs:
+            quantity, value = v[0].attrib["quantity"], one[v.attrib["valueReference"]]
+            least = 1e-3 * float(v[0].attrib["nominal"])
+            sizes[quantity] = max(sizes.get(quantity, 0.0), least, abs(value))
         found = 0.0
-        for v in self.reals:
+        for v in outputs:
             reference, quantity = v.attrib["valueReference"], v[0].attrib["quantity"]
             # the residual is the rest that the solver left: rounding itself
-            if reference in one and quantity != "RelativeError" and sizes[quantity] > 0.0:
-                difference = abs(one[reference] - other[reference])
-                found = max(found, difference / sizes[quantity])
+            if quantity != "RelativeError":
+                found = max(found, abs(one[reference] - other[reference]) / sizes[quantity])
         return found
 
 
