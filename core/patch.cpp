@@ -9,7 +9,7 @@ namespace railpatch {
 namespace {
 
 constexpr double closeness = 2e-5;    // m, sampled gaps below this are looked at closely
-constexpr double least_share = 1e-8;  // what counts less is below any tolerance and left out
+constexpr double least_share = 1e-6;  // what counts less is below any tolerance and left out
 
 double gap_at(const side_geometry &side, double s) {
   const locus_point l = side.locus(s);

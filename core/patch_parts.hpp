@@ -23,7 +23,8 @@
 // between two parts grows from 25 to 75 um: a bump that elastic displacement closes or bridges. The
 // distance of their edges will not do: it grows with the root of the gap, by millimetres in a few
 // micrometres of motion. joined falls at smaller gaps as contact angles differ by more than 60
-// degrees, and goes to zero with the width of the smaller part over the distance: a part that
+// degrees, at distances of 10 to 16 mm, beyond which a common grid would be too wide, and goes to
+// zero with the width of the smaller part over the distance: a part that
 // appears (width 0) begins as a patch of its own with no force, one that splits (gap and distance
 // 0) as one patch. Within a patch neighbours interact as in the program CONTACT: fully up to a
 // distance of 4 mm, not at all from 8 mm on.
@@ -43,6 +44,7 @@ constexpr int max_parts = 8;  // of one patch, and of one wheel
 struct blend_rules {
   double low = 2.5e-5, high = 7.5e-5;  // m, greatest gap between
   double grown = 0.15;                 // -, width of the smaller part over the distance
+  double one = 10e-3, two = 16e-3;     // m, distance
   double full = 4e-3, none = 8e-3;     // m, of the interaction within a patch
   // rad; between these differences of contact angles the distances fall to a fraction
   double angle_from = std::numbers::pi / 3, angle_to = std::numbers::pi / 2;
@@ -154,7 +156,7 @@ T joined(const blend_rules &rule, const basic_part<T> &a, const basic_part<T> &b
   const T apart = (fabs(b.angle - a.angle) - rule.angle_from) / (rule.angle_to - rule.angle_from);
   const T alike = rule.angle_fraction + (1.0 - rule.angle_fraction) * fade(apart);
   const T low = alike * rule.low, high = alike * rule.high;
-  const T near = fade((a.bump - low) / (high - low));
+  const T near = fade((a.bump - low) / (high - low)) * fade((d - rule.one) / (rule.two - rule.one));
   const T share = w / (rule.grown * d);
   return share < 1.0 ? near * (1.0 - fade(share)) : near;
 }

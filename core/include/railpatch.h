@@ -145,7 +145,7 @@ typedef enum rp_patch_rule {
 } rp_patch_rule;
 /* x axis of the contact frame where a contact lies ahead of a roller's top, or behind */
 typedef enum rp_contact_frame {
-  RP_FRAME_TRACK = 0,   /* the track's: the part -Fn x/R of the normal force along track x is left
+  RP_FRAME_TRACK = 0,   /* the track's: the part Fn x/R of the normal force along track x is left
                            out of force and moment, as in the published results of the program
                            CONTACT */
   RP_FRAME_INCLINED = 1 /* along the roller's surface: nothing is left out */

@@ -61,7 +61,7 @@ def test_names_follow_the_interface(unpacked: Callable[..., Fmu]) -> None:
     expected = {
         "roller": "wheelset.y wheelset.z wheelset.pitch_rate track.roller_pitch_rate force[1] "
         "wheelset.left.offset[3] left.force[1] left.moment[3] left.patch[1].normal_force "
-        "right.patch[4].position[1] left.patch[1].friction_power friction.coefficient z status",
+        "right.patch[6].position[1] left.patch[1].friction_power friction.coefficient z status",
         "loaded": "wheelset.vertical_force wheelset.roll z",
         "left_wheel": "force[3] patch[1].creep_force[2] wheelset.left.offset[1] patch_count",
         "patch": "normal_force creepage[1] creepage[2] spin_creepage rolling_speed direction "
@@ -73,7 +73,7 @@ def test_names_follow_the_interface(unpacked: Callable[..., Fmu]) -> None:
         "left_wheel": "left.force[1] wheelset.right.offset[1]",
         "frictionless": "wheelset.speed left.patch[1].creep_force[1] friction.coefficient",
         "patch_normal": "creepage[1] creep_force[1]",
-        "rail": "track.roller_pitch_rate left.patch[5].normal_force",
+        "rail": "track.roller_pitch_rate left.patch[7].normal_force",
     }
     for name, names in expected.items():
         assert set(names.split()) <= unpacked(name).variables.keys(), name

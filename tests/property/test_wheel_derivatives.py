@@ -206,15 +206,17 @@ def test_tread_and_flange_at_once():
     motion = {"yaw": 0.03, "speed": speed, "pitch_rate": -speed / 0.46, "vy": 0.01}
     totals, counts = np.zeros(2, dtype=int), set()
     # at 6.2 mm the wheel touches where its profile's curvature jumps, which choices() does not see
-    for y in np.arange(6.11e-3, 6.34e-3, 2e-5):
-        result = find.step(y=float(y), roll=-0.03 * float(y), **motion)
+    places = np.append(np.arange(6.11e-3, 6.34e-3, 2e-5), np.arange(4.6e-3, 4.63e-3, 5e-6))
+    for y in places:
+        roll = -0.03 * float(y) if y > 6e-3 else 0.0
+        result = find.step(y=float(y), roll=roll, **motion)
         patches = result["right"]["patches"] + result["right"]["alternatives"]
         if result["status"] != "converged" or len(patches) < 2:
             continue
         counts.add(len(patches))
         assert sum(patch["share"] for patch in patches) <= 2 + 1e-12
         state = {**dict.fromkeys(POSE_AND_VELOCITY, 0.0), **motion}
-        state.update(y=float(y), roll=-0.03 * float(y), z=result["z"])
+        state.update(y=float(y), roll=roll, z=result["z"])
         totals += compare(contact, state, speed)
     assert counts == {2, 3}
     assert totals[0] > 60
