@@ -29,14 +29,14 @@ import numpy as np
 from pydantic import Field
 from railpatch import Contact, Result
 from railpatch.case import WheelsetCase
-from railpatch.case.load import Scene, check_case, check_table, plain, read_toml
+from railpatch.case.load import Scene, check_case, plain, read_toml
 from railpatch.case.types import NotNegative, Number, Table
 from railpatch.errors import CaseError
 from scipy.optimize import brentq
 
 from rig_model.broyden import Broyden
 from rig_model.newton import Newton
-from rig_model.scene import SIDES
+from rig_model.scene import SIDES, checked_parts
 from rig_model.search import Evaluation, Settings, Vector
 from rig_model.start import deepest, reference
 
@@ -186,16 +186,7 @@ def load_curve_scene(path: str | Path | None = None, **changes: Any) -> CurveSce
     if not isinstance(curve, dict):
         raise CaseError("curve: value is missing, allowed a table with the curves")
     curve |= {key: value for key, value in changes.items() if value is not None}
-    problems: list[str] = []
-    checked = []
-    for check in (lambda: check_case(content), lambda: check_table(Curve, curve, "curve")):
-        try:
-            checked.append(check())
-        except CaseError as error:
-            problems += error.problems
-    if problems:
-        raise CaseError(problems)
-    case, table = checked
+    case, table = checked_parts(content, Curve, curve, "curve")
     check_wheelset(case)
     return CurveScene(path.name, case, table, path.parent)
 

@@ -196,16 +196,7 @@ def load_rig_scene(
         raise CaseError("rig: value is missing, allowed a table with the run's programme")
     if isinstance(rig, dict):
         rig = merged(rig, given)
-    problems: list[str] = []
-    checked = []
-    for check in (lambda: check_case(content), lambda: check_table(Rig, rig, "rig")):
-        try:
-            checked.append(check())
-        except CaseError as error:
-            problems += error.problems
-    if problems:
-        raise CaseError(problems)
-    case, table = checked
+    case, table = checked_parts(content, Rig, rig, "rig")
     check_machine(case, table)
     files = found_profiles(case, path.parent)
     found = {
@@ -216,6 +207,20 @@ def load_rig_scene(
     case = case.model_copy(update={"profiles": case.profiles.model_copy(update=found)})
     note = "".join(f"\n# run with rig.{key} = {value}\n" for key, value in given.items())
     return RigScene(path.name, path.read_bytes() + note.encode(), case, table, files)
+
+
+def checked_parts(content: Any, model: type[Table], table: Any, name: str) -> list[Any]:
+    """The case, and the table ``name`` of its file. Raises CaseError with the problems of both."""
+    problems: list[str] = []
+    checked = []
+    for check in (lambda: check_case(content), lambda: check_table(model, table, name)):
+        try:
+            checked.append(check())
+        except CaseError as error:
+            problems += error.problems
+    if problems:
+        raise CaseError(problems)
+    return checked
 
 
 def merged(rig: dict[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:

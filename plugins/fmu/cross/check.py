@@ -84,7 +84,7 @@ class Unpacked:
         self.root = ET.parse(folder / "modelDescription.xml").getroot()
         self.reals = [v for v in self.root.iter("ScalarVariable") if v[0].tag == "Real"]
 
-    def library(self, platform: str) -> Path:
+    def binary(self, platform: str) -> Path:
         """Of a platform; the only file there."""
         return next((self.folder / "binaries" / platform).iterdir())
 
@@ -96,7 +96,7 @@ class Unpacked:
         """Of steps.c; prefix: stands before a path."""
         moved = next(v for v in self.reals if v.attrib["causality"] == "input")
         outputs = [v for v in self.reals if v.attrib["causality"] == "output"]
-        library = f"{prefix}{self.library(platform)}"
+        library = f"{prefix}{self.binary(platform)}"
         resources = f"file://{'/' if prefix else ''}{prefix}{self.folder / 'resources'}"
         numbers = [v.attrib["valueReference"] for v in outputs]
         start = [moved.attrib["valueReference"], moved[0].attrib["start"]]
@@ -155,10 +155,10 @@ def main() -> None:
     expected = set(FUNCTIONS.findall((package("fmpy") / "c-code" / "fmi2Functions.h").read_text()))
     for platform in fmu.platforms():
         if "darwin" in platform:
-            print(f"{platform}: {fmu.library(platform).stat().st_size} bytes, not looked into")
+            print(f"{platform}: {fmu.binary(platform).stat().st_size} bytes, not looked into")
             continue
         look = check_pe if platform == "win64" else check_elf
-        exports = look(platform, fmu.library(platform))
+        exports = look(platform, fmu.binary(platform))
         must(exports <= expected, f"{platform}: only FMI's functions, not {exports - expected}")
         must(len(exports) >= 34, f"{platform}: all of FMI's functions, found {len(exports)}")
     source, headers = Path(__file__).with_name("steps.c"), package("fmpy") / "c-code"

@@ -78,6 +78,18 @@ def output_option(metavar: str, text: str) -> Callable[..., Any]:
     )
 
 
+def folder_option(text: str) -> Callable[..., Any]:
+    """-o, --output: the folder to write to."""
+    return click.option(
+        "-o",
+        "--output",
+        required=True,
+        type=click.Path(file_okay=False, path_type=Path),
+        metavar="DIR",
+        help=text,
+    )
+
+
 def show_scene_option(text: Callable[[], str]) -> Callable[..., Any]:
     """--show-scene: prints the scene that is run by default and ends."""
 

@@ -6,20 +6,13 @@ from pathlib import Path
 
 import click
 
-from railpatch.commands import WrongCall, progress_bar
+from railpatch.commands import WrongCall, folder_option, progress_bar
 
 ALL_SETS = "ABCDW"
 
 
 @click.command("bench")
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    type=click.Path(file_okay=False, path_type=Path),
-    metavar="DIR",
-    help="Folder for page, figures and tables.",
-)
+@folder_option("Folder for page, figures and tables.")
 @click.option("--quick", is_flag=True, help="A part of everything, in about two minutes.")
 @click.option(
     "--sets",

@@ -6,18 +6,11 @@ from pathlib import Path
 
 import click
 
-from railpatch.commands import EXIT_NOT_CONVERGED, WrongCall, progress_bar
+from railpatch.commands import EXIT_NOT_CONVERGED, WrongCall, folder_option, progress_bar
 
 
 @click.command("continuity")
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    type=click.Path(file_okay=False, path_type=Path),
-    metavar="DIR",
-    help="Folder for table and pictures.",
-)
+@folder_option("Folder for table and pictures.")
 @click.option("--quick", is_flag=True, help="One wheel on one grid, in about a minute.")
 @click.option("--compare", is_flag=True, help="The rule of the program CONTACT as well.")
 @click.option("--quiet", is_flag=True, help="Print nothing.")

@@ -6,18 +6,11 @@ from pathlib import Path
 
 import click
 
-from railpatch.commands import EXIT_NOT_CONVERGED, WrongCall, progress_bar
+from railpatch.commands import EXIT_NOT_CONVERGED, WrongCall, folder_option, progress_bar
 
 
 @click.command("stress")
-@click.option(
-    "-o",
-    "--output",
-    required=True,
-    type=click.Path(file_okay=False, path_type=Path),
-    metavar="DIR",
-    help="Folder for page and tables.",
-)
+@folder_option("Folder for page and tables.")
 @click.option("--quick", is_flag=True, help="Fewer of everything, in less than 20 s.")
 @click.option("--seed", type=click.IntRange(min=0), help="Of the random mixtures.")
 @click.option("--only", metavar="PATTERN", help='Part of "family: name, method"; * for anything.')
