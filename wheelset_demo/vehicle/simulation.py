@@ -12,7 +12,7 @@ from wheelset_demo.system import BAD
 from wheelset_demo.vehicle.model import CAR_BODY, bogie_name, places_along
 from wheelset_demo.vehicle.scene import WHEELSETS, VehicleScene
 from wheelset_demo.vehicle.steppers import make_stepper
-from wheelset_demo.vehicle.system import WORKS, Rates, Vector, VehicleState, VehicleSystem
+from wheelset_demo.vehicle.system import WHEELS, WORKS, Rates, Vector, VehicleState, VehicleSystem
 
 
 class Simulation:
@@ -32,6 +32,7 @@ class Simulation:
         self.wall_seconds = self.cpu_seconds = 0.0
         self.rates: Rates = self.system.rates(self.state.time, self.state.values)
         self._stepper = make_stepper(self.system)
+        self._solved_before = self.element.solve_seconds
 
     def steps(self) -> Iterator[VehicleState]:
         """The state at the start and after each n-th step, n = run.log_every.
@@ -52,6 +53,11 @@ class Simulation:
     def body_poses(self) -> dict[str, tuple[Vector, Vector]]:
         """Name -> rotation [3, 3] and place [3] (m) of each body in the world; see the package."""
         return self.system.body_poses()
+
+    @property
+    def contact_seconds(self) -> float:
+        """s, in the library's contact solves, of all threads."""
+        return self.element.solve_seconds - self._solved_before
 
     @property
     def energies(self) -> Vector:
@@ -79,7 +85,7 @@ def at_start(scene: VehicleScene, system: VehicleSystem) -> VehicleState:
         v[columns[0]] = scene.speed
         v[system.vehicle.spins[k]] = -scene.speed / radius
         system.positions[k] = q[columns[0]]
-    return VehicleState(0.0, values, np.zeros(len(WORKS)), n)
+    return VehicleState(0.0, values, np.zeros(len(WORKS) + WHEELS), n)
 
 
 def wheels_under_load(scene: VehicleScene) -> tuple[float, float]:

@@ -27,6 +27,7 @@ from wheelset_demo.vehicle.suspension import Suspension
 Vector = NDArray[np.float64]
 # integrated along with the motion (J)
 WORKS = ("contact", "friction", "damping", "drive")
+WHEELS = 2 * WHEELSETS
 # columns of a wheelset's state that a rail's lateral and vertical deviations move against
 LATERAL, VERTICAL = 1, 2
 
@@ -34,7 +35,8 @@ LATERAL, VERTICAL = 1, 2
 @dataclass(frozen=True)
 class VehicleState:
     """time: s. values: [100 + n], coordinates, velocities, forces of dampers with springs in series
-    (N). work: [4], J, by WORKS, since the start."""
+    (N). work: [12], J, since the start: by WORKS, then of friction at each wheel, left and right of
+    the first wheelset first. count: of the coordinates."""
 
     time: float
     values: Vector
@@ -122,14 +124,9 @@ class VehicleSystem:
         drive = self._drive(q, v, tau)
         acceleration = pin.aba(self.model, self.data, q, v, tau, self._fext)
         found = np.concatenate([v, acceleration, self.suspension.series_rates])
-        powers = np.array(
-            [
-                self.element.contact_power,
-                self.element.friction_power,
-                self.suspension.damping_power(series),
-                drive,
-            ]
-        )
+        friction = self.element.wheels[:, :, 6].ravel()
+        contact, damping = self.element.contact_power, self.suspension.damping_power(series)
+        powers = np.array([contact, friction.sum(), damping, drive, *friction])
         return Rates(found, powers, inputs, status)
 
     def place_track(self, q: Vector) -> Vector:
@@ -145,7 +142,7 @@ class VehicleSystem:
     def move_rails(self, positions: Vector) -> Vector:
         """[16], m, of the rails at arc lengths [4], by wheelset, side, lateral and vertical."""
         if self.irregularity is None:
-            return np.zeros(4 * WHEELSETS)
+            return np.zeros(2 * WHEELS)
         moved = self.irregularity.at(positions)
         self.element.rails[:, 0, :, 1:] = moved
         return moved.ravel()
@@ -153,7 +150,7 @@ class VehicleSystem:
     def inputs_ahead(self, values: Vector, step: float) -> Vector:
         """[16], m, of the rails where the wheelsets will be in ``step`` s."""
         if self.irregularity is None:
-            return np.zeros(4 * WHEELSETS)
+            return np.zeros(2 * WHEELS)
         n = self.count
         velocity = values[n : 2 * n][self.vehicle.carriers[:, :2]]
         speeds = np.hypot(velocity[:, 0], velocity[:, 1])
@@ -186,7 +183,7 @@ class VehicleSystem:
         series_by_v, series_by_series = suspension.series_jacobian()
         matrix[2 * n :, n : 2 * n] = series_by_v
         matrix[2 * n :, 2 * n :] = np.diag(series_by_series)
-        inputs = np.zeros((self.size, 4 * WHEELSETS))
+        inputs = np.zeros((self.size, 2 * WHEELS))
         inputs[n : 2 * n] = inverse @ self._force_by_rails(found.chain)
         self.derivative_seconds += clock.perf_counter() - begin
         return matrix, inputs
