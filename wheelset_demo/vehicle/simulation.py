@@ -11,7 +11,7 @@ from railpatch import CaseError, Contact
 from wheelset_demo.system import BAD
 from wheelset_demo.vehicle.model import CAR_BODY, bogie_name, places_along
 from wheelset_demo.vehicle.scene import WHEELSETS, VehicleScene
-from wheelset_demo.vehicle.steppers import make_stepper
+from wheelset_demo.vehicle.steppers import Bdf2
 from wheelset_demo.vehicle.system import WHEELS, WORKS, Rates, Vector, VehicleState, VehicleSystem
 
 
@@ -31,7 +31,7 @@ class Simulation:
         self.state = at_start(scene, self.system)
         self.wall_seconds = self.cpu_seconds = 0.0
         self.rates: Rates = self.system.rates(self.state.time, self.state.values)
-        self._stepper = make_stepper(self.system)
+        self._stepper = Bdf2(self.system, scene.run.step, scene.run.derivatives_every)
         self._solved_before = self.element.solve_seconds
 
     def steps(self) -> Iterator[VehicleState]:
