@@ -60,6 +60,7 @@ class contact {
   void begin_record();
   void end_record(const rp_input &input, const rp_result &result);
   void differentiate_patch(const rp_input &direction, rp_result &change);
+  void vary_shape(const rp_input &direction, patch_variation &v);
   double friction_rate(const rp_input &direction) const;
   void differentiate_wheels(const rp_input &direction, rp_result &change);
   void exact_jacobian(rp_jacobian &out);
