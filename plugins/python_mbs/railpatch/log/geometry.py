@@ -19,8 +19,8 @@ from .channels import SIDES
 
 KINDS = ("rail", "roller")
 # enough for a smooth picture; more only makes the log larger
-_CURVE_POINTS = 48
-_TURN_STEPS = 64
+_CURVE_POINTS = 32
+_TURN_STEPS = 48
 
 
 @dataclass(frozen=True)
