@@ -34,6 +34,7 @@ from .primitives import (
 )
 
 _RAIL_LENGTH = 4.0  # m
+_SHAFT = 0.08  # m, radius of axles
 _ARROW_SCALE = 5e-6  # m/N: 100 kN are half a metre
 _CIRCLE_POINTS = 32
 _CIRCLE = [
@@ -73,7 +74,7 @@ def bodies(geometry: SceneGeometry) -> SceneUpdate:
     """Wheels and rollers or rails as triangle meshes, each in its own frame."""
     entities = []
     for side in SIDES:
-        entities.append(turning(f"wheel_{side}", f"wheel_{side}", geometry.wheels[side], STEEL))
+        entities.append(wheel(f"wheel_{side}", f"wheel_{side}", geometry.wheels[side]))
         rail = geometry.rails[side]
         if geometry.kind == "roller":
             # the roller's axle lies below its top: z of its profile becomes a radius
@@ -85,10 +86,24 @@ def bodies(geometry: SceneGeometry) -> SceneUpdate:
     return SceneUpdate(entities=entities)
 
 
-def turning(name: str, place: str, curve: np.ndarray, color: dict[str, float]) -> dict[str, Any]:
-    """A body of revolution about its frame's y axis, with marks by which its turning is seen."""
-    mesh = triangles(*revolved(curve), color)
-    return entity(name, place, triangles=[mesh], lines=[_spokes(curve)])
+def wheel(name: str, place: str, curve: np.ndarray) -> dict[str, Any]:
+    """With its half of the axle."""
+    return turning(name, place, curve, STEEL, axle=True)
+
+
+def turning(
+    name: str, place: str, curve: np.ndarray, color: dict[str, float], axle: bool = False
+) -> dict[str, Any]:
+    """A wheel or roller about its frame's y axis: rim by its profile, disc, marks by which its
+    turning is seen, and half an axle if asked."""
+    # on the inner face, so that forces at the tread are seen
+    inside = float(curve[np.argmin(np.abs(curve[:, 0])), 0])
+    disc = [[inside, 0.0], [inside, float(curve[:, 1].min())]]
+    shapes = [revolved(curve), revolved(np.array(disc), 2)]
+    if axle:
+        shapes.append(revolved(np.array([[0.0, _SHAFT], [inside, _SHAFT]]), 2))
+    meshes = [triangles(*shape, color) for shape in shapes]
+    return entity(name, place, triangles=meshes, lines=[_spokes(curve)])
 
 
 def _spokes(curve: np.ndarray) -> dict[str, Any]:
@@ -110,8 +125,10 @@ def contact(sides: Mapping[str, Mapping[str, Any]], time_ns: int) -> SceneUpdate
     return contacts({(side, "track"): values for side, values in sides.items()}, time_ns)
 
 
-def contacts(wheels: Mapping[tuple[str, str], Mapping[str, Any]], time_ns: int) -> SceneUpdate:
-    """The same of any wheels, by name and frame."""
+def contacts(
+    wheels: Mapping[tuple[str, str], Mapping[str, Any]], time_ns: int, scale: float = _ARROW_SCALE
+) -> SceneUpdate:
+    """The same of any wheels, by name and frame. scale: m/N, of the arrows."""
     stamp = stamp_of(time_ns)
     entities = [
         entity(
@@ -119,7 +136,7 @@ def contacts(wheels: Mapping[tuple[str, str], Mapping[str, Any]], time_ns: int) 
             place,
             stamp,
             metadata=[{"key": "status", "value": patch["status"]}],
-            **_patch(patch),
+            **_patch(patch, scale),
         )
         for (name, place), values in wheels.items()
         for index, patch in enumerate(values.get("patches") or ())
@@ -129,7 +146,7 @@ def contacts(wheels: Mapping[tuple[str, str], Mapping[str, Any]], time_ns: int) 
     return SceneUpdate(deletions=[{"type": 1, "timestamp": stamp}], entities=entities)
 
 
-def _patch(patch: Mapping[str, Any]) -> dict[str, Any]:
+def _patch(patch: Mapping[str, Any], scale: float) -> dict[str, Any]:
     """Line and arrows of a patch."""
     at = tuple(map(float, patch["position"]))
     angle = patch.get("contact_angle") or 0.0
@@ -141,7 +158,7 @@ def _patch(patch: Mapping[str, Any]) -> dict[str, Any]:
     creep = patch.get("creep_force")
     if creep is not None:
         forces.append(((creep[0], creep[1] * c, creep[1] * s), _CREEP))
-    arrows = [_arrow(at, force, color) for force, color in forces]
+    arrows = [_arrow(at, force, color, scale) for force, color in forces]
     return {
         "lines": [_disc(at, (c, s), radius)] if radius > 0 else [],
         "arrows": [arrow for arrow in arrows if arrow],
@@ -156,10 +173,10 @@ def _disc(at: Vector3, lateral: tuple[float, float], radius: float) -> dict[str,
 
 
 def _arrow(
-    at: Vector3, force: tuple[float, float, float], color: dict[str, float]
+    at: Vector3, force: tuple[float, float, float], color: dict[str, float], scale: float
 ) -> dict[str, Any] | None:
     newtons = math.hypot(*force)
-    length = newtons * _ARROW_SCALE
+    length = newtons * scale
     if length <= 0:
         return None
     head = min(0.04, 0.4 * length)

@@ -1,7 +1,8 @@
 """The 3D scene of a vehicle.
 
 Frames: world (z up, for viewers) holds start (z down), fixed to the ground; start holds the bodies
-and, for each wheelset N, its track axes track_N; wheelset_N holds wheels_N, which turn.
+and, for each wheelset N, its track axes track_N; wheelset_N holds wheels_N, which turn. The first
+body holds view (z up), for cameras that follow it.
 """
 
 from __future__ import annotations
@@ -16,13 +17,14 @@ from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 from .channels import SIDES
 from .geometry import SceneGeometry, drawn_out
 from .primitives import HALF_TURN_X, about, box, entity, frame, line, rgb, stamped, triangles
-from .scene import RAIL, STEEL, contacts, turning
+from .scene import RAIL, contacts, wheel
 
 if TYPE_CHECKING:
     from .vehicle import VehicleGeometry
 
+_ARROW_SCALE = 2e-5  # m/N: 100 kN are two metres, to be seen from afar
 _RAIL_LENGTH = 2.4  # m, around each wheelset
-_BODY = rgb(0.35, 0.52, 0.68, 0.45)  # one sees through it
+_BODY = rgb(0.35, 0.52, 0.68, 0.3)  # one sees through it
 _LINE = rgb(0.55, 0.55, 0.55)
 _MOST_POINTS = 2000
 
@@ -37,6 +39,8 @@ def transforms(
     frames = [frame("world", "start", (0.0, 0.0, 0.0), HALF_TURN_X)]
     for body in bodies:
         frames.append(frame("start", body["name"], body["position"], body["orientation"]))
+    if bodies:
+        frames.append(frame(bodies[0]["name"], "view", (0.0, 0.0, 0.0), HALF_TURN_X))
     for number, (wheelset, place) in enumerate(
         zip(wheelsets, tracks or [None] * len(wheelsets), strict=True), start=1
     ):
@@ -54,7 +58,7 @@ def contact(wheelsets: Sequence[Mapping[str, Any]], time_ns: int) -> SceneUpdate
         for number, wheelset in enumerate(wheelsets, start=1)
         for side in SIDES
     }
-    return contacts(wheels, time_ns)
+    return contacts(wheels, time_ns, _ARROW_SCALE)
 
 
 def bodies(geometry: VehicleGeometry, wheelsets: int) -> SceneUpdate:
@@ -75,13 +79,10 @@ def bodies(geometry: VehicleGeometry, wheelsets: int) -> SceneUpdate:
 
 def _axle(geometry: SceneGeometry, number: int) -> list[dict[str, Any]]:
     """Wheels and axle in wheels_N, pieces of rail in track_N."""
-    # the axle ends on the wheels' inner faces
-    inside = min(float(np.abs(geometry.wheels[side][:, 0]).min()) for side in SIDES)
-    shaft = np.column_stack([np.linspace(-inside, inside, 9), np.full(9, 0.08)])
-    entities = [turning(f"axle_{number}", f"wheels_{number}", shaft, STEEL)]
+    entities = []
     for side in SIDES:
         name = f"{number}_{side}"
-        entities.append(turning(f"wheel_{name}", f"wheels_{number}", geometry.wheels[side], STEEL))
+        entities.append(wheel(f"wheel_{name}", f"wheels_{number}", geometry.wheels[side]))
         mesh = triangles(*drawn_out(geometry.rails[side], _RAIL_LENGTH), RAIL)
         entities.append(entity(f"rail_{name}", f"track_{number}", triangles=[mesh]))
     return entities
