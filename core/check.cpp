@@ -436,6 +436,8 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
   }
   checker check(message);
   check_bulk(c, in, check);
+  check.require(in.friction_coefficient == 0,
+                "friction_coefficient must be 0 in a step: rp_set_friction_coefficient sets it");
   if (c.kind == RP_PATCH) {
     if (c.load == RP_FORCE)
       check.number("normal_force", in.normal_force, positive);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "check.hpp"
 #include "input_numbers.hpp"
@@ -171,6 +172,7 @@ void contact::differentiate_patch(const rp_input &d, rp_result &out) {
   std::copy_n(d.creepage, 2, v.creepage);
   v.spin_creepage = d.spin_creepage;
   v.rolling_speed = d.rolling_speed;
+  v.friction_coefficient = friction_rate(d);
   if (config_.geometry != RP_UNDEFORMED_DISTANCE) vary_shape(d, v);
   patch_change found;
   const derivative_outcome outcome = solver_.differentiate(problem, m, &v, 1, {}, &found);
@@ -260,11 +262,15 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
   rp_status worst = RP_CONVERGED;
   for (int k = 0; k < 2; ++k) {
     rp_input in = moved(config_, record.input, rates, places[k]);
-    if (check_input(config_, friction_coefficient(), in, nullptr) != RP_OK) {
+    double friction = friction_coefficient() + std::exchange(in.friction_coefficient, 0.0);
+    if (check_input(config_, friction, in, nullptr) != RP_OK ||
+        check_friction_coefficient(friction, nullptr) != RP_OK) {
       in = record.input;
+      friction = friction_coefficient();
       places[k] = 0;
     }
     beside.copy_state(start);
+    beside.set_friction_coefficient(friction);
     beside.step(in, ends[k]);
     if (ends[k].status == RP_NOT_CONVERGED || ends[k].status == RP_OUT_OF_RANGE)
       worst = RP_NOT_CONVERGED;

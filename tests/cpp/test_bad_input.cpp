@@ -603,7 +603,10 @@ TEST(Input, OfAPatchIsChecked) {
        {"creepage[0]", [](rp_input &in) -> double & { return in.creepage[0]; }, {}},
        {"creepage[1]", [](rp_input &in) -> double & { return in.creepage[1]; }, {}},
        {"spin_creepage", [](rp_input &in) -> double & { return in.spin_creepage; }, {}},
-       {"rolling_speed", [](rp_input &in) -> double & { return in.rolling_speed; }, {-1}}});
+       {"rolling_speed", [](rp_input &in) -> double & { return in.rolling_speed; }, {-1}},
+       {"friction_coefficient",
+        [](rp_input &in) -> double & { return in.friction_coefficient; },
+        {0.3, -1e-9}}});
   scenes::handle contact(c);
   for (int direction : {0, 2, -2, std::numeric_limits<int>::min()}) {
     rp_input in = default_input();
