@@ -17,7 +17,7 @@ from railpatch.commands import (
 from railpatch.errors import CaseError, ProfileError
 
 # of wheelset_demo.vehicle.compare, which takes long to import; a test compares them
-METHODS = ("full", "fastsim", "kik", "analyn", "polach", "table")
+METHODS = ("full", "fitted", "fastsim", "kik", "analyn", "polach")
 
 
 def default_scene_text() -> str:

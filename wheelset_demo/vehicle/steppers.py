@@ -33,8 +33,8 @@ from wheelset_demo.vehicle.scene import WHEELSETS
 from wheelset_demo.vehicle.system import Rates, Vector, VehicleState, VehicleSystem
 
 GAMMA = 1 - 1 / math.sqrt(2)
-# m/s^2, of a wheelset: some twentieth of its load over its mass
-SURPRISE = 3.0
+# m/s^2, of a wheelset: some tenth of its load over its mass
+SURPRISE = 6.0
 
 
 class Implicit:
