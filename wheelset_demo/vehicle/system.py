@@ -97,7 +97,8 @@ class VehicleSystem:
     """Vehicle, suspension, track and contacts of a scene. Keeps the contacts' last solutions.
 
     evaluations, renewals: number of rates() and of derivatives(). contact_seconds,
-    derivative_seconds: s, CPU time, of all threads, in the force element and in derivatives().
+    derivative_seconds: s, CPU time of the calling thread in the force element and in derivatives();
+    further threads: element.helper_seconds.
     """
 
     def __init__(self, scene: VehicleScene) -> None:
@@ -134,13 +135,13 @@ class VehicleSystem:
         for joint in self._joints:
             self._fext[joint].setZero()
         self.evaluations += 1
-        begin = clock.process_time()
+        begin = clock.thread_time()
         try:
             status = self.element.step(self.data, self._fext)
         except CaseError as error:
             # far off the rails, or not a number
             raise ContactFailure(time, float(self.positions[0]), str(error)) from None
-        self.contact_seconds += clock.process_time() - begin
+        self.contact_seconds += clock.thread_time() - begin
         if status in BAD:
             raise ContactFailure(time, float(self.positions[0]), self.statuses())
         tau = self.suspension.step(q, v, series)
@@ -205,7 +206,7 @@ class VehicleSystem:
         those of the others are held. How the track frame turns on along the track is left out.
         Raises CaseError.
         """
-        begin = clock.process_time()
+        begin = clock.thread_time()
         self.renewals += 1
         n, suspension = self.count, self.suspension
         q, v = values[:n], values[n : 2 * n]
@@ -227,7 +228,7 @@ class VehicleSystem:
         matrix[2 * n :, 2 * n :] = np.diag(series_by_series)
         inputs = np.zeros((self.size, 2 * WHEELS))
         inputs[n : 2 * n] = inverse @ self._force_by_rails(found.chain)
-        self.derivative_seconds += clock.process_time() - begin
+        self.derivative_seconds += clock.thread_time() - begin
         return matrix, inputs
 
     def _force_by_rails(self, chain: StateChain) -> Vector:
