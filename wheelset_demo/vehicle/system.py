@@ -124,6 +124,7 @@ class VehicleSystem:
         self._zero = np.zeros(self.count)
         self._joints = [self.vehicle.joints[name] for name in names]
         self._car = self.vehicle.columns[0]
+        self._bends = np.zeros((WHEELSETS, 3))
         self._held = HeldDerivatives(self.element)
 
     def rates(self, time: float, values: Vector) -> Rates:
@@ -157,7 +158,7 @@ class VehicleSystem:
         """Puts track frames under the wheelsets, rails into them; [16], m, their deviations."""
         centres = q[self.vehicle.carriers[:, :3]]
         self.positions = self.alignment.foot(centres, self.positions)
-        rotations, origins = self.alignment.frames(self.positions)
+        rotations, origins, self._bends = self.alignment.frames_and_bends(self.positions)
         tracks = self.element.tracks
         tracks[:, :9], tracks[:, 9:] = rotations.reshape(-1, 9), origins
         self.element.positions[:] = self.positions
@@ -189,7 +190,7 @@ class VehicleSystem:
         By the track's own way in the world: the curve's turning off, the change of cant. In track
         axes, as the rails' deviations.
         """
-        curvature, cant, twist = self.alignment.bends(self.positions)
+        cant, curvature, twist = self._bends.T
         squared = (step * self.speeds_along(values)) ** 2
         off, turned = curvature * squared, ARM * twist * squared
         found = np.empty((WHEELSETS, 2, 2))
