@@ -50,10 +50,15 @@ def release(scene: WheelsetScene, speed: float) -> tuple[WheelsetScene, Vector]:
 
 
 def balance(
-    scene: WheelsetScene, start: Vector, slave: ContactSlave, name: str, step: float
+    scene: WheelsetScene,
+    start: Vector,
+    slave: ContactSlave,
+    name: str,
+    step: float,
+    duration: float = DURATION,
 ) -> Balance:
-    """Of a run of 0.05 s, but 20 steps at least and 4000 at most."""
-    count = min(MOST, max(FEWEST, math.ceil(DURATION / step)))
+    """Of a run of a duration (s), but 20 steps at least and 4000 at most."""
+    count = min(MOST, max(FEWEST, math.ceil(duration / step)))
     master = MASTERS[name](Multibody(scene), slave)
     try:
         point = master.begin(0.0, start)

@@ -9,7 +9,7 @@ One line a master; w is the wrench of the contact, u its inputs, h the communica
     mean            FMU first, u linear ahead by its rates; multibody under the mean of w
     iterate         multibody under the mean of w for u linear to its own result, by fixed point
     iterate-mixed   the same, by Anderson's mixing of the wrenches tried
-    iterate-newton  the same, by the FMU's directional derivatives
+    iterate-newton  the same, by quasi-Newton steps from the FMU's directional derivatives
     implicit        one linearly implicit step (ros2) with the FMU's directional derivatives
 
 The last four roll the FMU back, the others only where it discards a step.
@@ -102,8 +102,8 @@ class Master(ABC):
         except Discarded as reason:
             if saved is None:
                 raise CouplingFailure(
-                    f"step of {step:.4g} s at {point.time:.6g} s, halved {self.halvings} times: "
-                    f"the FMU discards it: {reason}"
+                    f"step of {step:.4g} s at {point.time:.6g} s, halved {self.halvings} times, "
+                    f"cannot be done: {reason}"
                 ) from None
             self.slave.restore(saved)
         finally:
@@ -246,9 +246,9 @@ class Iterate(Master):
                 break
             least = min(least, size)
             wrench = self._size * correction(wrench / self._size, change)
-        raise CouplingFailure(
-            f"step of {step:.4g} s at {point.time:.6g} s: the iteration does not converge, "
-            f"{count + 1} times, wrenches still change by {size:.1e} of the load"
+        raise Discarded(
+            f"the iteration does not converge, {count + 1} times, wrenches still change by "
+            f"{size:.1e} of the load: take a smaller step or a master with derivatives"
         )
 
     def correction(self, point: Point, step: float) -> Correction:
@@ -289,8 +289,33 @@ class IterateMixed(Iterate):
         return Mixing()
 
 
+class Broyden:
+    """A quasi-Newton method: its matrix fits the last change of the residual, too.
+
+    Broyden (Math. Comp. 19 (1965) 577-593), in the form for the inverse, B: with the last move s
+    and what it took off the residual, y, B += (s - B y) (s B) / (s B y).
+    """
+
+    def __init__(self, inverse: Vector) -> None:
+        self._inverse = inverse
+        self._last: tuple[Vector, Vector] | None = None
+
+    def __call__(self, value: Vector, change: Vector) -> Vector:
+        """The next value."""
+        if self._last is not None:
+            before, moved = self._last
+            mapped = self._inverse @ (before - change)
+            weight = float(moved @ mapped)
+            if weight != 0:
+                turned = np.outer(moved - mapped, moved @ self._inverse) / weight
+                self._inverse = self._inverse + turned
+        move = self._inverse @ change
+        self._last = change, move
+        return value + move
+
+
 class IterateNewton(Iterate):
-    """The same by Newton's method, with derivatives of the step's start."""
+    """The same by a quasi-Newton method that begins with derivatives of the step's start."""
 
     name = "iterate-newton"
 
@@ -303,8 +328,7 @@ class IterateNewton(Iterate):
         ends = [self.side.advance(point.time, point.motion, step, found + u)[0] for u in units]
         # the mean over a straight line from the start changes by half of what its end does
         mean = 0.5 * by_motion @ (np.array(ends) - end).T / NUDGE / self._size[:, None]
-        inverse = np.linalg.inv(np.eye(len(mean)) - mean)
-        return lambda value, change: value + inverse @ change
+        return Broyden(np.linalg.inv(np.eye(len(mean)) - mean))
 
 
 class Implicit(Master):

@@ -22,7 +22,7 @@ Result = TypeVar("Result")
 
 
 class Discarded(RuntimeError):
-    """fmi2Discard: the FMU could not do the step. Restored, it may do a shorter one."""
+    """A step that could not be done: fmi2Discard, or sides that do not agree. A shorter one may."""
 
 
 class CouplingFailure(RuntimeError):
