@@ -22,8 +22,12 @@ KILO = 1e3  # N, N m
 class HeldCarrier(Carrier):
     """One whose wrench is the same in track axes, wherever the wheelset goes."""
 
-    wheelset = track = pin.SE3.Identity()
+    wheelset = pin.SE3.Identity()
     wrench = np.zeros(6)
+
+    def track_rotation(self, _index: int) -> Vector:
+        """[3, 3], of the track axes in the world."""
+        return np.eye(3)
 
     def wrench_derivatives(self, chain: StateChain) -> list[WrenchDerivatives]:
         """See railpatch.pinocchio.acceleration_derivatives."""
