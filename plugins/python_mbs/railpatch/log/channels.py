@@ -192,6 +192,7 @@ WHEEL_CONTACT = Message(
             "solutions of other divisions into patches, which count with their share in the force",
             size=0,
         ),
+        _number("friction_work", "J", "lost in friction since the start of the run"),
     ),
 )
 
