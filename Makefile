@@ -43,16 +43,21 @@ demo: setup ## set-up, roller-rig replay, wheelset on track, an FMU; logs and re
 		"$(CURDIR)/build/demo/wheelset.mcap" "$(CURDIR)/build/demo/wheelset.html" \
 		"$(CURDIR)/build/demo/railpatch.fmu"
 
-fmu: setup ## FMU of the default scene for Linux, ARM, Windows, with sources; one with FFTW (GPL)
+fmu: setup ## FMUs of the default scene and of each kind for Linux, ARM, Windows; one with FFTW (GPL)
 	@mkdir -p build/fmu
 	$(BIN)/python -m pip install --quiet --group cross
 	$(BIN)/python plugins/fmu/cross/build.py build/fmu
 	$(BIN)/railpatch fmu --libraries build/fmu/lib -o build/fmu/railpatch.fmu
 	$(BIN)/railpatch fmu --fft fftw -o build/fmu/railpatch_fftw_gpl.fmu
 	$(BIN)/python plugins/fmu/cross/check.py build/fmu/railpatch.fmu build/fmu/check --compile
+	@kinds="$$($(BIN)/python -c 'from railpatch.fmu.scenes import kinds; print(*kinds())')"; \
+	for kind in $$kinds; do \
+		$(BIN)/railpatch fmu --scene $$kind --libraries build/fmu/lib -o build/fmu/$$kind.fmu; \
+		$(BIN)/python plugins/fmu/cross/check.py build/fmu/$$kind.fmu build/fmu/check; \
+	done
 
 fmu-clients: fmu ## the same in clients that others wrote: fmpy, libcosimpy, ecospy, FMI4j, VDMCheck2
-	plugins/fmu/clients/run build/fmu/clients build/fmu/railpatch.fmu
+	plugins/fmu/clients/run build/fmu/clients $$(ls build/fmu/*.fmu | grep -v gpl)
 
 viewer: demo ## the demo's logs in a viewer that others wrote, a picture of each; 250 MB of npm packages
 	@.ci/system-packages npm chromium

@@ -4,85 +4,21 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
-#include <cstring>
-#include <limits>
 #include <utility>
 
+#include "checker.hpp"
 #include "coupling.hpp"
 #include "creep_table.hpp"
 #include "fast.hpp"
 #include "input_numbers.hpp"
-#include "longitudinal_shape.hpp"
 #include "physics.hpp"
 
 namespace railpatch {
 
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
-
 // Their influence coefficients are four numbers for every pair of nodes, here 170 MB.
 constexpr int max_fitted_nodes = 48 * 48;
-
-struct range {
-  double low, high;
-  bool open_low, open_high;
-};
-constexpr range positive{0, inf, true, true};
-constexpr range not_negative{0, inf, false, true};
-constexpr range finite{-inf, inf, true, true};
-constexpr range angle{-1.5, 1.5, false, false};
-constexpr range friction{0, 10, false, false};
-constexpr range bulk{-273.15, 1e4, false, false};  // degrees C
-
-// Remembers the first field that is out of range.
-class checker {
- public:
-  explicit checker(rp_message *message) : message_(message) {}
-
-  void number(const char *name, double value, const range &r) {
-    if (failed_ || inside(value, r)) return;
-    failed_ = true;
-    set_message(message_, "%s is %g, allowed is %c%g, %g%c", name, value, r.open_low ? '(' : '[',
-                r.low, r.high, r.open_high ? ')' : ']');
-  }
-  void numbers(const char *name, const double *values, int count, const range &r) {
-    for (int i = 0; i < count && !failed_; ++i) {
-      if (inside(values[i], r)) continue;
-      char label[64];
-      std::snprintf(label, sizeof label, "%s[%d]", name, i);
-      number(label, values[i], r);
-    }
-  }
-  void integer(const char *name, int value, int low, int high) {
-    if ((value >= low && value <= high) || failed_) return;
-    failed_ = true;
-    set_message(message_, "%s is %d, allowed is %d ... %d", name, value, low, high);
-  }
-  // an enumeration: looked at as a number, since a value outside it must not be read as one
-  template <class E>
-  void choice(const char *name, const E &value, int low, int high) {
-    static_assert(sizeof(E) == sizeof(int));
-    int number;
-    std::memcpy(&number, &value, sizeof number);
-    integer(name, number, low, high);
-  }
-  void require(bool condition, const char *text) {
-    if (condition || failed_) return;
-    failed_ = true;
-    set_message(message_, "%s", text);
-  }
-  rp_error error() const { return failed_ ? RP_ERROR_VALUE : RP_OK; }
-
- private:
-  static bool inside(double value, const range &r) {
-    return (r.open_low ? value > r.low : value >= r.low) &&
-           (r.open_high ? value < r.high : value <= r.high);
-  }
-
-  rp_message *message_;
-  bool failed_ = false;
-};
 
 void check_choices(const rp_config &c, checker &check) {
   check.choice("kind", c.kind, RP_PATCH, RP_WHEELSET);
@@ -146,10 +82,6 @@ void check_fast(const rp_config &c, checker &check) {
                     (theory == RP_TANGENTIAL_FASTRIP && c.flexibility_blending == RP_BLENDING_NONE),
                 "flexibility_blending must be sliding where tangential is not fastsim or fastrip, "
                 "and not contact with fastrip");
-}
-
-bool has_tangential(const rp_config &c) {
-  return c.regime != RP_REGIME_NONE && c.tangential != RP_TANGENTIAL_NONE;
 }
 
 // Pairs of a table: increasing places, values in a range.
@@ -417,119 +349,6 @@ void check_coupled(const rp_config &c, checker &check) {
                 "steady_rolling");
 }
 
-// A rail's profiles along the track; the profiles themselves are looked at where they are read.
-void check_sections(const rp_config &c, checker &check) {
-  for (int side = 0; side < 2; ++side) {
-    const bool left = side == RP_LEFT;
-    const int count = c.section_count[side];
-    check.integer(left ? "section_count[0]" : "section_count[1]", count, 0, 100000);
-    if (check.error() != RP_OK || count == 0) continue;
-    if (c.kind == RP_WHEEL_RAIL && side != c.side) continue;
-    const char *name = left ? "section_position[0]" : "section_position[1]";
-    const double *place = c.section_position[side];
-    check.require(c.rail_sections[side] != nullptr && place != nullptr,
-                  "rail_sections and section_position must be given where section_count is not 0");
-    if (check.error() != RP_OK) return;
-    for (int k = 0; k < count; ++k) {
-      check.number(name, place[k], finite);
-      if (k > 0) check.number(name, place[k], {place[k - 1], inf, true, true});
-    }
-  }
-}
-
-// What goes with a curved reference surface.
-void check_reference(const rp_config &c, checker &check) {
-  if (c.reference_surface == RP_REFERENCE_PLANE) return;
-  const char *wrong = nullptr;
-  if (c.kind == RP_PATCH)
-    wrong = "reference_surface must be plane with kind = patch: its shape has no normals";
-  else if (c.normal != RP_NORMAL_HALF_SPACE)
-    wrong = "reference_surface = curved needs normal = half_space";
-  else if (has_tangential(c) && c.tangential != RP_TANGENTIAL_FULL)
-    wrong = "reference_surface = curved needs tangential = full or none";
-  else if (c.fitted[0] > 0)
-    wrong = "reference_surface = curved needs fitted = 0, 0";
-  else if (has_tangential(c) && (c.friction_law != RP_COULOMB || c.layer_yield_stress > 0))
-    wrong = "reference_surface = curved needs friction_law = coulomb and layer_yield_stress = 0";
-  else if (c.temperature == 1)
-    wrong = "reference_surface = curved needs temperature = 0";
-  else if (has_tangential(c) && is_coupled(combine(c.shear_modulus, c.poisson_ratio)))
-    wrong = "reference_surface = curved needs bodies with equal (1-2nu)/G";
-  else if (c.regime == RP_TRANSIENT_ROLLING)
-    wrong = "reference_surface = curved needs regime = steady_rolling or none";
-  else if (c.derivatives != 0)
-    wrong = "reference_surface = curved needs derivatives = 0 in this version";
-  else if (longitudinal_shape::wanted(c, RP_LEFT) || longitudinal_shape::wanted(c, RP_RIGHT))
-    wrong = "reference_surface = curved needs wheels without runout and rails without rail_height";
-  else if (!has_physics)
-    wrong = "reference_surface must be plane: this build has no curved ones";
-  check.require(wrong == nullptr, wrong ? wrong : "");
-}
-
-// Out-of-round wheels and running surfaces that are not level.
-void check_longitudinal(const rp_config &c, checker &check) {
-  const auto values = [&](const char *name, int side, const double *v, int count, int least,
-                          int most) {
-    char label[40];
-    std::snprintf(label, sizeof label, "%s_count[%d]", name, side);
-    if (count != 0) check.integer(label, count, least, most);
-    std::snprintf(label, sizeof label, "%s[%d]", name, side);
-    if (count == 0 || check.error() != RP_OK) return;
-    char text[80];
-    std::snprintf(text, sizeof text, "%s is null", label);
-    check.require(v != nullptr, text);
-    if (check.error() == RP_OK) check.numbers(label, v, count, {-0.1, 0.1, false, false});
-  };
-  bool shaped = false, heights = false;
-  for (int side = 0; side < 2; ++side) {
-    values("runout", side, c.runout[side], c.runout_count[side], 8, 1000000);
-    values("rail_height", side, c.rail_height[side], c.rail_height_count[side], 4, 10000000);
-    heights |= c.rail_height_count[side] > 0;
-    shaped |= c.runout_count[side] > 0 || heights;
-  }
-  check.number("rail_height_start", c.rail_height_start, finite);
-  check.number("rail_height_spacing", c.rail_height_spacing, {1e-6, 1e3, false, false});
-  check.require(!heights || c.track == RP_RAIL, "rail_height_count must be 0 on rollers");
-  check.require(!shaped || c.reference_surface == RP_REFERENCE_PLANE,
-                "runout and rail_height need reference_surface = plane in this version");
-  check.require(!shaped || c.normal == RP_NORMAL_HALF_SPACE,
-                "runout and rail_height need normal = half_space: the shape is not quadratic");
-}
-
-void check_wheels(const rp_config &c, checker &check) {
-  check.integer("side", c.side, RP_LEFT, RP_RIGHT);
-  check.number("nominal_radius", c.nominal_radius, {0.01, 10, false, false});
-  check.number("flange_back_distance", c.flange_back_distance, {0.01, 10, false, false});
-  check.number("flange_back_position", c.flange_back_position, {-1, 1, false, false});
-  check.number("gauge", c.gauge, {0.01, 10, false, false});
-  check.number("gauge_height", c.gauge_height, {0, 0.1, false, false});
-  check.number("gauge_widening", c.gauge_widening, {-0.1, 0.1, false, false});
-  check.number("cant", c.cant, {-0.5, 0.5, false, false});
-  check.number("curvature", c.curvature, {-0.1, 0.1, false, false});
-  if (c.track == RP_ROLLER) {
-    check.number("roller_radius", c.roller_radius, {0.01, 100, false, false});
-    check.require(c.cant == 0, "cant must be 0 on rollers");
-    check.require(c.curvature == 0, "curvature must be 0 on rollers");
-  }
-  check.require(c.contact_frame == RP_FRAME_TRACK || c.track == RP_ROLLER,
-                "contact_frame must be track on rails");
-  check.require(c.contact_frame == RP_FRAME_TRACK || c.reference_surface == RP_REFERENCE_PLANE,
-                "contact_frame must be track with reference_surface = curved");
-  check.integer("max_patches", c.max_patches, 1, RP_MAX_PATCHES);
-  check.number("standstill_speed", c.standstill_speed, {0, 1, false, false});
-  check_sections(c, check);
-  check.numbers("rail_stiffness", c.rail_stiffness, 2, {0, 1e15, false, false});
-  check.numbers("rail_damping", c.rail_damping, 2, {0, 1e15, false, false});
-  for (int k = 0; k < 2; ++k) {
-    check.require(c.rail_damping[k] == 0 || c.rail_stiffness[k] > 0,
-                  "rail_damping must be 0 in a direction whose rail_stiffness is 0: there the rail "
-                  "is rigid");
-    check.require(c.rail_stiffness[k] == 0 || c.rail_stiffness[k] >= 1,
-                  "rail_stiffness must be 0 or at least 1 N/m");
-  }
-  check_longitudinal(c, check);
-}
-
 }  // namespace
 
 bool needs_grid(const rp_config &c) {
@@ -617,6 +436,8 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
   }
   checker check(message);
   check_bulk(c, in, check);
+  check.require(in.friction_coefficient == 0,
+                "friction_coefficient must be 0 in a step: rp_set_friction_coefficient sets it");
   if (c.kind == RP_PATCH) {
     if (c.load == RP_FORCE)
       check.number("normal_force", in.normal_force, positive);

@@ -363,36 +363,7 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
   patch_memory &m = memory(RP_RIGHT, 0);
   patch_problem problem;
   problem.hertz = hertz_of(config_, solver_.scene(), in);
-  if (config_.geometry == RP_UNDEFORMED_DISTANCE) {
-    grid &g = problem.g;
-    g = {config_.distance_shape[0],
-         config_.distance_shape[1],
-         config_.element_size[0],
-         config_.element_size[1],
-         0,
-         0};
-    g.x0 = -0.5 * (g.nx - 1) * g.dx;
-    g.y0 = -0.5 * (g.ny - 1) * g.dy;
-  } else if (!solver_.scene().closed_form()) {
-    problem.g = hertz_grid(config_, problem.hertz);
-  }
-  // shift and transient rolling stay on the grid of their first step
-  if (solver_.scene().keeps_steps()) {
-    grid &g = problem.g;
-    if (m.history.begun) {
-      g = m.g;
-    } else if (config_.max_elements[0] > 0 && config_.geometry != RP_UNDEFORMED_DISTANCE) {
-      g.nx = config_.max_elements[0];
-      if (config_.geometry != RP_LINE_CONTACT) g.ny = config_.max_elements[1];
-      g.x0 = -0.5 * (g.nx - 1) * g.dx;
-      g.y0 = -0.5 * (g.ny - 1) * g.dy;
-    }
-    // Hertz's ellipse is drawn on the grid and not found on it
-    const bool covered = 2.0 * problem.hertz.semi_axes[0] <= g.nx * g.dx &&
-                         2.0 * problem.hertz.semi_axes[1] <= g.ny * g.dy;
-    if (config_.normal == RP_NORMAL_HERTZ && !covered) return finish(RP_OUT_OF_RANGE);
-  }
-  if (!solver_.fits(problem.g)) return finish(RP_OUT_OF_RANGE);
+  if (!set_grid(m, problem) || !solver_.fits(problem.g)) return finish(RP_OUT_OF_RANGE);
   problem.force_given = config_.load == RP_FORCE;
   problem.force = in.normal_force;
   problem.approach = in.approach;
@@ -408,9 +379,49 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
   }
   solver_.begin_step(problem, m);
   solver_.start_from(m, problem.g);
+  solver_.observe(RP_STAGE_GEOMETRY, true);
+  set_distance(problem, m);
+  solver_.observe(RP_STAGE_GEOMETRY, false);
+  patch_wrench wrench;
+  solver_.solve(problem, m, result, wrench);
+  if (derivative_) derivative_->problem = problem;
+  finish(result.status);
+}
+
+// The grid of a patch's step. Returns whether it covers what is drawn on it.
+bool contact::set_grid(const patch_memory &m, patch_problem &problem) const {
+  grid &g = problem.g;
+  const auto centre = [&] {
+    g.x0 = -0.5 * (g.nx - 1) * g.dx;
+    g.y0 = -0.5 * (g.ny - 1) * g.dy;
+  };
+  if (config_.geometry == RP_UNDEFORMED_DISTANCE) {
+    g.nx = config_.distance_shape[0];
+    g.ny = config_.distance_shape[1];
+    g.dx = config_.element_size[0];
+    g.dy = config_.element_size[1];
+    centre();
+  } else if (!solver_.scene().closed_form()) {
+    g = hertz_grid(config_, problem.hertz);
+  }
+  if (!solver_.scene().keeps_steps()) return true;
+  // shift and transient rolling stay on the grid of their first step
+  if (m.history.begun) {
+    g = m.g;
+  } else if (config_.max_elements[0] > 0 && config_.geometry != RP_UNDEFORMED_DISTANCE) {
+    g.nx = config_.max_elements[0];
+    if (config_.geometry != RP_LINE_CONTACT) g.ny = config_.max_elements[1];
+    centre();
+  }
+  // Hertz's ellipse is drawn on the grid and not found on it
+  return config_.normal != RP_NORMAL_HERTZ || (2.0 * problem.hertz.semi_axes[0] <= g.nx * g.dx &&
+                                               2.0 * problem.hertz.semi_axes[1] <= g.ny * g.dy);
+}
+
+// The undeformed distance of a patch's elements and the friction of its rows.
+void contact::set_distance(const patch_problem &problem, patch_memory &m) const {
   const grid &g = problem.g;
   const hertz_contact &hertz = problem.hertz;
-  solver_.observe(RP_STAGE_GEOMETRY, true);
   for (int j = 0; j < g.ny; ++j)
     for (int i = 0; i < g.nx; ++i) {
       const auto at = static_cast<size_t>(j * g.nx + i);
@@ -420,11 +431,6 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
     }
   for (size_t j = 0; j < m.row_friction.size() && j < static_cast<size_t>(g.ny); ++j)
     m.row_friction[j] = solver_.scene().friction_variation.at(g.y(static_cast<int>(j)));
-  solver_.observe(RP_STAGE_GEOMETRY, false);
-  patch_wrench wrench;
-  solver_.solve(problem, m, result, wrench);
-  if (derivative_) derivative_->problem = problem;
-  finish(result.status);
 }
 
 // Solves all wheels at z; returns their vertical force on the rails.
@@ -535,152 +541,6 @@ void contact::reset() {
   depth_ = 0;
   if (derivative_) derivative_->solved = false;
   if (support_) support_->reset();
-}
-
-// --- fields -------------------------------------------------------------------------
-
-namespace {
-
-rp_error error_features_of(const patch_memory &m, double *values, size_t *count) {
-  if (!m.solved) return RP_ERROR_NO_FIELD;
-  const size_t capacity = *count;
-  *count = m.error_features.size();
-  if (capacity < m.error_features.size() || !values) return RP_ERROR_SIZE;
-  std::copy(m.error_features.begin(), m.error_features.end(), values);
-  return RP_OK;
-}
-
-}  // namespace
-
-namespace {
-
-// What the yield stress depends on, element by element.
-struct plastic_path {
-  const patch_history &history;
-  double operator[](size_t at) const {
-    const double *u = history.after[at].v + 1;
-    return std::hypot(u[0], u[1]);
-  }
-};
-
-// The coefficient of a law of temperature with the factor of each row.
-struct friction_of_heat {
-  const patch_memory &m;
-  double scale;
-  double operator[](size_t i) const {
-    const double mu = scale * m.heat->friction[i];
-    return m.row_friction.size() > 0 ? mu * m.row_friction[i / static_cast<size_t>(m.g.nx)] : mu;
-  }
-};
-
-// Whether a field belongs to laws beyond Coulomb's, and this patch has none such.
-bool lacks_law(const patch_memory &m, rp_field name) {
-  if (name == RP_FIELD_FRICTION)
-    return m.history.friction.size() == 0 && !(m.heat && m.heat->friction.size() > 0);
-  const bool plastic = name == RP_FIELD_PLASTIC_DISPLACEMENT || name == RP_FIELD_PLASTIC_PATH ||
-                       name == RP_FIELD_YIELD_STRESS;
-  return plastic && m.history.yield_stress.size() == 0;
-}
-
-}  // namespace
-
-rp_error contact::field(int side, int patch, rp_field name, double *values, size_t *count) const {
-  const int patches = config_.kind == RP_PATCH ? 1 : config_.max_patches;
-  if ((side != RP_LEFT && side != RP_RIGHT) || !has_side(side) || patch < 0 || patch >= patches)
-    return RP_ERROR_NO_FIELD;
-  const patch_memory &m = memory(side, patch);
-  if (name == RP_FIELD_ERROR_FEATURES) return error_features_of(m, values, count);
-  const bool of_tangential =
-      name == RP_FIELD_TRACTION || name == RP_FIELD_MICRO_SLIP || name == RP_FIELD_ELEMENT_DIVISION;
-  const bool missing =
-      (of_tangential && m.px.size() == 0) || lacks_law(m, name) || m.columns() * m.rows() == 0 ||
-      (name == RP_FIELD_PRESSURE && m.pressure.size() + m.node_pressure.size() == 0);
-  const bool no_heat = name == RP_FIELD_TEMPERATURE && !m.heat;
-  const bool of_rows = name == RP_FIELD_ROW_POSITION || name == RP_FIELD_ROW_ANGLE;
-  if (!m.solved || missing || no_heat || (of_rows && !m.curved)) return RP_ERROR_NO_FIELD;
-  if (m.fitted() && name == RP_FIELD_UNDEFORMED_DISTANCE) return RP_ERROR_NO_FIELD;
-  const int nx = m.columns(), ny = m.rows();
-  const bool of_axis = (name == RP_FIELD_X && !m.fitted()) || name == RP_FIELD_Y;
-  const bool of_vectors = name == RP_FIELD_TRACTION || name == RP_FIELD_MICRO_SLIP ||
-                          name == RP_FIELD_PLASTIC_DISPLACEMENT || name == RP_FIELD_TEMPERATURE;
-  const auto plane = static_cast<size_t>(nx * ny);
-  const size_t needed = of_axis   ? static_cast<size_t>(name == RP_FIELD_X ? nx : ny)
-                        : of_rows ? static_cast<size_t>(name == RP_FIELD_ROW_POSITION ? 2 * ny : ny)
-                                  : (of_vectors ? 2 * plane : plane);
-  const size_t capacity = *count;
-  *count = needed;
-  if (capacity < needed || !values) return RP_ERROR_SIZE;
-  // a left wheel is solved as its mirror image: rows in reverse, lateral components negative
-  const bool left = config_.kind != RP_PATCH && side == RP_LEFT;
-  const auto copy = [&](auto &&source, double *out, double sign) {
-    for (int j = 0; j < ny; ++j)
-      for (int i = 0; i < nx; ++i)
-        out[j * nx + i] = sign * source[static_cast<size_t>((left ? ny - 1 - j : j) * nx + i)];
-  };
-  const auto y = [&](int j) { return m.fitted() ? m.node_y[static_cast<size_t>(j)] : m.g.y(j); };
-  const double lateral = left ? -1.0 : 1.0;
-  switch (name) {
-    case RP_FIELD_X:
-      if (m.fitted()) {
-        copy(m.node_x, values, 1.0);
-        break;
-      }
-      for (int i = 0; i < nx; ++i) values[i] = m.g.x(i);
-      break;
-    case RP_FIELD_Y:
-      for (int j = 0; j < ny; ++j) values[j] = lateral * y(left ? ny - 1 - j : j);
-      break;
-    case RP_FIELD_UNDEFORMED_DISTANCE:
-      copy(m.undeformed_distance, values, 1.0);
-      break;
-    case RP_FIELD_PRESSURE:
-      copy(m.fitted() ? m.node_pressure : m.pressure, values, 1.0);
-      break;
-    case RP_FIELD_TRACTION:
-      copy(m.px, values, 1.0);
-      copy(m.py, values + plane, lateral);
-      break;
-    case RP_FIELD_MICRO_SLIP:
-      copy(m.sx, values, 1.0);
-      copy(m.sy, values + plane, lateral);
-      break;
-    case RP_FIELD_ELEMENT_DIVISION:
-      copy(m.division, values, 1.0);
-      break;
-    case RP_FIELD_TEMPERATURE:
-      for (int k = 0; k < 2; ++k)
-        copy(m.heat->temperature[k], values + static_cast<size_t>(k) * plane, 1.0);
-      break;
-    case RP_FIELD_FRICTION:
-      if (m.history.friction.size() > 0)
-        copy(m.history.friction, values, 1.0);
-      else
-        copy(friction_of_heat{m, solver_.scene().friction_scale}, values, 1.0);
-      break;
-    case RP_FIELD_PLASTIC_DISPLACEMENT:
-      copy(m.history.plastic[0], values, 1.0);
-      copy(m.history.plastic[1], values + plane, lateral);
-      break;
-    case RP_FIELD_PLASTIC_PATH:
-      copy(plastic_path{m.history}, values, 1.0);
-      break;
-    case RP_FIELD_YIELD_STRESS:
-      copy(m.history.yield_stress, values, 1.0);
-      break;
-    case RP_FIELD_ROW_POSITION:
-      for (int j = 0; j < ny; ++j) {
-        const int row = left ? ny - 1 - j : j;
-        values[j] = lateral * m.curved->y(row);
-        values[ny + j] = m.curved->z(row);
-      }
-      break;
-    case RP_FIELD_ROW_ANGLE:
-      for (int j = 0; j < ny; ++j) values[j] = lateral * m.curved->angle(left ? ny - 1 - j : j);
-      break;
-    default:
-      return RP_ERROR_NO_FIELD;
-  }
-  return RP_OK;
 }
 
 }  // namespace railpatch

@@ -46,6 +46,8 @@ class contact {
   const patch_memory &memory(int side, int patch) const;
   rolling_input step_of(const rp_input &input) const;
   void step_patch(const rp_input &input, rp_result &result);
+  bool set_grid(const patch_memory &m, patch_problem &problem) const;
+  void set_distance(const patch_problem &problem, patch_memory &m) const;
   void step_wheels(const rp_input &input, rp_result &result);
   template <class Evaluate>
   void find_z(double vertical_force, Evaluate &&evaluate, rp_result &result);
@@ -58,6 +60,7 @@ class contact {
   void begin_record();
   void end_record(const rp_input &input, const rp_result &result);
   void differentiate_patch(const rp_input &direction, rp_result &change);
+  void vary_shape(const rp_input &direction, patch_variation &v);
   double friction_rate(const rp_input &direction) const;
   void differentiate_wheels(const rp_input &direction, rp_result &change);
   void exact_jacobian(rp_jacobian &out);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "check.hpp"
 #include "input_numbers.hpp"
@@ -118,6 +119,38 @@ rp_derivative_kind contact::differentiate(const rp_input &direction, rp_result &
   return RP_DERIVATIVE_EXACT;
 }
 
+// How the grid, its distance and the friction of its rows follow Hertz's contact.
+void contact::vary_shape(const rp_input &d, patch_variation &v) {
+  derivative_record &record = *derivative_;
+  const grid &g = record.problem.g;
+  const hertz_contact &hertz = record.problem.hertz;
+  v.hertz = hertz_rate(config_, hertz, d);
+  // a grid of given elements is as large as the contact
+  const int axes = config_.element_size[0] > 0 ? 0 : config_.geometry == RP_LINE_CONTACT ? 1 : 2;
+  const double step[2] = {g.dx, g.dy};
+  const int count[2] = {g.nx, g.ny};
+  for (int k = 0; k < axes; ++k) {
+    v.size[k] = step[k] * v.hertz.semi_axes[k] / hertz.semi_axes[k];
+    v.origin[k] = -0.5 * (count[k] - 1) * v.size[k];
+  }
+  bool moves = false;
+  for (int j = 0; j < g.ny; ++j)
+    for (int i = 0; i < g.nx; ++i) {
+      const double x = g.x(i), y = g.y(j);
+      const double dx = v.origin[0] + i * v.size[0], dy = v.origin[1] + j * v.size[1];
+      const double rate = v.hertz.curvatures[0] * x * x + v.hertz.curvatures[1] * y * y +
+                          2.0 * (hertz.curvatures[0] * x * dx + hertz.curvatures[1] * y * dy);
+      record.distance[static_cast<size_t>(j * g.nx + i)] = rate;
+      moves = moves || rate != 0;
+    }
+  if (moves) v.distance = record.distance.data();
+  if (record.row_friction.size() == 0 || v.size[1] == 0) return;
+  for (int j = 0; j < g.ny; ++j)
+    record.row_friction[static_cast<size_t>(j)] =
+        solver_.scene().friction_variation.slope(g.y(j)) * (v.origin[1] + j * v.size[1]);
+  v.row_friction = record.row_friction.data();
+}
+
 void contact::differentiate_patch(const rp_input &d, rp_result &out) {
   derivative_record &record = *derivative_;
   const patch_problem &problem = record.problem;
@@ -133,45 +166,14 @@ void contact::differentiate_patch(const rp_input &d, rp_result &out) {
   set(value.rolling_speed, change.rolling_speed, d.rolling_speed);
   if (config_.load == RP_POSITION) set(value.approach, change.approach, d.approach);
   if (!m.solved || problem.g.count() == 0) return;
-  const grid &g = problem.g;
-  const hertz_contact &hertz = problem.hertz;
   patch_variation v;
   v.normal_force = d.normal_force;
   v.approach = d.approach;
   std::copy_n(d.creepage, 2, v.creepage);
   v.spin_creepage = d.spin_creepage;
   v.rolling_speed = d.rolling_speed;
-  if (config_.geometry != RP_UNDEFORMED_DISTANCE) v.hertz = hertz_rate(config_, hertz, d);
-  const bool line = config_.geometry == RP_LINE_CONTACT;
-  // a grid of given elements is as large as the contact
-  const int axes = config_.element_size[0] > 0 || config_.geometry == RP_UNDEFORMED_DISTANCE ? 0
-                   : line                                                                    ? 1
-                                                                                             : 2;
-  const double step[2] = {g.dx, g.dy};
-  const int count[2] = {g.nx, g.ny};
-  for (int k = 0; k < axes; ++k) {
-    v.size[k] = step[k] * v.hertz.semi_axes[k] / hertz.semi_axes[k];
-    v.origin[k] = -0.5 * (count[k] - 1) * v.size[k];
-  }
-  bool moves = false;
-  if (config_.geometry != RP_UNDEFORMED_DISTANCE) {
-    for (int j = 0; j < g.ny; ++j)
-      for (int i = 0; i < g.nx; ++i) {
-        const double x = g.x(i), y = g.y(j);
-        const double dx = v.origin[0] + i * v.size[0], dy = v.origin[1] + j * v.size[1];
-        const double rate = v.hertz.curvatures[0] * x * x + v.hertz.curvatures[1] * y * y +
-                            2.0 * (hertz.curvatures[0] * x * dx + hertz.curvatures[1] * y * dy);
-        record.distance[static_cast<size_t>(j * g.nx + i)] = rate;
-        moves = moves || rate != 0;
-      }
-    if (moves) v.distance = record.distance.data();
-  }
-  if (record.row_friction.size() && v.size[1] != 0) {
-    for (int j = 0; j < g.ny; ++j)
-      record.row_friction[static_cast<size_t>(j)] =
-          solver_.scene().friction_variation.slope(g.y(j)) * (v.origin[1] + j * v.size[1]);
-    v.row_friction = record.row_friction.data();
-  }
+  v.friction_coefficient = friction_rate(d);
+  if (config_.geometry != RP_UNDEFORMED_DISTANCE) vary_shape(d, v);
   patch_change found;
   const derivative_outcome outcome = solver_.differentiate(problem, m, &v, 1, {}, &found);
   if (!outcome.converged) {
@@ -192,6 +194,57 @@ void contact::differentiate_patch(const rp_input &d, rp_result &out) {
   set(value.elastic_energy, change.elastic_energy, found.elastic_energy);
 }
 
+namespace {
+
+// The length of a direction from an input, in the input's own units.
+double reach_of(const rp_input &input, const rp_input &rates) {
+  double reach = 0;
+  const double *values[most_input_numbers];
+  int numbers = 0;
+  for_each_number(input, [&](const char *, const double &v, double) { values[numbers++] = &v; });
+  int at = 0;
+  for_each_number(rates, [&](const char *name, const double &rate, double scale) {
+    const double v = *values[at++];
+    // how far along the track, or round the wheel, says nothing about the scale there
+    const bool place = std::strcmp(name, "x") == 0 || std::strcmp(name, "pitch") == 0;
+    const double size = place || std::isnan(v) ? scale : std::max(scale, std::fabs(v));
+    if (rate != 0) reach = std::max(reach, std::fabs(rate) / (size > 0 ? size : 1.0));
+  });
+  return reach;
+}
+
+// The input at a place along a direction from another.
+rp_input moved(const rp_config &config, const rp_input &input, const rp_input &rates,
+               double place) {
+  rp_input in = input;
+  const double *rate[most_input_numbers];
+  int count = 0, next = 0;
+  for_each_number(rates, [&](const char *, const double &v, double) { rate[count++] = &v; });
+  for_each_number(in, [&](const char *, double &v, double) { v += place * *rate[next++]; });
+  for (int body = 0; body < 2; ++body)
+    if (std::isnan(in.bulk_temperature[body]) && rates.bulk_temperature[body] != 0)
+      in.bulk_temperature[body] =
+          config.bulk_temperature[body] + place * rates.bulk_temperature[body];
+  return in;
+}
+
+// out: rates of all its numbers from two results, a distance apart along the direction.
+void divide(const rp_result (&ends)[2], double distance, rp_result &out) {
+  double *to[most_result_numbers];
+  int count = 0, next = 0;
+  for_each_result_number(out, [&](double &v) { to[count++] = &v; });
+  const double *low[most_result_numbers];
+  for_each_result_number(ends[0], [&](const double &v) { low[next++] = &v; });
+  next = 0;
+  for_each_result_number(ends[1], [&](const double &v) {
+    double &rate = *to[next];
+    if (!std::isnan(rate)) rate = (v - *low[next]) / distance;
+    ++next;
+  });
+}
+
+}  // namespace
+
 // Central differences of steps beside the last one, each from the same start; one-sided where the
 // input on one side is not allowed.
 void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
@@ -201,40 +254,23 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
   rp_input rates = d;
   for (double &rate : rates.bulk_temperature)
     if (std::isnan(rate)) rate = 0;
-  // the length of the step in the direction's own unit
-  double reach = 0;
-  const double *values[most_input_numbers];
-  int numbers = 0;
-  for_each_number(record.input,
-                  [&](const char *, const double &v, double) { values[numbers++] = &v; });
-  int at = 0;
-  for_each_number(rates, [&](const char *name, const double &rate, double scale) {
-    const double v = *values[at++];
-    // how far along the track, or round the wheel, says nothing about the scale there
-    const bool place = std::strcmp(name, "x") == 0 || std::strcmp(name, "pitch") == 0;
-    const double size = place || std::isnan(v) ? scale : std::max(scale, std::fabs(v));
-    if (rate != 0) reach = std::max(reach, std::fabs(rate) / (size > 0 ? size : 1.0));
-  });
+  const double reach = reach_of(record.input, rates);
   if (!(reach > 0)) return;
   const double length = std::cbrt(beside.config().tolerance) / reach;
   rp_result ends[2];
   double places[2] = {-length, length};
   rp_status worst = RP_CONVERGED;
   for (int k = 0; k < 2; ++k) {
-    rp_input in = record.input;
-    const double *rate[most_input_numbers];
-    int count = 0, next = 0;
-    for_each_number(rates, [&](const char *, const double &v, double) { rate[count++] = &v; });
-    for_each_number(in, [&](const char *, double &v, double) { v += places[k] * *rate[next++]; });
-    for (int body = 0; body < 2; ++body)
-      if (std::isnan(in.bulk_temperature[body]) && rates.bulk_temperature[body] != 0)
-        in.bulk_temperature[body] =
-            config_.bulk_temperature[body] + places[k] * rates.bulk_temperature[body];
-    if (check_input(config_, friction_coefficient(), in, nullptr) != RP_OK) {
+    rp_input in = moved(config_, record.input, rates, places[k]);
+    double friction = friction_coefficient() + std::exchange(in.friction_coefficient, 0.0);
+    if (check_input(config_, friction, in, nullptr) != RP_OK ||
+        check_friction_coefficient(friction, nullptr) != RP_OK) {
       in = record.input;
+      friction = friction_coefficient();
       places[k] = 0;
     }
     beside.copy_state(start);
+    beside.set_friction_coefficient(friction);
     beside.step(in, ends[k]);
     if (ends[k].status == RP_NOT_CONVERGED || ends[k].status == RP_OUT_OF_RANGE)
       worst = RP_NOT_CONVERGED;
@@ -243,17 +279,7 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
     for_each_result_number(out, [](double &v) { v = nan; });
     return;
   }
-  double *to[most_result_numbers];
-  int count = 0, next = 0;
-  for_each_result_number(out, [&](double &v) { to[count++] = &v; });
-  const double *low[most_result_numbers];
-  for_each_result_number(ends[0], [&](double &v) { low[next++] = &v; });
-  next = 0;
-  for_each_result_number(ends[1], [&](double &v) {
-    double &rate = *to[next];
-    if (!std::isnan(rate)) rate = (v - *low[next]) / (places[1] - places[0]);
-    ++next;
-  });
+  divide(ends, places[1] - places[0], out);
   if (worst == RP_CONVERGED) return;
   if (out.status == RP_CONVERGED) out.status = worst;
   for (auto &side : out.side)

@@ -44,11 +44,15 @@ void degrade(rp_status &status, bool converged) {
 
 }  // namespace
 
-// Of the friction coefficient, where it varies along the track.
+// Of the friction coefficient with its factor along the track.
 double contact::friction_rate(const rp_input &direction) const {
-  if (!friction_along_.varies()) return 0.0;
-  const double slope = friction_along_.slope(derivative_->input.x);
-  return solver_.scene().friction_coefficient * slope * direction.x;
+  const patch_scene &scene = solver_.scene();
+  double rate = scene.friction_scale * direction.friction_coefficient;
+  if (friction_along_.varies()) {
+    const double slope = friction_along_.slope(derivative_->input.x);
+    rate += scene.friction_coefficient * slope * direction.x;
+  }
+  return rate;
 }
 
 void contact::differentiate_wheels(const rp_input &direction, rp_result &out) {

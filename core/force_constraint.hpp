@@ -18,6 +18,9 @@
 // slip are the end, a force that cannot be carried ends the iteration too.
 #pragma once
 
+#include <algorithm>
+
+#include "gmres.hpp"
 #include "memory.hpp"
 
 namespace railpatch {
@@ -76,12 +79,37 @@ class force_constraint {
             double *moved, double *turned) const;
   void pull_again(const rolling_problem &problem, const double *trial_p, double length);
 
-  // The bordered system over n unknowns of the elements; column(m) and row(m) are to be filled and
-  // what the preconditioner makes of column(m) is put in reduced(m), before `factor`.
+  // The bordered system over n unknowns of the elements; column(m) and row(m) are to be filled
+  // before `solve`, which takes the elements' Jacobian, apply(v, out), and preconditioner,
+  // precondition(v), in place. The step is bounded.
   double *column(int m) { return column_[m].data(); }
   double *row(int m) { return row_[m].data(); }
-  double *reduced(int m) { return reduced_[m].data(); }
   double weight() const { return weight_; }
+  template <class Apply, class Precondition>
+  void solve(gmres &solver, size_t n, const double *right, double *step, double tolerance,
+             int most_products, Apply &&apply_elements, Precondition &&precondition_elements) {
+    for (int m = 0; m < unknowns_; ++m) {
+      std::copy_n(column_[m].data(), n, reduced_[m].data());
+      precondition_elements(reduced_[m].data());
+    }
+    factor(n);
+    solver.solve(
+        n + static_cast<size_t>(unknowns_), right, step, tolerance, most_products,
+        [&](const double *v, double *out) {
+          apply_elements(v, out);
+          apply(n, v, out);
+        },
+        [&](double *v) {
+          precondition_elements(v);
+          precondition(n, v);
+        });
+    bound_step(n, step);
+  }
+  // Whether the last step was bounded: on the way to another creepage, the residual need not fall.
+  // Not more often than the way from one end to the other takes.
+  bool travels() const { return shortened_ && travelled_ <= longest_way; }
+
+ private:
   void factor(size_t n);
   // out has J v of the elements and gets the rest.
   void apply(size_t n, const double *v, double *out) const;
@@ -89,11 +117,6 @@ class force_constraint {
   void precondition(size_t n, double *v) const;
   // Bounds the creepages' part of a Newton step v and lets the elements' part follow.
   void bound_step(size_t n, double *v);
-  // Whether the last step was bounded: on the way to another creepage, the residual need not fall.
-  // Not more often than the way from one end to the other takes.
-  bool travels() const { return shortened_ && travelled_ <= longest_way; }
-
- private:
   double carried(int m, const rolling_problem &problem, const double *p) const;
   void solve_schur(const double s[2][2], double *b) const;
   bool bounded(const double *creepage, double *step) const;

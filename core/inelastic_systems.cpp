@@ -163,23 +163,10 @@ void inelastic_newton::solve_bordered(task &t, double tolerance) {
     });
     right_[size + static_cast<size_t>(m)] = force.remainder(m, t.problem);
   }
-  for (int m = 0; m < force.unknowns(); ++m) {
-    std::copy_n(force.column(m), size, force.reduced(m));
-    precondition(t, force.reduced(m));
-  }
-  force.factor(size);
-  linear_solver_.solve(
-      size + static_cast<size_t>(force.unknowns()), right_.data(), unknowns_.data(), tolerance,
-      max_inner_products,
-      [&](const double *v, double *out) {
-        apply_jacobian(t, v, out);
-        force.apply(size, v, out);
-      },
-      [&](double *v) {
-        precondition(t, v);
-        force.precondition(size, v);
-      });
-  force.bound_step(size, unknowns_.data());
+  force.solve(
+      linear_solver_, size, right_.data(), unknowns_.data(), tolerance, max_inner_products,
+      [&](const double *v, double *out) { apply_jacobian(t, v, out); },
+      [&](double *v) { precondition(t, v); });
 }
 
 }  // namespace railpatch

@@ -36,12 +36,7 @@ struct inelastic_newton::task {
   size_t size() const { return 2 * static_cast<size_t>(problem.count()); }
   template <class F>
   void for_each_element(F &&f) const {
-    for (int row = 0; row < problem.rows; ++row) {
-      const int begin = problem.row_start[row], n = problem.row_start[row + 1] - begin;
-      for (int k = 0; k < n; ++k)
-        f(static_cast<size_t>(begin + k), static_cast<size_t>(2 * begin + k),
-          static_cast<size_t>(2 * begin + n + k));
-    }
+    for_each_row_element(problem.rows, problem.row_start, f);
   }
 };
 

@@ -53,6 +53,7 @@ void for_each_number(Input &in, F &&f) {
     for (auto &v : row) f("rail_angular_velocity", v, 0.01);
   f("time_step", in.time_step, 1e-3);
   f("roller_pitch_rate", in.roller_pitch_rate, 1.0);
+  f("friction_coefficient", in.friction_coefficient, 0.1);
 }
 
 template <class Result, class F>

@@ -192,6 +192,10 @@ class patch_contact {
 
  private:
   void describe_grid(const patch_problem &problem, rp_patch_result &result) const;
+  void begin_solve(const patch_problem &problem, patch_memory &memory);
+  bool find_pressure(const patch_problem &problem, patch_memory &memory, rp_patch_result &result);
+  void sum_forces(const patch_problem &problem, patch_memory &memory, rp_patch_result &result,
+                  patch_wrench &wrench);
   bool solve_normal(const patch_problem &problem, patch_memory &memory, rp_patch_result &result);
   void solve_half_space(const patch_problem &problem, patch_memory &memory,
                         rp_patch_result &result);
@@ -199,12 +203,17 @@ class patch_contact {
   void solve_hertz(const patch_problem &problem, patch_memory &memory, rp_patch_result &result);
   bool solve_tangential(const patch_problem &problem, patch_memory &memory,
                         rp_patch_result &result);
+  rolling_input rolling_of(const patch_problem &problem, patch_memory &memory,
+                           prescribed_force &force);
+  tangential_result solve_by_theory(const patch_problem &problem, const rolling_input &rolling,
+                                    patch_memory &memory, rp_patch_result &result);
   bool solve_in_turn(const patch_problem &problem, patch_memory &memory, rp_patch_result &result);
   void leave_unloaded(const patch_problem &problem, patch_memory &memory);
   void add_slip_of_rows(const grid &g, const conformal_rows &rows, rolling_input &rolling);
   tangential_result solve_fitted(const patch_problem &problem, const rolling_input &rolling,
                                  patch_memory &memory);
   // mu: of each element, null: as in the scene
+  void set_bound(const grid &g, const patch_memory &memory, const double *mu);
   tangential_result solve_on_grid(const patch_problem &problem, const rolling_input &rolling,
                                   patch_memory &memory, rp_patch_result &result, const double *mu);
   void begin_heat(const patch_problem &problem, patch_memory &memory);
@@ -242,5 +251,9 @@ class patch_contact {
 void set_unloaded(const patch_scene &scene, rp_patch_result &result);
 // A result with every number NaN and every count zero.
 rp_patch_result empty_patch_result();
+// Worse of two outcomes, for results that several stages contribute to.
+inline void degrade(rp_patch_result &result, rp_status status) {
+  if (result.status == RP_CONVERGED) result.status = status;
+}
 
 }  // namespace railpatch

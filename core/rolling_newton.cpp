@@ -39,12 +39,7 @@ struct rolling_newton::task {
   // f(element, index of its x component, of its y component)
   template <class F>
   void for_each_element(F &&f) const {
-    for (int row = 0; row < problem.rows; ++row) {
-      const int begin = problem.row_start[row], n = problem.row_start[row + 1] - begin;
-      for (int k = 0; k < n; ++k)
-        f(static_cast<size_t>(begin + k), static_cast<size_t>(2 * begin + k),
-          static_cast<size_t>(2 * begin + n + k));
-    }
+    for_each_row_element(problem.rows, problem.row_start, f);
   }
 };
 
@@ -315,18 +310,7 @@ void rolling_newton::linearise(task &t) {
 // z_y, indices of the element's components in vectors of traction). Returns the system's size.
 template <class F>
 size_t rolling_newton::for_each_unknown(const task &t, F &&f) const {
-  size_t first = 0;
-  for (int row = 0; row < t.problem.rows; ++row) {
-    const auto begin = static_cast<size_t>(t.problem.row_start[row]);
-    const size_t n = static_cast<size_t>(t.problem.row_start[row + 1]) - begin;
-    size_t second = first + n;
-    for (size_t k = 0; k < n; ++k) {
-      f(linear_[begin + k], first + k, second, 2 * begin + k, 2 * begin + n + k);
-      if (linear_[begin + k].stick) ++second;
-    }
-    first = second;
-  }
-  return first;
+  return for_each_row_unknown(t.problem.rows, t.problem.row_start, linear_.data(), f);
 }
 
 // dp of the unknowns
@@ -436,23 +420,10 @@ void rolling_newton::solve_bordered(task &t, size_t size, double tolerance) {
                      });
     right_[size + static_cast<size_t>(m)] = right;
   }
-  for (int m = 0; m < force.unknowns(); ++m) {
-    std::copy_n(force.column(m), size, force.reduced(m));
-    precondition(t, force.reduced(m));
-  }
-  force.factor(size);
-  linear_solver_.solve(
-      size + static_cast<size_t>(force.unknowns()), right_.data(), unknowns_.data(), tolerance,
-      max_inner_products,
-      [&](const double *v, double *out) {
-        apply_jacobian(t, v, out);
-        force.apply(size, v, out);
-      },
-      [&](double *v) {
-        precondition(t, v);
-        force.precondition(size, v);
-      });
-  force.bound_step(size, unknowns_.data());
+  force.solve(
+      linear_solver_, size, right_.data(), unknowns_.data(), tolerance, max_inner_products,
+      [&](const double *v, double *out) { apply_jacobian(t, v, out); },
+      [&](double *v) { precondition(t, v); });
 }
 
 // One trial along the Newton step: p, s and F of the trial, and |F|.

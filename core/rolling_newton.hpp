@@ -44,6 +44,7 @@
 #include "force_constraint.hpp"
 #include "gmres.hpp"
 #include "row_blocks.hpp"
+#include "row_elements.hpp"
 
 namespace railpatch {
 

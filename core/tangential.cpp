@@ -10,15 +10,9 @@ namespace railpatch {
 
 template <class F>
 void tangential_solver::for_each_element(F &&f) const {
-  for (int row = 0; row < rows_; ++row) {
-    const int begin = row_start_[static_cast<size_t>(row)];
-    const int n = row_start_[static_cast<size_t>(row) + 1] - begin;
-    for (int k = 0; k < n; ++k) {
-      const auto element = static_cast<size_t>(begin + k);
-      f(element, static_cast<size_t>(at_[element]), static_cast<size_t>(2 * begin + k),
-        static_cast<size_t>(2 * begin + n + k));
-    }
-  }
+  for_each_row_element(rows_, row_start_.data(), [&](size_t element, size_t ix, size_t iy) {
+    f(element, static_cast<size_t>(at_[element]), ix, iy);
+  });
 }
 
 // of the preconditioner across the contact: few enough to hold what neighbouring rows do together,

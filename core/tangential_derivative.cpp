@@ -16,7 +16,7 @@ namespace {
 constexpr double single_rounding = 3e-7;
 // directions of search kept, and made at most
 constexpr int kept = 96, most = 600;
-// as in tangential.cpp
+// of the preconditioner, narrower than the solver's
 constexpr int strips = 24;
 constexpr int most_weights = 4;
 
@@ -24,31 +24,14 @@ constexpr int most_weights = 4;
 
 template <class F>
 void tangential_derivative::for_each_element(F &&f) const {
-  for (int row = 0; row < rows_; ++row) {
-    const int begin = row_start_[static_cast<size_t>(row)];
-    const int n = row_start_[static_cast<size_t>(row) + 1] - begin;
-    for (int k = 0; k < n; ++k) {
-      const auto element = static_cast<size_t>(begin + k);
-      f(element, static_cast<size_t>(at_[element]), static_cast<size_t>(2 * begin + k),
-        static_cast<size_t>(2 * begin + n + k));
-    }
-  }
+  for_each_row_element(rows_, row_start_.data(), [&](size_t element, size_t ix, size_t iy) {
+    f(element, static_cast<size_t>(at_[element]), ix, iy);
+  });
 }
 
 template <class F>
 size_t tangential_derivative::for_each_unknown(F &&f) const {
-  size_t first = 0;
-  for (int row = 0; row < rows_; ++row) {
-    const auto begin = static_cast<size_t>(row_start_[static_cast<size_t>(row)]);
-    const size_t n = static_cast<size_t>(row_start_[static_cast<size_t>(row) + 1]) - begin;
-    size_t second = first + n;
-    for (size_t k = 0; k < n; ++k) {
-      f(linear_[begin + k], first + k, second, 2 * begin + k, 2 * begin + n + k);
-      if (linear_[begin + k].stick) ++second;
-    }
-    first = second;
-  }
-  return first;
+  return for_each_row_unknown(rows_, row_start_.data(), linear_.data(), f);
 }
 
 tangential_derivative::tangential_derivative(int max_nx, int max_ny, int directions)

@@ -19,6 +19,7 @@
 #pragma once
 
 #include "row_blocks.hpp"
+#include "row_elements.hpp"
 #include "shared_krylov.hpp"
 #include "tangential.hpp"
 

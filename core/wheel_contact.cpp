@@ -265,15 +265,9 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
   solver.start_from(memory, g);
 
   solver.observe(RP_STAGE_GEOMETRY, true);
-  double *h = memory.undeformed_distance.data();
-  if (memory.curved)
-    memory.curved->place(*geometry_, g, h);
-  else
-    geometry_->undeformed_distance(region.frame, {g.nx, g.ny, g.x0, g.y0, g.dx, g.dy}, h);
-  const double depth = -*std::min_element(h, h + g.count());
+  const double depth = place_grid(solver, region, g, memory);
   const creepage_state rolling = geometry_->creepages(region.frame, depth);
   if (memory.curved) memory.curved->set_slip(*geometry_, depth, rolling.rolling_speed);
-  if (memory.row_friction.size() > 0) set_friction(solver, region.frame, memory);
   solver.observe(RP_STAGE_GEOMETRY, false);
 
   problem.rolling_speed = rolling.rolling_speed;
@@ -281,13 +275,8 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
   problem.parts = parts_on(region, g);
   past_tractions past[RP_MAX_PATCHES];
   if (solver.scene().keeps_steps()) set_past(memories, region, rolling.direction, problem, past);
-  if (solver.scene().normal == RP_NORMAL_HERTZ) {
-    // the paraboloid whose overlap has the same depth, length and width
-    const double half[2] = {0.5 * (region.x_max - region.x_min),
-                            0.5 * (region.s_max - region.s_min)};
-    const double curvatures[2] = {depth / (half[0] * half[0]), depth / (half[1] * half[1])};
-    problem.hertz = hertz_from_approach(curvatures, solver.scene().modulus(), depth);
-  }
+  if (solver.scene().normal == RP_NORMAL_HERTZ)
+    problem.hertz = hertz_of(region, depth, solver.scene().modulus());
   patch_wrench wrench;
   solver.solve(problem, memory, result, wrench);
   memory.history.begun = solver.scene().keeps_steps();
@@ -295,27 +284,54 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
   for (size_t k = 0; k < 2; ++k) memory.rail[k] = geometry_->motion().rail.offset[k + 1];
 
   if (!solutions_.empty()) solutions_[static_cast<size_t>(index)] = {true, problem, wrench, depth};
-
-  scale(wrench, region.share);
-  out.rolling_radius +=
-      region.share * result.normal_force * geometry_->rolling_radius(region.frame, depth);
-  const vec3 lever = geometry_->lever(region.frame);
-  add_wrench(wrench, region.frame.contact_angle, lever.data(), out.force, out.moment,
-             region.frame.inclination);
-  std::copy_n(origin.begin(), 3, result.position);
-  result.contact_angle = region.frame.contact_angle;
-  result.approach = depth;
+  add_force(region, depth, wrench, result.normal_force, out);
+  describe(solver.scene(), region, rolling, depth, result);
   // beyond a profile's end there is no surface: an edge in contact is outside the theory
   if (region.at_profile_end && result.status == RP_CONVERGED) result.status = RP_OUT_OF_RANGE;
   beyond_ = beyond_ || memory.beyond || (region.at_profile_end && result.status == RP_OUT_OF_RANGE);
+  return result.status;
+}
+
+// Fills the undeformed distance, and the friction where it varies. Returns the greatest depth (m).
+double wheel_contact::place_grid(const patch_contact &solver, patch_region &region, const grid &g,
+                                 patch_memory &memory) const {
+  double *h = memory.undeformed_distance.data();
+  if (memory.curved)
+    memory.curved->place(*geometry_, g, h);
+  else
+    geometry_->undeformed_distance(region.frame, {g.nx, g.ny, g.x0, g.y0, g.dx, g.dy}, h);
+  if (memory.row_friction.size() > 0) set_friction(solver, region.frame, memory);
+  return -*std::min_element(h, h + g.count());
+}
+
+// The paraboloid whose overlap has the same depth, length and width.
+hertz_contact wheel_contact::hertz_of(const patch_region &region, double depth, double modulus) {
+  const double half[2] = {0.5 * (region.x_max - region.x_min), 0.5 * (region.s_max - region.s_min)};
+  const double curvatures[2] = {depth / (half[0] * half[0]), depth / (half[1] * half[1])};
+  return hertz_from_approach(curvatures, modulus, depth);
+}
+
+void wheel_contact::add_force(const patch_region &region, double depth, patch_wrench wrench,
+                              double normal_force, rp_side_result &out) const {
+  scale(wrench, region.share);
+  out.rolling_radius +=
+      region.share * normal_force * geometry_->rolling_radius(region.frame, depth);
+  const vec3 lever = geometry_->lever(region.frame);
+  add_wrench(wrench, region.frame.contact_angle, lever.data(), out.force, out.moment,
+             region.frame.inclination);
+}
+
+void wheel_contact::describe(const patch_scene &scene, const patch_region &region,
+                             const creepage_state &rolling, double depth, rp_patch_result &result) {
+  std::copy_n(region.frame.origin.begin(), 3, result.position);
+  result.contact_angle = region.frame.contact_angle;
+  result.approach = depth;
   result.rolling_speed = rolling.rolling_speed;
   result.direction = rolling.direction;
-  if (solver.scene().tangential != RP_TANGENTIAL_NONE) {
-    result.creepage[0] = rolling.xi;
-    result.creepage[1] = rolling.eta;
-    result.spin_creepage = rolling.phi;
-  }
-  return result.status;
+  if (scene.tangential == RP_TANGENTIAL_NONE) return;
+  result.creepage[0] = rolling.xi;
+  result.creepage[1] = rolling.eta;
+  result.spin_creepage = rolling.phi;
 }
 
 // The rail's material stays where it is on the rail, while the wheel moves on by the distance

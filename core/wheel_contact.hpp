@@ -45,6 +45,13 @@ class wheel_contact {
  private:
   rp_status solve_patch(patch_contact &solver, patch_region &region, int index,
                         patch_memory *memories, rp_side_result &result);
+  double place_grid(const patch_contact &solver, patch_region &region, const grid &g,
+                    patch_memory &memory) const;
+  static hertz_contact hertz_of(const patch_region &region, double depth, double modulus);
+  void add_force(const patch_region &region, double depth, patch_wrench wrench, double normal_force,
+                 rp_side_result &out) const;
+  static void describe(const patch_scene &scene, const patch_region &region,
+                       const creepage_state &rolling, double depth, rp_patch_result &result);
   // Sets what the last step left behind for the patch of a region; past: of max_patches.
   void set_past(const patch_memory *memory, const patch_region &region, int direction,
                 patch_problem &problem, past_tractions *past) const;

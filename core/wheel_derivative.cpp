@@ -67,6 +67,18 @@ struct wheel_derivative::step {
   rated share, depth;
   lattice_rates lattice[rate_directions];
   basic_bounds<rated> bounds;
+  basic_creepage_state<rated> rolling[blocks];
+
+  // of the patch at hand in any block: surfaces move in the first one only
+  rated_frame frame_in(int b, const patch_region &region) const {
+    return b == 0 ? frame : fixed_frame(region.frame);
+  }
+  rated share_in(int b, const patch_region &region) const {
+    return b == 0 ? share : rated(region.share);
+  }
+  rated depth_in(int b, const patch_solution &solution) const {
+    return b == 0 ? depth : rated(solution.depth);
+  }
 
   step(const wheel_solution &w, patch_contact &p, const double *f, int n,
        const derivative_options &o, const rp_side_result &found, rp_side_result *out)
@@ -191,13 +203,40 @@ void wheel_derivative::set_friction(step &s, int index, const lattice_rates *lat
   }
 }
 
-void wheel_derivative::solve_patch(step &s, int index) {
+// Creepages and speed in all directions.
+void wheel_derivative::set_motion(step &s, int index, patch_variation *in) {
   const patch_region &region = s.wheel.regions[index];
+  for (int b = 0; b < blocks && s.geometry[b]; ++b) {
+    const rated_frame frame = s.frame_in(b, region);
+    s.rolling[b] = s.geometry[b]->creepages(frame, s.depth_in(b, s.wheel.patches[index]));
+    for (int k = 0; k < s.size[b]; ++k) {
+      const auto slot = static_cast<size_t>(k);
+      patch_variation &v = in[b * rate_directions + k];
+      v.creepage[0] = s.rolling[b].xi.rate[slot];
+      v.creepage[1] = s.rolling[b].eta.rate[slot];
+      v.spin_creepage = s.rolling[b].phi.rate[slot];
+      v.rolling_speed = s.rolling[b].rolling_speed.rate[slot];
+      v.friction_coefficient = s.friction[b * rate_directions + k];
+    }
+  }
+}
+
+// The paraboloid of Hertz's contact: wheel_contact::hertz_of.
+void wheel_derivative::set_hertz(step &s, int index, patch_variation *in) {
+  const rated half[2] = {0.5 * (s.bounds.x_max - s.bounds.x_min),
+                         0.5 * (s.bounds.s_max - s.bounds.s_min)};
+  const rated curvature[2] = {s.depth / (half[0] * half[0]), s.depth / (half[1] * half[1])};
+  for (int k = 0; k < s.moving; ++k) {
+    const auto slot = static_cast<size_t>(k);
+    const double rates[2] = {curvature[0].rate[slot], curvature[1].rate[slot]};
+    in[k].hertz =
+        hertz_rate_of_approach(s.wheel.patches[index].problem.hertz, rates, s.depth.rate[slot]);
+  }
+}
+
+void wheel_derivative::solve_patch(step &s, int index) {
   const patch_solution &solution = s.wheel.patches[index];
-  const rp_patch_result &found = s.result.patch[index];
   const patch_scene &scene = s.solver.scene();
-  patch_variation in[most_directions];
-  patch_change out[most_directions];
   if (!solution.solved) {
     // what it carries is not known
     rated unknown(nan);
@@ -207,33 +246,12 @@ void wheel_derivative::solve_patch(step &s, int index) {
     for (auto &sum : s.loaded_radius) sum = unknown;
     return;
   }
+  patch_variation in[most_directions];
+  patch_change out[most_directions];
   set_shape(s, index, in);
   if (s.moving > 0 && row_friction_.size() > 0) set_friction(s, index, s.lattice, in);
-
-  basic_creepage_state<rated> rolling[blocks];
-  for (int b = 0; b < blocks && s.geometry[b]; ++b) {
-    const rated_frame frame = b == 0 ? s.frame : fixed_frame(region.frame);
-    rolling[b] = s.geometry[b]->creepages(frame, b == 0 ? s.depth : rated(solution.depth));
-    for (int k = 0; k < s.size[b]; ++k) {
-      const auto slot = static_cast<size_t>(k);
-      patch_variation &v = in[b * rate_directions + k];
-      v.creepage[0] = rolling[b].xi.rate[slot];
-      v.creepage[1] = rolling[b].eta.rate[slot];
-      v.spin_creepage = rolling[b].phi.rate[slot];
-      v.rolling_speed = rolling[b].rolling_speed.rate[slot];
-      v.friction_coefficient = s.friction[b * rate_directions + k];
-    }
-  }
-  if (scene.normal == RP_NORMAL_HERTZ && s.moving > 0) {
-    const rated half[2] = {0.5 * (s.bounds.x_max - s.bounds.x_min),
-                           0.5 * (s.bounds.s_max - s.bounds.s_min)};
-    const rated curvature[2] = {s.depth / (half[0] * half[0]), s.depth / (half[1] * half[1])};
-    for (int k = 0; k < s.moving; ++k) {
-      const auto slot = static_cast<size_t>(k);
-      const double rates[2] = {curvature[0].rate[slot], curvature[1].rate[slot]};
-      in[k].hertz = hertz_rate_of_approach(solution.problem.hertz, rates, s.depth.rate[slot]);
-    }
-  }
+  set_motion(s, index, in);
+  if (scene.normal == RP_NORMAL_HERTZ && s.moving > 0) set_hertz(s, index, in);
   const derivative_outcome ended =
       s.solver.differentiate(solution.problem, s.wheel.memory[index], in, s.count, s.options, out);
   s.outcome.residual = std::max(s.outcome.residual, ended.residual);
@@ -241,63 +259,70 @@ void wheel_derivative::solve_patch(step &s, int index) {
   s.outcome.normal_products += ended.normal_products;
   s.outcome.tangential_products += ended.tangential_products;
   s.outcome.exact_products += ended.exact_products;
-
   for (int b = 0; b < blocks && s.geometry[b]; ++b) {
-    const auto rates_of = [&](double value, auto &&get) {
-      rated a(value);
-      for (int k = 0; k < s.size[b]; ++k)
-        a.rate[static_cast<size_t>(k)] = get(out[b * rate_directions + k]);
-      return a;
-    };
-    const rated_frame frame = b == 0 ? s.frame : fixed_frame(region.frame);
-    const rated share = b == 0 ? s.share : rated(region.share);
-    const rated depth = b == 0 ? s.depth : rated(solution.depth);
-    basic_wrench<rated> wrench;
-    for (int c = 0; c < 3; ++c) {
-      wrench.force[c] = share * rates_of(solution.wrench.force[c],
-                                         [c](const patch_change &d) { return d.wrench.force[c]; });
-      wrench.moment[c] = share * rates_of(solution.wrench.moment[c], [c](const patch_change &d) {
-                           return d.wrench.moment[c];
-                         });
-    }
-    const vec<rated> lever = s.geometry[b]->lever(frame);
-    add_wrench(wrench, frame.contact_angle, lever.data(), s.force[b].data(), s.moment[b].data());
-    if (found.normal_force > 0) {
-      const rated load = share * rates_of(found.normal_force,
-                                          [](const patch_change &d) { return d.normal_force; });
-      s.load[b] += load;
-      s.loaded_radius[b] += load * s.geometry[b]->rolling_radius(frame, depth);
-    }
-    // the patch's own numbers
-    const bool tangential = scene.tangential != RP_TANGENTIAL_NONE;
-    for (int k = 0; k < s.size[b]; ++k) {
-      const auto slot = static_cast<size_t>(k);
-      const patch_change &d = out[b * rate_directions + k];
-      rp_patch_result &to = s.changes[b * rate_directions + k].patch[index];
-      to.normal_force = d.normal_force;
-      to.approach = depth.rate[slot];
-      to.max_pressure = d.max_pressure;
-      to.contact_area = d.contact_area;
-      to.elastic_energy = d.elastic_energy;
-      to.share = share.rate[slot];
-      for (size_t c = 0; c < 3; ++c) to.position[c] = frame.origin[c].rate[slot];
-      to.contact_angle = frame.contact_angle.rate[slot];
-      to.rolling_speed = rolling[b].rolling_speed.rate[slot];
-      for (int c = 0; c < 2; ++c) {
-        to.grid[c] = found.grid[c];
-        to.grid_origin[c] = b == 0 ? s.lattice[k].origin[c] : 0.0;
-        to.element_size[c] = b == 0 ? s.lattice[k].size[c] : 0.0;
-      }
-      if (!tangential) continue;
-      to.creep_force[0] = d.creep_force[0];
-      to.creep_force[1] = d.creep_force[1];
-      to.spin_moment = d.spin_moment;
-      to.friction_power = d.friction_power;
-      to.creepage[0] = rolling[b].xi.rate[slot];
-      to.creepage[1] = rolling[b].eta.rate[slot];
-      to.spin_creepage = rolling[b].phi.rate[slot];
-    }
+    const patch_change *changes = out + b * rate_directions;
+    add_forces(s, index, b, changes);
+    for (int k = 0; k < s.size[b]; ++k) report(s, index, b, k, changes[k]);
   }
+}
+
+// Adds a patch's part to the wheel's force, moment and load, in the directions of a block.
+void wheel_derivative::add_forces(step &s, int index, int b, const patch_change *changes) {
+  const patch_region &region = s.wheel.regions[index];
+  const patch_solution &solution = s.wheel.patches[index];
+  const auto rates_of = [&](double value, auto &&get) {
+    rated a(value);
+    for (int k = 0; k < s.size[b]; ++k) a.rate[static_cast<size_t>(k)] = get(changes[k]);
+    return a;
+  };
+  const rated_frame frame = s.frame_in(b, region);
+  const rated share = s.share_in(b, region);
+  basic_wrench<rated> wrench;
+  for (int c = 0; c < 3; ++c) {
+    wrench.force[c] = share * rates_of(solution.wrench.force[c],
+                                       [c](const patch_change &d) { return d.wrench.force[c]; });
+    wrench.moment[c] = share * rates_of(solution.wrench.moment[c],
+                                        [c](const patch_change &d) { return d.wrench.moment[c]; });
+  }
+  const vec<rated> lever = s.geometry[b]->lever(frame);
+  add_wrench(wrench, frame.contact_angle, lever.data(), s.force[b].data(), s.moment[b].data());
+  const double normal_force = s.result.patch[index].normal_force;
+  if (!(normal_force > 0)) return;
+  const rated load =
+      share * rates_of(normal_force, [](const patch_change &d) { return d.normal_force; });
+  s.load[b] += load;
+  s.loaded_radius[b] += load * s.geometry[b]->rolling_radius(frame, s.depth_in(b, solution));
+}
+
+// The patch's own numbers in direction k of a block.
+void wheel_derivative::report(step &s, int index, int b, int k, const patch_change &d) {
+  const patch_region &region = s.wheel.regions[index];
+  const rp_patch_result &found = s.result.patch[index];
+  const rated_frame frame = s.frame_in(b, region);
+  const auto slot = static_cast<size_t>(k);
+  rp_patch_result &to = s.changes[b * rate_directions + k].patch[index];
+  to.normal_force = d.normal_force;
+  to.approach = s.depth_in(b, s.wheel.patches[index]).rate[slot];
+  to.max_pressure = d.max_pressure;
+  to.contact_area = d.contact_area;
+  to.elastic_energy = d.elastic_energy;
+  to.share = s.share_in(b, region).rate[slot];
+  for (size_t c = 0; c < 3; ++c) to.position[c] = frame.origin[c].rate[slot];
+  to.contact_angle = frame.contact_angle.rate[slot];
+  to.rolling_speed = s.rolling[b].rolling_speed.rate[slot];
+  for (int c = 0; c < 2; ++c) {
+    to.grid[c] = found.grid[c];
+    to.grid_origin[c] = b == 0 ? s.lattice[k].origin[c] : 0.0;
+    to.element_size[c] = b == 0 ? s.lattice[k].size[c] : 0.0;
+  }
+  if (s.solver.scene().tangential == RP_TANGENTIAL_NONE) return;
+  to.creep_force[0] = d.creep_force[0];
+  to.creep_force[1] = d.creep_force[1];
+  to.spin_moment = d.spin_moment;
+  to.friction_power = d.friction_power;
+  to.creepage[0] = s.rolling[b].xi.rate[slot];
+  to.creepage[1] = s.rolling[b].eta.rate[slot];
+  to.spin_creepage = s.rolling[b].phi.rate[slot];
 }
 
 }  // namespace railpatch

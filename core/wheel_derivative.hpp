@@ -58,6 +58,10 @@ class wheel_derivative {
   void solve_patch(step &s, int index);
   void set_shape(step &s, int index, patch_variation *in);
   void set_friction(step &s, int index, const lattice_rates *lattice, patch_variation *in);
+  void set_motion(step &s, int index, patch_variation *in);
+  void set_hertz(step &s, int index, patch_variation *in);
+  void add_forces(step &s, int index, int block, const patch_change *changes);
+  void report(step &s, int index, int block, int direction, const patch_change &change);
 
   int max_count_, max_rows_;
   aligned_buffer<double> distance_, row_friction_;  // rates by direction

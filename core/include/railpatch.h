@@ -369,6 +369,9 @@ typedef struct rp_input {
   double time_step;         /* s, >= 0, since the last step, for rails on dampers (0: at rest)
                                and for regime = RP_TRANSIENT_ROLLING (> 0) */
   double roller_pitch_rate; /* rad/s */
+
+  double friction_coefficient; /* -, of a direction (rp_differentiate) only: rate of the coefficient
+                                  of Coulomb's law; 0 in a step, see rp_set_friction_coefficient */
 } rp_input;
 
 /* One patch. Values of stages that the scene leaves out are NaN (element counts 0). Linear theory

@@ -2,11 +2,14 @@
 // however odd, crashes (which is worth most under the sanitizers).
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <random>
+#include <type_traits>
 
+#include "../../plugins/common/config_fields.hpp"
 #include "scenes.hpp"
 
 namespace {
@@ -600,7 +603,10 @@ TEST(Input, OfAPatchIsChecked) {
        {"creepage[0]", [](rp_input &in) -> double & { return in.creepage[0]; }, {}},
        {"creepage[1]", [](rp_input &in) -> double & { return in.creepage[1]; }, {}},
        {"spin_creepage", [](rp_input &in) -> double & { return in.spin_creepage; }, {}},
-       {"rolling_speed", [](rp_input &in) -> double & { return in.rolling_speed; }, {-1}}});
+       {"rolling_speed", [](rp_input &in) -> double & { return in.rolling_speed; }, {-1}},
+       {"friction_coefficient",
+        [](rp_input &in) -> double & { return in.friction_coefficient; },
+        {0.3, -1e-9}}});
   scenes::handle contact(c);
   for (int direction : {0, 2, -2, std::numeric_limits<int>::min()}) {
     rp_input in = default_input();
@@ -794,32 +800,74 @@ class Garbage : public testing::Test {
   // small and sometimes wrong, so that memory and time stay small
   int count() { return static_cast<int>(random() % 23) - 2; }
   bool rarely() { return random() % 6 == 0; }
+  bool seldom() { return random() % 15 == 0; }
 
+  // doubles; whole numbers and choices are spoiled by name
+  template <class T>
+  void spoil_numbers(T &field) {
+    if constexpr (std::is_array_v<T>) {
+      for (auto &value : field) spoil_numbers(value);
+    } else if constexpr (std::is_same_v<T, double>) {
+      if (random() % 80 == 0) field = number();
+    }
+  }
+  // pieces of physics with numbers that may pass
+  void enable(rp_config &c) {
+    if (seldom()) {
+      c.friction_law = RP_SLIP_VELOCITY;
+      c.slip_law = static_cast<rp_slip_law>(random() % 3);
+      c.friction_kinetic = 0.2;
+      c.friction_amplitude[0] = 0.1;
+      c.friction_halving_speed[0] = 0.5;
+      if (random() % 2) c.friction_memory_distance = 1e-3, c.friction_memory_speed = 1e-3;
+    }
+    if (seldom()) {
+      c.layer_thickness = 2e-5;
+      c.layer_shear_modulus = 8.2e9;
+      if (random() % 2) c.layer_yield_stress = 2e8, c.layer_hardening = 3e12;
+    }
+    if (seldom()) {
+      c.temperature = 1;
+      for (int k = 0; k < 2; ++k)
+        c.conductivity[k] = 50, c.heat_capacity[k] = 450, c.density[k] = 7850;
+      if (random() % 2) {
+        c.friction_law = RP_TEMPERATURE;
+        c.friction_reference = 0.36;
+        c.friction_change = -0.18;
+        c.friction_temperature_range = 600;
+      }
+    }
+    if (seldom()) c.derivatives = 1;
+    if (seldom()) c.force_prescribed[random() % 2] = 1;
+    if (seldom()) c.reference_surface = RP_REFERENCE_CURVED;
+    if (seldom()) c.patch_rule = RP_PATCHES_CONTACT;
+    if (seldom()) c.contact_frame = RP_FRAME_INCLINED;
+    if (seldom())
+      for (int k = 0; k < 2; ++k) c.rail_stiffness[k] = 1e8, c.rail_damping[k] = 1e5;
+    if (seldom()) {
+      c.friction_points = 2;
+      c.friction_position[0] = -0.5, c.friction_position[1] = 0.5;
+      c.friction_factor[0] = 1, c.friction_factor[1] = 0.7;
+    }
+    if (c.kind == RP_PATCH || !seldom()) return;
+    const auto side = static_cast<size_t>(random() % 2);
+    if (random() % 2) {
+      for (double &v : out_of_round) v = rarely() ? number() : 1e-5;
+      c.runout[side] = out_of_round.data();
+      c.runout_count[side] = static_cast<int32_t>(out_of_round.size());
+    } else {
+      for (double &v : heights) v = rarely() && rarely() ? number() : 1e-5;
+      c.rail_height[side] = random() % 8 ? heights.data() : nullptr;
+      c.rail_height_count[side] = static_cast<int32_t>(heights.size());
+      c.rail_height_start = -0.5;
+      c.rail_height_spacing = 0.05;
+    }
+  }
   void spoil(rp_config &c) {
-    double *const numbers[] = {&c.shear_modulus[0],
-                               &c.shear_modulus[1],
-                               &c.poisson_ratio[0],
-                               &c.poisson_ratio[1],
-                               &c.semi_axes[0],
-                               &c.semi_axes[1],
-                               &c.curvatures[0],
-                               &c.curvatures[1],
-                               &c.line_contact_radius,
-                               &c.width,
-                               &c.friction_coefficient,
-                               &c.layer_shear_modulus,
-                               &c.layer_thickness,
-                               &c.tolerance,
-                               &c.nominal_radius,
-                               &c.flange_back_distance,
-                               &c.flange_back_position,
-                               &c.gauge,
-                               &c.gauge_height,
-                               &c.cant,
-                               &c.curvature,
-                               &c.roller_radius};
-    for (double *v : numbers)
-      if (random() % 25 == 0) *v = number();
+    enable(c);
+#define RAILPATCH_SPOIL(field) spoil_numbers(c.field);
+    RAILPATCH_CONFIG_FIELDS(RAILPATCH_SPOIL)
+#undef RAILPATCH_SPOIL
     for (int k = 0; k < 2; ++k) {
       c.elements[k] = count();
       c.max_elements[k] = 12 + count();
@@ -829,9 +877,9 @@ class Garbage : public testing::Test {
     if (random() % 2) c.geometry = static_cast<rp_geometry>(random() % 4);
     if (c.geometry == RP_LINE_CONTACT) c.elements[1] = 1;
     if (random() % 2) c.load = static_cast<rp_load>(random() % 2);
-    if (random() % 2) c.regime = static_cast<rp_regime>(random() % 2);
+    if (random() % 2) c.regime = static_cast<rp_regime>(random() % 4);
     if (random() % 2) c.normal = static_cast<rp_normal_method>(random() % 4);
-    if (random() % 2) c.tangential = static_cast<rp_tangential_method>(random() % 3);
+    if (random() % 2) c.tangential = static_cast<rp_tangential_method>(random() % 8);
     if (random() % 2) c.spin_offset = static_cast<rp_spin_offset>(random() % 2);
     if (random() % 60 == 0) put(c.kind, static_cast<int>(random()));
     if (rarely())
@@ -896,12 +944,25 @@ class Garbage : public testing::Test {
       std::vector<double> values(1 << 12);
       size_t size = values.size();
       rp_get_field(contact, RP_RIGHT, 0, RP_FIELD_TRACTION, values.data(), &size);
+      if (c.derivatives == 1 && i == 0) differentiate(contact);
     }
     rp_destroy(contact);
   }
 
+  // along a direction in which anything may change
+  void differentiate(rp_contact *contact) {
+    rp_input direction;
+    rp_default_direction(&direction);
+    direction.creepage[0] = direction.y = 1;
+    spoil(direction);
+    rp_result change;
+    rp_derivative_kind kind;
+    differentiated += rp_differentiate(contact, &direction, &change, &kind, nullptr) == RP_OK;
+  }
+
   std::mt19937_64 random{20240609};
-  int created = 0, stepped = 0;
+  std::array<double, 32> out_of_round{}, heights{};
+  int created = 0, stepped = 0, differentiated = 0;
 };
 
 TEST_F(Garbage, ConfigsOfPatchesDoNotCrash) {
@@ -919,11 +980,12 @@ TEST_F(Garbage, ConfigsOfPatchesDoNotCrash) {
   }
   EXPECT_GT(created, 300);
   EXPECT_GT(stepped, 300);
+  EXPECT_GT(differentiated, 10);
 }
 
 TEST_F(Garbage, ConfigsOfWheelsDoNotCrash) {
   const scenes::profile_pair pair;
-  for (int n = 0; n < 600; ++n) {
+  for (int n = 0; n < 2500; ++n) {
     const rp_track track = random() % 2 ? RP_RAIL : RP_ROLLER;
     rp_config c = scenes::wheels(random() % 2 ? RP_WHEELSET : RP_WHEEL_RAIL, track, pair);
     c.element_size[0] = c.element_size[1] = 2e-3;
@@ -933,6 +995,7 @@ TEST_F(Garbage, ConfigsOfWheelsDoNotCrash) {
   }
   EXPECT_GT(created, 30);
   EXPECT_GT(stepped, 30);
+  EXPECT_GT(differentiated, 0);
 }
 
 TEST_F(Garbage, ProfilesDoNotCrash) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <random>
+#include <utility>
 
 #include "input_numbers.hpp"
 #include "scenes.hpp"
@@ -223,7 +224,8 @@ TEST_P(WheelDerivatives, JacobianEqualsDifferences) {
   EXPECT_LT(with_event, compared / 2);
 }
 
-// One direction through all inputs of wheels at once, for all numbers of the result.
+// One direction through all inputs of wheels and the friction coefficient at once, for all numbers
+// of the result.
 TEST_P(WheelDerivatives, OfEveryNumberEqualDifferences) {
   rp_config c = config();
   c.tolerance = fine;
@@ -266,6 +268,8 @@ TEST_P(WheelDerivatives, OfEveryNumberEqualDifferences) {
         for_each_number(moved, [&](const char *, double &v, double) {
           v += (k == 0 ? 1 : -1) * along[l] * rates[next++];
         });
+        const double friction = std::exchange(moved.friction_coefficient, 0.0);
+        rp_set_friction_coefficient(h.get(), c.friction_coefficient + friction, nullptr);
         rp_result end = h.step(moved);
         event = event || end.status != RP_CONVERGED || choices(h, end) != here;
         for_each_result_number(end, [&](double &v) { ends[k].push_back(v); });
@@ -273,6 +277,7 @@ TEST_P(WheelDerivatives, OfEveryNumberEqualDifferences) {
       for (size_t i = 0; i < exact.size(); ++i)
         difference[l].push_back((ends[0][i] - ends[1][i]) / (2 * along[l]));
     }
+    rp_set_friction_coefficient(h.get(), c.friction_coefficient, nullptr);
     ++(event ? with_event : compared);
     if (event) continue;
     for (size_t i = 0; i < exact.size(); ++i) {

@@ -46,6 +46,14 @@ PATCHES = {
     ),
     "kind": "wheel_rail",
 }
+HEAT = {"wheel": 30.0, "rail": 20.0, "exchange": True}
+WARM_LAW = {
+    "law": "temperature",
+    "reference": 0.4,
+    "change": -0.2,
+    "reference_temperature": 25.0,
+    "temperature_range": 300.0,
+}
 SCENES: dict[str, dict[str, Any]] = {
     "patch": PATCH,
     "patch_approach": with_values(
@@ -68,6 +76,17 @@ SCENES: dict[str, dict[str, Any]] = {
     "fitted": with_values(PATCH, method={"normal": "hertz"}, grid={"fitted": [8, 8]}),
     "table": with_values(PATCH, method={"normal": "hertz", "tangential": "table"}),
     "layer": with_values(PATCH, layer={"shear_modulus": 8.2e9, "thickness": 5e-5}),
+    "plastic": with_values(
+        PATCH,
+        motion__creepage=[2e-3, 0.0],
+        layer={"shear_modulus": 8.2e9, "thickness": 2e-5, "yield_stress": 1.5e8, "hardening": 1e12},
+    ),
+    "falling": with_values(
+        PATCH,
+        friction={"law": "slip_velocity", "kinetic": 0.2, "amplitude": 0.2, "halving_speed": 0.1},
+    ),
+    "hot": with_values(PATCH, motion__creepage=[1e-2, 0.0], friction=WARM_LAW, temperature=HEAT),
+    "warm": with_values(RAIL, wheelset__pitch_rate=-2.3 / 0.46, temperature=HEAT),
     "prescribed_force": with_values(
         PATCH, motion__creepage=[0.0, 1e-4], motion__tangential_force=[-5e3, "creepage"]
     ),
@@ -126,6 +145,10 @@ MOTIONS: dict[str, list[dict[str, float]]] = {
     "fitted": [{"creepage[2]": 2e-3}, {"normal_force": 1e4, "spin_creepage": 0.2}],
     "table": [{"creepage[2]": 2e-3}, {"normal_force": 1e4, "spin_creepage": 0.2}],
     "layer": [{"creepage[1]": 2e-3}],
+    "plastic": [{"creepage[2]": 1e-3}, {"normal_force": 6e4}],
+    "falling": [{"creepage[1]": 4e-3}, {"spin_creepage": 0.2}],
+    "hot": [{"temperature.wheel": 150.0}, {"creepage[1]": 4e-3, "temperature.rail": 40.0}],
+    "warm": [{"temperature.rail": 45.0}, {"wheelset.z": -1e-3}, {"wheelset.z": 2.1e-4}],
     "rail": [
         {"wheelset.y": 1e-4, "wheelset.yaw": 1e-3},
         {"wheelset.vy": 0.01, "wheelset.left.offset[3]": 2e-5, "track.right.rotation[1]": 1e-4},

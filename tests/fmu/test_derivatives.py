@@ -43,6 +43,7 @@ USUAL = {
     "wheelset.speed": 1.0,
     "angular_velocity[2]": 1.0,
     "velocity[1]": 0.1,
+    "friction.coefficient": 0.05,
 }
 RATE = 0.01  # of all others
 DIFFERENCE = 1e-4  # of the usual change
@@ -81,6 +82,7 @@ def test_equal_central_differences(name: str, exact: Callable[..., Fmu]) -> None
     assert fmu.root.find("CoSimulation").attrib["providesDirectionalDerivative"] == "true"
     outputs = [n for n in fmu.names("output", "Real") if not n.endswith("residual")]
     inputs = fmu.names("input", "Real")
+    inputs += [n for n in fmu.names("parameter") if n == "friction.coefficient"]
     start = {n: float(fmu.variables[n][0].attrib["start"]) for n in inputs}
     base = numbers(solved(fmu, {}))
     matrix, differences, kept = [], [], []
@@ -175,7 +177,6 @@ def test_wrong_calls(exact: Callable[..., Fmu]) -> None:
             (creep, creep),
             (fmu.references["status"], force),
             (creep, fmu.references["direction"]),
-            (creep, fmu.references["friction.coefficient"]),
         ):
             slave.log.clear()
             arrays = ((Reference * 1)(unknown), one, (Reference * 1)(known), one)
@@ -223,6 +224,11 @@ def test_scenes_without_exact_ones_have_them_on_request(tmp_path: Path) -> None:
         [moved] = slave.get("creep_force[1]")
         # a curved line: the chord of 1 % is near the tangent
         assert moved - middle == pytest.approx(slope, rel=0.02)
+        status, [slope] = slave.derivative(["creep_force[1]"], {"friction.coefficient": 0.003})
+        assert status == OK
+        assert slave.set({"friction.coefficient": 0.303}) == OK
+        assert slave.step(STEP, STEP) == OK
+        assert slave.get("creep_force[1]")[0] - moved == pytest.approx(slope, rel=0.02)
     with Slave(pack("fast")).initialize() as slave:
         assert slave.derivative(["creep_force[1]"], {"normal_force": 1.0})[0] == ERROR
         assert slave.output_derivatives(["creep_force[1]"])[0] == ERROR

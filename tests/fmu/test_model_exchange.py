@@ -15,7 +15,7 @@ from fmu_scenes import MOTIONS, SCENES
 from slave import DISCARD, ERROR, OK, Fmu, Integer, Real, Reference, Size, Slave
 
 Unpack = Callable[..., Fmu]
-HISTORY = ("transient", "transient_patch", "supported")
+HISTORY = ("transient", "transient_patch", "supported", "plastic", "falling", "hot")
 NONE = Size(0)
 INSTANTIATED, INITIALIZATION, EVENT, CONTINUOUS, TERMINATED, ERROR_STATE = range(6)
 ALL = {INSTANTIATED, INITIALIZATION, EVENT, CONTINUOUS, TERMINATED, ERROR_STATE}

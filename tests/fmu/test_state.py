@@ -39,7 +39,7 @@ def test_restored_state_gives_the_same_bits(name: str, unpacked: Unpack) -> None
             assert other.serialize(handle) == content
 
 
-@pytest.mark.parametrize("name", ["patch", "roller", "patches"])
+@pytest.mark.parametrize("name", ["patch", "roller", "patches", "hot"])
 def test_another_process_gives_the_same_bits(name: str, unpacked: Unpack, tmp_path: Path) -> None:
     fmu = unpacked(name)
     with Slave(fmu).initialize(start=2.0) as slave:

@@ -207,6 +207,40 @@ def test_full_sliding() -> None:
     assert turned["creep_force"][1] == pytest.approx(-0.3 * 8e4, rel=1e-2)
 
 
+def test_full_sliding_by_the_coefficient() -> None:
+    """Creep force -mu F, to the share of the elastic slip."""
+    case = patch_case(CURVATURES, force=8e4, elements=12, creepage=[1.0, 0.0], tolerance=1e-12)
+    _, change = derivative(case, friction_coefficient=1.0)
+    assert change["creep_force"][0] == pytest.approx(-8e4, rel=1e-4)
+
+
+@pytest.mark.parametrize("method", [{}, {"normal": "hertz", "tangential": "fastsim"}])
+def test_friction_and_creepages_scale_together(method: dict[str, str]) -> None:
+    """Tractions are homogeneous of degree 1 in coefficient and creepages, their power of degree 2
+    (Euler's theorem); FASTSIM by differences, where an element may change its state."""
+    motion = {"creepage": [8e-4, -5e-4], "spin": 0.2}
+    case = patch_case(CURVATURES, force=8e4, elements=14, tolerance=1e-12, **motion, **method)
+    base, change = derivative(
+        case,
+        friction_coefficient=case["friction"]["coefficient"],
+        creepage=motion["creepage"],
+        spin_creepage=motion["spin"],
+    )
+    bound = 1e-3 if method else 1e-9
+    for name, degree in (("creep_force", 1), ("spin_moment", 1), ("friction_power", 2)):
+        wanted = degree * numbers(base, name)
+        assert numbers(change, name) == pytest.approx(wanted, rel=bound), name
+    _, alone = derivative(case, friction_coefficient=1.0)
+    assert np.linalg.norm(alone["creep_force"]) > 0.1 * np.linalg.norm(base["creep_force"])
+
+
+def test_only_coulombs_law_has_a_coefficient() -> None:
+    contact = railpatch.Contact({**PLAIN, "friction": SLIP_LAW})
+    contact.step()
+    with pytest.raises(CaseError, match="friction_coefficient"):
+        contact.differentiate(friction_coefficient=1.0)
+
+
 def test_no_creepage_gives_the_linear_slope() -> None:
     """All of the contact sticks: the force is linear in small creepages, with Kalker's slope to the
     error of the grid (5 % at 16 elements across, halved at twice as many)."""

@@ -1,8 +1,10 @@
 """What must hold of an FMU for many systems: python check.py NAME.fmu FOLDER [--compile]
 
-Looks at the libraries' symbols (binutils), runs those of this machine and, where Wine is installed,
-of Windows by steps.c, and compares their numbers; --compile: also the library that fmpy makes of
-the sources, with the compiler of this machine. FOLDER is for what is made here; it may stay.
+Looks at the libraries' symbols (binutils), runs those of this machine by steps.c, where Wine is
+installed those of Windows too, and where QEMU is installed those for ARM (Debian: wine64;
+qemu-user-static and libc6-arm64-cross), and compares their numbers; --compile: also the library
+that fmpy makes of the sources, with the compiler of this machine. FOLDER is for what is made here;
+it may stay.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ET
 import zipfile
+from dataclasses import dataclass
 from pathlib import Path
 
 from build import package
@@ -30,6 +33,40 @@ FUNCTIONS = re.compile(r"\bfmi2[A-Z]\w*")
 # differently, and an iteration carries that on
 SAME = 1e-9
 LOADS = 100
+# Debian's folder of the C library for ARM
+ARM = Path("/usr/aarch64-linux-gnu")
+
+
+@dataclass(frozen=True)
+class Emulator:
+    """Runs another system's programs here."""
+
+    name: str
+    platform: str
+    target: str  # of the compiler
+    program: list[str | Path]
+    ending: str = ""
+    prefix: str = ""  # of a path
+    libraries: tuple[str, ...] = ()
+
+
+def emulators() -> list[Emulator]:
+    """Those at hand."""
+    found = []
+    if (wine := which("wine64", "wine", "/usr/lib/wine/wine64")) is not None:
+        target = "x86_64-windows-gnu"
+        found.append(Emulator("Wine", "win64", target, [wine], ".exe", "Z:"))
+    qemu = which("qemu-aarch64", "qemu-aarch64-static")
+    if qemu is not None and ARM.is_dir():
+        target = "aarch64-linux-gnu.2.17"
+        program = [qemu, "-L", ARM]
+        found.append(Emulator("QEMU", "aarch64-linux", target, program, libraries=("-ldl",)))
+    return found
+
+
+def which(*names: str) -> str | None:
+    """The first of these programs that there is."""
+    return next((found for name in names if (found := shutil.which(name))), None)
 
 
 def output(*command: str | Path, **options: object) -> str:
@@ -137,11 +174,6 @@ def compiled(path: Path, folder: Path) -> Unpacked:
     return fmu
 
 
-def wine() -> str | None:
-    """The program, which Debian's wine64 has beside the path."""
-    return shutil.which("wine64") or shutil.which("wine") or shutil.which("/usr/lib/wine/wine64")
-
-
 def main() -> None:
     """Everything, in the order of the cost."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -166,11 +198,13 @@ def main() -> None:
     output(*zig, "-ldl", "-o", folder / "steps")
     here = fmu.run("linux64", [folder / "steps"])
     print(f"linux64: {LOADS} loads, 100 steps here")
-    if "win64" in fmu.platforms() and (program := wine()) is not None:
-        output(*zig, "-target", "x86_64-windows-gnu", "-o", folder / "steps.exe")
-        os.environ.setdefault("WINEPREFIX", str(folder / "wine"))
-        there = fmu.run("win64", [program, folder / "steps.exe"], prefix="Z:")
-        compare(fmu, here, there, "win64 under Wine")
+    os.environ.setdefault("WINEPREFIX", str(folder / "wine"))
+    for other in emulators():
+        if other.platform in fmu.platforms():
+            program = folder / f"steps_{other.platform}{other.ending}"
+            output(*zig, "-target", other.target, *other.libraries, "-o", program)
+            there = fmu.run(other.platform, [*other.program, program], prefix=other.prefix)
+            compare(fmu, here, there, f"{other.platform} under {other.name}")
     if arguments.compile:
         own = compiled(path, folder / f"{path.stem}_compiled")
         compare(fmu, here, own.run("linux64", [folder / "steps"]), "compiled by fmpy")

@@ -88,6 +88,7 @@ std::unique_ptr<Instance> Instance::create(Interface interface, const char *guid
   instance->contact_.reset(contact);
   instance->wheels_ = scene.config.kind != RP_PATCH;
   instance->derivatives_ = scene.config.derivatives != 0;
+  if (scene.config.temperature != 0) std::copy_n(scene.config.bulk_temperature, 2, instance->bulk_);
   instance->with_z_ = scene.config.load == RP_POSITION;
   instance->interface_ = interface;
   instance->options_ = scene.options;
@@ -123,6 +124,7 @@ bool Instance::index_variables() {
 
 void Instance::start_values() {
   rp_default_input(&input_);
+  std::copy_n(bulk_, 2, input_.bulk_temperature);
   values_.clear();
   for (const SceneVariable &item : variables_) values_.push_back(item.start);
   at_.assign(known_, 0);
@@ -243,8 +245,10 @@ fmi2Status Instance::run_contact(const Call &call, double time, double time_step
       error = rp_set_friction_coefficient(contact_.get(), at_[i], &message);
   }
   input_.time_step = time_step;
-  input_.distance =
-      mode_ == Mode::initialization ? options_.distance : input_.rolling_speed * time_step;
+  // at standstill nothing rolls on, whatever the distance
+  input_.distance = mode_ == Mode::initialization || !(input_.rolling_speed > 0)
+                        ? options_.distance
+                        : input_.rolling_speed * time_step;
   if (error == RP_OK) error = rp_step(contact_.get(), &input_, &outputs_.result, &message);
   if (error != RP_OK)
     return refuse(call, message.text[0] != '\0' ? message.text : rp_error_text(error));
@@ -254,7 +258,7 @@ fmi2Status Instance::run_contact(const Call &call, double time, double time_step
              std::string(call.name) + ": " + failure(time, outputs_.result));
     return fmi2Discard;
   }
-  if (wheels_) add_sums(outputs_, input_);
+  add_sums(outputs_, input_);
   solution_ = Solution::held;
   return fmi2OK;
 }
@@ -269,7 +273,7 @@ void Instance::publish() {
   for (size_t i = known_; i < values_.size(); ++i) {
     const Variable &variable = *variables_[i].variable;
     if (absent(variable))
-      values_[i] = is_status(variable) ? RP_NO_CONTACT : 0;
+      values_[i] = is_status(variable) ? double{RP_NO_CONTACT} : rest_of(outputs_, variable);
     else
       values_[i] = output_of(outputs_, variable);
   }

@@ -1,6 +1,7 @@
 // One instance of the FMU: its mode, time, values of all variables, and the contact behind them.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -76,8 +77,9 @@ class Instance {
   // index in values_, or -1
   int index_of(fmi2ValueReference reference) const;
   int find(const Call &call, Type type, fmi2ValueReference reference);
-  // finds a Real input, or a Real output that has derivatives
+  // finds a Real input, one that derivatives are taken by, or a Real output that has derivatives
   int find_input(const Call &call, fmi2ValueReference reference);
+  int find_known(const Call &call, fmi2ValueReference reference);
   int find_output(const Call &call, fmi2ValueReference reference);
   bool settable(const Call &call, int index, double value);
   bool index_variables();  // false: they do not belong together
@@ -116,6 +118,9 @@ class Instance {
   Interface interface_ = Interface::co_simulation;
   Options options_;
   bool wheels_ = false, derivatives_ = false, with_z_ = false;
+  // degrees C, where they are no inputs; NaN: the scene has none
+  double bulk_[2] = {std::numeric_limits<double>::quiet_NaN(),
+                     std::numeric_limits<double>::quiet_NaN()};
   size_t known_ = 0;  // number of inputs and parameters, which come first
   std::vector<std::pair<size_t, size_t>> means_;  // mean over a step, and what it is the mean of
   std::string table_;  // of creep forces, which the contact uses in place

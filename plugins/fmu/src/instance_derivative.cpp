@@ -16,6 +16,13 @@ int Instance::find_input(const Call &call, fmi2ValueReference reference) {
   return -1;
 }
 
+// The coefficient of friction counts, too: the core has derivatives by it.
+int Instance::find_known(const Call &call, fmi2ValueReference reference) {
+  return reference == friction_coefficient && index_of(reference) >= 0
+             ? index_of(reference)
+             : find_input(call, reference);
+}
+
 int Instance::find_output(const Call &call, fmi2ValueReference reference) {
   const int index = find(call, Type::real, reference);
   if (index < 0) return index;
@@ -44,7 +51,7 @@ fmi2Status Instance::directional_derivative(const fmi2ValueReference *unknown, s
     if (find_output(call, unknown[i]) < 0) return fmi2Error;
   std::vector<double> rates(known_);
   for (size_t i = 0; i < known_count; ++i) {
-    const int index = find_input(call, known[i]);
+    const int index = find_known(call, known[i]);
     if (index < 0) return fmi2Error;
     if (!std::isfinite(seed[i]))
       return refuse(call, "dvKnown is " + text_of(seed[i]) + ", allowed a finite number");
@@ -76,7 +83,7 @@ fmi2Status Instance::output_derivatives(const fmi2ValueReference *references, si
 
 double Instance::rate_of(fmi2ValueReference reference) const {
   const Variable &variable = *variables_[static_cast<size_t>(index_of(reference))].variable;
-  return absent(variable) ? 0 : output_of(change_, variable);
+  return absent(variable) ? rest_of(change_, variable) : output_of(change_, variable);
 }
 
 fmi2Status Instance::hold_solution(const Call &call) {
@@ -104,9 +111,12 @@ fmi2Status Instance::differentiate(const Call &call, const std::vector<double> &
   direction_.clear();
   rp_input direction;
   rp_default_direction(&direction);
-  for (size_t i = 0; i < known_; ++i)
-    if (variables_[i].variable->type == Type::real && rates[i] != 0)
-      put_input(direction, *variables_[i].variable, rates[i]);
+  for (size_t i = 0; i < known_; ++i) {
+    const Variable &variable = *variables_[i].variable;
+    if (variable.type != Type::real || rates[i] == 0) continue;
+    if (variable.role == Role::input) put_input(direction, variable, rates[i]);
+    if (variable.reference == friction_coefficient) direction.friction_coefficient = rates[i];
+  }
   rp_message message = {};
   const rp_error error =
       rp_differentiate(contact_.get(), &direction, &change_.result, nullptr, &message);
@@ -119,7 +129,7 @@ fmi2Status Instance::differentiate(const Call &call, const std::vector<double> &
                  "scene with a larger method.max_iterations");
     return fmi2Discard;
   }
-  if (wheels_) add_sum_rates(outputs_, input_, direction, change_);
+  add_sum_rates(outputs_, input_, direction, change_);
   direction_ = rates;
   return fmi2OK;
 }

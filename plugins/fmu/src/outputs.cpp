@@ -46,6 +46,19 @@ Dual power_of(const double (&force)[3], const double (&moment)[3], const double 
   return power;
 }
 
+// Of the warmer body.
+double bulk_of(const rp_input &of, const rp_input &input) {
+  const double *bulk = input.bulk_temperature;
+  return of.bulk_temperature[bulk[1] > bulk[0] ? 1 : 0];
+}
+
+// Where there is no contact the core knows no temperature.
+void fill_temperatures(rp_result &result, double rest) {
+  for (auto &side : result.side)
+    for (auto &patch : side.patch)
+      if (std::isnan(patch.max_temperature)) patch.max_temperature = rest;
+}
+
 // Adds a wheel's patches, and the alternatives that count in its force.
 void add_patches(const rp_side_result &side, const rp_side_result &rate, Sums &sums, Sums &rates) {
   for (int i = 0; i < side.patch_count + side.alternative_count; ++i) {
@@ -57,7 +70,14 @@ void add_patches(const rp_side_result &side, const rp_side_result &rate, Sums &s
     rates.friction_power += friction.rate;
     sums.elastic_energy += energy.value;
     rates.elastic_energy += energy.rate;
+    const Dual plastic = share * or_zero(p.plastic_power, d.plastic_power);
+    sums.plastic_power += plastic.value;
+    rates.plastic_power += plastic.rate;
     sums.residual = std::max(sums.residual, or_zero(p.residual));
+    if (p.max_temperature > sums.max_temperature) {
+      sums.max_temperature = p.max_temperature;
+      rates.max_temperature = or_zero(d.max_temperature);
+    }
   }
 }
 
@@ -75,7 +95,11 @@ void add_wrench(const double (&force)[3], const double (&moment)[3], const doubl
 
 void sums_of(const rp_result &result, const rp_result &rate, const rp_input &input,
              const rp_input &direction, Sums (&sums)[3], Sums (&rates)[3]) {
-  for (int k = 0; k < 3; ++k) sums[k] = rates[k] = {};
+  for (int k = 0; k < 3; ++k) {
+    sums[k] = rates[k] = {};
+    sums[k].max_temperature = bulk_of(input, input);
+    rates[k].max_temperature = bulk_of(direction, input);
+  }
   for (int s = 0; s < 2; ++s) {
     const rp_side_result &side = result.side[s], &change = rate.side[s];
     add_patches(side, change, sums[s], rates[s]);
@@ -90,6 +114,8 @@ void sums_of(const rp_result &result, const rp_result &rate, const rp_input &inp
 }  // namespace
 
 void add_sums(Outputs &outputs, const rp_input &input) {
+  outputs.rest_temperature = or_zero(bulk_of(input, input));
+  fill_temperatures(outputs.result, outputs.rest_temperature);
   const rp_input still = {};
   Sums rates[3];
   // rates of nothing: the result stands in, so that no second one is made
@@ -98,6 +124,8 @@ void add_sums(Outputs &outputs, const rp_input &input) {
 
 void add_sum_rates(const Outputs &outputs, const rp_input &input, const rp_input &direction,
                    Outputs &change) {
+  change.rest_temperature = or_zero(bulk_of(direction, input));
+  fill_temperatures(change.result, change.rest_temperature);
   Sums sums[3];
   sums_of(outputs.result, change.result, input, direction, sums, change.sums);
 }

@@ -39,6 +39,11 @@ inline bool is_mean(const Variable &variable) {
 // Of outputs of patches: the status.
 inline bool is_status(const Variable &variable) { return variable.reference % 100 == 1; }
 
+// Of an output of a patch that is not there.
+inline double rest_of(const Outputs &outputs, const Variable &variable) {
+  return variable.reference % 100 == 18 ? outputs.rest_temperature : 0;
+}
+
 // null: there is no such variable in any scene
 const Variable *find_variable(uint32_t reference);
 

@@ -116,8 +116,9 @@ class Contact:
     def differentiate(self, **direction: Any) -> Result:
         """Rates of the last step's result, for rates of moving inputs: zero where left out.
 
-        The keys are those of step(), without direction and steps; those of left, right, track and
-        temperature take tables in part or whole. The result has the keys of step()'s with rates,
+        The keys are those of step(), without direction and steps, and of Coulomb's law
+        friction_coefficient; those of left, right, track and temperature take tables in part or
+        whole. The result has the keys of step()'s with rates,
         NaN where it has none, and ``kind``: "exact", from the solved conditions, or "differences"
         of further steps, for methods without exact ones. Where an element is about to change
         between stick, slip and no contact, exact rates are those of its present state. Needs

@@ -31,6 +31,8 @@ def rates_of(case: Case, direction: Mapping[str, Any]) -> dict[str, Any]:
     if not case.method.derivatives:
         raise CaseError("method.derivatives: value is False, allowed True for differentiate()")
     keys = {key: table for key, table in moving_keys(case).items() if key not in STEPWISE}
+    if case.friction is not None and case.friction.law == "coulomb":
+        keys["friction_coefficient"] = "friction"
     refuse_unknown(direction, keys, "")
     rates: dict[str, Any] = {}
     for key, value in plain(direction).items():

@@ -440,6 +440,7 @@ void fill_input(const nb::dict &from, rp_input &to) {
   reader.matrix("rail_angular_velocity", to.rail_angular_velocity);
   reader.scalar("time_step", to.time_step);
   reader.scalar("roller_pitch_rate", to.roller_pitch_rate);
+  reader.scalar("friction_coefficient", to.friction_coefficient);
   reader.finish();
 }
 

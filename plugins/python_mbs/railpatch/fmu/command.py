@@ -8,11 +8,19 @@ from typing import Any
 import click
 
 from railpatch.commands import output_option, scene_argument
+from railpatch.errors import CaseError
 
 
 @click.command("fmu")
 @scene_argument()
 @output_option("NAME.fmu", "The FMU to write; NAME is also that of the library inside.")
+@click.option(
+    "--scene",
+    "kind",
+    metavar="NAME",
+    help="One of the scenes that come with the package, in place of a file: patch, wheel, "
+    "wheelset_rail, ...; an unknown name gives the list.",
+)
 @click.option(
     "--fft",
     type=click.Choice(["eigen", "fftw"]),
@@ -42,6 +50,7 @@ from railpatch.commands import output_option, scene_argument
 @click.option("--quiet", is_flag=True, help="Print nothing.")
 def fmu(
     scene: Path | None,
+    kind: str | None,
     output: Path,
     fft: Any,
     derivatives: Any,
@@ -57,9 +66,13 @@ def fmu(
     it is the roller rig, or where that is not installed an S1002 wheelset on UIC60 rails.
     """
     from railpatch.fmu.pack import pack_fmu
-    from railpatch.fmu.scenes import scene_of
+    from railpatch.fmu.scenes import kind_scene, kinds, scene_of
 
-    name, loaded = scene_of(scene)
+    if kind is not None and scene is not None:
+        raise CaseError(f"--scene: given beside {scene}, allowed one of the two")
+    if kind is not None and kind not in kinds():
+        raise CaseError(f"--scene: value is {kind!r}, allowed {', '.join(kinds())}")
+    name, loaded = kind_scene(kind) if kind is not None else scene_of(scene)
     written = pack_fmu(
         loaded,
         output,

@@ -25,6 +25,7 @@ BASE_UNITS = {
     "m2": {"m": 2},
     "W": {"kg": 1, "m": 2, "s": -3},
     "J": {"kg": 1, "m": 2, "s": -2},
+    "degC": {"K": 1, "offset": 273.15},
 }
 CAPABILITIES = {
     "canHandleVariableCommunicationStepSize": "true",
@@ -132,17 +133,18 @@ def used_types(table: Table, variables: list[Variable]) -> dict[str, dict[str, A
 
 def unit_lines(table: Table, variables: list[Variable]) -> list[str]:
     """UnitDefinitions."""
-    displays: dict[str, dict[str, float]] = {}
+    displays: dict[str, dict[str, dict[str, float]]] = {}
     for declared in used_types(table, variables).values():
         if "unit" in declared:
-            name, factor = declared["display"]
-            displays.setdefault(declared["unit"], {})[name] = factor
+            name, *numbers = declared["display"]
+            scale = dict(zip(("factor", "offset"), numbers, strict=False))
+            displays.setdefault(declared["unit"], {})[name] = scale
     lines = ["  <UnitDefinitions>"]
     for unit, display in displays.items():
         lines.append(f"    <Unit{attributes({'name': unit})}>")
         lines.append(f"      <BaseUnit{attributes(BASE_UNITS[unit])}/>")
-        for name, factor in display.items():
-            lines.append(f"      <DisplayUnit{attributes({'name': name, 'factor': factor})}/>")
+        for name, scale in display.items():
+            lines.append(f"      <DisplayUnit{attributes({'name': name, **scale})}/>")
         lines.append("    </Unit>")
     return [*lines, "  </UnitDefinitions>"] if displays else []
 

@@ -93,11 +93,11 @@ DERIVATIVES = """
 <p><b>Directional derivatives</b> of Real outputs by Real inputs are those of the outputs as they
 are, at the inputs they were solved with: inputs set since then do not count in co-simulation before
 the next step. They come from the contact's own derivatives, see the range of these there: elements
-that stick, slip or are apart stay so. Those of residual are 0: it is the solver's own. Tunable
-parameters are refused as knowns. After a failed step, or where the derivative does not converge,
-the answer is fmi2Discard. State and outputs stay as they are; after a restored state the first
-derivative solves once more, and agrees with the one before to the solver's tolerance. One more
-entry for the same direction costs nothing.</p>
+that stick, slip or are apart stay so. Those of residual are 0: it is the solver's own. Beside the
+inputs friction.coefficient may be a known; other parameters are refused. After a failed step, or
+where the derivative does not converge, the answer is fmi2Discard. State and outputs stay as they
+are; after a restored state the first derivative solves once more, and agrees with the one before to
+the solver's tolerance. One more entry for the same direction costs nothing.</p>
 <p><b>Output derivatives</b>, of order 1, are these along the inputs' own derivatives at the last
 step's end, 0 where inputs were held.</p>
 """

@@ -30,8 +30,7 @@ def kind_of(case: Case, config: dict[str, list[float]], *, averages: bool = Fals
         conditions.add("averaged")
     if conditions & {"history", "averaged"}:
         conditions.add("substeps")
-    if case.has_tangential and case.method.tangential != "full":
-        conditions.add("fast")
+    conditions |= physics_conditions(case)
     if isinstance(case, PatchCase):
         conditions.add("force" if case.load.normal_force is not None else "position")
         for component, prescribed in enumerate(case.motion.prescribed, 1):
@@ -41,8 +40,31 @@ def kind_of(case: Case, config: dict[str, list[float]], *, averages: bool = Fals
     if case.track.kind == "roller":
         conditions.add("roller")
     conditions |= along_conditions(case)
+    most = int(config["max_patches"][0])
+    if most > 1 and case.method.patch_rule != "contact":
+        conditions.add("shares")
     sides = tuple(SIDE_INDEX[side] for side in case.sides)
-    return Kind(case.kind, sides, int(config["max_patches"][0]), frozenset(conditions))
+    return Kind(case.kind, sides, most, frozenset(conditions))
+
+
+def physics_conditions(case: Case) -> set[str]:
+    """Theory, law of friction, layer and temperature."""
+    if not case.has_tangential:
+        return set()
+    friction, heat = case.friction, case.temperature
+    law = "coulomb" if friction is None else friction.law
+    found = {"coulomb"} if law == "coulomb" else set()
+    if case.method.tangential != "full":
+        found.add("fast")
+    if case.layer is not None and case.layer.is_plastic:
+        found.add("yields")
+    if heat is not None:
+        found.add("temperature")
+        if heat.exchange or heat.wheel != heat.rail:
+            found.add("exchange")
+        if law == "temperature":
+            found.add("warm friction")
+    return found
 
 
 def has_history(case: Case) -> bool:

@@ -1,7 +1,8 @@
-"""Scenes for an FMU: from a file, or the one that is packed by default."""
+"""Scenes for an FMU: from a file, one of those that come with the package, or the default."""
 
 from __future__ import annotations
 
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,17 @@ TRACK: dict[str, Any] = {
     "track": {"kind": "rail", "gauge": 1.435, "gauge_height": 0.014},
     "profiles": {"wheel": "S1002", "rail": "UIC60@1:40"},
 }
+
+
+def kinds() -> list[str]:
+    """Names of the scenes that come with the package, one for each kind of FMU."""
+    found = (resources.files("railpatch.fmu") / "kinds").iterdir()
+    return sorted(entry.name.removesuffix(".toml") for entry in found)
+
+
+def kind_scene(name: str) -> tuple[str, Scene]:
+    """Name and scene of one of these."""
+    return name, load_scene(Path(str(resources.files("railpatch.fmu") / "kinds" / f"{name}.toml")))
 
 
 def scene_of(path: Path | None) -> tuple[str, Scene]:

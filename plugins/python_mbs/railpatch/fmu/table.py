@@ -19,7 +19,7 @@ else:
 SIDES = ("left", "right")
 MAX_PATCHES = 6
 # each acts on the outputs of its own level and of all that follow
-LEVELS = ("none", "height", "pose", "rolling", "sliding", "friction")
+LEVELS = ("none", "height", "pose", "rolling", "sliding", "friction", "temperature")
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,13 @@ class Table:
     def everything(self) -> list[Variable]:
         """All variables of all scenes, by value reference; for the C++ table."""
         most = Kind("wheelset", (0, 1), MAX_PATCHES, frozenset())
-        found = {v.reference: v for row in self._rows for v in self._expand(row, most)}
+        found: dict[int, Variable] = {}
+        for row in self._rows:
+            for v in self._expand(row, most):
+                # rows of one variable differ in when they hold only
+                same = found.setdefault(v.reference, v)
+                if (same.causality, same.field) != (v.causality, v.field):
+                    raise ValueError(f"value reference {v.reference}: {same.name} and {v.name}")
         return [found[reference] for reference in sorted(found)]
 
     def base(self, name: str) -> str:
@@ -126,7 +132,8 @@ def exists(row: dict[str, Any], kind: Kind) -> bool:
     needed = set(row.get("when", ()))
     if kind.kind == "patch":
         needed |= set(row.get("when_patch", ()))
-    return kind.kind in row.get("kinds", [kind.kind]) and needed <= kind.conditions
+    refused = set(row.get("without", ())) & kind.conditions
+    return kind.kind in row.get("kinds", [kind.kind]) and needed <= kind.conditions and not refused
 
 
 def places(scope: str, kind: Kind) -> list[tuple[int | None, int | None]]:
@@ -173,6 +180,8 @@ def dependencies(output: Variable, inputs: list[Variable], kind: Kind) -> list[V
         for v in inputs
         if v.level != "none" or (output.name == "largest_step" and v.name.startswith(found))
     ]
+    if output.level != "temperature":
+        inputs = [v for v in inputs if v.level != "temperature"]
     if kind.coupled and level > 0:
         return inputs
     # rails that give way move by the forces, both found by one iteration
