@@ -42,7 +42,7 @@ def body(name: str, s: float, z: float, lateral: float = 0.0) -> dict:
         "position": [x - lateral * math.sin(heading), y + lateral * math.cos(heading), z],
         "orientation": quaternion(heading),
         "velocity": [SPEED * math.cos(heading), SPEED * math.sin(heading), 0.0],
-        "acceleration": [0.0, SPEED**2 * curvature(s), 0.0],
+        "acceleration": [0.0, SPEED**2 * curvature(s), -9.81],
         "lateral": lateral,
         "roll": 0.01 * lateral,
         "yaw": 0.0,
@@ -86,6 +86,8 @@ def step(index: int, spacing: float = 0.01) -> dict:
             "yaw": 1e-3,
             "pitch": math.remainder(-s / 0.3556, math.tau),
             "curvature": curvature(s),
+            "left_rail": [1e-3, 0.0],
+            "right_rail": [-1e-3, 0.0],
         }
         snapshot = index % 10 == 0 and number == 1
         sides = {side: wheel(side, s, snapshot, spacing * index) for side in ("left", "right")}

@@ -49,9 +49,8 @@ def summary(data: VehicleRun) -> list[tuple[str, str]]:
     if np.isfinite(curved).any() and np.nanmax(curved) > 0:
         rows.append(("least radius", f"{n(1 / np.nanmax(curved))} m"))
     rows += _comfort(data)
-    wall = data.stats["wall_time"]
-    if np.isfinite(wall).any() and data.times[-1] > data.times[0]:
-        total = float(np.nansum(wall))
+    if len(data.run["/solver/stats"]) and data.times[-1] > data.times[0]:
+        total = float(np.nansum(data.stats["wall_time"]))
         share = total / (data.times[-1] - data.times[0])
         rows.append(("wall time", f"{n(total)} s, {n(share)} s a second simulated"))
     return rows
