@@ -24,7 +24,7 @@ CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
 SOURCES := $(shell find core plugins rig_model wheelset_demo -type f -not -name '*.pyc' 2>/dev/null) \
 	CMakeLists.txt README.md
 
-.PHONY: help demo fmu fmu-clients test lint format clean setup system test-cpp test-python test-asan pruning
+.PHONY: help demo viewer fmu fmu-clients test lint format clean setup system test-cpp test-python test-asan pruning
 
 help: ## this list
 	@echo "make targets:"
@@ -58,6 +58,10 @@ fmu: setup ## FMUs of the default scene and of each kind for Linux, ARM, Windows
 
 fmu-clients: fmu ## the same in clients that others wrote: fmpy, libcosimpy, ecospy, FMI4j, VDMCheck2
 	plugins/fmu/clients/run build/fmu/clients $$(ls build/fmu/*.fmu | grep -v gpl)
+
+viewer: demo ## the demo's logs in a viewer that others wrote, a picture of each; 250 MB of npm packages
+	@.ci/system-packages npm chromium
+	tests/viewer/run build/viewer $(BIN)/railpatch 1.5 build/demo/run.mcap build/demo/wheelset.mcap
 
 test: setup lint test-cpp test-python test-asan pruning ## set-up and every check
 	@printf '\nall checks passed:\n'

@@ -12,6 +12,8 @@ constexpr int most_rejected = 24;       // of one iterate, with slopes found the
 constexpr double lateral_limit = 5e-3;  // m, of one step
 // of a difference: m, and as creepage where the rail's velocity depends on it
 constexpr double lateral_difference = 1e-6, creepage_difference = 3e-5;
+// -, creepage by vertical velocities on treads is smaller by the contact angle's sine
+constexpr double normal_share = 30;
 constexpr double most_residual = 1e-3;  // of a start for the next step
 constexpr double rounding = 1e-12;      // relative, of k u and c u_before/dt
 constexpr double nowhere = HUGE_VAL;
@@ -175,8 +177,12 @@ bool rail_support::find_slopes(supported_wheels &wheels, const trial &base) {
       if (k == 0)
         h = rolled > 0 ? std::min(lateral_difference, creepage_difference * rolled)
                        : lateral_difference;
-      else
-        h = std::max(1e-10, std::clamp(20 * tolerance_, 1e-3, 0.1) * std::max(depth, 1e-7));
+      else {
+        h = std::clamp(20 * tolerance_, 1e-3, 0.1) * std::max(depth, 1e-7);
+        // the rail's vertical velocity is creepage too, where the contact is inclined
+        if (rolled > 0) h = std::min(h, normal_share * creepage_difference * rolled);
+        h = std::max(h, 1e-10);
+      }
       moved.deflection[w][k] += h;
     }
     if (!evaluate(wheels, moved)) return false;

@@ -94,6 +94,7 @@ class Balancer:
         self._frictionless = Frictionless(scene)
         first = self._frictionless.estimate(positions[0].y, positions[0].yaw)
         settings = settings_of(scene, first)
+        self._latest: Result | None = None
         self._broyden = None if self._exact else Broyden(settings)
         self._solver = self._broyden or Newton(settings)
         baseline = Baseline(scene, self._frictionless, [position.y for position in positions])
@@ -110,11 +111,13 @@ class Balancer:
             jacobian = self._broyden.jacobian if self._broyden else None
             self._predictor.remember(position, root.x, jacobian)
         if root.payload is None:
-            root = replace(root, payload=self._contact.step(**moved(position, root.x)))
+            root = replace(root, payload=self._step(position, root.x))
         return balance_of(position, root)
 
     def fields(self, balance: Balance) -> Result:
-        """The balance's contact solved once more, with the fields of each patch."""
+        """The balance's contact with the fields of each patch; solved once more if need be."""
+        if balance.result is self._latest:
+            return self._contact.last(fields=True)
         unknowns = np.array([balance.z, balance.roll, balance.pitch_rate])
         return self._contact.step(**moved(balance.position, unknowns), fields=True)
 
@@ -133,7 +136,7 @@ class Balancer:
 
     def _evaluate(self, position: Position, unknowns: Vector) -> Evaluation:
         """Both wheels' contact at one state; no residual unless both wheels touch their roller."""
-        result = self._contact.step(**moved(position, unknowns))
+        result = self._step(position, unknowns)
         if not all(result[side]["patches"] for side in SIDES) or result.status == "out_of_range":
             return Evaluation(None, False, result)
         solved = all(result[side]["status"] == "converged" for side in SIDES)
@@ -143,6 +146,10 @@ class Balancer:
             result,
             lambda: self._slope(position, result),
         )
+
+    def _step(self, position: Position, unknowns: Vector) -> Result:
+        self._latest = self._contact.step(**moved(position, unknowns))
+        return self._latest
 
     def _slope(self, position: Position, result: Result) -> Vector:
         """[3, 3], of the residuals at the last state solved, with respect to the unknowns."""

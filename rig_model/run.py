@@ -22,13 +22,14 @@ class Summary:
     """Of a run with n positions.
 
     path: of the log. converged: [n]. evaluations: [n], of both wheels. wall_time: s, [n], of
-    finding each balance.
+    finding each balance. logging_share: of the run, in the log.
     """
 
     path: Path
     converged: NDArray[np.bool_]
     evaluations: NDArray[np.int64]
     wall_time: NDArray[np.float64]
+    logging_share: float
 
     @property
     def good(self) -> bool:
@@ -45,6 +46,7 @@ class Summary:
             f"first {self.evaluations[0]}, at most {later.max()} later\n"
             f"wall time     {1e3 * np.median(self.wall_time):.3g} ms a position (median), "
             f"{self.wall_time.sum():.3g} s in all\n"
+            f"logging       {100 * self.logging_share:.2g} % of the run's wall time\n"
             f"log           {self.path}"
         )
 
@@ -74,12 +76,13 @@ def replay(
             begin = time.perf_counter()
             balance = balancer.solve(position)
             wall_time = time.perf_counter() - begin
-            messages = recorder.messages(balance, wall_time)
-            if snapshots and position.index % snapshots == 0:
-                fields = balancer.fields(balance)
-                messages["fields"] = {side: fields[side]["patches"] for side in SIDES}
-            log.write(position.time, **messages)
+            with log.stream.counted():
+                messages = recorder.messages(balance, wall_time)
+                if snapshots and position.index % snapshots == 0:
+                    fields = balancer.fields(balance)
+                    messages["fields"] = {side: fields[side]["patches"] for side in SIDES}
+                log.write(position.time, **messages)
             rows.append((balance.converged, balance.evaluations, wall_time))
             progress(balance)
     converged, evaluations, wall_times = (np.array(column) for column in zip(*rows, strict=True))
-    return Summary(Path(path), converged, evaluations, wall_times)
+    return Summary(Path(path), converged, evaluations, wall_times, log.share)

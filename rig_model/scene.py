@@ -24,7 +24,7 @@ REFERENCE_VARIABLE = "RAILPATCH_REFERENCE"
 SIDES = ("left", "right")
 PROFILE_KEYS = ("wheel", "rail", "wheel_left", "wheel_right", "rail_left", "rail_right")
 # snapshots of the fields in a run whose scene does not say
-SNAPSHOTS = 37
+SNAPSHOTS = 12
 # found at each position, so not to be given
 FOUND = {"y": "lateral_position", "yaw": "yaw"} | dict.fromkeys(
     ("roll", "pitch_rate"), "start, or leave it out"
@@ -149,7 +149,8 @@ class RigScene:
         """The fields of every n-th position are logged; 0: none."""
         if self.rig.snapshot_every is not None:
             return self.rig.snapshot_every
-        return -(-self.rig.count // SNAPSHOTS)
+        # the first, the last, and the greatest yaw of a programme that goes to and fro
+        return max(1, (self.rig.count - 1) // SNAPSHOTS)
 
     def at_height(self, *, derivatives: bool = False) -> Scene:
         """The case with z prescribed in place of the vertical force."""

@@ -28,12 +28,13 @@ class Recorder:
         assert trace.result is not None
         result = trace.result.to_dict()
         snapshot = any("pressure" in patch for patch in result["left"]["patches"])
-        fields = {side: result[side]["patches"] for side in SIDES} if snapshot else None
+        fields = {side: trace.result[side]["patches"] for side in SIDES} if snapshot else None
         return {
             "state": self._state(state, result),
             "left": result["left"],
             "right": result["right"],
             "energy": energy(trace),
+            "momentum": momentum(trace),
             "stats": self._stats(),
             "fields": fields,
         }
@@ -83,6 +84,18 @@ def energy(trace: Trace) -> dict[str, float]:
         "mechanical_residual": mechanical - work["contact"] - work["drive"] + work["damping"],
         "contact_residual": work["contact"] + work["friction"] + change["elastic"],
     }
+
+
+def momentum(trace: Trace) -> dict[str, list[float]]:
+    """The balance of momenta at the trace's last step."""
+    now, impulse = trace.momenta[-1], trace.impulses[-1]
+    parts = {"": now, "impulse": impulse, "residual": now - trace.momenta[0] - impulse}
+    values = {}
+    for name, value in parts.items():
+        linear, turning = value[:3].tolist(), value[3:].tolist()
+        values[name or "momentum"] = linear
+        values[f"turning_{name}" if name else "turning"] = turning
+    return values
 
 
 def attachments(scene: WheelsetScene) -> dict[str, bytes]:

@@ -13,6 +13,7 @@ from railpatch.case import WheelsetCase
 from railpatch.case.load import Scene, check_case, check_table, plain, read_toml
 from railpatch.case.types import NotNegative, Positive, Table, relation
 from railpatch.errors import CaseError
+from railpatch.log.stream import SCENE_RATE
 
 DEFAULT = "s1002.toml"
 SIDES = ("left", "right")
@@ -102,6 +103,11 @@ class Run(Table):
         default=None,
         description="-, the fields of every n-th logged step are logged, 0: none; left out: of "
         f"some {SNAPSHOTS} steps",
+    )
+    scene_rate: Annotated[float, Field(ge=0, le=1e9)] = Field(
+        default=SCENE_RATE,
+        description="Hz, 3D scenes logged a second of simulation time, at most those of the logged "
+        "steps; 0: none",
     )
 
     @property

@@ -46,7 +46,8 @@ class Simulation:
                 if index % run.log_every == 0 or index == steps:
                     trace.add(self.system, self.state)
                     if log is not None:
-                        log.write(self.state.time, **recorder.messages(trace, self.state))
+                        with log.stream.counted():
+                            log.write(self.state.time, **recorder.messages(trace, self.state))
                 if index < steps:
                     self.state = stepper.step(self.state, rates)
                     if advance is not None:
@@ -79,7 +80,9 @@ def run_scene(scene: WheelsetScene, output: Path, advance: Advance | None = None
         case_name=scene.name,
         profiles=attachments(scene),
         geometry=scene_geometry(scene.case),
+        scene_rate=scene.run.scene_rate,
     ) as log:
         trace = simulation.run(log, advance)
         log.close(str(trace.failure or ""))
-    return summarise(trace, time.perf_counter() - begin)
+        share = log.share
+    return summarise(trace, time.perf_counter() - begin, share)

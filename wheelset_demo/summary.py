@@ -38,7 +38,8 @@ class Waves:
 
 @dataclass(frozen=True)
 class Summary:
-    """A run in numbers. Energies in J since the start; wall_time in s.
+    """A run in numbers. Energies in J since the start; wall_time in s; logging_share of it in the
+    log.
 
     Errors of the balances are parts of the energy lost, and of momentum and moment of momentum at
     the start.
@@ -59,6 +60,7 @@ class Summary:
     evaluations: int
     solve_seconds: float
     wall_time: float
+    logging_share: float
 
     def to_dict(self) -> dict[str, Any]:
         """Plain numbers; None for what is not known."""
@@ -92,6 +94,8 @@ class Summary:
                 f"in {self.evaluations} evaluations",
             ),
         ]
+        if math.isfinite(self.logging_share):
+            lines.append(("logging", f"{100 * self.logging_share:.2g} % of the run's wall time"))
         return "\n".join(f"{name:<16}{value}" for name, value in lines)
 
 
@@ -102,7 +106,9 @@ def plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def summarise(trace: Trace, wall_time: float = math.nan) -> Summary:
+def summarise(
+    trace: Trace, wall_time: float = math.nan, logging_share: float = math.nan
+) -> Summary:
     """Of a run that may have ended early, even at its start."""
     logged = bool(trace.times)
     energies = {name: last(trace.work(name)) for name in WORKS}
@@ -127,6 +133,7 @@ def summarise(trace: Trace, wall_time: float = math.nan) -> Summary:
         evaluations=trace.evaluations,
         solve_seconds=trace.solve_seconds,
         wall_time=wall_time,
+        logging_share=logging_share,
     )
 
 

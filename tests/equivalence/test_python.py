@@ -85,6 +85,23 @@ def test_step_of_a_wheelset_equals_solve(case: dict[str, Any]) -> None:
     assert_same(stepped, railpatch.solve(changed), 2e4, 1e-4)
 
 
+@pytest.mark.parametrize("case", [PATCH, LOADED])
+@pytest.mark.parametrize("derivatives", [True, False])
+def test_the_last_result_once_more(case: dict[str, Any], derivatives: bool) -> None:
+    """With fields, without a solve, also after derivatives were asked for."""
+    contact = railpatch.Contact(with_values(case, method={"derivatives": derivatives}))
+    with pytest.raises(railpatch.CaseError, match=r"last: there is no step, allowed after step"):
+        contact.last()
+    stepped = contact.step(fields=True).to_dict()
+    if derivatives:
+        contact.differentiate()
+    assert contact.last(fields=True).to_dict() == stepped
+    assert contact.last().to_dict() == contact.last().to_dict()
+    contact.restore(contact.save())
+    with pytest.raises(railpatch.CaseError, match="last"):
+        contact.last()
+
+
 def test_one_wheel_equals_its_half_of_the_wheelset() -> None:
     both = railpatch.solve(ROLLING).to_dict()
     for side in ("left", "right"):

@@ -212,9 +212,9 @@ def write_rig_run(path: Path, bad: int | None = None) -> Path:
     return path
 
 
-def write_wheelset_run(path: Path, steps: int = 30) -> Path:
+def write_wheelset_run(path: Path, steps: int = 30, **more: object) -> Path:
     """A run on track: no balance, no statistics, no progress."""
-    with open_log(path, geometry=geometry("rail"), case_name="hunting.toml") as log:
+    with open_log(path, geometry=geometry("rail"), case_name="hunting.toml", **more) as log:
         for index in range(steps):
             position = {
                 "y": 0.002 * np.sin(0.5 * index),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
+import struct
 import subprocess
 import sys
 import time
@@ -88,7 +89,8 @@ def test_the_mcap_library_streams_a_cut_file(tmp_path):
     path = synthetic.write_rig_run(tmp_path / "run.mcap")
     path.write_bytes(path.read_bytes()[:-2000])
     topics = []
-    with open(path, "rb") as stream, contextlib.suppress(EndOfFile):
+    # what the library raises hangs on the record within which the file ends
+    with open(path, "rb") as stream, contextlib.suppress(EndOfFile, struct.error):
         for _, channel, _ in NonSeekingReader(stream).iter_messages(log_time_order=False):
             topics.append(channel.topic)
         pytest.fail("the file was to be cut")

@@ -76,8 +76,10 @@ def test_rate(nominal_file):
     run = scene.positions()
     assert len(run) == 401
     np.testing.assert_allclose(np.diff([position.time for position in run]), 5e-3)
-    # about as many snapshots as positions of the default run
-    assert 30 <= len(run) / scene.snapshot_every() <= 45
+    # a dozen snapshots in all, and in a run that turns at its quarters the turns among them
+    assert 12 <= len(run) / scene.snapshot_every() <= 14
+    every = load_rig_scene(nominal_file, {"positions": 37}).snapshot_every()
+    assert {9, 27, 36} <= set(range(0, 37, every))
 
 
 def along(progress, y, yaw):

@@ -20,7 +20,7 @@ ENTRY_POINT_GROUP = "railpatch.commands"
 # sub-commands of this package that take long to import
 LAZY = {
     name: EntryPoint(name, f"railpatch.{name}.command:{name}", ENTRY_POINT_GROUP)
-    for name in ("bench", "continuity", "fmu", "profile", "report", "stress", "table")
+    for name in ("bench", "continuity", "fmu", "layout", "profile", "report", "stress", "table")
 }
 EXIT_WRONG_CALL = 2
 EXIT_NOT_CONVERGED = 3

@@ -67,6 +67,7 @@ class Contact:
         self._case = scene.case
         self._irregularity = irregularity_of(scene)
         self._core = _core.Contact(config_of(scene), timing)
+        self._last: tuple[dict[str, Any], float] | None = None
         self._stages = [stage["name"] for stage in self.stages() if stage["present"]]
 
     @property
@@ -100,7 +101,17 @@ class Contact:
         raw = self._core.step(values)
         wall_time = time.perf_counter() - begin
         self._case = case
+        self._last = raw, wall_time
         return Result(self._data(raw, wall_time, fields))
+
+    def last(self, *, fields: bool = False) -> Result:
+        """The last step's result once more, also with fields; nothing is solved.
+
+        Raises CaseError before the first step, and after reset() and restore().
+        """
+        if self._last is None:
+            raise CaseError("last: there is no step, allowed after step()")
+        return Result(self._data(*self._last, fields))
 
     def differentiate(self, **direction: Any) -> Result:
         """Rates of the last step's result, for rates of moving inputs: zero where left out.
@@ -144,6 +155,7 @@ class Contact:
     def reset(self) -> None:
         """Forgets the last solution: the next step starts as the first one did."""
         self._core.reset()
+        self._last = None
 
     def save(self) -> bytes:
         """The state that later steps depend on: last solution and moving inputs."""
@@ -164,6 +176,7 @@ class Contact:
         except (ValueError, AttributeError, struct.error):
             raise CaseError("state: value is no state of this case, allowed: save()") from None
         self._core.restore(core_state)
+        self._last = None
         self._case = self._case.model_copy(update=changed)
 
     def stages(self) -> list[dict[str, Any]]:

@@ -59,6 +59,7 @@ FIELDS = {
 LAW_FIELDS = ("friction", "plastic_displacement", "plastic_path", "yield_stress")
 ROW_FIELDS = ("row_position", "row_angle")  # of curved reference surfaces
 GOOD = ("converged", "no_contact")
+_INF = math.inf
 
 
 class Result:
@@ -105,13 +106,23 @@ class Result:
 def plain_json(value: Any) -> Any:
     """NaN and infinity as None, arrays as lists."""
     if isinstance(value, dict):
-        return {key: plain_json(item) for key, item in value.items()}
-    if isinstance(value, np.ndarray):
-        return plain_json(value.tolist())
+        # the many finite numbers of a result need no call of their own
+        return {
+            key: item if type(item) is float and -_INF < item < _INF else plain_json(item)
+            for key, item in value.items()
+        }
     if isinstance(value, list):
-        return [plain_json(item) for item in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
+        return [
+            item if type(item) is float and -_INF < item < _INF else plain_json(item)
+            for item in value
+        ]
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, np.ndarray):
+        # fields of a contact: all finite but where a curved surface has none
+        if value.dtype.kind in "iu" or (value.dtype.kind == "f" and np.isfinite(value).all()):
+            return value.tolist()
+        return plain_json(value.tolist())
     return value
 
 

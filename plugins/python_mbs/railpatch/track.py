@@ -43,17 +43,18 @@ class Irregularity:
             raise CaseError(f"{KEY}: x is {first:g} after a greater one, allowed increasing values")
         self._spline = CubicSpline(positions, values, bc_type="clamped")
 
-    def at(self, x: float) -> NDArray[np.float64]:
-        """m, [2, 2]: of the left and right rail, lateral and vertical."""
-        return self._spline(self._inside(x)).reshape(2, 2)
+    def at(self, x: ArrayLike) -> NDArray[np.float64]:
+        """m, [..., 2, 2]: of the left and right rail, lateral and vertical, for each x."""
+        return self._spline(self._inside(x)).reshape(*np.shape(x), 2, 2)
 
-    def slope(self, x: float) -> NDArray[np.float64]:
-        """-, [2, 2]: the same by x; 0 beyond the record."""
+    def slope(self, x: ArrayLike) -> NDArray[np.float64]:
+        """-, [..., 2, 2]: the same by x; 0 beyond the record."""
         inside = self._inside(x)
-        return (self._spline(inside, 1) * (inside == x)).reshape(2, 2)
+        found = self._spline(inside, 1) * np.equal(inside, x)[..., None]
+        return found.reshape(*np.shape(x), 2, 2)
 
-    def _inside(self, x: float) -> float:
-        return float(np.clip(x, self._spline.x[0], self._spline.x[-1]))
+    def _inside(self, x: ArrayLike) -> NDArray[np.float64]:
+        return np.clip(np.asarray(x, dtype=float), self._spline.x[0], self._spline.x[-1])
 
 
 def read_irregularity(path: str | Path) -> Irregularity:

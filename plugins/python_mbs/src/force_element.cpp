@@ -8,10 +8,13 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <exception>
+#include <memory>
 #include <mutex>
 #include <vector>
 
 #include "convert.hpp"
+#include "workers.hpp"
 
 namespace railpatch::python {
 
@@ -21,15 +24,20 @@ using Array = nb::ndarray<nb::numpy, double, nb::ndim<2>>;
 
 static_assert(sizeof(TrackState) == 12 * sizeof(double));
 
-enum { kMotion = 18, kWrench = 6, kState = 12, kContact = 6, kPower = 3 };
+enum { kMotion = 18, kWrench = 6, kState = 12, kContact = 6, kPower = 3, kPlacement = 12 };
+// rails: offset and velocity, both by side; wheels: force, moment, power of friction, patches
+enum { kRails = 12, kWheel = 8, kWheels = 2 * kWheel };
 
-Placement placement_of(const Grid &rows, size_t k) {
-  if (rows.shape(1) != 12) throw nb::value_error("a placement has 12 numbers");
+Placement placement_at(const double *from) {
   Placement placement;
-  const double *from = rows.data() + 12 * k;
   std::copy_n(from, 9, placement.rotation);
   std::copy_n(from + 9, 3, placement.origin);
   return placement;
+}
+
+void check_placements(const Grid &rows, size_t count) {
+  if (rows.shape(1) != kPlacement) throw nb::value_error("a placement has 12 numbers");
+  if (rows.shape(0) != count) throw nb::value_error("one placement a contact");
 }
 
 double inner(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -60,30 +68,41 @@ rp_status worse(rp_status a, rp_status b) { return a > b ? a : b; }
 
 struct Wheelset {
   Steppable *contact;
-  rp_input input;
+  rp_input given, input;  // as the case has it, as it was last solved
   rp_result result;
   Placement placement;
+  double seconds;
+  std::exception_ptr refused;
 };
 
 // Arrays live as long as the element and are seen from Python as they are: one row a wheelset.
 class ForceElement {
  public:
   ForceElement(const nb::list &contacts, const nb::list &inputs, const Values &radii,
-               const Grid &placements, const Grid &track, double frame_speed)
-      : track_(placement_of(track, 0)), frame_speed_(frame_speed), count_(nb::len(contacts)) {
-    const bool fits =
-        nb::len(inputs) == count_ && radii.shape(0) == count_ && placements.shape(0) == count_;
-    if (!fits) throw nb::value_error("one input, radius and placement a contact");
+               const Grid &placements, const Grid &tracks, double frame_speed, int threads)
+      : frame_speed_(frame_speed), count_(nb::len(contacts)) {
+    const bool fits = nb::len(inputs) == count_ && radii.shape(0) == count_;
+    if (!fits) throw nb::value_error("one input and radius a contact");
+    if (threads < 1) throw nb::value_error("one thread or more");
+    check_placements(placements, count_);
+    check_placements(tracks, count_);
+    workers_ = std::make_unique<Workers>(threads);
+    tracks_.assign(tracks.data(), tracks.data() + count_ * kPlacement);
     wheelsets_.resize(count_);
     radii_.assign(radii.data(), radii.data() + count_);
     for (size_t k = 0; k < count_; ++k) {
       Wheelset &w = wheelsets_[k];
       w.contact = nb::cast<Steppable *>(nb::object(contacts[k]));
-      rp_default_input(&w.input);
-      fill_input(nb::cast<nb::dict>(nb::object(inputs[k])), w.input);
+      rp_default_input(&w.given);
+      fill_input(nb::cast<nb::dict>(nb::object(inputs[k])), w.given);
+      w.input = w.given;
       w.result = {};
-      w.placement = placement_of(placements, k);
+      w.placement = placement_at(placements.data() + kPlacement * k);
+      w.seconds = 0;
     }
+    positions_.resize(count_);
+    rails_.resize(count_ * kRails);
+    wheels_.resize(count_ * kWheels);
     motion_.resize(count_ * kMotion);
     wrench_.resize(count_ * kWrench);
     placed_.resize(count_ * kWrench);
@@ -95,8 +114,13 @@ class ForceElement {
   int step() {
     nb::gil_scoped_release unlocked;
     std::lock_guard<std::mutex> guard(mutex_);
+    workers_->run(count_, [this](size_t k) { try_wheelset(k); });
+    solves_ += count_;
     rp_status status = RP_CONVERGED;
-    for (size_t k = 0; k < count_; ++k) status = worse(status, step_wheelset(k));
+    for (Wheelset &w : wheelsets_) {
+      if (w.refused) std::rethrow_exception(w.refused);
+      status = worse(status, w.result.status);
+    }
     return status;
   }
 
@@ -104,7 +128,7 @@ class ForceElement {
   void place(size_t k, double fx, double fy, double fz, double mx, double my, double mz) {
     if (k >= count_) throw nb::index_error();
     const double force[3] = {fx, fy, fz}, moment[3] = {mx, my, mz};
-    joint_wrench(force, moment, joint(k), wheelsets_[k].placement, track_,
+    joint_wrench(force, moment, joint(k), wheelsets_[k].placement, track(k),
                  placed_.data() + k * kWrench);
   }
 
@@ -113,8 +137,17 @@ class ForceElement {
     return result_dict(wheelsets_[k].result);
   }
 
-  double seconds() const { return seconds_; }
+  double seconds() const {
+    double sum = 0;
+    for (const Wheelset &w : wheelsets_) sum += w.seconds;
+    return sum;
+  }
   size_t solves() const { return solves_; }
+
+  double *tracks() { return tracks_.data(); }
+  double *positions() { return positions_.data(); }
+  double *rails() { return rails_.data(); }
+  double *wheels() { return wheels_.data(); }
 
   double *motion() { return motion_.data(); }
   double *wrench() { return wrench_.data(); }
@@ -134,21 +167,42 @@ class ForceElement {
     return placement;
   }
 
-  rp_status step_wheelset(size_t k) {
+  Placement track(size_t k) const { return placement_at(tracks_.data() + k * kPlacement); }
+
+  // a call that the core refuses is thrown again where all threads have ended
+  void try_wheelset(size_t k) {
+    wheelsets_[k].refused = nullptr;
+    try {
+      step_wheelset(k);
+    } catch (...) {
+      wheelsets_[k].refused = std::current_exception();
+    }
+  }
+
+  void step_wheelset(size_t k) {
     Wheelset &w = wheelsets_[k];
-    const Placement at = joint(k);
+    const Placement at = joint(k), on = track(k);
     const double *velocity = motion_.data() + k * kMotion + 12;
-    const TrackState s = track_state(at, velocity, w.placement, track_, frame_speed_, radii_[k]);
+    TrackState s = track_state(at, velocity, w.placement, on, frame_speed_, radii_[k]);
+    s.x += positions_[k];
     fill(s, w.input);
+    move_rails(w, rails_.data() + k * kRails);
     const auto begin = Clock::now();
     w.contact->solve(w.input, w.result);
-    seconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
-    ++solves_;
+    w.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
     state_[k] = s;
     report(k, w.result, s);
-    joint_wrench(w.result.force, w.result.moment, at, w.placement, track_,
+    joint_wrench(w.result.force, w.result.moment, at, w.placement, on,
                  wrench_.data() + k * kWrench);
-    return w.result.status;
+  }
+
+  // what the rails deviate by in this step adds to what the case says
+  static void move_rails(Wheelset &w, const double *moved) {
+    for (int side = 0; side < 2; ++side)
+      for (int i = 0; i < 3; ++i) {
+        w.input.rail_offset[side][i] = w.given.rail_offset[side][i] + moved[3 * side + i];
+        w.input.rail_velocity[side][i] = w.given.rail_velocity[side][i] + moved[6 + 3 * side + i];
+      }
   }
 
   static void fill(const TrackState &s, rp_input &input) {
@@ -172,23 +226,32 @@ class ForceElement {
     double *power = power_.data() + k * kPower;
     std::fill_n(power, kPower, 0.0);
     power[0] = power_of(result, s, spin_of(s).data());
-    for (const rp_side_result &side : result.side)
+    double *wheel = wheels_.data() + k * kWheels;
+    for (const rp_side_result &side : result.side) {
+      double friction = 0.0;
       for (int i = 0; i < side.patch_count + side.alternative_count; ++i) {
         const rp_patch_result &patch = side.patch[i];
         power[1] += patch.share * patch.elastic_energy;
         // NaN where the scene has no tangential problem: no friction
-        if (!std::isnan(patch.creep_force[0])) power[2] += patch.share * friction_power(patch);
+        if (!std::isnan(patch.creep_force[0])) friction += patch.share * friction_power(patch);
       }
+      power[2] += friction;
+      std::copy_n(side.force, 3, wheel);
+      std::copy_n(side.moment, 3, wheel + 3);
+      wheel[6] = friction;
+      wheel[7] = side.patch_count;
+      wheel += kWheel;
+    }
   }
 
   std::vector<Wheelset> wheelsets_;
-  Placement track_;
   double frame_speed_;
   size_t count_;
   std::vector<double> radii_, motion_, wrench_, contact_, power_, placed_;
+  std::vector<double> tracks_, positions_, rails_, wheels_;
   std::vector<TrackState> state_;
-  double seconds_ = 0;
   size_t solves_ = 0;
+  std::unique_ptr<Workers> workers_;
   std::mutex mutex_;
 };
 
@@ -206,13 +269,13 @@ void bind_force_element(nb::module_ &m) {
   nb::class_<E>(m, "ForceElement",
                 "Contacts of wheelsets in a multibody model; arrays have one row a wheelset.")
       .def(nb::init<const nb::list &, const nb::list &, const Values &, const Grid &, const Grid &,
-                    double>(),
+                    double, int>(),
            nb::arg("contacts"), nb::arg("inputs"), nb::arg("radii"), nb::arg("placements"),
-           nb::arg("track"), nb::arg("frame_speed"), nb::keep_alive<1, 2>(),
+           nb::arg("tracks"), nb::arg("frame_speed"), nb::arg("threads"), nb::keep_alive<1, 2>(),
            "contacts: Contact, kept alive by the list, which must not change; inputs: fields of "
            "rp_input that stay; radii: m, nominal; placements: of the wheelsets in their joints, "
-           "track: of the track in the world, rotation by rows and origin, 12 numbers; "
-           "frame_speed: m/s, of the world along the track.")
+           "tracks: of the track in the world at each, rotation by rows and origin, 12 numbers; "
+           "frame_speed: m/s, of the world along the track; threads: that solve them.")
       .def("step", &E::step,
            "Reads 'motion', solves all contacts, writes the other arrays; returns the worst "
            "status. The interpreter's lock is released.")
@@ -220,7 +283,8 @@ void bind_force_element(nb::module_ &m) {
            nb::arg("mx"), nb::arg("my"), nb::arg("mz"),
            "Another wrench at a wheelset's centre, track axes, into its row of 'placed'.")
       .def("result", &E::result, nb::arg("index"), "The last step's rp_result.")
-      .def_prop_ro("seconds", &E::seconds, "Wall-clock time inside the contact solves.")
+      .def_prop_ro("seconds", &E::seconds,
+                   "Wall-clock time inside the contact solves, of all threads.")
       .def_prop_ro("solves", &E::solves, "Number of contact solves.")
       .def_prop_ro("motion", &view<kMotion, &E::motion>,
                    "In: rotation by rows, origin (m), linear and angular velocity, joint frame.")
@@ -231,6 +295,14 @@ void bind_force_element(nb::module_ &m) {
                    "x, y, z, roll, yaw, pitch, speed, vy, vz, roll_rate, yaw_rate, pitch_rate.")
       .def_prop_ro("contact", &view<kContact, &E::contact>,
                    "Contact force and moment at the wheelset's centre, track axes.")
+      .def_prop_ro("tracks", &view<kPlacement, &E::tracks>,
+                   "In: of the track in the world, rotation by rows and origin (m).")
+      .def_prop_ro("positions", &view<1, &E::positions>,
+                   "In: m, along the track, of the track frame's origin.")
+      .def_prop_ro("rails", &view<kRails, &E::rails>,
+                   "In: beside the case's, offsets of left and right rail (m), their velocities.")
+      .def_prop_ro("wheels", &view<kWheels, &E::wheels>,
+                   "By side: force, moment about the centre, power of friction, patches.")
       .def_prop_ro(
           "power", &view<kPower, &E::power>,
           "Of the contacts: power of the forces (W), elastic energy (J), frictional power (W).");

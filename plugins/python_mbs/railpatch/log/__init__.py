@@ -1,10 +1,11 @@
-"""The run log: MCAP files of wheelset and roller-rig runs.
+"""The run log: MCAP files of runs of a wheelset, the roller rig or a vehicle.
 
 from railpatch.log import RunLog, SceneGeometry, read_run
 """
 
 from .geometry import SceneGeometry, scene_geometry
 from .reader import Attachment, Run, RunFileError, Series, read_run
+from .vehicle import VehicleGeometry, VehicleLog
 from .writer import RunLog
 
 __all__ = [
@@ -14,6 +15,8 @@ __all__ = [
     "RunLog",
     "SceneGeometry",
     "Series",
+    "VehicleGeometry",
+    "VehicleLog",
     "read_run",
     "scene_geometry",
 ]

@@ -10,8 +10,10 @@ Conventions that hold for every channel stand in ``CONVENTIONS``.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 
 STATUSES = ("converged", "no_contact", "not_converged", "out_of_range")
 SIDES = ("left", "right")
@@ -24,6 +26,7 @@ CONVENTIONS = {
     "time": "log_time is simulation time in nanoseconds from the start of the run, not a date",
     "track_axes": "x forward along the track centre line, y right, z down; origin in the plane on "
     "the rails' or rollers' tops; roll, yaw, pitch follow the right-hand rule",
+    "start_axes": "of a vehicle: the track axes at the start of the run, fixed to the ground",
     "wheelset_position": "the wheelset's centre at z = 0 lies one nominal wheel radius above the "
     "origin; forward rolling is a negative pitch rate of the wheelset, a positive one of rollers",
     "contact_axes": "of a patch: origin at its position, x along rolling, y lateral along the "
@@ -54,7 +57,8 @@ class Field:
     choices: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
+# equal only to itself: its hash, by which classes are found for every message, costs nothing
+@dataclass(frozen=True, eq=False)
 class Message:
     """A protobuf message: its name without package, what it is, and its fields in order."""
 
@@ -115,6 +119,8 @@ WHEELSET_STATE = Message(
         _number("moment", "N m", "their moment about the wheelset's centre", "track", size=3),
         _number("curvature", "1/m", "curvature of the track, right-hand curve > 0", "track"),
         _number("cant", "rad", "cant of the track", "track"),
+        _number("left_rail", "m", "lateral, vertical deviation of the left rail", "track", size=2),
+        _number("right_rail", "m", "the same of the right rail", "track", size=2),
     ),
 )
 
@@ -280,6 +286,52 @@ WHEELSET_ENERGY = Message(
     ),
 )
 
+MOMENTUM = Message(
+    "Momentum",
+    "Momentum of all bodies, and what the forces on them have put in since the start.",
+    (
+        _number("momentum", "N s", "momentum", "track", size=3),
+        _number("turning", "N m s", "moment of momentum about the centre of mass", "track", size=3),
+        _number("impulse", "N s", "impulse of all forces since the start", "track", size=3),
+        _number("turning_impulse", "N m s", "of their moments about it", "track", size=3),
+        _number("residual", "N s", "open in the balance of momentum", "track", size=3),
+        _number("turning_residual", "N m s", "open in that of its moment", "track", size=3),
+    ),
+)
+
+VEHICLE_STATE = Message(
+    "VehicleState",
+    "How far the vehicle has come, and the track under its middle.",
+    (
+        _number("progress", "-", "part of the run that is done, 0 to 1"),
+        _number("x", "m", "distance along the track", "track", required=True),
+        _number("speed", "m/s", "forward speed", "track"),
+        _number("curvature", "1/m", "curvature of the track, right-hand curve > 0", "track"),
+        _number("cant", "rad", "cant of the track", "track"),
+    ),
+)
+
+BODY = Message(
+    "Body",
+    "Where one body is and how it moves.",
+    (
+        Field("name", "string", "", "of the body", required=True),
+        _number("position", "m", "of its centre of mass", "start", size=3, required=True),
+        _number("orientation", "-", "quaternion x, y, z, w", "start", size=4, required=True),
+        _number("velocity", "m/s", "of its centre of mass", "start", size=3),
+        _number("acceleration", "m/s^2", "of its centre, without gravity", "body", size=3),
+        _number("lateral", "m", "distance from the track's centre line, right > 0", "track"),
+        _number("roll", "rad", "roll angle against the track", "track"),
+        _number("yaw", "rad", "yaw angle against the track", "track"),
+    ),
+)
+
+VEHICLE_BODIES = Message(
+    "VehicleBodies",
+    "All bodies of the vehicle.",
+    (Field("bodies", BODY, "", "one entry per body, always in the same order", size=0),),
+)
+
 SOLVER_STATS = Message(
     "SolverStats",
     "Work and wall-clock time of one position or time step.",
@@ -301,23 +353,64 @@ CHANNELS = (
     Channel("/right/contact", WHEEL_CONTACT, "result of the right wheel"),
     Channel("/rig/balance", RIG_BALANCE, "force balance; only in runs of the roller rig"),
     Channel("/wheelset/energy", WHEELSET_ENERGY, "balance of energies; only in runs on track"),
+    Channel("/wheelset/momentum", MOMENTUM, "balance of momenta; only in runs on track"),
     Channel("/solver/stats", SOLVER_STATS, "iterations and times"),
     Channel("/left/fields", CONTACT_FIELDS, "fields of the left patches, at chosen moments"),
     Channel("/right/fields", CONTACT_FIELDS, "fields of the right patches, at chosen moments"),
 )
 
+# of a vehicle in place of these
+VEHICLE_CHANNELS = (
+    Channel("/vehicle/state", VEHICLE_STATE, "how far the vehicle has come"),
+    Channel("/vehicle/bodies", VEHICLE_BODIES, "car body, bogie frames, wheelsets"),
+    Channel("/vehicle/energy", WHEELSET_ENERGY, "balance of energies"),
+    Channel("/vehicle/momentum", MOMENTUM, "balance of momenta"),
+    Channel("/solver/stats", SOLVER_STATS, "iterations and times"),
+)
+# and of each of its wheelsets, N = 1 in front
+AXLE_CHANNELS = (
+    Channel("/wheelset/N/state", WHEELSET_STATE, "where wheelset N is and how it moves"),
+    Channel("/wheelset/N/left/contact", WHEEL_CONTACT, "result of its left wheel"),
+    Channel("/wheelset/N/right/contact", WHEEL_CONTACT, "result of its right wheel"),
+    Channel("/wheelset/N/left/fields", CONTACT_FIELDS, "fields of its left patches"),
+    Channel("/wheelset/N/right/fields", CONTACT_FIELDS, "fields of its right patches"),
+)
+
+# each topic once
+ALL_CHANNELS = tuple({c.topic: c for c in CHANNELS + VEHICLE_CHANNELS + AXLE_CHANNELS}.values())
+
 # topic: (Foxglove message, what it is for)
 WELL_KNOWN = {
-    "/tf": ("foxglove.FrameTransforms", "frames world (z up), track, wheelset, wheels, rollers"),
-    "/scene/bodies": ("foxglove.SceneUpdate", "wheels, rollers or rails; once, at the start"),
+    "/tf": (
+        "foxglove.FrameTransforms",
+        "frames world (z up), track, wheelset, wheels, rollers; of a vehicle start, its bodies, "
+        "track_N and wheels_N",
+    ),
+    "/scene/bodies": ("foxglove.SceneUpdate", "bodies, rollers or rails; once, at the start"),
     "/scene/contact": ("foxglove.SceneUpdate", "contact patches and arrows of their forces"),
 }
 
 
+def vehicle_channels(wheelsets: int) -> tuple[Channel, ...]:
+    """All channels of a vehicle."""
+    return VEHICLE_CHANNELS + tuple(
+        Channel(numbered(entry.topic, number), entry.message, numbered(entry.text, number))
+        for number in range(1, wheelsets + 1)
+        for entry in AXLE_CHANNELS
+    )
+
+
+def numbered(text: str, number: int) -> str:
+    """Of the table's N, the wheelset's number."""
+    return re.sub(r"\bN\b", str(number), text)
+
+
+@cache
 def channel(topic: str) -> Channel:
     """The channel of ``topic``; KeyError where the table has none."""
-    for entry in CHANNELS:
-        if entry.topic == topic:
+    general = re.sub(r"^/wheelset/[1-9][0-9]*/", "/wheelset/N/", topic)
+    for entry in ALL_CHANNELS:
+        if entry.topic == general:
             return entry
     raise KeyError(f"no channel {topic!r} in the run log")
 
@@ -354,9 +447,9 @@ def markdown() -> str:
     lines = ["# Channels of the run log", ""]
     lines += [f"- {name.replace('_', ' ')}: {text}" for name, text in CONVENTIONS.items()]
     lines += ["", "| channel | message | content |", "|---|---|---|"]
-    lines += [f"| {c.topic} | railpatch.{c.message.name} | {c.text} |" for c in CHANNELS]
+    lines += [f"| {c.topic} | railpatch.{c.message.name} | {c.text} |" for c in ALL_CHANNELS]
     lines += [f"| {topic} | {name} | {text} |" for topic, (name, text) in WELL_KNOWN.items()]
-    for message in dict.fromkeys(c.message for c in CHANNELS):
+    for message in dict.fromkeys(c.message for c in ALL_CHANNELS):
         lines += ["", f"## railpatch.{message.name}", "", message.text, ""]
         lines += ["| field | unit | frame | shape | meaning |", "|---|---|---|---|---|"]
         for path, field in flat_fields(message):

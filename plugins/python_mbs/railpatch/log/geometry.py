@@ -19,8 +19,8 @@ from .channels import SIDES
 
 KINDS = ("rail", "roller")
 # enough for a smooth picture; more only makes the log larger
-_CURVE_POINTS = 48
-_TURN_STEPS = 64
+_CURVE_POINTS = 32
+_TURN_STEPS = 48
 
 
 @dataclass(frozen=True)
@@ -117,9 +117,9 @@ def thin(curve: np.ndarray, count: int = _CURVE_POINTS) -> np.ndarray:
     return np.column_stack([np.interp(wanted, length, curve[:, axis]) for axis in (0, 1)])
 
 
-def revolved(curve: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def revolved(curve: np.ndarray, count: int = _CURVE_POINTS) -> tuple[np.ndarray, np.ndarray]:
     """A curve (y, z) turned about the y axis: vertices (n, 3) and triangles (m, 3)."""
-    points = thin(curve)
+    points = thin(curve, count)
     angles = np.linspace(0.0, 2 * np.pi, _TURN_STEPS + 1)
     rows = [
         np.column_stack([np.sin(a) * points[:, 1], points[:, 0], np.cos(a) * points[:, 1]])

@@ -92,6 +92,10 @@ class StateDerivatives:
         change = np.zeros(6) if by_time is None else self._moved(self._turned(by_time))
         return WrenchDerivatives(self.joint, by_q, by_v, change)
 
+    def turned(self, wrench: Matrix) -> Matrix:
+        """[6], a wrench at the wheelset's centre in track axes as it is at the joint."""
+        return self._moved(self._turned(wrench))
+
     def _turned(self, change: Matrix) -> Matrix:
         """From track axes to those of the joint."""
         return np.concatenate([self.axes @ change[:3], self.axes @ change[3:]])
@@ -130,7 +134,7 @@ class StateChain:
         velocity_by_q, jacobian = pin.getJointVelocityDerivatives(
             self._model, self._data, joint, local
         )
-        out = element.track.rotation.T @ self._data.oMi[joint].rotation
+        out = element.track_rotation(index).T @ self._data.oMi[joint].rotation
         centre = element.wheelset.translation
         velocity = self._data.v[joint].vector
         state = element.states[index]

@@ -55,7 +55,11 @@ class ForceElement:
     wheelset: pinocchio.SE3, of the wheelset (origin at its centre, y along the axle to the right)
     in the joint frame. track: pinocchio.SE3, of the track frame (x forward, y right, z down) in the
     world. frame_speed: m/s, of an inertial world frame that moves forward along the track.
-    folder: where relative paths of a case start. timing: measure the stages, see Contact.
+    folder: where relative paths of a case start. timing: measure the stages, see Contact. threads:
+    that solve the wheelsets of a step side by side; results do not depend on their number.
+
+    A track that bends, or rails that are not straight, are told before a step, for each wheelset:
+    see `tracks`, `positions` and `rails`.
 
     Only position, velocity and axle direction of the wheelset are used, so any carrier will do. Let
     a revolute joint about the axle do the spinning and a carrier that does not spin (a composite as
@@ -77,7 +81,10 @@ class ForceElement:
         frame_speed: float = 0.0,
         folder: str | Path | None = None,
         timing: bool = False,
+        threads: int = 1,
     ) -> None:
+        if isinstance(threads, bool) or not isinstance(threads, int) or not 1 <= threads <= 256:
+            raise CaseError(f"threads: value is {show(threads)}, allowed 1 to 256")
         joints = joint if isinstance(joint, (list, tuple)) else [joint]
         cases = case if isinstance(case, (list, tuple)) else [case] * len(joints)
         if len(cases) != len(joints):
@@ -90,17 +97,18 @@ class ForceElement:
                 raise CaseError("track.irregularity: given, allowed in a multibody model none")
         self.frame_speed = float(frame_speed)
         self.wheelset = pin.SE3.Identity() if wheelset is None else wheelset
-        self.track = pin.SE3.Identity() if track is None else track
         self._core = _core.ForceElement(
             [contact._core for contact in self.contacts],
             [input_of(contact.case) for contact in self.contacts],
             np.array([contact.case.wheelset.nominal_radius for contact in self.contacts]),
             placements([self.wheelset] * len(joints)),
-            placements([self.track]),
+            placements([track] * len(joints)),
             self.frame_speed,
+            threads,
         )
+        self._tracks, self._rails = self._core.tracks, self._core.rails
         # of each wheelset, and the number of solves at which they were found
-        self._derivatives = [(0, np.zeros((6, len(STATE)))) for _ in self.joints]
+        self._derivatives = [(0, np.zeros((2, 6, len(STATE)))) for _ in self.joints]
         self._joint_count = model.njoints
         self._states, self._power = self._core.state, self._core.power
         motion, wrench = self._core.motion, self._core.wrench
@@ -158,17 +166,22 @@ class ForceElement:
         Contact.jacobian() says. Needs method.derivatives = true and a step; changes nothing. Raises
         CaseError, also where they did not converge.
         """
-        solves, matrix = self._derivatives[index]
+        left, right = self.derivatives_by_side(index)
+        return left + right
+
+    def derivatives_by_side(self, index: int = 0) -> Matrix:
+        """[2, 6, 12], the same of left and right wheel."""
+        solves, found = self._derivatives[index]
         if solves != self.solves:
-            found = self.contacts[index].jacobian()
-            if found["status"] not in GOOD:
+            jacobian = self.contacts[index].jacobian()
+            if jacobian["status"] not in GOOD:
                 raise CaseError(
-                    f"method.tolerance: the contact's derivatives are {found['status']}, allowed a "
-                    "tolerance at which they converge"
+                    f"method.tolerance: the contact's derivatives are {jacobian['status']}, "
+                    "allowed a tolerance at which they converge"
                 )
-            matrix = found["left"] + found["right"]
-            self._derivatives[index] = (self.solves, matrix)
-        return matrix
+            found = np.array([jacobian[side] for side in SIDES])
+            self._derivatives[index] = (self.solves, found)
+        return found
 
     def wrench_derivatives(self, chain: StateChain) -> list[WrenchDerivatives]:
         """Of the wrenches on all wheelsets at the last step; see acceleration_derivatives()."""
@@ -215,6 +228,46 @@ class ForceElement:
         return dict(zip(STATE, self._states[index].tolist(), strict=True))
 
     @property
+    def tracks(self) -> NDArray[np.float64]:
+        """[wheelsets, 12], of the track frame in the world: rotation by rows, origin (m).
+
+        To be written before a step where the track bends or is canted: the frame at each
+        wheelset's foot, at rest in the world. Curving then is in the wheelset's own velocity; a
+        case has no curvature.
+        """
+        return self._tracks
+
+    @property
+    def positions(self) -> NDArray[np.float64]:
+        """[wheelsets], m, along the track, of the track frames' origins; may be written.
+
+        It adds to x, at which the core looks up what varies along the track.
+        """
+        return self._core.positions[:, 0]
+
+    @property
+    def rails(self) -> NDArray[np.float64]:
+        """[wheelsets, 2, 2, 3], of offset (m) and velocity (m/s), of left and right rail.
+
+        Track axes, beside those of the case; may be written before a step. A rail that is not
+        straight stands still all the same: its velocity is 0, see railpatch.track.
+        """
+        return self._rails.reshape(-1, 2, 2, 3)
+
+    @property
+    def wheels(self) -> NDArray[np.float64]:
+        """[wheelsets, 2, 8], of left and right wheel at the last step.
+
+        Force (N) and moment (N m) about the wheelset's centre, track axes, power of friction (W),
+        number of patches.
+        """
+        return self._core.wheels.reshape(-1, 2, 8)
+
+    def track_rotation(self, index: int) -> NDArray[np.float64]:
+        """[3, 3], from a wheelset's track axes to the world's."""
+        return self._tracks[index, :9].reshape(3, 3)
+
+    @property
     def states(self) -> NDArray[np.float64]:
         """[wheelsets, 12], the same as an array; its values change with the next step."""
         return self._states
@@ -245,7 +298,7 @@ class ForceElement:
 
     @property
     def solve_seconds(self) -> float:
-        """s, wall-clock time inside the contact solves since the start."""
+        """s, wall-clock time inside the contact solves since the start, of all threads."""
         return self._core.seconds
 
     @property
@@ -322,7 +375,8 @@ def check_case(case: Any) -> None:
         )
     if case.track.curvature != 0:
         problems.append(
-            f"track.curvature: value is {case.track.curvature}, allowed 0: the track is straight"
+            f"track.curvature: value is {case.track.curvature}, allowed 0: `tracks` say where the "
+            "track is"
         )
     if problems:
         raise CaseError(problems)

@@ -87,7 +87,7 @@ class Step:
         """Kind of motion."""
         if isinstance(self.case, PatchCase):
             return self.case.motion.regime
-        return "steady_rolling" if self.case.has_tangential else "none"
+        return self.case.motion.regime if self.case.has_tangential else "none"
 
     @property
     def tolerance(self) -> float:
@@ -188,8 +188,10 @@ class Step:
     @property
     def history_known(self) -> bool:
         """Whether all that the step went on from is known: not from a step that did not end well,
-        nor from another grid."""
+        nor from another grid, as those of wheels are."""
         before = self.before
+        if self.regime == "transient_rolling" and not isinstance(self.case, PatchCase):
+            return False
         if self.regime == "steady_rolling" or before is None:
             return True
         if before.patch["status"] == "no_contact":

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import cos, pi, sin
 from typing import Any
 
 from railpatch.bench.problems import merged
-from railpatch.stress.trial import NO_CONTACT, SAYS_SO, Move, Trial, moves
+from railpatch.stress.trial import IN_THEORY, NO_CONTACT, SAYS_SO, SOLVED, Move, Trial, moves
 
 RADIUS = 0.46
 WHEELSET: dict[str, Any] = {
@@ -30,6 +31,10 @@ ROLLER = merged(
     {"track": {"kind": "roller", "roller_radius": 0.8, "roller_pitch_rate": 25.0},
      "wheelset": {"speed": 0.0}},
 )  # fmt: skip
+HASTY = 1e-5  # s, steps shorter than that
+LONGEST = 0.1  # m, of a patch that the grid holds
+SOFT = 1e6  # N/m, springs on which the rail moves by more than a wheel can follow
+SOFT_NOTE = "the rail gives way by centimetres: solved, or it says that it is not"
 ODD = "a position that no wheelset takes: solved, or it says that it is not"
 
 
@@ -76,12 +81,112 @@ def wheel_trials(quick: bool) -> Iterator[Trial]:
         "wheel", "from flange to flange", WHEELSET,
         moves(*({"y": 1e-3 * y, "roll": -5e-2 * 1e-3 * y} for y in range(-7, 8))),
     )  # fmt: skip
+    yield from uneven_trials(quick)
+    yield from moving_rail_trials(quick)
+    yield from transient_trials(quick)
     for theory in ("fastsim", "fastrip", "polach", "linear", "table"):
         method = {"method": {"tangential": theory, "normal": "kik_piotrowski"}}
         yield Trial(
             "wheel", "flange contact", merged(WHEEL, {**method, "wheelset": {"y": 6e-3}}),
             moves({}, expects=SAYS_SO),
         )  # fmt: skip
+
+
+def uneven_trials(quick: bool) -> Iterator[Trial]:
+    """Wheels with flats or out of round, rails with joints, rolled over step by step."""
+    for depth in (1e-3,) if quick else (1e-5, 2.5e-4, 1e-3, 4e-3):
+        # m, half the flat's length, and beyond its ends
+        half = (2 * RADIUS * depth) ** 0.5
+        turns = [share * half / RADIUS for share in (-1.5, -1.0, -0.9, -0.3, 0.0, 0.3, 1.0, 1.5)]
+        flat = {"wheelset": {"right": {"flat": {"depth": depth}}}}
+        long = 2 * half > LONGEST
+        yield Trial(
+            "uneven", f"flat of {1e3 * depth:g} mm", merged(WHEEL, flat),
+            moves(*({"pitch": turn} for turn in turns), expects=IN_THEORY if long else SOLVED),
+            "stands on both its ends, one patch longer than the grid" if long else "",
+        )  # fmt: skip
+    for waves, height in ((3, 1e-3), (20, 5e-5), (60, 1e-5)):
+        angles = [2 * pi * i / 720 for i in range(720)]
+        runout = [height * cos(waves * angle) for angle in angles]
+        yield Trial(
+            "uneven", f"{waves} waves of {1e6 * height:g} um around the wheel",
+            merged(WHEEL, {"wheelset": {"right": {"runout": runout}}}),
+            moves(*({"pitch": 0.02 * i} for i in range(8))),
+        )  # fmt: skip
+    joints = {
+        "dip of 1 mm": {"depth": 1e-3},
+        "dip of 10 mm": {"depth": 0.01},
+        "step up of 2 mm": {"step": 2e-3},
+        "step down of 2 mm": {"step": -2e-3},
+        "gap of 6 mm": {"gap": 6e-3},
+        "gap of 30 mm with a step": {"gap": 0.03, "step": 1e-3},
+    }
+    places = (-0.3, -0.05, -0.02, -4e-3, 0.0, 4e-3, 0.02, 0.05, 0.3)
+    for name, joint in list(joints.items())[: 2 if quick else None]:
+        case = merged(WHEEL, {"track": {"right": {"joint": {"position": 0.0, **joint}}}})
+        yield Trial("uneven", name, case, moves(*({"x": x} for x in places)))
+
+
+def moving_rail_trials(quick: bool) -> Iterator[Trial]:
+    """Rails on springs and dampers, out of gauge, and frames of contact that turn."""
+    for stiffness in (1e5, 1e8, 1e12) if quick else (1.0, 1e3, 1e5, 1e7, 1e8, 1e10, 1e12, 1e15):
+        case = merged(WHEELSET, {"track": {"rail_support": {"stiffness": [stiffness, stiffness]}}})
+        expects = SAYS_SO if stiffness < SOFT else SOLVED
+        note = SOFT_NOTE if stiffness < SOFT else ""
+        changes = ({}, {"yaw": 5e-3}, {"yaw": -5e-3, "y": 2e-3})
+        yield Trial(
+            "moving rail", f"springs of {stiffness:g} N/m", case, moves(*changes, expects=expects),
+            note,
+        )  # fmt: skip
+    for damping in (1e3, 1e6, 1e12):
+        support = {"stiffness": [2e7, 5e7], "damping": [damping, damping]}
+        for step in (1e-6, 1e-3, 1.0):
+            case = merged(
+                WHEELSET,
+                {"track": {"rail_support": support}, "wheelset": {"time_step": step}},
+            )
+            hasty = step < HASTY
+            yield Trial(
+                "moving rail", f"dampers of {damping:g} N s/m, steps of {step:g} s", case,
+                (Move(), *moves({"y": 1e-3}, {"y": -1e-3}, expects=SAYS_SO if hasty else SOLVED)),
+                "a millimetre sideways in a microsecond: solved, or it says that it is not"
+                if hasty else "",
+            )  # fmt: skip
+    for widening in (-4e-3, 0.01, 0.03):
+        case = merged(WHEELSET, {"track": {"gauge_widening": widening}})
+        yield Trial("moving rail", f"gauge wider by {1e3 * widening:g} mm", case, moves({}))
+    inclined = merged(ROLLER, {"method": {"contact_frame": "inclined"}})
+    for yaw in (0.0, 0.01, 0.05):
+        yield Trial(
+            "moving rail", f"roller, inclined frame, yaw {1e3 * yaw:g} mrad", inclined,
+            moves({"yaw": yaw}, {"yaw": -yaw}),
+        )  # fmt: skip
+
+
+def transient_trials(quick: bool) -> Iterator[Trial]:
+    """Wheels that roll on from their last tractions, in steps of any length."""
+    transient = merged(WHEELSET, {"motion": {"regime": "transient_rolling"}})
+    for step in (1e-4,) if quick else (1e-7, 1e-5, 1e-4, 1e-2, 1.0):
+        case = merged(transient, {"wheelset": {"time_step": step}})
+        sway = [{"y": 2e-3 * sin(0.8 * i), "yaw": 4e-3 * cos(0.8 * i)} for i in range(8)]
+        yield Trial("transient wheels", f"swaying, steps of {step:g} s", case, moves(*sway))
+    case = merged(transient, {"wheelset": {"time_step": 1e-4}})
+    yield Trial(
+        "transient wheels", "from flange to flange", case,
+        moves(*({"y": 1e-3 * y, "roll": -5e-5 * y} for y in range(-7, 8))),
+    )  # fmt: skip
+    yield Trial(
+        "transient wheels", "stops and goes back", case,
+        moves(
+            {}, {"speed": 1e-3, "pitch_rate": -1e-3 / RADIUS}, {"speed": 0.0, "pitch_rate": 0.0},
+            {"y": 1e-5}, {"speed": -5.0, "pitch_rate": 5.0 / RADIUS}, {},
+        ),
+    )  # fmt: skip
+    high = merged(case, {"wheelset": {"vertical_force": None, "z": 2e-4}})
+    yield Trial(
+        "transient wheels", "lifted and put back", high,
+        (Move(), Move({"z": -1e-3}, NO_CONTACT), Move({"z": 2e-4}), Move({"z": 3e-4})),
+    )  # fmt: skip
 
 
 def wheelset(

@@ -1,0 +1,209 @@
+"""What the viewers' layout plots: topics and fields of the log's table."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from railpatch.log.channels import SIDES, unit
+
+KINDS = ("rail", "roller", "vehicle")
+_AXES = "xyz"
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One curve of a plot.
+
+    topic: of the log. field: as viewers write it, with indices ("patches[0].creepage[1]"). name: in
+    the legend; unit: of the table. Raises KeyError where the table has no such field.
+    """
+
+    topic: str
+    field: str
+    name: str
+
+    def __post_init__(self) -> None:
+        _ = self.unit
+
+    @property
+    def unit(self) -> str:
+        """Of the table."""
+        parts = []
+        for part in self.field.split("."):
+            head, bracket, _ = part.partition("[")
+            parts.append((head, bool(bracket)))
+        # a list of messages is written with brackets in the table, a list of numbers without
+        last = parts.pop()[0]
+        path = "".join(f"{head}{'[]' if listed else ''}." for head, listed in parts) + last
+        return unit(self.topic, path)
+
+    @property
+    def path(self) -> str:
+        """Of the message, as viewers write it."""
+        return f"{self.topic}.{self.field}"
+
+    @property
+    def label(self) -> str:
+        """Name and unit."""
+        return self.name if self.unit == "-" else f"{self.name} [{self.unit}]"
+
+
+@dataclass(frozen=True)
+class Tab:
+    """Plots, by their titles, that are shown together."""
+
+    title: str
+    plots: dict[str, list[Curve]]
+
+
+def tabs_of(kind: str, wheelsets: int) -> list[Tab]:
+    """All plots of a kind of run."""
+    if kind == "vehicle":
+        return _vehicle(wheelsets)
+    tabs = [_motion(), _forces(), _contact()]
+    if kind == "roller":
+        return [*tabs, _balance(), _work()]
+    return [*tabs, _energies("/wheelset"), _momenta("/wheelset"), _work()]
+
+
+def _vectors(topic: str, field: str, name: str, count: int = 3) -> list[Curve]:
+    return [Curve(topic, f"{field}[{k}]", f"{name} {_AXES[k]}") for k in range(count)]
+
+
+def _both(field: str, name: str) -> list[Curve]:
+    """Of the left and the right wheel."""
+    return [Curve(f"/{side}/contact", field, f"{side} {name}") for side in SIDES]
+
+
+def _motion() -> Tab:
+    state = "/wheelset/state"
+    return Tab(
+        "Motion",
+        {
+            "position": [Curve(state, "y", "y"), Curve(state, "z", "z")],
+            "angles": [Curve(state, "yaw", "yaw"), Curve(state, "roll", "roll")],
+            "rates": [Curve(state, "vy", "vy"), Curve(state, "yaw_rate", "yaw rate")],
+        },
+    )
+
+
+def _forces() -> Tab:
+    return Tab(
+        "Forces",
+        {
+            "vertical forces on the wheels": _both("force[2]", "Fz"),
+            "lateral forces on the wheels": _both("force[1]", "Fy"),
+            "longitudinal forces on the wheels": _both("force[0]", "Fx"),
+        },
+    )
+
+
+def _contact() -> Tab:
+    creepage = [*_both("patches[0].creepage[0]", "x"), *_both("patches[0].creepage[1]", "y")]
+    return Tab(
+        "Contact",
+        {
+            "creepages of the first patch": creepage,
+            "spin creepage": _both("patches[0].spin_creepage", "spin"),
+            "highest pressure": _both("patches[0].max_pressure", "pressure"),
+            "elements that slip": _both("patches[0].elements.slip", "slip"),
+        },
+    )
+
+
+def _balance() -> Tab:
+    topic = "/rig/balance"
+    return Tab(
+        "Balance",
+        {
+            "residuals": [
+                Curve(topic, f"residuals[{k}]", name)
+                for k, name in enumerate(("axle moment", "vertical force", "roll moment"))
+            ],
+            "evaluations": [Curve(topic, "evaluations", "evaluations")],
+        },
+    )
+
+
+def _energies(above: str) -> Tab:
+    topic = f"{above}/energy"
+    works = ("friction_work", "damping_work", "drive_work")
+    open_parts = ("mechanical_residual", "contact_residual")
+    return Tab(
+        "Energy",
+        {
+            "work since the start": [Curve(topic, f, f.replace("_", " ")) for f in works],
+            "stored": [Curve(topic, f, f) for f in ("suspension", "elastic")],
+            "open in the balance": [Curve(topic, f, f.replace("_", " ")) for f in open_parts],
+        },
+    )
+
+
+def _momenta(above: str) -> Tab:
+    topic = f"{above}/momentum"
+    return Tab(
+        "Momentum",
+        {
+            "momentum": _vectors(topic, "momentum", "momentum"),
+            "open in the balance": _vectors(topic, "residual", "momentum"),
+            "about the centre, open": _vectors(topic, "turning_residual", "about"),
+        },
+    )
+
+
+def _work() -> Tab:
+    topic = "/solver/stats"
+    return Tab(
+        "Solver",
+        {
+            "wall time": [Curve(topic, "wall_time", "wall time")],
+            "contacts solved": [Curve(topic, "contact_evaluations", "contacts")],
+        },
+    )
+
+
+def _vehicle(wheelsets: int) -> list[Tab]:
+    numbers = range(1, wheelsets + 1)
+
+    def wheels(field: str, name: str) -> list[Curve]:
+        return [
+            Curve(f"/wheelset/{n}/{side}/contact", field, f"{n} {side} {name}")
+            for n in numbers
+            for side in SIDES
+        ]
+
+    def axles(field: str, name: str) -> list[Curve]:
+        return [Curve(f"/wheelset/{n}/state", field, f"{n} {name}") for n in numbers]
+
+    state, bodies = "/vehicle/state", "/vehicle/bodies"
+    body = "bodies[0]."
+    return [
+        Tab(
+            "Vehicle",
+            {
+                "wheelsets beside the centre line": axles("y", "y"),
+                "acceleration of the car body": [
+                    Curve(bodies, f"{body}acceleration[{k}]", f"a{_AXES[k]}") for k in (1, 2)
+                ],
+                "track": [Curve(state, "curvature", "curvature"), Curve(state, "cant", "cant")],
+            },
+        ),
+        Tab(
+            "Forces",
+            {
+                "vertical forces on the wheels": wheels("force[2]", "Fz"),
+                "lateral forces on the wheels": wheels("force[1]", "Fy"),
+            },
+        ),
+        Tab(
+            "Contact",
+            {
+                "longitudinal creepages": wheels("patches[0].creepage[0]", "x"),
+                "lateral creepages": wheels("patches[0].creepage[1]", "y"),
+                "angles of attack": axles("yaw", "yaw"),
+            },
+        ),
+        _energies("/vehicle"),
+        _momenta("/vehicle"),
+        _work(),
+    ]

@@ -1,0 +1,152 @@
+"""The log of a vehicle on several wheelsets."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import vehicle_scene
+from .channels import channel, vehicle_channels
+from .encode import encode
+from .geometry import SceneGeometry
+from .stream import SCENE_RATE, LogStream, Pace, checked_attachments
+from .writer import snapshots
+
+# bodies' cuboids: centre and size (m) in the body's axes
+Boxes = Sequence[tuple[Sequence[float], Sequence[float]]]
+
+
+@dataclass(frozen=True)
+class VehicleGeometry:
+    """What the 3D scene of a vehicle shows.
+
+    ``wheelset``: profiles of its wheels and rails. ``boxes``: cuboids by the name of a body, others
+    are not drawn. ``centre_line``: m, [n, 3], of the track in start axes; left out: no line.
+    Raises ValueError where a value has the wrong shape.
+    """
+
+    wheelset: SceneGeometry
+    boxes: Mapping[str, Boxes]
+    centre_line: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.wheelset, SceneGeometry) or self.wheelset.kind != "rail":
+            raise ValueError("geometry: wheelset must be a SceneGeometry of kind 'rail'")
+        for name, boxes in self.boxes.items():
+            for box in boxes:
+                if [len(part) for part in box] != [3, 3] or not np.isfinite(box).all():
+                    raise ValueError(
+                        f"geometry: boxes[{name!r}] has {box!r}; it must be centre and size, m"
+                    )
+        line = self.centre_line
+        if line is not None and (np.ndim(line) != 2 or np.shape(line)[1] != 3 or len(line) < 2):
+            raise ValueError(f"geometry: centre_line has shape {np.shape(line)}; must be (n, 3)")
+
+
+class VehicleLog:
+    """The log of a vehicle's run; use it in a ``with`` statement. Arguments as of RunLog.
+
+    ``wheelsets``: their number.
+    """
+
+    def __init__(
+        self,
+        path: str | PathLike[str],
+        *,
+        wheelsets: int,
+        case_text: str | bytes,
+        case_name: str,
+        profiles: Mapping[str, bytes] | None = None,
+        geometry: VehicleGeometry | None = None,
+        scene_rate: float = SCENE_RATE,
+    ) -> None:
+        if not isinstance(wheelsets, int) or isinstance(wheelsets, bool) or wheelsets < 1:
+            raise ValueError(f"wheelsets is {wheelsets!r}; it must be a whole number >= 1")
+        if geometry is not None and not isinstance(geometry, VehicleGeometry):
+            raise ValueError(f"geometry is {geometry!r}; it must be a VehicleGeometry")
+        attachments = checked_attachments(case_text, case_name, profiles or {})
+        self._count, self._pace = wheelsets, Pace(scene_rate)
+        about = {"scene": case_name, "track_kind": "rail", "wheelsets": str(wheelsets)}
+        self.stream = LogStream(path, vehicle_channels(wheelsets), about, attachments)
+        if geometry is not None:
+            with self.stream.counted():
+                shapes = vehicle_scene.bodies(geometry, wheelsets)
+                self.stream.first("/scene/bodies", shapes)
+
+    @property
+    def path(self) -> Path:
+        """Of the file."""
+        return self.stream.path
+
+    @property
+    def share(self) -> float:
+        """Part of the wall-clock time since the file was opened that the log took; -."""
+        return self.stream.share
+
+    def write(
+        self,
+        time_s: float,
+        *,
+        state: Mapping[str, Any],
+        wheelsets: Sequence[Mapping[str, Any]],
+        bodies: Sequence[Mapping[str, Any]],
+        tracks: Sequence[tuple[Sequence[float], Sequence[float]]] | None = None,
+        energy: Mapping[str, Any] | None = None,
+        momentum: Mapping[str, Any] | None = None,
+        stats: Mapping[str, Any] | None = None,
+    ) -> None:
+        """Logs one time step; the fields of each dict stand in channels.py.
+
+        ``wheelsets``: of each, from the front, ``state``, ``left``, ``right`` and, for a snapshot,
+        ``fields``, as for RunLog.write. ``bodies``: a dict each; wheelset N is called
+        "wheelset_N", and turns with the pitch of its state where that has one. ``tracks``: of each
+        wheelset the origin (m) and the quaternion of its track axes, in start axes; without them no
+        rails and patches are shown.
+
+        Raises ValueError for a bad value, and logs nothing of this step then.
+        """
+        with self.stream.counted():
+            time_ns = self.stream.checked_time(time_s)
+            given = {"/vehicle/state": state, "/vehicle/bodies": {"bodies": list(bodies)}}
+            beside = {
+                "/vehicle/energy": energy,
+                "/vehicle/momentum": momentum,
+                "/solver/stats": stats,
+            }
+            given |= {topic: values for topic, values in beside.items() if values is not None}
+            messages: dict[str, Any] = {}
+            self._check_number("wheelsets", wheelsets)
+            for number, wheelset in enumerate(wheelsets, start=1):
+                above = f"/wheelset/{number}"
+                given[f"{above}/state"] = wheelset["state"]
+                for side in ("left", "right"):
+                    given[f"{above}/{side}/contact"] = wheelset[side]
+                messages |= snapshots(wheelset.get("fields") or {}, above)
+            for topic, values in given.items():
+                messages[topic] = encode(channel(topic).message, values, topic)
+            if tracks is not None:
+                self._check_number("tracks", tracks)
+            if self._pace.due(time_s):
+                messages["/tf"] = vehicle_scene.transforms(wheelsets, bodies, tracks, time_ns)
+                if tracks is not None:
+                    messages["/scene/contact"] = vehicle_scene.contact(wheelsets, time_ns)
+            self.stream.add(messages, time_ns)
+
+    def _check_number(self, name: str, values: Sequence[Any]) -> None:
+        if len(values) != self._count:
+            raise ValueError(f"{name} has {len(values)} entries; it must have {self._count}")
+
+    def close(self, stopped_by: str = "") -> None:
+        """Writes the index and closes the file; a second call does nothing."""
+        self.stream.close(stopped_by)
+
+    def __enter__(self) -> VehicleLog:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
+        self.close(kind.__name__ if kind else "")

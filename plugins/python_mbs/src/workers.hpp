@@ -1,0 +1,36 @@
+// Threads that share the items of a task. Items must not depend on each other, then neither do
+// results on the number of threads or on which thread took which item.
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace railpatch::python {
+
+class Workers {
+ public:
+  // threads: >= 1, of which the caller is one: 1 makes none
+  explicit Workers(int threads);
+  ~Workers();
+  Workers(const Workers &) = delete;
+  Workers &operator=(const Workers &) = delete;
+
+  // task(0) ... task(count - 1), each once; returns when all are done. task must not throw.
+  void run(size_t count, const std::function<void(size_t)> &task);
+
+ private:
+  void wait_for_tasks();
+  void take_items();
+
+  std::mutex mutex_;
+  std::condition_variable begin_, end_;
+  const std::function<void(size_t)> *task_ = nullptr;
+  size_t count_ = 0, next_ = 0, open_ = 0, round_ = 0;
+  bool stop_ = false;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace railpatch::python

@@ -1,0 +1,80 @@
+// Opens a log and a layout in Foxglove Studio, in a browser without a window, and saves a picture.
+//
+// node screenshot.mjs MODULES CHROMIUM RUN.mcap LAYOUT.json TIME_S PICTURE.png
+
+import { createReadStream, statSync } from "node:fs";
+import { createServer } from "node:http";
+import { createRequire } from "node:module";
+import path from "node:path";
+
+const PLOTS_MS = 15_000;
+const [modules, browserPath, run, layout, time, picture] = process.argv.slice(2);
+const here = import.meta.dirname ?? path.dirname(new URL(import.meta.url).pathname);
+const require = createRequire(path.resolve(modules, "driver.js"));
+const puppeteer = require("puppeteer-core");
+
+const types = { ".html": "text/html", ".js": "text/javascript", ".json": "application/json" };
+types[".wasm"] = "application/wasm";
+
+// the viewer reads logs in ranges of bytes
+function answer(request, response) {
+  const name = decodeURIComponent(new URL(request.url, "http://localhost").pathname);
+  const own = { "/": path.join(here, "page.html"), "/run.mcap": run, "/layout.json": layout };
+  const file = own[name] ?? path.join(modules, path.normalize(name).replace(/^\/modules/, ""));
+  let size;
+  try {
+    size = statSync(file).size;
+  } catch {
+    response.writeHead(404).end();
+    return;
+  }
+  const headers = {
+    "Accept-Ranges": "bytes",
+    "Content-Type": types[path.extname(file)] ?? "application/octet-stream",
+  };
+  const range = /^bytes=(\d+)-(\d*)$/.exec(request.headers.range ?? "");
+  const start = range ? Number(range[1]) : 0;
+  const end = range && range[2] ? Math.min(Number(range[2]), size - 1) : size - 1;
+  if (range) headers["Content-Range"] = `bytes ${start}-${end}/${size}`;
+  headers["Content-Length"] = end - start + 1;
+  response.writeHead(range ? 206 : 200, headers);
+  if (request.method === "HEAD") response.end();
+  else createReadStream(file, { start, end }).pipe(response);
+}
+
+const server = createServer(answer);
+await new Promise((ready) => server.listen(0, "127.0.0.1", ready));
+const address = `http://127.0.0.1:${server.address().port}/`;
+
+const browser = await puppeteer.launch({
+  executablePath: browserPath,
+  // drawn by the processor: there need be no graphics card
+  args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+  defaultViewport: { width: 1920, height: 1080 },
+});
+try {
+  const page = await browser.newPage();
+  const problems = new Set();
+  page.on("pageerror", (error) => problems.add(String(error)));
+  page.on("response", (found) => {
+    if (found.status() >= 400) console.log(`not found: ${new URL(found.url()).pathname}`);
+  });
+  const at = new Date(1000 * Number(time)).toISOString();
+  await page.goto(`${address}?time=${encodeURIComponent(at)}`, { waitUntil: "load" });
+  // the panel of raw messages has one at the time asked for
+  const shown = `@ ${Number(time).toFixed(1)}`;
+  const text = (part) => document.body.innerText.includes(part);
+  await page.waitForFunction(text, { timeout: 120_000 }, shown);
+  // a hint that covers a panel
+  for (const button of await page.$$('[role="tooltip"] button')) await button.click();
+  // plots fill in while the log is read
+  await new Promise((done) => setTimeout(done, PLOTS_MS));
+  await page.screenshot({ path: picture });
+  const canvases = await page.$$eval("canvas", (found) => found.length);
+  console.log(`${picture}: ${canvases} canvases`);
+  for (const problem of problems) console.error(`page: ${problem}`);
+  if (problems.size || canvases < 2) process.exitCode = 1;
+} finally {
+  await browser.close();
+  server.close();
+}

@@ -1,0 +1,24 @@
+"""A railway vehicle of 50 degrees of freedom on straight and curved track, with irregular rails.
+
+    railpatch vehicle --compare
+
+In Python:
+
+    from wheelset_demo.vehicle import Simulation, load_vehicle_scene
+
+    simulation = Simulation(load_vehicle_scene())
+    for state in simulation.steps():       # at the start and after each n-th step (run.log_every)
+        poses = simulation.body_poses()    # name -> (rotation [3, 3], place [3], m), world axes
+        element = simulation.element       # railpatch.pinocchio.ForceElement, one row a wheelset
+        ...
+
+state.time in s, state.q and state.v [50] as in wheelset_demo.vehicle.model; element.states,
+.wheels, .contact_wrench, .tracks, .positions, .rails and .result(index) are of that state. Names
+of bodies: car_body, bogie_1, bogie_2, wheelset_1 ... 4, axle_box_1_left ... axle_box_4_right.
+"""
+
+from wheelset_demo.vehicle.scene import VehicleScene, load_vehicle_scene
+from wheelset_demo.vehicle.simulation import Simulation
+from wheelset_demo.vehicle.system import VehicleState
+
+__all__ = ["Simulation", "VehicleScene", "VehicleState", "load_vehicle_scene"]

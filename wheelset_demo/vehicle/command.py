@@ -1,0 +1,113 @@
+"""The sub-command ``railpatch vehicle``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import click
+from railpatch.commands import (
+    EXIT_NOT_CONVERGED,
+    WrongCall,
+    progress_bar,
+    scene_argument,
+    show_scene_option,
+)
+from railpatch.errors import CaseError, ProfileError
+
+# of wheelset_demo.vehicle.compare, which takes long to import; a test compares them
+METHODS = ("full", "fastsim", "kik", "analyn", "polach", "table")
+
+
+def default_scene_text() -> str:
+    """The scene that is run by default."""
+    from wheelset_demo.scene import scene_file
+
+    return scene_file("vehicle_curve.toml").read_text(encoding="utf-8")
+
+
+@click.command("vehicle")
+@scene_argument()
+@click.option(
+    "--method",
+    "methods",
+    type=click.Choice(METHODS),
+    multiple=True,
+    help="Contact theory in place of the scene's; may be given several times.",
+)
+@click.option("--compare", is_flag=True, help="The full theory beside Hertz and FASTSIM: times.")
+@click.option("--duration", type=float, metavar="SECONDS", help="Replaces run.duration.")
+@click.option("--step", type=float, metavar="SECONDS", help="Replaces run.step.")
+@click.option("--stepper", type=click.Choice(["bdf2", "ros2"]), help="Replaces run.stepper.")
+@click.option("--threads", type=int, metavar="NUMBER", help="Replaces run.threads.")
+@click.option("--json", "as_json", is_flag=True, help="Print the summaries as one JSON object.")
+@show_scene_option(default_scene_text)
+@click.option("--quiet", is_flag=True, help="Print no summary and no progress.")
+@click.pass_context
+def vehicle(
+    context: click.Context,
+    scene: Path | None,
+    methods: tuple[str, ...],
+    compare: bool,
+    as_json: bool,
+    quiet: bool,
+    **overrides: Any,
+) -> None:
+    """Run a vehicle of 50 degrees of freedom on its track.
+
+    Without a scene it runs 20 s at 300 km/h through a curve whose rails have irregularities. A
+    contact that cannot be solved ends the run with exit code 3.
+    """
+    if compare and methods:
+        raise WrongCall(f"--compare: given with --method {methods[0]}, allowed one of them")
+    try:
+        import railpatch.pinocchio  # noqa: F401
+    except ImportError as error:
+        raise WrongCall(str(error)) from None
+    from wheelset_demo.vehicle.compare import COMPARED
+    from wheelset_demo.vehicle.scene import load_vehicle_scene
+
+    try:
+        loaded = load_vehicle_scene(scene, overrides)
+        found = run_all(loaded, COMPARED if compare else methods, quiet)
+    except (CaseError, ProfileError, OSError) as error:
+        raise WrongCall(str(error)) from None
+    if as_json:
+        content = {name: summary.to_dict() for name, summary in found.items()}
+        click.echo(json.dumps({"scene": loaded.name, "runs": content}, allow_nan=False))
+    elif not quiet:
+        show(loaded.name, found)
+    failed = {name: summary for name, summary in found.items() if not summary.good}
+    for name, summary in failed.items():
+        if not quiet:
+            click.echo(f"status: {name}: {summary.message}", err=True)
+    if failed:
+        context.exit(EXIT_NOT_CONVERGED)
+
+
+def run_all(scene: Any, methods: tuple[str, ...], quiet: bool) -> dict[str, Any]:
+    """Name of the theory, or "scene" for the scene's own -> summary."""
+    from wheelset_demo.vehicle.compare import run_summary, with_theory
+
+    chosen = {name: with_theory(scene, name) for name in methods} or {"scene": scene}
+    kept = 1 + -(-scene.steps // scene.run.log_every)
+    found = {}
+    for name, one in chosen.items():
+        with progress_bar(f"rolling, {name}", kept, quiet) as advance:
+            found[name] = run_summary(one, advance)
+    return found
+
+
+def show(name: str, found: dict[str, Any]) -> None:
+    """Summaries, and the table of times where theories are named."""
+    from wheelset_demo.vehicle.compare import THEORIES, table_of
+
+    click.echo(f"{'scene':<16}{name}")
+    for key, summary in found.items():
+        if key in THEORIES:
+            click.echo(f"{'theory':<16}{THEORIES[key].text}")
+        click.echo(summary.text())
+    if "scene" not in found:
+        click.echo("")
+        click.echo(table_of(found))

@@ -1,0 +1,305 @@
+"""The scene of a vehicle run: a case file of kind "wheelset" with vehicle, suspension and track."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+from railpatch.case import WheelsetCase
+from railpatch.case.load import Scene, check_case, check_table, plain, read_toml
+from railpatch.case.types import NotNegative, Number, Positive, Table, exactly, relation
+from railpatch.errors import CaseError
+
+from wheelset_demo.scene import found_profiles, scene_file
+from wheelset_demo.vehicle.alignment import AlignmentTable
+from wheelset_demo.vehicle.irregularity import IrregularityTable
+
+DEFAULT = "vehicle_curve.toml"
+# found at the start, or no part of a scene that runs on its own track
+FOUND = ("y", "yaw", "roll", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate")
+WHEELSETS = 4
+BOXES = 2 * WHEELSETS
+Triple = Annotated[list[NotNegative], exactly(3)]
+NONE = [0.0, 0.0, 0.0]
+
+
+class BodyTable(Table):
+    """A rigid body."""
+
+    mass: Positive = Field(description="kg")
+    inertia: Annotated[list[Positive], exactly(3)] = Field(
+        description="kg m^2, about x, y, z through its centre"
+    )
+
+
+class HighBodyTable(BodyTable):
+    """A rigid body above the rails."""
+
+    height: Positive = Field(description="m, of its centre above the rails' tops")
+
+
+class AxleBoxTable(BodyTable):
+    """A body that pitches about the end of an axle."""
+
+    lateral: Positive = Field(description="m, of its centre from the vehicle's middle")
+
+
+class VehicleTable(Table):
+    """Bodies of a vehicle with two bogies of two wheelsets; it is symmetric."""
+
+    bogie_distance: Positive = Field(description="m, between the bogies' centres")
+    wheelbase: Positive = Field(description="m, between the wheelsets of a bogie")
+    car_body: HighBodyTable = Field(description="the car body")
+    bogie_frame: HighBodyTable = Field(description="each bogie frame")
+    wheelset: BodyTable = Field(description="each wheelset, spinning about y")
+    axle_box: AxleBoxTable = Field(description="each of two axle boxes of a wheelset")
+
+    @model_validator(mode="after")
+    def _round(self) -> VehicleTable:
+        roll, _, yaw = self.wheelset.inertia
+        if roll != yaw:
+            raise relation("wheelset.inertia", self.wheelset.inertia, "equal ones about x and z")
+        return self
+
+    @property
+    def length(self) -> float:
+        """m, between the first and the last wheelset."""
+        return self.bogie_distance + self.wheelbase
+
+    @property
+    def mass(self) -> float:
+        """kg, of all."""
+        boxes = BOXES * self.axle_box.mass
+        return (
+            self.car_body.mass + 2 * self.bogie_frame.mass + WHEELSETS * self.wheelset.mass + boxes
+        )
+
+
+class ElementTable(Table):
+    """Springs and dampers at one kind of place; axes are those of the bogie frame."""
+
+    name: str = Field(description="(no unit): for messages")
+    level: Literal["primary", "secondary", "centre"] = Field(
+        description="(no unit): at each axle box to the bogie frame, at each side of a bogie to "
+        "the car body, in the middle of a bogie to the car body"
+    )
+    height: Positive = Field(description="m, above the rails' tops")
+    lateral: NotNegative = Field(default=0.0, description="m, from the vehicle's middle")
+    longitudinal: Number = Field(
+        default=0.0, description="m, outward from the wheelset or ahead of the bogie's centre"
+    )
+    stiffness: Triple = Field(default=NONE, description="N/m, along x, y, z")
+    damping: Triple = Field(default=NONE, description="N s/m, along x, y, z")
+    series_stiffness: Triple = Field(
+        default=NONE, description="N/m, in series with each damper; 0: none"
+    )
+    turning_stiffness: Triple = Field(default=NONE, description="N m/rad, about x, y, z")
+    turning_damping: Triple = Field(default=NONE, description="N m s/rad, about x, y, z")
+    bump_stop: Annotated[list[Annotated[list[Number], exactly(2)]], Field(min_length=2)] | None = (
+        Field(default=None, description="[m, N], lateral force over displacement, point symmetric")
+    )
+
+    @model_validator(mode="after")
+    def _possible(self) -> ElementTable:
+        if self.level == "centre" and self.lateral != 0:
+            raise relation("lateral", self.lateral, "0 in the middle of a bogie")
+        if any(s > 0 and c == 0 for s, c in zip(self.series_stiffness, self.damping, strict=True)):
+            raise relation("series_stiffness", self.series_stiffness, "0 where damping is 0")
+        if self.bump_stop is not None:
+            places = [row[0] for row in self.bump_stop]
+            if places[0] < 0 or any(b <= a for a, b in pairwise(places)):
+                raise relation("bump_stop", places, "displacements >= 0 that increase")
+        return self
+
+
+class RunTable(Table):
+    """How long, with which steps, and what is kept."""
+
+    duration: Annotated[float, Field(gt=0, le=1e5)] = Field(description="s, to run")
+    step: Annotated[float, Field(ge=1e-6, le=0.1)] = Field(default=1e-3, description="s")
+    stepper: Literal["bdf2", "ros2"] = Field(
+        default="bdf2",
+        description="(no unit): both linearly implicit and of order 2: bdf2 with one evaluation of "
+        "the forces a step, ros2 with two",
+    )
+    derivatives_every: Annotated[int, Field(ge=1, le=100_000)] = Field(
+        default=25, description="-, steps between new derivatives"
+    )
+    log_every: Annotated[int, Field(ge=1)] = Field(
+        default=5, description="-, every n-th step is kept"
+    )
+    threads: Annotated[int, Field(ge=1, le=64)] = Field(
+        default=1, description="-, that solve the wheelsets' contacts side by side"
+    )
+    speed_control: NotNegative = Field(
+        default=1e4, description="N s/m, of the force that holds the car body at the speed"
+    )
+
+
+TABLES: dict[str, type[Table]] = {
+    "vehicle": VehicleTable,
+    "alignment": AlignmentTable,
+    "irregularity": IrregularityTable,
+    "run": RunTable,
+}
+OPTIONAL = ("alignment", "irregularity")
+
+
+@dataclass(frozen=True)
+class VehicleScene:
+    """A checked scene.
+
+    name: of the file. text: as it was read. case: the contact of each wheelset. profiles: key of
+    [profiles] -> the file found, or the built-in name. irregularity: None for straight rails.
+    """
+
+    name: str
+    text: bytes
+    case: WheelsetCase
+    vehicle: VehicleTable
+    suspension: tuple[ElementTable, ...]
+    alignment: AlignmentTable
+    irregularity: IrregularityTable | None
+    run: RunTable
+    profiles: dict[str, str]
+
+    @property
+    def speed(self) -> float:
+        """m/s."""
+        return self.case.wheelset.speed
+
+    @property
+    def steps(self) -> int:
+        """Number of time steps."""
+        return max(1, round(self.run.duration / self.run.step))
+
+    @property
+    def length(self) -> float:
+        """m, of the track that is run on, with some to spare."""
+        return 1.2 * self.speed * self.run.duration + self.vehicle.length + 100.0
+
+    @property
+    def axle_load(self) -> float:
+        """N, of each wheelset at rest."""
+        from wheelset_demo.scene import GRAVITY
+
+        return self.vehicle.mass * GRAVITY / WHEELSETS
+
+    def with_method(self, **method: Any) -> VehicleScene:
+        """With some keys of [method] changed; None takes [grid] away for grid."""
+        grid = method.pop("grid", ...)
+        update: dict[str, Any] = {"method": self.case.method.model_copy(update=method)}
+        if grid is not ...:
+            update["grid"] = grid
+        return replace(self, case=self.case.model_copy(update=update))
+
+    def with_run(self, **keys: Any) -> VehicleScene:
+        """With some keys of [run] changed. Raises CaseError."""
+        given = {key: value for key, value in keys.items() if value is not None}
+        return replace(self, run=check_table(RunTable, {**self.run.model_dump(), **given}, "run"))
+
+    def contact(self) -> Scene:
+        """The contact of a wheelset whose position is given, with derivatives."""
+        wheelset = self.case.wheelset.model_copy(update={"vertical_force": None, "z": 0.0})
+        method = self.case.method.model_copy(update={"derivatives": True})
+        update = {"wheelset": wheelset, "method": method}
+        return Scene(self.case.model_copy(update=update), Path())
+
+
+def load_vehicle_scene(
+    path: str | Path | None = None, overrides: Mapping[str, Any] | None = None
+) -> VehicleScene:
+    """Checks a scene; without ``path`` that of the package.
+
+    overrides: keys of [run] that replace the file's. Relative paths of profiles start beside the
+    file. Raises CaseError with every problem.
+    """
+    path = scene_file(DEFAULT) if path is None else Path(path)
+    content = plain(read_toml(path))
+    tables = {name: content.pop(name, None) for name in TABLES}
+    elements = content.pop("suspension", None)
+    if isinstance(tables["run"], dict):
+        given = {key: value for key, value in (overrides or {}).items() if value is not None}
+        tables["run"] = {**tables["run"], **given}
+    problems: list[str] = []
+    checked: dict[str, Any] = {}
+    for name, table in tables.items():
+        try:
+            checked[name] = checked_table(name, table)
+        except CaseError as error:
+            problems += error.problems
+    try:
+        checked["suspension"] = checked_elements(elements)
+    except CaseError as error:
+        problems += error.problems
+    try:
+        checked["case"] = check_case(content)
+    except CaseError as error:
+        problems += error.problems
+    if problems:
+        raise CaseError(problems)
+    check_run(**checked)
+    profiles = found_profiles(checked["case"], path.parent)
+    kept = checked["case"].profiles.model_copy(update=profiles)
+    checked["case"] = checked["case"].model_copy(update={"profiles": kept})
+    return VehicleScene(path.name, path.read_bytes(), profiles=profiles, **checked)
+
+
+def checked_table(name: str, table: Any) -> Any:
+    """One table of the scene, by name. Raises CaseError."""
+    if table is None and name in OPTIONAL:
+        return AlignmentTable() if name == "alignment" else None
+    if table is None:
+        raise CaseError(f"{name}: value is missing, allowed {TABLES[name].__doc__}")
+    return check_table(TABLES[name], table, name)
+
+
+def checked_elements(elements: Any) -> tuple[ElementTable, ...]:
+    """The list [[suspension]]. Raises CaseError."""
+    if not isinstance(elements, list) or not elements:
+        raise CaseError("suspension: value is missing, allowed a list of [[suspension]] tables")
+    found = tuple(
+        check_table(ElementTable, element, f"suspension[{index}]")
+        for index, element in enumerate(elements)
+    )
+    for level in ("primary", "secondary"):
+        if not any(e.level == level and e.stiffness[2] > 0 for e in found):
+            raise CaseError(
+                f"suspension: no element of level {level!r} has a vertical stiffness, allowed one "
+                "or more: they carry the weight"
+            )
+    return found
+
+
+def check_run(case: Any, run: RunTable, **_: Any) -> None:
+    """Refuses cases that are no wheelset with friction. Raises CaseError."""
+    if case.kind != "wheelset":
+        raise CaseError(f"kind: value is {case.kind!r}, allowed 'wheelset' for a vehicle run")
+    wheelset, track = case.wheelset, case.track
+    problems = []
+    if track.kind != "rail":
+        problems.append(f"track.kind: value is {track.kind!r}, allowed 'rail'")
+    if track.curvature != 0:
+        problems.append(f"track.curvature: value is {track.curvature}, allowed 0: see [alignment]")
+    if track.irregularity is not None:
+        problems.append("track.irregularity: given, allowed in a vehicle run [irregularity]")
+    if not wheelset.speed > 0:
+        problems.append(f"wheelset.speed: value is {wheelset.speed}, allowed > 0 m/s")
+    if run.duration < run.step or run.duration / run.step > 1e7:
+        problems.append(f"run.step: value is {run.step}, allowed 1 to 1e7 steps in the duration")
+    if wheelset.z is None:
+        problems.append("wheelset.vertical_force: given, allowed 'z' = 0: the vehicle is its load")
+    if not case.has_tangential:
+        problems.append("method.tangential: value is 'none', allowed a method: creep forces guide")
+    for key in FOUND:
+        if getattr(wheelset, key) != 0:
+            problems.append(
+                f"wheelset.{key}: value is {getattr(wheelset, key)}, allowed: leave it out, the "
+                "vehicle starts in the middle"
+            )
+    if problems:
+        raise CaseError(problems)

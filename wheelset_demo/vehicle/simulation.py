@@ -1,0 +1,103 @@
+"""One run: the vehicle on its wheels at speed, time steps."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Iterator
+
+import numpy as np
+from railpatch import CaseError, Contact
+
+from wheelset_demo.system import BAD
+from wheelset_demo.vehicle.model import CAR_BODY, bogie_name, places_along
+from wheelset_demo.vehicle.scene import WHEELSETS, VehicleScene
+from wheelset_demo.vehicle.steppers import make_stepper
+from wheelset_demo.vehicle.system import WHEELS, WORKS, Rates, Vector, VehicleState, VehicleSystem
+
+
+class Simulation:
+    """A scene, ready to run: the vehicle stands on its wheels and rolls at the scene's speed.
+
+    scene: VehicleScene. system: the equations of motion; element: its force element. state, rates:
+    the present ones. wall_seconds, cpu_seconds: s, spent in steps() so far, without what its caller
+    does in between.
+    """
+
+    def __init__(self, scene: VehicleScene) -> None:
+        """Raises CaseError, also where the wheels cannot carry the load, and ProfileError."""
+        self.scene = scene
+        self.system = VehicleSystem(scene)
+        self.element = self.system.element
+        self.state = at_start(scene, self.system)
+        self.wall_seconds = self.cpu_seconds = 0.0
+        self.rates: Rates = self.system.rates(self.state.time, self.state.values)
+        self._stepper = make_stepper(self.system)
+        self._solved_before = self.element.solve_seconds
+
+    def steps(self) -> Iterator[VehicleState]:
+        """The state at the start and after each n-th step, n = run.log_every.
+
+        At a yield the force element's arrays and body_poses() are those of the state. Raises
+        ContactFailure where a contact is not solved.
+        """
+        yield self.state
+        every, count = self.scene.run.log_every, self.scene.steps
+        for done in range(0, count, every):
+            begin = clock.perf_counter(), clock.process_time()
+            for _ in range(min(every, count - done)):
+                self.state, self.rates = self._stepper.step(self.state, self.rates)
+            self.wall_seconds += clock.perf_counter() - begin[0]
+            self.cpu_seconds += clock.process_time() - begin[1]
+            yield self.state
+
+    def body_poses(self) -> dict[str, tuple[Vector, Vector]]:
+        """Name -> rotation [3, 3] and place [3] (m) of each body in the world; see the package."""
+        return self.system.body_poses()
+
+    @property
+    def contact_seconds(self) -> float:
+        """s, in the library's contact solves, of all threads."""
+        return self.element.solve_seconds - self._solved_before
+
+    @property
+    def energies(self) -> Vector:
+        """J, [4]: kinetic, gravity, suspension, elastic energy of the contacts."""
+        return self.system.stored(self.state)
+
+
+def at_start(scene: VehicleScene, system: VehicleSystem) -> VehicleState:
+    """All bodies in the middle at their height, wheels pressed down by the axle load, rolling."""
+    vehicle, n = scene.vehicle, system.count
+    values = np.zeros(system.size)
+    q, v = values[:n], values[n : 2 * n]
+    down, radius = wheels_under_load(scene)
+    along = places_along(vehicle)
+    heights = {CAR_BODY: vehicle.car_body.height}
+    heights |= {bogie_name(k): vehicle.bogie_frame.height for k in range(2)}
+    for name, columns in zip(system.vehicle.bodies, system.vehicle.columns, strict=True):
+        if name in heights:
+            q[columns[0]], q[columns[2]] = along[name], down - heights[name]
+            v[columns[0]] = scene.speed
+    nominal = scene.case.wheelset.nominal_radius
+    for k in range(WHEELSETS):
+        columns = system.vehicle.carriers[k]
+        q[columns[0]], q[columns[2]] = along[f"wheelset_{k + 1}"], down - nominal
+        v[columns[0]] = scene.speed
+        v[system.vehicle.spins[k]] = -scene.speed / radius
+        system.positions[k] = q[columns[0]]
+    return VehicleState(0.0, values, np.zeros(len(WORKS) + WHEELS), n)
+
+
+def wheels_under_load(scene: VehicleScene) -> tuple[float, float]:
+    """m: how far a wheelset in the middle is pressed down by the axle load, its rolling radius."""
+    content = scene.case.model_dump()
+    wheelset = content["wheelset"] | {"vertical_force": scene.axle_load, "z": None}
+    method = content["method"] | {"tangential": "none", "derivatives": False}
+    result = Contact({**content, "wheelset": wheelset, "method": method}).step()
+    if result.status in BAD or result.status == "no_contact":
+        raise CaseError(
+            f"vehicle: the axle load is {scene.axle_load:.6g} N, allowed one that the wheels can "
+            f"carry: {result.status}"
+        )
+    radii = [result[side]["rolling_radius"] for side in ("left", "right")]
+    return float(result["z"]), float(np.mean(radii))

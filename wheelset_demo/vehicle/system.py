@@ -1,0 +1,252 @@
+"""The equations of motion: vehicle, suspension, track and contacts.
+
+    y = (q [50], v [50], forces of dampers with springs in series [n]),    y' = f(y, u),
+
+u [16] the rails' lateral and vertical deviations at the eight wheels, which follow from where the
+wheelsets are: they are known ahead, and the time steppers use that.
+"""
+
+from __future__ import annotations
+
+import time as clock
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+from railpatch import CaseError
+from railpatch.pinocchio import ForceElement, acceleration_derivatives
+
+from wheelset_demo.system import BAD, ContactFailure, no_forces
+from wheelset_demo.vehicle.alignment import Alignment
+from wheelset_demo.vehicle.irregularity import irregularity_of
+from wheelset_demo.vehicle.model import CAR_BODY, vehicle_model
+from wheelset_demo.vehicle.scene import WHEELSETS, VehicleScene
+from wheelset_demo.vehicle.suspension import Suspension
+
+Vector = NDArray[np.float64]
+# integrated along with the motion (J)
+WORKS = ("contact", "friction", "damping", "drive")
+WHEELS = 2 * WHEELSETS
+# columns of a wheelset's state that a rail's lateral and vertical deviations move against
+LATERAL, VERTICAL = 1, 2
+
+
+@dataclass(frozen=True)
+class VehicleState:
+    """time: s. values: [100 + n], coordinates, velocities, forces of dampers with springs in series
+    (N). work: [12], J, since the start: by WORKS, then of friction at each wheel, left and right of
+    the first wheelset first. count: of the coordinates."""
+
+    time: float
+    values: Vector
+    work: Vector
+    count: int
+
+    @property
+    def q(self) -> Vector:
+        """[50], m, rad: see wheelset_demo.vehicle.model."""
+        return self.values[: self.count]
+
+    @property
+    def v(self) -> Vector:
+        """[50], m/s, rad/s."""
+        return self.values[self.count : 2 * self.count]
+
+    @property
+    def series(self) -> Vector:
+        """[n], N."""
+        return self.values[2 * self.count :]
+
+
+@dataclass(frozen=True)
+class Rates:
+    """values: [100 + n], of a state's. powers: [4], W, by WORKS. inputs: [16], m, the rails'
+    deviations at the wheels. status: of the contacts."""
+
+    values: Vector
+    powers: Vector
+    inputs: Vector
+    status: str
+
+
+class VehicleSystem:
+    """Vehicle, suspension, track and contacts of a scene. Keeps the contacts' last solutions.
+
+    suspension_seconds, dynamics_seconds: s, inside the suspension, inside Pinocchio and the track,
+    since the start; derivative_seconds: in derivatives(). evaluations: of the forces.
+    """
+
+    def __init__(self, scene: VehicleScene) -> None:
+        """Raises CaseError, ProfileError."""
+        self.scene = scene
+        self.vehicle = vehicle_model(scene)
+        self.model = self.vehicle.model
+        self.data = self.model.createData()
+        self.alignment = Alignment(scene.alignment, scene.length)
+        table = scene.irregularity
+        self.irregularity = (
+            None if table is None else irregularity_of(table, scene.length, scene.vehicle.length)
+        )
+        names = [f"wheelset_{k + 1}" for k in range(WHEELSETS)]
+        self.element = ForceElement(self.model, names, scene.contact(), threads=scene.run.threads)
+        self.suspension = Suspension(scene, self.vehicle)
+        self.count = self.model.nv
+        self.size = 2 * self.count + self.suspension.series_count
+        self.positions = np.zeros(WHEELSETS)
+        self.evaluations = 0
+        self.contact_seconds = self.derivative_seconds = 0.0
+        self._fext = no_forces(self.model)
+        self._zero = np.zeros(self.count)
+        self._joints = [self.vehicle.joints[name] for name in names]
+        self._car = self.vehicle.columns[0]
+        self._by_side = np.zeros((WHEELSETS, 2, 6, 12))
+
+    def rates(self, time: float, values: Vector) -> Rates:
+        """At a time (s) and values [100 + n]. Raises ContactFailure."""
+        n = self.count
+        q, v, series = values[:n], values[n : 2 * n], values[2 * n :]
+        pin.forwardKinematics(self.model, self.data, q, v)
+        inputs = self.place_track(q)
+        for joint in self._joints:
+            self._fext[joint].setZero()
+        self.evaluations += 1
+        begin = clock.perf_counter()
+        try:
+            status = self.element.step(self.data, self._fext)
+        except CaseError as error:
+            # far off the rails, or not a number
+            raise ContactFailure(time, float(self.positions[0]), str(error)) from None
+        self.contact_seconds += clock.perf_counter() - begin
+        if status in BAD:
+            raise ContactFailure(time, float(self.positions[0]), self.statuses())
+        tau = self.suspension.step(q, v, series)
+        drive = self._drive(q, v, tau)
+        acceleration = pin.aba(self.model, self.data, q, v, tau, self._fext)
+        found = np.concatenate([v, acceleration, self.suspension.series_rates])
+        friction = self.element.wheels[:, :, 6].ravel()
+        contact, damping = self.element.contact_power, self.suspension.damping_power(series)
+        powers = np.array([contact, friction.sum(), damping, drive, *friction])
+        return Rates(found, powers, inputs, status)
+
+    def place_track(self, q: Vector) -> Vector:
+        """Puts track frames under the wheelsets, rails into them; [16], m, their deviations."""
+        centres = q[self.vehicle.carriers[:, :3]]
+        self.positions = self.alignment.foot(centres, self.positions)
+        rotations, origins = self.alignment.frames(self.positions)
+        tracks = self.element.tracks
+        tracks[:, :9], tracks[:, 9:] = rotations.reshape(-1, 9), origins
+        self.element.positions[:] = self.positions
+        return self.move_rails(self.positions)
+
+    def move_rails(self, positions: Vector) -> Vector:
+        """[16], m, of the rails at arc lengths [4], by wheelset, side, lateral and vertical."""
+        if self.irregularity is None:
+            return np.zeros(2 * WHEELS)
+        moved = self.irregularity.at(positions)
+        self.element.rails[:, 0, :, 1:] = moved
+        return moved.ravel()
+
+    def inputs_ahead(self, values: Vector, step: float) -> Vector:
+        """[16], m, of the rails where the wheelsets will be in ``step`` s."""
+        if self.irregularity is None:
+            return np.zeros(2 * WHEELS)
+        n = self.count
+        velocity = values[n : 2 * n][self.vehicle.carriers[:, :2]]
+        speeds = np.hypot(velocity[:, 0], velocity[:, 1])
+        return self.irregularity.at(self.positions + step * speeds).ravel()
+
+    def derivatives(self, values: Vector) -> tuple[Vector, Vector]:
+        """Of the rates at values whose rates were the last ones asked for, nearly.
+
+        [size, size] by the values and [size, 16] by the rails' deviations. The contacts' are exact
+        or by differences, as railpatch.Contact.jacobian() says; how the track frame turns on
+        along the track is left out. Raises CaseError.
+        """
+        begin = clock.perf_counter()
+        n, suspension = self.count, self.suspension
+        q, v = values[:n], values[n : 2 * n]
+        tau = self.suspension.matrix.T @ self.suspension.force
+        found = acceleration_derivatives(
+            self.model, self.data, q, v, tau, self._fext, [self.element]
+        )
+        upper = np.triu(self.data.Minv)
+        inverse = upper + np.triu(upper, 1).T
+        by_q, by_v, by_series = suspension.jacobian()
+        control = self._ahead(q)
+        by_v = by_v - self.scene.run.speed_control * np.outer(control, control)
+        matrix = np.zeros((self.size, self.size))
+        matrix[:n, n : 2 * n] = np.eye(n)
+        matrix[n : 2 * n, :n] = found.by_q + inverse @ by_q
+        matrix[n : 2 * n, n : 2 * n] = found.by_v + inverse @ by_v
+        matrix[n : 2 * n, 2 * n :] = inverse @ by_series
+        series_by_v, series_by_series = suspension.series_jacobian()
+        matrix[2 * n :, n : 2 * n] = series_by_v
+        matrix[2 * n :, 2 * n :] = np.diag(series_by_series)
+        inputs = np.zeros((self.size, 2 * WHEELS))
+        inputs[n : 2 * n] = inverse @ self._force_by_rails(found.chain)
+        self.derivative_seconds += clock.perf_counter() - begin
+        return matrix, inputs
+
+    def _force_by_rails(self, chain: object) -> Vector:
+        """[nv, 16], of the generalised force by the rails' deviations."""
+        columns = []
+        for k in range(WHEELSETS):
+            state = chain.of(self.element, k)
+            jacobian = chain.jacobian(self.element.joints[k])
+            for by_wheel in self.element.derivatives_by_side(k):
+                for column in (LATERAL, VERTICAL):
+                    # a rail that moves is a wheel that moves the other way
+                    wrench = -state.turned(by_wheel[:, column])
+                    columns.append(jacobian.T @ wrench)
+        return np.array(columns).T
+
+    def _ahead(self, q: Vector) -> Vector:
+        """[nv], the direction in which the car body points."""
+        yaw = q[self._car[3]]
+        found = np.zeros(self.count)
+        found[self._car[:2]] = np.cos(yaw), np.sin(yaw)
+        return found
+
+    def _drive(self, q: Vector, v: Vector, tau: Vector) -> float:
+        """Adds the force that holds the speed to the generalised force; its power (W)."""
+        ahead = self._ahead(q)
+        speed = float(ahead @ v)
+        force = self.scene.run.speed_control * (self.scene.speed - speed)
+        tau += force * ahead
+        return force * speed
+
+    def statuses(self) -> str:
+        """How the last contacts of each wheelset ended."""
+        found = []
+        for k in range(WHEELSETS):
+            result = self.element.result(k)
+            for side in ("left", "right"):
+                if result[side]["status"] in BAD:
+                    found.append(f"wheelset {k + 1}, {side} wheel {result[side]['status']}")
+        return ", ".join(found)
+
+    def stored(self, state: VehicleState) -> Vector:
+        """J, [4]: kinetic, gravity, suspension, elastic energy of the contacts, at a state whose
+        rates were the last ones asked for."""
+        return np.array(
+            [
+                pin.computeKineticEnergy(self.model, self.data, state.q, state.v),
+                pin.computePotentialEnergy(self.model, self.data, state.q),
+                self.suspension.potential(state.series),
+                self.element.elastic_energy,
+            ]
+        )
+
+    def body_poses(self) -> dict[str, tuple[Vector, Vector]]:
+        """Rotation [3, 3] and place [3] (m) of each body in the world, at the last rates()."""
+        placed = self.data.oMi
+        return {
+            name: (placed[joint].rotation.copy(), placed[joint].translation.copy())
+            for name, joint in self.vehicle.joints.items()
+        }
+
+    @property
+    def car_body(self) -> int:
+        """Index of the car body's joint."""
+        return self.vehicle.joints[CAR_BODY]

@@ -1,0 +1,189 @@
+"""What a run leaves in memory, and what it has shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
+
+from wheelset_demo.scene import GRAVITY
+from wheelset_demo.system import ContactFailure
+from wheelset_demo.vehicle.scene import VehicleScene
+from wheelset_demo.vehicle.simulation import Simulation
+from wheelset_demo.vehicle.system import WORKS, VehicleState
+
+Vector = NDArray[np.float64]
+Advance = Callable[[VehicleState], None]
+# m, over which forces are averaged before their ratio is judged (EN 14363)
+SLIDING = 2.0
+# J, in the order of a row of `energies`
+STORES = ("kinetic", "gravity", "suspension", "elastic")
+
+
+@dataclass
+class VehicleTrace:
+    """The n kept steps of a run.
+
+    times: [n], s. positions: [n, 4], m, along the track. lateral, yaw: [n, 4], m, rad, of the
+    wheelsets on their track. guiding, loads: [n, 8], N, Y on the rail to the right and Q down, of
+    left and right wheel of each wheelset. felt: [n, 3], m/s^2, acceleration of the car body's
+    centre less gravity's, in its axes. works: [n, 12], J, as those of a state. energies: [n, 4], J,
+    by STORES. failure: what ended the run before its end.
+    """
+
+    scene: VehicleScene
+    times: list[float] = field(default_factory=list)
+    positions: list[Vector] = field(default_factory=list)
+    lateral: list[Vector] = field(default_factory=list)
+    yaw: list[Vector] = field(default_factory=list)
+    guiding: list[Vector] = field(default_factory=list)
+    loads: list[Vector] = field(default_factory=list)
+    felt: list[Vector] = field(default_factory=list)
+    works: list[Vector] = field(default_factory=list)
+    energies: list[Vector] = field(default_factory=list)
+    failure: ContactFailure | None = None
+
+    def add(self, simulation: Simulation) -> None:
+        """The simulation's present state."""
+        element, state = simulation.element, simulation.state
+        self.times.append(state.time)
+        self.positions.append(simulation.system.positions.copy())
+        self.lateral.append(element.states[:, 1].copy())
+        self.yaw.append(element.states[:, 4].copy())
+        self.guiding.append(-element.wheels[:, :, 1].ravel())
+        self.loads.append(-element.wheels[:, :, 2].ravel())
+        self.felt.append(felt_by_car_body(simulation))
+        self.works.append(state.work)
+        self.energies.append(simulation.energies)
+
+    def array(self, name: str) -> Vector:
+        """[n, ...], by the names of the fields."""
+        return np.array(getattr(self, name))
+
+    def open_balance(self) -> float:
+        """-, greatest part of the energy lost that is missing in that of bodies and springs."""
+        works, stores = self.array("works"), self.array("energies")
+        stored = (stores - stores[0])[:, :3].sum(axis=1)
+        contact, friction, damping, drive = (works[:, k] for k in range(len(WORKS)))
+        missing = stored - contact - drive + damping
+        lost = friction[-1] + damping[-1]
+        return float(np.abs(missing).max() / lost) if lost > 0 else 0.0
+
+
+def felt_by_car_body(simulation: Simulation) -> Vector:
+    """m/s^2, [3]: acceleration of the car body's centre less gravity's, in its axes."""
+    count, columns = simulation.system.count, simulation.system.vehicle.columns[0]
+    acceleration = simulation.rates.values[count + columns[:3]]
+    acceleration[2] -= GRAVITY
+    rotation, _ = simulation.body_poses()["car_body"]
+    return rotation.T @ acceleration
+
+
+def run_vehicle(simulation: Simulation, advance: Advance | None = None) -> VehicleTrace:
+    """All steps. A contact that is not solved ends the run: the failure is in the trace."""
+    trace = VehicleTrace(simulation.scene)
+    try:
+        for state in simulation.steps():
+            trace.add(simulation)
+            if advance is not None:
+                advance(state)
+    except ContactFailure as failure:
+        trace.failure = failure
+    return trace
+
+
+@dataclass(frozen=True)
+class VehicleSummary:
+    """A run in numbers, SI. Of Y and Q those averaged over 2 m (EN 14363).
+
+    derailment: greatest |Y|/Q of a wheel. load_range: N, least and greatest Q. guiding: N, greatest
+    sum of Y of a wheelset. offset: m, greatest of a wheelset from the track's middle. comfort:
+    m/s^2, standard deviation of lateral and vertical acceleration at the car body's centre in its
+    axes. friction: J, [8], at each wheel. balance: -, part of the energy lost that is missing in
+    that of bodies and springs. seconds: of the time steps: total, cpu (of all threads), contact (in
+    the library, of all threads), derivatives. real_time: total time over the time simulated.
+    """
+
+    good: bool
+    message: str
+    duration: float
+    distance: float
+    steps: int
+    derailment: float
+    load_range: tuple[float, float]
+    guiding: float
+    offset: float
+    comfort: tuple[float, float]
+    friction: tuple[float, ...]
+    balance: float
+    seconds: dict[str, float]
+    real_time: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers."""
+        return {
+            key: list(value) if isinstance(value, tuple) else value
+            for key, value in self.__dict__.items()
+        }
+
+    def text(self) -> str:
+        """A few lines for the terminal."""
+        low, high = (force / 1e3 for force in self.load_range)
+        lateral, vertical = self.comfort
+        seconds = self.seconds
+        lines = [
+            ("distance", f"{self.distance:.1f} m in {self.duration:.3f} s, {self.steps} steps"),
+            ("Y/Q", f"{self.derailment:.3f} at most; sum of Y {self.guiding / 1e3:.2f} kN at most"),
+            ("wheel loads", f"{low:.1f} ... {high:.1f} kN"),
+            ("offset", f"{1e3 * self.offset:.2f} mm at most"),
+            ("car body", f"{lateral:.3f} m/s^2 lateral, {vertical:.3f} m/s^2 vertical (rms)"),
+            ("friction", " ".join(f"{part / 1e3:.2f}" for part in self.friction) + " kJ a wheel"),
+            ("balance", f"open by {100 * self.balance:.2g} % of the energy lost"),
+            (
+                "time",
+                f"{seconds['total']:.2f} s ({seconds['cpu']:.2f} s CPU), of it contacts "
+                f"{seconds['contact']:.2f} s, derivatives {seconds['derivatives']:.2f} s",
+            ),
+            ("real time", f"{self.real_time:.2f} s a second simulated"),
+        ]
+        return "\n".join(f"{name:<16}{value}" for name, value in lines)
+
+
+def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
+    """Of a run."""
+    positions = trace.array("positions")
+    distance = float(positions[-1, 0] - positions[0, 0])
+    between = distance / max(1, len(positions) - 1)
+    width = max(1, round(SLIDING / between)) if between > 0 else 1
+    guiding, loads = (
+        uniform_filter1d(trace.array(name), width, axis=0) for name in ("guiding", "loads")
+    )
+    ratio = np.abs(guiding) / np.maximum(loads, 1.0)
+    felt, time = trace.array("felt"), simulation.state.time
+    system, wall = simulation.system, simulation.wall_seconds
+    seconds = {
+        "total": wall,
+        "cpu": simulation.cpu_seconds,
+        "contact": simulation.contact_seconds,
+        "derivatives": system.derivative_seconds,
+    }
+    return VehicleSummary(
+        good=trace.failure is None,
+        message=str(trace.failure or "converged"),
+        duration=time,
+        distance=distance,
+        steps=round(time / simulation.scene.run.step),
+        derailment=float(ratio.max()),
+        load_range=(float(loads.min()), float(loads.max())),
+        guiding=float(np.abs(guiding.reshape(len(guiding), -1, 2).sum(axis=2)).max()),
+        offset=float(np.abs(trace.array("lateral")).max()),
+        comfort=(float(felt[:, 1].std()), float(felt[:, 2].std())),
+        friction=tuple(trace.works[-1][len(WORKS) :].tolist()),
+        balance=trace.open_balance(),
+        seconds=seconds,
+        real_time=wall / time if time > 0 else 0.0,
+    )
