@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from railpatch.case.common import Grid
@@ -70,11 +71,13 @@ def with_theory(scene: VehicleScene, name: str) -> VehicleScene:
 
 
 def run_summary(
-    scene: VehicleScene, advance: Callable[[VehicleState], Any] | None = None
+    scene: VehicleScene,
+    advance: Callable[[VehicleState], Any] | None = None,
+    output: Path | None = None,
 ) -> VehicleSummary:
-    """One run. Raises CaseError, ProfileError."""
+    """One run. output: its log. Raises CaseError, ProfileError, OSError."""
     simulation = Simulation(scene)
-    return summarise(run_vehicle(simulation, advance), simulation)
+    return summarise(run_vehicle(simulation, advance, output), simulation)
 
 
 def rows_of(found: dict[str, VehicleSummary]) -> list[list[str]]:
