@@ -7,10 +7,14 @@ held over a step whose motion is exact, of Newmark's methods, of Adams and Bashf
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
 import wheelset_scenes as scenes
+from fmpy import read_model_description, simulate_fmu
+from railpatch.fmu import pack_fmu
+from railpatch.pinocchio.element import STATE
 
 from wheelset_demo.coupling.linear import (
     KEPT,
@@ -186,7 +190,7 @@ def test_a_run_is_what_its_matrix_says(name: str, scene: WheelsetScene, slave: C
     off = (point.motion - rolling.system.motion)[KEPT]
     off[0] -= rolling.speed * point.time
     # sizes by energy
-    scale = rolling._scale
+    scale = rolling.scale
     assert np.linalg.norm(scale * (off - expected[: len(x)])) < 0.02 * np.linalg.norm(scale * x)
 
 
@@ -199,3 +203,28 @@ def test_the_bound_of_runs_is_that_of_eigenvalues(
     # runs close in to 6 %
     assert found == pytest.approx(bound_by_matrix(rolling.system, name), rel=0.1)
     assert found < 2e-3
+
+
+def test_the_fmu_names_half_of_the_step_that_held_forces_bear(scene: WheelsetScene, tmp_path: Path):
+    # its output largest_step is 1/c where creep is stiffest, the bound of hold 2/c
+    system = linearise(scene, 0.2)
+    path = pack_fmu(scene.at_height(derivatives=True), tmp_path / "a.fmu", largest_step=True)
+    body = scene.body
+    about = body.roll_inertia + body.carrier_inertia
+    values = {"wheelset.mass": body.total_mass} | {
+        f"wheelset.inertia[{k}]": value
+        for k, value in ((1, about), (2, body.pitch_inertia), (3, about))
+    }
+    names = {v.name for v in read_model_description(str(path)).modelVariables}
+    motion = zip((f"wheelset.{name}" for name in STATE), system.motion.tolist(), strict=True)
+    values |= {name: value for name, value in motion if name in names}
+    found = simulate_fmu(
+        str(path),
+        start_values=values,
+        stop_time=1e-3,
+        output_interval=1e-3,
+        output=["largest_step"],
+    )
+    assert found["largest_step"][-1] == pytest.approx(
+        0.5 * bound_by_matrix(system, "hold"), rel=0.01
+    )

@@ -60,13 +60,17 @@ class Bound:
 
 
 class Rolling:
-    """Straight running at a speed, what disturbs it and how the disturbance is measured."""
+    """Straight running at a speed, what disturbs it and how the disturbance is measured.
+
+    system: linearised. scale: [11], J^0.5 over units of coordinates and velocities. start: [12],
+    the disturbed motion.
+    """
 
     def __init__(self, scene: WheelsetScene, speed: float) -> None:
         """Raises CaseError, ContactFailure."""
         self.scene, self.speed = scene.at_speed(speed, 0.0), speed
         self.system: Linearised = linearise(scene, speed)
-        self._scale = np.sqrt(energy_weights(self.system))
+        self.scale = np.sqrt(energy_weights(self.system))
         disturbed = np.zeros(len(KEPT))
         disturbed[[1, 2, 3]] = [OFFSET, BOUNCE, BOUNCE / ARM]
         disturbed[PLACES + 1], disturbed[[PLACES + 4, PLACES + 5]] = SLIDING, SLIDING / ARM
@@ -79,7 +83,7 @@ class Rolling:
         """J^0.5, of the disturbance."""
         off = (motion - self.system.motion)[KEPT]
         off[0] -= self.speed * time
-        return float(np.linalg.norm(self._scale * off))
+        return float(np.linalg.norm(self.scale * off))
 
     def reference(self, duration: float) -> list[float]:
         """Sizes in the reference run over a duration (s)."""
