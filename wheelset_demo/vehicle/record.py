@@ -10,7 +10,7 @@ import numpy as np
 import pinocchio as pin
 from railpatch.log import VehicleGeometry, VehicleLog, scene_geometry
 from railpatch.log.stream import Pace
-from railpatch.result import plain_json
+from railpatch.result import wheel_json
 
 from wheelset_demo.record import attachments
 from wheelset_demo.scene import GRAVITY, SIDES, SNAPSHOTS
@@ -32,7 +32,7 @@ class Recorder:
     def __init__(self, log: VehicleLog, simulation: Simulation) -> None:
         self._log = log
         run = simulation.scene.run
-        self._pace = Pace(run.write_rate)
+        self._pace = None if run.write_rate is None else Pace(run.write_rate)
         self._fields = Pace(
             SNAPSHOTS / run.duration if run.snapshot_rate is None else run.snapshot_rate
         )
@@ -40,9 +40,10 @@ class Recorder:
         self._done = 0.0, 0
 
     def write(self, simulation: Simulation) -> None:
-        """The present state, where its turn has come."""
-        time = simulation.state.time
-        if not self._pace.due(time):
+        """The present state, where its turn has come; the run's last one too."""
+        time, run = simulation.state.time, simulation.scene.run
+        last = time > run.duration - 0.5 * run.step
+        if self._pace is not None and not self._pace.due(time) and not last:
             return
         with self._log.stream.counted():
             self._log.write(time, **self.messages(simulation, self._fields.due(time)))
@@ -89,8 +90,8 @@ class Recorder:
         lost = simulation.state.work[len(WORKS) + 2 * index :]
         found: dict[str, Any] = {"state": state}
         for side, work in zip(SIDES, lost[:2].tolist(), strict=True):
-            wheel = {key: value for key, value in result[side].items() if key != "z"}
-            found[side] = plain_json(wheel) | {"friction_work": work}
+            # z is given in vehicle runs
+            found[side] = wheel_json(result[side]) | {"friction_work": work, "z": None}
         if fields:
             found["fields"] = {side: result[side]["patches"] for side in SIDES}
         return found
