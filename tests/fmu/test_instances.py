@@ -120,6 +120,25 @@ def test_locale_and_floating_point_do_not_matter(host: str, unpacked: Unpack) ->
     assert refused == [ERROR] * 3
 
 
+def process_state() -> list[str]:
+    """Signals blocked, ignored and caught, mask of new files, working directory and locale."""
+    lines = Path("/proc/self/status").read_text().splitlines()
+    kept = [line for line in lines if line.startswith(("Sig", "Umask"))]
+    # pending ones come and go
+    kept = [line for line in kept if not line.startswith(("SigQ", "SigPnd"))]
+    return [*kept, str(Path.cwd()), locale.setlocale(locale.LC_ALL)]
+
+
+def test_the_process_stays_as_it_is(unpacked: Unpack) -> None:
+    fmu = Fmu(unpacked("rail").folder)
+    before = process_state()
+    assert len(before) == 6
+    with Slave(fmu).initialize() as slave:
+        run(slave, MOTIONS["rail"], 0)
+        assert process_state() == before
+    assert process_state() == before
+
+
 def settable(name: str) -> bool:
     """Whether this machine has the locale."""
     before = locale.setlocale(locale.LC_ALL)

@@ -114,6 +114,11 @@ class Alignment:
         origins[:, :2] = found[:, :2]
         return rotations, origins
 
+    def bends(self, s: Vector) -> tuple[Vector, Vector, Vector]:
+        """Curvature (1/m), cant angle (rad) and its second derivative (1/m^2), [n] each."""
+        now, slope, twist = self._spline(s), self._spline(s, 1), self._spline(s, 2)
+        return slope[:, 2], now[:, 3], twist[:, 3]
+
     def foot(self, places: Vector, near: Vector) -> Vector:
         """m, [n]: arc lengths at whose frames x = 0 for places [n, 3] (m) in the world.
 

@@ -17,7 +17,7 @@ from railpatch.commands import (
 from railpatch.errors import CaseError, ProfileError
 
 # of wheelset_demo.vehicle.compare, which takes long to import; a test compares them
-METHODS = ("full", "fastsim", "kik", "analyn", "polach", "table")
+METHODS = ("full", "fitted", "fastsim", "kik", "analyn", "polach")
 
 
 def default_scene_text() -> str:
@@ -46,7 +46,6 @@ def default_scene_text() -> str:
 )
 @click.option("--duration", type=float, metavar="SECONDS", help="Replaces run.duration.")
 @click.option("--step", type=float, metavar="SECONDS", help="Replaces run.step.")
-@click.option("--stepper", type=click.Choice(["bdf2", "ros2"]), help="Replaces run.stepper.")
 @click.option("--threads", type=int, metavar="NUMBER", help="Replaces run.threads.")
 @click.option("--json", "as_json", is_flag=True, help="Print the summaries as one JSON object.")
 @show_scene_option(default_scene_text)

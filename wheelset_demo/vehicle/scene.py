@@ -122,13 +122,8 @@ class RunTable(Table):
 
     duration: Annotated[float, Field(gt=0, le=1e5)] = Field(description="s, to run")
     step: Annotated[float, Field(ge=1e-6, le=0.1)] = Field(default=1e-3, description="s")
-    stepper: Literal["bdf2", "ros2"] = Field(
-        default="bdf2",
-        description="(no unit): both linearly implicit and of order 2: bdf2 with one evaluation of "
-        "the forces a step, ros2 with two",
-    )
     derivatives_every: Annotated[int, Field(ge=1, le=100_000)] = Field(
-        default=25, description="-, steps between new derivatives"
+        default=100, description="-, steps between new derivatives, at most"
     )
     log_every: Annotated[int, Field(ge=1)] = Field(
         default=5, description="-, every n-th step is kept"

@@ -11,7 +11,7 @@ from railpatch import CaseError, Contact
 from wheelset_demo.system import BAD
 from wheelset_demo.vehicle.model import CAR_BODY, bogie_name, places_along
 from wheelset_demo.vehicle.scene import WHEELSETS, VehicleScene
-from wheelset_demo.vehicle.steppers import make_stepper
+from wheelset_demo.vehicle.steppers import Bdf2
 from wheelset_demo.vehicle.system import WHEELS, WORKS, Rates, Vector, VehicleState, VehicleSystem
 
 
@@ -19,8 +19,8 @@ class Simulation:
     """A scene, ready to run: the vehicle stands on its wheels and rolls at the scene's speed.
 
     scene: VehicleScene. system: the equations of motion; element: its force element. state, rates:
-    the present ones. wall_seconds, cpu_seconds: s, spent in steps() so far, without what its caller
-    does in between.
+    the present ones. wall_seconds, cpu_seconds: s, spent in steps() so far, by the clock and of
+    all threads, without what its caller does in between.
     """
 
     def __init__(self, scene: VehicleScene) -> None:
@@ -31,8 +31,8 @@ class Simulation:
         self.state = at_start(scene, self.system)
         self.wall_seconds = self.cpu_seconds = 0.0
         self.rates: Rates = self.system.rates(self.state.time, self.state.values)
-        self._stepper = make_stepper(self.system)
-        self._solved_before = self.element.solve_seconds
+        self._stepper = Bdf2(self.system, scene.run.step, scene.run.derivatives_every)
+        self._solved_before = self.system.contact_seconds
 
     def steps(self) -> Iterator[VehicleState]:
         """The state at the start and after each n-th step, n = run.log_every.
@@ -56,8 +56,8 @@ class Simulation:
 
     @property
     def contact_seconds(self) -> float:
-        """s, in the library's contact solves, of all threads."""
-        return self.element.solve_seconds - self._solved_before
+        """s, of cpu_seconds: in the force element."""
+        return self.system.contact_seconds - self._solved_before
 
     @property
     def energies(self) -> Vector:

@@ -132,8 +132,9 @@ class VehicleSummary:
     sum of Y of a wheelset. offset: m, greatest of a wheelset from the track's middle. comfort:
     m/s^2, standard deviation of lateral and vertical acceleration at the car body's centre in its
     axes. friction: J, [8], at each wheel. balance: -, part of the energy lost that is missing in
-    that of bodies and springs. seconds: of the time steps: total, cpu (of all threads), contact (in
-    the library, of all threads), derivatives. real_time: total time over the time simulated.
+    that of bodies and springs. seconds: of the time steps: total, by the clock; cpu, of all
+    threads, and of it contact (force element) and derivatives. real_time: -, total over the time
+    simulated.
     """
 
     good: bool
@@ -174,10 +175,10 @@ class VehicleSummary:
             ("balance", f"open by {100 * self.balance:.2g} % of the energy lost"),
             (
                 "time",
-                f"{seconds['total']:.2f} s ({seconds['cpu']:.2f} s CPU), of it contacts "
+                f"{seconds['total']:.2f} s, CPU {seconds['cpu']:.2f} s, of it contacts "
                 f"{seconds['contact']:.2f} s, derivatives {seconds['derivatives']:.2f} s",
             ),
-            ("real time", f"{self.real_time:.2f} s a second simulated"),
+            ("real time", f"{self.real_time:.2f} s for a second simulated"),
         ]
         if self.logging_share is not None:
             lines.append(("logging", f"{100 * self.logging_share:.2g} % of the run's wall time"))
