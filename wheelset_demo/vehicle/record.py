@@ -50,11 +50,20 @@ class Recorder:
 
     def messages(self, simulation: Simulation, fields: bool) -> dict[str, Any]:
         """Arguments of VehicleLog.write."""
-        element = simulation.element
+        element, alignment = simulation.element, simulation.system.alignment
         frames = [(row[:9].reshape(3, 3), row[9:]) for row in element.tracks]
+        # at each wheelset and in the middle
+        along = np.append(element.positions, element.positions.mean())
+        curvature, cant = alignment.curvature(along).tolist(), alignment.cant_angle(along).tolist()
+        places = [
+            {"x": x, "curvature": bend, "cant": angle}
+            for x, bend, angle in zip(along.tolist(), curvature, cant, strict=True)
+        ]
         return {
-            "state": self._state(simulation),
-            "wheelsets": [self._wheelset(simulation, k, fields) for k in range(WHEELSETS)],
+            "state": self._state(simulation) | places[-1],
+            "wheelsets": [
+                self._wheelset(simulation, k, places[k], fields) for k in range(WHEELSETS)
+            ],
             "bodies": bodies(simulation),
             "tracks": [(origin.tolist(), quaternion(turn)) for turn, origin in frames],
             "energy": self._energy(simulation),
@@ -63,27 +72,22 @@ class Recorder:
 
     def _state(self, simulation: Simulation) -> dict[str, float]:
         system, state = simulation.system, simulation.state
-        middle = float(system.positions.mean())
         return {
             "progress": state.time / simulation.scene.run.duration,
-            "x": middle,
             "speed": float(np.hypot(*state.v[system.vehicle.columns[0][:2]])),
-            "curvature": float(system.alignment.curvature(middle)),
-            "cant": float(system.alignment.cant_angle(middle)),
         }
 
-    def _wheelset(self, simulation: Simulation, index: int, fields: bool) -> dict[str, Any]:
-        element, alignment = simulation.element, simulation.system.alignment
+    def _wheelset(
+        self, simulation: Simulation, index: int, place: dict[str, float], fields: bool
+    ) -> dict[str, Any]:
+        element = simulation.element
         result = element.result(index, fields=fields)
-        along = float(element.positions[index])
         wrench = element.contact_wrench[index].tolist()
         rails = element.rails[index, 0, :, 1:].tolist()
         state = element.state(index) | {
-            "x": along,
+            **place,
             "force": wrench[:3],
             "moment": wrench[3:],
-            "curvature": float(alignment.curvature(along)),
-            "cant": float(alignment.cant_angle(along)),
             "left_rail": rails[0],
             "right_rail": rails[1],
         }

@@ -15,6 +15,7 @@ import threading
 import time
 from collections.abc import Mapping
 from contextlib import AbstractContextManager
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from os import PathLike
 from pathlib import Path
@@ -240,6 +241,7 @@ class Pace:
         return True
 
 
+@cache
 def railpatch_version() -> str:
     """The installed version, or "unknown" in a checkout that is not installed."""
     try:
