@@ -15,6 +15,7 @@ from railpatch.log.channels import SIDES
 from railpatch.report import write_report
 from railpatch.report.vehicle import vehicle_run
 
+from wheelset_demo.scene import scene_file
 from wheelset_demo.vehicle.command import vehicle as command
 from wheelset_demo.vehicle.scene import load_vehicle_scene
 from wheelset_demo.vehicle.simulation import Simulation
@@ -142,3 +143,24 @@ def test_log_that_cannot_be_written(tmp_path):
     done = CliRunner().invoke(command, ["-o", str(log), "--duration", "0.01"])
     assert done.exit_code == 2
     assert "missing" in done.output
+
+
+def test_contact_that_fails_is_the_logs_last_step(tmp_path):
+    """300 km/h into a circle of 150 m: the vehicle leaves the track."""
+    text = scene_file("vehicle_curve.toml").read_text(encoding="utf-8")
+    for key, value in (("radius", 150.0), ("straight", 60.0), ("transition", 20.0)):
+        text, count = re.subn(rf"(?m)^{key} = \S+", f"{key} = {value}", text)
+        assert count == 1
+    file, log = tmp_path / "climb.toml", tmp_path / "run.mcap"
+    file.write_text(text, encoding="utf-8")
+    arguments = [str(file), "--method", "polach", "--duration", "3", "-o", str(log)]
+    done = CliRunner().invoke(command, arguments)
+    assert done.exit_code == 3
+    run = read_run(log)
+    assert "contact failed at" in run.stopped_by
+    data = vehicle_run(run)
+    assert list(data.solved[:-1]) == [True] * (data.count - 1)
+    assert not data.solved[-1]
+    page = write_report(log, tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "stopped before its end" in page
+    assert "did not converge" in page

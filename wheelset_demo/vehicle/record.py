@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from railpatch.result import wheel_json
 
 from wheelset_demo.record import attachments
 from wheelset_demo.scene import GRAVITY, SIDES, SNAPSHOTS
+from wheelset_demo.system import ContactFailure
 from wheelset_demo.vehicle.model import CAR_BODY, bogie_name
 from wheelset_demo.vehicle.scene import WHEELSETS
 from wheelset_demo.vehicle.simulation import Simulation
@@ -47,6 +49,13 @@ class Recorder:
             return
         with self._log.stream.counted():
             self._log.write(time, **self.messages(simulation, self._fields.due(time)))
+
+    def failed(self, simulation: Simulation, failure: ContactFailure) -> None:
+        """The contacts that were asked for last, which were not all solved."""
+        late = max(failure.time, simulation.state.time + 1e-9)
+        # a motion that is not a number has nothing to show
+        with self._log.stream.counted(), suppress(ValueError):
+            self._log.write(late, **self.messages(simulation, False))
 
     def messages(self, simulation: Simulation, fields: bool) -> dict[str, Any]:
         """Arguments of VehicleLog.write."""
