@@ -61,7 +61,10 @@ fmu-clients: fmu ## the same in clients that others wrote: fmpy, libcosimpy, eco
 
 viewer: demo ## the demo's logs in a viewer that others wrote, a picture of each; 250 MB of npm packages
 	@.ci/system-packages npm chromium
-	tests/viewer/run build/viewer $(BIN)/railpatch build/demo/run.mcap 90 build/demo/wheelset.mcap 1.5
+	@mkdir -p build/viewer
+	$(BIN)/railpatch vehicle --method fastsim --duration 4 -o build/viewer/vehicle.mcap
+	tests/viewer/run build/viewer $(BIN)/railpatch build/demo/run.mcap 90 build/demo/wheelset.mcap 1.5 \
+		build/viewer/vehicle.mcap 3
 
 test: setup lint test-cpp test-python test-asan pruning ## set-up and every check
 	@printf '\nall checks passed:\n'
