@@ -61,7 +61,7 @@ fmu-clients: fmu ## the same in clients that others wrote: fmpy, libcosimpy, eco
 
 viewer: demo ## the demo's logs in a viewer that others wrote, a picture of each; 250 MB of npm packages
 	@.ci/system-packages npm chromium
-	tests/viewer/run build/viewer $(BIN)/railpatch 1.5 build/demo/run.mcap build/demo/wheelset.mcap
+	tests/viewer/run build/viewer $(BIN)/railpatch build/demo/run.mcap 90 build/demo/wheelset.mcap 1.5
 
 test: setup lint test-cpp test-python test-asan pruning ## set-up and every check
 	@printf '\nall checks passed:\n'

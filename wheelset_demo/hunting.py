@@ -31,6 +31,7 @@ ACCURACY = 1e-3
 # of runs: waves that count, and those before that do not, while the fast motions die
 WAVES, FIRST_WAVES = 4.0, 1.0
 LOGGED = 40  # points a wave
+LONG_WAVES = 12.0  # of a run that is logged
 
 
 @dataclass(frozen=True)
@@ -132,6 +133,14 @@ def run_at(scene: WheelsetScene, speed: float, frequency: float) -> Run:
     if math.isnan(growth):
         raise CaseError(f"run: the waves at {speed:.4g} m/s die too soon to be seen")
     return Run(speed, growth, found, times, y)
+
+
+def long_run(scene: WheelsetScene, speed: float, frequency: float) -> WheelsetScene:
+    """The scene of a run at a speed (m/s) that shows waves of a frequency (Hz) grow or die."""
+    every = max(1, round(1 / (LOGGED * frequency * scene.run.step)))
+    update = {"distance": speed * LONG_WAVES / frequency, "log_every": every}
+    table = scene.run.model_copy(update=update)
+    return replace(scene.at_speed(speed, scene.case.wheelset.y), run=table)
 
 
 def waves_in(times: Vector, y: Vector, start: float) -> tuple[float, float]:

@@ -18,6 +18,10 @@ from railpatch.errors import CaseError, ProfileError
 SCENE = "hunting.toml"
 # of the critical speed by eigenvalues: where the runs in time begin
 BRACKET = (0.85, 1.15)
+# the same, where modes are drawn
+DRAWN = (0.5, 0.7, 0.8, 0.9, 0.95, 1.0, 1.05, 1.1, 1.2, 1.3)
+LOGGED = 1.1
+FASTEST = 200.0
 
 
 def default_scene_text() -> str:
@@ -34,6 +38,19 @@ def default_scene_text() -> str:
 @click.option(
     "--simulate", is_flag=True, help="Also by runs in time at speeds around it, some 20 s."
 )
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="RUN.mcap",
+    help="The log to write, of a run in time; railpatch report shows it with what was found.",
+)
+@click.option(
+    "--speed",
+    type=float,
+    metavar="M/S",
+    help="Of the run that is logged; left out: 1.1 of the critical speed.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @show_scene_option(default_scene_text)
 @click.option("--quiet", is_flag=True, help="Print nothing but --json.")
@@ -44,6 +61,8 @@ def hunting(
     lowest: float,
     highest: float,
     simulate: bool,
+    output: Path | None,
+    speed: float | None,
     as_json: bool,
     quiet: bool,
 ) -> None:
@@ -55,6 +74,8 @@ def hunting(
     """
     if not 0 < lowest < highest:
         raise WrongCall(f"--lowest: value is {lowest}, allowed > 0 and below --highest ({highest})")
+    if speed is not None and (output is None or not 0 < speed <= FASTEST):
+        raise WrongCall(f"--speed: value is {speed}, allowed > 0, at most {FASTEST:g}, with -o")
     try:
         import railpatch.pinocchio  # noqa: F401
     except ImportError as error:
@@ -65,6 +86,8 @@ def hunting(
     try:
         loaded = load_wheelset_scene(scene_file(SCENE) if scene is None else scene)
         found = search(loaded, lowest, highest, simulate)
+        if output is not None:
+            write_log(loaded, found, speed, output)
     except ContactFailure as failure:
         click.echo(f"status: {failure}", err=True)
         context.exit(EXIT_NOT_CONVERGED)
@@ -94,8 +117,35 @@ def search(scene: Any, lowest: float, highest: float, simulate: bool) -> dict[st
     if simulate and mode is not None:
         speed, runs = critical_speed_in_time(scene, *speeds, mode.frequency)
         found["critical_speed_in_time"] = speed
-        found["runs"] = [{"speed": run.speed, "growth": run.growth} for run in runs]
+        found["runs"] = [row_of(run) for run in runs]
     return found
+
+
+def row_of(found: Any) -> dict[str, float]:
+    """Of a mode or a run."""
+    return {"speed": found.speed, "growth": found.growth, "frequency": found.frequency}
+
+
+def write_log(scene: Any, found: dict[str, Any], speed: float | None, output: Path) -> None:
+    """The log of a run in time, with what was found and modes around it attached.
+
+    Raises CaseError where there is no critical speed and no other, OSError.
+    """
+    from railpatch.report.page import HUNTING
+
+    from wheelset_demo.hunting import long_run, slowest_mode
+    from wheelset_demo.simulation import run_scene
+
+    middle = found["critical_speed"] or speed
+    if middle is None:
+        raise CaseError("--speed: left out, allowed one (m/s) where no critical speed is found")
+    chosen = LOGGED * middle if speed is None else speed
+    modes = [slowest_mode(scene, part * middle) for part in DRAWN]
+    frequency = found["frequency"] or modes[DRAWN.index(1.0)].frequency
+    content = found | {"modes": [row_of(mode) for mode in modes], "logged_speed": chosen}
+    attached = {HUNTING: json.dumps(content, allow_nan=False, indent=1).encode()}
+    summary = run_scene(long_run(scene, chosen, frequency), output, attached=attached)
+    found["log"] = {"path": str(output), "speed": chosen, "status": summary.message or "converged"}
 
 
 def text_of(found: dict[str, Any]) -> str:
@@ -117,4 +167,7 @@ def text_of(found: dict[str, Any]) -> str:
         in_time = found["critical_speed_in_time"]
         away = 100 * (in_time / speed - 1)
         lines.append(("in time", f"{in_time:.2f} m/s, {away:+.2f} %, of {len(found['runs'])} runs"))
+    if "log" in found:
+        log = found["log"]
+        lines.append(("log", f"{log['path']}, at {log['speed']:.2f} m/s, {log['status']}"))
     return "\n".join(f"{name:<16}{value}" for name, value in lines)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from railpatch.log import RunLog, scene_geometry
@@ -67,8 +67,13 @@ def simulate(scene: WheelsetScene) -> Trace:
     return Simulation(scene).run()
 
 
-def run_scene(scene: WheelsetScene, output: Path, advance: Advance | None = None) -> Summary:
-    """Runs a scene and writes the log.
+def run_scene(
+    scene: WheelsetScene,
+    output: Path,
+    advance: Advance | None = None,
+    attached: Mapping[str, bytes] | None = None,
+) -> Summary:
+    """Runs a scene and writes the log. attached: further files in it, by name.
 
     Raises as Simulation, before a file is made, and OSError where the log cannot be written.
     """
@@ -78,7 +83,7 @@ def run_scene(scene: WheelsetScene, output: Path, advance: Advance | None = None
         output,
         case_text=scene.text,
         case_name=scene.name,
-        profiles=attachments(scene),
+        profiles={**attachments(scene), **(attached or {})},
         geometry=scene_geometry(scene.case),
         scene_rate=scene.run.scene_rate,
     ) as log:

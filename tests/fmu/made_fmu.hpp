@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -65,6 +66,25 @@ inline void spell_profile(const char *body, int side, const rp_profile &p, std::
 }
 
 // Writes resources/scene.txt (plugins/fmu/src/scene.hpp); gives the folder.
+// This program's own folder of temporary files: others that run beside it write scenes of the same
+// names.
+inline const std::filesystem::path &own_folder() {
+  struct folder {
+    std::filesystem::path path;
+    folder() {
+      std::string name = testing::TempDir() + "railpatch_XXXXXX";
+      EXPECT_NE(mkdtemp(name.data()), nullptr);
+      path = name;
+    }
+    ~folder() {
+      std::error_code ignored;
+      std::filesystem::remove_all(path, ignored);
+    }
+  };
+  static const folder made;
+  return made.path;
+}
+
 inline std::filesystem::path write(const scene &s) {
   std::string text = std::string("railpatch-fmu-scene 1\nguid ") + guid + "\n";
   const rp_config &c = s.config;
@@ -87,7 +107,7 @@ inline std::filesystem::path write(const scene &s) {
   }
   char end[32];
   std::snprintf(end, sizeof end, "end %08x\n", railpatch::fmu::crc32(text.data(), text.size()));
-  const auto folder = std::filesystem::path(testing::TempDir()) / ("railpatch %41 # " + s.name);
+  const auto folder = own_folder() / ("railpatch %41 # " + s.name);
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "scene.txt", std::ios::binary) << text << end;
   return folder;

@@ -42,7 +42,7 @@ def body(name: str, s: float, z: float, lateral: float = 0.0) -> dict:
         "position": [x - lateral * math.sin(heading), y + lateral * math.cos(heading), z],
         "orientation": quaternion(heading),
         "velocity": [SPEED * math.cos(heading), SPEED * math.sin(heading), 0.0],
-        "acceleration": [0.0, SPEED**2 * curvature(s), 0.0],
+        "acceleration": [0.0, SPEED**2 * curvature(s), -9.81],
         "lateral": lateral,
         "roll": 0.01 * lateral,
         "yaw": 0.0,
@@ -54,7 +54,7 @@ def lateral(s: float, number: int) -> float:
     return 1e-3 * math.sin(0.4 * s) * number
 
 
-def wheel(side: str, s: float, fields: bool = False) -> dict:
+def wheel(side: str, s: float, fields: bool = False, time_s: float = 0.0) -> dict:
     sign = 1.0 if side == "right" else -1.0
     vertical = LOAD - sign * 8e3 * (curvature(s) > 0)
     values = synthetic.side(side, 0, fields)
@@ -63,7 +63,11 @@ def wheel(side: str, s: float, fields: bool = False) -> dict:
         "creep_force": [sign * 500.0, 0.1 * vertical],
         "friction_power": 20.0 if side == "left" else 10.0,
     }
-    return values | {"force": [sign * 500.0, 0.1 * vertical, -vertical], "patches": [patch]}
+    return values | {
+        "force": [sign * 500.0, 0.1 * vertical, -vertical],
+        "patches": [patch],
+        "friction_work": patch["friction_power"] * time_s,
+    }
 
 
 def step(index: int, spacing: float = 0.01) -> dict:
@@ -82,9 +86,11 @@ def step(index: int, spacing: float = 0.01) -> dict:
             "yaw": 1e-3,
             "pitch": math.remainder(-s / 0.3556, math.tau),
             "curvature": curvature(s),
+            "left_rail": [1e-3, 0.0],
+            "right_rail": [-1e-3, 0.0],
         }
         snapshot = index % 10 == 0 and number == 1
-        sides = {side: wheel(side, s, snapshot) for side in ("left", "right")}
+        sides = {side: wheel(side, s, snapshot, spacing * index) for side in ("left", "right")}
         entry = {"state": state} | sides
         if snapshot:
             entry["fields"] = {side: sides[side]["patches"] for side in sides}
@@ -103,7 +109,13 @@ def step(index: int, spacing: float = 0.01) -> dict:
         "wheelsets": wheelsets,
         "bodies": bodies,
         "tracks": tracks,
-        "energy": {"kinetic": 3.2e7, "friction_work": 120.0 * index},
+        "energy": {"kinetic": 3.2e7, "friction_work": 1.2 * index},
+        "momentum": {
+            "momentum": [1.6e6, 0.0, 0.0],
+            "turning": [0.0, -2e4, 0.0],
+            "residual": [0.0, 1.6 * index, 0.0],
+            "turning_residual": [0.0, 0.0, 2.0],
+        },
         "stats": {"wall_time": 0.02, "contact_evaluations": 16},
     }
 

@@ -57,14 +57,14 @@ try {
   const problems = new Set();
   page.on("pageerror", (error) => problems.add(String(error)));
   page.on("response", (found) => {
-    if (found.status() >= 400) console.log(`not found: ${new URL(found.url()).pathname}`);
+    const file = new URL(found.url()).pathname;
+    if (found.status() >= 400 && file !== "/favicon.ico") console.log(`not found: ${file}`);
   });
   const at = new Date(1000 * Number(time)).toISOString();
   await page.goto(`${address}?time=${encodeURIComponent(at)}`, { waitUntil: "load" });
-  // the panel of raw messages has one at the time asked for
-  const shown = `@ ${Number(time).toFixed(1)}`;
-  const text = (part) => document.body.innerText.includes(part);
-  await page.waitForFunction(text, { timeout: 120_000 }, shown);
+  // the panel of raw messages has the last one at the time asked for
+  const shown = () => /railpatch\.\w+ @ [\d.]+ sec/.test(document.body.innerText);
+  await page.waitForFunction(shown, { timeout: 120_000 });
   // a hint that covers a panel
   for (const button of await page.$$('[role="tooltip"] button')) await button.click();
   // plots fill in while the log is read

@@ -17,7 +17,7 @@ from railpatch.commands import (
 from railpatch.errors import CaseError, ProfileError
 
 # of wheelset_demo.vehicle.compare, which takes long to import; a test compares them
-METHODS = ("full", "fastsim", "kik", "analyn", "polach", "table")
+METHODS = ("full", "fitted", "fastsim", "kik", "analyn", "polach")
 
 
 def default_scene_text() -> str:
@@ -37,9 +37,15 @@ def default_scene_text() -> str:
     help="Contact theory in place of the scene's; may be given several times.",
 )
 @click.option("--compare", is_flag=True, help="The full theory beside Hertz and FASTSIM: times.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="RUN.mcap",
+    help="The log to write, of one run.",
+)
 @click.option("--duration", type=float, metavar="SECONDS", help="Replaces run.duration.")
 @click.option("--step", type=float, metavar="SECONDS", help="Replaces run.step.")
-@click.option("--stepper", type=click.Choice(["bdf2", "ros2"]), help="Replaces run.stepper.")
 @click.option("--threads", type=int, metavar="NUMBER", help="Replaces run.threads.")
 @click.option("--json", "as_json", is_flag=True, help="Print the summaries as one JSON object.")
 @show_scene_option(default_scene_text)
@@ -50,6 +56,7 @@ def vehicle(
     scene: Path | None,
     methods: tuple[str, ...],
     compare: bool,
+    output: Path | None,
     as_json: bool,
     quiet: bool,
     **overrides: Any,
@@ -61,6 +68,8 @@ def vehicle(
     """
     if compare and methods:
         raise WrongCall(f"--compare: given with --method {methods[0]}, allowed one of them")
+    if output is not None and (compare or len(methods) > 1):
+        raise WrongCall(f"--output: value is {str(output)!r}, allowed with one run only")
     try:
         import railpatch.pinocchio  # noqa: F401
     except ImportError as error:
@@ -70,7 +79,7 @@ def vehicle(
 
     try:
         loaded = load_vehicle_scene(scene, overrides)
-        found = run_all(loaded, COMPARED if compare else methods, quiet)
+        found = run_all(loaded, COMPARED if compare else methods, quiet, output)
     except (CaseError, ProfileError, OSError) as error:
         raise WrongCall(str(error)) from None
     if as_json:
@@ -86,8 +95,10 @@ def vehicle(
         context.exit(EXIT_NOT_CONVERGED)
 
 
-def run_all(scene: Any, methods: tuple[str, ...], quiet: bool) -> dict[str, Any]:
-    """Name of the theory, or "scene" for the scene's own -> summary."""
+def run_all(
+    scene: Any, methods: tuple[str, ...], quiet: bool, output: Path | None = None
+) -> dict[str, Any]:
+    """Name of the theory, or "scene" for the scene's own -> summary. output: the log of one."""
     from wheelset_demo.vehicle.compare import run_summary, with_theory
 
     chosen = {name: with_theory(scene, name) for name in methods} or {"scene": scene}
@@ -95,7 +106,7 @@ def run_all(scene: Any, methods: tuple[str, ...], quiet: bool) -> dict[str, Any]
     found = {}
     for name, one in chosen.items():
         with progress_bar(f"rolling, {name}", kept, quiet) as advance:
-            found[name] = run_summary(one, advance)
+            found[name] = run_summary(one, advance, output)
     return found
 
 

@@ -13,8 +13,9 @@ from railpatch.case import WheelsetCase
 from railpatch.case.load import Scene, check_case, check_table, plain, read_toml
 from railpatch.case.types import NotNegative, Number, Positive, Table, exactly, relation
 from railpatch.errors import CaseError
+from railpatch.log.stream import SCENE_RATE
 
-from wheelset_demo.scene import found_profiles, scene_file
+from wheelset_demo.scene import SNAPSHOTS, found_profiles, scene_file
 from wheelset_demo.vehicle.alignment import AlignmentTable
 from wheelset_demo.vehicle.irregularity import IrregularityTable
 
@@ -121,16 +122,21 @@ class RunTable(Table):
 
     duration: Annotated[float, Field(gt=0, le=1e5)] = Field(description="s, to run")
     step: Annotated[float, Field(ge=1e-6, le=0.1)] = Field(default=1e-3, description="s")
-    stepper: Literal["bdf2", "ros2"] = Field(
-        default="bdf2",
-        description="(no unit): both linearly implicit and of order 2: bdf2 with one evaluation of "
-        "the forces a step, ros2 with two",
-    )
     derivatives_every: Annotated[int, Field(ge=1, le=100_000)] = Field(
-        default=25, description="-, steps between new derivatives"
+        default=100, description="-, steps between new derivatives, at most"
     )
     log_every: Annotated[int, Field(ge=1)] = Field(
         default=5, description="-, every n-th step is kept"
+    )
+    write_rate: Annotated[float, Field(gt=0, le=1e9)] = Field(
+        default=50.0, description="Hz, kept steps written to a log a second simulated, at most"
+    )
+    scene_rate: Annotated[float, Field(ge=0, le=1e9)] = Field(
+        default=SCENE_RATE, description="Hz, 3D scenes of these, at most; 0: none"
+    )
+    snapshot_rate: Annotated[float, Field(ge=0, le=1e9)] | None = Field(
+        default=None,
+        description=f"Hz, fields of these, at most; 0: none; left out: {SNAPSHOTS} a run",
     )
     threads: Annotated[int, Field(ge=1, le=64)] = Field(
         default=1, description="-, that solve the wheelsets' contacts side by side"

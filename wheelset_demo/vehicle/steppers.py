@@ -11,28 +11,30 @@ in a step, d' that of the step before,
     (I - 2/3 h A) (d - d') = 2/3 (h (2 f_n - f_n-1 + G (u_n+1 - 2 u_n + u_n-1)) - d').
 
 Where A is exact it is BDF2, L-stable. A stiffness off by a part e (true = (1 + e) A) is stable for
--1 <= e <= 1/3, as the roots of x^2 + e (2 x - 1), the stiff limit, show.
+-1 <= e <= 1/3, as the roots of x^2 + e (2 x - 1), the stiff limit, show. What the new rates differ
+by from the ones that the step assumed says when that is about to be left: a wheelset's lateral or
+vertical acceleration off by more than SURPRISE asks for new derivatives at once.
 
-ros2, two evaluations: as wheelset_demo.steppers, with the term of the rates of u.
+u takes part with what the track's own bends move the rails by, or contacts would seem to be pushed
+out of a curve: a stiffness times the way that the vehicle turns off in a step.
+
+ros2, two evaluations: as wheelset_demo.steppers, with the term of the rates of u. Its matrix sees
+velocities, not their changes, and so wants one of the same heading: it makes the first step, on
+straight track with derivatives of that moment.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Protocol
 
 import numpy as np
 
+from wheelset_demo.vehicle.scene import WHEELSETS
 from wheelset_demo.vehicle.system import Rates, Vector, VehicleState, VehicleSystem
 
 GAMMA = 1 - 1 / math.sqrt(2)
-
-
-class Stepper(Protocol):
-    """Makes a state of the one before."""
-
-    def step(self, state: VehicleState, rates: Rates) -> tuple[VehicleState, Rates]:
-        """The state a step later with its rates. Raises ContactFailure."""
+# m/s^2, of a wheelset: some tenth of its load over its mass
+SURPRISE = 6.0
 
 
 class Implicit:
@@ -41,14 +43,19 @@ class Implicit:
     def __init__(self, system: VehicleSystem, step: float, every: int, weight: float) -> None:
         self._system, self._step, self._every, self._weight = system, step, every, weight
         self._age = 0
-        self._inverse = np.zeros((0, 0))
-        self._inputs = np.zeros((0, 0))
+        # wheelsets whose contacts' derivatives are known to be wrong
+        self._wrong: list[int] = list(range(WHEELSETS))
+        self._matrix = self._inverse = self._inputs = np.zeros((0, 0))
 
     def _keep_fresh(self, values: Vector) -> None:
         """New derivatives where they are old; values: whose rates were the last ones."""
-        if self._age % self._every == 0:
-            matrix, self._inputs = self._system.derivatives(values)
-            self._inverse = inverse_of(matrix, self._weight * self._step, self._system.count)
+        if self._age >= self._every:
+            self._age, self._wrong = 0, list(range(WHEELSETS))
+        if self._wrong:
+            self._matrix, self._inputs = self._system.derivatives(values, self._wrong)
+            weight = self._weight * self._step
+            self._inverse = inverse_of(self._matrix, weight, self._system.count)
+            self._wrong = []
         self._age += 1
 
     def _arrived(
@@ -88,6 +95,7 @@ class Bdf2(Implicit):
     def __init__(self, system: VehicleSystem, step: float, every: int) -> None:
         super().__init__(system, step, every, 2 / 3)
         self._first = Ros2(system, step, 1)
+        self._watched = system.count + system.vehicle.carriers[:, 1:3].ravel()
         self._before: tuple[Vector, Rates] | None = None
 
     def step(self, state: VehicleState, rates: Rates) -> tuple[VehicleState, Rates]:
@@ -100,11 +108,17 @@ class Bdf2(Implicit):
         self._keep_fresh(state.values)
         last, older = self._before
         ahead = self._system.inputs_ahead(state.values, h)
-        bend = self._inputs @ (ahead - 2 * rates.inputs + older.inputs)
-        known = h * (2 * rates.values - older.values + bend) - last
-        change = last + (2 / 3) * (self._inverse @ known)
+        bent = ahead - 2 * rates.inputs + older.inputs
+        bend = self._inputs @ (bent + self._system.track_bend(state.values, h))
+        known = 2 * rates.values - older.values + bend
+        change = last + (2 / 3) * (self._inverse @ (h * known - last))
         self._before = (change, rates)
-        return self._arrived(state, rates, change)
+        found = self._arrived(state, rates, change)
+        rows = self._watched
+        assumed = known[rows] + self._matrix[rows] @ (change - last)
+        away = np.abs(found[1].values[rows] - assumed).reshape(WHEELSETS, 2).max(axis=1)
+        self._wrong = np.flatnonzero(away > SURPRISE).tolist()
+        return found
 
 
 class Ros2(Implicit):
@@ -123,10 +137,3 @@ class Ros2(Implicit):
         moved = system.rates(state.time + h, state.values + h * first)
         second = self._inverse @ (moved.values - 2 * first - moving)
         return self._arrived(state, rates, h * (1.5 * first + 0.5 * second))
-
-
-def make_stepper(system: VehicleSystem) -> Stepper:
-    """As the scene says."""
-    run = system.scene.run
-    kinds = {"bdf2": Bdf2, "ros2": Ros2}
-    return kinds[run.stepper](system, run.step, run.derivatives_every)

@@ -9,17 +9,19 @@ wheelsets are: they are known ahead, and the time steppers use that.
 from __future__ import annotations
 
 import time as clock
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 from railpatch import CaseError
-from railpatch.pinocchio import ForceElement, acceleration_derivatives
+from railpatch.pinocchio import ForceElement, StateChain, acceleration_derivatives
+from railpatch.pinocchio.derivative import WrenchDerivatives
 
 from wheelset_demo.system import BAD, ContactFailure, no_forces
 from wheelset_demo.vehicle.alignment import Alignment
-from wheelset_demo.vehicle.irregularity import irregularity_of
+from wheelset_demo.vehicle.irregularity import ARM, irregularity_of
 from wheelset_demo.vehicle.model import CAR_BODY, vehicle_model
 from wheelset_demo.vehicle.scene import WHEELSETS, VehicleScene
 from wheelset_demo.vehicle.suspension import Suspension
@@ -70,11 +72,33 @@ class Rates:
     status: str
 
 
+class HeldDerivatives:
+    """Of the contacts' wrenches, some of an earlier state. by_side: [4, 2, 6, 12]."""
+
+    def __init__(self, element: ForceElement) -> None:
+        self._element = element
+        self.by_side = np.zeros((WHEELSETS, 2, 6, 12))
+
+    def renew(self, wheelsets: Iterable[int]) -> None:
+        """Those of the last step. Raises CaseError."""
+        for k in wheelsets:
+            self.by_side[k] = self._element.derivatives_by_side(k)
+
+    def wrench_derivatives(self, chain: StateChain) -> list[WrenchDerivatives]:
+        """As railpatch.pinocchio.acceleration_derivatives() wants them."""
+        wrenches = self._element.contact_wrench
+        return [
+            chain.of(self._element, k).wrench(wrenches[k], self.by_side[k].sum(axis=0))
+            for k in range(WHEELSETS)
+        ]
+
+
 class VehicleSystem:
     """Vehicle, suspension, track and contacts of a scene. Keeps the contacts' last solutions.
 
-    suspension_seconds, dynamics_seconds: s, inside the suspension, inside Pinocchio and the track,
-    since the start; derivative_seconds: in derivatives(). evaluations: of the forces.
+    evaluations, renewals: number of rates() and of derivatives(). contact_seconds,
+    derivative_seconds: s, CPU time of the calling thread in the force element and in derivatives();
+    further threads: element.helper_seconds.
     """
 
     def __init__(self, scene: VehicleScene) -> None:
@@ -94,13 +118,14 @@ class VehicleSystem:
         self.count = self.model.nv
         self.size = 2 * self.count + self.suspension.series_count
         self.positions = np.zeros(WHEELSETS)
-        self.evaluations = 0
+        self.evaluations = self.renewals = 0
         self.contact_seconds = self.derivative_seconds = 0.0
         self._fext = no_forces(self.model)
         self._zero = np.zeros(self.count)
         self._joints = [self.vehicle.joints[name] for name in names]
         self._car = self.vehicle.columns[0]
-        self._by_side = np.zeros((WHEELSETS, 2, 6, 12))
+        self._bends = np.zeros((WHEELSETS, 3))
+        self._held = HeldDerivatives(self.element)
 
     def rates(self, time: float, values: Vector) -> Rates:
         """At a time (s) and values [100 + n]. Raises ContactFailure."""
@@ -111,13 +136,13 @@ class VehicleSystem:
         for joint in self._joints:
             self._fext[joint].setZero()
         self.evaluations += 1
-        begin = clock.perf_counter()
+        begin = clock.thread_time()
         try:
             status = self.element.step(self.data, self._fext)
         except CaseError as error:
             # far off the rails, or not a number
             raise ContactFailure(time, float(self.positions[0]), str(error)) from None
-        self.contact_seconds += clock.perf_counter() - begin
+        self.contact_seconds += clock.thread_time() - begin
         if status in BAD:
             raise ContactFailure(time, float(self.positions[0]), self.statuses())
         tau = self.suspension.step(q, v, series)
@@ -133,7 +158,7 @@ class VehicleSystem:
         """Puts track frames under the wheelsets, rails into them; [16], m, their deviations."""
         centres = q[self.vehicle.carriers[:, :3]]
         self.positions = self.alignment.foot(centres, self.positions)
-        rotations, origins = self.alignment.frames(self.positions)
+        rotations, origins, self._bends = self.alignment.frames_and_bends(self.positions)
         tracks = self.element.tracks
         tracks[:, :9], tracks[:, 9:] = rotations.reshape(-1, 9), origins
         self.element.positions[:] = self.positions
@@ -147,29 +172,48 @@ class VehicleSystem:
         self.element.rails[:, 0, :, 1:] = moved
         return moved.ravel()
 
+    def speeds_along(self, values: Vector) -> Vector:
+        """m/s, [4], of the wheelsets."""
+        n = self.count
+        velocity = values[n : 2 * n][self.vehicle.carriers[:, :2]]
+        return np.hypot(velocity[:, 0], velocity[:, 1])
+
     def inputs_ahead(self, values: Vector, step: float) -> Vector:
         """[16], m, of the rails where the wheelsets will be in ``step`` s."""
         if self.irregularity is None:
             return np.zeros(2 * WHEELS)
-        n = self.count
-        velocity = values[n : 2 * n][self.vehicle.carriers[:, :2]]
-        speeds = np.hypot(velocity[:, 0], velocity[:, 1])
-        return self.irregularity.at(self.positions + step * speeds).ravel()
+        return self.irregularity.at(self.positions + step * self.speeds_along(values)).ravel()
 
-    def derivatives(self, values: Vector) -> tuple[Vector, Vector]:
+    def track_bend(self, values: Vector, step: float) -> Vector:
+        """[16], m, second differences of the rails' places under the wheelsets over ``step`` s.
+
+        By the track's own way in the world: the curve's turning off, the change of cant. In track
+        axes, as the rails' deviations.
+        """
+        cant, curvature, twist = self._bends.T
+        squared = (step * self.speeds_along(values)) ** 2
+        off, turned = curvature * squared, ARM * twist * squared
+        found = np.empty((WHEELSETS, 2, 2))
+        found[:, :, 0] = (off * np.cos(cant))[:, None]
+        down = -off * np.sin(cant)
+        found[:, 0, 1], found[:, 1, 1] = down - turned, down + turned
+        return found.ravel()
+
+    def derivatives(self, values: Vector, wheelsets: Iterable[int]) -> tuple[Vector, Vector]:
         """Of the rates at values whose rates were the last ones asked for, nearly.
 
-        [size, size] by the values and [size, 16] by the rails' deviations. The contacts' are exact
-        or by differences, as railpatch.Contact.jacobian() says; how the track frame turns on
-        along the track is left out. Raises CaseError.
+        [size, size] by the values and [size, 16] by the rails' deviations. wheelsets: whose
+        contacts' derivatives are found anew, exact or by differences, as Contact.jacobian() says;
+        those of the others are held. How the track frame turns on along the track is left out.
+        Raises CaseError.
         """
-        begin = clock.perf_counter()
+        begin = clock.thread_time()
+        self.renewals += 1
         n, suspension = self.count, self.suspension
         q, v = values[:n], values[n : 2 * n]
         tau = self.suspension.matrix.T @ self.suspension.force
-        found = acceleration_derivatives(
-            self.model, self.data, q, v, tau, self._fext, [self.element]
-        )
+        self._held.renew(wheelsets)
+        found = acceleration_derivatives(self.model, self.data, q, v, tau, self._fext, [self._held])
         upper = np.triu(self.data.Minv)
         inverse = upper + np.triu(upper, 1).T
         by_q, by_v, by_series = suspension.jacobian()
@@ -185,16 +229,16 @@ class VehicleSystem:
         matrix[2 * n :, 2 * n :] = np.diag(series_by_series)
         inputs = np.zeros((self.size, 2 * WHEELS))
         inputs[n : 2 * n] = inverse @ self._force_by_rails(found.chain)
-        self.derivative_seconds += clock.perf_counter() - begin
+        self.derivative_seconds += clock.thread_time() - begin
         return matrix, inputs
 
-    def _force_by_rails(self, chain: object) -> Vector:
+    def _force_by_rails(self, chain: StateChain) -> Vector:
         """[nv, 16], of the generalised force by the rails' deviations."""
         columns = []
         for k in range(WHEELSETS):
             state = chain.of(self.element, k)
             jacobian = chain.jacobian(self.element.joints[k])
-            for by_wheel in self.element.derivatives_by_side(k):
+            for by_wheel in self._held.by_side[k]:
                 for column in (LATERAL, VERTICAL):
                     # a rail that moves is a wheel that moves the other way
                     wrench = -state.turned(by_wheel[:, column])

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,9 @@ from wheelset_demo.system import ContactFailure
 from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.simulation import Simulation
 from wheelset_demo.vehicle.system import WORKS, VehicleState
+
+if TYPE_CHECKING:
+    from wheelset_demo.vehicle.record import Recorder
 
 Vector = NDArray[np.float64]
 Advance = Callable[[VehicleState], None]
@@ -32,7 +36,8 @@ class VehicleTrace:
     wheelsets on their track. guiding, loads: [n, 8], N, Y on the rail to the right and Q down, of
     left and right wheel of each wheelset. felt: [n, 3], m/s^2, acceleration of the car body's
     centre less gravity's, in its axes. works: [n, 12], J, as those of a state. energies: [n, 4], J,
-    by STORES. failure: what ended the run before its end.
+    by STORES. failure: what ended the run before its end. logging_share: -, of the wall time, in
+    the log; None without one.
     """
 
     scene: VehicleScene
@@ -46,6 +51,7 @@ class VehicleTrace:
     works: list[Vector] = field(default_factory=list)
     energies: list[Vector] = field(default_factory=list)
     failure: ContactFailure | None = None
+    logging_share: float | None = None
 
     def add(self, simulation: Simulation) -> None:
         """The simulation's present state."""
@@ -83,12 +89,34 @@ def felt_by_car_body(simulation: Simulation) -> Vector:
     return rotation.T @ acceleration
 
 
-def run_vehicle(simulation: Simulation, advance: Advance | None = None) -> VehicleTrace:
-    """All steps. A contact that is not solved ends the run: the failure is in the trace."""
+def run_vehicle(
+    simulation: Simulation, advance: Advance | None = None, output: Path | None = None
+) -> VehicleTrace:
+    """All steps. A contact that is not solved ends the run: the failure is in the trace.
+
+    output: the log to write. Raises OSError where it cannot be written.
+    """
+    if output is None:
+        return traced(simulation, advance)
+    from wheelset_demo.vehicle.record import Recorder, open_log
+
+    with open_log(output, simulation) as log:
+        trace = traced(simulation, advance, Recorder(log, simulation))
+        log.close(str(trace.failure or ""))
+    trace.logging_share = log.share
+    return trace
+
+
+def traced(
+    simulation: Simulation, advance: Advance | None = None, recorder: Recorder | None = None
+) -> VehicleTrace:
+    """The same with a log that is open."""
     trace = VehicleTrace(simulation.scene)
     try:
         for state in simulation.steps():
             trace.add(simulation)
+            if recorder is not None:
+                recorder.write(simulation)
             if advance is not None:
                 advance(state)
     except ContactFailure as failure:
@@ -104,8 +132,9 @@ class VehicleSummary:
     sum of Y of a wheelset. offset: m, greatest of a wheelset from the track's middle. comfort:
     m/s^2, standard deviation of lateral and vertical acceleration at the car body's centre in its
     axes. friction: J, [8], at each wheel. balance: -, part of the energy lost that is missing in
-    that of bodies and springs. seconds: of the time steps: total, cpu (of all threads), contact (in
-    the library, of all threads), derivatives. real_time: total time over the time simulated.
+    that of bodies and springs. seconds: of the time steps: total, by the clock; cpu, of all
+    threads, and of it contact (force element) and derivatives. real_time: -, total over the time
+    simulated.
     """
 
     good: bool
@@ -122,6 +151,7 @@ class VehicleSummary:
     balance: float
     seconds: dict[str, float]
     real_time: float
+    logging_share: float | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Plain numbers."""
@@ -145,11 +175,13 @@ class VehicleSummary:
             ("balance", f"open by {100 * self.balance:.2g} % of the energy lost"),
             (
                 "time",
-                f"{seconds['total']:.2f} s ({seconds['cpu']:.2f} s CPU), of it contacts "
+                f"{seconds['total']:.2f} s, CPU {seconds['cpu']:.2f} s, of it contacts "
                 f"{seconds['contact']:.2f} s, derivatives {seconds['derivatives']:.2f} s",
             ),
-            ("real time", f"{self.real_time:.2f} s a second simulated"),
+            ("real time", f"{self.real_time:.2f} s for a second simulated"),
         ]
+        if self.logging_share is not None:
+            lines.append(("logging", f"{100 * self.logging_share:.2g} % of the run's wall time"))
         return "\n".join(f"{name:<16}{value}" for name, value in lines)
 
 
@@ -186,4 +218,5 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
         balance=trace.open_balance(),
         seconds=seconds,
         real_time=wall / time if time > 0 else 0.0,
+        logging_share=trace.logging_share,
     )

@@ -182,10 +182,9 @@ def _vehicle(wheelsets: int) -> list[Tab]:
             "Vehicle",
             {
                 "wheelsets beside the centre line": axles("y", "y"),
-                "acceleration of the car body": [
-                    Curve(bodies, f"{body}acceleration[{k}]", f"a{_AXES[k]}") for k in (1, 2)
-                ],
-                "track": [Curve(state, "curvature", "curvature"), Curve(state, "cant", "cant")],
+                "car body, lateral": [Curve(bodies, f"{body}acceleration[1]", "ay")],
+                "car body, vertical": [Curve(bodies, f"{body}acceleration[2]", "az")],
+                "curvature of the track": [Curve(state, "curvature", "curvature")],
             },
         ),
         Tab(
@@ -201,6 +200,20 @@ def _vehicle(wheelsets: int) -> list[Tab]:
                 "longitudinal creepages": wheels("patches[0].creepage[0]", "x"),
                 "lateral creepages": wheels("patches[0].creepage[1]", "y"),
                 "angles of attack": axles("yaw", "yaw"),
+            },
+        ),
+        Tab(
+            "Track",
+            {
+                "cant": [Curve(state, "cant", "cant")],
+                "left rail of the first wheelset": [
+                    Curve("/wheelset/1/state", f"left_rail[{k}]", name)
+                    for k, name in enumerate(("lateral", "vertical"))
+                ],
+                "right rail of the first wheelset": [
+                    Curve("/wheelset/1/state", f"right_rail[{k}]", name)
+                    for k, name in enumerate(("lateral", "vertical"))
+                ],
             },
         ),
         _energies("/vehicle"),

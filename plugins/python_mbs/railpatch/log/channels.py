@@ -192,6 +192,7 @@ WHEEL_CONTACT = Message(
             "solutions of other divisions into patches, which count with their share in the force",
             size=0,
         ),
+        _number("friction_work", "J", "lost in friction since the start of the run"),
     ),
 )
 
@@ -319,7 +320,7 @@ BODY = Message(
         _number("position", "m", "of its centre of mass", "start", size=3, required=True),
         _number("orientation", "-", "quaternion x, y, z, w", "start", size=4, required=True),
         _number("velocity", "m/s", "of its centre of mass", "start", size=3),
-        _number("acceleration", "m/s^2", "of its centre, without gravity", "body", size=3),
+        _number("acceleration", "m/s^2", "of its centre, less gravity's", "body", size=3),
         _number("lateral", "m", "distance from the track's centre line, right > 0", "track"),
         _number("roll", "rad", "roll angle against the track", "track"),
         _number("yaw", "rad", "yaw angle against the track", "track"),

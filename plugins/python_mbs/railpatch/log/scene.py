@@ -97,8 +97,8 @@ def turning(
     """A wheel or roller about its frame's y axis: rim by its profile, disc, marks by which its
     turning is seen, and half an axle if asked."""
     # on the inner face, so that forces at the tread are seen
-    inside = float(curve[np.argmin(np.abs(curve[:, 0])), 0])
-    disc = [[inside, 0.0], [inside, float(curve[:, 1].min())]]
+    inside, radius = map(float, curve[np.argmin(np.abs(curve[:, 0]))])
+    disc = [[inside, 0.0], [inside, radius]]
     shapes = [revolved(curve), revolved(np.array(disc), 2)]
     if axle:
         shapes.append(revolved(np.array([[0.0, _SHAFT], [inside, _SHAFT]]), 2))

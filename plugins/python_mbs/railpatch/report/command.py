@@ -20,7 +20,8 @@ import click
     type=float,
     metavar="NUMBER",
     help="Show the patches nearest to this progress (0 to 1; where the run has none: "
-    "time in s). By default those at the largest yaw angle.",
+    "time in s; of a vehicle: distance in m). By default those at the largest yaw angle, or "
+    "guiding force.",
 )
 @click.option(
     "--reference",

@@ -23,9 +23,9 @@ class ReportError(ValueError):
 class Positions:
     """The run's n positions (or time steps).
 
-    ``state``, ``contact``, ``balance``, ``stats``, ``energy``: series of n messages each; where a
-    position has none, its values are absent. ``force``: by side, on the wheel in track axes, N,
-    shape (n, 3).
+    ``state``, ``contact``, ``balance``, ``stats``, ``energy``, ``momentum``: series of n messages
+    each; where a position has none, its values are absent. ``force``: by side, on the wheel in
+    track axes, N, shape (n, 3).
     ``ratio``: by side, lateral over vertical force, the same for wheel and roller; NaN without
     vertical force. ``solved``: whether all of the position converged. ``along``: the abscissa of
     plots over the run, with ``along_label``.
@@ -37,6 +37,7 @@ class Positions:
     balance: Series
     stats: Series
     energy: Series
+    momentum: Series
     force: dict[str, np.ndarray]
     ratio: dict[str, np.ndarray]
     solved: np.ndarray
@@ -69,6 +70,16 @@ class Positions:
         """Whether the balance of energies was logged."""
         return len(self.run["/wheelset/energy"]) > 0
 
+    @property
+    def has_momentum(self) -> bool:
+        """Whether the balance of momenta was logged."""
+        return len(self.run["/wheelset/momentum"]) > 0
+
+    @property
+    def has_distance(self) -> bool:
+        """Whether the wheelset travels."""
+        return bool(np.ptp(np.nan_to_num(self.state["x"])) > 0)
+
     def patch_count(self, side: str) -> np.ndarray:
         """Patches of one side at each position, shape (n,)."""
         return np.array([len(m["patches"]) for m in self.contact[side].messages])
@@ -85,9 +96,9 @@ def positions(run: Run) -> Positions:
         times = np.intersect1d(times, run[topic].time)
     if not times.size:
         raise ReportError(f"{run.path} holds no position: nothing to report")
-    state = _at(run["/wheelset/state"], times)
-    contact = {side: _at(run[f"/{side}/contact"], times) for side in SIDES}
-    balance = _at(run["/rig/balance"], times)
+    state = at_times(run["/wheelset/state"], times)
+    contact = {side: at_times(run[f"/{side}/contact"], times) for side in SIDES}
+    balance = at_times(run["/rig/balance"], times)
     force = {side: _vectors(contact[side]["force"]) for side in SIDES}
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = {side: _finite(force[side][:, 1] / force[side][:, 2]) for side in SIDES}
@@ -98,8 +109,9 @@ def positions(run: Run) -> Positions:
         state,
         contact,
         balance,
-        _at(run["/solver/stats"], times),
-        _at(run["/wheelset/energy"], times),
+        at_times(run["/solver/stats"], times),
+        at_times(run["/wheelset/energy"], times),
+        at_times(run["/wheelset/momentum"], times),
         force,
         ratio,
         _solved(contact, balance),
@@ -120,7 +132,7 @@ def snapshot(data: Positions, at: float | None = None) -> dict[str, Any] | None:
     Without ``at``, the one at the largest yaw angle. Gives {"index": position, side: patches with
     arrays}, or None where the log has none.
     """
-    taken = {side: _at(data.run[f"/{side}/fields"], data.state.time) for side in SIDES}
+    taken = {side: at_times(data.run[f"/{side}/fields"], data.state.time) for side in SIDES}
     have = [
         index for index in range(data.count) if any(taken[side].messages[index] for side in SIDES)
     ]
@@ -131,12 +143,12 @@ def snapshot(data: Positions, at: float | None = None) -> dict[str, Any] | None:
     else:
         index = min(have, key=lambda i: abs(data.along[i] - at))
     chosen = {
-        side: [_grid(p) for p in taken[side].messages[index].get("patches", [])] for side in SIDES
+        side: [grid_of(p) for p in taken[side].messages[index].get("patches", [])] for side in SIDES
     }
     return {"index": index} | chosen
 
 
-def _at(series: Series, times: np.ndarray) -> Series:
+def at_times(series: Series, times: np.ndarray) -> Series:
     """The messages at these times; an empty one where there is none."""
     by_time = dict(zip(series.time.tolist(), series.messages, strict=True))
     return Series(times, [by_time.get(time, {}) for time in times.tolist()])
@@ -159,7 +171,7 @@ def _solved(contact: dict[str, Series], balance: Series) -> np.ndarray:
     return solved
 
 
-def _grid(patch: dict[str, Any]) -> dict[str, Any]:
+def grid_of(patch: dict[str, Any]) -> dict[str, Any]:
     """One patch's fields as arrays: (rows, columns), or (rows, columns, 2) of vectors."""
     rows, columns = patch["rows"], patch["columns"]
     grid: dict[str, Any] = {"patch": patch["patch"]}

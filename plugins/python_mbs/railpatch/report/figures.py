@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 import numpy as np
 import plotly.graph_objects as go
@@ -13,10 +14,13 @@ from railpatch.log.channels import SIDES
 from .data import Positions, scaled
 from .reference import Match
 
+if TYPE_CHECKING:
+    from .vehicle import VehicleRun
+
 COLORS = {"left": "#3b7dc4", "right": "#e0812b"}
 _BAD = "#d62839"
 _REFERENCE = {"left": "triangle-left-open", "right": "triangle-right-open"}
-_GREY = "#8a919c"
+GREY = "#8a919c"
 _GRID = "rgba(128,128,128,0.22)"
 _MANY = 2000  # points of a line; longer runs are thinned for the page
 
@@ -33,7 +37,7 @@ def traction_curves(data: Positions, matches: list[Match]) -> go.Figure:
     factor, label = scaled("/wheelset/state", "yaw", "angle of attack (yaw)")
     yaw = factor * data.state["yaw"]
     for column, side in enumerate(SIDES, start=1):
-        add = _Adder(figure, data, 1, column)
+        add = Adder(figure, data, 1, column)
         add.line(yaw, data.ratio[side], side, COLORS[side])
         add.reference(
             side, matches, lambda m: factor * m.row.yaw, lambda m: m.row.force[1] / m.row.force[2]
@@ -55,7 +59,7 @@ def forces(data: Positions, matches: list[Match]) -> go.Figure:
         for side in SIDES:
             values = -factor * data.force[side][:, axis]
             for column, abscissa in ((1, data.along), (2, yaw)):
-                add = _Adder(figure, data, axis + 1, column)
+                add = Adder(figure, data, axis + 1, column)
                 add.line(abscissa, values, side, COLORS[side])
                 add.reference(
                     side,
@@ -75,14 +79,14 @@ def wheelset_position(data: Positions, matches: list[Match]) -> go.Figure:
     load = {side: -data.force[side][:, 2] for side in SIDES}
     with np.errstate(divide="ignore", invalid="ignore"):
         share = 100 * load["left"] / (load["left"] + load["right"])
-    _Adder(figure, data, 1, 1).line(data.along, share, "left wheel's load", _GREY, legend=False)
+    Adder(figure, data, 1, 1).line(data.along, share, "left wheel's load", GREY, legend=False)
     figure.update_yaxes(title_text="left wheel's load [%]", row=1, col=1)
     names = {"yaw": "yaw", "y": "y", "z": "z", "roll": "roll", "pitch_rate": "pitch rate"}
     places = [(1, 2), (2, 1), (2, 2), (3, 1), (3, 2)]
     for (name, text), (row, column) in zip(names.items(), places, strict=True):
         factor, label = scaled("/wheelset/state", name, text)
-        add = _Adder(figure, data, row, column)
-        add.line(data.along, factor * data.state[name], text, _GREY, legend=False)
+        add = Adder(figure, data, row, column)
+        add.line(data.along, factor * data.state[name], text, GREY, legend=False)
         if name in ("z", "roll", "pitch_rate"):
             add.reference(
                 "left",
@@ -112,12 +116,12 @@ def patches(data: Positions) -> go.Figure:
             if name == "position":
                 # both wheels on one scale
                 values = values * (1 if side == "right" else -1)
-            _Adder(figure, data, row, column).dots(
+            Adder(figure, data, row, column).dots(
                 data.along[index], factor * values, side, COLORS[side]
             )
         figure.update_yaxes(title_text=label, row=row, col=column)
     for side in SIDES:
-        _Adder(figure, data, 2, 2).line(
+        Adder(figure, data, 2, 2).line(
             data.along, data.patch_count(side), side, COLORS[side], shape="hv"
         )
     figure.update_yaxes(title_text="patches", dtick=1, rangemode="tozero", row=2, col=2)
@@ -130,11 +134,11 @@ def contact_work(data: Positions) -> go.Figure:
     figure = make_subplots(1, 2, horizontal_spacing=0.12)
     for name, side in (("in all", None), *((f"{side} wheel", side) for side in SIDES)):
         values = data.stats[f"{side}_wall_time" if side else "wall_time"]
-        color = COLORS[side] if side else _GREY
-        _Adder(figure, data, 1, 1).line(data.along, values, name, color)
+        color = COLORS[side] if side else GREY
+        Adder(figure, data, 1, 1).line(data.along, values, name, color)
     for side in SIDES:
         for kind, dash in (("normal", "dot"), ("tangential", "dash")):
-            _Adder(figure, data, 1, 2).line(
+            Adder(figure, data, 1, 2).line(
                 data.along,
                 data.stats[f"{side}_{kind}_iterations"],
                 f"{side}, {kind}",
@@ -152,7 +156,7 @@ def balance_work(data: Positions) -> go.Figure:
     """Evaluations, iterations and residuals of the force balance over the run."""
     figure = make_subplots(1, 2, horizontal_spacing=0.12)
     for name, color in (("evaluations", "#5f9e6e"), ("iterations", "#9467bd")):
-        _Adder(figure, data, 1, 1).line(data.along, data.balance[name], name, color)
+        Adder(figure, data, 1, 1).line(data.along, data.balance[name], name, color)
     residuals = data.balance["residuals"]
     if residuals.ndim == 2:
         colors = {
@@ -161,33 +165,11 @@ def balance_work(data: Positions) -> go.Figure:
             "roll moment [N m]": "#c2528b",
         }
         for column, (name, color) in enumerate(colors.items()):
-            _Adder(figure, data, 1, 2).line(data.along, abs(residuals[:, column]), name, color)
+            Adder(figure, data, 1, 2).line(data.along, abs(residuals[:, column]), name, color)
     figure.update_yaxes(title_text="Broyden's method", rangemode="tozero", col=1)
     figure.update_yaxes(
         title_text="|residual|", type="log", exponentformat="power", nticks=6, col=2
     )
-    figure.update_xaxes(title_text=data.along_label)
-    return styled(figure, 360)
-
-
-def energy(data: Positions) -> go.Figure:
-    """Work done since the start, and what is open in the balance of energies."""
-    figure = make_subplots(1, 2, horizontal_spacing=0.12)
-    works = {
-        "friction": ("friction_work", "#c2528b"),
-        "dampers": ("damping_work", "#5f9e6e"),
-        "drive": ("drive_work", "#17879c"),
-    }
-    for name, (field, color) in works.items():
-        _Adder(figure, data, 1, 1).line(data.along, data.energy[field], name, color)
-    residuals = {
-        "bodies and springs": ("mechanical_residual", "#b5651d"),
-        "contacts": ("contact_residual", "#9467bd"),
-    }
-    for name, (field, color) in residuals.items():
-        _Adder(figure, data, 1, 2).line(data.along, data.energy[field], name, color)
-    figure.update_yaxes(title_text="work [J]", col=1)
-    figure.update_yaxes(title_text="open in the balance [J]", exponentformat="power", col=2)
     figure.update_xaxes(title_text=data.along_label)
     return styled(figure, 360)
 
@@ -199,7 +181,7 @@ def styled(figure: go.Figure, height: int) -> go.Figure:
         margin={"l": 70, "r": 48, "t": 75, "b": 55},
         paper_bgcolor="rgba(0,0,0,0)",
         plot_bgcolor="rgba(0,0,0,0)",
-        font={"color": _GREY, "family": "system-ui, sans-serif", "size": 13},
+        font={"color": GREY, "family": "system-ui, sans-serif", "size": 13},
         legend={
             "orientation": "h",
             "yref": "container",
@@ -207,7 +189,7 @@ def styled(figure: go.Figure, height: int) -> go.Figure:
             "y": 0.995,
             "x": 0,
         },
-        modebar={"bgcolor": "rgba(0,0,0,0)", "color": _GREY, "orientation": "v"},
+        modebar={"bgcolor": "rgba(0,0,0,0)", "color": GREY, "orientation": "v"},
         hoverlabel={"bgcolor": "#2b2f36", "font": {"color": "#f1f3f5"}},
     )
     lines = {
@@ -238,10 +220,12 @@ def _of_patches(data: Positions, side: str, name: str) -> tuple[np.ndarray, np.n
     return np.array(index, dtype=int), np.array(values, dtype=float)
 
 
-class _Adder:
+class Adder:
     """Adds traces to one panel; each name enters the legend once."""
 
-    def __init__(self, figure: go.Figure, data: Positions, row: int, column: int) -> None:
+    def __init__(
+        self, figure: go.Figure, data: Positions | VehicleRun, row: int, column: int
+    ) -> None:
         self.figure, self.data = figure, data
         self.place = {"row": row, "col": column}
 
@@ -255,6 +239,7 @@ class _Adder:
         legend: bool = True,
         dash: str = "solid",
         shape: str = "linear",
+        mark: bool = True,
     ) -> None:
         """A curve through the positions, with those marked that did not converge."""
         if not np.isfinite(y).any():
@@ -273,7 +258,7 @@ class _Adder:
             text=[f"position {i}" for i in range(0, len(x), step)],
         )
         bad = ~self.data.solved
-        if bad.any():
+        if mark and bad.any():
             self._trace(
                 x[bad],
                 y[bad],

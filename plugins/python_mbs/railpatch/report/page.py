@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import json
 from html import escape
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
-import plotly.graph_objects as go
 from plotly.offline import get_plotlyjs
 
 from railpatch.log.channels import ELEMENT_STATES, SIDES
-from railpatch.log.reader import read_run
+from railpatch.log.reader import Run, read_run
 
-from . import figures, reference, tables
+from . import balance_figures, figures, reference, tables, vehicle_page
 from .data import Positions, positions, snapshot
+from .parts import plot, warnings
 from .patch_figure import most_loaded, patch_figure
+from .vehicle import vehicle_run
 
+# attached by railpatch hunting: what its search has found
+HUNTING = "hunting.json"
 _STYLE = """
 :root { color-scheme: light dark; --ink: #1d2126; --soft: #5d6672; --line: #d9dde2;
   --ground: #ffffff; --panel: #f5f7f9; --warn: #fff1d6; --warn-ink: #6b4500; }
@@ -51,16 +56,20 @@ def write_report(
     """Writes the report of a run log, also of one that was cut off; returns ``output``.
 
     ``reference_dir``: where the reference of the roller rig is; see ``reference.find``. ``at``: the
-    progress (without progress: the time in s) whose patches are shown; by default those at the
-    largest yaw angle.
+    progress (without progress: the time in s; of a vehicle: the distance in m) whose patches are
+    shown; by default those at the largest yaw angle, or guiding force.
 
     Raises RunFileError where ``run_path`` is not a run log, ReportError where it holds no position,
     ValueError where the reference cannot be read, OSError where a file cannot be read or written.
     Nothing is written then.
     """
-    data = positions(read_run(run_path))
-    body = "".join([_head(data), *_sections(data, reference_dir, at), _ending(data)])
-    page = document(data.run.metadata["railpatch"].get("scene", "run"), body)
+    run = read_run(run_path)
+    if "wheelsets" in run.metadata["railpatch"]:
+        body = vehicle_page.body(vehicle_run(run), at)
+    else:
+        data = positions(run)
+        body = "".join([_head(data), *_sections(data, reference_dir, at)])
+    page = document(run.metadata["railpatch"].get("scene", "run"), body + _ending(run))
     output = Path(output)
     output.write_text(page, encoding="utf-8")
     return output
@@ -80,22 +89,8 @@ def _head(data: Positions) -> str:
     kind = "roller rig" if data.has_balance else "wheelset"
     scene = escape(data.run.metadata["railpatch"].get("scene", ""))
     parts = [f"<h1>Run of the {kind}</h1><p class=sub>{scene}</p>"]
-    if data.run.truncated:
-        parts.append(
-            f"<p class=warn><b>This log is cut off:</b> {escape(data.run.problem)}. "
-            f"The report shows the {data.count} positions before that.</p>"
-        )
-    if data.run.stopped_by:
-        parts.append(
-            "<p class=warn><b>This run stopped before its end</b> "
-            f"({escape(data.run.stopped_by)}).</p>"
-        )
     bad = int((~data.solved).sum())
-    if bad:
-        parts.append(
-            f"<p class=warn><b>{bad} of {data.count} positions did not converge.</b> "
-            "Red crosses mark them in the figures.</p>"
-        )
+    parts += warnings(data.run, f"{data.count} positions", bad, data.count, "positions")
     return "".join([*parts, tables.summary(data), tables.unsolved(data)])
 
 
@@ -114,6 +109,7 @@ def _sections(
         plot(figures.forces(data, matches), "forces"),
         "<h2>Load transfer and position of the wheelset</h2>",
         plot(figures.wheelset_position(data, matches), "position"),
+        *_along_the_track(data),
         "<h2>Contact patches</h2><p>Each point is one patch. Distances count outwards from the "
         "track's centre line; a contact angle is positive at a left wheel's flange.</p>",
         plot(figures.patches(data), "patches"),
@@ -128,8 +124,10 @@ def _sections(
         parts += [
             "<h2>Energies</h2><p>Work since the start. Friction's is that of the creep forces on "
             "the creepages; the drive holds the suspension's reference at its speed.</p>",
-            plot(figures.energy(data), "energy"),
+            plot(balance_figures.energy(data), "energy"),
         ]
+    if data.has_momentum:
+        parts.append(_momentum(data))
     if data.has_balance:
         parts += [
             "<h2>Work of the force balance</h2>",
@@ -145,6 +143,50 @@ def _sections(
             "</details>",
         ]
     return parts
+
+
+def _along_the_track(data: Positions) -> list[str]:
+    """Waves and hunting of a wheelset that travels."""
+    if not data.has_distance:
+        return []
+    parts = ["<h2>Along the track</h2>", plot(balance_figures.waves(data), "waves")]
+    found = data.run.attachments.get(HUNTING)
+    if found is not None:
+        parts += hunting_section(json.loads(found.data))
+    return parts
+
+
+def hunting_section(found: dict[str, Any]) -> list[str]:
+    """The search for the critical speed that the log carries."""
+    speed = found["critical_speed"]
+    rows = [("critical speed, from eigenvalues", _speed(speed))]
+    if "critical_speed_in_time" in found:
+        rows.append(("critical speed, from runs in time", _speed(found["critical_speed_in_time"])))
+    if speed is not None:
+        rows += [
+            ("frequency there", f"{tables.number(found['frequency'])} Hz"),
+            ("wave length there", f"{tables.number(found['wave_length'])} m"),
+        ]
+    rows.append(("this run", _speed(found["logged_speed"])))
+    return [
+        "<h2>Hunting</h2><p>The slowest wave of the equations of motion, linearised straight on: "
+        "where its growth is above zero, the wheelset hunts.</p>",
+        tables.table((), rows, "summary"),
+        plot(balance_figures.hunting(found), "hunting"),
+    ]
+
+
+def _speed(value: float | None) -> str:
+    return "none found" if value is None else f"{value:.2f} m/s ({3.6 * value:.1f} km/h)"
+
+
+def _momentum(data: Positions) -> str:
+    linear, turning = balance_figures.momentum_errors(data.momentum)
+    return (
+        "<h2>Momenta</h2><p>Open in the balances with the impulses of all forces: "
+        f"{tables.number(linear)} of the momentum at the start, {tables.number(turning)} of its "
+        f"moment about the centre.</p>{plot(balance_figures.momentum(data), 'momentum')}"
+    )
 
 
 def _patch_section(data: Positions, at: float | None) -> list[str]:
@@ -201,31 +243,15 @@ def _reference(
     )
 
 
-def _ending(data: Positions) -> str:
-    scene = data.run.metadata["railpatch"].get("scene", "")
-    case = data.run.attachments.get(scene)
+def _ending(run: Run) -> str:
+    scene = run.metadata["railpatch"].get("scene", "")
+    case = run.attachments.get(scene)
     text = case.data.decode("utf-8", errors="replace") if case else ""
     parts = ["<h2>The log</h2>"]
     if text:
         parts.append(f"<details><summary>case file</summary><pre>{escape(text)}</pre></details>")
     parts.append(
         f"<details><summary>channels, fields, units, signs</summary>"
-        f"{tables.channels(data)}</details>"
+        f"{tables.channels(run)}</details>"
     )
     return "".join(parts)
-
-
-def plot(figure: go.Figure, name: str) -> str:
-    """A figure as HTML; the name is unique on its page."""
-    inner = figure.to_html(
-        full_html=False,
-        include_plotlyjs=False,
-        div_id=name,
-        config={
-            "displaylogo": False,
-            "displayModeBar": "hover",
-            "responsive": True,
-            "modeBarButtonsToRemove": ["select2d", "lasso2d"],
-        },
-    )
-    return f"<figure>{inner}</figure>"

@@ -7,7 +7,15 @@ from html import escape
 
 import numpy as np
 
-from railpatch.log.channels import CHANNELS, CONVENTIONS, SIDES, WELL_KNOWN, flat_fields
+from railpatch.log.channels import (
+    CHANNELS,
+    CONVENTIONS,
+    SIDES,
+    WELL_KNOWN,
+    flat_fields,
+    vehicle_channels,
+)
+from railpatch.log.reader import Run
 
 from .data import Positions
 from .reference import Match, differences
@@ -27,7 +35,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[object]], css: str = "") 
 def summary(data: Positions) -> str:
     """What the run was, and how it went."""
     return table(
-        (), [row for row in [*_identity(data), *_course(data), *_cost(data)] if row], "summary"
+        (), [row for row in [*identity(data.run), *_course(data), *_cost(data)] if row], "summary"
     )
 
 
@@ -91,11 +99,14 @@ def reference_rows(matches: list[Match], data: Positions) -> str:
     return table(head, rows)
 
 
-def channels(data: Positions) -> str:
+def channels(run: Run) -> str:
     """The channel table with the messages that this file holds, and the conventions."""
-    counts = data.run.counts
+    counts = run.counts
+    number = int(run.metadata["railpatch"].get("wheelsets", 0))
+    table_of_run = vehicle_channels(number) if number else CHANNELS
     rows = [
-        (c.topic, f"railpatch.{c.message.name}", counts.get(c.topic, 0), c.text) for c in CHANNELS
+        (c.topic, f"railpatch.{c.message.name}", counts.get(c.topic, 0), c.text)
+        for c in table_of_run
     ]
     rows += [
         (topic, name, counts.get(topic, 0), text) for topic, (name, text) in WELL_KNOWN.items()
@@ -104,7 +115,7 @@ def channels(data: Positions) -> str:
         table((), ((k.replace("_", " "), v) for k, v in CONVENTIONS.items()), "summary"),
         table(("channel", "message", "messages", "content"), rows),
     ]
-    for message in dict.fromkeys(c.message for c in CHANNELS):
+    for message in dict.fromkeys(c.message for c in table_of_run):
         fields = [(path, f.unit, f.frame, f.text) for path, f in flat_fields(message)]
         parts.append(
             f"<h3>railpatch.{message.name}</h3><p>{escape(message.text)}</p>"
@@ -140,15 +151,20 @@ def _spread(values: np.ndarray) -> list[object]:
     ]
 
 
-def _identity(data: Positions) -> list[Sequence[object]]:
-    about = data.run.metadata["railpatch"]
-    files = ", ".join(f"{name} ({len(a.data):,} bytes)" for name, a in data.run.attachments.items())
-    return [
+def identity(run: Run) -> list[Sequence[object]]:
+    """Scene, file, and what the log itself took."""
+    about, end = run.metadata["railpatch"], run.metadata.get("railpatch.end", {})
+    files = ", ".join(f"{name} ({len(a.data):,} bytes)" for name, a in run.attachments.items())
+    rows: list[Sequence[object]] = [
         ("scene", about.get("scene", "-")),
-        ("log", data.run.path.name),
+        ("log", run.path.name),
         ("railpatch", about.get("version", "-")),
         ("attached files", files or "none"),
     ]
+    if "logging_time" in end:
+        share = 100 * float(end["logging_time"]) / float(end["wall_time"])
+        rows.append(("logging", f"{number(share)} % of the wall time"))
+    return rows
 
 
 def _course(data: Positions) -> list[Sequence[object]]:

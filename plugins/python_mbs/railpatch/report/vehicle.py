@@ -1,0 +1,153 @@
+"""What the report of a vehicle shows, taken from its log: arrays over the steps of the run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+from railpatch.log.channels import SIDES
+from railpatch.log.reader import Run, Series
+
+from .data import ReportError, at_times, grid_of
+
+_GOOD = ("converged", "no_contact")
+# m, over which forces are averaged before their ratio is judged (EN 14363)
+SLIDING = 2.0
+# N: below, a wheel has no ratio of its forces
+_LEAST_LOAD = 1.0
+
+Wheel = tuple[int, str]
+
+
+@dataclass
+class VehicleRun:
+    """The run's n steps.
+
+    ``state``, ``bodies``, ``energy``, ``momentum``, ``stats``: series of n messages each; where a
+    step has none, its values are absent. ``wheelsets``: state by number, from 1. ``contact``: by
+    number and side. ``along``: m, the vehicle's distance, the abscissa of plots.
+    """
+
+    run: Run
+    state: Series
+    bodies: Series
+    energy: Series
+    momentum: Series
+    stats: Series
+    wheelsets: dict[int, Series]
+    contact: dict[Wheel, Series]
+    along: np.ndarray
+    along_label: str = "distance [m]"
+
+    @property
+    def count(self) -> int:
+        """Number of steps, n."""
+        return len(self.state)
+
+    @property
+    def times(self) -> np.ndarray:
+        """s, [n]."""
+        return self.state.time
+
+    @cached_property
+    def statuses(self) -> dict[Wheel, np.ndarray]:
+        """By wheel, [n]."""
+        return {wheel: series["status"] for wheel, series in self.contact.items()}
+
+    @cached_property
+    def solved(self) -> np.ndarray:
+        """[n], whether all contacts of a step were solved."""
+        return np.all([np.isin(found, _GOOD) for found in self.statuses.values()], axis=0)
+
+    @cached_property
+    def loads(self) -> dict[Wheel, np.ndarray]:
+        """N, by wheel, [n]: Q, down on the rail."""
+        return {wheel: -_component(series["force"], 2) for wheel, series in self.contact.items()}
+
+    @cached_property
+    def guiding(self) -> dict[Wheel, np.ndarray]:
+        """N, by wheel, [n]: Y, on the rail, outward > 0."""
+        return {
+            (number, side): (1.0 if side == "left" else -1.0) * _component(series["force"], 1)
+            for (number, side), series in self.contact.items()
+        }
+
+    @property
+    def width(self) -> int:
+        """Steps in 2 m, 1 or more."""
+        between = np.median(np.diff(self.along)) if self.count > 1 else 0.0
+        return max(1, round(SLIDING / between)) if between > 0 else 1
+
+    def averaged(self, values: np.ndarray) -> np.ndarray:
+        """Over 2 m of way, [n]."""
+        return uniform_filter1d(values, self.width)
+
+    def ratio(self, wheel: Wheel) -> np.ndarray:
+        """-, [n], Y/Q averaged over 2 m; NaN for a wheel without load."""
+        load = self.averaged(self.loads[wheel])
+        safe = np.where(load > _LEAST_LOAD, load, np.nan)
+        return self.averaged(self.guiding[wheel]) / safe
+
+    def friction_work(self, wheel: Wheel) -> np.ndarray:
+        """J, [n], since the start; NaN where it was not logged."""
+        series = self.contact[wheel]
+        if "friction_work" not in series.messages[0]:
+            return np.full(self.count, np.nan)
+        return series["friction_work"]
+
+    def body_names(self) -> list[str]:
+        """In their order."""
+        first = next((m for m in self.bodies.messages if m), {})
+        return [body["name"] for body in first.get("bodies", [])]
+
+
+def vehicle_run(run: Run) -> VehicleRun:
+    """Collects the steps that are whole. Raises ReportError where there is none."""
+    numbers = range(1, int(run.metadata["railpatch"]["wheelsets"]) + 1)
+    axles = {number: run[f"/wheelset/{number}/state"] for number in numbers}
+    wheels = {(n, side): run[f"/wheelset/{n}/{side}/contact"] for n in numbers for side in SIDES}
+    times = run["/vehicle/state"].time
+    for series in (*axles.values(), *wheels.values()):
+        times = np.intersect1d(times, series.time)
+    if not times.size:
+        raise ReportError(f"{run.path} holds no step: nothing to report")
+    state = at_times(run["/vehicle/state"], times)
+    return VehicleRun(
+        run,
+        state,
+        at_times(run["/vehicle/bodies"], times),
+        at_times(run["/vehicle/energy"], times),
+        at_times(run["/vehicle/momentum"], times),
+        at_times(run["/solver/stats"], times),
+        {number: at_times(series, times) for number, series in axles.items()},
+        {wheel: at_times(series, times) for wheel, series in wheels.items()},
+        state["x"],
+    )
+
+
+def snapshot(data: VehicleRun, number: int, at: float | None) -> dict[str, Any] | None:
+    """Fields of a wheelset's patches nearest to a distance (m), or None.
+
+    Without one, those at its greatest guiding force. Gives {"index": step, side: patches}.
+    """
+    taken = {
+        side: at_times(data.run[f"/wheelset/{number}/{side}/fields"], data.times) for side in SIDES
+    }
+    have = [i for i in range(data.count) if any(taken[side].messages[i] for side in SIDES)]
+    if not have:
+        return None
+    if at is None:
+        force = np.max([np.abs(data.guiding[number, side]) for side in SIDES], axis=0)
+        index = max(have, key=lambda i: force[i])
+    else:
+        index = min(have, key=lambda i: abs(data.along[i] - at))
+    found = {side: taken[side].messages[index].get("patches", []) for side in SIDES}
+    return {"index": index} | {side: [grid_of(p) for p in found[side]] for side in SIDES}
+
+
+def _component(values: np.ndarray, index: int) -> np.ndarray:
+    return values[:, index] if values.ndim == 2 else np.full(len(values), np.nan)

@@ -1,0 +1,112 @@
+"""Figures of a vehicle's run, over the distance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import plotly.graph_objects as go
+from plotly.subplots import make_subplots
+
+from railpatch.log.channels import SIDES
+
+from .data import scaled
+from .figures import GREY, Adder, styled
+from .vehicle import VehicleRun, Wheel
+
+_COLORS = ("#3b7dc4", "#e0812b", "#5f9e6e", "#c2528b", "#9467bd", "#17879c", "#b5651d", "#8a919c")
+
+
+def _color(number: int) -> str:
+    return _COLORS[(number - 1) % len(_COLORS)]
+
+
+def track(data: VehicleRun) -> go.Figure:
+    """Curvature and cant under the vehicle."""
+    figure = make_subplots(1, 2, horizontal_spacing=0.12)
+    for column, (name, text) in enumerate({"curvature": "curvature", "cant": "cant"}.items(), 1):
+        factor, label = scaled("/vehicle/state", name, text)
+        add = Adder(figure, data, 1, column)
+        add.line(data.along, factor * data.state[name], text, GREY, legend=False)
+        figure.update_yaxes(title_text=label, row=1, col=column)
+    figure.update_xaxes(title_text=data.along_label)
+    return styled(figure, 300)
+
+
+def loads(data: VehicleRun) -> go.Figure:
+    """Wheel loads Q."""
+    return _sides(data, "Q [kN]", lambda wheel: 1e-3 * data.loads[wheel])
+
+
+def ratios(data: VehicleRun) -> go.Figure:
+    """Y/Q, averaged over 2 m."""
+    return _sides(data, "Y/Q", data.ratio)
+
+
+def friction(data: VehicleRun) -> go.Figure:
+    """Energy lost at each wheel."""
+    return _sides(data, "lost in friction [kJ]", lambda wheel: 1e-3 * data.friction_work(wheel))
+
+
+def _sides(data: VehicleRun, title: str, values: Callable[[Wheel], np.ndarray]) -> go.Figure:
+    """Left wheels beside right ones, one line for each wheelset."""
+    figure = make_subplots(
+        1,
+        2,
+        shared_yaxes=True,
+        horizontal_spacing=0.05,
+        subplot_titles=("left wheels", "right wheels"),
+    )
+    for column, side in enumerate(SIDES, start=1):
+        for number in data.wheelsets:
+            line = values((number, side))
+            name = f"wheelset {number}"
+            Adder(figure, data, 1, column).line(data.along, line, name, _color(number))
+    figure.update_yaxes(title_text=title, row=1, col=1)
+    figure.update_xaxes(title_text=data.along_label)
+    return styled(figure, 400)
+
+
+def positions(data: VehicleRun) -> go.Figure:
+    """Lateral position and yaw angle of each wheelset on its track."""
+    figure = make_subplots(2, 1, shared_xaxes=True, vertical_spacing=0.06)
+    for row, (name, text) in enumerate({"y": "y", "yaw": "yaw"}.items(), start=1):
+        factor, label = scaled("/wheelset/1/state", name, text)
+        for number, series in data.wheelsets.items():
+            line = factor * series[name]
+            Adder(figure, data, row, 1).line(data.along, line, f"wheelset {number}", _color(number))
+        figure.update_yaxes(title_text=label, row=row, col=1)
+    figure.update_xaxes(title_text=data.along_label, row=2)
+    return styled(figure, 560)
+
+
+def accelerations(data: VehicleRun) -> go.Figure:
+    """Lateral and vertical accelerations of the bodies in their own axes, wheelsets left out."""
+    figure = make_subplots(2, 1, shared_xaxes=True, vertical_spacing=0.06)
+    for index, name in enumerate(data.body_names()):
+        if name.startswith("wheelset_"):
+            continue
+        values = data.bodies[f"bodies[{index}].acceleration"]
+        if values.ndim != 2:
+            continue
+        for row, axis in enumerate((1, 2), start=1):
+            text = name.replace("_", " ")
+            Adder(figure, data, row, 1).line(data.along, values[:, axis], text, _color(index + 1))
+    for row, axis in enumerate(("lateral", "vertical"), start=1):
+        figure.update_yaxes(title_text=f"{axis} [m/s²]", row=row, col=1)
+    figure.update_xaxes(title_text=data.along_label, row=2)
+    return styled(figure, 560)
+
+
+def work(data: VehicleRun) -> go.Figure:
+    """Wall time of a second simulated, and contacts solved."""
+    figure = make_subplots(1, 2, horizontal_spacing=0.12)
+    spent = data.stats["wall_time"][1:] / np.diff(data.times)
+    solved = data.stats["contact_evaluations"]
+    add = Adder(figure, data, 1, 1)
+    add.line(data.along[1:], spent, "wall time", GREY, legend=False, mark=False)
+    Adder(figure, data, 1, 2).line(data.along, solved, "contacts", GREY, legend=False)
+    figure.update_yaxes(title_text="wall time of a second [s]", rangemode="tozero", row=1, col=1)
+    figure.update_yaxes(title_text="contacts solved", rangemode="tozero", row=1, col=2)
+    figure.update_xaxes(title_text=data.along_label)
+    return styled(figure, 340)

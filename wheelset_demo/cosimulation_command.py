@@ -1,0 +1,153 @@
+"""The sub-command ``railpatch cosimulation``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+from railpatch.commands import (
+    EXIT_NOT_CONVERGED,
+    WrongCall,
+    progress_bar,
+    scene_argument,
+    show_scene_option,
+)
+from railpatch.errors import CaseError, ProfileError
+
+from wheelset_demo.hunting_command import SCENE, default_scene_text
+
+SPEEDS = (0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0)
+QUICK_SPEEDS = (2.0, 20.0, 80.0)
+ELEMENTS = 8
+LIMITS = (0.05, 200.0)  # m/s
+# the names of wheelset_demo.coupling.masters, which takes long to import
+NAMES = (
+    "parallel",
+    "hold",
+    "leapfrog",
+    "linear",
+    "mean",
+    "iterate",
+    "iterate-mixed",
+    "iterate-newton",
+    "implicit",
+)
+MASTERS = ("hold", "leapfrog", "linear", "mean", "iterate", "iterate-newton", "implicit")
+QUICK_MASTERS = ("leapfrog", "mean", "implicit")
+
+
+def speeds_of(text: str | None, quick: bool) -> list[float]:
+    """m/s. Raises WrongCall."""
+    if text is None:
+        return list(QUICK_SPEEDS if quick else SPEEDS)
+    low, high = LIMITS
+    try:
+        found = [float(part) for part in text.split(",")]
+    except ValueError:
+        found = []
+    if not found or not all(low <= speed <= high for speed in found):
+        raise WrongCall(f"--speeds: value is {text!r}, allowed {low:g} ... {high:g} m/s, by commas")
+    return found
+
+
+def masters_of(text: str | None, quick: bool) -> list[str]:
+    """Names. Raises WrongCall."""
+    if text is None:
+        return list(QUICK_MASTERS if quick else MASTERS)
+    found = text.split(",")
+    for name in found:
+        if name not in NAMES:
+            raise WrongCall(f"--masters: value is {name!r}, allowed {', '.join(NAMES)}")
+    return list(dict.fromkeys(found))
+
+
+def check_output(output: Path | None) -> None:
+    """Before minutes are spent. Raises WrongCall."""
+    if output is None:
+        return
+    if output.suffix not in (".html", ".svg"):
+        raise WrongCall(f"--output: value is {output}, allowed a name that ends in .html or .svg")
+    if not output.parent.is_dir():
+        raise WrongCall(f"--output: value is {output}, allowed a folder that exists")
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        raise WrongCall(
+            "--output: matplotlib is missing, allowed after pip install 'railpatch[bench]'"
+        ) from None
+
+
+@click.command("cosimulation")
+@scene_argument()
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="PAGE.html|PLOT.svg",
+    help="Page with plot and tables, or the plot.",
+)
+@click.option("--speeds", metavar="M/S,...", help="Speeds.  [default: 0.2 to 80]")
+@click.option(
+    "--masters", metavar="NAME,...", help=f"Masters: {', '.join(NAMES)}.  [default: most]"
+)
+@click.option(
+    "--elements",
+    type=click.IntRange(4, 64),
+    default=ELEMENTS,
+    show_default=True,
+    help="Contact grid, across either way, in place of the scene's.",
+)
+@click.option("--quick", is_flag=True, help="Three speeds and masters, half a minute.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@show_scene_option(default_scene_text)
+@click.option("--quiet", is_flag=True, help="Print nothing but --json, and no progress.")
+@click.pass_context
+def cosimulation(
+    context: click.Context,
+    scene: Path | None,
+    output: Path | None,
+    speeds: str | None,
+    masters: str | None,
+    elements: int,
+    quick: bool,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Find the largest stable communication step of co-simulation masters over speed.
+
+    The wheelset and its suspension are integrated here, the contact is in an FMU that the master
+    steps through fmpy: forces held, of first order, iterated with rollback, or linearly implicit by
+    the FMU's directional derivatives. Energy that the coupling makes or loses stands beside. The
+    scene is one of railpatch wheelset; without one it is that of railpatch hunting. Takes some ten
+    minutes.
+    """
+    chosen_speeds, chosen = speeds_of(speeds, quick), masters_of(masters, quick)
+    check_output(output)
+    try:
+        import fmpy  # noqa: F401
+        import railpatch.pinocchio  # noqa: F401
+    except ImportError as error:
+        raise WrongCall(f"{error}; allowed after pip install fmpy 'railpatch[pinocchio]'") from None
+    from wheelset_demo.coupling.report import dict_of, text_of, write
+    from wheelset_demo.coupling.slave import CouplingFailure
+    from wheelset_demo.coupling.study import study, with_elements
+    from wheelset_demo.scene import load_wheelset_scene, scene_file
+    from wheelset_demo.system import ContactFailure
+
+    try:
+        loaded = load_wheelset_scene(scene_file(SCENE) if scene is None else scene)
+        count = len(chosen_speeds) * len(chosen)
+        with progress_bar("coupling", count, quiet) as advance:
+            found = study(with_elements(loaded, elements), chosen_speeds, chosen, advance)
+        if output is not None:
+            write(found, output)
+    except (ContactFailure, CouplingFailure) as failure:
+        click.echo(f"status: {failure}", err=True)
+        context.exit(EXIT_NOT_CONVERGED)
+    except (CaseError, ProfileError, OSError) as error:
+        raise WrongCall(str(error)) from None
+    if as_json:
+        click.echo(json.dumps(dict_of(found), allow_nan=False))
+    elif not quiet:
+        click.echo(text_of(found))

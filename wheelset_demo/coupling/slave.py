@@ -1,0 +1,168 @@
+"""The contact's side: an FMU of kind "wheelset", stepped by fmpy with all that FMI 2.0 offers."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+from railpatch.pinocchio.element import STATE
+
+from wheelset_demo.cosimulation import WRENCH
+from wheelset_demo.system import Vector
+
+DISCARD = 2  # fmi2Discard
+MEAN = tuple(f"mean_{name}" for name in WRENCH)
+POWERS = ("power", "friction_power")
+Result = TypeVar("Result")
+
+
+class Discarded(RuntimeError):
+    """A step that could not be done: fmi2Discard, or sides that do not agree. A shorter one may."""
+
+
+class CouplingFailure(RuntimeError):
+    """The run cannot go on."""
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """At a communication point. wrench: [6], N, N m. power: W, that the contact gives the wheelset
+    by the FMU's own inputs. friction: W."""
+
+    wrench: Vector
+    power: float
+    friction: float
+
+
+class ContactSlave:
+    """Motions go in, wrenches come out; both as in railpatch.pinocchio."""
+
+    def __init__(self, path: str | Path, substeps: int = 1) -> None:
+        """substeps: within a communication step, for means. Raises ValueError for an FMU without
+        what masters need."""
+        from fmpy import extract, read_model_description
+        from fmpy.fmi1 import FMICallException
+        from fmpy.fmi2 import (
+            FMU2Slave,
+            calloc,
+            fmi2CallbackAllocateMemoryTYPE,
+            fmi2CallbackFreeMemoryTYPE,
+            fmi2CallbackFunctions,
+            fmi2CallbackLoggerTYPE,
+            free,
+        )
+
+        description = read_model_description(str(path))
+        references = {v.name: v.valueReference for v in description.modelVariables}
+        wanted = [*WRENCH, *MEAN, *POWERS, "substeps"]
+        missing = [name for name in wanted if name not in references]
+        if missing or not description.coSimulation.providesDirectionalDerivative:
+            raise ValueError(
+                f"{path}: {', '.join(missing) or 'directional derivatives'} missing, allowed an "
+                "FMU packed with averages and derivatives"
+            )
+        names = [f"wheelset.{name}" for name in STATE]
+        # round wheels on rails that do not change: no x, no pitch
+        self.used = [k for k, name in enumerate(names) if name in references]
+        self._inputs = [references[names[k]] for k in self.used]
+        self._first_order = [1] * len(self.used)
+        self._wrench = [references[name] for name in WRENCH]
+        self._mean = [references[name] for name in MEAN]
+        self._outputs = [references[name] for name in (*WRENCH, *POWERS)]
+        self._substeps = [references["substeps"]]
+        self.substeps = substeps
+        self._failure = FMICallException
+        self._message = ""
+        self._folder = tempfile.mkdtemp()
+        extract(str(path), self._folder)
+        callbacks = fmi2CallbackFunctions()
+        callbacks.logger = fmi2CallbackLoggerTYPE(self._hear)
+        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+        self._slave: Any = FMU2Slave(
+            guid=description.guid,
+            unzipDirectory=self._folder,
+            modelIdentifier=description.coSimulation.modelIdentifier,
+            instanceName="contact",
+        )
+        self._slave.instantiate(callbacks=callbacks, loggingOn=True)
+        self.steps = 0
+
+    def __enter__(self) -> ContactSlave:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._slave.freeInstance()
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+    def _hear(self, _environment: Any, _name: Any, _status: int, _kind: Any, text: bytes) -> None:
+        self._message = text.decode("utf-8", "replace")
+
+    def _call(self, function: Callable[..., Result], *arguments: Any) -> Result:
+        """Raises Discarded and CouplingFailure with the FMU's own message."""
+        try:
+            return function(*arguments)
+        except self._failure as failure:
+            text = self._message or str(failure)
+            raise (Discarded if failure.status == DISCARD else CouplingFailure)(text) from None
+
+    def begin(self, time: float, motion: Vector) -> None:
+        """Starts, or starts anew, at a time (s) and a motion [12]."""
+        slave, call = self._slave, self._call
+        call(slave.reset)
+        call(slave.setInteger, self._substeps, [self.substeps])
+        call(slave.setupExperiment, None, time)
+        call(slave.enterInitializationMode)
+        call(slave.setReal, self._inputs, motion[self.used].tolist())
+        call(slave.exitInitializationMode)
+
+    def step(
+        self, time: float, step: float, motion: Vector, slope: Vector | None = None
+    ) -> Outputs:
+        """From a time on, with inputs that are held, or move from there by a slope [12]."""
+        slave, call = self._slave, self._call
+        call(slave.setReal, self._inputs, motion[self.used].tolist())
+        if slope is not None:
+            slopes = slope[self.used].tolist()
+            call(slave.setRealInputDerivatives, self._inputs, self._first_order, slopes)
+        self.steps += 1
+        call(slave.doStep, time, step)
+        return self.outputs()
+
+    def outputs(self) -> Outputs:
+        """At the end of the last step."""
+        values = self._call(self._slave.getReal, self._outputs)
+        return Outputs(np.array(values[:6]), values[6], values[7])
+
+    def mean_wrench(self) -> Vector:
+        """[6], over the last step."""
+        return np.array(self._call(self._slave.getReal, self._mean))
+
+    def wrench_rate(self) -> Vector:
+        """[6], N/s, N m/s, at the end of the last step (fmi2GetRealOutputDerivatives)."""
+        return np.array(self._call(self._slave.getRealOutputDerivatives, self._wrench, [1] * 6))
+
+    def wrench_by_motion(self) -> Vector:
+        """[6, 12], at the end of the last step (fmi2GetDirectionalDerivative)."""
+        found = np.zeros((6, len(STATE)))
+        derivative = self._slave.getDirectionalDerivative
+        for column, reference in zip(self.used, self._inputs, strict=True):
+            found[:, column] = self._call(derivative, self._wrench, [reference], [1.0])
+        return found
+
+    def save(self) -> Any:
+        """To be restored, any number of times, and then released."""
+        return self._call(self._slave.getFMUstate)
+
+    def restore(self, state: Any) -> None:
+        """The FMU as it was saved."""
+        self._call(self._slave.setFMUstate, state)
+
+    def release(self, state: Any) -> None:
+        """Frees a saved state."""
+        self._call(self._slave.freeFMUstate, state)

@@ -1,0 +1,191 @@
+"""The run log of a vehicle: from a simulation's present state."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+from railpatch.log import VehicleGeometry, VehicleLog, scene_geometry
+from railpatch.log.stream import Pace
+from railpatch.result import plain_json
+
+from wheelset_demo.record import attachments
+from wheelset_demo.scene import GRAVITY, SIDES, SNAPSHOTS
+from wheelset_demo.vehicle.model import CAR_BODY, bogie_name
+from wheelset_demo.vehicle.scene import WHEELSETS
+from wheelset_demo.vehicle.simulation import Simulation
+from wheelset_demo.vehicle.system import WORKS
+
+FREE = (CAR_BODY, bogie_name(0), bogie_name(1))
+STORES = ("kinetic", "gravity", "suspension", "elastic")
+# m, drawn: length beyond the wheelsets, width and height of the car body; width and height of beams
+OVERHANG, WIDTH, HEIGHT, BEAM = 2.5, 2.8, 2.7, 0.22
+LINE_STEP = 2.0  # m, of the centre line that is drawn
+
+
+class Recorder:
+    """Writes a simulation's states into a log, thinned as the scene's [run] says."""
+
+    def __init__(self, log: VehicleLog, simulation: Simulation) -> None:
+        self._log = log
+        run = simulation.scene.run
+        self._pace = Pace(run.write_rate)
+        self._fields = Pace(
+            SNAPSHOTS / run.duration if run.snapshot_rate is None else run.snapshot_rate
+        )
+        self._start: np.ndarray | None = None
+        self._done = 0.0, 0
+
+    def write(self, simulation: Simulation) -> None:
+        """The present state, where its turn has come."""
+        time = simulation.state.time
+        if not self._pace.due(time):
+            return
+        with self._log.stream.counted():
+            self._log.write(time, **self.messages(simulation, self._fields.due(time)))
+
+    def messages(self, simulation: Simulation, fields: bool) -> dict[str, Any]:
+        """Arguments of VehicleLog.write."""
+        element = simulation.element
+        frames = [(row[:9].reshape(3, 3), row[9:]) for row in element.tracks]
+        return {
+            "state": self._state(simulation),
+            "wheelsets": [self._wheelset(simulation, k, fields) for k in range(WHEELSETS)],
+            "bodies": bodies(simulation),
+            "tracks": [(origin.tolist(), quaternion(turn)) for turn, origin in frames],
+            "energy": self._energy(simulation),
+            "stats": self._stats(simulation),
+        }
+
+    def _state(self, simulation: Simulation) -> dict[str, float]:
+        system, state = simulation.system, simulation.state
+        middle = float(system.positions.mean())
+        return {
+            "progress": state.time / simulation.scene.run.duration,
+            "x": middle,
+            "speed": float(np.hypot(*state.v[system.vehicle.columns[0][:2]])),
+            "curvature": float(system.alignment.curvature(middle)),
+            "cant": float(system.alignment.cant_angle(middle)),
+        }
+
+    def _wheelset(self, simulation: Simulation, index: int, fields: bool) -> dict[str, Any]:
+        element, alignment = simulation.element, simulation.system.alignment
+        result = element.result(index, fields=fields)
+        along = float(element.positions[index])
+        wrench = element.contact_wrench[index].tolist()
+        rails = element.rails[index, 0, :, 1:].tolist()
+        state = element.state(index) | {
+            "x": along,
+            "force": wrench[:3],
+            "moment": wrench[3:],
+            "curvature": float(alignment.curvature(along)),
+            "cant": float(alignment.cant_angle(along)),
+            "left_rail": rails[0],
+            "right_rail": rails[1],
+        }
+        lost = simulation.state.work[len(WORKS) + 2 * index :]
+        found: dict[str, Any] = {"state": state}
+        for side, work in zip(SIDES, lost[:2].tolist(), strict=True):
+            wheel = {key: value for key, value in result[side].items() if key != "z"}
+            found[side] = plain_json(wheel) | {"friction_work": work}
+        if fields:
+            found["fields"] = {side: result[side]["patches"] for side in SIDES}
+        return found
+
+    def _energy(self, simulation: Simulation) -> dict[str, float]:
+        stored = np.asarray(simulation.energies)
+        if self._start is None:
+            self._start = stored
+        change = stored - self._start
+        work = dict(zip(WORKS, simulation.state.work[: len(WORKS)].tolist(), strict=True))
+        bodies_and_springs = float(change[:3].sum())
+        return {
+            **dict(zip(STORES, stored.tolist(), strict=True)),
+            **{f"{name}_work": value for name, value in work.items()},
+            "mechanical_residual": bodies_and_springs
+            - work["contact"]
+            - work["drive"]
+            + work["damping"],
+            "contact_residual": work["contact"] + work["friction"] + float(change[3]),
+        }
+
+    def _stats(self, simulation: Simulation) -> dict[str, Any]:
+        """Work since the step that was written before."""
+        now = simulation.wall_seconds, simulation.element.solves
+        before, self._done = self._done, now
+        return {
+            "wall_time": now[0] - before[0],
+            "contact_evaluations": len(SIDES) * (now[1] - before[1]),
+        }
+
+
+def bodies(simulation: Simulation) -> list[dict[str, Any]]:
+    """Car body, bogie frames and wheelsets; these without their spin."""
+    system, state = simulation.system, simulation.state
+    placed, model = system.data.oMi, system.model
+    found = []
+    for name, columns in zip(FREE, system.vehicle.columns, strict=False):
+        place = placed[system.vehicle.joints[name]]
+        acceleration = simulation.rates.values[system.count + columns[:3]].copy()
+        acceleration[2] -= GRAVITY
+        moved = {
+            "velocity": state.v[columns[:3]].tolist(),
+            "acceleration": (place.rotation.T @ acceleration).tolist(),
+        }
+        found.append(body(name, place) | moved)
+    for k in range(WHEELSETS):
+        name = f"wheelset_{k + 1}"
+        velocity = state.v[system.vehicle.carriers[k, :3]].tolist()
+        carrier = placed[model.parents[system.vehicle.joints[name]]]
+        found.append(body(name, carrier) | {"velocity": velocity})
+    return found
+
+
+def body(name: str, place: pin.SE3) -> dict[str, Any]:
+    """Name and pose."""
+    return {
+        "name": name,
+        "position": place.translation.tolist(),
+        "orientation": quaternion(place.rotation),
+    }
+
+
+def quaternion(turn: np.ndarray) -> list[float]:
+    """x, y, z, w."""
+    return pin.Quaternion(turn).coeffs().tolist()
+
+
+def open_log(path: Path, simulation: Simulation) -> VehicleLog:
+    """The log of a simulation that is to run. Raises OSError."""
+    scene = simulation.scene
+    return VehicleLog(
+        path,
+        wheelsets=WHEELSETS,
+        case_text=scene.text,
+        case_name=scene.name,
+        profiles=attachments(scene),
+        geometry=geometry(simulation),
+        scene_rate=scene.run.scene_rate,
+    )
+
+
+def geometry(simulation: Simulation) -> VehicleGeometry:
+    """What is drawn: boxes as large as the scene's dimensions let one guess."""
+    scene = simulation.scene
+    vehicle = scene.vehicle
+    floor = vehicle.bogie_frame.height + 0.5
+    # in the car body's axes, z down from its centre
+    middle = vehicle.car_body.height - floor - 0.5 * HEIGHT
+    length = vehicle.length + 2 * OVERHANG
+    arm = vehicle.axle_box.lateral
+    beam = [vehicle.wheelbase + 0.8, BEAM, BEAM]
+    frame = [([0.0, side * arm, 0.0], beam) for side in (-1.0, 1.0)]
+    frame.append(([0.0, 0.0, 0.0], [2 * BEAM, 2 * arm, BEAM]))
+    boxes = {CAR_BODY: [([0.0, 0.0, middle], [length, WIDTH, HEIGHT])]}
+    boxes |= {bogie_name(k): frame for k in range(2)}
+    along = np.linspace(0.0, scene.length - 1.0, max(2, math.ceil(scene.length / LINE_STEP)))
+    _, line = simulation.system.alignment.frames(along)
+    return VehicleGeometry(scene_geometry(scene.case), boxes, line)
