@@ -303,8 +303,8 @@ def check_run(
         problems.append("wheelset.vertical_force: given, allowed 'z' = 0: the vehicle is its load")
     if alignment.radius is not None and alignment.straight < vehicle.length:
         problems.append(
-            f"alignment.straight: value is {alignment.straight}, allowed >= {vehicle.length:.6g} m, "
-            "the vehicle's length: it starts on straight track"
+            f"alignment.straight: value is {alignment.straight}, allowed >= {vehicle.length:.6g} "
+            "m, the vehicle's length: it starts on straight track"
         )
     if not case.has_tangential:
         problems.append("method.tangential: value is 'none', allowed a method: creep forces guide")
