@@ -91,7 +91,9 @@ class ElementTable(Table):
     height: Positive = Field(description="m, above the rails' tops")
     lateral: NotNegative = Field(default=0.0, description="m, from the vehicle's middle")
     longitudinal: Number = Field(
-        default=0.0, description="m, outward from the wheelset or ahead of the bogie's centre"
+        default=0.0,
+        description="m, outward from the wheelset; of the bogie's sides ahead on the right and "
+        "behind on the left; in its middle ahead",
     )
     stiffness: Triple = Field(default=NONE, description="N/m, along x, y, z")
     damping: Triple = Field(default=NONE, description="N s/m, along x, y, z")
