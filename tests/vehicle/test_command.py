@@ -93,6 +93,11 @@ def test_wrong_calls(tmp_path):
         ("inertia = [810.0, 112.0, 810.0]", "inertia = [810.0, 112.0, 800.0]", "equal ones"),
         ('level = "centre"', 'level = "middle"', r"suspension\[5\].level"),
         ("stiffness = [160e3, 160e3, 430e3]", "stiffness = [160e3, 160e3, 0.0]", "'secondary'"),
+        (
+            "straight = 150.0",
+            "straight = 20.0",
+            "alignment.straight: value is 20.0, allowed >= 21.56",
+        ),
         ("threads = 1", "threads = 0", "run.threads: value is 0"),
     ],
 )

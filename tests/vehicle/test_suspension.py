@@ -8,7 +8,7 @@ import pytest
 import vehicle_scenes as scenes
 
 from wheelset_demo.vehicle import Simulation
-from wheelset_demo.vehicle.suspension import Stop
+from wheelset_demo.vehicle.elements import Stop
 
 
 @pytest.fixture(scope="module")

@@ -91,7 +91,9 @@ class ElementTable(Table):
     height: Positive = Field(description="m, above the rails' tops")
     lateral: NotNegative = Field(default=0.0, description="m, from the vehicle's middle")
     longitudinal: Number = Field(
-        default=0.0, description="m, outward from the wheelset or ahead of the bogie's centre"
+        default=0.0,
+        description="m, outward from the wheelset; of the bogie's sides ahead on the right and "
+        "behind on the left; in its middle ahead",
     )
     stiffness: Triple = Field(default=NONE, description="N/m, along x, y, z")
     damping: Triple = Field(default=NONE, description="N s/m, along x, y, z")
@@ -283,8 +285,10 @@ def checked_elements(elements: Any) -> tuple[ElementTable, ...]:
     return found
 
 
-def check_run(case: Any, run: RunTable, **_: Any) -> None:
-    """Refuses cases that are no wheelset with friction. Raises CaseError."""
+def check_run(
+    case: Any, run: RunTable, alignment: AlignmentTable, vehicle: VehicleTable, **_: Any
+) -> None:
+    """Refuses cases that are no wheelset with friction, a start in a curve. Raises CaseError."""
     if case.kind != "wheelset":
         raise CaseError(f"kind: value is {case.kind!r}, allowed 'wheelset' for a vehicle run")
     wheelset, track = case.wheelset, case.track
@@ -301,6 +305,11 @@ def check_run(case: Any, run: RunTable, **_: Any) -> None:
         problems.append(f"run.step: value is {run.step}, allowed 1 to 1e7 steps in the duration")
     if wheelset.z is None:
         problems.append("wheelset.vertical_force: given, allowed 'z' = 0: the vehicle is its load")
+    if alignment.radius is not None and alignment.straight < vehicle.length:
+        problems.append(
+            f"alignment.straight: value is {alignment.straight}, allowed >= {vehicle.length:.6g} "
+            "m, the vehicle's length: it starts on straight track"
+        )
     if not case.has_tangential:
         problems.append("method.tangential: value is 'none', allowed a method: creep forces guide")
     for key in FOUND:

@@ -26,31 +26,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from wheelset_demo.scene import GRAVITY
-from wheelset_demo.vehicle.model import CAR_BODY, VehicleModel, bogie_name, places_along
-from wheelset_demo.vehicle.scene import (
-    BOXES,
-    WHEELSETS,
-    ElementTable,
-    VehicleScene,
-    VehicleTable,
-)
+from wheelset_demo.vehicle.elements import Place, Stop, centres_at_rest, places_of, preloads
+from wheelset_demo.vehicle.model import VehicleModel
+from wheelset_demo.vehicle.scene import ElementTable, VehicleScene, VehicleTable
 
 Vector = NDArray[np.float64]
-SIDES = (("left", -1.0), ("right", 1.0))
-Z = 2
-Y = 1
-DOWN = np.array([0.0, 0.0, 1.0])
-
-
-@dataclass(frozen=True)
-class Place:
-    """Of one element. element: its table. ends: names of bodies A and B. point: m, [3], at rest, in
-    the track's frame of which x = 0 is at the last wheelset."""
-
-    element: ElementTable
-    ends: tuple[str, str]
-    point: Vector
+Y, Z = 1, 2
 
 
 @dataclass
@@ -99,7 +80,6 @@ class Suspension:
         stopped[0, :, Y] = [table.bump_stop is not None for table in tables]
         used = (stiffness > 0) | (damping > 0) | stopped
         kind, self._element, self._axis = np.nonzero(used)
-        self._along = np.flatnonzero(kind == 0)
         self._about = np.flatnonzero(kind == 1)
         self._count = len(kind)
         self._stiffness = stiffness[used]
@@ -225,44 +205,6 @@ class Suspension:
         return float(self._damping @ self.rate**2) + float(np.sum(series**2 / self._series_damping))
 
 
-class Stop:
-    """A bump stop: point symmetric, a straight line between the points of its table and on after
-    the last."""
-
-    def __init__(self, rows: list[list[float]] | None) -> None:
-        assert rows is not None
-        points = np.array(rows, dtype=float)
-        if points[0, 0] > 0:
-            points = np.vstack([[0.0, 0.0], points])
-        self._d, self._f = points.T
-        self._slopes = np.diff(self._f) / np.diff(self._d)
-        areas = 0.5 * (self._f[1:] + self._f[:-1]) * np.diff(self._d)
-        self._areas = np.concatenate([[0.0], np.cumsum(areas)])
-
-    def _part(self, size: float) -> int:
-        last = len(self._slopes) - 1
-        return min(int(np.searchsorted(self._d, size, side="right")) - 1, last)
-
-    def force(self, d: float) -> float:
-        """N, against the displacement (m)."""
-        size = abs(d)
-        if size <= self._d[0]:
-            return 0.0
-        k = self._part(size)
-        return float(np.sign(d) * (self._f[k] + self._slopes[k] * (size - self._d[k])))
-
-    def slope(self, d: float) -> float:
-        """N/m."""
-        return float(self._slopes[self._part(abs(d))])
-
-    def energy(self, d: float) -> float:
-        """J."""
-        size = abs(d)
-        k = self._part(size)
-        away = size - self._d[k]
-        return float(self._areas[k] + (self._f[k] + 0.5 * self._slopes[k] * away) * away)
-
-
 def cross(a: Vector, b: Vector) -> Vector:
     """Of rows; numpy's is slow for few."""
     return a[:, [1, 2, 0]] * b[:, [2, 0, 1]] - a[:, [2, 0, 1]] * b[:, [1, 2, 0]]
@@ -271,59 +213,3 @@ def cross(a: Vector, b: Vector) -> Vector:
 def table_of(tables: list[ElementTable], along: str, about: str) -> Vector:
     """[2, elements, 3], of coefficients along and about the axes."""
     return np.array([[getattr(table, name) for table in tables] for name in (along, about)])
-
-
-def preloads(places: list[Place], vehicle: VehicleTable) -> Vector:
-    """N, [elements], at rest: shares of the weight above by vertical stiffness.
-
-    Primary springs push axle boxes down, which are body B; secondary ones carry the car body, body
-    B, up. Down is > 0 and the force on B is -preload.
-    """
-    car = vehicle.car_body.mass * GRAVITY
-    sprung = car + 2 * vehicle.bogie_frame.mass * GRAVITY
-    found = np.zeros(len(places))
-    for level, weight, count in (("primary", -sprung, BOXES), ("secondary", car, 4)):
-        rows = [k for k, place in enumerate(places) if place.element.level == level]
-        stiffness = np.array([places[k].element.stiffness[Z] for k in rows])
-        found[rows] = weight * stiffness / stiffness.sum()
-        assert len(rows) % count == 0
-    return found
-
-
-def centres_at_rest(scene: VehicleScene) -> dict[str, Vector]:
-    """m, [3], of the bodies that elements act on, in the frame of Place."""
-    vehicle, radius = scene.vehicle, scene.case.wheelset.nominal_radius
-    along = places_along(vehicle)
-    found = {CAR_BODY: np.array([along[CAR_BODY], 0.0, -vehicle.car_body.height])}
-    for bogie in range(2):
-        name = bogie_name(bogie)
-        found[name] = np.array([along[name], 0.0, -vehicle.bogie_frame.height])
-    for k in range(WHEELSETS):
-        for side, sign in SIDES:
-            name = f"axle_box_{k + 1}_{side}"
-            found[name] = np.array([along[name], sign * vehicle.axle_box.lateral, -radius])
-    return found
-
-
-def places_of(element: ElementTable, scene: VehicleScene) -> list[Place]:
-    """Of one table's elements, all over the vehicle."""
-    along, found = places_along(scene.vehicle), []
-
-    def add(ends: tuple[str, str], x: float, y: float) -> None:
-        found.append(Place(element, ends, np.array([x, y, -element.height])))
-
-    for bogie in range(2):
-        frame = bogie_name(bogie)
-        for side, sign in SIDES:
-            y = sign * element.lateral
-            if element.level == "primary":
-                for k in (2 * bogie, 2 * bogie + 1):
-                    box = f"axle_box_{k + 1}_{side}"
-                    # outward: away from the bogie's centre
-                    outward = 1.0 if k % 2 == 0 else -1.0
-                    add((frame, box), along[box] + outward * element.longitudinal, y)
-            elif element.level == "secondary":
-                add((frame, CAR_BODY), along[frame] + sign * element.longitudinal, y)
-        if element.level == "centre":
-            add((frame, CAR_BODY), along[frame] + element.longitudinal, 0.0)
-    return found
