@@ -61,7 +61,10 @@ fmu-clients: fmu ## the same in clients that others wrote: fmpy, libcosimpy, eco
 
 viewer: demo ## the demo's logs in a viewer that others wrote, a picture of each; 250 MB of npm packages
 	@.ci/system-packages npm chromium
-	tests/viewer/run build/viewer $(BIN)/railpatch build/demo/run.mcap 90 build/demo/wheelset.mcap 1.5
+	@mkdir -p build/viewer
+	$(BIN)/railpatch vehicle --method fastsim --duration 4 -o build/viewer/vehicle.mcap
+	tests/viewer/run build/viewer $(BIN)/railpatch build/demo/run.mcap 90 build/demo/wheelset.mcap 1.5 \
+		build/viewer/vehicle.mcap 3
 
 test: setup lint test-cpp test-python test-asan pruning ## set-up and every check
 	@printf '\nall checks passed:\n'
@@ -96,13 +99,16 @@ test-python: setup ## pytest, against the installed package
 	$(BIN)/python -m pytest --junit-xml=build/junit/python.xml
 
 PRUNING := -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAILPATCH_TESTS=OFF -DRAILPATCH_PRUNING=ON
-pruning: $(VENV)/tools ## what plain cases pay for physics that they leave out
+pruning: $(VENV)/tools ## what plain cases pay for physics that they leave out, and for the FMU
 	@.ci/system-packages valgrind
 	cmake -S . -B build/pruning/with $(PRUNING) -DRAILPATCH_PHYSICS=ON
 	cmake --build build/pruning/with --target pruning_steps
 	cmake -S . -B build/pruning/without $(PRUNING) -DRAILPATCH_PHYSICS=OFF
 	cmake --build build/pruning/without --target pruning_steps
 	$(BIN)/python tests/pruning/compare.py build/pruning/{with,without}/tests/pruning/pruning_steps
+	cmake --preset release $(FMU)
+	cmake --build --preset release --target fmu_overhead
+	$(BIN)/python tests/fmu/overhead.py build/release/tests/fmu_overhead
 
 clean: ## removes build/
 	rm -rf build

@@ -7,6 +7,8 @@ import time
 from pathlib import Path
 from typing import Any
 
+from railpatch.result import wheel_json
+
 from wheelset_demo.scene import SIDES, WheelsetScene
 from wheelset_demo.system import WORKS, State, System
 from wheelset_demo.trace import STORES, Trace
@@ -26,9 +28,11 @@ class Recorder:
     def messages(self, trace: Trace, state: State) -> dict[str, Any]:
         """Arguments of RunLog.write for the trace's last step."""
         assert trace.result is not None
-        result = trace.result.to_dict()
-        snapshot = any("pressure" in patch for patch in result["left"]["patches"])
-        fields = {side: trace.result[side]["patches"] for side in SIDES} if snapshot else None
+        data = trace.result.data
+        result = {key: wheel_json(data[key]) for key in SIDES}
+        result |= {key: data[key] for key in ("force", "moment")}
+        snapshot = any("pressure" in patch for patch in data["left"]["patches"])
+        fields = {side: data[side]["patches"] for side in SIDES} if snapshot else None
         return {
             "state": self._state(state, result),
             "left": result["left"],

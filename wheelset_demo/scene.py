@@ -20,7 +20,7 @@ SIDES = ("left", "right")
 PROFILE_KEYS = ("wheel", "rail", "wheel_left", "wheel_right", "rail_left", "rail_right")
 TABLES = ("body", "suspension", "run")
 # snapshots of the fields in a run whose scene does not say
-SNAPSHOTS = 20
+SNAPSHOTS = 10
 GRAVITY = 9.81  # m/s^2
 # found at the start, so not to be given
 FOUND = ("roll", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate")
@@ -101,8 +101,13 @@ class Run(Table):
     )
     snapshot_every: Annotated[int, Field(ge=0)] | None = Field(
         default=None,
-        description="-, the fields of every n-th logged step are logged, 0: none; left out: of "
+        description="-, the fields of every n-th logged step are written, 0: none; left out: of "
         f"some {SNAPSHOTS} steps",
+    )
+    write_rate: Annotated[float, Field(gt=0, le=1e9)] | None = Field(
+        default=None,
+        description="Hz, logged steps written to the file a second of simulation time, at most; "
+        "left out: all",
     )
     scene_rate: Annotated[float, Field(ge=0, le=1e9)] = Field(
         default=SCENE_RATE,

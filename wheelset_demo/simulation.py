@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from railpatch.log import RunLog, scene_geometry
+from railpatch.log.stream import Pace
 
 from wheelset_demo.record import Recorder, attachments
 from wheelset_demo.scene import WheelsetScene
@@ -29,7 +30,8 @@ class Simulation:
         self.state = released(scene, self.system)
 
     def run(self, log: RunLog | None = None, advance: Advance | None = None) -> Trace:
-        """All steps. log: where every n-th is written. advance: called after each.
+        """All steps. log: where those of every n-th are written that [run] wants. advance: called
+        after each.
 
         A contact that is not solved ends the run: the failure is in the trace, and its state the
         last one in the log.
@@ -40,12 +42,15 @@ class Simulation:
         )
         trace = Trace(self.scene)
         recorder = Recorder(self.scene, self.system)
+        pace = None if run.write_rate is None else Pace(run.write_rate)
         try:
             for index in range(steps + 1):
                 rates = self.system.rates(self.state.time, self.state.motion)
                 if index % run.log_every == 0 or index == steps:
+                    # steps with fields, and the last one, are written in any case
+                    wanted = trace.snapshot_due() or index == steps
                     trace.add(self.system, self.state)
-                    if log is not None:
+                    if log is not None and (pace is None or pace.due(self.state.time) or wanted):
                         with log.stream.counted():
                             log.write(self.state.time, **recorder.messages(trace, self.state))
                 if index < steps:

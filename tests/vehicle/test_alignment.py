@@ -78,6 +78,21 @@ def test_foot_is_where_x_vanishes(track):
     np.testing.assert_allclose(found, s, atol=1e-8)
 
 
+def test_bends_are_derivatives(track):
+    """Of heading and cant, but for where the second derivative jumps."""
+    _, alignment = track
+    h = 0.05
+    corners = STRAIGHT + np.array([0.0, TRANSITION, TRANSITION + ARC, LENGTH - STRAIGHT])
+    s = np.linspace(5.0, LENGTH + 50.0, 300)
+    s = s[np.abs(s[:, None] - corners).min(axis=1) > 6.0]
+    *_, bends = alignment.frames_and_bends(s)
+    angle = alignment.cant_angle
+    second = (angle(s + h) - 2 * angle(s) + angle(s - h)) / h**2
+    np.testing.assert_allclose(bends[:, 0], angle(s), atol=1e-9)
+    np.testing.assert_allclose(bends[:, 1], alignment.curvature(s), atol=1e-9)
+    np.testing.assert_allclose(bends[:, 2], second, atol=1e-3 * np.abs(second).max())
+
+
 @pytest.mark.parametrize(
     ("table", "message"),
     [

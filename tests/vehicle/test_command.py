@@ -48,9 +48,6 @@ def test_comparison():
         assert run["steps"] == 10
         assert run["seconds"]["total"] > run["seconds"]["contact"] / 2 > 0
         assert len(run["friction"]) == 8
-    table = call("--compare", "--duration", "0.01").output
-    assert "half-space, full" in table
-    assert "22.1" in table
 
 
 def test_ratios_of_the_table():
@@ -65,6 +62,15 @@ def test_ratios_of_the_table():
     assert base[1:] == ["2", "4", "2", "1", "1", "1", "1", "0.1", "0.2", "0.868"]
     assert full[1:] == ["6", "12", "18", "3", "3", "9", "22.1", "0.3", "0.6", "19.1"]
     assert full[0] == "half-space, full, 16 x 16"
+
+
+def test_table_of_one_run():
+    result = call("--method", "polach", "--duration", "0.005")
+    assert result.exit_code == 0, result.output
+    *_, header, row, published = result.output.splitlines()
+    assert header.split()[-2:] == ["CPU", "published"]
+    assert row.startswith("Hertz, polach, 10 x 10")
+    assert "CONTACT 383 s" in published
 
 
 def test_wrong_calls(tmp_path):

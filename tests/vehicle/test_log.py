@@ -15,6 +15,7 @@ from railpatch.log.channels import SIDES
 from railpatch.report import write_report
 from railpatch.report.vehicle import vehicle_run
 
+from wheelset_demo.scene import scene_file
 from wheelset_demo.vehicle.command import vehicle as command
 from wheelset_demo.vehicle.scene import load_vehicle_scene
 from wheelset_demo.vehicle.simulation import Simulation
@@ -41,8 +42,8 @@ def test_steps_are_thinned_by_simulation_time(ran):
     assert run["/vehicle/state"].time == pytest.approx(np.arange(21) * 0.01)
     assert run.counts["/tf"] == run.counts["/scene/contact"] == 7
     assert 0 < trace.logging_share < 1
-    # 20 snapshots in the run's duration
-    assert run.counts["/wheelset/4/right/fields"] == 21
+    # 10 snapshots in the run, and its last step
+    assert run.counts["/wheelset/4/right/fields"] == 11
     assert run.stopped_by == ""
 
 
@@ -122,7 +123,8 @@ def test_command(tmp_path):
     assert done.exit_code == 0, done.output
     summary = json.loads(done.stdout)["runs"]["polach"]
     assert 0 < summary["logging_share"] < 1
-    assert len(read_run(log)["/vehicle/state"]) == 3
+    # 50 a second, and the last one
+    assert list(read_run(log)["/vehicle/state"].time) == pytest.approx([0, 0.02, 0.04, 0.05])
     made = CliRunner().invoke(cli, ["report", str(log), "-o", str(tmp_path / "page.html")])
     assert made.exit_code == 0, made.output
 
@@ -141,3 +143,24 @@ def test_log_that_cannot_be_written(tmp_path):
     done = CliRunner().invoke(command, ["-o", str(log), "--duration", "0.01"])
     assert done.exit_code == 2
     assert "missing" in done.output
+
+
+def test_contact_that_fails_is_the_logs_last_step(tmp_path):
+    """300 km/h into a circle of 150 m: the vehicle leaves the track."""
+    text = scene_file("vehicle_curve.toml").read_text(encoding="utf-8")
+    for key, value in (("radius", 150.0), ("straight", 60.0), ("transition", 20.0)):
+        text, count = re.subn(rf"(?m)^{key} = \S+", f"{key} = {value}", text)
+        assert count == 1
+    file, log = tmp_path / "climb.toml", tmp_path / "run.mcap"
+    file.write_text(text, encoding="utf-8")
+    arguments = [str(file), "--method", "polach", "--duration", "3", "-o", str(log)]
+    done = CliRunner().invoke(command, arguments)
+    assert done.exit_code == 3
+    run = read_run(log)
+    assert "contact failed at" in run.stopped_by
+    data = vehicle_run(run)
+    assert list(data.solved[:-1]) == [True] * (data.count - 1)
+    assert not data.solved[-1]
+    page = write_report(log, tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "stopped before its end" in page
+    assert "did not converge" in page

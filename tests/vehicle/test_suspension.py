@@ -95,6 +95,32 @@ def test_derivatives_are_those_of_the_forces(simulation):
         np.testing.assert_allclose(by_series @ way, moved, atol=1e-9 * np.abs(moved).max())
 
 
+def test_bounce_of_car_body_and_bogies(simulation):
+    """On wheelsets held still, in closed form: bounce, pitch with the bogies at half the distance
+    of their centres and springs and rods along the track below, and a bogie that yaws."""
+    system, vehicle = simulation.system, simulation.scene.vehicle
+    q, v, series = parts(simulation, simulation.state.values)
+    system.suspension.step(q, v, series)
+    stiffness = -system.suspension.jacobian()[0]
+    k1, k2 = 8 * 1.22e6, 4 * 430e3
+    half, base = 0.5 * vehicle.bogie_distance, 0.5 * vehicle.wheelbase
+    car, bogies = system.vehicle.columns[0], system.vehicle.columns[1:3]
+    bounce, pitch = np.zeros((2, len(q)))
+    bounce[bogies[:, 2]] = 1.0
+    pitch[bogies[:, 2]] = -half, half
+    below = 4 * 160e3 * (1.8 - 0.8275) ** 2 + 2 * 5e6 * (1.8 - 0.6) ** 2
+    for way, coordinate, arm, more in ((bounce, car[2], 1.0, 0.0), (pitch, car[5], half, below)):
+        both = np.array([np.eye(len(q))[coordinate], way])
+        wanted = arm**2 * np.array([[k2, -k2], [-k2, k1 + k2]])
+        wanted[0, 0] += more
+        np.testing.assert_allclose(both @ stiffness @ both.T, wanted, rtol=1e-9)
+    # a bogie that yaws alone: primary springs at the axle boxes, secondary ones at the sides
+    yaw = bogies[0, 3]
+    primary = 4 * (31.391e6 * 1.0**2 + 3.884e6 * base**2)
+    secondary = 2 * 160e3 * 1.0**2
+    assert stiffness[yaw, yaw] == pytest.approx(primary + secondary, rel=1e-9)
+
+
 def test_stop():
     """Slack, then the table's straight lines; its energy is the area."""
     stop = Stop([[0.02, 0.0], [0.03, 100.0], [0.04, 1000.0]])

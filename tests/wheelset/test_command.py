@@ -105,7 +105,7 @@ def test_the_scene_that_is_run_can_be_printed(tmp_path: Path):
 
 
 def test_contact_that_fails_ends_the_run(tmp_path: Path):
-    text = scenes.text_of("s1002.toml", y=0.0, speed=40.0, distance=20.0)
+    text = scenes.text_of("s1002.toml", y=0.0, speed=40.0, distance=20.0, write_rate=1e4)
     file, log = tmp_path / "climb.toml", tmp_path / "run.mcap"
     file.write_text(text.replace("[wheelset]\n", "[wheelset]\nyaw = 0.08\n"))
     ran = invoke(file, "-o", log, "--step", 2e-4)

@@ -74,13 +74,12 @@ class Alignment:
         steps = self._way(nodes[:-1], np.full(len(nodes) - 1, SPACING))
         places = np.vstack([np.zeros(2), np.cumsum(steps, axis=0)])
         # the start is at the origin: one node lies before it
-        columns = [
-            places - places[1],
-            self.heading(nodes)[:, None],
-            self.cant_angle(nodes)[:, None],
-        ]
-        # x, y, heading, cant angle
-        self._spline = CubicSpline(nodes, np.hstack(columns))
+        self._spline = CubicSpline(nodes, np.hstack([places - places[1], self._angles(nodes)]))
+
+    def _angles(self, s: Vector) -> Vector:
+        """[n, 4]: heading, cant angle, curvature and second derivative of the cant angle."""
+        heading, cant, curvature = self.heading(s), self.cant_angle(s), self.curvature(s)
+        return np.stack([heading, cant, curvature, self._cant * self._bend_of_share(s)], axis=1)
 
     def curvature(self, s: ArrayLike) -> Vector:
         """1/m, at arc lengths (m)."""
@@ -103,21 +102,21 @@ class Alignment:
 
     def frames(self, s: Vector) -> tuple[Vector, Vector]:
         """Of the track in the world at arc lengths [n]: rotations [n, 3, 3], origins (m) [n, 3]."""
+        rotations, origins, _ = self.frames_and_bends(s)
+        return rotations, origins
+
+    def frames_and_bends(self, s: Vector) -> tuple[Vector, Vector, Vector]:
+        """The same, and [n, 3]: cant angle (rad), curvature (1/m), second derivative of the cant
+        angle (1/m^2)."""
         found = self._spline(s)
-        heading, cant = found[:, 2], found[:, 3]
-        c, t, cc, sc = np.cos(heading), np.sin(heading), np.cos(cant), np.sin(cant)
+        (c, cc), (t, sc) = np.cos(found[:, 2:4].T), np.sin(found[:, 2:4].T)
         rotations = np.zeros((len(s), 3, 3))
         rotations[:, 0, 0], rotations[:, 1, 0] = c, t
         rotations[:, 0, 1], rotations[:, 1, 1], rotations[:, 2, 1] = -t * cc, c * cc, sc
         rotations[:, 0, 2], rotations[:, 1, 2], rotations[:, 2, 2] = t * sc, -c * sc, cc
         origins = np.zeros((len(s), 3))
         origins[:, :2] = found[:, :2]
-        return rotations, origins
-
-    def bends(self, s: Vector) -> tuple[Vector, Vector, Vector]:
-        """Curvature (1/m), cant angle (rad) and its second derivative (1/m^2), [n] each."""
-        now, slope, twist = self._spline(s), self._spline(s, 1), self._spline(s, 2)
-        return slope[:, 2], now[:, 3], twist[:, 3]
+        return rotations, origins, found[:, 3:]
 
     def foot(self, places: Vector, near: Vector) -> Vector:
         """m, [n]: arc lengths at whose frames x = 0 for places [n, 3] (m) in the world.
@@ -140,6 +139,14 @@ class Alignment:
         u = np.clip((s - a) / length, 0.0, 1.0)
         w = np.clip((s - c) / length, 0.0, 1.0)
         return u * u * (3.0 - 2.0 * u) - w * w * (3.0 - 2.0 * w)
+
+    def _bend_of_share(self, s: Vector) -> Vector:
+        """1/m^2, second derivative of _share."""
+        a, _, c, _ = self._corners
+        length = self._table.transition
+        u, w = (s - a) / length, (s - c) / length
+        bend = (6.0 - 12.0 * u) * ((u > 0) & (u < 1)) - (6.0 - 12.0 * w) * ((w > 0) & (w < 1))
+        return bend / length**2
 
     def _way(self, start: Vector, length: Vector) -> Vector:
         """m, [n, 2], from places at arc lengths ``start`` over ``length``."""

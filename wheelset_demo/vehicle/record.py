@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -10,10 +11,11 @@ import numpy as np
 import pinocchio as pin
 from railpatch.log import VehicleGeometry, VehicleLog, scene_geometry
 from railpatch.log.stream import Pace
-from railpatch.result import plain_json
+from railpatch.result import wheel_json
 
 from wheelset_demo.record import attachments
 from wheelset_demo.scene import GRAVITY, SIDES, SNAPSHOTS
+from wheelset_demo.system import ContactFailure
 from wheelset_demo.vehicle.model import CAR_BODY, bogie_name
 from wheelset_demo.vehicle.scene import WHEELSETS
 from wheelset_demo.vehicle.simulation import Simulation
@@ -32,7 +34,7 @@ class Recorder:
     def __init__(self, log: VehicleLog, simulation: Simulation) -> None:
         self._log = log
         run = simulation.scene.run
-        self._pace = Pace(run.write_rate)
+        self._pace = None if run.write_rate is None else Pace(run.write_rate)
         self._fields = Pace(
             SNAPSHOTS / run.duration if run.snapshot_rate is None else run.snapshot_rate
         )
@@ -40,20 +42,37 @@ class Recorder:
         self._done = 0.0, 0
 
     def write(self, simulation: Simulation) -> None:
-        """The present state, where its turn has come."""
-        time = simulation.state.time
-        if not self._pace.due(time):
+        """The present state, where its turn has come; the run's last one too."""
+        time, run = simulation.state.time, simulation.scene.run
+        last = time > run.duration - 0.5 * run.step
+        if self._pace is not None and not self._pace.due(time) and not last:
             return
         with self._log.stream.counted():
             self._log.write(time, **self.messages(simulation, self._fields.due(time)))
 
+    def failed(self, simulation: Simulation, failure: ContactFailure) -> None:
+        """The contacts that were asked for last, which were not all solved."""
+        late = max(failure.time, simulation.state.time + 1e-9)
+        # a motion that is not a number has nothing to show
+        with self._log.stream.counted(), suppress(ValueError):
+            self._log.write(late, **self.messages(simulation, False))
+
     def messages(self, simulation: Simulation, fields: bool) -> dict[str, Any]:
         """Arguments of VehicleLog.write."""
-        element = simulation.element
+        element, alignment = simulation.element, simulation.system.alignment
         frames = [(row[:9].reshape(3, 3), row[9:]) for row in element.tracks]
+        # at each wheelset and in the middle
+        along = np.append(element.positions, element.positions.mean())
+        curvature, cant = alignment.curvature(along).tolist(), alignment.cant_angle(along).tolist()
+        places = [
+            {"x": x, "curvature": bend, "cant": angle}
+            for x, bend, angle in zip(along.tolist(), curvature, cant, strict=True)
+        ]
         return {
-            "state": self._state(simulation),
-            "wheelsets": [self._wheelset(simulation, k, fields) for k in range(WHEELSETS)],
+            "state": self._state(simulation) | places[-1],
+            "wheelsets": [
+                self._wheelset(simulation, k, places[k], fields) for k in range(WHEELSETS)
+            ],
             "bodies": bodies(simulation),
             "tracks": [(origin.tolist(), quaternion(turn)) for turn, origin in frames],
             "energy": self._energy(simulation),
@@ -62,35 +81,30 @@ class Recorder:
 
     def _state(self, simulation: Simulation) -> dict[str, float]:
         system, state = simulation.system, simulation.state
-        middle = float(system.positions.mean())
         return {
             "progress": state.time / simulation.scene.run.duration,
-            "x": middle,
             "speed": float(np.hypot(*state.v[system.vehicle.columns[0][:2]])),
-            "curvature": float(system.alignment.curvature(middle)),
-            "cant": float(system.alignment.cant_angle(middle)),
         }
 
-    def _wheelset(self, simulation: Simulation, index: int, fields: bool) -> dict[str, Any]:
-        element, alignment = simulation.element, simulation.system.alignment
+    def _wheelset(
+        self, simulation: Simulation, index: int, place: dict[str, float], fields: bool
+    ) -> dict[str, Any]:
+        element = simulation.element
         result = element.result(index, fields=fields)
-        along = float(element.positions[index])
         wrench = element.contact_wrench[index].tolist()
         rails = element.rails[index, 0, :, 1:].tolist()
         state = element.state(index) | {
-            "x": along,
+            **place,
             "force": wrench[:3],
             "moment": wrench[3:],
-            "curvature": float(alignment.curvature(along)),
-            "cant": float(alignment.cant_angle(along)),
             "left_rail": rails[0],
             "right_rail": rails[1],
         }
         lost = simulation.state.work[len(WORKS) + 2 * index :]
         found: dict[str, Any] = {"state": state}
         for side, work in zip(SIDES, lost[:2].tolist(), strict=True):
-            wheel = {key: value for key, value in result[side].items() if key != "z"}
-            found[side] = plain_json(wheel) | {"friction_work": work}
+            # z is given in vehicle runs
+            found[side] = wheel_json(result[side]) | {"friction_work": work, "z": None}
         if fields:
             found["fields"] = {side: result[side]["patches"] for side in SIDES}
         return found

@@ -128,8 +128,10 @@ class RunTable(Table):
     log_every: Annotated[int, Field(ge=1)] = Field(
         default=5, description="-, every n-th step is kept"
     )
-    write_rate: Annotated[float, Field(gt=0, le=1e9)] = Field(
-        default=50.0, description="Hz, kept steps written to a log a second simulated, at most"
+    write_rate: Annotated[float, Field(gt=0, le=1e9)] | None = Field(
+        default=None,
+        description="Hz, kept steps written to a log a second of simulation time, at most; left "
+        "out: all",
     )
     scene_rate: Annotated[float, Field(ge=0, le=1e9)] = Field(
         default=SCENE_RATE, description="Hz, 3D scenes of these, at most; 0: none"

@@ -124,9 +124,12 @@ class Suspension:
         """Where in the matrix the six numbers of each row's two bodies stand."""
         start = width * np.arange(self._count)[:, None]
         self._body_a, self._body_b = self._a[self._element], self._b[self._element]
-        self._flat_a = start + self._columns[self._body_a]
-        self._flat_b = start + self._columns[self._body_b]
         about = self._about
+        # of all rows for body A, then for body B
+        self._body_both = np.concatenate([self._body_a, self._body_b])
+        self._element_both = np.tile(self._element, 2)
+        self._about_both = np.concatenate([about, about + self._count])
+        self._flat_both = np.tile(start, (2, 1)) + self._columns[self._body_both]
         self._turned = (self._body_a[about], self._body_b[about])
         self._next = (self._axis[about] + 1) % 3, (self._axis[about] + 2) % 3
 
@@ -160,8 +163,8 @@ class Suspension:
             for body, at in ((self._a, self._at_a), (self._b, self._at_b))
         )
         direction = axes[self._body_a, self._axis]
-        self._fill(found, point_b[self._element], direction)
-        d = (direction * (point_b - point_a)[self._element]).sum(axis=1)
+        self._fill(found, point_b, direction)
+        d = np.einsum("ij,ij->i", direction, (point_b - point_a)[self._element])
         (a, b), (j, k) = self._turned, self._next
         d[self._about] = 0.5 * (axes[a, k] * axes[b, j] - axes[a, j] * axes[b, k]).sum(axis=1)
         rate = self.matrix @ v
@@ -181,20 +184,17 @@ class Suspension:
         With u the row's direction, a body that moves with v at its origin and turns with w adds
         v.u + w.((P_B - origin) x u) to a displacement, w.u to a turn.
         """
-        flat = self.matrix.reshape(-1)
-        for sign, body, where in (
-            (-1.0, self._body_a, self._flat_a),
-            (1.0, self._body_b, self._flat_b),
-        ):
-            part = np.empty((self._count, 6))
-            lever = cross(points - found.origins[body], direction)
-            lever[self._about] = direction[self._about]
-            part[:, :3] = direction
-            part[self._about, :3] = 0.0
-            part[:, 3] = lever[:, 2]
-            part[:, 4] = (found.roll_axis[body] * lever).sum(axis=1)
-            part[:, 5] = (found.axes[body, 1] * lever).sum(axis=1)
-            flat[where] = sign * part
+        body = self._body_both
+        u = np.concatenate([-direction, direction])
+        lever = cross(points[self._element_both] - found.origins[body], u)
+        lever[self._about_both] = u[self._about_both]
+        part = np.empty((len(u), 6))
+        part[:, :3] = u
+        part[self._about_both, :3] = 0.0
+        part[:, 3] = lever[:, 2]
+        part[:, 4] = np.einsum("ij,ij->i", found.roll_axis[body], lever)
+        part[:, 5] = np.einsum("ij,ij->i", found.axes[body, 1], lever)
+        self.matrix.reshape(-1)[self._flat_both] = part
 
     def jacobian(self) -> tuple[Vector, Vector, Vector]:
         """Of the generalised force of the last step by q, v and series forces, nearly.

@@ -97,7 +97,8 @@ class VehicleSystem:
     """Vehicle, suspension, track and contacts of a scene. Keeps the contacts' last solutions.
 
     evaluations, renewals: number of rates() and of derivatives(). contact_seconds,
-    derivative_seconds: s, CPU time, of all threads, in the force element and in derivatives().
+    derivative_seconds: s, CPU time of the calling thread in the force element and in derivatives();
+    further threads: element.helper_seconds.
     """
 
     def __init__(self, scene: VehicleScene) -> None:
@@ -123,6 +124,7 @@ class VehicleSystem:
         self._zero = np.zeros(self.count)
         self._joints = [self.vehicle.joints[name] for name in names]
         self._car = self.vehicle.columns[0]
+        self._bends = np.zeros((WHEELSETS, 3))
         self._held = HeldDerivatives(self.element)
 
     def rates(self, time: float, values: Vector) -> Rates:
@@ -134,13 +136,13 @@ class VehicleSystem:
         for joint in self._joints:
             self._fext[joint].setZero()
         self.evaluations += 1
-        begin = clock.process_time()
+        begin = clock.thread_time()
         try:
             status = self.element.step(self.data, self._fext)
         except CaseError as error:
             # far off the rails, or not a number
             raise ContactFailure(time, float(self.positions[0]), str(error)) from None
-        self.contact_seconds += clock.process_time() - begin
+        self.contact_seconds += clock.thread_time() - begin
         if status in BAD:
             raise ContactFailure(time, float(self.positions[0]), self.statuses())
         tau = self.suspension.step(q, v, series)
@@ -156,7 +158,7 @@ class VehicleSystem:
         """Puts track frames under the wheelsets, rails into them; [16], m, their deviations."""
         centres = q[self.vehicle.carriers[:, :3]]
         self.positions = self.alignment.foot(centres, self.positions)
-        rotations, origins = self.alignment.frames(self.positions)
+        rotations, origins, self._bends = self.alignment.frames_and_bends(self.positions)
         tracks = self.element.tracks
         tracks[:, :9], tracks[:, 9:] = rotations.reshape(-1, 9), origins
         self.element.positions[:] = self.positions
@@ -188,7 +190,7 @@ class VehicleSystem:
         By the track's own way in the world: the curve's turning off, the change of cant. In track
         axes, as the rails' deviations.
         """
-        curvature, cant, twist = self.alignment.bends(self.positions)
+        cant, curvature, twist = self._bends.T
         squared = (step * self.speeds_along(values)) ** 2
         off, turned = curvature * squared, ARM * twist * squared
         found = np.empty((WHEELSETS, 2, 2))
@@ -205,7 +207,7 @@ class VehicleSystem:
         those of the others are held. How the track frame turns on along the track is left out.
         Raises CaseError.
         """
-        begin = clock.process_time()
+        begin = clock.thread_time()
         self.renewals += 1
         n, suspension = self.count, self.suspension
         q, v = values[:n], values[n : 2 * n]
@@ -227,7 +229,7 @@ class VehicleSystem:
         matrix[2 * n :, 2 * n :] = np.diag(series_by_series)
         inputs = np.zeros((self.size, 2 * WHEELS))
         inputs[n : 2 * n] = inverse @ self._force_by_rails(found.chain)
-        self.derivative_seconds += clock.process_time() - begin
+        self.derivative_seconds += clock.thread_time() - begin
         return matrix, inputs
 
     def _force_by_rails(self, chain: StateChain) -> Vector:

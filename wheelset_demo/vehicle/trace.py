@@ -121,6 +121,8 @@ def traced(
                 advance(state)
     except ContactFailure as failure:
         trace.failure = failure
+        if recorder is not None:
+            recorder.failed(simulation, failure)
     return trace
 
 

@@ -126,6 +126,17 @@ def plain_json(value: Any) -> Any:
     return value
 
 
+def wheel_json(side: dict[str, Any]) -> dict[str, Any]:
+    """Of one side of a result: the JSON result without the fields of its patches."""
+    found = dict(side)
+    for name in ("patches", "alternatives"):
+        found[name] = [
+            {key: value for key, value in patch.items() if key not in FIELDS}
+            for patch in side[name]
+        ]
+    return plain_json(found)
+
+
 def patch_data(
     patch: dict[str, Any], *, of_wheel: bool, creepage_found: bool = False
 ) -> dict[str, Any]:

@@ -143,6 +143,7 @@ class ForceElement {
     return sum;
   }
   size_t solves() const { return solves_; }
+  double helper_seconds() { return workers_->seconds(); }
 
   double *tracks() { return tracks_.data(); }
   double *positions() { return positions_.data(); }
@@ -285,6 +286,8 @@ void bind_force_element(nb::module_ &m) {
       .def("result", &E::result, nb::arg("index"), "The last step's rp_result.")
       .def_prop_ro("seconds", &E::seconds,
                    "Wall-clock time inside the contact solves, of all threads.")
+      .def_prop_ro("helper_seconds", &E::helper_seconds,
+                   "CPU time of the threads beside the caller's.")
       .def_prop_ro("solves", &E::solves, "Number of contact solves.")
       .def_prop_ro("motion", &view<kMotion, &E::motion>,
                    "In: rotation by rows, origin (m), linear and angular velocity, joint frame.")

@@ -2,7 +2,24 @@
 
 #include "workers.hpp"
 
+#include <chrono>
+#include <ctime>
+
 namespace railpatch::python {
+
+namespace {
+
+// s, CPU time of this thread; where the system has no such clock, of any
+double thread_seconds() {
+#ifdef CLOCK_THREAD_CPUTIME_ID
+  timespec now;
+  if (clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now) == 0) return now.tv_sec + 1e-9 * now.tv_nsec;
+#endif
+  const auto since = std::chrono::steady_clock::now().time_since_epoch();
+  return std::chrono::duration<double>(since).count();
+}
+
+}  // namespace
 
 Workers::Workers(int threads) {
   for (int k = 1; k < threads; ++k) threads_.emplace_back([this] { wait_for_tasks(); });
@@ -36,6 +53,11 @@ void Workers::run(size_t count, const std::function<void(size_t)> &task) {
   task_ = nullptr;
 }
 
+double Workers::seconds() {
+  std::lock_guard<std::mutex> guard(mutex_);
+  return seconds_;
+}
+
 void Workers::wait_for_tasks() {
   size_t seen = 0;
   while (true) {
@@ -45,7 +67,11 @@ void Workers::wait_for_tasks() {
       if (stop_) return;
       seen = round_;
     }
+    const double begin = thread_seconds();
     take_items();
+    const double spent = thread_seconds() - begin;
+    std::lock_guard<std::mutex> guard(mutex_);
+    seconds_ += spent;
   }
 }
 

@@ -21,6 +21,9 @@ class Workers {
   // task(0) ... task(count - 1), each once; returns when all are done. task must not throw.
   void run(size_t count, const std::function<void(size_t)> &task);
 
+  // s, CPU time of the threads beside the caller's, up to tasks that have ended
+  double seconds();
+
  private:
   void wait_for_tasks();
   void take_items();
@@ -30,6 +33,7 @@ class Workers {
   const std::function<void(size_t)> *task_ = nullptr;
   size_t count_ = 0, next_ = 0, open_ = 0, round_ = 0;
   bool stop_ = false;
+  double seconds_ = 0;
   std::vector<std::thread> threads_;
 };
 

@@ -19,8 +19,8 @@ from .channels import SIDES
 
 KINDS = ("rail", "roller")
 # enough for a smooth picture; more only makes the log larger
-_CURVE_POINTS = 32
-_TURN_STEPS = 48
+_CURVE_POINTS = 24
+_TURN_STEPS = 40
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,10 @@ What is plainly right is taken; of anything else encode.py, which names places, 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import lru_cache
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -15,25 +17,34 @@ import numpy as np
 from .channels import LEFT_OUT, Message
 
 UINT32_MAX = 2**32 - 1
-_NUMBER, _NUMBERS, _COUNT, _TEXT, _PART, _PARTS, _OTHER = range(7)
+KINDS = ("double", "uint32", "string")
 _NUMBER_TYPES = frozenset({float, int, np.float64})
 _COUNT_TYPES = frozenset({int})
+_Get = Callable[[dict[str, Any]], Sequence[Any]]
 
 
 @dataclass(frozen=True)
 class _Plan:
-    """kinds: by field, its kind and what that needs. left_out: keys to pass by."""
+    """What a dict with certain keys, some of them None, is to have.
 
-    kinds: dict[str, tuple[int, Any]]
-    required: frozenset[str]
-    left_out: frozenset[str]
+    numbers, counts: get the values of these fields. lists: names and lengths of lists of numbers.
+    texts: names and choices. parts, many: names and messages. dropped: keys to leave out.
+    """
+
+    numbers: _Get
+    counts: _Get
+    lists: tuple[tuple[str, int], ...]
+    texts: tuple[tuple[str, frozenset[str]], ...]
+    parts: tuple[tuple[str, Message], ...]
+    many: tuple[tuple[str, Message], ...]
+    dropped: frozenset[str]
 
 
 def quick(message: Message, values: Any) -> dict[str, Any] | None:
-    """The arguments of the message's class, without what is None; None: look at it closely."""
+    """Arguments of the message's class, which takes None for absent; None: look at it closely."""
     numbers: list[Any] = []
     counts: list[Any] = []
-    found = _collect(_plan(message), values, numbers, counts)
+    found = _collect(message, values, numbers, counts)
     if found is None:
         return None
     # bool is none of the types; a sum is finite only where every number is
@@ -49,61 +60,70 @@ def quick(message: Message, values: Any) -> dict[str, Any] | None:
 
 
 def _collect(
-    plan: _Plan, values: Any, numbers: list[Any], counts: list[Any]
+    message: Message, values: Any, numbers: list[Any], counts: list[Any]
 ) -> dict[str, Any] | None:
     if type(values) is not dict:
         return None
-    found: dict[str, Any] = {}
-    for key, value in values.items():
-        if value is None:
-            if key in plan.kinds or key in plan.left_out:
-                continue
+    # the dicts of a run are alike: what theirs has to have is found once
+    plan = _plan(message, tuple(values), tuple([k for k, v in values.items() if v is None]))
+    if plan is None:
+        return None
+    numbers += plan.numbers(values)
+    counts += plan.counts(values)
+    for name, size in plan.lists:
+        value = values[name]
+        if type(value) is not list or (size and len(value) != size):
             return None
-        entry = plan.kinds.get(key)
-        if entry is None:
-            if key in plan.left_out:
-                continue
+        numbers += value
+    for name, choices in plan.texts:
+        if type(values[name]) is not str or (choices and values[name] not in choices):
             return None
-        kind, detail = entry
-        if kind == _NUMBER:
-            numbers.append(value)
-        elif kind == _COUNT:
-            counts.append(value)
-        elif kind == _PART:
-            value = _collect(detail, value, numbers, counts)
-            if value is None:
-                return None
-        elif type(value) is str:
-            if kind != _TEXT or (detail and value not in detail):
-                return None
-        elif type(value) is not list:
+    if not plan.dropped and not plan.parts and not plan.many:
+        return values
+    found = {key: value for key, value in values.items() if key not in plan.dropped}
+    for name, part in plan.parts:
+        found[name] = _collect(part, values[name], numbers, counts)
+        if found[name] is None:
             return None
-        elif kind == _NUMBERS:
-            if detail and len(value) != detail:
-                return None
-            numbers.extend(value)
-        elif kind == _PARTS:
-            value = [_collect(detail, item, numbers, counts) for item in value]
-            if None in value:
-                return None
-        else:
+    for name, part in plan.many:
+        if type(values[name]) is not list:
             return None
-        found[key] = value
-    return found if plan.required <= found.keys() else None
+        found[name] = [_collect(part, item, numbers, counts) for item in values[name]]
+        if None in found[name]:
+            return None
+    return found
 
 
-@cache
-def _plan(message: Message) -> _Plan:
-    kinds: dict[str, tuple[int, Any]] = {}
-    for field in message.fields:
-        single = field.size == 1
-        if isinstance(field.kind, Message):
-            kinds[field.name] = (_PART if single else _PARTS, _plan(field.kind))
-        elif field.kind == "double":
-            kinds[field.name] = (_NUMBER, None) if single else (_NUMBERS, field.size)
-        elif field.kind == "string" and single:
-            kinds[field.name] = (_TEXT, frozenset(field.choices))
-        else:
-            kinds[field.name] = (_COUNT, None) if single else (_OTHER, None)
-    required = frozenset(field.name for field in message.fields if field.required)
-    return _Plan(kinds, required, frozenset(LEFT_OUT.get(message.name, ())))
+@lru_cache(maxsize=1024)
+def _plan(message: Message, keys: tuple[Any, ...], absent: tuple[Any, ...]) -> _Plan | None:
+    """None where a key is unknown or a required one missing, or for a list that is not of
+    numbers or messages."""
+    fields = {field.name: field for field in message.fields}
+    dropped = set(LEFT_OUT.get(message.name, ()))
+    there = [key for key in keys if key not in absent]
+    if not set(keys) <= set(fields) | dropped:
+        return None
+    if not {field.name for field in message.fields if field.required} <= set(there):
+        return None
+    chosen = [fields[key] for key in there if key in fields]
+    plain = [field for field in chosen if not isinstance(field.kind, Message)]
+    if any(field.size != 1 and field.kind != "double" for field in plain):
+        return None
+    single = {kind: [f.name for f in plain if f.kind == kind and f.size == 1] for kind in KINDS}
+    nested = [field for field in chosen if isinstance(field.kind, Message)]
+    return _Plan(
+        _getter(single["double"]),
+        _getter(single["uint32"]),
+        tuple((f.name, f.size) for f in plain if f.size != 1),
+        tuple((f.name, frozenset(f.choices)) for f in plain if f.kind == "string"),
+        tuple((f.name, f.kind) for f in nested if f.size == 1),
+        tuple((f.name, f.kind) for f in nested if f.size != 1),
+        frozenset(dropped.intersection(keys)),
+    )
+
+
+def _getter(names: list[str]) -> _Get:
+    """Gets the values of these keys, in one call where there are two or more."""
+    if len(names) > 1:
+        return itemgetter(*names)
+    return lambda values: [values[name] for name in names]

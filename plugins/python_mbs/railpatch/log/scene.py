@@ -36,7 +36,7 @@ from .primitives import (
 _RAIL_LENGTH = 4.0  # m
 _SHAFT = 0.08  # m, radius of axles
 _ARROW_SCALE = 5e-6  # m/N: 100 kN are half a metre
-_CIRCLE_POINTS = 32
+_CIRCLE_POINTS = 20
 _CIRCLE = [
     (math.cos(math.tau * k / _CIRCLE_POINTS), math.sin(math.tau * k / _CIRCLE_POINTS))
     for k in range(_CIRCLE_POINTS)

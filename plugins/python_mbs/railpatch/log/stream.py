@@ -13,8 +13,9 @@ import mimetypes
 import numbers
 import threading
 import time
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
+from contextlib import AbstractContextManager
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from os import PathLike
 from pathlib import Path
@@ -38,7 +39,7 @@ _FOXGLOVE = {"foxglove.FrameTransforms": FrameTransforms, "foxglove.SceneUpdate"
 
 
 class LogStream:
-    """An MCAP file that is being written.
+    """An MCAP file that is being written; what was added is serialised when it is flushed.
 
     ``channels``: those of the run. ``about``: metadata beside version and conventions.
     ``attachments``: name, media type and bytes. Raises OSError where ``path`` cannot be written.
@@ -53,11 +54,12 @@ class LogStream:
     ) -> None:
         self._opened = time.perf_counter()
         self._ended: float | None = None
-        self._seconds, self._beside, self._depth, self._begin = 0.0, 0.0, 0, 0.0
+        self._count, self._beside = _Counted(), 0.0
         self.path = Path(path)
         self._last_ns = -1
         self._lock = threading.Lock()
-        self._dirty = False
+        # serialised many at a time: caches are warm then
+        self._pending: list[tuple[int, Mapping[str, Any]]] = []
         self._flushed_at = time.monotonic()
         self._stop = threading.Event()
         with self.counted():
@@ -84,29 +86,17 @@ class LogStream:
         What runs within counted() counts, the log's own methods, and its thread's flushes.
         """
         now = time.perf_counter() if self._ended is None else self._ended
-        return (self._seconds + self._beside) / (now - self._opened)
+        return (self._count.seconds + self._beside) / (now - self._opened)
 
-    @contextmanager
-    def counted(self) -> Iterator[None]:
+    def counted(self) -> AbstractContextManager[Any]:
         """What runs within counts as logging: making the messages, for example."""
-        if self._depth == 0:
-            self._begin = time.perf_counter()
-        self._depth += 1
-        try:
-            yield
-        finally:
-            self._depth -= 1
-            if self._depth == 0:
-                self._seconds += time.perf_counter() - self._begin
+        return self._count
 
     def add(self, messages: Mapping[str, Any], time_ns: int) -> None:
         """Messages of one moment, by topic."""
         with self._lock:
-            for topic, message in messages.items():
-                data = message.SerializeToString()
-                self._writer.add_message(self._channels[topic], time_ns, data, time_ns)
+            self._pending.append((time_ns, messages))
             self._last_ns = max(self._last_ns, time_ns)
-            self._dirty = True
             if time.monotonic() - self._flushed_at >= FLUSH_INTERVAL:
                 self._flush()
 
@@ -128,7 +118,8 @@ class LogStream:
         self._stop.set()
         self._thread.join()
         with self._stream, self.counted():
-            seconds = self._seconds + self._beside + time.perf_counter() - self._begin
+            self._flush()
+            seconds = self._count.until_now() + self._beside
             end = {
                 "stopped_by": stopped_by,
                 "wall_time": f"{time.perf_counter() - self._opened:.6g}",
@@ -142,7 +133,9 @@ class LogStream:
         """ns of a moment later than the last. Raises ValueError."""
         if self._stream.closed:
             raise ValueError(f"{self.path}: the run log is closed")
-        if isinstance(time_s, bool) or not isinstance(time_s, numbers.Real):
+        if type(time_s) is not float and (
+            isinstance(time_s, bool) or not isinstance(time_s, numbers.Real)
+        ):
             raise ValueError(f"time_s is {time_s!r}; it must be a number (s)")
         if not math.isfinite(time_s) or time_s < 0 or time_s * 1e9 > _LAST_TIME:
             raise ValueError(f"time_s is {time_s!r}; it must be finite and >= 0 (s)")
@@ -155,14 +148,18 @@ class LogStream:
         return time_ns
 
     def _flush(self) -> None:
+        for time_ns, messages in self._pending:
+            for topic, message in messages.items():
+                data = message.SerializeToString()
+                self._writer.add_message(self._channels[topic], time_ns, data, time_ns)
+        self._pending.clear()
         self._writer.flush()
-        self._dirty = False
         self._flushed_at = time.monotonic()
 
     def _keep_flushed(self) -> None:
         while not self._stop.wait(FLUSH_INTERVAL):
             with self._lock:
-                if self._dirty:
+                if self._pending:
                     begin = time.perf_counter()
                     self._flush()
                     self._beside += time.perf_counter() - begin
@@ -200,6 +197,27 @@ class LogStream:
         return ids
 
 
+class _Counted:
+    """Adds up the time inside of it; may be entered again inside."""
+
+    def __init__(self) -> None:
+        self.seconds, self._depth, self._begin = 0.0, 0, 0.0
+
+    def until_now(self) -> float:
+        """s, with what the one that is entered has taken."""
+        return self.seconds + (time.perf_counter() - self._begin if self._depth else 0.0)
+
+    def __enter__(self) -> None:
+        if self._depth == 0:
+            self._begin = time.perf_counter()
+        self._depth += 1
+
+    def __exit__(self, *error: object) -> None:
+        self._depth -= 1
+        if self._depth == 0:
+            self.seconds += time.perf_counter() - self._begin
+
+
 class Pace:
     """Which moments are shown, by simulation time: the first one in each 1/rate seconds.
 
@@ -223,6 +241,7 @@ class Pace:
         return True
 
 
+@cache
 def railpatch_version() -> str:
     """The installed version, or "unknown" in a checkout that is not installed."""
     try:
@@ -232,12 +251,11 @@ def railpatch_version() -> str:
 
 
 def _channel_metadata(entry: Channel) -> dict[str, str]:
-    """Description of a channel, and for each field its unit, frame and meaning."""
+    """Description of a channel; for each field unit, frame and meaning, where it has them."""
     metadata = {"description": entry.text}
     for path, field in flat_fields(entry.message):
-        metadata[f"{path}.unit"] = field.unit
-        metadata[f"{path}.frame"] = field.frame
-        metadata[f"{path}.description"] = field.text
+        notes = {"unit": field.unit, "frame": field.frame, "description": field.text}
+        metadata |= {f"{path}.{name}": value for name, value in notes.items() if value}
     return metadata
 
 

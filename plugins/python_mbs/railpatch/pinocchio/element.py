@@ -302,6 +302,11 @@ class ForceElement:
         return self._core.seconds
 
     @property
+    def helper_seconds(self) -> float:
+        """s, CPU time of the threads beside the caller's since the start; 0 with one thread."""
+        return self._core.helper_seconds
+
+    @property
     def solves(self) -> int:
         """Number of wheelset contacts solved since the start."""
         return self._core.solves
