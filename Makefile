@@ -99,13 +99,16 @@ test-python: setup ## pytest, against the installed package
 	$(BIN)/python -m pytest --junit-xml=build/junit/python.xml
 
 PRUNING := -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAILPATCH_TESTS=OFF -DRAILPATCH_PRUNING=ON
-pruning: $(VENV)/tools ## what plain cases pay for physics that they leave out
+pruning: $(VENV)/tools ## what plain cases pay for physics that they leave out, and for the FMU
 	@.ci/system-packages valgrind
 	cmake -S . -B build/pruning/with $(PRUNING) -DRAILPATCH_PHYSICS=ON
 	cmake --build build/pruning/with --target pruning_steps
 	cmake -S . -B build/pruning/without $(PRUNING) -DRAILPATCH_PHYSICS=OFF
 	cmake --build build/pruning/without --target pruning_steps
 	$(BIN)/python tests/pruning/compare.py build/pruning/{with,without}/tests/pruning/pruning_steps
+	cmake --preset release $(FMU)
+	cmake --build --preset release --target fmu_overhead
+	$(BIN)/python tests/fmu/overhead.py build/release/tests/fmu_overhead
 
 clean: ## removes build/
 	rm -rf build

@@ -32,8 +32,18 @@ NAMES = (
     "iterate-mixed",
     "iterate-newton",
     "implicit",
+    "exchange",
 )
-MASTERS = ("hold", "leapfrog", "linear", "mean", "iterate", "iterate-newton", "implicit")
+MASTERS = (
+    "hold",
+    "leapfrog",
+    "linear",
+    "mean",
+    "iterate",
+    "iterate-newton",
+    "implicit",
+    "exchange",
+)
 QUICK_MASTERS = ("leapfrog", "mean", "implicit")
 
 

@@ -242,6 +242,7 @@ inline std::vector<scene> scenes_of(const ::scenes::profile_pair &pair) {
   c.layer_yield_stress = 1.5e8;
   all.push_back({"plastic", c, patch_variables(true, false), true});
   c = ::scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+  c.element_size[0] = c.element_size[1] = 2e-3;
   c.load = RP_POSITION;
   c.derivatives = 1;
   all.push_back({"rail", c, wheelset_variables(false, RP_RAIL)});
@@ -249,6 +250,7 @@ inline std::vector<scene> scenes_of(const ::scenes::profile_pair &pair) {
   c.regime = RP_TRANSIENT_ROLLING;
   all.push_back({"rolling_on", c, wheelset_variables(true, RP_RAIL), true, 1e-4});
   c = ::scenes::wheels(RP_WHEELSET, RP_ROLLER, pair);
+  c.element_size[0] = c.element_size[1] = 2e-3;
   c.load = RP_POSITION;
   all.push_back({"roller", c, wheelset_variables(false, RP_ROLLER)});
   return all;

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from case_samples import PATCH, with_values
 from fmu_scenes import LOADED, RAIL, ROLLER, STEP, Packer
+from fmu_scenes import SCENES as HEATED
 from slave import DISCARD, ERROR, OK, Fmu, Real, Reference, Size, Slave
 
 TOLERANCE = 1e-11
@@ -232,6 +233,29 @@ def test_scenes_without_exact_ones_have_them_on_request(tmp_path: Path) -> None:
     with Slave(pack("fast")).initialize() as slave:
         assert slave.derivative(["creep_force[1]"], {"normal_force": 1.0})[0] == ERROR
         assert slave.output_derivatives(["creep_force[1]"])[0] == ERROR
+
+
+def test_temperatures_by_those_of_the_bodies(tmp_path: Path) -> None:
+    """By differences; apart it is the warmer body's own."""
+    case = with_values(HEATED["warm"], method__tolerance=1e-9)
+    fmu = Packer(tmp_path, {"warm": case}, warm={"derivatives": "always"})("warm")
+    names = ["max_temperature", "left.max_temperature", "right.patch[1].max_temperature"]
+    for known, start, change in (
+        ("temperature.rail", 20.0, 0.1),
+        ("temperature.wheel", 30.0, 0.1),
+        ("friction.coefficient", 0.3, 1e-3),
+    ):
+        ends = [solved(fmu, {known: start + sign * change}) for sign in (1, -1)]
+        with Slave(fmu).initialize() as slave:
+            status, found = slave.derivative(names, {known: 2 * change})
+        assert status == OK
+        assert found == pytest.approx([ends[0][n] - ends[1][n] for n in names], rel=1e-3)
+        assert min(found) > 0
+    with Slave(fmu).initialize() as slave:
+        assert slave.set({"wheelset.z": -1e-3}) == OK
+        assert slave.step(0, STEP) == OK
+        assert slave.derivative(names, {"temperature.wheel": 2.0}) == (OK, [2.0] * 3)
+        assert slave.derivative(names, {"temperature.rail": 2.0}) == (OK, [0.0] * 3)
 
 
 def test_output_derivatives_follow_the_inputs(exact: Callable[..., Fmu]) -> None:

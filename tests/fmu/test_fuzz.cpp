@@ -1,9 +1,11 @@
 // Random calls with random arguments, good and bad: nothing may crash, and every refused call
-// leaves exactly one line in the log. Seeds are printed where it fails.
+// leaves exactly one line in the log. Seeds are printed where it fails. RAILPATCH_FUZZ_SEEDS: how
+// many sequences of 40 calls, for a longer search by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -281,7 +283,9 @@ class Fuzzer {
 TEST(Fuzz, RandomCallsNeverCrash) {
   const std::string location = write_scene().string();
   int derivatives_found[2] = {};
-  for (unsigned seed = 0; seed < 10000; ++seed) {
+  const char *asked = std::getenv("RAILPATCH_FUZZ_SEEDS");
+  const unsigned long seeds = asked != nullptr ? std::strtoul(asked, nullptr, 10) : 10000;
+  for (unsigned seed = 0; seed < seeds; ++seed) {
     SCOPED_TRACE(seed);
     Fuzzer fuzzer(seed, location);
     ASSERT_TRUE(fuzzer.made());

@@ -7,7 +7,7 @@
 
 namespace {
 
-constexpr int instances = 64, threads = 4, steps = 6;
+constexpr int instances = 64, threads = 4, steps = 3;
 
 struct place {
   made::scene scene;

@@ -65,7 +65,9 @@ def test_leapfrog_is_the_held_run_in_the_process(scene: WheelsetScene, slave: Co
     assert point.motion[:5] == pytest.approx(expected.motion[:5], abs=1e-10)
 
 
-@pytest.mark.parametrize("name", ["linear", "mean", "iterate", "iterate-newton", "implicit"])
+@pytest.mark.parametrize(
+    "name", ["linear", "mean", "iterate", "iterate-newton", "implicit", "exchange"]
+)
 def test_masters_converge_to_the_run_in_the_process(
     name: str, scene: WheelsetScene, slave: ContactSlave
 ):
@@ -170,7 +172,8 @@ def test_a_contact_that_fails_ends_every_master(
         run_on(master, master.begin(0.0, start), 1e-3, 100)
     text = str(failure.value)
     assert text.startswith("step of 0.0005 s at 0.0")
-    assert "halved 1 times, cannot be done: fmi2DoStep: at time 0.0" in text
+    call = "fmi2GetReal" if name == "exchange" else "fmi2DoStep"
+    assert f"halved 1 times, cannot be done: {call}: at time 0.0" in text
     assert "out of its range of validity" in text
     # another run begins as if nothing had been
     assert master.begin(0.0, Rolling(scene, 20.0).start).heard.wrench[2] < -1e5
@@ -208,7 +211,7 @@ def test_command(tmp_path: Path):
     found = json.loads(ran.stdout)
     first, second = found["rows"]
     # 2 V m/f of the spin, which is stiffer than the bounce at this speed
-    assert first["by_runs"] == pytest.approx(found["speeds"][0]["creep"], rel=0.08)
+    assert first["by_runs"] == pytest.approx(found["speeds"][0]["creep"], rel=0.1)
     assert second["by_runs"] > 1e-2
     assert second["at_1_ms"]["share"] < 1e-4
     assert first["at_1_ms"] is None

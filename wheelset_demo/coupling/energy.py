@@ -22,7 +22,7 @@ from wheelset_demo.system import System, Vector
 
 RELEASED = 2e-3  # m, off-centre
 DURATION = 0.05  # s
-FEWEST, MOST = 20, 4000  # steps
+FEWEST, MOST = 20, 1000  # steps
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ def balance(
     step: float,
     duration: float = DURATION,
 ) -> Balance:
-    """Of a run of a duration (s), but 20 steps at least and 4000 at most."""
+    """Of a run of a duration (s), but 20 steps at least and 1000 at most."""
     count = min(MOST, max(FEWEST, math.ceil(duration / step)))
     master = MASTERS[name](Multibody(scene), slave)
     try:

@@ -186,6 +186,13 @@ def implicit(system: Linearised, step: float) -> Vector:
     return one + 1.5 * first + 0.5 * second
 
 
+def exchange(system: Linearised, step: float) -> Vector:
+    """x alone."""
+    matrix = step * system.whole
+    one = np.eye(len(matrix))
+    return one + matrix @ (one + matrix / 2 @ (one + matrix / 3 @ (one + matrix / 4)))
+
+
 MATRICES: dict[str, Callable[[Linearised, float], Vector]] = {
     "parallel": parallel,
     "hold": hold,
@@ -196,6 +203,7 @@ MATRICES: dict[str, Callable[[Linearised, float], Vector]] = {
     "iterate-mixed": iterate,
     "iterate-newton": iterate,
     "implicit": implicit,
+    "exchange": exchange,
 }
 
 

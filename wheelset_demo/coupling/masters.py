@@ -11,8 +11,9 @@ One line a master; w is the wrench of the contact, u its inputs, h the communica
     iterate-mixed   the same, by Anderson's mixing of the wrenches tried
     iterate-newton  the same, by quasi-Newton steps from the FMU's directional derivatives
     implicit        one linearly implicit step (ros2) with the FMU's directional derivatives
+    exchange        model exchange: Runge-Kutta of order 4 with the contact in every stage
 
-The last four roll the FMU back, the others only where it discards a step.
+The iterations and implicit roll the FMU back, the others only where it discards a step.
 """
 
 from __future__ import annotations
@@ -384,6 +385,34 @@ class Implicit(Master):
         self._age, self._step = 0, step
 
 
+class Exchange(Master):
+    """No co-simulation: the FMU is evaluated in each stage of an explicit step of order 4."""
+
+    name = "exchange"
+
+    def begin(self, time: float, motion: Vector) -> Point:
+        """See Master."""
+        self.slave.begin_exchange(time, motion)
+        return super().begin(time, motion)
+
+    def advance(self, point: Point, step: float) -> Point:
+        """See Master."""
+
+        def rates(past: float, motion: Vector) -> Vector:
+            wrench = self.slave.evaluate(point.time + past, motion).wrench
+            return self.side.rates(point.time + past, motion, wrench)
+
+        half, start = 0.5 * step, point.motion
+        a = self.side.rates(point.time, start, point.heard.wrench)
+        b = rates(half, start + half * a[:MOTION])
+        c = rates(half, start + half * b[:MOTION])
+        d = rates(step, start + step * c[:MOTION])
+        change = step / 6 * (a + 2 * b + 2 * c + d)
+        motion = start + change[:MOTION]
+        heard = self.slave.evaluate(point.time + step, motion)
+        return point.next(step, motion, heard, float(change[MOTION]))
+
+
 MASTERS: dict[str, type[Master]] = {
     kind.name: kind
     for kind in (
@@ -396,5 +425,6 @@ MASTERS: dict[str, type[Master]] = {
         IterateMixed,
         IterateNewton,
         Implicit,
+        Exchange,
     )
 }

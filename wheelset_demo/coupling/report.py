@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import html
 import io
+import math
+from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -16,11 +18,13 @@ STYLE = """body{font:15px/1.5 sans-serif;max-width:70em;margin:2em auto;padding:
 table{border-collapse:collapse}
 td,th{padding:.2em .7em;text-align:right;border-bottom:1px solid #ccc}
 td:first-child,th:first-child{text-align:left}svg{max-width:100%;height:auto}"""
-WORDS = (
-    "Largest stable communication step of a wheelset whose contact is in an FMU: by runs, and in "
-    "brackets by the eigenvalues of one step. Energy: what the coupling makes or loses in parts of "
-    "the friction work, at half of the largest step and at 1 ms where that is stable."
+HEADS = (
+    "Largest stable communication step by runs of the FMU",
+    "The same by the eigenvalues of one step",
+    "Energy made or lost by the coupling at half of that step, in parts of the friction work",
+    "The same at 1 ms, where that is stable",
 )
+NAN_TEXT = "failed"
 
 
 def step_text(step: float) -> str:
@@ -36,51 +40,42 @@ def share_text(found: Balance | None) -> str:
     """Of friction work."""
     if found is None:
         return "-"
-    return f"{found.share:.0e}" if found.share == found.share else "failed"
+    return NAN_TEXT if math.isnan(found.error) else f"{found.share:.0e}"
 
 
-def table_of(study: Study) -> list[list[str]]:
-    """Header and rows."""
-    head = ["speed", *study.masters]
-    rows = [head]
-    for speed in study.speeds:
-        cells = [f"{speed.speed:g} m/s"]
-        for name in study.masters:
-            bound = next(r.bound for r in study.of(name) if r.bound.speed == speed.speed)
-            cells.append(f"{step_text(bound.by_runs)} ({step_text(bound.by_matrix)})")
-        rows.append(cells)
-    return rows
+CELLS: tuple[Callable[[Row], str], ...] = (
+    lambda row: step_text(row.bound.by_runs),
+    lambda row: step_text(row.bound.by_matrix),
+    lambda row: share_text(row.half),
+    lambda row: share_text(row.asked),
+)
 
 
-def energy_table_of(study: Study) -> list[list[str]]:
-    """Header and rows."""
-    rows = [["energy", *study.masters]]
-    for speed in study.speeds:
-        found = [
-            next(r for r in study.of(name) if r.bound.speed == speed.speed)
-            for name in study.masters
-        ]
-        cells = [f"{share_text(r.half)} / {share_text(r.asked)}" for r in found]
-        rows.append([f"{speed.speed:g} m/s", *cells])
-    return rows
+def tables_of(study: Study) -> list[tuple[str, list[list[str]]]]:
+    """Headlines and rows, masters over speeds in m/s."""
+    head = ["m/s", *(f"{s.speed:g}" for s in study.speeds)]
+    return [
+        (text, [head, *([name, *map(cell, study.of(name))] for name in study.masters)])
+        for text, cell in zip(HEADS, CELLS, strict=True)
+    ]
 
 
 def text_of(study: Study) -> str:
     """For the terminal."""
-    blocks = [f"scene: {study.scene}", WORDS]
-    for table in (table_of(study), energy_table_of(study)):
+    blocks = [f"scene: {study.scene}"]
+    for text, table in tables_of(study):
         widths = [max(len(row[k]) for row in table) for k in range(len(table[0]))]
         lines = ["  ".join(c.rjust(w) for c, w in zip(row, widths, strict=True)) for row in table]
-        blocks.append("\n".join(lines))
+        blocks.append("\n".join([text, *lines]))
     return "\n\n".join(blocks)
 
 
 def markdown_of(study: Study) -> str:
-    """The same tables for documents."""
+    """The same for documents."""
     blocks = []
-    for head, *rows in (table_of(study), energy_table_of(study)):
+    for text, (head, *rows) in tables_of(study):
         lines = [head, ["---"] * len(head), *rows]
-        blocks.append("\n".join("| " + " | ".join(cells) + " |" for cells in lines))
+        blocks.append(text + "\n\n" + "\n".join("| " + " | ".join(c) + " |" for c in lines))
     return "\n\n".join(blocks)
 
 
@@ -94,7 +89,7 @@ def row_of(row: Row) -> dict[str, Any]:
     """One row of dict_of()."""
     found: dict[str, Any] = asdict(row.bound)
     for key, one in (("half", row.half), ("at_1_ms", row.asked)):
-        failed = one is None or one.error != one.error
+        failed = one is None or math.isnan(one.error)
         found[key] = None if failed else {**asdict(one), "share": one.share}
     return found
 
@@ -140,17 +135,18 @@ def page_of(study: Study) -> str:
     """Self-contained HTML."""
     svg = svg_of(study)
     tables = []
-    for table in (table_of(study), energy_table_of(study)):
+    for text, table in tables_of(study):
         rows = []
         for k, cells in enumerate(table):
             tag = "td" if k else "th"
             rows.append("".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in cells))
-        tables.append("<table>" + "".join(f"<tr>{row}</tr>" for row in rows) + "</table>")
+        content = "".join(f"<tr>{row}</tr>" for row in rows)
+        tables.append(f"<h2>{html.escape(text)}</h2><table>{content}</table>")
     return (
         '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>Co-simulation'
         f"</title><style>{STYLE}</style></head><body><h1>Co-simulation: stable steps</h1>"
-        f"<p>Scene {html.escape(study.scene)}. {html.escape(WORDS)}</p>"
-        f"{svg[svg.index('<svg') :]}{'<br>'.join(tables)}</body></html>\n"
+        f"<p>Scene {html.escape(study.scene)}. Points are runs, lines eigenvalues.</p>"
+        f"{svg[svg.index('<svg') :]}{''.join(tables)}</body></html>\n"
     )
 
 

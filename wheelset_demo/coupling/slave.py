@@ -47,15 +47,7 @@ class ContactSlave:
         what masters need."""
         from fmpy import extract, read_model_description
         from fmpy.fmi1 import FMICallException
-        from fmpy.fmi2 import (
-            FMU2Slave,
-            calloc,
-            fmi2CallbackAllocateMemoryTYPE,
-            fmi2CallbackFreeMemoryTYPE,
-            fmi2CallbackFunctions,
-            fmi2CallbackLoggerTYPE,
-            free,
-        )
+        from fmpy.fmi2 import FMU2Slave
 
         description = read_model_description(str(path))
         references = {v.name: v.valueReference for v in description.modelVariables}
@@ -80,24 +72,35 @@ class ContactSlave:
         self._message = ""
         self._folder = tempfile.mkdtemp()
         extract(str(path), self._folder)
-        callbacks = fmi2CallbackFunctions()
-        callbacks.logger = fmi2CallbackLoggerTYPE(self._hear)
-        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
-        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
-        self._slave: Any = FMU2Slave(
-            guid=description.guid,
+        self._description = description
+        self._slave: Any = self._instance(FMU2Slave, description.coSimulation)
+        self._model: Any = None
+        self.steps = 0
+
+    def _instance(self, kind: Any, interface: Any) -> Any:
+        """An instance of this FMU whose messages are kept."""
+        from fmpy import fmi2
+
+        callbacks = fmi2.fmi2CallbackFunctions()
+        callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(self._hear)
+        callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmi2.calloc)
+        callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmi2.free)
+        found = kind(
+            guid=self._description.guid,
             unzipDirectory=self._folder,
-            modelIdentifier=description.coSimulation.modelIdentifier,
+            modelIdentifier=interface.modelIdentifier,
             instanceName="contact",
         )
-        self._slave.instantiate(callbacks=callbacks, loggingOn=True)
-        self.steps = 0
+        found.instantiate(callbacks=callbacks, loggingOn=True)
+        return found
 
     def __enter__(self) -> ContactSlave:
         return self
 
     def __exit__(self, *_: object) -> None:
         self._slave.freeInstance()
+        if self._model is not None:
+            self._model.freeInstance()
         shutil.rmtree(self._folder, ignore_errors=True)
 
     def _hear(self, _environment: Any, _name: Any, _status: int, _kind: Any, text: bytes) -> None:
@@ -137,6 +140,33 @@ class ContactSlave:
     def outputs(self) -> Outputs:
         """At the end of the last step."""
         values = self._call(self._slave.getReal, self._outputs)
+        return Outputs(np.array(values[:6]), values[6], values[7])
+
+    def begin_exchange(self, time: float, motion: Vector) -> None:
+        """The same for model exchange, by an instance of its own."""
+        call = self._call
+        if self._model is None:
+            from fmpy.fmi2 import FMU2Model
+
+            if self._description.modelExchange is None:
+                raise CouplingFailure("the FMU has no model exchange: its contact has a history")
+            self._model = self._instance(FMU2Model, self._description.modelExchange)
+        model = self._model
+        call(model.reset)
+        call(model.setupExperiment, None, time)
+        call(model.enterInitializationMode)
+        call(model.setReal, self._inputs, motion[self.used].tolist())
+        call(model.exitInitializationMode)
+        call(model.newDiscreteStates)
+        call(model.enterContinuousTimeMode)
+
+    def evaluate(self, time: float, motion: Vector) -> Outputs:
+        """At a time and a motion, by model exchange: no step, no lag."""
+        model, call = self._model, self._call
+        call(model.setTime, time)
+        call(model.setReal, self._inputs, motion[self.used].tolist())
+        self.steps += 1
+        values = call(model.getReal, self._outputs)
         return Outputs(np.array(values[:6]), values[6], values[7])
 
     def mean_wrench(self) -> Vector:

@@ -36,7 +36,9 @@ DURATION = 0.05  # s
 FEWEST, MOST, MOST_ITERATED = 60, 2000, 300
 LOST = 5.0  # times the first size
 SMALLEST, LARGEST = 1e-6, 2e-2  # s
-CLOSE = 1.05  # ratio of the steps between which the bound is found
+CLOSE = 1.06  # ratio of the steps between which the bound is found
+BESIDE = 0.972  # of the eigenvalues' bound: where runs begin, on either side
+WIDER = 1.25
 REFERENCE_STEP = 5e-4  # s
 # of the start: m of the lateral position, m of the bounce, m/s of sliding: mostly bounce, as slow
 # waves would hide its growth
@@ -58,13 +60,17 @@ class Bound:
 
 
 class Rolling:
-    """Straight running at a speed, what disturbs it and how the disturbance is measured."""
+    """Straight running at a speed, what disturbs it and how the disturbance is measured.
+
+    system: linearised. scale: [11], J^0.5 over units of coordinates and velocities. start: [12],
+    the disturbed motion.
+    """
 
     def __init__(self, scene: WheelsetScene, speed: float) -> None:
         """Raises CaseError, ContactFailure."""
         self.scene, self.speed = scene.at_speed(speed, 0.0), speed
         self.system: Linearised = linearise(scene, speed)
-        self._scale = np.sqrt(energy_weights(self.system))
+        self.scale = np.sqrt(energy_weights(self.system))
         disturbed = np.zeros(len(KEPT))
         disturbed[[1, 2, 3]] = [OFFSET, BOUNCE, BOUNCE / ARM]
         disturbed[PLACES + 1], disturbed[[PLACES + 4, PLACES + 5]] = SLIDING, SLIDING / ARM
@@ -77,7 +83,7 @@ class Rolling:
         """J^0.5, of the disturbance."""
         off = (motion - self.system.motion)[KEPT]
         off[0] -= self.speed * time
-        return float(np.linalg.norm(self._scale * off))
+        return float(np.linalg.norm(self.scale * off))
 
     def reference(self, duration: float) -> list[float]:
         """Sizes in the reference run over a duration (s)."""
@@ -143,22 +149,43 @@ def is_stable(rolling: Rolling, master: Master, step: float) -> bool:
     return growth_of(sizes, duration) <= allowed
 
 
-def largest(good: Callable[[float], bool]) -> float:
-    """Largest step (s) that is good: down by halves until two in turn are, then by bisection."""
-    step, bad = LARGEST, 0.0
-    while not good(step) or (step < LARGEST and not good(0.5 * step)):
-        bad = step
+def largest(good: Callable[[float], bool], guess: float = 0.0) -> float:
+    """Largest step (s) that is good, with one that is not close above it; 0: none, or LARGEST.
+
+    guess: where to look first, after longer steps have been tried by halves: two good ones in turn
+    end that.
+    """
+    step = LARGEST
+    while step > 2 * max(guess, SMALLEST):
+        if good(step) and good(0.5 * step):
+            return between(good, step, 2 * step) if step < LARGEST else step
         step *= 0.5
-        if step < SMALLEST:
+    guess = guess or SMALLEST
+    low, high = min(guess * BESIDE, LARGEST), min(guess / BESIDE, LARGEST)
+    if good(low):
+        while good(high):
+            if high >= LARGEST:
+                return LARGEST
+            low, high = high, min(WIDER * high, LARGEST)
+        return between(good, low, high)
+    high = low
+    while not good(low):
+        if low <= SMALLEST:
             return 0.0
-    while bad and bad > CLOSE * step:
-        middle = math.sqrt(step * bad)
-        step, bad = (middle, bad) if good(middle) else (step, middle)
-    return step
+        low, high = max(low / WIDER, SMALLEST), low
+    return between(good, low, high)
+
+
+def between(good: Callable[[float], bool], low: float, high: float) -> float:
+    """Of a good step and one that is not, by bisection."""
+    while high > CLOSE * low:
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if good(middle) else (low, middle)
+    return low
 
 
 def bound_by_runs(rolling: Rolling, slave: ContactSlave, name: str) -> tuple[float, int]:
-    """Largest stable step (s) and the number of runs."""
+    """Largest stable step (s) and the number of runs, which begin beside the eigenvalues' bound."""
     side = Multibody(rolling.scene)
     tried: dict[float, bool] = {}
 
@@ -167,7 +194,7 @@ def bound_by_runs(rolling: Rolling, slave: ContactSlave, name: str) -> tuple[flo
             tried[step] = is_stable(rolling, MASTERS[name](side, slave), step)
         return tried[step]
 
-    return largest(good), len(tried)
+    return largest(good, bound_by_matrix(rolling.system, name)), len(tried)
 
 
 def bound_by_matrix(system: Linearised, name: str) -> float:
