@@ -14,6 +14,7 @@ from railpatch.commands import (
     show_scene_option,
 )
 from railpatch.errors import CaseError, ProfileError
+from railpatch.output import check_output, files_of
 
 SCENE = "hunting.toml"
 # of the critical speed by eigenvalues: where the runs in time begin
@@ -84,7 +85,9 @@ def hunting(
     from wheelset_demo.system import ContactFailure
 
     try:
-        loaded = load_wheelset_scene(scene_file(SCENE) if scene is None else scene)
+        file = scene_file(SCENE) if scene is None else scene
+        loaded = load_wheelset_scene(file)
+        check_output(output, file, *files_of(loaded.case, file.parent))
         found = search(loaded, lowest, highest, simulate)
         if output is not None:
             write_log(loaded, found, speed, output)
