@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
+
 from rig_model.balance import Balance
 from rig_model.scene import SIDES, RigScene
 
@@ -32,7 +34,7 @@ class Recorder:
                 "status": balance.status,
                 "evaluations": balance.evaluations,
                 "iterations": balance.iterations,
-                "residuals": balance.residuals,
+                "residuals": np.asarray(balance.residuals).tolist(),
                 "z": balance.z,
                 "roll": balance.roll,
                 "pitch_rate": balance.pitch_rate,

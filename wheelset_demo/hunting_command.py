@@ -131,7 +131,7 @@ def write_log(scene: Any, found: dict[str, Any], speed: float | None, output: Pa
 
     Raises CaseError where there is no critical speed and no other, OSError.
     """
-    from railpatch.report.page import HUNTING
+    from railpatch.log.channels import HUNTING
 
     from wheelset_demo.hunting import long_run, slowest_mode
     from wheelset_demo.simulation import run_scene

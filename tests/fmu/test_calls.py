@@ -160,14 +160,12 @@ def test_wrong_experiments_are_refused(unpacked: Unpack) -> None:
             refused(slave, "SetupExperiment", *arguments)
 
 
-def test_a_wrong_direction_is_an_error_of_the_step(unpacked: Unpack) -> None:
+def test_a_direction_of_0_is_refused(unpacked: Unpack) -> None:
     with Slave(unpacked("patch")).initialize() as slave:
-        assert slave.set({"direction": 0}) == OK
-        refused(slave, "DoStep", Real(0), Real(1e-3), 1)
-        assert "direction" in slave.log[0][2]
-        assert slave.call("Reset") == OK
-        slave.initialize()
+        assert slave.set({"direction": 0}) == ERROR
+        assert "direction is 0, allowed -1 and 1" in slave.log[0][2]
         assert slave.step(0, 1e-3) == OK
+        assert slave.get("direction") == [1]
 
 
 def test_status_of_a_step(unpacked: Unpack) -> None:

@@ -286,7 +286,7 @@ def test_output_derivatives_follow_the_inputs(exact: Callable[..., Fmu]) -> None
     assert found == pytest.approx(wanted, rel=1e-5)
 
 
-def test_one_column_costs_one_solve(exact: Callable[..., Fmu]) -> None:
+def test_entries_are_those_of_the_column(exact: Callable[..., Fmu]) -> None:
     """Entries asked one by one are those of the whole column, to the bit."""
     fmu = exact("rail")
     names = fmu.names("output", "Real")

@@ -43,7 +43,10 @@ std::filesystem::path write_scene() {
   const std::string body = text.str();
   char end[32];
   std::snprintf(end, sizeof end, "end %08x\n", railpatch::fmu::crc32(body.data(), body.size()));
-  const auto folder = std::filesystem::temp_directory_path() / "railpatch fuzz %41 #";
+  // its own, as others may run beside it
+  std::string own = (std::filesystem::temp_directory_path() / "railpatch_XXXXXX").string();
+  if (mkdtemp(own.data()) == nullptr) std::abort();
+  const auto folder = std::filesystem::path(own) / "fuzz %41 #";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "scene.txt", std::ios::binary) << body << end;
   return folder;
@@ -281,7 +284,8 @@ class Fuzzer {
 };
 
 TEST(Fuzz, RandomCallsNeverCrash) {
-  const std::string location = write_scene().string();
+  const std::filesystem::path folder = write_scene();
+  const std::string location = folder.string();
   int derivatives_found[2] = {};
   const char *asked = std::getenv("RAILPATCH_FUZZ_SEEDS");
   const unsigned long seeds = asked != nullptr ? std::strtoul(asked, nullptr, 10) : 10000;
@@ -295,6 +299,8 @@ TEST(Fuzz, RandomCallsNeverCrash) {
     }
     derivatives_found[interface_of(seed)] += fuzzer.derivatives_found;
   }
+  std::error_code ignored;
+  std::filesystem::remove_all(folder.parent_path(), ignored);
   // the calls do come far
   EXPECT_GT(derivatives_found[fmi2CoSimulation], 100);
   EXPECT_GT(derivatives_found[fmi2ModelExchange], 100);

@@ -18,7 +18,7 @@ from fmu_scenes import OWN, SCENES
 from railpatch.case import load_scene
 from railpatch.errors import CaseError
 from railpatch.fmu import pack_fmu
-from railpatch.fmu.libraries import libraries_of
+from railpatch.fmu.libraries import libraries_of, stamp
 from slave import Fmu, Slave
 
 PLATFORMS = {
@@ -43,10 +43,24 @@ def folder(tmp_path: Path) -> Path:
     with zipfile.ZipFile(tmp_path / "lib" / "sources.zip", "w") as archive:
         for name, content in SOURCES.items():
             archive.writestr(name, content)
+    (tmp_path / "lib" / "stamp.txt").write_text(stamp())
     (tmp_path / "lib" / "licenses").mkdir()
     (tmp_path / "lib" / "licenses" / "Other.txt").write_text("a licence")
     (tmp_path / "lib" / "runtime.txt").write_text("- a runtime library.\n")
     return tmp_path / "lib"
+
+
+@pytest.mark.parametrize("text", [None, "0.0.1 0123456789abcdef"])
+def test_libraries_of_another_version_are_refused(
+    folder: Path, tmp_path: Path, text: str | None
+) -> None:
+    (folder / "stamp.txt").unlink()
+    if text is not None:
+        (folder / "stamp.txt").write_text(text)
+    path = tmp_path / "none.fmu"
+    with pytest.raises(CaseError, match=r"libraries are of another version.*make fmu"):
+        pack_fmu(load_scene(SCENES["patch"]), path, backend=OWN, libraries=folder)
+    assert not path.exists()
 
 
 def test_every_platform_and_the_sources_are_packed(folder: Path, tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from fmu_scenes import MOTIONS, SCENES
 from slave import DISCARD, ERROR, OK, Fmu, Integer, Real, Reference, Size, Slave
 
 Unpack = Callable[..., Fmu]
-HISTORY = ("transient", "transient_patch", "supported", "plastic", "falling", "hot")
+HISTORY = ("transient", "transient_patch", "supported", "springs", "plastic", "falling", "hot")
 NONE = Size(0)
 INSTANTIATED, INITIALIZATION, EVENT, CONTINUOUS, TERMINATED, ERROR_STATE = range(6)
 ALL = {INSTANTIATED, INITIALIZATION, EVENT, CONTINUOUS, TERMINATED, ERROR_STATE}
@@ -186,6 +186,16 @@ def test_offered_where_there_is_no_history(name: str, unpacked: Unpack) -> None:
     assert (fmu.root.find("ModelExchange") is None) == (name in HISTORY)
     with Slave(fmu, exchange=True) as model:
         assert (model.component is None) == (name in HISTORY)
+
+
+def test_parameters_are_set_in_event_mode(unpacked: Unpack) -> None:
+    """FMI 2.0.4, section 3.2.3: in continuous-time mode only continuous inputs and states are."""
+    with brought_to(unpacked("rail"), CONTINUOUS) as model:
+        assert model.set({"friction.coefficient": 0.2}) == ERROR
+        assert "friction.coefficient is a parameter" in model.log[-1][2]
+        assert model.get("friction.coefficient") == [0.3]
+        assert model.call("EnterEventMode") == OK
+        assert model.set({"friction.coefficient": 0.2}) == OK
 
 
 @pytest.mark.parametrize("name", ["rail", "patch", "closed_form", "frictionless"])

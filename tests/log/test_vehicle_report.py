@@ -60,6 +60,20 @@ def test_loads_move_to_the_outside(data):
     assert data.loads[1, "right"][-1] == vehicle.LOAD - 8e3
     # steps are 0.4 m apart
     assert data.width == 5
+    assert "averaged over 2 m of way (5 steps)" in data.averaging
+
+
+def test_steps_far_apart_are_not_averaged(tmp_path):
+    path = tmp_path / "run.mcap"
+    with vehicle.open_log(path) as log:
+        for index in range(0, 20, 4):  # 1.6 m
+            log.write(0.01 * index, **vehicle.step(index))
+    data = vehicle_run(read_run(path))
+    assert data.width == 1
+    values = np.arange(5.0)
+    assert list(data.averaged(values)) == list(values)
+    write_report(path, tmp_path / "page.html")
+    assert "too far apart to average" in _text(tmp_path / "page.html")
 
 
 def test_figures_show_every_wheelset_over_the_distance(data):

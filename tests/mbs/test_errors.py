@@ -64,6 +64,19 @@ def test_joint_that_the_model_lacks(joint, message):
         ),
         (samples.case(track={"curvature": 1e-3}), r"track.curvature: value is 0.001, allowed 0"),
         (
+            samples.case(
+                track={"rail_support": {"stiffness": [2e7, 5e7]}}, wheelset={"time_step": 1e-3}
+            ),
+            r"wheelset.time_step: value is 0.001, allowed 0: forces are asked for several times",
+        ),
+        (
+            {
+                **samples.case(wheelset={"time_step": 1e-3}, grid={"element_size": [1e-3, 1e-3]}),
+                "motion": {"regime": "transient_rolling"},
+            },
+            r"motion.regime: value is 'transient_rolling', allowed 'steady_rolling'",
+        ),
+        (
             samples.case(track={"gage": 1.4}),
             r"track.gage: value is 1.4, but the key is unknown.*did you mean 'gauge'",
         ),
@@ -76,6 +89,15 @@ def test_joint_that_the_model_lacks(joint, message):
 def test_case_that_does_not_fit(case, message):
     with pytest.raises(CaseError, match=message):
         ForceElement(samples.model(), "wheelset", case)
+
+
+@pytest.mark.parametrize("asked", [False, True])
+def test_derivatives_need_a_step_and_the_option(asked):
+    """No zeros for what was never found."""
+    case = samples.case(method={"derivatives": asked})
+    element = ForceElement(samples.model(), "wheelset", case)
+    with pytest.raises(CaseError):
+        element.derivatives()
 
 
 def test_lists_of_different_length():

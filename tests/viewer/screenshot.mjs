@@ -1,17 +1,20 @@
-// Opens a log and a layout in Foxglove Studio, in a browser without a window, and saves a picture.
+// Opens a log and a layout in Foxglove Studio, in a browser without a window, and saves pictures:
+// PICTURE.png, and PICTURE-tab.png with each further tab of plots.
 //
 // node screenshot.mjs MODULES CHROMIUM RUN.mcap LAYOUT.json TIME_S PICTURE.png
 
-import { createReadStream, statSync } from "node:fs";
+import { createReadStream, readFileSync, statSync } from "node:fs";
 import { createServer } from "node:http";
 import { createRequire } from "node:module";
 import path from "node:path";
 
 const PLOTS_MS = 15_000;
+const TAB_MS = 6_000;
 const [modules, browserPath, run, layout, time, picture] = process.argv.slice(2);
 const here = import.meta.dirname ?? path.dirname(new URL(import.meta.url).pathname);
 const require = createRequire(path.resolve(modules, "driver.js"));
 const puppeteer = require("puppeteer-core");
+const { tabs } = JSON.parse(readFileSync(layout)).configById["Tab!tabs"];
 
 const types = { ".html": "text/html", ".js": "text/javascript", ".json": "application/json" };
 types[".wasm"] = "application/wasm";
@@ -72,6 +75,17 @@ try {
   await page.screenshot({ path: picture });
   const canvases = await page.$$eval("canvas", (found) => found.length);
   console.log(`${picture}: ${canvases} canvases`);
+  // the other tabs of plots
+  for (const [number, { title }] of tabs.entries()) {
+    if (number === 0) continue;
+    const tab = await page.$(`input[value="${title}"]`);
+    if (!tab) throw new Error(`the viewer shows no tab ${title}`);
+    await tab.click();
+    await new Promise((done) => setTimeout(done, TAB_MS));
+    const file = picture.replace(/\.png$/, `-${title.toLowerCase()}.png`);
+    await page.screenshot({ path: file });
+    console.log(file);
+  }
   for (const problem of problems) console.error(`page: ${problem}`);
   if (problems.size || canvases < 2) process.exitCode = 1;
 } finally {

@@ -224,6 +224,10 @@ def test_wrong_calls(tmp_path: Path):
     assert "--speeds: value is '0'" in invoke("--speeds", 0).stderr
     assert "allowed parallel, hold" in invoke("--masters", "other").stderr
     assert "ends in .html or .svg" in invoke("-o", tmp_path / "a.png").stderr
+    history = tmp_path / "history.toml"
+    layer = "[layer]\nshear_modulus = 8e9\nthickness = 5e-5\nyield_stress = 2e8\n\n[friction]"
+    history.write_text(scenes.text_of("hunting.toml").replace("[friction]", layer))
+    assert "a scene of wheels without history" in invoke(history, "--quick").stderr
     ran = invoke(tmp_path / "none.toml")
     assert ran.exit_code == 2
     assert "none.toml" in ran.stderr

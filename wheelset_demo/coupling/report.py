@@ -102,7 +102,7 @@ def svg_of(study: Study) -> str:
     from matplotlib import pyplot
 
     matplotlib.rcParams.update({"svg.hashsalt": "railpatch", "font.size": 9})
-    figure, (steps, energy) = pyplot.subplots(1, 2, figsize=(11, 4.6), layout="constrained")
+    figure, (steps, energy) = pyplot.subplots(1, 2, figsize=(12, 4.6), layout="constrained")
     speeds = [s.speed for s in study.speeds]
     for k, name in enumerate(study.masters):
         rows, color = study.of(name), f"C{k}"
@@ -124,7 +124,9 @@ def svg_of(study: Study) -> str:
     for panel in (steps, energy):
         panel.set(xscale="log", yscale="log", xlabel="speed [m/s]")
         panel.grid(alpha=0.3, which="both")
-    steps.legend(fontsize=7.5)
+    # beside the panels, where it hides no point
+    handles, labels = steps.get_legend_handles_labels()
+    energy.legend(handles, labels, fontsize=7.5, loc="upper left", bbox_to_anchor=(1.01, 1.0))
     text = io.StringIO()
     figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
     pyplot.close(figure)

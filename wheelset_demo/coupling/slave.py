@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
+from railpatch.errors import CaseError
 from railpatch.pinocchio.element import STATE
 
 from wheelset_demo.cosimulation import WRENCH
@@ -43,7 +44,7 @@ class ContactSlave:
     """Motions go in, wrenches come out; both as in railpatch.pinocchio."""
 
     def __init__(self, path: str | Path, substeps: int = 1) -> None:
-        """substeps: within a communication step, for means. Raises ValueError for an FMU without
+        """substeps: within a communication step, for means. Raises CaseError for an FMU without
         what masters need."""
         from fmpy import extract, read_model_description
         from fmpy.fmi1 import FMICallException
@@ -54,9 +55,9 @@ class ContactSlave:
         wanted = [*WRENCH, *MEAN, *POWERS, "substeps"]
         missing = [name for name in wanted if name not in references]
         if missing or not description.coSimulation.providesDirectionalDerivative:
-            raise ValueError(
-                f"{path}: {', '.join(missing) or 'directional derivatives'} missing, allowed an "
-                "FMU packed with averages and derivatives"
+            raise CaseError(
+                f"scene: its FMU has no {', '.join(missing) or 'directional derivatives'}, allowed "
+                "a scene of wheels without history, packed with averages and derivatives"
             )
         names = [f"wheelset.{name}" for name in STATE]
         # round wheels on rails that do not change: no x, no pitch

@@ -1,8 +1,8 @@
 """Builds the FMU's libraries for all platforms: python build.py FOLDER
 
 Everything is made below FOLDER; what `railpatch fmu --libraries` takes is in FOLDER/lib. Needs the
-Python packages ziglang (Clang for all systems, with their headers) and fmpy (the headers of FMI),
-CMake, Ninja and Eigen. --platforms names some of those below.
+Python packages railpatch (of this checkout), ziglang (Clang for all systems, with their headers)
+and fmpy (the headers of FMI), CMake, Ninja and Eigen. --platforms names some of those below.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import sys
 from pathlib import Path
 
 import gather
+from railpatch.fmu.libraries import stamp
 
 ROOT = Path(__file__).parents[3]
 # FMI's name (2.0 has none for ARM: that of 3.0): target of the compiler, CMake's system, processor
@@ -98,12 +99,15 @@ def main() -> None:
     for cache in ("ZIG_GLOBAL_CACHE_DIR", "ZIG_LOCAL_CACHE_DIR"):
         os.environ.setdefault(cache, str(folder / "cache"))
     compiler = package("ziglang")
+    # nothing of an earlier run is packed
+    shutil.rmtree(folder / "lib", ignore_errors=True)
     for name in arguments.platforms:
         build(name, folder, compiler / "zig")
     variables = folder / arguments.platforms[0] / "plugins" / "fmu" / "generated" / "variables.inc"
     headers = package("fmpy") / "c-code"
     gather.write(gather.sources(ROOT, variables, headers), folder / "lib" / "sources.zip")
     add_licences(folder / "lib" / "licenses", compiler)
+    (folder / "lib" / "stamp.txt").write_text(stamp() + "\n")
 
 
 if __name__ == "__main__":

@@ -34,7 +34,6 @@ def sources(root: Path, variables: Path, headers: Path) -> dict[str, bytes]:
     plugin = [
         *(root / "plugins" / "common").glob("*.hpp"),
         *(root / "plugins" / "fmu" / "src").glob("*.[ch]pp"),
-        root / "plugins" / "fmu" / "unload" / "runtime.cpp",
     ]
     for path in core + plugin:
         if path.name != "fft_fftw.cpp":  # the other backend

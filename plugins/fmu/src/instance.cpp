@@ -249,7 +249,17 @@ fmi2Status Instance::run_contact(const Call &call, double time, double time_step
   input_.distance = mode_ == Mode::initialization || !(input_.rolling_speed > 0)
                         ? options_.distance
                         : input_.rolling_speed * time_step;
-  if (error == RP_OK) error = rp_step(contact_.get(), &input_, &outputs_.result, &message);
+  if (error == RP_OK) {
+    error = rp_step(contact_.get(), &input_, &outputs_.result, &message);
+    // each input is in its range: what does not fit together, a creep force beyond friction, may
+    // fit after a smaller step
+    if (error == RP_ERROR_VALUE) {
+      log_.say(fmi2Discard, Category::discard,
+               std::string(call.name) + ": at time " + text_of(time) + " " + message.text +
+                   ": take a smaller step or other inputs");
+      return fmi2Discard;
+    }
+  }
   if (error != RP_OK)
     return refuse(call, message.text[0] != '\0' ? message.text : rp_error_text(error));
   const rp_status status = outputs_.result.status;
@@ -343,6 +353,14 @@ bool Instance::settable(const Call &call, int index, double value) {
   const Variable &variable = *item.variable;
   if (variable.role == Role::output) {
     refuse(call, item.name + " is an output");
+    return false;
+  }
+  if (mode_ == Mode::continuous && variable.role == Role::parameter) {
+    refuse(call, item.name + " is a parameter, which may be set in event mode");
+    return false;
+  }
+  if (variable.reference == direction && value == 0) {
+    refuse(call, item.name + " is 0, allowed -1 and 1");
     return false;
   }
   if (value >= variable.low && value <= variable.high) return true;

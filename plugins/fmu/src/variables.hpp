@@ -15,8 +15,8 @@ enum class Role : uint8_t { input, output, parameter };
 inline constexpr size_t no_field = SIZE_MAX;
 
 // value references of the parameters, which are no fields
-inline constexpr uint32_t friction_coefficient = 31, substeps = 32, wheelset_mass = 33,
-                          wheelset_inertia = 34;
+inline constexpr uint32_t direction = 27, friction_coefficient = 31, substeps = 32,
+                          wheelset_mass = 33, wheelset_inertia = 34;
 // and of an output that is none
 inline constexpr uint32_t largest_step = 59;
 

@@ -2,6 +2,10 @@
 
 #include "workers.hpp"
 
+#if defined(__unix__) || defined(__APPLE__)
+#include <unistd.h>
+#endif
+
 #include <chrono>
 #include <ctime>
 
@@ -19,13 +23,33 @@ double thread_seconds() {
   return std::chrono::duration<double>(since).count();
 }
 
-}  // namespace
-
-Workers::Workers(int threads) {
-  for (int k = 1; k < threads; ++k) threads_.emplace_back([this] { wait_for_tasks(); });
+long process_number() {
+#if defined(__unix__) || defined(__APPLE__)
+  return static_cast<long>(getpid());
+#else
+  return 0;
+#endif
 }
 
-Workers::~Workers() {
+}  // namespace
+
+Workers::Workers(int threads) : process_(process_number()) {
+  try {
+    for (int k = 1; k < threads; ++k) threads_.emplace_back([this] { wait_for_tasks(); });
+  } catch (...) {
+    stop();
+    throw;
+  }
+}
+
+Workers::~Workers() { stop(); }
+
+void Workers::stop() {
+  // threads stay behind in the process that a fork came from
+  if (process_number() != process_) {
+    for (std::thread &thread : threads_) thread.detach();
+    return;
+  }
   {
     std::lock_guard<std::mutex> guard(mutex_);
     stop_ = true;

@@ -12,7 +12,8 @@ namespace railpatch::python {
 
 class Workers {
  public:
-  // threads: >= 1, of which the caller is one: 1 makes none
+  // threads: >= 1, of which the caller is one: 1 makes none. Raises std::system_error where the
+  // system has none left.
   explicit Workers(int threads);
   ~Workers();
   Workers(const Workers &) = delete;
@@ -25,9 +26,11 @@ class Workers {
   double seconds();
 
  private:
+  void stop();
   void wait_for_tasks();
   void take_items();
 
+  const long process_;
   std::mutex mutex_;
   std::condition_variable begin_, end_;
   const std::function<void(size_t)> *task_ = nullptr;

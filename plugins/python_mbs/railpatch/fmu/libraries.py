@@ -1,17 +1,19 @@
 """What was built beforehand: the libraries of all platforms, the sources, and their licences.
 
 A folder holds PLATFORM/railpatch_fmu_BACKEND.ENDING for every platform, by FMI's name; where it was
-made by `make fmu` also sources.zip, licenses/ and runtime.txt.
+made by `make fmu` also sources.zip, licenses/, runtime.txt and stamp.txt.
 """
 
 from __future__ import annotations
 
+import hashlib
 import zipfile
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from railpatch._core import version
 from railpatch.errors import CaseError
 from railpatch.fmu.document import notice
 
@@ -47,10 +49,22 @@ def ending(platform: str) -> str:
     return ENDINGS[platform.rpartition("-")[2][:3]]
 
 
+def stamp() -> str:
+    """What libraries and this package must have in common: version, table of variables."""
+    table = (resources.files("railpatch.fmu") / "variables.toml").read_bytes()
+    return f"{version()} {hashlib.sha256(table).hexdigest()[:16]}"
+
+
 def libraries_of(backend: str, folder: Path | None = None) -> Libraries:
     """Those of a folder; without one those that were built with the package. Raises CaseError."""
     own = resources.files("railpatch.fmu")
     root: Traversable = own / "lib" if folder is None else folder
+    made = root / "stamp.txt"
+    if folder is not None and (not made.is_file() or made.read_text().strip() != stamp()):
+        raise CaseError(
+            f"--libraries: value is {str(folder)!r}, whose libraries are of another version, "
+            "allowed those of this one: run `make fmu` again"
+        )
     binaries = {}
     for place in sorted(root.iterdir(), key=lambda p: p.name) if root.is_dir() else ():
         if place.name[:3] in ENDINGS or "-" in place.name:

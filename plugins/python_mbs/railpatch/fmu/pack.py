@@ -115,14 +115,15 @@ def contents_of(
     check_regime(scene)
     config = config_of(scene)
     kind = kind_of(scene.case, _core.config_numbers(config), averages=options.averages)
+    check_options(options, kind)
     # solved once, so that an FMU is never made of a scene that the core refuses or cannot start
     kinds = derivative_kind(
         scene, name, asked=options.derivatives != "none" and not kind.has_history
     )
     provided = kinds == "exact" or (kinds == "differences" and options.derivatives == "always")
     if options.largest_step:
-        if not provided or kind.kind == "patch":
-            raise CaseError("--largest-step: given, allowed with wheels and derivatives only")
+        if not provided:
+            raise CaseError("--largest-step: given, allowed with derivatives only")
         kind = replace(kind, conditions=kind.conditions | {"largest step"})
     labels = Labels(
         identifier=identifier_of(stem) + SUFFIXES[backend],
@@ -137,6 +138,18 @@ def contents_of(
     variables = variables_of(table, kind, scene.case)
     creep_table = config["creep_table"].tobytes() if "creep_table" in config else None
     return Contents(labels, table, kind, variables, scene, backend, libraries, creep_table)
+
+
+def check_options(options: Options, kind: Kind) -> None:
+    """What a scene of this kind cannot have. Raises CaseError."""
+    for name, given in (("averages", options.averages), ("largest-step", options.largest_step)):
+        if given and kind.kind == "patch":
+            raise CaseError(f"--{name}: given, allowed with wheels only")
+    if options.derivatives == "always" and kind.has_history:
+        raise CaseError(
+            "--derivatives: value is 'always', allowed 'exact' (none in a scene whose steps depend "
+            "on earlier ones) or 'none'"
+        )
 
 
 def check_regime(scene: Scene) -> None:
@@ -217,8 +230,11 @@ def files_of(contents: Contents, guid: str) -> dict[str, bytes]:
 
 
 def epoch() -> int:
-    """s, the date that the archive carries."""
-    return max(FIRST_DATE, int(os.environ.get("SOURCE_DATE_EPOCH", time.time())))
+    """s, the date that the archive carries. Raises CaseError."""
+    given = os.environ.get("SOURCE_DATE_EPOCH", str(int(time.time())))
+    if not given.isdecimal():
+        raise CaseError(f"SOURCE_DATE_EPOCH: value is {given!r}, allowed a number of seconds")
+    return max(FIRST_DATE, int(given))
 
 
 def entry(path: str) -> zipfile.ZipInfo:

@@ -80,8 +80,8 @@ def has_history(case: Case) -> bool:
             return True
         if case.layer is not None and case.layer.is_plastic:
             return True
-    support = None if isinstance(case, PatchCase) else case.track.rail_support
-    return support is not None and any(support.damping)
+    # the rail's velocity counts as creepage, with dampers or without
+    return not isinstance(case, PatchCase) and case.track.rail_support is not None
 
 
 def along_conditions(case: WheelRailCase | WheelsetCase) -> set[str]:

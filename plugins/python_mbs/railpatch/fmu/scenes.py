@@ -30,8 +30,8 @@ TRACK: dict[str, Any] = {
 
 def kinds() -> list[str]:
     """Names of the scenes that come with the package, one for each kind of FMU."""
-    found = (resources.files("railpatch.fmu") / "kinds").iterdir()
-    return sorted(entry.name.removesuffix(".toml") for entry in found)
+    found = (entry.name for entry in (resources.files("railpatch.fmu") / "kinds").iterdir())
+    return sorted(name.removesuffix(".toml") for name in found if name.endswith(".toml"))
 
 
 def kind_scene(name: str) -> tuple[str, Scene]:

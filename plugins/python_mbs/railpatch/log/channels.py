@@ -18,6 +18,9 @@ from functools import cache
 STATUSES = ("converged", "no_contact", "not_converged", "out_of_range")
 SIDES = ("left", "right")
 
+# attached by railpatch hunting: what its search has found
+HUNTING = "hunting.json"
+
 # codes of element_division, in this order from 0
 ELEMENT_STATES = ("exterior", "stick", "slip", "plastic")
 

@@ -108,7 +108,7 @@ class ForceElement:
         )
         self._tracks, self._rails = self._core.tracks, self._core.rails
         # of each wheelset, and the number of solves at which they were found
-        self._derivatives = [(0, np.zeros((2, 6, len(STATE)))) for _ in self.joints]
+        self._derivatives = [(-1, np.zeros((2, 6, len(STATE)))) for _ in self.joints]
         self._joint_count = model.njoints
         self._states, self._power = self._core.state, self._core.power
         motion, wrench = self._core.motion, self._core.wrench
@@ -180,6 +180,7 @@ class ForceElement:
                     "allowed a tolerance at which they converge"
                 )
             found = np.array([jacobian[side] for side in SIDES])
+            found.flags.writeable = False
             self._derivatives[index] = (self.solves, found)
         return found
 
@@ -382,6 +383,15 @@ def check_case(case: Any) -> None:
         problems.append(
             f"track.curvature: value is {case.track.curvature}, allowed 0: `tracks` say where the "
             "track is"
+        )
+    several = "forces are asked for several times a step"
+    if case.motion.regime != "steady_rolling":
+        problems.append(
+            f"motion.regime: value is {case.motion.regime!r}, allowed 'steady_rolling': {several}"
+        )
+    if case.wheelset.time_step > 0:
+        problems.append(
+            f"wheelset.time_step: value is {case.wheelset.time_step}, allowed 0: {several}"
         )
     if problems:
         raise CaseError(problems)

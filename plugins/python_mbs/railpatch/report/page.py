@@ -10,7 +10,7 @@ from typing import Any
 
 from plotly.offline import get_plotlyjs
 
-from railpatch.log.channels import ELEMENT_STATES, SIDES
+from railpatch.log.channels import ELEMENT_STATES, HUNTING, SIDES
 from railpatch.log.reader import Run, read_run
 
 from . import balance_figures, figures, reference, tables, vehicle_page
@@ -19,8 +19,6 @@ from .parts import plot, warnings
 from .patch_figure import most_loaded, patch_figure
 from .vehicle import vehicle_run
 
-# attached by railpatch hunting: what its search has found
-HUNTING = "hunting.json"
 _STYLE = """
 :root { color-scheme: light dark; --ink: #1d2126; --soft: #5d6672; --line: #d9dde2;
   --ground: #ffffff; --panel: #f5f7f9; --warn: #fff1d6; --warn-ink: #6b4500; }

@@ -82,6 +82,13 @@ class VehicleRun:
         between = np.median(np.diff(self.along)) if self.count > 1 else 0.0
         return max(1, round(SLIDING / between)) if between > 0 else 1
 
+    @property
+    def averaging(self) -> str:
+        """What averaged() does, in words."""
+        if self.width == 1:
+            return "as logged: steps are too far apart to average over 2 m"
+        return f"averaged over 2 m of way ({self.width} steps)"
+
     def averaged(self, values: np.ndarray) -> np.ndarray:
         """Over 2 m of way, [n]."""
         return uniform_filter1d(values, self.width)

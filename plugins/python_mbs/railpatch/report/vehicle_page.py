@@ -25,7 +25,7 @@ def body(data: VehicleRun, at: float | None) -> str:
         *warnings(data.run, f"{data.count} steps", bad, data.count, "steps"),
         tables.table((), summary(data), "summary"),
         unsolved(data),
-        "<h2>Wheels</h2><p>Y and Q on the rail, Y outward, averaged over 2 m of way.</p>",
+        f"<h2>Wheels</h2><p>Y and Q on the rail, Y outward, {data.averaging}.</p>",
         tables.table(*wheels(data)),
     ]
     return "".join([*head, *_sections(data), *_patches(data, at)])
@@ -111,7 +111,7 @@ def _sections(data: VehicleRun) -> list[str]:
     parts = ["<h2>Track</h2>", plot(figures.track(data), "track")]
     parts += ["<h2>Wheel loads</h2>", plot(figures.loads(data), "loads")]
     parts += [
-        "<h2>Y/Q</h2><p>On the rail, outward &gt; 0, averaged over 2 m.</p>",
+        f"<h2>Y/Q</h2><p>On the rail, outward &gt; 0, {data.averaging}.</p>",
         plot(figures.ratios(data), "ratios"),
         "<h2>Wheelsets on the track</h2>",
         plot(figures.positions(data), "positions"),
