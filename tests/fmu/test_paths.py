@@ -42,7 +42,7 @@ def test_rails_on_springs_have_a_history(unpacked: Unpack) -> None:
     fmu = unpacked("springs")
     assert fmu.root.find("ModelExchange") is None
     found = []
-    for length in (1e-3, 10.0):
+    for length in (1e-3, 1e3):
         with Slave(fmu).initialize() as slave:
             assert slave.set({"wheelset.y": 2e-4, "wheelset.z": 6e-4}) == OK
             assert slave.step(0, length) == OK
