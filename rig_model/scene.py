@@ -123,8 +123,8 @@ def check_progress(key: str, progress: list[float]) -> None:
 class RigScene:
     """A checked scene.
 
-    name: of the file. text: as it was read, with a comment where keys of [rig] were replaced.
-    case: with the profiles that were found. files: the profile files by their name in the text.
+    name: of the file. text: as it was read. case: with the profiles that were found. files: the
+    profile files by their name in the text.
     """
 
     name: str
@@ -206,8 +206,7 @@ def load_rig_scene(
         if (name := getattr(case.profiles, key)) in files
     }
     case = case.model_copy(update={"profiles": case.profiles.model_copy(update=found)})
-    note = "".join(f"\n# run with rig.{key} = {value}\n" for key, value in given.items())
-    return RigScene(path.name, path.read_bytes() + note.encode(), case, table, files)
+    return RigScene(path.name, path.read_bytes(), case, table, files)
 
 
 def checked_parts(content: Any, model: type[Table], table: Any, name: str) -> list[Any]:

@@ -14,6 +14,7 @@ from railpatch.commands import (
     show_scene_option,
 )
 from railpatch.errors import CaseError, ProfileError
+from railpatch.output import check_output, files_of
 
 from wheelset_demo.hunting_command import SCENE, default_scene_text
 
@@ -72,14 +73,14 @@ def masters_of(text: str | None, quick: bool) -> list[str]:
     return list(dict.fromkeys(found))
 
 
-def check_output(output: Path | None) -> None:
-    """Before minutes are spent. Raises WrongCall."""
+def check_kind(output: Path | None) -> None:
+    """Of the file to write. Raises WrongCall."""
     if output is None:
         return
     if output.suffix not in (".html", ".svg"):
-        raise WrongCall(f"--output: value is {output}, allowed a name that ends in .html or .svg")
-    if not output.parent.is_dir():
-        raise WrongCall(f"--output: value is {output}, allowed a folder that exists")
+        raise WrongCall(
+            f"--output: value is {str(output)!r}, allowed a name that ends in .html or .svg"
+        )
     try:
         import matplotlib  # noqa: F401
     except ImportError:
@@ -133,7 +134,7 @@ def cosimulation(
     minutes.
     """
     chosen_speeds, chosen = speeds_of(speeds, quick), masters_of(masters, quick)
-    check_output(output)
+    check_kind(output)
     try:
         import fmpy  # noqa: F401
         import railpatch.pinocchio  # noqa: F401
@@ -146,7 +147,9 @@ def cosimulation(
     from wheelset_demo.system import ContactFailure
 
     try:
-        loaded = load_wheelset_scene(scene_file(SCENE) if scene is None else scene)
+        file = scene_file(SCENE) if scene is None else scene
+        loaded = load_wheelset_scene(file)
+        check_output(output, file, *files_of(loaded.case, file.parent))
         count = len(chosen_speeds) * len(chosen)
         with progress_bar("coupling", count, quiet) as advance:
             found = study(with_elements(loaded, elements), chosen_speeds, chosen, advance)

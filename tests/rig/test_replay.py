@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import signal
@@ -75,8 +76,8 @@ def test_log_holds_forces_and_fields(logged):
 def test_log_carries_case_and_profiles(logged, nominal_file):
     _, _, run = logged
     text = run.attachments[nominal_file.name].data
-    assert text.startswith(nominal_file.read_bytes())
-    assert b"rig.positions = 9" in text
+    assert text == nominal_file.read_bytes()
+    assert json.loads(run.attachments["effective.json"].data)["rig"]["positions"] == 9
     for name in ("nominal_wheel.csv", "nominal_roller.csv"):
         assert run.attachments[name].data == nominal_file.with_name(name).read_bytes()
 

@@ -13,7 +13,7 @@ from railpatch.log import VehicleGeometry, VehicleLog, scene_geometry
 from railpatch.log.stream import Pace
 from railpatch.result import wheel_json
 
-from wheelset_demo.record import attachments
+from wheelset_demo.record import attachments, ran_with
 from wheelset_demo.scene import GRAVITY, SIDES, SNAPSHOTS
 from wheelset_demo.system import ContactFailure
 from wheelset_demo.vehicle.model import CAR_BODY, bogie_name
@@ -183,6 +183,7 @@ def open_log(path: Path, simulation: Simulation) -> VehicleLog:
         profiles=attachments(scene),
         geometry=geometry(simulation),
         scene_rate=scene.run.scene_rate,
+        ran_with=ran_with(scene),
     )
 
 
