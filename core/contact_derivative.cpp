@@ -275,15 +275,18 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
     if (ends[k].status == RP_NOT_CONVERGED || ends[k].status == RP_OUT_OF_RANGE)
       worst = RP_NOT_CONVERGED;
   }
-  if (!(places[1] > places[0])) {
+  if (places[1] > places[0]) {
+    divide(ends, places[1] - places[0], out);
+  } else {
+    // neither side is allowed
     for_each_result_number(out, [](double &v) { v = nan; });
-    return;
+    worst = RP_NOT_CONVERGED;
   }
-  divide(ends, places[1] - places[0], out);
   if (worst == RP_CONVERGED) return;
-  if (out.status == RP_CONVERGED) out.status = worst;
+  const auto is_good = [](rp_status s) { return s == RP_CONVERGED || s == RP_NO_CONTACT; };
+  if (is_good(out.status)) out.status = worst;
   for (auto &side : out.side)
-    if (side.status == RP_CONVERGED) side.status = worst;
+    if (is_good(side.status)) side.status = worst;
 }
 
 }  // namespace railpatch

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -31,7 +32,7 @@ POWER_MOTION = {
 @pytest.fixture(scope="module")
 def averaged(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Fmu]:
     """FMUs that also give means over a step."""
-    scenes = {name: SCENES[name] for name in ("rail", "transient", "patch")}
+    scenes = {name: SCENES[name] for name in ("rail", "transient")}
     asked = {name: {"averages": True} for name in scenes}
     return Packer(tmp_path_factory.mktemp("averaged"), scenes, **asked)
 
@@ -140,7 +141,6 @@ def test_means_over_a_step(averaged: Callable[[str], Fmu]) -> None:
         assert slave.step(STEP, STEP) == OK
         assert slave.get(*means) == slave.get(*names)
         assert slave.derivative(["mean_force[2]"], {"wheelset.y": 1.0})[0] == ERROR
-    assert "substeps" not in averaged("patch").variables
 
 
 def test_means_of_held_inputs_in_a_scene_with_history(averaged: Callable[[str], Fmu]) -> None:
@@ -236,6 +236,20 @@ def test_all_options_together_are_valid(tmp_path: Path) -> None:
         assert slave.step(0, STEP) == OK
         assert slave.restore(state) == OK
         assert slave.outputs() == expected
+
+
+@pytest.mark.parametrize(
+    ("name", "option", "message"),
+    [
+        ("patch", {"averages": True}, "--averages: given, allowed with wheels only"),
+        ("transient", {"derivatives": "always"}, "--derivatives: value is 'always', allowed"),
+    ],
+)
+def test_options_without_effect_are_refused(
+    name: str, option: dict[str, Any], message: str, tmp_path: Path
+) -> None:
+    with pytest.raises(CaseError, match=message):
+        Packer(tmp_path, SCENES, **{name: option})(name)
 
 
 @pytest.mark.parametrize("name", ["patch", "transient"])

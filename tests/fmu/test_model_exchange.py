@@ -188,6 +188,19 @@ def test_offered_where_there_is_no_history(name: str, unpacked: Unpack) -> None:
         assert (model.component is None) == (name in HISTORY)
 
 
+def test_outputs_after_the_end_are_those_of_the_last_inputs(unpacked: Unpack) -> None:
+    fmu = unpacked("rail")
+    found = []
+    for read_before in (True, False):
+        with brought_to(fmu, CONTINUOUS) as model:
+            assert model.set({"wheelset.z": 2.1e-4}) == OK
+            if read_before:
+                model.outputs()
+            assert model.call("Terminate") == OK
+            found.append(model.outputs())
+    assert found[0] == found[1]
+
+
 def test_parameters_are_set_in_event_mode(unpacked: Unpack) -> None:
     """FMI 2.0.4, section 3.2.3: in continuous-time mode only continuous inputs and states are."""
     with brought_to(unpacked("rail"), CONTINUOUS) as model:

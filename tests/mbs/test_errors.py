@@ -71,7 +71,10 @@ def test_joint_that_the_model_lacks(joint, message):
         ),
         (
             {
-                **samples.case(wheelset={"time_step": 1e-3}, grid={"element_size": [1e-3, 1e-3]}),
+                **samples.case(
+                    wheelset={"time_step": 1e-3},
+                    grid={"elements": None, "element_size": [1e-3, 1e-3]},
+                ),
                 "motion": {"regime": "transient_rolling"},
             },
             r"motion.regime: value is 'transient_rolling', allowed 'steady_rolling'",

@@ -188,6 +188,11 @@ fmi2Status Instance::exit_initialization() {
 }
 
 fmi2Status Instance::terminate() {
+  // outputs go on following what was set: they can still be read
+  if (changed_ && follows()) {
+    const fmi2Status status = solve(call::terminate);
+    if (status == fmi2Error) return status;
+  }
   mode_ = Mode::terminated;
   return fmi2OK;
 }

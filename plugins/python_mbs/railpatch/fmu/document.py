@@ -47,8 +47,9 @@ about 1e9 N/m and steps of 0.1 ms take 1e5 N s/m of damping out of the system. T
 <ul>
 <li>Choose steps so short that the rest of the model damps more than that, and halve them until
 results stay.</li>
-<li>Or iterate: save the state, step, correct the motion, restore, step again. States can be saved,
-restored and serialised at any time; a restored step gives the same bits.</li>
+<li>Or iterate: save the state, step, correct the motion, restore, step again, with Newton's method
+or one that mixes results; a plain fixed point bears no longer steps than held forces do. States can
+be saved, restored and serialised at any time; a restored step gives the same bits.</li>
 <li>Or let inputs move during the step: set their time derivatives (fmi2SetRealInputDerivatives,
 orders 1 to 3) with their values before the step.</li>
 <li>Or use directional derivatives, where the FMU has them, for a linearly implicit master.</li>
@@ -78,7 +79,8 @@ AVERAGED = """
 <p><b>Means</b>: mean_force and mean_moment are those over the last communication step. Where inputs
 move by derivatives they are found by the trapezoidal rule, from the outputs at the last
 communication point over <code>substeps</code> intervals, else as means of the sub-steps' ends.
-Means have no directional derivatives.</p>
+An input that is set anew at a step's start, apart from where it came to, counts there with what it
+was: the jump is spread over the first interval. Means have no directional derivatives.</p>
 """
 LARGEST_STEP = """
 <p><b>largest_step</b> is for masters that hold forces during a step. With K and C the negative

@@ -207,7 +207,8 @@ class ForceElement:
         the contacts store. Of that only the change with the velocities is counted: at a wheelset
         that hardly moves along the normals it is the greatest by far. What the contacts leave open
         for being an approach apart, see railpatch.pinocchio.energy, is in it, by the spin mostly.
-        Enough for implicit steps, not for more.
+        Columns of position may be off by a factor of two: a matrix for Rosenbrock's W-methods,
+        whose order holds with any, not a derivative to rely on.
         """
         found = -self.contact_power_derivatives(index)
         centre = self._states[index, 2] - self.contacts[index].case.wheelset.nominal_radius
