@@ -12,6 +12,7 @@ from pathlib import Path
 from railpatch.case.common import Grid
 from railpatch.errors import CaseError
 from railpatch.fmu import pack_fmu
+from railpatch.fmu.scene import has_history
 
 from wheelset_demo.coupling.energy import Balance, balance, release
 from wheelset_demo.coupling.slave import ContactSlave, CouplingFailure
@@ -82,10 +83,15 @@ def with_elements(scene: WheelsetScene, count: int) -> WheelsetScene:
 
 @contextmanager
 def slave_of(scene: WheelsetScene) -> Iterator[ContactSlave]:
-    """The scene's contact in an FMU of its own."""
+    """The scene's contact in an FMU of its own. Raises CaseError."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "contact.fmu"
         height = scene.at_height(derivatives=True)
+        if has_history(height.case):
+            raise CaseError(
+                f"{scene.name}: its steps depend on earlier ones, allowed a scene of wheels "
+                "without history"
+            )
         pack_fmu(height, path, name="contact", derivatives="always", averages=True)
         with ContactSlave(path) as slave:
             yield slave
