@@ -221,7 +221,7 @@ def test_command(tmp_path: Path):
 
 
 def test_speeds_that_fail_leave_the_others(tmp_path: Path):
-    """At 200 m/s the scene's reference run, above the critical speed, leaves the contact's range."""
+    """At 200 m/s the reference run, above the critical speed, leaves the contact's range."""
     page = tmp_path / "page.html"
     call = ["--speeds", "20,200", "--masters", "leapfrog", "--elements", 4]
     ran = invoke(*call, "--json", "-o", page)
