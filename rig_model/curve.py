@@ -29,7 +29,7 @@ import numpy as np
 from pydantic import Field
 from railpatch import Contact, Result
 from railpatch.case import WheelsetCase
-from railpatch.case.load import Scene, check_case, plain, read_toml
+from railpatch.case.load import Scene, check_case, plain, read_toml, refuse_others
 from railpatch.case.types import NotNegative, Number, Table
 from railpatch.errors import CaseError
 from scipy.optimize import brentq
@@ -182,6 +182,7 @@ def load_curve_scene(path: str | Path | None = None, **changes: Any) -> CurveSce
     the file's, None: as in the file. Raises CaseError with every problem."""
     path = DEFAULT if path is None else Path(path)
     content = plain(read_toml(path))
+    refuse_others(content, "curve")
     curve = content.pop("curve", None)
     if not isinstance(curve, dict):
         raise CaseError("curve: value is missing, allowed a table with the curves")
