@@ -169,6 +169,7 @@ MOTIONS: dict[str, list[dict[str, float]]] = {
     "transient": [{"wheelset.yaw": 1e-3}, {"wheelset.vy": 0.01}, {"wheelset.z": 2.1e-4}],
     "transient_patch": [{"creepage[1]": 5e-4}, {"creepage[2]": -5e-4, "normal_force": 6e4}],
     "supported": [{"wheelset.y": 1e-4}, {"wheelset.z": 2.2e-4, "track.left.velocity[2]": 0.01}],
+    "springs": [{"wheelset.y": 1e-4}, {"wheelset.z": 6e-4, "wheelset.yaw": 1e-3}],
     "sections": [{"wheelset.x": 0.4}, {"wheelset.x": 1.7, "wheelset.yaw": 1e-3}],
     "along": [{"wheelset.x": 0.4}, {"wheelset.x": 0.9, "wheelset.yaw": 1e-3}],
     "flat": [

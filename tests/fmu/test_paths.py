@@ -17,7 +17,7 @@ def test_only_a_scene_with_a_history_depends_on_the_way(name: str, unpacked: Unp
     """The same inputs in the end, by another way and by steps of another length."""
     fmu = unpacked(name)
     names = [n for n in fmu.names("output", "Real") if not n.endswith("residual")]
-    *way, last = MOTIONS.get(name, [{}])
+    *way, last = MOTIONS[name]
     values = {key: value for motion in [*way, last] for key, value in motion.items()}
     found = []
     for steps, length in ((way, STEPS[0]), ([], STEPS[1])):
