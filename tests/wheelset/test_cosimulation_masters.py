@@ -13,8 +13,8 @@ import wheelset_scenes as scenes
 from click.testing import CliRunner
 from railpatch.cli import cli
 
-from wheelset_demo.cosimulation import ElementContact, held_run
 from wheelset_demo.coupling.energy import balance, release
+from wheelset_demo.coupling.held import ElementContact, held_run
 from wheelset_demo.coupling.linear import linearise
 from wheelset_demo.coupling.masters import MASTERS, Hold, Master, Point
 from wheelset_demo.coupling.multibody import Multibody
