@@ -105,7 +105,9 @@ SCENES: dict[str, dict[str, Any]] = {
         track__rail_support={"stiffness": [2e7, 5e7], "damping": [1e4, 5e4]},
         wheelset__time_step=STEP,
     ),
-    "springs": with_values(RAIL, track__rail_support={"stiffness": [2e7, 5e7]}),
+    "springs": with_values(
+        RAIL, track__rail_support={"stiffness": [2e7, 5e7]}, wheelset__time_step=STEP
+    ),
     "sections": with_values(
         RAIL,
         wheelset__z=3e-4,
