@@ -88,9 +88,13 @@ class Recorder:
     def _wheelset(
         self, simulation: Simulation, index: int, place: dict[str, float], fields: bool
     ) -> dict[str, Any]:
-        element = simulation.element
+        element, system = simulation.element, simulation.system
         result = element.result(index, fields=fields)
-        wrench = element.contact_wrench[index].tolist()
+        # with what rails that are not level add along the track
+        sloped = system.slope_wrenches[index]
+        wrench = element.contact_wrench[index].copy()
+        wrench[[0, 4, 5]] += sloped.sum(axis=0)
+        wrench = wrench.tolist()
         rails = element.rails[index, 0, :, 1:].tolist()
         state = element.state(index) | {
             **place,
@@ -101,9 +105,13 @@ class Recorder:
         }
         lost = simulation.state.work[len(WORKS) + 2 * index :]
         found: dict[str, Any] = {"state": state}
-        for side, work in zip(SIDES, lost[:2].tolist(), strict=True):
+        for side, work, more in zip(SIDES, lost[:2].tolist(), sloped.tolist(), strict=True):
             # z is given in vehicle runs
-            found[side] = wheel_json(result[side]) | {"friction_work": work, "z": None}
+            wheel = wheel_json(result[side]) | {"friction_work": work, "z": None}
+            wheel["force"][0] += more[0]
+            wheel["moment"][1] += more[1]
+            wheel["moment"][2] += more[2]
+            found[side] = wheel
         if fields:
             found["fields"] = {side: result[side]["patches"] for side in SIDES}
         return found
