@@ -108,3 +108,25 @@ def test_refused(tmp_path, old, new, message):
     changed.write_text(text.replace(old, new), encoding="utf-8")
     with pytest.raises(CaseError, match=message):
         load_vehicle_scene(changed)
+
+
+def test_contact_that_fails_before_the_first_step(tmp_path, monkeypatch):
+    """A curve that begins under the vehicle, which checks of a scene refuse otherwise."""
+    text = scene_file("vehicle_curve.toml").read_text(encoding="utf-8")
+    for old, new in (
+        ("straight = 150.0", "straight = 0.0"),
+        ("transition = 300.0", "transition = 5.0"),
+        ("radius = 4000.0", "radius = 150.0"),
+    ):
+        assert old in text
+        text = text.replace(old, new)
+    file = tmp_path / "tight.toml"
+    file.write_text(text, encoding="utf-8")
+    refused = call(str(file), "--method", "polach", "--duration", "0.01")
+    assert refused.exit_code == 2
+    assert "alignment.straight: value is 0.0, allowed >= 21.56" in refused.output
+    monkeypatch.setattr("wheelset_demo.vehicle.scene.check_run", lambda **_: None)
+    failed = call(str(file), "--method", "polach", "--duration", "0.01")
+    assert failed.exit_code == 3, failed.output
+    assert "status: contact failed at 0 s" in failed.output
+    assert "before the first step" in failed.output
