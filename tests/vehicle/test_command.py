@@ -99,6 +99,20 @@ def test_wrong_calls(tmp_path):
             "alignment.straight: value is 20.0, allowed >= 21.56",
         ),
         ("threads = 1", "threads = 0", "run.threads: value is 0"),
+        ("duration = 20.0", "duration = 2000.0", "200122 m of track, allowed <= 100000 m"),
+        (
+            "lateral = 1.0                        # m\nheight = 0.46",
+            "height = 0.46",
+            r"suspension\[0\].lateral: value is 0.0, allowed > 0 for a primary element",
+        ),
+        (
+            "lateral = 1.3\nheight = 0.6\n",
+            "height = 0.6\n",
+            r"suspension\[8\].lateral: value is 0.0, allowed > 0 for a secondary element",
+        ),
+        ("[0.025, 0.0], [0.030", "[0.025, 10.0], [0.030", r"bump_stop: value is \[10.0, 600.0"),
+        ("[0.030, 600.0]", "[0.030, -600.0]", "forces from 0 on that do not fall"),
+        ("[0.065, 230000.0]", "[0.065, 23000.0]", "forces from 0 on that do not fall"),
     ],
 )
 def test_refused(tmp_path, old, new, message):
