@@ -16,6 +16,7 @@ from railpatch.commands import (
     show_scene_option,
 )
 from railpatch.errors import CaseError, ProfileError
+from railpatch.output import check_output
 
 
 def default_scene_text() -> str:
@@ -50,11 +51,12 @@ def rig(
     """
     # scipy and the log's libraries take a while to import; other commands need not wait for them
     from rig_model.run import replay
-    from rig_model.scene import load_rig_scene
+    from rig_model.scene import default_scene, load_rig_scene
 
     overrides["balance.method"] = overrides.pop("method")
     try:
         loaded = load_rig_scene(scene, overrides)
+        check_output(output, scene or default_scene(), *loaded.files.values())
         if not quiet:
             click.echo(f"scene         {loaded.name}")
             click.echo(f"profiles      {profiles_used(loaded, chosen=scene is None)}")

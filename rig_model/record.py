@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 import numpy as np
+from railpatch.log.effective import Effective, effective
 
 from rig_model.balance import Balance
 from rig_model.scene import SIDES, RigScene
@@ -66,6 +67,15 @@ class Recorder:
             "force": result["force"],
             "moment": result["moment"],
         } | {key: getattr(case.wheelset, key) for key in STEADY}
+
+
+def ran_with(scene: RigScene) -> Effective:
+    """The tables of a scene as they run."""
+    rig = scene.rig
+    names = {str(file): name for name, file in scene.files.items()}
+    step = rig.duration / (rig.count - 1) if rig.count > 1 else 0.0
+    tables = {"rig": rig}
+    return effective(scene.text, scene.case, tables, step=step, duration=rig.duration, names=names)
 
 
 def attachments(scene: RigScene) -> dict[str, bytes]:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from railpatch.log import RunLog, scene_geometry
 
 from rig_model.balance import Balance, Balancer
-from rig_model.record import Recorder, attachments
+from rig_model.record import Recorder, attachments, ran_with
 from rig_model.scene import SIDES, RigScene
 
 
@@ -71,6 +71,7 @@ def replay(
         case_name=scene.name,
         profiles=attachments(scene),
         geometry=scene_geometry(scene.case),
+        ran_with=ran_with(scene),
     ) as log:
         for position in scene.positions():
             begin = time.perf_counter()

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 from railpatch.case import WheelsetCase
-from railpatch.case.load import Scene, check_case, check_table, plain, read_toml
+from railpatch.case.load import Scene, check_case, check_table, plain, read_toml, refuse_others
 from railpatch.case.types import Number, Pair, Positive, Table, relation
 from railpatch.errors import CaseError
 
@@ -123,8 +123,8 @@ def check_progress(key: str, progress: list[float]) -> None:
 class RigScene:
     """A checked scene.
 
-    name: of the file. text: as it was read, with a comment where keys of [rig] were replaced.
-    case: with the profiles that were found. files: the profile files by their name in the text.
+    name: of the file. text: as it was read. case: with the profiles that were found. files: the
+    profile files by their name in the text.
     """
 
     name: str
@@ -192,6 +192,7 @@ def load_rig_scene(
     path = default_scene() if path is None else Path(path)
     given = {key: value for key, value in (overrides or {}).items() if value is not None}
     content = plain(read_toml(path))
+    refuse_others(content, "rig")
     rig = content.pop("rig", None)
     if rig is None:
         raise CaseError("rig: value is missing, allowed a table with the run's programme")
@@ -206,8 +207,7 @@ def load_rig_scene(
         if (name := getattr(case.profiles, key)) in files
     }
     case = case.model_copy(update={"profiles": case.profiles.model_copy(update=found)})
-    note = "".join(f"\n# run with rig.{key} = {value}\n" for key, value in given.items())
-    return RigScene(path.name, path.read_bytes() + note.encode(), case, table, files)
+    return RigScene(path.name, path.read_bytes(), case, table, files)
 
 
 def checked_parts(content: Any, model: type[Table], table: Any, name: str) -> list[Any]:

@@ -16,6 +16,7 @@ from railpatch.commands import (
     show_scene_option,
 )
 from railpatch.errors import CaseError, ProfileError
+from railpatch.output import check_output, files_of
 
 
 def default_scene_text() -> str:
@@ -56,11 +57,13 @@ def wheelset(
         import railpatch.pinocchio  # noqa: F401
     except ImportError as error:
         raise WrongCall(str(error)) from None
-    from wheelset_demo.scene import load_wheelset_scene
+    from wheelset_demo.scene import DEFAULT, load_wheelset_scene, scene_file
     from wheelset_demo.simulation import run_scene
 
+    file = scene_file(DEFAULT) if scene is None else scene
     try:
         loaded = load_wheelset_scene(scene, overrides)
+        check_output(output, file, *files_of(loaded.case, file.parent))
         with progress_bar("rolling", loaded.steps, quiet) as advance:
             summary = run_scene(loaded, output, advance)
     except (CaseError, ProfileError, OSError) as error:

@@ -25,6 +25,8 @@ from wheelset_demo.system import COUNT, System, Vector
 PITCH = 5  # nothing depends on that angle
 # 1/s: below it an eigenvalue is none of a wave
 SLOWEST = 0.1
+# 1/s: above it a motion without waves grows; below it is what solves leave of a zero
+DRIFT = 1e-2
 # m/s, by which speeds are tried, and -, to which the critical one is found
 SPEED_STEP = 10.0
 ACCURACY = 1e-3
@@ -36,13 +38,15 @@ LONG_WAVES = 12.0  # of a run that is logged
 
 @dataclass(frozen=True)
 class Mode:
-    """The motion that grows fastest, or dies most slowly. speed: m/s. growth: 1/s. frequency: Hz.
-    share: [11], of coordinates without pitch and of rates, the greatest 1."""
+    """The wave that grows fastest, or dies most slowly. speed: m/s. growth: 1/s. frequency: Hz.
+    share: [11], of coordinates without pitch and of rates, the greatest 1. divergence: 1/s, by
+    which the motion beside it grows that is no wave; 0: none does."""
 
     speed: float
     growth: float
     frequency: float
     share: Vector
+    divergence: float = 0.0
 
     @property
     def wave_length(self) -> float:
@@ -76,31 +80,58 @@ def slowest_mode(scene: WheelsetScene, speed: float) -> Mode:
     first = waves[np.argmax(values[waves].real)]
     size = np.abs(vectors[:, first])
     value = values[first]
-    return Mode(speed, float(value.real), float(value.imag) / (2 * math.pi), size / size.max())
+    others = values.real[np.abs(values.imag) <= SLOWEST]
+    drift = float(others.max(initial=0.0))
+    frequency = float(value.imag) / (2 * math.pi)
+    divergence = drift if drift > DRIFT else 0.0
+    return Mode(speed, float(value.real), frequency, size / size.max(), divergence)
+
+
+@dataclass(frozen=True)
+class Search:
+    """Between two speeds. critical: at the lowest one where a wave begins to grow; None: nowhere.
+    first: at the lowest speed. diverging: at the first speed tried where the wheelset leaves the
+    middle without a wave; None: at none."""
+
+    critical: Mode | None
+    first: Mode
+    diverging: Mode | None
+
+    @property
+    def below(self) -> bool:
+        """Whether waves grow already at the lowest speed."""
+        return self.first.frequency > 0 and self.first.growth > 0
 
 
 def critical_mode(scene: WheelsetScene, lowest: float, highest: float) -> Mode | None:
-    """At the lowest speed where a wave begins to grow; None: none does between these (m/s).
+    """Search.critical."""
+    return search_modes(scene, lowest, highest).critical
 
-    Raises CaseError, ContactFailure.
-    """
+
+def search_modes(scene: WheelsetScene, lowest: float, highest: float) -> Search:
+    """Between these speeds (m/s), up to the critical one. Raises CaseError, ContactFailure."""
     found: dict[float, Mode] = {}
 
     def growth(speed: float) -> float:
         found[speed] = slowest_mode(scene, speed)
         return found[speed].growth
 
+    def result(critical: Mode | None) -> Search:
+        tried = (found[speed] for speed in sorted(found))
+        diverging = next((mode for mode in tried if mode.divergence > 0), None)
+        return Search(critical, found[lowest], diverging)
+
     count = max(2, 1 + math.ceil((highest - lowest) / SPEED_STEP))
     speeds = np.linspace(lowest, highest, count).tolist()
     for before, speed in itertools.pairwise(speeds):
         # already at the first speed: the critical one is below all of them
         if growth(before) > 0:
-            return None
+            return result(None)
         if growth(speed) > 0:
             root = float(brentq(growth, before, speed, rtol=ACCURACY))
             growth(root)
-            return found[root]
-    return None
+            return result(found[root])
+    return result(None)
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from railpatch.commands import (
     show_scene_option,
 )
 from railpatch.errors import CaseError, ProfileError
+from railpatch.output import check_output, files_of
 
 SCENE = "hunting.toml"
 # of the critical speed by eigenvalues: where the runs in time begin
@@ -21,7 +22,8 @@ BRACKET = (0.85, 1.15)
 # the same, where modes are drawn
 DRAWN = (0.5, 0.7, 0.8, 0.9, 0.95, 1.0, 1.05, 1.1, 1.2, 1.3)
 LOGGED = 1.1
-FASTEST = 200.0
+# m/s
+SLOWEST, FASTEST = 0.05, 200.0
 
 
 def default_scene_text() -> str:
@@ -72,8 +74,11 @@ def hunting(
     derivatives. The scene is one of railpatch wheelset; without one it has coned wheels and a
     primary suspension. A contact that cannot be solved ends it with exit code 3.
     """
-    if not 0 < lowest < highest:
-        raise WrongCall(f"--lowest: value is {lowest}, allowed > 0 and below --highest ({highest})")
+    for name, value in (("--lowest", lowest), ("--highest", highest)):
+        if not SLOWEST <= value <= FASTEST:
+            raise WrongCall(f"{name}: value is {value}, allowed {SLOWEST:g} ... {FASTEST:g} m/s")
+    if not lowest < highest:
+        raise WrongCall(f"--lowest: value is {lowest}, allowed below --highest ({highest})")
     if speed is not None and (output is None or not 0 < speed <= FASTEST):
         raise WrongCall(f"--speed: value is {speed}, allowed > 0, at most {FASTEST:g}, with -o")
     try:
@@ -84,8 +89,16 @@ def hunting(
     from wheelset_demo.system import ContactFailure
 
     try:
-        loaded = load_wheelset_scene(scene_file(SCENE) if scene is None else scene)
+        file = scene_file(SCENE) if scene is None else scene
+        loaded = load_wheelset_scene(file)
+        check_output(output, file, *files_of(loaded.case, file.parent))
         found = search(loaded, lowest, highest, simulate)
+    except ContactFailure as failure:
+        click.echo(f"status: {failure}", err=True)
+        context.exit(EXIT_NOT_CONVERGED)
+    except (CaseError, ProfileError, OSError) as error:
+        raise WrongCall(str(error)) from None
+    try:
         if output is not None:
             write_log(loaded, found, speed, output)
     except ContactFailure as failure:
@@ -93,6 +106,13 @@ def hunting(
         context.exit(EXIT_NOT_CONVERGED)
     except (CaseError, ProfileError, OSError) as error:
         raise WrongCall(str(error)) from None
+    finally:
+        # what was found is not lost with the log
+        show(found, as_json, quiet)
+
+
+def show(found: dict[str, Any], as_json: bool, quiet: bool) -> None:
+    """On stdout."""
     if as_json:
         click.echo(json.dumps(found, allow_nan=False))
     elif not quiet:
@@ -101,15 +121,21 @@ def hunting(
 
 def search(scene: Any, lowest: float, highest: float, simulate: bool) -> dict[str, Any]:
     """What is printed: SI units, None for what was not found."""
-    from wheelset_demo.hunting import critical_mode, critical_speed_in_time, slowest_mode
+    from wheelset_demo.hunting import critical_speed_in_time, search_modes, slowest_mode
 
-    mode = critical_mode(scene, lowest, highest)
+    searched = search_modes(scene, lowest, highest)
+    mode, diverging = searched.critical, searched.diverging
     found: dict[str, Any] = {
         "scene": scene.name,
         "range": [lowest, highest],
         "critical_speed": None if mode is None else mode.speed,
         "frequency": None if mode is None else mode.frequency,
         "wave_length": None if mode is None else mode.wave_length,
+        # waves grow at the lowest speed: the critical one is below this
+        "critical_speed_below": lowest if searched.below else None,
+        "divergence": None
+        if diverging is None
+        else {"speed": diverging.speed, "growth": diverging.divergence},
     }
     speeds = [lowest, highest] if mode is None else [part * mode.speed for part in BRACKET]
     around = [slowest_mode(scene, speed) for speed in speeds]
@@ -151,8 +177,10 @@ def write_log(scene: Any, found: dict[str, Any], speed: float | None, output: Pa
 def text_of(found: dict[str, Any]) -> str:
     """A few lines for the terminal."""
     lines = [("scene", found["scene"])]
-    speed = found["critical_speed"]
-    if speed is None:
+    speed, below = found["critical_speed"], found["critical_speed_below"]
+    if below is not None:
+        lines.append(("critical speed", f"below {below:g} m/s: waves already grow there"))
+    elif speed is None:
         low, high = found["range"]
         lines.append(("critical speed", f"none between {low:g} and {high:g} m/s"))
     else:
@@ -163,6 +191,10 @@ def text_of(found: dict[str, Any]) -> str:
     lines += [
         ("growth", f"{g['growth']:+.4f} 1/s at {g['speed']:.2f} m/s") for g in found["growth"]
     ]
+    if found["divergence"] is not None:
+        away = found["divergence"]
+        text = f"{away['growth']:+.4f} 1/s at {away['speed']:.2f} m/s, without waves"
+        lines.append(("divergence", text))
     if "runs" in found:
         in_time = found["critical_speed_in_time"]
         away = 100 * (in_time / speed - 1)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
+from railpatch.log.effective import Effective, effective
 from railpatch.result import wheel_json
 
 from wheelset_demo.scene import SIDES, WheelsetScene
@@ -100,6 +102,17 @@ def momentum(trace: Trace) -> dict[str, list[float]]:
         values[name or "momentum"] = linear
         values[f"turning_{name}" if name else "turning"] = turning
     return values
+
+
+def ran_with(scene: Any) -> Effective:
+    """The tables of a scene of this package as they run."""
+    known = ("name", "text", "case", "profiles")
+    tables = {f.name: getattr(scene, f.name) for f in fields(scene) if f.name not in known}
+    step = scene.run.step
+    names = {name: Path(name).name for name in scene.profiles.values()}
+    return effective(
+        scene.text, scene.case, tables, step=step, duration=scene.steps * step, names=names
+    )
 
 
 def attachments(scene: WheelsetScene) -> dict[str, bytes]:

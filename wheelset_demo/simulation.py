@@ -9,7 +9,7 @@ from pathlib import Path
 from railpatch.log import RunLog, scene_geometry
 from railpatch.log.stream import Pace
 
-from wheelset_demo.record import Recorder, attachments
+from wheelset_demo.record import Recorder, attachments, ran_with
 from wheelset_demo.scene import WheelsetScene
 from wheelset_demo.start import released
 from wheelset_demo.steppers import make_stepper
@@ -91,6 +91,7 @@ def run_scene(
         profiles={**attachments(scene), **(attached or {})},
         geometry=scene_geometry(scene.case),
         scene_rate=scene.run.scene_rate,
+        ran_with=ran_with(scene),
     ) as log:
         trace = simulation.run(log, advance)
         log.close(str(trace.failure or ""))

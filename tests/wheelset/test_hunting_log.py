@@ -93,7 +93,7 @@ def test_a_speed_of_its_own(scene: Path, tmp_path):
     assert done.exit_code == 0, done.output
     assert f"{log}, at 58.00 m/s, converged" in done.stdout
     page = write_report(log, tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "none found" in page
+    assert "below 55.00 m/s (198.0 km/h): waves grow there" in page
 
 
 @pytest.mark.parametrize("arguments", [["--speed", 20], ["--speed", 0, "-o", "x.mcap"]])

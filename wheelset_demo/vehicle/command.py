@@ -15,6 +15,7 @@ from railpatch.commands import (
     show_scene_option,
 )
 from railpatch.errors import CaseError, ProfileError
+from railpatch.output import check_output, files_of
 
 # of wheelset_demo.vehicle.compare, which takes long to import; a test compares them
 METHODS = ("full", "fitted", "fastsim", "kik", "analyn", "polach")
@@ -74,12 +75,15 @@ def vehicle(
         import railpatch.pinocchio  # noqa: F401
     except ImportError as error:
         raise WrongCall(str(error)) from None
+    from wheelset_demo.scene import scene_file
     from wheelset_demo.system import ContactFailure
     from wheelset_demo.vehicle.compare import COMPARED
-    from wheelset_demo.vehicle.scene import load_vehicle_scene
+    from wheelset_demo.vehicle.scene import DEFAULT, load_vehicle_scene
 
+    file = scene_file(DEFAULT) if scene is None else scene
     try:
         loaded = load_vehicle_scene(scene, overrides)
+        check_output(output, file, *files_of(loaded.case, file.parent))
         found = run_all(loaded, COMPARED if compare else methods, quiet, output)
     except (CaseError, ProfileError, OSError) as error:
         raise WrongCall(str(error)) from None

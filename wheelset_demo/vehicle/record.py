@@ -13,16 +13,15 @@ from railpatch.log import VehicleGeometry, VehicleLog, scene_geometry
 from railpatch.log.stream import Pace
 from railpatch.result import wheel_json
 
-from wheelset_demo.record import attachments
+from wheelset_demo.record import attachments, ran_with
 from wheelset_demo.scene import GRAVITY, SIDES, SNAPSHOTS
-from wheelset_demo.system import ContactFailure
+from wheelset_demo.system import WORKS, ContactFailure
+from wheelset_demo.trace import STORES
 from wheelset_demo.vehicle.model import CAR_BODY, bogie_name
 from wheelset_demo.vehicle.scene import WHEELSETS
 from wheelset_demo.vehicle.simulation import Simulation
-from wheelset_demo.vehicle.system import WORKS
 
 FREE = (CAR_BODY, bogie_name(0), bogie_name(1))
-STORES = ("kinetic", "gravity", "suspension", "elastic")
 # m, drawn: length beyond the wheelsets, width and height of the car body; width and height of beams
 OVERHANG, WIDTH, HEIGHT, BEAM = 2.5, 2.8, 2.7, 0.22
 LINE_STEP = 2.0  # m, of the centre line that is drawn
@@ -205,6 +204,7 @@ def open_log(path: Path, simulation: Simulation) -> VehicleLog:
         profiles=attachments(scene),
         geometry=geometry(simulation),
         scene_rate=scene.run.scene_rate,
+        ran_with=ran_with(scene),
     )
 
 

@@ -25,14 +25,12 @@ straight track with derivatives of that moment.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
+from wheelset_demo.steppers import GAMMA
 from wheelset_demo.vehicle.scene import WHEELSETS
 from wheelset_demo.vehicle.system import Rates, Vector, VehicleState, VehicleSystem
 
-GAMMA = 1 - 1 / math.sqrt(2)
 # m/s^2, of a wheelset: some tenth of its load over its mass
 SURPRISE = 6.0
 

@@ -28,8 +28,6 @@ from wheelset_demo.vehicle.slope import slope_wrenches
 from wheelset_demo.vehicle.suspension import Suspension
 
 Vector = NDArray[np.float64]
-# integrated along with the motion (J)
-WORKS = ("contact", "friction", "damping", "drive")
 WHEELS = 2 * WHEELSETS
 # columns of a wheelset's state that a rail's lateral and vertical deviations and its vertical rate
 # move against

@@ -11,19 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wheelset_demo.scene import GRAVITY
-from wheelset_demo.system import ContactFailure
+from wheelset_demo.system import WORKS, ContactFailure
 from wheelset_demo.vehicle.means import rail_forces
 from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.simulation import Simulation
-from wheelset_demo.vehicle.system import WORKS, VehicleState
+from wheelset_demo.vehicle.system import VehicleState
 
 if TYPE_CHECKING:
     from wheelset_demo.vehicle.record import Recorder
 
 Vector = NDArray[np.float64]
 Advance = Callable[[VehicleState], None]
-# J, in the order of a row of `energies`
-STORES = ("kinetic", "gravity", "suspension", "elastic")
 
 
 @dataclass

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from railpatch.commands import WrongCall, folder_option, progress_bar
+from railpatch.output import check_folder
 
 ALL_SETS = "ABCDW"
 
@@ -59,6 +60,7 @@ def bench(
     """
     if not sets or set(sets) - set(ALL_SETS) or len(set(sets)) != len(sets):
         raise WrongCall(f"--sets: value is {sets!r}, allowed letters of {ALL_SETS}, each once")
+    check_folder(output)
     if only_truth:
         make_truth(output, sets, jobs, quiet)
     else:

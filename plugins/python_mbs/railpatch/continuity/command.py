@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from railpatch.commands import EXIT_NOT_CONVERGED, WrongCall, folder_option, progress_bar
+from railpatch.output import check_folder
 
 
 @click.command("continuity")
@@ -27,6 +28,7 @@ def continuity(
     from railpatch.continuity.sweep import LIMIT
     from railpatch.continuity.table import HEAD, RULES, draw, run, write_table
 
+    check_folder(output)
     plan = list(scenes(quick))
     rules = RULES if compare else RULES[:1]
     with progress_bar("continuity", len(plan) * len(rules), quiet) as advance:

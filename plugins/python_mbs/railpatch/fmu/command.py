@@ -9,6 +9,7 @@ import click
 
 from railpatch.commands import output_option, scene_argument
 from railpatch.errors import CaseError
+from railpatch.output import check_output, files_of
 
 
 @click.command("fmu")
@@ -73,6 +74,8 @@ def fmu(
     if kind is not None and kind not in kinds():
         raise CaseError(f"--scene: value is {kind!r}, allowed {', '.join(kinds())}")
     name, loaded = kind_scene(kind) if kind is not None else scene_of(scene)
+    read = libraries.rglob("*") if libraries is not None else ()
+    check_output(output, scene, *files_of(loaded.case, loaded.folder), *read)
     written = pack_fmu(
         loaded,
         output,

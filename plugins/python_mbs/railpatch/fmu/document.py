@@ -73,7 +73,9 @@ derivatives, as both would ask the same step twice.</p>
 """
 NO_HISTORY = """
 <p><b>Model exchange</b>: without states and event indicators, as the scene has no history. A solve
-that fails gives fmi2Discard when outputs are read: the master then takes a smaller step.</p>
+that fails gives fmi2Discard when outputs are read: the master then takes a smaller step. Outputs
+carry the solver's tolerance, so an integrator that finds its Jacobian by differences should take
+the FMU's directional derivatives, or an FMU of a scene with a smaller method.tolerance.</p>
 """
 AVERAGED = """
 <p><b>Means</b>: mean_force and mean_moment are those over the last communication step. Where inputs
@@ -88,8 +90,9 @@ derivatives of force and moment by pose and velocity, and M the mass and inertia
 w<sup>2</sup> and c are the spectral norms of M<sup>-1/2</sup>KM<sup>-1/2</sup> and
 M<sup>-1/2</sup>CM<sup>-1/2</sup>. It is the least of 0.1/w, where the lag takes 2.5 % of critical
 damping from the contact's stiffest oscillation, of 1/c, above which creep forces overshoot, and of
-1 s. The rest of the model, its damping and further elasticity, is not in it. 0: a derivative is not
-known. It is found where it is read, and takes two to three steps' time.</p>
+1 s. The rest of the model, its damping and further elasticity, is not in it: one that damps the
+bounce by less, and integrates exactly under held forces, needs shorter steps. 0: a derivative is
+not known. It is found where it is read, and takes two to three steps' time.</p>
 """
 DERIVATIVES = """
 <p><b>Directional derivatives</b> of Real outputs by Real inputs are those of the outputs as they

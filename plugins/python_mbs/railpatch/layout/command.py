@@ -8,6 +8,7 @@ import click
 
 from railpatch.commands import WrongCall, output_option
 from railpatch.layout.plots import KINDS
+from railpatch.output import check_output
 
 
 @click.command("layout")
@@ -34,6 +35,7 @@ def layout(run: Path | None, output: Path, kind: str, wheelsets: int, quiet: boo
     from railpatch.layout import layout_text
     from railpatch.log.reader import RunFileError, read_run
 
+    check_output(output, run)
     topics = None
     try:
         if run is not None:

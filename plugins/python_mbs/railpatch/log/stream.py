@@ -28,11 +28,13 @@ from mcap.writer import Writer
 from mcap_protobuf.schema import register_schema
 
 from .channels import CONVENTIONS, WELL_KNOWN, Channel, flat_fields, note
+from .effective import EFFECTIVE, Effective
 from .schema import PACKAGE, schema_data
 
 FLUSH_INTERVAL = 0.25  # s, wall clock
 SCENE_RATE = 30.0  # Hz of simulation time, of the 3D scene
 CASE_MEDIA_TYPE = "application/toml"
+EFFECTIVE_MEDIA_TYPE = "application/json"
 PROFILE_MEDIA_TYPE = "text/plain"
 _LAST_TIME = 2**63 - 1  # ns; beyond, some readers' signed times overflow
 _FOXGLOVE = {"foxglove.FrameTransforms": FrameTransforms, "foxglove.SceneUpdate": SceneUpdate}
@@ -260,7 +262,10 @@ def _channel_metadata(entry: Channel) -> dict[str, str]:
 
 
 def checked_attachments(
-    case_text: str | bytes, case_name: str, profiles: Mapping[str, bytes]
+    case_text: str | bytes,
+    case_name: str,
+    profiles: Mapping[str, bytes],
+    ran_with: Effective | None = None,
 ) -> list[tuple[str, str, bytes]]:
     """Name, media type and bytes of every attachment. Raises ValueError."""
     if not isinstance(case_name, str) or not case_name:
@@ -269,8 +274,12 @@ def checked_attachments(
         raise ValueError(f"case_text is of type {type(case_text).__name__}; it must be text")
     data = case_text.encode() if isinstance(case_text, str) else case_text
     attachments = [(case_name, CASE_MEDIA_TYPE, data)]
+    taken = {case_name}
+    if ran_with is not None:
+        attachments.append((EFFECTIVE, EFFECTIVE_MEDIA_TYPE, ran_with.data))
+        taken.add(EFFECTIVE)
     for name, content in profiles.items():
-        if not isinstance(name, str) or not name or name == case_name:
+        if not isinstance(name, str) or not name or name in taken:
             raise ValueError(f"profiles: {name!r} is not a name of its own")
         if not isinstance(content, bytes):
             raise ValueError(

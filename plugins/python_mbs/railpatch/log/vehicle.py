@@ -12,6 +12,7 @@ import numpy as np
 
 from . import vehicle_scene
 from .channels import channel, vehicle_channels
+from .effective import Effective
 from .encode import encode
 from .geometry import SceneGeometry
 from .stream import SCENE_RATE, LogStream, Pace, checked_attachments
@@ -64,14 +65,16 @@ class VehicleLog:
         profiles: Mapping[str, bytes] | None = None,
         geometry: VehicleGeometry | None = None,
         scene_rate: float = SCENE_RATE,
+        ran_with: Effective | None = None,
     ) -> None:
         if not isinstance(wheelsets, int) or isinstance(wheelsets, bool) or wheelsets < 1:
             raise ValueError(f"wheelsets is {wheelsets!r}; it must be a whole number >= 1")
         if geometry is not None and not isinstance(geometry, VehicleGeometry):
             raise ValueError(f"geometry is {geometry!r}; it must be a VehicleGeometry")
-        attachments = checked_attachments(case_text, case_name, profiles or {})
+        attachments = checked_attachments(case_text, case_name, profiles or {}, ran_with)
         self._count, self._pace = wheelsets, Pace(scene_rate)
         about = {"scene": case_name, "track_kind": "rail", "wheelsets": str(wheelsets)}
+        about |= ran_with.about if ran_with else {}
         self.stream = LogStream(path, vehicle_channels(wheelsets), about, attachments)
         if geometry is not None:
             with self.stream.counted():
@@ -97,7 +100,6 @@ class VehicleLog:
         bodies: Sequence[Mapping[str, Any]],
         tracks: Sequence[tuple[Sequence[float], Sequence[float]]] | None = None,
         energy: Mapping[str, Any] | None = None,
-        momentum: Mapping[str, Any] | None = None,
         stats: Mapping[str, Any] | None = None,
     ) -> None:
         """Logs one time step; the fields of each dict stand in channels.py.
@@ -115,7 +117,6 @@ class VehicleLog:
             given = {"/vehicle/state": state, "/vehicle/bodies": {"bodies": list(bodies)}}
             beside = {
                 "/vehicle/energy": energy,
-                "/vehicle/momentum": momentum,
                 "/solver/stats": stats,
             }
             given |= {topic: values for topic, values in beside.items() if values is not None}

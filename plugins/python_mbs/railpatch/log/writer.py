@@ -9,6 +9,7 @@ from typing import Any
 
 from . import scene
 from .channels import CHANNELS, SIDES, channel
+from .effective import Effective
 from .encode import encode, encode_fields
 from .geometry import SceneGeometry
 from .stream import SCENE_RATE, LogStream, Pace, checked_attachments
@@ -24,7 +25,8 @@ class RunLog:
     ``case_name`` its file name and the scene's name; ``profiles`` holds the profile files' bytes by
     name. All of them are attached before the first message. ``geometry`` is for the 3D scene;
     without it only patches and forces are shown. ``scene_rate``: Hz, scenes a second of simulation
-    time at most, 0: none.
+    time at most, 0: none. ``ran_with``: the tables as they ran, where options have replaced some of
+    the case file's.
 
     Raises ValueError for a bad argument, before any file is made, and OSError where ``path`` cannot
     be written.
@@ -39,13 +41,15 @@ class RunLog:
         profiles: Mapping[str, bytes] | None = None,
         geometry: SceneGeometry | None = None,
         scene_rate: float = SCENE_RATE,
+        ran_with: Effective | None = None,
     ) -> None:
-        attachments = checked_attachments(case_text, case_name, profiles or {})
+        attachments = checked_attachments(case_text, case_name, profiles or {}, ran_with)
         if geometry is not None and not isinstance(geometry, SceneGeometry):
             raise ValueError(f"geometry is {geometry!r}; it must be a SceneGeometry")
         self._pace = Pace(scene_rate)
         self._geometry = geometry
         about = {"scene": case_name, "track_kind": geometry.kind if geometry else ""}
+        about |= ran_with.about if ran_with else {}
         self.stream = LogStream(path, CHANNELS, about, attachments)
         if geometry:
             with self.stream.counted():

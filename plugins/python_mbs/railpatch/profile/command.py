@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from railpatch.commands import WrongCall, output_option
+from railpatch.output import check_output
 from railpatch.profiles.pairing import Dimensions
 
 
@@ -52,6 +53,7 @@ def profile(
     """
     if rail is not None and wheel is not None:
         raise WrongCall("--rail, --wheel: both given, allowed one: the profile's partner")
+    check_output(output, source, rail, wheel)
     # plotly takes a while to import; other commands need not wait for it
     from railpatch.profile import write_profile_page
 

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import click
+
+from railpatch.output import check_output
 
 
 @click.command("report")
@@ -36,6 +40,7 @@ def report(run: str, output: str, at: float | None, reference: str | None, quiet
 
     The page needs no network. A log that was cut off is reported up to its end.
     """
+    check_output(Path(output), run)
     # plotly takes a while to import; other commands need not wait for it
     from railpatch.report import write_report
 

@@ -157,7 +157,12 @@ def _along_the_track(data: Positions) -> list[str]:
 def hunting_section(found: dict[str, Any]) -> list[str]:
     """The search for the critical speed that the log carries."""
     speed = found["critical_speed"]
-    rows = [("critical speed, from eigenvalues", _speed(speed))]
+    below, away = found.get("critical_speed_below"), found.get("divergence")
+    first = _speed(speed) if below is None else f"below {_speed(below)}: waves grow there"
+    rows = [("critical speed, from eigenvalues", first)]
+    if away is not None:
+        growth = tables.number(away["growth"])
+        rows.append(("divergence, without waves", f"{growth} 1/s at {_speed(away['speed'])}"))
     if "critical_speed_in_time" in found:
         rows.append(("critical speed, from runs in time", _speed(found["critical_speed_in_time"])))
     if speed is not None:

@@ -160,10 +160,23 @@ def identity(run: Run) -> list[Sequence[object]]:
         ("log", run.path.name),
         ("railpatch", about.get("version", "-")),
         ("attached files", files or "none"),
+        *made_with(about),
     ]
     if "logging_time" in end:
         share = 100 * float(end["logging_time"]) / float(end["wall_time"])
         rows.append(("logging", f"{number(share)} % of the wall time"))
+    return rows
+
+
+def made_with(about: dict[str, str]) -> list[Sequence[object]]:
+    """Theory, steps, and what options have replaced; older logs do not say."""
+    rows: list[Sequence[object]] = []
+    if about.get("theory"):
+        rows.append(("theory", ", ".join(filter(None, (about["theory"], about.get("grid"))))))
+    if about.get("step"):
+        rows.append(("time step", f"{about['step']} s, for {about['duration']} s"))
+    if "overrides" in about:
+        rows.append(("not as in the case file", about["overrides"] or "nothing"))
     return rows
 
 

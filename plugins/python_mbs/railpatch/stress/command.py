@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from railpatch.commands import EXIT_NOT_CONVERGED, WrongCall, folder_option, progress_bar
+from railpatch.output import check_folder
 
 
 @click.command("stress")
@@ -35,6 +36,7 @@ def stress(
     plan = Plan(SEED if seed is None else seed, quick, only)
     if not len(plan):
         raise WrongCall(f"--only: value is {only!r}, allowed a part of a trial's name")
+    check_folder(output)
     with progress_bar("stress", len(plan), quiet) as advance:
         report = run_stress(plan, advance)
     try:

@@ -10,6 +10,7 @@ import click
 
 from railpatch.commands import output_option, progress_bar
 from railpatch.errors import CaseError
+from railpatch.output import check_output
 
 
 @click.command()
@@ -29,6 +30,7 @@ def table(output: Path, jobs: int, keep: bool, quiet: bool) -> None:
     from railpatch.table.make import make_table, part_count
     from railpatch.table.recipe import Recipe
 
+    check_output(output)
     recipe = Recipe()
     parts = output.with_name(f"{output.name}.parts")
     try:
