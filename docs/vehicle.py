@@ -12,13 +12,10 @@ import matplotlib
 
 matplotlib.use("svg")
 import matplotlib.pyplot as plt
-import numpy as np
-from scipy.ndimage import uniform_filter1d
 
 from wheelset_demo.vehicle import Simulation, load_vehicle_scene
 from wheelset_demo.vehicle.compare import HEADER, THEORIES, rows_of, with_theory
 from wheelset_demo.vehicle.trace import (
-    SLIDING,
     VehicleSummary,
     VehicleTrace,
     run_vehicle,
@@ -72,12 +69,8 @@ def figure(found: dict[str, tuple[VehicleTrace, VehicleSummary]], file: Path) ->
     for name, colour in DRAWN.items():
         trace = found[name][0]
         s = trace.array("positions")[:, 0]
-        width = max(1, round(SLIDING / np.diff(s).mean()))
-        smooth = {
-            key: uniform_filter1d(trace.array(key)[:, 0], width) / 1e3
-            for key in ("guiding", "loads")
-        }
-        values = (1e3 * trace.array("lateral")[:, 0], smooth["guiding"], smooth["loads"])
+        means = [trace.array(key)[:, 0] / 1e3 for key in ("mean_guiding", "mean_loads")]
+        values = (1e3 * trace.array("lateral")[:, 0], *means)
         for ax, value, label in zip(axes, values, labels, strict=False):
             ax.plot(s[::5], value[::5], colour, lw=0.7, label=THEORIES[name].text)
             ax.set_ylabel(label)

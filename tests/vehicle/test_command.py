@@ -99,6 +99,20 @@ def test_wrong_calls(tmp_path):
             "alignment.straight: value is 20.0, allowed >= 21.56",
         ),
         ("threads = 1", "threads = 0", "run.threads: value is 0"),
+        ("duration = 20.0", "duration = 2000.0", "200122 m of track, allowed <= 100000 m"),
+        (
+            "lateral = 1.0                        # m\nheight = 0.46",
+            "height = 0.46",
+            r"suspension\[0\].lateral: value is 0.0, allowed > 0 for a primary element",
+        ),
+        (
+            "lateral = 1.3\nheight = 0.6\n",
+            "height = 0.6\n",
+            r"suspension\[8\].lateral: value is 0.0, allowed > 0 for a secondary element",
+        ),
+        ("[0.025, 0.0], [0.030", "[0.025, 10.0], [0.030", r"bump_stop: value is \[10.0, 600.0"),
+        ("[0.030, 600.0]", "[0.030, -600.0]", "forces from 0 on that do not fall"),
+        ("[0.065, 230000.0]", "[0.065, 23000.0]", "forces from 0 on that do not fall"),
     ],
 )
 def test_refused(tmp_path, old, new, message):
@@ -108,3 +122,25 @@ def test_refused(tmp_path, old, new, message):
     changed.write_text(text.replace(old, new), encoding="utf-8")
     with pytest.raises(CaseError, match=message):
         load_vehicle_scene(changed)
+
+
+def test_contact_that_fails_before_the_first_step(tmp_path, monkeypatch):
+    """A curve that begins under the vehicle, which checks of a scene refuse otherwise."""
+    text = scene_file("vehicle_curve.toml").read_text(encoding="utf-8")
+    for old, new in (
+        ("straight = 150.0", "straight = 0.0"),
+        ("transition = 300.0", "transition = 5.0"),
+        ("radius = 4000.0", "radius = 150.0"),
+    ):
+        assert old in text
+        text = text.replace(old, new)
+    file = tmp_path / "tight.toml"
+    file.write_text(text, encoding="utf-8")
+    refused = call(str(file), "--method", "polach", "--duration", "0.01")
+    assert refused.exit_code == 2
+    assert "alignment.straight: value is 0.0, allowed >= 21.56" in refused.output
+    monkeypatch.setattr("wheelset_demo.vehicle.scene.check_run", lambda **_: None)
+    failed = call(str(file), "--method", "polach", "--duration", "0.01")
+    assert failed.exit_code == 3, failed.output
+    assert "status: contact failed at 0 s" in failed.output
+    assert "before the first step" in failed.output

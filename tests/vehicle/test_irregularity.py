@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -12,9 +13,11 @@ from scipy.integrate import quad
 
 from wheelset_demo.vehicle.irregularity import (
     ARM,
+    BLOCK,
     CUT,
     LEVELS,
     RISE,
+    WAVES,
     IrregularityTable,
     Waves,
     irregularity_of,
@@ -101,6 +104,26 @@ def test_rails_follow_from_the_processes():
     between = Waves("lateral", table, np.random.default_rng(2)).at(at)
     np.testing.assert_allclose(rails.at(at)[:, 0, 0], between, atol=5e-6)
     assert not np.array_equal(record(IrregularityTable(seed=4), 60.0, 0.0)[1][:60], deviations[:60])
+
+
+def test_waves_are_summed_in_blocks():
+    """As one by one, whatever the number of points."""
+    waves = Waves("cross", IrregularityTable(), np.random.default_rng(0))
+    s = np.linspace(0.0, 500.0, 2 * BLOCK + 5)
+    found = waves.at(s)
+    for k in (0, BLOCK - 1, BLOCK, 2 * BLOCK, len(s) - 1):
+        wanted = np.sum(waves.amplitudes * np.cos(waves.numbers * s[k] + waves.phases))
+        assert found[k] == pytest.approx(wanted, abs=1e-14)
+    assert waves.at(np.zeros(0)).shape == (0,)
+
+
+def test_memory_of_a_long_record():
+    """60 s at 300 km/h: the angles of all waves at all points would be 77 MB."""
+    tracemalloc.start()
+    record(IrregularityTable(), 1.2 * 83.3 * 60 + 121.6, 21.6)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 4 * 8 * BLOCK * WAVES
 
 
 @pytest.mark.parametrize(

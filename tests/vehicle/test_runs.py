@@ -42,7 +42,7 @@ def test_energy_closes_on_irregular_rails():
         given = scenes.scene(duration=0.3, irregular=True, step=step)
         trace = run_vehicle(Simulation(given))
         assert trace.failure is None
-        missing.append(trace.open_balance())
+        missing.append(trace.open_balance() / trace.lost())
     assert missing[0] < 0.02
     assert missing[1] < 0.3 * missing[0]
 

@@ -65,7 +65,7 @@ def vehicle(
     """Run a vehicle of 50 degrees of freedom on its track.
 
     Without a scene it runs 20 s at 300 km/h through a curve whose rails have irregularities. A
-    contact that cannot be solved ends the run with exit code 3.
+    contact that cannot be solved ends the run with exit code 3; the log up to there is kept.
     """
     if compare and methods:
         raise WrongCall(f"--compare: given with --method {methods[0]}, allowed one of them")
@@ -76,6 +76,7 @@ def vehicle(
     except ImportError as error:
         raise WrongCall(str(error)) from None
     from wheelset_demo.scene import scene_file
+    from wheelset_demo.system import ContactFailure
     from wheelset_demo.vehicle.compare import COMPARED
     from wheelset_demo.vehicle.scene import DEFAULT, load_vehicle_scene
 
@@ -86,6 +87,11 @@ def vehicle(
         found = run_all(loaded, COMPARED if compare else methods, quiet, output)
     except (CaseError, ProfileError, OSError) as error:
         raise WrongCall(str(error)) from None
+    except ContactFailure as failure:
+        # one in a run is in its summary
+        if not quiet:
+            click.echo(f"status: {failure}; before the first step", err=True)
+        context.exit(EXIT_NOT_CONVERGED)
     if as_json:
         content = {name: summary.to_dict() for name, summary in found.items()}
         click.echo(json.dumps({"scene": loaded.name, "runs": content}, allow_nan=False))
@@ -94,7 +100,8 @@ def vehicle(
     failed = {name: summary for name, summary in found.items() if not summary.good}
     for name, summary in failed.items():
         if not quiet:
-            click.echo(f"status: {name}: {summary.message}", err=True)
+            kept = "" if output is None else f"; the log up to there is in {output}"
+            click.echo(f"status: {name}: {summary.message}{kept}", err=True)
     if failed:
         context.exit(EXIT_NOT_CONVERGED)
 

@@ -31,6 +31,8 @@ ARM = 0.75  # m, b: half the distance of the contacts
 WAVES = 400
 # of a record: points in the shortest wave
 POINTS = 12
+# points at which waves are summed at once: 13 MB
+BLOCK = 4096
 
 
 class IrregularityTable(Table):
@@ -82,8 +84,12 @@ class Waves:
 
     def at(self, s: Vector) -> Vector:
         """[n], at arc lengths (m)."""
-        angles = np.multiply.outer(s, self.numbers) + self.phases
-        return np.cos(angles) @ self.amplitudes
+        found = np.empty(len(s))
+        for begin in range(0, len(s), BLOCK):
+            part = slice(begin, begin + BLOCK)
+            angles = np.multiply.outer(s[part], self.numbers) + self.phases
+            found[part] = np.cos(angles) @ self.amplitudes
+        return found
 
 
 def record(table: IrregularityTable, length: float, start: float) -> tuple[Vector, Vector]:

@@ -39,6 +39,7 @@ class Recorder:
         )
         self._start: np.ndarray | None = None
         self._done = 0.0, 0
+        self._written = -math.inf
 
     def write(self, simulation: Simulation) -> None:
         """The present state, where its turn has come; the run's last one too."""
@@ -48,13 +49,21 @@ class Recorder:
             return
         with self._log.stream.counted():
             self._log.write(time, **self.messages(simulation, self._fields.due(time)))
+        self._written = time
 
     def failed(self, simulation: Simulation, failure: ContactFailure) -> None:
-        """The contacts that were asked for last, which were not all solved."""
-        late = max(failure.time, simulation.state.time + 1e-9)
-        # a motion that is not a number has nothing to show
-        with self._log.stream.counted(), suppress(ValueError):
-            self._log.write(late, **self.messages(simulation, False))
+        """The last state that is good, if it is not written yet, and the contacts that were asked
+        for last, which were not all solved."""
+        time = simulation.state.time
+        with self._log.stream.counted():
+            wrong = self.messages(simulation, False)
+            if time > self._written:
+                with suppress(ContactFailure):
+                    simulation.solve_again()
+                    self._log.write(time, **self.messages(simulation, False))
+            # a motion that is not a number has nothing to show
+            with suppress(ValueError):
+                self._log.write(max(failure.time, time + 1e-9), **wrong)
 
     def messages(self, simulation: Simulation, fields: bool) -> dict[str, Any]:
         """Arguments of VehicleLog.write."""
@@ -103,11 +112,16 @@ class Recorder:
             "left_rail": rails[0],
             "right_rail": rails[1],
         }
-        lost = simulation.state.work[len(WORKS) + 2 * index :]
+        wheels = slice(2 * index, 2 * index + 2)
+        lost = simulation.state.work[len(WORKS) :][wheels].tolist()
+        means = simulation.means.guiding[wheels].tolist(), simulation.means.loads[wheels].tolist()
         found: dict[str, Any] = {"state": state}
-        for side, work, more in zip(SIDES, lost[:2].tolist(), sloped.tolist(), strict=True):
+        for side, work, more, guiding, load in zip(
+            SIDES, lost, sloped.tolist(), *means, strict=True
+        ):
             # z is given in vehicle runs
             wheel = wheel_json(result[side]) | {"friction_work": work, "z": None}
+            wheel |= {"mean_guiding_force": guiding, "mean_wheel_load": load}
             wheel["force"][0] += more[0]
             wheel["moment"][1] += more[1]
             wheel["moment"][2] += more[2]

@@ -25,6 +25,8 @@ DEFAULT = "vehicle_curve.toml"
 FOUND = ("y", "yaw", "roll", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate")
 WHEELSETS = 4
 BOXES = 2 * WHEELSETS
+# m, of track: its record takes some 0.2 GB
+LONGEST = 1e5
 Triple = Annotated[list[NotNegative], exactly(3)]
 NONE = [0.0, 0.0, 0.0]
 
@@ -93,8 +95,9 @@ class ElementTable(Table):
     lateral: NotNegative = Field(default=0.0, description="m, from the vehicle's middle")
     longitudinal: Number = Field(
         default=0.0,
-        description="m, outward from the wheelset; of the bogie's sides ahead on the right and "
-        "behind on the left; in its middle ahead",
+        description="m, of primary elements from the wheelset away from the bogie's middle; of "
+        "secondary ones from the bogie's middle, > 0 ahead on the right side and behind on the "
+        "left one; of those in the centre ahead",
     )
     stiffness: Triple = Field(default=NONE, description="N/m, along x, y, z")
     damping: Triple = Field(default=NONE, description="N s/m, along x, y, z")
@@ -111,12 +114,20 @@ class ElementTable(Table):
     def _possible(self) -> ElementTable:
         if self.level == "centre" and self.lateral != 0:
             raise relation("lateral", self.lateral, "0 in the middle of a bogie")
+        if self.level != "centre" and self.lateral == 0:
+            wanted = f"> 0 for a {self.level} element: there is one at each side"
+            raise relation("lateral", self.lateral, wanted)
         if any(s > 0 and c == 0 for s, c in zip(self.series_stiffness, self.damping, strict=True)):
             raise relation("series_stiffness", self.series_stiffness, "0 where damping is 0")
         if self.bump_stop is not None:
             places = [row[0] for row in self.bump_stop]
             if places[0] < 0 or any(b <= a for a, b in pairwise(places)):
                 raise relation("bump_stop", places, "displacements >= 0 that increase")
+            forces = [row[1] for row in self.bump_stop]
+            if forces[0] != 0 or any(b < a for a, b in pairwise(forces)) or not forces[-1] > 0:
+                raise relation(
+                    "bump_stop", forces, "forces from 0 on that do not fall, at last > 0"
+                )
         return self
 
 
@@ -191,7 +202,7 @@ class VehicleScene:
     @property
     def length(self) -> float:
         """m, of the track that is run on, with some to spare."""
-        return 1.2 * self.speed * self.run.duration + self.vehicle.length + 100.0
+        return track_length(self.speed, self.run, self.vehicle)
 
     @property
     def axle_load(self) -> float:
@@ -219,6 +230,11 @@ class VehicleScene:
         method = self.case.method.model_copy(update={"derivatives": True})
         update = {"wheelset": wheelset, "method": method}
         return Scene(self.case.model_copy(update=update), Path())
+
+
+def track_length(speed: float, run: RunTable, vehicle: VehicleTable) -> float:
+    """m, that a run asks for, with some to spare. speed: m/s."""
+    return 1.2 * speed * run.duration + vehicle.length + 100.0
 
 
 def load_vehicle_scene(
@@ -277,6 +293,12 @@ def check_run(
         problems.append(f"wheelset.speed: value is {wheelset.speed}, allowed > 0 m/s")
     if run.duration < run.step or run.duration / run.step > 1e7:
         problems.append(f"run.step: value is {run.step}, allowed 1 to 1e7 steps in the duration")
+    length = track_length(wheelset.speed, run, vehicle)
+    if length > LONGEST:
+        problems.append(
+            f"run.duration: value is {run.duration}, which is {length:.6g} m of track, allowed <= "
+            f"{LONGEST:.6g} m"
+        )
     if wheelset.z is None:
         problems.append("wheelset.vertical_force: given, allowed 'z' = 0: the vehicle is its load")
     if alignment.radius is not None and alignment.straight < vehicle.length:

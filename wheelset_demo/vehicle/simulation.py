@@ -9,6 +9,7 @@ import numpy as np
 from railpatch import CaseError, Contact
 
 from wheelset_demo.system import BAD, WORKS
+from wheelset_demo.vehicle.means import SlidingMeans
 from wheelset_demo.vehicle.model import CAR_BODY, bogie_name, places_along
 from wheelset_demo.vehicle.scene import WHEELSETS, VehicleScene
 from wheelset_demo.vehicle.steppers import Bdf2
@@ -19,8 +20,9 @@ class Simulation:
     """A scene, ready to run: the vehicle stands on its wheels and rolls at the scene's speed.
 
     scene: VehicleScene. system: the equations of motion; element: its force element. state, rates:
-    the present ones. wall_seconds, cpu_seconds: s, spent in steps() so far, by the clock and of
-    all threads, without what its caller does in between.
+    the present ones. means: Y and Q over the last 2 m, of every time step. wall_seconds,
+    cpu_seconds: s, spent in steps() so far, by the clock and of all threads, without what its
+    caller does in between.
     """
 
     def __init__(self, scene: VehicleScene) -> None:
@@ -32,6 +34,7 @@ class Simulation:
         self.wall_seconds = self.cpu_seconds = 0.0
         self.rates: Rates = self.system.rates(self.state.time, self.state.values)
         self._stepper = Bdf2(self.system, scene.run.step, scene.run.derivatives_every)
+        self.means = SlidingMeans(self.element.wheels)
         self._solved_before = self._contact_cpu()
 
     def steps(self) -> Iterator[VehicleState]:
@@ -45,10 +48,20 @@ class Simulation:
         for done in range(0, count, every):
             begin = clock.perf_counter(), self._cpu()
             for _ in range(min(every, count - done)):
-                self.state, self.rates = self._stepper.step(self.state, self.rates)
+                self._step()
             self.wall_seconds += clock.perf_counter() - begin[0]
             self.cpu_seconds += self._cpu() - begin[1]
             yield self.state
+
+    def _step(self) -> None:
+        before = self.system.positions.mean()
+        self.state, self.rates = self._stepper.step(self.state, self.rates)
+        self.means.add(float(self.system.positions.mean() - before), self.element.wheels)
+
+    def solve_again(self) -> None:
+        """Brings the force element's arrays and body_poses() back to the present state, after a
+        step that failed. Raises ContactFailure."""
+        self.rates = self.system.rates(self.state.time, self.state.values)
 
     def body_poses(self) -> dict[str, tuple[Vector, Vector]]:
         """Name -> rotation [3, 3] and place [3] (m) of each body in the world; see the package."""

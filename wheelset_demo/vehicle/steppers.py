@@ -1,7 +1,7 @@
 """Time steps: linearly implicit, of order 2 with any matrix, so that it may be an old one.
 
-The wheels bounce on their contacts at some 1500 rad/s and creep forces damp like f/(V m): stiff at
-steps of 1 ms. With A and G, the derivatives of f(y, u) by y and by u, what the rails do, at some
+The wheels bounce on their contacts at 1150 to 1330 rad/s and creep forces damp like f/(V m): stiff
+at steps of 1 ms. With A and G, the derivatives of f(y, u) by y and by u, what the rails do, at some
 earlier state, and u known ahead:
 
 bdf2, one evaluation of f a step: backward differences of A (y - y*) + G (u - u*), the rest of f

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter1d
 
 from wheelset_demo.scene import GRAVITY
 from wheelset_demo.system import WORKS, ContactFailure
+from wheelset_demo.vehicle.means import rail_forces
 from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.simulation import Simulation
 from wheelset_demo.vehicle.system import VehicleState
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
 Vector = NDArray[np.float64]
 Advance = Callable[[VehicleState], None]
-# m, over which forces are averaged before their ratio is judged (EN 14363)
-SLIDING = 2.0
 
 
 @dataclass
@@ -31,11 +29,11 @@ class VehicleTrace:
     """The n kept steps of a run.
 
     times: [n], s. positions: [n, 4], m, along the track. lateral, yaw: [n, 4], m, rad, of the
-    wheelsets on their track. guiding, loads: [n, 8], N, Y on the rail to the right and Q down, of
-    left and right wheel of each wheelset. felt: [n, 3], m/s^2, acceleration of the car body's
-    centre less gravity's, in its axes. works: [n, 12], J, as those of a state. energies: [n, 4], J,
-    by STORES. failure: what ended the run before its end. logging_share: -, of the wall time, in
-    the log; None without one.
+    wheelsets on their track. guiding, loads: [n, 8], N, on the rails Y, outward > 0, and Q, down,
+    of left and right wheel of each wheelset; mean_guiding, mean_loads: over the last 2 m. felt: [n,
+    3], m/s^2, acceleration of the car body's centre less gravity's, in its axes. works: [n, 12], J,
+    as those of a state. energies: [n, 4], J, by STORES. failure: what ended the run before its end.
+    logging_share: -, of the wall time, in the log; None without one.
     """
 
     scene: VehicleScene
@@ -45,6 +43,8 @@ class VehicleTrace:
     yaw: list[Vector] = field(default_factory=list)
     guiding: list[Vector] = field(default_factory=list)
     loads: list[Vector] = field(default_factory=list)
+    mean_guiding: list[Vector] = field(default_factory=list)
+    mean_loads: list[Vector] = field(default_factory=list)
     felt: list[Vector] = field(default_factory=list)
     works: list[Vector] = field(default_factory=list)
     energies: list[Vector] = field(default_factory=list)
@@ -58,8 +58,11 @@ class VehicleTrace:
         self.positions.append(simulation.system.positions.copy())
         self.lateral.append(element.states[:, 1].copy())
         self.yaw.append(element.states[:, 4].copy())
-        self.guiding.append(-element.wheels[:, :, 1].ravel())
-        self.loads.append(-element.wheels[:, :, 2].ravel())
+        guiding, loads = rail_forces(element.wheels)
+        self.guiding.append(guiding)
+        self.loads.append(loads)
+        self.mean_guiding.append(simulation.means.guiding)
+        self.mean_loads.append(simulation.means.loads)
         self.felt.append(felt_by_car_body(simulation))
         self.works.append(state.work)
         self.energies.append(simulation.energies)
@@ -69,13 +72,16 @@ class VehicleTrace:
         return np.array(getattr(self, name))
 
     def open_balance(self) -> float:
-        """-, greatest part of the energy lost that is missing in that of bodies and springs."""
+        """J, most that is missing in the energy of bodies and springs."""
         works, stores = self.array("works"), self.array("energies")
         stored = (stores - stores[0])[:, :3].sum(axis=1)
-        contact, friction, damping, drive = (works[:, k] for k in range(len(WORKS)))
-        missing = stored - contact - drive + damping
-        lost = friction[-1] + damping[-1]
-        return float(np.abs(missing).max() / lost) if lost > 0 else 0.0
+        contact, _, damping, drive = (works[:, k] for k in range(len(WORKS)))
+        return float(np.abs(stored - contact - drive + damping).max())
+
+    def lost(self) -> float:
+        """J, in friction and dampers."""
+        works = self.array("works")
+        return float(works[-1, WORKS.index("friction")] + works[-1, WORKS.index("damping")])
 
 
 def felt_by_car_body(simulation: Simulation) -> Vector:
@@ -126,13 +132,14 @@ def traced(
 
 @dataclass(frozen=True)
 class VehicleSummary:
-    """A run in numbers, SI. Of Y and Q those averaged over 2 m (EN 14363).
+    """A run in numbers, SI. Of Y and Q those averaged over 2 m (EN 14363), of every time step.
 
-    derailment: greatest |Y|/Q of a wheel. load_range: N, least and greatest Q. guiding: N, greatest
-    sum of Y of a wheelset. offset: m, greatest of a wheelset from the track's middle. comfort:
-    m/s^2, standard deviation of lateral and vertical acceleration at the car body's centre in its
-    axes. friction: J, [8], at each wheel. balance: -, part of the energy lost that is missing in
-    that of bodies and springs. seconds: of the time steps: total, by the clock; cpu, of all
+    derailment: greatest Y/Q of a wheel, Y outward. load_range: N, least and greatest Q. guiding: N,
+    greatest force of a wheelset across the track, either way. offset: m, greatest of a wheelset
+    from the track's middle. comfort: m/s^2, standard deviation, over the whole run, of lateral and
+    vertical acceleration at the car body's centre in its axes. friction: J, [8], at each wheel.
+    open_balance: J, most that was missing in the energy of bodies and springs; lost: J, in friction
+    and dampers. seconds: of the time steps: total, by the clock; cpu, of all
     threads, and of it contact (force element) and derivatives. real_time: -, total over the time
     simulated.
     """
@@ -148,7 +155,8 @@ class VehicleSummary:
     offset: float
     comfort: tuple[float, float]
     friction: tuple[float, ...]
-    balance: float
+    open_balance: float
+    lost: float
     seconds: dict[str, float]
     real_time: float
     logging_share: float | None = None
@@ -167,12 +175,24 @@ class VehicleSummary:
         seconds = self.seconds
         lines = [
             ("distance", f"{self.distance:.1f} m in {self.duration:.3f} s, {self.steps} steps"),
-            ("Y/Q", f"{self.derailment:.3f} at most; sum of Y {self.guiding / 1e3:.2f} kN at most"),
-            ("wheel loads", f"{low:.1f} ... {high:.1f} kN"),
+            (
+                "Y/Q",
+                f"{self.derailment:.3f} at most, Y outward; a wheelset's Y "
+                f"{self.guiding / 1e3:.2f} kN at most, either way",
+            ),
+            ("wheel loads", f"{fixed(low, 1)} ... {fixed(high, 1)} kN"),
             ("offset", f"{1e3 * self.offset:.2f} mm at most"),
-            ("car body", f"{lateral:.3f} m/s^2 lateral, {vertical:.3f} m/s^2 vertical (rms)"),
-            ("friction", " ".join(f"{part / 1e3:.2f}" for part in self.friction) + " kJ a wheel"),
-            ("balance", f"open by {100 * self.balance:.2g} % of the energy lost"),
+            (
+                "car body",
+                f"{lateral:.3f} m/s^2 lateral, {vertical:.3f} m/s^2 vertical, standard deviations "
+                "over the run",
+            ),
+            ("friction", " ".join(fixed(part / 1e3, 2) for part in self.friction) + " kJ a wheel"),
+            (
+                "balance",
+                f"open by {self.open_balance:.3g} J at most; {self.lost:.4g} J were lost in "
+                "friction and dampers",
+            ),
             (
                 "time",
                 f"{seconds['total']:.2f} s, CPU {seconds['cpu']:.2f} s, of it contacts "
@@ -185,16 +205,16 @@ class VehicleSummary:
         return "\n".join(f"{name:<16}{value}" for name, value in lines)
 
 
+def fixed(value: float, places: int) -> str:
+    """With so many decimal places, and no -0."""
+    return f"{round(value, places) + 0.0:.{places}f}"
+
+
 def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
     """Of a run."""
     positions = trace.array("positions")
     distance = float(positions[-1, 0] - positions[0, 0])
-    between = distance / max(1, len(positions) - 1)
-    width = max(1, round(SLIDING / between)) if between > 0 else 1
-    guiding, loads = (
-        uniform_filter1d(trace.array(name), width, axis=0) for name in ("guiding", "loads")
-    )
-    ratio = np.abs(guiding) / np.maximum(loads, 1.0)
+    means = simulation.means
     felt, time = trace.array("felt"), simulation.state.time
     system, wall = simulation.system, simulation.wall_seconds
     seconds = {
@@ -209,13 +229,14 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
         duration=time,
         distance=distance,
         steps=round(time / simulation.scene.run.step),
-        derailment=float(ratio.max()),
-        load_range=(float(loads.min()), float(loads.max())),
-        guiding=float(np.abs(guiding.reshape(len(guiding), -1, 2).sum(axis=2)).max()),
+        derailment=means.ratio if np.isfinite(means.ratio) else 0.0,
+        load_range=means.load_range,
+        guiding=means.sum,
         offset=float(np.abs(trace.array("lateral")).max()),
         comfort=(float(felt[:, 1].std()), float(felt[:, 2].std())),
         friction=tuple(trace.works[-1][len(WORKS) :].tolist()),
-        balance=trace.open_balance(),
+        open_balance=trace.open_balance(),
+        lost=trace.lost(),
         seconds=seconds,
         real_time=wall / time if time > 0 else 0.0,
         logging_share=trace.logging_share,

@@ -17,6 +17,10 @@ from functools import cache
 
 STATUSES = ("converged", "no_contact", "not_converged", "out_of_range")
 SIDES = ("left", "right")
+# m, over which wheel forces are averaged before their ratio is judged (EN 14363)
+SLIDING = 2.0
+# N: below, a wheel has no ratio of its forces
+LEAST_LOAD = 1.0
 
 # attached by railpatch hunting: what its search has found
 HUNTING = "hunting.json"
@@ -196,6 +200,13 @@ WHEEL_CONTACT = Message(
             size=0,
         ),
         _number("friction_work", "J", "lost in friction since the start of the run"),
+        _number(
+            "mean_guiding_force",
+            "N",
+            f"Y on the rail, outward > 0: mean over the last {SLIDING:g} m, of every time step",
+            "track",
+        ),
+        _number("mean_wheel_load", "N", "Q on the rail, down: mean as that of Y", "track"),
     ),
 )
 

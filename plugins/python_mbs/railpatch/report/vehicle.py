@@ -9,16 +9,12 @@ from typing import Any
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from railpatch.log.channels import SIDES
+from railpatch.log.channels import LEAST_LOAD, SIDES, SLIDING
 from railpatch.log.reader import Run, Series
 
 from .data import ReportError, at_times, grid_of
 
 _GOOD = ("converged", "no_contact")
-# m, over which forces are averaged before their ratio is judged (EN 14363)
-SLIDING = 2.0
-# N: below, a wheel has no ratio of its forces
-_LEAST_LOAD = 1.0
 
 Wheel = tuple[int, str]
 
@@ -81,22 +77,41 @@ class VehicleRun:
         between = np.median(np.diff(self.along)) if self.count > 1 else 0.0
         return max(1, round(SLIDING / between)) if between > 0 else 1
 
+    @cached_property
+    def means_logged(self) -> bool:
+        """Whether the log has means of every time step."""
+        series = next(iter(self.contact.values()))
+        return all(message.get("mean_wheel_load") is not None for message in series.messages)
+
     @property
     def averaging(self) -> str:
-        """What averaged() does, in words."""
+        """What mean_guiding and mean_loads are, in words."""
+        if self.means_logged:
+            return "averaged over the last 2 m of way, every time step"
         if self.width == 1:
             return "as logged: steps are too far apart to average over 2 m"
-        return f"averaged over 2 m of way ({self.width} steps)"
+        return f"averaged over 2 m of way ({self.width} logged steps)"
 
-    def averaged(self, values: np.ndarray) -> np.ndarray:
-        """Over 2 m of way, [n]."""
-        return uniform_filter1d(values, self.width)
+    @cached_property
+    def mean_loads(self) -> dict[Wheel, np.ndarray]:
+        """N, by wheel, [n]: Q over 2 m, of every time step where the log has it."""
+        return self._means("mean_wheel_load", self.loads)
+
+    @cached_property
+    def mean_guiding(self) -> dict[Wheel, np.ndarray]:
+        """N, by wheel, [n]: Y, outward > 0, over 2 m."""
+        return self._means("mean_guiding_force", self.guiding)
+
+    def _means(self, name: str, values: dict[Wheel, np.ndarray]) -> dict[Wheel, np.ndarray]:
+        if self.means_logged:
+            return {wheel: series[name] for wheel, series in self.contact.items()}
+        return {wheel: uniform_filter1d(found, self.width) for wheel, found in values.items()}
 
     def ratio(self, wheel: Wheel) -> np.ndarray:
-        """-, [n], Y/Q averaged over 2 m; NaN for a wheel without load."""
-        load = self.averaged(self.loads[wheel])
-        safe = np.where(load > _LEAST_LOAD, load, np.nan)
-        return self.averaged(self.guiding[wheel]) / safe
+        """-, [n], Y/Q of the means; NaN for a wheel without load."""
+        load = self.mean_loads[wheel]
+        safe = np.where(load > LEAST_LOAD, load, np.nan)
+        return self.mean_guiding[wheel] / safe
 
     def friction_work(self, wheel: Wheel) -> np.ndarray:
         """J, [n], since the start; NaN where it was not logged."""

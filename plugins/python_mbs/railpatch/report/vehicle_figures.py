@@ -34,8 +34,8 @@ def track(data: VehicleRun) -> go.Figure:
 
 
 def loads(data: VehicleRun) -> go.Figure:
-    """Wheel loads Q."""
-    return _sides(data, "Q [kN]", lambda wheel: 1e-3 * data.loads[wheel])
+    """Wheel loads Q, averaged over 2 m."""
+    return _sides(data, "Q [kN]", lambda wheel: 1e-3 * data.mean_loads[wheel])
 
 
 def ratios(data: VehicleRun) -> go.Figure:

@@ -76,7 +76,7 @@ def wheels(data: VehicleRun) -> tuple[Sequence[str], list[list[object]]]:
         lateral = 1e3 * float(np.nanmax(np.abs(data.wheelsets[number]["y"])))
         for side in SIDES:
             wheel = number, side
-            load = 1e-3 * data.averaged(data.loads[wheel])
+            load = 1e-3 * data.mean_loads[wheel]
             status = data.statuses[wheel]
             bad = ~np.isin(status, ("converged", "no_contact"))
             patches = max(len(m["patches"]) for m in data.contact[wheel].messages)
@@ -103,13 +103,16 @@ def unsolved(data: VehicleRun) -> str:
 
 def _greatest(values: np.ndarray) -> float:
     known = values[np.isfinite(values)]
-    return float(known[np.argmax(np.abs(known))]) if known.size else float("nan")
+    return float(known.max()) if known.size else float("nan")
 
 
 def _sections(data: VehicleRun) -> list[str]:
     figures = vehicle_figures
     parts = ["<h2>Track</h2>", plot(figures.track(data), "track")]
-    parts += ["<h2>Wheel loads</h2>", plot(figures.loads(data), "loads")]
+    parts += [
+        f"<h2>Wheel loads</h2><p>On the rail, {data.averaging}.</p>",
+        plot(figures.loads(data), "loads"),
+    ]
     parts += [
         f"<h2>Y/Q</h2><p>On the rail, outward &gt; 0, {data.averaging}.</p>",
         plot(figures.ratios(data), "ratios"),
