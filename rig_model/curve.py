@@ -5,11 +5,14 @@ a yaw angle of 0 is the radial position. The wheelset stands still in the track 
 
     f1 = F_y + lateral force                          N, what the curve leaves of speed and cant
     f2 = F_z + vertical load                          N
-    f3 = M_x                                          N m, the load stands over the axle's middle
+    f3 = M_x + I_y pitch rate V/R cos(yaw)            N m, the load stands over the axle's middle
     f4 = M_z - yaw stiffness * yaw                    N m
     f5 = M_y cos(yaw) - M_x sin(yaw)                  N m, about the axle, which turns freely
 
-with the forces on both wheels and their moments about the wheelset's centre, in track axes.
+with the forces on both wheels and their moments about the wheelset's centre, in track axes. The
+axle turns with the track frame by V/R about z, and so does its spin momentum I_y times pitch rate:
+of the moments, f3 leaves what that takes, V/R z x I_y pitch rate (axle), which has no part about
+the axle. It loads the outer wheel.
 
 The search begins where a wheelset without friction would run: sideways where the rolling radii are
 in the ratio of the rails' lengths, or as near to it as the flange lets it come; each wheel alone
@@ -29,7 +32,7 @@ import numpy as np
 from pydantic import Field
 from railpatch import Contact, Result
 from railpatch.case import WheelsetCase
-from railpatch.case.load import Scene, check_case, plain, read_toml
+from railpatch.case.load import Scene, check_case, plain, read_toml, refuse_others
 from railpatch.case.types import NotNegative, Number, Table
 from railpatch.errors import CaseError
 from scipy.optimize import brentq
@@ -68,6 +71,11 @@ class Curve(Table):
     yaw_stiffness: NotNegative = Field(
         default=0.0, description="N m/rad, of the suspension, towards the radial position"
     )
+    pitch_inertia: NotNegative = Field(
+        default=0.0,
+        description="kg m^2, of the wheelset about its axle, whose spin turns with the curve; left "
+        "out: no gyroscopic moment",
+    )
     lateral_force: Number = Field(
         default=0.0, description="N, on the wheelset, to the right: cant deficiency"
     )
@@ -97,6 +105,10 @@ class CurveScene:
         """N, on both wheels together."""
         assert self.case.wheelset.vertical_force is not None
         return self.case.wheelset.vertical_force
+
+    def spin_turned(self, radius: float) -> float:
+        """N m s, moment over pitch rate that turns the wheelset's spin with a curve (m)."""
+        return self.curve.pitch_inertia * self.case.wheelset.speed / radius
 
     def at_height(self, radius: float, **method: Any) -> Scene:
         """The case in a curve with z prescribed in place of the vertical force. method: keys of
@@ -182,6 +194,7 @@ def load_curve_scene(path: str | Path | None = None, **changes: Any) -> CurveSce
     the file's, None: as in the file. Raises CaseError with every problem."""
     path = DEFAULT if path is None else Path(path)
     content = plain(read_toml(path))
+    refuse_others(content, "curve")
     curve = content.pop("curve", None)
     if not isinstance(curve, dict):
         raise CaseError("curve: value is missing, allowed a table with the curves")
@@ -233,11 +246,11 @@ def steady_curve(
     settings = settings_of(scene, start, approach, width)
     tried = 0
     if fast is not None:
-        before = Broyden(settings).solve(lambda unknowns: evaluate(scene, fast, unknowns), start)
+        before = Broyden(settings).solve(lambda x: evaluate(scene, radius, fast, x), start)
         start, tried = before.x, before.evaluations
     between = time.perf_counter()
     solver = Newton(settings) if exact else Broyden(settings)
-    root = solver.solve(lambda unknowns: evaluate(scene, contact, unknowns), start)
+    root = solver.solve(lambda unknowns: evaluate(scene, radius, contact, unknowns), start)
     end = time.perf_counter()
     missed = "out_of_range" if root.residual is None else "not_converged"
     return SteadyCurve(
@@ -280,7 +293,7 @@ def settings_of(scene: CurveScene, start: Vector, approach: float, width: float)
     )
 
 
-def evaluate(scene: CurveScene, contact: Contact, unknowns: Vector) -> Evaluation:
+def evaluate(scene: CurveScene, radius: float, contact: Contact, unknowns: Vector) -> Evaluation:
     """Both wheels' contact at one state; no residual unless both wheels touch their rail."""
     state = dict(zip(UNKNOWNS, map(float, unknowns), strict=True))
     result = contact.step(**state)
@@ -292,32 +305,36 @@ def evaluate(scene: CurveScene, contact: Contact, unknowns: Vector) -> Evaluatio
     def slope() -> Vector:
         jacobian = contact.jacobian()
         rates = (jacobian["left"] + jacobian["right"])[:, COLUMNS]
-        return residual_rates(scene, wrench, state["yaw"], rates)
+        return residual_rates(scene, radius, wrench, state, rates)
 
-    return Evaluation(residuals(scene, wrench, state["yaw"]), solved, result, slope)
+    return Evaluation(residuals(scene, radius, wrench, state), solved, result, slope)
 
 
-def residuals(scene: CurveScene, wrench: Vector, yaw: float) -> Vector:
+def residuals(scene: CurveScene, radius: float, wrench: Vector, state: dict[str, float]) -> Vector:
     """f1 to f5, [5]; wrench: [6], force (N) and moment (N m). See the head of this file."""
     _, fy, fz, mx, my, mz = wrench
-    curve = scene.curve
+    curve, yaw = scene.curve, state["yaw"]
     return np.array(
         [
             fy + curve.lateral_force,
             fz + scene.vertical_force,
-            mx,
+            mx + scene.spin_turned(radius) * state["pitch_rate"] * math.cos(yaw),
             mz - curve.yaw_stiffness * yaw,
             my * math.cos(yaw) - mx * math.sin(yaw),
         ]
     )
 
 
-def residual_rates(scene: CurveScene, wrench: Vector, yaw: float, rates: Vector) -> Vector:
+def residual_rates(
+    scene: CurveScene, radius: float, wrench: Vector, state: dict[str, float], rates: Vector
+) -> Vector:
     """[5, 5], of f1 to f5 with respect to the unknowns, from those of the wrench, [6, 5]."""
-    c, s = math.cos(yaw), math.sin(yaw)
+    c, s = math.cos(state["yaw"]), math.sin(state["yaw"])
     _, fy, fz, mx, my, mz = rates
     slope = np.array([fy, fz, mx, mz, c * my - s * mx])
-    at = UNKNOWNS.index("yaw")
+    at, turned = UNKNOWNS.index("yaw"), scene.spin_turned(radius)
+    slope[2, UNKNOWNS.index("pitch_rate")] += turned * c
+    slope[2, at] -= turned * state["pitch_rate"] * s
     slope[3, at] -= scene.curve.yaw_stiffness
     slope[4, at] -= s * wrench[4] + c * wrench[3]
     return slope

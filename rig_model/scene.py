@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 from railpatch.case import WheelsetCase
-from railpatch.case.load import Scene, check_case, check_table, plain, read_toml
+from railpatch.case.load import Scene, check_case, check_table, plain, read_toml, refuse_others
 from railpatch.case.types import Number, Pair, Positive, Table, relation
 from railpatch.errors import CaseError
 
@@ -192,6 +192,7 @@ def load_rig_scene(
     path = default_scene() if path is None else Path(path)
     given = {key: value for key, value in (overrides or {}).items() if value is not None}
     content = plain(read_toml(path))
+    refuse_others(content, "rig")
     rig = content.pop("rig", None)
     if rig is None:
         raise CaseError("rig: value is missing, allowed a table with the run's programme")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import click
 from railpatch.commands import (
@@ -14,7 +15,7 @@ from railpatch.commands import (
     show_scene_option,
 )
 from railpatch.errors import CaseError, ProfileError
-from railpatch.output import check_output, files_of
+from railpatch.output import check_output, files_of, refusal
 
 from wheelset_demo.hunting_command import SCENE, default_scene_text
 
@@ -59,7 +60,7 @@ def speeds_of(text: str | None, quick: bool) -> list[float]:
         found = []
     if not found or not all(low <= speed <= high for speed in found):
         raise WrongCall(f"--speeds: value is {text!r}, allowed {low:g} ... {high:g} m/s, by commas")
-    return found
+    return list(dict.fromkeys(found))
 
 
 def masters_of(text: str | None, quick: bool) -> list[str]:
@@ -131,7 +132,7 @@ def cosimulation(
     steps through fmpy: forces held, of first order, iterated with rollback, or linearly implicit by
     the FMU's directional derivatives. Energy that the coupling makes or loses stands beside. The
     scene is one of railpatch wheelset; without one it is that of railpatch hunting. Takes some ten
-    minutes.
+    minutes. A speed at which a contact cannot be solved is marked, and ends it with exit code 3.
     """
     chosen_speeds, chosen = speeds_of(speeds, quick), masters_of(masters, quick)
     check_kind(output)
@@ -140,11 +141,10 @@ def cosimulation(
         import railpatch.pinocchio  # noqa: F401
     except ImportError as error:
         raise WrongCall(f"{error}; allowed after pip install fmpy 'railpatch[pinocchio]'") from None
-    from wheelset_demo.coupling.report import dict_of, text_of, write
+    from wheelset_demo.coupling.report import dict_of, text_of
     from wheelset_demo.coupling.slave import CouplingFailure
     from wheelset_demo.coupling.study import study, with_elements
     from wheelset_demo.scene import load_wheelset_scene, scene_file
-    from wheelset_demo.system import ContactFailure
 
     try:
         file = scene_file(SCENE) if scene is None else scene
@@ -153,14 +153,29 @@ def cosimulation(
         count = len(chosen_speeds) * len(chosen)
         with progress_bar("coupling", count, quiet) as advance:
             found = study(with_elements(loaded, elements), chosen_speeds, chosen, advance)
-        if output is not None:
-            write(found, output)
-    except (ContactFailure, CouplingFailure) as failure:
+    except CouplingFailure as failure:
         click.echo(f"status: {failure}", err=True)
         context.exit(EXIT_NOT_CONVERGED)
     except (CaseError, ProfileError, OSError) as error:
         raise WrongCall(str(error)) from None
+    # minutes were spent: shown before a file can fail
     if as_json:
         click.echo(json.dumps(dict_of(found), allow_nan=False))
     elif not quiet:
         click.echo(text_of(found))
+    if output is not None:
+        save(found, output)
+    for speed, text in found.failures.items():
+        click.echo(f"status: at {speed:g} m/s: {text}", err=True)
+    if found.failures:
+        context.exit(EXIT_NOT_CONVERGED)
+
+
+def save(found: Any, output: Path) -> None:
+    """Raises WrongCall."""
+    from wheelset_demo.coupling.report import write
+
+    try:
+        write(found, output)
+    except OSError as error:
+        raise refusal(output, f"a file that can be written: {error.strerror or error}") from None

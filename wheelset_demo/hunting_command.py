@@ -93,6 +93,12 @@ def hunting(
         loaded = load_wheelset_scene(file)
         check_output(output, file, *files_of(loaded.case, file.parent))
         found = search(loaded, lowest, highest, simulate)
+    except ContactFailure as failure:
+        click.echo(f"status: {failure}", err=True)
+        context.exit(EXIT_NOT_CONVERGED)
+    except (CaseError, ProfileError, OSError) as error:
+        raise WrongCall(str(error)) from None
+    try:
         if output is not None:
             write_log(loaded, found, speed, output)
     except ContactFailure as failure:
@@ -100,6 +106,13 @@ def hunting(
         context.exit(EXIT_NOT_CONVERGED)
     except (CaseError, ProfileError, OSError) as error:
         raise WrongCall(str(error)) from None
+    finally:
+        # what was found is not lost with the log
+        show(found, as_json, quiet)
+
+
+def show(found: dict[str, Any], as_json: bool, quiet: bool) -> None:
+    """On stdout."""
     if as_json:
         click.echo(json.dumps(found, allow_nan=False))
     elif not quiet:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from importlib import resources
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import Field, model_validator
 from railpatch.case import WheelsetCase
-from railpatch.case.load import Scene, check_case, check_table, plain, read_toml
+from railpatch.case.load import Scene, check_case, check_table, plain, read_toml, refuse_others
 from railpatch.case.types import NotNegative, Positive, Table, relation
 from railpatch.errors import CaseError
 from railpatch.log.stream import SCENE_RATE
@@ -18,7 +19,7 @@ from railpatch.log.stream import SCENE_RATE
 DEFAULT = "s1002.toml"
 SIDES = ("left", "right")
 PROFILE_KEYS = ("wheel", "rail", "wheel_left", "wheel_right", "rail_left", "rail_right")
-TABLES = ("body", "suspension", "run")
+Loaded = TypeVar("Loaded")
 # snapshots of the fields in a run whose scene does not say
 SNAPSHOTS = 10
 GRAVITY = 9.81  # m/s^2
@@ -193,31 +194,50 @@ def load_wheelset_scene(
     file. Raises CaseError with every problem.
     """
     path = scene_file(DEFAULT) if path is None else Path(path)
+    checks = {name: partial(check_present, name, model) for name, model in MODELS.items()}
+    return load_checked(path, "wheelset", checks, check_run, WheelsetScene, overrides)
+
+
+def check_present(name: str, model: type[Table], table: Any) -> Any:
+    """A table that may not be left out. Raises CaseError."""
+    if table is None:
+        raise CaseError(f"{name}: value is missing, allowed {model.__doc__}")
+    return check_table(model, table, name)
+
+
+def load_checked(
+    path: Path,
+    command: str,
+    checks: Mapping[str, Callable[[Any], Any]],
+    check_all: Callable[..., None],
+    scene: Callable[..., Loaded],
+    overrides: Mapping[str, Any] | None,
+) -> Loaded:
+    """A scene of a command: tables of its own, each with its check, beside those of a case.
+
+    check_all: of tables and case together. scene: makes the scene of all of them. Raises CaseError
+    with every problem.
+    """
     content = plain(read_toml(path))
-    tables = {name: content.pop(name, None) for name in TABLES}
+    refuse_others(content, command)
+    tables = {name: content.pop(name, None) for name in checks}
     if isinstance(tables["run"], dict):
         given = {key: value for key, value in (overrides or {}).items() if value is not None}
         tables["run"] = {**tables["run"], **given}
     problems: list[str] = []
     checked: dict[str, Any] = {}
-    for name, table in tables.items():
+    for name, check in (*checks.items(), ("case", check_case)):
         try:
-            if table is None:
-                raise CaseError(f"{name}: value is missing, allowed {MODELS[name].__doc__}")
-            checked[name] = check_table(MODELS[name], table, name)
+            checked[name] = check(content if name == "case" else tables[name])
         except CaseError as error:
             problems += error.problems
-    try:
-        checked["case"] = check_case(content)
-    except CaseError as error:
-        problems += error.problems
     if problems:
         raise CaseError(problems)
-    check_run(**checked)
+    check_all(**checked)
     profiles = found_profiles(checked["case"], path.parent)
-    tables = checked["case"].profiles.model_copy(update=profiles)
-    checked["case"] = checked["case"].model_copy(update={"profiles": tables})
-    return WheelsetScene(path.name, path.read_bytes(), profiles=profiles, **checked)
+    found = checked["case"].profiles.model_copy(update=profiles)
+    checked["case"] = checked["case"].model_copy(update={"profiles": found})
+    return scene(path.name, path.read_bytes(), profiles=profiles, **checked)
 
 
 def check_run(case: Any, body: BodyTable, run: Run, **_: Any) -> None:

@@ -34,7 +34,7 @@ GAMMA = 1 - 1 / math.sqrt(2)
 LENGTH = 1e-7
 # -, of differences: small against the creepage at which friction is used up, some 1e-3
 CREEPAGE = 1e-5
-ARM = 0.75  # m, half the distance of the contacts: from lengths to angles
+ARM = 0.75  # m, half the distance of the contacts: from lengths to angles, forces to moments
 
 
 Derivatives = Callable[[System, State, Rates, float], Vector]

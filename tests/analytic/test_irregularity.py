@@ -63,7 +63,11 @@ def test_a_record_is_an_offset_of_the_rails(tmp_path: Path) -> None:
     record = read_irregularity(tmp_path / "track.csv")
     for at in (-1.0, 0.31, 2.0, 3.77, 8.0):
         left, right = record.at(at)
-        moved = {"left": {"offset": [0, *left]}, "right": {"offset": [0, *right]}}
+        rates = SPEED * record.slope(at)[:, 1]
+        moved = {
+            "left": {"offset": [0, *left], "velocity": [0, 0, rates[0]]},
+            "right": {"offset": [0, *right], "velocity": [0, 0, rates[1]]},
+        }
         found, expected = contact.step(x=at), plain.step(track=moved)
         assert found["force"] == pytest.approx(expected["force"], rel=SAME, abs=1e-7)
 
@@ -87,6 +91,28 @@ def test_a_wheelset_that_follows_the_rails_does_not_slip() -> None:
             (other,) = straight[side]["patches"]
             assert abs(patch["creepage"][1]) < 1e-6
             assert abs(other["creepage"][1]) > 3e-4
+
+
+def test_a_wheelset_that_climbs_does_not_slip(tmp_path: Path) -> None:
+    """On a gradient of both rails, with the vertical speed that it asks for: the forces are those
+    of level track, though the contacts lean."""
+    slope = 2e-3
+    table = np.array([[x, 0.0, slope * x, 0.0, slope * x] for x in np.linspace(0.0, 40.0, 41)])
+    np.savetxt(tmp_path / "track.csv", table)
+    lean = {"wheelset__y": 3e-3, "profiles__wheel": "S1002", "profiles__rail": "UIC60@1:40"}
+    lean |= {"wheelset__z": 2e-4}
+    level = Contact(wheelset(**lean)).step()
+    climbing = Contact(wheelset(**lean, track__irregularity="track.csv"), folder=tmp_path)
+    # in the middle, where the record's ends without slope are far away
+    at = {"x": 20.0, "z": 2e-4 + 20.0 * slope}
+    follows, rests = climbing.step(**at, vz=SPEED * slope), climbing.step(**at, vz=0.0)
+    (wanted,), (found,), (slipping,) = (one["right"]["patches"] for one in (level, follows, rests))
+    false = slope * np.sin(wanted["contact_angle"])
+    assert abs(false) > 5e-5
+    assert found["creepage"][1] == pytest.approx(wanted["creepage"][1], abs=1e-3 * abs(false))
+    assert abs(slipping["creepage"][1] - wanted["creepage"][1]) == pytest.approx(
+        abs(false), rel=0.01
+    )
 
 
 @pytest.mark.parametrize(

@@ -105,7 +105,9 @@ SCENES: dict[str, dict[str, Any]] = {
         track__rail_support={"stiffness": [2e7, 5e7], "damping": [1e4, 5e4]},
         wheelset__time_step=STEP,
     ),
-    "springs": with_values(RAIL, track__rail_support={"stiffness": [2e7, 5e7]}),
+    "springs": with_values(
+        RAIL, track__rail_support={"stiffness": [2e7, 5e7]}, wheelset__time_step=STEP
+    ),
     "sections": with_values(
         RAIL,
         wheelset__z=3e-4,
@@ -169,6 +171,7 @@ MOTIONS: dict[str, list[dict[str, float]]] = {
     "transient": [{"wheelset.yaw": 1e-3}, {"wheelset.vy": 0.01}, {"wheelset.z": 2.1e-4}],
     "transient_patch": [{"creepage[1]": 5e-4}, {"creepage[2]": -5e-4, "normal_force": 6e4}],
     "supported": [{"wheelset.y": 1e-4}, {"wheelset.z": 2.2e-4, "track.left.velocity[2]": 0.01}],
+    "springs": [{"wheelset.y": 1e-4}, {"wheelset.z": 6e-4, "wheelset.yaw": 1e-3}],
     "sections": [{"wheelset.x": 0.4}, {"wheelset.x": 1.7, "wheelset.yaw": 1e-3}],
     "along": [{"wheelset.x": 0.4}, {"wheelset.x": 0.9, "wheelset.yaw": 1e-3}],
     "flat": [

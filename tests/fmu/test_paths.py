@@ -17,7 +17,7 @@ def test_only_a_scene_with_a_history_depends_on_the_way(name: str, unpacked: Unp
     """The same inputs in the end, by another way and by steps of another length."""
     fmu = unpacked(name)
     names = [n for n in fmu.names("output", "Real") if not n.endswith("residual")]
-    *way, last = MOTIONS.get(name, [{}])
+    *way, last = MOTIONS[name]
     values = {key: value for motion in [*way, last] for key, value in motion.items()}
     found = []
     for steps, length in ((way, STEPS[0]), ([], STEPS[1])):
@@ -42,14 +42,14 @@ def test_rails_on_springs_have_a_history(unpacked: Unpack) -> None:
     fmu = unpacked("springs")
     assert fmu.root.find("ModelExchange") is None
     found = []
-    for length in (1e-3, 1e3):
+    for length in (1e-3, 10.0):
         with Slave(fmu).initialize() as slave:
             assert slave.set({"wheelset.y": 2e-4, "wheelset.z": 6e-4}) == OK
             assert slave.step(0, length) == OK
             found.append(slave.get("left.patch[1].creepage[2]")[0])
     # m/s, of a rail that gives way by micrometres in a millisecond; 2 m/s is the speed
     assert abs(found[0]) > 1e-6 / 1e-3 / 2.0 / 100
-    assert abs(found[1]) < 1e-3 * abs(found[0])
+    assert abs(found[1]) < 0.05 * abs(found[0])
 
 
 def test_a_creep_force_beyond_friction_is_a_step_to_take_back(unpacked: Unpack) -> None:

@@ -110,12 +110,6 @@ def step(index: int, spacing: float = 0.01) -> dict:
         "bodies": bodies,
         "tracks": tracks,
         "energy": {"kinetic": 3.2e7, "friction_work": 1.2 * index},
-        "momentum": {
-            "momentum": [1.6e6, 0.0, 0.0],
-            "turning": [0.0, -2e4, 0.0],
-            "residual": [0.0, 1.6 * index, 0.0],
-            "turning_residual": [0.0, 0.0, 2.0],
-        },
         "stats": {"wall_time": 0.02, "contact_evaluations": 16},
     }
 

@@ -35,7 +35,7 @@ def test_page_needs_no_network_and_has_every_part(path, tmp_path):
     assert not re.search(r"<(script|link|img|iframe)[^>]*(src|href)=", page)
     for name in ("track", "loads", "ratios", "positions", "accelerations", "friction"):
         assert page.count(f'id="{name}"') == 1, name
-    for name in ("energy", "momentum", "work", "patch-1"):
+    for name in ("energy", "work", "patch-1"):
         assert page.count(f'id="{name}"') == 1, name
     text = _text(tmp_path / "report.html")
     assert "101 logged, of which 101 converged" in text
@@ -135,11 +135,11 @@ def test_without_bodies_energies_and_times(tmp_path):
     with vehicle.open_log(path, geometry=None) as log:
         for index in range(3):
             step = vehicle.step(index)
-            for name in ("energy", "momentum", "stats"):
+            for name in ("energy", "stats"):
                 del step[name]
             step["bodies"] = []
             log.write(0.01 * index, **step)
     page = write_report(path, tmp_path / "page.html").read_text(encoding="utf-8")
-    for name in ("energy", "momentum", "work", "accelerations"):
+    for name in ("energy", "work", "accelerations"):
         assert f'id="{name}"' not in page
     assert 'id="ratios"' in page

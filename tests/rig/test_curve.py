@@ -15,6 +15,7 @@ from rig_model.curve import DEFAULT, load_curve_scene, steady_curves
 
 LOAD = 120e3
 STIFFNESS = 5e6
+SPEED, NOMINAL_RADIUS, PITCH_INERTIA = 12.0, 0.46, 110.0
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +47,7 @@ def test_balance(found):
         contact = Contact(scene.at_height(item.radius))
         y, z, roll, yaw, pitch_rate = map(float, item.unknowns)
         result = contact.step(y=y, z=z, roll=roll, yaw=yaw, pitch_rate=pitch_rate)
-        lateral = vertical = yaw_moment = axle = 0.0
+        lateral = vertical = yaw_moment = axle = rolling = 0.0
         for side in ("left", "right"):
             for patch in result[side]["patches"]:
                 c, s = math.cos(patch["contact_angle"]), math.sin(patch["contact_angle"])
@@ -54,7 +55,10 @@ def test_balance(found):
                 normal = patch["share"] * patch["normal_force"]
                 lateral += c * fs + s * normal
                 vertical += s * fs - c * normal
-                px, py, _ = patch["position"]
+                px, py, pz = patch["position"]
+                # about the centre, one nominal radius above the wheelset's z
+                rolling += (py - y) * (s * fs - c * normal)
+                rolling -= (pz - z + NOMINAL_RADIUS) * (c * fs + s * normal)
                 yaw_moment += px * (c * fs + s * normal) - (py - y) * fx
                 axle += fx * math.cos(yaw) * result[side]["rolling_radius"]
         tolerance = 1.2 * 5e-5 * LOAD
@@ -63,6 +67,23 @@ def test_balance(found):
         # the patches' own moments, up to 30 N m each, and lateral forces beside the axle
         assert yaw_moment == pytest.approx(STIFFNESS * yaw, abs=100)
         assert axle == pytest.approx(0, abs=100)
+        # of a body that turns by V/R: V/R z x I_y pitch rate y, along -x
+        gyroscopic = -PITCH_INERTIA * pitch_rate * SPEED / item.radius
+        assert gyroscopic == pytest.approx(PITCH_INERTIA * SPEED**2 / 0.46 / item.radius, rel=0.01)
+        assert rolling == pytest.approx(gyroscopic, abs=tolerance + 2 * 30)
+        assert result["moment"][0] == pytest.approx(gyroscopic, abs=tolerance)
+
+
+def test_spin_loads_the_outer_wheel(found):
+    """By its moment over the distance of the contacts, some 1.5 m; Y forces, and so the load's own
+    transfer, stay. The vehicle's tests balance the same moment with those of its weights."""
+    without = steady_curves(load_curve_scene(pitch_inertia=0.0), "newton")
+    for item, other in zip(found["newton"], without, strict=True):
+        # right-hand curves: the left wheel is the outer one
+        more = other.result["left"]["force"][2] - item.result["left"]["force"][2]
+        moment = PITCH_INERTIA * SPEED**2 / NOMINAL_RADIUS / item.radius
+        assert more == pytest.approx(moment / 1.5, rel=0.15)
+        assert item.result["moment"][0] - other.result["moment"][0] == pytest.approx(moment, abs=12)
 
 
 def test_a_tighter_curve_takes_the_flange(found):
@@ -93,6 +114,7 @@ def test_wide_curve_is_nearly_straight():
         ('kind = "rail"', 'kind = "rail"\ncurvature = 0.001', "track.curvature"),
         ("speed = 12.0", "speed = 0.0", "wheelset.speed"),
         ("radius = [600.0, 175.0]", "radius = [5.0]", "curve.radius"),
+        ("pitch_inertia = 110.0", "pitch_inertia = -1.0", "curve.pitch_inertia"),
         ("yaw_stiffness = 5e6", "yaw_stifness = 5e6", "curve.yaw_stifness"),
         ("vertical_force = 120e3", "z = 0.0", "wheelset.z"),
     ],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 import os
@@ -15,9 +16,10 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from railpatch.cli import cli
-from railpatch.log import read_run
+from railpatch.log import Run, RunFileError, read_run
 
 HERE = Path(__file__).parent
+DEADLINE = 60.0  # s, for what takes one or two
 
 
 def call(*arguments):
@@ -178,7 +180,7 @@ def test_replay_from_the_checkout(nominal_file, tmp_path):
     assert len(read_run(tmp_path / "run.mcap")["/wheelset/state"]) == 2
 
 
-def test_killed_replay_keeps_all_but_the_last_second(nominal_file, tmp_path):
+def test_killed_replay_keeps_what_was_found(nominal_file, tmp_path):
     path = tmp_path / "run.mcap"
     process = subprocess.Popen(
         [sys.executable, HERE / "killed_replay.py", nominal_file, path],
@@ -186,27 +188,27 @@ def test_killed_replay_keeps_all_but_the_last_second(nominal_file, tmp_path):
         text=True,
         env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
     )
-    seen = {}
+    seen, end = [], time.monotonic() + DEADLINE
     try:
-        begin = time.monotonic()
-        while time.monotonic() - begin < 20 and not (seen and span(seen) > 2):
-            index = int(process.stdout.readline())
-            seen[index] = time.monotonic()
+        # what was found gets into the file while the replay goes on
+        while len(seen) < 20 and time.monotonic() < end:
+            assert process.poll() is None
+            time.sleep(0.05)
+            with contextlib.suppress(RunFileError, FileNotFoundError):
+                seen = indices(read_run(path))
     finally:
         process.send_signal(signal.SIGKILL)
-        killed_at = time.monotonic()
         assert process.wait(timeout=10) == -signal.SIGKILL
         process.stdout.close()
-    old = {index for index, at in seen.items() if at < killed_at - 0.95}
+    assert len(seen) >= 20
     run = read_run(path)
     assert run.truncated
-    kept = np.round(200 * run["/wheelset/state"].time).astype(int).tolist()
+    kept = indices(run)
     assert kept == list(range(len(kept)))
-    assert len(old) > 10
-    assert old <= set(kept)
+    assert set(seen) <= set(kept)
     assert nominal_file.name in run.attachments
 
 
-def span(seen):
-    """Seconds between the first and the last position."""
-    return max(seen.values()) - min(seen.values())
+def indices(run: Run) -> list[int]:
+    """Of the positions in the log."""
+    return np.round(200 * run["/wheelset/state"].time).astype(int).tolist()

@@ -63,6 +63,7 @@ def test_momentum_follows_from_the_forces():
         spin, speed = data.v[joint].angular, data.v[joint].linear
         total += mass * data.oMi[joint].rotation @ np.cross(spin, speed)
     forces = simulation.element.contact_wrench[:, :3].sum(axis=0)
+    forces[0] += system.slope_wrenches[:, :, 0].sum()
     forces[2] += simulation.scene.vehicle.mass * GRAVITY
     ahead = system._ahead(state.q)
     speed = float(ahead @ state.v)

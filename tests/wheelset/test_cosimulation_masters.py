@@ -13,8 +13,8 @@ import wheelset_scenes as scenes
 from click.testing import CliRunner
 from railpatch.cli import cli
 
-from wheelset_demo.cosimulation import ElementContact, held_run
 from wheelset_demo.coupling.energy import balance, release
+from wheelset_demo.coupling.held import ElementContact, held_run
 from wheelset_demo.coupling.linear import linearise
 from wheelset_demo.coupling.masters import MASTERS, Hold, Master, Point
 from wheelset_demo.coupling.multibody import Multibody
@@ -218,6 +218,22 @@ def test_command(tmp_path: Path):
     text = page.read_text()
     assert "<svg" in text
     assert "leapfrog" in text
+
+
+def test_speeds_that_fail_leave_the_others(tmp_path: Path):
+    """At 200 m/s the reference run, above the critical speed, leaves the contact's range."""
+    page = tmp_path / "page.html"
+    call = ["--speeds", "20,200", "--masters", "leapfrog", "--elements", 4]
+    ran = invoke(*call, "--json", "-o", page)
+    assert ran.exit_code == 3
+    assert "status: at 200 m/s: contact failed" in ran.stderr
+    found = json.loads(ran.stdout)
+    assert [row["speed"] for row in found["rows"]] == [20]
+    assert found["rows"][0]["by_runs"] > 0
+    assert [(f["speed"], "out_of_range" in f["message"]) for f in found["failures"]] == [
+        (200, True)
+    ]
+    assert "<td>failed</td>" in page.read_text()
 
 
 def test_wrong_calls(tmp_path: Path):

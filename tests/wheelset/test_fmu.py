@@ -7,10 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 import wheelset_scenes as scenes
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import FMU2Slave
 from railpatch import _core
 from railpatch.fmu import pack_fmu
 
-from wheelset_demo.cosimulation import ElementContact, FmuContact, held_run
+from wheelset_demo.coupling.held import ElementContact, FmuContact, held_run
+from wheelset_demo.coupling.instance import FmuFailure, UnpackedFmu
 from wheelset_demo.scene import WheelsetScene
 from wheelset_demo.simulation import Simulation
 from wheelset_demo.start import released
@@ -65,5 +68,44 @@ def test_a_contact_that_fails_says_so(tmp_path: Path):
     with FmuContact(packed(scene, tmp_path)) as contact:
         contact.wrench(0.0, STEP, motion)
         motion[1] = 0.5
-        with pytest.raises(RuntimeError, match=r"^contact at 0\.00025 s: fmi2DoStep failed"):
+        with pytest.raises(RuntimeError, match=r"^contact at 0\.00025 s: fmi2DoStep: .* out of"):
             contact.wrench(STEP, STEP, motion)
+
+
+def test_an_instance_that_cannot_be_made_leaves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    file = packed(scenes.scene(tmp_path, "hunting.toml"), tmp_path)
+    unpacked = tmp_path / "unpacked"
+    unpacked.mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(unpacked))
+
+    def fail(*_: object, **__: object) -> None:
+        assert list(unpacked.iterdir())
+        raise RuntimeError("none")
+
+    monkeypatch.setattr(FMU2Slave, "instantiate", fail)
+    with pytest.raises(RuntimeError, match="none"):
+        FmuContact(file)
+    assert not list(unpacked.iterdir())
+
+
+def test_messages_are_those_of_the_call_that_failed(tmp_path: Path):
+    scene = scenes.scene(tmp_path, "s1002.toml")
+    motion = released(scene, System(scene)).motion
+    fmu = UnpackedFmu(packed(scene, tmp_path))
+    slave = fmu.instance(FMU2Slave, fmu.description.coSimulation)
+    fmu.call(slave.setupExperiment, None, 0.0)
+    fmu.call(slave.enterInitializationMode)
+    motion[1] = 0.5
+    fmu.call(slave.setReal, fmu.inputs, motion[fmu.used].tolist())
+    with pytest.raises(FmuFailure, match="cannot be solved"):
+        fmu.call(slave.exitInitializationMode)
+
+    def silent() -> None:
+        raise FMICallException("silent", 3)
+
+    with pytest.raises(FmuFailure, match="silent") as failure:
+        fmu.call(silent)
+    assert failure.value.status == 3
+    fmu.close()

@@ -26,10 +26,9 @@ import numpy as np
 
 from wheelset_demo.coupling.multibody import MOTION, Multibody, power_by_motion
 from wheelset_demo.coupling.slave import ContactSlave, CouplingFailure, Discarded, Outputs
-from wheelset_demo.steppers import GAMMA
+from wheelset_demo.steppers import ARM, GAMMA
 from wheelset_demo.system import COUNT, Vector
 
-ARM = 0.75  # m, half the distance of the contacts: from forces to moments
 DIVERGED = 1e4  # times the least change of an iteration: it goes away
 DEPTH = 8  # wrenches that are mixed: one more than there are components, and the last
 NUDGE = 1e-3  # of a wrench, in parts of its size: the multibody side is linear in it

@@ -9,7 +9,7 @@ import pinocchio as pin
 from railpatch.pinocchio import acceleration_derivatives
 from railpatch.pinocchio.derivative import StateChain, WrenchDerivatives, angular_velocity
 
-from wheelset_demo.cosimulation import Carrier
+from wheelset_demo.coupling.held import Carrier
 from wheelset_demo.scene import WheelsetScene
 from wheelset_demo.system import COUNT, Vector, model_of, no_forces, suspension_of
 

@@ -55,9 +55,14 @@ def tables_of(study: Study) -> list[tuple[str, list[list[str]]]]:
     """Headlines and rows, masters over speeds in m/s."""
     head = ["m/s", *(f"{s.speed:g}" for s in study.speeds)]
     return [
-        (text, [head, *([name, *map(cell, study.of(name))] for name in study.masters)])
+        (text, [head, *([name, *cells_of(cell, study.of(name))] for name in study.masters)])
         for text, cell in zip(HEADS, CELLS, strict=True)
     ]
+
+
+def cells_of(cell: Callable[[Row], str], rows: list[Row | None]) -> list[str]:
+    """Of one master."""
+    return [NAN_TEXT if row is None else cell(row) for row in rows]
 
 
 def text_of(study: Study) -> str:
@@ -82,7 +87,14 @@ def markdown_of(study: Study) -> str:
 def dict_of(study: Study) -> dict[str, Any]:
     """SI units; null for what was not run or failed."""
     rows = [row_of(row) for row in study.rows]
-    return {"scene": study.scene, "speeds": [asdict(s) for s in study.speeds], "rows": rows}
+    speeds = [{k: known(v) for k, v in asdict(s).items()} for s in study.speeds]
+    failures = [{"speed": speed, "message": text} for speed, text in study.failures.items()]
+    return {"scene": study.scene, "speeds": speeds, "rows": rows, "failures": failures}
+
+
+def known(value: float) -> float | None:
+    """None for NaN."""
+    return None if math.isnan(value) else value
 
 
 def row_of(row: Row) -> dict[str, Any]:
@@ -107,10 +119,12 @@ def svg_of(study: Study) -> str:
     for k, name in enumerate(study.masters):
         rows, color = study.of(name), f"C{k}"
         style = {"color": color, "lw": 1.2}
-        steps.plot(speeds, [1e3 * r.bound.by_matrix or None for r in rows], ls="-", **style)
-        shown = [1e3 * r.bound.by_runs or None for r in rows]
+        steps.plot(
+            speeds, [1e3 * r.bound.by_matrix or None if r else None for r in rows], ls="-", **style
+        )
+        shown = [1e3 * r.bound.by_runs or None if r else None for r in rows]
         steps.plot(speeds, shown, "o", ms=4, color=color, label=name)
-        shares = [r.half.share if r.half else None for r in rows]
+        shares = [r.half.share if r and r.half else None for r in rows]
         energy.plot(speeds, shares, "o-", ms=4, label=name, **style)
     forms = study.speeds
     for key, label, dashes in (

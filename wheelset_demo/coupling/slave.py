@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-import shutil
-import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from railpatch.errors import CaseError
 from railpatch.pinocchio.element import STATE
 
-from wheelset_demo.cosimulation import WRENCH
+from wheelset_demo.coupling.instance import WRENCH, FmuFailure, Result, UnpackedFmu
 from wheelset_demo.system import Vector
 
 DISCARD = 2  # fmi2Discard
 MEAN = tuple(f"mean_{name}" for name in WRENCH)
 POWERS = ("power", "friction_power")
-Result = TypeVar("Result")
 
 
 class Discarded(RuntimeError):
@@ -46,74 +43,40 @@ class ContactSlave:
     def __init__(self, path: str | Path, substeps: int = 1) -> None:
         """substeps: within a communication step, for means. Raises CaseError for an FMU without
         what masters need."""
-        from fmpy import extract, read_model_description
-        from fmpy.fmi1 import FMICallException
         from fmpy.fmi2 import FMU2Slave
 
-        description = read_model_description(str(path))
-        references = {v.name: v.valueReference for v in description.modelVariables}
+        self._fmu = fmu = UnpackedFmu(path)
         wanted = [*WRENCH, *MEAN, *POWERS, "substeps"]
-        missing = [name for name in wanted if name not in references]
-        if missing or not description.coSimulation.providesDirectionalDerivative:
+        missing = [name for name in wanted if name not in fmu.references]
+        if missing or not fmu.description.coSimulation.providesDirectionalDerivative:
             raise CaseError(
                 f"scene: its FMU has no {', '.join(missing) or 'directional derivatives'}, allowed "
                 "a scene of wheels without history, packed with averages and derivatives"
             )
-        names = [f"wheelset.{name}" for name in STATE]
-        # round wheels on rails that do not change: no x, no pitch
-        self.used = [k for k, name in enumerate(names) if name in references]
-        self._inputs = [references[names[k]] for k in self.used]
+        self.used, self._inputs = fmu.used, fmu.inputs
         self._first_order = [1] * len(self.used)
-        self._wrench = [references[name] for name in WRENCH]
-        self._mean = [references[name] for name in MEAN]
-        self._outputs = [references[name] for name in (*WRENCH, *POWERS)]
-        self._substeps = [references["substeps"]]
+        self._wrench = [fmu.references[name] for name in WRENCH]
+        self._mean = [fmu.references[name] for name in MEAN]
+        self._outputs = [fmu.references[name] for name in (*WRENCH, *POWERS)]
+        self._substeps = [fmu.references["substeps"]]
         self.substeps = substeps
-        self._failure = FMICallException
-        self._message = ""
-        self._folder = tempfile.mkdtemp()
-        extract(str(path), self._folder)
-        self._description = description
-        self._slave: Any = self._instance(FMU2Slave, description.coSimulation)
+        self._slave: Any = fmu.instance(FMU2Slave, fmu.description.coSimulation)
         self._model: Any = None
         self.steps = 0
-
-    def _instance(self, kind: Any, interface: Any) -> Any:
-        """An instance of this FMU whose messages are kept."""
-        from fmpy import fmi2
-
-        callbacks = fmi2.fmi2CallbackFunctions()
-        callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(self._hear)
-        callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmi2.calloc)
-        callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmi2.free)
-        found = kind(
-            guid=self._description.guid,
-            unzipDirectory=self._folder,
-            modelIdentifier=interface.modelIdentifier,
-            instanceName="contact",
-        )
-        found.instantiate(callbacks=callbacks, loggingOn=True)
-        return found
 
     def __enter__(self) -> ContactSlave:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._slave.freeInstance()
-        if self._model is not None:
-            self._model.freeInstance()
-        shutil.rmtree(self._folder, ignore_errors=True)
-
-    def _hear(self, _environment: Any, _name: Any, _status: int, _kind: Any, text: bytes) -> None:
-        self._message = text.decode("utf-8", "replace")
+        self._fmu.close()
 
     def _call(self, function: Callable[..., Result], *arguments: Any) -> Result:
         """Raises Discarded and CouplingFailure with the FMU's own message."""
         try:
-            return function(*arguments)
-        except self._failure as failure:
-            text = self._message or str(failure)
-            raise (Discarded if failure.status == DISCARD else CouplingFailure)(text) from None
+            return self._fmu.call(function, *arguments)
+        except FmuFailure as failure:
+            kind = Discarded if failure.status == DISCARD else CouplingFailure
+            raise kind(str(failure)) from None
 
     def begin(self, time: float, motion: Vector) -> None:
         """Starts, or starts anew, at a time (s) and a motion [12]."""
@@ -149,9 +112,10 @@ class ContactSlave:
         if self._model is None:
             from fmpy.fmi2 import FMU2Model
 
-            if self._description.modelExchange is None:
+            interface = self._fmu.description.modelExchange
+            if interface is None:
                 raise CouplingFailure("the FMU has no model exchange: its contact has a history")
-            self._model = self._instance(FMU2Model, self._description.modelExchange)
+            self._model = self._fmu.instance(FMU2Model, interface)
         model = self._model
         call(model.reset)
         call(model.setupExperiment, None, time)

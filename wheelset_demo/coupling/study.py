@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import math
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from railpatch.case.common import Grid
+from railpatch.errors import CaseError
 from railpatch.fmu import pack_fmu
+from railpatch.fmu.scene import has_history
 
 from wheelset_demo.coupling.energy import Balance, balance, release
-from wheelset_demo.coupling.slave import ContactSlave
+from wheelset_demo.coupling.slave import ContactSlave, CouplingFailure
 from wheelset_demo.coupling.stability import (
     LARGEST,
     Bound,
@@ -21,6 +24,7 @@ from wheelset_demo.coupling.stability import (
     bound_by_runs,
 )
 from wheelset_demo.scene import WheelsetScene
+from wheelset_demo.system import ContactFailure
 
 ASKED = 1e-3  # s, a step that engineers use
 
@@ -52,15 +56,18 @@ class Speed:
 
 @dataclass(frozen=True)
 class Study:
-    """scene: its name. speeds, rows: in the order they were asked for."""
+    """scene: its name. speeds, rows: in the order they were asked for. failures: why there are no
+    rows of further masters at a speed (m/s)."""
 
     scene: str
     speeds: list[Speed]
     rows: list[Row]
+    failures: dict[float, str] = field(default_factory=dict)
 
-    def of(self, master: str) -> list[Row]:
-        """Over speeds."""
-        return [row for row in self.rows if row.bound.master == master]
+    def of(self, master: str) -> list[Row | None]:
+        """Over speeds; None: failed."""
+        found = {row.bound.speed: row for row in self.rows if row.bound.master == master}
+        return [found.get(speed.speed) for speed in self.speeds]
 
     @property
     def masters(self) -> list[str]:
@@ -76,10 +83,15 @@ def with_elements(scene: WheelsetScene, count: int) -> WheelsetScene:
 
 @contextmanager
 def slave_of(scene: WheelsetScene) -> Iterator[ContactSlave]:
-    """The scene's contact in an FMU of its own."""
+    """The scene's contact in an FMU of its own. Raises CaseError."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "contact.fmu"
         height = scene.at_height(derivatives=True)
+        if has_history(height.case):
+            raise CaseError(
+                f"{scene.name}: its steps depend on earlier ones, allowed a scene of wheels "
+                "without history"
+            )
         pack_fmu(height, path, name="contact", derivatives="always", averages=True)
         with ContactSlave(path) as slave:
             yield slave
@@ -91,25 +103,46 @@ def study(
     masters: Sequence[str],
     advance: Callable[[object], None] | None = None,
 ) -> Study:
-    """All of them. advance: called after each master at each speed. Raises CaseError,
-    ContactFailure, CouplingFailure."""
-    forms, rows = [], []
+    """All of them; what fails at a speed is left out there, and told. advance: called after each
+    master at each speed. Raises CaseError, CouplingFailure before
+    there is any row."""
+    found = Study(scene.name, [], [])
     with slave_of(scene) as slave:
         for speed in speeds:
-            rolling = Rolling(scene, speed)
-            forms.append(closed_forms(rolling))
-            moving, start = release(scene, speed)
-            for name in masters:
-                by_runs, runs = bound_by_runs(rolling, slave, name)
-                by_matrix = bound_by_matrix(rolling.system, name)
-                bound = Bound(name, speed, by_runs, by_matrix, runs)
-                half = balance(moving, start, slave, name, 0.5 * by_runs) if by_runs else None
-                asked = by_runs >= ASKED
-                milli = balance(moving, start, slave, name, ASKED) if asked else None
-                rows.append(Row(bound, half, milli))
-                if advance is not None:
-                    advance(bound)
-    return Study(scene.name, forms, rows)
+            try:
+                study_speed(found, scene, speed, masters, slave, advance)
+            except (CaseError, ContactFailure, CouplingFailure) as failure:
+                # a scene that cannot be run at all has no rows to lose
+                if isinstance(failure, CaseError) and not found.rows:
+                    raise
+                found.failures[speed] = str(failure)
+    return found
+
+
+def study_speed(
+    found: Study,
+    scene: WheelsetScene,
+    speed: float,
+    masters: Sequence[str],
+    slave: ContactSlave,
+    advance: Callable[[object], None] | None,
+) -> None:
+    """Adds the rows of one speed (m/s). Raises CaseError, ContactFailure, CouplingFailure; rows
+    that were found before stay."""
+    # all that is known of a speed that fails at once
+    found.speeds.append(Speed(speed, *[math.nan] * 4))
+    rolling = Rolling(scene, speed)
+    found.speeds[-1] = closed_forms(rolling)
+    moving, start = release(scene, speed)
+    for name in masters:
+        by_runs, runs = bound_by_runs(rolling, slave, name)
+        by_matrix = bound_by_matrix(rolling.system, name)
+        bound = Bound(name, speed, by_runs, by_matrix, runs)
+        half = balance(moving, start, slave, name, 0.5 * by_runs) if by_runs else None
+        milli = balance(moving, start, slave, name, ASKED) if by_runs >= ASKED else None
+        found.rows.append(Row(bound, half, milli))
+        if advance is not None:
+            advance(bound)
 
 
 def closed_forms(rolling: Rolling) -> Speed:

@@ -77,9 +77,10 @@ class Alignment:
         self._spline = CubicSpline(nodes, np.hstack([places - places[1], self._angles(nodes)]))
 
     def _angles(self, s: Vector) -> Vector:
-        """[n, 4]: heading, cant angle, curvature and second derivative of the cant angle."""
+        """[n, 5]: heading, cant angle, curvature, cant angle's derivatives, first and second."""
         heading, cant, curvature = self.heading(s), self.cant_angle(s), self.curvature(s)
-        return np.stack([heading, cant, curvature, self._cant * self._bend_of_share(s)], axis=1)
+        slope, bend = (self._cant * found for found in self._rates_of_share(s))
+        return np.stack([heading, cant, curvature, slope, bend], axis=1)
 
     def curvature(self, s: ArrayLike) -> Vector:
         """1/m, at arc lengths (m)."""
@@ -106,8 +107,8 @@ class Alignment:
         return rotations, origins
 
     def frames_and_bends(self, s: Vector) -> tuple[Vector, Vector, Vector]:
-        """The same, and [n, 3]: cant angle (rad), curvature (1/m), second derivative of the cant
-        angle (1/m^2)."""
+        """The same, and [n, 4]: cant angle (rad), curvature (1/m), first and second derivative of
+        the cant angle (1/m, 1/m^2)."""
         found = self._spline(s)
         (c, cc), (t, sc) = np.cos(found[:, 2:4].T), np.sin(found[:, 2:4].T)
         rotations = np.zeros((len(s), 3, 3))
@@ -140,13 +141,16 @@ class Alignment:
         w = np.clip((s - c) / length, 0.0, 1.0)
         return u * u * (3.0 - 2.0 * u) - w * w * (3.0 - 2.0 * w)
 
-    def _bend_of_share(self, s: Vector) -> Vector:
-        """1/m^2, second derivative of _share."""
+    def _rates_of_share(self, s: Vector) -> tuple[Vector, Vector]:
+        """1/m, 1/m^2, first and second derivative of _share."""
         a, _, c, _ = self._corners
         length = self._table.transition
-        u, w = (s - a) / length, (s - c) / length
-        bend = (6.0 - 12.0 * u) * ((u > 0) & (u < 1)) - (6.0 - 12.0 * w) * ((w > 0) & (w < 1))
-        return bend / length**2
+        slope, bend = np.zeros_like(s), np.zeros_like(s)
+        for sign, u in ((1.0, (s - a) / length), (-1.0, (s - c) / length)):
+            inside = sign * ((u > 0) & (u < 1))
+            slope += inside * 6.0 * u * (1.0 - u) / length
+            bend += inside * (6.0 - 12.0 * u) / length**2
+        return slope, bend
 
     def _way(self, start: Vector, length: Vector) -> Vector:
         """m, [n, 2], from places at arc lengths ``start`` over ``length``."""

@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from railpatch.case.common import Grid
+from railpatch.case.load import check_case
+from railpatch.errors import CaseError
 
 from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.simulation import Simulation
@@ -64,10 +66,15 @@ HEADER = (
 
 
 def with_theory(scene: VehicleScene, name: str) -> VehicleScene:
-    """The scene with another theory."""
+    """The scene with another theory. Raises CaseError where that cannot have what the scene has."""
     theory = THEORIES[name]
-    grid = Grid(**theory.grid)
-    return scene.with_method(normal=theory.normal, tangential=theory.tangential, grid=grid)
+    choice = {"normal": theory.normal, "tangential": theory.tangential, "accuracy": None}
+    found = scene.with_method(**choice, grid=Grid(**theory.grid))
+    try:
+        check_case(found.case.model_dump())
+    except CaseError as error:
+        raise CaseError(f"--method {name}: {problem}" for problem in error.problems) from None
+    return found
 
 
 def run_summary(

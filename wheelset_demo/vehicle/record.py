@@ -15,14 +15,13 @@ from railpatch.result import wheel_json
 
 from wheelset_demo.record import attachments, ran_with
 from wheelset_demo.scene import GRAVITY, SIDES, SNAPSHOTS
-from wheelset_demo.system import ContactFailure
+from wheelset_demo.system import WORKS, ContactFailure
+from wheelset_demo.trace import STORES
 from wheelset_demo.vehicle.model import CAR_BODY, bogie_name
 from wheelset_demo.vehicle.scene import WHEELSETS
 from wheelset_demo.vehicle.simulation import Simulation
-from wheelset_demo.vehicle.system import WORKS
 
 FREE = (CAR_BODY, bogie_name(0), bogie_name(1))
-STORES = ("kinetic", "gravity", "suspension", "elastic")
 # m, drawn: length beyond the wheelsets, width and height of the car body; width and height of beams
 OVERHANG, WIDTH, HEIGHT, BEAM = 2.5, 2.8, 2.7, 0.22
 LINE_STEP = 2.0  # m, of the centre line that is drawn
@@ -89,9 +88,13 @@ class Recorder:
     def _wheelset(
         self, simulation: Simulation, index: int, place: dict[str, float], fields: bool
     ) -> dict[str, Any]:
-        element = simulation.element
+        element, system = simulation.element, simulation.system
         result = element.result(index, fields=fields)
-        wrench = element.contact_wrench[index].tolist()
+        # with what rails that are not level add along the track
+        sloped = system.slope_wrenches[index]
+        wrench = element.contact_wrench[index].copy()
+        wrench[[0, 4, 5]] += sloped.sum(axis=0)
+        wrench = wrench.tolist()
         rails = element.rails[index, 0, :, 1:].tolist()
         state = element.state(index) | {
             **place,
@@ -102,9 +105,13 @@ class Recorder:
         }
         lost = simulation.state.work[len(WORKS) + 2 * index :]
         found: dict[str, Any] = {"state": state}
-        for side, work in zip(SIDES, lost[:2].tolist(), strict=True):
+        for side, work, more in zip(SIDES, lost[:2].tolist(), sloped.tolist(), strict=True):
             # z is given in vehicle runs
-            found[side] = wheel_json(result[side]) | {"friction_work": work, "z": None}
+            wheel = wheel_json(result[side]) | {"friction_work": work, "z": None}
+            wheel["force"][0] += more[0]
+            wheel["moment"][1] += more[1]
+            wheel["moment"][2] += more[2]
+            found[side] = wheel
         if fields:
             found["fields"] = {side: result[side]["patches"] for side in SIDES}
         return found

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 from railpatch.case import WheelsetCase
-from railpatch.case.load import Scene, check_case, check_table, plain, read_toml
+from railpatch.case.load import Scene, check_table
 from railpatch.case.types import NotNegative, Number, Positive, Table, exactly, relation
 from railpatch.errors import CaseError
 from railpatch.log.stream import SCENE_RATE
 
-from wheelset_demo.scene import SNAPSHOTS, found_profiles, scene_file
+from wheelset_demo.scene import SNAPSHOTS, check_present, load_checked, scene_file
 from wheelset_demo.vehicle.alignment import AlignmentTable
 from wheelset_demo.vehicle.irregularity import IrregularityTable
 
@@ -229,43 +230,16 @@ def load_vehicle_scene(
     file. Raises CaseError with every problem.
     """
     path = scene_file(DEFAULT) if path is None else Path(path)
-    content = plain(read_toml(path))
-    tables = {name: content.pop(name, None) for name in TABLES}
-    elements = content.pop("suspension", None)
-    if isinstance(tables["run"], dict):
-        given = {key: value for key, value in (overrides or {}).items() if value is not None}
-        tables["run"] = {**tables["run"], **given}
-    problems: list[str] = []
-    checked: dict[str, Any] = {}
-    for name, table in tables.items():
-        try:
-            checked[name] = checked_table(name, table)
-        except CaseError as error:
-            problems += error.problems
-    try:
-        checked["suspension"] = checked_elements(elements)
-    except CaseError as error:
-        problems += error.problems
-    try:
-        checked["case"] = check_case(content)
-    except CaseError as error:
-        problems += error.problems
-    if problems:
-        raise CaseError(problems)
-    check_run(**checked)
-    profiles = found_profiles(checked["case"], path.parent)
-    kept = checked["case"].profiles.model_copy(update=profiles)
-    checked["case"] = checked["case"].model_copy(update={"profiles": kept})
-    return VehicleScene(path.name, path.read_bytes(), profiles=profiles, **checked)
+    checks = {name: partial(checked_table, name) for name in TABLES}
+    checks["suspension"] = checked_elements
+    return load_checked(path, "vehicle", checks, check_run, VehicleScene, overrides)
 
 
 def checked_table(name: str, table: Any) -> Any:
     """One table of the scene, by name. Raises CaseError."""
     if table is None and name in OPTIONAL:
         return AlignmentTable() if name == "alignment" else None
-    if table is None:
-        raise CaseError(f"{name}: value is missing, allowed {TABLES[name].__doc__}")
-    return check_table(TABLES[name], table, name)
+    return check_present(name, TABLES[name], table)
 
 
 def checked_elements(elements: Any) -> tuple[ElementTable, ...]:

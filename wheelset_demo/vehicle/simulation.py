@@ -8,11 +8,11 @@ from collections.abc import Iterator
 import numpy as np
 from railpatch import CaseError, Contact
 
-from wheelset_demo.system import BAD
+from wheelset_demo.system import BAD, WORKS
 from wheelset_demo.vehicle.model import CAR_BODY, bogie_name, places_along
 from wheelset_demo.vehicle.scene import WHEELSETS, VehicleScene
 from wheelset_demo.vehicle.steppers import Bdf2
-from wheelset_demo.vehicle.system import WHEELS, WORKS, Rates, Vector, VehicleState, VehicleSystem
+from wheelset_demo.vehicle.system import WHEELS, Rates, Vector, VehicleState, VehicleSystem
 
 
 class Simulation:

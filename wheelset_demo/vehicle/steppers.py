@@ -1,7 +1,7 @@
 """Time steps: linearly implicit, of order 2 with any matrix, so that it may be an old one.
 
 The wheels bounce on their contacts at some 1500 rad/s and creep forces damp like f/(V m): stiff at
-steps of 1 ms. With A and G, the derivatives of f(y, u) by y and by the rails' deviations u at some
+steps of 1 ms. With A and G, the derivatives of f(y, u) by y and by u, what the rails do, at some
 earlier state, and u known ahead:
 
 bdf2, one evaluation of f a step: backward differences of A (y - y*) + G (u - u*), the rest of f
@@ -25,14 +25,12 @@ straight track with derivatives of that moment.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
+from wheelset_demo.steppers import GAMMA
 from wheelset_demo.vehicle.scene import WHEELSETS
 from wheelset_demo.vehicle.system import Rates, Vector, VehicleState, VehicleSystem
 
-GAMMA = 1 - 1 / math.sqrt(2)
 # m/s^2, of a wheelset: some tenth of its load over its mass
 SURPRISE = 6.0
 

@@ -2,8 +2,8 @@
 
     y = (q [50], v [50], forces of dampers with springs in series [n]),    y' = f(y, u),
 
-u [16] the rails' lateral and vertical deviations at the eight wheels, which follow from where the
-wheelsets are: they are known ahead, and the time steppers use that.
+u [24] the rails' lateral and vertical deviations at the eight wheels and their vertical rates. They
+follow from where the wheelsets are: they are known ahead, and the time steppers use that.
 """
 
 from __future__ import annotations
@@ -24,14 +24,15 @@ from wheelset_demo.vehicle.alignment import Alignment
 from wheelset_demo.vehicle.irregularity import ARM, irregularity_of
 from wheelset_demo.vehicle.model import CAR_BODY, vehicle_model
 from wheelset_demo.vehicle.scene import WHEELSETS, VehicleScene
+from wheelset_demo.vehicle.slope import slope_wrenches
 from wheelset_demo.vehicle.suspension import Suspension
 
 Vector = NDArray[np.float64]
-# integrated along with the motion (J)
-WORKS = ("contact", "friction", "damping", "drive")
 WHEELS = 2 * WHEELSETS
-# columns of a wheelset's state that a rail's lateral and vertical deviations move against
-LATERAL, VERTICAL = 1, 2
+# columns of a wheelset's state that a rail's lateral and vertical deviations and its vertical rate
+# move against
+LATERAL, VERTICAL, RATE = 1, 2, 8
+INPUTS = 3 * WHEELS
 
 
 @dataclass(frozen=True)
@@ -63,8 +64,8 @@ class VehicleState:
 
 @dataclass(frozen=True)
 class Rates:
-    """values: [100 + n], of a state's. powers: [4], W, by WORKS. inputs: [16], m, the rails'
-    deviations at the wheels. status: of the contacts."""
+    """values: [100 + n], of a state's. powers: [12], W, as of a state's work. inputs: [24], m,
+    m/s, the rails' deviations at the wheels and their vertical rates. status: of the contacts."""
 
     values: Vector
     powers: Vector
@@ -96,9 +97,11 @@ class HeldDerivatives:
 class VehicleSystem:
     """Vehicle, suspension, track and contacts of a scene. Keeps the contacts' last solutions.
 
-    evaluations, renewals: number of rates() and of derivatives(). contact_seconds,
-    derivative_seconds: s, CPU time of the calling thread in the force element and in derivatives();
-    further threads: element.helper_seconds.
+    slope_wrenches: [4, 2, 3], of left and right wheel at the last rates(), Fx (N), My, Mz (N m) in
+    track axes: of rails that are not level, beside the element's wrenches. evaluations, renewals:
+    number of rates() and of derivatives(). contact_seconds, derivative_seconds: s, CPU time of the
+    calling thread in the force element and in derivatives(); further threads:
+    element.helper_seconds.
     """
 
     def __init__(self, scene: VehicleScene) -> None:
@@ -124,7 +127,9 @@ class VehicleSystem:
         self._zero = np.zeros(self.count)
         self._joints = [self.vehicle.joints[name] for name in names]
         self._car = self.vehicle.columns[0]
-        self._bends = np.zeros((WHEELSETS, 3))
+        self._bends = np.zeros((WHEELSETS, 4))
+        self.slope_wrenches = np.zeros((WHEELSETS, 2, 3))
+        self._slopes = np.zeros((WHEELSETS, 2, 2))
         self._held = HeldDerivatives(self.element)
 
     def rates(self, time: float, values: Vector) -> Rates:
@@ -132,7 +137,7 @@ class VehicleSystem:
         n = self.count
         q, v, series = values[:n], values[n : 2 * n], values[2 * n :]
         pin.forwardKinematics(self.model, self.data, q, v)
-        inputs = self.place_track(q)
+        inputs = self.place_track(q, self.speeds_along(values))
         for joint in self._joints:
             self._fext[joint].setZero()
         self.evaluations += 1
@@ -145,32 +150,66 @@ class VehicleSystem:
         self.contact_seconds += clock.thread_time() - begin
         if status in BAD:
             raise ContactFailure(time, float(self.positions[0]), self.statuses())
+        contact = self.element.contact_power + self._add_slope_wrenches()
         tau = self.suspension.step(q, v, series)
         drive = self._drive(q, v, tau)
         acceleration = pin.aba(self.model, self.data, q, v, tau, self._fext)
         found = np.concatenate([v, acceleration, self.suspension.series_rates])
         friction = self.element.wheels[:, :, 6].ravel()
-        contact, damping = self.element.contact_power, self.suspension.damping_power(series)
+        damping = self.suspension.damping_power(series)
         powers = np.array([contact, friction.sum(), damping, drive, *friction])
         return Rates(found, powers, inputs, status)
 
-    def place_track(self, q: Vector) -> Vector:
-        """Puts track frames under the wheelsets, rails into them; [16], m, their deviations."""
+    def place_track(self, q: Vector, speeds: Vector) -> Vector:
+        """Puts track frames under the wheelsets, rails into them; [24], the inputs.
+
+        speeds: m/s, [4], along the track.
+        """
         centres = q[self.vehicle.carriers[:, :3]]
         self.positions = self.alignment.foot(centres, self.positions)
         rotations, origins, self._bends = self.alignment.frames_and_bends(self.positions)
         tracks = self.element.tracks
         tracks[:, :9], tracks[:, 9:] = rotations.reshape(-1, 9), origins
         self.element.positions[:] = self.positions
-        return self.move_rails(self.positions)
+        return self.move_rails(self.positions, speeds)
 
-    def move_rails(self, positions: Vector) -> Vector:
-        """[16], m, of the rails at arc lengths [4], by wheelset, side, lateral and vertical."""
+    def move_rails(self, positions: Vector, speeds: Vector) -> Vector:
+        """[24], the inputs at arc lengths [4] (m) and speeds [4] (m/s) along the track."""
+        deviations, slopes = self.rails_at(positions)
+        self.element.rails[:, 0, :, 1:] = deviations
+        inputs = inputs_of(deviations, slopes, speeds)
+        # a change of cant lifts the one rail and lowers the other
+        twist = ARM * self._bends[:, 2]
+        slopes[:, 0, 1] -= twist
+        slopes[:, 1, 1] += twist
+        self._slopes = slopes
+        self.element.rails[:, 1, :, 2] = speeds[:, None] * slopes[:, :, 1]
+        return inputs
+
+    def rails_at(self, positions: Vector) -> tuple[Vector, Vector]:
+        """m and -, [4, 2, 2], of the irregularities at arc lengths [4] (m): deviations, slopes, by
+        wheelset, side, lateral and vertical."""
         if self.irregularity is None:
-            return np.zeros(2 * WHEELS)
-        moved = self.irregularity.at(positions)
-        self.element.rails[:, 0, :, 1:] = moved
-        return moved.ravel()
+            return np.zeros((WHEELSETS, 2, 2)), np.zeros((WHEELSETS, 2, 2))
+        return self.irregularity.at(positions), self.irregularity.slope(positions)
+
+    def _add_slope_wrenches(self) -> float:
+        """Of rails that are not level, on the wheelsets, see slope; their power (W)."""
+        if not self._slopes.any():
+            return 0.0
+        element = self.element
+        radius = self.scene.case.wheelset.nominal_radius
+        self.slope_wrenches = slope_wrenches(
+            element.wheels, element.lateral_normals, self._slopes, radius, ARM
+        )
+        power = 0.0
+        for k, joint in enumerate(self._joints):
+            ahead, spinning, turning = self.slope_wrenches[k].sum(axis=0).tolist()
+            wrench = element.place(k, [ahead, 0.0, 0.0], [0.0, spinning, turning])
+            vector = self._fext[joint].vector
+            vector += wrench
+            power += float(wrench @ self.data.v[joint].vector)
+        return power
 
     def speeds_along(self, values: Vector) -> Vector:
         """m/s, [4], of the wheelsets."""
@@ -179,32 +218,32 @@ class VehicleSystem:
         return np.hypot(velocity[:, 0], velocity[:, 1])
 
     def inputs_ahead(self, values: Vector, step: float) -> Vector:
-        """[16], m, of the rails where the wheelsets will be in ``step`` s."""
-        if self.irregularity is None:
-            return np.zeros(2 * WHEELS)
-        return self.irregularity.at(self.positions + step * self.speeds_along(values)).ravel()
+        """[24], where the wheelsets will be in ``step`` s."""
+        speeds = self.speeds_along(values)
+        return inputs_of(*self.rails_at(self.positions + step * speeds), speeds)
 
     def track_bend(self, values: Vector, step: float) -> Vector:
-        """[16], m, second differences of the rails' places under the wheelsets over ``step`` s.
+        """[24], second differences of the rails' places under the wheelsets over ``step`` s.
 
         By the track's own way in the world: the curve's turning off, the change of cant. In track
-        axes, as the rails' deviations.
+        axes, as the inputs; that of rates is none.
         """
-        cant, curvature, twist = self._bends.T
+        cant, curvature, _, twist = self._bends.T
         squared = (step * self.speeds_along(values)) ** 2
         off, turned = curvature * squared, ARM * twist * squared
         found = np.empty((WHEELSETS, 2, 2))
         found[:, :, 0] = (off * np.cos(cant))[:, None]
         down = -off * np.sin(cant)
         found[:, 0, 1], found[:, 1, 1] = down - turned, down + turned
-        return found.ravel()
+        return np.concatenate([found.ravel(), np.zeros(WHEELS)])
 
     def derivatives(self, values: Vector, wheelsets: Iterable[int]) -> tuple[Vector, Vector]:
         """Of the rates at values whose rates were the last ones asked for, nearly.
 
-        [size, size] by the values and [size, 16] by the rails' deviations. wheelsets: whose
+        [size, size] by the values and [size, 24] by the inputs. wheelsets: whose
         contacts' derivatives are found anew, exact or by differences, as Contact.jacobian() says;
-        those of the others are held. How the track frame turns on along the track is left out.
+        those of the others are held. How the track frame turns on along the track is left out, and
+        so are the forces of slopes, some thousandth of the contacts'.
         Raises CaseError.
         """
         begin = clock.thread_time()
@@ -227,23 +266,26 @@ class VehicleSystem:
         series_by_v, series_by_series = suspension.series_jacobian()
         matrix[2 * n :, n : 2 * n] = series_by_v
         matrix[2 * n :, 2 * n :] = np.diag(series_by_series)
-        inputs = np.zeros((self.size, 2 * WHEELS))
+        inputs = np.zeros((self.size, INPUTS))
         inputs[n : 2 * n] = inverse @ self._force_by_rails(found.chain)
         self.derivative_seconds += clock.thread_time() - begin
         return matrix, inputs
 
     def _force_by_rails(self, chain: StateChain) -> Vector:
-        """[nv, 16], of the generalised force by the rails' deviations."""
-        columns = []
+        """[nv, 24], of the generalised force by the inputs."""
+        deviations, rates = [], []
         for k in range(WHEELSETS):
             state = chain.of(self.element, k)
             jacobian = chain.jacobian(self.element.joints[k])
             for by_wheel in self._held.by_side[k]:
-                for column in (LATERAL, VERTICAL):
-                    # a rail that moves is a wheel that moves the other way
-                    wrench = -state.turned(by_wheel[:, column])
-                    columns.append(jacobian.T @ wrench)
-        return np.array(columns).T
+                # a rail that moves is a wheel that moves the other way
+                lateral, vertical, rate = (
+                    -jacobian.T @ state.turned(by_wheel[:, column])
+                    for column in (LATERAL, VERTICAL, RATE)
+                )
+                deviations += [lateral, vertical]
+                rates.append(rate)
+        return np.array(deviations + rates).T
 
     def _ahead(self, q: Vector) -> Vector:
         """[nv], the direction in which the car body points."""
@@ -294,3 +336,8 @@ class VehicleSystem:
     def car_body(self) -> int:
         """Index of the car body's joint."""
         return self.vehicle.joints[CAR_BODY]
+
+
+def inputs_of(deviations: Vector, slopes: Vector, speeds: Vector) -> Vector:
+    """[24], of irregularities: deviations (m), then vertical rates (m/s), by wheelset and side."""
+    return np.concatenate([deviations.ravel(), (speeds[:, None] * slopes[:, :, 1]).ravel()])

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
 from wheelset_demo.scene import GRAVITY
-from wheelset_demo.system import ContactFailure
+from wheelset_demo.system import WORKS, ContactFailure
 from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.simulation import Simulation
-from wheelset_demo.vehicle.system import WORKS, VehicleState
+from wheelset_demo.vehicle.system import VehicleState
 
 if TYPE_CHECKING:
     from wheelset_demo.vehicle.record import Recorder
@@ -24,8 +24,6 @@ Vector = NDArray[np.float64]
 Advance = Callable[[VehicleState], None]
 # m, over which forces are averaged before their ratio is judged (EN 14363)
 SLIDING = 2.0
-# J, in the order of a row of `energies`
-STORES = ("kinetic", "gravity", "suspension", "elastic")
 
 
 @dataclass

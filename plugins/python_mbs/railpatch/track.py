@@ -1,8 +1,11 @@
 """Irregularities of the rails along the track, from a record.
 
 A record holds the rails' deviations at positions along the track. Under a wheelset at x the rails
-lie where the record says; the rail itself stands still, so these deviations add to its offset and
-not to its velocity, which the creepages see.
+lie where the record says: these deviations add to their offset. The rail itself stands still, and
+its lateral slope is a real angle of attack, so nothing adds to its lateral velocity. Contacts are
+prismatic along the track: one on a vertical slope would take the wheel's climbing for slip along an
+inclined surface, so the rail's vertical velocity is the rate at which its height changes under the
+wheelset, speed times slope.
 """
 
 from __future__ import annotations
@@ -42,6 +45,7 @@ class Irregularity:
             first = positions[1:][np.diff(positions) <= 0][0]
             raise CaseError(f"{KEY}: x is {first:g} after a greater one, allowed increasing values")
         self._spline = CubicSpline(positions, values, bc_type="clamped")
+        self._slope = self._spline.derivative()
 
     def at(self, x: ArrayLike) -> NDArray[np.float64]:
         """m, [..., 2, 2]: of the left and right rail, lateral and vertical, for each x."""
@@ -50,7 +54,7 @@ class Irregularity:
     def slope(self, x: ArrayLike) -> NDArray[np.float64]:
         """-, [..., 2, 2]: the same by x; 0 beyond the record."""
         inside = self._inside(x)
-        found = self._spline(inside, 1) * np.equal(inside, x)[..., None]
+        found = self._slope(inside) * np.equal(inside, x)[..., None]
         return found.reshape(*np.shape(x), 2, 2)
 
     def _inside(self, x: ArrayLike) -> NDArray[np.float64]:
@@ -81,9 +85,13 @@ def irregularity_of(scene: Scene) -> Irregularity | None:
 
 
 def add_irregularity(values: dict[str, Any], irregularity: Irregularity) -> None:
-    """Into the rails' offsets of rp_input."""
-    moved = irregularity.at(values["x"])
+    """Into the rails' offsets and vertical velocities of rp_input."""
+    moved, slopes = irregularity.at(values["x"]), irregularity.slope(values["x"])
+    rates = values["speed"] * slopes[:, 1]
     values["rail_offset"] = [
         [x, y + lateral, z + vertical]
         for (x, y, z), (lateral, vertical) in zip(values["rail_offset"], moved, strict=True)
+    ]
+    values["rail_velocity"] = [
+        [x, y, z + rate] for (x, y, z), rate in zip(values["rail_velocity"], rates, strict=True)
     ]

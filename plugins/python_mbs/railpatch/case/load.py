@@ -28,6 +28,8 @@ KINDS: dict[str, type[PatchCase] | type[WheelRailCase] | type[WheelsetCase]] = {
     "wheel_rail": WheelRailCase,
     "wheelset": WheelsetCase,
 }
+# tables that a contact case has not, by which files of other commands are known
+OTHERS = {"vehicle": "vehicle", "rig": "rig", "curve": "curve", "body": "wheelset"}
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,19 @@ def load_scene(source: Mapping[str, Any] | str | Path, folder: str | Path | None
     else:
         path = Path(source)
         content, home = read_toml(path), Path(folder or path.parent)
+    refuse_others(content)
     return Scene(check_case(plain(content)), home)
+
+
+def refuse_others(content: Mapping[str, Any], command: str | None = None) -> None:
+    """Says once what a file of another command is, in place of all its unknown keys.
+
+    command: the one that its scenes are for; None: contact cases. Raises CaseError.
+    """
+    found = next((name for table, name in OTHERS.items() if table in content), command)
+    if found != command:
+        wanted = f"one of railpatch {command}" if command else "a contact case"
+        raise CaseError(f"this is a scene of railpatch {found}, allowed {wanted}")
 
 
 def read_toml(path: Path) -> dict[str, Any]:

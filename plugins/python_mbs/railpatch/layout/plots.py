@@ -63,7 +63,7 @@ def tabs_of(kind: str, wheelsets: int) -> list[Tab]:
     tabs = [_motion(), _forces(), _contact()]
     if kind == "roller":
         return [*tabs, _balance(), _work()]
-    return [*tabs, _energies("/wheelset"), _momenta("/wheelset"), _work()]
+    return [*tabs, _energies("/wheelset"), _momenta(), _work()]
 
 
 def _vectors(topic: str, field: str, name: str, count: int = 3) -> list[Curve]:
@@ -139,8 +139,8 @@ def _energies(above: str) -> Tab:
     )
 
 
-def _momenta(above: str) -> Tab:
-    topic = f"{above}/momentum"
+def _momenta() -> Tab:
+    topic = "/wheelset/momentum"
     return Tab(
         "Momentum",
         {
@@ -217,6 +217,5 @@ def _vehicle(wheelsets: int) -> list[Tab]:
             },
         ),
         _energies("/vehicle"),
-        _momenta("/vehicle"),
         _work(),
     ]

@@ -273,18 +273,18 @@ RIG_BALANCE = Message(
     ),
 )
 
-WHEELSET_ENERGY = Message(
-    "WheelsetEnergy",
-    "Energies of a wheelset on track, and work done since the start.",
+ENERGY = Message(
+    "Energy",
+    "Energies of a wheelset or a vehicle on track, and work done since the start.",
     (
         _number("kinetic", "J", "kinetic energy of all bodies", "track"),
         _number("gravity", "J", "potential energy of gravity"),
         _number("suspension", "J", "potential energy of springs and static load"),
         _number("elastic", "J", "elastic energy of the contacts"),
-        _number("contact_work", "J", "work of the contact forces on the wheelset"),
+        _number("contact_work", "J", "work of the contact forces on the wheelsets"),
         _number("friction_work", "J", "lost in the contacts: creep forces times creepages"),
         _number("damping_work", "J", "taken by the dampers"),
-        _number("drive_work", "J", "put in by the suspension's moving reference"),
+        _number("drive_work", "J", "put in by what holds the speed"),
         _number("mechanical_residual", "J", "open in the balance of bodies and springs"),
         _number("contact_residual", "J", "open in the balance of the contacts"),
     ),
@@ -356,7 +356,7 @@ CHANNELS = (
     Channel("/left/contact", WHEEL_CONTACT, "result of the left wheel"),
     Channel("/right/contact", WHEEL_CONTACT, "result of the right wheel"),
     Channel("/rig/balance", RIG_BALANCE, "force balance; only in runs of the roller rig"),
-    Channel("/wheelset/energy", WHEELSET_ENERGY, "balance of energies; only in runs on track"),
+    Channel("/wheelset/energy", ENERGY, "balance of energies; only in runs on track"),
     Channel("/wheelset/momentum", MOMENTUM, "balance of momenta; only in runs on track"),
     Channel("/solver/stats", SOLVER_STATS, "iterations and times"),
     Channel("/left/fields", CONTACT_FIELDS, "fields of the left patches, at chosen moments"),
@@ -367,8 +367,7 @@ CHANNELS = (
 VEHICLE_CHANNELS = (
     Channel("/vehicle/state", VEHICLE_STATE, "how far the vehicle has come"),
     Channel("/vehicle/bodies", VEHICLE_BODIES, "car body, bogie frames, wheelsets"),
-    Channel("/vehicle/energy", WHEELSET_ENERGY, "balance of energies"),
-    Channel("/vehicle/momentum", MOMENTUM, "balance of momenta"),
+    Channel("/vehicle/energy", ENERGY, "balance of energies"),
     Channel("/solver/stats", SOLVER_STATS, "iterations and times"),
 )
 # and of each of its wheelsets, N = 1 in front

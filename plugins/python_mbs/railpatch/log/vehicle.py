@@ -100,7 +100,6 @@ class VehicleLog:
         bodies: Sequence[Mapping[str, Any]],
         tracks: Sequence[tuple[Sequence[float], Sequence[float]]] | None = None,
         energy: Mapping[str, Any] | None = None,
-        momentum: Mapping[str, Any] | None = None,
         stats: Mapping[str, Any] | None = None,
     ) -> None:
         """Logs one time step; the fields of each dict stand in channels.py.
@@ -118,7 +117,6 @@ class VehicleLog:
             given = {"/vehicle/state": state, "/vehicle/bodies": {"bodies": list(bodies)}}
             beside = {
                 "/vehicle/energy": energy,
-                "/vehicle/momentum": momentum,
                 "/solver/stats": stats,
             }
             given |= {topic: values for topic, values in beside.items() if values is not None}

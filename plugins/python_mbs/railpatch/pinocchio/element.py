@@ -251,8 +251,9 @@ class ForceElement:
     def rails(self) -> NDArray[np.float64]:
         """[wheelsets, 2, 2, 3], of offset (m) and velocity (m/s), of left and right rail.
 
-        Track axes, beside those of the case; may be written before a step. A rail that is not
-        straight stands still all the same: its velocity is 0, see railpatch.track.
+        Track axes, beside those of the case; may be written before a step. Under a wheelset on
+        rails that are not level their vertical velocity is speed times slope, the lateral one 0,
+        see railpatch.track.
         """
         return self._rails.reshape(-1, 2, 2, 3)
 
@@ -264,6 +265,13 @@ class ForceElement:
         number of patches.
         """
         return self._core.wheels.reshape(-1, 2, 8)
+
+    @property
+    def lateral_normals(self) -> NDArray[np.float64]:
+        """N, [wheelsets, 2], of left and right wheel: the normal forces' parts to the right in
+        `wheels`, at the last step; the rest of the lateral force is of creep."""
+        rows = [self._core.result(index) for index in range(len(self.joints))]
+        return np.array([[lateral_normal(result[side]) for side in SIDES] for result in rows])
 
     def track_rotation(self, index: int) -> NDArray[np.float64]:
         """[3, 3], from a wheelset's track axes to the world's."""
@@ -368,6 +376,15 @@ def joint_index(model: pin.Model, joint: str | int) -> int:
     if isinstance(joint, bool) or not isinstance(joint, int) or not 1 <= joint < model.njoints:
         raise ValueError(f"joint: value is {joint!r}, allowed 1 to {model.njoints - 1}, or a name")
     return joint
+
+
+def lateral_normal(wheel: dict[str, Any]) -> float:
+    """N, to the right on a wheel, of the normal forces of its patches."""
+    return sum(
+        patch["share"] * patch["normal_force"] * math.sin(patch["contact_angle"])
+        for kind in PATCHES
+        for patch in wheel[kind]
+    )
 
 
 def check_case(case: Any) -> None:

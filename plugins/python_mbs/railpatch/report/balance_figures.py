@@ -52,7 +52,7 @@ def energy(data: Positions | VehicleRun) -> go.Figure:
     return styled(figure, 360)
 
 
-def momentum(data: Positions | VehicleRun) -> go.Figure:
+def momentum(data: Positions) -> go.Figure:
     """What is open in the balances of momentum and of its moment."""
     figure = make_subplots(1, 2, horizontal_spacing=0.12)
     titles = {"residual": "momentum open [N s]", "turning_residual": "its moment open [N m s]"}

@@ -27,7 +27,7 @@ Wheel = tuple[int, str]
 class VehicleRun:
     """The run's n steps.
 
-    ``state``, ``bodies``, ``energy``, ``momentum``, ``stats``: series of n messages each; where a
+    ``state``, ``bodies``, ``energy``, ``stats``: series of n messages each; where a
     step has none, its values are absent. ``wheelsets``: state by number, from 1. ``contact``: by
     number and side. ``along``: m, the vehicle's distance, the abscissa of plots.
     """
@@ -36,7 +36,6 @@ class VehicleRun:
     state: Series
     bodies: Series
     energy: Series
-    momentum: Series
     stats: Series
     wheelsets: dict[int, Series]
     contact: dict[Wheel, Series]
@@ -128,7 +127,6 @@ def vehicle_run(run: Run) -> VehicleRun:
         state,
         at_times(run["/vehicle/bodies"], times),
         at_times(run["/vehicle/energy"], times),
-        at_times(run["/vehicle/momentum"], times),
         at_times(run["/solver/stats"], times),
         {number: at_times(series, times) for number, series in axles.items()},
         {wheel: at_times(series, times) for wheel, series in wheels.items()},

@@ -125,8 +125,6 @@ def _sections(data: VehicleRun) -> list[str]:
         parts += ["<h2>Friction</h2>", plot(figures.friction(data), "friction")]
     if len(data.run["/vehicle/energy"]):
         parts += ["<h2>Energies</h2>", plot(balance_figures.energy(data), "energy")]
-    if len(data.run["/vehicle/momentum"]):
-        parts += ["<h2>Momenta</h2>", plot(balance_figures.momentum(data), "momentum")]
     if len(data.run["/solver/stats"]) and data.count > 1:
         parts += ["<h2>Time</h2>", plot(figures.work(data), "work")]
     return parts

@@ -10,11 +10,9 @@ process (ElementContact) and one who does it in an FMU give the same run.
 
 from __future__ import annotations
 
-import shutil
-import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 import pinocchio as pin
@@ -23,6 +21,7 @@ from railpatch.pinocchio import ForceElement
 from railpatch.pinocchio.element import STATE
 from railpatch.pinocchio.model import WHEELSET
 
+from wheelset_demo.coupling.instance import WRENCH, FmuFailure, UnpackedFmu
 from wheelset_demo.scene import WheelsetScene
 from wheelset_demo.start import released
 from wheelset_demo.system import (
@@ -36,7 +35,6 @@ from wheelset_demo.system import (
     suspension_of,
 )
 
-WRENCH = tuple(f"{name}[{k}]" for name in ("force", "moment") for k in (1, 2, 3))
 STATUS_GOOD = (0, 1)  # converged, no contact
 
 
@@ -70,28 +68,13 @@ class FmuContact:
     """In an FMU of kind "wheelset" with z given, through fmpy."""
 
     def __init__(self, path: str | Path) -> None:
-        from fmpy import extract, read_model_description
-        from fmpy.fmi1 import FMICallException
+        """Raises fmpy's errors."""
         from fmpy.fmi2 import FMU2Slave
 
-        self._folder = tempfile.mkdtemp()
-        extract(str(path), self._folder)
-        description = read_model_description(str(path))
-        references = {v.name: v.valueReference for v in description.modelVariables}
-        names = [f"wheelset.{name}" for name in STATE]
-        # round wheels on rails that do not change: no x, no pitch
-        self._used = [k for k, name in enumerate(names) if name in references]
-        self._inputs = [references[names[k]] for k in self._used]
-        self._outputs = [references[name] for name in WRENCH]
-        self._status = [references["status"]]
-        self._slave: Any = FMU2Slave(
-            guid=description.guid,
-            unzipDirectory=self._folder,
-            modelIdentifier=description.coSimulation.modelIdentifier,
-            instanceName="contact",
-        )
-        self._failure = FMICallException
-        self._slave.instantiate()
+        self._fmu = UnpackedFmu(path)
+        self._outputs = [self._fmu.references[name] for name in WRENCH]
+        self._status = [self._fmu.references["status"]]
+        self._slave = self._fmu.instance(FMU2Slave, self._fmu.description.coSimulation)
         self._begun = False
 
     def __enter__(self) -> FmuContact:
@@ -99,8 +82,7 @@ class FmuContact:
 
     def __exit__(self, *_: object) -> None:
         # after an error nothing but this is allowed
-        self._slave.freeInstance()
-        shutil.rmtree(self._folder, ignore_errors=True)
+        self._fmu.close()
 
     def wrench(self, time: float, step: float, motion: Vector) -> Vector:
         """See HeldContact. The first one is that of the initialisation, the others of a step each.
@@ -108,23 +90,23 @@ class FmuContact:
         Raises RuntimeError for a contact that was not solved.
         """
         try:
-            self._advance(time, step, motion[self._used].tolist())
-        except self._failure as failure:
+            self._advance(time, step, motion[self._fmu.used].tolist())
+        except FmuFailure as failure:
             raise RuntimeError(f"contact at {time:.6g} s: {failure}") from None
         if self._slave.getInteger(self._status)[0] not in STATUS_GOOD:
             raise RuntimeError(f"contact at {time:.6g} s: not solved by the FMU")
         return np.array(self._slave.getReal(self._outputs))
 
     def _advance(self, time: float, step: float, values: list[float]) -> None:
-        slave = self._slave
+        slave, call, inputs = self._slave, self._fmu.call, self._fmu.inputs
         if self._begun:
-            slave.setReal(self._inputs, values)
-            slave.doStep(currentCommunicationPoint=time - step, communicationStepSize=step)
+            call(slave.setReal, inputs, values)
+            call(slave.doStep, time - step, step)
             return
-        slave.setupExperiment(startTime=time)
-        slave.enterInitializationMode()
-        slave.setReal(self._inputs, values)
-        slave.exitInitializationMode()
+        call(slave.setupExperiment, None, time)
+        call(slave.enterInitializationMode)
+        call(slave.setReal, inputs, values)
+        call(slave.exitInitializationMode)
         self._begun = True
 
 
