@@ -9,11 +9,11 @@ from typing import Any
 import click
 from railpatch.commands import (
     EXIT_NOT_CONVERGED,
-    WrongCall,
     output_option,
     progress_bar,
     scene_argument,
     show_scene_option,
+    wrong_call,
 )
 from railpatch.errors import CaseError, ProfileError
 from railpatch.output import check_output
@@ -63,7 +63,7 @@ def rig(
         with progress_bar("balancing", loaded.rig.count, quiet) as advance:
             summary = replay(loaded, output, advance)
     except (CaseError, ProfileError, OSError) as error:
-        raise WrongCall(str(error)) from None
+        raise wrong_call(error) from None
     if not quiet:
         click.echo(summary.text())
     if not summary.good:
@@ -123,7 +123,7 @@ def curve(
         loaded = load_curve_scene(scene, radius=list(radius) or None)
         found = {method: steady_curves(loaded, method) for method in METHODS}
     except (CaseError, ProfileError, OSError) as error:
-        raise WrongCall(str(error)) from None
+        raise wrong_call(error) from None
     curves = [item for method in METHODS for item in found[method]]
     if as_json:
         rows = {method: [item.to_dict() for item in found[method]] for method in METHODS}

@@ -14,6 +14,7 @@ from railpatch.commands import (
     progress_bar,
     scene_argument,
     show_scene_option,
+    wrong_call,
 )
 from railpatch.errors import CaseError, ProfileError
 from railpatch.output import check_output, files_of
@@ -67,7 +68,7 @@ def wheelset(
         with progress_bar("rolling", loaded.steps, quiet) as advance:
             summary = run_scene(loaded, output, advance)
     except (CaseError, ProfileError, OSError) as error:
-        raise WrongCall(str(error)) from None
+        raise wrong_call(error) from None
     if as_json:
         click.echo(json.dumps(summary.to_dict(), allow_nan=False))
     elif not quiet:

@@ -13,6 +13,7 @@ from railpatch.commands import (
     progress_bar,
     scene_argument,
     show_scene_option,
+    wrong_call,
 )
 from railpatch.errors import CaseError, ProfileError
 from railpatch.output import check_output, files_of, refusal
@@ -157,7 +158,7 @@ def cosimulation(
         click.echo(f"status: {failure}", err=True)
         context.exit(EXIT_NOT_CONVERGED)
     except (CaseError, ProfileError, OSError) as error:
-        raise WrongCall(str(error)) from None
+        raise wrong_call(error) from None
     # minutes were spent: shown before a file can fail
     if as_json:
         click.echo(json.dumps(dict_of(found), allow_nan=False))

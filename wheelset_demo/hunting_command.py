@@ -12,6 +12,7 @@ from railpatch.commands import (
     WrongCall,
     scene_argument,
     show_scene_option,
+    wrong_call,
 )
 from railpatch.errors import CaseError, ProfileError
 from railpatch.output import check_output, files_of
@@ -97,7 +98,7 @@ def hunting(
         click.echo(f"status: {failure}", err=True)
         context.exit(EXIT_NOT_CONVERGED)
     except (CaseError, ProfileError, OSError) as error:
-        raise WrongCall(str(error)) from None
+        raise wrong_call(error) from None
     try:
         if output is not None:
             write_log(loaded, found, speed, output)
@@ -105,7 +106,7 @@ def hunting(
         click.echo(f"status: {failure}", err=True)
         context.exit(EXIT_NOT_CONVERGED)
     except (CaseError, ProfileError, OSError) as error:
-        raise WrongCall(str(error)) from None
+        raise wrong_call(error) from None
     finally:
         # what was found is not lost with the log
         show(found, as_json, quiet)

@@ -161,6 +161,16 @@ def test_folders_that_cannot_be(tmp_path: Path, command: str):
     assert file.read_text() == "kept"
 
 
+@pytest.mark.parametrize(
+    ("name", "allowed"), [("", "a file in a folder"), (300 * "a", "File name")]
+)
+def test_names_that_no_file_has(name: str, allowed: str):
+    refused = invoke("wheelset", "-o", name)
+    assert refused.exit_code == 2
+    assert "--output: value is '" in refused.output
+    assert allowed in refused.output
+
+
 def test_a_check_leaves_nothing_behind(tmp_path: Path):
     """Output that can be written, scene that cannot be released: no empty file."""
     text = hunting_text()

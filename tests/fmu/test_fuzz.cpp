@@ -28,16 +28,19 @@ constexpr fmi2ValueReference kInputs[] = {22, 23, 24, 25, 26};
 constexpr fmi2ValueReference kOutputs[] = {2102, 2104, 2105, 2106, 2107};
 
 // A patch with a given approach, by the fastest theories; written as plugins/fmu/src/scene.hpp
-// tells.
+// tells. Its contact is made anew where a profile is chosen, though a patch has none.
 std::filesystem::path write_scene() {
   std::ostringstream text;
   text << "railpatch-fmu-scene 1\nguid " << kGuid << "\nset kind 0\nset geometry 1\n"
        << "set curvatures 1.0 1.5\nset load 1\nset elements 6 6\nset normal 0\nset tangential 1\n"
        << "set derivatives 1\n"
+       << "choice wheel 2 arc_length 2 0 1\nchoice wheel 2 y 2 0 1\nchoice wheel 2 z 2 0 0\n"
+       << "choice wheel 2 dy 2 1 1\nchoice wheel 2 dz 2 0 0\n"
        << "variable 22 approach 5e-05\nvariable 23 creepage[1] 0.001\n"
        << "variable 24 creepage[2] 0.0\nvariable 25 spin_creepage 0.0\n"
        << "variable 26 rolling_speed 10.0\nvariable 27 direction 1\n"
-       << "variable 31 friction.coefficient 0.3\nvariable 41 status 0\n";
+       << "variable 31 friction.coefficient 0.3\nvariable 39 profiles.wheel 1\n"
+       << "variable 41 status 0\n";
   for (const auto reference : kOutputs)
     text << "variable " << reference << " output" << reference << " 0\n";
   const std::string body = text.str();

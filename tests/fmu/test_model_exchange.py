@@ -173,11 +173,12 @@ def test_states_of_the_other_interface_are_refused(unpacked: Unpack) -> None:
         content = model.serialize(model.save())
         _, handle = slave.deserialize(content)
         assert slave.restore(handle) == ERROR
-        with Slave(fmu, exchange=True) as other:
-            status, handle = other.deserialize(content)
-            assert status == OK
-            assert other.restore(handle) == OK
-            assert other.outputs() == expected
+        for state in (INSTANTIATED, INITIALIZATION, EVENT, CONTINUOUS):
+            with brought_to(fmu, state) as other:
+                status, handle = other.deserialize(content)
+                assert status == OK
+                assert other.restore(handle) == OK, other.log
+                assert other.outputs() == expected
 
 
 @pytest.mark.parametrize("name", SCENES)

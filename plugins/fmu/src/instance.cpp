@@ -67,7 +67,8 @@ std::unique_ptr<Instance> Instance::create(Interface interface, const char *guid
                                            const char *location, Log log) {
   std::unique_ptr<Instance> instance(new Instance(std::move(log)));
   const DefaultFloatingPoint environment;  // numbers in text are rounded, too
-  Scene scene;
+  auto content = std::make_unique<Scene>();
+  Scene &scene = *content;
   if (!load_scene(guid, location, instance->log_, scene)) return nullptr;
   if (!load_table(location, instance->log_, scene, instance->table_)) return nullptr;
   if (interface == Interface::model_exchange && scene.options.history != 0) {
@@ -94,6 +95,7 @@ std::unique_ptr<Instance> Instance::create(Interface interface, const char *guid
   instance->options_ = scene.options;
   instance->content_ = hash_of(scene.guid);
   instance->variables_ = std::move(scene.variables);
+  if (!scene.choices[0].empty() || !scene.choices[1].empty()) instance->scene_ = std::move(content);
   if (!instance->index_variables()) {
     instance->log_.error("fmi2Instantiate: the variables of scene.txt do not belong together");
     return nullptr;
@@ -228,6 +230,8 @@ fmi2Status Instance::solve(const Call &call) {
 }
 
 fmi2Status Instance::advance(const Call &call, double time, double time_step) {
+  const fmi2Status status = take_profiles(call);
+  if (status != fmi2OK) return status;
   if (!pending_.empty()) {
     const rp_error error = rp_restore_state(contact_.get(), pending_.data(), pending_.size());
     if (error != RP_OK) return refuse(call, rp_error_text(error));
@@ -364,13 +368,25 @@ bool Instance::settable(const Call &call, int index, double value) {
     refuse(call, item.name + " is a parameter, which may be set in event mode");
     return false;
   }
+  if (is_profile(variable) && mode_ != Mode::instantiated && mode_ != Mode::initialization) {
+    refuse(call, item.name + " is fixed: it may be set before and in initialization mode only");
+    return false;
+  }
+  return in_range(call, index, value);
+}
+
+bool Instance::in_range(const Call &call, int index, double value) {
+  const SceneVariable &item = variables_[static_cast<size_t>(index)];
+  const Variable &variable = *item.variable;
   if (variable.reference == direction && value == 0) {
     refuse(call, item.name + " is 0, allowed -1 and 1");
     return false;
   }
-  if (value >= variable.low && value <= variable.high) return true;
+  // a profile must be one of those that are there
+  const double high = is_profile(variable) ? profile_count(variable) : variable.high;
+  if (value >= variable.low && value <= high) return true;
   refuse(call, item.name + " is " + text_of(value) + ", allowed " + text_of(variable.low) +
-                   " ... " + text_of(variable.high));
+                   " ... " + text_of(high));
   return false;
 }
 

@@ -1,6 +1,7 @@
 // One instance of the FMU: its mode, time, values of all variables, and the contact behind them.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <memory>
 #include <string>
@@ -67,6 +68,8 @@ class Instance {
   struct Destroy {
     void operator()(rp_contact *contact) const { rp_destroy(contact); }
   };
+  using Contact = std::unique_ptr<rp_contact, Destroy>;
+  using Profiles = std::array<size_t, 2>;  // numbers of the wheel's and the rail's, from 1
   explicit Instance(Log log) : log_(std::move(log)) {}
 
   // The contact's last solution: none that belongs to the outputs, one that a restored state was
@@ -82,6 +85,7 @@ class Instance {
   int find_known(const Call &call, fmi2ValueReference reference);
   int find_output(const Call &call, fmi2ValueReference reference);
   bool settable(const Call &call, int index, double value);
+  bool in_range(const Call &call, int index, double value);
   bool index_variables();  // false: they do not belong together
   void start_values();
   // outputs follow the inputs at once
@@ -106,6 +110,12 @@ class Instance {
   fmi2Status differentiate(const Call &call, const std::vector<double> &rates);
   double rate_of(fmi2ValueReference reference) const;
   fmi2Status find_largest_step(const Call &call);
+  double profile_count(const Variable &variable) const;
+  // Numbers of the profiles among values of all inputs and parameters.
+  Profiles profiles_of(const std::vector<double> &values) const;
+  fmi2Status make_contact(const Call &call, const Profiles &profiles, Contact &made);
+  // Makes the contact anew where other profiles were chosen.
+  fmi2Status take_profiles(const Call &call);
   std::vector<double> saved_numbers() const;
   size_t number_count() const { return values_.size() + (2 + orders) * known_; }
   fmi2Status give_handle(const Call &call, std::unique_ptr<Snapshot> snapshot, fmi2FMUstate *state);
@@ -123,8 +133,10 @@ class Instance {
                      std::numeric_limits<double>::quiet_NaN()};
   size_t known_ = 0;  // number of inputs and parameters, which come first
   std::vector<std::pair<size_t, size_t>> means_;  // mean over a step, and what it is the mean of
-  std::string table_;  // of creep forces, which the contact uses in place
-  std::unique_ptr<rp_contact, Destroy> contact_;
+  std::string table_;             // of creep forces, which the contact uses in place
+  std::unique_ptr<Scene> scene_;  // kept where profiles can be chosen, else null
+  Profiles made_ = {1, 1};        // those of the contact
+  Contact contact_;
   rp_input input_ = {};     // of the last solve
   Outputs outputs_ = {};    // of the last solve
   std::vector<double> at_;  // inputs and parameters of the solve to come

@@ -35,6 +35,8 @@ std::vector<double> Instance::saved_numbers() const {
 
 fmi2Status Instance::get_state(fmi2FMUstate *state) {
   if (state == nullptr) return refuse(call::get_state, "FMUstate is NULL");
+  const fmi2Status status = take_profiles(call::get_state);
+  if (status != fmi2OK) return status;
   std::vector<unsigned char> core = pending_;
   if (core.empty()) {
     core.resize(rp_state_size(contact_.get()));
@@ -72,9 +74,18 @@ fmi2Status Instance::set_state(fmi2FMUstate state) {
   if (!numbers.empty())
     std::memcpy(numbers.data(), values_of(bytes), numbers.size() * sizeof(double));
   for (size_t i = 0; i < known_; ++i)
-    if (!settable(call, static_cast<int>(i), numbers[i])) return fmi2Error;
-  const rp_error error = rp_restore_state(contact_.get(), core_of(bytes), header.core);
+    if (!in_range(call, static_cast<int>(i), numbers[i])) return fmi2Error;
+  const Profiles profiles = profiles_of(numbers);
+  Contact other;
+  if (profiles != made_) {
+    const fmi2Status status = make_contact(call, profiles, other);
+    if (status != fmi2OK) return status;
+  }
+  rp_contact *contact = other != nullptr ? other.get() : contact_.get();
+  const rp_error error = rp_restore_state(contact, core_of(bytes), header.core);
   if (error != RP_OK) return refuse(call, rp_error_text(error));
+  if (other != nullptr) contact_ = std::move(other);
+  made_ = profiles;
   const double *from = numbers.data();
   for (auto *to : {&values_, &solved_, &rates_, &input_derivatives_}) {
     std::copy_n(from, to->size(), to->begin());

@@ -115,6 +115,19 @@ bool read_section(Words &words, Scene &scene) {
   return false;
 }
 
+bool read_choice(Words &words, Scene &scene) {
+  const std::string_view body = words.next();
+  size_t number = 0;
+  if ((body != "wheel" && body != "rail") || !words.number(number) || number < 2) return false;
+  auto &choices = scene.choices[body == "rail"];
+  if (number - 2 > choices.size()) return false;
+  if (number - 2 == choices.size()) choices.emplace_back();
+  const std::string_view name = words.next();
+  for (size_t i = 0; i < 5; ++i)
+    if (name == kArrays[i]) return read_values(words, choices[number - 2].arrays[i]);
+  return false;
+}
+
 bool read_shape(Words &words, std::vector<double> (&sides)[2]) {
   size_t side = 0;
   return read_side(words, side) && read_values(words, sides[side]);
@@ -151,6 +164,8 @@ bool read_line(std::string_view line, Scene &scene) {
     good = read_set(words, scene);
   } else if (key == "profile") {
     good = read_profile(words, scene);
+  } else if (key == "choice") {
+    good = read_choice(words, scene);
   } else if (key == "distance") {
     good = read_values(words, scene.distance);
   } else if (key == "section") {
@@ -165,15 +180,6 @@ bool read_line(std::string_view line, Scene &scene) {
     good = read_variable(words, scene);
   }
   return good && words.done();
-}
-
-// False where the arrays differ in length.
-bool make_profile(const std::vector<double> (&arrays)[5], rp_profile &profile) {
-  for (const auto &values : arrays)
-    if (values.size() != arrays[0].size() || values.size() > INT32_MAX) return false;
-  profile = {arrays[0].data(), arrays[1].data(), arrays[2].data(),
-             arrays[3].data(), arrays[4].data(), static_cast<int32_t>(arrays[0].size())};
-  return true;
 }
 
 bool connect_sections(Scene &scene, size_t side) {
@@ -211,6 +217,10 @@ bool connect(Scene &scene) {
                        config.rail_height[side]))
       return false;
   }
+  rp_profile unused = {};
+  for (const auto &choices : scene.choices)
+    for (const ProfileArrays &choice : choices)
+      if (choice.arrays[0].empty() || !make_profile(choice.arrays, unused)) return false;
   if (scene.distance.empty()) return true;
   config.undeformed_distance = scene.distance.data();
   const auto *shape = config.distance_shape;
@@ -233,6 +243,14 @@ bool check_head(std::string_view line) {
 }
 
 }  // namespace
+
+bool make_profile(const std::vector<double> (&arrays)[5], rp_profile &profile) {
+  for (const auto &values : arrays)
+    if (values.size() != arrays[0].size() || values.size() > INT32_MAX) return false;
+  profile = {arrays[0].data(), arrays[1].data(), arrays[2].data(),
+             arrays[3].data(), arrays[4].data(), static_cast<int32_t>(arrays[0].size())};
+  return true;
+}
 
 bool parse_scene(const std::string &text, Scene &scene, std::string &problem) {
   rp_default_config(&scene.config);

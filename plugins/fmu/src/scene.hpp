@@ -8,6 +8,9 @@
 //   section SIDE INDEX ARRAY COUNT VALUE...     a rail's profile along the track, indices from 0
 //   on;
 //                                               ARRAY may be position: one value
+//   choice wheel|rail NUMBER ARRAY COUNT VALUE...
+//                                               a further profile for both sides, which a parameter
+//                                               chooses; numbers from 2, 1 is that of profile
 //   runout|rail_height SIDE COUNT VALUE...      shapes along rolling
 //   distance COUNT VALUE...                     the undeformed distance
 //   option NAME VALUE                           one of Options
@@ -38,6 +41,10 @@ struct Options {
   double distance = 0;   // m, of that solve: distance rolled of a patch in transient rolling
 };
 
+struct ProfileArrays {
+  std::vector<double> arrays[5];  // arc_length y z dy dz
+};
+
 struct Section {
   std::vector<double> arrays[5], position;
 };
@@ -51,6 +58,7 @@ struct Scene {
   std::vector<double> distance;
   std::vector<Section> sections[2];
   std::vector<double> runout[2], rail_height[2];
+  std::vector<ProfileArrays> choices[2];  // wheel or rail: from number 2 on
   // what the config points to
   std::vector<rp_profile> section_profiles[2];
   std::vector<double> section_positions[2];
@@ -59,5 +67,8 @@ struct Scene {
 // False: problem says which line is wrong and why. The config then points into the scene's arrays,
 // which must not move. Throws std::bad_alloc.
 bool parse_scene(const std::string &text, Scene &scene, std::string &problem);
+
+// False where the arrays differ in length. The profile points into them.
+bool make_profile(const std::vector<double> (&arrays)[5], rp_profile &profile);
 
 }  // namespace railpatch::fmu

@@ -16,7 +16,8 @@ inline constexpr size_t no_field = SIZE_MAX;
 
 // value references of the parameters, which are no fields
 inline constexpr uint32_t direction = 27, friction_coefficient = 31, substeps = 32,
-                          wheelset_mass = 33, wheelset_inertia = 34;
+                          wheelset_mass = 33, wheelset_inertia = 34, wheel_profile = 39,
+                          rail_profile = 40;
 // and of an output that is none
 inline constexpr uint32_t largest_step = 59;
 
@@ -34,6 +35,11 @@ inline constexpr uint32_t mean_apart = 18;
 inline bool is_mean(const Variable &variable) {
   const uint32_t within = variable.reference % 1000;
   return variable.role == Role::output && within >= 61 && within <= 66;
+}
+
+// Of fixed parameters.
+inline bool is_profile(const Variable &variable) {
+  return variable.reference == wheel_profile || variable.reference == rail_profile;
 }
 
 // Of outputs of patches: the status.

@@ -32,6 +32,13 @@ class WrongCall(click.ClickException):
     exit_code = EXIT_WRONG_CALL
 
 
+def wrong_call(error: Exception) -> WrongCall:
+    """Of an error; of a file by its name."""
+    if isinstance(error, OSError) and error.filename is not None:
+        return WrongCall(f"{error.filename}: {error.strerror or error}")
+    return WrongCall(str(error))
+
+
 def print_version(context: click.Context, _option: click.Parameter, value: bool) -> None:
     """Prints the version and ends."""
     if not value or context.resilient_parsing:

@@ -19,10 +19,10 @@ def check_output(output: Path | None, *inputs: Name) -> None:
     written, or not given. Raises WrongCall."""
     if output is None:
         return
-    if not output.parent.is_dir():
-        raise refusal(output, "a file in a folder that exists")
-    refuse_same(output, *inputs)
     try:
+        if output.is_dir() or not output.parent.is_dir():
+            raise refusal(output, "a file in a folder that exists")
+        refuse_same(output, *inputs)
         probe(output)
     except OSError as error:
         reason = error.strerror or error
@@ -44,10 +44,10 @@ def refuse_same(output: Path | None, *inputs: Name) -> None:
 
 def check_folder(output: Path) -> None:
     """The folder can be made, and files in it. Raises WrongCall."""
-    place = output.absolute()
-    while not place.exists() and place != place.parent:
-        place = place.parent
     try:
+        place = output.absolute()
+        while not place.exists() and place != place.parent:
+            place = place.parent
         with tempfile.TemporaryFile(dir=place):
             pass
     except OSError as error:

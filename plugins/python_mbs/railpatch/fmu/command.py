@@ -43,6 +43,21 @@ from railpatch.output import check_output, files_of
     help="Also give the largest step that forces may be held for; takes two to three steps' time.",
 )
 @click.option(
+    "--wheel-profile",
+    "wheel_profiles",
+    multiple=True,
+    metavar="NAME|FILE",
+    help="A further profile of both wheels beside the scene's own, to choose by the parameter "
+    "profiles.wheel; may be given several times.",
+)
+@click.option(
+    "--rail-profile",
+    "rail_profiles",
+    multiple=True,
+    metavar="NAME|FILE",
+    help="The same of both rails or rollers: profiles.rail.",
+)
+@click.option(
     "--libraries",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
     metavar="FOLDER",
@@ -57,6 +72,8 @@ def fmu(
     derivatives: Any,
     averages: bool,
     largest_step: bool,
+    wheel_profiles: tuple[str, ...],
+    rail_profiles: tuple[str, ...],
     libraries: Path | None,
     quiet: bool,
 ) -> None:
@@ -75,7 +92,9 @@ def fmu(
         raise CaseError(f"--scene: value is {kind!r}, allowed {', '.join(kinds())}")
     name, loaded = kind_scene(kind) if kind is not None else scene_of(scene)
     read = libraries.rglob("*") if libraries is not None else ()
-    check_output(output, scene, *files_of(loaded.case, loaded.folder), *read)
+    wheels, rails = from_here(wheel_profiles), from_here(rail_profiles)
+    read = [*files_of(loaded.case, loaded.folder), *read, *wheels, *rails]
+    check_output(output, scene, *read)
     written = pack_fmu(
         loaded,
         output,
@@ -85,7 +104,16 @@ def fmu(
         averages=averages,
         largest_step=largest_step,
         libraries=libraries,
+        wheel_profiles=wheels,
+        rail_profiles=rails,
     )
     if not quiet:
         licence = ", under the GPL because of FFTW" if fft == "fftw" else ""
         click.echo(f"{written}: {name}{licence}")
+
+
+def from_here(profiles: tuple[str, ...]) -> list[str]:
+    """Built-in names as they are, files by their whole path: the scene's folder may be another."""
+    from railpatch.profiles.builtin import PATTERN
+
+    return [name if PATTERN.fullmatch(name) else str(Path(name).absolute()) for name in profiles]

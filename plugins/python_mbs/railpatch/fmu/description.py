@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
-from railpatch.fmu.table import Kind, Table, Variable, dependencies
+from railpatch.fmu.table import Kind, Table, Variable, dependencies, first_item
 
 # base units of SI: exponents
 BASE_UNITS = {
@@ -176,7 +176,7 @@ def type_lines(table: Table, variables: list[Variable]) -> list[str]:
         element = f"      <{base}{attributes(type_attributes(table, name))}"
         if base == "Enumeration":
             lines.append(element + ">")
-            for value, item in enumerate(declared["items"]):
+            for value, item in enumerate(declared["items"], first_item(declared)):
                 lines.append(f"        <Item{attributes({'name': item, 'value': value})}/>")
             lines.append("      </Enumeration>")
         else:
@@ -209,7 +209,7 @@ def variable_lines(table: Table, variable: Variable) -> list[str]:
 def variability(variable: Variable) -> str:
     """FMI's variability."""
     if variable.causality == "parameter":
-        return "tunable"
+        return "fixed" if variable.fixed else "tunable"
     return "continuous" if variable.base == "Real" else "discrete"
 
 

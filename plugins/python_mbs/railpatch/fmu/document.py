@@ -5,7 +5,7 @@ from __future__ import annotations
 from html import escape
 
 from railpatch.fmu.description import Labels
-from railpatch.fmu.table import Kind, Table, Variable, dependencies
+from railpatch.fmu.table import Kind, Table, Variable, dependencies, first_item
 
 STYLE = """
 body { font: 15px/1.5 sans-serif; max-width: 75em; margin: 2em auto; padding: 0 1em; }
@@ -148,7 +148,7 @@ def index_html(
 <h2>Frames and signs</h2>{FRAMES}
 <h2>Inputs and parameters</h2>
 <p>Start values are those of the scene: the FMU runs without any being set. Geometry, material and
-method are fixed in the FMU; parameters may be changed between steps.</p>
+method are fixed in the FMU; parameters may be changed between steps{fixed(known)}.</p>
 {variable_table(table, known, None, kind)}{MISSING}
 <h2>Outputs</h2>
 <p>"Acts on it" names the inputs that an output depends on: all, or those of the geometry
@@ -159,6 +159,12 @@ friction.</p>
 <h2>Coupling</h2>{COUPLING}{interfaces(labels, kind)}
 </body></html>
 """
+
+
+def fixed(known: list[Variable]) -> str:
+    """Parameters that are no longer settable after initialization."""
+    names = [f"<code>{escape(v.name)}</code>" for v in known if v.fixed]
+    return f"; {' and '.join(names)} before the end of initialization only" if names else ""
 
 
 def interfaces(labels: Labels, kind: Kind) -> str:
@@ -191,7 +197,8 @@ def variable_table(
         low, high = (f"{limit:g}" for limit in v.range)
         meaning = v.description
         if "items" in declared:
-            items = ", ".join(f"{i} {item}" for i, item in enumerate(declared["items"]))
+            numbered = enumerate(declared["items"], first_item(declared))
+            items = ", ".join(f"{i} {item}" for i, item in numbered)
             meaning = f"{meaning} ({items})"
         cells = [f"<code>{escape(v.name)}</code>", str(v.reference), declared.get("unit", "")]
         cells += [escape(shown), low, high, cell, escape(meaning)]

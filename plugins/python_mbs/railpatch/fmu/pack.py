@@ -8,6 +8,7 @@ import re
 import time
 import uuid
 import zipfile
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
@@ -22,6 +23,7 @@ from railpatch.fmu.description import Labels, description_xml
 from railpatch.fmu.document import index_html
 from railpatch.fmu.libraries import Libraries, libraries_of
 from railpatch.fmu.picture import model_png
+from railpatch.fmu.profiles import TYPES, Choices, check_starts, choices_of
 from railpatch.fmu.reference import reference_csv
 from railpatch.fmu.scene import kind_of, scene_text, variables_of
 from railpatch.fmu.sources import build_description, with_source_files
@@ -45,6 +47,8 @@ class Options:
     derivatives: Derivatives
     averages: bool
     largest_step: bool
+    wheel_profiles: Sequence[str] = ()
+    rail_profiles: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -59,6 +63,12 @@ class Contents:
     backend: Backend
     libraries: Libraries
     creep_table: bytes | None
+    choices: Choices
+
+    def scene_text(self, guid: str) -> str:
+        """resources/scene.txt."""
+        provided = self.labels.derivatives
+        return scene_text(self.scene, self.variables, guid, self.kind, provided, self.choices)
 
 
 def pack_fmu(
@@ -71,6 +81,8 @@ def pack_fmu(
     averages: bool = False,
     largest_step: bool = False,
     libraries: Path | None = None,
+    wheel_profiles: Sequence[str] = (),
+    rail_profiles: Sequence[str] = (),
 ) -> Path:
     """Writes the FMU of a scene.
 
@@ -80,11 +92,14 @@ def pack_fmu(
     outputs of forces averaged over a step, and sub-steps for them (scenes with wheels).
     largest_step: an output for masters, with mass and inertia of the wheelset as parameters, in
     scenes with wheels and derivatives; it costs two to three steps where it is read. libraries: a
-    folder that `make fmu` made, with all platforms and sources; None: this one's library. The same
-    scene, libraries and SOURCE_DATE_EPOCH give the same bytes. Raises CaseError.
+    folder that `make fmu` made, with all platforms and sources; None: this one's library.
+    wheel_profiles, rail_profiles: built-in names or files (relative ones start at the scene's
+    folder), to choose from beside the case's own, for both sides; each combination's start must be
+    solved. The same scene, libraries and SOURCE_DATE_EPOCH give the same bytes. Raises CaseError.
     """
     output = Path(output)
-    options = Options(derivatives, averages, largest_step)
+    profiles = {"wheel_profiles": wheel_profiles, "rail_profiles": rail_profiles}
+    options = Options(derivatives, averages, largest_step, **profiles)
     contents = contents_of(scene, output.stem, name, backend, options, libraries)
     guid = guid_of(contents)
     files = files_of(contents, guid)
@@ -116,10 +131,15 @@ def contents_of(
     config = config_of(scene)
     kind = kind_of(scene.case, _core.config_numbers(config), averages=options.averages)
     check_options(options, kind)
+    choices = choices_of(scene, {"wheel": options.wheel_profiles, "rail": options.rail_profiles})
+    kind = replace(kind, conditions=kind.conditions | choices.conditions())
+    for body in choices.sources:
+        table.fill(TYPES[body], choices.items(body))
     # solved once, so that an FMU is never made of a scene that the core refuses or cannot start
     kinds = derivative_kind(
         scene, name, asked=options.derivatives != "none" and not kind.has_history
     )
+    check_starts(choices, name)
     provided = kinds == "exact" or (kinds == "differences" and options.derivatives == "always")
     if options.largest_step:
         if not provided:
@@ -137,7 +157,7 @@ def contents_of(
     )
     variables = variables_of(table, kind, scene.case)
     creep_table = config["creep_table"].tobytes() if "creep_table" in config else None
-    return Contents(labels, table, kind, variables, scene, backend, libraries, creep_table)
+    return Contents(labels, table, kind, variables, scene, backend, libraries, creep_table, choices)
 
 
 def check_options(options: Options, kind: Kind) -> None:
@@ -200,7 +220,7 @@ def guid_of(contents: Contents) -> str:
     """A hash of everything but the date."""
     labels = replace(contents.labels, date="")
     text = description_xml(labels, contents.table, contents.kind, contents.variables, "")
-    text += scene_text(contents.scene, contents.variables, "{}", contents.kind, labels.derivatives)
+    text += contents.scene_text("{}")
     digest = hashlib.sha256(text.encode() + (contents.creep_table or b""))
     built = contents.libraries.files(labels.identifier, contents.backend)
     for path, content in sorted(built.items()):
@@ -215,7 +235,7 @@ def files_of(contents: Contents, guid: str) -> dict[str, bytes]:
     description = description_xml(c.labels, c.table, c.kind, c.variables, guid)
     texts = {
         "modelDescription.xml": with_source_files(description, sources),
-        "resources/scene.txt": scene_text(c.scene, c.variables, guid, c.kind, c.labels.derivatives),
+        "resources/scene.txt": c.scene_text(guid),
         "documentation/reference.csv": reference_csv(c.scene, c.variables),
         "documentation/index.html": index_html(c.labels, c.table, c.kind, c.variables, guid),
     }

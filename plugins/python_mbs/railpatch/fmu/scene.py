@@ -15,6 +15,7 @@ from railpatch.case.patch import PatchCase
 from railpatch.case.wheel import WheelRailCase, WheelsetCase
 from railpatch.config import config_of, input_of
 from railpatch.errors import CaseError
+from railpatch.fmu.profiles import Choices
 from railpatch.fmu.table import Kind, Table, Variable, with_start
 
 SIDE_INDEX = {"left": 0, "right": 1}
@@ -150,14 +151,19 @@ def split_name(name: str) -> tuple[str, int | None]:
 
 
 def scene_text(
-    scene: Scene, variables: list[Variable], guid: str, kind: Kind, derivatives: bool
+    scene: Scene,
+    variables: list[Variable],
+    guid: str,
+    kind: Kind,
+    derivatives: bool,
+    choices: Choices,
 ) -> str:
     """resources/scene.txt; plugins/fmu/src/scene.hpp tells its form."""
     if getattr(getattr(scene.case, "track", None), "irregularity", None) is not None:
         raise CaseError("track.irregularity: given, allowed in an FMU none")
     config = {**config_of(scene), "derivatives": int(derivatives)}
     options = options_of(scene.case, kind)
-    body = "\n".join([*lines_of(config, options, variables, guid), ""])
+    body = "\n".join([*lines_of(config, options, variables, guid, choices), ""])
     return f"{body}end {zlib.crc32(body.encode('ascii')):08x}\n"
 
 
@@ -173,7 +179,11 @@ def options_of(case: Case, kind: Kind) -> dict[str, float]:
 
 
 def lines_of(
-    config: dict[str, Any], options: dict[str, float], variables: list[Variable], guid: str
+    config: dict[str, Any],
+    options: dict[str, float],
+    variables: list[Variable],
+    guid: str,
+    choices: Choices,
 ) -> Iterator[str]:
     """All lines but the last."""
     yield "railpatch-fmu-scene 1"
@@ -184,6 +194,9 @@ def lines_of(
         for side, profile in enumerate(config.get(body, ())):
             for array in PROFILE_ARRAYS if profile is not None else ():
                 yield f"profile {body} {side} {array} {spell_array(profile[array])}"
+    for body, number, arrays in choices.arrays():
+        for array in PROFILE_ARRAYS:
+            yield f"choice {body} {number} {array} {spell_array(arrays[array])}"
     for side, sections in enumerate(config.get("rail_sections", ())):
         for index, profile in enumerate(sections):
             position = config["section_position"][side][index]

@@ -18,6 +18,8 @@ else:
 
 SIDES = ("left", "right")
 MAX_PATCHES = 6
+# of an enumeration that the scene fills
+MOST_ITEMS = 1000
 # each acts on the outputs of its own level and of all that follow
 LEVELS = ("none", "height", "pose", "rolling", "sliding", "friction", "temperature")
 
@@ -58,6 +60,7 @@ class Variable:
     range: tuple[float, float]
     description: str
     start: float | int | None = None
+    fixed: bool = False  # a parameter that keeps its value after initialization
 
 
 class Table:
@@ -71,6 +74,10 @@ class Table:
             for group in content["group"]
             for row in group["variables"]
         ]
+
+    def fill(self, name: str, items: list[str]) -> None:
+        """Gives an enumeration the scene's items."""
+        self.types[name] = {**self.types[name], "items": items}
 
     def variables(self, kind: Kind) -> list[Variable]:
         """The variables of a scene, inputs and parameters first."""
@@ -100,7 +107,9 @@ class Table:
         """Smallest and largest value of a declared type."""
         declared = self.types[name]
         if "items" in declared:
-            return 0, len(declared["items"]) - 1
+            first = first_item(declared)
+            # of an empty list the scene has the items: as many as it likes
+            return first, first + (len(declared["items"]) or MOST_ITEMS) - 1
         return tuple(declared["range"])
 
     def _expand(self, row: dict[str, Any], kind: Kind) -> Iterator[Variable]:
@@ -124,7 +133,13 @@ class Table:
                     range=self.range(row["type"]),
                     description=row["description"].format(**names),
                     start=row.get("start"),
+                    fixed=row.get("fixed", False),
                 )
+
+
+def first_item(declared: dict[str, Any]) -> int:
+    """The number of an enumeration's first item."""
+    return declared.get("first", 0)
 
 
 def exists(row: dict[str, Any], kind: Kind) -> bool:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from railpatch.commands import WrongCall, output_option
+from railpatch.commands import output_option, wrong_call
 from railpatch.layout.plots import KINDS
 from railpatch.output import check_output
 
@@ -44,7 +44,7 @@ def layout(run: Path | None, output: Path, kind: str, wheelsets: int, quiet: boo
             kind, wheelsets = kind_of(about, topics)
         output.write_text(layout_text(kind, wheelsets, topics), encoding="utf-8")
     except (RunFileError, ValueError, OSError) as error:
-        raise WrongCall(str(error)) from None
+        raise wrong_call(error) from None
     if not quiet:
         click.echo(output)
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from railpatch.commands import WrongCall, output_option
+from railpatch.commands import WrongCall, output_option, wrong_call
 from railpatch.output import check_output
 from railpatch.profiles.pairing import Dimensions
 
@@ -68,6 +68,6 @@ def profile(
             smoothing=smoothing,
         )
     except OSError as error:
-        raise WrongCall(str(error)) from None
+        raise wrong_call(error) from None
     if not quiet:
         click.echo(written)

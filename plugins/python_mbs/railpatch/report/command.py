@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from railpatch.commands import wrong_call
 from railpatch.output import check_output
 
 
@@ -47,8 +48,6 @@ def report(run: str, output: str, at: float | None, reference: str | None, quiet
     try:
         written = write_report(run, output, reference, at)
     except (ValueError, OSError) as error:
-        failure = click.ClickException(str(error))
-        failure.exit_code = 2
-        raise failure from None
+        raise wrong_call(error) from None
     if not quiet:
         click.echo(written)

@@ -1,0 +1,60 @@
+// Profiles that were packed beside the scene's own: a contact with those that parameters choose.
+#include "instance.hpp"
+
+namespace railpatch::fmu {
+
+namespace {
+
+constexpr uint32_t kReferences[] = {wheel_profile, rail_profile};
+
+}  // namespace
+
+double Instance::profile_count(const Variable &variable) const {
+  const size_t further =
+      scene_ == nullptr ? 0 : scene_->choices[variable.reference == rail_profile].size();
+  return static_cast<double>(1 + further);
+}
+
+Instance::Profiles Instance::profiles_of(const std::vector<double> &values) const {
+  Profiles found = {1, 1};
+  for (size_t body = 0; body < 2; ++body) {
+    const int index = index_of(kReferences[body]);
+    if (index >= 0) found[body] = static_cast<size_t>(values[static_cast<size_t>(index)]);
+  }
+  return found;
+}
+
+fmi2Status Instance::make_contact(const Call &call, const Profiles &profiles, Contact &made) {
+  rp_config config = scene_->config;
+  for (size_t body = 0; body < 2; ++body) {
+    if (profiles[body] == 1) continue;
+    const auto &arrays = scene_->choices[body][profiles[body] - 2].arrays;
+    for (rp_profile &profile : body == 0 ? config.wheel : config.rail)
+      // a side without a wheel has none
+      if (profile.count > 0 && !make_profile(arrays, profile))
+        return refuse(call, "the arrays of a profile differ in length");
+  }
+  rp_contact *contact = nullptr;
+  rp_message message = {};
+  const rp_error error = rp_create(&config, &contact, &message);
+  made.reset(contact);
+  if (error == RP_OK) return fmi2OK;
+  return refuse(call, std::string("the contact with these profiles cannot be made: ") +
+                          (message.text[0] != '\0' ? message.text : rp_error_text(error)));
+}
+
+fmi2Status Instance::take_profiles(const Call &call) {
+  const Profiles wanted = profiles_of(values_);
+  if (wanted == made_) return fmi2OK;
+  Contact made;
+  const fmi2Status status = make_contact(call, wanted, made);
+  if (status != fmi2OK) return status;
+  contact_ = std::move(made);
+  made_ = wanted;
+  pending_.clear();
+  direction_.clear();
+  solution_ = Solution::none;
+  return fmi2OK;
+}
+
+}  // namespace railpatch::fmu
