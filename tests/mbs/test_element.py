@@ -42,6 +42,26 @@ def test_same_as_contact_step():
     assert statuses >= {"converged", "no_contact"}
 
 
+def test_lateral_forces_without_friction_are_those_of_the_normals():
+    """But for a millionth of friction; with it creep takes a part."""
+    model = samples.model()
+    # both wheels in contact
+    middle = samples.rolling(0, -1e-3, 0, -1e-4, -2e-3, 0)
+    parts = []
+    for coefficient in (1e-6, 0.3):
+        case = {**samples.CASE, "friction": {"coefficient": coefficient}}
+        element = ForceElement(model, "wheelset", case)
+        status, _ = stepped(element, model, model.createData(), middle, samples.RATES)
+        assert status == "converged"
+        lateral, loads = element.wheels[:, :, 1], -element.wheels[:, :, 2]
+        assert element.lateral_normals.shape == (1, 2)
+        parts.append(np.abs(lateral - element.lateral_normals) / loads)
+        # the contacts lean inward
+        assert element.lateral_normals[0, 0] > 0 > element.lateral_normals[0, 1]
+    assert parts[0].max() < 2e-6
+    assert parts[1].min() > 1e-3
+
+
 def test_wheels_in_the_air():
     model = samples.model()
     data = model.createData()

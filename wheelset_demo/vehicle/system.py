@@ -196,6 +196,7 @@ class VehicleSystem:
     def _add_slope_wrenches(self) -> float:
         """Of rails that are not level, on the wheelsets, see slope; their power (W)."""
         if not self._slopes.any():
+            self.slope_wrenches = np.zeros((WHEELSETS, 2, 3))
             return 0.0
         element = self.element
         radius = self.scene.case.wheelset.nominal_radius
