@@ -28,7 +28,7 @@ SYSTEM = {
     "aarch64-linux": r"lib(c|m|pthread|dl)\.so\.\d|ld-linux-aarch64\.so\.1",
     "win64": r"KERNEL32\.dll|api-ms-win-crt-[a-z0-9-]*\.dll|ucrtbase\.dll",
 }
-FUNCTIONS = re.compile(r"\bfmi2[A-Z]\w*")
+FUNCTIONS = re.compile(r"fmi2FullName\((fmi2\w+)\)")
 # relative, of the largest output of the same quantity: libraries of different compilers round
 # differently, and an iteration carries that on
 SAME = 1e-9
