@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,7 +19,6 @@ from wheelset_demo.coupling.masters import MASTERS, Hold, Master, Point
 from wheelset_demo.coupling.multibody import Multibody
 from wheelset_demo.coupling.slave import ContactSlave, CouplingFailure
 from wheelset_demo.coupling.stability import Rolling, is_stable
-from wheelset_demo.coupling.study import slave_of, with_elements
 from wheelset_demo.hunting import PITCH
 from wheelset_demo.scene import WheelsetScene
 from wheelset_demo.simulation import Simulation
@@ -28,19 +26,6 @@ from wheelset_demo.start import released
 from wheelset_demo.system import COUNT, System
 
 SPEEDS = (0.2, 2.0, 20.0, 80.0)
-
-
-@pytest.fixture(scope="module")
-def scene(tmp_path_factory: pytest.TempPathFactory) -> WheelsetScene:
-    """hunting.toml, on a small grid."""
-    return with_elements(scenes.scene(tmp_path_factory.mktemp("s"), "hunting.toml"), 8)
-
-
-@pytest.fixture(scope="module")
-def slave(scene: WheelsetScene) -> Iterator[ContactSlave]:
-    """Its contact in an FMU."""
-    with slave_of(scene) as found:
-        yield found
 
 
 @pytest.mark.parametrize("speed", SPEEDS)

@@ -6,12 +6,10 @@ held over a step whose motion is exact, of Newmark's methods, of Adams and Bashf
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
-import wheelset_scenes as scenes
 from fmpy import read_model_description, simulate_fmu
 from railpatch.fmu import pack_fmu
 from railpatch.pinocchio.element import STATE
@@ -36,7 +34,6 @@ from wheelset_demo.coupling.stability import (
     bound_by_runs,
     largest,
 )
-from wheelset_demo.coupling.study import slave_of, with_elements
 from wheelset_demo.scene import WheelsetScene
 from wheelset_demo.system import System
 
@@ -134,19 +131,6 @@ def test_the_search_finds_a_bound_wherever_it_begins(guess: float):
         assert limit / CLOSE <= found <= limit
     assert largest(lambda step: True, guess) == LARGEST
     assert largest(lambda step: False, guess) == 0.0
-
-
-@pytest.fixture(scope="module")
-def scene(tmp_path_factory: pytest.TempPathFactory) -> WheelsetScene:
-    """hunting.toml, on a small grid."""
-    return with_elements(scenes.scene(tmp_path_factory.mktemp("s"), "hunting.toml"), 8)
-
-
-@pytest.fixture(scope="module")
-def slave(scene: WheelsetScene) -> Iterator[ContactSlave]:
-    """Its contact in an FMU."""
-    with slave_of(scene) as found:
-        yield found
 
 
 @pytest.mark.parametrize("speed", [0.2, 20.0, 80.0])
