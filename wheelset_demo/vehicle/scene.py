@@ -16,7 +16,7 @@ from railpatch.case.types import NotNegative, Number, Positive, Table, exactly, 
 from railpatch.errors import CaseError
 from railpatch.log.stream import SCENE_RATE
 
-from wheelset_demo.scene import SNAPSHOTS, check_present, load_checked, scene_file
+from wheelset_demo.scene import GRAVITY, SNAPSHOTS, check_present, load_checked, scene_file
 from wheelset_demo.vehicle.alignment import AlignmentTable
 from wheelset_demo.vehicle.irregularity import IrregularityTable
 
@@ -207,8 +207,6 @@ class VehicleScene:
     @property
     def axle_load(self) -> float:
         """N, of each wheelset at rest."""
-        from wheelset_demo.scene import GRAVITY
-
         return self.vehicle.mass * GRAVITY / WHEELSETS
 
     def with_method(self, **method: Any) -> VehicleScene:

@@ -19,7 +19,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
@@ -197,6 +197,35 @@ class LogStream:
                 topic, MessageEncoding.Protobuf, schemas[name], {"description": text}
             )
         return ids
+
+
+AnyLog = TypeVar("AnyLog", bound="Log")
+
+
+class Log:
+    """What the logs of all runs have: a stream, which ends with the ``with`` statement."""
+
+    stream: LogStream
+
+    @property
+    def path(self) -> Path:
+        """Of the file."""
+        return self.stream.path
+
+    @property
+    def share(self) -> float:
+        """Part of the wall-clock time since the file was opened that the log took; -."""
+        return self.stream.share
+
+    def close(self, stopped_by: str = "") -> None:
+        """Writes the index and closes the file; a second call does nothing."""
+        self.stream.close(stopped_by)
+
+    def __enter__(self: AnyLog) -> AnyLog:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
+        self.close(kind.__name__ if kind else "")
 
 
 class _Counted:

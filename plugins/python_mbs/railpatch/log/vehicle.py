@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from .channels import channel, vehicle_channels
 from .effective import Effective
 from .encode import encode
 from .geometry import SceneGeometry
-from .stream import SCENE_RATE, LogStream, Pace, checked_attachments
+from .stream import SCENE_RATE, Log, LogStream, Pace, checked_attachments
 from .writer import snapshots
 
 # bodies' cuboids: centre and size (m) in the body's axes
@@ -49,7 +48,7 @@ class VehicleGeometry:
             raise ValueError(f"geometry: centre_line has shape {np.shape(line)}; must be (n, 3)")
 
 
-class VehicleLog:
+class VehicleLog(Log):
     """The log of a vehicle's run; use it in a ``with`` statement. Arguments as of RunLog.
 
     ``wheelsets``: their number.
@@ -80,16 +79,6 @@ class VehicleLog:
             with self.stream.counted():
                 shapes = vehicle_scene.bodies(geometry, wheelsets)
                 self.stream.first("/scene/bodies", shapes)
-
-    @property
-    def path(self) -> Path:
-        """Of the file."""
-        return self.stream.path
-
-    @property
-    def share(self) -> float:
-        """Part of the wall-clock time since the file was opened that the log took; -."""
-        return self.stream.share
 
     def write(
         self,
@@ -141,13 +130,3 @@ class VehicleLog:
     def _check_number(self, name: str, values: Sequence[Any]) -> None:
         if len(values) != self._count:
             raise ValueError(f"{name} has {len(values)} entries; it must have {self._count}")
-
-    def close(self, stopped_by: str = "") -> None:
-        """Writes the index and closes the file; a second call does nothing."""
-        self.stream.close(stopped_by)
-
-    def __enter__(self) -> VehicleLog:
-        return self
-
-    def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
-        self.close(kind.__name__ if kind else "")

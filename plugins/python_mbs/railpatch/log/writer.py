@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 from . import scene
@@ -12,13 +11,13 @@ from .channels import CHANNELS, SIDES, channel
 from .effective import Effective
 from .encode import encode, encode_fields
 from .geometry import SceneGeometry
-from .stream import SCENE_RATE, LogStream, Pace, checked_attachments
+from .stream import SCENE_RATE, Log, LogStream, Pace, checked_attachments
 
 # what a run may leave out
 OPTIONAL = ("/rig/balance", "/wheelset/energy", "/wheelset/momentum", "/solver/stats")
 
 
-class RunLog:
+class RunLog(Log):
     """The log of one run; use it in a ``with`` statement.
 
     ``path`` is overwritten. ``case_text`` is the case file as it was read (str or bytes),
@@ -54,16 +53,6 @@ class RunLog:
         if geometry:
             with self.stream.counted():
                 self.stream.first("/scene/bodies", scene.bodies(geometry))
-
-    @property
-    def path(self) -> Path:
-        """Of the file."""
-        return self.stream.path
-
-    @property
-    def share(self) -> float:
-        """Part of the wall-clock time since the file was opened that the log took; -."""
-        return self.stream.share
 
     def write(
         self,
@@ -108,19 +97,6 @@ class RunLog:
                 sides = {"left": left, "right": right}
                 messages["/scene/contact"] = scene.contact(sides, time_ns)
             self.stream.add(messages, time_ns)
-
-    def close(self, stopped_by: str = "") -> None:
-        """Writes the index and closes the file; a second call does nothing.
-
-        ``stopped_by`` names what ended the run before its end; the log then says so.
-        """
-        self.stream.close(stopped_by)
-
-    def __enter__(self) -> RunLog:
-        return self
-
-    def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
-        self.close(kind.__name__ if kind else "")
 
 
 def snapshots(fields: Mapping[str, Sequence[Mapping[str, Any]]], above: str = "") -> dict[str, Any]:
