@@ -218,7 +218,10 @@ class Log:
         return self.stream.share
 
     def close(self, stopped_by: str = "") -> None:
-        """Writes the index and closes the file; a second call does nothing."""
+        """Writes the index and closes the file; a second call does nothing.
+
+        ``stopped_by`` names what ended the run before its end; the log then says so.
+        """
         self.stream.close(stopped_by)
 
     def __enter__(self: AnyLog) -> AnyLog:
