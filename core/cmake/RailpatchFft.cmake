@@ -1,5 +1,6 @@
-# The FFT libraries behind core/fft.hpp. For each backend at hand: an object library
-# railpatch_fft_<name> of core/fft_<name>.cpp and an interface library <name>_library to link with it.
+# The FFT libraries behind core/numeric/fft.hpp. For each backend at hand: an object library
+# railpatch_fft_<name> of core/numeric/fft_<name>.cpp and an interface library <name>_library to link
+# with it.
 # RAILPATCH_FFT chooses the one of the main library: fft_objects, fft_library.
 # FFTW is GPL-2.0-or-later and fast, Eigen's own FFT (MPL-2.0) is the permissive choice.
 
@@ -29,7 +30,7 @@ endfunction()
 function(railpatch_fft_backend name library)
   add_library(${name}_library INTERFACE)
   target_link_libraries(${name}_library INTERFACE ${library})
-  add_library(railpatch_fft_${name} OBJECT EXCLUDE_FROM_ALL fft_${name}.cpp)
+  add_library(railpatch_fft_${name} OBJECT EXCLUDE_FROM_ALL numeric/fft_${name}.cpp)
   railpatch_object_options(railpatch_fft_${name})
   target_link_libraries(railpatch_fft_${name} PRIVATE ${name}_library)
 endfunction()
@@ -37,7 +38,7 @@ endfunction()
 find_package(Eigen3 3.4 QUIET NO_MODULE)
 if(TARGET Eigen3::Eigen)
   railpatch_fft_backend(eigen Eigen3::Eigen)
-  set_source_files_properties(fft_eigen.cpp PROPERTIES COMPILE_OPTIONS -fcx-limited-range)
+  set_source_files_properties(numeric/fft_eigen.cpp PROPERTIES COMPILE_OPTIONS -fcx-limited-range)
 endif()
 
 find_package(PkgConfig QUIET)

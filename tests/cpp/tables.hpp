@@ -1,11 +1,11 @@
-// A small creep table in memory, in the form of core/creep_table.hpp: no solved numbers, but forces
-// of the right sign and size, and every field in use.
+// A small creep table in memory, in the form of core/fast/creep_table.hpp: no solved numbers, but
+// forces of the right sign and size, and every field in use.
 #pragma once
 
 #include <cstring>
 #include <vector>
 
-#include "creep_table.hpp"
+#include "fast/creep_table.hpp"
 
 namespace tables {
 

@@ -11,7 +11,7 @@
 #include <memory>
 #include <new>
 
-#include "fft.hpp"
+#include "numeric/fft.hpp"
 #include "scenes.hpp"
 #include "tables.hpp"
 

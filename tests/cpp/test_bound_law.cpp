@@ -1,6 +1,6 @@
 // The bound law: its derivatives against central differences, and its resolvent put back into the
 // law, for random laws and states.
-#include "bound_law.hpp"
+#include "tangential/bound_law.hpp"
 
 #include <gtest/gtest.h>
 

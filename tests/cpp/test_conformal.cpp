@@ -10,9 +10,9 @@
 #include <random>
 #include <vector>
 
-#include "conformal_coupling.hpp"
-#include "conformal_rows.hpp"
-#include "normal.hpp"
+#include "half_space/conformal_coupling.hpp"
+#include "normal/normal.hpp"
+#include "patch/conformal_rows.hpp"
 #include "scenes.hpp"
 
 namespace {

@@ -1,7 +1,7 @@
 // Coupling of normal and tangential directions of unlike bodies: displacements by FFT against
 // direct sums of the point-load solutions (Boussinesq; Cerruti), integrated over the elements by
 // quadrature.
-#include "coupling.hpp"
+#include "half_space/coupling.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "fastsim.hpp"
+#include "fast/fastsim.hpp"
 #include "railpatch.h"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "contact_rows.hpp"
+#include "tangential/contact_rows.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // Influence coefficients against numerical integration of the point-load solutions, and products by
 // FFT against direct sums.
-#include "influence.hpp"
+#include "half_space/influence.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <random>
 
-#include "longitudinal_shape.hpp"
-#include "offset_influence.hpp"
+#include "geometry/longitudinal_shape.hpp"
+#include "half_space/offset_influence.hpp"
 #include "scenes.hpp"
 
 namespace {

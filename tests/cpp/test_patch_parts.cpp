@@ -1,5 +1,5 @@
 // Shares of the patches of a wheel: every part of contact counts once, and nothing jumps.
-#include "patch_parts.hpp"
+#include "geometry/patch_parts.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The Newton method on operators that are monotone but nothing like a rolling contact's: rows of
 // different length and scale, strongly skew, given as dense matrices. The conditions of stick and
 // slip are checked here anew, and that the solution does not depend on the start.
-#include "rolling_newton.hpp"
+#include "tangential/rolling_newton.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The parts of Kik-Piotrowski and ANALYN: integrals over strips, the tabulated Hertzian contact,
 // and contact areas that are parts of one patch.
-#include "row_contact.hpp"
+#include "normal/row_contact.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "hertz.hpp"
+#include "normal/hertz.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // Surface temperature against closed forms: Carslaw and Jaeger (1959), Ertz and Knothe (2002),
 // report DOT/FRA/ORD-24/18, section 3.
-#include "temperature.hpp"
+#include "temperature/temperature.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "temperature_columns.hpp"
+#include "temperature/columns.hpp"
 
 namespace {
 

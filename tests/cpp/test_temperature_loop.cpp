@@ -1,6 +1,6 @@
 // Friction that falls or rises with temperature: the outer loop on tangential problems of few
 // lines.
-#include "temperature_loop.hpp"
+#include "temperature/loop.hpp"
 
 #include <gtest/gtest.h>
 

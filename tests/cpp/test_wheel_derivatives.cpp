@@ -7,7 +7,7 @@
 #include <random>
 #include <utility>
 
-#include "input_numbers.hpp"
+#include "handle/input_numbers.hpp"
 #include "scenes.hpp"
 
 namespace {

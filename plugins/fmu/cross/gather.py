@@ -30,7 +30,7 @@ compile, and the options. With fmpy on Linux:
 def sources(root: Path, variables: Path, headers: Path) -> dict[str, bytes]:
     """Path in the archive -> content. headers: FMI's."""
     files = {"README.txt": README.encode(), "variables.inc": variables.read_bytes()}
-    core = [p for ending in ("cpp", "hpp", "inc") for p in (root / "core").glob(f"*.{ending}")]
+    core = [p for ending in ("cpp", "hpp", "inc") for p in (root / "core").glob(f"*/*.{ending}")]
     plugin = [
         *(root / "plugins" / "common").glob("*.hpp"),
         *(root / "plugins" / "fmu" / "src").glob("*.[ch]pp"),
@@ -38,7 +38,9 @@ def sources(root: Path, variables: Path, headers: Path) -> dict[str, bytes]:
     for path in core + plugin:
         if path.name != "fft_fftw.cpp":  # the other backend
             first = FIRST if path.suffix == ".cpp" else b""
-            files[path.relative_to(root).as_posix()] = first + path.read_bytes()
+            # rooms of the core at the top, where their includes begin
+            name = path.relative_to(root).as_posix().removeprefix("core/")
+            files[name] = first + path.read_bytes()
     older = "before_cxx20.hpp"
     files[older] = Path(__file__).with_name(older).read_bytes()
     files["railpatch.h"] = (root / "core" / "include" / "railpatch.h").read_bytes()

@@ -1,6 +1,6 @@
 """Kalker's creepage coefficients at vanishing creepage, as the table that the core compiles in.
 
-``python -m railpatch.kalker_table -o core/kalker_table.inc`` makes the file again in minutes;
+``python -m railpatch.kalker_table -o core/fast/kalker_table.inc`` makes the file again in minutes;
 ``--check`` adds a second set of grids and prints how far the two differ.
 
 With all of the contact in stick, steady rolling is linear: w + B p = 0 with B p the slip that the

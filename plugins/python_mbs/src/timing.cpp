@@ -5,8 +5,8 @@
 
 #include "convert.hpp"
 // a run time means little without the machine's, so this one file looks behind railpatch.h
-#include "fft.hpp"
-#include "memory.hpp"
+#include "numeric/fft.hpp"
+#include "numeric/memory.hpp"
 
 namespace railpatch::python {
 

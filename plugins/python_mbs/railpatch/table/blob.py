@@ -1,4 +1,4 @@
-"""The table as bytes; core/creep_table.hpp tells the form."""
+"""The table as bytes; core/fast/creep_table.hpp tells the form."""
 
 from __future__ import annotations
 

@@ -110,7 +110,7 @@ class Accurate:
             ellipse.reset()
 
     def __call__(self, w: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """(Fx, Fy, Mz/c)/B at w; v: the same, scaled as in core/creep_table.hpp."""
+        """(Fx, Fy, Mz/c)/B at w; v: the same, scaled as in core/fast/creep_table.hpp."""
         if spin_rules(v):
             return self._spin(w)
         coarse, fine = self._coarse(w), self._fine(w)
@@ -138,7 +138,7 @@ def slopes(recipe: Recipe, ratio: float, poisson: float) -> np.ndarray:
 
 
 def scales_of(recipe: Recipe, slope: np.ndarray) -> np.ndarray:
-    """s1, s2, s3 of core/creep_table.hpp, from slopes [..., 3, 3]."""
+    """s1, s2, s3 of core/fast/creep_table.hpp, from slopes [..., 3, 3]."""
     c11, c22, c23 = -slope[..., 0, 0], -slope[..., 1, 1], -slope[..., 1, 2]
     s3 = recipe.spin_scale * np.sqrt(c23 * np.sqrt(c11 * c22))
     return np.stack([c11, c22, s3], axis=-1)

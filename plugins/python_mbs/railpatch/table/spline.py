@@ -1,4 +1,4 @@
-"""From values at the nodes to the coefficients of core/creep_table.hpp."""
+"""From values at the nodes to the coefficients of core/fast/creep_table.hpp."""
 
 from __future__ import annotations
 

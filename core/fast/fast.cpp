@@ -1,0 +1,202 @@
+#include "fast/fast.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "fast/fastrip.hpp"
+
+namespace railpatch {
+
+namespace {
+
+using std::numbers::pi;
+
+double inside_ellipse(const double semi_axes[2], double x, double y) {
+  const double u = x / semi_axes[0], v = y / semi_axes[1];
+  return 1.0 - u * u - v * v;
+}
+
+// Kalker's linear theory; its coefficients are symmetric, so creepages never gain power.
+creep_resultants linear(const creepage_coefficients &c, double shear_modulus,
+                        const double semi_axes[2], const rolling_input &input) {
+  const double c2 = semi_axes[0] * semi_axes[1], length = std::sqrt(c2);
+  const double unit = shear_modulus * c2, phi = length * input.spin_creepage;
+  const double xi = input.creepage[0], eta = input.creepage[1];
+  // rolling towards -x is the mirror image: C23 changes sign
+  const double c23 = input.direction * c.c23;
+  creep_resultants out;
+  out.force[0] = -unit * c.c11 * xi;
+  out.force[1] = -unit * (c.c22 * eta + c23 * phi);
+  out.moment = unit * length * (c23 * eta - c.c33 * phi);
+  out.friction = unit * (c.c11 * xi * xi + c.c22 * eta * eta + c.c33 * phi * phi);
+  return out;
+}
+
+}  // namespace
+
+fast_solver::fast_solver(const elastic_constants &elastic, const fast_options &options, int max_nx,
+                         int max_ny)
+    : elastic_(elastic), options_(options), table_(elastic.poisson_ratio) {
+  if (options.theory == RP_TANGENTIAL_TABLE)
+    creep_table_.emplace(options.creep_table, elastic.poisson_ratio);
+  if (!has_tractions(options.theory)) return;
+  bound_ = aligned_buffer<double>(static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny));
+  leading_ = aligned_buffer<double>(static_cast<size_t>(max_ny));
+  trailing_ = aligned_buffer<double>(static_cast<size_t>(max_ny));
+}
+
+// The ellipse with the same width, area and centre of pressure stands for a contact area of any
+// shape.
+fast_solver::ellipse fast_solver::ellipse_of(const fast_patch &patch) const {
+  if (patch.hertz.semi_axes[0] > 0 && !patch.rows)
+    return {{patch.hertz.semi_axes[0], patch.hertz.semi_axes[1]}, {0, 0}};
+  const grid &g = patch.g;
+  int first = g.ny, last = -1;
+  double sum = 0, sum_x = 0, sum_y = 0;
+  for (int j = 0; j < g.ny; ++j) {
+    double row = 0;
+    for (int i = 0; i < g.nx; ++i) {
+      const double p = patch.pressure[j * g.nx + i];
+      row += p;
+      sum_x += p * g.x(i);
+    }
+    if (!(row > 0)) continue;
+    sum += row;
+    sum_y += row * g.y(j);
+    first = std::min(first, j);
+    last = j;
+  }
+  const double half_width = 0.5 * (patch.rows ? patch.rows->width() : (last - first + 1) * g.dy);
+  return {{patch.contact_area / (pi * half_width), half_width}, {sum_x / sum, sum_y / sum}};
+}
+
+creepage_coefficients fast_solver::coefficients(double axis_ratio) const {
+  creepage_coefficients c = options_.blending == RP_BLENDING_CONTACT
+                                ? published_coefficients(axis_ratio, elastic_.poisson_ratio)
+                                : table_.at(axis_ratio);
+  for (double *v : {&c.c11, &c.c22, &c.c23, &c.c33}) *v *= options_.coefficient_factor;
+  return c;
+}
+
+// Elliptic bound: mu times the pressure. Parabolic bound: of its square, so that of Hertz's
+// pressure it is the paraboloid of the simplified theory; scaled so that full sliding gives exactly
+// mu times the force.
+void fast_solver::set_bound(const fast_patch &patch) {
+  const grid &g = patch.g;
+  const double mu = patch.friction_coefficient, *p = patch.pressure;
+  const double *axes = patch.hertz.semi_axes;
+  const bool ellipse = axes[0] > 0 && !patch.rows;
+  const bool automatic = options_.bound == RP_BOUND_AUTOMATIC;
+  const bool parabolic = options_.theory == RP_TANGENTIAL_FASTSIM &&
+                         (automatic ? ellipse : options_.bound == RP_BOUND_PARABOLIC);
+  if (ellipse && options_.blending == RP_BLENDING_CONTACT) {
+    // as it is at the elements' centres, not scaled
+    const double peak = (parabolic ? 4.0 / 3.0 : 1.0) * mu * patch.hertz.max_pressure;
+    for (int j = 0; j < g.ny; ++j)
+      for (int i = 0; i < g.nx; ++i) {
+        const double level = std::max(0.0, inside_ellipse(axes, g.x(i), g.y(j)));
+        bound_[static_cast<size_t>(j * g.nx + i)] = peak * (parabolic ? level : std::sqrt(level));
+      }
+    return;
+  }
+  double squares = 0;
+  for (int i = 0; parabolic && i < g.count(); ++i) squares += p[i] * p[i];
+  const double scale =
+      parabolic && squares > 0 ? patch.normal_force / (squares * g.dx * g.dy) : 1.0;
+  for (int i = 0; i < g.count(); ++i)
+    bound_[static_cast<size_t>(i)] = mu * scale * (parabolic ? p[i] * p[i] : p[i]);
+}
+
+// x of the contact's ends in each row.
+void fast_solver::find_rows(const fast_patch &patch, int direction) {
+  const grid &g = patch.g;
+  const double *axes = patch.hertz.semi_axes;
+  for (int j = 0; j < g.ny; ++j) {
+    const double *p = patch.pressure + j * g.nx;
+    int low = 0, high = g.nx - 1;
+    while (low < g.nx && !(p[low] > 0)) ++low;
+    while (high >= low && !(p[high] > 0)) --high;
+    double ends[2] = {0, 0};
+    if (low <= high) {
+      const double level = axes[0] > 0 && !patch.rows ? inside_ellipse(axes, 0.0, g.y(j)) : 0.0;
+      const double half = level > 0 ? axes[0] * std::sqrt(level) : 0.0;
+      ends[0] = level > 0 ? -half : g.x(low) - 0.5 * g.dx;
+      ends[1] = level > 0 ? half : g.x(high) + 0.5 * g.dx;
+      // the chord's ends, unless the row is too narrow for an element's middle
+      if (patch.rows && patch.rows->leading_edge(j, -1) < g.x(low))
+        ends[0] = patch.rows->leading_edge(j, -1);
+      if (patch.rows && patch.rows->leading_edge(j, 1) > g.x(high))
+        ends[1] = patch.rows->leading_edge(j, 1);
+    }
+    leading_[static_cast<size_t>(j)] = ends[direction > 0 ? 1 : 0];
+    trailing_[static_cast<size_t>(j)] = ends[direction > 0 ? 0 : 1];
+  }
+}
+
+tangential_result fast_solver::solve(const fast_patch &patch, const rolling_input &rolling,
+                                     tangential_fields fields, creep_resultants &sums) {
+  const ellipse e = ellipse_of(patch);
+  rolling_input at_centre = rolling;
+  at_centre.creepage[0] -= rolling.spin_creepage * e.centre[1];
+  at_centre.creepage[1] += rolling.spin_creepage * e.centre[0];
+  const double g = elastic_.shear_modulus;
+  const double capacity = patch.friction_coefficient * patch.normal_force;
+  if (creep_table_) return solve_table(e, capacity, at_centre, sums);
+  const creepage_coefficients c = coefficients(e.axes[0] / e.axes[1]);
+  tangential_result result;
+  if (!has_tractions(options_.theory)) {
+    const bool bounded = options_.theory == RP_TANGENTIAL_POLACH;
+    sums = bounded ? polach(c, g, e.axes, capacity, options_.polach, at_centre)
+                   : linear(c, g, e.axes, at_centre);
+    sums.moment += e.centre[0] * sums.force[1] - e.centre[1] * sums.force[0];
+    result.friction = sums.friction;
+    result.converged = c.in_range && std::isfinite(result.friction) &&
+                       (bounded || std::hypot(sums.force[0], sums.force[1]) <= capacity);
+    return result;
+  }
+  set_bound(patch);
+  find_rows(patch, rolling.direction);
+  const row_ends rows{leading_.data(), trailing_.data(), e.centre[1]};
+  const flexibilities l = flexibilities_of(e, c, capacity, at_centre);
+  result = options_.theory == RP_TANGENTIAL_FASTRIP
+               ? fastrip(elastic_, c, e.axes, patch.g, patch.pressure, bound_.data(), rows, l,
+                         rolling, fields)
+               : fastsim(patch.g, patch.pressure, bound_.data(), rows, l,
+                         options_.blending == RP_BLENDING_CONTACT, rolling, fields);
+  // beyond what floating-point numbers hold there is no result
+  result.converged = c.in_range && std::isfinite(result.friction);
+  return result;
+}
+
+tangential_result fast_solver::solve_table(const ellipse &e, double capacity,
+                                           const rolling_input &at_centre,
+                                           creep_resultants &sums) const {
+  const creep_forces found = creep_table_->evaluate({{e.axes[0], e.axes[1]},
+                                                     elastic_.shear_modulus,
+                                                     capacity,
+                                                     {at_centre.creepage[0], at_centre.creepage[1]},
+                                                     at_centre.spin_creepage,
+                                                     at_centre.direction});
+  sums.force[0] = found.force[0];
+  sums.force[1] = found.force[1];
+  sums.moment = found.moment + e.centre[0] * found.force[1] - e.centre[1] * found.force[0];
+  sums.friction = found.friction;
+  tangential_result result;
+  result.friction = found.friction;
+  result.converged = found.in_range;
+  return result;
+}
+
+flexibilities fast_solver::flexibilities_of(const ellipse &e, const creepage_coefficients &c,
+                                            double capacity, const rolling_input &at_centre) const {
+  const double g = elastic_.shear_modulus;
+  flexibilities l = kalker_flexibilities(c, g, e.axes);
+  if (options_.blending != RP_BLENDING_NONE) l = blend(l, c, g, e.axes, capacity, at_centre);
+  // without friction there is no gradient, and no traction either
+  if (!(capacity > 0)) return l;
+  const double k = options_.reduction.at(resultant_of(c, g, e.axes, capacity, at_centre).gradient);
+  return {l.l1 / k, l.l2 / k, l.l3 / k};
+}
+
+}  // namespace railpatch

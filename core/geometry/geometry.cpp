@@ -1,0 +1,482 @@
+#include "geometry/geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace railpatch {
+
+namespace {
+
+constexpr double grazing = 0.03;     // least cosine between n and a surface's normal
+constexpr double aside = 0.02;       // m, what yaw may move the locus sideways
+constexpr double step_limit = 2e-3;  // m, of a newton step along a profile
+
+constexpr mat3 identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+
+}  // namespace
+
+// A surface seen from the contact frame: of revolution about an axis, or prismatic along x.
+struct surface {
+  const placed_profile *meridian;
+  vec3 q0, qx, qs, qn;  // frame origin and axes in the surface's own axes
+  double radius, sign;  // r = radius + sign z
+  bool prismatic;
+  const longitudinal_shape *shape = nullptr;  // null: round, or level
+
+  vec3 at(double x, double s) const { return q0 + x * qx + s * qs; }
+};
+
+namespace {
+
+surface seen_from(const contact_frame &frame, const placed_profile &meridian, const vec3 &origin,
+                  const mat3 &axes, double radius, double sign, bool prismatic) {
+  const frame_axes<double> f = axes_of(frame);
+  return {&meridian,
+          turn_back(axes, frame.origin - origin),
+          turn_back(axes, f.x),
+          turn_back(axes, f.s),
+          turn_back(axes, f.n),
+          radius,
+          sign,
+          prismatic};
+}
+
+// What the shape adds to the radius or height of a surface at a point in its axes, and its
+// derivative along n.
+double added(const surface &f, const vec3 &q, double &slope) {
+  if (f.prismatic) {
+    slope = 0;
+    return -f.shape->height(q[0]);
+  }
+  const double added = f.shape->runout(std::atan2(q[0], q[2]), slope);
+  slope *= (q[2] * f.qn[0] - q[0] * f.qn[2]) / (q[0] * q[0] + q[2] * q[2]);
+  return added;
+}
+
+// Where the line along n through a point meets a surface.
+struct hit {
+  double p = 0, n = 0;  // m, arc length of the meridian, height along n
+  int interval = 0;
+  bool valid = false;
+};
+
+// Newton for (p, n): u(p) = q_y and r(p) = distance from the axis, with q = base + n qn. Stops when
+// the step leaves an error, quadratic in it, below 1e-10 m.
+bool meet(const surface &f, const vec3 &base, hit &h) {
+  const profile &curve = f.meridian->curve();
+  for (int i = 0; i < 30; ++i) {
+    h.interval = curve.interval(h.p, h.interval);
+    const curve_point m = f.meridian->evaluate(h.p, h.interval);
+    const vec3 q = base + h.n * f.qn;
+    double r = f.radius + f.sign * m.z, added_slope = 0;
+    const double dr = f.sign * m.dz;
+    if (f.shape) r += added(f, q, added_slope);
+    const double f1 = m.y - q[1];
+    const double f2 = f.prismatic ? q[2] - r : 0.5 * (q[0] * q[0] + q[2] * q[2] - r * r) / r;
+    double g = f.prismatic ? f.qn[2] : (q[0] * f.qn[0] + q[2] * f.qn[2]) / r;
+    if (f.shape) g -= added_slope;
+    const double det = m.dy * g - dr * f.qn[1];
+    if (!(std::fabs(det) > grazing)) return h.valid = false;
+    const double dp = -(f1 * g + f.qn[1] * f2) / det, dn = -(m.dy * f2 + dr * f1) / det;
+    const double scale = std::min(1.0, step_limit / std::max(std::fabs(dp), 1e-300));
+    h.p += scale * dp;
+    h.n += scale * dn;
+    if (std::fabs(dp) < 4e-7 && std::fabs(dn) < 4e-7) return h.valid = curve.covers(h.p);
+  }
+  return h.valid = false;
+}
+
+// Angle of the surface in the plane across x: the gradient of (distance from the axis - r(u)) is
+// normal to it, as (q_x/r, -dr/du, q_z/r) in the surface's axes.
+double across(const surface &f, const hit &h) {
+  const curve_point m = f.meridian->evaluate(h.p, f.meridian->curve().interval(h.p, h.interval));
+  const vec3 q = f.q0 + h.n * f.qn;
+  const double r = f.radius + f.sign * m.z, dr = f.sign * m.dz;
+  const vec3 normal =
+      f.prismatic ? vec3{0, -dr, m.dy} : vec3{q[0] / r * m.dy, -dr, q[2] / r * m.dy};
+  return std::atan(-dot(normal, f.qs) / dot(normal, f.qn));
+}
+
+// the sample of the meridian nearest to the frame's origin starts the search
+hit nearest(const surface &f) {
+  const placed_profile &m = *f.meridian;
+  const double u = f.q0[1];
+  const double r = f.prismatic ? f.q0[2] : std::hypot(f.q0[0], f.q0[2]);
+  double best = std::numeric_limits<double>::infinity();
+  int at = m.first();
+  for (int i = m.first(); i <= m.last(); ++i) {
+    const double a = m.sample(i).y - u, b = f.radius + f.sign * m.sample(i).z - r;
+    if (a * a + b * b < best) best = a * a + b * b, at = i;
+  }
+  hit h;
+  h.p = m.sample_s(at);
+  h.interval = m.curve().interval(h.p);
+  return h;
+}
+
+// One row from its middle column outwards, put(column, hit) for each; each start extrapolates its
+// neighbours, so that one newton step is nearly always enough.
+template <class Put>
+void march(const surface &f, const surface_grid &g, int row, int from, int step, const hit &middle,
+           Put put) {
+  const double s = g.y0 + row * g.dy;
+  hit a = middle, b = middle, c = middle;
+  for (int i = from, k = 0; i >= 0 && i < g.nx; i += step, ++k) {
+    hit h = a;
+    if (k > 1) h.p = 2 * a.p - b.p;
+    if (k > 2) h.n = 3 * (a.n - b.n) + c.n;
+    if (!meet(f, f.at(g.x0 + i * g.dx, s), h)) {
+      for (; i >= 0 && i < g.nx; i += step) put(i, h);
+      return;
+    }
+    put(i, h);
+    c = b;
+    b = a;
+    a = h;
+  }
+}
+
+template <class Put>
+void follow_row(const surface &f, const surface_grid &g, int row, int column, const hit &middle,
+                Put put) {
+  if (!middle.valid || (f.prismatic && !f.shape)) {
+    for (int i = 0; i < g.nx; ++i) put(i, middle);
+    return;
+  }
+  march(f, g, row, column, 1, middle, put);
+  march(f, g, row, column - 1, -1, middle, put);
+}
+
+void fill_row(const surface &f, const surface_grid &g, int row, int column, const hit &middle,
+              double *heights) {
+  follow_row(f, g, row, column, middle, [heights](int i, const hit &h) {
+    heights[i] = h.valid ? h.n : std::numeric_limits<double>::quiet_NaN();
+  });
+}
+
+int clamp_index(double position, int count) {
+  const double last = count - 1;
+  return static_cast<int>(std::clamp(std::round(position), 0.0, last));
+}
+
+// rail minus wheel, in place of the wheel's heights
+void subtract(const double *rail, int count, double *h) {
+  for (int i = 0; i < count; ++i) {
+    const double d = rail[i] - h[i];
+    h[i] = std::isfinite(d) ? d : side_geometry::no_surface;
+  }
+}
+
+// calls use(row, middle) for all rows, from the one nearest to the origin outwards
+template <class F>
+void for_rows(const surface &f, const surface_grid &g, int column, F use) {
+  const double x = g.x0 + column * g.dx;
+  const int start = clamp_index(-g.y0 / g.dy, g.ny);
+  hit origin = nearest(f);
+  meet(f, f.at(0, 0), origin);
+  for (int direction : {1, -1}) {
+    hit h = origin;
+    for (int row = direction > 0 ? start : start - 1; row >= 0 && row < g.ny; row += direction) {
+      // a row that is missed leaves the start of the next one as it was
+      hit next = h;
+      if (meet(f, f.at(x, g.y0 + row * g.dy), next)) h = next;
+      use(row, next);
+    }
+  }
+}
+
+}  // namespace
+
+wheelset_state mirrored(wheelset_state w) {
+  for (double *v : {&w.y, &w.roll, &w.yaw, &w.vy, &w.roll_rate, &w.yaw_rate}) *v = -*v;
+  return w;
+}
+
+deviation mirrored(deviation d) {
+  return {mirrored_vector(d.offset), mirrored_axial(d.rotation), mirrored_vector(d.velocity),
+          mirrored_axial(d.angular_velocity)};
+}
+
+side_motion mirrored(side_motion m) {
+  return {mirrored(m.wheelset), mirrored(m.wheel), mirrored(m.rail), m.roller_pitch_rate};
+}
+
+track_config mirrored(track_config t) {
+  t.curvature = -t.curvature;
+  return t;
+}
+
+contact_frame mirrored(contact_frame f) {
+  return {mirrored_vector(f.origin), -f.contact_angle, f.inclination};
+}
+
+creepage_state mirrored(creepage_state c) {
+  c.eta = -c.eta;
+  c.phi = -c.phi;
+  return c;
+}
+
+vec3 mirrored_vector(vec3 v) { return {v[0], -v[1], v[2]}; }
+vec3 mirrored_axial(vec3 v) { return {-v[0], v[1], -v[2]}; }
+
+side_geometry::side_geometry(const profile &wheel, const profile &rail,
+                             const wheel_config &wheel_sizes, const track_config &track)
+    : wheel_(wheel, body::wheel), rail_(rail, body::rail) {
+  sizes_ = wheel_sizes;
+  track_ = track;
+  gaps_.resize(static_cast<size_t>((wheel.end() - wheel.begin()) / wheel_.step() + 1.5));
+  place_rail_marker();
+  place({});
+}
+
+void side_geometry::place_rail_marker() {
+  const bool roller = track_.kind == track_kind::roller;
+  rail_.place(roller ? 0 : -track_.cant, 0, 0);
+  marker_y_ = 0.5 * track_.gauge - rail_.innermost(track_.gauge_height);
+  marker_z_ = roller ? 0 : -rail_.evaluate(rail_.extreme()).z;
+}
+
+void side_geometry::reload_rail() {
+  rail_.reload();
+  place_rail_marker();
+}
+
+void side_geometry::place(const side_motion &motion) {
+  place_axes(motion);
+  const vec3 &off = motion.wheel.offset, &rail_off = motion.rail.offset;
+  const bool roller = track_.kind == track_kind::roller;
+  wheel_.place(motion.wheel.rotation[0], off[1], off[2]);
+  const double lean = motion.rail.rotation[0] - (roller ? 0 : track_.cant);
+  rail_.place(lean, marker_y_ + rail_off[1], marker_z_ + rail_off[2]);
+  // scanned at z = 0, so that a position reached by move_to() gives the same bits
+  move_to(0);
+  scan();
+  move_to(motion.wheelset.z);
+}
+
+void side_geometry::move_to(double z) {
+  motion_.wheelset.z = z;
+  place_centre();
+}
+
+// Sine of the angle along the circumference. With P = (r sin, u, r cos) and the normal
+// N = (sin du, -dr, cos du) in wheel axes, a rail asks for N_x = 0 in track axes; a roller for
+// equal slopes -N_x/N_z = (x - axle)/(axle_z - z), with z = wheel's z + gap the roller's.
+double side_geometry::locus_sine(const curve_point &p, double gap, double tolerance) const {
+  const mat3 &m = wheel_axes_;
+  double sine = m[0][1] * p.dz / (m[0][0] * p.dy);
+  if (track_.kind == track_kind::rail) return sine;
+  const double r = sizes_.nominal_radius + p.z;
+  double change = 1;
+  for (int i = 0; i < 8 && std::fabs(change) > tolerance; ++i) {
+    sine = std::clamp(sine, -0.9, 0.9);
+    const double cosine = std::sqrt(1 - sine * sine);
+    const vec3 n = turn(m, {sine * p.dy, -p.dz, cosine * p.dy});
+    const vec3 at = wheel_point(p, sine);
+    const double reach = axle_z_ - at[2] - gap;
+    const double f = -n[0] / n[2] - (at[0] - axle_x_) / reach;
+    const double dnx = m[0][0] * p.dy * cosine;
+    const double dnz = (m[2][0] * cosine - m[2][2] * sine) * p.dy;
+    const double slope = -(dnx * n[2] - n[0] * dnz) / (n[2] * n[2]) - m[0][0] * r * cosine / reach;
+    change = f / slope * cosine;
+    sine -= change;
+  }
+  return sine;
+}
+
+vec3 side_geometry::wheel_point(const curve_point &p, double sine) const {
+  const double r = sizes_.nominal_radius + p.z;
+  return axis_origin_ + turn(wheel_axes_, {r * sine, p.y, r * std::sqrt(1 - sine * sine)});
+}
+
+// all samples of the wheel against chords of the rail: both are ordered in y, so walk along both
+void side_geometry::scan() {
+  std::fill(gaps_.begin(), gaps_.end(), far_apart);
+  overlap_ = false;
+  const bool roller = track_.kind == track_kind::roller;
+  const double from = rail_.sample(rail_.first()).y - aside,
+               to = rail_.sample(rail_.last()).y + aside;
+  int k = rail_.first();
+  for (int i = wheel_.first(); i <= wheel_.last(); ++i) {
+    // where the profiles have no lateral position in common there is nothing to find
+    const double y = wheel_point(wheel_.sample(i), 0)[1];
+    if (y < from || y > to) continue;
+    // the gap is least there, so that its error is that of the sine squared
+    const double sine = locus_sine(wheel_.sample(i), 0, 3e-2);
+    if (!(std::fabs(sine) < 0.9)) continue;
+    const vec3 p = wheel_point(wheel_.sample(i), sine);
+    while (k + 2 <= rail_.last() && rail_.sample(k + 1).y < p[1]) ++k;
+    while (k > rail_.first() && rail_.sample(k).y > p[1]) --k;
+    const curve_point &a = rail_.sample(k), &b = rail_.sample(std::min(k + 1, rail_.last()));
+    if (!(p[1] >= a.y && p[1] <= b.y)) continue;
+    double z = a.z + (b.z - a.z) * (p[1] - a.y) / std::max(b.y - a.y, 1e-12);
+    const double x = p[0] - axle_x_, r = axle_z_ - z;
+    if (roller) z = axle_z_ - std::sqrt(std::max(r * r - x * x, 0.0));
+    gaps_[static_cast<size_t>(i)] = z - p[2];
+    if (shape_) {
+      double angle;
+      gaps_[static_cast<size_t>(i)] = row_of(wheel_.sample(i), sine, z - p[2]).least(angle);
+    }
+    overlap_ = true;
+  }
+}
+
+bool side_geometry::rail_surface(double x, double y, double &z, double &angle) const {
+  double s;
+  if (!rail_.find(y, s)) return false;
+  const curve_point p = rail_.evaluate(s);
+  z = p.z;
+  angle = inclination(p);
+  if (shape_) z -= shape_->height(x);
+  if (track_.kind == track_kind::rail) return true;
+  const double r = axle_z_ - p.z, dx = x - axle_x_;
+  if (!(r * r > dx * dx)) return false;
+  z = axle_z_ - std::sqrt(r * r - dx * dx);
+  return true;
+}
+
+double side_geometry::roller_inclination(const vec3 &at) const {
+  return std::atan2(at[0] - axle_x_, axle_z_ - at[2]);
+}
+
+locus_point side_geometry::locus(double s) const {
+  locus_point l;
+  const curve_point p = wheel_.evaluate(s);
+  if (!wheel_.curve().covers(s) || !(p.dy > 0)) return l;
+  const double sine = locus_sine(p, sampled_gap(s), 1e-7);
+  if (!(std::fabs(sine) < 0.9)) return l;
+  l.sine = sine;
+  l.wheel = wheel_point(p, sine);
+  l.valid = rail_surface(l.wheel[0], l.wheel[1], l.rail_z, l.contact_angle);
+  if (!l.valid) return l;
+  l.gap = l.rail_z - l.wheel[2];
+  // how the gap opens in x
+  l.curvature = 0.5 / (sizes_.nominal_radius + p.z);
+  if (track_.kind == track_kind::roller) l.curvature += 0.5 / (axle_z_ - l.rail_z);
+  if (shape_) find_closest(p, sine, l);
+  return l;
+}
+
+longitudinal_row side_geometry::row_of(const curve_point &p, double sine, double gap) const {
+  const double r = sizes_.nominal_radius + p.z;
+  longitudinal_row row;
+  row.shape = shape_;
+  row.angle = std::asin(sine);
+  row.radius = r;
+  row.gap = gap;
+  row.x0 = wheel_point(p, sine)[0];
+  row.advance = wheel_axes_[0][0] * r;
+  row.bend = track_.kind == track_kind::roller ? 0.5 / axle_z_ : 0.0;
+  return row;
+}
+
+// What a yawed wheel's meridian plane moves sideways on the way to x.
+double side_geometry::sideways(double x, double sine, const curve_point &p) const {
+  return wheel_axes_[1][0] / wheel_axes_[0][0] * (x - wheel_point(p, sine)[0]);
+}
+
+// From the round wheel on the level rail to the least gap of the row.
+void side_geometry::find_closest(const curve_point &p, double sine, locus_point &l) const {
+  const double level = l.gap + shape_->height(l.wheel[0]);
+  const longitudinal_row row = row_of(p, sine, level);
+  double angle;
+  l.gap = row.least(angle);
+  const double x = row.x(angle);
+  l.wheel[1] += sideways(x, sine, p);
+  l.wheel[0] = x;
+}
+
+row_overlap side_geometry::overlap(double s, double &y, double &dy) const {
+  const curve_point p = wheel_.evaluate(s);
+  dy = p.dy;
+  const double sine = locus_sine(p, sampled_gap(s), 1e-9);
+  const vec3 at = wheel_point(p, sine);
+  double z, angle;
+  if (!rail_surface(at[0], at[1], z, angle)) return {};
+  const longitudinal_row row = row_of(p, sine, z + shape_->height(at[0]) - at[2]);
+  const row_overlap sum = row.overlap();
+  y = at[1] + sideways(sum.x, sine, p);
+  return sum;
+}
+
+// by chords between the samples: near enough where only the roller's slope depends on it
+double side_geometry::sampled_gap(double s) const {
+  const double at = (s - wheel_.curve().begin()) / wheel_.step();
+  const int i = std::clamp(static_cast<int>(at), 0, sample_count() - 2);
+  const double a = sample_gap(i), b = sample_gap(i + 1), share = at - i;
+  return std::max(a, b) < 0.5 * far_apart ? a + share * (b - a) : 0;
+}
+
+surface side_geometry::wheel_seen_from(const contact_frame &frame) const {
+  surface f = seen_from(frame, wheel_, axis_origin_, wheel_axes_, sizes_.nominal_radius, 1, false);
+  if (shape_ && shape_->has_runout()) f.shape = shape_;
+  return f;
+}
+
+surface side_geometry::rail_seen_from(const contact_frame &frame) const {
+  if (track_.kind == track_kind::rail) {
+    surface f = seen_from(frame, rail_, {0, 0, 0}, identity, 0, 1, true);
+    if (shape_ && shape_->has_height()) f.shape = shape_;
+    return f;
+  }
+  return seen_from(frame, rail_, {axle_x_, 0, axle_z_}, identity, axle_z_, -1, false);
+}
+
+void side_geometry::undeformed_distance(const contact_frame &frame, const surface_grid &g,
+                                        double *h) const {
+  const int column = clamp_index(-g.x0 / g.dx, g.nx);
+  const auto at = [&](int row) { return h + static_cast<std::ptrdiff_t>(row) * g.nx; };
+  const surface wheel = wheel_seen_from(frame);
+  for_rows(wheel, g, column,
+           [&](int row, const hit &m) { fill_row(wheel, g, row, column, m, at(row)); });
+  // the rail's heights are used row by row, in strips that fit on the stack
+  const surface rail = rail_seen_from(frame);
+  constexpr int strip = 256;
+  double heights[strip];
+  for (int first = 0; first < g.nx; first += strip) {
+    surface_grid part = g;
+    part.nx = std::min(strip, g.nx - first);
+    part.x0 = g.x0 + first * g.dx;
+    const int middle = std::clamp(column - first, 0, part.nx - 1);
+    for_rows(rail, part, middle, [&](int row, const hit &m) {
+      fill_row(rail, part, row, middle, m, heights);
+      subtract(heights, part.nx, at(row) + first);
+    });
+  }
+}
+
+void side_geometry::meet_surface(body which, const contact_frame &frame, const surface_grid &g,
+                                 surface_visitor &visitor) const {
+  const int column = clamp_index(-g.x0 / g.dx, g.nx);
+  const surface f = which == body::wheel ? wheel_seen_from(frame) : rail_seen_from(frame);
+  for_rows(f, g, column, [&](int row, const hit &middle) {
+    follow_row(f, g, row, column, middle, [&](int i, const hit &h) {
+      if (h.valid) visitor.meet(i, row, h.p, h.n);
+    });
+  });
+}
+
+section_point side_geometry::section(const contact_frame &frame, double start[2]) const {
+  const surface both[2] = {wheel_seen_from(frame), rail_seen_from(frame)};
+  double height[2], turn[2];
+  for (int k = 0; k < 2; ++k) {
+    const surface &f = both[k];
+    hit h;
+    if (std::isnan(start[k]))
+      h = nearest(f);
+    else
+      h.p = start[k];
+    if (!meet(f, f.at(0, 0), h)) return {};
+    start[k] = h.p;
+    height[k] = h.n;
+    turn[k] = across(f, h);
+  }
+  return {true, height[0], height[1], turn[0], turn[1]};
+}
+
+size_t side_geometry::bytes() const {
+  return sizeof *this + wheel_.bytes() + rail_.bytes() + gaps_.size() * sizeof(double);
+}
+
+}  // namespace railpatch

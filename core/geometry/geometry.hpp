@@ -1,0 +1,152 @@
+// Placement of wheelset, track and roller; contact locus; undeformed distance; creepages.
+//
+// Axes. Track: x forward, y right, z down, origin in the plane of the rails' (rollers') tops.
+// Wheelset: turned by Rx(roll) Rz(yaw), centre one nominal radius above that plane at z = 0.
+// Contact frame: x as the track's, s lateral along the surface, n into the rail; turned by the
+// contact angle about x: s = (0, cos, sin), n = (0, -sin, cos).
+// Standstill. Slip over the rolling speed V has no limit there. Below V0 = standstill_speed it is
+// divided by (V^2 + V0^2)/(2 V0), which joins V with equal slope at V0 and is V0/2 at rest; and
+// where the heading h, the mean of the forward speeds, is below V0, the spin creepage is scaled by
+// u = |h| (3 V0^2 - h^2)/(2 V0^3): its lateral force changes sign with the direction of rolling.
+// Signs. Undeformed distance > 0 is a gap. Creepages are wheel minus rail, divided by the rolling
+// speed. Everything here is a right-hand side; a left one is its mirror image: feed mirrored
+// inputs, mirror the results back. Mirroring changes signs only, so it is exact.
+//
+// Deviations. A wheel's offset y, z and rotation about x move its profile in its meridian plane
+// (about the profile's origin); it still turns about the wheelset's axis. Offset x and rotation
+// about z move that axis for this wheel. Rotation about y does nothing: the wheel is round.
+// A rail's offset y, z and rotation about x move it; offset x and rotations about y, z have no
+// effect on a prismatic rail. A roller's offset moves its axle, the rotation about x turns its
+// profile in its meridian plane; rotations about y, z have no effect.
+// Their rates give the material velocities that the offsets and rotations would have: about the
+// profile's origin, of a wheel or roller about the axis (y), of a wheel about the point of its axis
+// in the plane of that origin (z).
+#pragma once
+
+#include "geometry/longitudinal_shape.hpp"
+#include "geometry/placement.hpp"
+#include "geometry/profile.hpp"
+
+namespace railpatch {
+
+struct surface_grid {
+  int nx = 0, ny = 0;
+  double x0 = 0, y0 = 0;  // centre of element (0, 0): x, s
+  double dx = 0, dy = 0;
+};
+
+wheelset_state mirrored(wheelset_state w);
+deviation mirrored(deviation d);
+side_motion mirrored(side_motion m);
+track_config mirrored(track_config t);
+contact_frame mirrored(contact_frame f);
+creepage_state mirrored(creepage_state c);
+vec3 mirrored_vector(vec3 v);  // force, position
+vec3 mirrored_axial(vec3 v);   // moment, rotation
+
+// The vertical gap at a point of the contact locus: on each lateral position the longitudinal
+// position where the surfaces come closest.
+struct locus_point {
+  bool valid = false;        // both profiles reach there
+  vec3 wheel{};              // m, track axes, on the wheel
+  double sine = 0;           // of the angle along the wheel's circumference
+  double gap = 0;            // m, vertical, rail minus wheel
+  double rail_z = 0;         // m, of the rail surface there
+  double contact_angle = 0;  // rad, of the rail surface
+  double curvature = 0;      // 1/m, the gap grows with curvature x^2
+};
+
+// Both surfaces on the line along n through a frame's origin.
+struct section_point {
+  bool valid = false;
+  double wheel = 0, rail = 0;              // m, heights along n
+  double wheel_angle = 0, rail_angle = 0;  // rad, about x from the frame's s to the surface
+};
+
+struct surface;
+
+struct surface_visitor {
+  virtual ~surface_visitor() = default;
+  // p: arc length of the surface's profile; n: height along n, m
+  virtual void meet(int column, int row, double p, double n) = 0;
+};
+
+class side_geometry : private placement<double> {
+ public:
+  static constexpr double no_surface = 0.01;  // m, undeformed distance where a profile has ended
+  static constexpr double far_apart = 1.0;    // m, gap along the locus there
+
+  // The profiles must outlive this object. Allocates; nothing else here does.
+  side_geometry(const profile &wheel, const profile &rail, const wheel_config &wheel_sizes,
+                const track_config &track);
+
+  void place(const side_motion &motion);
+  // The rail's profile has changed; place() must follow.
+  void reload_rail();
+  // Only z changes: the locus stays as it is, so this is nearly free.
+  void move_to(double z);
+  const side_motion &motion() const { return motion_; }
+
+  // Approximate vertical gaps at equally spaced points of the wheel's profile (within 1 um), for
+  // the contact search; no_overlap() where the profiles have no lateral position in common.
+  int sample_count() const { return static_cast<int>(gaps_.size()); }
+  double sample_gap(int i) const { return gaps_[static_cast<std::size_t>(i)] - motion_.wheelset.z; }
+  double sample_s(int i) const { return wheel_.sample_s(i); }
+  bool no_overlap() const { return !overlap_; }
+
+  // What varies along the rolling direction, null: nothing; place it before place().
+  void set_shape(const longitudinal_shape *shape) { shape_ = shape; }
+  bool shaped() const { return shape_ != nullptr; }
+  // With a shape: the overlap along x in the row at s, y at its mean and dy/ds of the meridian.
+  row_overlap overlap(double s, double &y, double &dy) const;
+
+  // Exact, at arc length s of the wheel's profile; with a shape the gap is the least one of the
+  // row, see longitudinal_shape.hpp.
+  locus_point locus(double s) const;
+  // The rail surface at (x, y): z, and the angle of its profile; false beyond the profile.
+  bool rail_surface(double x, double y, double &z, double &angle) const;
+  // start: arc lengths of wheel and rail profile to search from, NaN where they are not known; out
+  // those found.
+  section_point section(const contact_frame &frame, double start[2]) const;
+
+  // Of a roller's surface along x, rad, > 0 where it falls.
+  double roller_inclination(const vec3 &at) const;
+
+  // h[ny][nx], x fastest; no_surface beyond the profiles.
+  void undeformed_distance(const contact_frame &frame, const surface_grid &grid, double *h) const;
+
+  // Where the lines along n through a grid's elements meet one of the surfaces.
+  void meet_surface(body which, const contact_frame &frame, const surface_grid &grid,
+                    surface_visitor &visitor) const;
+
+  using placement<double>::creepages;
+  // From the wheelset centre to the contact reference, track axes: for moments.
+  using placement<double>::lever;
+  // Distance of the wheel's contact point from the wheelset's axis.
+  using placement<double>::rolling_radius;
+
+  double rail_marker_y() const { return marker_y_; }
+  double rail_marker_z() const { return marker_z_; }
+  std::size_t bytes() const;
+
+ private:
+  void place_rail_marker();
+  void scan();
+  surface wheel_seen_from(const contact_frame &frame) const;
+  surface rail_seen_from(const contact_frame &frame) const;
+  double locus_sine(const curve_point &p, double gap, double tolerance) const;
+  double sampled_gap(double s) const;
+  vec3 wheel_point(const curve_point &p, double sine) const;
+  longitudinal_row row_of(const curve_point &p, double sine, double gap) const;
+  double sideways(double x, double sine, const curve_point &p) const;
+  void find_closest(const curve_point &p, double sine, locus_point &l) const;
+
+  friend class moving_geometry;  // rates.hpp
+
+  placed_profile wheel_, rail_;
+  std::vector<double> gaps_;  // by sample of the wheel, for z = 0
+  bool overlap_ = false;
+  const longitudinal_shape *shape_ = nullptr;
+};
+
+}  // namespace railpatch

@@ -1,0 +1,51 @@
+// Resultants of pressure and traction, in the contact frame and at the wheelset centre.
+//
+// Contact frame seen from the track frame with contact angle d: e_x = (1, 0, 0),
+// e_s = (0, cos d, sin d), n = (0, -sin d, cos d); the pressure pushes the wheel along -n.
+#pragma once
+
+#include <cmath>
+
+#include "half_space/influence.hpp"
+
+namespace railpatch {
+
+template <class T>
+struct basic_wrench {
+  T force[3];   // N on the wheel: longitudinal, lateral, along n
+  T moment[3];  // N m on the wheel about the contact reference, contact frame
+};
+using patch_wrench = basic_wrench<double>;
+
+// px, py may be null where the scene has no tangential stage.
+patch_wrench sum_tractions(const grid &g, const double *pressure, const double *px,
+                           const double *py);
+// Adds the wrench at a contact reference `lever` away from the wheelset centre (track axes), in a
+// frame turned by the contact angle about x and then inclined about y.
+template <class T>
+void add_wrench(const basic_wrench<T> &wrench, const T &contact_angle, const T lever[3], T force[3],
+                T moment[3], double inclination = 0) {
+  using std::cos;
+  using std::sin;
+  const T c = cos(contact_angle), s = sin(contact_angle);
+  const auto rotate = [&](const T v[3], T out[3]) {
+    out[0] = v[0];
+    out[1] = c * v[1] - s * v[2];
+    out[2] = s * v[1] + c * v[2];
+    if (inclination == 0) return;
+    const double d = std::cos(inclination), t = std::sin(inclination);
+    const T along = out[0], down = out[2];
+    out[0] = d * along - t * down;
+    out[2] = t * along + d * down;
+  };
+  T f[3], m[3];
+  rotate(wrench.force, f);
+  rotate(wrench.moment, m);
+  for (int k = 0; k < 3; ++k) {
+    const int l = (k + 1) % 3, n = (k + 2) % 3;
+    force[k] += f[k];
+    moment[k] += m[k] + lever[l] * f[n] - lever[n] * f[l];
+  }
+}
+
+}  // namespace railpatch

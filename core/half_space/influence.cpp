@@ -1,0 +1,277 @@
+#include "half_space/influence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace railpatch {
+
+namespace {
+
+using std::numbers::pi;
+
+// y ln(x + r) with the part that cancels in differences along x taken out: ln(x+r) - ln|y|.
+double y_log(double x, double y) { return y * std::asinh(x / std::abs(y)); }
+
+// primitive of ln(width/|x|)
+double line_primitive(double x, double width) { return x * (1.0 + std::log(width / std::abs(x))); }
+
+}  // namespace
+
+elastic_constants combine(const double shear_modulus[2], const double poisson_ratio[2]) {
+  const double gw = shear_modulus[0], gr = shear_modulus[1];
+  const double nw = poisson_ratio[0], nr = poisson_ratio[1];
+  const double g = 2.0 / (1.0 / gw + 1.0 / gr);
+  return {g, 0.5 * g * (nw / gw + nr / gr),
+          0.25 * g * ((1.0 - 2.0 * nw) / gw - (1.0 - 2.0 * nr) / gr)};
+}
+
+influence::influence(const scene &scene, const fft_plans &plans)
+    : scene_(scene),
+      plans_(plans),
+      full_(plans.max_nx(), plans.max_ny(), scene.tangential),
+      single_(plans.max_nx(), plans.max_ny(), scene.tangential) {
+  const auto nx = static_cast<size_t>(plans.max_nx()), ny = static_cast<size_t>(plans.max_ny());
+  const size_t table = (nx / 2 + 1) * (ny / 2 + 1), half = (nx / 2 + 1) * ny;
+  stride_ = static_cast<int>(nx / 2 + 1);
+  for (int k = 0; k < (scene.tangential ? 4 : 1); ++k) table_[k] = aligned_buffer<double>(table);
+  for (auto &corner : corner_) corner = aligned_buffer<double>((nx / 2 + 2) * (ny / 2 + 2));
+  padded_ = aligned_buffer<double>(nx * ny);
+  spectrum_ = aligned_buffer<double>(half);
+  transform_ = aligned_buffer<std::complex<double>>(half);
+  if (scene.curved)
+    curved_ =
+        std::make_unique<conformal_influence>(plans, scene.tangential, scene.layer_flexibility);
+}
+
+bool influence::set_grid(const grid &g) {
+  // one element more along x: the product is also seen from one element upstream
+  const int plan = plans_.find(2 * g.nx + 1, g.ny > 1 ? 2 * g.ny - 1 : 1);
+  if (plan < 0) return false;
+  const bool same_elements = g.dx == grid_.dx && g.dy == grid_.dy;
+  const int half_x = plans_.nx(plan) / 2, half_y = plans_.ny(plan) / 2;
+  grid_ = g;
+  full_.set_size(g.nx, g.ny, plans_.nx(plan), plans_.ny(plan));
+  single_.set_size(g.nx, g.ny, plans_.nx(plan), plans_.ny(plan));
+  if (is_curved()) curved_->set_size(g.nx, g.ny, plans_.nx(plan), plans_.ny(plan));
+  if (same_elements && plan == plan_) return true;
+  if (!same_elements || half_x > half_x_ || half_y > half_y_) make_kernels(half_x, half_y);
+  plan_ = plan;
+  make_spectra();
+  return true;
+}
+
+void influence::make_kernels(int half_x, int half_y) {
+  half_x_ = half_x;
+  half_y_ = half_y;
+  if (scene_.line_width > 0)
+    make_line_kernels();
+  else
+    make_half_space_kernels();
+  if (!scene_.tangential) return;
+  table_[1][0] += scene_.layer_flexibility;
+  table_[2][0] += scene_.layer_flexibility;
+}
+
+void influence::make_half_space_kernels() {
+  const int nx = half_x_ + 2, ny = half_y_ + 2;
+  // primitives at the element corners, from half an element before the origin on
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) {
+      const double x = (i - 0.5) * grid_.dx, y = (j - 0.5) * grid_.dy;
+      const auto at = static_cast<size_t>(j * nx + i);
+      corner_[0][at] = y_log(x, y);
+      corner_[1][at] = y_log(y, x);
+      corner_[2][at] = -std::hypot(x, y);
+      if (scene_.by_length) make_rates(x, y, i - 0.5, at);
+    }
+  const double nu = scene_.elastic.poisson_ratio;
+  const double c = 1.0 / (pi * scene_.elastic.shear_modulus);
+  for (int j = 0; j <= half_y_; ++j)
+    for (int i = 0; i <= half_x_; ++i) {
+      double sum[3];
+      for (int k = 0; k < 3; ++k) {
+        const double *f = corner_[k].data() + j * nx + i;
+        sum[k] = (f[nx + 1] - f[nx]) - (f[1] - f[0]);
+      }
+      const auto at = static_cast<size_t>(j * stride_ + i);
+      table_[0][at] = c * (1.0 - nu) * (sum[0] + sum[1]);
+      if (!scene_.tangential) continue;
+      table_[1][at] = c * (sum[0] + (1.0 - nu) * sum[1]);
+      table_[2][at] = c * (sum[1] + (1.0 - nu) * sum[0]);
+      table_[3][at] = c * nu * sum[2];
+    }
+}
+
+// A corner at (i - 1/2) dx moves by i - 1/2 with dx.
+void influence::make_rates(double x, double y, double moves, size_t at) {
+  const double r = std::hypot(x, y);
+  corner_[0][at] = moves * y / r;
+  corner_[1][at] = moves * (std::asinh(y / std::abs(x)) - y / r);
+  corner_[2][at] = -moves * x / r;
+}
+
+void influence::make_line_kernels() {
+  const double nu = scene_.elastic.poisson_ratio;
+  const double c = 2.0 / (pi * scene_.elastic.shear_modulus);
+  for (int i = 0; i <= half_x_; ++i) {
+    const double lower = (i - 0.5) * grid_.dx, upper = (i + 0.5) * grid_.dx;
+    const double value =
+        line_primitive(upper, scene_.line_width) - line_primitive(lower, scene_.line_width);
+    const auto at = static_cast<size_t>(i);
+    table_[0][at] = c * (1.0 - nu) * value;
+    if (!scene_.tangential) continue;
+    table_[1][at] = c * (1.0 - nu) * value;
+    table_[2][at] = c * value;
+    table_[3][at] = 0.0;
+  }
+}
+
+void influence::bodies_at(double x, double y, double values[3]) const {
+  const double nu = scene_.elastic.poisson_ratio;
+  const double c = 1.0 / (pi * scene_.elastic.shear_modulus);
+  if (scene_.line_width > 0) {
+    const double ends[2] = {x + 0.5 * grid_.dx, x - 0.5 * grid_.dx};
+    double sum = 0;
+    for (int k = 0; k < 2; ++k)
+      if (ends[k] != 0) sum += (k == 0 ? 1 : -1) * line_primitive(ends[k], scene_.line_width);
+    values[0] = 2.0 * c * (1.0 - nu) * sum;
+    values[1] = 2.0 * c * sum;
+    values[2] = 0;
+    return;
+  }
+  double sum[3] = {0, 0, 0};
+  for (int k = 0; k < 4; ++k) {
+    const double sign = (k == 0 || k == 3) ? 1.0 : -1.0;
+    const double u = x + (k & 1 ? -0.5 : 0.5) * grid_.dx, v = y + (k & 2 ? -0.5 : 0.5) * grid_.dy;
+    sum[0] += sign * (v != 0 ? y_log(u, v) : 0.0);
+    sum[1] += sign * (u != 0 ? y_log(v, u) : 0.0);
+    sum[2] -= sign * std::hypot(u, v);
+  }
+  values[0] = c * (sum[0] + (1.0 - nu) * sum[1]);
+  values[1] = c * (sum[1] + (1.0 - nu) * sum[0]);
+  values[2] = c * nu * sum[2];
+}
+
+void influence::corner_at(double x, double y, double values[3]) {
+  values[0] = y != 0 ? y_log(x, y) : 0.0;
+  values[1] = x != 0 ? y_log(y, x) : 0.0;
+  values[2] = -std::hypot(x, y);
+}
+
+void influence::from_corners(const double sum[3], double values[3]) const {
+  const double nu = scene_.elastic.poisson_ratio;
+  const double c = 1.0 / (pi * scene_.elastic.shear_modulus);
+  values[0] = c * (sum[0] + (1.0 - nu) * sum[1]);
+  values[1] = c * (sum[1] + (1.0 - nu) * sum[0]);
+  values[2] = c * nu * sum[2];
+}
+
+double influence::coefficient(kernel k, int i, int j) const {
+  const auto at = static_cast<size_t>(std::abs(j) * stride_ + std::abs(i));
+  const double value = table_[static_cast<int>(k)][at];
+  if (k != kernel::xy) return value;
+  return i == 0 || j == 0 ? 0.0 : ((i < 0) == (j < 0) ? value : -value);
+}
+
+void influence::transform_kernel(kernel k) {
+  const int nx = plans_.nx(plan_), ny = plans_.ny(plan_);
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) {
+      const int oi = 2 * i <= nx ? i : i - nx, oj = 2 * j <= ny ? j : j - ny;
+      // an odd kernel has no value at the wrap-around, where both signs meet
+      const bool wrap = k == kernel::xy && (2 * i == nx || 2 * j == ny);
+      padded_[static_cast<size_t>(j * nx + i)] = wrap ? 0.0 : coefficient(k, oi, oj);
+    }
+  plans_.forward(plan_, padded_.data(), transform_.data());
+  const auto half = static_cast<size_t>((nx / 2 + 1) * ny);
+  for (size_t i = 0; i < half; ++i) spectrum_[i] = transform_[i].real();
+}
+
+void influence::make_spectra() {
+  using name = convolution<double>::kernel_name;
+  constexpr name names[] = {name::zz, name::xx, name::yy, name::xy};
+  for (int k = scene_.tangential ? 3 : 0; k >= 0; --k) {
+    transform_kernel(static_cast<kernel>(k));
+    full_.set_spectrum(names[k], spectrum_.data());
+    single_.set_spectrum(static_cast<convolution<float>::kernel_name>(names[k]), spectrum_.data());
+    if (is_curved()) give_spectrum(static_cast<kernel>(k));
+  }
+  // zz came last; truncation can make small entries negative, and a floor keeps the preconditioner
+  // positive
+  const int half = (plans_.nx(plan_) / 2 + 1) * plans_.ny(plan_);
+  const double top = *std::max_element(spectrum_.data(), spectrum_.data() + half);
+  for (int i = 0; i < half; ++i) {
+    double &value = spectrum_[static_cast<size_t>(i)];
+    value = 1.0 / std::max(value, 1e-6 * top);
+  }
+  single_.set_spectrum(convolution<float>::zz_inverse, spectrum_.data());
+}
+
+void influence::give_spectrum(kernel k) {
+  const auto count = static_cast<size_t>((plans_.nx(plan_) / 2 + 1) * plans_.ny(plan_));
+  const double *s = spectrum_.data();
+  switch (k) {
+    case kernel::xx:
+      return curved_->take_xx(s, count);
+    case kernel::yy:
+      return curved_->take_yy(s, count);
+    case kernel::xy:
+      return curved_->take_xy(s, count);
+    case kernel::zz:
+      return curved_->take_zz(s, count);
+  }
+}
+
+void influence::normal_product(const double *pressure, double *displacement) {
+  const auto flat = [&](const double *p, double *u) {
+    full_.product(convolution<double>::zz, p, u);
+  };
+  if (is_curved()) return curved_->normal(pressure, displacement, flat);
+  flat(pressure, displacement);
+}
+
+void influence::normal_product_single(const double *pressure, double *displacement) {
+  const auto flat = [&](const double *p, double *u) {
+    single_.product(convolution<float>::zz, p, u);
+  };
+  if (is_curved()) return curved_->normal(pressure, displacement, flat);
+  flat(pressure, displacement);
+}
+
+void influence::normal_inverse(const double *displacement, double *pressure) {
+  single_.product(convolution<float>::zz_inverse, displacement, pressure);
+}
+
+void influence::tangential_product(const double *px, const double *py, double *ux, double *uy) {
+  if (is_curved()) return curved_->tangential(px, py, ux, uy);
+  full_.tangential_product(px, py, ux, uy);
+}
+
+void influence::tangential_product_single(const double *px, const double *py, double *ux,
+                                          double *uy) {
+  if (is_curved()) return curved_->tangential_single(px, py, ux, uy);
+  single_.tangential_product(px, py, ux, uy);
+}
+
+void influence::rolling_product(const double *px, const double *py, int direction, double *sx,
+                                double *sy) {
+  if (is_curved()) return curved_->rolling(px, py, direction, grid_.dx, sx, sy);
+  full_.rolling_product(px, py, direction, grid_.dx, sx, sy);
+}
+
+void influence::rolling_product_single(const double *px, const double *py, int direction,
+                                       double *sx, double *sy) {
+  if (is_curved()) return curved_->rolling_single(px, py, direction, grid_.dx, sx, sy);
+  single_.rolling_product(px, py, direction, grid_.dx, sx, sy);
+}
+
+size_t influence::bytes() const {
+  size_t sum = plans_.bytes() + padded_.bytes() + spectrum_.bytes() + transform_.bytes() +
+               full_.bytes() + single_.bytes() + (is_curved() ? curved_->bytes() : 0);
+  for (const auto &b : table_) sum += b.bytes();
+  for (const auto &b : corner_) sum += b.bytes();
+  return sum;
+}
+
+}  // namespace railpatch

@@ -1,0 +1,54 @@
+// Displacement that tractions on a grid cause at points off it by a constant distance along x:
+// where the material was one step of transient rolling ago, before it came to the elements'
+// centres. Exact for tractions constant on elements, by FFT; the layer's part is interpolated
+// between them, as all that belongs to elements is (for a step of one element both are exact).
+// With `moves` also from one grid to another that lies anywhere: the patches of wheels move.
+#pragma once
+
+#include <complex>
+
+#include "half_space/influence.hpp"
+
+namespace railpatch {
+
+class offset_influence {
+ public:
+  explicit offset_influence(const fft_plans &plans, bool moves = false);
+
+  // (u_x, u_y) at x + offset; the grid is that of a. Kernels are only made anew when offset,
+  // element size or transform change.
+  void product(const influence &a, const grid &g, double offset, const double *px, const double *py,
+               double *ux, double *uy);
+  // Adds share (u_x, u_y) at the elements of `to`, whose element (0, 0) lies at offset from that of
+  // `from`, with elements of the same size. Needs `moves`.
+  void add_moved(const influence &a, const grid &from, const grid &to, const double offset[2],
+                 double share, const double *px, const double *py, double *ux, double *uy);
+  size_t bytes() const;
+
+ private:
+  using fft = batch_fft<double>;
+  using lines = typename fft::lines;
+  void make_spectra(const influence &a, const grid &g);
+  void make_moved_spectra(const influence &a);
+  void transform_kernel(int k);
+  // the product itself; its result lies in the first columns of the rows returned
+  lines transfer(const grid &from, const grid &to, const double *px, const double *py);
+  void multiply(lines from, lines to, int stride) const;
+
+  const fft_plans &plans_;
+  int plan_ = -1;
+  double offset_ = 0, dx_ = 0, dy_ = 0;
+  fft along_x_, along_y_;
+  aligned_buffer<double> padded_, re_[3], im_[3];  // [big_nx][big_ny]
+  aligned_buffer<std::complex<double>> transform_;
+  aligned_buffer<double> lateral_[4], along_[4];
+  // of grids that move: size of both, lateral offset, corners of the elements
+  int from_[2] = {0, 0}, to_[2] = {0, 0};
+  double lateral_offset_ = 0;
+  aligned_buffer<double> corner_[3];
+};
+
+// Field values at x + offset, straight between element centres; `outside` beyond the grid.
+void shift_field(const grid &g, double offset, double outside, const double *from, double *to);
+
+}  // namespace railpatch

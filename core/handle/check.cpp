@@ -1,0 +1,499 @@
+#include "handle/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <utility>
+
+#include "fast/creep_table.hpp"
+#include "fast/fast.hpp"
+#include "half_space/coupling.hpp"
+#include "half_space/physics.hpp"
+#include "handle/checker.hpp"
+#include "handle/input_numbers.hpp"
+
+namespace railpatch {
+
+namespace {
+
+// Their influence coefficients are four numbers for every pair of nodes, here 170 MB.
+constexpr int max_fitted_nodes = 48 * 48;
+
+void check_choices(const rp_config &c, checker &check) {
+  check.choice("kind", c.kind, RP_PATCH, RP_WHEELSET);
+  check.choice("load", c.load, RP_FORCE, RP_POSITION);
+  check.choice("regime", c.regime, RP_REGIME_NONE, RP_TRANSIENT_ROLLING);
+  check.choice("friction_law", c.friction_law, RP_COULOMB, RP_TEMPERATURE);
+  check.choice("slip_law", c.slip_law, RP_SLIP_EXPONENTIAL, RP_SLIP_LINEAR);
+  check.choice("plastic_rule", c.plastic_rule, RP_PLASTIC_PATH, RP_PLASTIC_MAGNITUDE);
+  check.choice("normal", c.normal, RP_NORMAL_HERTZ, RP_NORMAL_ANALYN);
+  check.choice("tangential", c.tangential, RP_TANGENTIAL_NONE, RP_TANGENTIAL_TABLE);
+  check.choice("spin_offset", c.spin_offset, RP_SPIN_OFFSET_NONE, RP_SPIN_OFFSET_SIXTH);
+  check.choice("reference_surface", c.reference_surface, RP_REFERENCE_PLANE, RP_REFERENCE_CURVED);
+  check.choice("traction_bound", c.traction_bound, RP_BOUND_AUTOMATIC, RP_BOUND_ELLIPTIC);
+  check.choice("flexibility_blending", c.flexibility_blending, RP_BLENDING_SLIDING,
+               RP_BLENDING_CONTACT);
+  if (check.error() != RP_OK) return;
+  if (c.kind == RP_PATCH)
+    check.choice("geometry", c.geometry, RP_SEMI_AXES, RP_UNDEFORMED_DISTANCE);
+  else
+    check.choice("track", c.track, RP_RAIL, RP_ROLLER);
+  check.choice("patch_rule", c.patch_rule, RP_PATCHES_BLENDED, RP_PATCHES_CONTACT);
+  check.choice("contact_frame", c.contact_frame, RP_FRAME_TRACK, RP_FRAME_INCLINED);
+}
+
+void check_fitted(const rp_config &c, checker &check) {
+  if (c.fitted[0] == 0 && c.fitted[1] == 0) return;
+  const bool line = c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT;
+  check.integer("fitted[0]", c.fitted[0], 3, 64);
+  check.integer("fitted[1]", c.fitted[1], line ? 1 : 3, line ? 1 : 64);
+  if (check.error() == RP_OK)
+    check.integer("fitted[0] * fitted[1]", c.fitted[0] * c.fitted[1], 3, max_fitted_nodes);
+  // a scene whose tangential problem is left out for a while keeps its rows
+  check.require(c.tangential == RP_TANGENTIAL_FULL || c.tangential == RP_TANGENTIAL_NONE,
+                "fitted needs tangential = full");
+  check.require(c.spin_offset == RP_SPIN_OFFSET_NONE,
+                "spin_offset must be none with fitted: it belongs to the uniform grid");
+}
+
+// What only some of the fast theories read must not be set for others.
+void check_fast(const rp_config &c, checker &check) {
+  const auto theory = c.tangential;
+  const bool fastsim = theory == RP_TANGENTIAL_FASTSIM;
+  check.number("percent_kalker", c.percent_kalker, {0, 200, true, false});
+  for (const auto &[name, value] : {std::pair{"polach_k_a", c.polach_k_a},
+                                    {"polach_k_s", c.polach_k_s},
+                                    {"fastsim_k0", c.fastsim_k0}})
+    check.number(name, value, {0, 10, true, false});
+  check.number("fastsim_alpha", c.fastsim_alpha, {0, 1, false, false});
+  check.number("fastsim_beta", c.fastsim_beta, {0, 1000, false, false});
+  if (c.regime == RP_REGIME_NONE || theory == RP_TANGENTIAL_NONE) return;
+  check.require(is_fast(theory) || c.percent_kalker == 100.0,
+                "percent_kalker must be 100 with tangential = full: it has no coefficients");
+  check.require(theory == RP_TANGENTIAL_POLACH || (c.polach_k_a == 1.0 && c.polach_k_s == 1.0),
+                "polach_k_a and polach_k_s must be 1 where tangential is not polach");
+  check.require(
+      fastsim || (c.fastsim_k0 == 1.0 && c.fastsim_alpha == 1.0 && c.fastsim_beta == 0.0),
+      "fastsim_k0 and fastsim_alpha must be 1, fastsim_beta 0 where tangential is not fastsim");
+  check.require(fastsim || c.traction_bound == RP_BOUND_AUTOMATIC,
+                "traction_bound must be automatic where tangential is not fastsim");
+  check.require(fastsim || c.flexibility_blending == RP_BLENDING_SLIDING ||
+                    (theory == RP_TANGENTIAL_FASTRIP && c.flexibility_blending == RP_BLENDING_NONE),
+                "flexibility_blending must be sliding where tangential is not fastsim or fastrip, "
+                "and not contact with fastrip");
+}
+
+// Pairs of a table: increasing places, values in a range.
+void check_points(const char *points, int count, const char *place, const double *places,
+                  const char *value, const double *values, const range &r, checker &check) {
+  if (count == 0) return;
+  check.integer(points, count, 2, RP_MAX_POINTS);
+  if (check.error() != RP_OK) return;
+  check.numbers(place, places, count, finite);
+  check.numbers(value, values, count, r);
+  char text[RP_MESSAGE_SIZE];
+  for (int i = 1; i < count; ++i) {
+    std::snprintf(text, sizeof text, "%s[%d] is %g, allowed is more than %s[%d] = %g", place, i,
+                  places[i], place, i - 1, places[i - 1]);
+    check.require(places[i] > places[i - 1], text);
+  }
+}
+
+// Friction laws beside Coulomb's; unused numbers are checked all the same.
+void check_friction(const rp_config &c, checker &check) {
+  check.number("friction_coefficient", c.friction_coefficient, friction);
+  check.number("friction_kinetic", c.friction_kinetic, friction);
+  check.numbers("friction_amplitude", c.friction_amplitude, 2, {-10, 10, false, false});
+  check.numbers("friction_halving_speed", c.friction_halving_speed, 2, positive);
+  check.number("friction_memory_distance", c.friction_memory_distance, {0, 1, false, false});
+  check.number("friction_memory_speed", c.friction_memory_speed, positive);
+  check.number("friction_reference", c.friction_reference, friction);
+  check.number("friction_reference + friction_change", c.friction_reference + c.friction_change,
+               friction);
+  check.number("friction_reference_temperature", c.friction_reference_temperature,
+               {-273.15, 1e4, false, false});
+  check.number("friction_temperature_range", c.friction_temperature_range, {0, 1e5, true, false});
+  check_points("friction_points", c.friction_points, "friction_position", c.friction_position,
+               "friction_factor", c.friction_factor, {0, 100, false, false}, check);
+  check_points("friction_along_points", c.friction_along_points, "friction_along_position",
+               c.friction_along_position, "friction_along_factor", c.friction_along_factor,
+               {0, 100, false, false}, check);
+  check.require(c.friction_along_points == 0 || c.kind != RP_PATCH,
+                "friction_along_points must be 0 for kind = patch: it has no place along a track");
+  if (check.error() != RP_OK || !has_tangential(c)) return;
+  double least = c.friction_kinetic;
+  for (double amplitude : c.friction_amplitude) least += std::min(amplitude, 0.0);
+  check.require(least >= 0,
+                "friction_kinetic with negative friction_amplitude: the law falls below 0");
+  const bool grid = c.tangential == RP_TANGENTIAL_FULL && c.fitted[0] == 0;
+  check.require(c.friction_law == RP_COULOMB || grid,
+                "friction_law must be coulomb but with tangential = full and no fitted rows");
+  check.require(c.friction_points == 0 || grid,
+                "friction_points must be 0 but with tangential = full and no fitted rows");
+  check.require(c.friction_law != RP_TEMPERATURE || c.friction_memory_distance == 0,
+                "friction_memory_distance must be 0 with friction_law = temperature");
+  check.require(c.friction_law != RP_TEMPERATURE || c.temperature == 1,
+                "friction_law = temperature needs temperature = 1");
+  check.require(c.friction_law == RP_COULOMB || c.regime != RP_SHIFT,
+                "friction_law must be coulomb with regime = shift: it has no speed");
+}
+
+void check_plastic(const rp_config &c, checker &check) {
+  check.number("layer_yield_stress", c.layer_yield_stress, {0, 1e15, false, false});
+  check.number("layer_hardening", c.layer_hardening, {-1e25, 1e25, false, false});
+  check_points("hardening_points", c.hardening_points, "hardening_displacement",
+               c.hardening_displacement, "hardening_stress", c.hardening_stress,
+               {1e-3, 1e15, false, false}, check);
+  if (c.hardening_points > 0 && check.error() == RP_OK) {
+    check.number("hardening_displacement[0]", c.hardening_displacement[0], {0, 0, false, false});
+    check.require(c.layer_yield_stress == c.hardening_stress[0],
+                  "layer_yield_stress must equal hardening_stress[0]");
+  }
+  if (!has_tangential(c) || !(c.layer_yield_stress > 0)) return;
+  check.require(c.tangential == RP_TANGENTIAL_FULL && c.fitted[0] == 0,
+                "layer_yield_stress must be 0 but with tangential = full and no fitted rows");
+}
+
+void check_temperature(const rp_config &c, checker &check) {
+  check.integer("temperature", c.temperature, 0, 1);
+  check.numbers("bulk_temperature", c.bulk_temperature, 2, bulk);
+  check.integer("heat_exchange", c.heat_exchange, 0, 1);
+  check.numbers("conductivity", c.conductivity, 2, {1e-6, 1e6, false, false});
+  check.numbers("heat_capacity", c.heat_capacity, 2, {1e-3, 1e6, false, false});
+  check.numbers("density", c.density, 2, {1e-3, 1e6, false, false});
+  check.number("temperature_depth", c.temperature_depth, {0, 1, false, false});
+  check.number("plastic_heat_fraction", c.plastic_heat_fraction, {0, 1, false, false});
+  if (c.temperature == 0 || check.error() != RP_OK) return;
+  check.require(c.regime == RP_STEADY_ROLLING || c.regime == RP_TRANSIENT_ROLLING,
+                "temperature needs regime = steady_rolling or transient_rolling");
+  check.require(c.tangential == RP_TANGENTIAL_FULL && c.fitted[0] == 0,
+                "temperature needs tangential = full and no fitted rows");
+}
+
+// What a build without further physics cannot solve.
+void check_build(const rp_config &c, checker &check) {
+  if (has_physics || !has_tangential(c) || check.error() != RP_OK) return;
+  const auto without = [&](bool asked, const char *text) { check.require(!asked, text); };
+  without(
+      c.regime != RP_STEADY_ROLLING,
+      "regime must be none or steady_rolling: this build has no shift and no transient rolling");
+  without(c.friction_law != RP_COULOMB,
+          "friction_law must be coulomb: this build has no other friction laws");
+  without(c.layer_yield_stress > 0,
+          "layer_yield_stress must be 0: this build has no plastic layers");
+  without(c.temperature != 0, "temperature must be 0: this build has no surface temperature");
+  without(is_coupled(combine(c.shear_modulus, c.poisson_ratio)),
+          "shear_modulus and poisson_ratio: (1-2nu)/G must be equal, this build has no coupling of "
+          "normal and tangential directions");
+}
+
+// Wheels roll on from tractions, and nothing else that the material would carry along.
+const char *wheels_cannot_roll(const rp_config &c) {
+  if (c.regime == RP_SHIFT)
+    return "regime must be none, steady_rolling or transient_rolling for wheels";
+  if (c.spin_offset != RP_SPIN_OFFSET_NONE)
+    return "spin_offset must be none but with regime = steady_rolling";
+  if (!(c.element_size[0] > 0))
+    return "regime = transient_rolling of wheels needs element_size in place of elements";
+  if (c.friction_law != RP_COULOMB)
+    return "regime = transient_rolling of wheels needs friction_law = coulomb in this version";
+  if (c.layer_yield_stress > 0)
+    return "layer_yield_stress must be 0 with regime = transient_rolling of wheels in this version";
+  if (c.reference_surface != RP_REFERENCE_PLANE)
+    return "reference_surface must be plane with regime = transient_rolling of wheels";
+  if (c.temperature != 0)
+    return "temperature must be 0 with regime = transient_rolling of wheels in this version";
+  if (is_coupled(combine(c.shear_modulus, c.poisson_ratio)))
+    return "regime = transient_rolling of wheels needs equal (1-2nu)/G of both bodies in this "
+           "version";
+  return nullptr;
+}
+
+// Shift and transient rolling keep their grid in the frame of the contact.
+void check_regime(const rp_config &c, checker &check) {
+  if (!has_tangential(c) || c.regime == RP_STEADY_ROLLING) return;
+  const char *wrong = nullptr;
+  if (c.tangential != RP_TANGENTIAL_FULL || c.fitted[0] > 0)
+    wrong = "regime = shift and transient_rolling need tangential = full and no fitted rows";
+  else if (c.kind != RP_PATCH)
+    wrong = wheels_cannot_roll(c);
+  else if (c.spin_offset != RP_SPIN_OFFSET_NONE)
+    wrong = "spin_offset must be none but with regime = steady_rolling";
+  else if (c.geometry == RP_CURVATURES && !(c.element_size[0] > 0 && c.max_elements[0] > 0))
+    wrong =
+        "regime = shift and transient_rolling with curvatures need element_size and "
+        "max_elements: their grid is fixed";
+  check.require(wrong == nullptr, wrong ? wrong : "");
+}
+
+void check_prescribed(const rp_config &c, checker &check) {
+  check.integer("force_prescribed[0]", c.force_prescribed[0], 0, 1);
+  check.integer("force_prescribed[1]", c.force_prescribed[1], 0, 1);
+  if (c.force_prescribed[0] == 0 && c.force_prescribed[1] == 0) return;
+  check.require(c.kind == RP_PATCH, "force_prescribed must be 0, 0 but for kind = patch");
+  check.require(has_tangential(c) && c.tangential == RP_TANGENTIAL_FULL,
+                "force_prescribed needs a regime of motion and tangential = full");
+}
+
+// Where creep forces come from a table.
+void check_table(const rp_config &c, checker &check) {
+  if (!uses_table(c)) return;
+  const bool line = c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT;
+  check.require(!line, "a creep table has no line contact: use tangential = full");
+  check.require(!(c.layer_thickness > 0),
+                "a creep table has no third-body layer: use tangential = full");
+  check.require(c.spin_offset == RP_SPIN_OFFSET_NONE,
+                "spin_offset must be none with a creep table: it belongs to the uniform grid");
+  if (check.error() != RP_OK) return;
+  const char *defect = creep_table::defect(c.creep_table, c.creep_table_size);
+  if (!defect) return;
+  char text[RP_MESSAGE_SIZE];
+  std::snprintf(text, sizeof text, "creep_table %s", defect);
+  check.require(false, text);
+}
+
+void check_grid(const rp_config &c, checker &check) {
+  check_fitted(c, check);
+  if (!needs_grid(c)) return;
+  const bool counted = c.elements[0] != 0 || c.elements[1] != 0;
+  const bool sized = c.element_size[0] != 0 || c.element_size[1] != 0;
+  const bool shaped = c.kind == RP_PATCH && c.geometry == RP_UNDEFORMED_DISTANCE;
+  check.require(counted != sized, "exactly one of elements and element_size must be given");
+  check.require(!shaped || sized, "undeformed_distance needs element_size");
+  for (int k = 0; k < 2; ++k) {
+    const bool line = k == 1 && c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT;
+    if (counted)
+      check.integer(k == 0 ? "elements[0]" : "elements[1]", c.elements[k], line ? 1 : 2,
+                    line ? 1 : 1000);
+    if (sized && !line)
+      check.number(k == 0 ? "element_size[0]" : "element_size[1]", c.element_size[k],
+                   {1e-9, 1, false, false});
+    check.integer(k == 0 ? "max_elements[0]" : "max_elements[1]", c.max_elements[k], 0, 1002);
+  }
+}
+
+void check_patch(const rp_config &c, checker &check) {
+  if (c.geometry == RP_SEMI_AXES)
+    check.numbers("semi_axes", c.semi_axes, 2, {1e-7, 1, false, false});
+  if (c.geometry == RP_CURVATURES)
+    check.numbers("curvatures", c.curvatures, 2, {1e-9, 1e6, false, false});
+  if (c.geometry == RP_LINE_CONTACT) {
+    check.number("line_contact_radius", c.line_contact_radius, {1e-6, 1e6, false, false});
+    check.number("width", c.width, {1e-6, 1e3, false, false});
+    check.require(c.load == RP_FORCE, "a line contact has no approach: give normal_force");
+    check.require(c.normal == RP_NORMAL_HERTZ || c.normal == RP_NORMAL_HALF_SPACE,
+                  "a line contact needs normal = hertz or half_space");
+  }
+  if (c.geometry != RP_UNDEFORMED_DISTANCE) return;
+  check.require(c.undeformed_distance != nullptr, "undeformed_distance is null");
+  check.require(c.normal != RP_NORMAL_HERTZ,
+                "undeformed_distance needs normal = half_space, kik_piotrowski or analyn: Hertz "
+                "takes quadratic shapes only");
+  check.integer("distance_shape[0]", c.distance_shape[0], 3, 1000);
+  check.integer("distance_shape[1]", c.distance_shape[1], 3, 1000);
+  if (check.error() == RP_OK)
+    check.numbers("undeformed_distance", c.undeformed_distance,
+                  c.distance_shape[0] * c.distance_shape[1], {-1, 1, false, false});
+}
+
+// Temperatures of a step; NaN stands for the config's.
+void check_bulk(const rp_config &c, const rp_input &in, checker &check) {
+  double step[2];
+  for (int k = 0; k < 2; ++k) {
+    const bool given = !std::isnan(in.bulk_temperature[k]);
+    step[k] = given ? in.bulk_temperature[k] : c.bulk_temperature[k];
+    check.require(!given || c.temperature == 1,
+                  "bulk_temperature must be left NaN in a scene without temperature");
+  }
+  check.numbers("bulk_temperature", step, 2, bulk);
+  const bool exchanges = c.heat_exchange == 1 || c.bulk_temperature[0] != c.bulk_temperature[1];
+  check.require(exchanges || step[0] == step[1],
+                "bulk_temperature of wheel and rail must be equal in a scene with equal ones and "
+                "heat_exchange = 0");
+}
+
+// Where the normal force follows from the approach, only the solve can tell what friction carries.
+void check_force(const rp_config &c, double friction, const rp_input &in, checker &check) {
+  check.numbers("tangential_force", in.tangential_force, 2, finite);
+  for (int k = 0; k < 2; ++k) {
+    const range none{0, 0, false, false};
+    if (c.force_prescribed[k])
+      check.number(k == 0 ? "creepage[0], found from tangential_force,"
+                          : "creepage[1], found from tangential_force,",
+                   in.creepage[k], none);
+    else
+      check.number(k == 0 ? "tangential_force[0], not in force_prescribed,"
+                          : "tangential_force[1], not in force_prescribed,",
+                   in.tangential_force[k], none);
+  }
+  if (c.force_prescribed[0] == 0 && c.force_prescribed[1] == 0) return;
+  check.number("rolling_speed, with a prescribed tangential_force,", in.rolling_speed, positive);
+  if (c.load == RP_FORCE)
+    check.number("tangential_force, by the friction coefficient times normal_force, in magnitude",
+                 std::hypot(in.tangential_force[0], in.tangential_force[1]),
+                 {0, most_friction(c, friction) * in.normal_force * (1.0 + 1e-12), false, false});
+}
+
+// Bodies whose pressure and traction act on each other.
+void check_coupled(const rp_config &c, checker &check) {
+  if (!is_coupled(combine(c.shear_modulus, c.poisson_ratio))) return;
+  check.require(
+      c.normal == RP_NORMAL_HALF_SPACE && c.tangential == RP_TANGENTIAL_FULL && c.fitted[0] == 0,
+      "shear_modulus and poisson_ratio: bodies with (1-2nu)/G not equal couple normal and "
+      "tangential directions, which needs normal = half_space, tangential = full and no fitted "
+      "rows");
+  // what heats the material before depends on a contact area that is only being found
+  check.require(c.friction_law != RP_TEMPERATURE || c.regime == RP_STEADY_ROLLING,
+                "friction_law = temperature with bodies with (1-2nu)/G not equal needs regime = "
+                "steady_rolling");
+}
+
+}  // namespace
+
+bool needs_grid(const rp_config &c) {
+  if (c.kind != RP_PATCH || c.normal != RP_NORMAL_HERTZ || c.regime == RP_REGIME_NONE) return true;
+  if (c.tangential == RP_TANGENTIAL_FULL) return c.fitted[0] == 0;
+  return !is_fast(c.tangential) || has_tractions(c.tangential);
+}
+
+bool uses_table(const rp_config &c) {
+  return c.regime != RP_REGIME_NONE && c.tangential == RP_TANGENTIAL_TABLE;
+}
+
+void set_message(rp_message *message, const char *format, ...) {
+  if (!message) return;
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(message->text, sizeof message->text, format, arguments);
+  va_end(arguments);
+}
+
+rp_error check_config(const rp_config &c, rp_message *message) {
+  if (c.cookie != config_cookie) {
+    set_message(message, "the config was never filled by rp_default_config");
+    return RP_ERROR_NOT_DEFAULTED;
+  }
+  checker check(message);
+  check_choices(c, check);
+  if (check.error() != RP_OK) return check.error();
+  check.numbers("shear_modulus", c.shear_modulus, 2, {1.0, 1e15, false, false});
+  check.numbers("poisson_ratio", c.poisson_ratio, 2, {0, 0.5, false, false});
+  check_grid(c, check);
+  check_prescribed(c, check);
+  check_table(c, check);
+  check_friction(c, check);
+  check_plastic(c, check);
+  check_temperature(c, check);
+  check_regime(c, check);
+  check_build(c, check);
+  check.number("layer_thickness", c.layer_thickness, {0, 0.1, false, false});
+  if (c.layer_thickness > 0)
+    check.number("layer_shear_modulus", c.layer_shear_modulus, {1.0, 1e15, false, false});
+  check.number("tolerance", c.tolerance, {1e-12, 0.1, false, false});
+  check.integer("max_iterations", c.max_iterations, 1, 100000);
+  check.integer("derivatives", c.derivatives, 0, 1);
+  const bool rolling = has_tangential(c);
+  const bool fast = is_fast(c.tangential);
+  check_fast(c, check);
+  const bool line = c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT;
+  check.require(!(rolling && fast && line),
+                "a fast theory has no line contact: use tangential = full");
+  check.require(!(rolling && fast && c.layer_thickness > 0),
+                "a fast theory has no third-body layer: use tangential = full");
+  if (rolling && check.error() == RP_OK) check_coupled(c, check);
+  if (check.error() == RP_OK) check_reference(c, check);
+  c.kind == RP_PATCH ? check_patch(c, check) : check_wheels(c, check);
+  return check.error();
+}
+
+double most_friction(const rp_config &c, double coefficient) {
+  double most = coefficient;
+  if (c.friction_law == RP_TEMPERATURE)
+    most = std::max(c.friction_reference, c.friction_reference + c.friction_change);
+  if (c.friction_law == RP_SLIP_VELOCITY) {
+    most = c.friction_kinetic;
+    for (double amplitude : c.friction_amplitude) most += std::max(amplitude, 0.0);
+  }
+  const auto greatest = [](const double *factor, int points) {
+    return points == 0 ? 1.0 : *std::max_element(factor, factor + points);
+  };
+  return most * greatest(c.friction_factor, c.friction_points) *
+         greatest(c.friction_along_factor, c.friction_along_points);
+}
+
+rp_error check_friction_coefficient(double value, rp_message *message) {
+  checker check(message);
+  check.number("friction_coefficient", value, friction);
+  return check.error();
+}
+
+rp_error check_input(const rp_config &c, double friction_coefficient, const rp_input &in,
+                     rp_message *message) {
+  if (in.cookie != input_cookie) {
+    set_message(message, "the input was never filled by rp_default_input");
+    return RP_ERROR_NOT_DEFAULTED;
+  }
+  checker check(message);
+  check_bulk(c, in, check);
+  check.require(in.friction_coefficient == 0,
+                "friction_coefficient must be 0 in a step: rp_set_friction_coefficient sets it");
+  if (c.kind == RP_PATCH) {
+    if (c.load == RP_FORCE)
+      check.number("normal_force", in.normal_force, positive);
+    else
+      check.number("approach", in.approach, finite);
+    check.numbers("creepage", in.creepage, 2, finite);
+    check.number("spin_creepage", in.spin_creepage, finite);
+    check.number("rolling_speed", in.rolling_speed, not_negative);
+    if (c.regime == RP_TRANSIENT_ROLLING) check.number("distance", in.distance, positive);
+    check.require(in.direction == 1 || in.direction == -1, "direction must be 1 or -1");
+    check_force(c, friction_coefficient, in, check);
+    return check.error();
+  }
+  check.number("y", in.y, {-1, 1, false, false});
+  if (c.load == RP_FORCE)
+    check.number("vertical_force", in.vertical_force, positive);
+  else
+    check.number("z", in.z, {-1, 1, false, false});
+  check.number("roll", in.roll, angle);
+  check.number("yaw", in.yaw, angle);
+  const char *names[] = {"x", "pitch", "speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate"};
+  const double values[] = {in.x,  in.pitch,     in.speed,    in.vy,
+                           in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
+  // beyond 1e9 m or rad a place has no micrometres left
+  for (int i = 0; i < 8; ++i)
+    check.number(names[i], values[i], i < 2 ? range{-1e9, 1e9, false, false} : finite);
+  const bool rolls_on = c.regime == RP_TRANSIENT_ROLLING && has_tangential(c);
+  check.number("time_step", in.time_step, rolls_on ? positive : not_negative);
+  for (int side = 0; side < 2; ++side) {
+    check.numbers("wheel_offset", in.wheel_offset[side], 3, {-1, 1, false, false});
+    check.numbers("wheel_rotation", in.wheel_rotation[side], 3, angle);
+    check.numbers("rail_offset", in.rail_offset[side], 3, {-1, 1, false, false});
+    check.numbers("rail_rotation", in.rail_rotation[side], 3, angle);
+    check.numbers("wheel_velocity", in.wheel_velocity[side], 3, finite);
+    check.numbers("wheel_angular_velocity", in.wheel_angular_velocity[side], 3, finite);
+    check.numbers("rail_velocity", in.rail_velocity[side], 3, finite);
+    check.numbers("rail_angular_velocity", in.rail_angular_velocity[side], 3, finite);
+    check.require(in.rail_rotation[side][1] == 0 && in.rail_rotation[side][2] == 0,
+                  "rail_rotation about y and z must be 0: this version turns rails and rollers "
+                  "about x only");
+  }
+  check.number("roller_pitch_rate", in.roller_pitch_rate, finite);
+  return check.error();
+}
+
+rp_error check_direction(const rp_input &d, rp_message *message) {
+  if (d.cookie != input_cookie) {
+    set_message(message, "the direction was never filled by rp_default_direction");
+    return RP_ERROR_NOT_DEFAULTED;
+  }
+  checker check(message);
+  for_each_number(d, [&](const char *name, const double &value, double) {
+    const bool bulk = std::strcmp(name, "bulk_temperature") == 0;
+    if (!(bulk && std::isnan(value))) check.number(name, value, finite);
+  });
+  return check.error();
+}
+
+}  // namespace railpatch

@@ -1,0 +1,129 @@
+// Checks of wheels on rails and rollers.
+#include "geometry/longitudinal_shape.hpp"
+#include "half_space/coupling.hpp"
+#include "half_space/physics.hpp"
+#include "handle/checker.hpp"
+
+namespace railpatch {
+
+namespace {
+
+// A rail's profiles along the track; the profiles themselves are looked at where they are read.
+void check_sections(const rp_config &c, checker &check) {
+  for (int side = 0; side < 2; ++side) {
+    const bool left = side == RP_LEFT;
+    const int count = c.section_count[side];
+    check.integer(left ? "section_count[0]" : "section_count[1]", count, 0, 100000);
+    if (check.error() != RP_OK || count == 0) continue;
+    if (c.kind == RP_WHEEL_RAIL && side != c.side) continue;
+    const char *name = left ? "section_position[0]" : "section_position[1]";
+    const double *place = c.section_position[side];
+    check.require(c.rail_sections[side] != nullptr && place != nullptr,
+                  "rail_sections and section_position must be given where section_count is not 0");
+    if (check.error() != RP_OK) return;
+    for (int k = 0; k < count; ++k) {
+      check.number(name, place[k], finite);
+      if (k > 0) check.number(name, place[k], {place[k - 1], inf, true, true});
+    }
+  }
+}
+
+}  // namespace
+
+void check_reference(const rp_config &c, checker &check) {
+  if (c.reference_surface == RP_REFERENCE_PLANE) return;
+  const char *wrong = nullptr;
+  if (c.kind == RP_PATCH)
+    wrong = "reference_surface must be plane with kind = patch: its shape has no normals";
+  else if (c.normal != RP_NORMAL_HALF_SPACE)
+    wrong = "reference_surface = curved needs normal = half_space";
+  else if (has_tangential(c) && c.tangential != RP_TANGENTIAL_FULL)
+    wrong = "reference_surface = curved needs tangential = full or none";
+  else if (c.fitted[0] > 0)
+    wrong = "reference_surface = curved needs fitted = 0, 0";
+  else if (has_tangential(c) && (c.friction_law != RP_COULOMB || c.layer_yield_stress > 0))
+    wrong = "reference_surface = curved needs friction_law = coulomb and layer_yield_stress = 0";
+  else if (c.temperature == 1)
+    wrong = "reference_surface = curved needs temperature = 0";
+  else if (has_tangential(c) && is_coupled(combine(c.shear_modulus, c.poisson_ratio)))
+    wrong = "reference_surface = curved needs bodies with equal (1-2nu)/G";
+  else if (c.regime == RP_TRANSIENT_ROLLING)
+    wrong = "reference_surface = curved needs regime = steady_rolling or none";
+  else if (c.derivatives != 0)
+    wrong = "reference_surface = curved needs derivatives = 0 in this version";
+  else if (longitudinal_shape::wanted(c, RP_LEFT) || longitudinal_shape::wanted(c, RP_RIGHT))
+    wrong = "reference_surface = curved needs wheels without runout and rails without rail_height";
+  else if (!has_physics)
+    wrong = "reference_surface must be plane: this build has no curved ones";
+  check.require(wrong == nullptr, wrong ? wrong : "");
+}
+
+namespace {
+
+// Out-of-round wheels and running surfaces that are not level.
+void check_longitudinal(const rp_config &c, checker &check) {
+  const auto values = [&](const char *name, int side, const double *v, int count, int least,
+                          int most) {
+    char label[40];
+    std::snprintf(label, sizeof label, "%s_count[%d]", name, side);
+    if (count != 0) check.integer(label, count, least, most);
+    std::snprintf(label, sizeof label, "%s[%d]", name, side);
+    if (count == 0 || check.error() != RP_OK) return;
+    char text[80];
+    std::snprintf(text, sizeof text, "%s is null", label);
+    check.require(v != nullptr, text);
+    if (check.error() == RP_OK) check.numbers(label, v, count, {-0.1, 0.1, false, false});
+  };
+  bool shaped = false, heights = false;
+  for (int side = 0; side < 2; ++side) {
+    values("runout", side, c.runout[side], c.runout_count[side], 8, 1000000);
+    values("rail_height", side, c.rail_height[side], c.rail_height_count[side], 4, 10000000);
+    heights |= c.rail_height_count[side] > 0;
+    shaped |= c.runout_count[side] > 0 || heights;
+  }
+  check.number("rail_height_start", c.rail_height_start, finite);
+  check.number("rail_height_spacing", c.rail_height_spacing, {1e-6, 1e3, false, false});
+  check.require(!heights || c.track == RP_RAIL, "rail_height_count must be 0 on rollers");
+  check.require(!shaped || c.reference_surface == RP_REFERENCE_PLANE,
+                "runout and rail_height need reference_surface = plane in this version");
+  check.require(!shaped || c.normal == RP_NORMAL_HALF_SPACE,
+                "runout and rail_height need normal = half_space: the shape is not quadratic");
+}
+
+}  // namespace
+
+void check_wheels(const rp_config &c, checker &check) {
+  check.integer("side", c.side, RP_LEFT, RP_RIGHT);
+  check.number("nominal_radius", c.nominal_radius, {0.01, 10, false, false});
+  check.number("flange_back_distance", c.flange_back_distance, {0.01, 10, false, false});
+  check.number("flange_back_position", c.flange_back_position, {-1, 1, false, false});
+  check.number("gauge", c.gauge, {0.01, 10, false, false});
+  check.number("gauge_height", c.gauge_height, {0, 0.1, false, false});
+  check.number("gauge_widening", c.gauge_widening, {-0.1, 0.1, false, false});
+  check.number("cant", c.cant, {-0.5, 0.5, false, false});
+  check.number("curvature", c.curvature, {-0.1, 0.1, false, false});
+  if (c.track == RP_ROLLER) {
+    check.number("roller_radius", c.roller_radius, {0.01, 100, false, false});
+    check.require(c.cant == 0, "cant must be 0 on rollers");
+    check.require(c.curvature == 0, "curvature must be 0 on rollers");
+  }
+  check.require(c.contact_frame == RP_FRAME_TRACK || c.track == RP_ROLLER,
+                "contact_frame must be track on rails");
+  check.require(c.contact_frame == RP_FRAME_TRACK || c.reference_surface == RP_REFERENCE_PLANE,
+                "contact_frame must be track with reference_surface = curved");
+  check.integer("max_patches", c.max_patches, 1, RP_MAX_PATCHES);
+  check.number("standstill_speed", c.standstill_speed, {0, 1, false, false});
+  check_sections(c, check);
+  check.numbers("rail_stiffness", c.rail_stiffness, 2, {0, 1e15, false, false});
+  check.numbers("rail_damping", c.rail_damping, 2, {0, 1e15, false, false});
+  for (int k = 0; k < 2; ++k) {
+    check.require(c.rail_damping[k] == 0 || c.rail_stiffness[k] > 0,
+                  "rail_damping must be 0 in a direction whose rail_stiffness is 0: there the rail "
+                  "is rigid");
+    check.require(c.rail_stiffness[k] == 0 || c.rail_stiffness[k] >= 1,
+                  "rail_stiffness must be 0 or at least 1 N/m");
+  }
+  check_longitudinal(c, check);
+}
+
+}  // namespace railpatch

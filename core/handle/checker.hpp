@@ -1,0 +1,84 @@
+// Ranges of numbers, and what remembers the first field that is out of its own: for check.cpp and
+// check_wheels.cpp.
+#pragma once
+
+#include <cstdio>
+#include <cstring>
+#include <limits>
+
+#include "handle/check.hpp"
+
+namespace railpatch {
+
+inline constexpr double inf = std::numeric_limits<double>::infinity();
+
+struct range {
+  double low, high;
+  bool open_low, open_high;
+};
+inline constexpr range positive{0, inf, true, true};
+inline constexpr range not_negative{0, inf, false, true};
+inline constexpr range finite{-inf, inf, true, true};
+inline constexpr range angle{-1.5, 1.5, false, false};
+inline constexpr range friction{0, 10, false, false};
+inline constexpr range bulk{-273.15, 1e4, false, false};  // degrees C
+
+// Remembers the first field that is out of range.
+class checker {
+ public:
+  explicit checker(rp_message *message) : message_(message) {}
+
+  void number(const char *name, double value, const range &r) {
+    if (failed_ || inside(value, r)) return;
+    failed_ = true;
+    set_message(message_, "%s is %g, allowed is %c%g, %g%c", name, value, r.open_low ? '(' : '[',
+                r.low, r.high, r.open_high ? ')' : ']');
+  }
+  void numbers(const char *name, const double *values, int count, const range &r) {
+    for (int i = 0; i < count && !failed_; ++i) {
+      if (inside(values[i], r)) continue;
+      char label[64];
+      std::snprintf(label, sizeof label, "%s[%d]", name, i);
+      number(label, values[i], r);
+    }
+  }
+  void integer(const char *name, int value, int low, int high) {
+    if ((value >= low && value <= high) || failed_) return;
+    failed_ = true;
+    set_message(message_, "%s is %d, allowed is %d ... %d", name, value, low, high);
+  }
+  // an enumeration: looked at as a number, since a value outside it must not be read as one
+  template <class E>
+  void choice(const char *name, const E &value, int low, int high) {
+    static_assert(sizeof(E) == sizeof(int));
+    int number;
+    std::memcpy(&number, &value, sizeof number);
+    integer(name, number, low, high);
+  }
+  void require(bool condition, const char *text) {
+    if (condition || failed_) return;
+    failed_ = true;
+    set_message(message_, "%s", text);
+  }
+  rp_error error() const { return failed_ ? RP_ERROR_VALUE : RP_OK; }
+
+ private:
+  static bool inside(double value, const range &r) {
+    return (r.open_low ? value > r.low : value >= r.low) &&
+           (r.open_high ? value < r.high : value <= r.high);
+  }
+
+  rp_message *message_;
+  bool failed_ = false;
+};
+
+inline bool has_tangential(const rp_config &c) {
+  return c.regime != RP_REGIME_NONE && c.tangential != RP_TANGENTIAL_NONE;
+}
+
+// What wheels, rails and rollers have beside the rest.
+void check_wheels(const rp_config &c, checker &check);
+// What goes with a curved reference surface.
+void check_reference(const rp_config &c, checker &check);
+
+}  // namespace railpatch

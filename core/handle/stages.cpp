@@ -1,0 +1,150 @@
+#include "handle/contact.hpp"
+
+// Which stages a scene has, and why.
+
+namespace railpatch {
+
+namespace {
+
+const char *normal_reason(rp_normal_method method) {
+  switch (method) {
+    case RP_NORMAL_HERTZ:
+      return "normal = hertz: closed form";
+    case RP_NORMAL_KIK_PIOTROWSKI:
+      return "normal = kik_piotrowski: virtual interpenetration, row by row";
+    case RP_NORMAL_ANALYN:
+      return "normal = analyn: assumed deformation, row by row";
+    case RP_NORMAL_HALF_SPACE:
+      break;
+  }
+  return "normal = half_space: conjugate gradients";
+}
+
+const char *tangential_reason(const patch_scene &scene) {
+  switch (scene.tangential) {
+    case RP_TANGENTIAL_NONE:
+      return "tangential = none";
+    case RP_TANGENTIAL_FASTSIM:
+      return "tangential = fastsim: simplified theory";
+    case RP_TANGENTIAL_FULL:
+      if (scene.law)
+        return !scene.law->plastic() ? "tangential = full: semi-smooth Newton, slip-velocity law"
+               : scene.law->by_velocity
+                   ? "tangential = full: semi-smooth Newton, slip-velocity law and plastic layer"
+                   : "tangential = full: semi-smooth Newton, plastic layer";
+      if (scene.is_forced())
+        return scene.is_fitted()
+                   ? "tangential = full: semi-smooth Newton on fitted rows, creepage from the force"
+                   : "tangential = full: semi-smooth Newton, creepage from the force";
+      return scene.is_fitted() ? "tangential = full: semi-smooth Newton on fitted rows"
+                               : "tangential = full: semi-smooth Newton on the grid";
+    case RP_TANGENTIAL_LINEAR:
+      return "tangential = linear: creepage coefficients, no traction field";
+    case RP_TANGENTIAL_POLACH:
+      return "tangential = polach: closed form, no traction field";
+    case RP_TANGENTIAL_FASTRIP:
+      return "tangential = fastrip: strip theory";
+    case RP_TANGENTIAL_TABLE:
+      return "tangential = table: full theory, interpolated; the table is the caller's";
+  }
+  return "";
+}
+
+const char *temperature_reason(const patch_scene &scene) {
+  if (!scene.heat) return "no surface temperature in the scene";
+  if (scene.heat->by_temperature)
+    return scene.heat->transient
+               ? "friction depends on temperature: columns with memory, outer loop"
+               : "friction depends on temperature: outer loop";
+  return scene.heat->transient ? "temperature is asked for: columns with memory"
+                               : "temperature is asked for: steady rolling";
+}
+
+const char *influence_reason(const patch_scene &scene) {
+  const bool on_grid = scene.tangential == RP_TANGENTIAL_FULL && !scene.is_fitted();
+  if (scene.normal == RP_NORMAL_HALF_SPACE)
+    return on_grid ? "normal = half_space and tangential = full need it"
+                   : "normal = half_space needs it";
+  return on_grid ? "tangential = full needs it" : "neither normal nor tangential method needs it";
+}
+
+const char *coupling_reason(const patch_scene &scene) {
+  if (scene.couples())
+    return scene.curved ? "reference_surface = curved: outer loop"
+                        : "unlike bodies, (1 - 2 nu)/G differs: outer loop";
+  return is_coupled(scene.elastic) ? "unlike bodies, but no tangential problem"
+                                   : "(1 - 2 nu)/G of both bodies is the same";
+}
+
+const char *history_reason(const patch_scene &scene) {
+  if (scene.tangential == RP_TANGENTIAL_NONE) return "no tangential problem";
+  if (!scene.keeps_steps()) return "steady rolling does not depend on the last step";
+  return scene.regime == motion::shift ? "regime = shift: tractions of the last step"
+                                       : "regime = transient_rolling: tractions of the last step";
+}
+
+const char *plasticity_reason(const rp_config &config, const patch_scene &scene) {
+  if (scene.tangential == RP_TANGENTIAL_NONE) return "no tangential problem";
+  if (scene.yields()) return "the third-body layer has a yield stress";
+  return config.layer_thickness > 0 ? "the third-body layer has no yield stress"
+                                    : "no third-body layer";
+}
+
+const char *derivative_reason(bool asked, const patch_scene &scene) {
+  if (!asked) return "derivatives are not asked for";
+  return scene.differentiates() ? "derivatives are asked for: from the solved conditions"
+                                : "derivatives are asked for: by differences of further steps";
+}
+
+}  // namespace
+
+void contact::describe(rp_stage_info *info) const {
+  const patch_scene &scene = solver_.scene();
+  const bool tangential = scene.tangential != RP_TANGENTIAL_NONE;
+  size_t distance = shape_.bytes(), normal = 0, traction = 0, heat = 0;
+  size_t history = solver_.history_bytes(), plastic = solver_.plastic_bytes();
+  for (const auto &m : memory_) {
+    distance += m.undeformed_distance.bytes();
+    normal += m.pressure.bytes();
+    traction += m.bytes() - m.undeformed_distance.bytes() - m.pressure.bytes() -
+                m.history.step_bytes() - m.history.plastic_bytes();
+    history += m.history.step_bytes();
+    plastic += m.history.plastic_bytes();
+    if (m.heat) heat += m.heat->bytes();
+    if (m.curved) {
+      distance += m.curved->bytes();
+      traction -= m.curved->bytes();
+    }
+  }
+  for (const auto &wheel : wheels_) distance += wheel.bytes();
+  if (tangential)
+    traction += solver_.tangential_bytes() - solver_.history_bytes() - solver_.plastic_bytes();
+  const char *where = config_.kind == RP_PATCH
+                          ? "undeformed distance of the given shape"
+                          : "kind is wheel_rail or wheelset: placement and contact search";
+  const size_t influence = solver_.influence_bytes();
+  info[RP_STAGE_GEOMETRY] = {"geometry", 1, where, distance};
+  info[RP_STAGE_INFLUENCE] = {"influence", influence > 0, influence_reason(scene), influence};
+  info[RP_STAGE_NORMAL] = {"normal", 1, normal_reason(scene.normal),
+                           normal + solver_.normal_bytes()};
+  const bool by_method = config_.tangential == RP_TANGENTIAL_NONE;
+  const char *why = tangential || by_method ? tangential_reason(scene) : "regime = none";
+  info[RP_STAGE_TANGENTIAL] = {"tangential", tangential, why, traction};
+  info[RP_STAGE_TEMPERATURE] = {"temperature", scene.heat.has_value(), temperature_reason(scene),
+                                heat + solver_.heat_bytes()};
+  info[RP_STAGE_FORCES] = {"forces", 1, "resultants of pressure and traction", 0};
+  info[RP_STAGE_COUPLING] = {"coupling", scene.couples(), coupling_reason(scene),
+                             solver_.coupling_bytes()};
+  info[RP_STAGE_HISTORY] = {"history", scene.keeps_steps(), history_reason(scene), history};
+  info[RP_STAGE_SUPPORT] = {
+      "rail_support", support_ != nullptr,
+      support_ ? "rails have a stiffness: deflections by Newton's method" : "the rails are rigid",
+      support_ ? support_->bytes() : 0};
+  info[RP_STAGE_PLASTICITY] = {"plasticity", scene.yields(), plasticity_reason(config_, scene),
+                               plastic};
+  const bool asked = config_.derivatives != 0;
+  info[RP_STAGE_DERIVATIVES] = {"derivatives", asked, derivative_reason(asked, scene),
+                                derivative_bytes()};
+}
+
+}  // namespace railpatch

@@ -1,0 +1,77 @@
+#include <algorithm>
+#include <limits>
+
+#include "handle/contact.hpp"
+
+// A step of wheels on rails that deflect.
+
+namespace railpatch {
+
+namespace {
+
+// Moves the wheels' rails and solves their contacts for rail_support.
+template <class Evaluate>
+class wheels_of_step final : public supported_wheels {
+ public:
+  wheels_of_step(std::vector<wheel_contact> &wheels, const patch_contact &solver,
+                 const rp_input &input, Evaluate &evaluate)
+      : wheels_(wheels), solver_(solver), input_(input), evaluate_(evaluate) {}
+
+  void move_rails(const lateral_vertical *deflection, const lateral_vertical *rate) override {
+    rp_input moved = input_;
+    for (size_t w = 0; w < wheels_.size(); ++w)
+      for (size_t k = 0; k < 2; ++k) {
+        const int side = wheels_[w].side();
+        moved.rail_offset[side][k + 1] += deflection[w][k];
+        moved.rail_velocity[side][k + 1] += rate[w][k];
+      }
+    solver_.observe(RP_STAGE_GEOMETRY, true);
+    for (auto &wheel : wheels_) wheel.place(moved);
+    solver_.observe(RP_STAGE_GEOMETRY, false);
+  }
+  bool first_touch(int wheel, double &z) override {
+    return wheels_[static_cast<size_t>(wheel)].first_touch(z);
+  }
+  bool evaluate(double z, contact *out) override { return evaluate_(z, out); }
+
+ private:
+  std::vector<wheel_contact> &wheels_;
+  const patch_contact &solver_;
+  const rp_input &input_;
+  Evaluate &evaluate_;
+};
+
+}  // namespace
+
+void contact::solve_supported(const rp_input &in, rp_result &out) {
+  const auto evaluate = [&](double z, supported_wheels::contact *found) {
+    evaluate_wheels(z, out);
+    bool known = true;
+    for (size_t w = 0; w < wheels_.size(); ++w) {
+      const rp_side_result &side = out.side[wheels_[w].side()];
+      found[w] = {{-side.force[1], -side.force[2]}, 0};
+      if (side.patch_count > 0) found[w].rolling_speed = side.patch[0].rolling_speed;
+      known = known && !wheels_[w].beyond();
+    }
+    return known;
+  };
+  wheels_of_step wheels(wheels_, solver_, in, evaluate);
+  const support_load load{config_.load == RP_FORCE, in.vertical_force, in.z, in.time_step};
+  const support_result found = support_->solve(wheels, load);
+  out.z = found.z;
+  if (found.beyond) {
+    if (load.prescribed) out.z = std::numeric_limits<double>::quiet_NaN();
+    report_search(false, RP_OUT_OF_RANGE, found.residual, out);
+    out.status = RP_OUT_OF_RANGE;
+    return;
+  }
+  report_search(found.converged, RP_NOT_CONVERGED, found.residual, out);
+  for (size_t w = 0; w < wheels_.size(); ++w)
+    for (size_t k = 0; k < 2; ++k) {
+      rp_side_result &side = out.side[wheels_[w].side()];
+      side.rail_deflection[k] = support_->deflection(static_cast<int>(w))[k];
+      side.rail_deflection_rate[k] = support_->rate(static_cast<int>(w))[k];
+    }
+}
+
+}  // namespace railpatch

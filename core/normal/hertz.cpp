@@ -1,0 +1,194 @@
+#include "normal/hertz.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace railpatch {
+
+namespace {
+
+using std::numbers::pi;
+
+// Carlson (1995), Numerical Algorithms 10: duplication until the fifth-order series is exact.
+double carlson_rf(double x, double y, double z) {
+  for (;;) {
+    const double mean = (x + y + z) / 3.0;
+    const double dx = 1.0 - x / mean, dy = 1.0 - y / mean, dz = -dx - dy;
+    if (!(std::max({std::abs(dx), std::abs(dy), std::abs(dz)}) >= 1e-3)) {  // or NaN
+      const double e2 = dx * dy - dz * dz, e3 = dx * dy * dz;
+      return (1.0 - e2 / 10.0 + e3 / 14.0 + e2 * e2 / 24.0 - 3.0 * e2 * e3 / 44.0) /
+             std::sqrt(mean);
+    }
+    const double lambda = std::sqrt(x * y) + std::sqrt(x * z) + std::sqrt(y * z);
+    x = 0.25 * (x + lambda);
+    y = 0.25 * (y + lambda);
+    z = 0.25 * (z + lambda);
+  }
+}
+
+double carlson_rd(double x, double y, double z) {
+  double sum = 0, power = 1;
+  for (;;) {
+    const double mean = (x + y + 3.0 * z) / 5.0;
+    const double dx = 1.0 - x / mean, dy = 1.0 - y / mean, dz = -(dx + dy) / 3.0;
+    if (!(std::max({std::abs(dx), std::abs(dy), std::abs(dz)}) >= 1e-3)) {  // or NaN
+      const double xy = dx * dy, z2 = dz * dz;
+      const double e2 = xy - 6.0 * z2, e3 = (3.0 * xy - 8.0 * z2) * dz;
+      const double e4 = 3.0 * (xy - z2) * z2, e5 = xy * z2 * dz;
+      const double series = 1.0 - 3.0 * e2 / 14.0 + e3 / 6.0 + 9.0 * e2 * e2 / 88.0 -
+                            3.0 * e4 / 22.0 - 9.0 * e2 * e3 / 52.0 + 3.0 * e5 / 26.0;
+      return 3.0 * sum + power * series / (mean * std::sqrt(mean));
+    }
+    const double lambda = std::sqrt(x * y) + std::sqrt(x * z) + std::sqrt(y * z);
+    sum += power / (std::sqrt(z) * (z + lambda));
+    power *= 0.25;
+    x = 0.25 * (x + lambda);
+    y = 0.25 * (y + lambda);
+    z = 0.25 * (z + lambda);
+  }
+}
+
+// d R_D(0, y, z)/dy, which is symmetric in y and z. From the integral, by partial fractions,
+// (R_D(0, y, z) - R_D(0, z, y))/(2 (z - y)); for nearly equal ones the integrand's series about
+// their mean.
+double carlson_rd_rate(double y, double z) {
+  const double mean = 0.5 * (y + z), apart = 0.5 * (z - y), ratio = apart / mean;
+  if (std::abs(ratio) > 1e-3) return (carlson_rd(0, y, z) - carlson_rd(0, z, y)) / (4.0 * apart);
+  const double power = mean * mean * std::sqrt(mean);
+  return -(9.0 * pi / 32.0) * (1.0 + 35.0 / 32.0 * ratio * ratio) / power;
+}
+
+// Logarithmic rates of c0, c1 and approach at constant force, by ln a and ln b.
+struct log_rates {
+  double c0[2], c1[2], approach[2];
+};
+
+log_rates rates_of(const double semi_axes[2]) {
+  const double a2 = semi_axes[0] * semi_axes[0], b2 = semi_axes[1] * semi_axes[1];
+  const double d0 = carlson_rd(0, b2, a2), d1 = carlson_rd(0, a2, b2), f = carlson_rf(0, a2, b2);
+  const double rate = carlson_rd_rate(a2, b2);
+  const double m0 = 2.0 * b2 * rate / d0, m1 = 2.0 * a2 * rate / d1;
+  return {{-3.0 - m0, m0}, {m1, -3.0 - m1}, {-a2 * d0 / (3.0 * f), -b2 * d1 / (3.0 * f)}};
+}
+
+// Rates from those of ln a, ln b and ln F.
+hertz_contact from_logs(const hertz_contact &c, const double curvatures[2], const double axes[2],
+                        double force, double approach) {
+  return {{c.semi_axes[0] * axes[0], c.semi_axes[1] * axes[1]},
+          {curvatures[0], curvatures[1]},
+          c.normal_force * force,
+          approach,
+          c.max_pressure * (force - axes[0] - axes[1])};
+}
+
+// ln(c0/c1) of an ellipse with ln(a/b) = t, falling from +inf to -inf.
+double log_curvature_ratio(double t) {
+  const double a2 = std::exp(t), b2 = std::exp(-t);
+  return std::log(carlson_rd(0, b2, a2) / carlson_rd(0, a2, b2));
+}
+
+// ln(a/b) for given curvatures: bisection to the last bit is cheap and cannot fail.
+double log_axis_ratio(double c0, double c1) {
+  const double target = std::log(c0 / c1);
+  double lower = -25, upper = 25;
+  for (int i = 0; i < 100 && upper - lower > 1e-15 * std::max(1.0, std::abs(lower)); ++i) {
+    const double t = 0.5 * (lower + upper);
+    (log_curvature_ratio(t) > target ? lower : upper) = t;
+  }
+  return 0.5 * (lower + upper);
+}
+
+struct unit_ellipse {
+  double a, b, rd0, rf;  // semi-axes with a b = 1 and their integrals
+};
+
+unit_ellipse shape(double log_ratio) {
+  const double a = std::exp(0.5 * log_ratio), b = 1.0 / a;
+  return {a, b, carlson_rd(0, b * b, a * a), carlson_rf(0, a * a, b * b)};
+}
+
+hertz_contact complete(double a, double b, const double curvatures[2], double modulus,
+                       double force) {
+  const double rf = carlson_rf(0, a * a, b * b);
+  return {{a, b},
+          {curvatures[0], curvatures[1]},
+          force,
+          3.0 * force / (2.0 * pi * modulus) * rf,
+          3.0 * force / (2.0 * pi * a * b)};
+}
+
+}  // namespace
+
+hertz_contact hertz_from_force(const double curvatures[2], double modulus, double force) {
+  const unit_ellipse u = shape(log_axis_ratio(curvatures[0], curvatures[1]));
+  const double size = std::cbrt(force * u.rd0 / (2.0 * pi * modulus * curvatures[0]));
+  return complete(size * u.a, size * u.b, curvatures, modulus, force);
+}
+
+hertz_contact hertz_from_approach(const double curvatures[2], double modulus, double approach) {
+  const unit_ellipse u = shape(log_axis_ratio(curvatures[0], curvatures[1]));
+  const double size = std::sqrt(approach * u.rd0 / (3.0 * curvatures[0] * u.rf));
+  const double force = 2.0 * pi * modulus * curvatures[0] * size * size * size / u.rd0;
+  return complete(size * u.a, size * u.b, curvatures, modulus, force);
+}
+
+hertz_contact hertz_from_ellipse(const double semi_axes[2], double modulus, double force) {
+  const double a2 = semi_axes[0] * semi_axes[0], b2 = semi_axes[1] * semi_axes[1];
+  const double size = force / (2.0 * pi * modulus);
+  const double curvatures[2] = {size * carlson_rd(0, b2, a2), size * carlson_rd(0, a2, b2)};
+  return complete(semi_axes[0], semi_axes[1], curvatures, modulus, force);
+}
+
+hertz_contact hertz_ellipse_from_approach(const double semi_axes[2], double modulus,
+                                          double approach) {
+  const double a2 = semi_axes[0] * semi_axes[0], b2 = semi_axes[1] * semi_axes[1];
+  return hertz_from_ellipse(semi_axes, modulus,
+                            2.0 * pi * modulus * approach / (3.0 * carlson_rf(0, a2, b2)));
+}
+
+hertz_contact hertz_line(double radius, double width, double modulus, double force) {
+  hertz_contact result;
+  result.normal_force = force;
+  result.curvatures[0] = 0.5 / radius;
+  result.semi_axes[0] = std::sqrt(4.0 * force / width * radius / (pi * modulus));
+  result.max_pressure = 2.0 * force / (pi * width * result.semi_axes[0]);
+  return result;
+}
+
+// d ln(c0/c1) fixes d ln(a/b), then d ln c0 the size.
+hertz_contact hertz_rate_of_force(const hertz_contact &c, const double curvatures[2],
+                                  double force) {
+  const log_rates r = rates_of(c.semi_axes);
+  const double k0 = curvatures[0] / c.curvatures[0], k1 = curvatures[1] / c.curvatures[1];
+  const double load = force / c.normal_force;
+  const double ratio = (k0 - k1) / (r.c0[0] - r.c1[0]);  // d ln(a/b)
+  // d ln c0 = c0[0] (ratio + d ln b) + c0[1] d ln b + d ln F, with c0[0] + c0[1] = -3
+  const double b = (k0 - load - r.c0[0] * ratio) / -3.0, axes[2] = {b + ratio, b};
+  return from_logs(c, curvatures, axes, load,
+                   c.approach * (load + r.approach[0] * axes[0] + r.approach[1] * axes[1]));
+}
+
+hertz_contact hertz_rate_of_approach(const hertz_contact &c, const double curvatures[2],
+                                     double approach) {
+  // linear in the force: what the approach wants beyond that of no change in force
+  const hertz_contact still = hertz_rate_of_force(c, curvatures, 0.0);
+  const double none[2] = {0, 0};
+  const hertz_contact loaded = hertz_rate_of_force(c, none, 1.0);
+  const double force = (approach - still.approach) / loaded.approach;
+  return hertz_rate_of_force(c, curvatures, force);
+}
+
+hertz_contact hertz_rate_of_line(const hertz_contact &c, double force) {
+  const double load = force / c.normal_force, curvatures[2] = {0, 0};
+  const double axes[2] = {0.5 * load, 0.0};
+  return from_logs(c, curvatures, axes, load, 0.0);
+}
+
+hertz_contact hertz_rate_of_ellipse(const hertz_contact &c, double force) {
+  const double load = force / c.normal_force, axes[2] = {0, 0};
+  const double curvatures[2] = {c.curvatures[0] * load, c.curvatures[1] * load};
+  return from_logs(c, curvatures, axes, load, c.approach * load);
+}
+
+}  // namespace railpatch

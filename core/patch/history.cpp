@@ -1,0 +1,129 @@
+#include "patch/history.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace railpatch {
+
+patch_history::patch_history(int max_count, bool steps, const bound_law *law) {
+  const auto n = static_cast<size_t>(max_count);
+  if (steps)
+    for (auto *b : {&last_px, &last_py}) *b = aligned_buffer<double>(n);
+  if (!law) return;
+  after = aligned_buffer<carried_state>(n);
+  friction = aligned_buffer<double>(n);
+  if (steps) before = aligned_buffer<carried_state>(n);
+  if (!law->plastic()) return;
+  yield_stress = aligned_buffer<double>(n);
+  for (int c = 0; c < 2; ++c) {
+    plastic[c] = aligned_buffer<double>(n);
+    if (steps) plastic_before[c] = aligned_buffer<double>(n);
+  }
+}
+
+size_t patch_history::bytes() const {
+  return step_bytes() + plastic_bytes() + after.bytes() + friction.bytes();
+}
+
+void patch_history::begin(const grid &g, double upstream, const double *px, const double *py) {
+  if (!keeps_steps()) return;
+  const auto count = static_cast<size_t>(g.count());
+  if (!begun) {
+    // fresh material everywhere, without traction
+    for (auto *b : {&last_px, &last_py}) std::fill_n(b->data(), count, 0.0);
+    if (has_law()) std::fill_n(before.data(), count, carried_state{{0, 0, 0}});
+    for (auto &p : plastic_before)
+      if (p.size()) std::fill_n(p.data(), count, 0.0);
+  } else {
+    std::copy_n(px, count, last_px.data());
+    std::copy_n(py, count, last_py.data());
+    if (has_law()) shift_states(g, upstream);
+    for (int c = 0; c < 2; ++c)
+      if (plastic[c].size())
+        shift_field(g, upstream, 0.0, plastic[c].data(), plastic_before[c].data());
+  }
+  begun = true;
+}
+
+void patch_history::remember(const grid &g, const std::array<double, 3> &reference, double share,
+                             const double *px, const double *py) {
+  held = begun;
+  if (!held) return;
+  last_grid = g;
+  last_reference = reference;
+  last_share = share;
+  std::copy_n(px, g.count(), last_px.data());
+  std::copy_n(py, g.count(), last_py.data());
+}
+
+void patch_history::shift_states(const grid &g, double upstream) {
+  const double elements = upstream / g.dx, whole = std::floor(elements), share = elements - whole;
+  const int step = static_cast<int>(std::clamp(whole, -1.0 - g.nx, 1.0 + g.nx));
+  const carried_state none{{0, 0, 0}};
+  for (int j = 0; j < g.ny; ++j) {
+    const carried_state *row = after.data() + j * g.nx;
+    for (int i = 0; i < g.nx; ++i) {
+      const auto at = [&](int k) -> const carried_state & {
+        return k >= 0 && k < g.nx ? row[k] : none;
+      };
+      const carried_state &a = at(i + step), &b = at(i + step + 1);
+      double *to = before[static_cast<size_t>(j * g.nx + i)].v;
+      for (int c = 0; c < 3; ++c) to[c] = (1.0 - share) * a.v[c] + share * b.v[c];
+    }
+  }
+}
+
+void patch_history::start_from_before(const grid &g, const bound_law &law) {
+  if (!has_law()) return;
+  const auto count = static_cast<size_t>(g.count());
+  std::fill_n(friction.data(), count, 0.0);
+  for (size_t i = 0; i < count; ++i) {
+    after[i] = before.size() ? before[i] : carried_state{{0, 0, 0}};
+    after[i].v[0] = 0;
+  }
+  if (!law.plastic()) return;
+  for (int c = 0; c < 2; ++c) {
+    if (before.size())
+      std::copy_n(plastic_before[c].data(), count, plastic[c].data());
+    else
+      std::fill_n(plastic[c].data(), count, 0.0);
+  }
+  for (size_t i = 0; i < count; ++i) {
+    const double *u = after[i].v + 1;
+    double slope;
+    yield_stress[i] = law.yield.at(law.by_magnitude ? std::hypot(u[0], u[1]) : u[0], slope);
+  }
+}
+
+void patch_history::plastic_work(const grid &g, int direction, const double *px, const double *py,
+                                 double *work) const {
+  std::fill_n(work, g.count(), 0.0);
+  for (int j = 0; j < g.ny; ++j) {
+    double carried[2] = {0, 0};
+    for (int k = 0; k < g.nx; ++k) {
+      const auto at = static_cast<size_t>(j * g.nx + (direction > 0 ? g.nx - 1 - k : k));
+      const double p[2] = {px[at], py[at]};
+      if (p[0] == 0 && p[1] == 0) continue;
+      for (int c = 0; c < 2; ++c) {
+        const double now = plastic[c][at];
+        work[at] += p[c] * (now - (before.size() ? plastic_before[c][at] : carried[c]));
+        carried[c] = now;
+      }
+      // of the sign of p; what is left is rounding
+      work[at] = std::max(work[at], 0.0);
+    }
+  }
+}
+
+inelastic_fields patch_history::fields(bound_law &law) {
+  const bool steps = before.size() > 0;
+  return {&law,
+          steps ? before.data() : nullptr,
+          after.data(),
+          plastic[0].data(),
+          plastic[1].data(),
+          yield_stress.data(),
+          friction.data()};
+}
+
+}  // namespace railpatch

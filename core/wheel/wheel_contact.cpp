@@ -1,0 +1,456 @@
+#include "wheel/wheel_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace railpatch {
+
+namespace {
+
+profile_view checked_view(const rp_profile &p, const char *field) {
+  if (!p.arc_length || !p.y || !p.z || !p.dy || !p.dz) throw profile_error{field, "is not given"};
+  const profile_view view{p.arc_length, p.y, p.z, p.dy, p.dz, p.count};
+  if (const profile_fault fault = validate(view); fault != profile_fault::none)
+    throw profile_error{field, text(fault)};
+  return view;
+}
+
+std::unique_ptr<profile> make_profile(const rp_profile &p, const char *field) {
+  return std::make_unique<profile>(checked_view(p, field));
+}
+
+// Profiles of a rail along the track; none where it has one profile.
+std::unique_ptr<rail_sections> make_sections(const rp_config &c, int side) {
+  const int count = c.section_count[side];
+  if (count == 0) return nullptr;
+  const char *field = side == RP_LEFT ? "rail_sections[0]" : "rail_sections[1]";
+  if (!c.rail_sections[side] || !c.section_position[side]) throw profile_error{field, "are null"};
+  std::vector<profile_view> views;
+  for (int k = 0; k < count; ++k) {
+    views.push_back(checked_view(c.rail_sections[side][k], field));
+    if (!rail_sections::belong_together(views.front(), views.back()))
+      throw profile_error{field, "must have as many knots at the same shares of the arc length"};
+  }
+  return std::make_unique<rail_sections>(views.data(), c.section_position[side], count);
+}
+
+// The rail's profile, that of the first section where there are several.
+std::unique_ptr<profile> make_rail(const rp_config &c, int side) {
+  if (c.section_count[side] > 0)
+    return make_profile(c.rail_sections[side][0],
+                        side == RP_LEFT ? "rail_sections[0]" : "rail_sections[1]");
+  return make_profile(c.rail[side], side == RP_LEFT ? "rail_left" : "rail_right");
+}
+
+// Both rails lean inwards by the same cant; a right-hand curve is a left-hand one in the mirror.
+track_config track_of(const rp_config &c, int side) {
+  return {c.track == RP_ROLLER ? track_kind::roller : track_kind::rail,
+          c.gauge + c.gauge_widening,
+          c.gauge_height,
+          c.cant,
+          side == RP_LEFT ? -c.curvature : c.curvature,
+          c.roller_radius};
+}
+
+deviation deviation_of(const double offset[3], const double rotation[3], const double velocity[3],
+                       const double angular_velocity[3]) {
+  const auto vector = [](const double v[3]) { return vec3{v[0], v[1], v[2]}; };
+  return {vector(offset), vector(rotation), vector(velocity), vector(angular_velocity)};
+}
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// greatest distance a reference may move between steps for its solution to be a useful start
+constexpr double warm_distance = 2e-3;
+// m, of a patch's bounds, within which the last step's tractions are taken for its own
+constexpr double near = 4e-3;
+
+void scale(patch_wrench &wrench, double share) {
+  for (int k = 0; k < 3; ++k) {
+    wrench.force[k] *= share;
+    wrench.moment[k] *= share;
+  }
+}
+
+// The rows of a patch's parts on its grid.
+contact_parts parts_on(const patch_region &region, const grid &g) {
+  static_assert(max_parts <= contact_parts::capacity);
+  contact_parts parts;
+  parts.count = region.parts;
+  for (int k = 0; k + 1 < region.parts; ++k) {
+    const double row = std::ceil((region.cut[k] - g.y0) / g.dy);
+    parts.first_row[k + 1] = static_cast<int>(std::clamp(row, 0.0, static_cast<double>(g.ny)));
+    parts.factor[k] = region.coupling[k];
+  }
+  return parts;
+}
+
+}  // namespace
+
+wheel_contact::wheel_contact(const rp_config &c, int side)
+    : config_(c),
+      side_(side),
+      sections_(make_sections(c, side)),
+      wheel_(make_profile(c.wheel[side], side == RP_LEFT ? "wheel_left" : "wheel_right")),
+      rail_(make_rail(c, side)) {
+  rules_.blended = c.patch_rule == RP_PATCHES_BLENDED;
+  rules_.inclined = c.contact_frame == RP_FRAME_INCLINED;
+  const wheel_config sizes{c.nominal_radius, c.flange_back_distance, c.flange_back_position,
+                           c.standstill_speed};
+  geometry_ = std::make_unique<side_geometry>(*wheel_, *rail_, sizes, track_of(c, side));
+  if (c.derivatives != 0) solutions_.resize(static_cast<size_t>(c.max_patches));
+  if (!longitudinal_shape::wanted(c, side)) return;
+  shape_ = std::make_unique<longitudinal_shape>(c, side);
+  geometry_->set_shape(shape_.get());
+}
+
+// Of the inputs, or of their rates: what a right-hand wheel does.
+side_motion wheel_contact::motion_of(const rp_input &in) const {
+  side_motion motion;
+  motion.wheelset = {in.y,  in.z,  in.roll,      in.yaw,      in.speed,
+                     in.vy, in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
+  motion.wheel = deviation_of(in.wheel_offset[side_], in.wheel_rotation[side_],
+                              in.wheel_velocity[side_], in.wheel_angular_velocity[side_]);
+  motion.rail = deviation_of(in.rail_offset[side_], in.rail_rotation[side_],
+                             in.rail_velocity[side_], in.rail_angular_velocity[side_]);
+  motion.roller_pitch_rate = in.roller_pitch_rate;
+  return side_ == RP_LEFT ? mirrored(motion) : motion;
+}
+
+void wheel_contact::place(const rp_input &in) {
+  if (sections_) {
+    bool changed = false;
+    const profile_view now = sections_->at(in.x, changed);
+    if (changed) {
+      rail_->assign(now);
+      geometry_->reload_rail();
+    }
+  }
+  time_step_ = in.time_step;
+  if (shape_) shape_->place(in.pitch + in.wheel_rotation[side_][1], in.x, config_.nominal_radius);
+  geometry_->place(motion_of(in));
+}
+
+grid wheel_contact::choose_grid(const patch_region &r) const {
+  grid g;
+  const double low[2] = {r.x_min, r.s_min}, high[2] = {r.x_max, r.s_max};
+  double size[2], origin[2];
+  int count[2];
+  for (int k = 0; k < 2; ++k) {
+    if (config_.element_size[0] > 0) {
+      // element centres on multiples of the size, so that the grid moves with the reference
+      size[k] = config_.element_size[k];
+      const double first = std::floor(low[k] / size[k]) - 1.0;
+      const double last = std::ceil(high[k] / size[k]) + 1.0;
+      origin[k] = first * size[k];
+      // bounds that are not finite, from a wild profile, give no grid
+      const double cells = last - first + 1.0;
+      count[k] = cells >= 1.0 && cells < 1e6 ? static_cast<int>(cells) : 0;
+    } else {
+      size[k] = (high[k] - low[k]) / config_.elements[k];
+      origin[k] = low[k] - 0.5 * size[k];
+      count[k] = config_.elements[k] + 2;
+    }
+  }
+  g.nx = count[0];
+  g.ny = count[1];
+  g.dx = size[0];
+  g.dy = size[1];
+  g.x0 = origin[0];
+  g.y0 = origin[1];
+  return g;
+}
+
+void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_side_result &out) {
+  solver.observe(RP_STAGE_GEOMETRY, true);
+  const search_result found =
+      find_patches(*geometry_, rules_, parts_, regions_.data(), config_.max_patches);
+  solver.observe(RP_STAGE_GEOMETRY, false);
+  out.status = RP_NO_CONTACT;
+  const int count = patches_ = found.count;
+  out.patch_count = found.lead;
+  out.alternative_count = count - found.lead;
+  for (int k = 0; k < 3; ++k) out.force[k] = out.moment[k] = 0;
+  out.rolling_radius = 0;
+  for (int k = 0; k < 2; ++k) out.rail_deflection[k] = out.rail_deflection_rate[k] = nan;
+  for (auto &patch : out.patch) patch = empty_patch_result();
+  beyond_ = found.status == search_status::out_of_range ||
+            found.status == search_status::too_many_patches;
+  if (beyond_) out.status = RP_OUT_OF_RANGE;
+  match_memory(memory, count);
+  for (int i = 0; i < count; ++i)
+    out.status = combine_status(
+        out.status, solve_patch(solver, regions_[static_cast<size_t>(i)], i, memory, out));
+  for (int i = count; i < config_.max_patches; ++i) {
+    memory[i].warm = memory[i].solved = false;
+    memory[i].history.clear_now();
+  }
+  // of several patches the mean radius, each weighted with the load it adds to the sum
+  double load = 0;
+  for (int i = 0; i < count; ++i)
+    if (out.patch[i].normal_force > 0) load += out.patch[i].share * out.patch[i].normal_force;
+  out.rolling_radius = load > 0 ? out.rolling_radius / load : nan;
+  if (side_ == RP_LEFT) mirror(out);
+}
+
+// Moves the memories so that each patch finds the one of the last solution that lay nearest to it
+// and was most alike in extent; patches appear, vanish, join and part beside it. Ties go to the
+// first, so the order is a function of the last solution only.
+void wheel_contact::match_memory(patch_memory *memory, int count) const {
+  const int slots = config_.max_patches;
+  if (slots == 1) return;
+  const auto unlike = [&](const patch_region &region, const patch_memory &m) {
+    const vec3 &at = region.frame.origin;
+    const double moved = std::hypot(at[1] - m.reference[1], at[2] - m.reference[2]);
+    if (!m.warm || moved > warm_distance) return HUGE_VAL;
+    const double low = m.g.y0, high = m.g.y(m.g.ny - 1);
+    return moved + std::fabs(region.s_min - low) + std::fabs(region.s_max - high);
+  };
+  std::array<int, RP_MAX_PATCHES> taken;  // slot of each patch
+  std::array<bool, RP_MAX_PATCHES> used{};
+  taken.fill(-1);
+  const auto at = [](int i) { return static_cast<size_t>(i); };
+  for (int round = 0; round < count; ++round) {
+    double best = HUGE_VAL;
+    int patch = -1, slot = -1;
+    for (int i = 0; i < count; ++i)
+      for (int k = 0; k < slots; ++k) {
+        if (taken[at(i)] >= 0 || used[at(k)]) continue;
+        const double u = unlike(regions_[at(i)], memory[k]);
+        if (u < best) best = u, patch = i, slot = k;
+      }
+    if (patch < 0) break;
+    taken[at(patch)] = slot;
+    used[at(slot)] = true;
+  }
+  for (int i = 0; i < count; ++i)
+    for (int k = 0; k < slots && taken[at(i)] < 0; ++k)
+      if (!used[at(k)]) taken[at(i)] = k, used[at(k)] = true;
+  for (int i = 0; i < count; ++i) {
+    const int from = taken[at(i)];
+    if (from == i) continue;
+    std::swap(memory[i], memory[from]);
+    // what was here now lies there
+    for (int j = i + 1; j < count; ++j)
+      if (taken[at(j)] == i) taken[at(j)] = from;
+  }
+}
+
+rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region, int index,
+                                     patch_memory *memories, rp_side_result &out) {
+  rp_patch_result &result = out.patch[index];
+  patch_memory &memory = memories[index];
+  result.share = region.share;
+  if (!solutions_.empty()) solutions_[static_cast<size_t>(index)].solved = false;
+  patch_problem problem;
+  const bool reached = !memory.curved || memory.curved->begin(*geometry_, region);
+  problem.g = reached ? choose_grid(region) : grid{};
+  const grid &g = problem.g;
+  const bool usable = g.nx > 0 && g.ny > 0 && g.dx > 0 && g.dy > 0 && std::isfinite(g.x0 + g.y0);
+  if (!usable || !solver.fits(g)) {
+    // what this patch carries is not known, so neither is the sum
+    std::fill_n(out.force, 3, nan);
+    std::fill_n(out.moment, 3, nan);
+    beyond_ = true;
+    memory.history.clear_now();
+    return result.status = RP_OUT_OF_RANGE;
+  }
+
+  // the reference moves with the contact; a new contact elsewhere starts afresh
+  const vec3 &origin = region.frame.origin;
+  if (std::hypot(origin[1] - memory.reference[1], origin[2] - memory.reference[2]) > warm_distance)
+    memory.warm = false;
+  memory.reference = origin;
+  solver.start_from(memory, g);
+
+  solver.observe(RP_STAGE_GEOMETRY, true);
+  const double depth = place_grid(solver, region, g, memory);
+  const creepage_state rolling = geometry_->creepages(region.frame, depth);
+  if (memory.curved) memory.curved->set_slip(*geometry_, depth, rolling.rolling_speed);
+  solver.observe(RP_STAGE_GEOMETRY, false);
+
+  problem.rolling_speed = rolling.rolling_speed;
+  problem.rolling = {{rolling.xi, rolling.eta}, rolling.phi, rolling.direction < 0 ? -1 : 1, 0.0};
+  problem.parts = parts_on(region, g);
+  past_tractions past[RP_MAX_PATCHES];
+  if (solver.scene().keeps_steps()) set_past(memories, region, rolling.direction, problem, past);
+  if (solver.scene().normal == RP_NORMAL_HERTZ)
+    problem.hertz = hertz_of(region, depth, solver.scene().modulus());
+  patch_wrench wrench;
+  solver.solve(problem, memory, result, wrench);
+  memory.history.begun = solver.scene().keeps_steps();
+  memory.share = region.share;
+  for (size_t k = 0; k < 2; ++k) memory.rail[k] = geometry_->motion().rail.offset[k + 1];
+
+  if (!solutions_.empty()) solutions_[static_cast<size_t>(index)] = {true, problem, wrench, depth};
+  add_force(region, depth, wrench, result.normal_force, out);
+  describe(solver.scene(), region, rolling, depth, result);
+  // beyond a profile's end there is no surface: an edge in contact is outside the theory
+  if (region.at_profile_end && result.status == RP_CONVERGED) result.status = RP_OUT_OF_RANGE;
+  beyond_ = beyond_ || memory.beyond || (region.at_profile_end && result.status == RP_OUT_OF_RANGE);
+  return result.status;
+}
+
+// Fills the undeformed distance, and the friction where it varies. Returns the greatest depth (m).
+double wheel_contact::place_grid(const patch_contact &solver, patch_region &region, const grid &g,
+                                 patch_memory &memory) const {
+  double *h = memory.undeformed_distance.data();
+  if (memory.curved)
+    memory.curved->place(*geometry_, g, h);
+  else
+    geometry_->undeformed_distance(region.frame, {g.nx, g.ny, g.x0, g.y0, g.dx, g.dy}, h);
+  if (memory.row_friction.size() > 0) set_friction(solver, region.frame, memory);
+  return -*std::min_element(h, h + g.count());
+}
+
+// The paraboloid whose overlap has the same depth, length and width.
+hertz_contact wheel_contact::hertz_of(const patch_region &region, double depth, double modulus) {
+  const double half[2] = {0.5 * (region.x_max - region.x_min), 0.5 * (region.s_max - region.s_min)};
+  const double curvatures[2] = {depth / (half[0] * half[0]), depth / (half[1] * half[1])};
+  return hertz_from_approach(curvatures, modulus, depth);
+}
+
+void wheel_contact::add_force(const patch_region &region, double depth, patch_wrench wrench,
+                              double normal_force, rp_side_result &out) const {
+  scale(wrench, region.share);
+  out.rolling_radius +=
+      region.share * normal_force * geometry_->rolling_radius(region.frame, depth);
+  const vec3 lever = geometry_->lever(region.frame);
+  add_wrench(wrench, region.frame.contact_angle, lever.data(), out.force, out.moment,
+             region.frame.inclination);
+}
+
+void wheel_contact::describe(const patch_scene &scene, const patch_region &region,
+                             const creepage_state &rolling, double depth, rp_patch_result &result) {
+  std::copy_n(region.frame.origin.begin(), 3, result.position);
+  result.contact_angle = region.frame.contact_angle;
+  result.approach = depth;
+  result.rolling_speed = rolling.rolling_speed;
+  result.direction = rolling.direction;
+  if (scene.tangential == RP_TANGENTIAL_NONE) return;
+  result.creepage[0] = rolling.xi;
+  result.creepage[1] = rolling.eta;
+  result.spin_creepage = rolling.phi;
+}
+
+// The rail's material stays where it is on the rail, while the wheel moves on by the distance
+// rolled and the reference by what its place has changed; the wheel's differs from it by creepage
+// only. What solutions of the last step left counts with their shares, as it did in the force, and
+// goes to a patch where it lies nearer to its parts than to others, and near at all.
+void wheel_contact::set_past(const patch_memory *memory, const patch_region &region, int direction,
+                             patch_problem &problem, past_tractions *past) const {
+  rolling_input &rolling = problem.rolling;
+  const double speed = problem.rolling_speed, slow = config_.standstill_speed;
+  rolling.speed = speed;
+  // what stands still does not roll on; near standstill creepages refer to another speed
+  rolling.regime = speed > 0 ? motion::transient : motion::shift;
+  if (speed > 0) rolling.distance = speed * time_step_;
+  const double moved = speed < slow ? std::sqrt(std::max(slow * (2 * speed - slow), 0.0)) : speed;
+  const double rolled = direction * moved * time_step_;
+  problem.past = past;
+  const vec3 &rail = geometry_->motion().rail.offset;
+  const contact_frame &frame = region.frame;
+  const auto lateral = [&](const vec3 &at) {
+    return lateral_in(frame.origin, frame.contact_angle, at);
+  };
+  double low = region.s_min - near, high = region.s_max + near;
+  const int first_part = region.first_part, last_part = first_part + region.parts - 1;
+  const auto part_at = [&](int k) -> const part & { return parts_.parts[k]; };
+  if (first_part > 0)
+    low = std::max(low, 0.5 * (region.s_min + lateral(part_at(first_part - 1).last)));
+  if (last_part + 1 < parts_.count)
+    high = std::min(high, 0.5 * (region.s_max + lateral(part_at(last_part + 1).first)));
+  for (int k = 0; k < config_.max_patches; ++k) {
+    const patch_history &h = memory[k].history;
+    if (!h.held) continue;
+    const grid &g = h.last_grid;
+    // in this frame; the rail has taken its material along
+    const double place = lateral({0, h.last_reference[1] + rail[1], h.last_reference[2] + rail[2]});
+    const auto row = [&](double s) {
+      return static_cast<int>(
+          std::clamp(std::ceil((s - place - g.y0) / g.dy), 0.0, static_cast<double>(g.ny)));
+    };
+    const int begin = row(low), end = row(high);
+    if (end <= begin) continue;
+    past_tractions &p = past[problem.past_count++];
+    p = {&h, begin, end - begin, {0, 0}};
+    p.offset[0] = frame.origin[0] + problem.g.x0 + rolled - h.last_reference[0] - g.x0;
+    p.offset[1] = problem.g.y0 - place - g.y(begin);
+  }
+}
+
+// The factor of each row by the angle of the rail's surface there, > 0 towards the gauge face; a
+// row beyond the profile has no contact, and any factor. Rows of a curved reference surface have
+// an angle of their own.
+void wheel_contact::set_friction(const patch_contact &solver, const contact_frame &frame,
+                                 patch_memory &memory) const {
+  for (int j = 0; j < memory.g.ny; ++j) {
+    const double across = std::cos(frame.contact_angle) * memory.g.y(j);
+    double z = 0, slope = frame.contact_angle;
+    if (memory.curved)
+      slope = memory.curved->angle(j);
+    else
+      geometry_->rail_surface(frame.origin[0], frame.origin[1] + across, z, slope);
+    memory.row_friction[static_cast<size_t>(j)] = solver.scene().friction_variation.at(-slope);
+  }
+}
+
+// Shapes that vary along the track or the wheel, and rails that give way, are left to differences.
+bool wheel_contact::differentiates() const {
+  const bool gives_way = config_.rail_stiffness[0] > 0 || config_.rail_stiffness[1] > 0;
+  return wheel_derivative::covers(rules_) && !sections_ && !shape_ &&
+         config_.reference_surface == RP_REFERENCE_PLANE && !gives_way;
+}
+
+derivative_outcome wheel_contact::differentiate(patch_contact &solver, const patch_memory *memory,
+                                                wheel_derivative &work, const rp_input *directions,
+                                                const double *friction, int count,
+                                                const derivative_options &options,
+                                                const rp_side_result &result,
+                                                rp_side_result *changes) const {
+  side_motion motions[wheel_derivative::most_directions];
+  for (int k = 0; k < count; ++k) motions[k] = motion_of(directions[k]);
+  const wheel_solution solution{*geometry_,
+                                rules_,
+                                parts_,
+                                regions_.data(),
+                                solutions_.data(),
+                                memory,
+                                patches_,
+                                config_.element_size[0] > 0 ? nullptr : config_.elements};
+  const derivative_outcome outcome =
+      work.solve(solution, solver, motions, friction, count, options, result, changes);
+  for (int k = 0; k < count; ++k)
+    if (side_ == RP_LEFT) mirror(changes[k]);
+  return outcome;
+}
+
+bool wheel_contact::first_touch(double &z) const { return railpatch::first_touch(*geometry_, z); }
+
+size_t wheel_contact::bytes() const {
+  return wheel_->bytes() + rail_->bytes() + geometry_->bytes() +
+         solutions_.size() * sizeof(patch_solution) + (sections_ ? sections_->bytes() : 0) +
+         (shape_ ? shape_->bytes() : 0);
+}
+
+rp_status combine_status(rp_status a, rp_status b) {
+  if (a == RP_OUT_OF_RANGE || b == RP_OUT_OF_RANGE) return RP_OUT_OF_RANGE;
+  if (a == RP_NOT_CONVERGED || b == RP_NOT_CONVERGED) return RP_NOT_CONVERGED;
+  return a == RP_CONVERGED || b == RP_CONVERGED ? RP_CONVERGED : RP_NO_CONTACT;
+}
+
+void mirror(rp_side_result &side) {
+  // a reflection at the plane y = 0: vectors change their y, axial vectors their x and z
+  side.force[1] = -side.force[1];
+  side.moment[0] = -side.moment[0];
+  side.moment[2] = -side.moment[2];
+  for (auto &p : side.patch) {
+    for (double *v : {&p.creep_force[1], &p.spin_moment, &p.position[1], &p.contact_angle,
+                      &p.creepage[1], &p.spin_creepage})
+      *v = -*v;
+    p.grid_origin[1] = -(p.grid_origin[1] + (p.grid[1] - 1) * p.element_size[1]);
+  }
+}
+
+}  // namespace railpatch

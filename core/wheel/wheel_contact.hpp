@@ -1,0 +1,89 @@
+// One wheel on its rail or roller: from placement to the forces about the wheelset's centre.
+//
+// Everything inside is a right-hand wheel; the inputs of a left one are mirrored on the way in and
+// its results on the way out, so left and right agree to the last bit.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "geometry/geometry.hpp"
+#include "geometry/patch.hpp"
+#include "geometry/rail_sections.hpp"
+#include "patch/patch_contact.hpp"
+#include "railpatch.h"
+#include "wheel/wheel_derivative.hpp"
+
+namespace railpatch {
+
+class wheel_contact {
+ public:
+  // Throws profile_error where a profile of this side is not usable.
+  wheel_contact(const rp_config &config, int side);
+
+  int side() const { return side_; }
+  void place(const rp_input &input);
+  void move_to(double z) { geometry_->move_to(z); }
+  // z at which wheel and rail first touch; false where they have no lateral position in common.
+  bool first_touch(double &z) const;
+  // Solves the contact at the placed position. memory: of this side's patches, max_patches.
+  void evaluate(patch_contact &solver, patch_memory *memory, rp_side_result &result);
+  // Whether the geometry's derivatives are known.
+  bool differentiates() const;
+  // Derivatives of that solution by rates of the inputs and of the friction coefficient: changes[k]
+  // those of its numbers in direction k, of which only the first rate_directions may be more than
+  // velocities.
+  derivative_outcome differentiate(patch_contact &solver, const patch_memory *memory,
+                                   wheel_derivative &work, const rp_input *directions,
+                                   const double *friction, int count,
+                                   const derivative_options &options, const rp_side_result &result,
+                                   rp_side_result *changes) const;
+  // The last state is out of range for its geometry or normal problem, so its force is not known.
+  bool beyond() const { return beyond_; }
+  size_t bytes() const;
+
+ private:
+  rp_status solve_patch(patch_contact &solver, patch_region &region, int index,
+                        patch_memory *memories, rp_side_result &result);
+  double place_grid(const patch_contact &solver, patch_region &region, const grid &g,
+                    patch_memory &memory) const;
+  static hertz_contact hertz_of(const patch_region &region, double depth, double modulus);
+  void add_force(const patch_region &region, double depth, patch_wrench wrench, double normal_force,
+                 rp_side_result &out) const;
+  static void describe(const patch_scene &scene, const patch_region &region,
+                       const creepage_state &rolling, double depth, rp_patch_result &result);
+  // Sets what the last step left behind for the patch of a region; past: of max_patches.
+  void set_past(const patch_memory *memory, const patch_region &region, int direction,
+                patch_problem &problem, past_tractions *past) const;
+  void set_friction(const patch_contact &solver, const contact_frame &frame,
+                    patch_memory &memory) const;
+  grid choose_grid(const patch_region &region) const;
+  side_motion motion_of(const rp_input &input) const;
+  void match_memory(patch_memory *memory, int count) const;
+
+  rp_config config_;
+  int side_;
+  bool beyond_ = false;
+  std::unique_ptr<rail_sections> sections_;  // where the rail's profile varies along the track
+  std::unique_ptr<profile> wheel_, rail_;
+  std::unique_ptr<longitudinal_shape> shape_;  // null: round wheel, level rail
+  std::unique_ptr<side_geometry> geometry_;
+  patch_rules rules_;
+  part_set parts_;
+  std::array<patch_region, RP_MAX_PATCHES> regions_;
+  int patches_ = 0;                        // of the last state
+  std::vector<patch_solution> solutions_;  // of these; only where derivatives are asked for
+  double time_step_ = 0;                   // s
+};
+
+struct profile_error {
+  const char *field;  // "wheel_left", ...
+  const char *reason;
+};
+
+// Status of several patches or wheels together: the worst; no contact only where none has any.
+rp_status combine_status(rp_status a, rp_status b);
+// The result of a left wheel from that of its mirror image, and the other way round.
+void mirror(rp_side_result &result);
+
+}  // namespace railpatch
