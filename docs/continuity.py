@@ -11,10 +11,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from railpatch.continuity import scenes
-from railpatch.continuity.scenes import MICRO
-from railpatch.continuity.sweep import Path as SweepPath
-from railpatch.continuity.sweep import Sweep, measure
+from railpatch.evidence.continuity import scenes
+from railpatch.evidence.continuity.scenes import MICRO
+from railpatch.evidence.continuity.sweep import Path as SweepPath
+from railpatch.evidence.continuity.sweep import Sweep, measure
 
 # y, m, and yaw, rad
 EVENTS = {

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import click
-from railpatch.commands import (
+from railpatch.command.group import (
     EXIT_NOT_CONVERGED,
     output_option,
     progress_bar,
@@ -15,8 +15,8 @@ from railpatch.commands import (
     show_scene_option,
     wrong_call,
 )
+from railpatch.command.output import check_output
 from railpatch.errors import CaseError, ProfileError
-from railpatch.output import check_output
 
 
 def default_scene_text() -> str:
@@ -136,7 +136,7 @@ def curve(
 
 def print_curves(found: dict[str, Any]) -> None:
     """One column for each curve and method."""
-    from railpatch.tables import new_table, spell
+    from railpatch.command.tables import new_table, spell
     from rich.console import Console
 
     rows = {method: [item.to_dict() for item in items] for method, items in found.items()}

@@ -11,7 +11,7 @@ from pathlib import Path
 if __name__ == "__main__":
     # the folder above in place of this one, so that the package is found under its own name
     sys.path[0] = str(Path(__file__).resolve().parents[1])
-    from railpatch.commands import with_common_options
+    from railpatch.command.group import with_common_options
 
     from rig_model.command import rig
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import click
-from railpatch.commands import (
+from railpatch.command.group import (
     EXIT_NOT_CONVERGED,
     WrongCall,
     output_option,
@@ -16,8 +16,8 @@ from railpatch.commands import (
     show_scene_option,
     wrong_call,
 )
+from railpatch.command.output import check_output, files_of
 from railpatch.errors import CaseError, ProfileError
-from railpatch.output import check_output, files_of
 
 
 def default_scene_text() -> str:

@@ -7,15 +7,15 @@ from pathlib import Path
 from typing import Any
 
 import click
-from railpatch.commands import (
+from railpatch.command.group import (
     EXIT_NOT_CONVERGED,
     WrongCall,
     scene_argument,
     show_scene_option,
     wrong_call,
 )
+from railpatch.command.output import check_output, files_of
 from railpatch.errors import CaseError, ProfileError
-from railpatch.output import check_output, files_of
 
 SCENE = "hunting.toml"
 # of the critical speed by eigenvalues: where the runs in time begin

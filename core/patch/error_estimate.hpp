@@ -2,7 +2,7 @@
 // of rolling contact, told from what is known after the solution, without a second one.
 //
 // A model of each theory, fitted to measured errors (error_model.inc, made by
-// python -m railpatch.bench.calibrate), gives the bound that 95 % or more of the errors stay below:
+// python -m railpatch.evidence.bench.calibrate), gives the bound that 95 % or more of the errors stay below:
 //   creep force   mu Fn s/(1 + s) exp(model), at least mu Fn min(1, s) floor; length of the vector
 //   spin moment   the same times c
 //   pressure      p_max exp(model)

@@ -6,10 +6,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from railpatch import CaseError, _core
-from railpatch.table import default_table, describe_table
-from railpatch.table.check import Interpolated
-from railpatch.table.recipe import Recipe
-from railpatch.table.solves import FRICTION, NORMAL_FORCE, SIZE, UNIT, Accurate, scales_of, slopes
+from railpatch.case.creep_table import default_table, describe_table
+from railpatch.evidence.table.check import Interpolated
+from railpatch.evidence.table.recipe import Recipe
+from railpatch.evidence.table.solves import (
+    FRICTION,
+    NORMAL_FORCE,
+    SIZE,
+    UNIT,
+    Accurate,
+    scales_of,
+    slopes,
+)
 
 STEEL = 0.28
 RECIPE = Recipe()

@@ -9,7 +9,7 @@ import pytest
 import railpatch
 from case_samples import WHEELSET, with_values
 from patch_cases import STEEL, Line, check, patch_case, solve
-from railpatch.kalker_table import coefficients
+from railpatch.evidence.kalker_table import coefficients
 
 FORCE, FRICTION, SPEED = 82e3, 0.3, 10.0
 BOUND = FRICTION * FORCE

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from case_samples import WHEELSET, with_values
 from railpatch import CaseError, Contact
-from railpatch.track import Irregularity, read_irregularity
+from railpatch.case.track import Irregularity, read_irregularity
 
 SPEED, RADIUS = 20.0, 0.46
 SAME = 1e-12

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import railpatch
 from case_samples import WHEELSET, with_values
+from railpatch.case.longitudinal import flat_runout, joint_height
 from railpatch.case.rolling import Flat, Joint
-from railpatch.longitudinal import flat_runout, joint_height
 
 RADIUS = 0.46
 DEPTH = 5e-4

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from railpatch.bench.measure import COLUMNS, Measured
-from railpatch.bench.methods import FULL, Method
+from railpatch.evidence.bench.measure import COLUMNS, Measured
+from railpatch.evidence.bench.methods import FULL, Method
 
 
 def measured(

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import railpatch
-from railpatch.accuracy import fitted_size
-from railpatch.bench.reach import fitted
-from railpatch.bench.samples import STEPS, Problem, fine_truth, measured, random_position
-from railpatch.choice import ROWS_ON_PRESSURE, smallest
+from railpatch.case.accuracy import fitted_size
+from railpatch.case.choice import ROWS_ON_PRESSURE, smallest
+from railpatch.evidence.bench.reach import fitted
+from railpatch.evidence.bench.samples import STEPS, Problem, fine_truth, measured, random_position
 
 
 def test_sizes() -> None:

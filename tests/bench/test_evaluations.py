@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from railpatch.bench.evaluations import GRIDS, evaluations, search_time
+from railpatch.evidence.bench.evaluations import GRIDS, evaluations, search_time
 
 
 def test_every_grid_is_solved_and_differentiated() -> None:

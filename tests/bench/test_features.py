@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from railpatch.bench.features import FEATURES, feature_costs
+from railpatch.evidence.bench.features import FEATURES, feature_costs
 
 
 def test_every_scene_is_solved_and_compared_with_the_plain_one() -> None:

@@ -12,12 +12,12 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
-from railpatch.bench import methods, run
-from railpatch.bench.measure import COLUMNS
-from railpatch.bench.methods import METHODS, UNIFORM, Method
-from railpatch.bench.sets import SETS
-from railpatch.bench.targets import TARGETS
-from railpatch.cli import cli
+from railpatch.command.cli import cli
+from railpatch.evidence.bench import methods, run
+from railpatch.evidence.bench.measure import COLUMNS
+from railpatch.evidence.bench.methods import METHODS, UNIFORM, Method
+from railpatch.evidence.bench.sets import SETS
+from railpatch.evidence.bench.targets import TARGETS
 
 FILES = (
     "report.html",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from railpatch.bench.sets import (
+from railpatch.evidence.bench.sets import (
     ELLIPSES,
     FORCE,
     LAYERS,
@@ -14,9 +14,9 @@ from railpatch.bench.sets import (
     sample,
     units,
 )
-from railpatch.bench.shapes import Quadratic, Surface, hertz_pressure
-from railpatch.bench.steps import contact_of, steps_of
-from railpatch.bench.truth import batches_of
+from railpatch.evidence.bench.shapes import Quadratic, Surface, hertz_pressure
+from railpatch.evidence.bench.steps import contact_of, steps_of
+from railpatch.evidence.bench.truth import batches_of
 
 # the ratios and axes of the specification, m
 AXES = {0.2: 4e-3, 0.5: 6e-3, 1.0: 9e-3, 2.0: 12e-3, 5.0: 20e-3}

@@ -7,12 +7,12 @@ import math
 import numpy as np
 import pytest
 from made_up import measured
-from railpatch.bench.cost import SizeCost, WheelCost
-from railpatch.bench.curves import cost_curves, curves, frontier_curve
-from railpatch.bench.methods import FAST, FITTED, METHODS, UNIFORM, Method
-from railpatch.bench.picture import spread
-from railpatch.bench.sets import hertz_batch
-from railpatch.bench.statistics import (
+from railpatch.evidence.bench.cost import SizeCost, WheelCost
+from railpatch.evidence.bench.curves import cost_curves, curves, frontier_curve
+from railpatch.evidence.bench.methods import FAST, FITTED, METHODS, UNIFORM, Method
+from railpatch.evidence.bench.picture import spread
+from railpatch.evidence.bench.sets import hertz_batch
+from railpatch.evidence.bench.statistics import (
     calibration,
     fastest_within,
     frontier,
@@ -20,7 +20,7 @@ from railpatch.bench.statistics import (
     percentile,
     summarize,
 )
-from railpatch.bench.targets import Outcome, rows
+from railpatch.evidence.bench.targets import Outcome, rows
 
 
 def test_percentiles_are_values_that_occur() -> None:

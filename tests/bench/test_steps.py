@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from railpatch.bench.problems import merged
-from railpatch.bench.sets import hertz_batch
-from railpatch.bench.steps import contact_of, estimates, steps_of
 from railpatch.errors import CaseError
+from railpatch.evidence.bench.problems import merged
+from railpatch.evidence.bench.sets import hertz_batch
+from railpatch.evidence.bench.steps import contact_of, estimates, steps_of
 
 BATCH = hertz_batch(1.0, [0.0, 1.0], np.radians([30.0]), [0.0, 1.1])
 

@@ -6,9 +6,9 @@ from importlib import resources
 
 import numpy as np
 import pytest
-from railpatch.bench.methods import FITTED, UNIFORM
-from railpatch.bench.sets import DIRECTIONS, ELLIPSES, MAGNITUDES, SPINS
-from railpatch.bench.truth import (
+from railpatch.evidence.bench.methods import FITTED, UNIFORM
+from railpatch.evidence.bench.sets import DIRECTIONS, ELLIPSES, MAGNITUDES, SPINS
+from railpatch.evidence.bench.truth import (
     FILE,
     FITTED_ORDER,
     UNIFORM_ORDER,
@@ -39,7 +39,7 @@ def test_file(truth: TruthFile) -> None:
     for name in truth.names:
         assert len(truth.agreement(name)) == len(truth.recipes_of(name)) - 1 >= 1
     assert all(recipe["grids"] and recipe["version"] for recipe in truth.recipes)
-    data = resources.files("railpatch.bench").joinpath(FILE).read_bytes()
+    data = resources.files("railpatch.evidence.bench").joinpath(FILE).read_bytes()
     assert len(data) <= MOST_BYTES
 
 
@@ -119,7 +119,7 @@ def test_computing_goes_on_where_it_stopped(tmp_path, monkeypatch: pytest.Monkey
         Recipe("rows", FITTED, (7, 9), 1.0, "AD"),
         Recipe("odd", UNIFORM, (7, 9), 1.0, "B"),
     )
-    monkeypatch.setattr("railpatch.bench.truth.RECIPES", recipes)
+    monkeypatch.setattr("railpatch.evidence.bench.truth.RECIPES", recipes)
     first = compute_truth(tmp_path, "D", 1).read_bytes()
     parts = sorted((tmp_path / "parts").iterdir())
     assert len(parts) == 4 * len(batches_of("D"))
@@ -135,7 +135,7 @@ def test_computing_goes_on_where_it_stopped(tmp_path, monkeypatch: pytest.Monkey
 
 
 def test_truth_of_other_problems_is_refused(tmp_path) -> None:
-    data = dict(np.load(resources.files("railpatch.bench").joinpath(FILE).open("rb")))
+    data = dict(np.load(resources.files("railpatch.evidence.bench").joinpath(FILE).open("rb")))
     data["A_sum"] = data["A_sum"] * 1.001
     np.savez(tmp_path / "other.npz", **data)
     with pytest.raises(ValueError, match="set A"):
@@ -144,7 +144,7 @@ def test_truth_of_other_problems_is_refused(tmp_path) -> None:
 
 def test_set_without_truth(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
     recipe = Recipe("one", UNIFORM, (7, 8), 1.0)
-    monkeypatch.setattr("railpatch.bench.truth.RECIPES", (recipe, recipe))
+    monkeypatch.setattr("railpatch.evidence.bench.truth.RECIPES", (recipe, recipe))
     found = TruthFile(compute_truth(tmp_path, "C", 1)).of("D", 0)
     assert found.values.shape == (len(batches_of("D")[0]), 4)
     assert np.isnan(found.values).all()

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
-from railpatch.cli import cli
+from railpatch.command.cli import cli
 
 from rig_model.curve import DEFAULT as CURVE
 from rig_model.scene import NOMINAL, default_scene

@@ -12,7 +12,7 @@ import pytest
 from case_samples import PATCH, WHEELSET, with_values
 from railpatch.case import CaseError, json_schema, load_scene
 from railpatch.case.messages import LATER_KEYS
-from railpatch.moving import changed_case, moving_keys
+from railpatch.case.moving import changed_case, moving_keys
 
 # "m, ..." of a value, "... (m, rad)" of a table, "... (no unit)" of a choice
 UNITS = (

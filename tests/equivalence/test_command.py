@@ -13,8 +13,8 @@ import pytest
 import railpatch
 from case_samples import PATCH, WHEELSET, with_values
 from click.testing import CliRunner, Result
-from railpatch.cli import cli
-from railpatch.commands import Commands
+from railpatch.command.cli import cli
+from railpatch.command.group import Commands
 
 # keys of the interface's JSON result, in its order
 PATCH_KEYS = [

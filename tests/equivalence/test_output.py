@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 import pytest
 from click.testing import CliRunner, Result
-from railpatch.cli import cli
+from railpatch.command.cli import cli
 from railpatch.log import RunLog
 
 from rig_model.scene import NOMINAL, default_scene

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from railpatch.cli import cli
+from railpatch.command.cli import cli
 from railpatch.log.channels import channel, markdown
 
 from wheelset_demo.scene import Run

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 from railpatch.case.load import check_case
-from railpatch.cli import cli
+from railpatch.command.cli import cli
 from railpatch.log import Run, read_run
 
 from wheelset_demo.scene import load_wheelset_scene

@@ -10,7 +10,7 @@ import pytest
 import synthetic
 import synthetic_vehicle
 from click.testing import CliRunner
-from railpatch.cli import cli
+from railpatch.command.cli import cli
 from railpatch.layout import KINDS, Curve, layout, tabs_of, topics_of
 from railpatch.log import read_run
 from railpatch.log.channels import WELL_KNOWN, channel, vehicle_channels

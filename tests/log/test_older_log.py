@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import synthetic
 from click.testing import CliRunner
-from railpatch.cli import cli
+from railpatch.command.cli import cli
 from railpatch.log import read_run
 from railpatch.log.channels import CHANNELS, Message
 from railpatch.log.encode import encode

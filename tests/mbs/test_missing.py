@@ -25,7 +25,7 @@ def test_advice(content: str, tmp_path: Path):
     assert imported.returncode == 1
     assert ADVICE in imported.stderr
     log = tmp_path / "run.mcap"
-    called = run("-m", "railpatch.cli", "wheelset", "-o", str(log))
+    called = run("-m", "railpatch.command.cli", "wheelset", "-o", str(log))
     assert called.returncode == 2
     assert ADVICE in called.stderr
     assert not log.exists()

@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
-from railpatch.cli import cli
-from railpatch.profile.figures import conicity_figure, contact_figure, shape_figure
-from railpatch.profile.shape import shape_of
+from railpatch.command.cli import cli
 from railpatch.profiles import load_profile
+from railpatch.profiles.figures import conicity_figure, contact_figure, shape_figure
 from railpatch.profiles.formulas import S1002_JOINTS
 from railpatch.profiles.pairing import contact_points, positions
+from railpatch.profiles.shape import shape_of
 
 
 def invoke(*arguments: object) -> Result:

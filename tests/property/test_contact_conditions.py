@@ -2,7 +2,7 @@
 
 Kalker 1990, Three-dimensional elastic bodies in rolling contact, chapter 1: pressure and gap are
 not negative and not both positive; stick has no slip and at most the bound; slip has the bound,
-against the slip. Displacements come from railpatch/stress/half_space.py, by other code than the
+against the slip. Displacements come from railpatch/evidence/stress/half_space.py, by other code than the
 solver's.
 """
 
@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 import railpatch
 from patch_cases import patch_case, solve
-from railpatch.stress.half_space import Array, HalfSpace
+from railpatch.evidence.stress.half_space import Array, HalfSpace
 from scipy.special import ellipe, ellipk
 
 SEEDS = range(40)

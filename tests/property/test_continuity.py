@@ -13,8 +13,8 @@ import copy
 import numpy as np
 import pytest
 import railpatch
-from railpatch.continuity.scenes import MICRO, RADIUS, standstill, wheel_case
-from railpatch.continuity.sweep import LIMIT, Path, measure
+from railpatch.evidence.continuity.scenes import MICRO, RADIUS, standstill, wheel_case
+from railpatch.evidence.continuity.sweep import LIMIT, Path, measure
 
 LOAD = 1e4  # N
 # y, m, and yaw, rad

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 import railpatch
 from case_samples import WHEELSET, with_values
-from railpatch.accuracy import fitted_size
+from railpatch.case.accuracy import fitted_size
 
 CASES = 110
 ERROR_OF_REFERENCE = 1.5e-3

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 import railpatch
 from patch_cases import patch_case, solve
-from railpatch.stress.fitted_rows import Rows, rigid_slip
-from railpatch.stress.half_space import Array
+from railpatch.evidence.stress.fitted_rows import Rows, rigid_slip
+from railpatch.evidence.stress.half_space import Array
 
 SEEDS = range(40)
 TOLERANCE = 1e-7

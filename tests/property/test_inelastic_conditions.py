@@ -2,7 +2,7 @@
 
 |p| <= min(g, tau_c); slip opposite to traction and only where |p| = g; plastic displacement along
 traction and only where tau_c was met; rigid slip, elastic displacement by code of its own
-(railpatch/stress/half_space.py), slip and plastic displacement add up; friction coefficient and
+(railpatch/evidence/stress/half_space.py), slip and plastic displacement add up; friction coefficient and
 yield stress from recurrences along the rows (report DOT/FRA/ORD-24/18, eqs. 39 to 49). Powers are
 not negative.
 """
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 import railpatch
-from railpatch.stress.half_space import Array, HalfSpace
+from railpatch.evidence.stress.half_space import Array, HalfSpace
 
 SHEAR_MODULUS, POISSON = 82e9, 0.28
 TOLERANCE = 1e-6

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 import railpatch
 from patch_cases import patch_case, solve
-from railpatch.stress.half_space import Array, HalfSpace
+from railpatch.evidence.stress.half_space import Array, HalfSpace
 
 SEEDS = range(24)
 TOLERANCE = 1e-6

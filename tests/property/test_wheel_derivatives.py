@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from railpatch import Contact
-from railpatch.derivative import FORCE_AND_MOMENT, POSE_AND_VELOCITY
+from railpatch.case.derivative import FORCE_AND_MOMENT, POSE_AND_VELOCITY
 from railpatch.errors import CaseError
 
 TOLERANCE = 1e-11

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from railpatch.cli import cli
+from railpatch.command.cli import cli
 from railpatch.log import Run, RunFileError, read_run
 
 HERE = Path(__file__).parent

@@ -6,7 +6,7 @@ import csv
 from pathlib import Path
 
 from click.testing import CliRunner
-from railpatch.cli import cli
+from railpatch.command.cli import cli
 
 
 def run(*arguments: object):

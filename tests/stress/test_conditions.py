@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 from railpatch import _core
+from railpatch.case.config import config_of, input_of
 from railpatch.case.load import load_scene
-from railpatch.config import config_of, input_of
-from railpatch.stress.conditions import energy_balance, findings
-from railpatch.stress.half_space import Array
-from railpatch.stress.run import no_numbers, steps_of, too_many_iterations
-from railpatch.stress.step import Step
-from railpatch.stress.trial import CREEPAGE, SPIN, nominal
+from railpatch.evidence.stress.conditions import energy_balance, findings
+from railpatch.evidence.stress.half_space import Array
+from railpatch.evidence.stress.run import no_numbers, steps_of, too_many_iterations
+from railpatch.evidence.stress.step import Step
+from railpatch.evidence.stress.trial import CREEPAGE, SPIN, nominal
 
 
 def solved(*changes: dict[str, Any]) -> Step:

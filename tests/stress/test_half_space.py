@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from railpatch.stress.half_space import HalfSpace, shifted
+from railpatch.evidence.stress.half_space import HalfSpace, shifted
 
 G, NU = 82e9, 0.28
 RANDOM = np.random.default_rng(11)

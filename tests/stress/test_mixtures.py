@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from railpatch.stress.mixtures import mixture
-from railpatch.stress.plan import SEED
-from railpatch.stress.run import FAULT, run_trial
+from railpatch.evidence.stress.mixtures import mixture
+from railpatch.evidence.stress.plan import SEED
+from railpatch.evidence.stress.run import FAULT, run_trial
 
 # Once converged against the conditions: slip of layers that harden steeply, by either rule
 STEEP = (52, 62, 114, 362, 648, 1316, 2636, 2790, 2875, 3304, 3586, 3775, 4720, 5170, 6516, 6635,

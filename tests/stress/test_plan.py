@@ -5,10 +5,10 @@ from __future__ import annotations
 import time
 
 import pytest
-from railpatch.stress import watch
-from railpatch.stress.plan import Plan
-from railpatch.stress.run import CLEAN, FAULT, SAYS_SO, run_trial
-from railpatch.stress.trial import Move, Trial, moves, nominal
+from railpatch.evidence.stress import watch
+from railpatch.evidence.stress.plan import Plan
+from railpatch.evidence.stress.run import CLEAN, FAULT, SAYS_SO, run_trial
+from railpatch.evidence.stress.trial import Move, Trial, moves, nominal
 
 
 def test_same_seed_same_trials() -> None:

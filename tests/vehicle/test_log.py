@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from railpatch.cli import cli
+from railpatch.command.cli import cli
 from railpatch.layout import layout, topics_of
 from railpatch.log import read_run
 from railpatch.log.channels import SIDES

@@ -11,7 +11,7 @@ import pytest
 import wheelset_scenes as scenes
 from click.testing import CliRunner
 from railpatch import CaseError
-from railpatch.cli import cli
+from railpatch.command.cli import cli
 from railpatch.log import read_run
 from railpatch.report.command import report
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import wheelset_scenes as scenes
 from click.testing import CliRunner
-from railpatch.cli import cli
+from railpatch.command.cli import cli
 
 from wheelset_demo.coupling.energy import balance, release
 from wheelset_demo.coupling.held import ElementContact, held_run

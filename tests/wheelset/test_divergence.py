@@ -14,7 +14,7 @@ import pytest
 import wheelset_scenes as scenes
 from click.testing import CliRunner, Result
 from railpatch import Contact
-from railpatch.cli import cli
+from railpatch.command.cli import cli
 
 from wheelset_demo.hunting import search_modes, slowest_mode
 from wheelset_demo.scene import WheelsetScene, load_wheelset_scene

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import wheelset_scenes as scenes
 from click.testing import CliRunner
-from railpatch.cli import cli
+from railpatch.command.cli import cli
 
 from wheelset_demo.hunting import critical_mode, critical_speed_in_time, run_at, slowest_mode
 from wheelset_demo.scene import WheelsetScene, load_wheelset_scene, scene_file

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import wheelset_scenes as scenes
 from click.testing import CliRunner
-from railpatch.cli import cli
+from railpatch.command.cli import cli
 from railpatch.log import read_run
 from railpatch.report import write_report
 

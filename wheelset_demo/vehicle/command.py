@@ -7,15 +7,15 @@ from pathlib import Path
 from typing import Any
 
 import click
-from railpatch.commands import (
+from railpatch.command.group import (
     EXIT_NOT_CONVERGED,
     WrongCall,
     progress_bar,
     scene_argument,
     show_scene_option,
 )
+from railpatch.command.output import check_output, files_of
 from railpatch.errors import CaseError, ProfileError
-from railpatch.output import check_output, files_of
 
 # of wheelset_demo.vehicle.compare, which takes long to import; a test compares them
 METHODS = ("full", "fitted", "fastsim", "kik", "analyn", "polach")

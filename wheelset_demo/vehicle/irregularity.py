@@ -19,8 +19,8 @@ from typing import Annotated, Literal
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
+from railpatch.case.track import Irregularity
 from railpatch.case.types import NotNegative, Table, relation
-from railpatch.track import Irregularity
 
 Vector = NDArray[np.float64]
 # rad/m

@@ -12,13 +12,14 @@ from typing import Any
 import numpy as np
 
 from railpatch import _core
+from railpatch.case.config import config_of, input_of
+from railpatch.case.derivative import FORCE_AND_MOMENT, POSE_AND_VELOCITY, rates_of
 from railpatch.case.load import Case, Scene, check_table, load_scene
 from railpatch.case.messages import show
+from railpatch.case.moving import changed_case, moving_keys
 from railpatch.case.patch import Motion, PatchCase
-from railpatch.config import config_of, input_of
-from railpatch.derivative import FORCE_AND_MOMENT, POSE_AND_VELOCITY, rates_of
+from railpatch.case.track import add_irregularity, irregularity_of
 from railpatch.errors import CaseError
-from railpatch.moving import changed_case, moving_keys
 from railpatch.result import (
     FIELDS,
     GOOD,
@@ -29,7 +30,6 @@ from railpatch.result import (
     shaped_field,
     wheel_data,
 )
-from railpatch.track import add_irregularity, irregularity_of
 
 SIDE_INDEX = {"left": 0, "right": 1}
 # saved state: mark, length of the moving tables as JSON, the JSON, the core's state
@@ -134,9 +134,9 @@ class Contact:
         """Derivatives of the last step's forces by pose and velocity, for wheel_rail and wheelset.
 
         ``left``, ``right``: arrays [6, 12] of force and moment of each wheel in use, rows
-        ``railpatch.derivative.FORCE_AND_MOMENT`` (N, N m, track axes), columns
-        ``railpatch.derivative.POSE_AND_VELOCITY`` (m, rad, m/s, rad/s). ``z``: [12], of the height.
-        They are those of what step() gives: with vertical_force, z follows; column z then is that
+        ``railpatch.case.derivative.FORCE_AND_MOMENT`` (N, N m, track axes), columns
+        ``railpatch.case.derivative.POSE_AND_VELOCITY`` (m, rad, m/s, rad/s). ``z``: [12], of the
+        height. They are those of what step() gives: with vertical_force, z follows; column z then is that
         of a wheel whose vertical force does not stay, NaN by differences, and ``z_force`` (m/N) the
         height's by the vertical force (else NaN). ``kind``: as of differentiate(); ``status``: as
         of the step, or "not_converged". Needs method.derivatives = true and a step; changes

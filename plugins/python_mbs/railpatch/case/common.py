@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
+from railpatch.case.choice import least_error
 from railpatch.case.friction import Friction, check_increasing
 from railpatch.case.types import (
     CapacityPair,
@@ -25,7 +26,6 @@ from railpatch.case.types import (
     relation,
     twice,
 )
-from railpatch.choice import least_error
 
 
 def either(item: dict[str, object]) -> WithJsonSchema:

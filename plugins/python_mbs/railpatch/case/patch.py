@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from railpatch.case.choice import RATIOS, axis_ratio
 from railpatch.case.common import (
     WHEEL_METHOD,
     Friction,
@@ -37,7 +38,6 @@ from railpatch.case.types import (
     exactly_one,
     relation,
 )
-from railpatch.choice import RATIOS, axis_ratio
 
 SHAPES = ("semi_axes", "curvatures", "line_contact_radius", "undeformed_distance")
 

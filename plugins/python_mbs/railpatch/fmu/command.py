@@ -7,9 +7,9 @@ from typing import Any
 
 import click
 
-from railpatch.commands import output_option, scene_argument
+from railpatch.command.group import output_option, scene_argument
+from railpatch.command.output import check_output, files_of
 from railpatch.errors import CaseError
-from railpatch.output import check_output, files_of
 
 
 @click.command("fmu")

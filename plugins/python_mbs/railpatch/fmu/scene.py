@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from railpatch import _core
+from railpatch.case.config import config_of, input_of
 from railpatch.case.load import Case, Scene
 from railpatch.case.patch import PatchCase
 from railpatch.case.wheel import WheelRailCase, WheelsetCase
-from railpatch.config import config_of, input_of
 from railpatch.errors import CaseError
 from railpatch.fmu.profiles import Choices
 from railpatch.fmu.table import Kind, Table, Variable, with_start

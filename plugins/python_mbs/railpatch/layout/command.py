@@ -6,9 +6,9 @@ from pathlib import Path
 
 import click
 
-from railpatch.commands import output_option, wrong_call
+from railpatch.command.group import output_option, wrong_call
+from railpatch.command.output import check_output
 from railpatch.layout.plots import KINDS
-from railpatch.output import check_output
 
 
 @click.command("layout")

@@ -13,10 +13,10 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from railpatch import _core
+from railpatch.case.config import input_of
 from railpatch.case.load import Scene
 from railpatch.case.messages import show
 from railpatch.case.wheel import WheelsetCase
-from railpatch.config import input_of
 from railpatch.contact import CaseSource, Contact
 from railpatch.errors import CaseError
 from railpatch.pinocchio.derivative import (
@@ -253,7 +253,7 @@ class ForceElement:
 
         Track axes, beside those of the case; may be written before a step. Under a wheelset on
         rails that are not level their vertical velocity is speed times slope, the lateral one 0,
-        see railpatch.track.
+        see railpatch.case.track.
         """
         return self._rails.reshape(-1, 2, 2, 3)
 

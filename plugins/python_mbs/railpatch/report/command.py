@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
-from railpatch.commands import wrong_call
-from railpatch.output import check_output
+from railpatch.command.group import wrong_call
+from railpatch.command.output import check_output
 
 
 @click.command("report")

@@ -1,0 +1,110 @@
+"""The railpatch command."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+from railpatch.command.group import (
+    EXIT_NOT_CONVERGED,
+    Commands,
+    WrongCall,
+    version_option,
+)
+
+CASE = click.Path(path_type=Path)
+QUIET = click.option("--quiet", is_flag=True, help="Print no table and no progress.")
+
+
+def quiet_everywhere(context: click.Context, _option: click.Parameter, value: bool) -> None:
+    """`railpatch --quiet COMMAND` is `railpatch COMMAND --quiet`."""
+    if value and isinstance(context.command, click.Group):
+        names = context.command.list_commands(context)
+        context.default_map = {name: {"quiet": True} for name in names}
+
+
+@click.group(cls=Commands, params=[version_option()])
+@click.option(
+    "--quiet",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=quiet_everywhere,
+    help="Print no table and no progress.",
+)
+def cli() -> None:
+    """Wheel-rail contact mechanics. Units are SI; forces act on the wheel.
+
+    Exit codes: 0 solved (no contact included), 2 the call was wrong, 3 not converged.
+    """
+
+
+@cli.command()
+@click.argument("case", metavar="CASE.toml", type=CASE)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@click.option("--fields", is_flag=True, help="With --json: add pressure, traction, ... as arrays.")
+@QUIET
+@click.pass_context
+def solve(context: click.Context, case: Path, as_json: bool, fields: bool, quiet: bool) -> None:
+    """Solve one contact case."""
+    if fields and not as_json:
+        raise WrongCall("--fields: value is True, allowed only with --json")
+    from railpatch.contact import solve as solve_case
+
+    result = solve_case(case, fields=fields)
+    if as_json:
+        click.echo(json.dumps(result.to_dict(), allow_nan=False))
+    elif not quiet:
+        from railpatch.command.tables import print_result
+
+        print_result(result)
+    if not result.good:
+        if not quiet:
+            click.echo(f"status: {result.status}", err=True)
+        context.exit(EXIT_NOT_CONVERGED)
+
+
+@cli.command()
+@click.argument("case", metavar="CASE.toml", type=CASE)
+@QUIET
+@click.pass_context
+def explain(context: click.Context, case: Path, quiet: bool) -> None:
+    """Show which stages a case needs, why, and what they cost.
+
+    The case is solved once from a cold start; the time share is measured in it.
+    """
+    from railpatch.case.choice import choose
+    from railpatch.contact import Contact
+
+    contact = Contact(case, timing=True)
+    result = contact.step()
+    if not quiet:
+        from railpatch.command.tables import print_stages
+
+        choice = choose(contact.case)
+        if choice is not None and contact.case.method.accuracy is not None:
+            click.echo(choice.spell(contact.case.method.accuracy))
+        print_stages(contact.stages(), result)
+    if not result.good:
+        context.exit(EXIT_NOT_CONVERGED)
+
+
+@cli.command()
+@QUIET
+def schema(quiet: bool) -> None:
+    """Print the JSON schema of case files: every key with unit, range and default."""
+    from railpatch.case import json_schema
+
+    if not quiet:
+        click.echo(json.dumps(json_schema(), indent=2))
+
+
+def main() -> None:
+    """Entry point of the railpatch command."""
+    cli(prog_name="railpatch")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,320 @@
+"""The model of the core's error estimates, fitted to measured errors.
+
+``python -m railpatch.evidence.bench.calibrate -o core/patch/error_model.inc`` makes the file
+again in minutes and prints how often the estimate covers the error, and how often it is within a factor 4 of it, on the
+cases it was fitted to and on others.
+
+The model (core/patch/error_estimate.hpp) is a network of one hidden layer for the logarithm
+of the error. It is fitted so that the estimate lies between the error and 4 times the error: beyond either end
+the loss grows linearly with the logarithm, steeper where the estimate is too small. Then it is
+moved by a constant until it covers the share wanted of cases that were held out.
+"""
+
+from __future__ import annotations
+
+import argparse
+import textwrap
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from itertools import chain
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.optimize import minimize
+
+from railpatch.evidence.bench import pressures
+from railpatch.evidence.bench.samples import (
+    FAMILIES,
+    NORMALS,
+    PASSES,
+    SEED,
+    SOURCES,
+    Family,
+    Problem,
+    Samples,
+    joined,
+    measured,
+    other_problems,
+    problems,
+    unsolved,
+    with_truth,
+)
+from railpatch.evidence.bench.shapes import Floats
+from railpatch.evidence.bench.statistics import FACTOR, NOISE
+
+GEOMETRY = 12  # features of the contact area and the grid; the others are of the motion
+HELD_OUT = 0.25  # share of the contacts that the network is not fitted to but moved to cover
+COVERED = 0.96  # share of those
+TOO_SMALL, MARGIN = 8.0, 0.15  # steepness of the loss below, and distance from both its ends
+UNITS, PRESSURE_UNITS = 16, 14
+PENALTY = 1e-4  # on the squares of all weights
+OTHERS = 0.3  # of the numbers of random problems: those to test on
+MOST = 12000  # cases that one network is fitted to
+LEAST_PRESSURE = 1e-4  # relative; errors below it are of the truth
+
+
+@dataclass(frozen=True)
+class Network:
+    """w0, then of each unit w, v0 and v, as in the core."""
+
+    values: Floats
+    inputs: int
+
+    @property
+    def units(self) -> int:
+        """Hidden ones."""
+        return (len(self.values) - 1) // (self.inputs + 2)
+
+    def at(self, features: Floats) -> Floats:
+        """[n] of features [n, inputs]."""
+        rows = self.values[1:].reshape(self.units, -1)
+        t = rows[:, 1] + features @ rows[:, 2:].T
+        return self.values[0] + (t / (1 + np.abs(t))) @ rows[:, 0]
+
+    def moved(self, by: float) -> Network:
+        """The network plus a constant."""
+        values = self.values.copy()
+        values[0] += by
+        return Network(values, self.inputs)
+
+
+def loss(values: Floats, features: Floats, target: Floats, width: float) -> tuple[float, Floats]:
+    """Of a network on standardised features, and its gradient."""
+    rows = values[1:].reshape(-1, features.shape[1] + 2)
+    t = rows[:, 1] + features @ rows[:, 2:].T
+    size = 1 + np.abs(t)
+    hidden = t / size
+    excess = values[0] + hidden @ rows[:, 0] - target
+    # hinges, rounded over the width
+    low, high = MARGIN - excess, excess - (np.log(FACTOR) - MARGIN)
+    ends = [np.sqrt(end * end + width * width) for end in (low, high)]
+    total = (TOO_SMALL * (low + ends[0]) + high + ends[1]).mean() / 2
+    slope = (-TOO_SMALL * (1 + low / ends[0]) + 1 + high / ends[1]) / (2 * len(target))
+    inner = slope[:, None] * rows[:, 0] / size**2
+    gradient = np.empty_like(rows)
+    gradient[:, 0] = slope @ hidden
+    gradient[:, 1] = inner.sum(axis=0)
+    gradient[:, 2:] = inner.T @ features
+    whole = np.concatenate([[slope.sum()], gradient.ravel()])
+    whole[1:] += 2 * PENALTY * values[1:]
+    return total + PENALTY * float(values[1:] @ values[1:]), whole
+
+
+def fitted_network(features: Floats, target: Floats, units: int, seed: int) -> Network:
+    """The network for the logarithm of errors."""
+    random = np.random.default_rng(seed)
+    if len(target) > MOST:
+        chosen = random.choice(len(target), MOST, replace=False)
+        features, target = features[chosen], target[chosen]
+    mean, spread = features.mean(axis=0), features.std(axis=0)
+    used = spread > 1e-9
+    spread = np.where(used, spread, 1.0)
+    standard = np.where(used, (features - mean) / spread, 0.0)
+    count = features.shape[1]
+    start = 0.5 * random.standard_normal((units, count + 2))
+    start[:, 0] *= 0.2
+    values = np.concatenate([[target.mean() + 0.5], start.ravel()])
+    for width, steps in ((0.5, 150), (0.1, 300)):
+        values = minimize(
+            loss,
+            values,
+            args=(standard, target, width),
+            jac=True,
+            method="L-BFGS-B",
+            options={"maxiter": steps, "maxfun": 2 * steps},
+        ).x
+    rows = values[1:].reshape(units, -1).copy()
+    rows[:, 2:] = np.where(used, rows[:, 2:] / spread, 0.0)
+    rows[:, 1] -= rows[:, 2:] @ mean
+    return Network(np.concatenate([values[:1], rows.ravel()]), count)
+
+
+def shares(features: Floats) -> Floats:
+    """s of the core, the sum of scaled creepage and spin."""
+    return np.expm1(features[:, GEOMETRY]) + np.expm1(features[:, GEOMETRY + 1])
+
+
+def estimate_of(
+    network: Network, samples: Samples, which: int, stated: tuple[float, ...]
+) -> Floats:
+    """The core's estimate of force (0), moment (1) or pressure (2), relative."""
+    if which == 2:
+        return np.exp(network.at(samples.features[:, :GEOMETRY]))
+    s = shares(samples.features)
+    unit = stated[which] * s / (1 + s)
+    return np.maximum(NOISE * np.minimum(1, s), unit * np.exp(network.at(samples.features)))
+
+
+def network_of(samples: Samples, which: int, stated: tuple[float, ...]) -> Network:
+    """The model of one error."""
+    error = samples.errors[:, which]
+    if which == 2:
+        features, least = samples.features[:, :GEOMETRY], LEAST_PRESSURE
+        unit: Any = 1.0
+    else:
+        s = shares(samples.features)
+        some = s > 1e-9
+        samples, error, s = samples.part(some), error[some], s[some]
+        features, least = samples.features, NOISE * np.minimum(1, s)
+        unit = stated[which] * s / (1 + s)
+    target = np.log(np.maximum(error, 0.7 * least) / unit)
+    cases = np.unique(samples.case)
+    held = np.random.default_rng(which).choice(cases, round(HELD_OUT * len(cases)), replace=False)
+    apart = np.isin(samples.case, held)
+    units = PRESSURE_UNITS if which == 2 else UNITS
+    network = fitted_network(features[~apart], target[~apart], units, which)
+    missing = np.log(np.maximum(error, 1e-300) / unit) - network.at(features)
+    # the floor covers what is below it
+    missing = np.where(error <= least, -np.inf, missing)
+    # of pressure every source for itself: of ellipses it is easily told
+    groups = [apart & (samples.source == s) for s in range(len(SOURCES))] if which == 2 else [apart]
+    needed = [np.quantile(missing[g], COVERED, method="higher") for g in groups if g.any()]
+    return network.moved(float(max(needed)))
+
+
+def coverage(estimate: Floats, error: Floats) -> str:
+    """Shares in per cent: error below the estimate, estimate within the factor."""
+    within = estimate <= FACTOR * np.maximum(error, NOISE)
+    return f"{100 * (error <= estimate * (1 + 1e-9)).mean():5.1f} {100 * within.mean():5.1f}"
+
+
+def report(
+    name: str,
+    networks: list[Network],
+    samples: Samples,
+    which: tuple[int, ...],
+    stated: tuple[float, ...],
+) -> str:
+    """Shares by source of the cases, one line."""
+    cells = [f"{name:34}"]
+    for index, source in enumerate(SOURCES):
+        part = samples.part(samples.source == index)
+        if not len(part.errors):
+            continue
+        found = [
+            coverage(estimate_of(network, part, k, stated), part.errors[:, k])
+            for network, k in zip(networks, which, strict=True)
+        ]
+        cells.append(f"{source} {len(part.errors):5}: " + " | ".join(found))
+    return "   ".join(cells)
+
+
+def spell(models: list[Model]) -> str:
+    """The C++ source of the models."""
+    lines = [
+        "// Generated by python -m railpatch.evidence.bench.calibrate; do not edit.",
+        "// Networks of error_estimate.hpp: w0, then of each unit w, v0 and v, by theory; those of",
+        "// creep force and spin moment, or of the greatest pressure.",
+    ]
+    for model in models:
+        lines.append(f"// {model.name}: {model.cases} cases")
+        for index, network in enumerate(model.networks):
+            text = ", ".join(f"{value:.5g}" for value in network.values)
+            lines.append(f"constexpr double {model.name}_values_{index}[] = {{")
+            lines += textwrap.wrap(text, 96, initial_indent="    ", subsequent_indent="    ")
+            lines.append("};")
+        parts = [
+            f"{{{model.name}_values_{i}, {n.inputs}, {n.units}}}"
+            for i, n in enumerate(model.networks)
+        ]
+        lines.append(f"constexpr network {model.name}_errors[] = {{{', '.join(parts)}}};")
+    return "\n".join([*lines, ""])
+
+
+def samples_of(family: Family, every: list[Problem], seed: int) -> Samples:
+    """Cases of a family."""
+    random = np.random.default_rng([seed, FAMILIES.index(family)])
+    return joined(
+        [
+            measured(problem, overrides)
+            for problem in every
+            for _ in range(PASSES[problem.source])
+            for overrides in family.choices(problem, random)
+        ]
+    )
+
+
+@dataclass(frozen=True)
+class Model:
+    """Networks of one theory, with the number of cases and lines that tell how well they do."""
+
+    name: str
+    networks: list[Network]
+    cases: int
+    lines: list[str]
+
+
+def modelled(
+    name: str,
+    own: Samples,
+    other: Samples,
+    which: tuple[int, ...],
+    stated: tuple[float, ...] = (1.0, 1.0),
+) -> Model:
+    """Fitted to the first and told of both."""
+    networks = [network_of(own, k, stated) for k in which]
+    lines = [
+        report(f"{name}, {title}", networks, samples, which, stated)
+        for title, samples in (("fitted to", own), ("others", other))
+    ]
+    return Model(name, networks, len(own.errors), lines)
+
+
+def of_family(family: Family, fit: list[Problem], test: list[Problem], seed: int) -> Model:
+    """The model of creep force and spin moment."""
+    own, other = samples_of(family, fit, seed), samples_of(family, test, seed + 1)
+    return modelled(family.name, own, other, (0, 1), family.stated)
+
+
+def of_pressure(normal: str, own: Samples, other: Samples) -> Model:
+    """The model of the greatest pressure."""
+    return modelled(f"{normal}_pressure", own, other, (2,))
+
+
+def pressure_models(pool: ProcessPoolExecutor, seed: int) -> Iterator[Model]:
+    """Those of all theories of the normal problem."""
+    fit = list(pool.map(pressures.of_task, pressures.tasks(seed), chunksize=8))
+    again = pressures.tasks(seed + 7, pressures.TESTS)
+    test = list(pool.map(pressures.of_task, again, chunksize=8))
+    test += [samples for name in "AB" for samples in pressures.of_benchmark(name)]
+    own, other = (
+        [
+            joined(
+                [
+                    samples[normal]
+                    for samples in part
+                    if normal in samples and len(samples[normal].errors)
+                ]
+            )
+            for normal in NORMALS[1:]
+        ]
+        for part in (fit, test)
+    )
+    yield from pool.map(of_pressure, NORMALS[1:], own, other)
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(
+        prog="python -m railpatch.evidence.bench.calibrate", description=__doc__
+    )
+    parser.add_argument("-o", "--output", type=Path, required=True, help="C++ file to write")
+    parser.add_argument("--seed", type=int, default=SEED, help="of the random problems")
+    parser.add_argument("--jobs", type=int, default=1, help="processes")
+    given = parser.parse_args()
+    models: list[Model] = []
+    with ProcessPoolExecutor(max_workers=given.jobs) as pool:
+        fit = problems(given.seed, pool.map)
+        test = [*pool.map(with_truth, unsolved(given.seed + 7, OTHERS)), *other_problems()]
+        count = len(FAMILIES)
+        found = pool.map(of_family, FAMILIES, [fit] * count, [test] * count, [given.seed] * count)
+        for model in chain(found, pressure_models(pool, given.seed)):
+            models.append(model)
+            print("\n".join(model.lines), flush=True)
+    given.output.write_text(spell(models), encoding="ascii")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,273 @@
+"""The page of a benchmark: one HTML file that needs no network."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from railpatch.evidence.bench.curves import cost_curves, curves, frontier_curve
+from railpatch.evidence.bench.features import SIZE
+from railpatch.evidence.bench.figures import cost_over_elements, error_over_time
+from railpatch.evidence.bench.machine import FFT_SIZE
+from railpatch.evidence.bench.sets import SEED, SETS
+from railpatch.evidence.bench.statistics import COVERED, FACTOR, WITHIN, Summary
+from railpatch.evidence.bench.targets import rows
+from railpatch.evidence.bench.truth import batches_of
+from railpatch.report.page import document, plot
+from railpatch.report.tables import number, table
+
+if TYPE_CHECKING:
+    from railpatch.evidence.bench.run import Report
+
+DEFINITIONS = (
+    ("force", "length of the vector difference of creep forces over \u03bcF\u2099"),
+    ("moment", "difference of spin moments over \u03bcF\u2099c, c\u00b2 = ab"),
+    ("pressure", "relative difference of the greatest pressure"),
+    (
+        "power",
+        "difference of frictional power over \u03bcF\u2099 times the root mean square of the rigid "
+        "slip velocity, weighted with Hertz's pressure: V\u221a(\u03be\u00b2 + \u03b7\u00b2 + "
+        "\u03c6\u00b2(a\u00b2 + b\u00b2)/5)",
+    ),
+    ("cold", "no earlier solution is known"),
+    (
+        "warm",
+        "the step before had creepages and spin 1 % away; in sets C and W, the step before in the "
+        "sequence",
+    ),
+    ("run time", "of the library's step on one core, without Python"),
+)
+
+
+def page(report: Report) -> str:
+    """The HTML text."""
+    parts = [head(report), targets(report), *figures(report)]
+    parts += [set_section(report, name) for name in report.plan.sets]
+    parts += [features(report), wheel_evaluations(report), calibration(report), truth(report)]
+    return document("error against run time", "".join(parts))
+
+
+def head(report: Report) -> str:
+    """Machine and definitions; a warning where something did not converge."""
+    steps = sum(s.cases for s in report.outcome.summaries)
+    lost = [s for s in report.outcome.summaries if s.not_converged]
+    kind = "A part of the benchmark" if report.plan.quick else "The whole benchmark"
+    warning = "".join(
+        f"<p class=warn><b>{s.label}, set {s.problem_set}: {s.not_converged} of {s.cases} did not "
+        "converge.</b> They are in no error.</p>"
+        for s in lost
+    )
+    return (
+        f"<h1>Error against run time</h1><p class=sub>{kind}: {len(report.plan.methods)} methods, "
+        f"{len(report.outcome.summaries)} combinations of grid and set, {steps} cases. Seed "
+        f"{SEED}.</p>{warning}"
+        + table((), report.machine.rows(), "summary")
+        + "<p>To carry times over to another machine, scale them by its time for one real "
+        f"{FFT_SIZE} x {FFT_SIZE} FFT.</p>" + table((), DEFINITIONS, "summary")
+    )
+
+
+def targets(report: Report) -> str:
+    """Measured, must and aim."""
+    lines = [(r.title, r.measured, r.must, r.aim, r.verdict) for r in rows(report.outcome)]
+    return (
+        "<h2>Targets</h2><p>Set A, medians. <i>must</i> and <i>aim</i> are what this project wants "
+        "to reach on a machine with an FFT time of 8.8 us; the last column names the better one "
+        f"that every value reaches. Wheel and position: {report.outcome.wheel.scene}.</p>"
+        + table(("", "measured", "must", "aim", "reaches"), lines)
+    )
+
+
+def figures(report: Report) -> list[str]:
+    """Error against run time, cost over elements."""
+    name = report.plan.sets[0]
+    found = curves(report.outcome.of_set(name))
+    best = frontier_curve(found)
+    lines = [
+        (label, milliseconds(time), percent(error))
+        for label, time, error in zip(best.labels, best.time, best.error, strict=True)
+    ]
+    return [
+        f"<h2>Error against run time</h2><p>Set {name}: {SETS[name].title}. Points further left "
+        "and further down are better; the broad line joins those that no other beats. The "
+        "diamonds are published results of the program CONTACT, measured on another machine, cold, "
+        "and against its own extrapolation.</p>",
+        plot(error_over_time(found), "frontier"),
+        table(("on the frontier", "warm [ms]", "force error, 95th percentile [%]"), lines),
+        "<h2>Cost over the number of elements</h2><p>Circular contact, partial slip. Powers of N "
+        "are fitted to all points of a line.</p>",
+        plot(cost_over_elements(cost_curves(report.outcome.costs)), "cost"),
+    ]
+
+
+def set_section(report: Report, name: str) -> str:
+    """Errors, run times and work of every method on one set."""
+    summaries = report.outcome.of_set(name)
+    count = sum(map(len, batches_of(name)))
+    known = name in report.truth.names
+    errors = (
+        table(
+            ("method", "cases", "force", "moment", "pressure", "power"),
+            [error_row(s) for s in summaries],
+        )
+        if known
+        else "<p>No truth of this set is stored: run times alone are measured.</p>"
+    )
+    return (
+        f"<h2>Set {name}: {SETS[name].title}</h2><p>{count} cases in all."
+        f"{' Errors in %, as median / 95th percentile / greatest.' if known else ''}</p>"
+        + errors
+        + "<p>Run times in ms, median / 99th percentile; iterations of the normal and Newton steps "
+        "of the tangential problem, and products with the tangential operator, as median / most; "
+        "start: greatest difference of the force over \u03bcF\u2099 of cold and warm starts.</p>"
+        + table(
+            ("method", "cold", "warm", "iterations cold", "warm", "products cold", "warm",
+             "start", "memory [kB]", "not converged"),
+            [work_row(s) for s in summaries],
+        )
+    )  # fmt: skip
+
+
+def error_row(summary: Summary) -> list[object]:
+    """Errors of one method and grid."""
+    values = summary.values
+    cells: list[object] = [summary.label, summary.cases]
+    for name in ("force", "moment", "pressure", "power"):
+        numbers = (values[f"{name}_error_{key}"] for key in ("median", "p95", "max"))
+        cells.append(" / ".join(percent(value) for value in numbers))
+    return cells
+
+
+def work_row(summary: Summary) -> list[object]:
+    """Run times and work of one method and grid."""
+    values = summary.values
+    times = [
+        " / ".join(milliseconds(values[f"{name}_{key}"]) for key in ("median", "p99"))
+        for name in ("cold", "warm")
+    ]
+    work = [
+        " / ".join(number(values[f"{name}_{kind}_{key}"]) for key in ("median", "max"))
+        for kind in ("iterations", "products")
+        for name in ("cold", "warm")
+    ]
+    start = f"{values['start_difference_max']:.1e}"
+    return [
+        summary.label, *times, *work, start, number(values["bytes"] / 1024), summary.not_converged,
+    ]  # fmt: skip
+
+
+def features(report: Report) -> str:
+    """Cost of each piece of physics beside a plain scene."""
+    lines = [
+        [
+            f.name,
+            milliseconds(f.cold),
+            milliseconds(f.warm),
+            f"{f.cold_ratio:.2f}",
+            f"{f.warm_ratio:.2f}",
+            number(f.bytes / 1024),
+            "" if f.good else "not converged",
+        ]
+        for f in report.features
+    ]
+    return (
+        "<h2>Physics</h2><p>A step with one thing more (the last ones with several) than a plain "
+        f"scene: {SIZE} x {SIZE} elements on the half-space, circular contact, partial slip. "
+        "Ratios are medians of the times over those of the plain scene in the same pass.</p>"
+        + table(
+            ("scene", "cold [ms]", "warm [ms]", "cold, ratio", "warm, ratio", "memory [kB]", ""),
+            lines,
+        )
+    )
+
+
+def wheel_evaluations(report: Report) -> str:
+    """One wheel's contact search, evaluation and derivatives."""
+    lines = [
+        [
+            e.name,
+            milliseconds(e.evaluation),
+            milliseconds(e.matrix),
+            f"{e.ratio:.2f}",
+            number(e.bytes / 1024),
+            "" if e.good else "not converged",
+        ]
+        for e in report.evaluations
+    ]
+    return (
+        "<h2>One wheel</h2><p>S1002 on UIC60, one patch: a warm evaluation of the force at a new "
+        "position, and its derivatives by pose and velocity (6 x 12). Contact search with "
+        f"placement, profiles sampled every 0.2 mm: {number(1e6 * report.search)} µs (median).</p>"
+        + table(("grid", "force [ms]", "derivatives [ms]", "ratio", "their memory [kB]", ""), lines)
+    )
+
+
+def calibration(report: Report) -> str:
+    """How the results' own error estimates compare with the errors."""
+    lines = []
+    for s in report.outcome.summaries:
+        shares = [
+            s.values[f"{name}_estimate_{kind}"]
+            for name in ("force", "moment", "pressure")
+            for kind in ("covers", "within")
+        ]
+        if np.isfinite(shares).any():
+            lines.append([s.problem_set, s.label, *(percent(share) for share in shares)])
+    head = "<h2>Error estimates</h2>"
+    if not lines:
+        return f"{head}<p>No result of this version carries an error estimate.</p>"
+    return (
+        f"{head}<p>Share of cases [%] whose error is at most the estimate (wanted: "
+        f"{100 * COVERED:.0f}), and whose estimate is at most {FACTOR:g} times the error (wanted: "
+        f"{100 * WITHIN:.0f}).</p>"
+        + table(
+            ("set", "method", "force: covers", "within", "moment: covers", "within",
+             "pressure: covers", "within"),
+            lines,
+        )
+    )  # fmt: skip
+
+
+def truth(report: Report) -> str:
+    """Recipes of the truth, and how far they agree."""
+    recipes = [
+        (
+            r["name"],
+            r["sets"],
+            r["method"],
+            f"{r['unit']} {', '.join(map(str, r['grids']))}",
+            r["order"],
+        )
+        for r in report.truth.recipes
+    ]
+    lines = []
+    for name in report.truth.names:
+        others = report.truth.recipes_of(name)[1:]
+        for recipe, agreement in zip(others, report.truth.agreement(name), strict=True):
+            taken = agreement[np.isfinite(agreement[:, 0])]
+            for column, quantity in enumerate(("force", "moment", "pressure")):
+                shares = [np.percentile(taken[:, column], share) for share in (50, 95, 100)]
+                lines.append(
+                    [name, recipe["name"], len(taken), quantity, *(percent(v) for v in shares)]
+                )
+    return (
+        "<h2>Truth</h2><p>Each recipe is extrapolated over its grids to elements of size zero; the "
+        "first one of a set is its truth, the differences of the others from it say how far it can "
+        "be trusted. Differences in %.</p>"
+        + table(("recipe", "sets", "method", "grids", "order"), recipes)
+        + table(
+            ("set", "other recipe", "cases", "quantity", "median", "95th percentile", "greatest"),
+            lines,
+        )
+    )
+
+
+def percent(value: float) -> str:
+    """Three digits."""
+    return f"{100 * value:.3g}" if np.isfinite(value) else "-"
+
+
+def milliseconds(value: float) -> str:
+    """Three digits."""
+    return f"{1e3 * value:.3g}" if np.isfinite(value) else "-"

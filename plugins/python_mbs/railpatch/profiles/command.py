@@ -1,0 +1,73 @@
+"""The sub-command ``railpatch profile``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from railpatch.command.group import WrongCall, output_option, wrong_call
+from railpatch.command.output import check_output
+from railpatch.profiles.pairing import Dimensions
+
+
+def length_option(name: str, field: str, text: str) -> click.Option:
+    """A dimension of the pair in m, with its default."""
+    return click.option(
+        name, field, type=float, default=getattr(Dimensions, field), show_default=True, help=text
+    )
+
+
+@click.command("profile")
+@click.argument("source", metavar="NAME|FILE")
+@output_option("PLOT.html", "The page to write.")
+@click.option("--rail", metavar="NAME|FILE", help="Partner of a wheel.  [default: UIC60@1:40]")
+@click.option("--wheel", metavar="NAME|FILE", help="Partner of a rail.  [default: S1002]")
+@click.option(
+    "--smoothing",
+    type=click.FloatRange(0, 0.1),
+    metavar="LENGTH",
+    help="m, wave length of which half the amplitude is kept in profile files; 0: interpolation.",
+)
+@length_option("--gauge", "gauge", "m, track gauge.")
+@length_option("--radius", "nominal_radius", "m, wheel radius at the profile's z = 0.")
+@length_option("--flange-back-distance", "flange_back_distance", "m, between the flange backs.")
+@length_option(
+    "--flange-back-position", "flange_back_position", "m, of the flange back on the profile's y."
+)
+@click.option("--quiet", is_flag=True, help="Print nothing.")
+def profile(
+    source: str,
+    output: Path,
+    rail: str | None,
+    wheel: str | None,
+    smoothing: float | None,
+    quiet: bool,
+    **lengths: float,
+) -> None:
+    """Make a page of plots of a wheel or rail profile.
+
+    Shape, slope, curvature and kinks; with the partner, for a wheelset with two such wheels on two
+    such rails: contact points, rolling radius difference and equivalent conicity. The page needs no
+    network.
+    """
+    if rail is not None and wheel is not None:
+        raise WrongCall("--rail, --wheel: both given, allowed one: the profile's partner")
+    check_output(output, source, rail, wheel)
+    # plotly takes a while to import; other commands need not wait for it
+    from railpatch.profiles.page import write_profile_page
+
+    role = "wheel" if rail is not None else "rail" if wheel is not None else None
+    try:
+        written = write_profile_page(
+            source,
+            output,
+            role=role,
+            partner=rail or wheel,
+            dimensions=Dimensions(**lengths),
+            smoothing=smoothing,
+        )
+    except OSError as error:
+        raise wrong_call(error) from None
+    if not quiet:
+        click.echo(written)

@@ -1,0 +1,115 @@
+"""The page on a profile: one HTML file that needs no network."""
+
+from __future__ import annotations
+
+from html import escape
+from pathlib import Path
+
+import numpy as np
+
+from railpatch.errors import ProfileError
+from railpatch.profiles import figures, load_profile, read_profile
+from railpatch.profiles.pairing import ContactPoints, Dimensions, contact_points
+from railpatch.profiles.raw import Role
+from railpatch.profiles.shape import CORNER_RADIUS, CURVATURE_STEP, Shape, shape_of
+from railpatch.report.page import document, plot
+
+PARTNERS: dict[Role, str] = {"wheel": "UIC60@1:40", "rail": "S1002"}
+# built-in names that are one or the other, and those that are either
+ROLES: dict[str, Role] = {"S1002": "wheel", "UIC60": "rail"}
+EITHER = ("cone", "arc", "cylinder")
+# m, amplitudes of the plot and of the table
+AMPLITUDES = 1e-4 * np.arange(5, 81)
+TABLE = 1e-3 * np.arange(1, 9)
+
+
+def write_profile_page(
+    source: str | Path,
+    output: str | Path,
+    *,
+    role: Role | None = None,
+    partner: str | Path | None = None,
+    dimensions: Dimensions | None = None,
+    smoothing: float | None = None,
+) -> Path:
+    """Writes the page on a profile by built-in name or file; returns ``output``.
+
+    role: "wheel" or "rail"; may be left out where name, extension or header tell. partner: the
+    other profile; by default UIC60@1:40 for a wheel and S1002 for a rail. smoothing: m, as in
+    load_profile, for the files of both.
+    Raises ProfileError, CaseError, OSError; nothing is written then.
+    """
+    role = role or role_of(source)
+    shape = shape_of(profile := load_profile(source, role, smoothing=smoothing))
+    other = partner or PARTNERS[role]
+    pair = (source, other) if role == "wheel" else (other, source)
+    points = contact_points(*pair, dimensions=dimensions, smoothing=smoothing)
+    body = "".join(
+        [
+            f"<h1>{escape(Path(source).name)}</h1><p class=sub>{role} profile</p>",
+            *(f"<p class=sub>{escape(note)}</p>" for note in profile.notes),
+            *shape_section(shape),
+            *pair_section(points, str(pair[0]), str(pair[1])),
+        ]
+    )
+    output = Path(output)
+    output.write_text(document(Path(source).name, body), encoding="utf-8")
+    return output
+
+
+def role_of(source: str | Path) -> Role:
+    """Whether a profile is a wheel's or a rail's. Raises ProfileError where nothing tells."""
+    base = str(source).split("@")[0]
+    if base in EITHER:
+        raise ProfileError(source, "is a wheel or a rail: give its partner by --rail or --wheel")
+    return ROLES[base] if base in ROLES else read_profile(source).role
+
+
+def shape_section(shape: Shape) -> list[str]:
+    """Plots of the profile alone."""
+    return [
+        "<h2>Shape</h2><p>From the flange or gauge side to the field side; z, slope and curvature "
+        f"count downwards. Marked: {shape.steps.size} steps of the curvature by more than "
+        f"{CURVATURE_STEP:g} 1/m, as at the joints of arcs, and {shape.corners.size} corners of "
+        f"less than {1e3 * CORNER_RADIUS:g} mm radius.</p>",
+        plot(figures.shape_figure(shape), "shape"),
+    ]
+
+
+def pair_section(points: ContactPoints, wheel: str, rail: str) -> list[str]:
+    """Plots of wheel and rail together."""
+    sizes = points.dimensions
+    conicity = np.array([points.conicity(amplitude) for amplitude in AMPLITUDES])
+    lost = int(np.isnan(points.position).sum())
+    parts = [
+        f"<h2>{escape(wheel)} on {escape(rail)}</h2><p>A wheelset with two such wheels on two such "
+        f"rails: gauge {1e3 * sizes.gauge:g} mm, flange backs {1e3 * sizes.flange_back_distance:g} "
+        f"mm apart, at {1e3 * sizes.flange_back_position:g} mm on the profile, radius "
+        f"{1e3 * sizes.nominal_radius:g} mm. Without load, roll and yaw. Right-hand side shown; "
+        "y &gt; 0 is towards its flange.</p>",
+    ]
+    if lost:
+        parts.append(
+            f"<p class=warn>No regular contact in {lost} of {points.y.size} positions.</p>"
+        )
+    return [
+        *parts,
+        plot(figures.contact_figure(points), "contact"),
+        "<h2>Rolling radius difference</h2><p>Right wheel minus left wheel.</p>",
+        plot(figures.difference_figure(points), "difference"),
+        "<h2>Equivalent conicity</h2><p>tan of the inclination of the cone with the same kinematic "
+        "wave length, by integration of the kinematic motion (UIC 519, EN 15302).</p>",
+        plot(figures.conicity_figure(AMPLITUDES, conicity), "conicity"),
+        conicity_table(points),
+    ]
+
+
+def conicity_table(points: ContactPoints) -> str:
+    """Conicity at whole millimetres."""
+    head = "<tr><th class=n>amplitude [mm]</th><th class=n>equivalent conicity [-]</th></tr>"
+    rows = []
+    for amplitude in TABLE:
+        value = points.conicity(amplitude)
+        shown = f"{value:.4f}" if np.isfinite(value) else "none"
+        rows.append(f"<tr><td class=n>{1e3 * amplitude:g}</td><td class=n>{shown}</td></tr>")
+    return f"<table>{head}{''.join(rows)}</table>"

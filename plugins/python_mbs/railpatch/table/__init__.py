@@ -1,8 +1,0 @@
-"""Creep forces of elliptic contacts, tabulated by the full theory: `railpatch table`.
-
-core/fast/creep_table.hpp tells what the table holds and how it is interpolated.
-"""
-
-from railpatch.table.blob import default_table, describe_table
-
-__all__ = ["default_table", "describe_table"]
