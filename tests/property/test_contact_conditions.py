@@ -2,8 +2,8 @@
 
 Kalker 1990, Three-dimensional elastic bodies in rolling contact, chapter 1: pressure and gap are
 not negative and not both positive; stick has no slip and at most the bound; slip has the bound,
-against the slip. Displacements come from railpatch/evidence/stress/half_space.py, by other code than the
-solver's.
+against the slip. Displacements come from railpatch/evidence/stress/half_space.py, by other
+code than the solver's.
 """
 
 from __future__ import annotations

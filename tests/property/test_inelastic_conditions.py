@@ -2,9 +2,9 @@
 
 |p| <= min(g, tau_c); slip opposite to traction and only where |p| = g; plastic displacement along
 traction and only where tau_c was met; rigid slip, elastic displacement by code of its own
-(railpatch/evidence/stress/half_space.py), slip and plastic displacement add up; friction coefficient and
-yield stress from recurrences along the rows (report DOT/FRA/ORD-24/18, eqs. 39 to 49). Powers are
-not negative.
+(railpatch/evidence/stress/half_space.py), slip and plastic displacement add up;
+friction coefficient and yield stress from recurrences along the rows (report DOT/FRA/ORD-24/18,
+eqs. 39 to 49). Powers are not negative.
 """
 
 from __future__ import annotations

@@ -136,11 +136,11 @@ class Contact:
         ``left``, ``right``: arrays [6, 12] of force and moment of each wheel in use, rows
         ``railpatch.case.derivative.FORCE_AND_MOMENT`` (N, N m, track axes), columns
         ``railpatch.case.derivative.POSE_AND_VELOCITY`` (m, rad, m/s, rad/s). ``z``: [12], of the
-        height. They are those of what step() gives: with vertical_force, z follows; column z then is that
-        of a wheel whose vertical force does not stay, NaN by differences, and ``z_force`` (m/N) the
-        height's by the vertical force (else NaN). ``kind``: as of differentiate(); ``status``: as
-        of the step, or "not_converged". Needs method.derivatives = true and a step; changes
-        nothing. Raises CaseError.
+        height. They are those of what step() gives: with vertical_force, z follows; column z then
+        is that of a wheel whose vertical force does not stay, NaN by differences, and ``z_force``
+        (m/N) the height's by the vertical force (else NaN). ``kind``: as of differentiate();
+        ``status``: as of the step, or "not_converged". Needs method.derivatives = true and a step;
+        changes nothing. Raises CaseError.
         """
         if self._case.kind == "patch":
             raise CaseError("kind: value is 'patch', allowed wheel_rail, wheelset for jacobian()")

@@ -1,13 +1,13 @@
 """The model of the core's error estimates, fitted to measured errors.
 
 ``python -m railpatch.evidence.bench.calibrate -o core/patch/error_model.inc`` makes the file
-again in minutes and prints how often the estimate covers the error, and how often it is within a factor 4 of it, on the
-cases it was fitted to and on others.
+again in minutes and prints how often the estimate covers the error, and how often it is within a
+factor 4 of it, on the cases it was fitted to and on others.
 
 The model (core/patch/error_estimate.hpp) is a network of one hidden layer for the logarithm
-of the error. It is fitted so that the estimate lies between the error and 4 times the error: beyond either end
-the loss grows linearly with the logarithm, steeper where the estimate is too small. Then it is
-moved by a constant until it covers the share wanted of cases that were held out.
+of the error. It is fitted so that the estimate lies between the error and 4 times the error: beyond
+either end the loss grows linearly with the logarithm, steeper where the estimate is too small. Then
+it is moved by a constant until it covers the share wanted of cases that were held out.
 """
 
 from __future__ import annotations

@@ -75,8 +75,8 @@ class Family:
     """A model of the core: a theory, with the cases of its grids and normal theories.
 
     name: of the arrays in core/patch/error_model.inc. normals: theories of the normal
-    problem, each with the share of the problems that it is taken for. stated: errors of force and moment that the
-    theory states itself, over which the model's are.
+    problem, each with the share of the problems that it is taken for. stated: errors of force and
+    moment that the theory states itself, over which the model's are.
     """
 
     name: str

@@ -1,10 +1,10 @@
 """Patches of wheels on rails and rollers, as surfaces whose rows are parabolas.
 
 They are made once (``python -m railpatch.evidence.bench.surfaces OUTPUT.npz``) and stored with
-the package, so that the problems stay what they are when the contact search changes. Sources: S1002 on UIC60 at
-the positions of the Manchester benchmark A-2.2 (Shackleton and Iwnicki 2008), whose roll angles and
-pitch rates are read from the reference folder; and nominal profiles of the NRC roller rig at the
-positions that balance them.
+the package, so that the problems stay what they are when the contact search changes. Sources: S1002
+on UIC60 at the positions of the Manchester benchmark A-2.2 (Shackleton and Iwnicki 2008), whose
+roll angles and pitch rates are read from the reference folder; and nominal profiles of the NRC
+roller rig at the positions that balance them.
 """
 
 from __future__ import annotations
