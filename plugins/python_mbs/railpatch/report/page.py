@@ -12,10 +12,10 @@ from plotly.offline import get_plotlyjs
 
 from railpatch.log.channels import ELEMENT_STATES, HUNTING, SIDES
 from railpatch.log.reader import Run, read_run
+from railpatch.page.parts import plot, warnings
 
 from . import balance_figures, figures, reference, tables, vehicle_page
 from .data import Positions, positions, snapshot
-from .parts import plot, warnings
 from .patch_figure import most_loaded, patch_figure
 from .vehicle import vehicle_run
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from railpatch.log.channels import SIDES
+from railpatch.page.parts import plot, warnings
 
 from . import balance_figures, tables, vehicle_figures
-from .parts import plot, warnings
 from .patch_figure import patch_figure
 from .vehicle import VehicleRun, snapshot
 
