@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "numeric/nan.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -150,9 +152,8 @@ void follow_row(const surface &f, const surface_grid &g, int row, int column, co
 
 void fill_row(const surface &f, const surface_grid &g, int row, int column, const hit &middle,
               double *heights) {
-  follow_row(f, g, row, column, middle, [heights](int i, const hit &h) {
-    heights[i] = h.valid ? h.n : std::numeric_limits<double>::quiet_NaN();
-  });
+  follow_row(f, g, row, column, middle,
+             [heights](int i, const hit &h) { heights[i] = h.valid ? h.n : nan; });
 }
 
 int clamp_index(double position, int count) {

@@ -1,10 +1,10 @@
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <new>
 
 #include "handle/check.hpp"
 #include "handle/contact.hpp"
+#include "numeric/nan.hpp"
 #include "railpatch.h"
 
 using namespace railpatch;
@@ -71,7 +71,7 @@ void rp_default_input(rp_input *input) {
   input->vertical_force = 1e5;
   input->rolling_speed = 10.0;
   input->direction = 1;
-  for (double &bulk : input->bulk_temperature) bulk = std::numeric_limits<double>::quiet_NaN();
+  for (double &bulk : input->bulk_temperature) bulk = railpatch::nan;
 }
 
 void rp_default_direction(rp_input *direction) {

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <limits>
 #include <numbers>
 
 #include "handle/check.hpp"
 #include "handle/contact_derivative.hpp"
 #include "numeric/force_search.hpp"
+#include "numeric/nan.hpp"
 
 namespace railpatch {
 
@@ -21,7 +21,6 @@ constexpr double most_reach = 2.5;
 constexpr int most_elements = 1000;
 // m; below it the squares of the patch's size vanish, and with them all meaning
 constexpr double least_approach = 1e-100;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Where friction is more than Coulomb's, or the layer yields.
 std::optional<bound_law> make_law(const rp_config &c) {

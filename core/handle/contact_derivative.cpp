@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <utility>
 
 #include "handle/check.hpp"
 #include "handle/input_numbers.hpp"
+#include "numeric/nan.hpp"
 
 namespace railpatch {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // of the steps that differences are taken of; their length is its cube root, which makes the errors
 // of rounding and of curvature alike (Press et al. 2007, "Numerical recipes", section 5.7)
 constexpr double fine_tolerance = 1e-9;

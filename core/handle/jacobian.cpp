@@ -1,16 +1,15 @@
 // Derivatives of wheels: in one direction, and by pose and velocity at once.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "handle/contact_derivative.hpp"
 #include "handle/input_numbers.hpp"
+#include "numeric/nan.hpp"
 
 namespace railpatch {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double exact_tolerance = 1e-8, coarse_tolerance = 1e-6;  // of the linear systems
 constexpr int columns = 12, z_column = 2;
 

@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <limits>
 
 #include "handle/contact.hpp"
+#include "numeric/nan.hpp"
 
 // A step of wheels on rails that deflect.
 
@@ -60,7 +60,7 @@ void contact::solve_supported(const rp_input &in, rp_result &out) {
   const support_result found = support_->solve(wheels, load);
   out.z = found.z;
   if (found.beyond) {
-    if (load.prescribed) out.z = std::numeric_limits<double>::quiet_NaN();
+    if (load.prescribed) out.z = nan;
     report_search(false, RP_OUT_OF_RANGE, found.residual, out);
     out.status = RP_OUT_OF_RANGE;
     return;

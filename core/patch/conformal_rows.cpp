@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "numeric/nan.hpp"
 
 namespace railpatch {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr int most_turns = 12;          // of a step's direction
 constexpr double steady_angle = 1e-12;  // rad, that ends them
 constexpr int arc_steps = 16;           // of an arc length as long as its projection

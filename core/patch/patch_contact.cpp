@@ -2,17 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "half_space/conformal_coupling.hpp"
+#include "numeric/nan.hpp"
 
 namespace railpatch {
-
-namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
 
 rp_patch_result empty_patch_result() {
   rp_patch_result r{};

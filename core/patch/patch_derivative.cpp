@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include "numeric/nan.hpp"
 #include "numeric/sums.hpp"
 #include "patch/patch_contact.hpp"
 
@@ -12,7 +12,6 @@ namespace railpatch {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr int at_once = 8;  // directions of the normal problem
 // so many directions cost less by their resultants
 constexpr int few = 3;

@@ -1,16 +1,15 @@
 // The normal problem of one patch by the scene's theory.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include "numeric/nan.hpp"
 #include "patch/patch_contact.hpp"
 
 namespace railpatch {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 using std::numbers::pi;
 
 double inside_ellipse(const double semi_axes[2], double x, double y) {

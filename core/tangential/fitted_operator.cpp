@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include "numeric/nan.hpp"
 #include "numeric/simd.hpp"
 
 namespace railpatch {
@@ -410,7 +410,7 @@ void fitted_operator::edge_displacement(const contact_rows &rows, int row, const
 }
 
 double fitted_operator::elastic_energy(const contact_rows &rows, const double *p) const {
-  if (line_) return std::numeric_limits<double>::quiet_NaN();
+  if (line_) return nan;
   double energy = 0;
   for (int j = 0; j < count_; ++j) {
     double u[2];

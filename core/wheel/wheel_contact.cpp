@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "numeric/nan.hpp"
 
 namespace railpatch {
 
@@ -58,8 +59,6 @@ deviation deviation_of(const double offset[3], const double rotation[3], const d
   const auto vector = [](const double v[3]) { return vec3{v[0], v[1], v[2]}; };
   return {vector(offset), vector(rotation), vector(velocity), vector(angular_velocity)};
 }
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // greatest distance a reference may move between steps for its solution to be a useful start
 constexpr double warm_distance = 2e-3;

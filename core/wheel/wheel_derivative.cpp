@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
+
+#include "numeric/nan.hpp"
 
 namespace railpatch {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr int blocks = wheel_derivative::most_directions / rate_directions;
 
 // whether more than velocities change
