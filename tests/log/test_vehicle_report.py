@@ -11,8 +11,8 @@ import synthetic_vehicle as vehicle
 from railpatch.log import read_run
 from railpatch.log.stream import FLUSH_INTERVAL
 from railpatch.report import write_report
-from railpatch.report.vehicle import snapshot, vehicle_run
-from railpatch.report.vehicle_figures import friction, positions, ratios
+from railpatch.report.vehicle.data import snapshot, vehicle_run
+from railpatch.report.vehicle.figures import friction, positions, ratios
 
 
 @pytest.fixture(scope="module")

@@ -10,8 +10,8 @@ import math
 
 import numpy as np
 import pytest
-from railpatch.profiles.conicity import equivalent_conicity
-from railpatch.profiles.pairing import ContactPoints, contact_points, positions
+from railpatch.profiles.pairing.conicity import equivalent_conicity
+from railpatch.profiles.pairing.contact_points import ContactPoints, contact_points, positions
 from scipy.integrate import solve_ivp
 
 LEMNISCATE = 1.3110287771460599

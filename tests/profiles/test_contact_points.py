@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from railpatch.profiles import load_profile
-from railpatch.profiles.pairing import Dimensions, contact_points, positions
+from railpatch.profiles.pairing.contact_points import Dimensions, contact_points, positions
 
 
 def test_cone_on_an_arc_by_hand() -> None:

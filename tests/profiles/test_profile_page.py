@@ -9,9 +9,9 @@ import pytest
 from click.testing import CliRunner, Result
 from railpatch.command.cli import cli
 from railpatch.profiles import load_profile
-from railpatch.profiles.figures import conicity_figure, contact_figure, shape_figure
 from railpatch.profiles.formulas import S1002_JOINTS
-from railpatch.profiles.pairing import contact_points, positions
+from railpatch.profiles.pairing.contact_points import contact_points, positions
+from railpatch.profiles.pairing.figures import conicity_figure, contact_figure, shape_figure
 from railpatch.profiles.shape import shape_of
 
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from railpatch.profiles.conicity import equivalent_conicity
+from railpatch.profiles.pairing.conicity import equivalent_conicity
 
 # amplitude (mm), tan(gamma)
 PRINTED = {

@@ -13,7 +13,7 @@ from railpatch.layout import layout, topics_of
 from railpatch.log import read_run
 from railpatch.log.channels import SIDES
 from railpatch.report import write_report
-from railpatch.report.vehicle import vehicle_run
+from railpatch.report.vehicle.data import vehicle_run
 
 from wheelset_demo.scene import scene_file
 from wheelset_demo.vehicle.command import vehicle as command

@@ -23,7 +23,7 @@ ROOMS = {
     "continuity": "evidence.continuity",
     "fmu": "fmu",
     "layout": "layout",
-    "profile": "profiles",
+    "profile": "profiles.pairing",
     "report": "report",
     "stress": "evidence.stress",
     "table": "evidence.table",

@@ -10,9 +10,8 @@ import json
 from collections.abc import Collection
 from typing import Any
 
+from railpatch.layout.plots import KINDS, Curve, Tab, tabs_of
 from railpatch.log.channels import WELL_KNOWN
-
-from .plots import KINDS, Curve, Tab, tabs_of
 
 __all__ = ["KINDS", "Curve", "Tab", "layout", "layout_text", "tabs_of", "topics_of"]
 

@@ -3,10 +3,10 @@
 from railpatch.log import RunLog, SceneGeometry, read_run
 """
 
-from .geometry import SceneGeometry, scene_geometry
-from .reader import Attachment, Run, RunFileError, Series, read_run
-from .vehicle import VehicleGeometry, VehicleLog
-from .writer import RunLog
+from railpatch.log.geometry import SceneGeometry, scene_geometry
+from railpatch.log.reader import Attachment, Run, RunFileError, Series, read_run
+from railpatch.log.vehicle.log import VehicleGeometry, VehicleLog
+from railpatch.log.writer import RunLog
 
 __all__ = [
     "Attachment",

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from .channels import (
+from railpatch.log.channels import (
     CONTACT_FIELDS,
     ELEMENT_STATES,
     LEFT_OUT,
@@ -21,8 +21,8 @@ from .channels import (
     Field,
     Message,
 )
-from .quick import UINT32_MAX, quick
-from .schema import message_class
+from railpatch.log.quick import UINT32_MAX, quick
+from railpatch.log.schema import message_class
 
 _VECTOR_FIELDS = ("traction", "micro_slip")
 

@@ -12,10 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from railpatch.case.wheel import Deviation, WheelsetCase
+from railpatch.log.channels import SIDES
 from railpatch.profiles import load_profile
 from railpatch.profiles.raw import Role
-
-from .channels import SIDES
 
 KINDS = ("rail", "roller")
 # enough for a smooth picture; more only makes the log larger

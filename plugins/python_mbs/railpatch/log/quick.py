@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from .channels import LEFT_OUT, Message
+from railpatch.log.channels import LEFT_OUT, Message
 
 UINT32_MAX = 2**32 - 1
 KINDS = ("double", "uint32", "string")

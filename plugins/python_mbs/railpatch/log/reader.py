@@ -22,7 +22,7 @@ from mcap.stream_reader import CRCValidationError, StreamReader
 from mcap_protobuf.decoder import DecoderFactory
 from zstandard import ZstdError
 
-from .channels import WELL_KNOWN
+from railpatch.log.channels import WELL_KNOWN
 
 # what a file that ends within a record can make the mcap library raise
 _CUT_OFF = (

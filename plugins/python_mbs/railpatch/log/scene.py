@@ -15,9 +15,9 @@ from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from foxglove_schemas_protobuf.LinePrimitive_pb2 import LinePrimitive
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 
-from .channels import SIDES
-from .geometry import SceneGeometry, drawn_out, revolved
-from .primitives import (
+from railpatch.log.channels import SIDES
+from railpatch.log.geometry import SceneGeometry, drawn_out, revolved
+from railpatch.log.primitives import (
     HALF_TURN_X,
     Vector3,
     about,

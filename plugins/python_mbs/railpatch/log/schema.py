@@ -11,7 +11,7 @@ from typing import Any
 
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 
-from .channels import Field, Message, note
+from railpatch.log.channels import Field, Message, note
 
 PACKAGE = "railpatch"
 _Descriptor = descriptor_pb2.FieldDescriptorProto

@@ -27,9 +27,9 @@ from mcap.well_known import MessageEncoding, SchemaEncoding
 from mcap.writer import Writer
 from mcap_protobuf.schema import register_schema
 
-from .channels import CONVENTIONS, WELL_KNOWN, Channel, flat_fields, note
-from .effective import EFFECTIVE, Effective
-from .schema import PACKAGE, schema_data
+from railpatch.log.channels import CONVENTIONS, WELL_KNOWN, Channel, flat_fields, note
+from railpatch.log.effective import EFFECTIVE, Effective
+from railpatch.log.schema import PACKAGE, schema_data
 
 FLUSH_INTERVAL = 0.25  # s, wall clock
 SCENE_RATE = 30.0  # Hz of simulation time, of the 3D scene

@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from os import PathLike
 from typing import Any
 
-from . import scene
-from .channels import CHANNELS, SIDES, channel
-from .effective import Effective
-from .encode import encode, encode_fields
-from .geometry import SceneGeometry
-from .stream import SCENE_RATE, Log, LogStream, Pace, checked_attachments
+from railpatch.log import scene
+from railpatch.log.channels import CHANNELS, SIDES, channel
+from railpatch.log.effective import Effective
+from railpatch.log.encode import encode, encode_fields
+from railpatch.log.geometry import SceneGeometry
+from railpatch.log.stream import SCENE_RATE, Log, LogStream, Pace, checked_attachments
 
 # what a run may leave out
 OPTIONAL = ("/rig/balance", "/wheelset/energy", "/wheelset/momentum", "/solver/stats")

@@ -3,7 +3,7 @@
 from railpatch.report import write_report
 """
 
-from .data import ReportError
-from .page import write_report
+from railpatch.report.data import ReportError
+from railpatch.report.page import write_report
 
 __all__ = ["ReportError", "write_report"]

@@ -9,12 +9,11 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from railpatch.log.reader import Series
-
-from .data import Positions, scaled
-from .figures import GREY, Adder, styled
+from railpatch.report.data import Positions, scaled
+from railpatch.report.figures import GREY, Adder, styled
 
 if TYPE_CHECKING:
-    from .vehicle import VehicleRun
+    from railpatch.report.vehicle.data import VehicleRun
 
 _AXES = {"x": "#3b7dc4", "y": "#e0812b", "z": "#5f9e6e"}
 _WORKS = {

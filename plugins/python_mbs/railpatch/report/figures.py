@@ -10,12 +10,11 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from railpatch.log.channels import SIDES
-
-from .data import Positions, scaled
-from .reference import Match
+from railpatch.report.data import Positions, scaled
+from railpatch.report.reference import Match
 
 if TYPE_CHECKING:
-    from .vehicle import VehicleRun
+    from railpatch.report.vehicle.data import VehicleRun
 
 COLORS = {"left": "#3b7dc4", "right": "#e0812b"}
 _BAD = "#d62839"

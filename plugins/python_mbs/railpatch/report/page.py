@@ -13,11 +13,11 @@ from plotly.offline import get_plotlyjs
 from railpatch.log.channels import ELEMENT_STATES, HUNTING, SIDES
 from railpatch.log.reader import Run, read_run
 from railpatch.page.parts import plot, warnings
-
-from . import balance_figures, figures, reference, tables, vehicle_page
-from .data import Positions, positions, snapshot
-from .patch_figure import most_loaded, patch_figure
-from .vehicle import vehicle_run
+from railpatch.report import balance_figures, figures, reference, tables
+from railpatch.report.data import Positions, positions, snapshot
+from railpatch.report.patch_figure import most_loaded, patch_figure
+from railpatch.report.vehicle import page as vehicle_page
+from railpatch.report.vehicle.data import vehicle_run
 
 _STYLE = """
 :root { color-scheme: light dark; --ink: #1d2126; --soft: #5d6672; --line: #d9dde2;

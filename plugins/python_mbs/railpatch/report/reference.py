@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .data import Positions
+from railpatch.report.data import Positions
 
 FILE = "nrc_dry_10mph_13750lb.csv"
 VARIABLE = "RAILPATCH_REFERENCE"

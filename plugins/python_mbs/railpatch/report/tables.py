@@ -16,9 +16,8 @@ from railpatch.log.channels import (
     vehicle_channels,
 )
 from railpatch.log.reader import Run
-
-from .data import Positions
-from .reference import Match, differences
+from railpatch.report.data import Positions
+from railpatch.report.reference import Match, differences
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[object]], css: str = "") -> str:

@@ -11,8 +11,7 @@ from scipy.ndimage import uniform_filter1d
 
 from railpatch.log.channels import LEAST_LOAD, SIDES, SLIDING
 from railpatch.log.reader import Run, Series
-
-from .data import ReportError, at_times, grid_of
+from railpatch.report.data import ReportError, at_times, grid_of
 
 _GOOD = ("converged", "no_contact")
 

@@ -8,7 +8,7 @@ import click
 
 from railpatch.command.group import WrongCall, output_option, wrong_call
 from railpatch.command.output import check_output
-from railpatch.profiles.pairing import Dimensions
+from railpatch.profiles.pairing.contact_points import Dimensions
 
 
 def length_option(name: str, field: str, text: str) -> click.Option:
@@ -55,7 +55,7 @@ def profile(
         raise WrongCall("--rail, --wheel: both given, allowed one: the profile's partner")
     check_output(output, source, rail, wheel)
     # plotly takes a while to import; other commands need not wait for it
-    from railpatch.profiles.page import write_profile_page
+    from railpatch.profiles.pairing.page import write_profile_page
 
     role = "wheel" if rail is not None else "rail" if wheel is not None else None
     try:

@@ -10,10 +10,10 @@ import numpy as np
 
 from railpatch.log.channels import SIDES
 from railpatch.page.parts import plot, warnings
-
-from . import balance_figures, tables, vehicle_figures
-from .patch_figure import patch_figure
-from .vehicle import VehicleRun, snapshot
+from railpatch.report import balance_figures, tables
+from railpatch.report.patch_figure import patch_figure
+from railpatch.report.vehicle import figures as vehicle_figures
+from railpatch.report.vehicle.data import VehicleRun, snapshot
 
 
 def body(data: VehicleRun, at: float | None) -> str:

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from . import vehicle_scene
-from .channels import channel, vehicle_channels
-from .effective import Effective
-from .encode import encode
-from .geometry import SceneGeometry
-from .stream import SCENE_RATE, Log, LogStream, Pace, checked_attachments
-from .writer import snapshots
+from railpatch.log.channels import channel, vehicle_channels
+from railpatch.log.effective import Effective
+from railpatch.log.encode import encode
+from railpatch.log.geometry import SceneGeometry
+from railpatch.log.stream import SCENE_RATE, Log, LogStream, Pace, checked_attachments
+from railpatch.log.vehicle import scene as vehicle_scene
+from railpatch.log.writer import snapshots
 
 # bodies' cuboids: centre and size (m) in the body's axes
 Boxes = Sequence[tuple[Sequence[float], Sequence[float]]]

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from railpatch.contact import Contact
-from railpatch.profiles.conicity import equivalent_conicity
+from railpatch.profiles.pairing.conicity import equivalent_conicity
 
 Array = NDArray[np.float64]
 # N, flattens a wheel on a rail by some 5e-8 m

@@ -6,7 +6,7 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from railpatch.profiles.pairing import ContactPoints
+from railpatch.profiles.pairing.contact_points import ContactPoints
 from railpatch.profiles.shape import Array, Shape
 from railpatch.report.figures import COLORS, styled
 

@@ -14,13 +14,23 @@ import numpy as np
 from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 
-from .channels import SIDES
-from .geometry import SceneGeometry, drawn_out
-from .primitives import HALF_TURN_X, about, box, entity, frame, line, rgb, stamped, triangles
-from .scene import RAIL, contacts, wheel
+from railpatch.log.channels import SIDES
+from railpatch.log.geometry import SceneGeometry, drawn_out
+from railpatch.log.primitives import (
+    HALF_TURN_X,
+    about,
+    box,
+    entity,
+    frame,
+    line,
+    rgb,
+    stamped,
+    triangles,
+)
+from railpatch.log.scene import RAIL, contacts, wheel
 
 if TYPE_CHECKING:
-    from .vehicle import VehicleGeometry
+    from railpatch.log.vehicle.log import VehicleGeometry
 
 _ARROW_SCALE = 2e-5  # m/N: 100 kN are two metres, to be seen from afar
 _RAIL_LENGTH = 2.4  # m, around each wheelset

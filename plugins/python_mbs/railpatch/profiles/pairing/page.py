@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from railpatch.errors import ProfileError
-from railpatch.profiles import figures, load_profile, read_profile
-from railpatch.profiles.pairing import ContactPoints, Dimensions, contact_points
+from railpatch.profiles import load_profile, read_profile
+from railpatch.profiles.pairing import figures
+from railpatch.profiles.pairing.contact_points import ContactPoints, Dimensions, contact_points
 from railpatch.profiles.raw import Role
 from railpatch.profiles.shape import CORNER_RADIUS, CURVATURE_STEP, Shape, shape_of
 from railpatch.report.page import document, plot

@@ -1,0 +1,1 @@
+"""The log of a vehicle on several wheelsets, and its 3D scene."""
