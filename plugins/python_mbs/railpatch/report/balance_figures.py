@@ -9,8 +9,9 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from railpatch.log.reader import Series
+from railpatch.page.figures import GREY, styled
 from railpatch.report.data import Positions, scaled
-from railpatch.report.figures import GREY, Adder, styled
+from railpatch.report.figures import Adder
 
 if TYPE_CHECKING:
     from railpatch.report.vehicle.data import VehicleRun

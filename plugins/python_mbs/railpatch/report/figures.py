@@ -10,17 +10,15 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from railpatch.log.channels import SIDES
+from railpatch.page.figures import COLORS, GREY, styled
 from railpatch.report.data import Positions, scaled
 from railpatch.report.reference import Match
 
 if TYPE_CHECKING:
     from railpatch.report.vehicle.data import VehicleRun
 
-COLORS = {"left": "#3b7dc4", "right": "#e0812b"}
 _BAD = "#d62839"
 _REFERENCE = {"left": "triangle-left-open", "right": "triangle-right-open"}
-GREY = "#8a919c"
-_GRID = "rgba(128,128,128,0.22)"
 _MANY = 2000  # points of a line; longer runs are thinned for the page
 
 
@@ -171,38 +169,6 @@ def balance_work(data: Positions) -> go.Figure:
     )
     figure.update_xaxes(title_text=data.along_label)
     return styled(figure, 360)
-
-
-def styled(figure: go.Figure, height: int) -> go.Figure:
-    """Neutral on a light and on a dark page."""
-    figure.update_layout(
-        height=height,
-        margin={"l": 70, "r": 48, "t": 75, "b": 55},
-        paper_bgcolor="rgba(0,0,0,0)",
-        plot_bgcolor="rgba(0,0,0,0)",
-        font={"color": GREY, "family": "system-ui, sans-serif", "size": 13},
-        legend={
-            "orientation": "h",
-            "yref": "container",
-            "yanchor": "top",
-            "y": 0.995,
-            "x": 0,
-        },
-        modebar={"bgcolor": "rgba(0,0,0,0)", "color": GREY, "orientation": "v"},
-        hoverlabel={"bgcolor": "#2b2f36", "font": {"color": "#f1f3f5"}},
-    )
-    lines = {
-        "gridcolor": _GRID,
-        "zerolinecolor": "rgba(128,128,128,0.5)",
-        "linecolor": _GRID,
-        "showline": True,
-        "mirror": True,
-        "ticks": "outside",
-        "tickcolor": _GRID,
-    }
-    figure.update_xaxes(**lines)
-    figure.update_yaxes(**lines, automargin=True)
-    return figure
 
 
 def _of_patches(data: Positions, side: str, name: str) -> tuple[np.ndarray, np.ndarray]:

@@ -8,41 +8,17 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from plotly.offline import get_plotlyjs
-
 from railpatch.log.channels import ELEMENT_STATES, HUNTING, SIDES
 from railpatch.log.reader import Run, read_run
-from railpatch.page.parts import plot, warnings
+from railpatch.page.document import document
+from railpatch.page.figures import plot
+from railpatch.page.tables import number, table, whole
 from railpatch.report import balance_figures, figures, reference, tables
 from railpatch.report.data import Positions, positions, snapshot
 from railpatch.report.patch_figure import most_loaded, patch_figure
 from railpatch.report.vehicle import page as vehicle_page
 from railpatch.report.vehicle.data import vehicle_run
-
-_STYLE = """
-:root { color-scheme: light dark; --ink: #1d2126; --soft: #5d6672; --line: #d9dde2;
-  --ground: #ffffff; --panel: #f5f7f9; --warn: #fff1d6; --warn-ink: #6b4500; }
-@media (prefers-color-scheme: dark) { :root { --ink: #e4e7eb; --soft: #9aa3ae; --line: #353b43;
-  --ground: #15181c; --panel: #1d2126; --warn: #42320f; --warn-ink: #ffdf9e; } }
-* { box-sizing: border-box; }
-body { margin: 0 auto; max-width: 1180px; padding: 24px 28px 60px; background: var(--ground);
-  color: var(--ink); font: 15px/1.5 system-ui, sans-serif; }
-h1 { font-size: 26px; margin: 0 0 4px; } h2 { font-size: 19px; margin: 40px 0 4px; }
-h3 { font-size: 15px; margin: 22px 0 4px; }
-p { max-width: 78ch; margin: 4px 0 10px; } p.sub { color: var(--soft); }
-.warn { background: var(--warn); color: var(--warn-ink); padding: 10px 14px; border-radius: 6px;
-  margin: 12px 0; max-width: none; }
-.scroll { overflow-x: auto; }
-table { border-collapse: collapse; font-size: 13.5px; margin: 8px 0; }
-th, td { padding: 3px 14px 3px 0; text-align: left; border-bottom: 1px solid var(--line);
-  vertical-align: top; }
-th { color: var(--soft); font-weight: 600; white-space: nowrap; } th.n { text-align: right; }
-td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-table.summary td:first-child { color: var(--soft); white-space: nowrap; padding-right: 28px; }
-details { margin: 10px 0; } summary { cursor: pointer; color: var(--soft); }
-pre { background: var(--panel); padding: 12px; overflow-x: auto; font-size: 12.5px; }
-figure { margin: 0; }
-"""
+from railpatch.report.warnings import warnings
 
 
 def write_report(
@@ -71,16 +47,6 @@ def write_report(
     output = Path(output)
     output.write_text(page, encoding="utf-8")
     return output
-
-
-def document(title: str, body: str) -> str:
-    """A whole page with style and plotly, around the HTML of its body."""
-    return (
-        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
-        f'<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>Railpatch: {escape(title)}</title><style>{_STYLE}</style>"
-        f"<script>{get_plotlyjs()}</script></head><body>{body}</body></html>\n"
-    )
 
 
 def _head(data: Positions) -> str:
@@ -161,20 +127,20 @@ def hunting_section(found: dict[str, Any]) -> list[str]:
     first = _speed(speed) if below is None else f"below {_speed(below)}: waves grow there"
     rows = [("critical speed, from eigenvalues", first)]
     if away is not None:
-        growth = tables.number(away["growth"])
+        growth = number(away["growth"])
         rows.append(("divergence, without waves", f"{growth} 1/s at {_speed(away['speed'])}"))
     if "critical_speed_in_time" in found:
         rows.append(("critical speed, from runs in time", _speed(found["critical_speed_in_time"])))
     if speed is not None:
         rows += [
-            ("frequency there", f"{tables.number(found['frequency'])} Hz"),
-            ("wave length there", f"{tables.number(found['wave_length'])} m"),
+            ("frequency there", f"{number(found['frequency'])} Hz"),
+            ("wave length there", f"{number(found['wave_length'])} m"),
         ]
     rows.append(("this run", _speed(found["logged_speed"])))
     return [
         "<h2>Hunting</h2><p>The slowest wave of the equations of motion, linearised straight on: "
         "where its growth is above zero, the wheelset hunts.</p>",
-        tables.table((), rows, "summary"),
+        table((), rows, "summary"),
         plot(balance_figures.hunting(found), "hunting"),
     ]
 
@@ -187,7 +153,7 @@ def _momentum(data: Positions) -> str:
     linear, turning = balance_figures.momentum_errors(data.momentum)
     return (
         "<h2>Momenta</h2><p>Open in the balances with the impulses of all forces: "
-        f"{tables.number(linear)} of the momentum at the start, {tables.number(turning)} of its "
+        f"{number(linear)} of the momentum at the start, {number(turning)} of its "
         f"moment about the centre.</p>{plot(balance_figures.momentum(data), 'momentum')}"
     )
 
@@ -197,10 +163,8 @@ def _patch_section(data: Positions, at: float | None) -> list[str]:
     if chosen is None:
         return ["<h2>One patch</h2><p>This log holds no fields of patches.</p>"]
     index = chosen["index"]
-    yaw = tables.number(1e3 * data.state["yaw"][index])
-    where = (
-        f"Position {index}, {data.along_label} {tables.number(data.along[index])}, yaw {yaw} mrad"
-    )
+    yaw = number(1e3 * data.state["yaw"][index])
+    where = f"Position {index}, {data.along_label} {number(data.along[index])}, yaw {yaw} mrad"
     lines = [_patch_line(data, side, chosen) for side in SIDES]
     states = ", ".join(ELEMENT_STATES[1:])
     return [
@@ -217,7 +181,7 @@ def _patch_line(data: Positions, side: str, chosen: dict) -> str:
         return f"No fields of the {side} wheel here."
     patches = data.contact[side].messages[chosen["index"]]["patches"]
     force = patches[grid["patch"]]["normal_force"] if grid["patch"] < len(patches) else None
-    newtons = "" if force is None else f", normal force {tables.whole(force)} N"
+    newtons = "" if force is None else f", normal force {whole(force)} N"
     return f"{side.capitalize()}: patch {grid['patch'] + 1} of {len(patches)}{newtons}."
 
 

@@ -9,7 +9,7 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from railpatch.log.channels import ELEMENT_STATES, SIDES
-from railpatch.report.figures import styled
+from railpatch.page.figures import styled
 
 _STATE_COLORS = ("rgba(128,128,128,0.12)", "#3b7dc4", "#e0812b", "#b23a48")
 _ROWS = ("pressure", "traction", "element division")

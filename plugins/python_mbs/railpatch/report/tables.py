@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from html import escape
 
 import numpy as np
@@ -16,19 +16,9 @@ from railpatch.log.channels import (
     vehicle_channels,
 )
 from railpatch.log.reader import Run
+from railpatch.page.tables import number, table, whole
 from railpatch.report.data import Positions
 from railpatch.report.reference import Match, differences
-
-
-def table(head: Sequence[str], rows: Iterable[Sequence[object]], css: str = "") -> str:
-    """An HTML table; cells are escaped, columns of numbers aligned to the right."""
-    rows = [list(row) for row in rows]
-    numeric = [all(_is_number(value) for value in column) for column in zip(*rows, strict=True)]
-    parts = [f'<div class="scroll"><table class="{escape(css)}">']
-    if head:
-        parts.append("<thead>" + _row("th", head, numeric or [False] * len(head)) + "</thead>")
-    parts += [_row("td", row, numeric) for row in rows]
-    return "".join([*parts, "</table></div>"])
 
 
 def summary(data: Positions) -> str:
@@ -123,20 +113,6 @@ def channels(run: Run) -> str:
     return "".join(parts)
 
 
-def number(value: float) -> str:
-    """Four digits, large numbers whole; a dash where there is no number."""
-    if not np.isfinite(value):
-        return "-"
-    return f"{value:.4g}".replace("-", "\u2212") if abs(value) < 9999.5 else whole(value)
-
-
-def whole(value: float) -> str:
-    """Whole number with thin spaces between thousands; a dash where there is no number."""
-    if not np.isfinite(value):
-        return "-"
-    return f"{value:,.0f}".replace(",", "\u2009").replace("-", "\u2212")
-
-
 def _spread(values: np.ndarray) -> list[object]:
     """Number of values, their mean, root mean square and largest size."""
     values = values[np.isfinite(values)]
@@ -229,16 +205,3 @@ def _cost(data: Positions) -> list[Sequence[object]]:
                 )
             )
     return rows
-
-
-def _row(tag: str, cells: Sequence[object], numeric: Sequence[bool]) -> str:
-    shown = (
-        f"<{tag}{' class=n' if right else ''}>{escape(str(cell))}</{tag}>"
-        for cell, right in zip(cells, numeric, strict=True)
-    )
-    return f"<tr>{''.join(shown)}</tr>"
-
-
-def _is_number(value: object) -> bool:
-    text = str(value)
-    return text == "-" or (text.lstrip("\u2212")[:1].isdigit() and " " not in text)

@@ -14,8 +14,8 @@ from railpatch.evidence.bench.curves import (
     frontier_curve,
 )
 from railpatch.evidence.bench.targets import PEER, PEER_COST
+from railpatch.page.figures import GRID
 
-GRID = "rgba(128,128,128,0.22)"
 HOVER = "%{text}<br>%{x:.4g} ms, %{y:.3g} %<extra></extra>"
 COST_HOVER = "%{x:.0f} elements, %{y:.4g} ms<extra></extra>"
 

@@ -14,8 +14,9 @@ from railpatch.evidence.bench.sets import SEED, SETS
 from railpatch.evidence.bench.statistics import COVERED, FACTOR, WITHIN, Summary
 from railpatch.evidence.bench.targets import rows
 from railpatch.evidence.bench.truth import batches_of
-from railpatch.report.page import document, plot
-from railpatch.report.tables import number, table
+from railpatch.page.document import document
+from railpatch.page.figures import plot
+from railpatch.page.tables import number, table
 
 if TYPE_CHECKING:
     from railpatch.evidence.bench.run import Report

@@ -9,8 +9,9 @@ import plotly.graph_objects as go
 from railpatch.evidence.bench.figures import styled
 from railpatch.evidence.stress import text
 from railpatch.evidence.stress.run import CLEAN, FAULT, SAYS_SO
-from railpatch.report.page import document, plot
-from railpatch.report.tables import table
+from railpatch.page.document import document
+from railpatch.page.figures import plot
+from railpatch.page.tables import table
 
 if TYPE_CHECKING:
     from railpatch.evidence.stress.outcome import Report

@@ -6,9 +6,9 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from railpatch.page.figures import COLORS, styled
 from railpatch.profiles.pairing.contact_points import ContactPoints
 from railpatch.profiles.shape import Array, Shape
-from railpatch.report.figures import COLORS, styled
 
 _LINE = COLORS["left"]
 _MARK = COLORS["right"]

@@ -8,12 +8,13 @@ from pathlib import Path
 import numpy as np
 
 from railpatch.errors import ProfileError
+from railpatch.page.document import document
+from railpatch.page.figures import plot
 from railpatch.profiles import load_profile, read_profile
 from railpatch.profiles.pairing import figures
 from railpatch.profiles.pairing.contact_points import ContactPoints, Dimensions, contact_points
 from railpatch.profiles.raw import Role
 from railpatch.profiles.shape import CORNER_RADIUS, CURVATURE_STEP, Shape, shape_of
-from railpatch.report.page import document, plot
 
 PARTNERS: dict[Role, str] = {"wheel": "UIC60@1:40", "rail": "S1002"}
 # built-in names that are one or the other, and those that are either

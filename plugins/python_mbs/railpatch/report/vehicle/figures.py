@@ -9,8 +9,9 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from railpatch.log.channels import SIDES
+from railpatch.page.figures import GREY, styled
 from railpatch.report.data import scaled
-from railpatch.report.figures import GREY, Adder, styled
+from railpatch.report.figures import Adder
 from railpatch.report.vehicle.data import VehicleRun, Wheel
 
 _COLORS = ("#3b7dc4", "#e0812b", "#5f9e6e", "#c2528b", "#9467bd", "#17879c", "#b5651d", "#8a919c")

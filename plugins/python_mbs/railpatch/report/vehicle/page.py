@@ -9,11 +9,14 @@ from typing import Any
 import numpy as np
 
 from railpatch.log.channels import SIDES
-from railpatch.page.parts import plot, warnings
-from railpatch.report import balance_figures, tables
+from railpatch.page import tables
+from railpatch.page.figures import plot
+from railpatch.report import balance_figures
 from railpatch.report.patch_figure import patch_figure
+from railpatch.report.tables import identity
 from railpatch.report.vehicle import figures as vehicle_figures
 from railpatch.report.vehicle.data import VehicleRun, snapshot
+from railpatch.report.warnings import warnings
 
 
 def body(data: VehicleRun, at: float | None) -> str:
@@ -34,7 +37,7 @@ def body(data: VehicleRun, at: float | None) -> str:
 def summary(data: VehicleRun) -> list[tuple[str, str]]:
     """What the run was, and how it went."""
     n, state = tables.number, data.state
-    rows = [(str(a), str(b)) for a, b in tables.identity(data.run)]
+    rows = [(str(a), str(b)) for a, b in identity(data.run)]
     good = int(data.solved.sum())
     rows += [
         ("steps", f"{data.count} logged, of which {good} converged"),

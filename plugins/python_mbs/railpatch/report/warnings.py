@@ -1,28 +1,10 @@
-"""Parts of pages: figures as HTML, warnings."""
+"""Warnings of a report."""
 
 from __future__ import annotations
 
 from html import escape
 
-import plotly.graph_objects as go
-
 from railpatch.log.reader import Run
-
-
-def plot(figure: go.Figure, name: str) -> str:
-    """A figure as HTML; the name is unique on its page."""
-    inner = figure.to_html(
-        full_html=False,
-        include_plotlyjs=False,
-        div_id=name,
-        config={
-            "displaylogo": False,
-            "displayModeBar": "hover",
-            "responsive": True,
-            "modeBarButtonsToRemove": ["select2d", "lasso2d"],
-        },
-    )
-    return f"<figure>{inner}</figure>"
 
 
 def warnings(run: Run, shown: str, bad: int, count: int, noun: str) -> list[str]:
