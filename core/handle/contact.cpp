@@ -10,6 +10,7 @@
 #include "handle/contact_derivative.hpp"
 #include "numeric/force_search.hpp"
 #include "numeric/nan.hpp"
+#include "patch/result_fields.hpp"
 
 namespace railpatch {
 
@@ -309,15 +310,7 @@ const patch_memory &contact::memory(int side, int patch) const {
 
 void contact::step(const rp_input &input, rp_result &result) {
   if (derivative_) begin_record();
-  rp_result out{};
-  out.z = nan;
-  const rp_patch_result empty = empty_patch_result();
-  for (auto &side : out.side) {
-    side.status = RP_NO_CONTACT;
-    side.rolling_radius = nan;
-    for (int k = 0; k < 2; ++k) side.rail_deflection[k] = side.rail_deflection_rate[k] = nan;
-    for (auto &patch : side.patch) patch = empty;
-  }
+  rp_result out = empty_result();
   for (auto &m : memory_) m.solved = false;
   for (int k = 0; k < 2; ++k) {
     const double bulk = std::isnan(input.bulk_temperature[k]) ? config_.bulk_temperature[k]

@@ -8,6 +8,7 @@
 #include "handle/check.hpp"
 #include "handle/input_numbers.hpp"
 #include "numeric/nan.hpp"
+#include "patch/result_fields.hpp"
 
 namespace railpatch {
 
@@ -37,22 +38,6 @@ hertz_contact hertz_rate(const rp_config &c, const hertz_contact &hertz, const r
 }
 
 }  // namespace
-
-rp_result rates_of_nothing(const rp_result &result) {
-  rp_result change = result;
-  for_each_result_number(change, [](double &v) { v = std::isnan(v) ? nan : 0.0; });
-  change.evaluations = 0;
-  for (auto &side : change.side)
-    for (auto &p : side.patch) {
-      for (int32_t *v : {&p.normal_iterations, &p.newton_iterations, &p.inner_iterations,
-                         &p.outer_iterations, &p.ambiguous_elements})
-        *v = 0;
-      std::fill_n(p.elements, 4, 0);
-      p.residual = nan;
-      std::fill_n(p.error_estimate, 3, nan);
-    }
-  return change;
-}
 
 derivative_record::derivative_record(const rp_config &config, const patch_scene &scene, bool exact,
                                      int max_nx, int max_ny) {
@@ -229,10 +214,10 @@ rp_input moved(const rp_config &config, const rp_input &input, const rp_input &r
 
 // out: rates of all its numbers from two results, a distance apart along the direction.
 void divide(const rp_result (&ends)[2], double distance, rp_result &out) {
-  double *to[most_result_numbers];
+  double *to[result_numbers];
   int count = 0, next = 0;
   for_each_result_number(out, [&](double &v) { to[count++] = &v; });
-  const double *low[most_result_numbers];
+  const double *low[result_numbers];
   for_each_result_number(ends[0], [&](const double &v) { low[next++] = &v; });
   next = 0;
   for_each_result_number(ends[1], [&](const double &v) {

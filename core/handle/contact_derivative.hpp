@@ -26,7 +26,4 @@ struct derivative_record {
   size_t bytes() const;
 };
 
-// The result with rates of nothing: NaN where it has NaN, else zero.
-rp_result rates_of_nothing(const rp_result &result);
-
 }  // namespace railpatch

@@ -1,4 +1,4 @@
-// Every double of an input and of a result, in order.
+// Every double of an input, in order.
 #pragma once
 
 #include <cmath>
@@ -7,8 +7,8 @@
 
 namespace railpatch {
 
-// at most, for arrays of them
-constexpr int most_input_numbers = 128, most_result_numbers = 512;
+// at most, for an array of them
+constexpr int most_input_numbers = 128;
 
 // f(name, number, scale): scale is what changes it by a good part of what matters, of numbers that
 // are zero at rest; 0: the number itself is its scale.
@@ -54,47 +54,6 @@ void for_each_number(Input &in, F &&f) {
   f("time_step", in.time_step, 1e-3);
   f("roller_pitch_rate", in.roller_pitch_rate, 1.0);
   f("friction_coefficient", in.friction_coefficient, 0.1);
-}
-
-template <class Result, class F>
-void for_each_patch_number(Result &p, F &&f) {
-  f(p.normal_force);
-  f(p.approach);
-  for (auto &v : p.creep_force) f(v);
-  f(p.spin_moment);
-  f(p.max_pressure);
-  f(p.contact_area);
-  f(p.max_temperature);
-  f(p.friction_power);
-  f(p.plastic_power);
-  f(p.elastic_energy);
-  f(p.share);
-  for (auto &v : p.position) f(v);
-  f(p.contact_angle);
-  for (auto &v : p.creepage) f(v);
-  f(p.spin_creepage);
-  f(p.rolling_speed);
-  for (auto &v : p.grid_origin) f(v);
-  for (auto &v : p.element_size) f(v);
-}
-
-template <class Result, class F>
-void for_each_side_number(Result &side, F &&f) {
-  for (auto &v : side.force) f(v);
-  for (auto &v : side.moment) f(v);
-  f(side.rolling_radius);
-  for (auto &v : side.rail_deflection) f(v);
-  for (auto &v : side.rail_deflection_rate) f(v);
-  for (auto &patch : side.patch) for_each_patch_number(patch, f);
-}
-
-// All but residuals and error estimates.
-template <class Result, class F>
-void for_each_result_number(Result &r, F &&f) {
-  f(r.z);
-  for (auto &v : r.force) f(v);
-  for (auto &v : r.moment) f(v);
-  for (auto &side : r.side) for_each_side_number(side, f);
 }
 
 }  // namespace railpatch

@@ -5,6 +5,7 @@
 #include "handle/contact_derivative.hpp"
 #include "handle/input_numbers.hpp"
 #include "numeric/nan.hpp"
+#include "patch/result_fields.hpp"
 
 namespace railpatch {
 
@@ -83,7 +84,7 @@ void contact::differentiate_wheels(const rp_input &direction, rp_result &out) {
   for (const auto &wheel : wheels_) {
     const int side = wheel.side();
     rp_side_result *changes = &record.changes[static_cast<size_t>(side * count)];
-    double *to[most_result_numbers];
+    double *to[result_numbers];
     int numbers = 0, next = 0;
     const auto collect = [&](double &v) { to[numbers++] = &v; };
     for_each_side_number(out.side[side], collect);

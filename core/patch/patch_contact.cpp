@@ -4,35 +4,9 @@
 #include <cmath>
 
 #include "half_space/conformal_coupling.hpp"
-#include "numeric/nan.hpp"
+#include "patch/result_fields.hpp"
 
 namespace railpatch {
-
-rp_patch_result empty_patch_result() {
-  rp_patch_result r{};
-  for (double *v :
-       {&r.normal_force,      &r.approach,          &r.creep_force[0], &r.creep_force[1],
-        &r.spin_moment,       &r.max_pressure,      &r.contact_area,   &r.max_temperature,
-        &r.friction_power,    &r.plastic_power,     &r.elastic_energy, &r.error_estimate[0],
-        &r.error_estimate[1], &r.error_estimate[2], &r.position[0],    &r.position[1],
-        &r.position[2],       &r.contact_angle,     &r.creepage[0],    &r.creepage[1],
-        &r.spin_creepage,     &r.rolling_speed})
-    *v = nan;
-  r.share = 1;
-  return r;
-}
-
-void set_unloaded(const patch_scene &scene, rp_patch_result &result) {
-  result.normal_force = result.max_pressure = result.contact_area = result.elastic_energy = 0;
-  result.error_estimate[2] = 0;
-  if (scene.heat)
-    result.max_temperature =
-        std::max(scene.heat->bodies.body[0].bulk, scene.heat->bodies.body[1].bulk);
-  if (scene.tangential == RP_TANGENTIAL_NONE) return;
-  result.creep_force[0] = result.creep_force[1] = result.spin_moment = result.friction_power = 0;
-  if (scene.yields()) result.plastic_power = 0;
-  result.error_estimate[0] = result.error_estimate[1] = 0;
-}
 
 bool patch_scene::estimates_force() const {
   // of a prescribed force the creepage errs

@@ -247,10 +247,6 @@ class patch_contact {
   aligned_buffer<double> bound_, scratch_[2], before_[2];
 };
 
-// Sets what the scene's stages give where nothing touches: zeros.
-void set_unloaded(const patch_scene &scene, rp_patch_result &result);
-// A result with every number NaN and every count zero.
-rp_patch_result empty_patch_result();
 // Worse of two outcomes, for results that several stages contribute to.
 inline void degrade(rp_patch_result &result, rp_status status) {
   if (result.status == RP_CONVERGED) result.status = status;

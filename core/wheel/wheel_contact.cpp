@@ -5,6 +5,8 @@
 
 #include "numeric/nan.hpp"
 
+#include "patch/result_fields.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -166,14 +168,11 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
   const search_result found =
       find_patches(*geometry_, rules_, parts_, regions_.data(), config_.max_patches);
   solver.observe(RP_STAGE_GEOMETRY, false);
-  out.status = RP_NO_CONTACT;
+  out = empty_side_result();
   const int count = patches_ = found.count;
   out.patch_count = found.lead;
   out.alternative_count = count - found.lead;
-  for (int k = 0; k < 3; ++k) out.force[k] = out.moment[k] = 0;
   out.rolling_radius = 0;
-  for (int k = 0; k < 2; ++k) out.rail_deflection[k] = out.rail_deflection_rate[k] = nan;
-  for (auto &patch : out.patch) patch = empty_patch_result();
   beyond_ = found.status == search_status::out_of_range ||
             found.status == search_status::too_many_patches;
   if (beyond_) out.status = RP_OUT_OF_RANGE;
@@ -437,19 +436,6 @@ rp_status combine_status(rp_status a, rp_status b) {
   if (a == RP_OUT_OF_RANGE || b == RP_OUT_OF_RANGE) return RP_OUT_OF_RANGE;
   if (a == RP_NOT_CONVERGED || b == RP_NOT_CONVERGED) return RP_NOT_CONVERGED;
   return a == RP_CONVERGED || b == RP_CONVERGED ? RP_CONVERGED : RP_NO_CONTACT;
-}
-
-void mirror(rp_side_result &side) {
-  // a reflection at the plane y = 0: vectors change their y, axial vectors their x and z
-  side.force[1] = -side.force[1];
-  side.moment[0] = -side.moment[0];
-  side.moment[2] = -side.moment[2];
-  for (auto &p : side.patch) {
-    for (double *v : {&p.creep_force[1], &p.spin_moment, &p.position[1], &p.contact_angle,
-                      &p.creepage[1], &p.spin_creepage})
-      *v = -*v;
-    p.grid_origin[1] = -(p.grid_origin[1] + (p.grid[1] - 1) * p.element_size[1]);
-  }
 }
 
 }  // namespace railpatch

@@ -83,7 +83,5 @@ struct profile_error {
 
 // Status of several patches or wheels together: the worst; no contact only where none has any.
 rp_status combine_status(rp_status a, rp_status b);
-// The result of a left wheel from that of its mirror image, and the other way round.
-void mirror(rp_side_result &result);
 
 }  // namespace railpatch

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "numeric/nan.hpp"
+#include "patch/result_fields.hpp"
 
 namespace railpatch {
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "handle/input_numbers.hpp"
+#include "patch/result_fields.hpp"
 #include "scenes.hpp"
 
 namespace {
