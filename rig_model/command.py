@@ -45,9 +45,8 @@ def rig(
 ) -> None:
     """Replay a run of NRC's roller rig: balance every position, write the log.
 
-    Without a scene it is the dry run at 10 mph and 13,750 lb a side, with NRC's measured profiles
-    where $RAILPATCH_REFERENCE or ../shared/reference beside the checkout holds them, else with
-    nominal ones. A log that was cut off can be read up to less than a second before its end.
+    Without a scene it is the dry run at 10 mph and 13,750 lb a side with the profiles that NRC
+    measured. A log that was cut off can be read up to less than a second before its end.
     """
     # scipy and the log's libraries take a while to import; other commands need not wait for them
     from rig_model.run import replay
@@ -59,7 +58,7 @@ def rig(
         check_output(output, scene or default_scene(), *loaded.files.values())
         if not quiet:
             click.echo(f"scene         {loaded.name}")
-            click.echo(f"profiles      {profiles_used(loaded, chosen=scene is None)}")
+            click.echo(f"profiles      {profiles_used(loaded)}")
         with progress_bar("balancing", loaded.rig.count, quiet) as advance:
             summary = replay(loaded, output, advance)
     except (CaseError, ProfileError, OSError) as error:
@@ -73,17 +72,12 @@ def rig(
         context.exit(EXIT_NOT_CONVERGED)
 
 
-def profiles_used(scene: Any, *, chosen: bool) -> str:
-    """Which profiles a run has. chosen: the scene is the one that is run by default."""
-    from rig_model.scene import NOMINAL, PROFILE_KEYS, REFERENCE_VARIABLE
+def profiles_used(scene: Any) -> str:
+    """Which profiles a run has."""
+    from rig_model.scene import PROFILE_KEYS
 
     given = scene.case.profiles.model_dump(include=set(PROFILE_KEYS), exclude_none=True)
-    names = ", ".join(sorted({Path(name).name for name in given.values()}))
-    if not chosen:
-        return names
-    if scene.name == NOMINAL:
-        return f"nominal ({names}); set {REFERENCE_VARIABLE} for the measured ones: not found"
-    return f"measured ({names})"
+    return ", ".join(sorted({Path(name).name for name in given.values()}))
 
 
 def default_curve_text() -> str:

@@ -1,4 +1,4 @@
-"""Nominal profiles for the rig, by formula: used where the measured ones are not at hand.
+"""Nominal profiles for the rig, by formula: smooth ones, beside those that NRC measured.
 
     python -m rig_model.nominal FOLDER      # writes the two files that the nominal scene names
 

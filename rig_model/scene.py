@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
@@ -20,7 +19,6 @@ from rig_model.programme import Position, positions
 
 MEASURED = "nrc_dry_10mph_13750lb.toml"
 NOMINAL = "nominal_dry_10mph_13750lb.toml"
-REFERENCE_VARIABLE = "RAILPATCH_REFERENCE"
 SIDES = ("left", "right")
 PROFILE_KEYS = ("wheel", "rail", "wheel_left", "wheel_right", "rail_left", "rail_right")
 # snapshots of the fields in a run whose scene does not say
@@ -183,10 +181,10 @@ class RigScene:
 def load_rig_scene(
     path: str | Path | None = None, overrides: Mapping[str, Any] | None = None
 ) -> RigScene:
-    """Checks a scene; without ``path`` that of the package: NRC's profiles if found, else nominal.
+    """Checks a scene; without ``path`` that of the package, with NRC's measured profiles.
 
     overrides: keys of [rig] ("balance.method": of a table in it) that replace the file's. Profiles
-    are looked for beside the file, then among the reference data (see ``reference_profiles``).
+    are looked for beside the file, then beside the package's scenes.
     Raises CaseError with every problem.
     """
     path = default_scene() if path is None else Path(path)
@@ -272,35 +270,25 @@ def check_machine(case: Any, rig: Rig) -> None:
         raise CaseError(problems)
 
 
-def reference_profiles() -> Path | None:
-    """The folder of the measured profiles, or None.
-
-    $RAILPATCH_REFERENCE/profiles if that is set, else ../shared/reference/profiles beside the
-    checkout that this file, or the working directory, belongs to.
-    """
-    named = os.environ.get(REFERENCE_VARIABLE)
-    roots = [Path(__file__).resolve().parents[1], Path.cwd()]
-    places = [Path(named)] if named else [root.parent / "shared" / "reference" for root in roots]
-    return next((p / "profiles" for p in places if (p / "profiles").is_dir()), None)
-
-
 def default_scene() -> Path:
-    """NRC's measured profiles where all of them are found, else nominal ones."""
-    folder = Path(str(resources.files("rig_model"))) / "scenes"
-    measured = folder / MEASURED
-    names = read_toml(measured)["profiles"].values()
-    reference = reference_profiles()
-    found = reference is not None and all((reference / name).is_file() for name in names)
-    return measured if found else folder / NOMINAL
+    """The replay of NRC's run, with the measured profiles."""
+    return scenes() / MEASURED
+
+
+def scenes() -> Path:
+    """The folder of the package's scenes and their profiles."""
+    return Path(str(resources.files("rig_model"))) / "scenes"
 
 
 def found_profiles(case: WheelsetCase, folder: Path) -> dict[str, Path]:
-    """Name in [profiles] -> its file, looked for in the folder, then among the reference data."""
-    places = [place for place in (folder, reference_profiles()) if place is not None]
+    """Name in [profiles] -> its file, looked for in the folder, then beside the package's scenes.
+
+    A scene that was shown and changed elsewhere names the package's profiles.
+    """
     names = {getattr(case.profiles, key) for key in PROFILE_KEYS} - {None}
     found = {}
     for name in sorted(names):
-        files = [place / name for place in places if (place / name).is_file()]
+        files = [place / name for place in (folder, scenes()) if (place / name).is_file()]
         if files:
             found[name] = files[0]
     return found

@@ -16,12 +16,6 @@ from railpatch.report.data import positions, snapshot
 from railpatch.report.patch_figure import most_loaded, patch_figure, regular
 
 
-@pytest.fixture(autouse=True)
-def no_reference(monkeypatch, tmp_path):
-    """Tests do not depend on what is beside the checkout."""
-    monkeypatch.setenv(reference.VARIABLE, str(tmp_path / "nowhere"))
-
-
 @pytest.fixture(scope="module")
 def rig_file(tmp_path_factory):
     return synthetic.write_rig_run(tmp_path_factory.mktemp("report") / "rig.mcap")
@@ -158,14 +152,20 @@ def test_other_branch_is_not_matched(rig, tmp_path):
     assert {m.index for m in matches} == {33}
 
 
-def test_reference_is_found_by_variable_and_its_absence_said(rig_file, tmp_path, monkeypatch):
-    text = _page(rig_file, tmp_path)
-    assert "is not here" in text
+def test_the_packages_reference_is_shown(rig, rig_file, tmp_path):
+    rows = reference.load(reference.find())
+    assert len(rows) == 26
+    places = len({m.index for m in reference.match(rows, rig)})
+    assert f"found for {places} of 37" in _page(rig_file, tmp_path)
+
+
+def test_absence_of_another_reference_is_said(rig_file, tmp_path):
+    text = _page(rig_file, tmp_path, reference_dir=tmp_path)
+    assert "is not in the folder that was named" in text
     assert "Differences" not in text
     folder = _write_reference(tmp_path / "reference", [0])
-    monkeypatch.setenv(reference.VARIABLE, str(folder))
     # yaw and lateral position are the same at the start, in the middle and at the end
-    assert "found for 3 of 37" in _page(rig_file, tmp_path)
+    assert "found for 3 of 37" in _page(rig_file, tmp_path, reference_dir=folder)
 
 
 def test_reference_of_another_run(rig_file, tmp_path):

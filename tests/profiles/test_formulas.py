@@ -1,16 +1,16 @@
 """S1002 and UIC60 by formula against the profiles of the Manchester benchmark.
 
 Shackleton, Iwnicki: Comparison of wheel-rail contact codes for railway vehicle simulation: an
-introduction to the Manchester Contact Benchmark, VSD 46 (2008). The files hold eight digits.
+introduction to the Manchester Contact Benchmark, VSD 46 (2008). Points are given to eight digits.
 """
 
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
+from published_data import MANCHESTER
 from railpatch.profiles import Profile, RawProfile, load_profile, read_profile
 from railpatch.profiles.formulas import (
     S1002_JOINTS,
@@ -37,15 +37,14 @@ def normal_distance(profile: Profile, raw: RawProfile) -> np.ndarray:
     return np.array(found)
 
 
-def test_s1002_formula_is_the_measured_profile(reference_profiles: Path) -> None:
-    raw = read_profile(reference_profiles / "MBench_S1002_v3.prw")
-    assert raw.role == "wheel"
-    assert raw.y.size == 399  # 400 lines, the first is commented out
+def test_s1002_formula_is_the_measured_profile() -> None:
+    raw = read_profile(MANCHESTER["wheel"], "wheel")
+    assert raw.y.size == 399
     np.testing.assert_allclose(s1002_depth(1e3 * raw.y), 1e3 * raw.z, rtol=0, atol=2e-6)
 
 
-def test_uic60_formula_is_the_measured_profile(reference_profiles: Path) -> None:
-    raw = read_profile(reference_profiles / "MBench_UIC60_v3.prr")
+def test_uic60_formula_is_the_measured_profile() -> None:
+    raw = read_profile(MANCHESTER["rail"], "rail")
     angle = math.atan(1 / 40)
     y, z = 1e3 * raw.y - UIC60_MOVE[0], 1e3 * raw.z - UIC60_MOVE[1]
     y, z = (
@@ -62,16 +61,16 @@ def test_uic60_formula_is_the_measured_profile(reference_profiles: Path) -> None
     assert z.max() == pytest.approx(UIC60_DEPTH, abs=1e-4)
 
 
-def test_built_in_s1002_is_the_measured_profile(reference_profiles: Path) -> None:
-    raw = read_profile(reference_profiles / "MBench_S1002_v3.prw")
+def test_built_in_s1002_is_the_measured_profile() -> None:
+    raw = read_profile(MANCHESTER["wheel"], "wheel")
     distance = 1e3 * normal_distance(load_profile("S1002", "wheel"), raw)
     zone_c = (raw.y > 1e-3 * S1002_JOINTS[3]) & (raw.y < 1e-3 * S1002_JOINTS[2])
     assert distance[~zone_c].max() < 2e-6
     assert distance[zone_c].max() < 1.2e-4  # the jump of the published formula is taken up here
 
 
-def test_built_in_uic60_is_the_measured_profile(reference_profiles: Path) -> None:
-    raw = read_profile(reference_profiles / "MBench_UIC60_v3.prr")
+def test_built_in_uic60_is_the_measured_profile() -> None:
+    raw = read_profile(MANCHESTER["rail"], "rail")
     angle = math.atan(1 / 40)
     crown = 300 * math.sin(angle)  # mm, where the rail's crown touches a line of that angle
     exact = -(math.cos(angle) * crown + math.sin(angle) * (300 - 300 * math.cos(angle)))

@@ -1,17 +1,16 @@
 """The default smoothing of measured profiles gives the published forces of the NRC rig.
 
-CONTACT's own model of the rig (2025), reference/nrc_dry_10mph_13750lb.csv: position after balance,
-vertical forces on the roller to four digits, elements of 0.4 mm. The default wave length of 2 mm
+CONTACT's own model of the rig (2025), nrc_dry_10mph_13750lb.csv: position after balance, vertical
+forces on the roller to four digits, elements of 0.4 mm. The default wave length of 2 mm
 was chosen by this table, so this test guards it and the readers; with 2.5 mm the left wheel's force
 in the two-patch position is 1 % too low, with 3.5 mm 4 %.
 """
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 import railpatch
+from published_data import NRC
 
 # yaw rad, y m, z m, roll rad, pitch rate rad/s, Fz left N, Fz right N
 ROWS = [
@@ -23,7 +22,6 @@ ROWS = [
 
 @pytest.mark.parametrize(("yaw", "y", "z", "roll", "pitch_rate", "left", "right"), ROWS)
 def test_vertical_forces(
-    reference_profiles: Path,
     yaw: float,
     y: float,
     z: float,
@@ -55,14 +53,9 @@ def test_vertical_forces(
             "left": {"offset": [0, -0.080053e-3, 0]},
             "right": {"offset": [0, 0.054488e-3, 0]},
         },
-        "profiles": {
-            "wheel_left": "left-wheel-v1-pre-dry.whl",
-            "wheel_right": "right-wheel-v1-pre-dry.whl",
-            "rail_left": "left-roller-v1-pre-dry.ban",
-            "rail_right": "right-roller-v1-pre-dry.ban",
-        },
+        "profiles": NRC,
     }
-    result = railpatch.solve(case, folder=reference_profiles)
+    result = railpatch.solve(case)
     assert result.status == "converged"
     assert len(result["left"]["patches"]) == (2 if yaw < 0 else 1)
     assert -result["left"]["force"][2] == pytest.approx(left, rel=0.004)

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from profile_files import columns, miniprof, simpack
+from published_data import MANCHESTER, NRC
 from railpatch.profiles import fit_profile, load_profile, read_profile
 
 Write = Callable[[str, str], Path]
@@ -16,20 +18,6 @@ Y = np.linspace(-60, 60, 61)
 Z = np.where(Y < -35, 25 * np.exp(-(((Y + 50) / 9) ** 2)), 0.0) - 0.05 * Y
 
 DIGITS = 5e-11  # m, rounding of the ten digits written
-
-
-def columns(y: np.ndarray, z: np.ndarray) -> str:
-    return "".join(f"{a:.9e} {b:.9e}\n" for a, b in zip(y, z, strict=True))
-
-
-def simpack(points: str, *, kind: int = 1, **keys: object) -> str:
-    lines = "".join(
-        f"    {key.replace('_', '.')} = {value} ! a key\n" for key, value in keys.items()
-    )
-    return (
-        f"! made for a test\nheader.begin\n  version = 1\n  type = {kind}\nheader.end\n"
-        f"spline.begin\n{lines}  point.begin\n{points}  point.end\nspline.end\n"
-    )
 
 
 def assert_is_the_wheel(path: Path, role: str | None = "wheel") -> None:
@@ -104,25 +92,44 @@ def test_miniprof_columns(write: Write) -> None:
     assert read_profile(path).measured
 
 
-def test_nrc_wheels_and_rollers(reference_profiles: Path) -> None:
-    """Numbers of the files' own headers and rows: z down, flange back at 0, tape line at 70."""
-    wheel = read_profile(reference_profiles / "left-wheel-v1-pre-dry.whl")
-    assert (wheel.y.size, wheel.role) == (667, "wheel")
+def test_nrc_wheels_and_rollers() -> None:
+    """Numbers of the measurements' own headers and rows: z down, flange back at 0, tape line at
+    70."""
+    wheel = read_profile(NRC["wheel_left"], "wheel")
+    assert wheel.y.size == 667
     assert wheel.y[0] == pytest.approx(0.1423e-3)
-    assert wheel.notes == []
+    assert wheel.notes == ["unit of length taken as mm"]
     tape = np.interp(0.070, wheel.y, wheel.z)
     assert wheel.z.max() - tape == pytest.approx(27.8749e-3, abs=5e-5)  # Sh of the header
-    roller = read_profile(reference_profiles / "right-roller-v1-pre-dry.ban")
-    assert (roller.y.size, roller.role) == (329, "rail")
+    roller = read_profile(NRC["rail_right"], "rail")
+    assert roller.y.size == 329
     assert roller.y[0] == pytest.approx(-38.0143e-3)
     assert roller.z[0] == pytest.approx(51.8192e-3)
 
 
-def test_files_of_the_reference_become_curves(reference_profiles: Path) -> None:
-    for path in sorted(reference_profiles.iterdir()):
-        raw = read_profile(path)
-        profile = fit_profile(raw)
-        assert profile.y.size >= 0.93 * raw.y.size, path.name
+@pytest.mark.parametrize(("name", "file"), [("wheel_right", "w.whl"), ("rail_left", "r.ban")])
+def test_columns_are_what_the_instruments_file_gives(write: Write, name: str, file: str) -> None:
+    """The same curve, smoothed as the instrument's files are by themselves."""
+    role = "wheel" if name.startswith("wheel") else "rail"
+    raw = read_profile(NRC[name], role)
+    path = write(file, miniprof(1e3 * raw.y[::-1], 1e3 * raw.z[::-1]))
+    measured = read_profile(path)
+    assert (measured.role, measured.measured) == (role, True)
+    np.testing.assert_array_equal(measured.y, raw.y)
+    np.testing.assert_array_equal(measured.z, raw.z)
+    found = fit_profile(raw, NRC["smoothing"])
+    expected = fit_profile(measured)
+    for key in ("y", "z", "dy", "dz", "arc_length"):
+        np.testing.assert_array_equal(getattr(found, key), getattr(expected, key))
+
+
+def test_measured_and_published_points_become_curves() -> None:
+    paths = {**MANCHESTER, **NRC}
+    smoothing = paths.pop("smoothing")
+    for name, path in paths.items():
+        raw = read_profile(path, "wheel" if name.startswith("wheel") else "rail")
+        profile = fit_profile(raw, smoothing if "nrc" in path else None)
+        assert profile.y.size >= 0.93 * raw.y.size, path
         np.testing.assert_allclose(np.hypot(profile.dy, profile.dz), 1, rtol=0, atol=5e-3)
 
 

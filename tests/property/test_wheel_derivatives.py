@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from published_data import MANCHESTER, NRC
 from railpatch import Contact
 from railpatch.case.derivative import FORCE_AND_MOMENT, POSE_AND_VELOCITY
 from railpatch.errors import CaseError
@@ -189,13 +190,8 @@ def test_built_in_profiles():
     check_rail(BUILT_IN, 50)
 
 
-def test_measured_profiles(reference):
-    profiles = reference / "profiles"
-    names = {
-        "wheel": str(profiles / "MBench_S1002_v3.prw"),
-        "rail": str(profiles / "MBench_UIC60_v3.prr"),
-    }
-    check_rail(names, 50)
+def test_profiles_of_points():
+    check_rail(MANCHESTER, 50)
 
 
 def test_tread_and_flange_at_once():
@@ -223,16 +219,10 @@ def test_tread_and_flange_at_once():
     assert totals[1] < totals[0] / 2
 
 
-def test_rollers(reference):
+def test_rollers():
     """The roller rig's measured profiles, over its range of positions."""
-    profiles = reference / "profiles"
-    names = {
-        f"{body}_{side}": str(profiles / f"{side}-{name}-v1-pre-dry.{ending}")
-        for body, name, ending in (("wheel", "wheel", "whl"), ("rail", "roller", "ban"))
-        for side in SIDES
-    }
     rng = np.random.default_rng(7)
-    find, contact = contacts({**ROLLER, "profiles": names})
+    find, contact = contacts({**ROLLER, "profiles": NRC})
     totals = np.zeros(2, dtype=int)
     for _ in range(40):
         state = dict.fromkeys(POSE_AND_VELOCITY, 0.0)

@@ -12,12 +12,12 @@ of the 13 rows in contact.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import railpatch
+from published_data import MANCHESTER
 
 # on the wheel, in our units
 FORCE = [775.5, -4779.0, -1.016e4]  # N
@@ -26,8 +26,7 @@ POSITION = [-7.2534e-3, 0.7236467, 5.2094e-3]  # m
 ANGLES = [-69.84, -20.87]  # degrees
 
 
-def conformal_case(reference: Path, surface: str) -> dict[str, Any]:
-    profiles = reference / "profiles"
+def conformal_case(surface: str) -> dict[str, Any]:
     return {
         "kind": "wheel_rail",
         "wheelset": {
@@ -41,10 +40,7 @@ def conformal_case(reference: Path, surface: str) -> dict[str, Any]:
             "flange_back_position": -0.07,
         },
         "track": {"gauge": 1.435, "gauge_height": 0.014, "cant": 0.025},
-        "profiles": {
-            "wheel": str(profiles / "MBench_S1002_v3.prw"),
-            "rail": str(profiles / "MBench_UIC60_v3.prr"),
-        },
+        "profiles": MANCHESTER,
         "grid": {"element_size": [2e-4, 2e-4]},
         "friction": {
             "coefficient": 0.3,
@@ -54,8 +50,8 @@ def conformal_case(reference: Path, surface: str) -> dict[str, Any]:
     }
 
 
-def test_gauge_corner(reference: Path) -> None:
-    result = railpatch.solve(conformal_case(reference, "curved"), fields=True)
+def test_gauge_corner() -> None:
+    result = railpatch.solve(conformal_case("curved"), fields=True)
     assert result.status == "converged"
     (patch,) = result["patches"]
     assert result["force"] == pytest.approx(FORCE, abs=0.02 * 1.016e4)
@@ -73,9 +69,9 @@ def test_gauge_corner(reference: Path) -> None:
     assert np.degrees([touching[0], touching[-1]]) == pytest.approx(ANGLES, abs=1.5 * row)
 
 
-def test_plane_is_far_from_it(reference: Path) -> None:
+def test_plane_is_far_from_it() -> None:
     """What the curved surface is for: one plane for both parts presses them together."""
-    result = railpatch.solve(conformal_case(reference, "plane"))
+    result = railpatch.solve(conformal_case("plane"))
     (patch,) = result["patches"]
     assert result["force"][2] < 1.1 * FORCE[2]
     assert patch["max_pressure"] > 1.4 * PRESSURE

@@ -1,8 +1,8 @@
 """Three Hertzian cases with creepage and spin, results of the program CONTACT.
 
 Published CONTACT results for a = 7.257 mm, b = 5.155 mm, G = 82 GPa, nu = 0.28, mu = 0.3, forces on
-the wheel; the project's reference table hertz_creep_cases.csv holds the same numbers. Their grids
-are not known: fine grids reproduce them within 0.5 % of mu F_n.
+the wheel, printed to four digits. Their grids are not known: fine grids reproduce them within 0.5 %
+of mu F_n.
 """
 
 from __future__ import annotations

@@ -7,13 +7,13 @@ last digit, that is up to 0.2 %; the table is older than fine grids and trusted 
 
 from __future__ import annotations
 
-import csv
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from patch_cases import Line, check, patch_case, solve
+from published_data import FOLDER
+from railpatch.published import read_rows
 
 SHEAR_MODULUS = 82e9
 MINOR, FORCE, FRICTION = 0.004, 1e5, 5.0
@@ -98,7 +98,7 @@ def test_coefficients_of_fitted_rows(ratio: float, count: int) -> None:
     check(lines)
 
 
-def test_computed_coefficients_of_the_fast_theories(reference: Path) -> None:
+def test_computed_coefficients_of_the_fast_theories() -> None:
     """The whole published table against the linear theory, which reads the computed one."""
     unit, small = SHEAR_MODULUS * MINOR**2, 1e-9
 
@@ -116,12 +116,10 @@ def test_computed_coefficients_of_the_fast_theories(reference: Path) -> None:
         )
         return solve(case)["creep_force"]
 
-    with (reference / "kalker_coefficients.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
     lines = []
-    for row in rows:
-        value = float(row["value"])
-        ratio = value if row["ratio"] == "a/b" else 1 / value
+    for _, row in read_rows(FOLDER / "kalker_coefficients.csv"):
+        value = float(row["ratio"])
+        ratio = value if row["axes"] == "a/b" else 1 / value
         middle = MIDDLE[0] <= ratio <= MIDDLE[1]
         for nu, label in zip(RATIOS, ("nu0", "nu025", "nu05"), strict=True):
             found = {

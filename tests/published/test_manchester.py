@@ -1,16 +1,17 @@
 """Manchester benchmark A-2.2, right wheel, against the published CONTACT results.
 
 Source: Shackleton and Iwnicki (2008), Vehicle System Dynamics 46, the benchmark; results of
-CONTACT at a grid of 0.2 mm, in the reference folder. Its forces act on the rail and its creepages
-are rail minus wheel: ours are the negatives. Bounds: normal force 0.5 %, tangential components 1 %
-of the wheel load, peak pressure 2 %, z 5 um, contact position 0.2 mm.
+CONTACT at a grid of 0.2 mm, data/manchester_a22_right.csv. Its forces act on the rail and its
+creepages are rail minus wheel: ours are the negatives. Bounds: normal force 0.5 %, tangential
+components 1 % of the wheel load, peak pressure 2 %, z 5 um, contact position 0.2 mm.
 """
-
-import csv
 
 import numpy as np
 import pytest
 import railpatch
+from profile_files import columns, simpack
+from published_data import MANCHESTER, numbers
+from railpatch.published import read_numbers
 
 WHEEL_LOAD = 1.0e4  # N
 BOUNDS = {
@@ -23,9 +24,21 @@ BOUNDS = {
 }
 
 
-def positions(reference):
-    with (reference / "manchester_a22_right.csv").open(newline="") as file:
-        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+def positions():
+    return numbers("manchester_a22_right.csv")
+
+
+def benchmark_files(folder):
+    """The benchmark's profiles in the format that it gives them in, the wheel's y mirrored."""
+    files = []
+    for body, kind, mirror in (("wheel", 1, 1), ("rail", 0, 0)):
+        rows = read_numbers(MANCHESTER[body])
+        y, z = (np.array([row[key] for row in rows]) for key in ("y_mm", "z_mm"))
+        points = columns(-y[::-1], z[::-1]) if mirror else columns(y, z)
+        keys = {"units_len_f": "+1.0E+03", "mirror_y": mirror, "inversion": mirror}
+        files.append(folder / f"{body}.{'prw' if kind else 'prr'}")
+        files[-1].write_text(simpack(points, kind=kind, **keys))
+    return map(str, files)
 
 
 def manchester_case(wheel, rail):
@@ -51,64 +64,63 @@ def manchester_case(wheel, rail):
 def differences(row, result):
     """What is bounded, by name; the units of BOUNDS."""
     (patch,) = result["patches"]
-    place = [1e-3 * row[key] for key in ("xcp_tr", "ycp_tr", "zcp_tr")]
+    place = [1e-3 * row[key] for key in ("x_mm", "y_mm", "z_mm")]
     return {
-        "z": result["z"] - 1e-3 * row["z_ws"],
+        "z": result["z"] - 1e-3 * row["z_ws_mm"],
         "position": max(abs(a - b) for a, b in zip(patch["position"], place, strict=True)),
-        "normal_force": patch["normal_force"] / row["FN"] - 1,
-        "longitudinal": (-patch["creep_force"][0] - row["Fx"]) / WHEEL_LOAD,
-        "lateral": (-patch["creep_force"][1] - row["Fs"]) / WHEEL_LOAD,
-        "max_pressure": patch["max_pressure"] / (1e6 * row["pmax"]) - 1,
+        "normal_force": patch["normal_force"] / row["normal_force_N"] - 1,
+        "longitudinal": (-patch["creep_force"][0] - row["force_x_N"]) / WHEEL_LOAD,
+        "lateral": (-patch["creep_force"][1] - row["force_y_N"]) / WHEEL_LOAD,
+        "max_pressure": patch["max_pressure"] / (1e6 * row["max_pressure_MPa"]) - 1,
     }
 
 
 @pytest.mark.parametrize("fitted", [None, [12, 12]])
 @pytest.mark.parametrize("source", ["built-in", "file"])
-def test_all_positions(reference, source, fitted):
+def test_all_positions(source, fitted, tmp_path):
     wheel, rail = ("S1002", "UIC60@1:40")
     if source == "file":
-        wheel = str(reference / "profiles" / "MBench_S1002_v3.prw")
-        rail = str(reference / "profiles" / "MBench_UIC60_v3.prr")
+        wheel, rail = benchmark_files(tmp_path)
     case = manchester_case(wheel, rail)
     if fitted is not None:
         case["grid"]["fitted"] = fitted
     contact = railpatch.Contact(case)
-    rows = positions(reference)
+    rows = positions()
     assert len(rows) == 21
     worst = dict.fromkeys(BOUNDS, 0.0)
     print(f"\n{source}: y (mm), " + ", ".join(BOUNDS))
     for row in rows:
         result = contact.step(
-            y=1e-3 * row["y_ws"],
-            roll=row["roll"],
-            yaw=row["yaw"],
-            pitch_rate=row["vpitch"],
+            y=1e-3 * row["y_ws_mm"],
+            roll=row["roll_rad"],
+            yaw=row["yaw_rad"],
+            pitch_rate=row["pitch_rate_rad_s"],
         ).to_dict()
         assert result["status"] == "converged"
-        assert len(result["patches"]) == 1, f"y = {row['y_ws']} mm"
+        assert len(result["patches"]) == 1, f"y = {row['y_ws_mm']} mm"
         found = differences(row, result)
-        print(f"{row['y_ws']:5.1f} " + " ".join(f"{value:10.2e}" for value in found.values()))
+        print(f"{row['y_ws_mm']:5.1f} " + " ".join(f"{value:10.2e}" for value in found.values()))
         for name, value in found.items():
             worst[name] = max(worst[name], abs(value))
-            assert abs(value) <= BOUNDS[name], f"{source}, y = {row['y_ws']} mm: {name} {value}"
+            assert abs(value) <= BOUNDS[name], f"{source}, y = {row['y_ws_mm']} mm: {name} {value}"
     print("worst " + " ".join(f"{value:10.2e}" for value in worst.values()))
 
 
-def test_creepages_and_angle(reference):
+def test_creepages_and_angle():
     # read off the published positions: creepages are given to four digits, angles to 1e-4 rad
     contact = railpatch.Contact(manchester_case("S1002", "UIC60@1:40"))
-    for row in positions(reference):
+    for row in positions():
         result = contact.step(
-            y=1e-3 * row["y_ws"],
-            roll=row["roll"],
-            yaw=row["yaw"],
-            pitch_rate=row["vpitch"],
+            y=1e-3 * row["y_ws_mm"],
+            roll=row["roll_rad"],
+            yaw=row["yaw_rad"],
+            pitch_rate=row["pitch_rate_rad_s"],
         )
         (patch,) = result["patches"]
-        assert patch["contact_angle"] == pytest.approx(row["delt_rad"], abs=2e-4)
-        assert -patch["creepage"][0] == pytest.approx(row["cksi"], abs=1e-5)
-        assert -patch["creepage"][1] == pytest.approx(row["ceta"], abs=1e-5)
-        assert -patch["spin_creepage"] == pytest.approx(1e3 * row["cphi_per_mm"], abs=2e-3)
+        assert patch["contact_angle"] == pytest.approx(row["angle_rad"], abs=2e-4)
+        assert -patch["creepage"][0] == pytest.approx(row["creepage_x"], abs=1e-5)
+        assert -patch["creepage"][1] == pytest.approx(row["creepage_y"], abs=1e-5)
+        assert -patch["spin_creepage"] == pytest.approx(1e3 * row["spin_rad_mm"], abs=2e-3)
 
 
 # errors of peak pressure and lateral force against CONTACT that are published for the fast theories
@@ -119,26 +131,26 @@ PUBLISHED_ERRORS = {"kik_piotrowski": (0.31, 0.16), "analyn": (0.12, 0.13)}
 
 @pytest.mark.parametrize("tangential", ["fastsim", "full"])
 @pytest.mark.parametrize("normal", PUBLISHED_ERRORS)
-def test_fast_normal_theories(reference, normal, tangential):
+def test_fast_normal_theories(normal, tangential):
     case = manchester_case("S1002", "UIC60@1:40")
     case["method"] = {"normal": normal, "tangential": tangential}
     contact = railpatch.Contact(case)
     print(f"\n{normal}, {tangential}: y (mm), z (um), peak pressure, Fx and Fy (of the load), Fy")
-    for row in positions(reference):
-        if tangential == "fastsim" and row["y_ws"] > 6:
+    for row in positions():
+        if tangential == "fastsim" and row["y_ws_mm"] > 6:
             continue  # contact areas too narrow for Kalker's table, a/b below 0.1 or above 10
         result = contact.step(
-            y=1e-3 * row["y_ws"],
-            roll=row["roll"],
-            yaw=row["yaw"],
-            pitch_rate=row["vpitch"],
+            y=1e-3 * row["y_ws_mm"],
+            roll=row["roll_rad"],
+            yaw=row["yaw_rad"],
+            pitch_rate=row["pitch_rate_rad_s"],
         ).to_dict()
         assert result["status"] == "converged"
         found = differences(row, result)
         (patch,) = result["patches"]
-        lateral = -patch["creep_force"][1] / row["Fs"] - 1
+        lateral = -patch["creep_force"][1] / row["force_y_N"] - 1
         print(
-            f"{row['y_ws']:5.1f} {1e6 * found['z']:7.2f} {found['max_pressure']:8.3f} "
+            f"{row['y_ws_mm']:5.1f} {1e6 * found['z']:7.2f} {found['max_pressure']:8.3f} "
             f"{found['longitudinal']:8.4f} {found['lateral']:8.4f} {lateral:8.3f}"
         )
         # the wheel's load is met whatever the theory, but for what creep forces take of it
@@ -152,7 +164,7 @@ def test_fast_normal_theories(reference, normal, tangential):
 BY_ANGLE = [[-0.5, 1.4], [-0.1, 1.2], [0.0, 1.0], [0.1, 0.8], [0.5, 0.5], [1.2, 0.3]]
 
 
-def forces(reference, side, size, factor):
+def forces(side, size, factor):
     """[21, 3], N, at the benchmark's positions; both wheels carry the same load."""
     case = manchester_case("S1002", "UIC60@1:40")
     case["wheel"] = {"side": side}
@@ -161,12 +173,12 @@ def forces(reference, side, size, factor):
         case["friction"]["factor"] = factor
     contact = railpatch.Contact(case)
     found = []
-    for row in positions(reference):
+    for row in positions():
         result = contact.step(
-            y=1e-3 * row["y_ws"],
-            roll=row["roll"],
-            yaw=row["yaw"],
-            pitch_rate=row["vpitch"],
+            y=1e-3 * row["y_ws_mm"],
+            roll=row["roll_rad"],
+            yaw=row["yaw_rad"],
+            pitch_rate=row["pitch_rate_rad_s"],
         )
         assert result.status == "converged"
         found.append(result["force"])
@@ -175,16 +187,16 @@ def forces(reference, side, size, factor):
 
 @pytest.mark.parametrize("factor", [None, BY_ANGLE], ids=["constant", "by angle"])
 @pytest.mark.parametrize("side", ["left", "right"])
-def test_coarse_grids(reference, side, factor):
+def test_coarse_grids(side, factor):
     """0.5 and 1 mm elements against 0.2 mm: within 2 % of the wheel load."""
-    fine = forces(reference, side, 2e-4, factor)
+    fine = forces(side, 2e-4, factor)
     for size in (5e-4, 1e-3):
-        coarse = forces(reference, side, size, factor)
+        coarse = forces(side, size, factor)
         assert np.abs(coarse - fine).max() <= 0.02 * WHEEL_LOAD
 
 
-def test_friction_by_angle_matters(reference):
+def test_friction_by_angle_matters():
     """Else the test above would show nothing about the factor."""
-    constant, by_angle = (forces(reference, "right", 5e-4, f) for f in (None, BY_ANGLE))
+    constant, by_angle = (forces("right", 5e-4, f) for f in (None, BY_ANGLE))
     creep = [np.hypot(f[:, 0], f[:, 1]) for f in (constant, by_angle)]
     assert np.abs(creep[0] - creep[1]).max() > 0.02 * WHEEL_LOAD

@@ -1,38 +1,35 @@
 """Forces at the published positions of the NRC roller rig.
 
 Dry run at 10 mph and 13,750 lb a side: wheelset positions after force balance, and the forces that
-the authors' own model of the rig gives there (CONTACT, 2025). The numbers stand in
-nrc_dry_10mph_13750lb.csv among the reference data; forces there act on the roller, so ours are
-their negatives. Each component must agree within 1 % of the wheel's vertical load where the wheel
+the authors' own model of the rig gives there (CONTACT, 2025). The numbers are the package's own
+nrc_dry_10mph_13750lb.csv, which reports show; forces there act on the roller, so ours are their
+negatives. Each component must agree within 1 % of the wheel's vertical load where the wheel
 has one patch, within 2 % where it has two: the share of the second patch, on the flange root,
 depends more on how the measured profiles are smoothed.
 """
 
 from __future__ import annotations
 
-import csv
-
 import numpy as np
 import pytest
 from railpatch import Contact
+from railpatch.published import read_rows
+from railpatch.report import reference
 
 from rig_model import scene as rig_scene
 
-FILE = "nrc_dry_10mph_13750lb.csv"
 SIDES = {"L": "left", "R": "right"}
 ALLOWED = {1: 0.01, 2: 0.02}  # of the wheel's vertical load, by number of patches
 
 
 @pytest.fixture(scope="module")
-def compared(reference):
+def compared():
     """One entry a wheel: row, number of patches, force on the roller (N, [3]), published force."""
     scene_file = rig_scene.default_scene()
     assert scene_file.name == rig_scene.MEASURED
     contact = Contact(rig_scene.load_rig_scene(scene_file).at_height())
     entries = []
-    with open(reference / FILE, newline="", encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
-    for row in rows:
+    for _, row in read_rows(reference.find()):
         result = contact.step(
             y=1e-3 * float(row["y_ws_mm"]),
             z=1e-3 * float(row["z_ws_mm"]),

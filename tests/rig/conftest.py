@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from importlib import resources
 from pathlib import Path
 
 import pytest
 
-from rig_model.scene import MEASURED, NOMINAL, load_rig_scene
-
-SCENES = Path(str(resources.files("rig_model"))) / "scenes"
+from rig_model.scene import MEASURED, NOMINAL, load_rig_scene, scenes
 
 
 @pytest.fixture(scope="session")
 def nominal_file() -> Path:
     """The package's scene with nominal profiles."""
-    return SCENES / NOMINAL
+    return scenes() / NOMINAL
 
 
 @pytest.fixture(scope="session")
-def measured_file(reference_profiles: Path) -> Path:
-    """The package's scene with the measured profiles, which must be there."""
-    return SCENES / MEASURED
+def measured_file() -> Path:
+    """The package's scene with the measured profiles."""
+    return scenes() / MEASURED
 
 
 @pytest.fixture

@@ -106,21 +106,15 @@ def test_snapshots_at_a_high_rate(nominal_file, tmp_path):
     assert run.counts["/tf"] == run.counts["/scene/contact"] == 16
 
 
-def test_default_scene_without_the_reference(tmp_path, monkeypatch):
-    monkeypatch.setenv("RAILPATCH_REFERENCE", str(tmp_path / "none"))
-    result = call("-o", tmp_path / "run.mcap", "--positions", 2)
-    assert result.exit_code == 0
-    assert "nominal" in result.stdout
-    assert "RAILPATCH_REFERENCE" in result.stdout
+PROFILES = [f"nrc_{side}_{body}.csv" for side in ("left", "right") for body in ("roller", "wheel")]
 
 
-def test_default_scene_with_the_reference(measured_file, tmp_path):
+def test_default_scene_has_the_measured_profiles(measured_file, tmp_path):
     result = call("-o", tmp_path / "run.mcap", "--positions", 2)
     assert result.exit_code == 0
-    assert "measured (" in result.stdout
+    assert f"profiles      {', '.join(PROFILES)}" in result.stdout
     attached = read_run(tmp_path / "run.mcap").attachments
-    assert measured_file.name in attached
-    assert len([name for name in attached if name.endswith((".whl", ".ban"))]) == 4
+    assert {measured_file.name, *PROFILES} <= set(attached)
 
 
 def test_position_without_balance_ends_with_3_and_a_log(scene_with, tmp_path):
@@ -162,6 +156,9 @@ def test_show_scene(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(result.stdout)
     assert "[rig]" in result.stdout
+    # its profiles are found beside the package's scenes
+    run = call(path, "-o", tmp_path / "run.mcap", "--positions", 2)
+    assert run.exit_code == 0, run.output
 
 
 def test_replay_from_the_checkout(nominal_file, tmp_path):

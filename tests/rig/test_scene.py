@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from railpatch import CaseError
 from railpatch.case.load import read_toml
+from railpatch.report import reference
 
 from rig_model import nominal
-from rig_model.scene import MEASURED, NOMINAL, default_scene, load_rig_scene
+from rig_model.scene import MEASURED, load_rig_scene
 
 YAW = "yaw = [[0.0, 0.0], [0.25, 0.018], [0.5, 0.0], [0.75, -0.018], [1.0, 0.0]]"
 
@@ -124,8 +126,6 @@ def test_nominal_profiles_are_made_by_their_formula(nominal_file):
 
 def test_nominal_roller_is_smooth_with_a_facet():
     """Facet at 1:30, inclination without jumps, rising from the gauge side to the field side."""
-    import numpy as np
-
     y, z = np.array(nominal.roller_points()).T
     angle = np.arctan2(np.diff(z), np.diff(y))
     flat = np.abs(0.5 * (y[1:] + y[:-1])) < 3.9
@@ -137,15 +137,18 @@ def test_nominal_roller_is_smooth_with_a_facet():
     assert z.max() - z.min() > 20
 
 
-def test_profiles_are_looked_for_in_the_reference(monkeypatch, tmp_path):
-    folder = tmp_path / "profiles"
-    folder.mkdir()
-    monkeypatch.setenv("RAILPATCH_REFERENCE", str(tmp_path))
-    assert default_scene().name == NOMINAL
-    names = read_toml(default_scene().with_name(MEASURED))["profiles"].values()
-    for name in names:
-        (folder / name).write_text("x")
-    assert default_scene().name == MEASURED
-    assert set(load_rig_scene().files) == set(names)
-    (folder / name).unlink()
-    assert default_scene().name == NOMINAL
+def test_profiles_beside_the_scene_come_before_the_packages(measured_file, tmp_path):
+    names = ["nrc_left_roller.csv", "nrc_left_wheel.csv"]
+    (tmp_path / "scene.toml").write_bytes(measured_file.read_bytes())
+    (tmp_path / names[1]).write_bytes(measured_file.with_name(names[1]).read_bytes())
+    files = load_rig_scene(tmp_path / "scene.toml").files
+    assert [files[name].parent for name in names] == [measured_file.parent, tmp_path]
+    assert load_rig_scene().files.keys() == files.keys()
+
+
+def test_every_published_position_is_one_of_the_run():
+    places = np.array([(p.yaw, p.y) for p in load_rig_scene().positions()])
+    rows = reference.load(reference.find())
+    assert len(rows) == 26
+    for row in rows:
+        assert np.abs(places - (row.yaw, row.y)).max(axis=1).min() < 1e-6, row

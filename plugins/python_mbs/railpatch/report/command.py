@@ -32,8 +32,8 @@ from railpatch.command.output import check_output
     "--reference",
     type=click.Path(file_okay=False, exists=True),
     metavar="DIR",
-    help="Folder of the roller rig's reference. By default $RAILPATCH_REFERENCE or "
-    "../shared/reference.",
+    help="Folder of another reference of the roller rig, in a file named as the package's own: "
+    "nrc_dry_10mph_13750lb.csv.",
 )
 @click.option("--quiet", is_flag=True, help="Print nothing.")
 def report(run: str, output: str, at: float | None, reference: str | None, quiet: bool) -> None:

@@ -29,7 +29,7 @@ def write_report(
 ) -> Path:
     """Writes the report of a run log, also of one that was cut off; returns ``output``.
 
-    ``reference_dir``: where the reference of the roller rig is; see ``reference.find``. ``at``: the
+    ``reference_dir``: of another reference of the roller rig; see ``reference.find``. ``at``: the
     progress (without progress: the time in s; of a vehicle: the distance in m) whose patches are
     shown; by default those at the largest yaw angle, or guiding force.
 
@@ -193,10 +193,7 @@ def _reference(
         return [], ""
     path = reference.find(directory)
     if path is None:
-        return [], (
-            f"<p>The reference ({reference.FILE}) is not here; {reference.VARIABLE} can "
-            "name its folder.</p>"
-        )
+        return [], (f"<p>The reference ({reference.FILE}) is not in the folder that was named.</p>")
     matches = reference.match(reference.load(path), data)
     if not matches:
         return [], (

@@ -7,17 +7,17 @@ row matches more than one position where the run passes there again.
 
 from __future__ import annotations
 
-import csv
 import os
 from dataclasses import dataclass
+from importlib import resources
 from pathlib import Path
 
 import numpy as np
 
+from railpatch.published import read_rows
 from railpatch.report.data import Positions
 
 FILE = "nrc_dry_10mph_13750lb.csv"
-VARIABLE = "RAILPATCH_REFERENCE"
 _TOLERANCE = 1e-6  # m and rad
 _SIDES = {"L": "left", "R": "right"}
 
@@ -45,31 +45,21 @@ class Match:
 
 
 def find(directory: str | os.PathLike[str] | None = None) -> Path | None:
-    """The reference file, or None.
-
-    Looked for in ``directory`` if given, else in $RAILPATCH_REFERENCE if set, else in
-    ../shared/reference beside the project.
-    """
+    """The reference file: that of this package, or of ``directory`` if given; None: it has none."""
     if directory is None:
-        directory = os.environ.get(VARIABLE)
-    if directory:
-        places = [Path(directory)]
-    else:
-        # this file in a checkout, or the working directory where the package is installed
-        roots = [Path(__file__).resolve().parents[4], Path.cwd()]
-        places = [root.parent / "shared" / "reference" for root in roots]
-    return next((place / FILE for place in places if (place / FILE).is_file()), None)
+        return Path(str(resources.files("railpatch.report") / FILE))
+    path = Path(directory) / FILE
+    return path if path.is_file() else None
 
 
 def load(path: Path) -> list[Row]:
     """Reads the reference; ValueError, with the line, where it is not as expected."""
     rows = []
-    with open(path, newline="", encoding="utf-8") as stream:
-        for number, entry in enumerate(csv.DictReader(stream), start=2):
-            try:
-                rows.append(_row(entry))
-            except (KeyError, TypeError, ValueError) as error:
-                raise ValueError(f"{path}, line {number}: {error!r}") from None
+    for number, entry in read_rows(path):
+        try:
+            rows.append(_row(entry))
+        except (KeyError, TypeError, ValueError) as error:
+            raise ValueError(f"{path}, line {number}: {error!r}") from None
     return rows
 
 

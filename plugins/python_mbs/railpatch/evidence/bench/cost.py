@@ -93,7 +93,7 @@ def normal_cost() -> tuple[float, float]:
 
 
 def wheel_cost(positions: int, progress: Callable[[Any], None] = lambda _: None) -> WheelCost:
-    """The roller rig's run: NRC's measured profiles where they are found, else nominal ones."""
+    """The roller rig's run, with NRC's measured profiles."""
     from rig_model.balance import Balancer
     from rig_model.scene import default_scene, load_rig_scene
 

@@ -1,15 +1,14 @@
 """Patches of wheels on rails and rollers, as surfaces whose rows are parabolas.
 
-They are made once (``python -m railpatch.evidence.bench.surfaces OUTPUT.npz``) and stored with
-the package, so that the problems stay what they are when the contact search changes. Sources: S1002
-on UIC60 at the positions of the Manchester benchmark A-2.2 (Shackleton and Iwnicki 2008), whose
-roll angles and pitch rates are read from the reference folder; and nominal profiles of the NRC
-roller rig at the positions that balance them.
+They are made once (``python -m railpatch.evidence.bench.surfaces TABLE.csv OUTPUT.npz``) and stored
+with the package, so that the problems stay what they are when the contact search changes. Sources:
+S1002 on UIC60 at the positions of the Manchester benchmark A-2.2 (Shackleton and Iwnicki 2008),
+whose roll angles and pitch rates TABLE holds, tests/published/data/manchester_a22_right.csv; and
+nominal profiles of the NRC roller rig at the positions that balance them.
 """
 
 from __future__ import annotations
 
-import csv
 import sys
 from collections.abc import Iterator
 from importlib import resources
@@ -24,6 +23,7 @@ from railpatch.case.load import Scene, load_scene
 from railpatch.case.moving import changed_case
 from railpatch.evidence.bench.problems import FRICTION, Batch
 from railpatch.evidence.bench.shapes import Floats, Surface
+from railpatch.published import read_numbers
 
 FILE = "patches.npz"
 SIDES = ("left", "right")
@@ -62,20 +62,18 @@ def batch_of(name: str, data: dict[str, Floats]) -> Batch:
     )
 
 
-def manchester_states(reference: Path) -> Iterator[tuple[str, dict[str, Any]]]:
+def manchester_states(table: str) -> Iterator[tuple[str, dict[str, Any]]]:
     """Positions of the benchmark, the right wheel's."""
-    with (reference / "manchester_a22_right.csv").open(newline="") as file:
-        for row in csv.DictReader(file):
-            value = {key: float(text) for key, text in row.items()}
-            yield (
-                f"Manchester y = {value['y_ws']:g} mm",
-                {
-                    "y": 1e-3 * value["y_ws"],
-                    "roll": value["roll"],
-                    "yaw": value["yaw"],
-                    "pitch_rate": value["vpitch"],
-                },
-            )
+    for row in read_numbers(table):
+        yield (
+            f"Manchester y = {row['y_ws_mm']:g} mm",
+            {
+                "y": 1e-3 * row["y_ws_mm"],
+                "roll": row["roll_rad"],
+                "yaw": row["yaw_rad"],
+                "pitch_rate": row["pitch_rate_rad_s"],
+            },
+        )
 
 
 MANCHESTER = {
@@ -196,16 +194,12 @@ def contact_box(surface: Surface, force: float) -> tuple[Floats, Floats]:
     return ends.mean(axis=1), (ends[:, 1] - ends[:, 0] + step) / 2
 
 
-def main(output: str) -> None:
+def main(table: str, output: str) -> None:
     """Makes the file of patches."""
-    from rig_model.scene import NOMINAL, load_rig_scene, reference_profiles
+    from rig_model.scene import NOMINAL, load_rig_scene, scenes
 
-    profiles = reference_profiles()
-    if profiles is None:
-        raise SystemExit("no reference data: set RAILPATCH_REFERENCE")
-    batches = list(patches_of(load_scene(MANCHESTER), manchester_states(profiles.parent)))
-    folder = resources.files("rig_model").joinpath("scenes", NOMINAL)
-    rig = load_rig_scene(Path(str(folder)), {"positions": RIG_POSITIONS})
+    batches = list(patches_of(load_scene(MANCHESTER), manchester_states(table)))
+    rig = load_rig_scene(scenes() / NOMINAL, {"positions": RIG_POSITIONS})
     case = rig.at_height().case
     grid = case.grid.model_copy(update={"element_size": list(ELEMENT)})
     fine = Scene(case.model_copy(update={"grid": grid}), Path())
@@ -239,4 +233,4 @@ def arrays_of(batch: Batch) -> dict[str, Floats]:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])
