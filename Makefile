@@ -14,6 +14,9 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 export PIP_REQUIRE_VIRTUALENV := 1
 export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
 export CTEST_PARALLEL_LEVEL := $(JOBS)
+# of what pip says, what it does
+NEWS := sed -u '/^Requirement already satisfied/d'
+export NINJA_STATUS := [%f/%t, %e s] # files done of how many
 # a cmake from the virtual environment, where the system's is too old, comes first
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
@@ -38,10 +41,12 @@ demo: setup ## set-up, roller-rig replay, wheelset on track, an FMU; logs and re
 	$(BIN)/railpatch report build/demo/wheelset.mcap -o build/demo/wheelset.html
 	$(BIN)/railpatch fmu -o build/demo/railpatch.fmu
 	$(BIN)/python -m railpatch.fmu.try_out build/demo/railpatch.fmu
-	@printf '\nroller rig\n  log:     %s\n  report:  %s\nwheelset on track\n  log:     %s\n  report:  %s\nFMU:       %s\n' \
-		"$(CURDIR)/build/demo/run.mcap" "$(CURDIR)/build/demo/report.html" \
+	@printf '\nroller rig\n  log:     %s\nwheelset on track\n  log:     %s\n  report:  %s\nFMU:       %s\n' \
+		"$(CURDIR)/build/demo/run.mcap" \
 		"$(CURDIR)/build/demo/wheelset.mcap" "$(CURDIR)/build/demo/wheelset.html" \
 		"$(CURDIR)/build/demo/railpatch.fmu"
+	@printf '\nOpen this page first, the replay of the roller rig beside published forces:\n  %s\n' \
+		"file://$(CURDIR)/build/demo/report.html"
 
 fmu: setup ## FMUs of the default scene and of each kind for Linux, ARM, Windows; one with FFTW (GPL)
 	@mkdir -p build/fmu
@@ -124,13 +129,15 @@ $(VENV)/tools: pyproject.toml | system
 		"$$(.ci/python)" -m venv $(VENV); \
 	fi
 	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1'
-	$(BIN)/python -m pip install --quiet --group dev
+	@echo "tools of the build and of the checks"
+	$(BIN)/python -m pip install --group dev | $(NEWS)
 	@if ! cmake --version | awk 'NR == 1 { split($$3, v, "."); exit !(v[1] * 100 + v[2] >= 325) }'; then \
 		$(BIN)/python -m pip install --quiet 'cmake>=3.25'; \
 	fi
 	@touch $@
 
-# C++ parts are rebuilt incrementally in build/python
+# C++ parts are rebuilt incrementally in build/python; verbose: pip shows what cmake and ninja say
 $(VENV)/installed: $(VENV)/tools $(SOURCES)
-	$(BIN)/python -m pip install --no-build-isolation --config-settings=cmake.define.RAILPATCH_WERROR=ON '.[test]'
+	$(BIN)/python -m pip install --verbose --no-build-isolation \
+		--config-settings=cmake.define.RAILPATCH_WERROR=ON '.[test]' | $(NEWS)
 	@touch $@
