@@ -188,14 +188,9 @@ std::vector<int> ladder(int smallest, int largest) {
   return sizes;
 }
 
-bool needs_influence(const patch_scene &scene) {
-  return scene.normal == RP_NORMAL_HALF_SPACE ||
-         (scene.tangential == RP_TANGENTIAL_FULL && !scene.is_fitted());
-}
-
 fft_plans make_plans(const rp_config &c) {
   // closed forms need no transforms
-  if (!needs_influence(make_scene(c))) return fft_plans({2}, {1});
+  if (!make_scene(c).needs_influence()) return fft_plans({2}, {1});
   const capacity size = grid_capacity(c);
   const int nx = 2 * size.nx + 1, ny = size.ny > 1 ? 2 * size.ny - 1 : 1;
   const bool fixed = c.kind == RP_PATCH && !(c.geometry == RP_CURVATURES && c.element_size[0] > 0);
@@ -253,7 +248,7 @@ contact::contact(const rp_config &config)
     : config_(config),
       plans_(make_plans(config)),
       solver_(make_scene(config), plans_, grid_capacity(config).nx, grid_capacity(config).ny,
-              config.observer, config.observer_user) {
+              {config.observer, config.observer_user}) {
   const capacity size = grid_capacity(config);
   if (config.kind == RP_PATCH) {
     memory_.emplace_back(size.nx * size.ny, size.ny, solver_.scene());
@@ -343,41 +338,40 @@ void contact::step_patch(const rp_input &in, rp_result &out) {
   for (double *v : {&out.force[0], &out.force[1], &out.force[2], &out.moment[0], &out.moment[1],
                     &out.moment[2]})
     *v = nan;
-  const auto finish = [&](rp_status status) { out.status = side.status = result.status = status; };
-  result.rolling_speed = in.rolling_speed;
-  if (config_.load == RP_POSITION && config_.geometry != RP_UNDEFORMED_DISTANCE &&
-      in.approach < least_approach) {
-    result.approach = in.approach;
-    set_unloaded(solver_.scene(), result);
-    solver_.leave_contact(step_of(in), memory(RP_RIGHT, 0), result);
-    return finish(RP_NO_CONTACT);
-  }
   patch_memory &m = memory(RP_RIGHT, 0);
   patch_problem problem;
-  problem.hertz = hertz_of(config_, solver_.scene(), in);
-  if (!set_grid(m, problem) || !solver_.fits(problem.g)) return finish(RP_OUT_OF_RANGE);
+  problem.place.rolling_speed = in.rolling_speed;
+  if (config_.load == RP_POSITION && config_.geometry != RP_UNDEFORMED_DISTANCE &&
+      in.approach < least_approach) {
+    const heat_outcome h = solver_.leave_contact(step_of(in), m);
+    report_apart(solver_.scene(), problem.place, in.approach, h, result);
+  } else if (!pose(in, m, problem)) {
+    report_beyond(problem.place, result);
+  } else {
+    solver_.begin_step(problem, m);
+    solver_.start_from(m, problem.g);
+    set_distance(problem, m);
+    patch_wrench wrench;
+    solver_.solve(problem, m, result, wrench);
+    if (derivative_) derivative_->problem = problem;
+  }
+  out.status = side.status = result.status;
+}
+
+// The problem of a patch's step but for its distance. Returns whether there is a grid for it.
+bool contact::pose(const rp_input &in, const patch_memory &m, patch_problem &problem) const {
+  const patch_scene &scene = solver_.scene();
+  problem.hertz = hertz_of(config_, scene, in);
+  if (!set_grid(m, problem) || !solver_.fits(problem.g)) return false;
   problem.force_given = config_.load == RP_FORCE;
   problem.force = in.normal_force;
   problem.approach = in.approach;
-  const bool rolling = solver_.scene().tangential != RP_TANGENTIAL_NONE;
-  if (rolling) {
-    problem.rolling_speed = in.rolling_speed;
-    problem.rolling = step_of(in);
-    for (int k = 0; k < 2; ++k) problem.tangential_force[k] = in.tangential_force[k];
-    result.creepage[0] = in.creepage[0];
-    result.creepage[1] = in.creepage[1];
-    result.spin_creepage = in.spin_creepage;
-    result.direction = in.rolling_speed > 0 ? in.direction : 0;
-  }
-  solver_.begin_step(problem, m);
-  solver_.start_from(m, problem.g);
-  solver_.observe(RP_STAGE_GEOMETRY, true);
-  set_distance(problem, m);
-  solver_.observe(RP_STAGE_GEOMETRY, false);
-  patch_wrench wrench;
-  solver_.solve(problem, m, result, wrench);
-  if (derivative_) derivative_->problem = problem;
-  finish(result.status);
+  if (scene.tangential == RP_TANGENTIAL_NONE) return true;
+  problem.place.direction = in.rolling_speed > 0 ? in.direction : 0;
+  problem.rolling_speed = in.rolling_speed;
+  problem.rolling = step_of(in);
+  for (int k = 0; k < 2; ++k) problem.tangential_force[k] = in.tangential_force[k];
+  return true;
 }
 
 // The grid of a patch's step. Returns whether it covers what is drawn on it.
@@ -412,6 +406,7 @@ bool contact::set_grid(const patch_memory &m, patch_problem &problem) const {
 
 // The undeformed distance of a patch's elements and the friction of its rows.
 void contact::set_distance(const patch_problem &problem, patch_memory &m) const {
+  const stage_mark mark = solver_.marks().enter(RP_STAGE_GEOMETRY);
   const grid &g = problem.g;
   const hertz_contact &hertz = problem.hertz;
   for (int j = 0; j < g.ny; ++j)
@@ -446,9 +441,10 @@ void contact::step_wheels(const rp_input &in, rp_result &out) {
   const auto evaluate = [&](double z) { return evaluate_wheels(z, out); };
   if (solver_.scene().keeps_steps())
     for (auto &m : memory_) solver_.remember(m);
-  solver_.observe(RP_STAGE_GEOMETRY, true);
-  for (auto &wheel : wheels_) wheel.place(in);
-  solver_.observe(RP_STAGE_GEOMETRY, false);
+  {
+    const stage_mark mark = solver_.marks().enter(RP_STAGE_GEOMETRY);
+    for (auto &wheel : wheels_) wheel.place(in);
+  }
   if (support_) {
     solve_supported(in, out);
   } else if (config_.load == RP_POSITION) {
@@ -505,15 +501,10 @@ void contact::find_z(double target, Evaluate &&evaluate, rp_result &out) {
 void contact::report_search(bool converged, rp_status otherwise, double residual,
                             rp_result &out) const {
   const rp_status found = converged ? RP_CONVERGED : otherwise;
-  const auto degrade = [&](rp_status &status) {
-    if (status == RP_CONVERGED) status = found;
-  };
   for (auto &side : out.side) {
-    degrade(side.status);
-    for (int i = 0; i < side.patch_count + side.alternative_count; ++i) {
-      degrade(side.patch[i].status);
-      side.patch[i].residual = std::max(side.patch[i].residual, residual);
-    }
+    degrade(side.status, found);
+    for (int i = 0; i < side.patch_count + side.alternative_count; ++i)
+      railpatch::report_search(found, residual, side.patch[i]);
   }
   if (found != RP_CONVERGED && out.status != RP_OUT_OF_RANGE) out.status = found;
 }

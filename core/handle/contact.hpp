@@ -46,6 +46,7 @@ class contact {
   const patch_memory &memory(int side, int patch) const;
   rolling_input step_of(const rp_input &input) const;
   void step_patch(const rp_input &input, rp_result &result);
+  bool pose(const rp_input &in, const patch_memory &m, patch_problem &problem) const;
   bool set_grid(const patch_memory &m, patch_problem &problem) const;
   void set_distance(const patch_problem &problem, patch_memory &m) const;
   void step_wheels(const rp_input &input, rp_result &result);

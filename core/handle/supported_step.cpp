@@ -25,9 +25,8 @@ class wheels_of_step final : public supported_wheels {
         moved.rail_offset[side][k + 1] += deflection[w][k];
         moved.rail_velocity[side][k + 1] += rate[w][k];
       }
-    solver_.observe(RP_STAGE_GEOMETRY, true);
+    const stage_mark mark = solver_.marks().enter(RP_STAGE_GEOMETRY);
     for (auto &wheel : wheels_) wheel.place(moved);
-    solver_.observe(RP_STAGE_GEOMETRY, false);
   }
   bool first_touch(int wheel, double &z) override {
     return wheels_[static_cast<size_t>(wheel)].first_touch(z);

@@ -150,9 +150,9 @@ error_model::scaled_motion error_model::scaled(const solved_patch &patch, const 
   return m;
 }
 
-void error_model::estimate(const solved_patch &patch, rp_patch_result &result,
-                           double *features) const {
-  double *estimate = result.error_estimate;
+error_bounds error_model::estimate(const solved_patch &patch, const rp_patch_result &result,
+                                   double *features) const {
+  error_bounds bounds;
   const bool hertz = patch.normal == RP_NORMAL_HERTZ;
   std::fill_n(features, error_feature_count, 0.0);
   double axes[2] = {patch.hertz.semi_axes[0], patch.hertz.semi_axes[1]};
@@ -162,22 +162,24 @@ void error_model::estimate(const solved_patch &patch, rp_patch_result &result,
     axes[0] = result.contact_area / (pi * axes[1]);
   }
   // a line contact has no axis ratio
-  if (!(axes[0] > 0 && axes[1] > 0)) return;
+  if (!(axes[0] > 0 && axes[1] > 0)) return bounds;
   describe_area(patch, result, axes, features);
   const network *pressure = pressure_model_of(patch.normal);
-  estimate[2] = result.max_pressure * (pressure ? std::exp(pressure->at(features)) : rounding);
+  bounds.max_pressure =
+      result.max_pressure * (pressure ? std::exp(pressure->at(features)) : rounding);
   const network *model = model_of(patch);
-  if (!model) return;
+  if (!model) return bounds;
   const double force = patch.friction_coefficient * result.normal_force;
   const double length = std::sqrt(axes[0] * axes[1]);
   const scaled_motion m = scaled(patch, axes, force);
   describe_motion(patch, result, m, force, length, features);
   const double share = m.sum() / (1.0 + m.sum()), least = force_floor * std::min(1.0, m.sum());
-  for (int k = 0; k < 2; ++k) {
-    const double relative =
-        std::max(least, share * patch.stated[k] * std::exp(model[k].at(features)));
-    estimate[k] = force * (k == 0 ? 1.0 : length) * relative;
-  }
+  const auto relative = [&](int k) {
+    return std::max(least, share * patch.stated[k] * std::exp(model[k].at(features)));
+  };
+  bounds.creep_force = force * relative(0);
+  bounds.spin_moment = force * length * relative(1);
+  return bounds;
 }
 
 void error_model::describe_area(const solved_patch &patch, const rp_patch_result &result,

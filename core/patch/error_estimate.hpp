@@ -2,7 +2,8 @@
 // of rolling contact, told from what is known after the solution, without a second one.
 //
 // A model of each theory, fitted to measured errors (error_model.inc, made by
-// python -m railpatch.evidence.bench.calibrate), gives the bound that 95 % or more of the errors stay below:
+// python -m railpatch.evidence.bench.calibrate), gives the bound that 95 % or more of the errors
+// stay below:
 //   creep force   mu Fn s/(1 + s) exp(model), at least mu Fn min(1, s) floor; length of the vector
 //   spin moment   the same times c
 //   pressure      p_max exp(model)
@@ -16,6 +17,7 @@
 #include "fast/coefficients.hpp"
 #include "half_space/influence.hpp"
 #include "normal/hertz.hpp"
+#include "numeric/nan.hpp"
 #include "railpatch.h"
 #include "tangential/tangential.hpp"
 
@@ -47,12 +49,18 @@ struct solved_patch {
   rolling_input rolling;
 };
 
+// Each stays below it with 95 % or more of cases; NaN: not known.
+struct error_bounds {
+  double creep_force = nan, spin_moment = nan, max_pressure = nan;
+};
+
 class error_model {
  public:
   // layer_flexibility: m/Pa
   error_model(const elastic_constants &elastic, double layer_flexibility);
-  // Fills result.error_estimate of a patch in contact, and features [error_feature_count].
-  void estimate(const solved_patch &patch, rp_patch_result &result, double *features) const;
+  // Of a patch in contact, by its result so far; fills features [error_feature_count].
+  error_bounds estimate(const solved_patch &patch, const rp_patch_result &result,
+                        double *features) const;
 
  private:
   struct scaled_motion;

@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "numeric/nan.hpp"
-#include "patch/patch_contact.hpp"
+#include "patch/patch_scene.hpp"
 
 namespace railpatch {
 

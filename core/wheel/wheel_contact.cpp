@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "numeric/nan.hpp"
-
 #include "patch/result_fields.hpp"
 
 namespace railpatch {
@@ -164,10 +163,7 @@ grid wheel_contact::choose_grid(const patch_region &r) const {
 }
 
 void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_side_result &out) {
-  solver.observe(RP_STAGE_GEOMETRY, true);
-  const search_result found =
-      find_patches(*geometry_, rules_, parts_, regions_.data(), config_.max_patches);
-  solver.observe(RP_STAGE_GEOMETRY, false);
+  const search_result found = find_regions(solver);
   out = empty_side_result();
   const int count = patches_ = found.count;
   out.patch_count = found.lead;
@@ -190,6 +186,11 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
     if (out.patch[i].normal_force > 0) load += out.patch[i].share * out.patch[i].normal_force;
   out.rolling_radius = load > 0 ? out.rolling_radius / load : nan;
   if (side_ == RP_LEFT) mirror(out);
+}
+
+search_result wheel_contact::find_regions(const patch_contact &solver) {
+  const stage_mark mark = solver.marks().enter(RP_STAGE_GEOMETRY);
+  return find_patches(*geometry_, rules_, parts_, regions_.data(), config_.max_patches);
 }
 
 // Moves the memories so that each patch finds the one of the last solution that lay nearest to it
@@ -239,9 +240,9 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
                                      patch_memory *memories, rp_side_result &out) {
   rp_patch_result &result = out.patch[index];
   patch_memory &memory = memories[index];
-  result.share = region.share;
   if (!solutions_.empty()) solutions_[static_cast<size_t>(index)].solved = false;
   patch_problem problem;
+  problem.place.share = region.share;
   const bool reached = !memory.curved || memory.curved->begin(*geometry_, region);
   problem.g = reached ? choose_grid(region) : grid{};
   const grid &g = problem.g;
@@ -252,7 +253,8 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
     std::fill_n(out.moment, 3, nan);
     beyond_ = true;
     memory.history.clear_now();
-    return result.status = RP_OUT_OF_RANGE;
+    report_beyond(problem.place, result);
+    return result.status;
   }
 
   // the reference moves with the contact; a new contact elsewhere starts afresh
@@ -262,17 +264,10 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
   memory.reference = origin;
   solver.start_from(memory, g);
 
-  solver.observe(RP_STAGE_GEOMETRY, true);
-  const double depth = place_grid(solver, region, g, memory);
-  const creepage_state rolling = geometry_->creepages(region.frame, depth);
-  if (memory.curved) memory.curved->set_slip(*geometry_, depth, rolling.rolling_speed);
-  solver.observe(RP_STAGE_GEOMETRY, false);
-
-  problem.rolling_speed = rolling.rolling_speed;
-  problem.rolling = {{rolling.xi, rolling.eta}, rolling.phi, rolling.direction < 0 ? -1 : 1, 0.0};
-  problem.parts = parts_on(region, g);
+  place_patch(solver, region, memory, problem);
+  const double depth = problem.place.depth;
   past_tractions past[RP_MAX_PATCHES];
-  if (solver.scene().keeps_steps()) set_past(memories, region, rolling.direction, problem, past);
+  if (solver.scene().keeps_steps()) set_past(memories, region, problem, past);
   if (solver.scene().normal == RP_NORMAL_HERTZ)
     problem.hertz = hertz_of(region, depth, solver.scene().modulus());
   patch_wrench wrench;
@@ -283,11 +278,29 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
 
   if (!solutions_.empty()) solutions_[static_cast<size_t>(index)] = {true, problem, wrench, depth};
   add_force(region, depth, wrench, result.normal_force, out);
-  describe(solver.scene(), region, rolling, depth, result);
   // beyond a profile's end there is no surface: an edge in contact is outside the theory
-  if (region.at_profile_end && result.status == RP_CONVERGED) result.status = RP_OUT_OF_RANGE;
+  if (region.at_profile_end) degrade(result, RP_OUT_OF_RANGE);
   beyond_ = beyond_ || memory.beyond || (region.at_profile_end && result.status == RP_OUT_OF_RANGE);
   return result.status;
+}
+
+// What geometry says of a patch: its distance, how it rolls, where it lies.
+void wheel_contact::place_patch(const patch_contact &solver, patch_region &region,
+                                patch_memory &memory, patch_problem &problem) const {
+  const stage_mark mark = solver.marks().enter(RP_STAGE_GEOMETRY);
+  const double depth = place_grid(solver, region, problem.g, memory);
+  const creepage_state rolling = geometry_->creepages(region.frame, depth);
+  if (memory.curved) memory.curved->set_slip(*geometry_, depth, rolling.rolling_speed);
+  problem.rolling_speed = rolling.rolling_speed;
+  problem.rolling = {{rolling.xi, rolling.eta}, rolling.phi, rolling.direction < 0 ? -1 : 1, 0.0};
+  problem.parts = parts_on(region, problem.g);
+  patch_place &place = problem.place;
+  place.on_wheel = true;
+  std::copy_n(region.frame.origin.begin(), 3, place.position);
+  place.contact_angle = region.frame.contact_angle;
+  place.depth = depth;
+  place.rolling_speed = rolling.rolling_speed;
+  place.direction = rolling.direction;
 }
 
 // Fills the undeformed distance, and the friction where it varies. Returns the greatest depth (m).
@@ -319,24 +332,11 @@ void wheel_contact::add_force(const patch_region &region, double depth, patch_wr
              region.frame.inclination);
 }
 
-void wheel_contact::describe(const patch_scene &scene, const patch_region &region,
-                             const creepage_state &rolling, double depth, rp_patch_result &result) {
-  std::copy_n(region.frame.origin.begin(), 3, result.position);
-  result.contact_angle = region.frame.contact_angle;
-  result.approach = depth;
-  result.rolling_speed = rolling.rolling_speed;
-  result.direction = rolling.direction;
-  if (scene.tangential == RP_TANGENTIAL_NONE) return;
-  result.creepage[0] = rolling.xi;
-  result.creepage[1] = rolling.eta;
-  result.spin_creepage = rolling.phi;
-}
-
 // The rail's material stays where it is on the rail, while the wheel moves on by the distance
 // rolled and the reference by what its place has changed; the wheel's differs from it by creepage
 // only. What solutions of the last step left counts with their shares, as it did in the force, and
 // goes to a patch where it lies nearer to its parts than to others, and near at all.
-void wheel_contact::set_past(const patch_memory *memory, const patch_region &region, int direction,
+void wheel_contact::set_past(const patch_memory *memory, const patch_region &region,
                              patch_problem &problem, past_tractions *past) const {
   rolling_input &rolling = problem.rolling;
   const double speed = problem.rolling_speed, slow = config_.standstill_speed;
@@ -345,7 +345,7 @@ void wheel_contact::set_past(const patch_memory *memory, const patch_region &reg
   rolling.regime = speed > 0 ? motion::transient : motion::shift;
   if (speed > 0) rolling.distance = speed * time_step_;
   const double moved = speed < slow ? std::sqrt(std::max(slow * (2 * speed - slow), 0.0)) : speed;
-  const double rolled = direction * moved * time_step_;
+  const double rolled = problem.place.direction * moved * time_step_;
   problem.past = past;
   const vec3 &rail = geometry_->motion().rail.offset;
   const contact_frame &frame = region.frame;

@@ -45,16 +45,17 @@ class wheel_contact {
  private:
   rp_status solve_patch(patch_contact &solver, patch_region &region, int index,
                         patch_memory *memories, rp_side_result &result);
+  search_result find_regions(const patch_contact &solver);
+  void place_patch(const patch_contact &solver, patch_region &region, patch_memory &memory,
+                   patch_problem &problem) const;
   double place_grid(const patch_contact &solver, patch_region &region, const grid &g,
                     patch_memory &memory) const;
   static hertz_contact hertz_of(const patch_region &region, double depth, double modulus);
   void add_force(const patch_region &region, double depth, patch_wrench wrench, double normal_force,
                  rp_side_result &out) const;
-  static void describe(const patch_scene &scene, const patch_region &region,
-                       const creepage_state &rolling, double depth, rp_patch_result &result);
   // Sets what the last step left behind for the patch of a region; past: of max_patches.
-  void set_past(const patch_memory *memory, const patch_region &region, int direction,
-                patch_problem &problem, past_tractions *past) const;
+  void set_past(const patch_memory *memory, const patch_region &region, patch_problem &problem,
+                past_tractions *past) const;
   void set_friction(const patch_contact &solver, const contact_frame &frame,
                     patch_memory &memory) const;
   grid choose_grid(const patch_region &region) const;

@@ -1,0 +1,46 @@
+#include "patch/heat_stage.hpp"
+
+namespace railpatch {
+
+heat_stage::heat_stage(patch_workspace &shared, int max_nx, int max_ny) : shared_(shared) {
+  if (shared.scene.heat) stage_.emplace(*shared.scene.heat, max_nx, max_ny);
+}
+
+void heat_stage::set_bulk(int k, double value) {
+  if (!stage_) return;
+  shared_.scene.heat->bodies.body[k].bulk = value;
+  stage_->set_bulk(k, value);
+}
+
+void heat_stage::begin(const patch_problem &problem, patch_memory &memory) {
+  if (!stage_) return;
+  const stage_mark mark = shared_.marks.enter(RP_STAGE_TEMPERATURE);
+  const grid &g = problem.g;
+  const rolling_input &rolling = problem.rolling;
+  stage_->begin({g.nx, g.ny, g.dx, rolling.direction, problem.rolling_speed},
+                rolling.regime == motion::transient ? rolling.distance : 0.0,
+                memory.pressure.data(), *memory.heat);
+}
+
+heat_outcome heat_stage::finish(const patch_problem &problem, patch_memory &memory) {
+  if (!stage_) return {};
+  const stage_mark mark = shared_.marks.enter(RP_STAGE_TEMPERATURE);
+  set_flux(problem, memory, stage_->flux());
+  return {true, stage_->finish(memory.pressure.data(), *memory.heat)};
+}
+
+void heat_stage::set_flux(const patch_problem &problem, const patch_memory &memory, double *q) {
+  const double *plastic = nullptr;
+  aligned_buffer<double> &work = shared_.scratch[0];
+  if (shared_.scene.yields()) {
+    const bool steps = problem.rolling.regime == motion::transient;
+    memory.history.plastic_work(problem.g, problem.rolling.direction, memory.px.data(),
+                                memory.py.data(), work.data());
+    const double rate = problem.rolling_speed / (steps ? problem.rolling.distance : problem.g.dx);
+    for (int i = 0; i < problem.g.count(); ++i) work[static_cast<size_t>(i)] *= rate;
+    plastic = work.data();
+  }
+  stage_->heat(memory.px.data(), memory.py.data(), memory.sx.data(), memory.sy.data(), plastic, q);
+}
+
+}  // namespace railpatch

@@ -1,0 +1,126 @@
+#include "patch/normal_stage.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "numeric/nan.hpp"
+
+namespace railpatch {
+
+namespace {
+
+using std::numbers::pi;
+
+double inside_ellipse(const double semi_axes[2], double x, double y) {
+  const double u = x / semi_axes[0], v = semi_axes[1] > 0 ? y / semi_axes[1] : 0.0;
+  return 1.0 - u * u - v * v;
+}
+
+}  // namespace
+
+normal_stage::normal_stage(patch_workspace &shared, int max_nx, int max_ny) : shared_(shared) {
+  const patch_scene &scene = shared.scene;
+  if (scene.normal == RP_NORMAL_HALF_SPACE) normal_.emplace(max_nx * max_ny);
+  if (scene.normal == RP_NORMAL_KIK_PIOTROWSKI || scene.normal == RP_NORMAL_ANALYN)
+    rows_.emplace(scene.normal, scene.modulus(), max_ny);
+}
+
+pressure_outcome normal_stage::solve(const patch_problem &problem, patch_memory &memory) {
+  pressure_outcome found = rows_     ? solve_rows(problem, memory)
+                           : normal_ ? solve_half_space(problem, memory)
+                                     : solve_hertz(problem, memory);
+  if (rows_) found.rows = &*rows_;
+  if (memory.pressure.size() == 0) {
+    found.loaded = found.normal_force > 0;
+  } else {
+    const double *p = memory.pressure.data();
+    const int count = problem.g.count();
+    const int touching =
+        static_cast<int>(std::count_if(p, p + count, [](double v) { return v > 0; }));
+    found.exterior = count - touching;
+    found.loaded = touching > 0;
+  }
+  if (!found.loaded) degrade(found.status, RP_NO_CONTACT);
+  return found;
+}
+
+pressure_outcome normal_stage::solve_half_space(const patch_problem &problem,
+                                                patch_memory &memory) {
+  const grid &g = problem.g;
+  double tolerance = shared_.scene.normal_tolerance;
+  if (shared_.coupled) tolerance = shared_.coupled->tolerance(tolerance);
+  const normal_options options{tolerance, shared_.scene.max_iterations};
+  double *p = memory.pressure.data();
+  const double *h =
+      shared_.coupled ? shared_.coupled->distance() : memory.undeformed_distance.data();
+  const normal_result n =
+      problem.force_given
+          ? normal_->with_force(*shared_.influence, g, h, problem.force, options, p, problem.parts)
+          : normal_->with_approach(*shared_.influence, g, h, problem.approach, options, p,
+                                   problem.parts);
+  pressure_outcome found;
+  if (!n.converged) degrade(found.status, RP_NOT_CONVERGED);
+  if (shared_.coupled) shared_.coupled->set_scale(n.scale);
+  if (n.touches_border) degrade(found.status, RP_OUT_OF_RANGE);
+  found.normal_force = n.normal_force;
+  found.approach = n.approach;
+  found.iterations = n.iterations;
+  found.residual = n.residual;
+  found.max_pressure = *std::max_element(p, p + g.count());
+  found.contact_area = n.contact_count * g.dx * g.dy;
+  // at the solution the elastic displacement is approach minus distance wherever p > 0
+  double energy = 0;
+  for (int i = 0; i < g.count(); ++i) energy += p[i] * (n.approach - h[i]);
+  found.elastic_energy = 0.5 * energy * g.dx * g.dy;
+  return found;
+}
+
+// The fast theories for contact areas of any shape.
+pressure_outcome normal_stage::solve_rows(const patch_problem &problem, patch_memory &memory) {
+  const row_contact_result n =
+      rows_->solve(problem.g, memory.undeformed_distance.data(),
+                   {problem.force_given, problem.force, problem.approach, problem.hertz.approach},
+                   problem.parts, memory.pressure.data());
+  pressure_outcome found;
+  if (!n.converged) degrade(found.status, RP_NOT_CONVERGED);
+  if (n.touches_border) degrade(found.status, RP_OUT_OF_RANGE);
+  found.normal_force = n.normal_force;
+  found.approach = n.approach;
+  found.iterations = n.iterations;
+  found.residual = n.residual;
+  found.max_pressure = n.max_pressure;
+  found.contact_area = n.contact_area;
+  found.elastic_energy = n.elastic_energy;
+  return found;
+}
+
+pressure_outcome normal_stage::solve_hertz(const patch_problem &problem,
+                                           patch_memory &memory) const {
+  const grid &g = problem.g;
+  const hertz_contact &hertz = problem.hertz;
+  double sum = 0;
+  for (int j = 0; j < g.ny && memory.pressure.size(); ++j)
+    for (int i = 0; i < g.nx; ++i) {
+      const double level = inside_ellipse(hertz.semi_axes, g.x(i), g.y(j));
+      const double p = level > 0 ? hertz.max_pressure * std::sqrt(level) : 0.0;
+      memory.pressure[static_cast<size_t>(j * g.nx + i)] = p;
+      sum += p * g.dx * g.dy;
+    }
+  // the sampled pressure carries exactly the closed form's force
+  for (int i = 0; i < g.count() && sum > 0; ++i)
+    memory.pressure[static_cast<size_t>(i)] *= hertz.normal_force / sum;
+  pressure_outcome found;
+  found.normal_force = hertz.normal_force;
+  found.approach = hertz.approach;
+  found.max_pressure = hertz.max_pressure;
+  const bool line = shared_.scene.line_width > 0;
+  found.contact_area = line ? 2.0 * hertz.semi_axes[0] * shared_.scene.line_width
+                            : pi * hertz.semi_axes[0] * hertz.semi_axes[1];
+  // 1/2 int p u dA of the elliptic pressure (Johnson 1985, section 3.3)
+  found.elastic_energy = 0.4 * hertz.normal_force * hertz.approach;
+  if (line) found.approach = found.elastic_energy = nan;
+  return found;
+}
+
+}  // namespace railpatch

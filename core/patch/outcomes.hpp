@@ -1,0 +1,44 @@
+// What the stages of a patch found in one step.
+#pragma once
+
+#include "normal/row_contact.hpp"
+#include "numeric/nan.hpp"
+#include "railpatch.h"
+
+namespace railpatch {
+
+// Worse of two outcomes, where several stages contribute to one: the first that is not good stays.
+inline void degrade(rp_status &so_far, rp_status status) {
+  if (so_far == RP_CONVERGED) so_far = status;
+}
+
+struct pressure_outcome {
+  rp_status status = RP_CONVERGED;
+  bool loaded = false;  // the bodies touch
+  double normal_force = 0, approach = 0, max_pressure = 0, contact_area = 0;
+  double elastic_energy = 0, residual = 0;
+  int iterations = 0;
+  int exterior = 0;                   // elements
+  const row_contact *rows = nullptr;  // where the theory knows the ends of the rows
+};
+
+struct traction_outcome {
+  rp_status status = RP_CONVERGED;
+  bool converged = false;
+  double creepage[2] = {0, 0};  // of the components of a prescribed force
+  int exterior = 0, stick = 0, slip = 0, plastic = 0, ambiguous = 0;  // elements
+  int newton_iterations = 0, inner_iterations = 0;
+  int outer_iterations = 0;  // of friction by temperature, and of unlike bodies
+  double residual = 0;
+  double friction_power = 0;
+  double plastic_power = nan;
+  double elastic_energy = 0, coupling_energy = 0;
+  double moment = 0, force[2] = {0, 0};  // of theories without tractions
+};
+
+struct heat_outcome {
+  bool found = false;
+  double max_temperature = 0;  // degrees C
+};
+
+}  // namespace railpatch

@@ -1,0 +1,89 @@
+// One step's problem of a patch, and what is remembered of the patch from step to step.
+#pragma once
+
+#include <array>
+
+#include "half_space/physics.hpp"
+#include "normal/hertz.hpp"
+#include "normal/normal.hpp"
+#include "numeric/nan.hpp"
+#include "patch/conformal_rows.hpp"
+#include "patch/error_estimate.hpp"
+#include "patch/history.hpp"
+#include "patch/patch_scene.hpp"
+#include "tangential/fitted.hpp"
+#include "tangential/tangential.hpp"
+#include "temperature/stage.hpp"
+
+namespace railpatch {
+
+// Tractions of a wheel's last step, in rows of what a patch remembers, as seen from the grid of a
+// problem: its element (0, 0) was at offset from that of the first row.
+struct past_tractions {
+  const patch_history *history;
+  int first_row, rows;
+  double offset[2];  // m
+};
+
+// Where a patch lies and how it rolls, as its result states it.
+struct patch_place {
+  bool on_wheel = false;  // else only the motion is known
+  double position[3] = {nan, nan, nan}, contact_angle = nan;
+  double depth = 0;  // m, greatest interpenetration
+  double share = 1;  // in the wheel's force
+  double rolling_speed = nan;
+  int direction = 0;  // 0: standstill
+};
+
+// One step's problem; the undeformed distance is in patch_memory.
+struct patch_problem {
+  patch_place place;
+  grid g;
+  bool force_given = false;
+  double force = 0, approach = 0;
+  double rolling_speed = 0;  // m/s; 0: standstill, no tangential traction arises
+  rolling_input rolling;
+  double tangential_force[2] = {0, 0};  // N, of the components prescribed
+  hertz_contact hertz;                  // where the surfaces are quadratic, else all zero
+  contact_parts parts;
+  const past_tractions *past = nullptr;  // of wheels in transient rolling, with their number
+  int past_count = 0;
+};
+
+// Fields of the last solution, [ny][nx] of the grid or, for what belongs to the tangential problem
+// of fitted rows, [strip][node]; with the grid they are also the next start.
+struct patch_memory {
+  patch_memory() = default;
+  // max_count: elements of the greatest grid.
+  patch_memory(int max_count, int max_rows, const patch_scene &scene);
+  bool solved = false;  // fields belong to the last step
+  bool warm = false;    // pressure and traction may serve as a start
+  bool beyond = false;  // the normal problem left its range: what the patch carries is not known
+  grid g;
+  double share = 1;                   // in the wheel's force
+  double rail[2] = {0, 0};            // m, lateral and vertical offset of the rail
+  double approach = 0;                // m, of the last step's normal problem on the half-space
+  std::array<double, 3> reference{};  // m, contact reference, track axes of a right wheel
+  aligned_buffer<double> undeformed_distance, pressure, px, py, sx, sy;
+  aligned_buffer<unsigned char> division;
+  aligned_buffer<double> node_x, node_y, node_pressure;  // fitted rows only
+  aligned_buffer<double> row_friction;                   // factor of each grid row, where it varies
+  aligned_buffer<double> creepage;                       // [2], of a prescribed creep force only
+  std::array<double, error_feature_count> error_features{};
+  patch_history history;
+  physics_part<heat_memory> heat;
+  physics_part<conformal_rows> curved;
+  bool fitted() const { return node_x.size() > 0; }
+  // elements of the tangential problem along rolling and lateral
+  int columns() const { return fitted() ? static_cast<int>(node_x.size() / node_y.size()) : g.nx; }
+  int rows() const { return fitted() ? static_cast<int>(node_y.size()) : g.ny; }
+  tangential_fields fields() {
+    return {px.data(), py.data(), sx.data(), sy.data(), division.data()};
+  }
+  fitted_fields nodes() { return {node_x.data(), node_y.data(), node_pressure.data(), fields()}; }
+  // No contact: nothing is transferred, and every element of the grid is exterior.
+  void unload(const grid &on, const bound_law *law);
+  size_t bytes() const;
+};
+
+}  // namespace railpatch

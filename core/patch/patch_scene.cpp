@@ -1,0 +1,34 @@
+#include "patch/patch_scene.hpp"
+
+namespace railpatch {
+
+influence::scene patch_scene::elastic_parts() const {
+  influence::scene parts{elastic, layer_flexibility, line_width, full_on_grid()};
+  parts.curved = curved;
+  return parts;
+}
+
+bool patch_scene::estimates_force() const {
+  // of a prescribed force the creepage errs
+  const bool by_temperature = heat && heat->by_temperature;
+  if (spin_offset || is_forced() || law || keeps_steps() || by_temperature ||
+      friction_variation.varies())
+    return false;
+  if (!is_fast(tangential)) return true;
+  // what an ellipse in place of another shape does was not measured
+  if (tangential == RP_TANGENTIAL_TABLE && normal != RP_NORMAL_HERTZ) return false;
+  const polach_factors &p = fast.polach;
+  const stiffness_reduction &r = fast.reduction;
+  const bool reduced = p.adhesion != 1 || p.slip != 1 || r.k0 != 1 || (r.alpha != 1 && r.beta != 0);
+  return fast.coefficient_factor == 1 && !reduced && fast.blending == RP_BLENDING_SLIDING &&
+         fast.bound == RP_BOUND_AUTOMATIC;
+}
+
+bool patch_scene::differentiates() const {
+  if (curved || (normal != RP_NORMAL_HALF_SPACE && normal != RP_NORMAL_HERTZ)) return false;
+  if (tangential == RP_TANGENTIAL_NONE) return true;
+  return tangential == RP_TANGENTIAL_FULL && !is_fitted() && !law && !keeps_steps() && !heat &&
+         !is_forced() && !couples();
+}
+
+}  // namespace railpatch

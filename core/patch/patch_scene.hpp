@@ -1,0 +1,68 @@
+// What a patch is solved by: bodies, friction, theories and limits, as the handle has made them.
+#pragma once
+
+#include <optional>
+
+#include "fast/fast.hpp"
+#include "half_space/coupling.hpp"
+#include "half_space/physics.hpp"
+#include "railpatch.h"
+#include "tangential/friction_factor.hpp"
+#include "tangential/tangential.hpp"
+#include "temperature/stage.hpp"
+
+namespace railpatch {
+
+// Constant over the life of a handle, but for the friction coefficient and its scale.
+struct patch_scene {
+  elastic_constants elastic;
+  double friction_coefficient = 0;
+  friction_factor friction_variation;
+  double friction_scale = 1.0;   // of the law, in this step
+  double layer_flexibility = 0;  // m/Pa
+  double line_width = 0;         // m, > 0: line contact
+  rp_normal_method normal = RP_NORMAL_HALF_SPACE;
+  rp_tangential_method tangential = RP_TANGENTIAL_FULL;  // NONE: no tangential stage
+  motion regime = motion::steady;
+  bool moves = false;            // the grid moves between steps: of wheels
+  std::optional<bound_law> law;  // beyond Coulomb's, or a layer that yields
+  bool keeps_steps() const {
+    return has_physics && tangential == RP_TANGENTIAL_FULL && regime != motion::steady;
+  }
+  bool yields() const { return law && law->plastic(); }
+  double tolerance = 1e-5;
+  double normal_tolerance = 1e-5;
+  int max_iterations = 100;
+  bool spin_offset = false;  // x + dq/6 in the spin term
+  bool derivatives = false;  // patch_contact::differentiate is asked for
+  bool stretches = false;    // grids whose dx and dy change at different rates
+  bool curved = false;       // reference surface, of wheels
+  int fitted[2] = {0, 0};    // nodes and strips of the tangential problem; 0: on the uniform grid
+  fast_options fast;         // where the tangential theory is a fast one
+  std::optional<heat_scene> heat;       // where temperatures are asked for
+  bool prescribed[2] = {false, false};  // components of the creep force: their creepage is found
+  double friction() const { return friction_coefficient * friction_scale; }
+  bool is_forced() const { return prescribed[0] || prescribed[1]; }
+  // false: beside the exact theory, by choice
+  bool estimates_force() const;
+  bool is_fitted() const { return tangential == RP_TANGENTIAL_FULL && fitted[0] > 0; }
+  // The exact theory of traction on the uniform grid.
+  bool full_on_grid() const { return tangential == RP_TANGENTIAL_FULL && !is_fitted(); }
+  bool needs_influence() const { return normal == RP_NORMAL_HALF_SPACE || full_on_grid(); }
+  // What the influence coefficients are made of.
+  influence::scene elastic_parts() const;
+  // Pressure and traction act on each other, and both are there.
+  bool couples() const {
+    return has_physics && tangential == RP_TANGENTIAL_FULL && (curved || is_coupled(elastic));
+  }
+  // No pressure and no traction on a uniform grid: all is closed form or on rows of its own.
+  bool closed_form() const {
+    return normal == RP_NORMAL_HERTZ &&
+           (is_fitted() || (is_fast(tangential) && !has_tractions(tangential)));
+  }
+  // Whether the solution's derivatives come from its equations (patch_derivative.hpp).
+  bool differentiates() const;
+  double modulus() const { return elastic.shear_modulus / (1.0 - elastic.poisson_ratio); }
+};
+
+}  // namespace railpatch

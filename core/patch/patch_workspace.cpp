@@ -1,0 +1,25 @@
+#include "patch/patch_workspace.hpp"
+
+#include <memory>
+
+#include "half_space/conformal_coupling.hpp"
+
+namespace railpatch {
+
+patch_workspace::patch_workspace(const patch_scene &of, stage_marks at, const fft_plans &plans,
+                                 int max_count)
+    : scene(of), marks(at) {
+  if (scene.needs_influence()) influence.emplace(scene.elastic_parts(), plans);
+  if (scene.couples()) {
+    std::unique_ptr<coupling_operator> coupling;
+    if (scene.curved)
+      coupling = std::make_unique<conformal_coupling>(*influence, max_count);
+    else
+      coupling = std::make_unique<coupling_influence>(scene.elastic, scene.line_width > 0, plans);
+    coupled.emplace(std::move(coupling), max_count, scene.keeps_steps());
+  }
+  if (scene.closed_form()) return;
+  for (auto &b : scratch) b = aligned_buffer<double>(static_cast<size_t>(max_count));
+}
+
+}  // namespace railpatch

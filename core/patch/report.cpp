@@ -1,0 +1,116 @@
+#include "patch/report.hpp"
+
+#include <algorithm>
+
+#include "patch/result_fields.hpp"
+
+namespace railpatch {
+
+namespace {
+
+// Fitted rows have elements of many sizes: their places are in the fields.
+void describe_grid(const patch_scene &scene, const grid &g, rp_patch_result &result) {
+  const bool fitted = scene.is_fitted();
+  result.grid[0] = fitted ? scene.fitted[0] : g.nx;
+  result.grid[1] = fitted ? scene.fitted[1] : g.ny;
+  result.grid_origin[0] = fitted ? 0.0 : g.x0;
+  result.grid_origin[1] = fitted ? 0.0 : g.y0;
+  result.element_size[0] = fitted ? 0.0 : g.dx;
+  result.element_size[1] = fitted ? 0.0 : g.dy;
+}
+
+void describe_place(const patch_place &place, rp_patch_result &result) {
+  std::copy_n(place.position, 3, result.position);
+  result.contact_angle = place.contact_angle;
+  result.share = place.share;
+  result.rolling_speed = place.rolling_speed;
+  result.direction = place.direction;
+}
+
+// What a problem states of itself, and its pressure.
+void describe(const patch_scene &scene, const patch_problem &problem, const pressure_outcome &n,
+              rp_patch_result &result) {
+  describe_grid(scene, problem.g, result);
+  describe_place(problem.place, result);
+  result.approach = problem.place.on_wheel ? problem.place.depth : n.approach;
+  result.normal_iterations = n.iterations;
+  result.residual = n.residual;
+  result.elements[RP_EXTERIOR] = n.exterior;
+  result.status = n.status;
+  if (scene.tangential == RP_TANGENTIAL_NONE) return;
+  std::copy_n(problem.rolling.creepage, 2, result.creepage);
+  result.spin_creepage = problem.rolling.spin_creepage;
+}
+
+void describe_tractions(const patch_scene &scene, const traction_outcome &t,
+                        const patch_wrench &wrench, rp_patch_result &result) {
+  for (int c = 0; c < 2; ++c)
+    if (scene.prescribed[c]) result.creepage[c] = t.creepage[c];
+  result.creep_force[0] = wrench.force[0];
+  result.creep_force[1] = wrench.force[1];
+  result.spin_moment = wrench.moment[2];
+  result.friction_power = t.friction_power;
+  result.plastic_power = t.plastic_power;
+  result.elastic_energy += t.elastic_energy;
+  result.elastic_energy += t.coupling_energy;
+  result.elements[RP_EXTERIOR] = t.exterior;
+  result.elements[RP_STICK] = t.stick;
+  result.elements[RP_SLIP] = t.slip;
+  result.elements[RP_PLASTIC] = t.plastic;
+  result.ambiguous_elements = t.ambiguous;
+  result.newton_iterations = t.newton_iterations;
+  result.inner_iterations = t.inner_iterations;
+  result.outer_iterations = t.outer_iterations;
+  // written so that a residual that is no number stays visible
+  if (!(t.residual <= result.residual)) result.residual = t.residual;
+  degrade(result.status, t.status);
+}
+
+}  // namespace
+
+void report(const patch_scene &scene, const patch_problem &problem, const pressure_outcome &n,
+            const traction_outcome &t, const heat_outcome &h, const patch_wrench &wrench,
+            rp_patch_result &result) {
+  describe(scene, problem, n, result);
+  // on a curved surface the rows' pressures do not all act along the patch's normal
+  result.normal_force = scene.curved ? -wrench.force[2] : n.normal_force;
+  result.max_pressure = n.max_pressure;
+  result.contact_area = n.contact_area;
+  result.elastic_energy = n.elastic_energy;
+  if (scene.tangential != RP_TANGENTIAL_NONE) describe_tractions(scene, t, wrench, result);
+  if (h.found) result.max_temperature = h.max_temperature;
+}
+
+void report_unloaded(const patch_scene &scene, const patch_problem &problem,
+                     const pressure_outcome &n, const heat_outcome &h, rp_patch_result &result) {
+  describe(scene, problem, n, result);
+  set_unloaded(scene, result);
+  if (h.found) result.max_temperature = h.max_temperature;
+}
+
+void report_apart(const patch_scene &scene, const patch_place &place, double approach,
+                  const heat_outcome &h, rp_patch_result &result) {
+  describe_place(place, result);
+  result.status = RP_NO_CONTACT;
+  result.approach = approach;
+  set_unloaded(scene, result);
+  if (h.found) result.max_temperature = h.max_temperature;
+}
+
+void report_beyond(const patch_place &place, rp_patch_result &result) {
+  describe_place(place, result);
+  result.status = RP_OUT_OF_RANGE;
+}
+
+void report_errors(const error_bounds &bounds, rp_patch_result &result) {
+  result.error_estimate[0] = bounds.creep_force;
+  result.error_estimate[1] = bounds.spin_moment;
+  result.error_estimate[2] = bounds.max_pressure;
+}
+
+void report_search(rp_status status, double residual, rp_patch_result &result) {
+  degrade(result, status);
+  result.residual = std::max(result.residual, residual);
+}
+
+}  // namespace railpatch

@@ -1,0 +1,284 @@
+#include "patch/tangential_stage.hpp"
+
+#include <algorithm>
+
+namespace railpatch {
+
+tangential_stage::tangential_stage(patch_workspace &shared, const fft_plans &plans, int max_nx,
+                                   int max_ny)
+    : shared_(shared) {
+  const patch_scene &scene = shared.scene;
+  const auto count = static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny);
+  if (scene.full_on_grid()) {
+    const bool rolls_on = scene.regime == motion::transient;
+    tangential_.emplace(
+        max_nx, max_ny,
+        tangential_solver::setup{scene.is_forced(), scene.law.has_value(), scene.yields(),
+                                 scene.keeps_steps(), rolls_on ? &plans : nullptr, scene.moves});
+    // with a prescribed force no creepage is known to start from
+    const bool plain = !scene.is_forced() && !scene.law && !scene.keeps_steps() && !scene.couples();
+    if (plain && coarse_start::serves(max_nx, max_ny))
+      coarse_start_.emplace(scene.elastic_parts(), plans, max_nx, max_ny);
+    bound_ = aligned_buffer<double>(count);
+  }
+  if (is_fast(scene.tangential)) fast_.emplace(scene.elastic, scene.fast, max_nx, max_ny);
+  if (scene.is_fitted()) {
+    fitted_rows_.emplace(scene.fitted[0], scene.fitted[1], max_ny);
+    fitted_.emplace(scene.elastic, scene.layer_flexibility, scene.line_width > 0, scene.is_forced(),
+                    *fitted_rows_);
+  }
+  if (scene.closed_form() || !scene.keeps_steps() || !scene.moves) return;
+  for (auto &b : before_) b = aligned_buffer<double>(count);
+}
+
+size_t tangential_stage::bytes() const {
+  return bound_.bytes() + 2 * before_[0].bytes() + (tangential_ ? tangential_->bytes() : 0) +
+         (coarse_start_ ? coarse_start_->bytes() : 0) +
+         (fast_ ? sizeof(fast_solver) + fast_->bytes() : 0) +
+         (fitted_ ? fitted_rows_->bytes() + fitted_->bytes() : 0);
+}
+
+traction_outcome tangential_stage::solve(const patch_problem &problem,
+                                         const pressure_outcome &pressure, patch_memory &memory,
+                                         heat_stage &heat) {
+  const patch_scene &scene = shared_.scene;
+  traction_outcome found;
+  prescribed_force force;
+  const rolling_input rolling = rolling_of(problem, memory, force);
+  const tangential_result t = solve_by_theory(problem, pressure, rolling, memory, heat, found);
+  for (int c = 0; c < 2; ++c) {
+    if (!scene.prescribed[c]) continue;
+    found.creepage[c] = memory.creepage[static_cast<size_t>(c)] = force.creepage[c];
+  }
+  found.stick = t.stick;
+  found.slip = t.slip;
+  found.exterior =
+      fitted_ ? memory.columns() * memory.rows() - t.stick - t.slip : pressure.exterior;
+  found.newton_iterations = t.newton_iterations;
+  found.inner_iterations = t.products;
+  found.residual = t.residual;
+  const double rate = scene.regime == motion::shift ? 1.0 : problem.rolling_speed;
+  found.friction_power = rate * t.friction;
+  if (scene.yields()) found.plastic_power *= rate;
+  found.converged = t.converged;
+  if (!t.converged)
+    degrade(found.status, scene.tangential != RP_TANGENTIAL_FULL || t.out_of_range
+                              ? RP_OUT_OF_RANGE
+                              : RP_NOT_CONVERGED);
+  if (scene.tangential == RP_TANGENTIAL_FULL)
+    found.elastic_energy =
+        fitted_ ? fitted_->elastic_energy(*fitted_rows_) : elastic_energy(problem, memory);
+  return found;
+}
+
+// The step as the tangential theories take it; `force` holds what is prescribed of it. First what
+// the last step left and what drives the patch, then what the pressure adds. Coupling sets its slip
+// anew, by the regime and the distance rolled; the slip of curved rows is added to that, with the
+// spin's offset, and takes the place of the creepages, which nothing may read after it.
+rolling_input tangential_stage::rolling_of(const patch_problem &problem, const patch_memory &memory,
+                                           prescribed_force &force) {
+  const patch_scene &scene = shared_.scene;
+  rolling_input rolling = problem.rolling;
+  if (problem.past) {
+    find_before(problem, rolling);
+  } else if (scene.keeps_steps()) {
+    rolling.px = memory.history.last_px.data();
+    rolling.py = memory.history.last_py.data();
+  }
+  if (!(problem.rolling_speed > 0) && scene.regime != motion::shift) {
+    // standstill: creepage is not defined and no micro-slip has happened, so all sticks unloaded
+    rolling.creepage[0] = rolling.creepage[1] = rolling.spin_creepage = 0;
+  }
+  if (scene.is_forced()) prescribe(problem, memory, rolling, force);
+  if (auto &coupled = shared_.coupled;
+      coupled && (problem.rolling_speed > 0 || rolling.regime != motion::steady)) {
+    const stage_mark mark = shared_.marks.enter(RP_STAGE_COUPLING);
+    coupled->set_slip(memory.pressure.data(), rolling);
+    for (int c = 0; c < 2; ++c) rolling.coupled[c] = coupled->slip(c);
+  }
+  const grid &g = problem.g;
+  if (scene.spin_offset) rolling.spin_offset = rolling.direction * g.dx / 6.0;
+  if (memory.curved && problem.rolling_speed > 0) add_slip_of_rows(g, *memory.curved, rolling);
+  return rolling;
+}
+
+// Of the components of a prescribed force the creepage is what the last step, or round, found.
+void tangential_stage::prescribe(const patch_problem &problem, const patch_memory &memory,
+                                 rolling_input &rolling, prescribed_force &force) const {
+  for (int c = 0; c < 2; ++c) {
+    if (!shared_.scene.prescribed[c]) continue;
+    force.component[c] = true;
+    force.force[c] = problem.tangential_force[c];
+    force.creepage[c] = memory.creepage[static_cast<size_t>(c)];
+    rolling.creepage[c] = 0;
+  }
+  rolling.force = &force;
+}
+
+tangential_result tangential_stage::solve_by_theory(const patch_problem &problem,
+                                                    const pressure_outcome &pressure,
+                                                    const rolling_input &rolling,
+                                                    patch_memory &memory, heat_stage &heat,
+                                                    traction_outcome &found) {
+  if (fitted_) return solve_fitted(problem, rolling, memory);
+  if (!fast_)
+    return heat.feeds_back() ? solve_with_heat(problem, rolling, memory, heat, found)
+                             : solve_on_grid(problem, rolling, memory, nullptr, found);
+  const fast_patch patch{problem.g,
+                         memory.pressure.size() ? memory.pressure.data() : nullptr,
+                         problem.hertz,
+                         pressure.rows,
+                         pressure.normal_force,
+                         pressure.contact_area,
+                         shared_.scene.friction()};
+  creep_resultants sums;
+  const tangential_result t = fast_->solve(patch, rolling, memory.fields(), sums);
+  std::copy_n(sums.force, 2, found.force);
+  found.moment = sums.moment;
+  return t;
+}
+
+// Each pass of the outer loop starts from the tractions of the last one.
+tangential_result tangential_stage::solve_with_heat(const patch_problem &problem,
+                                                    const rolling_input &rolling,
+                                                    patch_memory &memory, heat_stage &heat,
+                                                    traction_outcome &found) {
+  tangential_result last{};
+  int newton = 0, products = 0;
+  const auto pass = [&](const double *mu) {
+    const stage_mark mark = shared_.marks.enter(RP_STAGE_TANGENTIAL);
+    last = solve_on_grid(problem, rolling, memory, mu, found);
+    newton += last.newton_iterations;
+    products += last.products;
+    return last.converged;
+  };
+  const temperature_loop_result loop = heat.solve(problem, memory, pass);
+  found.outer_iterations = loop.iterations;
+  last.newton_iterations = newton;
+  last.products = products;
+  last.converged = last.converged && loop.converged;
+  if (!(loop.residual <= last.residual)) last.residual = loop.residual;
+  return last;
+}
+
+// On a curved reference surface every row has a rigid slip of its own.
+void tangential_stage::add_slip_of_rows(const grid &g, const conformal_rows &rows,
+                                        rolling_input &rolling) {
+  rolling.creepage[0] = rolling.creepage[1] = rolling.spin_creepage = 0;
+  for (int c = 0; c < 2; ++c) {
+    double *slip = shared_.coupled->slip(c);
+    for (int j = 0; j < g.ny; ++j)
+      for (int i = 0; i < g.nx; ++i)
+        slip[j * g.nx + i] += rows.slip(c, j, g.x(i) + rolling.spin_offset);
+  }
+}
+
+// The displacement by the last step's tractions where each element's material was then.
+void tangential_stage::find_before(const patch_problem &problem, rolling_input &rolling) {
+  const stage_mark mark = shared_.marks.enter(RP_STAGE_HISTORY);
+  for (int c = 0; c < 2; ++c) {
+    std::fill_n(before_[c].data(), problem.g.count(), 0.0);
+    rolling.before[c] = before_[c].data();
+  }
+  for (int k = 0; k < problem.past_count; ++k) {
+    const past_tractions &past = problem.past[k];
+    grid from = past.history->last_grid;
+    const auto first = static_cast<ptrdiff_t>(past.first_row) * from.nx;
+    from.ny = past.rows;
+    tangential_->add_moved(*shared_.influence, from, problem.g, past.offset,
+                           past.history->last_share, past.history->last_px.data() + first,
+                           past.history->last_py.data() + first, before_[0].data(),
+                           before_[1].data());
+  }
+}
+
+void tangential_stage::set_bound(const grid &g, const patch_memory &memory, const double *mu) {
+  const bool varies = shared_.scene.friction_variation.varies();
+  // where the law says mu, what it is multiplied by
+  const bool by_velocity = shared_.scene.law && shared_.scene.law->by_velocity;
+  const double friction = by_velocity ? 1.0 : shared_.scene.friction_coefficient;
+  for (int j = 0; j < g.ny; ++j) {
+    const double factor =
+        (varies ? memory.row_friction[static_cast<size_t>(j)] : 1.0) * shared_.scene.friction_scale;
+    for (auto i = static_cast<size_t>(j * g.nx); i < static_cast<size_t>((j + 1) * g.nx); ++i)
+      bound_[i] = (mu ? mu[i] : friction) * factor * memory.pressure[i];
+  }
+}
+
+tangential_result tangential_stage::solve_on_grid(const patch_problem &problem,
+                                                  const rolling_input &rolling,
+                                                  patch_memory &memory, const double *mu,
+                                                  traction_outcome &found) {
+  const grid &g = problem.g;
+  set_bound(g, memory, mu);
+  // the outer loops see the tractions' errors as changes of the heat and of the gap
+  const double tolerance =
+      mu ? std::max(0.1 * shared_.scene.tolerance, 1e-12) : shared_.scene.tolerance;
+  tangential_options options{tolerance, shared_.scene.max_iterations};
+  if (shared_.coupled) options.tolerance = shared_.coupled->tolerance(options.tolerance);
+  const auto zero = [&](const double *p) {
+    return std::all_of(p, p + g.count(), [](double v) { return v == 0; });
+  };
+  if (coarse_start_ && rolling.drives() && coarse_start::serves(g.nx, g.ny) &&
+      zero(memory.px.data()) && zero(memory.py.data()))
+    coarse_start_->find(g, memory.pressure.data(), bound_.data(), rolling, options,
+                        memory.fields());
+  if (!has_physics || !shared_.scene.law)
+    return tangential_->solve(*shared_.influence, g, memory.pressure.data(), bound_.data(), rolling,
+                              options, memory.fields());
+  memory.history.start_from_before(g, *shared_.scene.law);
+  const inelastic_fields fields = memory.history.fields(*shared_.scene.law);
+  inelastic_sums sums;
+  const tangential_result t =
+      tangential_->solve(*shared_.influence, g, memory.pressure.data(), bound_.data(), rolling,
+                         options, memory.fields(), &fields, &sums);
+  for (size_t i = 0; i < static_cast<size_t>(g.count()); ++i)
+    if (memory.pressure[i] > 0) memory.history.friction[i] /= memory.pressure[i];
+  found.plastic = sums.plastic;
+  found.ambiguous = sums.ambiguous;
+  if (shared_.scene.law->plastic()) found.plastic_power = sums.plastic_work;
+  return t;
+}
+
+tangential_result tangential_stage::solve_fitted(const patch_problem &problem,
+                                                 const rolling_input &rolling,
+                                                 patch_memory &memory) {
+  const hertz_contact &hertz = problem.hertz;
+  if (shared_.scene.normal != RP_NORMAL_HERTZ)
+    fitted_rows_->set_pressure(problem.g, memory.pressure.data());
+  else if (shared_.scene.line_width > 0)
+    fitted_rows_->set_line(hertz.semi_axes[0], shared_.scene.line_width, hertz.normal_force);
+  else
+    fitted_rows_->set_ellipse(hertz.semi_axes, hertz.normal_force);
+  return fitted_->solve(*fitted_rows_, shared_.scene.friction(), rolling,
+                        {shared_.scene.tolerance, shared_.scene.max_iterations}, memory.nodes());
+}
+
+double tangential_stage::elastic_energy(const patch_problem &problem, const patch_memory &memory) {
+  const grid &g = problem.g;
+  const auto loaded = [&](const aligned_buffer<double> &p) {
+    return std::any_of(p.data(), p.data() + g.count(), [](double v) { return v != 0; });
+  };
+  if (!loaded(memory.px) && !loaded(memory.py)) return 0.0;
+  shared_.influence->tangential_product(memory.px.data(), memory.py.data(),
+                                        shared_.scratch[0].data(), shared_.scratch[1].data());
+  double sum = 0;
+  for (int i = 0; i < g.count(); ++i) {
+    const auto at = static_cast<size_t>(i);
+    sum += memory.px[at] * shared_.scratch[0][at] + memory.py[at] * shared_.scratch[1][at];
+  }
+  return 0.5 * sum * g.dx * g.dy;
+}
+
+void tangential_stage::set_resultants(const traction_outcome &found, patch_memory &memory,
+                                      patch_wrench &wrench) const {
+  if (!fitted_ && (!fast_ || has_tractions(shared_.scene.tangential))) return;
+  const patch_wrench creep =
+      fitted_ ? fitted_->creep_wrench(*fitted_rows_, memory.nodes())
+              : patch_wrench{{found.force[0], found.force[1], 0.0}, {0.0, 0.0, found.moment}};
+  wrench.force[0] = creep.force[0];
+  wrench.force[1] = creep.force[1];
+  wrench.moment[2] = creep.moment[2];
+}
+
+}  // namespace railpatch
