@@ -13,8 +13,8 @@ struct creepage_coefficients {
 };
 
 // Computed coefficients for a/b = 1/20 ... 20. Relative differences between two sets of grids
-// (railpatch.evidence.kalker_table --check), greatest of Poisson's ratios: C11, C22 and C23 3e-4 for
-// 0.1 < a/b < 5, 1.3e-3 up to 10, 7e-3 up to 20, C23 2e-3 down to 1/20; C33 2e-4 for a/b < 2.2,
+// (railpatch.evidence.kalker_table --check), greatest of Poisson's ratios: C11, C22 and C23 3e-4
+// for 0.1 < a/b < 5, 1.3e-3 up to 10, 7e-3 up to 20, C23 2e-3 down to 1/20; C33 2e-4 for a/b < 2.2,
 // 2e-3 up to 5 and 0.1 at 20, where it hardly counts.
 class coefficient_table {
  public:

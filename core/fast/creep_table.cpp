@@ -263,4 +263,21 @@ creep_forces creep_table::evaluate(const creep_problem &p) const {
   return out;
 }
 
+tangential_result solve_table(const fast_problem &p, tangential_fields /*fields*/,
+                              creep_resultants &sums) {
+  const rolling_input &in = p.at_centre;
+  const creep_forces found = p.table->evaluate({{p.axes[0], p.axes[1]},
+                                                p.elastic.shear_modulus,
+                                                p.capacity,
+                                                {in.creepage[0], in.creepage[1]},
+                                                in.spin_creepage,
+                                                in.direction});
+  const double x = found.force[0], y = found.force[1];
+  sums = {{x, y}, found.moment + p.centre[0] * y - p.centre[1] * x, found.friction};
+  tangential_result result;
+  result.friction = found.friction;
+  result.converged = found.in_range;
+  return result;
+}
+
 }  // namespace railpatch

@@ -28,6 +28,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "fast/fast_problem.hpp"
+
 namespace railpatch {
 
 struct creep_table_header {
@@ -91,5 +93,8 @@ class creep_table {
   double poisson_weight_[3];
   bool poisson_in_range_;
 };
+
+tangential_result solve_table(const fast_problem &problem, tangential_fields fields,
+                              creep_resultants &sums);
 
 }  // namespace railpatch

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "fast/fastrip.hpp"
+#include "fast/fastsim.hpp"
+#include "fast/polach.hpp"
 
 namespace railpatch {
 
@@ -17,30 +18,17 @@ double inside_ellipse(const double semi_axes[2], double x, double y) {
   return 1.0 - u * u - v * v;
 }
 
-// Kalker's linear theory; its coefficients are symmetric, so creepages never gain power.
-creep_resultants linear(const creepage_coefficients &c, double shear_modulus,
-                        const double semi_axes[2], const rolling_input &input) {
-  const double c2 = semi_axes[0] * semi_axes[1], length = std::sqrt(c2);
-  const double unit = shear_modulus * c2, phi = length * input.spin_creepage;
-  const double xi = input.creepage[0], eta = input.creepage[1];
-  // rolling towards -x is the mirror image: C23 changes sign
-  const double c23 = input.direction * c.c23;
-  creep_resultants out;
-  out.force[0] = -unit * c.c11 * xi;
-  out.force[1] = -unit * (c.c22 * eta + c23 * phi);
-  out.moment = unit * length * (c23 * eta - c.c33 * phi);
-  out.friction = unit * (c.c11 * xi * xi + c.c22 * eta * eta + c.c33 * phi * phi);
-  return out;
-}
-
 }  // namespace
 
 fast_solver::fast_solver(const elastic_constants &elastic, const fast_options &options, int max_nx,
                          int max_ny)
-    : elastic_(elastic), options_(options), table_(elastic.poisson_ratio) {
+    : elastic_(elastic),
+      options_(options),
+      theory_(*theory_of(options.theory)),
+      table_(elastic.poisson_ratio) {
   if (options.theory == RP_TANGENTIAL_TABLE)
     creep_table_.emplace(options.creep_table, elastic.poisson_ratio);
-  if (!has_tractions(options.theory)) return;
+  if (!theory_.tractions) return;
   bound_ = aligned_buffer<double>(static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny));
   leading_ = aligned_buffer<double>(static_cast<size_t>(max_ny));
   trailing_ = aligned_buffer<double>(static_cast<size_t>(max_ny));
@@ -88,7 +76,7 @@ void fast_solver::set_bound(const fast_patch &patch) {
   const double *axes = patch.hertz.semi_axes;
   const bool ellipse = axes[0] > 0 && !patch.rows;
   const bool automatic = options_.bound == RP_BOUND_AUTOMATIC;
-  const bool parabolic = options_.theory == RP_TANGENTIAL_FASTSIM &&
+  const bool parabolic = (theory_.reads & reads_bound) != 0 &&
                          (automatic ? ellipse : options_.bound == RP_BOUND_PARABOLIC);
   if (ellipse && options_.blending == RP_BLENDING_CONTACT) {
     // as it is at the elements' centres, not scaled
@@ -137,65 +125,44 @@ void fast_solver::find_rows(const fast_patch &patch, int direction) {
 tangential_result fast_solver::solve(const fast_patch &patch, const rolling_input &rolling,
                                      tangential_fields fields, creep_resultants &sums) {
   const ellipse e = ellipse_of(patch);
-  rolling_input at_centre = rolling;
-  at_centre.creepage[0] -= rolling.spin_creepage * e.centre[1];
-  at_centre.creepage[1] += rolling.spin_creepage * e.centre[0];
-  const double g = elastic_.shear_modulus;
-  const double capacity = patch.friction_coefficient * patch.normal_force;
-  if (creep_table_) return solve_table(e, capacity, at_centre, sums);
-  const creepage_coefficients c = coefficients(e.axes[0] / e.axes[1]);
-  tangential_result result;
-  if (!has_tractions(options_.theory)) {
-    const bool bounded = options_.theory == RP_TANGENTIAL_POLACH;
-    sums = bounded ? polach(c, g, e.axes, capacity, options_.polach, at_centre)
-                   : linear(c, g, e.axes, at_centre);
-    sums.moment += e.centre[0] * sums.force[1] - e.centre[1] * sums.force[0];
-    result.friction = sums.friction;
-    result.converged = c.in_range && std::isfinite(result.friction) &&
-                       (bounded || std::hypot(sums.force[0], sums.force[1]) <= capacity);
-    return result;
+  fast_problem problem{elastic_,
+                       options_,
+                       table(),
+                       e.axes,
+                       e.centre,
+                       patch.friction_coefficient * patch.normal_force,
+                       {},
+                       rolling,
+                       patch.g,
+                       patch.pressure,
+                       bound_.data(),
+                       {leading_.data(), trailing_.data(), e.centre[1]},
+                       {},
+                       rolling};
+  problem.at_centre.creepage[0] -= rolling.spin_creepage * e.centre[1];
+  problem.at_centre.creepage[1] += rolling.spin_creepage * e.centre[0];
+  if (theory_.reads & reads_percent) problem.coefficients = coefficients(e.axes[0] / e.axes[1]);
+  if (theory_.tractions) {
+    set_bound(patch);
+    find_rows(patch, rolling.direction);
+    problem.l = flexibilities_of(problem);
   }
-  set_bound(patch);
-  find_rows(patch, rolling.direction);
-  const row_ends rows{leading_.data(), trailing_.data(), e.centre[1]};
-  const flexibilities l = flexibilities_of(e, c, capacity, at_centre);
-  result = options_.theory == RP_TANGENTIAL_FASTRIP
-               ? fastrip(elastic_, c, e.axes, patch.g, patch.pressure, bound_.data(), rows, l,
-                         rolling, fields)
-               : fastsim(patch.g, patch.pressure, bound_.data(), rows, l,
-                         options_.blending == RP_BLENDING_CONTACT, rolling, fields);
+  tangential_result result = theory_.solve(problem, fields, sums);
   // beyond what floating-point numbers hold there is no result
-  result.converged = c.in_range && std::isfinite(result.friction);
+  result.converged =
+      result.converged && problem.coefficients.in_range && std::isfinite(result.friction);
   return result;
 }
 
-tangential_result fast_solver::solve_table(const ellipse &e, double capacity,
-                                           const rolling_input &at_centre,
-                                           creep_resultants &sums) const {
-  const creep_forces found = creep_table_->evaluate({{e.axes[0], e.axes[1]},
-                                                     elastic_.shear_modulus,
-                                                     capacity,
-                                                     {at_centre.creepage[0], at_centre.creepage[1]},
-                                                     at_centre.spin_creepage,
-                                                     at_centre.direction});
-  sums.force[0] = found.force[0];
-  sums.force[1] = found.force[1];
-  sums.moment = found.moment + e.centre[0] * found.force[1] - e.centre[1] * found.force[0];
-  sums.friction = found.friction;
-  tangential_result result;
-  result.friction = found.friction;
-  result.converged = found.in_range;
-  return result;
-}
-
-flexibilities fast_solver::flexibilities_of(const ellipse &e, const creepage_coefficients &c,
-                                            double capacity, const rolling_input &at_centre) const {
+flexibilities fast_solver::flexibilities_of(const fast_problem &p) const {
   const double g = elastic_.shear_modulus;
-  flexibilities l = kalker_flexibilities(c, g, e.axes);
-  if (options_.blending != RP_BLENDING_NONE) l = blend(l, c, g, e.axes, capacity, at_centre);
+  const creepage_coefficients &c = p.coefficients;
+  flexibilities l = kalker_flexibilities(c, g, p.axes);
+  if (options_.blending != RP_BLENDING_NONE) l = blend(l, c, g, p.axes, p.capacity, p.at_centre);
   // without friction there is no gradient, and no traction either
-  if (!(capacity > 0)) return l;
-  const double k = options_.reduction.at(resultant_of(c, g, e.axes, capacity, at_centre).gradient);
+  if (!(p.capacity > 0)) return l;
+  const double gradient = resultant_of(c, g, p.axes, p.capacity, p.at_centre).gradient;
+  const double k = options_.reduction.at(gradient);
   return {l.l1 / k, l.l2 / k, l.l3 / k};
 }
 

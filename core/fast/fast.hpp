@@ -3,33 +3,19 @@
 // the ends of the rows. Of an area of any shape the resultant theories see the creepages at its
 // centre of pressure, the others at the middle of each row.
 //
-// Linear theory, Polach and the table give resultants only: they need no grid and no fields. The
-// linear theory (Kalker 1967) knows no bound; beyond it the result counts as not in range.
+// Theories that give resultants only need no grid and no fields.
 #pragma once
 
 #include <optional>
 
 #include "fast/coefficients.hpp"
 #include "fast/creep_table.hpp"
-#include "fast/fastsim.hpp"
-#include "fast/polach.hpp"
+#include "fast/theories.hpp"
 #include "normal/hertz.hpp"
 #include "normal/row_contact.hpp"
 #include "numeric/memory.hpp"
-#include "railpatch.h"
-#include "tangential/tangential.hpp"
 
 namespace railpatch {
-
-struct fast_options {
-  rp_tangential_method theory = RP_TANGENTIAL_FASTSIM;
-  double coefficient_factor = 1;  // of all creepage coefficients
-  rp_traction_bound bound = RP_BOUND_AUTOMATIC;
-  rp_flexibility_blending blending = RP_BLENDING_SLIDING;
-  polach_factors polach;
-  stiffness_reduction reduction;
-  const void *creep_table = nullptr;  // the caller's, without defect; of theory table
-};
 
 // What a fast theory sees of a patch.
 struct fast_patch {
@@ -41,15 +27,6 @@ struct fast_patch {
   double contact_area;         // m^2
   double friction_coefficient;
 };
-
-// Whether the theory gives tractions, not only their resultants.
-constexpr bool has_tractions(rp_tangential_method theory) {
-  return theory == RP_TANGENTIAL_FASTSIM || theory == RP_TANGENTIAL_FASTRIP ||
-         theory == RP_TANGENTIAL_FULL;
-}
-constexpr bool is_fast(rp_tangential_method theory) {
-  return theory != RP_TANGENTIAL_NONE && theory != RP_TANGENTIAL_FULL;
-}
 
 class fast_solver {
  public:
@@ -70,16 +47,14 @@ class fast_solver {
     double centre[2];  // m
   };
   ellipse ellipse_of(const fast_patch &patch) const;
-  tangential_result solve_table(const ellipse &e, double capacity, const rolling_input &at_centre,
-                                creep_resultants &sums) const;
-  flexibilities flexibilities_of(const ellipse &e, const creepage_coefficients &c, double capacity,
-                                 const rolling_input &at_centre) const;
+  flexibilities flexibilities_of(const fast_problem &problem) const;
   creepage_coefficients coefficients(double axis_ratio) const;
   void set_bound(const fast_patch &patch);
   void find_rows(const fast_patch &patch, int direction);
 
   elastic_constants elastic_;
   fast_options options_;
+  const fast_theory &theory_;
   coefficient_table table_;
   std::optional<creep_table> creep_table_;
   aligned_buffer<double> bound_, leading_, trailing_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fast/fastsim.hpp"
 #include "railpatch.h"
 
 namespace railpatch {
@@ -95,11 +96,14 @@ void slip_traction(const flexibilities &l, double length, const double w[2], dou
 
 }  // namespace
 
-tangential_result fastrip(const elastic_constants &elastic, const creepage_coefficients &c,
-                          const double semi_axes[2], const grid &g, const double *pressure,
-                          const double *bound, const row_ends &rows, const flexibilities &l,
-                          const rolling_input &input, tangential_fields fields) {
-  const strip_factors f = factors_of(elastic, c, semi_axes[0] / semi_axes[1]);
+tangential_result solve_fastrip(const fast_problem &problem, tangential_fields fields,
+                                creep_resultants & /*sums*/) {
+  const grid &g = problem.g;
+  const double *pressure = problem.pressure, *bound = problem.bound, *axes = problem.axes;
+  const row_ends &rows = problem.rows;
+  const flexibilities &l = problem.l;
+  const rolling_input &input = problem.rolling;
+  const strip_factors f = factors_of(problem.elastic, problem.coefficients, axes[0] / axes[1]);
   const int way = input.direction;
   // rolling towards -x is the mirror image: longitudinal creepage, spin and p_x change sign; x
   // below runs from a row's middle towards its leading edge

@@ -15,13 +15,11 @@
 // pi^2 b/(16(1 - nu) a) into C11, C22, C23 and C33 of the ellipse.
 #pragma once
 
-#include "fast/fastsim.hpp"
+#include "fast/fast_problem.hpp"
 
 namespace railpatch {
 
-tangential_result fastrip(const elastic_constants &elastic, const creepage_coefficients &c,
-                          const double semi_axes[2], const grid &g, const double *pressure,
-                          const double *bound, const row_ends &rows, const flexibilities &l,
-                          const rolling_input &input, tangential_fields fields);
+tangential_result solve_fastrip(const fast_problem &problem, tangential_fields fields,
+                                creep_resultants &sums);
 
 }  // namespace railpatch

@@ -91,4 +91,10 @@ tangential_result fastsim(const grid &g, const double *pressure, const double *b
   return result;
 }
 
+tangential_result solve_fastsim(const fast_problem &p, tangential_fields fields,
+                                creep_resultants & /*sums*/) {
+  return fastsim(p.g, p.pressure, p.bound, p.rows, p.l, p.options.blending == RP_BLENDING_CONTACT,
+                 p.rolling, fields);
+}
+
 }  // namespace railpatch

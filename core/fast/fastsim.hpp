@@ -13,28 +13,9 @@
 // large.
 #pragma once
 
-#include "fast/coefficients.hpp"
-#include "tangential/tangential.hpp"
+#include "fast/fast_problem.hpp"
 
 namespace railpatch {
-
-struct flexibilities {
-  double l1, l2, l3;  // m/Pa
-};
-
-struct stiffness_reduction {
-  double k0 = 1, alpha = 1, beta = 0;
-  double at(double gradient) const {
-    return k0 * (beta > 0 ? alpha + (1.0 - alpha) / (1.0 + beta * gradient) : 1.0);
-  }
-};
-
-// Ends of the contact in each row, [ny], and the lateral centre, m. The spin's part of the rigid
-// slip is scaled by L1/L3 and L2/L3 as it grows from the centre and from each row's middle.
-struct row_ends {
-  const double *leading, *trailing;
-  double centre;
-};
 
 flexibilities kalker_flexibilities(const creepage_coefficients &c, double shear_modulus,
                                    const double semi_axes[2]);
@@ -53,5 +34,7 @@ bool march(const flexibilities &l, double length, double wx, double wy, double b
 tangential_result fastsim(const grid &g, const double *pressure, const double *bound,
                           const row_ends &rows, const flexibilities &l, bool whole_steps,
                           const rolling_input &input, tangential_fields fields);
+tangential_result solve_fastsim(const fast_problem &problem, tangential_fields fields,
+                                creep_resultants &sums);
 
 }  // namespace railpatch

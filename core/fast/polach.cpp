@@ -22,6 +22,8 @@ resultant_creepage resultant_of(const creepage_coefficients &c, double shear_mod
   return r;
 }
 
+namespace {
+
 creep_resultants polach(const creepage_coefficients &c, double shear_modulus,
                         const double semi_axes[2], double capacity, const polach_factors &factors,
                         const rolling_input &input) {
@@ -50,6 +52,19 @@ creep_resultants polach(const creepage_coefficients &c, double shear_modulus,
   out.force[1] +=
       9.0 / 16.0 * a * capacity * shape * lever * input.direction * input.spin_creepage / r.size;
   return out;
+}
+
+}  // namespace
+
+tangential_result solve_polach(const fast_problem &p, tangential_fields /*fields*/,
+                               creep_resultants &sums) {
+  sums = polach(p.coefficients, p.elastic.shear_modulus, p.axes, p.capacity, p.options.polach,
+                p.at_centre);
+  sums.moment += p.centre[0] * sums.force[1] - p.centre[1] * sums.force[0];
+  tangential_result result;
+  result.friction = sums.friction;
+  result.converged = true;
+  return result;
 }
 
 }  // namespace railpatch

@@ -11,22 +11,9 @@
 // it the power of spin, so friction counts the creepages and their forces alone.
 #pragma once
 
-#include "fast/coefficients.hpp"
-#include "tangential/tangential.hpp"
+#include "fast/fast_problem.hpp"
 
 namespace railpatch {
-
-// Resultants in closed form.
-struct creep_resultants {
-  double force[2] = {0, 0};  // N on the wheel
-  double moment = 0;         // N m on the wheel, about the contact's centre
-  double friction = 0;       // N, frictional power over the rolling speed
-};
-
-// Reduction factors of the areas of adhesion and of slip; 1: Kalker's slope.
-struct polach_factors {
-  double adhesion = 1, slip = 1;
-};
 
 // The creepage that saturates, and e of it.
 struct resultant_creepage {
@@ -38,8 +25,7 @@ struct resultant_creepage {
 resultant_creepage resultant_of(const creepage_coefficients &c, double shear_modulus,
                                 const double semi_axes[2], double capacity,
                                 const rolling_input &input);
-creep_resultants polach(const creepage_coefficients &c, double shear_modulus,
-                        const double semi_axes[2], double capacity, const polach_factors &factors,
-                        const rolling_input &input);
+tangential_result solve_polach(const fast_problem &problem, tangential_fields fields,
+                               creep_resultants &sums);
 
 }  // namespace railpatch

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <cstring>
 #include <utility>
 
 #include "fast/creep_table.hpp"
@@ -57,10 +58,27 @@ void check_fitted(const rp_config &c, checker &check) {
                 "spin_offset must be none with fitted: it belongs to the uniform grid");
 }
 
+// A message that names fast theories by what they read.
+struct rule_text {
+  char text[RP_MESSAGE_SIZE] = {};
+
+  void add(const char *part) {
+    const size_t length = std::strlen(text);
+    std::snprintf(text + length, sizeof text - length, "%s", part);
+  }
+  // "<before>a or b"
+  void add_readers(const char *before, unsigned read, unsigned unread = 0) {
+    for (const fast_theory &theory : fast_theories()) {
+      if (!(theory.reads & read) || theory.reads & unread) continue;
+      add(before);
+      add(theory.name);
+      before = " or ";
+    }
+  }
+};
+
 // What only some of the fast theories read must not be set for others.
 void check_fast(const rp_config &c, checker &check) {
-  const auto theory = c.tangential;
-  const bool fastsim = theory == RP_TANGENTIAL_FASTSIM;
   check.number("percent_kalker", c.percent_kalker, {0, 200, true, false});
   for (const auto &[name, value] : {std::pair{"polach_k_a", c.polach_k_a},
                                     {"polach_k_s", c.polach_k_s},
@@ -68,20 +86,29 @@ void check_fast(const rp_config &c, checker &check) {
     check.number(name, value, {0, 10, true, false});
   check.number("fastsim_alpha", c.fastsim_alpha, {0, 1, false, false});
   check.number("fastsim_beta", c.fastsim_beta, {0, 1000, false, false});
-  if (c.regime == RP_REGIME_NONE || theory == RP_TANGENTIAL_NONE) return;
-  check.require(is_fast(theory) || c.percent_kalker == 100.0,
+  if (!has_tangential(c)) return;
+  const fast_theory *theory = theory_of(c.tangential);
+  check.require(theory || c.percent_kalker == 100.0,
                 "percent_kalker must be 100 with tangential = full: it has no coefficients");
-  check.require(theory == RP_TANGENTIAL_POLACH || (c.polach_k_a == 1.0 && c.polach_k_s == 1.0),
-                "polach_k_a and polach_k_s must be 1 where tangential is not polach");
-  check.require(
-      fastsim || (c.fastsim_k0 == 1.0 && c.fastsim_alpha == 1.0 && c.fastsim_beta == 0.0),
-      "fastsim_k0 and fastsim_alpha must be 1, fastsim_beta 0 where tangential is not fastsim");
-  check.require(fastsim || c.traction_bound == RP_BOUND_AUTOMATIC,
-                "traction_bound must be automatic where tangential is not fastsim");
-  check.require(fastsim || c.flexibility_blending == RP_BLENDING_SLIDING ||
-                    (theory == RP_TANGENTIAL_FASTRIP && c.flexibility_blending == RP_BLENDING_NONE),
-                "flexibility_blending must be sliding where tangential is not fastsim or fastrip, "
-                "and not contact with fastrip");
+  const auto require = [&](bool unset, unsigned needed, unsigned option, const char *rule) {
+    if (unset || (theory && theory->reads & needed)) return;
+    rule_text message;
+    message.add(rule);
+    message.add_readers(" where tangential is not ", option);
+    if (option == reads_blending)
+      message.add_readers(", and not contact with ", option, reads_contact_blending);
+    check.require(false, message.text);
+  };
+  require(c.polach_k_a == 1.0 && c.polach_k_s == 1.0, reads_polach, reads_polach,
+          "polach_k_a and polach_k_s must be 1");
+  require(c.fastsim_k0 == 1.0 && c.fastsim_alpha == 1.0 && c.fastsim_beta == 0.0, reads_reduction,
+          reads_reduction, "fastsim_k0 and fastsim_alpha must be 1, fastsim_beta 0");
+  require(c.traction_bound == RP_BOUND_AUTOMATIC, reads_bound, reads_bound,
+          "traction_bound must be automatic");
+  const bool contact = c.flexibility_blending == RP_BLENDING_CONTACT;
+  require(c.flexibility_blending == RP_BLENDING_SLIDING,
+          contact ? reads_contact_blending : reads_blending, reads_blending,
+          "flexibility_blending must be sliding");
 }
 
 // Pairs of a table: increasing places, values in a range.

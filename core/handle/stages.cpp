@@ -20,34 +20,23 @@ const char *normal_reason(rp_normal_method method) {
   return "normal = half_space: conjugate gradients";
 }
 
+const char *full_reason(const patch_scene &scene) {
+  if (scene.law)
+    return !scene.law->plastic() ? "tangential = full: semi-smooth Newton, slip-velocity law"
+           : scene.law->by_velocity
+               ? "tangential = full: semi-smooth Newton, slip-velocity law and plastic layer"
+               : "tangential = full: semi-smooth Newton, plastic layer";
+  if (scene.is_forced())
+    return scene.is_fitted()
+               ? "tangential = full: semi-smooth Newton on fitted rows, creepage from the force"
+               : "tangential = full: semi-smooth Newton, creepage from the force";
+  return scene.is_fitted() ? "tangential = full: semi-smooth Newton on fitted rows"
+                           : "tangential = full: semi-smooth Newton on the grid";
+}
+
 const char *tangential_reason(const patch_scene &scene) {
-  switch (scene.tangential) {
-    case RP_TANGENTIAL_NONE:
-      return "tangential = none";
-    case RP_TANGENTIAL_FASTSIM:
-      return "tangential = fastsim: simplified theory";
-    case RP_TANGENTIAL_FULL:
-      if (scene.law)
-        return !scene.law->plastic() ? "tangential = full: semi-smooth Newton, slip-velocity law"
-               : scene.law->by_velocity
-                   ? "tangential = full: semi-smooth Newton, slip-velocity law and plastic layer"
-                   : "tangential = full: semi-smooth Newton, plastic layer";
-      if (scene.is_forced())
-        return scene.is_fitted()
-                   ? "tangential = full: semi-smooth Newton on fitted rows, creepage from the force"
-                   : "tangential = full: semi-smooth Newton, creepage from the force";
-      return scene.is_fitted() ? "tangential = full: semi-smooth Newton on fitted rows"
-                               : "tangential = full: semi-smooth Newton on the grid";
-    case RP_TANGENTIAL_LINEAR:
-      return "tangential = linear: creepage coefficients, no traction field";
-    case RP_TANGENTIAL_POLACH:
-      return "tangential = polach: closed form, no traction field";
-    case RP_TANGENTIAL_FASTRIP:
-      return "tangential = fastrip: strip theory";
-    case RP_TANGENTIAL_TABLE:
-      return "tangential = table: full theory, interpolated; the table is the caller's";
-  }
-  return "";
+  if (const fast_theory *theory = theory_of(scene.tangential)) return theory->reason;
+  return scene.tangential == RP_TANGENTIAL_NONE ? "tangential = none" : full_reason(scene);
 }
 
 const char *temperature_reason(const patch_scene &scene) {

@@ -30,22 +30,10 @@ struct network {
 
 // Networks of force and moment, or null where the theory has none.
 const network *model_of(const solved_patch &patch) {
-  switch (patch.tangential) {
-    case RP_TANGENTIAL_FULL:
-      return patch.fitted ? fitted_errors : uniform_errors;
-    case RP_TANGENTIAL_FASTSIM:
-      return fastsim_errors;
-    case RP_TANGENTIAL_FASTRIP:
-      return fastrip_errors;
-    case RP_TANGENTIAL_LINEAR:
-      return linear_errors;
-    case RP_TANGENTIAL_POLACH:
-      return polach_errors;
-    case RP_TANGENTIAL_TABLE:
-      return table_errors;
-    default:
-      return nullptr;
-  }
+  if (patch.tangential == RP_TANGENTIAL_FULL) return patch.fitted ? fitted_errors : uniform_errors;
+  for (const auto &theory : fast_errors)
+    if (theory.method == patch.tangential) return theory.errors;
+  return nullptr;
 }
 
 const network *pressure_model_of(rp_normal_method normal) {

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
 import railpatch
 from case_samples import WHEELSET, with_values
 from patch_cases import STEEL, Line, check, patch_case, solve
+from railpatch.case.common import Method
+from railpatch.case.theories import FAST, READERS, has_tractions
 from railpatch.evidence.kalker_table import coefficients
 
 FORCE, FRICTION, SPEED = 82e3, 0.3, 10.0
 BOUND = FRICTION * FORCE
 A, B = 6e-3, 4e-3
 LENGTH = np.sqrt(A * B)
+THEORIES = get_args(Method.model_fields["tangential"].annotation)
 TRACTIONS = ("fastsim", "fastrip")
 RESULTANTS = ("linear", "polach")
 LOADED = with_values(WHEELSET, wheelset__z=None, wheelset__vertical_force=1e5)
@@ -39,6 +42,14 @@ def ellipse(
         **options,
     )
     return solve(case)
+
+
+def test_theories_are_the_rows_of_the_core() -> None:
+    assert {*FAST, "none", "full"} == set(THEORIES)
+    assert {name for name in FAST if has_tractions(name)} == set(TRACTIONS)
+    for key, names in READERS.items():
+        assert key in Method.model_fields
+        assert set(names) <= set(FAST)
 
 
 def wrench(result: railpatch.Result) -> np.ndarray:

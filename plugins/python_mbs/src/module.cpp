@@ -12,6 +12,7 @@
 #include <string>
 
 #include "convert.hpp"
+#include "fast/theories.hpp"
 #include "force_element.hpp"
 #include "railpatch.h"
 #include "timing.hpp"
@@ -213,6 +214,25 @@ void translate(const std::exception_ptr &pointer, void *) {
   }
 }
 
+// The core's table of fast theories, by name, and the theories that read each option.
+void set_theories(nb::module_ &m) {
+  nb::dict theories, readers;
+  for (const fast_theory &theory : fast_theories()) {
+    nb::dict row;
+    row["tractions"] = theory.tractions;
+    row["contact_blending"] = (theory.reads & reads_contact_blending) != 0;
+    theories[theory.name] = row;
+  }
+  for (const option_key &option : option_keys()) {
+    nb::list names;
+    for (const fast_theory &theory : fast_theories())
+      if (theory.reads & option.option) names.append(theory.name);
+    readers[option.key] = nb::tuple(names);
+  }
+  m.attr("THEORIES") = theories;
+  m.attr("THEORY_READERS") = readers;
+}
+
 }  // namespace
 
 NB_MODULE(_core, m) {
@@ -242,6 +262,7 @@ NB_MODULE(_core, m) {
   RP_ERRORS(RAILPATCH_ENTRY)
   m.attr("ERRORS") = texts;
 #undef RAILPATCH_ENTRY
+  set_theories(m);
 
   nb::class_<Steppable>(m, "Steppable", "A contact that a force element may step.");
   nb::class_<Contact, Steppable>(m, "Contact", "A handle of the library with its state and memory.")

@@ -14,6 +14,7 @@ from scipy.optimize import brentq
 from scipy.special import elliprd
 
 from railpatch.case.accuracy import fitted_size
+from railpatch.case.theories import FAST, has_tractions
 
 if TYPE_CHECKING:
     from railpatch.case.common import Method
@@ -31,8 +32,7 @@ NORMAL = 2
 # error of what no finer grid makes better, FAST_ELEMENTS across, on the same cases (FASTSIM, Polach
 # and ANALYN: the greater one on the benchmark's); of the table on other shapes it is not known
 REACHED = {
-    "table": inf,
-    "linear": inf,
+    **dict.fromkeys(FAST, inf),
     "polach": 0.42,
     "fastsim": 0.09,
     "fastrip": 0.06,
@@ -61,7 +61,7 @@ class Choice:
 
     def spell(self, accuracy: float) -> str:
         """One line on what was chosen and why."""
-        closed = self.normal == "hertz" and self.tangential in ("table", "linear", "polach")
+        closed = self.normal == "hertz" and not has_tractions(self.tangential)
         grid = "no grid" if closed else f"{self.elements} elements across"
         if self.fitted is not None:
             rows = f"{self.fitted[0]} nodes on {self.fitted[1]} fitted rows"

@@ -8,6 +8,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from railpatch.case.choice import least_error
 from railpatch.case.friction import Friction, check_increasing
+from railpatch.case.theories import READERS, blends_as_contact
 from railpatch.case.types import (
     CapacityPair,
     Celsius,
@@ -168,21 +169,6 @@ class Temperature(Table):
     )
 
 
-# what only some of the tangential theories read
-READERS = {
-    "percent_kalker": ("linear", "polach", "fastsim", "fastrip"),
-    "traction_bound": ("fastsim",),
-    "flexibility_blending": ("fastsim", "fastrip"),
-    "polach_k_a": ("polach",),
-    "polach_k_s": ("polach",),
-    "fastsim_k0": ("fastsim",),
-    "fastsim_alpha": ("fastsim",),
-    "fastsim_beta": ("fastsim",),
-}
-FAST_NUMBERS = tuple(
-    name for name in READERS if name not in ("traction_bound", "flexibility_blending")
-)
-
 # what only wheels read
 WHEEL_METHOD = ("patch_rule", "contact_frame", "standstill_speed")
 
@@ -283,8 +269,8 @@ class Method(Table):
             if self.tangential not in readers and value != type(self).model_fields[name].default:
                 allowed = " or ".join(f"'{reader}'" for reader in readers)
                 raise relation(name, repr(value), f"it only with tangential = {allowed}")
-        if self.tangential == "fastrip" and self.flexibility_blending == "contact":
-            allowed = "'sliding' or 'none' with tangential = 'fastrip'"
+        if self.flexibility_blending == "contact" and not blends_as_contact(self.tangential):
+            allowed = f"'sliding' or 'none' with tangential = {self.tangential!r}"
             raise relation("flexibility_blending", "'contact'", allowed)
         return self
 

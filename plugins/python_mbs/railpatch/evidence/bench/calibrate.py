@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize
 
+from railpatch.case.theories import FAST
 from railpatch.evidence.bench import pressures
 from railpatch.evidence.bench.samples import (
     FAMILIES,
@@ -220,7 +221,11 @@ def spell(models: list[Model]) -> str:
             for i, n in enumerate(model.networks)
         ]
         lines.append(f"constexpr network {model.name}_errors[] = {{{', '.join(parts)}}};")
-    return "\n".join([*lines, ""])
+    lines += ["constexpr struct {", "  rp_tangential_method method;", "  const network *errors;"]
+    lines.append("} fast_errors[] = {")
+    fast = [model.name for model in models if model.name in FAST]
+    lines += [f"    {{RP_TANGENTIAL_{name.upper()}, {name}_errors}}," for name in fast]
+    return "\n".join([*lines, "};", ""])
 
 
 def samples_of(family: Family, every: list[Problem], seed: int) -> Samples:

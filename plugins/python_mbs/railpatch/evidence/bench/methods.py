@@ -6,11 +6,13 @@ set of problems, ``sets`` says so.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 from railpatch import _core
+from railpatch.case import theories
 from railpatch.case.accuracy import fitted_size
 from railpatch.evidence.bench.problems import Batch, merged
 from railpatch.evidence.bench.sets import AnyBatch
@@ -131,6 +133,37 @@ def strips(name: str, label: str, theory: str, sets: str, **method: Any) -> Meth
     return Method(name, label, overrides, FAST, grids=(10, 20, 32), quick=(10, 20), sets=sets)
 
 
+LABELS = {
+    "linear": "linear theory",
+    "polach": "Polach",
+    "table": "table of the full theory",
+    "fastsim": "FASTSIM, parabolic",
+    "fastrip": "FaStrip",
+}
+# of the theory of the same name
+OPTIONS: dict[str, tuple[tuple[str, str, dict[str, str]], ...]] = {
+    "fastsim": (
+        ("fastsim_elliptic", "FASTSIM, elliptic", {"traction_bound": "elliptic"}),
+        ("fastsim_contact", "FASTSIM as in CONTACT", {"flexibility_blending": "contact"}),
+    ),
+}
+
+
+def closed_forms(theory: str) -> Iterator[Method]:
+    """A theory without tractions."""
+    if not theories.has_tractions(theory):
+        label = LABELS.get(theory, theory)
+        yield Method(theory, label, without_grid(theory), FAST, (0,), (0,), "AC")
+
+
+def on_ellipse(theory: str) -> Iterator[Method]:
+    """A theory with tractions on Hertz's ellipse, and with other options."""
+    if theories.has_tractions(theory):
+        yield strips(theory, LABELS.get(theory, theory), theory, "AC", normal="hertz")
+        for name, label, option in OPTIONS.get(theory, ()):
+            yield strips(name, label, theory, "AC", normal="hertz", **option)
+
+
 UNIFORM = Method("uniform", "full theory, uniform grid", tangential("full"), growth=True)
 FITTED = Method(
     "fitted", "full theory, fitted rows", fitted("hertz"),
@@ -147,15 +180,8 @@ METHODS = (
     UNIFORM,
     Method("uniform_hertz", "full theory, uniform grid, Hertz pressure",
            tangential("full", normal="hertz"), grids=(16, 32), quick=(16,), sets="ACD"),
-    Method("linear", "linear theory", without_grid("linear"), FAST, (0,), (0,), "AC"),
-    Method("polach", "Polach", without_grid("polach"), FAST, (0,), (0,), "AC"),
-    Method("table", "table of the full theory", without_grid("table"), FAST, (0,), (0,), "AC"),
-    strips("fastsim", "FASTSIM, parabolic", "fastsim", "AC", normal="hertz"),
-    strips("fastsim_elliptic", "FASTSIM, elliptic", "fastsim", "AC", normal="hertz",
-           traction_bound="elliptic"),
-    strips("fastsim_contact", "FASTSIM as in CONTACT", "fastsim", "AC", normal="hertz",
-           flexibility_blending="contact"),
-    strips("fastrip", "FaStrip", "fastrip", "AC", normal="hertz"),
+    *chain.from_iterable(closed_forms(name) for name in theories.FAST),
+    *chain.from_iterable(on_ellipse(name) for name in theories.FAST),
     strips("half_space_fastsim", "half-space pressure, FASTSIM", "fastsim", "BCW"),
     strips("kik_piotrowski_fastsim", "Kik-Piotrowski, FASTSIM", "fastsim", "BW",
            normal="kik_piotrowski"),

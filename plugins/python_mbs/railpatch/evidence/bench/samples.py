@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from railpatch.case.accuracy import fitted_size
 from railpatch.case.creep_table import default_table, describe_table
+from railpatch.case.theories import FAST, has_tractions
 from railpatch.evidence.bench.methods import room
 from railpatch.evidence.bench.positions import random_patch
 from railpatch.evidence.bench.problems import Batch, merged
@@ -125,10 +126,8 @@ FAMILIES = (
         fitted=True,
         normals={"hertz": 1.0, "half_space": 0.7, "kik_piotrowski": 0.2, "analyn": 0.2},
     ),
-    Family("fastsim", "fastsim"),
-    Family("fastrip", "fastrip"),
-    Family("linear", "linear"),
-    Family("polach", "polach"),
+    *(Family(name, name) for name in FAST if has_tractions(name)),
+    *(Family(name, name) for name in FAST if not has_tractions(name) and name != "table"),
     Family("table", "table", normals={"hertz": 1.0}),
 )
 

@@ -13,6 +13,7 @@ from railpatch import _core
 from railpatch.case.config import config_of, input_of
 from railpatch.case.load import Case, load_scene
 from railpatch.case.patch import PatchCase
+from railpatch.case.theories import FAST
 from railpatch.errors import CaseError, ProfileError
 from railpatch.evidence.stress.conditions import energy_balance, findings, line_of
 from railpatch.evidence.stress.step import FIELDS, VECTORS, Finding, Step
@@ -28,10 +29,8 @@ DEFAULT_ITERATIONS = 100
 PRODUCTS = 2000
 # why fast theories may say that they are out of range
 ENDS = {
+    **dict.fromkeys(FAST, "ends where Kalker's coefficients are tabulated"),
     "linear": "no bound: ends where the force reaches friction",
-    "polach": "ends where Kalker's coefficients are tabulated",
-    "fastsim": "ends where Kalker's coefficients are tabulated",
-    "fastrip": "ends where Kalker's coefficients are tabulated",
     "table": "ends with its table",
 }
 # not given where the scene has no such stage

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from railpatch.case.theories import FAST, has_tractions
 from railpatch.evidence.bench.problems import merged
 
 Changes = Mapping[str, Any]
@@ -69,11 +70,12 @@ NOMINAL: dict[str, Any] = {
 METHODS: dict[str, dict[str, Any]] = {
     "full": {},
     "fitted rows": {"grid": {"elements": None, "fitted": [12, 12]}, "method": {"normal": "hertz"}},
-    "linear": {"method": {"tangential": "linear", "normal": "hertz"}},
-    "polach": {"method": {"tangential": "polach", "normal": "hertz"}},
-    "fastsim": {"method": {"tangential": "fastsim"}},
-    "fastrip": {"method": {"tangential": "fastrip"}},
-    "table": {"method": {"tangential": "table", "normal": "hertz"}},
+    **{
+        name: {
+            "method": {"tangential": name, **({} if has_tractions(name) else {"normal": "hertz"})}
+        }
+        for name in FAST
+    },
 }
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from math import cos, pi, sin
 from typing import Any
 
+from railpatch.case.theories import FAST
 from railpatch.evidence.bench.problems import merged
 from railpatch.evidence.stress.trial import (
     IN_THEORY,
@@ -92,7 +93,7 @@ def wheel_trials(quick: bool) -> Iterator[Trial]:
     yield from uneven_trials(quick)
     yield from moving_rail_trials(quick)
     yield from transient_trials(quick)
-    for theory in ("fastsim", "fastrip", "polach", "linear", "table"):
+    for theory in FAST:
         method = {"method": {"tangential": theory, "normal": "kik_piotrowski"}}
         yield Trial(
             "wheel", "flange contact", merged(WHEEL, {**method, "wheelset": {"y": 6e-3}}),
