@@ -26,14 +26,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
-
-if TYPE_CHECKING:
-    from railpatch.pinocchio.element import ForceElement
 
 Matrix = NDArray[np.float64]
 # rows of a state
@@ -50,6 +47,21 @@ class WrenchDerivatives:
     by_q: Matrix
     by_v: Matrix
     by_time: Matrix
+
+
+class Wheelsets(Protocol):
+    """What knows the states of wheelsets, see StateDerivatives: ForceElement. wheelset: in the
+    joint frame. states: [wheelsets, 12]."""
+
+    joints: list[int]
+    wheelset: pin.SE3
+
+    @property
+    def states(self) -> Matrix:
+        """Of the last step."""
+
+    def track_rotation(self, index: int) -> Matrix:
+        """[3, 3], from track axes to the world's."""
 
 
 class Differentiable(Protocol):
@@ -115,11 +127,12 @@ class StateChain:
 
     def __init__(self, model: pin.Model, data: pin.Data) -> None:
         self._model, self._data = model, data
-        self._found: dict[tuple[int, int], StateDerivatives] = {}
+        # holds the elements: another one at the place of one that is gone is not taken for it
+        self._found: dict[tuple[Wheelsets, int], StateDerivatives] = {}
 
-    def of(self, element: ForceElement, index: int) -> StateDerivatives:
+    def of(self, element: Wheelsets, index: int) -> StateDerivatives:
         """Of one wheelset of an element."""
-        key = (id(element), index)
+        key = (element, index)
         if key not in self._found:
             self._found[key] = self._make(element, index)
         return self._found[key]
@@ -128,7 +141,7 @@ class StateChain:
         """[6, nv], of a joint in its own frame."""
         return pin.getJointJacobian(self._model, self._data, joint, pin.ReferenceFrame.LOCAL)
 
-    def _make(self, element: ForceElement, index: int) -> StateDerivatives:
+    def _make(self, element: Wheelsets, index: int) -> StateDerivatives:
         joint = element.joints[index]
         local = pin.ReferenceFrame.LOCAL
         velocity_by_q, jacobian = pin.getJointVelocityDerivatives(
