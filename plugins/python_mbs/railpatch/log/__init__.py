@@ -5,7 +5,8 @@ from railpatch.log import RunLog, SceneGeometry, read_run
 
 from railpatch.log.geometry import SceneGeometry, scene_geometry
 from railpatch.log.reader import Attachment, Run, RunFileError, Series, read_run
-from railpatch.log.vehicle.log import VehicleGeometry, VehicleLog
+from railpatch.log.vehicle.geometry import VehicleGeometry
+from railpatch.log.vehicle.log import VehicleLog
 from railpatch.log.writer import RunLog
 
 __all__ = [

@@ -8,7 +8,7 @@ body holds view (z up), for cameras that follow it.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
@@ -28,9 +28,7 @@ from railpatch.log.primitives import (
     triangles,
 )
 from railpatch.log.scene import RAIL, contacts, wheel
-
-if TYPE_CHECKING:
-    from railpatch.log.vehicle.log import VehicleGeometry
+from railpatch.log.vehicle.geometry import VehicleGeometry
 
 _ARROW_SCALE = 2e-5  # m/N: 100 kN are two metres, to be seen from afar
 _RAIL_LENGTH = 2.4  # m, around each wheelset
