@@ -86,9 +86,10 @@ def measure_all(
     quiet: bool,
 ) -> None:
     """Measures and writes the report."""
+    from railpatch.evidence.bench.files import write_report
     from railpatch.evidence.bench.methods import chosen_methods
     from railpatch.evidence.bench.picture import require_matplotlib
-    from railpatch.evidence.bench.run import Plan, run_bench, write_report
+    from railpatch.evidence.bench.run import Plan, run_bench
     from railpatch.evidence.bench.truth import TruthFile
 
     try:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from railpatch.evidence.bench.curves import cost_curves, curves, frontier_curve
 from railpatch.evidence.bench.features import SIZE
 from railpatch.evidence.bench.figures import cost_over_elements, error_over_time
 from railpatch.evidence.bench.machine import FFT_SIZE
+from railpatch.evidence.bench.run import Report
 from railpatch.evidence.bench.sets import SEED, SETS
 from railpatch.evidence.bench.statistics import COVERED, FACTOR, WITHIN, Summary
 from railpatch.evidence.bench.targets import rows
@@ -17,9 +16,6 @@ from railpatch.evidence.bench.truth import batches_of
 from railpatch.page.document import document
 from railpatch.page.figures import plot
 from railpatch.page.tables import number, table
-
-if TYPE_CHECKING:
-    from railpatch.evidence.bench.run import Report
 
 DEFINITIONS = (
     ("force", "length of the vector difference of creep forces over \u03bcF\u2099"),

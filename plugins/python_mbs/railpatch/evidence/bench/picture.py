@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,10 +15,8 @@ from railpatch.evidence.bench.curves import (
     curves,
     frontier_curve,
 )
+from railpatch.evidence.bench.run import Report
 from railpatch.evidence.bench.targets import PEER
-
-if TYPE_CHECKING:
-    from railpatch.evidence.bench.run import Report
 
 SIZE = (9.5, 6.0)  # inches
 LABEL_STEP = 0.034  # least distance of two names, of the axes' height

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from rich.console import Console
 from rich.table import Table
 
 from railpatch.evidence.bench.page import milliseconds, percent
+from railpatch.evidence.bench.run import Report
 from railpatch.evidence.bench.targets import rows
-
-if TYPE_CHECKING:
-    from railpatch.evidence.bench.run import Report
 
 
 def print_report(report: Report) -> None:

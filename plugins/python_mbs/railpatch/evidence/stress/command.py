@@ -30,7 +30,8 @@ def stress(
     Ends with exit code 3 where a result is at fault: no number, converged against the conditions of
     contact, too many iterations, no end.
     """
-    from railpatch.evidence.stress.outcome import run_stress, write_report
+    from railpatch.evidence.stress.files import write_report
+    from railpatch.evidence.stress.outcome import run_stress
     from railpatch.evidence.stress.plan import SEED, Plan
 
     plan = Plan(SEED if seed is None else seed, quick, only)

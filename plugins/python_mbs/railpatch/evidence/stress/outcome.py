@@ -1,12 +1,11 @@
-"""A whole run: its rows, their summary by family and method, and the files."""
+"""A whole run: its rows, and their summary by family and method."""
 
 from __future__ import annotations
 
-import csv
+import time
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 
@@ -16,7 +15,7 @@ from railpatch.evidence.stress.run import CLEAN, FAULT, SAYS_SO, Row
 from railpatch.evidence.stress.watch import LIMIT, run_plan
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Group:
     """Rows of a family and method in numbers. conditions, energy, ...: the greatest."""
 
@@ -79,12 +78,19 @@ def group(family: str, method: str, rows: Sequence[Row]) -> Group:
     verdicts = [row.verdict for row in rows]
     solved = [row for row in rows if row.verdict == CLEAN]
     return Group(
-        family, method, len(rows), sum(row.steps for row in rows),
-        *(verdicts.count(verdict) for verdict in (CLEAN, SAYS_SO, FAULT)),
-        greatest(row.residual for row in solved), greatest(row.conditions for row in rows),
-        greatest(row.energy for row in rows), max(row.iterations for row in rows),
-        greatest(row.relative_time for row in rows),
-    )  # fmt: skip
+        family=family,
+        method=method,
+        trials=len(rows),
+        steps=sum(row.steps for row in rows),
+        clean=verdicts.count(CLEAN),
+        says_so=verdicts.count(SAYS_SO),
+        faults=verdicts.count(FAULT),
+        residual=greatest(row.residual for row in solved),
+        conditions=greatest(row.conditions for row in rows),
+        energy=greatest(row.energy for row in rows),
+        iterations=max(row.iterations for row in rows),
+        relative_time=greatest(row.relative_time for row in rows),
+    )
 
 
 def greatest(values: Iterable[float]) -> float:
@@ -97,36 +103,8 @@ def run_stress(
     plan: Plan, progress: Callable[[Row], None] = lambda _: None, limit: float = LIMIT
 ) -> Report:
     """Runs a plan."""
-    import time
-
     machine, begin, rows = this_machine(), time.perf_counter(), []
     for row in run_plan(plan, limit):
         rows.append(row)
         progress(row)
     return Report(plan, machine, rows, time.perf_counter() - begin)
-
-
-def write_report(report: Report, folder: Path) -> list[Path]:
-    """Writes stress.html, stress.csv and stress.md."""
-    from railpatch.evidence.stress.page import page
-    from railpatch.evidence.stress.text import markdown
-
-    folder.mkdir(parents=True, exist_ok=True)
-    written = [folder / f"stress.{suffix}" for suffix in ("html", "csv", "md")]
-    written[0].write_text(page(report), encoding="utf-8")
-    write_rows(report.rows, written[1])
-    written[2].write_text(markdown(report), encoding="utf-8")
-    return written
-
-
-def write_rows(rows: Sequence[Row], path: Path) -> None:
-    """One line for each trial; columns as in ``run.Row``."""
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, [column.name for column in fields(Row)])
-        writer.writeheader()
-        for row in rows:
-            values = asdict(row)
-            writer.writerow(
-                {name: f"{value:.4g}" if isinstance(value, float) else value
-                 for name, value in values.items()}
-            )  # fmt: skip

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import plotly.graph_objects as go
 
 from railpatch.evidence.bench.figures import styled
 from railpatch.evidence.stress import text
+from railpatch.evidence.stress.outcome import Report
 from railpatch.evidence.stress.run import CLEAN, FAULT, SAYS_SO
 from railpatch.page.document import document
 from railpatch.page.figures import plot
 from railpatch.page.tables import table
-
-if TYPE_CHECKING:
-    from railpatch.evidence.stress.outcome import Report
 
 COLORS = {CLEAN: "#2f7fc1", SAYS_SO: "#e0a020", FAULT: "#c62828"}
 

@@ -38,7 +38,7 @@ NUMBERS = ("normal_force", "max_pressure", "contact_area", "residual")
 TANGENTIAL_NUMBERS = ("creep_force", "spin_moment", "friction_power")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Row:
     """One line of the table. conditions: greatest share of a limit, and which; -1 without any.
     energy: NaN where it is not a whole balance. seconds: of all steps. relative_time: of a step,
@@ -161,14 +161,24 @@ def row_of(trial: Trial, outcomes: list[Outcome], nominal_time: float) -> Row:
         faults.append(f"{worst.name}: {worst.value:.2e}, allowed {worst.limit:.2e}")
     seconds = sum(outcome.seconds for outcome in outcomes)
     return Row(
-        trial.family, trial.name, trial.method, len(outcomes),
-        max((outcome.status for outcome in outcomes), key=ORDER.index),
-        residual, share, worst.name, energy, iterations, products, seconds,
-        seconds / len(outcomes) / nominal_time,
-        FAULT if faults else SAYS_SO if told else CLEAN,
-        all(outcome.status in outcome.move.expects for outcome in outcomes),
-        "; ".join(faults or told), trial.note or (ENDS.get(trial.method, "") if told else ""),
-    )  # fmt: skip
+        family=trial.family,
+        name=trial.name,
+        method=trial.method,
+        steps=len(outcomes),
+        status=max((outcome.status for outcome in outcomes), key=ORDER.index),
+        residual=residual,
+        conditions=share,
+        condition=worst.name,
+        energy=energy,
+        iterations=iterations,
+        products=products,
+        seconds=seconds,
+        relative_time=seconds / len(outcomes) / nominal_time,
+        verdict=FAULT if faults else SAYS_SO if told else CLEAN,
+        expected=all(outcome.status in outcome.move.expects for outcome in outcomes),
+        reason="; ".join(faults or told),
+        note=trial.note or (ENDS.get(trial.method, "") if told else ""),
+    )
 
 
 def max_or_nan(a: float, b: float) -> float:

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from railpatch.evidence.stress.outcome import Group, Report
-    from railpatch.evidence.stress.run import Row
+from railpatch.evidence.stress.outcome import Group, Report
+from railpatch.evidence.stress.run import Row
 
 GROUP_HEAD = (
     "family", "method", "trials", "steps", "clean", "says so", "faults", "residual", "conditions",

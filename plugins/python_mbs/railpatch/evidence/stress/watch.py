@@ -71,6 +71,21 @@ def lost(trial: Trial, reason: str, limit: float) -> Row:
     """The row of a trial that gave none."""
     nothing = float("nan")
     return Row(
-        trial.family, trial.name, trial.method, len(trial.moves), "not_converged", nothing, nothing,
-        "", nothing, 0, 0, limit, nothing, FAULT, False, reason, trial.note,
-    )  # fmt: skip
+        family=trial.family,
+        name=trial.name,
+        method=trial.method,
+        steps=len(trial.moves),
+        status="not_converged",
+        residual=nothing,
+        conditions=nothing,
+        condition="",
+        energy=nothing,
+        iterations=0,
+        products=0,
+        seconds=limit,
+        relative_time=nothing,
+        verdict=FAULT,
+        expected=False,
+        reason=reason,
+        note=trial.note,
+    )
