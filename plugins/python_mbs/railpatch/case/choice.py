@@ -1,5 +1,5 @@
-"""What ``accuracy`` in [method] chooses: the cheapest method and grid whose force error, measured
-as the 95th percentile over friction coefficient times normal force, is no greater.
+"""Measured errors of methods and grids, which ``accuracy`` in [method] is chosen by: the 95th
+percentile of the force error over friction coefficient times normal force.
 
 ``python -m railpatch.evidence.bench.reach`` measures the errors below again.
 """
@@ -8,17 +8,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import exp, inf, log
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from scipy.optimize import brentq
 from scipy.special import elliprd
 
-from railpatch.case.accuracy import fitted_size
 from railpatch.case.theories import FAST, has_tractions
-
-if TYPE_CHECKING:
-    from railpatch.case.common import Method
-    from railpatch.case.load import Case
 
 # error of the full theory on fitted rows by their scale: with Hertz's pressure, a/b = 1/10 ... 10,
 # any Poisson's ratio; and on as many nodes as rows, with the pressure of the half-space on a grid
@@ -73,8 +68,8 @@ class Choice:
         )
 
 
-def least_error(method: Method, *, ellipse: bool) -> float:
-    """-, what the given theories reach at best. ellipse: the contact area is one."""
+def least_error(method: Any, *, ellipse: bool) -> float:
+    """-, what the theories of a table [method] reach at best. ellipse: the contact area is one."""
     normal = method.normal if "normal" in method.model_fields_set or not ellipse else "hertz"
     if normal == "hertz" and method.tangential == "table":
         return TABLE_ON_ELLIPSE
@@ -87,48 +82,7 @@ def smallest(table: dict[int, float], accuracy: float) -> int:
     return min((scale for scale, e in table.items() if e <= accuracy), default=max(table))
 
 
-def takes_table(case: Case, ratio: float | None, normal: str) -> bool:
-    """Whether the table of creep forces is left to choose, and exact enough."""
-    from railpatch.case.patch import PatchCase
-
-    accuracy = case.method.accuracy
-    open_choice = "tangential" not in case.method.model_fields_set and case.has_tangential
-    if (
-        not open_choice
-        or ratio is None
-        or normal != "hertz"
-        or (case.layer is not None and case.layer.thickness > 0)
-    ):
-        return False
-    prescribed = isinstance(case, PatchCase) and any(case.motion.prescribed)
-    return accuracy >= TABLE_ON_ELLIPSE and not prescribed
-
-
-def choose(case: Case) -> Choice | None:
-    """What the case's accuracy asks for; None without one."""
-    method = case.method
-    if method.accuracy is None:
-        return None
-    ratio = axis_ratio(case)
-    given = "normal" in method.model_fields_set or ratio is None
-    normal = method.normal if given else "hertz"
-    tangential = "table" if takes_table(case, ratio, normal) else method.tangential
-    if tangential == "table" and normal == "hertz":
-        return Choice(normal, tangential, FAST_ELEMENTS, None, TABLE_ON_ELLIPSE)
-    rows = ROWS_ON_ELLIPSE if normal == "hertz" else ROWS_ON_PRESSURE
-    scale = smallest(rows, method.accuracy)
-    errors = [REACHED[name] for name in (normal, tangential) if name in REACHED]
-    if tangential != "full":
-        elements = FAST_ELEMENTS if tangential in REACHED else NORMAL * scale
-        return Choice(normal, tangential, elements, None, max(errors, default=rows[scale]))
-    if normal in REACHED:
-        size = (ROWS_ON_APPROXIMATE, ROWS_ON_APPROXIMATE)
-        return Choice(normal, tangential, NORMAL * ROWS_ON_APPROXIMATE, size, REACHED[normal])
-    size = fitted_size(scale, ratio if normal == "hertz" and ratio else 1.0)
-    return Choice(normal, tangential, NORMAL * scale, size, rows[scale])
-
-
-def axis_ratio(case: Case) -> float | None:
+def axis_ratio(case: Any) -> float | None:
     """-, a/b of a patch of quadratic surfaces; None where the contact is no known ellipse."""
     geometry: Any = getattr(case, "geometry", None)
     if geometry is None or all(getattr(geometry, name) is None for name in QUADRATIC):
@@ -155,18 +109,3 @@ def ratio_of_curvatures(along: float, across: float) -> float:
     if excess(-limit) * excess(limit) > 0:
         return exp(limit if along < across else -limit)
     return exp(brentq(excess, -limit, limit, xtol=1e-9))
-
-
-def resolved(case: Case) -> Case:
-    """The case with the method and the grid that its accuracy chooses."""
-    from railpatch.case.common import Grid
-
-    choice = choose(case)
-    if choice is None:
-        return case
-    fitted = list(choice.fitted) if choice.fitted else None
-    grid = Grid(elements=[choice.elements] * 2, fitted=fitted)
-    method = case.method.model_copy(
-        update={"accuracy": None, "normal": choice.normal, "tangential": choice.tangential}
-    )
-    return case.model_copy(update={"grid": grid, "method": method})

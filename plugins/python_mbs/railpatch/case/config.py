@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from railpatch.case.choice import resolved
 from railpatch.case.common import WHEEL_METHOD, Friction, Layer, Temperature
 from railpatch.case.creep_table import default_table
 from railpatch.case.load import Case, Scene
 from railpatch.case.longitudinal import shape_config
 from railpatch.case.patch import SHAPES, PatchCase
+from railpatch.case.resolve import resolved
 from railpatch.case.theories import FAST_NUMBERS
 from railpatch.case.types import MOST_POINTS
 from railpatch.case.wheel import SIDES, WheelRailCase, WheelsetCase

@@ -75,7 +75,7 @@ def explain(context: click.Context, case: Path, quiet: bool) -> None:
 
     The case is solved once from a cold start; the time share is measured in it.
     """
-    from railpatch.case.choice import choose
+    from railpatch.case.resolve import choose
     from railpatch.contact import Contact
 
     contact = Contact(case, timing=True)

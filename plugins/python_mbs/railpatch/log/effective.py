@@ -12,8 +12,8 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from railpatch.case.choice import resolved
 from railpatch.case.load import check_case, check_table, plain, tomllib
+from railpatch.case.resolve import resolved
 from railpatch.errors import CaseError
 
 # name of the attachment
