@@ -198,6 +198,11 @@ def load_wheelset_scene(
     return load_checked(path, "wheelset", checks, check_run, WheelsetScene, overrides)
 
 
+def contact_scene(path: Path) -> tuple[str, Scene]:
+    """Name and case of one contact, for commands that take one. Raises CaseError."""
+    return path.stem, Scene(load_wheelset_scene(path).case, path.parent)
+
+
 def check_present(name: str, model: type[Table], table: Any) -> Any:
     """A table that may not be left out. Raises CaseError."""
     if table is None:

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from importlib import resources
+from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
 
-from railpatch.case.load import Scene, check_case, load_scene, read_toml
-from railpatch.contact import Contact
+from railpatch.case.load import Scene, load_scene, read_toml
 from railpatch.errors import CaseError
 
+# entry points of packages that read scenes: a function from a path, or None for the default, to
+# name and contact
+SCENES = "railpatch.scenes"
+# tables that other commands' scenes are known by, and the package that reads them
+TABLES = {"run": "wheelset_demo", "rig": "rig_model"}
+DEFAULT = "rig"
 # a wheelset on track, where the rig model is not installed
 TRACK: dict[str, Any] = {
     "kind": "wheelset",
@@ -40,34 +46,18 @@ def kind_scene(name: str) -> tuple[str, Scene]:
 
 
 def scene_of(path: Path | None) -> tuple[str, Scene]:
-    """Name and scene. A file may be a case, or the scene of a rig or of a wheelset's run.
+    """Name and scene. A file may be a case, or the scene of another command, known by a table that
+    an entry point of the group "railpatch.scenes" is named after.
 
     Raises CaseError, ProfileError.
     """
-    tables = read_toml(path) if path is not None else {}
-    if path is not None and "run" in tables:
-        from wheelset_demo.scene import load_wheelset_scene
-
-        return path.stem, Scene(load_wheelset_scene(path).case, path.parent)
-    if path is not None and "rig" not in tables:
+    readers = {entry.name: entry for entry in entry_points(group=SCENES)}
+    tables = read_toml(path) if path is not None else {DEFAULT: {}}
+    table = next((name for name in TABLES if name in tables), None)
+    if path is not None and table is None:
         return path.stem, load_scene(path)
-    try:
-        from rig_model.scene import load_rig_scene
-    except ImportError:
-        if path is not None:
-            raise CaseError(f"{path}: has a table [rig], but rig_model is not installed") from None
+    if table in readers:
+        return readers[table].load()(path)
+    if path is None:
         return "S1002_on_UIC60", load_scene(TRACK)
-    rig = load_rig_scene(path)
-    return Path(rig.name).stem, at_first_position(rig)
-
-
-def at_first_position(rig: Any) -> Scene:
-    """The rig's machine with z prescribed, where its run begins; the wheels roll without slip."""
-    first = rig.positions()[0]
-    wheelset, track = rig.case.wheelset, rig.case.track
-    rolling = -track.roller_pitch_rate * track.roller_radius / wheelset.nominal_radius
-    start = {"y": first.y, "yaw": first.yaw, "pitch_rate": rolling}
-    content = rig.case.model_dump() | {"wheelset": wheelset.model_dump() | start}
-    z = Contact(Scene(check_case(content), Path())).step()["z"]
-    content["wheelset"] |= {"vertical_force": None, "z": z}
-    return Scene(check_case(content), Path())
+    raise CaseError(f"{path}: has a table [{table}], but {TABLES[table]} is not installed")
