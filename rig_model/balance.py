@@ -35,12 +35,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from railpatch import Contact, Result
+from railpatch.case.types import SIDES
 
 from rig_model.broyden import Broyden
 from rig_model.newton import Newton
 from rig_model.predict import Predictor
 from rig_model.programme import Position
-from rig_model.scene import SIDES, RigScene
+from rig_model.scene import RigScene
 from rig_model.search import Evaluation, Root, Settings, Vector
 from rig_model.start import Baseline, Estimate, Frictionless
 

@@ -74,7 +74,7 @@ def rig(
 
 def profiles_used(scene: Any) -> str:
     """Which profiles a run has."""
-    from rig_model.scene import PROFILE_KEYS
+    from railpatch.case.wheel import PROFILE_KEYS
 
     given = scene.case.profiles.model_dump(include=set(PROFILE_KEYS), exclude_none=True)
     return ", ".join(sorted({Path(name).name for name in given.values()}))

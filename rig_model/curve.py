@@ -33,13 +33,13 @@ from pydantic import Field
 from railpatch import Contact, Result
 from railpatch.case import WheelsetCase
 from railpatch.case.load import Scene, check_case, plain, read_toml, refuse_others
-from railpatch.case.types import NotNegative, Number, Table
+from railpatch.case.types import SIDES, NotNegative, Number, Table
 from railpatch.errors import CaseError
 from scipy.optimize import brentq
 
 from rig_model.broyden import Broyden
 from rig_model.newton import Newton
-from rig_model.scene import SIDES, checked_parts
+from rig_model.scene import checked_parts
 from rig_model.search import Evaluation, Settings, Vector
 from rig_model.start import deepest, reference
 

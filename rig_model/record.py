@@ -6,10 +6,11 @@ import math
 from typing import Any
 
 import numpy as np
+from railpatch.case.types import SIDES
 from railpatch.log.effective import Effective, effective
 
 from rig_model.balance import Balance
-from rig_model.scene import SIDES, RigScene
+from rig_model.scene import RigScene
 
 # moving inputs that a scene may set and the rig does not change
 STEADY = ("speed", "vy", "vz", "roll_rate", "yaw_rate")

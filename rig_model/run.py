@@ -10,11 +10,12 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from railpatch.case.types import SIDES
 from railpatch.log import RunLog, scene_geometry
 
 from rig_model.balance import Balance, Balancer
 from rig_model.record import Recorder, attachments, ran_with
-from rig_model.scene import SIDES, RigScene
+from rig_model.scene import RigScene
 
 
 @dataclass(frozen=True)

@@ -13,14 +13,13 @@ from pydantic import Field, model_validator
 from railpatch.case import WheelsetCase
 from railpatch.case.load import Scene, check_case, check_table, plain, read_toml, refuse_others
 from railpatch.case.types import Number, Pair, Positive, Table, relation
+from railpatch.case.wheel import PROFILE_KEYS
 from railpatch.errors import CaseError
 
 from rig_model.programme import Position, positions
 
 MEASURED = "nrc_dry_10mph_13750lb.toml"
 NOMINAL = "nominal_dry_10mph_13750lb.toml"
-SIDES = ("left", "right")
-PROFILE_KEYS = ("wheel", "rail", "wheel_left", "wheel_right", "rail_left", "rail_right")
 # snapshots of the fields in a run whose scene does not say
 SNAPSHOTS = 12
 # found at each position, so not to be given

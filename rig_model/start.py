@@ -9,10 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from railpatch import Contact, Result
+from railpatch.case.types import SIDES
 from scipy.interpolate import PchipInterpolator
 
 from rig_model.programme import Position
-from rig_model.scene import SIDES, RigScene
+from rig_model.scene import RigScene
 
 Vector = NDArray[np.float64]
 

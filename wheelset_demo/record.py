@@ -8,10 +8,11 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
+from railpatch.case.types import SIDES
 from railpatch.log.effective import Effective, effective
 from railpatch.result import wheel_json
 
-from wheelset_demo.scene import SIDES, WheelsetScene
+from wheelset_demo.scene import WheelsetScene
 from wheelset_demo.system import WORKS, State, System
 from wheelset_demo.trace import STORES, Trace
 

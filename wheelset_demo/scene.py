@@ -13,12 +13,11 @@ from pydantic import Field, model_validator
 from railpatch.case import WheelsetCase
 from railpatch.case.load import Scene, check_case, check_table, plain, read_toml, refuse_others
 from railpatch.case.types import NotNegative, Positive, Table, relation
+from railpatch.case.wheel import PROFILE_KEYS
 from railpatch.errors import CaseError
 from railpatch.log.stream import SCENE_RATE
 
 DEFAULT = "s1002.toml"
-SIDES = ("left", "right")
-PROFILE_KEYS = ("wheel", "rail", "wheel_left", "wheel_right", "rail_left", "rail_right")
 Loaded = TypeVar("Loaded")
 # snapshots of the fields in a run whose scene does not say
 SNAPSHOTS = 10

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from railpatch import CaseError, Contact
+from railpatch.case.types import SIDES
 
-from wheelset_demo.scene import SIDES, WheelsetScene
+from wheelset_demo.scene import WheelsetScene
 from wheelset_demo.steppers import differences
 from wheelset_demo.system import BAD, COUNT, WORKS, ContactFailure, State, System, Vector
 

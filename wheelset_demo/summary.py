@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from railpatch.case.types import SIDES
 
 from wheelset_demo.system import WORKS
 from wheelset_demo.trace import Trace
@@ -127,8 +128,7 @@ def summarise(
         momentum_error=momentum,
         turning_error=turning,
         in_the_air={
-            side: sum(status[side] == "no_contact" for status in trace.statuses)
-            for side in ("left", "right")
+            side: sum(status[side] == "no_contact" for status in trace.statuses) for side in SIDES
         },
         evaluations=trace.evaluations,
         solve_seconds=trace.solve_seconds,

@@ -8,6 +8,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 from railpatch import CaseError
+from railpatch.case.types import SIDES
 from railpatch.pinocchio import (
     Body,
     Energies,
@@ -21,7 +22,7 @@ from railpatch.pinocchio import powers as powers_of
 from railpatch.pinocchio.model import WHEELSET
 from railpatch.pinocchio.suspension import Carried
 
-from wheelset_demo.scene import GRAVITY, SIDES, WheelsetScene
+from wheelset_demo.scene import GRAVITY, WheelsetScene
 
 Vector = NDArray[np.float64]
 

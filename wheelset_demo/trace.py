@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 from railpatch import Result
+from railpatch.case.types import SIDES
 
-from wheelset_demo.scene import SIDES, WheelsetScene
+from wheelset_demo.scene import WheelsetScene
 from wheelset_demo.system import WORKS, ContactFailure, State, System
 
 # J, in the order of a row of `energies`

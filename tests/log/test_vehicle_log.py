@@ -11,8 +11,9 @@ import synthetic
 import synthetic_vehicle as vehicle
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
+from railpatch.case.types import SIDES
 from railpatch.log import VehicleGeometry, read_run
-from railpatch.log.channels import SIDES, WELL_KNOWN, channel, vehicle_channels
+from railpatch.log.channels import WELL_KNOWN, channel, vehicle_channels
 
 
 @pytest.fixture(scope="module")

@@ -10,15 +10,8 @@ import synthetic
 from google.protobuf.descriptor_pb2 import FileDescriptorSet
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
-from railpatch.log.channels import (
-    CHANNELS,
-    PATCH,
-    SIDES,
-    WELL_KNOWN,
-    WHEEL_CONTACT,
-    flat_fields,
-    markdown,
-)
+from railpatch.case.types import SIDES
+from railpatch.log.channels import CHANNELS, PATCH, WELL_KNOWN, WHEEL_CONTACT, flat_fields, markdown
 from railpatch.log.schema import file_descriptor, message_class
 from railpatch.result import PATCH_UNITS, PLACE_UNITS, WHEEL_UNITS
 

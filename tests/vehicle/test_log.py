@@ -8,10 +8,10 @@ import re
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from railpatch.case.types import SIDES
 from railpatch.command.cli import cli
 from railpatch.layout import layout, topics_of
 from railpatch.log import read_run
-from railpatch.log.channels import SIDES
 from railpatch.report import write_report
 from railpatch.report.vehicle.data import vehicle_run
 

@@ -18,7 +18,7 @@ from wheelset_demo.vehicle.scene import (
 )
 
 Vector = NDArray[np.float64]
-SIDES = (("left", -1.0), ("right", 1.0))
+OUTWARD = {"left": -1.0, "right": 1.0}
 Z = 2
 
 
@@ -96,7 +96,7 @@ def centres_at_rest(scene: VehicleScene) -> dict[str, Vector]:
         name = bogie_name(bogie)
         found[name] = np.array([along[name], 0.0, -vehicle.bogie_frame.height])
     for k in range(WHEELSETS):
-        for side, sign in SIDES:
+        for side, sign in OUTWARD.items():
             name = f"axle_box_{k + 1}_{side}"
             found[name] = np.array([along[name], sign * vehicle.axle_box.lateral, -radius])
     return found
@@ -111,7 +111,7 @@ def places_of(element: ElementTable, scene: VehicleScene) -> list[Place]:
 
     for bogie in range(2):
         frame = bogie_name(bogie)
-        for side, sign in SIDES:
+        for side, sign in OUTWARD.items():
             y = sign * element.lateral
             if element.level == "primary":
                 for k in (2 * bogie, 2 * bogie + 1):

@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 import pinocchio as pin
+from railpatch.case.types import SIDES
 from railpatch.log import VehicleGeometry, VehicleLog, scene_geometry
 from railpatch.log.stream import Pace
 from railpatch.result import wheel_json
 
 from wheelset_demo.record import attachments, ran_with
-from wheelset_demo.scene import GRAVITY, SIDES, SNAPSHOTS
+from wheelset_demo.scene import GRAVITY, SNAPSHOTS
 from wheelset_demo.system import WORKS, ContactFailure
 from wheelset_demo.trace import STORES
 from wheelset_demo.vehicle.model import CAR_BODY, bogie_name

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 from railpatch import CaseError, Contact
+from railpatch.case.types import SIDES
 
 from wheelset_demo.system import BAD, WORKS
 from wheelset_demo.vehicle.means import SlidingMeans
@@ -119,5 +120,5 @@ def wheels_under_load(scene: VehicleScene) -> tuple[float, float]:
             f"vehicle: the axle load is {scene.axle_load:.6g} N, allowed one that the wheels can "
             f"carry: {result.status}"
         )
-    radii = [result[side]["rolling_radius"] for side in ("left", "right")]
+    radii = [result[side]["rolling_radius"] for side in SIDES]
     return float(result["z"]), float(np.mean(radii))

@@ -16,6 +16,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 from railpatch import CaseError
+from railpatch.case.types import SIDES
 from railpatch.pinocchio import ForceElement, StateChain, acceleration_derivatives
 from railpatch.pinocchio.derivative import WrenchDerivatives
 
@@ -308,7 +309,7 @@ class VehicleSystem:
         found = []
         for k in range(WHEELSETS):
             result = self.element.result(k)
-            for side in ("left", "right"):
+            for side in SIDES:
                 if result[side]["status"] in BAD:
                     found.append(f"wheelset {k + 1}, {side} wheel {result[side]['status']}")
         return ", ".join(found)

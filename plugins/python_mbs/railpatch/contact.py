@@ -19,6 +19,7 @@ from railpatch.case.messages import show
 from railpatch.case.moving import changed_case, moving_keys
 from railpatch.case.patch import Motion, PatchCase
 from railpatch.case.track import add_irregularity, irregularity_of
+from railpatch.case.types import SIDES
 from railpatch.errors import CaseError
 from railpatch.result import (
     FIELDS,
@@ -31,7 +32,6 @@ from railpatch.result import (
     wheel_data,
 )
 
-SIDE_INDEX = {"left": 0, "right": 1}
 # saved state: mark, length of the moving tables as JSON, the JSON, the core's state
 MARK = b"railpatch1"
 LENGTH = struct.Struct("<I")
@@ -208,7 +208,7 @@ class Contact:
         """The fields of one patch of the last step."""
         found: dict[str, Any] = {}
         for name in FIELDS:
-            values = self._core.field(SIDE_INDEX[side], patch, name)
+            values = self._core.field(SIDES.index(side), patch, name)
             if values is None and name in (*LAW_FIELDS, *ROW_FIELDS):
                 continue
             found[name] = shaped_field(name, values, grid)

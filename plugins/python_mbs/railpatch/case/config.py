@@ -11,8 +11,8 @@ from railpatch.case.longitudinal import shape_config
 from railpatch.case.patch import SHAPES, PatchCase
 from railpatch.case.resolve import resolved
 from railpatch.case.theories import FAST_NUMBERS
-from railpatch.case.types import MOST_POINTS
-from railpatch.case.wheel import SIDES, WheelRailCase, WheelsetCase
+from railpatch.case.types import MOST_POINTS, SIDES
+from railpatch.case.wheel import WheelRailCase, WheelsetCase
 from railpatch.profiles import Profile, load_profile
 from railpatch.profiles.sections import matching_sections
 

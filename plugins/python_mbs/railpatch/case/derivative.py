@@ -8,8 +8,9 @@ from typing import Any
 
 from railpatch.case.load import Case, plain
 from railpatch.case.messages import show
-from railpatch.case.moving import BODY_KEYS, DEVIATION_KEYS, moving_keys, refuse_unknown
+from railpatch.case.moving import BODY_KEYS, moving_keys, refuse_unknown
 from railpatch.case.patch import PatchCase
+from railpatch.case.types import SIDES
 from railpatch.errors import CaseError
 
 # moving inputs that are no continuous numbers
@@ -40,7 +41,7 @@ def rates_of(case: Case, direction: Mapping[str, Any]) -> dict[str, Any]:
             table = part_of(value, BODY_KEYS, key)
             rates["bulk_temperature"] = [number(table.get(body, 0.0), key) for body in BODY_KEYS]
         elif key == "track":
-            allowed = (*DEVIATION_KEYS, *(name for name in ("roller_pitch_rate",) if name in keys))
+            allowed = (*SIDES, *(name for name in ("roller_pitch_rate",) if name in keys))
             for name, item in part_of(value, allowed, key).items():
                 add_rate(rates, name, item, "track")
         else:
@@ -52,12 +53,12 @@ def rates_of(case: Case, direction: Mapping[str, Any]) -> dict[str, Any]:
 
 def add_rate(rates: dict[str, Any], key: str, value: Any, table: str) -> None:
     """One rate, or those of a wheel's or rail's deviation."""
-    if key not in DEVIATION_KEYS:
+    if key not in SIDES:
         rates[key] = numbers(value, key)
         return
     for name, item in part_of(value, DEVIATION, key).items():
         sides = rates.setdefault(f"{BODY_OF_TABLE[table]}_{name}", [[0.0] * 3, [0.0] * 3])
-        sides[DEVIATION_KEYS.index(key)] = numbers(item, name)
+        sides[SIDES.index(key)] = numbers(item, name)
 
 
 def part_of(value: Any, allowed: tuple[str, ...], key: str) -> dict[str, Any]:

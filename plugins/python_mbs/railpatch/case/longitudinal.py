@@ -14,6 +14,7 @@ from scipy.interpolate import CubicSpline
 
 from railpatch.case.gap import read_rows
 from railpatch.case.rolling import Flat, Joint, RailShape, WheelShape
+from railpatch.case.types import SIDES
 from railpatch.errors import CaseError
 
 Values = NDArray[np.float64]
@@ -21,7 +22,6 @@ FLAT_SPACING = 5e-4  # m, along the circumference
 RAIL_SPACING = 1e-3  # m, at most
 POINTS = (8, 1_000_000)  # of a wheel
 MOST_HEIGHTS = 10_000_000
-SIDES = ("left", "right")
 
 
 def flat_runout(radius: float, flat: Flat, angles: Values) -> Values:

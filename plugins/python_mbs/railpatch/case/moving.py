@@ -10,10 +10,10 @@ from railpatch.case.load import Case, check_table, plain
 from railpatch.case.messages import show
 from railpatch.case.patch import PatchCase
 from railpatch.case.rolling import SHAPE_KEYS
+from railpatch.case.types import SIDES
 from railpatch.errors import CaseError
 
 MOTION_KEYS = ("creepage", "spin_creepage", "rolling_speed", "direction")
-DEVIATION_KEYS = ("left", "right")
 BODY_KEYS = ("wheel", "rail")  # of [temperature]
 FIXED = (*SHAPE_KEYS, "sections")  # of a deviation
 
@@ -34,7 +34,7 @@ def moving_keys(case: Case) -> dict[str, str]:
             keys.update(distance="motion", steps="motion")
         return {**keys, **heat}
     height = "z" if case.wheelset.z is not None else "vertical_force"
-    keys = dict.fromkeys((*WHEELSET_STATE, height, *DEVIATION_KEYS), "wheelset")
+    keys = dict.fromkeys((*WHEELSET_STATE, height, *SIDES), "wheelset")
     if case.track.kind == "roller":
         keys["roller_pitch_rate"] = "track"
     return {**keys, "track": "track", **heat}
@@ -58,7 +58,7 @@ def changed_case(case: Case, changes: Mapping[str, Any]) -> Case:
         if not isinstance(value, dict):
             raise CaseError(f"{key}: value is {show(value)}, allowed a table")
         allowed = [name for name in ("roller_pitch_rate",) if name in keys]
-        movable = BODY_KEYS if key == "temperature" else (*DEVIATION_KEYS, *allowed)
+        movable = BODY_KEYS if key == "temperature" else (*SIDES, *allowed)
         refuse_unknown(value, dict.fromkeys(movable), f"{key}.")
         values.update(value)
     changed = case.model_copy(
@@ -78,7 +78,7 @@ def changed_table(case: Case, name: str, values: dict[str, Any]) -> Any:
     table = getattr(case, name)
     content = table.model_dump()
     for key, value in values.items():
-        if key in DEVIATION_KEYS and isinstance(value, dict):
+        if key in SIDES and isinstance(value, dict):
             fixed = {k: v for k, v in value.items() if k in FIXED and v != content[key].get(k)}
             refuse_unknown(fixed, movable_of(content[key]), f"{name}.{key}.")
             value = {**content[key], **value}

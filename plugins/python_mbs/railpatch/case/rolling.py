@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from railpatch.case.types import (
+    SIDES,
     Number,
     Table,
     between,
@@ -109,7 +110,7 @@ def shape_keys(case: Any) -> list[str]:
     return [
         f"{table}.{side}.{key}"
         for table in ("wheelset", "track")
-        for side in ("left", "right")
+        for side in SIDES
         for key in SHAPE_KEYS
         if getattr(getattr(getattr(case, table), side), key, None) is not None
     ]

@@ -10,6 +10,8 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
+# of a wheelset and its track; the core counts them in this order
+SIDES = ("left", "right")
 # elements of one patch along one axis; a grid has a border of one element besides
 MOST_ELEMENTS = 1000
 

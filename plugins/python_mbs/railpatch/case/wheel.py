@@ -22,6 +22,7 @@ from railpatch.case.common import (
 from railpatch.case.rails import RailSupport, Sections, check_sections
 from railpatch.case.rolling import RailShape, WheelMotion, WheelShape, check_rolling
 from railpatch.case.types import (
+    SIDES,
     Angle,
     AngleVector,
     Dimension,
@@ -38,7 +39,6 @@ from railpatch.case.types import (
 )
 from railpatch.profiles.smooth import MEASURED_WAVELENGTH
 
-SIDES = ("left", "right")
 Text = Annotated[str, Field(min_length=1)]
 
 
@@ -213,6 +213,10 @@ class Profiles(Table):
         if getattr(self, body) is not None:
             return body, getattr(self, body)
         return f"{body}_{side}", getattr(self, f"{body}_{side}")
+
+
+# of [profiles], those that name one
+PROFILE_KEYS = tuple(name for name in Profiles.model_fields if name != "smoothing")
 
 
 class Wheel(Table):

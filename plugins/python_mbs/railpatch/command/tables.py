@@ -8,9 +8,8 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from railpatch.case.types import SIDES
 from railpatch.result import PATCH_UNITS, PLACE_UNITS, WHEEL_UNITS, Result
-
-SIDES = ("left", "right")
 
 
 def print_result(result: Result, console: Console | None = None) -> None:

@@ -13,12 +13,12 @@ from railpatch import _core
 from railpatch.case.config import config_of, input_of
 from railpatch.case.load import Case, Scene
 from railpatch.case.patch import PatchCase
+from railpatch.case.types import SIDES
 from railpatch.case.wheel import WheelRailCase, WheelsetCase
 from railpatch.errors import CaseError
 from railpatch.fmu.profiles import Choices
 from railpatch.fmu.table import Kind, Table, Variable, with_start
 
-SIDE_INDEX = {"left": 0, "right": 1}
 PROFILE_ARRAYS = ("arc_length", "y", "z", "dy", "dz")
 
 
@@ -44,7 +44,7 @@ def kind_of(case: Case, config: dict[str, list[float]], *, averages: bool = Fals
     most = int(config["max_patches"][0])
     if most > 1 and case.method.patch_rule != "contact":
         conditions.add("shares")
-    sides = tuple(SIDE_INDEX[side] for side in case.sides)
+    sides = tuple(SIDES.index(side) for side in case.sides)
     return Kind(case.kind, sides, most, frozenset(conditions))
 
 

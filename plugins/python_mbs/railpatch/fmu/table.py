@@ -16,6 +16,7 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
+# as railpatch.case.types has them: the build reads this file before there is a package
 SIDES = ("left", "right")
 MAX_PATCHES = 6
 # of an enumeration that the scene fills

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from railpatch.log.channels import SIDES, unit
+from railpatch.case.types import SIDES
+from railpatch.log.channels import unit
 
 KINDS = ("rail", "roller", "vehicle")
 _AXES = "xyz"

@@ -16,7 +16,6 @@ from dataclasses import dataclass
 from functools import cache
 
 STATUSES = ("converged", "no_contact", "not_converged", "out_of_range")
-SIDES = ("left", "right")
 # m, over which wheel forces are averaged before their ratio is judged (EN 14363)
 SLIDING = 2.0
 # N: below, a wheel has no ratio of its forces

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from railpatch.case.types import SIDES
 from railpatch.case.wheel import Deviation, WheelsetCase
-from railpatch.log.channels import SIDES
 from railpatch.profiles import load_profile
 from railpatch.profiles.raw import Role
 

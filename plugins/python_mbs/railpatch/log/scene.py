@@ -15,7 +15,7 @@ from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from foxglove_schemas_protobuf.LinePrimitive_pb2 import LinePrimitive
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 
-from railpatch.log.channels import SIDES
+from railpatch.case.types import SIDES
 from railpatch.log.geometry import SceneGeometry, drawn_out, revolved
 from railpatch.log.primitives import (
     HALF_TURN_X,

@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from os import PathLike
 from typing import Any
 
+from railpatch.case.types import SIDES
 from railpatch.log import scene
-from railpatch.log.channels import CHANNELS, SIDES, channel
+from railpatch.log.channels import CHANNELS, channel
 from railpatch.log.effective import Effective
 from railpatch.log.encode import encode, encode_fields
 from railpatch.log.geometry import SceneGeometry

@@ -16,6 +16,7 @@ from railpatch import _core
 from railpatch.case.config import input_of
 from railpatch.case.load import Scene
 from railpatch.case.messages import show
+from railpatch.case.types import SIDES
 from railpatch.case.wheel import WheelsetCase
 from railpatch.contact import CaseSource, Contact
 from railpatch.errors import CaseError
@@ -34,7 +35,6 @@ STATE = (
 )
 # of the core, by code; a test compares them
 STATUSES = ("converged", "no_contact", "not_converged", "out_of_range")
-SIDES = ("left", "right")
 PATCHES = ("patches", "alternatives")
 LENGTH = struct.Struct("<I")
 

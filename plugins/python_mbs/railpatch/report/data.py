@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from railpatch.log.channels import SIDES, unit
+from railpatch.case.types import SIDES
+from railpatch.log.channels import unit
 from railpatch.log.reader import Run, Series
 
 # how units of the log are shown: factor and unit

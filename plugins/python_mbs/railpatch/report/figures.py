@@ -9,7 +9,7 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from railpatch.log.channels import SIDES
+from railpatch.case.types import SIDES
 from railpatch.page.figures import COLORS, GREY, styled
 from railpatch.report.data import Positions, scaled
 from railpatch.report.reference import Match

@@ -8,7 +8,8 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from railpatch.log.channels import ELEMENT_STATES, HUNTING, SIDES
+from railpatch.case.types import SIDES
+from railpatch.log.channels import ELEMENT_STATES, HUNTING
 from railpatch.log.reader import Run, read_run
 from railpatch.page.document import document
 from railpatch.page.figures import plot

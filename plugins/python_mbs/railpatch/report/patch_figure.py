@@ -8,7 +8,8 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from railpatch.log.channels import ELEMENT_STATES, SIDES
+from railpatch.case.types import SIDES
+from railpatch.log.channels import ELEMENT_STATES
 from railpatch.page.figures import styled
 
 _STATE_COLORS = ("rgba(128,128,128,0.12)", "#3b7dc4", "#e0812b", "#b23a48")

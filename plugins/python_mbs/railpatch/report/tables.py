@@ -7,14 +7,8 @@ from html import escape
 
 import numpy as np
 
-from railpatch.log.channels import (
-    CHANNELS,
-    CONVENTIONS,
-    SIDES,
-    WELL_KNOWN,
-    flat_fields,
-    vehicle_channels,
-)
+from railpatch.case.types import SIDES
+from railpatch.log.channels import CHANNELS, CONVENTIONS, WELL_KNOWN, flat_fields, vehicle_channels
 from railpatch.log.reader import Run
 from railpatch.page.tables import number, table, whole
 from railpatch.report.data import Positions

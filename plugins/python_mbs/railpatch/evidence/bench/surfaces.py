@@ -21,12 +21,12 @@ from railpatch import _core
 from railpatch.case.config import config_of, input_of
 from railpatch.case.load import Scene, load_scene
 from railpatch.case.moving import changed_case
+from railpatch.case.types import SIDES
 from railpatch.evidence.bench.problems import FRICTION, Batch
 from railpatch.evidence.bench.shapes import Floats, Surface
 from railpatch.published import read_numbers
 
 FILE = "patches.npz"
-SIDES = ("left", "right")
 ELEMENT = (4e-4, 1e-4)  # m, of the grid on which wheel on rail is looked at
 ACROSS = 100  # elements for finding the contact's box
 LEAST_LOAD = 0.02  # of the wheel's: patches with less are left out

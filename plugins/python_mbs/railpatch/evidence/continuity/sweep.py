@@ -21,10 +21,10 @@ from typing import Any
 
 import numpy as np
 
+from railpatch.case.types import SIDES
 from railpatch.contact import Contact
 
 COMPONENTS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
-SIDES = ("left", "right")
 LIMIT = 0.2  # % of the wheel load per micrometre
 CLOSER = 10  # how much smaller the steps are where the limit is exceeded
 MARGIN = 2  # fine steps around what is looked at more closely

@@ -14,12 +14,12 @@ from railpatch.case.config import config_of, input_of
 from railpatch.case.load import Case, load_scene
 from railpatch.case.patch import PatchCase
 from railpatch.case.theories import FAST
+from railpatch.case.types import SIDES
 from railpatch.errors import CaseError, ProfileError
 from railpatch.evidence.stress.conditions import energy_balance, findings, line_of
 from railpatch.evidence.stress.step import FIELDS, VECTORS, Finding, Step
 from railpatch.evidence.stress.trial import Move, Trial
 
-SIDES = {"left": 0, "right": 1}
 # from good to bad; a trial has the worst of its steps
 ORDER = ("refused", "no_contact", "converged", "out_of_range", "not_converged")
 CLEAN, SAYS_SO, FAULT = "clean", "says so", "fault"
@@ -115,7 +115,9 @@ def steps_of(
         # one step back is enough
         before = Step(before.case, before.values, before.patch, before.fields)
     return [
-        Step(case, values, patch, fields_of(contact, SIDES[side], index, patch["grid"]), before)
+        Step(
+            case, values, patch, fields_of(contact, SIDES.index(side), index, patch["grid"]), before
+        )
         for side in SIDES
         for index, patch in enumerate(raw[side]["patches"] + raw[side]["alternatives"])
     ]
@@ -205,7 +207,7 @@ def faults_of(outcome: Outcome) -> Iterator[str]:
         yield from no_numbers(step)
         yield from too_many_iterations(step)
     if outcome.raw is not None and outcome.status == "converged":
-        for side in ("left", "right"):
+        for side in SIDES:
             vectors = (*outcome.raw[side]["force"], *outcome.raw[side]["moment"])
             wheels = outcome.patches and not isinstance(outcome.patches[0].case, PatchCase)
             if wheels and not np.isfinite(vectors).all():

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from os import PathLike
 from typing import Any
 
+from railpatch.case.types import SIDES
 from railpatch.log.channels import channel, vehicle_channels
 from railpatch.log.effective import Effective
 from railpatch.log.encode import encode
@@ -81,7 +82,7 @@ class VehicleLog(Log):
             for number, wheelset in enumerate(wheelsets, start=1):
                 above = f"/wheelset/{number}"
                 given[f"{above}/state"] = wheelset["state"]
-                for side in ("left", "right"):
+                for side in SIDES:
                     given[f"{above}/{side}/contact"] = wheelset[side]
                 messages |= snapshots(wheelset.get("fields") or {}, above)
             for topic, values in given.items():

@@ -14,7 +14,7 @@ import numpy as np
 from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 
-from railpatch.log.channels import SIDES
+from railpatch.case.types import SIDES
 from railpatch.log.geometry import SceneGeometry, drawn_out
 from railpatch.log.primitives import (
     HALF_TURN_X,

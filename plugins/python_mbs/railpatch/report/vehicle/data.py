@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from railpatch.log.channels import LEAST_LOAD, SIDES, SLIDING
+from railpatch.case.types import SIDES
+from railpatch.log.channels import LEAST_LOAD, SLIDING
 from railpatch.log.reader import Run, Series
 from railpatch.report.data import ReportError, at_times, grid_of
 

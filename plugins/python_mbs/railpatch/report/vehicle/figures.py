@@ -8,7 +8,7 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from railpatch.log.channels import SIDES
+from railpatch.case.types import SIDES
 from railpatch.page.figures import GREY, styled
 from railpatch.report.data import scaled
 from railpatch.report.figures import Adder

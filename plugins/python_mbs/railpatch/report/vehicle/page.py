@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from railpatch.log.channels import SIDES
+from railpatch.case.types import SIDES
 from railpatch.page import tables
 from railpatch.page.figures import plot
 from railpatch.report import balance_figures
