@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 from railpatch import CaseError, Contact, _core
-from railpatch.case.config import config_of
 from railpatch.case.load import load_scene
+from railpatch.case.to_core import config_of
 
 CASE: dict[str, Any] = {
     "kind": "patch",

@@ -10,8 +10,8 @@ import pytest
 import railpatch
 from case_samples import WHEELSET, with_values
 from railpatch import CaseError
-from railpatch.case.config import config_of
 from railpatch.case.load import load_scene
+from railpatch.case.to_core import config_of
 
 FLAT = {"flat": {"depth": 5e-4}}
 LEVEL = [[0.0, 0.0], [0.1, 0.0], [0.2, 0.0], [0.3, 0.0]]

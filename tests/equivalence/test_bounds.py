@@ -10,9 +10,9 @@ import pytest
 from case_samples import PATCH, WHEELSET, with_values
 from railpatch import CaseError, _core
 from railpatch.case import load_scene
-from railpatch.case.config import config_of, input_of
 from railpatch.case.load import KINDS
 from railpatch.case.messages import table_at
+from railpatch.case.to_core import config_of, input_of
 
 ROLLER = with_values(WHEELSET, track={"kind": "roller", "roller_radius": 0.8})
 LINE = with_values(

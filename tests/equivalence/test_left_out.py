@@ -156,7 +156,7 @@ def test_patches_hold_memory_one_by_one() -> None:
 
 def iterations_of(case: dict[str, Any]) -> dict[str, int]:
     """Iterations of a step from a cold start, and of the same step again."""
-    from railpatch.case.config import input_of
+    from railpatch.case.to_core import input_of
 
     contact = railpatch.Contact(case)
     raw = contact._core.step(input_of(contact.case))

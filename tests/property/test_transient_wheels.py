@@ -10,8 +10,8 @@ import pytest
 import railpatch
 from case_samples import WHEELSET, with_values
 from railpatch import _core
-from railpatch.case.config import config_of, input_of
 from railpatch.case.load import load_scene
+from railpatch.case.to_core import config_of, input_of
 
 RADIUS = 0.46
 SIZE = 5e-4  # m, of the elements

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 from railpatch import _core
-from railpatch.case.config import config_of, input_of
 from railpatch.case.load import load_scene
+from railpatch.case.to_core import config_of, input_of
 from railpatch.evidence.stress.conditions import energy_balance, findings
 from railpatch.evidence.stress.half_space import Array
 from railpatch.evidence.stress.run import no_numbers, steps_of, too_many_iterations

@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 
 from railpatch import _core
-from railpatch.case.config import config_of, input_of
 from railpatch.case.derivative import FORCE_AND_MOMENT, POSE_AND_VELOCITY, rates_of
 from railpatch.case.load import Case, Scene, check_table, load_scene
 from railpatch.case.messages import show
 from railpatch.case.moving import changed_case, moving_keys
 from railpatch.case.patch import Motion, PatchCase
+from railpatch.case.to_core import config_of, input_of
 from railpatch.case.track import add_irregularity, irregularity_of
 from railpatch.case.types import SIDES
 from railpatch.errors import CaseError

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from railpatch.case.config import WHEELSET_STATE
 from railpatch.case.load import Case, check_table, plain
 from railpatch.case.messages import show
 from railpatch.case.patch import PatchCase
 from railpatch.case.rolling import SHAPE_KEYS
+from railpatch.case.to_core import WHEELSET_STATE
 from railpatch.case.types import SIDES
 from railpatch.errors import CaseError
 

@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Literal
 
 from railpatch import _core
-from railpatch.case.config import config_of
 from railpatch.case.load import Scene
+from railpatch.case.to_core import config_of
 from railpatch.contact import Contact
 from railpatch.errors import CaseError
 from railpatch.fmu.description import Labels, description_xml

@@ -8,9 +8,9 @@ from itertools import product
 from pathlib import Path
 from typing import Any, Literal
 
-from railpatch.case.config import config_of
 from railpatch.case.load import Scene
 from railpatch.case.patch import PatchCase
+from railpatch.case.to_core import config_of
 from railpatch.contact import Contact
 from railpatch.errors import CaseError, ProfileError
 from railpatch.fmu.table import MOST_ITEMS

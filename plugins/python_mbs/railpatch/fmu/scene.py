@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from railpatch import _core
-from railpatch.case.config import config_of, input_of
 from railpatch.case.load import Case, Scene
 from railpatch.case.patch import PatchCase
+from railpatch.case.to_core import config_of, input_of
 from railpatch.case.types import SIDES
 from railpatch.case.wheel import WheelRailCase, WheelsetCase
 from railpatch.errors import CaseError

@@ -13,9 +13,9 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from railpatch import _core
-from railpatch.case.config import input_of
 from railpatch.case.load import Scene
 from railpatch.case.messages import show
+from railpatch.case.to_core import input_of
 from railpatch.case.types import SIDES
 from railpatch.case.wheel import WheelsetCase
 from railpatch.contact import CaseSource, Contact

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from railpatch import _core
-from railpatch.case.config import config_of, input_of
 from railpatch.case.load import load_scene
 from railpatch.case.moving import changed_case
+from railpatch.case.to_core import config_of, input_of
 from railpatch.evidence.bench.problems import merged
 from railpatch.evidence.bench.surfaces import MANCHESTER
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from railpatch import _core
-from railpatch.case.config import config_of
 from railpatch.case.load import load_scene
+from railpatch.case.to_core import config_of
 from railpatch.evidence.bench.problems import Scales
 from railpatch.evidence.bench.sets import AnyBatch
 from railpatch.evidence.bench.shapes import Floats

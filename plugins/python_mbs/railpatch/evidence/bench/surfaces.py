@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 
 from railpatch import _core
-from railpatch.case.config import config_of, input_of
 from railpatch.case.load import Scene, load_scene
 from railpatch.case.moving import changed_case
+from railpatch.case.to_core import config_of, input_of
 from railpatch.case.types import SIDES
 from railpatch.evidence.bench.problems import FRICTION, Batch
 from railpatch.evidence.bench.shapes import Floats, Surface

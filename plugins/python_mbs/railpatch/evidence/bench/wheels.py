@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from railpatch.case.config import input_of
 from railpatch.case.load import load_scene
 from railpatch.case.moving import changed_case
+from railpatch.case.to_core import input_of
 from railpatch.evidence.bench.problems import FRICTION, Scales, merged
 from railpatch.evidence.bench.shapes import Floats, hertz_pressure
 from railpatch.evidence.bench.surfaces import MANCHESTER

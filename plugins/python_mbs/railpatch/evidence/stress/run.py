@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from railpatch import _core
-from railpatch.case.config import config_of, input_of
 from railpatch.case.load import Case, load_scene
 from railpatch.case.patch import PatchCase
 from railpatch.case.theories import FAST
+from railpatch.case.to_core import config_of, input_of
 from railpatch.case.types import SIDES
 from railpatch.errors import CaseError, ProfileError
 from railpatch.evidence.stress.conditions import energy_balance, findings, line_of
