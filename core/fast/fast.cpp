@@ -9,16 +9,7 @@
 
 namespace railpatch {
 
-namespace {
-
 using std::numbers::pi;
-
-double inside_ellipse(const double semi_axes[2], double x, double y) {
-  const double u = x / semi_axes[0], v = y / semi_axes[1];
-  return 1.0 - u * u - v * v;
-}
-
-}  // namespace
 
 fast_solver::fast_solver(const elastic_constants &elastic, const fast_options &options, int max_nx,
                          int max_ny)

@@ -19,6 +19,13 @@ struct hertz_contact {
   double max_pressure = 0;        // Pa
 };
 
+// Pressure over its greatest, squared: 1 in the middle, 0 on the edge, negative outside. Of a line
+// contact, whose second axis is zero, across rolling the same everywhere.
+inline double inside_ellipse(const double semi_axes[2], double x, double y) {
+  const double u = x / semi_axes[0], v = semi_axes[1] > 0 ? y / semi_axes[1] : 0.0;
+  return 1.0 - u * u - v * v;
+}
+
 hertz_contact hertz_from_force(const double curvatures[2], double modulus, double force);
 hertz_contact hertz_from_approach(const double curvatures[2], double modulus, double approach);
 // The curvatures that give the ellipse under the load.

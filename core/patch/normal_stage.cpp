@@ -8,16 +8,7 @@
 
 namespace railpatch {
 
-namespace {
-
 using std::numbers::pi;
-
-double inside_ellipse(const double semi_axes[2], double x, double y) {
-  const double u = x / semi_axes[0], v = semi_axes[1] > 0 ? y / semi_axes[1] : 0.0;
-  return 1.0 - u * u - v * v;
-}
-
-}  // namespace
 
 normal_stage::normal_stage(patch_workspace &shared, int max_nx, int max_ny) : shared_(shared) {
   const patch_scene &scene = shared.scene;

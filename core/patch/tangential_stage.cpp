@@ -224,14 +224,14 @@ tangential_result tangential_stage::solve_on_grid(const patch_problem &problem,
     coarse_start_->find(g, memory.pressure.data(), bound_.data(), rolling, options,
                         memory.fields());
   if (!has_physics || !shared_.scene.law)
-    return tangential_->solve(*shared_.influence, g, memory.pressure.data(), bound_.data(), rolling,
-                              options, memory.fields());
+    return tangential_->solve({*shared_.influence, g, memory.pressure.data(), bound_.data(),
+                               rolling, options, memory.fields()});
   memory.history.start_from_before(g, *shared_.scene.law);
   const inelastic_fields fields = memory.history.fields(*shared_.scene.law);
   inelastic_sums sums;
   const tangential_result t =
-      tangential_->solve(*shared_.influence, g, memory.pressure.data(), bound_.data(), rolling,
-                         options, memory.fields(), &fields, &sums);
+      tangential_->solve({*shared_.influence, g, memory.pressure.data(), bound_.data(), rolling,
+                          options, memory.fields(), &fields, &sums});
   for (size_t i = 0; i < static_cast<size_t>(g.count()); ++i)
     if (memory.pressure[i] > 0) memory.history.friction[i] /= memory.pressure[i];
   found.plastic = sums.plastic;

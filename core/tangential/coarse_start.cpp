@@ -48,7 +48,7 @@ void coarse_start::find(const grid &g, const double *pressure, const double *bou
                                  options.max_iterations};
   if (coarser_ && serves(coarse.nx, coarse.ny))
     coarser_->find(coarse, pressure_.data(), bound_.data(), input, loose, own);
-  solver_.solve(influence_, coarse, pressure_.data(), bound_.data(), input, loose, own);
+  solver_.solve({influence_, coarse, pressure_.data(), bound_.data(), input, loose, own});
   prolong(coarse, g, bound, fields);
 }
 

@@ -1,8 +1,12 @@
 // Elements that lie in rows: vectors hold, row after row, the row's x components and then its y
-// components (rolling_newton.hpp).
+// components (rolling_newton.hpp). And the one way from a grid to such rows and back.
 #pragma once
 
 #include <cstddef>
+#include <cstdlib>
+
+#include "half_space/influence.hpp"
+#include "numeric/memory.hpp"
 
 namespace railpatch {
 
@@ -37,5 +41,62 @@ std::size_t for_each_row_unknown(int rows, const int *row_start, const Linearisa
   }
   return first;
 }
+
+// The elements of a grid that are in contact, and products on the grid with vectors of them.
+class row_elements {
+ public:
+  row_elements(int max_nx, int max_ny);
+  // Those under pressure; rows begin at their leading edges, rows without contact are left out.
+  void collect(const grid &g, const double *pressure, int direction);
+
+  int count() const { return count_; }
+  int rows() const { return rows_; }
+  size_t vector_size() const { return 2 * static_cast<size_t>(count_); }
+  const int *row_start() const { return row_start_.data(); }
+  int length(int row) const { return row_start()[row + 1] - row_start()[row]; }
+  // indices on the grid of a row's elements
+  const int *at(int row) const { return at_.data() + row_start()[row]; }
+  bool gapless(int row) const {
+    const int *elements = at(row), n = length(row);
+    return std::abs(elements[n - 1] - elements[0]) == n - 1;
+  }
+  // The longest row where none has a gap, else -1: the others' matrices are the beginning of its.
+  int common_row() const;
+
+  // f(element, index on the grid, indices of its components in vectors)
+  template <class F>
+  void for_each(F &&f) const {
+    for_each_row_element(rows_, row_start(), [&](size_t element, size_t ix, size_t iy) {
+      f(element, static_cast<size_t>(at_[element]), ix, iy);
+    });
+  }
+  // out = B v by run(px, py, sx, sy) on the grid, where v is zero out of contact.
+  template <class Run>
+  void product(const double *v, double *out, Run &&run) {
+    double *px = grid_[0].data(), *py = grid_[1].data();
+    for_each([&](size_t, size_t at, size_t ix, size_t iy) {
+      px[at] = v[ix];
+      py[at] = v[iy];
+    });
+    run(px, py, x(), y());
+    gather(x(), y(), out);
+  }
+  // The vector of two fields on the grid.
+  void gather(const double *x, const double *y, double *v) const {
+    for_each([&](size_t, size_t at, size_t ix, size_t iy) {
+      v[ix] = x[at];
+      v[iy] = y[at];
+    });
+  }
+  // Fields on the grid for a product's result.
+  double *x() { return grid_[2].data(); }
+  double *y() { return grid_[3].data(); }
+  size_t bytes() const { return at_.bytes() + row_start_.bytes() + 4 * grid_[0].bytes(); }
+
+ private:
+  int count_ = 0, rows_ = 0;
+  aligned_buffer<int> at_, row_start_;
+  aligned_buffer<double> grid_[4];
+};
 
 }  // namespace railpatch

@@ -17,6 +17,7 @@
 #include "half_space/physics.hpp"
 #include "tangential/inelastic_newton.hpp"
 #include "tangential/rolling_newton.hpp"
+#include "tangential/row_strips.hpp"
 
 namespace railpatch {
 
@@ -68,6 +69,18 @@ struct inelastic_sums {
   double plastic_work = 0;  // N, as tangential_result::friction
 };
 
+// What is solved for; arrays on the grid.
+struct tangential_problem {
+  influence &a;
+  const grid &g;
+  const double *pressure, *bound;  // Pa; traction bound g, zero outside the contact area
+  const rolling_input &input;
+  tangential_options options;
+  tangential_fields fields;
+  const inelastic_fields *inelastic = nullptr;  // of laws beyond Coulomb's, with their sums
+  inelastic_sums *sums = nullptr;
+};
+
 class tangential_solver {
  public:
   struct setup {
@@ -80,11 +93,7 @@ class tangential_solver {
   };
   tangential_solver(int max_nx, int max_ny, const setup &setup);
 
-  // bound: traction bound g on the grid (Pa), zero outside the contact area (pressure > 0).
-  tangential_result solve(influence &a, const grid &g, const double *pressure, const double *bound,
-                          const rolling_input &input, const tangential_options &options,
-                          tangential_fields fields, const inelastic_fields *inelastic = nullptr,
-                          inelastic_sums *sums = nullptr);
+  tangential_result solve(const tangential_problem &problem);
   // The preconditioner's, for linear systems of the same rows between solves; null: other laws.
   row_blocks *blocks() { return newton_ ? &newton_->blocks() : nullptr; }
   // See half_space/offset_influence.hpp; on the grid of a.
@@ -100,24 +109,16 @@ class tangential_solver {
  private:
   class grid_operator;
   class step_operator;
-  void add_history(influence &a, const grid &g, const rolling_input &input);
-  tangential_result solve_inelastic(rolling_operator &b, const rolling_problem &problem,
-                                    const rolling_input &input, const tangential_options &options,
-                                    const inelastic_fields &fields, inelastic_sums &sums);
+  void collect(const tangential_problem &problem);
+  void add_history(const tangential_problem &problem);
+  tangential_result solve_inelastic(rolling_operator &b, const rolling_problem &rows,
+                                    const tangential_problem &problem);
   void carry_plastic(const inelastic_fields &fields);
-  void collect(const grid &g, const double *pressure, const double *bound,
-               const rolling_input &input, const tangential_fields &fields);
   void release(const grid &g, tangential_fields fields) const;
-  // f(element, grid index, indices of its components in vectors)
-  template <class F>
-  void for_each_element(F &&f) const;
 
-  int count_ = 0, rows_ = 0;
-  double step_ = 1;                     // m, of an element
-  aligned_buffer<int> at_, row_start_;  // element -> index on the grid; first elements of the rows
+  row_elements elements_;
+  row_strips strips_;
   aligned_buffer<double> bound_, area_, rigid_, p_, s_;
-  aligned_buffer<double> grid_px_, grid_py_, grid_sx_, grid_sy_;
-  aligned_buffer<double> line_[2];  // the preconditioner's B in a row by offset, xx and yy
   std::optional<rolling_newton> newton_;
   physics_part<inelastic_newton> inelastic_;
   physics_part<offset_influence> offset_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 
 #include "numeric/sums.hpp"
@@ -23,29 +22,20 @@ constexpr int most_weights = 4;
 }  // namespace
 
 template <class F>
-void tangential_derivative::for_each_element(F &&f) const {
-  for_each_row_element(rows_, row_start_.data(), [&](size_t element, size_t ix, size_t iy) {
-    f(element, static_cast<size_t>(at_[element]), ix, iy);
-  });
-}
-
-template <class F>
 size_t tangential_derivative::for_each_unknown(F &&f) const {
-  return for_each_row_unknown(rows_, row_start_.data(), linear_.data(), f);
+  return for_each_row_unknown(elements_.rows(), elements_.row_start(), linear_.data(), f);
 }
 
 tangential_derivative::tangential_derivative(int max_nx, int max_ny, int directions)
     : directions_(std::max(directions, most_weights)),
+      elements_(max_nx, max_ny),
+      strips_(max_nx, strips),
       systems_(2 * max_nx * max_ny, kept, directions_) {
   const auto row = static_cast<size_t>(max_nx), n = row * static_cast<size_t>(max_ny);
   const auto sides = static_cast<size_t>(directions_);
-  at_ = aligned_buffer<int>(n);
-  row_start_ = aligned_buffer<int>(static_cast<size_t>(max_ny) + 1);
   linear_ = aligned_buffer<element_linearisation>(n);
   for (auto &b : normal_) b = aligned_buffer<double>(n);
-  for (auto &b : line_) b = aligned_buffer<double>(2 * row + 1);
   for (auto &b : matrix_) b = aligned_buffer<double>::uninitialized(row * row);
-  for (auto &b : grid_) b = aligned_buffer<double>(n);
   for (auto *b : {&right_, &solution_}) *b = aligned_buffer<double>::uninitialized(2 * n * sides);
   for (auto *b : {&weight_, &dual_, &back_})
     *b = aligned_buffer<double>::uninitialized(2 * n * most_weights);
@@ -54,121 +44,70 @@ tangential_derivative::tangential_derivative(int max_nx, int max_ny, int directi
 }
 
 size_t tangential_derivative::bytes() const {
-  return at_.bytes() + row_start_.bytes() + linear_.bytes() + 2 * normal_[0].bytes() +
-         2 * line_[0].bytes() + 2 * matrix_[0].bytes() + 4 * grid_[0].bytes() + 2 * right_.bytes() +
-         3 * weight_.bytes() + 4 * known_.bytes() + 3 * by_size_[0].bytes() + systems_.bytes();
+  return elements_.bytes() + strips_.bytes() + linear_.bytes() + 2 * normal_[0].bytes() +
+         2 * matrix_[0].bytes() + 2 * right_.bytes() + 3 * weight_.bytes() + 4 * known_.bytes() +
+         3 * by_size_[0].bytes() + systems_.bytes();
 }
 
-// Rows from their leading edges, as in tangential_solver, and the solution's linear equations.
+// The solution's elements and their linear equations.
 void tangential_derivative::collect(const tangential_point &point) {
   const grid &g = point.g;
-  count_ = rows_ = products_ = exact_ = 0;
+  products_ = exact_ = 0;
   sizes_ready_ = false;
   const double scale =
       2.0 * g.dx /
       ((point.a.coefficient(kernel::xx, 0, 0) + point.a.coefficient(kernel::yy, 0, 0)) -
        (point.a.coefficient(kernel::xx, 1, 0) + point.a.coefficient(kernel::yy, 1, 0)));
-  for (int j = 0; j < g.ny; ++j) {
-    const int begin = count_;
-    const double factor = point.row_friction ? point.row_friction[j] : 1.0;
-    for (int k = 0; k < g.nx; ++k) {
-      const int at = j * g.nx + (point.rolling.direction > 0 ? g.nx - 1 - k : k);
-      if (!(point.pressure[at] > 0)) continue;
-      const auto e = static_cast<size_t>(count_++);
-      at_[e] = at;
-      const double bound = point.friction_coefficient * factor * point.pressure[at];
-      const double qx = point.px[at] - scale * point.sx[at];
-      const double qy = point.py[at] - scale * point.sy[at], q = std::hypot(qx, qy);
-      normal_[0][e] = normal_[1][e] = 0;
-      if (bound > 0 && point.division[at] == RP_STICK) {
-        linear_[e] = {{1.0, 0.0}, 0.0, scale, true};
-      } else if (bound > 0) {
-        normal_[0][e] = qx / q;
-        normal_[1][e] = qy / q;
-        const double theta = bound / q;
-        linear_[e] = {{-qy / q, qx / q}, 1.0 - theta, scale * theta, false};
-      } else {
-        // without friction the traction stays zero; the rate of its bound acts against the slip
-        if (q > 0) normal_[0][e] = qx / q, normal_[1][e] = qy / q;
-        linear_[e] = {{1.0, 0.0}, 1.0, 0.0, false};
-      }
+  elements_.collect(g, point.pressure, point.rolling.direction);
+  elements_.for_each([&](size_t e, size_t at, size_t, size_t) {
+    const double factor =
+        point.row_friction ? point.row_friction[static_cast<int>(at) / g.nx] : 1.0;
+    const double bound = point.friction_coefficient * factor * point.pressure[at];
+    const double qx = point.px[at] - scale * point.sx[at];
+    const double qy = point.py[at] - scale * point.sy[at], q = std::hypot(qx, qy);
+    normal_[0][e] = normal_[1][e] = 0;
+    if (bound > 0 && point.division[at] == RP_STICK) {
+      linear_[e] = {{1.0, 0.0}, 0.0, scale, true};
+    } else if (bound > 0) {
+      normal_[0][e] = qx / q;
+      normal_[1][e] = qy / q;
+      const double theta = bound / q;
+      linear_[e] = {{-qy / q, qx / q}, 1.0 - theta, scale * theta, false};
+    } else {
+      // without friction the traction stays zero; the rate of its bound acts against the slip
+      if (q > 0) normal_[0][e] = qx / q, normal_[1][e] = qy / q;
+      linear_[e] = {{1.0, 0.0}, 1.0, 0.0, false};
     }
-    if (count_ == begin) continue;
-    row_start_[static_cast<size_t>(rows_++)] = begin;
-  }
-  row_start_[static_cast<size_t>(rows_)] = count_;
-  vector_ = 2 * static_cast<size_t>(count_);
+  });
+  vector_ = elements_.vector_size();
   unknowns_ =
       for_each_unknown([](const element_linearisation &, size_t, size_t, size_t, size_t) {});
-  for (auto &b : grid_) std::fill_n(b.data(), g.count(), 0.0);
-}
-
-// The preconditioner's matrices, those of tangential.cpp or their transposes.
-void tangential_derivative::set_line(const tangential_point &point, kernel k, bool transposed,
-                                     double *line) const {
-  const grid &g = point.g;
-  const int strip = 1 + rows_ / strips;
-  std::fill(line - g.nx, line + g.nx + 1, 0.0);
-  for (int j = 0; j < strip; ++j) {
-    const double weight = (j == 0 ? 1.0 : 2.0) * (strip - j) / (strip * g.dx);
-    double before = point.a.coefficient(k, g.nx + 1, j);
-    for (int ahead = -g.nx; ahead <= g.nx; ++ahead) {
-      const double here = point.a.coefficient(k, ahead, j);
-      line[transposed ? -ahead : ahead] += weight * (here - before);
-      before = here;
-    }
-  }
 }
 
 void tangential_derivative::factor(const tangential_point &point, bool transposed) {
-  const int nx = point.g.nx, direction = point.rolling.direction;
-  const double *line[2] = {line_[0].data() + nx, line_[1].data() + nx};
-  set_line(point, kernel::xx, transposed, line_[0].data() + nx);
-  set_line(point, kernel::yy, transposed, line_[1].data() + nx);
-  int longest = 0;
-  bool gapless = true;
-  const auto length = [&](int row) {
-    return row_start_[static_cast<size_t>(row) + 1] - row_start_[static_cast<size_t>(row)];
-  };
-  for (int row = 0; row < rows_; ++row) {
-    const int *at = at_.data() + row_start_[static_cast<size_t>(row)], n = length(row);
-    gapless = gapless && std::abs(at[n - 1] - at[0]) == n - 1;
-    if (n > length(longest)) longest = row;
-  }
-  const auto fill = [&](int row) {
-    const int *at = at_.data() + row_start_[static_cast<size_t>(row)], n = length(row);
-    for (int c = 0; c < 2; ++c)
-      for (int source = 0; source < n; ++source)
-        for (int observer = 0; observer < n; ++observer)
-          matrix_[c][static_cast<size_t>(source * n + observer)] =
-              line[c][direction * (at[source] - at[observer])];
-  };
+  double *bxx = matrix_[0].data(), *byy = matrix_[1].data();
+  strips_.set(point.a, point.g, elements_.rows(), transposed);
   row_blocks &blocks = point.blocks;
-  blocks.start(rows_, row_start_.data());
-  if (gapless) {
-    fill(longest);
-    blocks.share(length(longest), matrix_[0].data(), matrix_[1].data());
+  blocks.start(elements_.rows(), elements_.row_start());
+  const int common = elements_.common_row();
+  if (common >= 0) {
+    strips_.matrices(elements_, common, point.rolling.direction, bxx, byy);
+    blocks.share(elements_.length(common), bxx, byy);
   }
-  for (int row = 0; row < rows_; ++row) {
-    const element_linearisation *e = linear_.data() + row_start_[static_cast<size_t>(row)];
+  for (int row = 0; row < elements_.rows(); ++row) {
+    const element_linearisation *e = linear_.data() + elements_.row_start()[row];
     if (blocks.set_row(row, e)) continue;
-    fill(row);
-    blocks.set_row(row, matrix_[0].data(), matrix_[1].data(), e);
+    strips_.matrices(elements_, row, point.rolling.direction, bxx, byy);
+    blocks.set_row(row, bxx, byy, e);
   }
 }
 
 void tangential_derivative::product(const tangential_point &point, const double *v, double *out,
                                     bool transposed, bool exact) {
   const int direction = transposed ? -point.rolling.direction : point.rolling.direction;
-  for_each_element([&](size_t, size_t at, size_t ix, size_t iy) {
-    grid_[0][at] = v[ix];
-    grid_[1][at] = v[iy];
-  });
   const auto rolling = exact ? &influence::rolling_product : &influence::rolling_product_single;
-  (point.a.*rolling)(grid_[0].data(), grid_[1].data(), direction, grid_[2].data(), grid_[3].data());
-  for_each_element([&](size_t, size_t at, size_t ix, size_t iy) {
-    out[ix] = grid_[2][at];
-    out[iy] = grid_[3][at];
+  elements_.product(v, out, [&](double *px, double *py, double *sx, double *sy) {
+    (point.a.*rolling)(px, py, direction, sx, sy);
   });
   ++products_;
   exact_ += exact;
@@ -204,7 +143,7 @@ double tangential_derivative::solve_systems(const tangential_point &point, int s
     });
   };
   const auto precondition = [&](double *z) {
-    for (int row = 0; row < rows_; ++row) {
+    for (int row = 0; row < elements_.rows(); ++row) {
       point.blocks.solve(row, z);
       z += point.blocks.size(row);
     }
@@ -222,7 +161,7 @@ bool tangential_derivative::along_bound(const tangential_point &point,
     return false;
   }
   const double mu = point.friction_coefficient;
-  for_each_element([&](size_t k, size_t at, size_t ix, size_t iy) {
+  elements_.for_each([&](size_t k, size_t at, size_t ix, size_t iy) {
     const auto j = static_cast<int>(at) / point.g.nx;
     const double factor = point.row_friction ? point.row_friction[j] : 1.0;
     double rate = in.friction_coefficient * factor * point.pressure[at];
@@ -241,7 +180,7 @@ void tangential_derivative::prepare_sizes(const tangential_point &point) {
   const grid &g = point.g;
   const int direction = point.rolling.direction;
   const double layer = point.a.bodies().layer_flexibility / g.dx;
-  for_each_element([&](size_t, size_t at, size_t ix, size_t iy) {
+  elements_.for_each([&](size_t, size_t at, size_t ix, size_t iy) {
     const int i = static_cast<int>(at) % g.nx + direction;
     const bool inside = i >= 0 && i < g.nx;
     const auto ahead = static_cast<size_t>(static_cast<int>(at) + direction);
@@ -249,24 +188,19 @@ void tangential_derivative::prepare_sizes(const tangential_point &point) {
     by_size_[2][iy] = layer * (point.py[at] - (inside ? point.py[ahead] : 0.0));
   });
   if (!point.by_length) return;
-  const auto gather = [&](aligned_buffer<double> &to) {
-    for_each_element([&](size_t, size_t at, size_t ix, size_t iy) {
-      to[ix] = grid_[2][at];
-      to[iy] = grid_[3][at];
-    });
-  };
-  point.a.rolling_product(point.px, point.py, direction, grid_[2].data(), grid_[3].data());
-  gather(by_size_[0]);
+  double *x = elements_.x(), *y = elements_.y();
+  point.a.rolling_product(point.px, point.py, direction, x, y);
+  elements_.gather(x, y, by_size_[0].data());
   for (size_t i = 0; i < vector_; ++i) by_size_[0][i] -= by_size_[2][i];
-  point.by_length->rolling_product(point.px, point.py, direction, grid_[2].data(), grid_[3].data());
-  gather(by_size_[1]);
+  point.by_length->rolling_product(point.px, point.py, direction, x, y);
+  elements_.gather(x, y, by_size_[1].data());
   products_ += 2;
   exact_ += 2;
   if (weights_ < 4) return;
-  point.by_length->tangential_product(point.px, point.py, grid_[2].data(), grid_[3].data());
+  point.by_length->tangential_product(point.px, point.py, x, y);
   stretch_energy_ = 0.5 * g.dx * g.dy *
-                    (dot(point.px, grid_[2].data(), static_cast<size_t>(g.count())) +
-                     dot(point.py, grid_[3].data(), static_cast<size_t>(g.count())));
+                    (dot(point.px, x, static_cast<size_t>(g.count())) +
+                     dot(point.py, y, static_cast<size_t>(g.count())));
   ++products_;
   ++exact_;
 }
@@ -276,7 +210,7 @@ void tangential_derivative::slip_rate(const tangential_point &point, const tange
                                       double *v) {
   const grid &g = point.g;
   const rolling_input &r = point.rolling;
-  for_each_element([&](size_t, size_t at, size_t ix, size_t iy) {
+  elements_.for_each([&](size_t, size_t at, size_t ix, size_t iy) {
     const int i = static_cast<int>(at) % g.nx, j = static_cast<int>(at) / g.nx;
     const double dx = in.origin[0] + i * in.size[0] + in.spin_offset;
     const double dy = in.origin[1] + j * in.size[1];
@@ -298,7 +232,7 @@ void tangential_derivative::set_weights(const tangential_point &point, const opt
   const grid &g = point.g;
   const double area = g.dx * g.dy;
   weights_ = o.energy ? 4 : 3;
-  for_each_element([&](size_t, size_t at, size_t ix, size_t iy) {
+  elements_.for_each([&](size_t, size_t at, size_t ix, size_t iy) {
     const int i = static_cast<int>(at) % g.nx, j = static_cast<int>(at) / g.nx;
     side(weight_, 0)[ix] = side(weight_, 1)[iy] = area;
     side(weight_, 0)[iy] = side(weight_, 1)[ix] = 0;
@@ -306,12 +240,13 @@ void tangential_derivative::set_weights(const tangential_point &point, const opt
     side(weight_, 2)[iy] = area * g.x(i);
   });
   if (!o.energy) return;
-  point.a.tangential_product(point.px, point.py, grid_[2].data(), grid_[3].data());
+  const double *ux = elements_.x(), *uy = elements_.y();
+  point.a.tangential_product(point.px, point.py, elements_.x(), elements_.y());
   ++products_;
   ++exact_;
-  for_each_element([&](size_t, size_t at, size_t ix, size_t iy) {
-    side(weight_, 3)[ix] = area * grid_[2][at];
-    side(weight_, 3)[iy] = area * grid_[3][at];
+  elements_.for_each([&](size_t, size_t at, size_t ix, size_t iy) {
+    side(weight_, 3)[ix] = area * ux[at];
+    side(weight_, 3)[iy] = area * uy[at];
   });
 }
 
@@ -323,7 +258,7 @@ void tangential_derivative::add_geometry(const tangential_point &point,
   if (in.size[0] == 0 && in.size[1] == 0 && in.origin[0] == 0 && in.origin[1] == 0) return;
   const double growth = in.size[0] / g.dx + in.size[1] / g.dy, area = g.dx * g.dy;
   double force[2] = {0, 0}, moment = 0, moved = 0;
-  for_each_element([&](size_t, size_t at, size_t, size_t) {
+  elements_.for_each([&](size_t, size_t at, size_t, size_t) {
     const int i = static_cast<int>(at) % g.nx, j = static_cast<int>(at) / g.nx;
     const double px = point.px[at], py = point.py[at];
     force[0] += px;
@@ -337,7 +272,7 @@ void tangential_derivative::add_geometry(const tangential_point &point,
   // 1/2 p . A p dA: A of the bodies grows with the elements, the layer's does not
   const double *u = weight_.data() + 3 * vector_;
   double bodies = 0, layer = 0;
-  for_each_element([&](size_t, size_t at, size_t ix, size_t iy) {
+  elements_.for_each([&](size_t, size_t at, size_t ix, size_t iy) {
     const double px = point.px[at], py = point.py[at];
     const double own = area * point.a.bodies().layer_flexibility * (px * px + py * py);
     layer += own;

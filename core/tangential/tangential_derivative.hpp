@@ -20,7 +20,6 @@
 
 #include "numeric/row_blocks.hpp"
 #include "numeric/shared_krylov.hpp"
-#include "tangential/row_elements.hpp"
 #include "tangential/tangential.hpp"
 
 namespace railpatch {
@@ -79,7 +78,6 @@ class tangential_derivative {
  private:
   void collect(const tangential_point &point);
   void factor(const tangential_point &point, bool transposed);
-  void set_line(const tangential_point &point, kernel k, bool transposed, double *line) const;
   void product(const tangential_point &point, const double *v, double *out, bool transposed,
                bool exact);
   double solve_systems(const tangential_point &point, int sides, bool transposed, double tolerance);
@@ -95,22 +93,19 @@ class tangential_derivative {
   double *side(aligned_buffer<double> &b, int k) const {
     return b.data() + static_cast<size_t>(k) * vector_;
   }
-  // f(element, grid index, indices of its components in vectors)
-  template <class F>
-  void for_each_element(F &&f) const;
   // f(element, index of z, index of z_y, indices of its components in vectors)
   template <class F>
   size_t for_each_unknown(F &&f) const;
 
-  int directions_, count_ = 0, rows_ = 0, weights_ = 3, products_ = 0, exact_ = 0;
+  int directions_, weights_ = 3, products_ = 0, exact_ = 0;
   size_t vector_ = 0, unknowns_ = 0;
   bool sizes_ready_ = false;
   double stretch_energy_ = 0;  // 1/2 p . dA/d(dx) p dA
-  aligned_buffer<int> at_, row_start_;
+  row_elements elements_;
+  row_strips strips_;
   aligned_buffer<element_linearisation> linear_;
   aligned_buffer<double> normal_[2];  // of each element: -n in slip, else 0
-  aligned_buffer<double> line_[2], matrix_[2];
-  aligned_buffer<double> grid_[4];
+  aligned_buffer<double> matrix_[2];
   aligned_buffer<double> right_, solution_;      // unknowns, one after the other
   aligned_buffer<double> weight_, dual_, back_;  // l, m and l - B^T m
   aligned_buffer<double> known_, rate_, work_, unknown_;
