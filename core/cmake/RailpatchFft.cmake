@@ -1,11 +1,11 @@
 # The FFT libraries behind core/numeric/fft.hpp. For each backend at hand: an object library
 # railpatch_fft_<name> of core/numeric/fft_<name>.cpp and an interface library <name>_library to link
 # with it.
-# RAILPATCH_FFT chooses the one of the main library: fft_objects, fft_library.
-# FFTW is GPL-2.0-or-later and fast, Eigen's own FFT (MPL-2.0) is the permissive choice.
+# RAILPATCH_FFT chooses the one of the main library: fft_objects, fft_library; RAILPATCH_FFT_USED is
+# its name. FFTW is GPL-2.0-or-later, Eigen's own FFT (MPL-2.0) is the permissive choice.
 
 set(fft_choices fftw eigen)
-if(NOT RAILPATCH_FFT IN_LIST fft_choices)
+if(RAILPATCH_FFT AND NOT RAILPATCH_FFT IN_LIST fft_choices)
   message(FATAL_ERROR
     "RAILPATCH_FFT is \"${RAILPATCH_FFT}\"; this version of Railpatch knows: ${fft_choices}")
 endif()
@@ -56,9 +56,17 @@ else()
   endif()
 endif()
 
-set(fft_objects railpatch_fft_${RAILPATCH_FFT})
-set(fft_library ${RAILPATCH_FFT}_library)
+set(fft_used "${RAILPATCH_FFT}")
+if(NOT fft_used AND TARGET railpatch_fft_fftw)
+  set(fft_used fftw)
+elseif(NOT fft_used)
+  set(fft_used eigen)
+endif()
+set(fft_objects railpatch_fft_${fft_used})
+set(fft_library ${fft_used}_library)
 if(NOT TARGET ${fft_objects})
-  message(FATAL_ERROR "RAILPATCH_FFT is ${RAILPATCH_FFT}, which was not found (FFTW 3 in double "
+  message(FATAL_ERROR "RAILPATCH_FFT is ${fft_used}, which was not found (FFTW 3 in double "
     "precision, or Eigen 3.4); on Debian and Ubuntu: apt install libfftw3-dev libeigen3-dev")
 endif()
+set(RAILPATCH_FFT_USED ${fft_used} CACHE INTERNAL "The FFT library of this build")
+message(STATUS "FFT library: ${fft_used}")
