@@ -22,12 +22,14 @@ export PATH := $(CURDIR)/$(BIN):$(PATH)
 
 # the FMU's functions are among the C++ tests; the FMI headers come with fmpy in this environment
 FMU := -DRAILPATCH_FMU=ON -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python
+# where the FMU's library with FFTW is put, which is under the GPL and in no package
+FMU_FFTW := build/fmu_fftw
 CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
 # what the installed package is made from
 SOURCES := $(shell find core plugins rig_model wheelset_demo -type f -not -name '*.pyc' 2>/dev/null) \
 	CMakeLists.txt README.md
 
-.PHONY: help demo viewer fmu fmu-clients test lint format clean setup system test-cpp test-python test-asan pruning
+.PHONY: help demo viewer fmu fmu-clients fmu-fftw test lint format clean setup system test-cpp test-python test-asan pruning
 
 help: ## this list
 	@echo "make targets:"
@@ -48,18 +50,25 @@ demo: setup ## set-up, roller-rig replay, wheelset on track, an FMU; logs and re
 	@printf '\nOpen this page first, the replay of the roller rig beside published forces:\n  %s\n' \
 		"file://$(CURDIR)/build/demo/report.html"
 
-fmu: setup ## FMUs of the default scene and of each kind for Linux, ARM, Windows; one with FFTW (GPL)
+fmu: setup fmu-fftw ## FMUs of the default scene and of each kind for Linux, ARM, Windows; one with FFTW (GPL)
 	@mkdir -p build/fmu
 	$(BIN)/python -m pip install --quiet --group cross
 	$(BIN)/python plugins/fmu/cross/build.py build/fmu
 	$(BIN)/railpatch fmu --libraries build/fmu/lib -o build/fmu/railpatch.fmu
-	$(BIN)/railpatch fmu --fft fftw -o build/fmu/railpatch_fftw_gpl.fmu
+	$(BIN)/railpatch fmu --fft fftw --libraries $(FMU_FFTW)/railpatch/fmu/lib -o build/fmu/railpatch_fftw_gpl.fmu
 	$(BIN)/python plugins/fmu/cross/check.py build/fmu/railpatch.fmu build/fmu/check --compile
 	@kinds="$$($(BIN)/python -c 'from railpatch.fmu.scenes import kinds; print(*kinds())')"; \
 	for kind in $$kinds; do \
 		$(BIN)/railpatch fmu --scene $$kind --libraries build/fmu/lib -o build/fmu/$$kind.fmu; \
 		$(BIN)/python plugins/fmu/cross/check.py build/fmu/$$kind.fmu build/fmu/check; \
 	done
+
+fmu-fftw: setup ## the FMU's library with FFTW, for `railpatch fmu --fft fftw --libraries`
+	cmake --preset release $(FMU)
+	cmake --build --preset release --target railpatch_fmu
+	cmake --install build/release --component python --prefix $(FMU_FFTW)
+	$(BIN)/python -c 'from railpatch.fmu.libraries import stamp; print(stamp())' \
+		> $(FMU_FFTW)/railpatch/fmu/lib/stamp.txt
 
 fmu-clients: fmu ## the same in clients that others wrote: fmpy, libcosimpy, ecospy, FMI4j, VDMCheck2
 	plugins/fmu/clients/run build/fmu/clients $$(ls build/fmu/*.fmu | grep -v gpl)
@@ -99,7 +108,7 @@ test-asan: $(VENV)/tools ## the same with address and undefined-behaviour saniti
 	@mkdir -p build/junit
 	ctest --preset asan --output-junit "$(CURDIR)/build/junit/asan.xml"
 
-test-python: setup ## pytest, against the installed package
+test-python: setup fmu-fftw ## pytest, against the installed package
 	@mkdir -p build/junit
 	$(BIN)/python -m pytest --junit-xml=build/junit/python.xml
 

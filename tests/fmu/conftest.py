@@ -13,6 +13,9 @@ from railpatch.case import load_scene
 from railpatch.fmu import pack_fmu
 from slave import Fmu
 
+# the library with FFTW, which packages with Eigen's transforms leave out: `make fmu-fftw`
+FFTW = Path(__file__).parents[2] / "build/fmu_fftw/railpatch/fmu/lib"
+
 
 @pytest.fixture(scope="session")
 def packed(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
@@ -22,7 +25,9 @@ def packed(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
     def pack(name: str, backend: Any = OWN) -> Path:
         path = folder / f"{name}_{backend}.fmu"
         if not path.exists():
-            pack_fmu(load_scene(SCENES[name]), path, name=name, backend=backend)
+            libraries = FFTW if backend == "fftw" != OWN else None
+            scene = load_scene(SCENES[name])
+            pack_fmu(scene, path, name=name, backend=backend, libraries=libraries)
         return path
 
     return pack

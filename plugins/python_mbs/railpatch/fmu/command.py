@@ -27,7 +27,8 @@ from railpatch.errors import CaseError
     type=click.Choice(["eigen", "fftw"]),
     default="eigen",
     show_default=True,
-    help="The FFT library: fftw is faster, and makes the FMU one under the GPL.",
+    help="The FFT library: fftw makes the FMU one under the GPL; its library is made by "
+    "`make fmu-fftw`.",
 )
 @click.option(
     "--derivatives",

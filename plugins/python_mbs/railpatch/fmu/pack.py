@@ -86,7 +86,7 @@ def pack_fmu(
 ) -> Path:
     """Writes the FMU of a scene.
 
-    name: of the model. backend: "eigen" (permissive), or "fftw" (faster; then the FMU is under the
+    name: of the model. backend: "eigen" (permissive), or "fftw" (then the FMU is under the
     GPL). derivatives: of the outputs; "exact": where they come from the solved conditions;
     "always": else by differences of further solves; a scene with a history has none. averages:
     outputs of forces averaged over a step, and sub-steps for them (scenes with wheels).
