@@ -1,10 +1,9 @@
-#include <cmath>
 #include <cstring>
 #include <new>
 
+#include "handle/case_fields.hpp"
 #include "handle/check.hpp"
 #include "handle/contact.hpp"
-#include "numeric/nan.hpp"
 #include "railpatch.h"
 
 using namespace railpatch;
@@ -17,61 +16,22 @@ struct rp_contact {
 // No exception leaves this file: creation may run out of memory or meet a bad profile; a step
 // throws nothing of its own.
 
-void rp_default_config(rp_config *config) {
-  if (!config) return;
-  std::memset(config, 0, sizeof *config);
-  rp_config &c = *config;
-  c.cookie = config_cookie;
-  for (int k = 0; k < 2; ++k) {
-    c.shear_modulus[k] = 82e9;
-    c.poisson_ratio[k] = 0.28;
-    c.semi_axes[k] = 0.006;
-    c.curvatures[k] = 1.0;
-    c.elements[k] = 24;
-  }
-  c.geometry = RP_SEMI_AXES;
-  c.line_contact_radius = 0.5;
-  c.width = 1.0;
-  c.regime = RP_STEADY_ROLLING;
-  c.friction_coefficient = 0.3;
-  c.friction_kinetic = c.friction_reference = 0.3;
-  for (double &speed : c.friction_halving_speed) speed = 1.0;
-  c.friction_memory_speed = 1e-3;
-  c.friction_temperature_range = 1.0;
-  for (int k = 0; k < 2; ++k) {
-    c.conductivity[k] = 50.0;
-    c.heat_capacity[k] = 450.0;
-    c.density[k] = 7850.0;
-  }
-  c.plastic_heat_fraction = 0.9;
-  c.normal = RP_NORMAL_HALF_SPACE;
-  c.tangential = RP_TANGENTIAL_FULL;
-  c.tolerance = 1e-5;
-  c.max_iterations = 100;
-  c.percent_kalker = 100.0;
-  c.polach_k_a = c.polach_k_s = 1.0;
-  c.fastsim_k0 = c.fastsim_alpha = 1.0;
-  c.side = RP_RIGHT;
-  c.nominal_radius = 0.46;
-  c.flange_back_distance = 1.36;
-  c.flange_back_position = -0.07;
-  c.gauge = 1.435;
-  c.gauge_height = 0.014;
-  c.roller_radius = 1.0;
-  c.max_patches = RP_MAX_PATCHES;
-  c.standstill_speed = 1e-3;
-  c.rail_height_spacing = 1e-3;
+#define RP_NO_FIELD(type, name, count)
+#define RP_START(type, name, count, role, where, start, ...) \
+  for_each_in(to->name, [](auto &v) { v = start; });
+
+void rp_default_config(rp_config *to) {
+  if (!to) return;
+  std::memset(to, 0, sizeof *to);
+  to->cookie = config_cookie;
+  RP_CONFIG_FIELDS(RP_START, RP_NO_FIELD)
 }
 
-void rp_default_input(rp_input *input) {
-  if (!input) return;
-  std::memset(input, 0, sizeof *input);
-  input->cookie = input_cookie;
-  input->normal_force = 1e5;
-  input->vertical_force = 1e5;
-  input->rolling_speed = 10.0;
-  input->direction = 1;
-  for (double &bulk : input->bulk_temperature) bulk = railpatch::nan;
+void rp_default_input(rp_input *to) {
+  if (!to) return;
+  std::memset(to, 0, sizeof *to);
+  to->cookie = input_cookie;
+  RP_INPUT_FIELDS(RP_START, RP_NO_FIELD)
 }
 
 void rp_default_direction(rp_input *direction) {

@@ -5,14 +5,13 @@
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
-#include <utility>
 
 #include "fast/creep_table.hpp"
 #include "fast/fast.hpp"
 #include "half_space/coupling.hpp"
 #include "half_space/physics.hpp"
+#include "handle/case_fields.hpp"
 #include "handle/checker.hpp"
-#include "handle/input_numbers.hpp"
 
 namespace railpatch {
 
@@ -44,11 +43,25 @@ void check_choices(const rp_config &c, checker &check) {
   check.choice("contact_frame", c.contact_frame, RP_FRAME_TRACK, RP_FRAME_INCLINED);
 }
 
+#define RP_NO_FIELD(type, name, count)
+#define RP_CHECK_CONFIG(type, name, count, role, where, ...) \
+  if (case_part::where == part) check.field(#name, c.name, config_range::name);
+#define RP_CHECK_INPUT(type, name, count, role, where, ...) \
+  if (case_part::where == part) check.field(#name, in.name, input_range::name);
+
+// The listed ranges of what belongs to a part.
+void check_ranges(const rp_config &c, case_part part, checker &check) {
+  RP_CONFIG_FIELDS(RP_CHECK_CONFIG, RP_NO_FIELD)
+}
+void check_ranges(const rp_input &in, case_part part, checker &check) {
+  RP_INPUT_FIELDS(RP_CHECK_INPUT, RP_NO_FIELD)
+}
+
 void check_fitted(const rp_config &c, checker &check) {
   if (c.fitted[0] == 0 && c.fitted[1] == 0) return;
   const bool line = c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT;
-  check.integer("fitted[0]", c.fitted[0], 3, 64);
-  check.integer("fitted[1]", c.fitted[1], line ? 1 : 3, line ? 1 : 64);
+  check.field("fitted[0]", c.fitted[0], config_range::fitted);
+  check.field("fitted[1]", c.fitted[1], line ? only_one : config_range::fitted);
   if (check.error() == RP_OK)
     check.integer("fitted[0] * fitted[1]", c.fitted[0] * c.fitted[1], 3, max_fitted_nodes);
   // a scene whose tangential problem is left out for a while keeps its rows
@@ -79,13 +92,6 @@ struct rule_text {
 
 // What only some of the fast theories read must not be set for others.
 void check_fast(const rp_config &c, checker &check) {
-  check.number("percent_kalker", c.percent_kalker, {0, 200, true, false});
-  for (const auto &[name, value] : {std::pair{"polach_k_a", c.polach_k_a},
-                                    {"polach_k_s", c.polach_k_s},
-                                    {"fastsim_k0", c.fastsim_k0}})
-    check.number(name, value, {0, 10, true, false});
-  check.number("fastsim_alpha", c.fastsim_alpha, {0, 1, false, false});
-  check.number("fastsim_beta", c.fastsim_beta, {0, 1000, false, false});
   if (!has_tangential(c)) return;
   const fast_theory *theory = theory_of(c.tangential);
   check.require(theory || c.percent_kalker == 100.0,
@@ -129,23 +135,13 @@ void check_points(const char *points, int count, const char *place, const double
 
 // Friction laws beside Coulomb's; unused numbers are checked all the same.
 void check_friction(const rp_config &c, checker &check) {
-  check.number("friction_coefficient", c.friction_coefficient, friction);
-  check.number("friction_kinetic", c.friction_kinetic, friction);
-  check.numbers("friction_amplitude", c.friction_amplitude, 2, {-10, 10, false, false});
-  check.numbers("friction_halving_speed", c.friction_halving_speed, 2, positive);
-  check.number("friction_memory_distance", c.friction_memory_distance, {0, 1, false, false});
-  check.number("friction_memory_speed", c.friction_memory_speed, positive);
-  check.number("friction_reference", c.friction_reference, friction);
   check.number("friction_reference + friction_change", c.friction_reference + c.friction_change,
                friction);
-  check.number("friction_reference_temperature", c.friction_reference_temperature,
-               {-273.15, 1e4, false, false});
-  check.number("friction_temperature_range", c.friction_temperature_range, {0, 1e5, true, false});
   check_points("friction_points", c.friction_points, "friction_position", c.friction_position,
-               "friction_factor", c.friction_factor, {0, 100, false, false}, check);
+               "friction_factor", c.friction_factor, config_range::friction_factor, check);
   check_points("friction_along_points", c.friction_along_points, "friction_along_position",
                c.friction_along_position, "friction_along_factor", c.friction_along_factor,
-               {0, 100, false, false}, check);
+               config_range::friction_along_factor, check);
   check.require(c.friction_along_points == 0 || c.kind != RP_PATCH,
                 "friction_along_points must be 0 for kind = patch: it has no place along a track");
   if (check.error() != RP_OK || !has_tangential(c)) return;
@@ -167,11 +163,9 @@ void check_friction(const rp_config &c, checker &check) {
 }
 
 void check_plastic(const rp_config &c, checker &check) {
-  check.number("layer_yield_stress", c.layer_yield_stress, {0, 1e15, false, false});
-  check.number("layer_hardening", c.layer_hardening, {-1e25, 1e25, false, false});
   check_points("hardening_points", c.hardening_points, "hardening_displacement",
                c.hardening_displacement, "hardening_stress", c.hardening_stress,
-               {1e-3, 1e15, false, false}, check);
+               config_range::hardening_stress, check);
   if (c.hardening_points > 0 && check.error() == RP_OK) {
     check.number("hardening_displacement[0]", c.hardening_displacement[0], {0, 0, false, false});
     check.require(c.layer_yield_stress == c.hardening_stress[0],
@@ -183,14 +177,6 @@ void check_plastic(const rp_config &c, checker &check) {
 }
 
 void check_temperature(const rp_config &c, checker &check) {
-  check.integer("temperature", c.temperature, 0, 1);
-  check.numbers("bulk_temperature", c.bulk_temperature, 2, bulk);
-  check.integer("heat_exchange", c.heat_exchange, 0, 1);
-  check.numbers("conductivity", c.conductivity, 2, {1e-6, 1e6, false, false});
-  check.numbers("heat_capacity", c.heat_capacity, 2, {1e-3, 1e6, false, false});
-  check.numbers("density", c.density, 2, {1e-3, 1e6, false, false});
-  check.number("temperature_depth", c.temperature_depth, {0, 1, false, false});
-  check.number("plastic_heat_fraction", c.plastic_heat_fraction, {0, 1, false, false});
   if (c.temperature == 0 || check.error() != RP_OK) return;
   check.require(c.regime == RP_STEADY_ROLLING || c.regime == RP_TRANSIENT_ROLLING,
                 "temperature needs regime = steady_rolling or transient_rolling");
@@ -255,8 +241,6 @@ void check_regime(const rp_config &c, checker &check) {
 }
 
 void check_prescribed(const rp_config &c, checker &check) {
-  check.integer("force_prescribed[0]", c.force_prescribed[0], 0, 1);
-  check.integer("force_prescribed[1]", c.force_prescribed[1], 0, 1);
   if (c.force_prescribed[0] == 0 && c.force_prescribed[1] == 0) return;
   check.require(c.kind == RP_PATCH, "force_prescribed must be 0, 0 but for kind = patch");
   check.require(has_tangential(c) && c.tangential == RP_TANGENTIAL_FULL,
@@ -291,23 +275,23 @@ void check_grid(const rp_config &c, checker &check) {
   for (int k = 0; k < 2; ++k) {
     const bool line = k == 1 && c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT;
     if (counted)
-      check.integer(k == 0 ? "elements[0]" : "elements[1]", c.elements[k], line ? 1 : 2,
-                    line ? 1 : 1000);
+      check.field(k == 0 ? "elements[0]" : "elements[1]", c.elements[k],
+                  line ? only_one : config_range::elements);
     if (sized && !line)
-      check.number(k == 0 ? "element_size[0]" : "element_size[1]", c.element_size[k],
-                   {1e-9, 1, false, false});
-    check.integer(k == 0 ? "max_elements[0]" : "max_elements[1]", c.max_elements[k], 0, 1002);
+      check.field(k == 0 ? "element_size[0]" : "element_size[1]", c.element_size[k],
+                  config_range::element_size);
+    check.field(k == 0 ? "max_elements[0]" : "max_elements[1]", c.max_elements[k],
+                config_range::max_elements);
   }
 }
 
 void check_patch(const rp_config &c, checker &check) {
-  if (c.geometry == RP_SEMI_AXES)
-    check.numbers("semi_axes", c.semi_axes, 2, {1e-7, 1, false, false});
+  if (c.geometry == RP_SEMI_AXES) check.field("semi_axes", c.semi_axes, config_range::semi_axes);
   if (c.geometry == RP_CURVATURES)
-    check.numbers("curvatures", c.curvatures, 2, {1e-9, 1e6, false, false});
+    check.field("curvatures", c.curvatures, config_range::curvatures);
   if (c.geometry == RP_LINE_CONTACT) {
-    check.number("line_contact_radius", c.line_contact_radius, {1e-6, 1e6, false, false});
-    check.number("width", c.width, {1e-6, 1e3, false, false});
+    check.field("line_contact_radius", c.line_contact_radius, config_range::line_contact_radius);
+    check.field("width", c.width, config_range::width);
     check.require(c.load == RP_FORCE, "a line contact has no approach: give normal_force");
     check.require(c.normal == RP_NORMAL_HERTZ || c.normal == RP_NORMAL_HALF_SPACE,
                   "a line contact needs normal = hertz or half_space");
@@ -317,8 +301,7 @@ void check_patch(const rp_config &c, checker &check) {
   check.require(c.normal != RP_NORMAL_HERTZ,
                 "undeformed_distance needs normal = half_space, kik_piotrowski or analyn: Hertz "
                 "takes quadratic shapes only");
-  check.integer("distance_shape[0]", c.distance_shape[0], 3, 1000);
-  check.integer("distance_shape[1]", c.distance_shape[1], 3, 1000);
+  check.field("distance_shape", c.distance_shape, config_range::distance_shape);
   if (check.error() == RP_OK)
     check.numbers("undeformed_distance", c.undeformed_distance,
                   c.distance_shape[0] * c.distance_shape[1], {-1, 1, false, false});
@@ -333,7 +316,7 @@ void check_bulk(const rp_config &c, const rp_input &in, checker &check) {
     check.require(!given || c.temperature == 1,
                   "bulk_temperature must be left NaN in a scene without temperature");
   }
-  check.numbers("bulk_temperature", step, 2, bulk);
+  check.field("bulk_temperature", step, input_range::bulk_temperature);
   const bool exchanges = c.heat_exchange == 1 || c.bulk_temperature[0] != c.bulk_temperature[1];
   check.require(exchanges || step[0] == step[1],
                 "bulk_temperature of wheel and rail must be equal in a scene with equal ones and "
@@ -342,7 +325,6 @@ void check_bulk(const rp_config &c, const rp_input &in, checker &check) {
 
 // Where the normal force follows from the approach, only the solve can tell what friction carries.
 void check_force(const rp_config &c, double friction, const rp_input &in, checker &check) {
-  check.numbers("tangential_force", in.tangential_force, 2, finite);
   for (int k = 0; k < 2; ++k) {
     const range none{0, 0, false, false};
     if (c.force_prescribed[k])
@@ -404,8 +386,9 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   checker check(message);
   check_choices(c, check);
   if (check.error() != RP_OK) return check.error();
-  check.numbers("shear_modulus", c.shear_modulus, 2, {1.0, 1e15, false, false});
-  check.numbers("poisson_ratio", c.poisson_ratio, 2, {0, 0.5, false, false});
+  check_ranges(c, case_part::always, check);
+  check_ranges(c, c.kind == RP_PATCH ? case_part::patch : case_part::wheels, check);
+  if (check.error() != RP_OK) return check.error();
   check_grid(c, check);
   check_prescribed(c, check);
   check_table(c, check);
@@ -414,12 +397,8 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   check_temperature(c, check);
   check_regime(c, check);
   check_build(c, check);
-  check.number("layer_thickness", c.layer_thickness, {0, 0.1, false, false});
   if (c.layer_thickness > 0)
-    check.number("layer_shear_modulus", c.layer_shear_modulus, {1.0, 1e15, false, false});
-  check.number("tolerance", c.tolerance, {1e-12, 0.1, false, false});
-  check.integer("max_iterations", c.max_iterations, 1, 100000);
-  check.integer("derivatives", c.derivatives, 0, 1);
+    check.field("layer_shear_modulus", c.layer_shear_modulus, config_range::layer_shear_modulus);
   const bool rolling = has_tangential(c);
   const bool fast = is_fast(c.tangential);
   check_fast(c, check);
@@ -467,46 +446,27 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
                 "friction_coefficient must be 0 in a step: rp_set_friction_coefficient sets it");
   if (c.kind == RP_PATCH) {
     if (c.load == RP_FORCE)
-      check.number("normal_force", in.normal_force, positive);
+      check.field("normal_force", in.normal_force, input_range::normal_force);
     else
-      check.number("approach", in.approach, finite);
-    check.numbers("creepage", in.creepage, 2, finite);
-    check.number("spin_creepage", in.spin_creepage, finite);
-    check.number("rolling_speed", in.rolling_speed, not_negative);
-    if (c.regime == RP_TRANSIENT_ROLLING) check.number("distance", in.distance, positive);
+      check.field("approach", in.approach, input_range::approach);
+    check_ranges(in, case_part::patch, check);
+    if (c.regime == RP_TRANSIENT_ROLLING)
+      check.field("distance", in.distance, input_range::distance);
     check.require(in.direction == 1 || in.direction == -1, "direction must be 1 or -1");
     check_force(c, friction_coefficient, in, check);
     return check.error();
   }
-  check.number("y", in.y, {-1, 1, false, false});
   if (c.load == RP_FORCE)
-    check.number("vertical_force", in.vertical_force, positive);
+    check.field("vertical_force", in.vertical_force, input_range::vertical_force);
   else
-    check.number("z", in.z, {-1, 1, false, false});
-  check.number("roll", in.roll, angle);
-  check.number("yaw", in.yaw, angle);
-  const char *names[] = {"x", "pitch", "speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate"};
-  const double values[] = {in.x,  in.pitch,     in.speed,    in.vy,
-                           in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};
-  // beyond 1e9 m or rad a place has no micrometres left
-  for (int i = 0; i < 8; ++i)
-    check.number(names[i], values[i], i < 2 ? range{-1e9, 1e9, false, false} : finite);
+    check.field("z", in.z, input_range::z);
+  check_ranges(in, case_part::wheels, check);
   const bool rolls_on = c.regime == RP_TRANSIENT_ROLLING && has_tangential(c);
-  check.number("time_step", in.time_step, rolls_on ? positive : not_negative);
-  for (int side = 0; side < 2; ++side) {
-    check.numbers("wheel_offset", in.wheel_offset[side], 3, {-1, 1, false, false});
-    check.numbers("wheel_rotation", in.wheel_rotation[side], 3, angle);
-    check.numbers("rail_offset", in.rail_offset[side], 3, {-1, 1, false, false});
-    check.numbers("rail_rotation", in.rail_rotation[side], 3, angle);
-    check.numbers("wheel_velocity", in.wheel_velocity[side], 3, finite);
-    check.numbers("wheel_angular_velocity", in.wheel_angular_velocity[side], 3, finite);
-    check.numbers("rail_velocity", in.rail_velocity[side], 3, finite);
-    check.numbers("rail_angular_velocity", in.rail_angular_velocity[side], 3, finite);
-    check.require(in.rail_rotation[side][1] == 0 && in.rail_rotation[side][2] == 0,
+  check.number("time_step", in.time_step, rolls_on ? positive : input_range::time_step);
+  for (const auto &rotation : in.rail_rotation)
+    check.require(rotation[1] == 0 && rotation[2] == 0,
                   "rail_rotation about y and z must be 0: this version turns rails and rollers "
                   "about x only");
-  }
-  check.number("roller_pitch_rate", in.roller_pitch_rate, finite);
   return check.error();
 }
 

@@ -5,23 +5,20 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
+#include "handle/case_fields.hpp"
 #include "handle/check.hpp"
 
 namespace railpatch {
 
 inline constexpr double inf = std::numeric_limits<double>::infinity();
 
-struct range {
-  double low, high;
-  bool open_low, open_high;
-};
+// of what is no member by itself, or has another range where a condition holds
 inline constexpr range positive{0, inf, true, true};
-inline constexpr range not_negative{0, inf, false, true};
 inline constexpr range finite{-inf, inf, true, true};
-inline constexpr range angle{-1.5, 1.5, false, false};
-inline constexpr range friction{0, 10, false, false};
-inline constexpr range bulk{-273.15, 1e4, false, false};  // degrees C
+inline constexpr range only_one{1, 1, false, false};  // of a line contact
+inline constexpr range friction = config_range::friction_coefficient;
 
 // Remembers the first field that is out of range.
 class checker {
@@ -46,6 +43,23 @@ class checker {
     if ((value >= low && value <= high) || failed_) return;
     failed_ = true;
     set_message(message_, "%s is %d, allowed is %d ... %d", name, value, low, high);
+  }
+  // a member with its listed range, by what it is; rows of arrays by their last index
+  template <class T>
+  void field(const char *name, const T &value, const range &r) {
+    if constexpr (std::is_same_v<T, double>) {
+      number(name, value, r);
+    } else if constexpr (std::is_same_v<T, int32_t>) {
+      integer(name, value, static_cast<int>(r.low), static_cast<int>(r.high));
+    } else if constexpr (std::rank_v<T> > 1) {
+      for (const auto &row : value) field(name, row, r);
+    } else if constexpr (std::is_array_v<T>) {
+      for (size_t i = 0; i < std::extent_v<T> && !failed_; ++i) {
+        char label[64];
+        std::snprintf(label, sizeof label, "%s[%d]", name, static_cast<int>(i));
+        field(label, value[i], r);
+      }
+    }
   }
   // an enumeration: looked at as a number, since a value outside it must not be read as one
   template <class E>

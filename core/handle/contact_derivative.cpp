@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
+#include "handle/case_fields.hpp"
 #include "handle/check.hpp"
-#include "handle/input_numbers.hpp"
 #include "numeric/nan.hpp"
 #include "patch/result_fields.hpp"
 
@@ -183,15 +182,14 @@ namespace {
 // The length of a direction from an input, in the input's own units.
 double reach_of(const rp_input &input, const rp_input &rates) {
   double reach = 0;
-  const double *values[most_input_numbers];
+  const double *values[input_numbers];
   int numbers = 0;
   for_each_number(input, [&](const char *, const double &v, double) { values[numbers++] = &v; });
   int at = 0;
   for_each_number(rates, [&](const char *name, const double &rate, double scale) {
     const double v = *values[at++];
     // how far along the track, or round the wheel, says nothing about the scale there
-    const bool place = std::strcmp(name, "x") == 0 || std::strcmp(name, "pitch") == 0;
-    const double size = place || std::isnan(v) ? scale : std::max(scale, std::fabs(v));
+    const double size = is_place(name) || std::isnan(v) ? scale : std::max(scale, std::fabs(v));
     if (rate != 0) reach = std::max(reach, std::fabs(rate) / (size > 0 ? size : 1.0));
   });
   return reach;
@@ -201,7 +199,7 @@ double reach_of(const rp_input &input, const rp_input &rates) {
 rp_input moved(const rp_config &config, const rp_input &input, const rp_input &rates,
                double place) {
   rp_input in = input;
-  const double *rate[most_input_numbers];
+  const double *rate[input_numbers];
   int count = 0, next = 0;
   for_each_number(rates, [&](const char *, const double &v, double) { rate[count++] = &v; });
   for_each_number(in, [&](const char *, double &v, double) { v += place * *rate[next++]; });

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "handle/case_fields.hpp"
 #include "handle/contact_derivative.hpp"
-#include "handle/input_numbers.hpp"
 #include "numeric/nan.hpp"
 #include "patch/result_fields.hpp"
 

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "handle/case_fields.hpp"
 #include "handle/check.hpp"
 #include "handle/contact.hpp"
 #include "handle/contact_derivative.hpp"
@@ -12,7 +13,7 @@ namespace railpatch {
 
 namespace {
 
-constexpr uint32_t state_magic = 0x52505331;  // "RPS1"
+constexpr uint32_t state_magic = 0x52505332;  // "RPS2"
 
 struct state_header {
   uint32_t magic, kind;
@@ -38,104 +39,16 @@ uint64_t checksum(const unsigned char *data, size_t size) {
 
 // Tells the states of one config from those of another.
 uint64_t fingerprint_of_numbers(const rp_config &c) {
-  const double values[] = {static_cast<double>(c.geometry),
-                           static_cast<double>(c.load),
-                           static_cast<double>(c.regime),
-                           static_cast<double>(c.normal),
-                           static_cast<double>(c.tangential),
-                           static_cast<double>(c.spin_offset),
-                           static_cast<double>(c.reference_surface),
-                           static_cast<double>(c.traction_bound),
-                           static_cast<double>(c.flexibility_blending),
-                           static_cast<double>(c.track),
-                           static_cast<double>(c.side),
-                           static_cast<double>(c.elements[0]),
-                           static_cast<double>(c.elements[1]),
-                           static_cast<double>(c.fitted[0]),
-                           static_cast<double>(c.fitted[1]),
-                           static_cast<double>(c.max_elements[0]),
-                           static_cast<double>(c.max_elements[1]),
-                           static_cast<double>(c.max_iterations),
-                           static_cast<double>(c.max_patches),
-                           static_cast<double>(c.patch_rule),
-                           static_cast<double>(c.contact_frame),
-                           c.standstill_speed,
-                           static_cast<double>(c.force_prescribed[0]),
-                           static_cast<double>(c.force_prescribed[1]),
-                           c.element_size[0],
-                           c.element_size[1],
-                           c.shear_modulus[0],
-                           c.shear_modulus[1],
-                           c.poisson_ratio[0],
-                           c.poisson_ratio[1],
-                           c.semi_axes[0],
-                           c.semi_axes[1],
-                           c.curvatures[0],
-                           c.curvatures[1],
-                           c.line_contact_radius,
-                           c.width,
-                           c.friction_coefficient,
-                           c.layer_shear_modulus,
-                           c.layer_thickness,
-                           static_cast<double>(c.friction_law),
-                           static_cast<double>(c.slip_law),
-                           c.friction_kinetic,
-                           c.friction_amplitude[0],
-                           c.friction_amplitude[1],
-                           c.friction_halving_speed[0],
-                           c.friction_halving_speed[1],
-                           c.friction_memory_distance,
-                           c.friction_memory_speed,
-                           c.friction_reference,
-                           c.friction_change,
-                           c.friction_reference_temperature,
-                           c.friction_temperature_range,
-                           static_cast<double>(c.friction_points),
-                           c.layer_yield_stress,
-                           c.layer_hardening,
-                           static_cast<double>(c.hardening_points),
-                           static_cast<double>(c.plastic_rule),
-                           static_cast<double>(c.temperature),
-                           c.bulk_temperature[0],
-                           c.bulk_temperature[1],
-                           static_cast<double>(c.heat_exchange),
-                           c.conductivity[0],
-                           c.conductivity[1],
-                           c.heat_capacity[0],
-                           c.heat_capacity[1],
-                           c.density[0],
-                           c.density[1],
-                           c.temperature_depth,
-                           c.plastic_heat_fraction,
-                           c.tolerance,
-                           c.percent_kalker,
-                           c.polach_k_a,
-                           c.polach_k_s,
-                           c.fastsim_k0,
-                           c.fastsim_alpha,
-                           c.fastsim_beta,
-                           c.nominal_radius,
-                           c.flange_back_distance,
-                           c.flange_back_position,
-                           c.gauge,
-                           c.gauge_height,
-                           c.gauge_widening,
-                           static_cast<double>(c.friction_along_points),
-                           static_cast<double>(c.section_count[0]),
-                           static_cast<double>(c.section_count[1]),
-                           c.rail_stiffness[0],
-                           c.rail_stiffness[1],
-                           c.rail_damping[0],
-                           c.rail_damping[1],
-                           c.cant,
-                           c.curvature,
-                           c.roller_radius,
-                           static_cast<double>(c.runout_count[0]),
-                           static_cast<double>(c.runout_count[1]),
-                           static_cast<double>(c.rail_height_count[0]),
-                           static_cast<double>(c.rail_height_count[1]),
-                           c.rail_height_start,
-                           c.rail_height_spacing};
+#define RP_NO_FIELD(type, name, count)
+#define RP_IS_TOLD(role) \
+  (case_role::role != case_role::points && case_role::role != case_role::unmarked)
+#define RP_COUNT(type, name, count, role, ...) +(RP_IS_TOLD(role) ? (count) : 0)
+#define RP_PUT(type, name, count, role, ...) \
+  if (RP_IS_TOLD(role))                      \
+    for_each_in(c.name, [&](const auto &v) { values[next++] = static_cast<double>(v); });
+  double values[0 RP_CONFIG_FIELDS(RP_COUNT, RP_NO_FIELD)];
+  size_t next = 0;
+  RP_CONFIG_FIELDS(RP_PUT, RP_NO_FIELD)
   unsigned char bytes[sizeof values];
   std::memcpy(bytes, values, sizeof values);
   return checksum(bytes, sizeof bytes);

@@ -18,8 +18,13 @@ struct anything {
 };
 
 template <class T, size_t... Index>
-constexpr bool takes(std::index_sequence<Index...>) {
-  return requires { T{(static_cast<void>(Index), anything{})...}; };
+constexpr auto takes(std::index_sequence<Index...>)
+    -> decltype(T{(static_cast<void>(Index), anything{})...}, true) {
+  return true;
+}
+template <class T>
+constexpr bool takes(...) {
+  return false;
 }
 // Whether a struct has so many numbers, pointers and structs in it, those of arrays counted one by
 // one. Places alone do not tell: a short member may lie where there was padding.
@@ -55,6 +60,8 @@ constexpr bool holds() {
 RP_TIE_STRUCT(RP_PATCH_RESULT_FIELDS, rp_patch_result)
 RP_TIE_STRUCT(RP_SIDE_RESULT_FIELDS, rp_side_result)
 RP_TIE_STRUCT(RP_RESULT_FIELDS, rp_result)
+RP_TIE_STRUCT(RP_CONFIG_FIELDS, rp_config)
+RP_TIE_STRUCT(RP_INPUT_FIELDS, rp_input)
 
 }  // namespace
 

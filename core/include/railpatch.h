@@ -1,4 +1,4 @@
-/* Railpatch: wheel-rail contact mechanics, C interface (the only public header).
+/* Railpatch: wheel-rail contact mechanics, C interface. Its structs as lists: railpatch_fields.h.
  *
  * Life cycle: rp_default_config -> rp_create -> (rp_default_input once) rp_step ... -> rp_destroy.
  * rp_create is the only call that allocates; rp_step allocates nothing, keeps no time of day,

@@ -100,4 +100,257 @@
     "contact evaluations of each wheel spent on finding z")                                      \
   O(rp_side_result, side, 2)
 
+/* --- inputs: X(type, name, count, role, where, start, bounds, low, high, unit, text) ---------
+ * role      choice: an enumeration; number; integer; side: RP_LEFT or RP_RIGHT; points: numbers of
+ *           which another member says how many count; unmarked: no state depends on it
+ * where     its range is checked: always, for kind patch, for wheels; own: under a condition
+ * start     by default, each number of it
+ * bounds    of its range, "[" or "]": the end belongs to it, "(" or ")": it does not; "": none
+ */
+#define RP_CONFIG_FIELDS(X, O)                                                                     \
+  O(uint32_t, cookie, 1)                                                                           \
+  X(rp_kind, kind, 1, choice, always, RP_PATCH, "", 0, 0, "", "kind of case")                      \
+  X(double, shear_modulus, 2, number, always, 82e9, "[]", 1, 1e15, "Pa", "shear modulus")          \
+  X(double, poisson_ratio, 2, number, always, 0.28, "[]", 0, 0.5, "-", "Poisson's ratio")          \
+  X(rp_geometry, geometry, 1, choice, patch, RP_SEMI_AXES, "", 0, 0, "",                           \
+    "shape of the undeformed bodies")                                                              \
+  X(double, semi_axes, 2, number, own, 0.006, "[]", 1e-7, 1, "m",                                  \
+    "semi-axes of the contact ellipse [along rolling, lateral]; the curvatures follow from the "   \
+    "load")                                                                                        \
+  X(double, curvatures, 2, number, own, 1, "[]", 1e-9, 1e6, "1/m",                                 \
+    "[c0, c1] of the undeformed distance c0 x^2 + c1 y^2")                                         \
+  X(double, line_contact_radius, 1, number, own, 0.5, "[]", 1e-6, 1e6, "m",                        \
+    "combined radius 1/(1/R_wheel + 1/R_rail) of a line contact")                                  \
+  X(double, width, 1, number, own, 1, "[]", 1e-6, 1e3, "m", "width of the line contact")           \
+  O(const double *, undeformed_distance, 1)                                                        \
+  X(int32_t, distance_shape, 2, integer, own, 0, "[]", 3, 1000, "-",                               \
+    "elements of the undeformed distance [along rolling, lateral]")                                \
+  X(rp_load, load, 1, choice, always, RP_FORCE, "", 0, 0, "",                                      \
+    "whether the force or the position is given")                                                  \
+  X(int32_t, elements, 2, integer, own, 24, "[]", 2, 1000, "-",                                    \
+    "elements across the contact's bounding box [along rolling, lateral]")                         \
+  X(double, element_size, 2, number, own, 0, "[]", 1e-9, 1, "m",                                   \
+    "size of an element [along rolling, lateral]")                                                 \
+  X(int32_t, max_elements, 2, integer, own, 0, "[]", 0, 1002, "-",                                 \
+    "capacity of one patch's grid [along rolling, lateral]")                                       \
+  X(int32_t, fitted, 2, integer, own, 0, "[]", 3, 64, "-",                                         \
+    "nodes along rolling and rows of the tangential problem (full) on rows fitted to the contact " \
+    "area, at most 2304 nodes in all")                                                             \
+  X(rp_regime, regime, 1, choice, always, RP_STEADY_ROLLING, "", 0, 0, "", "kind of motion")       \
+  X(int32_t, force_prescribed, 2, integer, always, 0, "[]", 0, 1, "-",                             \
+    "whether the creep force's component is given and its creepage found [longitudinal, lateral]") \
+  X(rp_friction_law, friction_law, 1, choice, always, RP_COULOMB, "", 0, 0, "", "friction law")    \
+  X(double, friction_coefficient, 1, number, always, 0.3, "[]", 0, 10, "-",                        \
+    "coefficient of Coulomb's law")                                                                \
+  X(rp_slip_law, slip_law, 1, choice, always, RP_SLIP_EXPONENTIAL, "", 0, 0, "",                   \
+    "shape of the slip-velocity law")                                                              \
+  X(double, friction_kinetic, 1, number, always, 0.3, "[]", 0, 10, "-",                            \
+    "coefficient of friction at high micro-slip")                                                  \
+  X(double, friction_amplitude, 2, number, always, 0, "[]", -10, 10, "-",                          \
+    "at rest above kinetic; one or two terms")                                                     \
+  X(double, friction_halving_speed, 2, number, always, 1, "()", 0, HUGE_VAL, "m/s",                \
+    "at which a term is half its amplitude; one for each term")                                    \
+  X(double, friction_memory_distance, 1, number, always, 0, "[]", 0, 1, "m",                       \
+    "over which the coefficient follows the law; 0: at once")                                      \
+  X(double, friction_memory_speed, 1, number, always, 1e-3, "()", 0, HUGE_VAL, "m/s",              \
+    "least speed with which it follows the law")                                                   \
+  X(double, friction_reference, 1, number, always, 0.3, "[]", 0, 10, "-",                          \
+    "of the temperature law up to its first temperature")                                          \
+  X(double, friction_change, 1, number, own, 0, "", 0, 0, "-",                                     \
+    "from there to the end of its range, linear")                                                  \
+  X(double, friction_reference_temperature, 1, number, always, 0, "[]", -273.15, 1e4, "degrees C", \
+    "where the temperature law begins")                                                            \
+  X(double, friction_temperature_range, 1, number, always, 1, "(]", 0, 1e5, "K",                   \
+    "over which it changes")                                                                       \
+  X(int32_t, friction_points, 1, integer, own, 0, "[]", 2, RP_MAX_POINTS, "-",                     \
+    "points of the factor over the place in the patch")                                            \
+  X(double, friction_position, RP_MAX_POINTS, points, own, 0, "()", -HUGE_VAL, HUGE_VAL,           \
+    "m or rad", "their places")                                                                    \
+  X(double, friction_factor, RP_MAX_POINTS, points, own, 0, "[]", 0, 100, "-",                     \
+    "factor of the friction law there")                                                            \
+  X(int32_t, friction_along_points, 1, integer, own, 0, "[]", 2, RP_MAX_POINTS, "-",               \
+    "points of the factor along the track")                                                        \
+  X(double, friction_along_position, RP_MAX_POINTS, points, own, 0, "()", -HUGE_VAL, HUGE_VAL,     \
+    "m", "their places")                                                                           \
+  X(double, friction_along_factor, RP_MAX_POINTS, points, own, 0, "[]", 0, 100, "-",               \
+    "factor of the friction law there")                                                            \
+  X(double, layer_shear_modulus, 1, number, own, 0, "[]", 1, 1e15, "Pa",                           \
+    "shear modulus of the layer")                                                                  \
+  X(double, layer_thickness, 1, number, always, 0, "[]", 0, 0.1, "m",                              \
+    "thickness of the layer; 0: no elastic layer")                                                 \
+  X(double, layer_yield_stress, 1, number, always, 0, "[]", 0, 1e15, "Pa",                         \
+    "at which the layer begins to yield; 0: not plastic")                                          \
+  X(double, layer_hardening, 1, number, always, 0, "[]", -1e25, 1e25, "Pa/m",                      \
+    "slope of the yield stress over the plastic displacement")                                     \
+  X(int32_t, hardening_points, 1, integer, own, 0, "[]", 2, RP_MAX_POINTS, "-",                    \
+    "points of the yield stress over the plastic displacement")                                    \
+  X(double, hardening_displacement, RP_MAX_POINTS, points, own, 0, "()", -HUGE_VAL, HUGE_VAL, "m", \
+    "their displacements")                                                                         \
+  X(double, hardening_stress, RP_MAX_POINTS, points, own, 0, "[]", 1e-3, 1e15, "Pa",               \
+    "yield stress there")                                                                          \
+  X(rp_plastic_rule, plastic_rule, 1, choice, always, RP_PLASTIC_PATH, "", 0, 0, "",               \
+    "what the yield stress depends on")                                                            \
+  X(int32_t, temperature, 1, integer, always, 0, "[]", 0, 1, "-",                                  \
+    "whether surface temperatures are computed")                                                   \
+  X(double, bulk_temperature, 2, number, always, 0, "[]", -273.15, 1e4, "degrees C",               \
+    "bulk temperature where an input has none")                                                    \
+  X(int32_t, heat_exchange, 1, integer, always, 0, "[]", 0, 1, "-",                                \
+    "whether bodies of unequal bulk temperature may come into contact")                            \
+  X(double, conductivity, 2, number, always, 50, "[]", 1e-6, 1e6, "W/(m K)",                       \
+    "thermal conductivity")                                                                        \
+  X(double, heat_capacity, 2, number, always, 450, "[]", 1e-3, 1e6, "J/(kg K)",                    \
+    "specific heat capacity")                                                                      \
+  X(double, density, 2, number, always, 7850, "[]", 1e-3, 1e6, "kg/m^3", "density")                \
+  X(double, temperature_depth, 1, number, always, 0, "[]", 0, 1, "m",                              \
+    "below the surface, where the temperatures are given")                                         \
+  X(double, plastic_heat_fraction, 1, number, always, 0.9, "[]", 0, 1, "-",                        \
+    "part of the plastic work that heats the surfaces")                                            \
+  X(rp_normal_method, normal, 1, choice, always, RP_NORMAL_HALF_SPACE, "", 0, 0, "",               \
+    "theory of the normal problem")                                                                \
+  X(rp_tangential_method, tangential, 1, choice, always, RP_TANGENTIAL_FULL, "", 0, 0, "",         \
+    "theory of the tangential problem")                                                            \
+  X(double, tolerance, 1, number, always, 1e-5, "[]", 1e-12, 0.1, "-",                             \
+    "relative tolerance of the solvers")                                                           \
+  X(int32_t, max_iterations, 1, integer, always, 100, "[]", 1, 100000, "-",                        \
+    "most iterations of each solver")                                                              \
+  X(rp_spin_offset, spin_offset, 1, choice, always, RP_SPIN_OFFSET_NONE, "", 0, 0, "",             \
+    "shift of the spin term in elements along rolling")                                            \
+  X(rp_reference_surface, reference_surface, 1, choice, always, RP_REFERENCE_PLANE, "", 0, 0, "",  \
+    "plane, or curved between wheel and rail")                                                     \
+  X(double, percent_kalker, 1, number, always, 100, "(]", 0, 200, "%",                             \
+    "of Kalker's creepage coefficients in the fast theories")                                      \
+  X(rp_traction_bound, traction_bound, 1, choice, always, RP_BOUND_AUTOMATIC, "", 0, 0, "",        \
+    "how the bound of fastsim follows the pressure")                                               \
+  X(rp_flexibility_blending, flexibility_blending, 1, choice, always, RP_BLENDING_SLIDING, "", 0,  \
+    0, "", "whether flexibilities become one as sliding becomes full")                             \
+  X(double, polach_k_a, 1, number, always, 1, "(]", 0, 10, "-",                                    \
+    "k_A of polach, reduction of the area of adhesion; 1: Kalker's slope")                         \
+  X(double, polach_k_s, 1, number, always, 1, "(]", 0, 10, "-",                                    \
+    "k_S of polach, reduction of the area of slip")                                                \
+  X(double, fastsim_k0, 1, number, always, 1, "(]", 0, 10, "-",                                    \
+    "k0 of modified fastsim, whose stiffness is that of Kalker times k0 (alpha + (1 - alpha)/(1 "  \
+    "+ beta e))")                                                                                  \
+  X(double, fastsim_alpha, 1, number, always, 1, "[]", 0, 1, "-", "alpha of modified fastsim")     \
+  X(double, fastsim_beta, 1, number, always, 0, "[]", 0, 1000, "-", "beta of modified fastsim")    \
+  O(const void *, creep_table, 1)                                                                  \
+  O(size_t, creep_table_size, 1)                                                                   \
+  X(int32_t, derivatives, 1, unmarked, always, 0, "[]", 0, 1, "-",                                 \
+    "whether the contact gives derivatives of its last step")                                      \
+  X(int32_t, side, 1, side, wheels, RP_RIGHT, "[]", 0, 1, "", "which wheel of a wheelset")         \
+  X(double, nominal_radius, 1, number, wheels, 0.46, "[]", 0.01, 10, "m",                          \
+    "wheel radius at the profile's z = 0")                                                         \
+  X(double, flange_back_distance, 1, number, wheels, 1.36, "[]", 0.01, 10, "m",                    \
+    "between the flange backs")                                                                    \
+  X(double, flange_back_position, 1, number, wheels, -0.07, "[]", -1, 1, "m",                      \
+    "of the flange back on the profile's y axis: -0.070 for S1002")                                \
+  X(rp_track, track, 1, choice, wheels, RP_RAIL, "", 0, 0, "", "rails or rollers")                 \
+  X(double, gauge, 1, number, wheels, 1.435, "[]", 0.01, 10, "m", "track gauge")                   \
+  X(double, gauge_height, 1, number, wheels, 0.014, "[]", 0, 0.1, "m",                             \
+    "height below the rail's top at which the gauge is measured")                                  \
+  X(double, gauge_widening, 1, number, wheels, 0, "[]", -0.1, 0.1, "m",                            \
+    "each rail lies half of it further out than the gauge says")                                   \
+  X(double, cant, 1, number, wheels, 0, "[]", -0.5, 0.5, "rad",                                    \
+    "inclination of both rails towards the track's centre (rail)")                                 \
+  X(double, curvature, 1, number, wheels, 0, "[]", -0.1, 0.1, "1/m",                               \
+    "right-hand curve above 0 (rail)")                                                             \
+  X(double, roller_radius, 1, number, own, 1, "[]", 0.01, 100, "m",                                \
+    "roller radius at the profile's z = 0 (roller)")                                               \
+  O(rp_profile, wheel, 2)                                                                          \
+  O(rp_profile, rail, 2)                                                                           \
+  X(int32_t, max_patches, 1, integer, wheels, RP_MAX_PATCHES, "[]", 1, RP_MAX_PATCHES, "-",        \
+    "capacity: most patches of one wheel")                                                         \
+  X(rp_patch_rule, patch_rule, 1, choice, always, RP_PATCHES_BLENDED, "", 0, 0, "",                \
+    "how neighbouring areas of contact go over from one patch to two")                             \
+  X(rp_contact_frame, contact_frame, 1, choice, always, RP_FRAME_TRACK, "", 0, 0, "",              \
+    "x of the contact along the track or along the roller's surface")                              \
+  X(double, standstill_speed, 1, number, wheels, 1e-3, "[]", 0, 1, "m/s",                          \
+    "of wheels: rolling speed below which creepages tend to finite values, so that forces pass "   \
+    "through standstill without a jump; 0: slip over speed, nothing at rest")                      \
+  O(const rp_profile *, rail_sections, 2)                                                          \
+  O(const double *, section_position, 2)                                                           \
+  X(int32_t, section_count, 2, integer, wheels, 0, "[]", 0, 100000, "-",                           \
+    "profiles of each rail along the track")                                                       \
+  X(double, rail_stiffness, 2, number, wheels, 0, "[]", 0, 1e15, "N/m",                            \
+    "of each rail, lateral and vertical; 0: rigid in this direction")                              \
+  X(double, rail_damping, 2, number, wheels, 0, "[]", 0, 1e15, "N s/m",                            \
+    "of each rail, lateral and vertical")                                                          \
+  O(const double *, runout, 2)                                                                     \
+  X(int32_t, runout_count, 2, integer, own, 0, "[]", 8, 1000000, "-",                              \
+    "values of each wheel's runout; 0: round")                                                     \
+  O(const double *, rail_height, 2)                                                                \
+  X(int32_t, rail_height_count, 2, integer, own, 0, "[]", 4, 10000000, "-",                        \
+    "values of each rail's height; 0: level")                                                      \
+  X(double, rail_height_start, 1, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, "m",               \
+    "along the track, of the first height")                                                        \
+  X(double, rail_height_spacing, 1, number, wheels, 1e-3, "[]", 1e-6, 1e3, "m",                    \
+    "along the track, between two heights")                                                        \
+  O(rp_observer, observer, 1)                                                                      \
+  O(void *, observer_user, 1)
+
+/* X(type, name, count, role, where, start, bounds, low, high, scale, unit, text), as above and
+ * role      place: a number whose size says nothing about how fast things change there
+ * scale     what changes it by a good part of what matters, of numbers that are zero at rest; 0:
+ *           its own size
+ */
+#define RP_INPUT_FIELDS(X, O)                                                                      \
+  O(uint32_t, cookie, 1)                                                                           \
+  X(double, normal_force, 1, number, own, 1e5, "()", 0, HUGE_VAL, 0, "N", "normal force")          \
+  X(double, approach, 1, number, own, 0, "()", -HUGE_VAL, HUGE_VAL, 0, "m",                        \
+    "approach of the bodies; below 0 they are apart")                                              \
+  X(double, creepage, 2, number, patch, 0, "()", -HUGE_VAL, HUGE_VAL, 1e-3, "-",                   \
+    "[longitudinal, lateral], wheel minus rail over the rolling speed")                            \
+  X(double, tangential_force, 2, number, patch, 0, "()", -HUGE_VAL, HUGE_VAL, 0, "N",              \
+    "[longitudinal, lateral] on the wheel, where the creep force is prescribed")                   \
+  X(double, spin_creepage, 1, number, patch, 0, "()", -HUGE_VAL, HUGE_VAL, 0.1, "rad/m",           \
+    "spin creepage; with shift rad, the rotation")                                                 \
+  X(double, rolling_speed, 1, number, patch, 10, "[)", 0, HUGE_VAL, 0, "m/s", "rolling speed")     \
+  X(int32_t, direction, 1, integer, own, 1, "", 0, 0, 0, "-",                                      \
+    "rolling towards +x (1) or towards -x (-1)")                                                   \
+  X(double, bulk_temperature, 2, number, own, NAN, "[]", -273.15, 1e4, 10, "degrees C",            \
+    "bulk temperature of wheel and rail")                                                          \
+  X(double, distance, 1, number, own, 0, "()", 0, HUGE_VAL, 0, "m",                                \
+    "rolled in this step with transient_rolling")                                                  \
+  X(double, x, 1, place, wheels, 0, "[]", -1e9, 1e9, 1e-3, "m",                                    \
+    "position along the track, for what varies along it")                                          \
+  X(double, pitch, 1, place, wheels, 0, "[]", -1e9, 1e9, 1e-3, "rad",                              \
+    "about the axle, for what varies around the wheels")                                           \
+  X(double, y, 1, number, wheels, 0, "[]", -1, 1, 1e-3, "m",                                       \
+    "lateral position of its centre, to the right")                                                \
+  X(double, z, 1, number, own, 0, "[]", -1, 1, 1e-4, "m", "vertical position of its centre, down") \
+  X(double, vertical_force, 1, number, own, 1e5, "()", 0, HUGE_VAL, 0, "N",                        \
+    "vertical force on the wheel (wheel_rail) or on both wheels together (wheelset); z is then "   \
+    "found")                                                                                       \
+  X(double, roll, 1, number, wheels, 0, "[]", -1.5, 1.5, 1e-4, "rad", "about x")                   \
+  X(double, yaw, 1, number, wheels, 0, "[]", -1.5, 1.5, 1e-3, "rad", "about z")                    \
+  X(double, speed, 1, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, 1, "m/s",                      \
+    "forward speed; 0 on a rig")                                                                   \
+  X(double, vy, 1, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, 0.01, "m/s", "lateral speed")     \
+  X(double, vz, 1, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, 0.01, "m/s", "vertical speed")    \
+  X(double, roll_rate, 1, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, 0.01, "rad/s", "about x")  \
+  X(double, yaw_rate, 1, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, 0.01, "rad/s", "about z")   \
+  X(double, pitch_rate, 1, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, 1, "rad/s",               \
+    "about the axle; below 0 for rolling forward")                                                 \
+  X(double, wheel_offset, 2 * 3, number, wheels, 0, "[]", -1, 1, 1e-4, "m",                        \
+    "of each wheel from the rigid wheelset, along x, y, z")                                        \
+  X(double, wheel_rotation, 2 * 3, number, wheels, 0, "[]", -1.5, 1.5, 1e-3, "rad",                \
+    "of each wheel from the rigid wheelset, about x, y, z")                                        \
+  X(double, rail_offset, 2 * 3, number, wheels, 0, "[]", -1, 1, 1e-4, "m",                         \
+    "of each rail from its design position, along x, y, z")                                        \
+  X(double, rail_rotation, 2 * 3, number, wheels, 0, "[]", -1.5, 1.5, 1e-3, "rad",                 \
+    "of each rail from its design position, about x")                                              \
+  X(double, wheel_velocity, 2 * 3, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, 0.01, "m/s",      \
+    "rate of wheel_offset")                                                                        \
+  X(double, wheel_angular_velocity, 2 * 3, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, 0.01,     \
+    "rad/s", "rate of wheel_rotation")                                                             \
+  X(double, rail_velocity, 2 * 3, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, 0.01, "m/s",       \
+    "rate of rail_offset")                                                                         \
+  X(double, rail_angular_velocity, 2 * 3, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, 0.01,      \
+    "rad/s", "rate of rail_rotation")                                                              \
+  X(double, time_step, 1, number, own, 0, "[)", 0, HUGE_VAL, 1e-3, "s",                            \
+    "since the last step, for rails on dampers (0: at rest) and transient rolling (> 0)")          \
+  X(double, roller_pitch_rate, 1, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, 1, "rad/s",        \
+    "about the roller's axle, above 0 forward (roller)")                                           \
+  X(double, friction_coefficient, 1, number, own, 0, "", 0, 0, 0.1, "-",                           \
+    "rate of the coefficient of Coulomb's law, of a direction only")
+
 #endif

@@ -9,7 +9,7 @@
 #include <random>
 #include <type_traits>
 
-#include "../../plugins/common/config_fields.hpp"
+#include "railpatch_fields.h"
 #include "scenes.hpp"
 
 namespace {
@@ -863,11 +863,11 @@ class Garbage : public testing::Test {
       c.rail_height_spacing = 0.05;
     }
   }
+#define RAILPATCH_SPOIL(type, field, ...) spoil_numbers(c.field);
+#define RAILPATCH_SKIP(type, field, count)
   void spoil(rp_config &c) {
     enable(c);
-#define RAILPATCH_SPOIL(field) spoil_numbers(c.field);
-    RAILPATCH_CONFIG_FIELDS(RAILPATCH_SPOIL)
-#undef RAILPATCH_SPOIL
+    RP_CONFIG_FIELDS(RAILPATCH_SPOIL, RAILPATCH_SKIP)
     for (int k = 0; k < 2; ++k) {
       c.elements[k] = count();
       c.max_elements[k] = 12 + count();

@@ -7,7 +7,7 @@
 #include <random>
 #include <utility>
 
-#include "handle/input_numbers.hpp"
+#include "handle/case_fields.hpp"
 #include "patch/result_fields.hpp"
 #include "scenes.hpp"
 

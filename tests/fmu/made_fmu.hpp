@@ -15,10 +15,10 @@
 #include <type_traits>
 #include <vector>
 
-#include "../../plugins/common/config_fields.hpp"
 #include "../cpp/scenes.hpp"
 #include "checksum.hpp"
 #include "fmi2Functions.h"
+#include "railpatch_fields.h"
 
 namespace made {
 
@@ -88,12 +88,14 @@ inline const std::filesystem::path &own_folder() {
 inline std::filesystem::path write(const scene &s) {
   std::string text = std::string("railpatch-fmu-scene 1\nguid ") + guid + "\n";
   const rp_config &c = s.config;
-#define RAILPATCH_WRITE(field) \
-  text += "set " #field;       \
-  spell(c.field, text);        \
+#define RAILPATCH_WRITE(type, field, ...) \
+  text += "set " #field;                  \
+  spell(c.field, text);                   \
   text += "\n";
-  RAILPATCH_CONFIG_FIELDS(RAILPATCH_WRITE)
+#define RAILPATCH_SKIP(type, field, count)
+  RP_CONFIG_FIELDS(RAILPATCH_WRITE, RAILPATCH_SKIP)
 #undef RAILPATCH_WRITE
+#undef RAILPATCH_SKIP
   for (int side = 0; side < 2 && c.kind != RP_PATCH; ++side) {
     spell_profile("wheel", side, c.wheel[side], text);
     spell_profile("rail", side, c.rail[side], text);

@@ -31,10 +31,7 @@ def sources(root: Path, variables: Path, headers: Path) -> dict[str, bytes]:
     """Path in the archive -> content. headers: FMI's."""
     files = {"README.txt": README.encode(), "variables.inc": variables.read_bytes()}
     core = [p for ending in ("cpp", "hpp", "inc") for p in (root / "core").glob(f"*/*.{ending}")]
-    plugin = [
-        *(root / "plugins" / "common").glob("*.hpp"),
-        *(root / "plugins" / "fmu" / "src").glob("*.[ch]pp"),
-    ]
+    plugin = list((root / "plugins" / "fmu" / "src").glob("*.[ch]pp"))
     for path in core + plugin:
         if path.name != "fft_fftw.cpp":  # the other backend
             first = FIRST if path.suffix == ".cpp" else b""
@@ -43,7 +40,8 @@ def sources(root: Path, variables: Path, headers: Path) -> dict[str, bytes]:
             files[name] = first + path.read_bytes()
     older = "before_cxx20.hpp"
     files[older] = Path(__file__).with_name(older).read_bytes()
-    files["railpatch.h"] = (root / "core" / "include" / "railpatch.h").read_bytes()
+    for header in ("railpatch.h", "railpatch_fields.h"):
+        files[header] = (root / "core" / "include" / header).read_bytes()
     files |= {name: (headers / name).read_bytes() for name in FMI}
     files |= eigen_headers("unsupported/Eigen/FFT")
     return files

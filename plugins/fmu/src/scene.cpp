@@ -5,8 +5,8 @@
 #include <string_view>
 #include <type_traits>
 
-#include "../../common/config_fields.hpp"
 #include "checksum.hpp"
+#include "railpatch_fields.h"
 
 namespace railpatch::fmu {
 
@@ -72,10 +72,12 @@ bool read_field(Words &words, T &field) {
 
 bool read_set(Words &words, Scene &scene) {
   const std::string_view name = words.next();
-#define RAILPATCH_READ(field) \
+#define RAILPATCH_READ(type, field, ...) \
   if (name == #field) return read_field(words, scene.config.field);
-  RAILPATCH_CONFIG_FIELDS(RAILPATCH_READ)
+#define RAILPATCH_SKIP(type, field, count)
+  RP_CONFIG_FIELDS(RAILPATCH_READ, RAILPATCH_SKIP)
 #undef RAILPATCH_READ
+#undef RAILPATCH_SKIP
   return false;
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <type_traits>
 
-#include "../../common/config_fields.hpp"
+#include "railpatch_fields.h"
 
 namespace railpatch::python {
 
@@ -109,29 +109,39 @@ class Reader {
 
   nb::object at(const char *key) const { return nb::object(from_[key]); }
 
+  // by role
   template <typename T>
-  void scalar(const char *key, T &to) {
-    if (has(key)) to = nb::cast<T>(at(key));
+  void choice(const char *key, T &to) {
+    name(key, to);
+  }
+  template <typename T>
+  void side(const char *key, T &to) {
+    name(key, to);
+  }
+  template <typename T>
+  void number(const char *key, T &to) {
+    numbers(key, to);
+  }
+  template <typename T>
+  void place(const char *key, T &to) {
+    numbers(key, to);
+  }
+  template <typename T>
+  void integer(const char *key, T &to) {
+    numbers(key, to);
+  }
+  template <typename T>
+  void points(const char *key, T &to) {
+    numbers(key, to);
+  }
+  template <typename T>
+  void unmarked(const char *key, T &to) {
+    numbers(key, to);
   }
 
-  template <typename T, size_t N>
-  void array(const char *key, T (&to)[N]) {
-    if (!has(key)) return;
-    const auto values = nb::cast<nb::list>(at(key));
-    if (nb::len(values) != N) throw nb::value_error(key);
-    for (size_t i = 0; i < N; ++i) to[i] = nb::cast<T>(values[i]);
-  }
-
-  template <size_t M, size_t N>
-  void matrix(const char *key, double (&to)[M][N]) {
-    if (!has(key)) return;
-    const auto rows = nb::cast<nb::list>(at(key));
-    if (nb::len(rows) != M) throw nb::value_error(key);
-    for (size_t i = 0; i < M; ++i) {
-      const auto row = nb::cast<nb::list>(nb::object(rows[i]));
-      if (nb::len(row) != N) throw nb::value_error(key);
-      for (size_t j = 0; j < N; ++j) to[i][j] = nb::cast<double>(row[j]);
-    }
+  template <typename T>
+  void numbers(const char *key, T &to) {
+    if (has(key)) fill(at(key), key, to);
   }
 
   template <typename T>
@@ -153,6 +163,17 @@ class Reader {
   }
 
  private:
+  template <typename T>
+  static void fill(const nb::object &from, const char *key, T &to) {
+    if constexpr (std::is_array_v<T>) {
+      const auto values = nb::cast<nb::list>(from);
+      if (nb::len(values) != std::extent_v<T>) throw nb::value_error(key);
+      for (size_t i = 0; i < std::extent_v<T>; ++i) fill(nb::object(values[i]), key, to[i]);
+    } else {
+      to = nb::cast<T>(from);
+    }
+  }
+
   const nb::dict &from_;
   size_t read_ = 0;
 };
@@ -305,150 +326,38 @@ nb::dict side_dict(const rp_side_result &side) {
 
 }  // namespace
 
+#define RAILPATCH_READ(type, field, count, role, ...) reader.role(#field, c.field);
+#define RAILPATCH_SKIP(type, field, count)
+
 void fill_config(const nb::dict &from, Config &to) {
   rp_config &c = to.values;
   rp_default_config(&c);
   Reader reader(from);
-  reader.name("kind", c.kind);
-  reader.array("shear_modulus", c.shear_modulus);
-  reader.array("poisson_ratio", c.poisson_ratio);
-  reader.name("geometry", c.geometry);
-  reader.array("semi_axes", c.semi_axes);
-  reader.array("curvatures", c.curvatures);
-  reader.scalar("line_contact_radius", c.line_contact_radius);
-  reader.scalar("width", c.width);
+  RP_CONFIG_FIELDS(RAILPATCH_READ, RAILPATCH_SKIP)
   fill_gap(reader, to);
-  reader.name("load", c.load);
-  reader.array("elements", c.elements);
-  reader.array("element_size", c.element_size);
-  reader.array("max_elements", c.max_elements);
-  reader.array("fitted", c.fitted);
-  reader.name("regime", c.regime);
-  reader.array("force_prescribed", c.force_prescribed);
-  reader.name("friction_law", c.friction_law);
-  reader.scalar("friction_coefficient", c.friction_coefficient);
-  reader.name("slip_law", c.slip_law);
-  reader.scalar("friction_kinetic", c.friction_kinetic);
-  reader.array("friction_amplitude", c.friction_amplitude);
-  reader.array("friction_halving_speed", c.friction_halving_speed);
-  reader.scalar("friction_memory_distance", c.friction_memory_distance);
-  reader.scalar("friction_memory_speed", c.friction_memory_speed);
-  reader.scalar("friction_reference", c.friction_reference);
-  reader.scalar("friction_change", c.friction_change);
-  reader.scalar("friction_reference_temperature", c.friction_reference_temperature);
-  reader.scalar("friction_temperature_range", c.friction_temperature_range);
-  reader.scalar("friction_along_points", c.friction_along_points);
-  reader.array("friction_along_position", c.friction_along_position);
-  reader.array("friction_along_factor", c.friction_along_factor);
-  reader.scalar("friction_points", c.friction_points);
-  reader.array("friction_position", c.friction_position);
-  reader.array("friction_factor", c.friction_factor);
-  reader.scalar("layer_shear_modulus", c.layer_shear_modulus);
-  reader.scalar("layer_thickness", c.layer_thickness);
-  reader.scalar("layer_yield_stress", c.layer_yield_stress);
-  reader.scalar("layer_hardening", c.layer_hardening);
-  reader.scalar("hardening_points", c.hardening_points);
-  reader.array("hardening_displacement", c.hardening_displacement);
-  reader.array("hardening_stress", c.hardening_stress);
-  reader.name("plastic_rule", c.plastic_rule);
-  reader.scalar("temperature", c.temperature);
-  reader.array("bulk_temperature", c.bulk_temperature);
-  reader.scalar("heat_exchange", c.heat_exchange);
-  reader.array("conductivity", c.conductivity);
-  reader.array("heat_capacity", c.heat_capacity);
-  reader.array("density", c.density);
-  reader.scalar("temperature_depth", c.temperature_depth);
-  reader.scalar("plastic_heat_fraction", c.plastic_heat_fraction);
-  reader.name("normal", c.normal);
-  reader.name("tangential", c.tangential);
-  reader.scalar("tolerance", c.tolerance);
-  reader.scalar("max_iterations", c.max_iterations);
-  reader.name("spin_offset", c.spin_offset);
-  reader.name("reference_surface", c.reference_surface);
-  reader.scalar("percent_kalker", c.percent_kalker);
-  reader.name("traction_bound", c.traction_bound);
-  reader.name("flexibility_blending", c.flexibility_blending);
-  reader.scalar("polach_k_a", c.polach_k_a);
-  reader.scalar("polach_k_s", c.polach_k_s);
-  reader.scalar("fastsim_k0", c.fastsim_k0);
-  reader.scalar("fastsim_alpha", c.fastsim_alpha);
-  reader.scalar("fastsim_beta", c.fastsim_beta);
-  reader.scalar("derivatives", c.derivatives);
   if (reader.has("creep_table")) {
     to.table = nb::cast<Bytes>(reader.at("creep_table"));
     c.creep_table = to.table.data();
     c.creep_table_size = to.table.size();
   }
-  reader.name("side", c.side);
-  reader.scalar("nominal_radius", c.nominal_radius);
-  reader.scalar("flange_back_distance", c.flange_back_distance);
-  reader.scalar("flange_back_position", c.flange_back_position);
-  reader.name("track", c.track);
-  reader.scalar("gauge", c.gauge);
-  reader.scalar("gauge_height", c.gauge_height);
-  reader.scalar("gauge_widening", c.gauge_widening);
-  reader.array("rail_stiffness", c.rail_stiffness);
-  reader.array("rail_damping", c.rail_damping);
-  reader.scalar("cant", c.cant);
-  reader.scalar("curvature", c.curvature);
-  reader.scalar("roller_radius", c.roller_radius);
-  reader.scalar("max_patches", c.max_patches);
-  reader.name("patch_rule", c.patch_rule);
-  reader.name("contact_frame", c.contact_frame);
-  reader.scalar("standstill_speed", c.standstill_speed);
   fill_values(reader, "runout", c.runout, c.runout_count, to.profiles);
   fill_values(reader, "rail_height", c.rail_height, c.rail_height_count, to.profiles);
-  reader.scalar("rail_height_start", c.rail_height_start);
-  reader.scalar("rail_height_spacing", c.rail_height_spacing);
   fill_profiles(reader, "wheel", c.wheel, to.profiles);
   fill_profiles(reader, "rail", c.rail, to.profiles);
   fill_sections(reader, to);
   reader.finish();
 }
 
-void fill_input(const nb::dict &from, rp_input &to) {
+void fill_input(const nb::dict &from, rp_input &c) {
   Reader reader(from);
-  reader.scalar("normal_force", to.normal_force);
-  reader.scalar("approach", to.approach);
-  reader.array("creepage", to.creepage);
-  reader.array("tangential_force", to.tangential_force);
-  reader.scalar("spin_creepage", to.spin_creepage);
-  reader.scalar("rolling_speed", to.rolling_speed);
-  reader.scalar("direction", to.direction);
-  reader.scalar("distance", to.distance);
-  reader.array("bulk_temperature", to.bulk_temperature);
-  reader.scalar("x", to.x);
-  reader.scalar("pitch", to.pitch);
-  reader.scalar("y", to.y);
-  reader.scalar("z", to.z);
-  reader.scalar("vertical_force", to.vertical_force);
-  reader.scalar("roll", to.roll);
-  reader.scalar("yaw", to.yaw);
-  reader.scalar("speed", to.speed);
-  reader.scalar("vy", to.vy);
-  reader.scalar("vz", to.vz);
-  reader.scalar("roll_rate", to.roll_rate);
-  reader.scalar("yaw_rate", to.yaw_rate);
-  reader.scalar("pitch_rate", to.pitch_rate);
-  reader.matrix("wheel_offset", to.wheel_offset);
-  reader.matrix("wheel_rotation", to.wheel_rotation);
-  reader.matrix("rail_offset", to.rail_offset);
-  reader.matrix("rail_rotation", to.rail_rotation);
-  reader.matrix("wheel_velocity", to.wheel_velocity);
-  reader.matrix("wheel_angular_velocity", to.wheel_angular_velocity);
-  reader.matrix("rail_velocity", to.rail_velocity);
-  reader.matrix("rail_angular_velocity", to.rail_angular_velocity);
-  reader.scalar("time_step", to.time_step);
-  reader.scalar("roller_pitch_rate", to.roller_pitch_rate);
-  reader.scalar("friction_coefficient", to.friction_coefficient);
+  RP_INPUT_FIELDS(RAILPATCH_READ, RAILPATCH_SKIP)
   reader.finish();
 }
 
 nb::dict config_dict(const rp_config &config) {
   nb::dict to;
-#define RAILPATCH_PUT(field) to[#field] = numbers_of(config.field);
-  RAILPATCH_CONFIG_FIELDS(RAILPATCH_PUT)
-#undef RAILPATCH_PUT
+#define RAILPATCH_PUT(type, field, ...) to[#field] = numbers_of(config.field);
+  RP_CONFIG_FIELDS(RAILPATCH_PUT, RAILPATCH_SKIP)
   return to;
 }
 
