@@ -1,40 +1,35 @@
-"""The list of config fields that plug-ins carry against the struct in the public header."""
+"""What the core's lists of fields say to Python, against the structs and what reads them."""
 
 from __future__ import annotations
 
-import re
-from pathlib import Path
+import math
+from typing import Any
 
-ROOT = Path(__file__).parents[2]
-# not carried: set by the core, or pointers that travel in another way
-ELSEWHERE = {
-    "cookie",
-    "undeformed_distance",
-    "wheel",
-    "rail",
-    "rail_sections",
-    "section_position",
-    "section_count",
-    "runout",
-    "rail_height",
-    "creep_table",
-    "creep_table_size",
-    "observer",
-    "observer_user",
-}
+import pytest
+from railpatch import _core
 
 
-def test_every_plain_field_is_listed() -> None:
-    header = (ROOT / "core/include/railpatch.h").read_text()
-    body = re.search(r"typedef struct rp_config \{(.*?)\} rp_config;", header, re.DOTALL)
-    assert body is not None
-    plain = re.sub(r"/\*.*?\*/", "", body[1], flags=re.DOTALL)
-    fields = set()
-    for declaration in filter(None, (part.strip() for part in plain.split(";"))):
-        names = declaration.split(None, 1)[1]
-        fields |= {re.sub(r"\[.*", "", name).split()[-1].strip("*") for name in names.split(",")}
-    listed = set(
-        re.findall(r"X\((\w+)\)", (ROOT / "plugins/common/config_fields.hpp").read_text())
-    ) - {"X"}
-    assert len(fields) > 40
-    assert fields - ELSEWHERE == listed
+@pytest.mark.parametrize("listed", [_core.CONFIG_FIELDS, _core.INPUT_FIELDS])
+def test_defaults_lie_in_their_ranges(listed: dict[str, dict[str, Any]]) -> None:
+    assert len(listed) > 30
+    for name, field in listed.items():
+        # 0 stands for what is left out
+        if not field["bounds"] or math.isnan(field["start"]) or field["start"] == 0:
+            continue
+        assert field["low"] <= field["start"] <= field["high"], name
+
+
+def test_the_default_config_is_the_listed_one() -> None:
+    numbers = _core.config_numbers({})
+    assert list(numbers) == list(_core.CONFIG_FIELDS)
+    for name, field in _core.CONFIG_FIELDS.items():
+        assert numbers[name] == [field["start"]] * math.prod(field["shape"]), name
+
+
+@pytest.mark.parametrize(
+    "fields", [_core.CONFIG_FIELDS, _core.INPUT_FIELDS, *_core.QUANTITIES.values()]
+)
+def test_every_number_has_a_unit_and_a_text(fields: dict[str, dict[str, Any]]) -> None:
+    for name, field in fields.items():
+        assert field["text"], name
+        assert (field["unit"] == "") == (field["role"] in ("choice", "side", "status")), name

@@ -14,6 +14,7 @@
 #include "convert.hpp"
 #include "fast/theories.hpp"
 #include "force_element.hpp"
+#include "lists.hpp"
 #include "railpatch.h"
 #include "timing.hpp"
 
@@ -263,6 +264,9 @@ NB_MODULE(_core, m) {
   m.attr("ERRORS") = texts;
 #undef RAILPATCH_ENTRY
   set_theories(m);
+  m.attr("QUANTITIES") = listed_quantities();
+  m.attr("CONFIG_FIELDS") = listed_config();
+  m.attr("INPUT_FIELDS") = listed_input();
 
   nb::class_<Steppable>(m, "Steppable", "A contact that a force element may step.");
   nb::class_<Contact, Steppable>(m, "Contact", "A handle of the library with its state and memory.")

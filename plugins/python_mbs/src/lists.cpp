@@ -1,0 +1,112 @@
+#include "lists.hpp"
+
+#include <nanobind/stl/string.h>
+
+#include <cstring>
+#include <string>
+#include <type_traits>
+
+#include "railpatch_fields.h"
+
+namespace railpatch::python {
+
+namespace {
+
+// extents of an array, none of a single number
+template <typename T>
+nb::tuple shape_of() {
+  if constexpr (std::rank_v<T> == 2) {
+    return nb::make_tuple(std::extent_v<T, 0>, std::extent_v<T, 1>);
+  } else if constexpr (std::rank_v<T> == 1) {
+    return nb::make_tuple(std::extent_v<T>);
+  } else {
+    return nb::make_tuple();
+  }
+}
+
+// of a result
+template <typename T>
+nb::dict quantity(const char *type, const char *role, const char *mirror, const char *sum,
+                  const char *unit, const char *text) {
+  nb::dict to;
+  to["type"] = type;
+  to["shape"] = shape_of<T>();
+  to["role"] = role;
+  to["mirror"] = mirror;
+  to["sum"] = sum;
+  to["unit"] = unit;
+  to["text"] = text;
+  return to;
+}
+
+// of a config or an input
+template <typename T>
+nb::dict field(const char *type, const char *role, const char *where,
+               std::remove_all_extents_t<T> start, const char *bounds, double low, double high,
+               const char *unit, const char *text) {
+  nb::dict to;
+  to["type"] = type;
+  to["shape"] = shape_of<T>();
+  to["role"] = role;
+  to["where"] = where;
+  if constexpr (std::is_enum_v<std::remove_all_extents_t<T>>) {
+    to["start"] = static_cast<int>(start);
+  } else {
+    to["start"] = start;
+  }
+  to["bounds"] = bounds;
+  to["low"] = low;
+  to["high"] = high;
+  to["unit"] = unit;
+  to["text"] = text;
+  return to;
+}
+
+}  // namespace
+
+#define RAILPATCH_SKIP(type, name, count)
+#define RAILPATCH_QUANTITY(type, name, count, role, mirror, unloaded, sum, start, unit, text) \
+  to[#name] = quantity<decltype(whole::name)>(#type, #role, #mirror, #sum, unit, text);
+#define RAILPATCH_FIELD(type, name, count, role, where, start, bounds, low, high, unit, text) \
+  to[#name] =                                                                                 \
+      field<decltype(whole::name)>(#type, #role, #where, start, bounds, low, high, unit, text);
+#define RAILPATCH_INPUT(type, name, count, role, where, start, bounds, low, high, scale, unit, \
+                        text)                                                                  \
+  RAILPATCH_FIELD(type, name, count, role, where, start, bounds, low, high, unit, text)
+
+nb::dict listed_quantities() {
+  nb::dict all;
+  {
+    using whole = rp_patch_result;
+    nb::dict to;
+    RP_PATCH_RESULT_FIELDS(RAILPATCH_QUANTITY, RAILPATCH_SKIP)
+    all["patch"] = to;
+  }
+  {
+    using whole = rp_side_result;
+    nb::dict to;
+    RP_SIDE_RESULT_FIELDS(RAILPATCH_QUANTITY, RAILPATCH_SKIP)
+    all["side"] = to;
+  }
+  using whole = rp_result;
+  nb::dict to;
+  RP_RESULT_FIELDS(RAILPATCH_QUANTITY, RAILPATCH_SKIP)
+  all["result"] = to;
+  return all;
+}
+
+nb::dict listed_config() {
+  using whole = rp_config;
+  nb::dict to;
+  RP_CONFIG_FIELDS(RAILPATCH_FIELD, RAILPATCH_SKIP)
+  return to;
+}
+
+nb::dict listed_input() {
+  using whole = rp_input;
+  nb::dict to;
+  RP_INPUT_FIELDS(RAILPATCH_INPUT, RAILPATCH_SKIP)
+  return to;
+}
+
+}  // namespace railpatch::python

@@ -1,0 +1,18 @@
+// The lists of railpatch_fields.h for Python: what each member is, by struct and name.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace railpatch::python {
+
+namespace nb = nanobind;
+
+// name -> dict of "type", "shape", "role", "mirror", "sum", "unit", "text"; for the structs
+// "patch", "side" and "result"
+nb::dict listed_quantities();
+// name -> dict of "type", "shape", "role", "where", "start", "bounds", "low", "high", "unit",
+// "text"
+nb::dict listed_config();
+nb::dict listed_input();
+
+}  // namespace railpatch::python
