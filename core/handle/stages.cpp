@@ -121,7 +121,8 @@ void contact::describe(rp_stage_info *info) const {
   info[RP_STAGE_TANGENTIAL] = {"tangential", tangential, why, traction};
   info[RP_STAGE_TEMPERATURE] = {"temperature", scene.heat.has_value(), temperature_reason(scene),
                                 heat + solver_.heat_bytes()};
-  info[RP_STAGE_FORCES] = {"forces", 1, "resultants of pressure and traction", 0};
+  info[RP_STAGE_FORCES] = {"forces", 1, "resultants of pressure and traction",
+                           solver_.scratch_bytes()};
   info[RP_STAGE_COUPLING] = {"coupling", scene.couples(), coupling_reason(scene),
                              solver_.coupling_bytes()};
   info[RP_STAGE_HISTORY] = {"history", scene.keeps_steps(), history_reason(scene), history};

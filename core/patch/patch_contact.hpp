@@ -56,6 +56,8 @@ class patch_contact {
   size_t tangential_bytes() const { return tangential_.bytes(); }
   size_t derivative_bytes() const { return derivative_ ? derivative_->bytes() : 0; }
   size_t heat_bytes() const { return heat_.bytes(); }
+  // of what the stages pass on to each other
+  size_t scratch_bytes() const { return 2 * shared_.scratch[0].bytes(); }
 
  private:
   void begin_solve(const patch_problem &problem, patch_memory &memory);

@@ -106,8 +106,8 @@ fitted_operator::fitted_operator(const elastic_constants &elastic, double layer_
 }
 
 size_t fitted_operator::bytes() const {
-  size_t sum = rows_.bytes() + matrix_.bytes() + 2 * rigid_.bytes() + blends_.bytes() +
-               point_cosine_.bytes() + tau_.bytes() + 4 * kernel_[0].bytes();
+  size_t sum = rows_.bytes() + matrix_.bytes() + 2 * rigid_.bytes() + change_.bytes() +
+               blends_.bytes() + point_cosine_.bytes() + tau_.bytes() + 4 * kernel_[0].bytes();
   for (const refinement &r : fine_)
     sum += r.column.bytes() + r.weight.bytes() + r.cosine.bytes() + r.sine.bytes();
   return sum;
