@@ -10,65 +10,14 @@
 #include <random>
 #include <vector>
 
+#include "dense_operator.hpp"
+
 namespace {
 
 using namespace railpatch;
+using dense::dense_operator, dense::lengths;
 
 constexpr double tolerance = 1e-9;
-const std::vector<int> lengths = {1, 7, 12, 3, 9};
-
-// B = diagonal + skew in the vectors' order, positive definite: p . B p = p . diagonal p.
-class dense_operator final : public rolling_operator {
- public:
-  dense_operator(double skewness, std::mt19937_64 &random) {
-    start_.push_back(0);
-    for (int n : lengths) start_.push_back(start_.back() + n);
-    size_ = 2 * static_cast<size_t>(start_.back());
-    b_.resize(size_ * size_);
-    std::uniform_real_distribution<double> entry(-1, 1);
-    for (size_t i = 0; i < size_; ++i) {
-      b_[i * size_ + i] = 1;
-      for (size_t j = 0; j < i; ++j) {
-        if (crossed(i, j)) continue;
-        b_[i * size_ + j] = skewness * entry(random);
-        b_[j * size_ + i] = -b_[i * size_ + j];
-      }
-    }
-  }
-  void product(const double *p, double *s) override {
-    for (size_t i = 0; i < size_; ++i) {
-      s[i] = 0;
-      for (size_t j = 0; j < size_; ++j) s[i] += b_[i * size_ + j] * p[j];
-    }
-  }
-  void row_matrices(int row, double *bxx, double *byy) const override {
-    const size_t n = static_cast<size_t>(lengths[static_cast<size_t>(row)]);
-    const size_t x = 2 * static_cast<size_t>(start_[static_cast<size_t>(row)]), y = x + n;
-    for (size_t source = 0; source < n; ++source)
-      for (size_t observer = 0; observer < n; ++observer) {
-        bxx[source * n + observer] = b_[(x + observer) * size_ + x + source];
-        byy[source * n + observer] = b_[(y + observer) * size_ + y + source];
-      }
-  }
-  double projection_scale(int row) const override { return 0.5 + 0.3 * row; }
-
-  const std::vector<int> &start() const { return start_; }
-  size_t size() const { return size_; }
-
- private:
-  // p_x and p_y of one row, which do not act on each other
-  bool crossed(size_t i, size_t j) const {
-    for (size_t row = 0; row < lengths.size(); ++row) {
-      const size_t x = 2 * static_cast<size_t>(start_[row]);
-      const size_t n = static_cast<size_t>(lengths[row]);
-      if (i >= x && j >= x && i < x + 2 * n && j < x + 2 * n) return (i < x + n) != (j < x + n);
-    }
-    return false;
-  }
-  std::vector<int> start_;
-  size_t size_ = 0;
-  std::vector<double> b_;
-};
 
 class Operators : public testing::TestWithParam<double> {};
 
