@@ -29,7 +29,8 @@ CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
 SOURCES := $(shell find core plugins rig_model wheelset_demo -type f -not -name '*.pyc' 2>/dev/null) \
 	CMakeLists.txt README.md
 
-.PHONY: help demo viewer fmu fmu-clients fmu-fftw test lint format clean setup system test-cpp test-python test-asan pruning
+.PHONY: help demo viewer fmu fmu-clients fmu-fftw test lint format clean setup system test-cpp test-python test-asan pruning \
+	mutants
 
 help: ## this list
 	@echo "make targets:"
@@ -123,6 +124,11 @@ pruning: $(VENV)/tools ## what plain cases pay for physics that they leave out, 
 	cmake --preset release $(FMU)
 	cmake --build --preset release --target fmu_overhead
 	$(BIN)/python tests/fmu/overhead.py build/release/tests/fmu_overhead
+
+SEEDS ?= 1 2
+COUNT ?= 300
+mutants: setup ## do the tests bite? COUNT one-token changes of the core for each of SEEDS; takes hours
+	$(BIN)/python tests/mutants/run.py --seeds $(SEEDS) --count $(COUNT) --jobs $(JOBS)
 
 clean: ## removes build/
 	rm -rf build

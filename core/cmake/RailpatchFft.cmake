@@ -12,11 +12,13 @@ endif()
 
 # what every object of the core is compiled with
 function(railpatch_object_options target)
-  set_target_properties(${target} PROPERTIES
-    CXX_VISIBILITY_PRESET hidden
-    VISIBILITY_INLINES_HIDDEN ON
-    POSITION_INDEPENDENT_CODE ON
-  )
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  if(NOT RAILPATCH_MUTANTS)  # whose tests look into a shared library
+    set_target_properties(${target} PROPERTIES
+      CXX_VISIBILITY_PRESET hidden
+      VISIBILITY_INLINES_HIDDEN ON
+    )
+  endif()
   if(NOT RAILPATCH_ZIG)  # a library of the FMU for Windows shows nothing but FMI's functions
     target_compile_definitions(${target} PRIVATE RP_BUILD)
   endif()

@@ -1,0 +1,358 @@
+"""The core as a library whose objects can be exchanged, the tests that load it, and which of its
+lines each of them runs."""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+import json
+import os
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+# of the Python tests: those of the core's physics and contracts
+FOLDERS = ("analytic", "published", "property", "equivalence", "mbs", "rig", "profiles", "case")
+LIBRARY = "librailpatch_static.so"
+OPTIMISED = "-O1 -DNDEBUG"
+# of what a test takes by itself, in processor time: a mutant that takes longer has fallen
+PATIENCE = 5
+
+
+@dataclass(frozen=True)
+class Suite:
+    """A C++ test program or a file of Python tests."""
+
+    name: str
+    source: Path
+    program: Path | None = None  # None: pytest
+
+
+class Failed(Exception):
+    """The build or the tests fail without any mutant."""
+
+
+def run(command: list[str] | str, **options) -> str:
+    """The output of a command that has to succeed."""
+    done = subprocess.run(
+        command,
+        shell=isinstance(command, str),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        **options,
+    )
+    if done.returncode:
+        raise Failed(f"{command}\n{done.stdout[-4000:]}")
+    return done.stdout
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a test ended."""
+
+    passed: bool
+    output: str
+    seconds: float  # of processor time
+
+
+def limited(command: list[str], environment: dict, seconds: float) -> Ended:
+    """Runs a test within its processor time."""
+
+    def limit() -> None:
+        most = int(seconds) + 1
+        resource.setrlimit(resource.RLIMIT_CPU, (most, most + 1))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+    with tempfile.TemporaryFile() as output:
+        done = subprocess.Popen(
+            command,
+            cwd=ROOT,
+            env=environment,
+            preexec_fn=limit,
+            start_new_session=True,
+            stdin=subprocess.DEVNULL,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+        )
+        # one that waits for another thread takes no processor time
+        timer = threading.Timer(120 + 20 * seconds, os.killpg, (done.pid, signal.SIGKILL))
+        timer.start()
+        _, status, usage = os.wait4(done.pid, 0)
+        timer.cancel()
+        done.returncode = os.waitstatus_to_exitcode(status)
+        output.seek(0)
+        text = output.read().decode(errors="replace")
+    return Ended(done.returncode == 0, text, usage.ru_utime + usage.ru_stime)
+
+
+class Build:
+    """The base build in `folder`."""
+
+    def __init__(self, folder: Path, jobs: int, python: bool = True) -> None:
+        self.folder = folder
+        self.jobs = jobs
+        self.python = python  # its tests too
+        self.base = folder / "base"
+        self.package = folder / "package"
+
+    # --- build -----------------------------------------------------------------------------------
+
+    def make(self) -> None:
+        """Builds the core, the C++ tests and the Python package around them."""
+        environment = os.environ | {"LD_LIBRARY_PATH": str(self.base / "core")}
+        run(
+            [
+                *("cmake", "-S", str(ROOT), "-B", str(self.base), "-G", "Ninja"),
+                *("-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_CXX_FLAGS_RELEASE={OPTIMISED}"),
+                *("-DRAILPATCH_MUTANTS=ON", "-DRAILPATCH_WERROR=OFF", "-DRAILPATCH_FMU=ON"),
+                *("-DRAILPATCH_PYTHON=ON", "-DCMAKE_SKIP_RPATH=ON"),
+                *("-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", f"-DPython_EXECUTABLE={sys.executable}"),
+            ]
+        )
+        run(["cmake", "--build", str(self.base), "-j", str(self.jobs)], env=environment)
+        entries = json.loads((self.base / "compile_commands.json").read_text())
+        self.commands = {
+            Path(entry["file"]): entry["command"]
+            for entry in entries
+            if "_eigen" not in entry["command"]
+        }
+        link = run(["ninja", "-C", str(self.base), "-t", "commands", f"core/{LIBRARY}"])
+        self.link = link.strip().split("\n")[-1]
+        self.objects = {
+            source: match[1]
+            for source, command in self.commands.items()
+            if source.is_relative_to(ROOT / "core")
+            and (match := re.search(r" -o (\S+)", command))
+            and match[1] in self.link
+        }
+        self.dependencies = self._dependencies()
+        self._make_package()
+
+    def _dependencies(self) -> dict[str, set[Path]]:
+        """The project's headers that each object was made from."""
+        found: dict[str, set[Path]] = {}
+        name = ""
+        for line in run(["ninja", "-C", str(self.base), "-t", "deps"]).split("\n"):
+            if line.startswith(" "):
+                path = (self.base / line.strip()).resolve()
+                if path.is_relative_to(ROOT):
+                    found[name].add(path)
+            elif line:
+                name = line.split(":")[0]
+                found[name] = set()
+        return found
+
+    def _make_package(self) -> None:
+        """The installed package with an extension module that loads the core."""
+        where = "from importlib.util import find_spec; print(find_spec('railpatch').origin)"
+        installed = Path(run([sys.executable, "-c", where], cwd="/").strip()).parent
+        shutil.rmtree(self.package, ignore_errors=True)
+        to = self.package / "railpatch"
+        shutil.copytree(installed, to, ignore=shutil.ignore_patterns("_core*.so", "__pycache__"))
+        (module,) = self.base.glob("plugins/python_mbs/_core*.so")
+        shutil.copy(module, to / module.name)
+
+    def compile(
+        self, source: Path, output: Path, flags: str = "", text: Path | None = None
+    ) -> bool:
+        """Compiles a file of the base build, or `text` in its place; whether it compiles."""
+        command = self.commands[source]
+        command = re.sub(r" -o \S+", f" -o {output}", command).replace("ccache ", "", 1)
+        command = command.replace(f" -c {source}", f" -c {text or source}")
+        command = re.sub(r"(^\S+)", rf"\1 {flags}", command, count=1)
+        output.parent.mkdir(parents=True, exist_ok=True)
+        done = subprocess.run(command, shell=True, cwd=self.base, capture_output=True, timeout=600)
+        return done.returncode == 0
+
+    def link_library(self, folder: Path, instead: dict[str, Path], flags: str = "") -> None:
+        """The core with other objects in the place of some of the base build's."""
+        folder.mkdir(parents=True, exist_ok=True)
+        words = [str(instead.get(word, word)) for word in self.link.split()]
+        command = " ".join(words).replace(f"-o core/{LIBRARY}", f"-o {folder / LIBRARY} {flags}")
+        run(command, cwd=self.base)
+
+    # --- tests -----------------------------------------------------------------------------------
+
+    def suites(self) -> list[Suite]:
+        """All that can be run."""
+        tests = self.base / "tests"
+        cpp = [
+            Suite(path.stem, path, tests / path.stem)
+            for path in sorted((ROOT / "tests/cpp").glob("test_*.cpp"))
+        ]
+        fmu = [
+            Suite(f"test_fmu_{path.stem[5:]}", path, tests / f"test_fmu_{path.stem[5:]}")
+            for path in sorted((ROOT / "tests/fmu").glob("test_*.cpp"))
+        ]
+        python = [
+            Suite(str(path.relative_to(ROOT)), path)
+            for folder in FOLDERS
+            for path in sorted((ROOT / "tests" / folder).glob("test_*.py"))
+        ]
+        return cpp + fmu + (python if self.python else [])
+
+    def environment(self, library: Path) -> dict:
+        """In which tests load the core of a folder."""
+        return os.environ | {
+            "LD_LIBRARY_PATH": str(library),
+            "PYTHONPATH": str(self.package),
+            "PYTHONDONTWRITEBYTECODE": "1",
+            "OMP_NUM_THREADS": "1",
+            "OPENBLAS_NUM_THREADS": "1",
+        }
+
+    def test(
+        self,
+        suites: list[Suite],
+        library: Path,
+        seconds: float,
+        programs: dict[str, Path] | None = None,
+    ) -> tuple[Ended, str]:
+        """One C++ program or some files of Python tests, until one fails; its name."""
+        environment = self.environment(library)
+        if suites[0].program:
+            (suite,) = suites
+            program = (programs or {}).get(suite.name, suite.program)
+            ended = limited(
+                [str(program), "--gtest_fail_fast", "--gtest_brief=1"], environment, seconds
+            )
+            failed = re.search(r"\[  FAILED  \] ([^\s,]+)", ended.output)
+            return ended, f"{suite.name} {failed[1]}" if failed else f"{suite.name} stops"
+        command = [
+            sys.executable,
+            "-m",
+            "pytest",
+            "-x",
+            "-q",
+            "-p",
+            "no:cacheprovider",
+            "--no-header",
+        ]
+        command += ["--tb=no", *(suite.name for suite in suites)]
+        ended = limited(command, environment, seconds)
+        failed = re.search(r"^(?:FAILED|ERROR) (\S+)", ended.output, re.M)
+        return ended, failed[1] if failed else f"tests/ stop: {ended.output[-300:]}"
+
+    # --- coverage --------------------------------------------------------------------------------
+
+    def times(self) -> dict[str, dict]:
+        """For each suite its processor time, as if it ran every line."""
+        with ThreadPoolExecutor(self.jobs) as pool:
+            seconds = list(pool.map(self._seconds, self.suites()))
+        return {
+            suite.name: {"seconds": spent, "lines": None}
+            for suite, spent in zip(self.suites(), seconds, strict=True)
+        }
+
+    def coverage(self) -> dict[str, dict]:
+        """For each suite its processor time and the lines of the core's files that it runs; kept
+        from one run to the next while neither core nor suite change."""
+        core = hashlib.sha256(OPTIMISED.encode())
+        for path in sorted((ROOT / "core").rglob("*.[chi]*")):
+            core.update(path.read_bytes())
+        kept_path = self.folder / "coverage.json.gz"
+        kept = json.loads(gzip.decompress(kept_path.read_bytes())) if kept_path.exists() else {}
+        keys = {
+            suite.name: hashlib.sha256(core.digest() + suite.source.read_bytes()).hexdigest()
+            for suite in self.suites()
+        }
+        missing = [s for s in self.suites() if kept.get(s.name, {}).get("key") != keys[s.name]]
+        if not missing:
+            return kept
+        library = self._instrumented()
+        print(f"coverage of {len(missing)} test files", flush=True)
+        with ThreadPoolExecutor(self.jobs) as pool:
+            for suite, found in zip(
+                missing, pool.map(lambda s: self._cover(s, library), missing), strict=True
+            ):
+                kept[suite.name] = {"key": keys[suite.name], **found}
+        kept_path.write_bytes(gzip.compress(json.dumps(kept).encode()))
+        return kept
+
+    def _instrumented(self) -> Path:
+        folder = self.folder / "instrumented"
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        objects = {name: folder / f"{source.stem}.o" for source, name in self.objects.items()}
+
+        def one(source: Path) -> None:
+            if not self.compile(source, objects[self.objects[source]], "--coverage -Og"):
+                raise Failed(f"{source} does not compile with --coverage")
+
+        with ThreadPoolExecutor(self.jobs) as pool:
+            list(pool.map(one, self.objects))
+        self.link_library(folder, objects, "--coverage")
+        return folder
+
+    def _cover(self, suite: Suite, library: Path) -> dict:
+        plain = self._seconds(suite)
+        folder = self.folder / "gcov" / suite.name.replace("/", "_")
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        strip = {"GCOV_PREFIX": str(folder), "GCOV_PREFIX_STRIP": str(len(library.parts) - 1)}
+        environment = self.environment(library) | strip
+        if suite.program:
+            command = [str(suite.program), "--gtest_brief=1"]
+        else:
+            command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", suite.name]
+        limited(command, environment, 300 + 20 * plain)
+        for notes in library.glob("*.gcno"):
+            (folder / notes.name).symlink_to(notes)
+        data = sorted(path.name for path in folder.glob("*.gcda"))
+        lines: dict[str, set[int]] = {}
+        known: dict[str, set[int]] = {}
+        if data:
+            output = run(["gcov", "--json-format", "--stdout", *data], cwd=folder)
+            for document in output.split("\n"):
+                if document.startswith("{"):
+                    self._read(json.loads(document), lines, known)
+        shutil.rmtree(folder)
+        return {
+            "seconds": plain,
+            "lines": {name: sorted(found) for name, found in lines.items()},
+            "known": {name: sorted(found) for name, found in known.items()},
+        }
+
+    def _read(self, document: dict, lines: dict[str, set[int]], known: dict[str, set[int]]) -> None:
+        base = Path(document["current_working_directory"])
+        for file in document["files"]:
+            path = (base / file["file"]).resolve()
+            if not path.is_relative_to(ROOT / "core"):
+                continue
+            name = str(path.relative_to(ROOT))
+            known.setdefault(name, set()).update(line["line_number"] for line in file["lines"])
+            lines.setdefault(name, set()).update(
+                line["line_number"] for line in file["lines"] if line["count"]
+            )
+
+    def _seconds(self, suite: Suite) -> float:
+        """Processor time without a mutant."""
+        ended, failed = self.test([suite], self.base / "core", 600)
+        if not ended.passed:
+            raise Failed(f"without any mutant: {failed}\n{ended.output[-2000:]}")
+        return ended.seconds
+
+
+def covers(found: dict, path: str, line: int) -> bool:
+    """Whether a suite runs a line; a line without code of its own goes with its neighbours."""
+    if found["lines"] is None:
+        return True
+    known = found["known"].get(path)
+    if not known:
+        return False
+    lines = found["lines"].get(path, [])
+    if line in known:
+        return line in lines
+    before = max((at for at in known if at < line), default=0)
+    after = min((at for at in known if at > line), default=0)
+    return before in lines or after in lines
