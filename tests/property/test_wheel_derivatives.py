@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from published_data import MANCHESTER, NRC
 from railpatch import Contact
-from railpatch.case.derivative import FORCE_AND_MOMENT, POSE_AND_VELOCITY
+from railpatch.case.to_core import FORCE_AND_MOMENT, POSE_AND_VELOCITY
 from railpatch.errors import CaseError
 
 TOLERANCE = 1e-11

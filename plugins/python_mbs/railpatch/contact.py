@@ -12,12 +12,17 @@ from typing import Any
 import numpy as np
 
 from railpatch import _core
-from railpatch.case.derivative import FORCE_AND_MOMENT, POSE_AND_VELOCITY, rates_of
 from railpatch.case.load import Case, Scene, check_table, load_scene
 from railpatch.case.messages import show
 from railpatch.case.moving import changed_case, moving_keys
 from railpatch.case.patch import Motion, PatchCase
-from railpatch.case.to_core import config_of, input_of
+from railpatch.case.to_core import (
+    FORCE_AND_MOMENT,
+    POSE_AND_VELOCITY,
+    config_of,
+    input_of,
+    rates_of,
+)
 from railpatch.case.track import add_irregularity, irregularity_of
 from railpatch.case.types import SIDES
 from railpatch.errors import CaseError
@@ -134,8 +139,8 @@ class Contact:
         """Derivatives of the last step's forces by pose and velocity, for wheel_rail and wheelset.
 
         ``left``, ``right``: arrays [6, 12] of force and moment of each wheel in use, rows
-        ``railpatch.case.derivative.FORCE_AND_MOMENT`` (N, N m, track axes), columns
-        ``railpatch.case.derivative.POSE_AND_VELOCITY`` (m, rad, m/s, rad/s). ``z``: [12], of the
+        ``railpatch.case.to_core.FORCE_AND_MOMENT`` (N, N m, track axes), columns
+        ``railpatch.case.to_core.POSE_AND_VELOCITY`` (m, rad, m/s, rad/s). ``z``: [12], of the
         height. They are those of what step() gives: with vertical_force, z follows; column z then
         is that of a wheel whose vertical force does not stay, NaN by differences, and ``z_force``
         (m/N) the height's by the vertical force (else NaN). ``kind``: as of differentiate();

@@ -10,6 +10,7 @@ from railpatch.case.choice import least_error
 from railpatch.case.friction import Friction, check_increasing
 from railpatch.case.theories import READERS, blends_as_contact
 from railpatch.case.types import (
+    BODIES,
     CapacityPair,
     Celsius,
     CountPair,
@@ -167,6 +168,11 @@ class Temperature(Table):
     depth: Annotated[float, between(0, 1)] = Field(
         default=0.0, description="m, below the surface, where the temperatures are given"
     )
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """The bulk temperatures."""
+        return BODIES
 
 
 # what only wheels read

@@ -8,36 +8,25 @@ from typing import Any
 from railpatch.case.load import Case, check_table, plain
 from railpatch.case.messages import show
 from railpatch.case.patch import PatchCase
-from railpatch.case.rolling import SHAPE_KEYS
-from railpatch.case.to_core import WHEELSET_STATE
 from railpatch.case.types import SIDES
+from railpatch.case.wheel import Deviation, Rail, WheelDeviation
 from railpatch.errors import CaseError
 
-MOTION_KEYS = ("creepage", "spin_creepage", "rolling_speed", "direction")
-BODY_KEYS = ("wheel", "rail")  # of [temperature]
-FIXED = (*SHAPE_KEYS, "sections")  # of a deviation
+# tables that are given whole or in part, by their name
+BY_TABLE = ("track", "temperature")
+# of a deviation: shapes, which do not move
+FIXED = {*WheelDeviation.model_fields, *Rail.model_fields} - set(Deviation.model_fields)
 
 
 def moving_keys(case: Case) -> dict[str, str]:
     """Moving key -> table of the case that holds it. 'track' and 'temperature' take a table of
     keys of theirs."""
-    heat = {} if case.temperature is None else {"temperature": "temperature"}
-    if isinstance(case, PatchCase):
-        load = "normal_force" if case.load.normal_force is not None else "approach"
-        prescribed = case.motion.prescribed
-        keys = {load: "load", **dict.fromkeys(MOTION_KEYS, "motion")}
-        if all(prescribed):
-            del keys["creepage"]
-        if any(prescribed):
-            keys["tangential_force"] = "motion"
-        if case.motion.regime == "transient_rolling":
-            keys.update(distance="motion", steps="motion")
-        return {**keys, **heat}
-    height = "z" if case.wheelset.z is not None else "vertical_force"
-    keys = dict.fromkeys((*WHEELSET_STATE, height, *SIDES), "wheelset")
-    if case.track.kind == "roller":
-        keys["roller_pitch_rate"] = "track"
-    return {**keys, "track": "track", **heat}
+    keys: dict[str, str] = {}
+    for table in case.moving:
+        for key in getattr(case, table).moving:
+            keys.setdefault(key, table)
+    tables = (table for table in BY_TABLE if getattr(case, table, None) is not None)
+    return {**keys, **{table: table for table in tables}}
 
 
 def changed_case(case: Case, changes: Mapping[str, Any]) -> Case:
@@ -52,14 +41,12 @@ def changed_case(case: Case, changes: Mapping[str, Any]) -> Case:
     tables: dict[str, dict[str, Any]] = {}
     for key, value in plain(changes).items():
         values = tables.setdefault(keys[key], {})
-        if key not in ("track", "temperature"):
+        if key not in BY_TABLE:
             values[key] = value
             continue
         if not isinstance(value, dict):
             raise CaseError(f"{key}: value is {show(value)}, allowed a table")
-        allowed = [name for name in ("roller_pitch_rate",) if name in keys]
-        movable = BODY_KEYS if key == "temperature" else (*SIDES, *allowed)
-        refuse_unknown(value, dict.fromkeys(movable), f"{key}.")
+        refuse_unknown(value, dict.fromkeys(getattr(case, key).moving), f"{key}.")
         values.update(value)
     changed = case.model_copy(
         update={name: changed_table(case, name, values) for name, values in tables.items()}
@@ -80,15 +67,10 @@ def changed_table(case: Case, name: str, values: dict[str, Any]) -> Any:
     for key, value in values.items():
         if key in SIDES and isinstance(value, dict):
             fixed = {k: v for k, v in value.items() if k in FIXED and v != content[key].get(k)}
-            refuse_unknown(fixed, movable_of(content[key]), f"{name}.{key}.")
+            refuse_unknown(fixed, dict.fromkeys(getattr(table, key).moving), f"{name}.{key}.")
             value = {**content[key], **value}
         content[key] = value
     return check_table(type(table), content, name)
-
-
-def movable_of(deviation: Mapping[str, Any]) -> dict[str, Any]:
-    """The keys of a deviation that move: not its shape."""
-    return {key: value for key, value in deviation.items() if key not in FIXED}
 
 
 def refuse_unknown(changes: Mapping[str, Any], keys: Mapping[str, Any], prefix: str) -> None:

@@ -39,6 +39,8 @@ from railpatch.case.types import (
     relation,
 )
 
+# of [motion]: moving keys that are no continuous numbers
+STEPWISE = ("direction", "steps")
 SHAPES = ("semi_axes", "curvatures", "line_contact_radius", "undeformed_distance")
 
 
@@ -88,6 +90,11 @@ class Load(Table):
         exactly_one(self, ("normal_force", "approach"))
         return self
 
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """The one that is given."""
+        return ("normal_force",) if self.normal_force is not None else ("approach",)
+
 
 class Motion(Table):
     """Relative motion; the table is left out for the normal problem alone."""
@@ -122,6 +129,18 @@ class Motion(Table):
         description="-, number of equal steps of a solve with transient_rolling or shift; left "
         "out: 1",
     )
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """Creepages and forces as they are prescribed; distance and steps where they count."""
+        keys = ["creepage", "spin_creepage", "rolling_speed", "direction"]
+        if all(self.prescribed):
+            keys.remove("creepage")
+        if any(self.prescribed):
+            keys.append("tangential_force")
+        if self.regime == "transient_rolling":
+            keys += ["distance", "steps"]
+        return tuple(keys)
 
     @property
     def prescribed(self) -> tuple[bool, bool]:
@@ -199,6 +218,11 @@ class PatchCase(Table):
         default=None, description="surface temperature (degrees C, W/(m K), J/(kg K), kg/m^3)"
     )
     method: Method = Field(default=Method(), description="theories and tolerances (-)")
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """The tables that hold keys which move."""
+        return ("load", "motion")
 
     @property
     def has_tangential(self) -> bool:

@@ -1,122 +1,121 @@
-"""From a checked case to the structs of the core, as dictionaries by field name."""
+"""From a checked case to the structs of the core, as dictionaries by field name.
+
+A key whose name is that of a field of the core passes as it is, or with the first word of its table
+before it; NAMES lists the others. What has another form there is made by a function below. What is
+left out keeps the core's default. The case is resolved (case/resolve.py) once, at the head of
+config_of().
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
-from railpatch.case.common import WHEEL_METHOD, Friction, Layer, Temperature
+from railpatch import _core
 from railpatch.case.creep_table import default_table
-from railpatch.case.load import Case, Scene
+from railpatch.case.gap import read_gap
+from railpatch.case.load import Case, Scene, plain
 from railpatch.case.longitudinal import shape_config
-from railpatch.case.patch import SHAPES, PatchCase
+from railpatch.case.messages import show
+from railpatch.case.moving import BY_TABLE, moving_keys, refuse_unknown
+from railpatch.case.patch import SHAPES, STEPWISE, PatchCase
 from railpatch.case.resolve import resolved
-from railpatch.case.theories import FAST_NUMBERS
-from railpatch.case.types import MOST_POINTS, SIDES
-from railpatch.case.wheel import WheelRailCase, WheelsetCase
+from railpatch.case.types import BODIES, MOST_POINTS, SIDES, Table
+from railpatch.case.wheel import Deviation, WheelRailCase, WheelsetCase
+from railpatch.errors import CaseError
 from railpatch.profiles import Profile, load_profile
 from railpatch.profiles.sections import matching_sections
 
-WHEELSET_STATE = (
-    *("x", "y", "roll", "pitch", "yaw"),
-    *("speed", "vy", "vz", "roll_rate", "pitch_rate", "yaw_rate"),
-    "time_step",
+WheelCase = WheelRailCase | WheelsetCase
+# first word of a field that holds a key of the table
+WORDS = {"friction": "friction_", "layer": "layer_", "rail_support": "rail_"}
+# keys whose field has another name
+NAMES = {
+    "temperature.depth": "temperature_depth",
+    "temperature.exchange": "heat_exchange",
+    "track.kind": "track",
+}
+# the wheels deviate from the wheelset's table, the rails from the track's
+DEVIATION = tuple(Deviation.model_fields)
+BODY_OF_TABLE = {"wheelset": "wheel", "track": "rail"}
+# columns and rows of rp_jacobian
+POSE_AND_VELOCITY = (
+    *("x", "y", "z", "roll", "yaw", "pitch"),
+    *("speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate"),
 )
-DEVIATION = ("offset", "rotation", "velocity", "angular_velocity")
+FORCE_AND_MOMENT = ("fx", "fy", "fz", "mx", "my", "mz")
+
+
+def field_of(table: str, key: str, fields: Mapping[str, Any]) -> str | None:
+    """The field of the core that holds a key of a table; None where none does as it is."""
+    known = (NAMES.get(f"{table}.{key}"), f"{WORDS[table]}{key}" if table in WORDS else None, key)
+    return next((name for name in known if name in fields), None)
+
+
+def passed(name: str, table: Table | None, fields: Mapping[str, Any]) -> dict[str, Any]:
+    """What of a table passes as it is. name: the table's."""
+    found: dict[str, Any] = {}
+    for key, value in table or ():
+        field = field_of(name, key, fields)
+        if field is not None and value is not None:
+            found[field] = int(value) if isinstance(value, bool) else value
+    return found
 
 
 def config_of(scene: Scene) -> dict[str, Any]:
-    """Fields of rp_config; what is left out keeps the core's default. Raises CaseError,
-    ProfileError."""
+    """Fields of rp_config. Raises CaseError, ProfileError."""
     case = resolved(scene.case)
-    config: dict[str, Any] = {
-        "kind": case.kind,
-        "shear_modulus": case.material.shear_modulus,
-        "poisson_ratio": case.material.poisson_ratio,
-        "normal": case.method.normal,
-        "tangential": case.method.tangential,
-        "tolerance": case.method.tolerance,
-        "derivatives": int(case.method.derivatives),
-        "spin_offset": case.method.spin_offset,
-        "reference_surface": case.method.reference_surface,
-        "flexibility_blending": case.method.flexibility_blending,
-        **{name: getattr(case.method, name) for name in FAST_NUMBERS},
-    }
-    optional = {
-        "max_iterations": case.method.max_iterations,
-        "traction_bound": case.method.traction_bound,
-        **friction_config(case.friction),
-        **layer_config(case.layer),
-        **temperature_config(case.temperature),
-    }
-    config.update({key: value for key, value in optional.items() if value is not None})
+    config: dict[str, Any] = {"kind": case.kind, **grid_config(case)}
+    for name in ("material", "method", "motion", "geometry", "wheelset", "track", "wheel"):
+        config |= passed(name, getattr(case, name, None), _core.CONFIG_FIELDS)
+    config |= friction_config(case) | layer_config(case) | temperature_config(case)
     if case.has_tangential and case.method.tangential == "table":
         config["creep_table"] = default_table()
-    config.update(patch_config(scene) if isinstance(case, PatchCase) else wheel_config(scene, case))
-    config.update(grid_config(case))
-    return config
+    if isinstance(case, PatchCase):
+        return config | patch_config(case, scene.folder)
+    return config | wheel_config(case, scene.folder)
 
 
-def friction_config(friction: Friction | None) -> dict[str, Any]:
+def friction_config(case: Case) -> dict[str, Any]:
     """Friction law."""
+    friction = case.friction
     if friction is None:
         return {}
-    config: dict[str, Any] = {"friction_law": friction.law}
-    if friction.law == "coulomb":
-        config["friction_coefficient"] = friction.coefficient
+    config = passed("friction", friction, _core.CONFIG_FIELDS)
     if friction.law == "slip_velocity":
+        # another form, of which that of the case's law is one
+        config.pop("friction_coefficient", None)
         amplitudes, speeds = friction.terms
         config["slip_law"] = "exponential" if friction.shape == "polach" else friction.shape
         config["friction_kinetic"] = friction.kinetic_coefficient
         config["friction_amplitude"] = [*amplitudes, 0.0][:2]
         config["friction_halving_speed"] = [*speeds, 1.0][:2]
-    if friction.law == "temperature":
-        for name in ("reference", "change", "reference_temperature", "temperature_range"):
-            config[f"friction_{name}"] = getattr(friction, name)
-    if friction.law != "coulomb":
-        config["friction_memory_distance"] = friction.memory_distance
-        config["friction_memory_speed"] = friction.memory_speed
     names = ("position", "factor")
     if friction.factor is not None:
-        config.update(points_config("friction", names, friction.factor))
+        config |= points_config("friction", names, friction.factor)
     if friction.along_track is not None:
-        config.update(points_config("friction_along", names, friction.along_track))
+        config |= points_config("friction_along", names, friction.along_track)
     return config
 
 
-def layer_config(layer: Layer | None) -> dict[str, Any]:
+def layer_config(case: Case) -> dict[str, Any]:
     """Third-body layer."""
-    if layer is None:
-        return {}
-    config: dict[str, Any] = {
-        "layer_shear_modulus": layer.shear_modulus,
-        "layer_thickness": layer.thickness,
-    }
-    if not layer.is_plastic:
+    config = passed("layer", case.layer, _core.CONFIG_FIELDS)
+    if case.layer is None or case.layer.hardening_table is None:
         return config
-    config["plastic_rule"] = layer.plastic_rule
-    config["plastic_heat_fraction"] = layer.plastic_heat_fraction
-    if layer.hardening_table is None:
-        config["layer_yield_stress"] = layer.yield_stress
-        config["layer_hardening"] = layer.hardening
-        return config
-    config["layer_yield_stress"] = layer.hardening_table[0][1]
+    table = case.layer.hardening_table
     names = ("displacement", "stress")
-    return {**config, **points_config("hardening", names, layer.hardening_table)}
+    return config | {"layer_yield_stress": table[0][1]} | points_config("hardening", names, table)
 
 
-def temperature_config(heat: Temperature | None) -> dict[str, Any]:
+def temperature_config(case: Case) -> dict[str, Any]:
     """Surface temperature."""
-    if heat is None:
+    if case.temperature is None:
         return {}
-    return {
-        "temperature": 1,
-        "bulk_temperature": [heat.wheel, heat.rail],
-        "heat_exchange": int(heat.exchange),
-        "conductivity": heat.conductivity,
-        "heat_capacity": heat.heat_capacity,
-        "density": heat.density,
-        "temperature_depth": heat.depth,
-    }
+    found = passed("temperature", case.temperature, _core.CONFIG_FIELDS)
+    return {"temperature": 1, **found, **bulk_of(case)}
 
 
 def points_config(prefix: str, names: tuple[str, str], points: list[list[float]]) -> dict[str, Any]:
@@ -143,60 +142,31 @@ def grid_config(case: Case) -> dict[str, Any]:
     }
 
 
-def patch_config(scene: Scene) -> dict[str, Any]:
+def patch_config(case: PatchCase, folder: Path) -> dict[str, Any]:
     """Geometry and load of a patch."""
-    case = scene.case
-    assert isinstance(case, PatchCase)
     shape = next(name for name in SHAPES if getattr(case.geometry, name) is not None)
     config: dict[str, Any] = {
         "geometry": shape,
         "load": "force" if case.load.normal_force is not None else "position",
-        "regime": case.motion.regime,
         "force_prescribed": [int(prescribed) for prescribed in case.motion.prescribed],
     }
     if shape == "undeformed_distance":
-        config[shape] = scene.gap()
-    else:
-        config[shape] = getattr(case.geometry, shape)
-    if case.geometry.width is not None:
-        config["width"] = case.geometry.width
+        config[shape] = read_gap(case.geometry.undeformed_distance, folder)
     return config
 
 
-def wheel_config(scene: Scene, case: WheelRailCase | WheelsetCase) -> dict[str, Any]:
-    """Dimensions, track and profiles of a wheel or wheelset."""
-    wheelset, track = case.wheelset, case.track
+def wheel_config(case: WheelCase, folder: Path) -> dict[str, Any]:
+    """Load, regime, profiles, rails and shapes of wheels."""
     config: dict[str, Any] = {
-        "load": "position" if wheelset.z is not None else "force",
+        "load": "position" if case.wheelset.z is not None else "force",
         "regime": case.motion.regime if case.has_tangential else "none",
-        "nominal_radius": wheelset.nominal_radius,
-        "flange_back_distance": wheelset.flange_back_distance,
-        "flange_back_position": wheelset.flange_back_position,
-        "track": track.kind,
-        "gauge": track.gauge,
-        "gauge_height": track.gauge_height,
-        "gauge_widening": track.gauge_widening,
-        "cant": track.cant,
-        "curvature": track.curvature,
-        "wheel": profile_pair(scene, case, "wheel"),
-        "rail": profile_pair(scene, case, "rail"),
+        **{body: profile_pair(case, folder, body) for body in BODIES},
+        **passed("rail_support", case.track.rail_support, _core.CONFIG_FIELDS),
     }
-    if track.roller_radius is not None:
-        config["roller_radius"] = track.roller_radius
-    if track.rail_support is not None:
-        config["rail_stiffness"] = track.rail_support.stiffness
-        config["rail_damping"] = track.rail_support.damping
-    config.update(sections_config(scene, case))
-    if wheelset.max_patches is not None:
-        config["max_patches"] = wheelset.max_patches
-    chosen = {name: getattr(case.method, name) for name in WHEEL_METHOD}
-    config.update({name: value for name, value in chosen.items() if value is not None})
-    if isinstance(case, WheelRailCase):
-        config["side"] = case.wheel.side
-    return {**config, **shape_config(case, scene.folder)}
+    return {**config, **sections_config(case, folder), **shape_config(case, folder)}
 
 
-def profile_pair(scene: Scene, case: WheelRailCase | WheelsetCase, body: Any) -> list[Any]:
+def profile_pair(case: WheelCase, folder: Path, body: Any) -> list[Any]:
     """[left, right] of the wheels or the rails; None for a side that has no wheel."""
     pair: list[Any] = []
     for side in SIDES:
@@ -206,7 +176,7 @@ def profile_pair(scene: Scene, case: WheelRailCase | WheelsetCase, body: Any) ->
             continue
         _, name = case.profiles.of(body, side)
         assert name is not None
-        profile = load_profile(name, body, folder=scene.folder, smoothing=case.profiles.smoothing)
+        profile = load_profile(name, body, folder=folder, smoothing=case.profiles.smoothing)
         pair.append(profile_arrays(profile))
     return pair
 
@@ -216,7 +186,7 @@ def profile_arrays(profile: Profile) -> dict[str, Any]:
     return {key: getattr(profile, key) for key in ("arc_length", "y", "z", "dy", "dz")}
 
 
-def sections_config(scene: Scene, case: WheelRailCase | WheelsetCase) -> dict[str, Any]:
+def sections_config(case: WheelCase, folder: Path) -> dict[str, Any]:
     """Profiles of the rails along the track, where they vary; [left, right]."""
     rails = [getattr(case.track, side) for side in SIDES]
     found = [
@@ -228,7 +198,7 @@ def sections_config(scene: Scene, case: WheelRailCase | WheelsetCase) -> dict[st
     profiles = []
     for sections in found:
         loaded = [
-            load_profile(s.profile, "rail", folder=scene.folder, smoothing=case.profiles.smoothing)
+            load_profile(s.profile, "rail", folder=folder, smoothing=case.profiles.smoothing)
             for s in sections
         ]
         profiles.append([profile_arrays(p) for p in matching_sections(loaded)] if loaded else [])
@@ -238,29 +208,85 @@ def sections_config(scene: Scene, case: WheelRailCase | WheelsetCase) -> dict[st
 
 def input_of(case: Case) -> dict[str, Any]:
     """Fields of rp_input."""
+    values: dict[str, Any] = {}
+    for name in case.moving:
+        values |= passed(name, getattr(case, name), _core.INPUT_FIELDS)
     if isinstance(case, PatchCase):
-        values = case.motion.model_dump(exclude={"regime", "distance", "steps"})
-        values["creepage"] = case.motion.creepages[0]
-        values["tangential_force"] = case.motion.forces
-        if case.motion.distance is not None:
-            values["distance"] = case.motion.distance / (case.motion.steps or 1)
-        values.update(case.load.model_dump(exclude_none=True))
-        return {**values, **bulk_of(case)}
-    wheelset, track = case.wheelset, case.track
-    values = {name: getattr(wheelset, name) for name in WHEELSET_STATE}
-    if wheelset.z is not None:
-        values["z"] = wheelset.z
+        motion = case.motion
+        values["creepage"] = motion.creepages[0]
+        values["tangential_force"] = motion.forces
+        if motion.distance is not None:
+            values["distance"] = motion.distance / (motion.steps or 1)
     else:
-        values["vertical_force"] = wheelset.vertical_force
-    if track.roller_pitch_rate is not None:
-        values["roller_pitch_rate"] = track.roller_pitch_rate
-    for name, table in (("wheel", wheelset), ("rail", track)):
-        for key in DEVIATION:
-            values[f"{name}_{key}"] = [getattr(table.left, key), getattr(table.right, key)]
+        for table, body in BODY_OF_TABLE.items():
+            sides = [getattr(getattr(case, table), side) for side in SIDES]
+            for key in DEVIATION:
+                values[f"{body}_{key}"] = [getattr(side, key) for side in sides]
     return {**values, **bulk_of(case)}
 
 
 def bulk_of(case: Case) -> dict[str, Any]:
-    """Bulk temperatures of a step, in a scene that has them."""
+    """Bulk temperatures, in a scene that has them."""
     heat = case.temperature
-    return {} if heat is None else {"bulk_temperature": [heat.wheel, heat.rail]}
+    return {} if heat is None else {"bulk_temperature": [getattr(heat, body) for body in BODIES]}
+
+
+def rates_of(case: Case, direction: Mapping[str, Any]) -> dict[str, Any]:
+    """Rates of the fields of rp_input, for rates of moving keys. Raises CaseError."""
+    if not case.method.derivatives:
+        raise CaseError("method.derivatives: value is False, allowed True for differentiate()")
+    keys = {key: table for key, table in moving_keys(case).items() if key not in STEPWISE}
+    if case.friction is not None and case.friction.law == "coulomb":
+        keys["friction_coefficient"] = "friction"
+    refuse_unknown(direction, keys, "")
+    rates: dict[str, Any] = {}
+    for key, value in plain(direction).items():
+        if key == "temperature":
+            table = part_of(value, BODIES, key)
+            rates["bulk_temperature"] = [number(table.get(body, 0.0), key) for body in BODIES]
+        elif key in BY_TABLE:
+            for name, item in part_of(value, getattr(case, key).moving, key).items():
+                add_rate(rates, name, item, key)
+        else:
+            add_rate(rates, key, value, keys[key])
+    if isinstance(case, PatchCase) and "distance" in rates:
+        rates["distance"] /= case.motion.steps or 1
+    return rates
+
+
+def add_rate(rates: dict[str, Any], key: str, value: Any, table: str) -> None:
+    """One rate, or those of a wheel's or rail's deviation."""
+    if key not in SIDES:
+        rates[key] = numbers(value, key, key)
+        return
+    for name, item in part_of(value, DEVIATION, key).items():
+        field = f"{BODY_OF_TABLE[table]}_{name}"
+        sides = rates.setdefault(field, [[0.0] * 3, [0.0] * 3])
+        sides[SIDES.index(key)] = numbers(item, name, field)
+
+
+def part_of(value: Any, allowed: tuple[str, ...], key: str) -> dict[str, Any]:
+    """A table with some of the allowed keys."""
+    if not isinstance(value, dict):
+        raise CaseError(f"{key}: value is {show(value)}, allowed a table")
+    refuse_unknown(value, dict.fromkeys(allowed), f"{key}.")
+    return value
+
+
+def numbers(value: Any, key: str, field: str) -> Any:
+    """A finite number, or a list of as many as the core's field has, on each side."""
+    shape = _core.INPUT_FIELDS[field]["shape"]
+    if not shape:
+        return number(value, key)
+    length = shape[-1]
+    if not isinstance(value, list) or len(value) != length:
+        raise CaseError(f"{key}: value is {show(value)}, allowed {length} numbers")
+    return [number(item, key) for item in value]
+
+
+def number(value: Any, key: str) -> float:
+    """A finite number."""
+    real = isinstance(value, int | float) and not isinstance(value, bool)
+    if not real or not math.isfinite(value):
+        raise CaseError(f"{key}: value is {show(value)}, allowed a finite number")
+    return float(value)

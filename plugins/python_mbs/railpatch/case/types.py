@@ -12,6 +12,8 @@ from pydantic_core import PydanticCustomError
 
 # of a wheelset and its track; the core counts them in this order
 SIDES = ("left", "right")
+# that touch, in the core's order
+BODIES = ("wheel", "rail")
 # elements of one patch along one axis; a grid has a border of one element besides
 MOST_ELEMENTS = 1000
 
@@ -93,6 +95,11 @@ class Table(BaseModel):
     """A table of the case file: no unknown keys, no conversion of types, no change afterwards."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """The keys that may change from step to step."""
+        return ()
 
 
 def twice(value: Any) -> Any:

@@ -42,6 +42,14 @@ from railpatch.profiles.smooth import MEASURED_WAVELENGTH
 Text = Annotated[str, Field(min_length=1)]
 
 
+# of [wheelset], what moves beside its height
+WHEELSET_STATE = (
+    *("x", "y", "roll", "pitch", "yaw"),
+    *("speed", "vy", "vz", "roll_rate", "pitch_rate", "yaw_rate"),
+    "time_step",
+)
+
+
 class Deviation(Table):
     """Deviation of a wheel from the rigid wheelset, or of a rail from its design position."""
 
@@ -55,6 +63,11 @@ class Deviation(Table):
     angular_velocity: Vector = Field(
         default=[0.0, 0.0, 0.0], description="rad/s, rate of rotation, into the creepages"
     )
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """The deviation, not the shape."""
+        return tuple(Deviation.model_fields)
 
 
 class WheelDeviation(Deviation, WheelShape):
@@ -114,6 +127,12 @@ class Wheelset(Table):
     def _one_height(self) -> Wheelset:
         exactly_one(self, ("z", "vertical_force"))
         return self
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """Position and velocity, not the dimensions."""
+        height = "z" if self.z is not None else "vertical_force"
+        return (*WHEELSET_STATE, height, *SIDES)
 
 
 class Rail(Deviation, RailShape):
@@ -180,6 +199,11 @@ class Track(Table):
                 raise relation(key, getattr(self, key), "only with kind = 'roller'")
         return self
 
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """The rails' or rollers' deviations, and the rollers' speed."""
+        return (*SIDES, "roller_pitch_rate") if self.kind == "roller" else SIDES
+
 
 class Profiles(Table):
     """Profiles by path (relative to the case file) or built-in name; by side or for both."""
@@ -244,6 +268,11 @@ class _WheelCase(Table):
     wheelset: Wheelset = Field(description="position, velocity, dimensions (m, rad, m/s, rad/s)")
     track: Track = Field(description="rails or rollers (m, rad, rad/s)")
     profiles: Profiles = Field(description="profiles by file or name (no unit)")
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """The tables that hold keys which move."""
+        return ("wheelset", "track")
 
     @property
     def sides(self) -> tuple[str, ...]:

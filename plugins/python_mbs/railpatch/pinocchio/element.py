@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from railpatch import _core
 from railpatch.case.load import Scene
 from railpatch.case.messages import show
-from railpatch.case.to_core import input_of
+from railpatch.case.to_core import POSE_AND_VELOCITY, input_of
 from railpatch.case.types import SIDES
 from railpatch.case.wheel import WheelsetCase
 from railpatch.contact import CaseSource, Contact
@@ -29,10 +29,7 @@ from railpatch.pinocchio.derivative import (
 from railpatch.result import GOOD, Result
 
 # names of the rows of `states`, in order
-STATE = (
-    *("x", "y", "z", "roll", "yaw", "pitch"),
-    *("speed", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate"),
-)
+STATE = POSE_AND_VELOCITY
 # of the core, by code; a test compares them
 STATUSES = ("converged", "no_contact", "not_converged", "out_of_range")
 PATCHES = ("patches", "alternatives")
