@@ -24,7 +24,7 @@ from railpatch.case.types import (
     Table,
     between,
     exactly_one,
-    more_than,
+    key,
     relation,
     twice,
 )
@@ -96,9 +96,7 @@ class Layer(Table):
     shear_modulus: Modulus | None = Field(
         default=None, description="Pa, shear modulus of the layer; needed with a thickness > 0"
     )
-    thickness: Annotated[float, between(0, 0.1)] = Field(
-        description="m, thickness of the layer; 0: no elastic layer"
-    )
+    thickness: float = key(of="layer_thickness", default=...)
     yield_stress: Annotated[float, between(1e-3, 1e15)] | None = Field(
         default=None, description="Pa, at which the layer begins to yield; left out: elastic"
     )
@@ -117,9 +115,7 @@ class Layer(Table):
         description="what the yield stress depends on (no unit): length of the plastic "
         "displacement's path, or magnitude of its vector sum",
     )
-    plastic_heat_fraction: Annotated[float, between(0, 1)] = Field(
-        default=0.9, description="-, part of the plastic work that heats the surfaces"
-    )
+    plastic_heat_fraction: float = key()
 
     @model_validator(mode="after")
     def _plastic(self) -> Layer:
@@ -165,9 +161,7 @@ class Temperature(Table):
         default=[450.0, 450.0], description="J/(kg K), specific heat capacity, or [wheel, rail]"
     )
     density: HeatPair = Field(default=[7850.0, 7850.0], description="kg/m^3, or [wheel, rail]")
-    depth: Annotated[float, between(0, 1)] = Field(
-        default=0.0, description="m, below the surface, where the temperatures are given"
-    )
+    depth: float = key(of="temperature_depth")
 
     @property
     def moving(self) -> tuple[str, ...]:
@@ -188,12 +182,8 @@ class Method(Table):
     tangential: Literal["none", "linear", "polach", "fastsim", "fastrip", "table", "full"] = Field(
         default="full", description="theory of the tangential problem (no unit)"
     )
-    tolerance: Annotated[float, between(1e-12, 0.1)] = Field(
-        default=1e-5, description="-, relative tolerance of the solvers"
-    )
-    max_iterations: Annotated[int, Field(ge=1, le=100_000)] | None = Field(
-        default=None, description="-, most iterations of each solver; left out: the core's choice"
-    )
+    tolerance: float = key()
+    max_iterations: int | None = key("; left out: the core's choice", default=None)
     accuracy: Annotated[float, between(0.002, 0.2)] | None = Field(
         default=None,
         description="-, wanted instead of [grid]: error of the creep force over friction "
@@ -210,9 +200,7 @@ class Method(Table):
         description="of half_space on wheels (no unit): plane, or curved between wheel and rail, "
         "with a normal for each row of elements, for conformal contact",
     )
-    percent_kalker: Annotated[float, more_than(0, 200)] = Field(
-        default=100.0, description="%, of Kalker's creepage coefficients in the fast theories"
-    )
+    percent_kalker: float = key()
     traction_bound: Literal["parabolic", "elliptic"] | None = Field(
         default=None,
         description="of fastsim (no unit): elliptic, the friction coefficient times the pressure, "
@@ -224,24 +212,11 @@ class Method(Table):
         "sliding becomes full, or none; contact: fastsim as in the program CONTACT, to compare "
         "(blended, Kalker's published coefficients, whole elements as steps, bound not scaled)",
     )
-    polach_k_a: Annotated[float, more_than(0, 10)] = Field(
-        default=1.0,
-        description="-, k_A of polach, reduction of the area of adhesion; 1: Kalker's slope",
-    )
-    polach_k_s: Annotated[float, more_than(0, 10)] = Field(
-        default=1.0, description="-, k_S of polach, reduction of the area of slip"
-    )
-    fastsim_k0: Annotated[float, more_than(0, 10)] = Field(
-        default=1.0,
-        description="-, k0 of modified fastsim, whose stiffness is that of Kalker times "
-        "k0 (alpha + (1 - alpha)/(1 + beta e))",
-    )
-    fastsim_alpha: Annotated[float, between(0, 1)] = Field(
-        default=1.0, description="-, alpha of modified fastsim"
-    )
-    fastsim_beta: Annotated[float, between(0, 1000)] = Field(
-        default=0.0, description="-, beta of modified fastsim"
-    )
+    polach_k_a: float = key()
+    polach_k_s: float = key()
+    fastsim_k0: float = key()
+    fastsim_alpha: float = key()
+    fastsim_beta: float = key()
     patch_rule: Literal["blended", "contact"] | None = Field(
         default=None,
         description="of wheels (no unit): blended, the default, neighbouring areas of contact go "
@@ -254,12 +229,7 @@ class Method(Table):
         "leaves out the normal force's part along it where a contact lies ahead of the roller's "
         "top, as published results do; or inclined, x along the roller's surface",
     )
-    standstill_speed: Annotated[float, between(0, 1)] | None = Field(
-        default=None,
-        description="m/s, of wheels: rolling speed below which creepages tend to finite values, so "
-        "that forces pass through standstill without a jump; 0: slip over speed, nothing at rest; "
-        "left out: 0.001",
-    )
+    standstill_speed: float | None = key("; left out: 0.001", default=None)
 
     derivatives: bool = Field(
         default=False,
@@ -295,16 +265,16 @@ def check_physics(
         "layer.yield_stress": layer is not None and layer.is_plastic,
         "temperature": heat is not None,
     }
-    for key, needed in asked.items():
+    for asking, needed in asked.items():
         if not needed:
             continue
         if method.tangential != "full":
             shown = repr(method.tangential)
-            raise relation("method.tangential", shown, f"'full' with {key}")
+            raise relation("method.tangential", shown, f"'full' with {asking}")
         if grid is not None and grid.fitted is not None:
-            raise relation("grid.fitted", str(grid.fitted), f"to be left out with {key}")
+            raise relation("grid.fitted", str(grid.fitted), f"to be left out with {asking}")
         if method.accuracy is not None:
-            allowed = f"to be left out with {key}: give 'grid'"
+            allowed = f"to be left out with {asking}: give 'grid'"
             raise relation("method.accuracy", method.accuracy, allowed)
     if friction is not None and friction.law == "temperature" and heat is None:
         raise relation("temperature", "missing", "the table [temperature] with this friction law")

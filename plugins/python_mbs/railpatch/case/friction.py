@@ -16,6 +16,7 @@ from railpatch.case.types import (
     Positive,
     Table,
     between,
+    key,
     more_than,
     relation,
 )
@@ -70,12 +71,8 @@ class Friction(Table):
     polach_b: Annotated[float, more_than(0, 1e6)] | None = Field(
         default=None, description="s/m, B of Polach's law"
     )
-    memory_distance: Annotated[float, between(0, 1)] = Field(
-        default=0.0, description="m, over which the coefficient follows the law; 0: at once"
-    )
-    memory_speed: Positive = Field(
-        default=1e-3, description="m/s, least speed with which it follows the law"
-    )
+    memory_distance: float = key(of="friction_memory_distance")
+    memory_speed: float = key(of="friction_memory_speed")
     reference: Coefficient | None = Field(
         default=None, description="-, of the temperature law up to reference_temperature"
     )

@@ -26,16 +26,14 @@ from railpatch.case.common import (
 from railpatch.case.types import (
     Curvatures,
     ForcePair,
-    NotNegative,
-    Number,
     Pair,
     Pairs,
     Positive,
     SemiAxes,
     Shift,
     Table,
-    between,
     exactly_one,
+    key,
     relation,
 )
 
@@ -47,21 +45,10 @@ SHAPES = ("semi_axes", "curvatures", "line_contact_radius", "undeformed_distance
 class Geometry(Table):
     """Shape of the undeformed bodies: exactly one of the four forms."""
 
-    semi_axes: SemiAxes | None = Field(
-        default=None,
-        description="m, semi-axes of the contact ellipse [along rolling, lateral]; the curvatures "
-        "follow from the load",
-    )
-    curvatures: Curvatures | None = Field(
-        default=None,
-        description="1/m, [c0, c1] of the undeformed distance c0 x^2 + c1 y^2",
-    )
-    line_contact_radius: Annotated[float, between(1e-6, 1e6)] | None = Field(
-        default=None, description="m, combined radius 1/(1/R_wheel + 1/R_rail) of a line contact"
-    )
-    width: Annotated[float, between(1e-6, 1e3)] | None = Field(
-        default=None, description="m, width of the line contact"
-    )
+    semi_axes: SemiAxes | None = key(default=None)
+    curvatures: Curvatures | None = key(default=None)
+    line_contact_radius: float | None = key(default=None)
+    width: float | None = key(default=None)
     undeformed_distance: str | list[list[Shift]] | None = Field(
         default=None,
         description="m, undeformed distance: path of a CSV file (or nested lists), one row per "
@@ -80,10 +67,8 @@ class Geometry(Table):
 class Load(Table):
     """Normal load: the force or the approach."""
 
-    normal_force: Positive | None = Field(default=None, description="N, normal force")
-    approach: Number | None = Field(
-        default=None, description="m, approach of the bodies; below 0 they are apart"
-    )
+    normal_force: float | None = key(default=None)
+    approach: float | None = key(default=None)
 
     @model_validator(mode="after")
     def _one_load(self) -> Load:
@@ -117,10 +102,8 @@ class Motion(Table):
     direction: Literal[1, -1] = Field(
         default=1, description="-, rolling towards +x (1) or towards -x (-1)"
     )
-    spin_creepage: Number = Field(
-        default=0.0, description="rad/m, spin creepage; with shift rad, the rotation"
-    )
-    rolling_speed: NotNegative = Field(default=10.0, description="m/s, rolling speed")
+    spin_creepage: float = key()
+    rolling_speed: float = key()
     distance: Positive | None = Field(
         default=None, description="m, rolled in all steps of a solve with transient_rolling"
     )

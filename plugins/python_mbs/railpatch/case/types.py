@@ -1,14 +1,18 @@
 """Value types that the tables of a case share. All numbers are finite and strictly typed.
 
-Ranges are those of the core's own checks; a test compares them.
+Ranges are those of the core's own checks: from its lists where a key has a field's name, and a test
+compares all.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
+
+from railpatch import _core
 
 # of a wheelset and its track; the core counts them in this order
 SIDES = ("left", "right")
@@ -28,6 +32,67 @@ def more_than(low: float, high: float) -> Any:
     return Field(gt=low, le=high, allow_inf_nan=False)
 
 
+# of a range, by the core's lists
+ENDS = {"[": "ge", "(": "gt", "]": "le", ")": "lt"}
+
+
+def listed(name: str) -> dict[str, Any]:
+    """What the core's lists say of a field of a config or an input."""
+    return _core.CONFIG_FIELDS.get(name) or _core.INPUT_FIELDS[name]
+
+
+def limits(name: str) -> dict[str, Any]:
+    """The range of a field of the core, as arguments of Field."""
+    field = listed(name)
+    whole = field["type"] == "int32_t"
+    found: dict[str, Any] = {} if whole else {"allow_inf_nan": False}
+    for end, value in zip(field["bounds"], (field["low"], field["high"]), strict=False):
+        if math.isfinite(value):
+            found[ENDS[end]] = int(value) if whole else value
+    return found
+
+
+def within(name: str) -> Any:
+    """The range of a field of the core, for one of its numbers."""
+    return Field(**limits(name))
+
+
+class Key:
+    """A key that stands in the core's lists under its own name, or under ``of``."""
+
+    def __init__(self, more: str, of: str | None, options: dict[str, Any]) -> None:
+        self.more, self.of, self.options = more, of, options
+
+    def field(self, name: str) -> Any:
+        """What pydantic takes. A list's range is in its type."""
+        known = listed(self.of or name)
+        options = {} if known["shape"] else limits(self.of or name)
+        start = known["start"]
+        options["default"] = [start] * known["shape"][0] if known["shape"] else start
+        options["description"] = f"{known['unit']}, {known['text']}{self.more}"
+        return Field(**{**options, **self.options})
+
+
+def key(more: str = "", *, of: str | None = None, **options: Any) -> Any:
+    """A key of a table with range, unit, default and text of the core's field of its name.
+
+    more: goes on with the text. of: the field's name where it is another. options: of pydantic's
+    Field, in place of the core's; default=... for a key that is needed.
+    """
+    return Key(more, of, options)
+
+
+class Named(type(BaseModel)):
+    """Puts the core's words in the place of key()."""
+
+    def __new__(cls, name: str, bases: Any, namespace: dict[str, Any], **more: Any) -> Any:
+        """The class."""
+        for own, value in namespace.items():
+            if isinstance(value, Key):
+                namespace[own] = value.field(own)
+        return super().__new__(cls, name, bases, namespace, **more)
+
+
 def exactly(count: int) -> Any:
     """The length of a list."""
     return Field(min_length=count, max_length=count)
@@ -36,11 +101,10 @@ def exactly(count: int) -> Any:
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-Shift = Annotated[float, between(-1, 1)]  # m
-Angle = Annotated[float, between(-1.5, 1.5)]  # rad
-Dimension = Annotated[float, between(0.01, 10)]  # m
-Modulus = Annotated[float, between(1.0, 1e15)]  # Pa
-Ratio = Annotated[float, between(0, 0.5)]
+Shift = Annotated[float, within("wheel_offset")]  # m
+Angle = Annotated[float, within("wheel_rotation")]  # rad
+Modulus = Annotated[float, within("shear_modulus")]  # Pa
+Ratio = Annotated[float, within("poisson_ratio")]
 Count = Annotated[int, Field(ge=1, le=MOST_ELEMENTS)]
 Capacity = Annotated[int, Field(ge=1, le=MOST_ELEMENTS + 2)]
 
@@ -55,18 +119,18 @@ FittedPair = Annotated[list[Nodes], exactly(2)]
 CapacityPair = Annotated[list[Capacity], exactly(2)]
 ModulusPair = Annotated[list[Modulus], exactly(2)]
 RatioPair = Annotated[list[Ratio], exactly(2)]
-ElementSize = Annotated[list[Annotated[float, between(1e-9, 1)]], exactly(2)]
-SemiAxes = Annotated[list[Annotated[float, between(1e-7, 1)]], exactly(2)]
-Curvatures = Annotated[list[Annotated[float, between(1e-9, 1e6)]], exactly(2)]
+ElementSize = Annotated[list[Annotated[float, within("element_size")]], exactly(2)]
+SemiAxes = Annotated[list[Annotated[float, within("semi_axes")]], exactly(2)]
+Curvatures = Annotated[list[Annotated[float, within("curvatures")]], exactly(2)]
 Vector = Annotated[list[Number], exactly(3)]
 ShiftVector = Annotated[list[Shift], exactly(3)]
 AngleVector = Annotated[list[Angle], exactly(3)]
 
 
 # degrees C
-Celsius = Annotated[float, between(-273.15, 1e4)]
+Celsius = Annotated[float, within("bulk_temperature")]
 # factor of the friction law at a position, and displacement with yield stress: of the core
-MOST_POINTS = 32
+MOST_POINTS = listed("friction_position")["shape"][0]
 Points = Annotated[list[Pair], Field(min_length=2, max_length=MOST_POINTS)]
 HardeningTable = Annotated[
     list[Annotated[list[NotNegative], exactly(2)]], Field(min_length=2, max_length=MOST_POINTS)
@@ -91,7 +155,7 @@ HeatPair = Annotated[
 ]
 
 
-class Table(BaseModel):
+class Table(BaseModel, metaclass=Named):
     """A table of the case file: no unknown keys, no conversion of types, no change afterwards."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)

@@ -23,18 +23,13 @@ from railpatch.case.rails import RailSupport, Sections, check_sections
 from railpatch.case.rolling import RailShape, WheelMotion, WheelShape, check_rolling
 from railpatch.case.types import (
     SIDES,
-    Angle,
     AngleVector,
-    Dimension,
-    NotNegative,
     Number,
-    Positive,
-    Shift,
     ShiftVector,
     Table,
     Vector,
-    between,
     exactly_one,
+    key,
     relation,
 )
 from railpatch.profiles.smooth import MEASURED_WAVELENGTH
@@ -80,42 +75,25 @@ class Wheelset(Table):
     x: Number = Field(
         default=0.0, description="m, position along the track, for what varies along it"
     )
-    y: Shift = Field(default=0.0, description="m, lateral position of its centre, to the right")
-    z: Shift | None = Field(
-        default=None, description="m, vertical position of its centre, down; or vertical_force"
-    )
-    vertical_force: Positive | None = Field(
-        default=None,
-        description="N, vertical force on the wheel (wheel_rail) or on both wheels together "
-        "(wheelset); z is then found",
-    )
-    roll: Angle = Field(default=0.0, description="rad, about x")
+    y: float = key()
+    z: float | None = key("; or vertical_force", default=None)
+    vertical_force: float | None = key(default=None)
+    roll: float = key()
     pitch: Number = Field(
         default=0.0, description="rad, about the axle, for what varies around the wheels"
     )
-    yaw: Angle = Field(default=0.0, description="rad, about z")
-    speed: Number = Field(default=0.0, description="m/s, forward speed; 0 on a rig")
-    vy: Number = Field(default=0.0, description="m/s, lateral speed")
-    vz: Number = Field(default=0.0, description="m/s, vertical speed")
-    roll_rate: Number = Field(default=0.0, description="rad/s, about x")
-    yaw_rate: Number = Field(default=0.0, description="rad/s, about z")
-    pitch_rate: Number = Field(
-        default=0.0, description="rad/s, about the axle; below 0 for rolling forward"
-    )
-    time_step: NotNegative = Field(
-        default=0.0,
-        description="s, since the last step, for rails on dampers (0: at rest) "
-        "and transient rolling (> 0)",
-    )
-    nominal_radius: Dimension = Field(description="m, wheel radius at the profile's z = 0")
-    flange_back_distance: Dimension = Field(description="m, between the flange backs")
-    flange_back_position: Shift = Field(
-        default=0.0,
-        description="m, of the flange back on the profile's y axis: -0.070 for S1002",
-    )
-    max_patches: Annotated[int, Field(ge=1, le=6)] | None = Field(
-        default=None, description="-, capacity: most patches of one wheel"
-    )
+    yaw: float = key()
+    speed: float = key()
+    vy: float = key()
+    vz: float = key()
+    roll_rate: float = key()
+    yaw_rate: float = key()
+    pitch_rate: float = key()
+    time_step: float = key()
+    nominal_radius: float = key(default=...)
+    flange_back_distance: float = key(default=...)
+    flange_back_position: float = key(default=0.0)
+    max_patches: int | None = key(default=None)
     left: WheelDeviation = Field(
         default=WheelDeviation(), description="left wheel's deviation (m, rad), wheelset axes"
     )
@@ -154,26 +132,13 @@ class Track(Table):
     """Rails or rollers."""
 
     kind: Literal["rail", "roller"] = Field(default="rail", description="(no unit)")
-    gauge: Dimension = Field(default=1.435, description="m, track gauge")
-    gauge_height: Annotated[float, between(0, 0.1)] = Field(
-        default=0.014, description="m, height below the rail's top at which the gauge is measured"
-    )
-    gauge_widening: Annotated[float, between(-0.1, 0.1)] = Field(
-        default=0.0, description="m, each rail lies half of it further out than the gauge says"
-    )
-    cant: Annotated[float, between(-0.5, 0.5)] = Field(
-        default=0.0,
-        description="rad, inclination of both rails towards the track's centre (rail)",
-    )
-    curvature: Annotated[float, between(-0.1, 0.1)] = Field(
-        default=0.0, description="1/m, right-hand curve above 0 (rail)"
-    )
-    roller_radius: Annotated[float, between(0.01, 100)] | None = Field(
-        default=None, description="m, roller radius at the profile's z = 0 (roller)"
-    )
-    roller_pitch_rate: Number | None = Field(
-        default=None, description="rad/s, about the roller's axle, above 0 forward (roller)"
-    )
+    gauge: float = key()
+    gauge_height: float = key()
+    gauge_widening: float = key()
+    cant: float = key()
+    curvature: float = key()
+    roller_radius: float | None = key(default=None)
+    roller_pitch_rate: float | None = key(default=None)
     irregularity: Text | None = Field(
         default=None,
         description="record of the rails' deviations (file, no unit), m: x, left lateral, left "
