@@ -124,26 +124,40 @@ class Run(Table):
 MODELS: dict[str, type[Table]] = {"body": BodyTable, "suspension": SuspensionTable, "run": Run}
 
 
-@dataclass(frozen=True)
-class WheelsetScene:
-    """A checked scene.
+@dataclass(frozen=True, kw_only=True)
+class RunScene:
+    """What the checked scenes of all runs have.
 
-    name: of the file. text: as it was read. case: the contact. profiles: key of [profiles] -> the
-    file found, or the built-in name.
+    name: of the file. text: as it was read. case: the contact of each wheelset. profiles: key of
+    [profiles] -> the file found, or the built-in name.
     """
 
     name: str
     text: bytes
     case: WheelsetCase
-    body: BodyTable
-    suspension: SuspensionTable
-    run: Run
     profiles: dict[str, str]
 
     @property
     def speed(self) -> float:
-        """m/s, of the suspension's reference and of the start."""
+        """m/s, of the start and of what draws along."""
         return self.case.wheelset.speed
+
+    def at_height(self, derivatives: bool = False) -> Scene:
+        """The case with z prescribed in place of the vertical force, with derivatives if asked."""
+        wheelset = self.case.wheelset.model_copy(update={"vertical_force": None, "z": 0.0})
+        method = self.case.method
+        method = method.model_copy(update={"derivatives": derivatives or method.derivatives})
+        update = {"wheelset": wheelset, "method": method}
+        return Scene(self.case.model_copy(update=update), Path())
+
+
+@dataclass(frozen=True, kw_only=True)
+class WheelsetScene(RunScene):
+    """A wheelset's scene."""
+
+    body: BodyTable
+    suspension: SuspensionTable
+    run: Run
 
     @property
     def steps(self) -> int:
@@ -163,14 +177,6 @@ class WheelsetScene:
         if self.run.snapshot_every is not None:
             return self.run.snapshot_every
         return -(-self.steps // (SNAPSHOTS * self.run.log_every))
-
-    def at_height(self, derivatives: bool = False) -> Scene:
-        """The case with z prescribed in place of the vertical force, with derivatives if asked."""
-        wheelset = self.case.wheelset.model_copy(update={"vertical_force": None, "z": 0.0})
-        method = self.case.method
-        method = method.model_copy(update={"derivatives": derivatives or method.derivatives})
-        update = {"wheelset": wheelset, "method": method}
-        return Scene(self.case.model_copy(update=update), Path())
 
     def at_speed(self, speed: float, y: float) -> WheelsetScene:
         """The scene at another speed (m/s), released straight at y (m)."""
@@ -241,19 +247,42 @@ def load_checked(
     profiles = found_profiles(checked["case"], path.parent)
     found = checked["case"].profiles.model_copy(update=profiles)
     checked["case"] = checked["case"].model_copy(update={"profiles": found})
-    return scene(path.name, path.read_bytes(), profiles=profiles, **checked)
+    return scene(name=path.name, text=path.read_bytes(), profiles=profiles, **checked)
+
+
+def check_kind(case: Any, run: str) -> None:
+    """Refuses other kinds. run: what needs it."""
+    if case.kind != "wheelset":
+        raise CaseError(f"kind: value is {case.kind!r}, allowed 'wheelset' for a {run} run")
+
+
+def track_problems(case: Any, instead: str = "") -> list[str]:
+    """Of what no run takes: rollers, a track that bends. instead: what says where it does."""
+    track, problems = case.track, []
+    if track.kind != "rail":
+        problems.append(f"track.kind: value is {track.kind!r}, allowed 'rail'")
+    if track.curvature != 0:
+        problems.append(f"track.curvature: value is {track.curvature}, allowed 0{instead}")
+    return problems
+
+
+def start_problems(case: Any, found: tuple[str, ...], why: str) -> list[str]:
+    """Of a case without creep forces, or with keys of [wheelset] that are not to be given."""
+    problems = []
+    if not case.has_tangential:
+        problems.append("method.tangential: value is 'none', allowed a method: creep forces guide")
+    given = {key: getattr(case.wheelset, key) for key in found}
+    return problems + [
+        f"wheelset.{key}: value is {value}, allowed: leave it out, {why}"
+        for key, value in given.items()
+        if value != 0
+    ]
 
 
 def check_run(case: Any, body: BodyTable, run: Run, **_: Any) -> None:
     """Refuses cases that are no wheelset on straight track with a load and friction."""
-    if case.kind != "wheelset":
-        raise CaseError(f"kind: value is {case.kind!r}, allowed 'wheelset' for a wheelset run")
-    wheelset, track = case.wheelset, case.track
-    problems = []
-    if track.kind != "rail":
-        problems.append(f"track.kind: value is {track.kind!r}, allowed 'rail'")
-    if track.curvature != 0:
-        problems.append(f"track.curvature: value is {track.curvature}, allowed 0")
+    check_kind(case, "wheelset")
+    wheelset, problems = case.wheelset, track_problems(case)
     if not wheelset.speed > 0:
         problems.append(f"wheelset.speed: value is {wheelset.speed}, allowed > 0 m/s")
     elif not 1 <= run.distance / (wheelset.speed * run.step) <= 1e7:
@@ -266,14 +295,7 @@ def check_run(case: Any, body: BodyTable, run: Run, **_: Any) -> None:
             f"wheelset.vertical_force: value is {wheelset.vertical_force}, allowed >= "
             f"{weight:.6g}, the weight of [body]"
         )
-    if not case.has_tangential:
-        problems.append("method.tangential: value is 'none', allowed a method: creep forces guide")
-    for key in FOUND:
-        if getattr(wheelset, key) != 0:
-            problems.append(
-                f"wheelset.{key}: value is {getattr(wheelset, key)}, allowed: leave it out, it is "
-                "found at the start"
-            )
+    problems += start_problems(case, FOUND, "it is found at the start")
     if problems:
         raise CaseError(problems)
 

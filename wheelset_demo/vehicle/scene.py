@@ -10,13 +10,22 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
-from railpatch.case import WheelsetCase
-from railpatch.case.load import Scene, check_table
+from railpatch.case.load import check_table
 from railpatch.case.types import NotNegative, Number, Positive, Table, exactly, relation
 from railpatch.errors import CaseError
 from railpatch.log.stream import SCENE_RATE
 
-from wheelset_demo.scene import GRAVITY, SNAPSHOTS, check_present, load_checked, scene_file
+from wheelset_demo.scene import (
+    GRAVITY,
+    SNAPSHOTS,
+    RunScene,
+    check_kind,
+    check_present,
+    load_checked,
+    scene_file,
+    start_problems,
+    track_problems,
+)
 from wheelset_demo.vehicle.alignment import AlignmentTable
 from wheelset_demo.vehicle.irregularity import IrregularityTable
 
@@ -171,28 +180,15 @@ TABLES: dict[str, type[Table]] = {
 OPTIONAL = ("alignment", "irregularity")
 
 
-@dataclass(frozen=True)
-class VehicleScene:
-    """A checked scene.
+@dataclass(frozen=True, kw_only=True)
+class VehicleScene(RunScene):
+    """A vehicle's scene. irregularity: None for straight rails."""
 
-    name: of the file. text: as it was read. case: the contact of each wheelset. profiles: key of
-    [profiles] -> the file found, or the built-in name. irregularity: None for straight rails.
-    """
-
-    name: str
-    text: bytes
-    case: WheelsetCase
     vehicle: VehicleTable
     suspension: tuple[ElementTable, ...]
     alignment: AlignmentTable
     irregularity: IrregularityTable | None
     run: RunTable
-    profiles: dict[str, str]
-
-    @property
-    def speed(self) -> float:
-        """m/s."""
-        return self.case.wheelset.speed
 
     @property
     def steps(self) -> int:
@@ -221,13 +217,6 @@ class VehicleScene:
         """With some keys of [run] changed. Raises CaseError."""
         given = {key: value for key, value in keys.items() if value is not None}
         return replace(self, run=check_table(RunTable, {**self.run.model_dump(), **given}, "run"))
-
-    def contact(self) -> Scene:
-        """The contact of a wheelset whose position is given, with derivatives."""
-        wheelset = self.case.wheelset.model_copy(update={"vertical_force": None, "z": 0.0})
-        method = self.case.method.model_copy(update={"derivatives": True})
-        update = {"wheelset": wheelset, "method": method}
-        return Scene(self.case.model_copy(update=update), Path())
 
 
 def track_length(speed: float, run: RunTable, vehicle: VehicleTable) -> float:
@@ -277,15 +266,9 @@ def check_run(
     case: Any, run: RunTable, alignment: AlignmentTable, vehicle: VehicleTable, **_: Any
 ) -> None:
     """Refuses cases that are no wheelset with friction, a start in a curve. Raises CaseError."""
-    if case.kind != "wheelset":
-        raise CaseError(f"kind: value is {case.kind!r}, allowed 'wheelset' for a vehicle run")
-    wheelset, track = case.wheelset, case.track
-    problems = []
-    if track.kind != "rail":
-        problems.append(f"track.kind: value is {track.kind!r}, allowed 'rail'")
-    if track.curvature != 0:
-        problems.append(f"track.curvature: value is {track.curvature}, allowed 0: see [alignment]")
-    if track.irregularity is not None:
+    check_kind(case, "vehicle")
+    wheelset, problems = case.wheelset, track_problems(case, ": see [alignment]")
+    if case.track.irregularity is not None:
         problems.append("track.irregularity: given, allowed in a vehicle run [irregularity]")
     if not wheelset.speed > 0:
         problems.append(f"wheelset.speed: value is {wheelset.speed}, allowed > 0 m/s")
@@ -304,13 +287,6 @@ def check_run(
             f"alignment.straight: value is {alignment.straight}, allowed >= {vehicle.length:.6g} "
             "m, the vehicle's length: it starts on straight track"
         )
-    if not case.has_tangential:
-        problems.append("method.tangential: value is 'none', allowed a method: creep forces guide")
-    for key in FOUND:
-        if getattr(wheelset, key) != 0:
-            problems.append(
-                f"wheelset.{key}: value is {getattr(wheelset, key)}, allowed: leave it out, the "
-                "vehicle starts in the middle"
-            )
+    problems += start_problems(case, FOUND, "the vehicle starts in the middle")
     if problems:
         raise CaseError(problems)

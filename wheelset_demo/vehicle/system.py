@@ -117,7 +117,8 @@ class VehicleSystem:
             None if table is None else irregularity_of(table, scene.length, scene.vehicle.length)
         )
         names = [f"wheelset_{k + 1}" for k in range(WHEELSETS)]
-        self.element = ForceElement(self.model, names, scene.contact(), threads=scene.run.threads)
+        contact = scene.at_height(derivatives=True)
+        self.element = ForceElement(self.model, names, contact, threads=scene.run.threads)
         self.suspension = Suspension(scene, self.vehicle)
         self.count = self.model.nv
         self.size = 2 * self.count + self.suspension.series_count
