@@ -9,14 +9,15 @@ from typing import Any
 import click
 from railpatch.command.group import (
     EXIT_NOT_CONVERGED,
+    json_option,
     output_option,
     progress_bar,
+    quiet_flag,
     scene_argument,
     show_scene_option,
-    wrong_call,
+    wrong_calls,
 )
 from railpatch.command.output import check_output
-from railpatch.errors import CaseError, ProfileError
 
 
 def default_scene_text() -> str:
@@ -38,7 +39,7 @@ def default_scene_text() -> str:
     help="Replaces rig.balance.method: how balances are searched.",
 )
 @show_scene_option(default_scene_text)
-@click.option("--quiet", is_flag=True, help="Print no summary and no progress.")
+@quiet_flag("Print no summary and no progress.")
 @click.pass_context
 def rig(
     context: click.Context, scene: Path | None, output: Path, quiet: bool, **overrides: Any
@@ -53,7 +54,7 @@ def rig(
     from rig_model.scene import default_scene, load_rig_scene
 
     overrides["balance.method"] = overrides.pop("method")
-    try:
+    with wrong_calls():
         loaded = load_rig_scene(scene, overrides)
         check_output(output, scene or default_scene(), *loaded.files.values())
         if not quiet:
@@ -61,8 +62,6 @@ def rig(
             click.echo(f"profiles      {profiles_used(loaded)}")
         with progress_bar("balancing", loaded.rig.count, quiet) as advance:
             summary = replay(loaded, output, advance)
-    except (CaseError, ProfileError, OSError) as error:
-        raise wrong_call(error) from None
     if not quiet:
         click.echo(summary.text())
     if not summary.good:
@@ -96,9 +95,9 @@ def default_curve_text() -> str:
     metavar="METRES",
     help="Replaces curve.radius; may be given several times; above 0: to the right.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@json_option()
 @show_scene_option(default_curve_text)
-@click.option("--quiet", is_flag=True, help="Print nothing.")
+@quiet_flag()
 @click.pass_context
 def curve(
     context: click.Context,
@@ -113,11 +112,9 @@ def curve(
     """
     from rig_model.curve import METHODS, load_curve_scene, steady_curves
 
-    try:
+    with wrong_calls():
         loaded = load_curve_scene(scene, radius=list(radius) or None)
         found = {method: steady_curves(loaded, method) for method in METHODS}
-    except (CaseError, ProfileError, OSError) as error:
-        raise wrong_call(error) from None
     curves = [item for method in METHODS for item in found[method]]
     if as_json:
         rows = {method: [item.to_dict() for item in found[method]] for method in METHODS}

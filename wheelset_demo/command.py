@@ -9,15 +9,16 @@ from typing import Any
 import click
 from railpatch.command.group import (
     EXIT_NOT_CONVERGED,
-    WrongCall,
+    json_option,
+    need,
     output_option,
     progress_bar,
+    quiet_flag,
     scene_argument,
     show_scene_option,
-    wrong_call,
+    wrong_calls,
 )
 from railpatch.command.output import check_output, files_of
-from railpatch.errors import CaseError, ProfileError
 
 
 def default_scene_text() -> str:
@@ -37,9 +38,9 @@ def default_scene_text() -> str:
     type=click.Choice(["rk4", "ros2"]),
     help="Replaces run.stepper: explicit, implicit.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object.")
+@json_option("Print the summary as one JSON object.")
 @show_scene_option(default_scene_text)
-@click.option("--quiet", is_flag=True, help="Print no summary and no progress.")
+@quiet_flag("Print no summary and no progress.")
 @click.pass_context
 def wheelset(
     context: click.Context,
@@ -54,21 +55,16 @@ def wheelset(
     Without a scene it has S1002 profiles on UIC60 rails inclined 1:40. A contact that cannot be
     solved ends the run with exit code 3; the log up to there is kept.
     """
-    try:
-        import railpatch.pinocchio  # noqa: F401
-    except ImportError as error:
-        raise WrongCall(str(error)) from None
+    need("railpatch.pinocchio")
     from wheelset_demo.scene import DEFAULT, load_wheelset_scene, scene_file
     from wheelset_demo.simulation import run_scene
 
     file = scene_file(DEFAULT) if scene is None else scene
-    try:
+    with wrong_calls():
         loaded = load_wheelset_scene(scene, overrides)
         check_output(output, file, *files_of(loaded.case, file.parent))
         with progress_bar("rolling", loaded.steps, quiet) as advance:
             summary = run_scene(loaded, output, advance)
-    except (CaseError, ProfileError, OSError) as error:
-        raise wrong_call(error) from None
     if as_json:
         click.echo(json.dumps(summary.to_dict(), allow_nan=False))
     elif not quiet:

@@ -10,13 +10,15 @@ import click
 from railpatch.command.group import (
     EXIT_NOT_CONVERGED,
     WrongCall,
+    json_option,
+    output_option,
     progress_bar,
+    quiet_flag,
     scene_argument,
     show_scene_option,
-    wrong_call,
+    wrong_calls,
 )
 from railpatch.command.output import check_output, files_of, refusal
-from railpatch.errors import CaseError, ProfileError
 
 from wheelset_demo.hunting_command import SCENE, default_scene_text
 
@@ -93,13 +95,7 @@ def check_kind(output: Path | None) -> None:
 
 @click.command("cosimulation")
 @scene_argument()
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="PAGE.html|PLOT.svg",
-    help="Page with plot and tables, or the plot.",
-)
+@output_option("PAGE.html|PLOT.svg", "Page with plot and tables, or the plot.", required=False)
 @click.option("--speeds", metavar="M/S,...", help="Speeds.  [default: 0.2 to 80]")
 @click.option(
     "--masters", metavar="NAME,...", help=f"Masters: {', '.join(NAMES)}.  [default: most]"
@@ -112,9 +108,9 @@ def check_kind(output: Path | None) -> None:
     help="Contact grid, across either way, in place of the scene's.",
 )
 @click.option("--quick", is_flag=True, help="Three speeds and masters, half a minute.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@json_option()
 @show_scene_option(default_scene_text)
-@click.option("--quiet", is_flag=True, help="Print nothing but --json, and no progress.")
+@quiet_flag("Print nothing but --json, and no progress.")
 @click.pass_context
 def cosimulation(
     context: click.Context,
@@ -147,18 +143,17 @@ def cosimulation(
     from wheelset_demo.coupling.study import study, with_elements
     from wheelset_demo.scene import load_wheelset_scene, scene_file
 
+    count = len(chosen_speeds) * len(chosen)
     try:
-        file = scene_file(SCENE) if scene is None else scene
-        loaded = load_wheelset_scene(file)
-        check_output(output, file, *files_of(loaded.case, file.parent))
-        count = len(chosen_speeds) * len(chosen)
-        with progress_bar("coupling", count, quiet) as advance:
-            found = study(with_elements(loaded, elements), chosen_speeds, chosen, advance)
+        with wrong_calls():
+            file = scene_file(SCENE) if scene is None else scene
+            loaded = load_wheelset_scene(file)
+            check_output(output, file, *files_of(loaded.case, file.parent))
+            with progress_bar("coupling", count, quiet) as advance:
+                found = study(with_elements(loaded, elements), chosen_speeds, chosen, advance)
     except CouplingFailure as failure:
         click.echo(f"status: {failure}", err=True)
         context.exit(EXIT_NOT_CONVERGED)
-    except (CaseError, ProfileError, OSError) as error:
-        raise wrong_call(error) from None
     # minutes were spent: shown before a file can fail
     if as_json:
         click.echo(json.dumps(dict_of(found), allow_nan=False))

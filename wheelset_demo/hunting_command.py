@@ -10,12 +10,16 @@ import click
 from railpatch.command.group import (
     EXIT_NOT_CONVERGED,
     WrongCall,
+    json_option,
+    need,
+    output_option,
+    quiet_flag,
     scene_argument,
     show_scene_option,
-    wrong_call,
+    wrong_calls,
 )
 from railpatch.command.output import check_output, files_of
-from railpatch.errors import CaseError, ProfileError
+from railpatch.errors import CaseError
 
 SCENE = "hunting.toml"
 # of the critical speed by eigenvalues: where the runs in time begin
@@ -41,12 +45,10 @@ def default_scene_text() -> str:
 @click.option(
     "--simulate", is_flag=True, help="Also by runs in time at speeds around it, some 20 s."
 )
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="RUN.mcap",
-    help="The log to write, of a run in time; railpatch report shows it with what was found.",
+@output_option(
+    "RUN.mcap",
+    "The log to write, of a run in time; railpatch report shows it with what was found.",
+    required=False,
 )
 @click.option(
     "--speed",
@@ -54,9 +56,9 @@ def default_scene_text() -> str:
     metavar="M/S",
     help="Of the run that is logged; left out: 1.1 of the critical speed.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@json_option()
 @show_scene_option(default_scene_text)
-@click.option("--quiet", is_flag=True, help="Print nothing but --json.")
+@quiet_flag("Print nothing but --json.")
 @click.pass_context
 def hunting(
     context: click.Context,
@@ -82,34 +84,25 @@ def hunting(
         raise WrongCall(f"--lowest: value is {lowest}, allowed below --highest ({highest})")
     if speed is not None and (output is None or not 0 < speed <= FASTEST):
         raise WrongCall(f"--speed: value is {speed}, allowed > 0, at most {FASTEST:g}, with -o")
-    try:
-        import railpatch.pinocchio  # noqa: F401
-    except ImportError as error:
-        raise WrongCall(str(error)) from None
+    need("railpatch.pinocchio")
     from wheelset_demo.scene import load_wheelset_scene, scene_file
     from wheelset_demo.system import ContactFailure
 
     try:
-        file = scene_file(SCENE) if scene is None else scene
-        loaded = load_wheelset_scene(file)
-        check_output(output, file, *files_of(loaded.case, file.parent))
-        found = search(loaded, lowest, highest, simulate)
+        with wrong_calls():
+            file = scene_file(SCENE) if scene is None else scene
+            loaded = load_wheelset_scene(file)
+            check_output(output, file, *files_of(loaded.case, file.parent))
+            found = search(loaded, lowest, highest, simulate)
+            try:
+                if output is not None:
+                    write_log(loaded, found, speed, output)
+            finally:
+                # what was found is not lost with the log
+                show(found, as_json, quiet)
     except ContactFailure as failure:
         click.echo(f"status: {failure}", err=True)
         context.exit(EXIT_NOT_CONVERGED)
-    except (CaseError, ProfileError, OSError) as error:
-        raise wrong_call(error) from None
-    try:
-        if output is not None:
-            write_log(loaded, found, speed, output)
-    except ContactFailure as failure:
-        click.echo(f"status: {failure}", err=True)
-        context.exit(EXIT_NOT_CONVERGED)
-    except (CaseError, ProfileError, OSError) as error:
-        raise wrong_call(error) from None
-    finally:
-        # what was found is not lost with the log
-        show(found, as_json, quiet)
 
 
 def show(found: dict[str, Any], as_json: bool, quiet: bool) -> None:

@@ -10,12 +10,16 @@ import click
 from railpatch.command.group import (
     EXIT_NOT_CONVERGED,
     WrongCall,
+    json_option,
+    need,
+    output_option,
     progress_bar,
+    quiet_flag,
     scene_argument,
     show_scene_option,
+    wrong_calls,
 )
 from railpatch.command.output import check_output, files_of
-from railpatch.errors import CaseError, ProfileError
 
 # of wheelset_demo.vehicle.compare, which takes long to import; a test compares them
 METHODS = ("full", "fitted", "fastsim", "kik", "analyn", "polach")
@@ -38,19 +42,13 @@ def default_scene_text() -> str:
     help="Contact theory in place of the scene's; may be given several times.",
 )
 @click.option("--compare", is_flag=True, help="The full theory beside Hertz and FASTSIM: times.")
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(dir_okay=False, path_type=Path),
-    metavar="RUN.mcap",
-    help="The log to write, of one run.",
-)
+@output_option("RUN.mcap", "The log to write, of one run.", required=False)
 @click.option("--duration", type=float, metavar="SECONDS", help="Replaces run.duration.")
 @click.option("--step", type=float, metavar="SECONDS", help="Replaces run.step.")
 @click.option("--threads", type=int, metavar="NUMBER", help="Replaces run.threads.")
-@click.option("--json", "as_json", is_flag=True, help="Print the summaries as one JSON object.")
+@json_option("Print the summaries as one JSON object.")
 @show_scene_option(default_scene_text)
-@click.option("--quiet", is_flag=True, help="Print no summary and no progress.")
+@quiet_flag("Print no summary and no progress.")
 @click.pass_context
 def vehicle(
     context: click.Context,
@@ -71,10 +69,7 @@ def vehicle(
         raise WrongCall(f"--compare: given with --method {methods[0]}, allowed one of them")
     if output is not None and (compare or len(methods) > 1):
         raise WrongCall(f"--output: value is {str(output)!r}, allowed with one run only")
-    try:
-        import railpatch.pinocchio  # noqa: F401
-    except ImportError as error:
-        raise WrongCall(str(error)) from None
+    need("railpatch.pinocchio")
     from wheelset_demo.scene import scene_file
     from wheelset_demo.system import ContactFailure
     from wheelset_demo.vehicle.compare import COMPARED
@@ -82,11 +77,10 @@ def vehicle(
 
     file = scene_file(DEFAULT) if scene is None else scene
     try:
-        loaded = load_vehicle_scene(scene, overrides)
-        check_output(output, file, *files_of(loaded.case, file.parent))
-        found = run_all(loaded, COMPARED if compare else methods, quiet, output)
-    except (CaseError, ProfileError, OSError) as error:
-        raise WrongCall(str(error)) from None
+        with wrong_calls():
+            loaded = load_vehicle_scene(scene, overrides)
+            check_output(output, file, *files_of(loaded.case, file.parent))
+            found = run_all(loaded, COMPARED if compare else methods, quiet, output)
     except ContactFailure as failure:
         # one in a run is in its summary
         if not quiet:

@@ -11,11 +11,14 @@ from railpatch.command.group import (
     EXIT_NOT_CONVERGED,
     Commands,
     WrongCall,
+    json_option,
+    quiet_flag,
     version_option,
 )
 
 CASE = click.Path(path_type=Path)
-QUIET = click.option("--quiet", is_flag=True, help="Print no table and no progress.")
+QUIET_TEXT = "Print no table and no progress."
+QUIET = quiet_flag(QUIET_TEXT)
 
 
 def quiet_everywhere(context: click.Context, _option: click.Parameter, value: bool) -> None:
@@ -32,7 +35,7 @@ def quiet_everywhere(context: click.Context, _option: click.Parameter, value: bo
     is_eager=True,
     expose_value=False,
     callback=quiet_everywhere,
-    help="Print no table and no progress.",
+    help=QUIET_TEXT,
 )
 def cli() -> None:
     """Wheel-rail contact mechanics. Units are SI; forces act on the wheel.
@@ -43,7 +46,7 @@ def cli() -> None:
 
 @cli.command()
 @click.argument("case", metavar="CASE.toml", type=CASE)
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@json_option()
 @click.option("--fields", is_flag=True, help="With --json: add pressure, traction, ... as arrays.")
 @QUIET
 @click.pass_context

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import Any
@@ -72,7 +73,7 @@ def version_option() -> click.Option:
 
 
 def quiet_option() -> click.Option:
-    """--quiet for a command that has nothing to be quiet about."""
+    """--quiet for a command that has none."""
     return click.Option(["--quiet"], is_flag=True, expose_value=False, help="Print nothing.")
 
 
@@ -83,12 +84,12 @@ def scene_argument() -> Callable[..., Any]:
     )
 
 
-def output_option(metavar: str, text: str) -> Callable[..., Any]:
+def output_option(metavar: str, text: str, *, required: bool = True) -> Callable[..., Any]:
     """-o, --output: the file to write."""
     return click.option(
         "-o",
         "--output",
-        required=True,
+        required=required,
         type=click.Path(dir_okay=False, path_type=Path),
         metavar=metavar,
         help=text,
@@ -105,6 +106,16 @@ def folder_option(text: str) -> Callable[..., Any]:
         metavar="DIR",
         help=text,
     )
+
+
+def json_option(text: str = "Print one JSON object.") -> Callable[..., Any]:
+    """--json, as ``as_json``."""
+    return click.option("--json", "as_json", is_flag=True, help=text)
+
+
+def quiet_flag(text: str = "Print nothing.") -> Callable[..., Any]:
+    """--quiet, of a command that has something to be quiet about."""
+    return click.option("--quiet", is_flag=True, help=text)
 
 
 def show_scene_option(text: Callable[[], str]) -> Callable[..., Any]:
@@ -124,6 +135,23 @@ def show_scene_option(text: Callable[[], str]) -> Callable[..., Any]:
         callback=show,
         help="Print the scene that is run by default, as a start for one's own.",
     )
+
+
+def need(module: str) -> None:
+    """Raises WrongCall that says what to install where an optional part cannot be imported."""
+    try:
+        import_module(module)
+    except ImportError as error:
+        raise WrongCall(str(error)) from None
+
+
+@contextmanager
+def wrong_calls() -> Iterator[None]:
+    """Errors of the case and of files end as those of a wrong call."""
+    try:
+        yield
+    except (CaseError, ProfileError, OSError) as error:
+        raise wrong_call(error) from None
 
 
 @contextmanager

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from railpatch.command.group import output_option, scene_argument
+from railpatch.command.group import output_option, quiet_flag, scene_argument
 from railpatch.command.output import check_output, files_of
 from railpatch.errors import CaseError
 
@@ -64,7 +64,7 @@ from railpatch.errors import CaseError
     metavar="FOLDER",
     help="Libraries for further systems and the sources, as made by `make fmu`.",
 )
-@click.option("--quiet", is_flag=True, help="Print nothing.")
+@quiet_flag()
 def fmu(
     scene: Path | None,
     kind: str | None,

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from railpatch.command.group import output_option, wrong_call
+from railpatch.command.group import output_option, quiet_flag, wrong_call
 from railpatch.command.output import check_output
 from railpatch.layout.plots import KINDS
 
@@ -26,7 +26,7 @@ from railpatch.layout.plots import KINDS
 @click.option(
     "--wheelsets", type=click.IntRange(1, 64), default=4, show_default=True, help="Of a vehicle."
 )
-@click.option("--quiet", is_flag=True, help="Print nothing.")
+@quiet_flag()
 def layout(run: Path | None, output: Path, kind: str, wheelsets: int, quiet: bool) -> None:
     """Make a layout for viewers of logs, Foxglove or Lichtblick: 3D scene, plots, raw messages.
 

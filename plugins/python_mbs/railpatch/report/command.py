@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from railpatch.command.group import wrong_call
+from railpatch.command.group import quiet_flag, wrong_call
 from railpatch.command.output import check_output
 
 
@@ -35,7 +35,7 @@ from railpatch.command.output import check_output
     help="Folder of another reference of the roller rig, in a file named as the package's own: "
     "nrc_dry_10mph_13750lb.csv.",
 )
-@click.option("--quiet", is_flag=True, help="Print nothing.")
+@quiet_flag()
 def report(run: str, output: str, at: float | None, reference: str | None, quiet: bool) -> None:
     """Make a page of plots and tables from the log of a run.
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from railpatch.command.group import WrongCall, folder_option, progress_bar
+from railpatch.command.group import WrongCall, folder_option, progress_bar, quiet_flag
 from railpatch.command.output import check_folder
 
 ALL_SETS = "ABCDW"
@@ -42,7 +42,7 @@ ALL_SETS = "ABCDW"
     show_default=True,
     help="Processes, for --truth alone: run times are measured one after the other.",
 )
-@click.option("--quiet", is_flag=True, help="Print nothing.")
+@quiet_flag()
 def bench(
     output: Path,
     quick: bool,

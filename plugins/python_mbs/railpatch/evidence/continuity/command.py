@@ -6,7 +6,13 @@ from pathlib import Path
 
 import click
 
-from railpatch.command.group import EXIT_NOT_CONVERGED, WrongCall, folder_option, progress_bar
+from railpatch.command.group import (
+    EXIT_NOT_CONVERGED,
+    WrongCall,
+    folder_option,
+    progress_bar,
+    quiet_flag,
+)
 from railpatch.command.output import check_folder
 
 
@@ -14,7 +20,7 @@ from railpatch.command.output import check_folder
 @folder_option("Folder for table and pictures.")
 @click.option("--quick", is_flag=True, help="One wheel on one grid, in about a minute.")
 @click.option("--compare", is_flag=True, help="The rule of the program CONTACT as well.")
-@click.option("--quiet", is_flag=True, help="Print nothing.")
+@quiet_flag()
 @click.pass_context
 def continuity(
     context: click.Context, output: Path, quick: bool, compare: bool, quiet: bool

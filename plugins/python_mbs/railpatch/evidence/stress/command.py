@@ -6,7 +6,13 @@ from pathlib import Path
 
 import click
 
-from railpatch.command.group import EXIT_NOT_CONVERGED, WrongCall, folder_option, progress_bar
+from railpatch.command.group import (
+    EXIT_NOT_CONVERGED,
+    WrongCall,
+    folder_option,
+    progress_bar,
+    quiet_flag,
+)
 from railpatch.command.output import check_folder
 
 
@@ -15,7 +21,7 @@ from railpatch.command.output import check_folder
 @click.option("--quick", is_flag=True, help="Fewer of everything, in less than 20 s.")
 @click.option("--seed", type=click.IntRange(min=0), help="Of the random mixtures.")
 @click.option("--only", metavar="PATTERN", help='Part of "family: name, method"; * for anything.')
-@click.option("--quiet", is_flag=True, help="Print nothing.")
+@quiet_flag()
 @click.pass_context
 def stress(
     context: click.Context,

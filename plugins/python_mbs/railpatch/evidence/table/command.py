@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from railpatch.command.group import output_option, progress_bar
+from railpatch.command.group import output_option, progress_bar, quiet_flag
 from railpatch.command.output import check_output
 from railpatch.errors import CaseError
 
@@ -19,7 +19,7 @@ from railpatch.errors import CaseError
     "--jobs", type=click.IntRange(1), default=1, show_default=True, help="Processes that solve."
 )
 @click.option("--keep", is_flag=True, help="Keep the folder of solved parts, TABLE.bin.parts.")
-@click.option("--quiet", is_flag=True, help="Print no errors and no progress.")
+@quiet_flag("Print no errors and no progress.")
 def table(output: Path, jobs: int, keep: bool, quiet: bool) -> None:
     """Solve the table of creep forces for tangential = 'table' anew.
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from railpatch.command.group import WrongCall, output_option, wrong_call
+from railpatch.command.group import WrongCall, output_option, quiet_flag, wrong_call
 from railpatch.command.output import check_output
 from railpatch.profiles.pairing.contact_points import Dimensions
 
@@ -35,7 +35,7 @@ def length_option(name: str, field: str, text: str) -> click.Option:
 @length_option(
     "--flange-back-position", "flange_back_position", "m, of the flange back on the profile's y."
 )
-@click.option("--quiet", is_flag=True, help="Print nothing.")
+@quiet_flag()
 def profile(
     source: str,
     output: Path,
