@@ -91,12 +91,11 @@ double even_spline::greatest(double a, double b) const {
   return most;
 }
 
-longitudinal_shape::longitudinal_shape(const rp_config &c, int side) {
-  if (const int n = c.runout_count[side]; n > 0)
-    runout_ = even_spline(c.runout[side], n, 0, 2 * std::numbers::pi / n, true);
-  if (const int n = c.rail_height_count[side]; n > 0)
-    height_ =
-        even_spline(c.rail_height[side], n, c.rail_height_start, c.rail_height_spacing, false);
+longitudinal_shape::longitudinal_shape(const longitudinal_values &v) {
+  if (const int n = v.runout_count; n > 0)
+    runout_ = even_spline(v.runout, n, 0, 2 * std::numbers::pi / n, true);
+  if (const int n = v.height_count; n > 0)
+    height_ = even_spline(v.height, n, v.height_start, v.height_spacing, false);
 }
 
 void longitudinal_shape::place(double pitch, double x, double radius) {

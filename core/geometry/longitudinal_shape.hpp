@@ -16,8 +16,6 @@
 
 #include <vector>
 
-#include "railpatch.h"
-
 namespace railpatch {
 
 // A C2 cubic spline through equally spaced values, periodic or constant beyond its ends.
@@ -47,14 +45,21 @@ class even_spline {
   bool periodic_ = false;
 };
 
+// A wheel's runout and a rail's height at even spacings; counts of 0: round, level.
+struct longitudinal_values {
+  const double *runout = nullptr;  // m, round the wheel
+  int runout_count = 0;
+  const double *height = nullptr;  // m, at height_start + i height_spacing
+  int height_count = 0;
+  double height_start = 0, height_spacing = 1;
+  bool given() const { return runout_count > 0 || height_count > 0; }
+};
+
 class longitudinal_shape {
  public:
   static constexpr double widest = 0.25;  // rad either side of a row's round locus point
 
-  longitudinal_shape(const rp_config &config, int side);
-  static bool wanted(const rp_config &config, int side) {
-    return config.runout_count[side] > 0 || config.rail_height_count[side] > 0;
-  }
+  explicit longitudinal_shape(const longitudinal_values &values);
 
   // pitch: rad, of the wheel; x: m, of the wheelset's centre along the track; radius: m, nominal
   void place(double pitch, double x, double radius);

@@ -9,8 +9,8 @@
 using namespace railpatch;
 
 struct rp_contact {
-  explicit rp_contact(const rp_config &config) : scene(config) {}
-  contact scene;
+  explicit rp_contact(const rp_config &config) : handle(config) {}
+  contact handle;
 };
 
 // No exception leaves this file: creation may run out of memory or meet a bad profile; a step
@@ -69,11 +69,11 @@ rp_error rp_step(rp_contact *contact, const rp_input *input, rp_result *result,
     set_message(message, "%s is null", !contact ? "contact" : (!input ? "input" : "result"));
     return RP_ERROR_NULL;
   }
-  const rp_error error =
-      check_input(contact->scene.config(), contact->scene.friction_coefficient(), *input, message);
+  const rp_error error = check_input(contact->handle.config(),
+                                     contact->handle.friction_coefficient(), *input, message);
   if (error != RP_OK) return error;
   try {
-    contact->scene.step(*input, *result);
+    contact->handle.step(*input, *result);
     return RP_OK;
   } catch (...) {
     set_message(message, "internal error in rp_step");
@@ -88,19 +88,19 @@ rp_error rp_differentiate(rp_contact *contact, const rp_input *direction, rp_res
                 !contact ? "contact" : (!direction ? "direction" : "change"));
     return RP_ERROR_NULL;
   }
-  if (!contact->scene.has_derivatives()) {
+  if (!contact->handle.has_derivatives()) {
     set_message(message, "derivatives is 0, rp_differentiate needs 1");
     return RP_ERROR_VALUE;
   }
   if (const rp_error error = check_direction(*direction, message); error != RP_OK) return error;
-  if (!contact->scene.has_solution()) {
+  if (!contact->handle.has_solution()) {
     set_message(message,
                 "rp_differentiate needs a step since rp_create, rp_reset or "
                 "rp_restore_state");
     return RP_ERROR_STATE;
   }
   try {
-    const rp_derivative_kind found = contact->scene.differentiate(*direction, *change);
+    const rp_derivative_kind found = contact->handle.differentiate(*direction, *change);
     if (kind) *kind = found;
     return RP_OK;
   } catch (...) {
@@ -114,20 +114,19 @@ rp_error rp_get_jacobian(rp_contact *contact, rp_jacobian *out, rp_message *mess
     set_message(message, "%s is null", contact ? "out" : "contact");
     return RP_ERROR_NULL;
   }
-  const rp_config &config = contact->scene.config();
-  if (!contact->scene.has_derivatives() || config.kind == RP_PATCH) {
-    set_message(message, config.kind == RP_PATCH
-                             ? "kind is patch, rp_get_jacobian needs wheel_rail or wheelset"
-                             : "derivatives is 0, rp_get_jacobian needs 1");
+  const bool of_wheels = contact->handle.has_jacobian();
+  if (!contact->handle.has_derivatives() || !of_wheels) {
+    set_message(message, of_wheels ? "derivatives is 0, rp_get_jacobian needs 1"
+                                   : "kind is patch, rp_get_jacobian needs wheel_rail or wheelset");
     return RP_ERROR_VALUE;
   }
-  if (!contact->scene.has_solution()) {
+  if (!contact->handle.has_solution()) {
     set_message(message,
                 "rp_get_jacobian needs a step since rp_create, rp_reset or rp_restore_state");
     return RP_ERROR_STATE;
   }
   try {
-    contact->scene.jacobian(*out);
+    contact->handle.jacobian(*out);
     return RP_OK;
   } catch (...) {
     set_message(message, "internal error in rp_get_jacobian");
@@ -141,41 +140,41 @@ rp_error rp_set_friction_coefficient(rp_contact *contact, double value, rp_messa
     return RP_ERROR_NULL;
   }
   const rp_error error = check_friction_coefficient(value, message);
-  if (error == RP_OK) contact->scene.set_friction_coefficient(value);
+  if (error == RP_OK) contact->handle.set_friction_coefficient(value);
   return error;
 }
 
 void rp_reset(rp_contact *contact) {
-  if (contact) contact->scene.reset();
+  if (contact) contact->handle.reset();
 }
 
 rp_error rp_get_field(const rp_contact *contact, int side, int patch, rp_field field,
                       double *values, size_t *count) {
   if (!contact || !count) return RP_ERROR_NULL;
-  return contact->scene.field(side, patch, field, values, count);
+  return contact->handle.field(side, patch, field, values, count);
 }
 
 size_t rp_state_size(const rp_contact *contact) {
-  return contact ? contact->scene.state_size() : 0;
+  return contact ? contact->handle.state_size() : 0;
 }
 
 rp_error rp_save_state(const rp_contact *contact, void *buffer, size_t size) {
   if (!contact || !buffer) return RP_ERROR_NULL;
-  if (size < contact->scene.state_size()) return RP_ERROR_SIZE;
-  contact->scene.save_state(static_cast<unsigned char *>(buffer));
+  if (size < contact->handle.state_size()) return RP_ERROR_SIZE;
+  contact->handle.save_state(static_cast<unsigned char *>(buffer));
   return RP_OK;
 }
 
 rp_error rp_restore_state(rp_contact *contact, const void *buffer, size_t size) {
   if (!contact || !buffer) return RP_ERROR_NULL;
   const bool restored =
-      contact->scene.restore_state(static_cast<const unsigned char *>(buffer), size);
+      contact->handle.restore_state(static_cast<const unsigned char *>(buffer), size);
   return restored ? RP_OK : RP_ERROR_STATE;
 }
 
 rp_error rp_describe(const rp_contact *contact, rp_stage_info *info) {
   if (!contact || !info) return RP_ERROR_NULL;
-  contact->scene.describe(info);
+  contact->handle.describe(info);
   return RP_OK;
 }
 

@@ -370,6 +370,11 @@ bool uses_table(const rp_config &c) {
   return c.regime != RP_REGIME_NONE && c.tangential == RP_TANGENTIAL_TABLE;
 }
 
+bool has_shape(const rp_config &c) {
+  const auto any = [](const int32_t count[2]) { return count[0] > 0 || count[1] > 0; };
+  return any(c.runout_count) || any(c.rail_height_count);
+}
+
 void set_message(rp_message *message, const char *format, ...) {
   if (!message) return;
   va_list arguments;

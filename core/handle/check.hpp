@@ -9,11 +9,14 @@ namespace railpatch {
 inline constexpr uint32_t config_cookie = 0x52504331;  // "RPC1"
 inline constexpr uint32_t input_cookie = 0x52504931;   // "RPI1"
 
-// Each returns RP_OK or the first error found, with its message (which may be null).
 // Whether the scene has a uniform grid: closed forms with fitted rows have none.
 bool needs_grid(const rp_config &c);
 // Whether its creep forces come from a table.
 bool uses_table(const rp_config &c);
+// Whether a wheel has runout or a rail its height.
+bool has_shape(const rp_config &c);
+
+// Each returns RP_OK or the first error found, with its message (which may be null).
 rp_error check_config(const rp_config &config, rp_message *message);
 rp_error check_friction_coefficient(double value, rp_message *message);
 // friction_coefficient: the present one.

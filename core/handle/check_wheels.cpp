@@ -50,7 +50,7 @@ void check_reference(const rp_config &c, checker &check) {
     wrong = "reference_surface = curved needs regime = steady_rolling or none";
   else if (c.derivatives != 0)
     wrong = "reference_surface = curved needs derivatives = 0 in this version";
-  else if (longitudinal_shape::wanted(c, RP_LEFT) || longitudinal_shape::wanted(c, RP_RIGHT))
+  else if (has_shape(c))
     wrong = "reference_surface = curved needs wheels without runout and rails without rail_height";
   else if (!has_physics)
     wrong = "reference_surface must be plane: this build has no curved ones";

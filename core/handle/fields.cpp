@@ -122,16 +122,15 @@ struct field_copier {
 }  // namespace
 
 rp_error contact::field(int side, int patch, rp_field name, double *values, size_t *count) const {
-  const int patches = config_.kind == RP_PATCH ? 1 : config_.max_patches;
-  if ((side != RP_LEFT && side != RP_RIGHT) || !has_side(side) || patch < 0 || patch >= patches)
-    return RP_ERROR_NO_FIELD;
-  const patch_memory &m = memory(side, patch);
+  const patch_memory *found = driver_->find(side, patch);
+  if (!found) return RP_ERROR_NO_FIELD;
+  const patch_memory &m = *found;
   if (name == RP_FIELD_ERROR_FEATURES) return error_features_of(m, values, count);
   if (!has_field(m, name)) return RP_ERROR_NO_FIELD;
   const size_t needed = field_size(m, name), capacity = *count;
   *count = needed;
   if (capacity < needed || !values) return RP_ERROR_SIZE;
-  const field_copier copy{m, config_.kind != RP_PATCH && side == RP_LEFT, values};
+  const field_copier copy{m, driver_->mirrors(side), values};
   switch (name) {
     case RP_FIELD_X:
       if (m.fitted())
@@ -166,7 +165,7 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
       if (m.history.friction.size() > 0)
         copy.scalar(m.history.friction);
       else
-        copy.scalar(friction_of_heat{m, solver_.scene().friction_scale});
+        copy.scalar(friction_of_heat{m, this->patch().friction_scale});
       break;
     case RP_FIELD_PLASTIC_DISPLACEMENT:
       copy.vector(m.history.plastic[0], m.history.plastic[1]);

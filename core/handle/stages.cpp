@@ -72,11 +72,11 @@ const char *history_reason(const patch_scene &scene) {
                                        : "regime = transient_rolling: tractions of the last step";
 }
 
-const char *plasticity_reason(const rp_config &config, const patch_scene &scene) {
+const char *plasticity_reason(const patch_scene &scene) {
   if (scene.tangential == RP_TANGENTIAL_NONE) return "no tangential problem";
   if (scene.yields()) return "the third-body layer has a yield stress";
-  return config.layer_thickness > 0 ? "the third-body layer has no yield stress"
-                                    : "no third-body layer";
+  return scene.layer_flexibility > 0 ? "the third-body layer has no yield stress"
+                                     : "no third-body layer";
 }
 
 const char *derivative_reason(bool asked, const patch_scene &scene) {
@@ -88,11 +88,12 @@ const char *derivative_reason(bool asked, const patch_scene &scene) {
 }  // namespace
 
 void contact::describe(rp_stage_info *info) const {
-  const patch_scene &scene = solver_.scene();
+  const patch_scene &scene = patch();
+  const patch_contact &solver = driver_->solver();
   const bool tangential = scene.tangential != RP_TANGENTIAL_NONE;
-  size_t distance = shape_.bytes(), normal = 0, traction = 0, heat = 0;
-  size_t history = solver_.history_bytes(), plastic = solver_.plastic_bytes();
-  for (const auto &m : memory_) {
+  size_t distance = driver_->geometry_bytes(), normal = 0, traction = 0, heat = 0;
+  size_t history = solver.history_bytes(), plastic = solver.plastic_bytes();
+  for (const auto &m : driver_->memories()) {
     distance += m.undeformed_distance.bytes();
     normal += m.pressure.bytes();
     traction += m.bytes() - m.undeformed_distance.bytes() - m.pressure.bytes() -
@@ -105,34 +106,29 @@ void contact::describe(rp_stage_info *info) const {
       traction -= m.curved->bytes();
     }
   }
-  for (const auto &wheel : wheels_) distance += wheel.bytes();
   if (tangential)
-    traction += solver_.tangential_bytes() - solver_.history_bytes() - solver_.plastic_bytes();
-  const char *where = config_.kind == RP_PATCH
-                          ? "undeformed distance of the given shape"
-                          : "kind is wheel_rail or wheelset: placement and contact search";
-  const size_t influence = solver_.influence_bytes();
-  info[RP_STAGE_GEOMETRY] = {"geometry", 1, where, distance};
+    traction += solver.tangential_bytes() - solver.history_bytes() - solver.plastic_bytes();
+  const size_t support = driver_->support_bytes();
+  const size_t influence = solver.influence_bytes();
+  info[RP_STAGE_GEOMETRY] = {"geometry", 1, driver_->geometry_reason(), distance};
   info[RP_STAGE_INFLUENCE] = {"influence", influence > 0, influence_reason(scene), influence};
   info[RP_STAGE_NORMAL] = {"normal", 1, normal_reason(scene.normal),
-                           normal + solver_.normal_bytes()};
-  const bool by_method = config_.tangential == RP_TANGENTIAL_NONE;
-  const char *why = tangential || by_method ? tangential_reason(scene) : "regime = none";
+                           normal + solver.normal_bytes()};
+  const char *why = scene.has_regime ? tangential_reason(scene) : "regime = none";
   info[RP_STAGE_TANGENTIAL] = {"tangential", tangential, why, traction};
   info[RP_STAGE_TEMPERATURE] = {"temperature", scene.heat.has_value(), temperature_reason(scene),
-                                heat + solver_.heat_bytes()};
+                                heat + solver.heat_bytes()};
   info[RP_STAGE_FORCES] = {"forces", 1, "resultants of pressure and traction",
-                           solver_.scratch_bytes()};
+                           solver.scratch_bytes()};
   info[RP_STAGE_COUPLING] = {"coupling", scene.couples(), coupling_reason(scene),
-                             solver_.coupling_bytes()};
+                             solver.coupling_bytes()};
   info[RP_STAGE_HISTORY] = {"history", scene.keeps_steps(), history_reason(scene), history};
-  info[RP_STAGE_SUPPORT] = {
-      "rail_support", support_ != nullptr,
-      support_ ? "rails have a stiffness: deflections by Newton's method" : "the rails are rigid",
-      support_ ? support_->bytes() : 0};
-  info[RP_STAGE_PLASTICITY] = {"plasticity", scene.yields(), plasticity_reason(config_, scene),
-                               plastic};
-  const bool asked = config_.derivatives != 0;
+  info[RP_STAGE_SUPPORT] = {"rail_support", support > 0,
+                            support > 0 ? "rails have a stiffness: deflections by Newton's method"
+                                        : "the rails are rigid",
+                            support};
+  info[RP_STAGE_PLASTICITY] = {"plasticity", scene.yields(), plasticity_reason(scene), plastic};
+  const bool asked = scene.derivatives;
   info[RP_STAGE_DERIVATIVES] = {"derivatives", asked, derivative_reason(asked, scene),
                                 derivative_bytes()};
 }

@@ -23,6 +23,7 @@ struct patch_scene {
   double line_width = 0;         // m, > 0: line contact
   rp_normal_method normal = RP_NORMAL_HALF_SPACE;
   rp_tangential_method tangential = RP_TANGENTIAL_FULL;  // NONE: no tangential stage
+  bool has_regime = true;  // false: the motion asks for none, whatever the method
   motion regime = motion::steady;
   bool moves = false;            // the grid moves between steps: of wheels
   std::optional<bound_law> law;  // beyond Coulomb's, or a layer that yields

@@ -12,8 +12,6 @@ namespace railpatch {
 class friction_factor {
  public:
   friction_factor() = default;
-  explicit friction_factor(const rp_config &c)
-      : friction_factor(c.friction_points, c.friction_position, c.friction_factor) {}
   // place, factor: RP_MAX_POINTS values
   friction_factor(int count, const double *place, const double *factor) : count_(count) {
     std::copy_n(place, RP_MAX_POINTS, place_.begin());

@@ -22,13 +22,13 @@ double length(const lateral_vertical &v) { return std::hypot(v[0], v[1]); }
 
 }  // namespace
 
-rail_support::rail_support(const rp_config &c, int wheels, double modulus)
-    : count_(wheels),
-      stiffness_{c.rail_stiffness[0], c.rail_stiffness[1]},
-      damping_{c.rail_damping[0], c.rail_damping[1]},
-      tolerance_(c.tolerance),
-      modulus_(modulus),
-      radius_(0.5 * c.nominal_radius) {}
+rail_support::rail_support(const support_setup &setup)
+    : count_(setup.wheels),
+      stiffness_(setup.stiffness),
+      damping_(setup.damping),
+      tolerance_(setup.tolerance),
+      modulus_(setup.modulus),
+      radius_(setup.radius) {}
 
 void rail_support::reset() { rails_ = {}; }
 

@@ -13,8 +13,6 @@
 #include <array>
 #include <cstddef>
 
-#include "railpatch.h"
-
 namespace railpatch {
 
 using lateral_vertical = std::array<double, 2>;
@@ -47,14 +45,17 @@ struct support_result {
   double z = 0;         // m
 };
 
+struct support_setup {
+  int wheels = 1;                                // or 2
+  std::array<double, 2> stiffness{}, damping{};  // N/m, N s/m: lateral, vertical
+  double tolerance = 1e-5;
+  double modulus = 0;  // Pa, G/(1 - nu) of the bodies
+  double radius = 0;   // m, a typical combined one
+};
+
 class rail_support {
  public:
-  // wheels: 1 or 2; modulus: Pa, G/(1 - nu) of the bodies.
-  rail_support(const rp_config &config, int wheels, double modulus);
-  static bool asked(const rp_config &config) {
-    return config.kind != RP_PATCH &&
-           (config.rail_stiffness[0] > 0 || config.rail_stiffness[1] > 0);
-  }
+  explicit rail_support(const support_setup &setup);
 
   support_result solve(supported_wheels &wheels, const support_load &load);
   // Of the last step; rate 0 without a time step.

@@ -10,51 +10,6 @@ namespace railpatch {
 
 namespace {
 
-profile_view checked_view(const rp_profile &p, const char *field) {
-  if (!p.arc_length || !p.y || !p.z || !p.dy || !p.dz) throw profile_error{field, "is not given"};
-  const profile_view view{p.arc_length, p.y, p.z, p.dy, p.dz, p.count};
-  if (const profile_fault fault = validate(view); fault != profile_fault::none)
-    throw profile_error{field, text(fault)};
-  return view;
-}
-
-std::unique_ptr<profile> make_profile(const rp_profile &p, const char *field) {
-  return std::make_unique<profile>(checked_view(p, field));
-}
-
-// Profiles of a rail along the track; none where it has one profile.
-std::unique_ptr<rail_sections> make_sections(const rp_config &c, int side) {
-  const int count = c.section_count[side];
-  if (count == 0) return nullptr;
-  const char *field = side == RP_LEFT ? "rail_sections[0]" : "rail_sections[1]";
-  if (!c.rail_sections[side] || !c.section_position[side]) throw profile_error{field, "are null"};
-  std::vector<profile_view> views;
-  for (int k = 0; k < count; ++k) {
-    views.push_back(checked_view(c.rail_sections[side][k], field));
-    if (!rail_sections::belong_together(views.front(), views.back()))
-      throw profile_error{field, "must have as many knots at the same shares of the arc length"};
-  }
-  return std::make_unique<rail_sections>(views.data(), c.section_position[side], count);
-}
-
-// The rail's profile, that of the first section where there are several.
-std::unique_ptr<profile> make_rail(const rp_config &c, int side) {
-  if (c.section_count[side] > 0)
-    return make_profile(c.rail_sections[side][0],
-                        side == RP_LEFT ? "rail_sections[0]" : "rail_sections[1]");
-  return make_profile(c.rail[side], side == RP_LEFT ? "rail_left" : "rail_right");
-}
-
-// Both rails lean inwards by the same cant; a right-hand curve is a left-hand one in the mirror.
-track_config track_of(const rp_config &c, int side) {
-  return {c.track == RP_ROLLER ? track_kind::roller : track_kind::rail,
-          c.gauge + c.gauge_widening,
-          c.gauge_height,
-          c.cant,
-          side == RP_LEFT ? -c.curvature : c.curvature,
-          c.roller_radius};
-}
-
 deviation deviation_of(const double offset[3], const double rotation[3], const double velocity[3],
                        const double angular_velocity[3]) {
   const auto vector = [](const double v[3]) { return vec3{v[0], v[1], v[2]}; };
@@ -88,20 +43,23 @@ contact_parts parts_on(const patch_region &region, const grid &g) {
 
 }  // namespace
 
-wheel_contact::wheel_contact(const rp_config &c, int side)
-    : config_(c),
-      side_(side),
-      sections_(make_sections(c, side)),
-      wheel_(make_profile(c.wheel[side], side == RP_LEFT ? "wheel_left" : "wheel_right")),
-      rail_(make_rail(c, side)) {
-  rules_.blended = c.patch_rule == RP_PATCHES_BLENDED;
-  rules_.inclined = c.contact_frame == RP_FRAME_INCLINED;
-  const wheel_config sizes{c.nominal_radius, c.flange_back_distance, c.flange_back_position,
-                           c.standstill_speed};
-  geometry_ = std::make_unique<side_geometry>(*wheel_, *rail_, sizes, track_of(c, side));
-  if (c.derivatives != 0) solutions_.resize(static_cast<size_t>(c.max_patches));
-  if (!longitudinal_shape::wanted(c, side)) return;
-  shape_ = std::make_unique<longitudinal_shape>(c, side);
+wheel_contact::wheel_contact(const wheel_setup &setup)
+    : side_(setup.side),
+      max_patches_(setup.max_patches),
+      nominal_radius_(setup.sizes.nominal_radius),
+      standstill_speed_(setup.sizes.standstill_speed),
+      grid_(setup.grid),
+      round_and_rigid_(setup.round_and_rigid),
+      rules_(setup.rules) {
+  if (!setup.sections.empty())
+    sections_ = std::make_unique<rail_sections>(setup.sections.data(), setup.section_position,
+                                                static_cast<int>(setup.sections.size()));
+  wheel_ = std::make_unique<profile>(setup.wheel);
+  rail_ = std::make_unique<profile>(setup.rail);
+  geometry_ = std::make_unique<side_geometry>(*wheel_, *rail_, setup.sizes, setup.track);
+  if (setup.derivatives) solutions_.resize(static_cast<size_t>(setup.max_patches));
+  if (!setup.shape.given()) return;
+  shape_ = std::make_unique<longitudinal_shape>(setup.shape);
   geometry_->set_shape(shape_.get());
 }
 
@@ -128,7 +86,7 @@ void wheel_contact::place(const rp_input &in) {
     }
   }
   time_step_ = in.time_step;
-  if (shape_) shape_->place(in.pitch + in.wheel_rotation[side_][1], in.x, config_.nominal_radius);
+  if (shape_) shape_->place(in.pitch + in.wheel_rotation[side_][1], in.x, nominal_radius_);
   geometry_->place(motion_of(in));
 }
 
@@ -138,9 +96,9 @@ grid wheel_contact::choose_grid(const patch_region &r) const {
   double size[2], origin[2];
   int count[2];
   for (int k = 0; k < 2; ++k) {
-    if (config_.element_size[0] > 0) {
+    if (grid_.sized) {
       // element centres on multiples of the size, so that the grid moves with the reference
-      size[k] = config_.element_size[k];
+      size[k] = grid_.element_size[k];
       const double first = std::floor(low[k] / size[k]) - 1.0;
       const double last = std::ceil(high[k] / size[k]) + 1.0;
       origin[k] = first * size[k];
@@ -148,9 +106,9 @@ grid wheel_contact::choose_grid(const patch_region &r) const {
       const double cells = last - first + 1.0;
       count[k] = cells >= 1.0 && cells < 1e6 ? static_cast<int>(cells) : 0;
     } else {
-      size[k] = (high[k] - low[k]) / config_.elements[k];
+      size[k] = (high[k] - low[k]) / grid_.elements[k];
       origin[k] = low[k] - 0.5 * size[k];
-      count[k] = config_.elements[k] + 2;
+      count[k] = grid_.elements[k] + 2;
     }
   }
   g.nx = count[0];
@@ -176,7 +134,7 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
   for (int i = 0; i < count; ++i)
     out.status = combine_status(
         out.status, solve_patch(solver, regions_[static_cast<size_t>(i)], i, memory, out));
-  for (int i = count; i < config_.max_patches; ++i) {
+  for (int i = count; i < max_patches_; ++i) {
     memory[i].warm = memory[i].solved = false;
     memory[i].history.clear_now();
   }
@@ -190,14 +148,14 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
 
 search_result wheel_contact::find_regions(const patch_contact &solver) {
   const stage_mark mark = solver.marks().enter(RP_STAGE_GEOMETRY);
-  return find_patches(*geometry_, rules_, parts_, regions_.data(), config_.max_patches);
+  return find_patches(*geometry_, rules_, parts_, regions_.data(), max_patches_);
 }
 
 // Moves the memories so that each patch finds the one of the last solution that lay nearest to it
 // and was most alike in extent; patches appear, vanish, join and part beside it. Ties go to the
 // first, so the order is a function of the last solution only.
 void wheel_contact::match_memory(patch_memory *memory, int count) const {
-  const int slots = config_.max_patches;
+  const int slots = max_patches_;
   if (slots == 1) return;
   const auto unlike = [&](const patch_region &region, const patch_memory &m) {
     const vec3 &at = region.frame.origin;
@@ -339,7 +297,7 @@ void wheel_contact::add_force(const patch_region &region, double depth, patch_wr
 void wheel_contact::set_past(const patch_memory *memory, const patch_region &region,
                              patch_problem &problem, past_tractions *past) const {
   rolling_input &rolling = problem.rolling;
-  const double speed = problem.rolling_speed, slow = config_.standstill_speed;
+  const double speed = problem.rolling_speed, slow = standstill_speed_;
   rolling.speed = speed;
   // what stands still does not roll on; near standstill creepages refer to another speed
   rolling.regime = speed > 0 ? motion::transient : motion::shift;
@@ -359,7 +317,7 @@ void wheel_contact::set_past(const patch_memory *memory, const patch_region &reg
     low = std::max(low, 0.5 * (region.s_min + lateral(part_at(first_part - 1).last)));
   if (last_part + 1 < parts_.count)
     high = std::min(high, 0.5 * (region.s_max + lateral(part_at(last_part + 1).first)));
-  for (int k = 0; k < config_.max_patches; ++k) {
+  for (int k = 0; k < max_patches_; ++k) {
     const patch_history &h = memory[k].history;
     if (!h.held) continue;
     const grid &g = h.last_grid;
@@ -394,11 +352,8 @@ void wheel_contact::set_friction(const patch_contact &solver, const contact_fram
   }
 }
 
-// Shapes that vary along the track or the wheel, and rails that give way, are left to differences.
 bool wheel_contact::differentiates() const {
-  const bool gives_way = config_.rail_stiffness[0] > 0 || config_.rail_stiffness[1] > 0;
-  return wheel_derivative::covers(rules_) && !sections_ && !shape_ &&
-         config_.reference_surface == RP_REFERENCE_PLANE && !gives_way;
+  return round_and_rigid_ && wheel_derivative::covers(rules_);
 }
 
 derivative_outcome wheel_contact::differentiate(patch_contact &solver, const patch_memory *memory,
@@ -409,14 +364,9 @@ derivative_outcome wheel_contact::differentiate(patch_contact &solver, const pat
                                                 rp_side_result *changes) const {
   side_motion motions[wheel_derivative::most_directions];
   for (int k = 0; k < count; ++k) motions[k] = motion_of(directions[k]);
-  const wheel_solution solution{*geometry_,
-                                rules_,
-                                parts_,
-                                regions_.data(),
-                                solutions_.data(),
-                                memory,
-                                patches_,
-                                config_.element_size[0] > 0 ? nullptr : config_.elements};
+  const wheel_solution solution{
+      *geometry_,        rules_, parts_,   regions_.data(),
+      solutions_.data(), memory, patches_, grid_.sized ? nullptr : grid_.elements};
   const derivative_outcome outcome =
       work.solve(solution, solver, motions, friction, count, options, result, changes);
   for (int k = 0; k < count; ++k)

@@ -8,18 +8,37 @@
 #include <memory>
 
 #include "geometry/geometry.hpp"
+#include "geometry/longitudinal_shape.hpp"
 #include "geometry/patch.hpp"
 #include "geometry/rail_sections.hpp"
 #include "patch/patch_contact.hpp"
+#include "patch/patch_grid.hpp"
 #include "railpatch.h"
 #include "wheel/wheel_derivative.hpp"
 
 namespace railpatch {
 
+// What a wheel is made from; profiles are usable, and copied.
+struct wheel_setup {
+  int side = RP_RIGHT;
+  profile_view wheel{}, rail{};
+  std::vector<profile_view> sections;  // of the rail along the track; empty: it has one profile
+  const double *section_position = nullptr;
+  longitudinal_values shape;
+  wheel_config sizes;
+  track_config track;
+  patch_rules rules;
+  grid_rules grid;
+  int max_patches = 1;
+  bool derivatives = false;
+  // neither shape nor rail varies, gives way or is seen as curved: derivatives of these are not
+  // known
+  bool round_and_rigid = true;
+};
+
 class wheel_contact {
  public:
-  // Throws profile_error where a profile of this side is not usable.
-  wheel_contact(const rp_config &config, int side);
+  explicit wheel_contact(const wheel_setup &setup);
 
   int side() const { return side_; }
   void place(const rp_input &input);
@@ -62,8 +81,10 @@ class wheel_contact {
   side_motion motion_of(const rp_input &input) const;
   void match_memory(patch_memory *memory, int count) const;
 
-  rp_config config_;
-  int side_;
+  int side_, max_patches_;
+  double nominal_radius_, standstill_speed_;
+  grid_rules grid_;
+  bool round_and_rigid_;
   bool beyond_ = false;
   std::unique_ptr<rail_sections> sections_;  // where the rail's profile varies along the track
   std::unique_ptr<profile> wheel_, rail_;
@@ -75,11 +96,6 @@ class wheel_contact {
   int patches_ = 0;                        // of the last state
   std::vector<patch_solution> solutions_;  // of these; only where derivatives are asked for
   double time_step_ = 0;                   // s
-};
-
-struct profile_error {
-  const char *field;  // "wheel_left", ...
-  const char *reason;
 };
 
 // Status of several patches or wheels together: the worst; no contact only where none has any.

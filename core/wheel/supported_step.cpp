@@ -1,7 +1,5 @@
-#include <algorithm>
-
-#include "handle/contact.hpp"
 #include "numeric/nan.hpp"
+#include "wheel/wheels.hpp"
 
 // A step of wheels on rails that deflect.
 
@@ -42,9 +40,9 @@ class wheels_of_step final : public supported_wheels {
 
 }  // namespace
 
-void contact::solve_supported(const rp_input &in, rp_result &out) {
+void wheels::solve_supported(const rp_input &in, rp_result &out) {
   const auto evaluate = [&](double z, supported_wheels::contact *found) {
-    evaluate_wheels(z, out);
+    this->evaluate(z, out);
     bool known = true;
     for (size_t w = 0; w < wheels_.size(); ++w) {
       const rp_side_result &side = out.side[wheels_[w].side()];
@@ -54,9 +52,9 @@ void contact::solve_supported(const rp_input &in, rp_result &out) {
     }
     return known;
   };
-  wheels_of_step wheels(wheels_, solver_, in, evaluate);
-  const support_load load{config_.load == RP_FORCE, in.vertical_force, in.z, in.time_step};
-  const support_result found = support_->solve(wheels, load);
+  wheels_of_step moved(wheels_, solver_, in, evaluate);
+  const support_load load{force_given_, in.vertical_force, in.z, in.time_step};
+  const support_result found = support_->solve(moved, load);
   out.z = found.z;
   if (found.beyond) {
     if (load.prescribed) out.z = nan;

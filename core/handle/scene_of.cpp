@@ -1,0 +1,227 @@
+#include "handle/scene_of.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "handle/check.hpp"
+
+namespace railpatch {
+
+namespace {
+
+// of grids of unlike bodies, over Hertz's contact
+constexpr double most_reach = 2.5;
+
+// Where friction is more than Coulomb's, or the layer yields.
+std::optional<bound_law> make_law(const rp_config &c) {
+  const bool by_velocity = c.friction_law == RP_SLIP_VELOCITY;
+  if (!has_physics || (!by_velocity && !(c.layer_yield_stress > 0))) return std::nullopt;
+  bound_law law;
+  law.by_velocity = by_velocity;
+  if (by_velocity) {
+    law.slip.kind = static_cast<slip_velocity_law::shape>(c.slip_law);
+    law.slip.kinetic = c.friction_kinetic;
+    for (int i = 0; i < 2; ++i) {
+      law.slip.amplitude[i] = c.friction_amplitude[i];
+      law.slip.halving_speed[i] = c.friction_halving_speed[i];
+    }
+    law.slip.memory_distance = c.friction_memory_distance;
+    law.slip.memory_speed = c.friction_memory_speed;
+  }
+  law.by_magnitude = c.plastic_rule == RP_PLASTIC_MAGNITUDE;
+  if (!(c.layer_yield_stress > 0)) return law;
+  law.yield = hardening_curve::straight(c.layer_yield_stress, c.layer_hardening);
+  if (c.hardening_points == 0) return law;
+  law.yield.points = c.hardening_points;
+  law.yield.last_slope = 0;
+  std::copy_n(c.hardening_displacement, c.hardening_points, law.yield.displacement);
+  std::copy_n(c.hardening_stress, c.hardening_points, law.yield.stress);
+  return law;
+}
+
+// Where temperatures are asked for.
+std::optional<heat_scene> make_heat(const rp_config &c) {
+  if (c.temperature == 0 || c.tangential == RP_TANGENTIAL_NONE) return std::nullopt;
+  heat_scene heat;
+  for (int k = 0; k < 2; ++k)
+    heat.bodies.body[k] = {c.conductivity[k], c.heat_capacity[k], c.density[k],
+                           c.bulk_temperature[k]};
+  heat.exchanges = c.heat_exchange == 1 || heat.bodies.exchanges();
+  heat.by_temperature = c.friction_law == RP_TEMPERATURE;
+  heat.law = {c.friction_reference, c.friction_change, c.friction_reference_temperature,
+              c.friction_temperature_range};
+  heat.depth = c.temperature_depth;
+  heat.plastic_fraction = c.plastic_heat_fraction;
+  heat.transient = c.regime == RP_TRANSIENT_ROLLING;
+  return heat;
+}
+
+fast_options fast_of(const rp_config &c, rp_tangential_method theory) {
+  fast_options fast;
+  fast.theory = theory;
+  if (uses_table(c)) fast.creep_table = c.creep_table;
+  fast.coefficient_factor = 0.01 * c.percent_kalker;
+  fast.bound = c.traction_bound;
+  fast.blending = c.flexibility_blending;
+  fast.polach = {c.polach_k_a, c.polach_k_s};
+  fast.reduction = {c.fastsim_k0, c.fastsim_alpha, c.fastsim_beta};
+  return fast;
+}
+
+patch_scene patch_scene_of(const rp_config &c) {
+  patch_scene scene;
+  scene.elastic = combine(c.shear_modulus, c.poisson_ratio);
+  scene.friction_coefficient = c.friction_coefficient;
+  if (c.friction_points > 0)
+    scene.friction_variation =
+        friction_factor(c.friction_points, c.friction_position, c.friction_factor);
+  if (c.layer_thickness > 0) scene.layer_flexibility = c.layer_thickness / c.layer_shear_modulus;
+  if (c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT) scene.line_width = c.width;
+  scene.normal = c.normal;
+  scene.tangential = c.regime == RP_REGIME_NONE ? RP_TANGENTIAL_NONE : c.tangential;
+  scene.tolerance = scene.normal_tolerance = c.tolerance;
+  // the search for z sees the force change only where each force is known better than it asks for
+  if (c.kind != RP_PATCH && (c.load == RP_FORCE || has_support(c)))
+    scene.normal_tolerance = std::max(0.1 * c.tolerance, 1e-12);
+  if (has_support(c)) scene.tolerance = scene.normal_tolerance;
+  // with neither nothing is left out, and the method says so
+  scene.has_regime = c.regime != RP_REGIME_NONE || c.tangential == RP_TANGENTIAL_NONE;
+  scene.max_iterations = c.max_iterations;
+  if (scene.tangential == RP_TANGENTIAL_FULL && c.fitted[0] == 0) {
+    scene.law = make_law(c);
+    if (c.regime == RP_SHIFT) scene.regime = motion::shift;
+    if (c.regime == RP_TRANSIENT_ROLLING) scene.regime = motion::transient;
+    scene.moves = c.kind != RP_PATCH;
+  }
+  scene.heat = make_heat(c);
+  for (int k = 0; k < 2; ++k) scene.fitted[k] = c.fitted[k];
+  for (int k = 0; k < 2; ++k) scene.prescribed[k] = c.force_prescribed[k] != 0;
+  scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
+  scene.derivatives = c.derivatives != 0;
+  scene.stretches = c.kind != RP_PATCH && c.elements[0] > 0;
+  scene.curved = c.reference_surface == RP_REFERENCE_CURVED;
+  scene.fast = fast_of(c, scene.tangential);
+  return scene;
+}
+
+// Of the contact area of unlike bodies, over Hertz's: tractions shift and stretch it. Full sliding
+// is farthest, in plane strain to 1 + 2 e and by (1 - 4 e^2)^-1/2 with tan(pi e) = mu K/(1 - nu)
+// (Hills, Nowell and Sackfield 1993, chapter 7).
+double reach_of(const rp_config &c, const patch_scene &scene) {
+  const elastic_constants &e = scene.elastic;
+  if (scene.tangential != RP_TANGENTIAL_FULL || !is_coupled(e)) return 1.0;
+  const double share = std::atan(most_friction(c, c.friction_coefficient) * std::abs(e.mismatch) /
+                                 (1.0 - e.poisson_ratio)) /
+                       std::numbers::pi;
+  // contacts that reach beyond are reported: mu K/(1 - nu) of more than 2
+  return std::min(most_reach, (1.0 + 2.0 * share) / std::sqrt(1.0 - 4.0 * share * share));
+}
+
+grid_rules grid_rules_of(const rp_config &c, const patch_scene &scene) {
+  grid_rules rules;
+  rules.sized = c.element_size[0] > 0;
+  for (int k = 0; k < 2; ++k) {
+    rules.element_size[k] = c.element_size[k];
+    rules.elements[k] = c.elements[k];
+    rules.most[k] = c.max_elements[k];
+  }
+  rules.reach = reach_of(c, scene);
+  rules.interpenetrates =
+      c.normal == RP_NORMAL_KIK_PIOTROWSKI && c.geometry != RP_UNDEFORMED_DISTANCE;
+  rules.force_given = c.load == RP_FORCE;
+  return rules;
+}
+
+// Elements of one patch's grid, with a border of one element that stays free of contact: of a patch
+// given directly,
+grid_size largest_of_patch(const rp_config &c, const grid_rules &rules) {
+  if (!needs_grid(c)) return {};
+  if (c.geometry == RP_UNDEFORMED_DISTANCE) return {c.distance_shape[0], c.distance_shape[1]};
+  const bool ellipse = c.geometry == RP_SEMI_AXES;
+  const hertz_contact unit = ellipse ? hertz_from_ellipse(c.semi_axes, 1.0, 1.0) : hertz_contact{};
+  const auto cells = [&](int k) {
+    if (k == 1 && c.geometry == RP_LINE_CONTACT) return 1;
+    if (!rules.sized) return rules.with_margin(c.elements[k]) + 2;
+    if (ellipse) {
+      const double across = 2.0 * rules.relative_size(unit, k) * c.semi_axes[k];
+      const double wanted = std::min(2000.0, std::ceil(across / c.element_size[k]));
+      return rules.with_margin(static_cast<int>(wanted)) + 3;
+    }
+    // else a square of 128
+    return c.max_elements[k] == 0 ? 130 : c.max_elements[k];
+  };
+  return {cells(0), cells(1)};
+}
+
+// and of wheel on rail.
+grid_size largest_of_wheels(const rp_config &c, const grid_rules &rules) {
+  // m; flats and joints touch at both ends
+  const double overlap[2] = {has_shape(c) ? 0.120 : 0.060, 0.050};
+  const auto cells = [&](int k) {
+    if (!rules.sized) return rules.with_margin(c.elements[k]) + 2;
+    if (c.max_elements[k] != 0) return c.max_elements[k];
+    return static_cast<int>(std::clamp(std::ceil(overlap[k] / c.element_size[k]), 16.0, 400.0));
+  };
+  return {cells(0), cells(1)};
+}
+
+// Transform sizes up to a capacity, each about a fifth larger than the one before.
+std::vector<int> ladder(int smallest, int largest) {
+  std::vector<int> sizes{smooth_size(smallest)};
+  while (sizes.back() < largest)
+    sizes.push_back(
+        std::min(smooth_size(sizes.back() + sizes.back() / 5 + 1), smooth_size(largest)));
+  return sizes;
+}
+
+// What transforms the convolutions need; closed forms need none.
+void set_transforms(const rp_config &c, grid_size largest, scene &made) {
+  made.transforms[0] = {2};
+  made.transforms[1] = {1};
+  if (!made.patch.needs_influence()) return;
+  const int n[2] = {2 * largest.nx + 1, largest.ny > 1 ? 2 * largest.ny - 1 : 1};
+  const bool fixed = made.single && !(c.geometry == RP_CURVATURES && c.element_size[0] > 0);
+  for (int k = 0; k < 2; ++k)
+    made.transforms[k] = !fixed     ? ladder(std::min(n[k], 16), n[k])
+                         : n[k] > 1 ? std::vector<int>{smooth_size(n[k])}
+                                    : std::vector<int>{1};
+}
+
+single_patch_setup single_patch_of(const rp_config &c, const patch_scene &scene) {
+  single_patch_setup setup;
+  setup.geometry = c.geometry;
+  setup.force_given = c.load == RP_FORCE;
+  std::copy_n(c.semi_axes, 2, setup.semi_axes);
+  std::copy_n(c.curvatures, 2, setup.curvatures);
+  setup.line_contact_radius = c.line_contact_radius;
+  setup.width = c.width;
+  setup.has_grid = needs_grid(c);
+  setup.grid = grid_rules_of(c, scene);
+  setup.largest = largest_of_patch(c, setup.grid);
+  if (c.geometry == RP_UNDEFORMED_DISTANCE) setup.distance = c.undeformed_distance;
+  return setup;
+}
+
+}  // namespace
+
+scene scene_of(const rp_config &c) {
+  scene made;
+  made.patch = patch_scene_of(c);
+  made.marks = {c.observer, c.observer_user};
+  made.tolerance = c.tolerance;
+  std::copy_n(c.bulk_temperature, 2, made.bulk_temperature);
+  grid_size largest;
+  if (c.kind == RP_PATCH) {
+    largest = made.single.emplace(single_patch_of(c, made.patch)).largest;
+  } else {
+    const grid_rules rules = grid_rules_of(c, made.patch);
+    wheels_setup &wheels = made.wheels.emplace(wheels_of(c, made.patch));
+    for (auto &wheel : wheels.wheel) wheel.grid = rules;
+    wheels.largest = largest = largest_of_wheels(c, rules);
+  }
+  set_transforms(c, largest, made);
+  return made;
+}
+
+}  // namespace railpatch

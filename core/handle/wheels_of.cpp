@@ -1,0 +1,93 @@
+// The wheels' part of a scene.
+#include "handle/scene_of.hpp"
+
+namespace railpatch {
+
+namespace {
+
+profile_view checked_view(const rp_profile &p, const char *field) {
+  if (!p.arc_length || !p.y || !p.z || !p.dy || !p.dz) throw profile_error{field, "is not given"};
+  const profile_view view{p.arc_length, p.y, p.z, p.dy, p.dz, p.count};
+  if (const profile_fault fault = validate(view); fault != profile_fault::none)
+    throw profile_error{field, text(fault)};
+  return view;
+}
+
+// Profiles of a rail along the track; none where it has one profile.
+std::vector<profile_view> sections_of(const rp_config &c, int side) {
+  const int count = c.section_count[side];
+  std::vector<profile_view> views;
+  if (count == 0) return views;
+  const char *field = side == RP_LEFT ? "rail_sections[0]" : "rail_sections[1]";
+  if (!c.rail_sections[side] || !c.section_position[side]) throw profile_error{field, "are null"};
+  for (int k = 0; k < count; ++k) {
+    views.push_back(checked_view(c.rail_sections[side][k], field));
+    if (!rail_sections::belong_together(views.front(), views.back()))
+      throw profile_error{field, "must have as many knots at the same shares of the arc length"};
+  }
+  return views;
+}
+
+// Both rails lean inwards by the same cant; a right-hand curve is a left-hand one in the mirror.
+track_config track_of(const rp_config &c, int side) {
+  return {c.track == RP_ROLLER ? track_kind::roller : track_kind::rail,
+          c.gauge + c.gauge_widening,
+          c.gauge_height,
+          c.cant,
+          side == RP_LEFT ? -c.curvature : c.curvature,
+          c.roller_radius};
+}
+
+wheel_setup wheel_of(const rp_config &c, int side) {
+  wheel_setup setup;
+  setup.side = side;
+  setup.sections = sections_of(c, side);
+  setup.section_position = c.section_position[side];
+  setup.wheel = checked_view(c.wheel[side], side == RP_LEFT ? "wheel_left" : "wheel_right");
+  // of several sections the first one
+  setup.rail = !setup.sections.empty()
+                   ? setup.sections.front()
+                   : checked_view(c.rail[side], side == RP_LEFT ? "rail_left" : "rail_right");
+  setup.shape = {c.runout[side],      c.runout_count[side],
+                 c.rail_height[side], c.rail_height_count[side],
+                 c.rail_height_start, c.rail_height_spacing};
+  setup.sizes = {c.nominal_radius, c.flange_back_distance, c.flange_back_position,
+                 c.standstill_speed};
+  setup.track = track_of(c, side);
+  setup.rules.blended = c.patch_rule == RP_PATCHES_BLENDED;
+  setup.rules.inclined = c.contact_frame == RP_FRAME_INCLINED;
+  setup.max_patches = c.max_patches;
+  setup.derivatives = c.derivatives != 0;
+  setup.round_and_rigid = setup.sections.empty() && !setup.shape.given() &&
+                          c.reference_surface == RP_REFERENCE_PLANE && !has_support(c);
+  return setup;
+}
+
+}  // namespace
+
+bool has_support(const rp_config &c) {
+  return c.kind != RP_PATCH && (c.rail_stiffness[0] > 0 || c.rail_stiffness[1] > 0);
+}
+
+wheels_setup wheels_of(const rp_config &c, const patch_scene &scene) {
+  wheels_setup setup;
+  for (int side = 0; side < 2; ++side)
+    if (c.kind == RP_WHEELSET || side == c.side) setup.wheel.push_back(wheel_of(c, side));
+  setup.max_patches = c.max_patches;
+  setup.force_given = c.load == RP_FORCE;
+  setup.tolerance = c.tolerance;
+  setup.nominal_radius = c.nominal_radius;
+  if (c.friction_along_points > 0)
+    setup.friction_along = friction_factor(c.friction_along_points, c.friction_along_position,
+                                           c.friction_along_factor);
+  if (has_support(c))
+    setup.support = support_setup{static_cast<int>(setup.wheel.size()),
+                                  {c.rail_stiffness[0], c.rail_stiffness[1]},
+                                  {c.rail_damping[0], c.rail_damping[1]},
+                                  c.tolerance,
+                                  scene.modulus(),
+                                  0.5 * c.nominal_radius};
+  return setup;
+}
+
+}  // namespace railpatch

@@ -1,0 +1,37 @@
+#include "patch/patch_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "normal/row_contact.hpp"
+
+namespace railpatch {
+
+namespace {
+
+constexpr int most_elements = 1000;  // of grids of unlike bodies
+
+}  // namespace
+
+int grid_rules::with_margin(int n) const {
+  if (reach == 1) return n;
+  const int wanted = n + 2 * static_cast<int>(std::ceil(0.5 * (reach - 1.0) * n));
+  return std::max(n, std::min(wanted, most_elements));
+}
+
+// Kik-Piotrowski needs its contact, an ellipse with Hertz's axis ratio and the area
+// pi 0.55 d/sqrt(A B), and the interpenetration region it is stretched from; with (a b) that is s^2
+// times as large, its force at equal approach d is s times as large.
+double grid_rules::relative_size(const hertz_contact &hertz, int k) const {
+  if (!interpenetrates) return 1.0;
+  const double half[2] = {
+      std::sqrt(virtual_interpenetration * hertz.approach / hertz.curvatures[0]),
+      std::sqrt(virtual_interpenetration * hertz.approach / hertz.curvatures[1])};
+  const double size =
+      std::sqrt(half[0] / hertz.semi_axes[0]) * std::sqrt(half[1] / hertz.semi_axes[1]);
+  // at equal force the approach is smaller, and with it both regions
+  const double load = force_given ? 1.0 / std::cbrt(size) : 1.0;
+  return load * std::max(size, half[k] / hertz.semi_axes[k]);
+}
+
+}  // namespace railpatch

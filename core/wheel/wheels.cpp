@@ -1,0 +1,151 @@
+#include "wheel/wheels.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "numeric/force_search.hpp"
+#include "numeric/nan.hpp"
+
+namespace railpatch {
+
+namespace {
+
+constexpr int max_searches = 60;
+
+}  // namespace
+
+wheels::wheels(const wheels_setup &setup, const patch_scene &scene, const fft_plans &plans,
+               stage_marks marks)
+    : driver(scene, plans, setup.largest, marks,
+             static_cast<int>(setup.wheel.size()) * setup.max_patches),
+      patches_(static_cast<size_t>(setup.max_patches)),
+      force_given_(setup.force_given),
+      tolerance_(setup.tolerance),
+      nominal_radius_(setup.nominal_radius),
+      friction_along_(setup.friction_along) {
+  wheels_.reserve(setup.wheel.size());
+  for (const auto &wheel : setup.wheel) wheels_.emplace_back(wheel);
+  if (setup.support) support_.emplace(*setup.support);
+  if (!scene.derivatives || !is_exact()) return;
+  rates_ = std::make_unique<rates>(
+      rates{wheel_derivative(scene, setup.largest.nx * setup.largest.ny, setup.largest.ny), {}});
+  rates_->changes.resize(2 * static_cast<size_t>(wheel_derivative::most_directions));
+}
+
+const patch_memory *wheels::find(int side, int patch) const {
+  if (patch < 0 || static_cast<size_t>(patch) >= patches_) return nullptr;
+  for (size_t w = 0; w < wheels_.size(); ++w)
+    if (wheels_[w].side() == side) return memory_of(w) + patch;
+  return nullptr;
+}
+
+driver::kept_numbers wheels::kept() {
+  static_assert(std::is_trivially_copyable_v<rail_support::rail>);
+  if (!support_) return {&depth_, nullptr, 0};
+  return {&depth_, support_->rails(), 2 * sizeof(rail_support::rail)};
+}
+
+void wheels::reset() {
+  depth_ = 0;
+  if (support_) support_->reset();
+}
+
+const char *wheels::geometry_reason() const {
+  return "kind is wheel_rail or wheelset: placement and contact search";
+}
+
+size_t wheels::geometry_bytes() const {
+  size_t sum = 0;
+  for (const auto &wheel : wheels_) sum += wheel.bytes();
+  return sum;
+}
+
+// Solves all wheels at z; returns their vertical force on the rails.
+double wheels::evaluate(double z, rp_result &out) {
+  double vertical = 0;
+  rp_status status = RP_NO_CONTACT;
+  for (size_t w = 0; w < wheels_.size(); ++w) {
+    wheel_contact &wheel = wheels_[w];
+    rp_side_result &side = out.side[wheel.side()];
+    wheel.move_to(z);
+    wheel.evaluate(solver_, memory_of(w), side);
+    vertical -= side.force[2];
+    status = combine_status(status, side.status);
+  }
+  ++out.evaluations;
+  out.status = status;
+  return vertical;
+}
+
+void wheels::step(const rp_input &in, rp_result &out) {
+  if (friction_along_.varies()) solver_.set_friction_scale(friction_along_.at(in.x));
+  if (solver_.scene().keeps_steps())
+    for (auto &m : memory_) solver_.remember(m);
+  {
+    const stage_mark mark = solver_.marks().enter(RP_STAGE_GEOMETRY);
+    for (auto &wheel : wheels_) wheel.place(in);
+  }
+  if (support_) {
+    solve_supported(in, out);
+  } else if (!force_given_) {
+    out.z = in.z;
+    evaluate(in.z, out);
+  } else {
+    find_z(in.vertical_force, out);
+  }
+  for (auto &wheel : wheels_)
+    for (int k = 0; k < 3; ++k) {
+      out.force[k] += out.side[wheel.side()].force[k];
+      out.moment[k] += out.side[wheel.side()].moment[k];
+    }
+}
+
+// Finds z for a prescribed vertical force.
+void wheels::find_z(double target, rp_result &out) {
+  double touch = HUGE_VAL;
+  for (const auto &wheel : wheels_) {
+    double z = 0;
+    if (wheel.first_touch(z)) touch = std::min(touch, z);
+  }
+  if (touch == HUGE_VAL) {
+    evaluate(0.0, out);
+    out.z = nan;
+    out.status = RP_OUT_OF_RANGE;
+    return;
+  }
+  double depth = depth_;
+  if (!(depth > 0)) {
+    // a ball on a plane with the load of one wheel and a typical combined radius
+    const double load = target / static_cast<double>(wheels_.size());
+    const double modulus = solver_.scene().modulus(), radius = 0.5 * nominal_radius_;
+    depth = std::cbrt(9.0 * load * load / (16.0 * modulus * modulus * radius));
+  }
+  force_search search(target, depth, tolerance_);
+  for (int i = 0; i < max_searches; ++i) {
+    depth = search.depth();
+    const double force = evaluate(touch + depth, out);
+    // a creep force outside its theory's range is a force all the same
+    const bool beyond = std::any_of(wheels_.begin(), wheels_.end(),
+                                    [](const wheel_contact &wheel) { return wheel.beyond(); });
+    search.report(force, beyond);
+    if (search.converged() || search.exhausted()) break;
+  }
+  out.z = touch + depth;
+  report_search(search.converged(), search.too_deep() ? RP_OUT_OF_RANGE : RP_NOT_CONVERGED,
+                search.residual(), out);
+  depth_ = search.converged() ? depth : 0.0;
+}
+
+// What does not carry the force asked for is no solution of the case, wheel by wheel.
+void wheels::report_search(bool converged, rp_status otherwise, double residual,
+                           rp_result &out) const {
+  const rp_status found = converged ? RP_CONVERGED : otherwise;
+  for (auto &side : out.side) {
+    degrade(side.status, found);
+    for (int i = 0; i < side.patch_count + side.alternative_count; ++i)
+      railpatch::report_search(found, residual, side.patch[i]);
+  }
+  if (found != RP_CONVERGED && out.status != RP_OUT_OF_RANGE) out.status = found;
+}
+
+}  // namespace railpatch

@@ -1,0 +1,73 @@
+// The steps of one wheel or of a wheelset: all wheels at one height, the height found for a
+// prescribed vertical force, rails that deflect.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "patch/driver.hpp"
+#include "tangential/friction_factor.hpp"
+#include "wheel/rail_support.hpp"
+#include "wheel/wheel_contact.hpp"
+#include "wheel/wheel_derivative.hpp"
+
+namespace railpatch {
+
+struct wheels_setup {
+  std::vector<wheel_setup> wheel;  // of the sides in use
+  int max_patches = 1;             // of each
+  grid_size largest;
+  bool force_given = true;
+  double tolerance = 1e-5;         // of the force that is found
+  double nominal_radius = 0;       // m
+  friction_factor friction_along;  // by x
+  std::optional<support_setup> support;
+};
+
+class wheels final : public driver {
+ public:
+  wheels(const wheels_setup &setup, const patch_scene &scene, const fft_plans &plans,
+         stage_marks marks);
+
+  void step(const rp_input &input, rp_result &result) override;
+  void reset() override;
+  const patch_memory *find(int side, int patch) const override;
+  bool mirrors(int side) const override { return side == RP_LEFT; }
+  kept_numbers kept() override;
+  bool is_exact() const override;
+  void differentiate(const rp_input &direction, const rp_input &input, const rp_result &result,
+                     rp_result &change) override;
+  bool has_jacobian() const override { return true; }
+  bool finds_height() const override { return force_given_; }
+  void jacobian(const rp_input &input, const rp_result &result, rp_jacobian &out) override;
+  const char *geometry_reason() const override;
+  size_t geometry_bytes() const override;
+  size_t support_bytes() const override { return support_ ? support_->bytes() : 0; }
+  size_t derivative_bytes() const override;
+
+ private:
+  // Of scenes whose derivatives come from the equations.
+  struct rates {
+    wheel_derivative wheels;
+    std::vector<rp_side_result> changes;  // [side][direction]
+  };
+  patch_memory *memory_of(size_t wheel) { return memory_.data() + wheel * patches_; }
+  const patch_memory *memory_of(size_t wheel) const { return memory_.data() + wheel * patches_; }
+  double evaluate(double z, rp_result &result);
+  void find_z(double vertical_force, rp_result &result);
+  void solve_supported(const rp_input &input, rp_result &result);
+  void report_search(bool converged, rp_status otherwise, double residual, rp_result &result) const;
+  double friction_rate(const rp_input &direction, const rp_input &input) const;
+
+  std::vector<wheel_contact> wheels_;
+  size_t patches_;  // of each wheel
+  bool force_given_;
+  double tolerance_, nominal_radius_;
+  double depth_ = 0;  // m, last z found minus first touch; 0: none
+  friction_factor friction_along_;
+  std::optional<rail_support> support_;  // where rails are on springs
+  std::unique_ptr<rates> rates_;
+};
+
+}  // namespace railpatch
