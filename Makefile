@@ -19,18 +19,29 @@ NEWS := sed -u '/^Requirement already satisfied/d'
 export NINJA_STATUS := [%f/%t, %e s] # files done of how many
 # a cmake from the virtual environment, where the system's is too old, comes first
 export PATH := $(CURDIR)/$(BIN):$(PATH)
+# what was compiled before is taken from here, where there is ccache
+ifneq ($(shell command -v ccache),)
+export CCACHE_DIR ?= $(CURDIR)/build/cache/ccache
+export CMAKE_C_COMPILER_LAUNCHER ?= ccache
+export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
+endif
 
 # the FMU's functions are among the C++ tests; the FMI headers come with fmpy in this environment
 FMU := -DRAILPATCH_FMU=ON -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python
 # where the FMU's library with FFTW is put, which is under the GPL and in no package
 FMU_FFTW := build/fmu_fftw
+# one build has the C++ tests, the program of `make pruning` and what the Python package is made of,
+# whose transforms may be others
+RELEASE := $(FMU) -DRAILPATCH_TESTS=ON -DRAILPATCH_PRUNING=ON -DRAILPATCH_FFT=
+PACKAGE := --config-settings=build-dir=build/release $(addprefix --config-settings=cmake.define., \
+	RAILPATCH_PYTHON=ON RAILPATCH_FMU=ON RAILPATCH_WERROR=ON)
 CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
 # what the installed package is made from
 SOURCES := $(shell find core plugins rig_model wheelset_demo -type f -not -name '*.pyc' 2>/dev/null) \
 	CMakeLists.txt README.md
 
-.PHONY: help demo viewer fmu fmu-clients fmu-fftw test lint format clean setup system test-cpp test-python test-asan pruning \
-	mutants
+.PHONY: help demo viewer fmu fmu-clients fmu-fftw test test-long lint format clean setup system test-cpp \
+	test-python test-asan pruning mutants
 
 help: ## this list
 	@echo "make targets:"
@@ -65,7 +76,7 @@ fmu: setup fmu-fftw ## FMUs of the default scene and of each kind for Linux, ARM
 	done
 
 fmu-fftw: setup ## the FMU's library with FFTW, for `railpatch fmu --fft fftw --libraries`
-	cmake --preset release $(FMU)
+	cmake --preset release $(RELEASE)
 	cmake --build --preset release --target railpatch_fmu
 	cmake --install build/release --component python --prefix $(FMU_FFTW)
 	$(BIN)/python -c 'from railpatch.fmu.libraries import stamp; print(stamp())' \
@@ -81,9 +92,17 @@ viewer: demo ## the demo's logs in a viewer that others wrote, a picture of each
 	tests/viewer/run build/viewer $(BIN)/railpatch build/demo/run.mcap 90 build/demo/wheelset.mcap 1.5 \
 		build/viewer/vehicle.mcap 3
 
-test: setup lint test-cpp test-python test-asan pruning ## set-up and every check
+PARTS := system setup lint test-cpp test-python test-asan pruning
+test: ## set-up and every check; what each part and the slowest tests took
+	@rm -f build/junit/parts
+	@for part in $(PARTS); do .ci/part build/junit/parts $$part $(MAKE) --no-print-directory $$part; done
 	@printf '\nall checks passed:\n'
-	@$(BIN)/python .ci/summary.py $(addprefix build/junit/,cpp.xml python.xml asan.xml)
+	@$(BIN)/python .ci/summary.py build/junit/parts $(addprefix build/junit/,cpp.xml python.xml asan.xml)
+
+test-long: setup ## what is slow by nature, before a release: hours
+	@mkdir -p build/junit
+	$(PYTEST) -m long --junit-xml=build/junit/long.xml
+	@$(MAKE) --no-print-directory mutants
 
 setup: $(VENV)/installed ## system packages, virtual environment, package
 
@@ -98,7 +117,7 @@ format: $(VENV)/tools ## ruff and clang-format, files are changed
 	$(BIN)/clang-format -i $(CXX_FILES)
 
 test-cpp: $(VENV)/tools ## C and C++ tests, release build
-	cmake --preset release $(FMU)
+	cmake --preset release $(RELEASE)
 	cmake --build --preset release
 	@mkdir -p build/junit
 	ctest --preset release --output-junit "$(CURDIR)/build/junit/cpp.xml"
@@ -109,20 +128,20 @@ test-asan: $(VENV)/tools ## the same with address and undefined-behaviour saniti
 	@mkdir -p build/junit
 	ctest --preset asan --output-junit "$(CURDIR)/build/junit/asan.xml"
 
+# each process has a half of the tests, in their order; the first at its end takes from the other
+PYTEST := $(BIN)/python -m pytest --numprocesses=$(JOBS) --dist=worksteal
 test-python: setup fmu-fftw ## pytest, against the installed package
 	@mkdir -p build/junit
-	$(BIN)/python -m pytest --junit-xml=build/junit/python.xml
+	$(PYTEST) --junit-xml=build/junit/python.xml
 
-PRUNING := -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAILPATCH_TESTS=OFF -DRAILPATCH_PRUNING=ON
 pruning: $(VENV)/tools ## what plain cases pay for physics that they leave out, and for the FMU
 	@.ci/system-packages valgrind
-	cmake -S . -B build/pruning/with $(PRUNING) -DRAILPATCH_PHYSICS=ON
-	cmake --build build/pruning/with --target pruning_steps
-	cmake -S . -B build/pruning/without $(PRUNING) -DRAILPATCH_PHYSICS=OFF
-	cmake --build build/pruning/without --target pruning_steps
-	$(BIN)/python tests/pruning/compare.py build/pruning/{with,without}/tests/pruning/pruning_steps
-	cmake --preset release $(FMU)
-	cmake --build --preset release --target fmu_overhead
+	cmake --preset release $(RELEASE)
+	cmake --build --preset release --target pruning_steps fmu_overhead
+	cmake -S . -B build/pruning -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAILPATCH_TESTS=OFF \
+		-DRAILPATCH_PRUNING=ON -DRAILPATCH_PHYSICS=OFF
+	cmake --build build/pruning --target pruning_steps
+	$(BIN)/python tests/pruning/compare.py build/{release,pruning}/tests/pruning/pruning_steps
 	$(BIN)/python tests/fmu/overhead.py build/release/tests/fmu_overhead
 
 SEEDS ?= 1 2
@@ -140,7 +159,7 @@ system:
 $(VENV)/tools: pyproject.toml | system
 	@if ! $(BIN)/python -c '' 2>/dev/null; then \
 		echo "virtual environment in $(VENV)"; \
-		rm -rf $(VENV); \
+		rm -rf $(VENV) build/release; \
 		"$$(.ci/python)" -m venv $(VENV); \
 	fi
 	$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1'
@@ -151,8 +170,7 @@ $(VENV)/tools: pyproject.toml | system
 	fi
 	@touch $@
 
-# C++ parts are rebuilt incrementally in build/python; verbose: pip shows what cmake and ninja say
+# C++ parts are rebuilt incrementally in build/release; verbose: pip shows what cmake and ninja say
 $(VENV)/installed: $(VENV)/tools $(SOURCES)
-	$(BIN)/python -m pip install --verbose --no-build-isolation \
-		--config-settings=cmake.define.RAILPATCH_WERROR=ON '.[test]' | $(NEWS)
+	$(BIN)/python -m pip install --verbose --no-build-isolation $(PACKAGE) '.[test]' | $(NEWS)
 	@touch $@

@@ -7,16 +7,19 @@ and the memory of the handle, and asks that both are equal within 1 % and the so
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
 LIMIT = 0.01  # of instructions and of bytes
 CASES = ("half_space", "hertz", "wheel_rail")
 STARTS = ("cold", "warm")
 Numbers = dict[str, list[float]]
+Run = Future[tuple[Numbers, int]]
 
 
 def run(program: str, case: str, start: str) -> tuple[Numbers, int]:
@@ -56,9 +59,9 @@ def differences(name: str, with_physics: float, without: float) -> str:
     return f"  {name:<24} {with_physics:>14,.0f} {without:>14,.0f} {share:>+9.3%}{mark}"
 
 
-def compare(case: str, start: str, programs: tuple[str, str]) -> bool:
+def compare(case: str, start: str, runs: list[Run]) -> bool:
     """Prints one case's costs; whether they and the solutions are equal."""
-    (a, instructions), (b, plain_instructions) = (run(p, case, start) for p in programs)
+    (a, instructions), (b, plain_instructions) = (ran.result() for ran in runs)
     rows = [differences("instructions", instructions, plain_instructions)]
     if start == "cold":
         for name in ("described", "allocated"):
@@ -97,7 +100,13 @@ def main() -> int:
         sys.exit(__doc__)
     programs = (sys.argv[1], sys.argv[2])
     print(f"{'':<26} {'with':>14} {'without':>14}")
-    good = [compare(case, start, programs) for case in CASES for start in STARTS]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        runs = {
+            (case, start): [pool.submit(run, program, case, start) for program in programs]
+            for case in CASES
+            for start in STARTS
+        }
+        good = [compare(*key, found) for key, found in runs.items()]
     good.append(check_refusals(programs))
     return 0 if all(good) else 1
 
