@@ -11,7 +11,8 @@ import wheelset_scenes as scenes
 from click.testing import CliRunner
 from railpatch.command.cli import cli
 
-from wheelset_demo.hunting import critical_mode, critical_speed_in_time, run_at, slowest_mode
+from wheelset_demo.coupling.study import with_elements
+from wheelset_demo.hunting import Mode, critical_mode, critical_speed_in_time, run_at, slowest_mode
 from wheelset_demo.scene import WheelsetScene, load_wheelset_scene, scene_file
 
 AGREEMENT = 0.03
@@ -26,15 +27,22 @@ def fast(folder: Path, normal: str, tangential: str) -> WheelsetScene:
     return load_wheelset_scene(file)
 
 
-@pytest.fixture(scope="module")
-def full() -> WheelsetScene:
+# elements across: a small grid, and the scene's own
+@pytest.fixture(scope="module", params=[8, pytest.param(12, marks=pytest.mark.long)])
+def full(request: pytest.FixtureRequest) -> WheelsetScene:
     """The scene of the package: full theory on the half-space."""
-    return load_wheelset_scene(scene_file("hunting.toml"))
+    return with_elements(load_wheelset_scene(scene_file("hunting.toml")), request.param)
 
 
-def test_full_theory_eigenvalues_and_runs_in_time(full: WheelsetScene, capsys):
-    mode = critical_mode(full, 10.0, 100.0)
-    assert mode is not None
+@pytest.fixture(scope="module")
+def mode(full: WheelsetScene) -> Mode:
+    """Its critical one."""
+    found = critical_mode(full, 10.0, 100.0)
+    assert found is not None
+    return found
+
+
+def test_full_theory_eigenvalues_and_runs_in_time(full: WheelsetScene, mode: Mode, capsys):
     speed, runs = critical_speed_in_time(full, 0.9 * mode.speed, 1.1 * mode.speed, mode.frequency)
     # below it waves die, above it they grow: as the eigenvalues say
     for run in runs:
@@ -68,9 +76,7 @@ def test_fast_theories(theory: tuple[str, str], tmp_path: Path, capsys):
     assert speed == pytest.approx(mode.speed, rel=AGREEMENT)
 
 
-def test_hunting_grows_until_friction_bounds_it(full: WheelsetScene):
-    mode = critical_mode(full, 10.0, 100.0)
-    assert mode is not None
+def test_hunting_grows_until_friction_bounds_it(full: WheelsetScene, mode: Mode):
     run = run_at(full, 1.6 * mode.speed, slowest_mode(full, 1.6 * mode.speed).frequency)
     assert np.abs(run.y).max() > 5 * abs(run.y[0])
 
@@ -79,11 +85,12 @@ def invoke(*arguments: object):
     return CliRunner().invoke(cli, ["hunting", *map(str, arguments)])
 
 
-def test_command(full: WheelsetScene):
+def test_command():
     ran = invoke("--json", "--lowest", 30, "--highest", 70)
     assert ran.exit_code == 0, ran.output
     found = json.loads(ran.stdout)
-    mode = critical_mode(full, 30.0, 70.0)
+    mode = critical_mode(load_wheelset_scene(scene_file("hunting.toml")), 30.0, 70.0)
+    assert mode is not None
     assert found["critical_speed"] == mode.speed
     assert [g["growth"] < 0 for g in found["growth"]] == [True, False]
     shown = invoke("--lowest", 30, "--highest", 70)

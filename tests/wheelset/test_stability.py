@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import wheelset_scenes as scenes
 
+from wheelset_demo.coupling.study import with_elements
 from wheelset_demo.simulation import Simulation
 from wheelset_demo.system import COUNT
 from wheelset_demo.trace import Trace
@@ -21,9 +22,13 @@ CASES = {0.2: (0.04, 2e-5), 2.0: (0.2, 1e-4), 20.0: (0.4, 5e-4), 80.0: (0.4, 5e-
 RELEASED = 2e-3  # m
 STEP = 1e-3  # s
 WAVE = 16.6  # m, Klingel's of these wheels and rails
+# elements across: a small grid, and the scene's own
+GRIDS = [8, pytest.param(12, marks=pytest.mark.long)]
 
 
-def traced(folder: Path, speed: float, step: float, stepper: str, every: int = 1) -> Trace:
+def traced(
+    folder: Path, elements: int, speed: float, step: float, stepper: str, every: int = 1
+) -> Trace:
     """A run, logged at every ms."""
     values = {
         "speed": speed,
@@ -34,7 +39,8 @@ def traced(folder: Path, speed: float, step: float, stepper: str, every: int = 1
         "derivatives_every": every,
         "log_every": round(STEP / step),
     }
-    return Simulation(scenes.scene(folder, "hunting.toml", **values)).run()
+    scene = scenes.scene(folder, "hunting.toml", **values)
+    return Simulation(with_elements(scene, elements)).run()
 
 
 def lateral_error(found: Trace, expected: Trace, speed: float) -> float:
@@ -52,12 +58,13 @@ def lateral_error(found: Trace, expected: Trace, speed: float) -> float:
 
 
 @pytest.mark.parametrize("speed", CASES)
-def test_one_millisecond(speed: float, tmp_path: Path, capsys):
+@pytest.mark.parametrize("elements", GRIDS)
+def test_one_millisecond(elements: int, speed: float, tmp_path: Path, capsys):
     _, fine = CASES[speed]
-    expected = traced(tmp_path, speed, fine, "rk4")
+    expected = traced(tmp_path, elements, speed, fine, "rk4")
     assert expected.failure is None
     for every in (1, 25):
-        found = traced(tmp_path, speed, STEP, "ros2", every)
+        found = traced(tmp_path, elements, speed, STEP, "ros2", every)
         assert found.failure is None
         motion = lateral_error(found, expected, speed)
         lost = found.work("friction")[-1] + found.work("damping")[-1]
@@ -77,8 +84,9 @@ def test_one_millisecond(speed: float, tmp_path: Path, capsys):
         assert angular < 1e-6
 
 
-def test_explicit_steps_of_one_millisecond_fail_where_creep_is_stiff(tmp_path: Path):
+@pytest.mark.parametrize("elements", GRIDS)
+def test_explicit_steps_of_one_millisecond_fail_where_creep_is_stiff(elements: int, tmp_path: Path):
     # creep forces at the bound of friction throw it to and fro
-    explicit, implicit = (traced(tmp_path, 0.2, STEP, name) for name in ("rk4", "ros2"))
+    explicit, implicit = (traced(tmp_path, elements, 0.2, STEP, name) for name in ("rk4", "ros2"))
     lateral = [np.abs(trace.coordinate(COUNT + 1)).max() for trace in (explicit, implicit)]
     assert lateral[0] > 20 * lateral[1]
