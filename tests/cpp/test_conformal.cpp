@@ -515,6 +515,7 @@ TEST(ConformalRows, OfGroovesAreThoseOfContact) {
 // With inclination the result moves from half-spaces towards the coefficients of finite elements.
 TEST(CurvedSurface, OfGroovesIsNearFiniteElements) {
   for (const groove &one : grooves) {
+    if (scenes::sanitized && &one != grooves) break;
     const rolling_state &peer = one.fitted;
     const groove_profiles curves(one.radius);
     const scenes::profile_pair pair;
