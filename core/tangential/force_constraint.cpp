@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "numeric/sums.hpp"
-#include "tangential/rolling_newton.hpp"
+#include "tangential/rolling_operator.hpp"
 
 namespace railpatch {
 
@@ -17,7 +17,7 @@ constexpr int guesses = 12;
 // a start is on the flat of the creep curve: creepage in units, force over friction's most
 constexpr double flat_from = 3.0, noticeable = 1e-4, far_from_solution = 0.02;
 
-// Creep force of the simplified theory and its derivative: rolling_newton::march with
+// Creep force of the simplified theory and its derivative: row_newton::march with
 // derivatives, and without keeping the traction.
 struct simplified_force {
   double force[2] = {0, 0}, slope[2][2] = {};

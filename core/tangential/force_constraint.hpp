@@ -52,7 +52,7 @@ class force_constraint {
   bool beyond() const { return beyond_; }
 
   // flexibility: L of the simplified theory for x and y, over the ramp of areas in
-  // rolling_newton::march, which carries ramp_force in either component.
+  // row_newton::march, which carries ramp_force in either component.
   void set_units(const rolling_problem &problem, const double flexibility[2], double ramp_force);
   // Start: the creepages with which the simplified theory carries the force.
   void guess(const rolling_problem &problem, const double flexibility[2]);
@@ -69,7 +69,7 @@ class force_constraint {
   // The creepages of the best solution so far.
   void remember();
   void recall(const rolling_problem &problem);
-  // Extragradient steps of rolling_newton::descend, in which the creepage steps against the force
+  // Steps of row_newton::extragradient, in which the creepage steps against the force
   // that is missing: xi - length sigma (T - R p), one unit where all of friction is missing. The
   // operator (s(p, xi), T - R p) is as monotone as s alone: the parts with xi cancel. `pull` steps
   // to a trial and adds to the squares of the step and of the operator's change over it, in the

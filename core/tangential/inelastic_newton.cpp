@@ -3,57 +3,45 @@
 #include <algorithm>
 #include <cmath>
 
-#include "numeric/sums.hpp"
 #include "railpatch.h"
 
 namespace railpatch {
 
 namespace {
 
-constexpr int krylov_size = 40;
 constexpr double inner_tolerance = 1e-2, worst_inner_tolerance = 0.3;
-// Newton steps that need not lower the best |F| to `enough` of it before it is taken up again
-constexpr int patience = 4;
-constexpr double enough = 0.9;
 // of one descent, and of all in a solve: Newton steps go on without
 constexpr int max_projections = 100, max_sweeps = 20, all_projections = 400;
 // times that elements are taken off unstable branches
 constexpr int max_returns = 5;
 // times that the size of the solution may turn out less
 constexpr int max_settlings = 5;
-constexpr double far_away = 0.3;
 // r over the steepest fall of b: 1 would do for uniqueness
 constexpr double steepness_margin = 2.0;
 
 double square(double v) { return v * v; }
 
-double norm(const double *v, size_t n) { return std::sqrt(dot(v, v, n)); }
-
 }  // namespace
 
 inelastic_newton::inelastic_newton(int max_row, int max_rows, bool forced)
-    : blocks_(max_row, max_rows), linear_solver_(2 * max_row * max_rows + 2, krylov_size) {
-  if (forced) force_.emplace(max_row * max_rows);
-  const auto row = static_cast<size_t>(max_row), n = row * static_cast<size_t>(max_rows);
-  for (auto *b : {&r_, &most_}) *b = aligned_buffer<double>(n);
-  for (auto *b : {&f_, &step_, &best_p_, &right_, &unknowns_, &trial_p_, &trial_s_, &trial_f_,
-                  &started_, &kept_, &first_})
-    *b = aligned_buffer<double>(2 * n + 2);
-  for (auto &m : row_matrix_) m = aligned_buffer<double>::uninitialized(row * row);
+    : row_newton(max_row, max_rows, forced), blocks_(max_row, max_rows) {
+  const auto n = static_cast<size_t>(max_row) * static_cast<size_t>(max_rows);
+  most_ = aligned_buffer<double>(n);
+  for (auto *b : {&started_, &kept_, &first_}) *b = aligned_buffer<double>(2 * n + 2);
   for (auto *l : {&linear_, &factored_}) *l = aligned_buffer<linearisation>(n);
   has_factors_ = aligned_buffer<unsigned char>(static_cast<size_t>(max_rows));
 }
 
 size_t inelastic_newton::bytes() const {
-  return blocks_.bytes() + linear_solver_.bytes() + 2 * r_.bytes() + 11 * f_.bytes() +
-         2 * row_matrix_[0].bytes() + 2 * linear_.bytes() + has_factors_.bytes() +
-         (force_ ? force_->bytes() : 0);
+  return row_newton::bytes() + blocks_.bytes() + most_.bytes() + 3 * started_.bytes() +
+         2 * linear_.bytes() + has_factors_.bytes();
 }
 
 inelastic_result inelastic_newton::solve(rolling_operator &b, const rolling_problem &problem,
                                          const inelastic_problem &inelastic,
                                          const tangential_options &options) {
-  task t{b, problem, inelastic, *inelastic.law, problem.bound, problem.force ? &*force_ : nullptr};
+  task t{
+      {b, problem, problem.force ? &*force_ : nullptr}, inelastic, *inelastic.law, problem.bound};
   bool undone = false;
   for (int k = 0; k < problem.count(); ++k) {
     most_[static_cast<size_t>(k)] = t.law.greatest(problem.bound[k]);
@@ -63,26 +51,19 @@ inelastic_result inelastic_newton::solve(rolling_operator &b, const rolling_prob
   }
   t.problem.bound = most_.data();
   set_stiffness(t, false);
-  tangential_result &result = t.result.tangential;
-  double *p = problem.traction, *s = problem.micro_slip;
   if (t.force) t.force->begin(t.problem, options.tolerance);
-  if (scale(t) > 0) {
+  if (const double size = scale(t); size > 0) {
     const bool twice = undone && !t.force;
     const int most = options.max_iterations;
     outcome found = attempt(t, options.tolerance, twice ? std::max(most / 2, 1) : most);
     if (twice && !found.within(options.tolerance)) found = attempt_steeply(t, found, options);
-    result.residual = found.error / found.size;
-    result.converged = found.within(options.tolerance);
-    result.out_of_range = !result.converged && t.force && t.force->beyond();
+    conclude(t, found.error, found.size, options.tolerance);
   } else {
-    std::fill_n(p, t.size(), 0.0);
-    std::copy_n(problem.rigid_slip, t.size(), s);
-    if (t.force) problem.force->creepage[0] = problem.force->creepage[1] = 0;
-    result.residual = scale(t);
-    result.converged = result.residual == 0;
+    leave_unloaded(t, size);
   }
   finish(t);
-  return t.result;
+  t.sums.tangential = t.result;
+  return t.sums;
 }
 
 // r of all elements. undone: plastic displacement may be.
@@ -114,7 +95,7 @@ inelastic_newton::outcome inelastic_newton::attempt(task &t, double tolerance, i
 // Again from the start, with r for plastic displacement undone; the better one where both fail.
 inelastic_newton::outcome inelastic_newton::attempt_steeply(task &t, const outcome &before,
                                                             const tangential_options &options) {
-  double *p = t.problem.traction, *s = t.problem.micro_slip;
+  double *p = t.problem.traction;
   std::copy_n(p, t.size(), first_.data());
   std::copy_n(started_.data(), t.size(), p);
   t.projections = 0;
@@ -122,12 +103,10 @@ inelastic_newton::outcome inelastic_newton::attempt_steeply(task &t, const outco
   const outcome found = attempt(t, options.tolerance, options.max_iterations);
   if (found.within(options.tolerance)) return found;
   set_stiffness(t, false);
-  micro_slip(t, p, s);
-  const double error = residual(t, p, s, f_.data());
+  const double error = evaluate(t);
   if (error <= before.error) return {error, before.size};
   std::copy_n(first_.data(), t.size(), p);
-  micro_slip(t, p, s);
-  return {residual(t, p, s, f_.data()), before.size};
+  return {evaluate(t), before.size};
 }
 
 // Where the laws leave far less traction than their greatest bounds, the solution itself says to
@@ -144,8 +123,7 @@ void inelastic_newton::settle(task &t, outcome &found, double tolerance, int max
 
 // Newton's steps and their safeguard; returns the best |F|, which the traction then has.
 double inelastic_newton::iterate(task &t, double error, double goal, int max_iterations) {
-  double *p = t.problem.traction, *s = t.problem.micro_slip;
-  int &iterations = t.result.tangential.newton_iterations;
+  int &iterations = t.result.newton_iterations;
   double best = HUGE_VAL, least = HUGE_VAL;
   for (int strayed = 0;
        error > goal && iterations < max_iterations && !(t.force && t.force->beyond());
@@ -153,8 +131,7 @@ double inelastic_newton::iterate(task &t, double error, double goal, int max_ite
     const bool lower = error <= enough * best;
     if (error < least || lower) {
       least = error;
-      std::copy_n(p, t.size(), best_p_.data());
-      if (t.force) t.force->remember();
+      remember(t);
     }
     if (lower) {
       best = error;
@@ -169,11 +146,7 @@ double inelastic_newton::iterate(task &t, double error, double goal, int max_ite
     find_step(t, std::clamp(0.3 * goal / error, inner_tolerance, worst_inner_tolerance));
     error = line_search(t, error);
   }
-  if (error <= least || least == HUGE_VAL) return error;
-  std::copy_n(best_p_.data(), t.size(), p);
-  if (t.force) t.force->recall(t.problem);
-  micro_slip(t, p, s);
-  return residual(t, p, s, f_.data());
+  return error <= least || least == HUGE_VAL ? error : recall(t);
 }
 
 // Pa/m, of an element along e with all others held; elements are asked for row by row.
@@ -188,19 +161,17 @@ double inelastic_newton::own_stiffness(task &t, int row, size_t element, const d
 
 // Of several solutions the one next to the last step's; returns |F|.
 double inelastic_newton::choose_branch(task &t, double error, double goal, int max_iterations) {
-  double *p = t.problem.traction, *s = t.problem.micro_slip;
+  double *p = t.problem.traction;
   for (int k = 0; k < max_returns && error <= goal; ++k) {
     std::copy_n(p, t.size(), kept_.data());
     if (!go_to_branch(t)) break;
-    micro_slip(t, p, s);
-    const double other = iterate(t, residual(t, p, s, f_.data()), goal, max_iterations);
+    const double other = iterate(t, evaluate(t), goal, max_iterations);
     if (other <= goal) {
       error = other;
       continue;
     }
     std::copy_n(kept_.data(), t.size(), p);
-    micro_slip(t, p, s);
-    return residual(t, p, s, f_.data());
+    return evaluate(t);
   }
   return error;
 }
@@ -237,15 +208,12 @@ bool inelastic_newton::go_to_branch(task &t) {
   return any;
 }
 
-double inelastic_newton::residual(const task &t, const double *p, const double *s,
-                                  double *f) const {
+void inelastic_newton::residual(const task &t, const double *p, const double *s, double *f) const {
   apply_law(t, p, s, 1.0, [&](const inelastic_element &at) {
     const double r = r_[at.k], bound = at.bound();
     f[at.ix] = at.stick ? r * s[at.ix] : p[at.ix] - bound * at.e[0];
     f[at.iy] = at.stick ? r * s[at.iy] : p[at.iy] - bound * at.e[1];
   });
-  const double size = norm(f, t.size());
-  return t.force ? std::hypot(size, t.force->miss(t.problem, p)) : size;
 }
 
 void inelastic_newton::resolvent(const task &t, const double *p, const double *s, double length,
@@ -256,54 +224,24 @@ void inelastic_newton::resolvent(const task &t, const double *p, const double *s
   });
 }
 
+double inelastic_newton::start_bound(const task &t, size_t k) const {
+  return t.law.at_rest(t.friction[k], carried_state{{0, 0, 0}});
+}
+
 // Start: the traction given, or where rows begin at their leading edge and that says little the
 // simplified theory's.
 double inelastic_newton::start(task &t) {
-  double *p = t.problem.traction, *s = t.problem.micro_slip;
-  if (t.force) {
-    find_flexibility(t);
-    t.force->set_units(t.problem, t.flexibility, t.ramp_force);
-  }
-  t.for_each_element([&](size_t k, size_t ix, size_t iy) {
-    const double size = std::hypot(p[ix], p[iy]);
-    if (size <= most_[k]) return;
-    p[ix] *= most_[k] / size;
-    p[iy] *= most_[k] / size;
-  });
-  micro_slip(t, p, s);
-  double error = residual(t, p, s, f_.data());
+  prepare_start(t);
+  double error = evaluate(t);
   if (t.carried() && error > far_away * scale(t)) try_march(t, error);
   return error;
 }
 
-// Simplified theory (Kalker 1982), see rolling_newton::march; takes it where it is better.
+// Takes the simplified theory's traction where it is better.
 void inelastic_newton::try_march(task &t, double &error) {
-  const bool cold = std::all_of(t.problem.traction, t.problem.traction + t.size(),
-                                [](double v) { return v == 0; });
-  if (t.force)
-    t.force->guess(t.problem, t.flexibility);
-  else
-    find_flexibility(t);
-  double *p = trial_p_.data();
-  const carried_state fresh{{0, 0, 0}};
-  for (int row = 0; row < t.problem.rows; ++row) {
-    const int begin = t.problem.row_start[row], n = t.problem.row_start[row + 1] - begin;
-    double grown[2] = {0, 0};
-    for (int k = 0; k < n; ++k) {
-      const int at[2] = {2 * begin + k, 2 * begin + n + k};
-      for (int c = 0; c < 2; ++c)
-        grown[c] -= (t.problem.rigid_slip[at[c]] + t.problem.creepage(c)) *
-                    t.problem.area[begin + k] / t.flexibility[c];
-      const double size = std::hypot(grown[0], grown[1]);
-      const double bound = t.law.at_rest(t.friction[begin + k], fresh);
-      for (int c = 0; c < 2; ++c) {
-        if (size > bound) grown[c] *= bound / size;
-        p[at[c]] = grown[c];
-      }
-    }
-  }
-  micro_slip(t, p, trial_s_.data());
-  const double marched = residual(t, p, trial_s_.data(), trial_f_.data());
+  const bool cold = is_zero(t);
+  march(t);
+  const double marched = evaluate_trial(t);
   if (marched < error || (cold && t.force)) {
     take_trial(t);
     error = marched;
@@ -312,38 +250,7 @@ void inelastic_newton::try_march(task &t, double &error) {
   if (t.force) t.force->go_back(t.problem);
 }
 
-void inelastic_newton::find_flexibility(task &t) {
-  double *p = trial_p_.data();
-  t.ramp_force = 0;
-  for (int row = 0; row < t.problem.rows; ++row) {
-    const int begin = t.problem.row_start[row], n = t.problem.row_start[row + 1] - begin;
-    double ramp = 0;
-    for (int k = 0; k < n; ++k) {
-      ramp += t.problem.area[begin + k];
-      p[2 * begin + k] = p[2 * begin + n + k] = ramp;
-      t.ramp_force += ramp * t.problem.area[begin + k];
-    }
-  }
-  t.b.product_single(p, trial_s_.data());
-  ++t.result.tangential.products;
-  t.for_each_element([&](size_t, size_t ix, size_t iy) {
-    t.flexibility[0] += trial_s_[ix] / t.problem.count();
-    t.flexibility[1] += trial_s_[iy] / t.problem.count();
-  });
-}
-
-// The residual of zero traction: the size against which others are measured.
-double inelastic_newton::scale(const task &t) const {
-  const double *w = t.problem.rigid_slip;
-  double sum = 0;
-  t.for_each_element([&](size_t k, size_t ix, size_t iy) {
-    const double f = std::min(most_[k], r_[k] * std::hypot(w[ix], w[iy]));
-    sum += f * f;
-  });
-  return t.force ? std::hypot(std::sqrt(sum), t.force->size()) : std::sqrt(sum);
-}
-
-// The same with the bounds of the tractions found, and the stiffness of a single element.
+// As `scale` with the bounds of the tractions found, and the stiffness of a single element.
 double inelastic_newton::scale_of_solution(const task &t) const {
   const double *w = t.problem.rigid_slip;
   double sum = 0;
@@ -358,46 +265,10 @@ double inelastic_newton::scale_of_solution(const task &t) const {
   return t.force ? std::hypot(std::sqrt(sum), t.force->size()) : std::sqrt(sum);
 }
 
-void inelastic_newton::micro_slip(task &t, const double *p, double *s) {
-  t.b.micro_slip(t.problem, p, s);
-  ++t.result.tangential.products;
-}
-
-double inelastic_newton::try_step(task &t, double length) {
-  double *p = trial_p_.data();
-  for (size_t i = 0; i < t.size(); ++i) p[i] = t.problem.traction[i] + length * step_[i];
-  if (t.force) t.force->move(t.problem, length);
-  t.for_each_element([&](size_t k, size_t ix, size_t iy) {
-    const double size = std::hypot(p[ix], p[iy]);
-    if (size <= most_[k]) return;
-    p[ix] *= most_[k] / size;
-    p[iy] *= most_[k] / size;
-  });
-  micro_slip(t, p, trial_s_.data());
-  return residual(t, p, trial_s_.data(), trial_f_.data());
-}
-
-double inelastic_newton::line_search(task &t, double current) {
-  const int halvings = t.force ? 12 : 4;
-  double length = 1.0, error = try_step(t, length);
-  for (int trial = 0; trial < halvings && !(error <= (1.0 - 1e-3 * length) * current); ++trial) {
-    length *= 0.5;
-    error = try_step(t, length);
-  }
-  if (!(error <= (1.0 - 1e-3 * length) * current)) error = try_step(t, 1.0);
-  take_trial(t);
-  return error;
-}
-
 // Slow but sure steps from the best traction until |F| is down at `goal`, or as long as there are
 // steps; ends at the best of them.
 double inelastic_newton::descend(task &t, double goal) {
-  double *p = t.problem.traction, *s = t.problem.micro_slip;
-  std::copy_n(best_p_.data(), t.size(), p);
-  if (t.force) t.force->recall(t.problem);
-  micro_slip(t, p, s);
-  double error = residual(t, p, s, f_.data()), least = error;
-  double length = 1;
+  double error = recall(t), least = error, length = 1;
   // where the law falls each has its cases: turn about
   const bool monotone = t.force || !(t.carried() || t.falls) || t.descents++ % 2 == 1;
   const int most = monotone ? max_projections : max_sweeps;
@@ -407,41 +278,12 @@ double inelastic_newton::descend(task &t, double goal) {
       extragradient(t, length);
     else
       sweep(t);
-    micro_slip(t, p, s);
-    error = residual(t, p, s, f_.data());
+    error = evaluate(t);
     if (!(error < least)) continue;
     least = error;
-    std::copy_n(p, t.size(), best_p_.data());
-    if (t.force) t.force->remember();
+    remember(t);
   }
-  if (error <= least) return error;
-  std::copy_n(best_p_.data(), t.size(), p);
-  if (t.force) t.force->recall(t.problem);
-  micro_slip(t, p, s);
-  return residual(t, p, s, f_.data());
-}
-
-// One extragradient step with the law's resolvent.
-void inelastic_newton::extragradient(task &t, double &length) {
-  double *p = t.problem.traction, *s = t.problem.micro_slip;
-  for (bool short_enough = false; !short_enough; length *= short_enough ? 1.0 : 0.5) {
-    resolvent(t, p, s, length, trial_p_.data());
-    double moved = 0, turned = 0;
-    if (t.force) t.force->pull(t.problem, p, trial_p_.data(), length, &moved, &turned);
-    micro_slip(t, trial_p_.data(), trial_s_.data());
-    t.for_each_element([&](size_t e, size_t ix, size_t iy) {
-      const double weight = t.problem.area[e] / r_[e];
-      moved += weight * (square(trial_p_[ix] - p[ix]) + square(trial_p_[iy] - p[iy]));
-      turned += weight * square(r_[e] * length) *
-                (square(trial_s_[ix] - s[ix]) + square(trial_s_[iy] - s[iy]));
-    });
-    short_enough = turned <= 0.5 * moved || !(moved > 0) || length < 1e-6;
-  }
-  // p, and not the trial, less the slip at the trial
-  resolvent(t, p, trial_s_.data(), length, trial_f_.data());
-  std::copy_n(trial_f_.data(), t.size(), p);
-  if (t.force) t.force->pull_again(t.problem, trial_p_.data(), length);
-  length = std::min(1.0, 1.5 * length);
+  return error <= least ? error : recall(t);
 }
 
 // Solves one element after another, along each row; rows feel each other's changes afterwards.
@@ -480,20 +322,13 @@ void inelastic_newton::sweep(task &t) {
   }
 }
 
-void inelastic_newton::take_trial(task &t) {
-  std::copy_n(trial_p_.data(), t.size(), t.problem.traction);
-  std::copy_n(trial_s_.data(), t.size(), t.problem.micro_slip);
-  std::copy_n(trial_f_.data(), t.size(), f_.data());
-  if (t.force) t.force->keep(t.problem);
-}
-
 // Puts the tractions exactly on the law, so that bound, slip and states belong together, and
 // divides the elements.
 void inelastic_newton::finish(task &t) {
   const rolling_problem &problem = t.problem;
   const inelastic_problem &out = t.inelastic;
   double *p = problem.traction, *s = problem.micro_slip;
-  tangential_result &sum = t.result.tangential;
+  tangential_result &sum = t.result;
   double slipped = 0, plastic = 0, supplied = 0;
   t.row = -1;
   // the traction moves by F: s, known at the traction before, decides
@@ -526,7 +361,7 @@ void inelastic_newton::finish(task &t) {
       out.yield_stress[at.k] = b.yield_stress;
     }
     out.friction[at.k] = b.friction;
-    ++(at.stick ? sum.stick : yields ? t.result.plastic : sum.slip);
+    ++(at.stick ? sum.stick : yields ? t.sums.plastic : sum.slip);
     const double area = problem.area[at.k];
     slipped += bound * slip * area;
     plastic += bound * b.plastic / t.law.step * area;
@@ -535,7 +370,7 @@ void inelastic_newton::finish(task &t) {
                 area;
     if (!t.falls) return;
     const double stiffness = own_stiffness(t, at.row, at.k, at.e);
-    t.result.ambiguous +=
+    t.sums.ambiguous +=
         t.law.ambiguous(t.friction[at.k], *at.before, at.e, bound + stiffness * at.m, stiffness);
   });
   // in steady rolling the rigid motion's supply is all dissipated (rolling_newton.hpp): in the
@@ -544,7 +379,7 @@ void inelastic_newton::finish(task &t) {
   const double whole = t.carried() && spent > 0 ? std::max(0.0, supplied) / spent : 1.0;
   // where all sticks as friction's, like with Coulomb's law
   sum.friction = t.carried() && !(spent > 0) ? std::max(0.0, supplied) : whole * slipped;
-  t.result.plastic_work = whole * plastic;
+  t.sums.plastic_work = whole * plastic;
 }
 
 }  // namespace railpatch

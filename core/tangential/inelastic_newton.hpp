@@ -23,8 +23,6 @@
 // says so and returns the best traction found.
 #pragma once
 
-#include <optional>
-
 #include "numeric/pivoted_blocks.hpp"
 #include "tangential/bound_law.hpp"
 #include "tangential/rolling_newton.hpp"
@@ -51,7 +49,9 @@ struct inelastic_result {
   int ambiguous = 0;        // elements whose law has a further solution
 };
 
-class inelastic_newton {
+struct inelastic_task;
+
+class inelastic_newton : row_newton<inelastic_newton, inelastic_task> {
  public:
   inelastic_newton(int max_row, int max_rows, bool forced);
   inelastic_result solve(rolling_operator &b, const rolling_problem &problem,
@@ -59,7 +59,8 @@ class inelastic_newton {
   size_t bytes() const;
 
  private:
-  struct task;
+  friend class row_newton<inelastic_newton, inelastic_task>;
+  using task = inelastic_task;
   // dP = m dq + h dU before, dU after = e dq + a dU before
   struct linearisation {
     double m[2][2], h[2][3], e[3][2], a[3][3];
@@ -68,6 +69,17 @@ class inelastic_newton {
     double error, size;  // |F|, and the size against which it is measured
     bool within(double tolerance) const { return error <= tolerance * size; }
   };
+
+  // of row_newton: the law, and its derivative in the linear systems
+  static constexpr double shortest_step = 1e-6;
+  void residual(const task &t, const double *p, const double *s, double *f) const;
+  void resolvent(const task &t, const double *p, const double *s, double length, double *out) const;
+  double start_bound(const task &t, size_t k) const;
+  void apply_jacobian(task &t, const double *v, double *out);
+  void precondition(const task &t, double *v);
+  void border(const task &t, int component, const double *s, double *column, double *row,
+              double &right);
+
   void set_stiffness(const task &t, bool undone);
   outcome attempt(task &t, double tolerance, int max_iterations);
   outcome attempt_steeply(task &t, const outcome &before, const tangential_options &options);
@@ -77,39 +89,23 @@ class inelastic_newton {
   double choose_branch(task &t, double error, double goal, int max_iterations);
   bool go_to_branch(task &t);
   double own_stiffness(task &t, int row, size_t element, const double e[2]);
-  void find_flexibility(task &t);
   void try_march(task &t, double &error);
-  double scale(const task &t) const;
   double scale_of_solution(const task &t) const;
-  void micro_slip(task &t, const double *p, double *s);
   template <class Each>
   void apply_law(const task &t, const double *p, const double *s, double length, Each &&each) const;
-  double residual(const task &t, const double *p, const double *s, double *f) const;
-  void resolvent(const task &t, const double *p, const double *s, double length, double *out) const;
   void linearise(task &t);
   void fill_block(const task &t, int row);
   void derivative(const task &t, int row, const double *dp, const double *ds, double *out) const;
-  void apply_jacobian(task &t, const double *v, double *out);
-  void precondition(const task &t, double *v);
   void find_step(task &t, double tolerance);
-  void solve_bordered(task &t, double tolerance);
-  double try_step(task &t, double length);
-  double line_search(task &t, double current);
   double descend(task &t, double goal);
-  void extragradient(task &t, double &length);
   void sweep(task &t);
-  void take_trial(task &t);
   void finish(task &t);
 
-  aligned_buffer<double> r_, most_;  // per element: r, greatest b
-  aligned_buffer<double> f_, step_, best_p_, right_, unknowns_, trial_p_, trial_s_, trial_f_,
-      started_, kept_, first_;
-  aligned_buffer<double> row_matrix_[2];
+  aligned_buffer<double> most_;  // per element: greatest b
+  aligned_buffer<double> started_, kept_, first_;
   aligned_buffer<linearisation> linear_, factored_;
   aligned_buffer<unsigned char> has_factors_;  // per row
   pivoted_blocks blocks_;
-  gmres linear_solver_;
-  std::optional<force_constraint> force_;
 };
 
 }  // namespace railpatch

@@ -9,7 +9,6 @@ namespace railpatch {
 
 namespace {
 
-constexpr int max_inner_products = 200;
 // factors serve as long as the laws' derivatives have changed less
 constexpr double greatest_change = 0.1;
 
@@ -115,7 +114,7 @@ void inelastic_newton::fill_block(const task &t, int row) {
 
 void inelastic_newton::apply_jacobian(task &t, const double *v, double *out) {
   t.b.product_single(v, trial_s_.data());
-  ++t.result.tangential.products;
+  ++t.result.products;
   for (int row = 0; row < t.problem.rows; ++row) {
     const int at = 2 * t.problem.row_start[row], n = 2 * t.problem.row_start[row + 1] - at;
     derivative(t, row, v + at, trial_s_.data() + at, out + at);
@@ -132,41 +131,22 @@ void inelastic_newton::precondition(const task &t, double *v) {
 
 void inelastic_newton::find_step(task &t, double tolerance) {
   for (size_t i = 0; i < t.size(); ++i) right_[i] = -f_[i];
-  if (t.force) {
-    solve_bordered(t, tolerance);
-  } else {
-    linear_solver_.solve(
-        t.size(), right_.data(), unknowns_.data(), tolerance, max_inner_products,
-        [&](const double *v, double *out) { apply_jacobian(t, v, out); },
-        [&](double *v) { precondition(t, v); });
-  }
+  solve_linear(t, t.size(), tolerance);
   std::copy_n(unknowns_.data(), t.size(), step_.data());
 }
 
-// The same with the creepages as further unknowns (force_constraint.hpp).
-void inelastic_newton::solve_bordered(task &t, double tolerance) {
-  force_constraint &force = *t.force;
-  const size_t size = t.size();
-  std::fill_n(trial_p_.data(), size, 0.0);
-  for (int m = 0; m < force.unknowns(); ++m) {
-    const int component = force.component(m);
-    t.b.slip_of_creepage(t.problem, component, trial_s_.data());
-    double *column = force.column(m), *line = force.row(m);
-    for (int row = 0; row < t.problem.rows; ++row) {
-      const int at = 2 * t.problem.row_start[row];
-      derivative(t, row, trial_p_.data() + at, trial_s_.data() + at, column + at);
-    }
-    for (size_t i = 0; i < size; ++i) column[i] = -column[i];
-    std::fill_n(line, size, 0.0);
-    t.for_each_element([&](size_t k, size_t ix, size_t iy) {
-      line[component == 0 ? ix : iy] = force.weight() * t.problem.area[k];
-    });
-    right_[size + static_cast<size_t>(m)] = force.remainder(m, t.problem);
+void inelastic_newton::border(const task &t, int component, const double *s, double *column,
+                              double *row, double &) {
+  std::fill_n(trial_p_.data(), t.size(), 0.0);
+  for (int r = 0; r < t.problem.rows; ++r) {
+    const int at = 2 * t.problem.row_start[r];
+    derivative(t, r, trial_p_.data() + at, s + at, column + at);
   }
-  force.solve(
-      linear_solver_, size, right_.data(), unknowns_.data(), tolerance, max_inner_products,
-      [&](const double *v, double *out) { apply_jacobian(t, v, out); },
-      [&](double *v) { precondition(t, v); });
+  for (size_t i = 0; i < t.size(); ++i) column[i] = -column[i];
+  std::fill_n(row, t.size(), 0.0);
+  t.for_each_element([&](size_t k, size_t ix, size_t iy) {
+    row[component == 0 ? ix : iy] = t.force->weight() * t.problem.area[k];
+  });
 }
 
 }  // namespace railpatch

@@ -19,25 +19,16 @@ struct inelastic_element {
   double bound() const { return stick ? size : size - stiffness * m; }
 };
 
-struct inelastic_newton::task {
-  rolling_operator &b;
-  rolling_problem problem;  // with the greatest bound
+struct inelastic_task : row_task {
   const inelastic_problem &inelastic;
   const bound_law &law;
   const double *friction;
-  force_constraint *force;
-  inelastic_result result{};
-  double flexibility[2] = {0, 0}, ramp_force = 0;
+  inelastic_result sums{};
   int projections = 0, descents = 0;
   int row = -1;        // whose matrices row_matrix_ holds for own_stiffness
   bool falls = false;  // the law, somewhere
 
   bool carried() const { return !inelastic.before; }
-  size_t size() const { return 2 * static_cast<size_t>(problem.count()); }
-  template <class F>
-  void for_each_element(F &&f) const {
-    for_each_row_element(problem.rows, problem.row_start, f);
-  }
 };
 
 // Goes through all elements, rows from their first element on, at q = p - length r s.

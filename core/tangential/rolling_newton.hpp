@@ -39,78 +39,12 @@
 // at their safest) where a row begins at its leading edge; no row is empty.
 #pragma once
 
-#include <optional>
-
-#include "numeric/gmres.hpp"
 #include "numeric/row_blocks.hpp"
-#include "tangential/force_constraint.hpp"
-#include "tangential/row_elements.hpp"
+#include "tangential/row_newton.hpp"
 
 namespace railpatch {
 
-// Arrays belong to the caller.
-struct rolling_problem {
-  int rows = 0;
-  const int *row_start = nullptr;      // [rows + 1], first element of each row
-  const double *bound = nullptr;       // Pa, g of each element
-  const double *area = nullptr;        // m^2, of each element
-  const double *rigid_slip = nullptr;  // -, w, vector
-  double *traction = nullptr;          // Pa, p, vector: start in, solution out
-  double *micro_slip = nullptr;        // -, s, vector: out
-  prescribed_force *force = nullptr;   // null: all creepages are part of the rigid slip
-  // what is to be added to the rigid slip
-  double creepage(int component) const { return force ? force->creepage[component] : 0.0; }
-  int count() const { return row_start[rows]; }
-};
-
-// What a discretisation gives: micro-slip (-) from tractions (Pa). B is linear, or else the
-// derivative of the micro-slip at the traction of the last call of linearise.
-class rolling_operator {
- public:
-  virtual ~rolling_operator() = default;
-  // s = B v; v is kept.
-  virtual void product(const double *v, double *s) = 0;
-  // The same to some five digits, for what only steers the iteration.
-  virtual void product_single(const double *v, double *s) { product(v, s); }
-  // The micro-slip, w + B p where B is linear; w with the creepages that are unknown.
-  virtual void micro_slip(const rolling_problem &problem, const double *p, double *s);
-  // Sets B where the micro-slip is not linear, at the traction of the last call of micro_slip;
-  // before the first call B is that of any fixed traction.
-  virtual void linearise() {}
-  // ds/dxi of a component of the creepage, as B at the traction of the last call of linearise.
-  virtual void slip_of_creepage(const rolling_problem &problem, int component, double *s) const;
-  // The parts of B within a row of n elements, s_x from p_x and s_y from p_y: n x n, column-major
-  // (source by source), or what stands for them in the preconditioner.
-  virtual void row_matrices(int row, double *bxx, double *byy) const = 0;
-  // The row whose matrices begin with those of every other one; -1: there is none.
-  virtual int common_row(const rolling_problem &) const { return -1; }
-  // The row's part of B v where v is zero from this row on; false where that costs as much as a
-  // product.
-  virtual bool product_of_rows_before(int, const double *, double *) { return false; }
-  // r of a row's elements, Pa: the inverse of a typical diagonal entry of B.
-  virtual double projection_scale(int row) const = 0;
-};
-
-struct tangential_options {
-  double tolerance;    // of the residual, relative to that of zero traction
-  int max_iterations;  // Newton steps
-};
-
-struct tangential_result {
-  bool converged = false;
-  bool out_of_range = false;  // not converged, since the prescribed force cannot be carried
-  double residual = 0;
-  int newton_iterations = 0;
-  int products = 0;
-  int stick = 0, slip = 0;
-  double friction = 0;  // N, frictional power over the rolling speed, see below
-};
-
-// In steady rolling the elastic energy is constant, so friction takes exactly the power that the
-// rigid motion supplies: friction = -sum p . w dA >= 0. Summing p . s instead loses
-// (Dp) A (Dp)/(2 dx) >= 0 with D the difference over one element: half the power on coarse grids.
-
-class rolling_newton {
+class rolling_newton : row_newton<rolling_newton, row_task> {
  public:
   // forced: for problems with a prescribed force.
   rolling_newton(int max_row, int max_rows, bool forced = false);
@@ -123,41 +57,35 @@ class rolling_newton {
   size_t bytes() const;
 
  private:
-  // one solve's problem and operator, so that the steps need not pass them on
-  struct task;
+  friend class row_newton<rolling_newton, row_task>;
+  using task = row_task;
+
+  // of row_newton: the law, and its derivative in the linear systems
+  static constexpr double shortest_step = 0;
+  void residual(const task &t, const double *p, const double *s, double *f) const;
+  void resolvent(const task &t, const double *p, const double *s, double length, double *out) const;
+  double start_bound(const task &t, size_t k) const { return t.problem.bound[k]; }
+  void apply_jacobian(task &t, const double *z, double *out);
+  void precondition(task &t, double *z);
+  void border(const task &t, int component, const double *s, double *column, double *row,
+              double &right);
+
   double start(task &t, double size);
-  void find_flexibility(task &t);
-  void march(task &t, double *p);
-  void accept_trial(task &t);
+  void iterate(task &t, double error, double size, const tangential_options &options);
   double slide(task &t, double error, double goal);
   double descend(task &t, double goal);
-  void projected_step(const task &t, const double *s, double length, double *out) const;
-  double scale(const task &t) const;
-  void micro_slip(task &t, const double *p, double *s);
-  double residual(const task &t, const double *p, const double *s, double *f) const;
-  void project(const task &t, double *p) const;
   void share_factors(task &t);
   void linearise(task &t);
   template <class F>
   size_t for_each_unknown(const task &t, F &&f) const;
   void expand(const task &t, const double *z, double *dp) const;
   void find_step(task &t, double tolerance);
-  void solve_bordered(task &t, size_t size, double tolerance);
-  void apply_jacobian(task &t, const double *v, double *out);
-  void precondition(task &t, double *z);
-  double try_step(task &t, double length);
-  double line_search(task &t, double current);
   void finish(task &t);
 
-  aligned_buffer<double> r_;  // per element
-  aligned_buffer<double> f_, step_, best_p_, right_, unknowns_, normal_step_, trial_p_, trial_s_,
-      trial_f_;
-  aligned_buffer<double> row_matrix_[2], row_slip_;
+  aligned_buffer<double> normal_step_, row_slip_;
   aligned_buffer<element_linearisation> linear_;
   aligned_buffer<unsigned char> stick_;
   row_blocks blocks_;
-  gmres linear_solver_;
-  std::optional<force_constraint> force_;
 };
 
 }  // namespace railpatch

@@ -17,7 +17,8 @@ inline const std::vector<int> lengths = {1, 7, 12, 3, 9};
 // B = diagonal + skew in the vectors' order, positive definite: p . B p = p . diagonal p.
 class dense_operator final : public rolling_operator {
  public:
-  dense_operator(double skewness, std::mt19937_64 &random) {
+  // broken: its row matrices are beyond single precision, so that steps are no numbers
+  dense_operator(double skewness, std::mt19937_64 &random, bool broken = false) : broken_(broken) {
     start_.push_back(0);
     for (int n : lengths) start_.push_back(start_.back() + n);
     size_ = 2 * static_cast<size_t>(start_.back());
@@ -41,6 +42,11 @@ class dense_operator final : public rolling_operator {
   void row_matrices(int row, double *bxx, double *byy) const override {
     const size_t n = static_cast<size_t>(lengths[static_cast<size_t>(row)]);
     const size_t x = 2 * static_cast<size_t>(start_[static_cast<size_t>(row)]), y = x + n;
+    if (broken_) {
+      std::fill_n(bxx, n * n, 1e300);
+      std::fill_n(byy, n * n, 1e300);
+      return;
+    }
     for (size_t source = 0; source < n; ++source)
       for (size_t observer = 0; observer < n; ++observer) {
         bxx[source * n + observer] = b_[(x + observer) * size_ + x + source];
@@ -83,6 +89,7 @@ class dense_operator final : public rolling_operator {
     }
     return false;
   }
+  bool broken_;
   std::vector<int> start_;
   size_t size_ = 0;
   std::vector<double> b_;
