@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from case_samples import PATCH, WHEELSET, with_values
 from railpatch.case import CaseError, load_scene
+from railpatch.case.to_core import config_of
 
 
 def problems_of(case: Any, **options: Any) -> list[str]:
@@ -250,7 +251,7 @@ def test_undeformed_distance_of_a_bad_file(tmp_path: Path, text: str, problem: s
     (tmp_path / "gap.csv").write_text(text)
     case = with_values(PATCH, geometry__undeformed_distance="gap.csv", **GAP)
     with pytest.raises(CaseError) as caught:
-        load_scene(case, folder=tmp_path).gap()
+        config_of(load_scene(case, folder=tmp_path))
     assert str(caught.value).startswith("geometry.undeformed_distance: ")
     assert str(caught.value).endswith(problem)
 
@@ -268,7 +269,8 @@ def test_undeformed_distance_from_file_and_array(tmp_path: Path) -> None:
     np.savetxt(tmp_path / "gap.csv", gap, delimiter=",")
     for value in ("gap.csv", gap):
         case = with_values(PATCH, geometry__undeformed_distance=value, **GAP)
-        np.testing.assert_array_equal(load_scene(case, folder=tmp_path).gap(), gap)
+        config = config_of(load_scene(case, folder=tmp_path))
+        np.testing.assert_array_equal(config["undeformed_distance"], gap)
 
 
 LINE = {"geometry": {"line_contact_radius": 0.5, "width": 0.01}, "grid": {"elements": [16, 1]}}

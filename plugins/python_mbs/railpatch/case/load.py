@@ -11,7 +11,6 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BaseModel, Field, TypeAdapter, ValidationError
 
-from railpatch.case.gap import read_gap
 from railpatch.case.messages import problems, show
 from railpatch.case.patch import PatchCase
 from railpatch.case.wheel import WheelRailCase, WheelsetCase
@@ -38,12 +37,6 @@ class Scene:
 
     case: Case
     folder: Path
-
-    def gap(self) -> np.ndarray | None:
-        """m, [lateral, along rolling], the undeformed distance where the case gives one."""
-        if not isinstance(self.case, PatchCase):
-            return None
-        return read_gap(self.case.geometry.undeformed_distance, self.folder)
 
 
 def load_scene(source: Mapping[str, Any] | str | Path, folder: str | Path | None = None) -> Scene:
