@@ -1,0 +1,133 @@
+"""Rooms of the core: includes point one way, names are unique, plug-ins see the interface."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+CORE = ROOT / "core"
+PLUGINS = ROOT / "plugins"
+INTERFACE = {"railpatch.h", "railpatch_fields.h"}
+# what plug-ins see of the core beyond its interface, and why
+LOOKS_INSIDE = {
+    "timing.cpp": {"numeric/fft.hpp", "numeric/memory.hpp"},  # times the FFT itself
+    "module.cpp": {"fast/theories.hpp"},  # hands the table of theories on to Python
+}
+
+Sources = dict[str, str]
+
+
+def sources(folder: Path) -> Sources:
+    """Path in the folder -> text, of everything that is compiled."""
+    return {
+        path.relative_to(folder).as_posix(): path.read_text(encoding="utf-8")
+        for path in sorted(folder.rglob("*"))
+        if path.suffix in {".c", ".cpp", ".h", ".hpp", ".inc"}
+    }
+
+
+def documented_rooms() -> list[str]:
+    """From the floor up, in the core's own table."""
+    text = (CORE / "README.md").read_text(encoding="utf-8")
+    return re.findall(r"^\| `(\w+)` \|", text, re.MULTILINE)
+
+
+def built_rooms() -> list[str]:
+    """From the floor up, in the build."""
+    text = (CORE / "CMakeLists.txt").read_text(encoding="utf-8")
+    listed = re.search(r"set\(core_rooms\s+(.*?)\)", text, re.DOTALL)
+    assert listed is not None
+    return listed[1].split()
+
+
+def includes(text: str) -> list[str]:
+    """What a file includes in quotes."""
+    return re.findall(r'^\s*#\s*include\s+"([^"]+)"', text, re.MULTILINE)
+
+
+def upward(texts: Sources, rooms: list[str]) -> list[str]:
+    """Includes of rooms below in the table, and of files that are nowhere."""
+    found = []
+    for path, text in texts.items():
+        room, _, _ = path.rpartition("/")
+        for other in includes(text):
+            target, _, name = other.rpartition("/")
+            if f"include/{other}" in texts and not target:
+                continue
+            if other not in texts or target not in rooms:
+                found.append(f"{path} includes {other}, which is in no room")
+            elif room not in rooms or rooms.index(target) > rooms.index(room):
+                found.append(f"{path} includes {name} of {target}, above {room or 'all'}")
+    return found
+
+
+def shared_names(texts: Sources) -> list[str]:
+    """Base names that files of more than one room have."""
+    rooms: dict[str, set[str]] = {}
+    for path in texts:
+        room, _, name = path.rpartition("/")
+        rooms.setdefault(name.partition(".")[0], set()).add(room)
+    return [f"{name} in {', '.join(sorted(r))}" for name, r in rooms.items() if len(r) > 1]
+
+
+def beyond_the_interface(plugins: Sources, core: Sources) -> list[str]:
+    """Includes of the core's insides by plug-ins."""
+    return [
+        f"{path} includes {other}"
+        for path, text in plugins.items()
+        for other in includes(text)
+        if (other in core or "core/" in other)
+        and other not in LOOKS_INSIDE.get(Path(path).name, set())
+    ]
+
+
+def test_rooms_stand_in_one_order() -> None:
+    """The table, the build and the folders hold the same rooms."""
+    assert documented_rooms() == built_rooms()
+    folders = {path.parent.name for path in CORE.glob("*/*.cpp")}
+    assert folders == set(documented_rooms())
+
+
+def test_no_include_points_up() -> None:
+    """A room includes those before it in the table."""
+    texts = sources(CORE)
+    assert len(texts) > 100
+    assert upward(texts, documented_rooms()) == []
+
+
+def test_names_are_unique() -> None:
+    """A file's name alone says where it is."""
+    assert shared_names(sources(CORE)) == []
+
+
+def test_plugins_see_the_interface_only() -> None:
+    """But for what LOOKS_INSIDE names, which is all needed."""
+    plugins, core = sources(PLUGINS), sources(CORE)
+    assert {path.name for path in (CORE / "include").iterdir()} == INTERFACE
+    assert beyond_the_interface(plugins, core) == []
+    seen = {(Path(p).name, other) for p, text in plugins.items() for other in includes(text)}
+    assert {(name, other) for name, others in LOOKS_INSIDE.items() for other in others} <= seen
+
+
+def test_the_table_fits_on_a_screen() -> None:
+    """It is read at once or not at all."""
+    assert len((CORE / "README.md").read_text(encoding="utf-8").splitlines()) <= 60
+
+
+def test_what_breaks_the_rules_is_named() -> None:
+    """The checks find what they look for."""
+    texts = {
+        "include/railpatch.h": "",
+        "low/a.hpp": '#include "railpatch.h"\n  # include "high/b.hpp"\n#include <cmath>',
+        "low/c.cpp": '#include "b.hpp"',
+        "high/b.hpp": '#include "low/a.hpp"',
+        "high/c.hpp": "",
+    }
+    assert upward(texts, ["low", "high"]) == [
+        "low/a.hpp includes b.hpp of high, above low",
+        "low/c.cpp includes b.hpp, which is in no room",
+    ]
+    assert shared_names(texts) == ["c in high, low"]
+    plugins = {"x/timing.cpp": '#include "railpatch.h"\n#include "low/a.hpp"'}
+    assert beyond_the_interface(plugins, texts) == ["x/timing.cpp includes low/a.hpp"]
