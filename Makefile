@@ -170,7 +170,8 @@ $(VENV)/tools: pyproject.toml | system
 	fi
 	@touch $@
 
-# C++ parts are rebuilt incrementally in build/release; verbose: pip shows what cmake and ninja say
+# C++ parts are rebuilt incrementally in build/release; verbose: pip shows what cmake and ninja say;
+# Python compiles what it imports, at the first time, which of all these packages is a small part
 $(VENV)/installed: $(VENV)/tools $(SOURCES)
-	$(BIN)/python -m pip install --verbose --no-build-isolation $(PACKAGE) '.[test]' | $(NEWS)
+	$(BIN)/python -m pip install --verbose --no-compile --no-build-isolation $(PACKAGE) '.[test]' | $(NEWS)
 	@touch $@
