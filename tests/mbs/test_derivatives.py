@@ -178,7 +178,7 @@ def test_states_follow_the_tangent_space(name: str):
 
 
 @pytest.mark.parametrize("name", SAMPLES)
-def test_accelerations_against_central_differences(name: str, capsys):
+def test_accelerations_against_central_differences(name: str, measured):
     sample = SAMPLES[name]()
     bench = Bench(sample)
     compared = left_out = 0
@@ -207,8 +207,7 @@ def test_accelerations_against_central_differences(name: str, capsys):
             missed = np.abs(found[:, column] - expected) / moved[column] / scale
             worst = max(worst, missed.max())
             assert (missed <= BOUND).all(), (column, missed, found[:, column], expected)
-    with capsys.disabled():
-        print(f"\n{name}: {compared} columns, {left_out} left out, greatest error {worst:.1e}")
+    measured(f"{name}: {compared} columns, {left_out} left out, greatest error {worst:.1e}")
     assert compared > 2 * left_out
 
 

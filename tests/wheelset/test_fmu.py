@@ -32,7 +32,7 @@ def packed(scene: WheelsetScene, folder: Path) -> Path:
 
 
 @pytest.mark.parametrize("name", ["s1002.toml", "hunting.toml"])
-def test_equal_to_the_run_in_the_process(name: str, tmp_path: Path, capsys):
+def test_equal_to_the_run_in_the_process(name: str, tmp_path: Path, measured):
     # forces differ by rounding, which a choice that hangs on it makes as great as the tolerance
     scene = scenes.scene(tmp_path, name, tolerance=1e-9)
     inside = np.array(
@@ -42,8 +42,7 @@ def test_equal_to_the_run_in_the_process(name: str, tmp_path: Path, capsys):
         outside = np.array([state.motion for state in held_run(scene, contact, STEP, STEPS)])
     assert len(inside) == len(outside) == STEPS + 1
     difference = (np.abs(inside - outside) / SIZE).max()
-    with capsys.disabled():
-        print(f"\n{name}, contact in the FMU, {STEPS} steps: {difference:.1e} off the process")
+    measured(f"{name}, contact in the FMU, {STEPS} steps: {difference:.1e} off the process")
     assert difference < 1e-9
     # it has moved
     assert np.ptp(inside[:, 1]) > 1e-5

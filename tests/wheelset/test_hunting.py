@@ -42,7 +42,7 @@ def mode(full: WheelsetScene) -> Mode:
     return found
 
 
-def test_full_theory_eigenvalues_and_runs_in_time(full: WheelsetScene, mode: Mode, capsys):
+def test_full_theory_eigenvalues_and_runs_in_time(full: WheelsetScene, mode: Mode, measured):
     speed, runs = critical_speed_in_time(full, 0.9 * mode.speed, 1.1 * mode.speed, mode.frequency)
     # below it waves die, above it they grow: as the eigenvalues say
     for run in runs:
@@ -52,27 +52,25 @@ def test_full_theory_eigenvalues_and_runs_in_time(full: WheelsetScene, mode: Mod
     below, above = runs[0], runs[1]
     assert below.growth < -0.05
     assert above.growth > 0.05
-    with capsys.disabled():
-        print(
-            f"\ncritical speed, full theory: {mode.speed:.3f} m/s of eigenvalues, {speed:.3f} m/s "
-            f"in time ({100 * (speed / mode.speed - 1):+.3f} %); {mode.frequency:.3f} Hz, waves of "
-            f"{mode.wave_length:.2f} m; growth {below.growth:+.4f} 1/s at {below.speed:.1f} m/s, "
-            f"{above.growth:+.4f} 1/s at {above.speed:.1f} m/s"
-        )
+    measured(
+        f"critical speed, full theory: {mode.speed:.3f} m/s of eigenvalues, {speed:.3f} m/s "
+        f"in time ({100 * (speed / mode.speed - 1):+.3f} %); {mode.frequency:.3f} Hz, waves of "
+        f"{mode.wave_length:.2f} m; growth {below.growth:+.4f} 1/s at {below.speed:.1f} m/s, "
+        f"{above.growth:+.4f} 1/s at {above.speed:.1f} m/s"
+    )
     assert speed == pytest.approx(mode.speed, rel=AGREEMENT)
 
 
 @pytest.mark.parametrize("theory", [("hertz", "fastsim"), ("hertz", "polach")])
-def test_fast_theories(theory: tuple[str, str], tmp_path: Path, capsys):
+def test_fast_theories(theory: tuple[str, str], tmp_path: Path, measured):
     scene = fast(tmp_path, *theory)
     mode = critical_mode(scene, 10.0, 100.0)
     assert mode is not None
     speed, _ = critical_speed_in_time(scene, 0.85 * mode.speed, 1.2 * mode.speed, mode.frequency)
-    with capsys.disabled():
-        print(
-            f"\ncritical speed, {theory[1]}: {mode.speed:.3f} m/s of eigenvalues, {speed:.3f} m/s "
-            f"in time ({100 * (speed / mode.speed - 1):+.3f} %)"
-        )
+    measured(
+        f"critical speed, {theory[1]}: {mode.speed:.3f} m/s of eigenvalues, {speed:.3f} m/s "
+        f"in time ({100 * (speed / mode.speed - 1):+.3f} %)"
+    )
     assert speed == pytest.approx(mode.speed, rel=AGREEMENT)
 
 

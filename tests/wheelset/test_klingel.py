@@ -39,7 +39,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_wave_length(name: str, tmp_path: Path, capsys):
+def test_wave_length(name: str, tmp_path: Path, measured):
     cone, crown, speed, distance, step = CASES[name]
     profiles = {"wheel": f"cone@1:{1 / cone:.0f}", "rail": f"arc@{crown}"}
     run = {"speed": speed, "distance": distance, "step": step, "y": 0.5e-3}
@@ -49,12 +49,11 @@ def test_wave_length(name: str, tmp_path: Path, capsys):
     radius, half = waves.radius, waves.half_distance
     plain = klingel(radius, half, cone)
     turned = klingel(radius, half, cone * (1 + crown * cone / half))
-    with capsys.disabled():
-        print(
-            f"\nwave length, {name}: {waves.length:.4f} m, r0 {radius:.4f} m, e0 {half:.4f} m; "
-            f"Klingel {plain:.4f} m ({100 * (waves.length / plain - 1):+.3f} %), with the "
-            f"contact's shift {turned:.4f} m ({100 * (waves.length / turned - 1):+.3f} %)"
-        )
+    measured(
+        f"wave length, {name}: {waves.length:.4f} m, r0 {radius:.4f} m, e0 {half:.4f} m; "
+        f"Klingel {plain:.4f} m ({100 * (waves.length / plain - 1):+.3f} %), with the "
+        f"contact's shift {turned:.4f} m ({100 * (waves.length / turned - 1):+.3f} %)"
+    )
     assert waves.length == pytest.approx(plain, rel=0.02)
     assert waves.length == pytest.approx(turned, rel=0.0005)
     # and the conicity that the run itself shows

@@ -59,7 +59,7 @@ def lateral_error(found: Trace, expected: Trace, speed: float) -> float:
 
 @pytest.mark.parametrize("speed", CASES)
 @pytest.mark.parametrize("elements", GRIDS)
-def test_one_millisecond(elements: int, speed: float, tmp_path: Path, capsys):
+def test_one_millisecond(elements: int, speed: float, tmp_path: Path, measured):
     _, fine = CASES[speed]
     expected = traced(tmp_path, elements, speed, fine, "rk4")
     assert expected.failure is None
@@ -71,12 +71,11 @@ def test_one_millisecond(elements: int, speed: float, tmp_path: Path, capsys):
         mechanical = np.abs(found.mechanical_residual()).max() / lost
         contact = np.abs(found.contact_residual()).max() / lost
         linear, angular = found.momentum_errors()
-        with capsys.disabled():
-            print(
-                f"\n{speed} m/s, 1 ms, derivatives every {every}: {motion:.1e} off rk4; "
-                f"energy open by {mechanical:.1e} (bodies), {contact:.1e} (contacts) of the loss; "
-                f"momentum by {linear:.1e}, about the centre by {angular:.1e}"
-            )
+        measured(
+            f"{speed} m/s, 1 ms, derivatives every {every}: {motion:.1e} off rk4; "
+            f"energy open by {mechanical:.1e} (bodies), {contact:.1e} (contacts) of the loss; "
+            f"momentum by {linear:.1e}, about the centre by {angular:.1e}"
+        )
         assert motion < 5e-3
         assert mechanical < 1e-3
         assert contact < 5e-3
