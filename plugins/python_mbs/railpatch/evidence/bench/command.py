@@ -8,6 +8,7 @@ import click
 
 from railpatch.command.group import WrongCall, folder_option, progress_bar, quiet_flag
 from railpatch.command.output import check_folder
+from railpatch.evidence.ending import finish
 
 ALL_SETS = "ABCDW"
 
@@ -90,6 +91,7 @@ def measure_all(
     from railpatch.evidence.bench.methods import chosen_methods
     from railpatch.evidence.bench.picture import require_matplotlib
     from railpatch.evidence.bench.run import Plan, run_bench
+    from railpatch.evidence.bench.terminal import print_report
     from railpatch.evidence.bench.truth import TruthFile
 
     try:
@@ -100,13 +102,4 @@ def measure_all(
         raise WrongCall(str(error)) from None
     with progress_bar("bench", plan.total, quiet) as advance:
         report = run_bench(plan, truth, advance)
-    try:
-        written = write_report(report, output)
-    except OSError as error:
-        raise WrongCall(f"--output: {error}") from None
-    if not quiet:
-        from railpatch.evidence.bench.terminal import print_report
-
-        print_report(report)
-        for path in written:
-            click.echo(path)
+    finish(report, output, write_report, print_report, quiet=quiet)

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
 from railpatch.command.group import (
     EXIT_NOT_CONVERGED,
-    WrongCall,
     folder_option,
     progress_bar,
     quiet_flag,
 )
 from railpatch.command.output import check_folder
+from railpatch.evidence.ending import finish
 
 
 @click.command("continuity")
@@ -39,14 +40,14 @@ def continuity(
     rules = RULES if compare else RULES[:1]
     with progress_bar("continuity", len(plan) * len(rules), quiet) as advance:
         entries = list(run(plan, rules, advance))
-    try:
-        written = [write_table(entries, output), *draw(entries, output)]
-    except OSError as error:
-        raise WrongCall(f"--output: {error}") from None
-    if not quiet:
-        for row in (HEAD, *(entry.row() for entry in entries)):
+
+    def write(found: list[Any], folder: Path) -> list[Path]:
+        return [write_table(found, folder), *draw(found, folder)]
+
+    def show(found: list[Any]) -> None:
+        for row in (HEAD, *(entry.row() for entry in found)):
             click.echo("  ".join(str(value) for value in row))
-        for path in written:
-            click.echo(path)
+
+    finish(entries, output, write, show, quiet=quiet)
     if any(e.rule == RULES[0] and e.sweep.jump > LIMIT for e in entries):
         context.exit(EXIT_NOT_CONVERGED)

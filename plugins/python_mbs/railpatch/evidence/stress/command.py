@@ -14,6 +14,7 @@ from railpatch.command.group import (
     quiet_flag,
 )
 from railpatch.command.output import check_folder
+from railpatch.evidence.ending import finish
 
 
 @click.command("stress")
@@ -39,6 +40,7 @@ def stress(
     from railpatch.evidence.stress.files import write_report
     from railpatch.evidence.stress.outcome import run_stress
     from railpatch.evidence.stress.plan import SEED, Plan
+    from railpatch.evidence.stress.text import print_report
 
     plan = Plan(SEED if seed is None else seed, quick, only)
     if not len(plan):
@@ -46,15 +48,6 @@ def stress(
     check_folder(output)
     with progress_bar("stress", len(plan), quiet) as advance:
         report = run_stress(plan, advance)
-    try:
-        written = write_report(report, output)
-    except OSError as error:
-        raise WrongCall(f"--output: {error}") from None
-    if not quiet:
-        from railpatch.evidence.stress.text import print_report
-
-        print_report(report)
-        for path in written:
-            click.echo(path)
+    finish(report, output, write_report, print_report, quiet=quiet)
     if report.faults:
         context.exit(EXIT_NOT_CONVERGED)
