@@ -14,6 +14,9 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 export PIP_REQUIRE_VIRTUALENV := 1
 export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
 export CTEST_PARALLEL_LEVEL := $(JOBS)
+# the transforms of the Python package: eigen, or fftw, which puts it under the GPL
+FFT ?= eigen
+export RAILPATCH_FFT := $(FFT)
 # of what pip says, what it does
 NEWS := sed -u '/^Requirement already satisfied/d'
 export NINJA_STATUS := [%f/%t, %e s] # files done of how many
@@ -32,7 +35,7 @@ FMU := -DRAILPATCH_FMU=ON -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python
 FMU_FFTW := build/fmu_fftw
 # one build has the C++ tests, the program of `make pruning` and what the Python package is made of,
 # whose transforms may be others
-RELEASE := $(FMU) -DRAILPATCH_TESTS=ON -DRAILPATCH_PRUNING=ON -DRAILPATCH_FFT=
+RELEASE := $(FMU) -DRAILPATCH_TESTS=ON -DRAILPATCH_PRUNING=ON
 PACKAGE := --config-settings=build-dir=build/release $(addprefix --config-settings=cmake.define., \
 	RAILPATCH_PYTHON=ON RAILPATCH_FMU=ON RAILPATCH_WERROR=ON)
 CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
@@ -78,7 +81,7 @@ fmu: setup fmu-fftw ## FMUs of the default scene and of each kind for Linux, ARM
 fmu-fftw: setup ## the FMU's library with FFTW, for `railpatch fmu --fft fftw --libraries`
 	cmake --preset release $(RELEASE)
 	cmake --build --preset release --target railpatch_fmu
-	cmake --install build/release --component python --prefix $(FMU_FFTW)
+	cmake --install build/release --component fmu --prefix $(FMU_FFTW)
 	$(BIN)/python -c 'from railpatch.fmu.libraries import stamp; print(stamp())' \
 		> $(FMU_FFTW)/railpatch/fmu/lib/stamp.txt
 
@@ -104,7 +107,7 @@ test-long: setup ## what is slow by nature, before a release: hours
 	$(PYTEST) -m long --junit-xml=build/junit/long.xml
 	@$(MAKE) --no-print-directory mutants
 
-setup: $(VENV)/installed ## system packages, virtual environment, package
+setup: $(VENV)/installed ## system packages, virtual environment, package; FFT=fftw: with FFTW, under the GPL
 
 lint: $(VENV)/tools ## ruff and clang-format, nothing is changed
 	$(BIN)/ruff check .
@@ -122,7 +125,7 @@ test-cpp: $(VENV)/tools ## C and C++ tests, release build
 	@mkdir -p build/junit
 	ctest --preset release --output-junit "$(CURDIR)/build/junit/cpp.xml"
 
-test-asan: $(VENV)/tools ## the same with address and undefined-behaviour sanitizers
+test-asan: $(VENV)/tools ## the same with Eigen's transforms, address and undefined-behaviour sanitizers
 	cmake --preset asan $(FMU)
 	cmake --build --preset asan
 	@mkdir -p build/junit
@@ -170,8 +173,13 @@ $(VENV)/tools: pyproject.toml | system
 	fi
 	@touch $@
 
+# another FFT library is another package
+$(VENV)/fft-$(FFT): | $(VENV)/tools
+	@rm -f $(VENV)/fft-*
+	@touch $@
+
 # C++ parts are rebuilt incrementally in build/release; verbose: pip shows what cmake and ninja say;
 # Python compiles what it imports, at the first time, which of all these packages is a small part
-$(VENV)/installed: $(VENV)/tools $(SOURCES)
+$(VENV)/installed: $(VENV)/tools $(VENV)/fft-$(FFT) $(SOURCES)
 	$(BIN)/python -m pip install --verbose --no-compile --no-build-isolation $(PACKAGE) '.[test]' | $(NEWS)
 	@touch $@
