@@ -29,6 +29,18 @@ namespace input_range {
 RP_INPUT_FIELDS(RP_RANGE, RP_NO_FIELD)
 }
 #undef RP_RANGE
+
+// How many choices an enumeration has; their values count from 0.
+template <class E>
+inline constexpr int choice_count = 0;
+#define RP_ONE(name, value, word) +1
+#define RP_COUNT_CHOICES(type, LIST) \
+  template <>                        \
+  inline constexpr int choice_count<type> = 0 LIST(RP_ONE);
+RP_CHOICES(RP_COUNT_CHOICES)
+#undef RP_COUNT_CHOICES
+#undef RP_ONE
+
 #undef RP_NO_FIELD
 
 }  // namespace railpatch

@@ -47,7 +47,9 @@ class checker {
   // a member with its listed range, by what it is; rows of arrays by their last index
   template <class T>
   void field(const char *name, const T &value, const range &r) {
-    if constexpr (std::is_same_v<T, double>) {
+    if constexpr (std::is_enum_v<T>) {
+      choice(name, value, choice_count<T>);
+    } else if constexpr (std::is_same_v<T, double>) {
       number(name, value, r);
     } else if constexpr (std::is_same_v<T, int32_t>) {
       integer(name, value, static_cast<int>(r.low), static_cast<int>(r.high));
@@ -63,11 +65,11 @@ class checker {
   }
   // an enumeration: looked at as a number, since a value outside it must not be read as one
   template <class E>
-  void choice(const char *name, const E &value, int low, int high) {
+  void choice(const char *name, const E &value, int count) {
     static_assert(sizeof(E) == sizeof(int));
     int number;
     std::memcpy(&number, &value, sizeof number);
-    integer(name, number, low, high);
+    integer(name, number, 0, count - 1);
   }
   void require(bool condition, const char *text) {
     if (condition || failed_) return;

@@ -63,6 +63,16 @@ RP_TIE_STRUCT(RP_RESULT_FIELDS, rp_result)
 RP_TIE_STRUCT(RP_CONFIG_FIELDS, rp_config)
 RP_TIE_STRUCT(RP_INPUT_FIELDS, rp_input)
 
+// values of choices count from 0 in the order of their lists
+#define RP_PLACE(name, value, word) name##_place,
+#define RP_TIE_PLACE(name, value, word)                  \
+  static_assert(static_cast<int>(name##_place) == value, \
+                "the value of " #name " is not its place in its list");
+#define RP_TIE_CHOICES(type, LIST)    \
+  enum type##_places{LIST(RP_PLACE)}; \
+  LIST(RP_TIE_PLACE)
+RP_CHOICES(RP_TIE_CHOICES)
+
 }  // namespace
 
 }  // namespace railpatch

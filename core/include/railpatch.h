@@ -42,7 +42,6 @@ extern "C" {
 
 #define RP_VERSION "0.1.0"
 
-enum { RP_LEFT = 0, RP_RIGHT = 1 };
 enum { RP_MAX_PATCHES = 6, RP_MESSAGE_SIZE = 320, RP_MAX_POINTS = 32 };
 
 /* --- errors: the call was wrong, outputs are untouched ------------------------------------- */
@@ -68,97 +67,151 @@ enum { RP_MAX_PATCHES = 6, RP_MESSAGE_SIZE = 320, RP_MAX_POINTS = 32 };
 #define RP_ENUM_ENTRY(name, value, text) name = value,
 typedef enum rp_error { RP_ERRORS(RP_ENUM_ENTRY) } rp_error;
 typedef enum rp_status { RP_STATUSES(RP_ENUM_ENTRY) } rp_status;
-#undef RP_ENUM_ENTRY
 
-typedef enum rp_kind { RP_PATCH = 0, RP_WHEEL_RAIL = 1, RP_WHEELSET = 2 } rp_kind;
-typedef enum rp_geometry {
-  RP_SEMI_AXES = 0,          /* ellipse known, curvatures follow from the load (Hertz) */
-  RP_CURVATURES = 1,         /* undeformed distance c0 x^2 + c1 y^2 */
-  RP_LINE_CONTACT = 2,       /* cylinder, plane strain, force per length = force / width */
-  RP_UNDEFORMED_DISTANCE = 3 /* any smooth shape, given on the grid */
-} rp_geometry;
-typedef enum rp_load {
-  RP_FORCE = 0,   /* normal_force (patch) or vertical_force (wheel, wheelset) prescribed */
-  RP_POSITION = 1 /* approach (patch) or z (wheel, wheelset) prescribed */
-} rp_load;
-typedef enum rp_regime {
-  RP_REGIME_NONE = 0,
-  RP_STEADY_ROLLING = 1,
-  RP_SHIFT = 2,            /* Cattaneo: displacement without rolling, step by step */
-  RP_TRANSIENT_ROLLING = 3 /* each step rolls input.distance on from the last one's tractions */
-} rp_regime;
-typedef enum rp_friction_law {
-  RP_COULOMB = 0,
-  RP_SLIP_VELOCITY = 1, /* mu(s), s the micro-slip's speed: rp_slip_law, with memory */
-  RP_TEMPERATURE = 2    /* mu(T), T the greater surface temperature */
-} rp_friction_law;
+/* --- choices: X(enumerator, value, word); the words are those of case files and results. What a
+ * comment says of a choice stands beside it or above ---------------------------------------- */
+#define RP_SIDES(X)     \
+  X(RP_LEFT, 0, "left") \
+  X(RP_RIGHT, 1, "right")
+typedef enum rp_side { RP_SIDES(RP_ENUM_ENTRY) } rp_side;
+
+#define RP_KINDS(X)                 \
+  X(RP_PATCH, 0, "patch")           \
+  X(RP_WHEEL_RAIL, 1, "wheel_rail") \
+  X(RP_WHEELSET, 2, "wheelset")
+typedef enum rp_kind { RP_KINDS(RP_ENUM_ENTRY) } rp_kind;
+
+#define RP_GEOMETRIES(X)                                         \
+  /* ellipse known, curvatures follow from the load (Hertz) */   \
+  X(RP_SEMI_AXES, 0, "semi_axes")                                \
+  /* undeformed distance c0 x^2 + c1 y^2 */                      \
+  X(RP_CURVATURES, 1, "curvatures")                              \
+  /* cylinder, plane strain, force per length = force / width */ \
+  X(RP_LINE_CONTACT, 2, "line_contact_radius")                   \
+  /* any smooth shape, given on the grid */                      \
+  X(RP_UNDEFORMED_DISTANCE, 3, "undeformed_distance")
+typedef enum rp_geometry { RP_GEOMETRIES(RP_ENUM_ENTRY) } rp_geometry;
+
+#define RP_LOADS(X)                                                         \
+  /* normal_force (patch) or vertical_force (wheel, wheelset) prescribed */ \
+  X(RP_FORCE, 0, "force")                                                   \
+  X(RP_POSITION, 1, "position") /* approach (patch) or z (wheel, wheelset) prescribed */
+typedef enum rp_load { RP_LOADS(RP_ENUM_ENTRY) } rp_load;
+
+#define RP_REGIMES(X)                                                   \
+  X(RP_REGIME_NONE, 0, "none")                                          \
+  X(RP_STEADY_ROLLING, 1, "steady_rolling")                             \
+  /* Cattaneo: displacement without rolling, step by step */            \
+  X(RP_SHIFT, 2, "shift")                                               \
+  /* each step rolls input.distance on from the last one's tractions */ \
+  X(RP_TRANSIENT_ROLLING, 3, "transient_rolling")
+typedef enum rp_regime { RP_REGIMES(RP_ENUM_ENTRY) } rp_regime;
+
+#define RP_FRICTION_LAWS(X)                                       \
+  X(RP_COULOMB, 0, "coulomb")                                     \
+  /* mu(s), s the micro-slip's speed: rp_slip_law, with memory */ \
+  X(RP_SLIP_VELOCITY, 1, "slip_velocity")                         \
+  X(RP_TEMPERATURE, 2, "temperature") /* mu(T), T the greater surface temperature */
+typedef enum rp_friction_law { RP_FRICTION_LAWS(RP_ENUM_ENTRY) } rp_friction_law;
+
 /* mu(s) = friction_kinetic + sum over i of friction_amplitude[i] f(s/friction_halving_speed[i]) */
-typedef enum rp_slip_law {
-  RP_SLIP_EXPONENTIAL = 0, /* f(u) = 2^-u; Polach 2005: mu0 A, mu0 (1 - A), ln 2/B */
-  RP_SLIP_RATIONAL = 1,    /* f(u) = 1/(1 + u) */
-  RP_SLIP_LINEAR = 2       /* f(u) = max(0, 1 - u/2) */
-} rp_slip_law;
+#define RP_SLIP_LAWS(X)                                      \
+  /* f(u) = 2^-u; Polach 2005: mu0 A, mu0 (1 - A), ln 2/B */ \
+  X(RP_SLIP_EXPONENTIAL, 0, "exponential")                   \
+  X(RP_SLIP_RATIONAL, 1, "rational") /* f(u) = 1/(1 + u) */  \
+  X(RP_SLIP_LINEAR, 2, "linear")     /* f(u) = max(0, 1 - u/2) */
+typedef enum rp_slip_law { RP_SLIP_LAWS(RP_ENUM_ENTRY) } rp_slip_law;
+
 /* how the plastic displacement of the layer accumulates */
-typedef enum rp_plastic_rule {
-  RP_PLASTIC_PATH = 0,     /* length of the path */
-  RP_PLASTIC_MAGNITUDE = 1 /* magnitude of the vector sum */
-} rp_plastic_rule;
-typedef enum rp_normal_method {
-  RP_NORMAL_HERTZ = 0,
-  RP_NORMAL_HALF_SPACE = 1,
-  RP_NORMAL_KIK_PIOTROWSKI = 2, /* Piotrowski and Kik 2008, by virtual interpenetration */
-  RP_NORMAL_ANALYN = 3          /* Sichani, Enblom and Berg 2014, by an assumed deformation */
-} rp_normal_method;
-typedef enum rp_tangential_method {
-  RP_TANGENTIAL_NONE = 0,
-  RP_TANGENTIAL_FASTSIM = 1, /* Kalker 1982, three flexibilities */
-  RP_TANGENTIAL_FULL = 2,    /* Kalker's exact theory on the half-space */
-  RP_TANGENTIAL_LINEAR = 3,  /* Kalker 1967, no bound: RP_OUT_OF_RANGE beyond saturation */
-  RP_TANGENTIAL_POLACH = 4,  /* Polach 1999, 2005; no spin moment: 0 */
-  RP_TANGENTIAL_FASTRIP = 5, /* FaStrip, Sichani, Enblom, Berg 2016 */
-  RP_TANGENTIAL_TABLE = 6 /* full theory, interpolated for elliptic contacts: config.creep_table */
-} rp_tangential_method;
+#define RP_PLASTIC_RULES(X)                                        \
+  X(RP_PLASTIC_PATH, 0, "path")           /* length of the path */ \
+  X(RP_PLASTIC_MAGNITUDE, 1, "magnitude") /* magnitude of the vector sum */
+typedef enum rp_plastic_rule { RP_PLASTIC_RULES(RP_ENUM_ENTRY) } rp_plastic_rule;
+
+#define RP_NORMAL_METHODS(X)                                     \
+  X(RP_NORMAL_HERTZ, 0, "hertz")                                 \
+  X(RP_NORMAL_HALF_SPACE, 1, "half_space")                       \
+  /* Piotrowski and Kik 2008, by virtual interpenetration */     \
+  X(RP_NORMAL_KIK_PIOTROWSKI, 2, "kik_piotrowski")               \
+  /* Sichani, Enblom and Berg 2014, by an assumed deformation */ \
+  X(RP_NORMAL_ANALYN, 3, "analyn")
+typedef enum rp_normal_method { RP_NORMAL_METHODS(RP_ENUM_ENTRY) } rp_normal_method;
+
+#define RP_TANGENTIAL_METHODS(X)                                                       \
+  X(RP_TANGENTIAL_NONE, 0, "none")                                                     \
+  X(RP_TANGENTIAL_FASTSIM, 1, "fastsim") /* Kalker 1982, three flexibilities */        \
+  X(RP_TANGENTIAL_FULL, 2, "full")       /* Kalker's exact theory on the half-space */ \
+  /* Kalker 1967, no bound: RP_OUT_OF_RANGE beyond saturation */                       \
+  X(RP_TANGENTIAL_LINEAR, 3, "linear")                                                 \
+  X(RP_TANGENTIAL_POLACH, 4, "polach")   /* Polach 1999, 2005; no spin moment: 0 */    \
+  X(RP_TANGENTIAL_FASTRIP, 5, "fastrip") /* FaStrip, Sichani, Enblom, Berg 2016 */     \
+  /* full theory, interpolated for elliptic contacts: config.creep_table */            \
+  X(RP_TANGENTIAL_TABLE, 6, "table")
+typedef enum rp_tangential_method { RP_TANGENTIAL_METHODS(RP_ENUM_ENTRY) } rp_tangential_method;
+
 /* of FASTSIM; the bound of FaStrip is elliptic */
-typedef enum rp_traction_bound {
-  RP_BOUND_AUTOMATIC = 0, /* with Hertz parabolic, else elliptic */
-  RP_BOUND_PARABOLIC = 1, /* as the square of the pressure */
-  RP_BOUND_ELLIPTIC = 2   /* friction coefficient times pressure */
-} rp_traction_bound;
+#define RP_TRACTION_BOUNDS(X)                                                     \
+  X(RP_BOUND_AUTOMATIC, 0, "automatic") /* with Hertz parabolic, else elliptic */ \
+  X(RP_BOUND_PARABOLIC, 1, "parabolic") /* as the square of the pressure */       \
+  X(RP_BOUND_ELLIPTIC, 2, "elliptic")   /* friction coefficient times pressure */
+typedef enum rp_traction_bound { RP_TRACTION_BOUNDS(RP_ENUM_ENTRY) } rp_traction_bound;
+
 /* of FASTSIM and FaStrip: whether the flexibilities become one as sliding becomes full, so that the
  * creep force then points against the creepage */
+#define RP_FLEXIBILITY_BLENDINGS(X)                                                          \
+  X(RP_BLENDING_SLIDING, 0, "sliding")                                                       \
+  X(RP_BLENDING_NONE, 1, "none")                                                             \
+  /* FASTSIM as in the program CONTACT: blended, with Kalker's published coefficients, whole \
+   * elements as steps and the bound not scaled */                                           \
+  X(RP_BLENDING_CONTACT, 2, "contact")
 typedef enum rp_flexibility_blending {
-  RP_BLENDING_SLIDING = 0,
-  RP_BLENDING_NONE = 1,
-  RP_BLENDING_CONTACT = 2 /* FASTSIM as in the program CONTACT: blended, with Kalker's published
-                             coefficients, whole elements as steps and the bound not scaled */
+  RP_FLEXIBILITY_BLENDINGS(RP_ENUM_ENTRY)
 } rp_flexibility_blending;
-typedef enum rp_spin_offset {
-  RP_SPIN_OFFSET_NONE = 0,
-  RP_SPIN_OFFSET_SIXTH = 1 /* x + dq/6 in the spin term, as the program CONTACT does */
-} rp_spin_offset;
+
+#define RP_SPIN_OFFSETS(X)                                     \
+  X(RP_SPIN_OFFSET_NONE, 0, "none")                            \
+  /* x + dq/6 in the spin term, as the program CONTACT does */ \
+  X(RP_SPIN_OFFSET_SIXTH, 1, "sixth")
+typedef enum rp_spin_offset { RP_SPIN_OFFSETS(RP_ENUM_ENTRY) } rp_spin_offset;
+
 /* which parts of contact of a wheel, the stretches where the profiles overlap, are one patch */
-typedef enum rp_patch_rule {
-  RP_PATCHES_BLENDED = 0, /* force without jumps: neighbours go over from one patch to two smoothly;
-                             in between both solutions count, each with its share */
-  RP_PATCHES_CONTACT = 1  /* as in the program CONTACT: one patch below 8 mm, with part of the
-                             interaction from 4 mm on, and angles turned together up to 12 mm */
-} rp_patch_rule;
+#define RP_PATCH_RULES(X)                                                                        \
+  /* force without jumps: neighbours go over from one patch to two smoothly; in between both     \
+   * solutions count, each with its share */                                                     \
+  X(RP_PATCHES_BLENDED, 0, "blended")                                                            \
+  /* as in the program CONTACT: one patch below 8 mm, with part of the interaction from 4 mm on, \
+   * and angles turned together up to 12 mm */                                                   \
+  X(RP_PATCHES_CONTACT, 1, "contact")
+typedef enum rp_patch_rule { RP_PATCH_RULES(RP_ENUM_ENTRY) } rp_patch_rule;
+
 /* x axis of the contact frame where a contact lies ahead of a roller's top, or behind */
-typedef enum rp_contact_frame {
-  RP_FRAME_TRACK = 0,   /* the track's: the part Fn x/R of the normal force along track x is left
-                           out of force and moment, as in the published results of the program
-                           CONTACT */
-  RP_FRAME_INCLINED = 1 /* along the roller's surface: nothing is left out */
-} rp_contact_frame;
+#define RP_CONTACT_FRAMES(X)                                                                 \
+  /* the track's: the part Fn x/R of the normal force along track x is left out of force and \
+   * moment, as in the published results of the program CONTACT */                           \
+  X(RP_FRAME_TRACK, 0, "track")                                                              \
+  X(RP_FRAME_INCLINED, 1, "inclined") /* along the roller's surface: nothing is left out */
+typedef enum rp_contact_frame { RP_CONTACT_FRAMES(RP_ENUM_ENTRY) } rp_contact_frame;
+
 /* of the half-space theories for wheels */
-typedef enum rp_reference_surface {
-  RP_REFERENCE_PLANE = 0, /* tangent to the contact reference */
-  RP_REFERENCE_CURVED = 1 /* midway between wheel and rail: rows with normals of their own, for
-                             conformal contact. Needs normal = half_space, tangential = full or
-                             none, a uniform grid, Coulomb friction, like bodies */
-} rp_reference_surface;
-typedef enum rp_track { RP_RAIL = 0, RP_ROLLER = 1 } rp_track;
-typedef enum rp_element { RP_EXTERIOR = 0, RP_STICK = 1, RP_SLIP = 2, RP_PLASTIC = 3 } rp_element;
+#define RP_REFERENCE_SURFACES(X)                                                                   \
+  X(RP_REFERENCE_PLANE, 0, "plane") /* tangent to the contact reference */                         \
+  /* midway between wheel and rail: rows with normals of their own, for conformal contact. Needs   \
+   * normal = half_space, tangential = full or none, a uniform grid, Coulomb friction, like bodies \
+   */                                                                                              \
+  X(RP_REFERENCE_CURVED, 1, "curved")
+typedef enum rp_reference_surface { RP_REFERENCE_SURFACES(RP_ENUM_ENTRY) } rp_reference_surface;
+
+#define RP_TRACKS(X)    \
+  X(RP_RAIL, 0, "rail") \
+  X(RP_ROLLER, 1, "roller")
+typedef enum rp_track { RP_TRACKS(RP_ENUM_ENTRY) } rp_track;
+
+#define RP_ELEMENTS(X)          \
+  X(RP_EXTERIOR, 0, "exterior") \
+  X(RP_STICK, 1, "stick")       \
+  X(RP_SLIP, 2, "slip")         \
+  X(RP_PLASTIC, 3, "plastic")
+typedef enum rp_element { RP_ELEMENTS(RP_ENUM_ENTRY) } rp_element;
 
 /* A smooth profile as a cubic Hermite curve in arc length; a C2 cubic spline is represented
  * exactly. Right-hand profile from the flange or gauge side (-y) to the field side (+y), z down.
@@ -175,20 +228,24 @@ typedef struct rp_message {
   char text[RP_MESSAGE_SIZE]; /* names the field, the value and the allowed range */
 } rp_message;
 
-typedef enum rp_stage {
-  RP_STAGE_GEOMETRY = 0, /* placement, contact search, undeformed distance */
-  RP_STAGE_INFLUENCE = 1,
-  RP_STAGE_NORMAL = 2,
-  RP_STAGE_TANGENTIAL = 3,
-  RP_STAGE_TEMPERATURE = 4,
-  RP_STAGE_FORCES = 5,
-  RP_STAGE_COUPLING = 6,   /* normal and tangential problem of unlike bodies, by each other */
-  RP_STAGE_HISTORY = 7,    /* last step's tractions and states, in shift and transient rolling */
-  RP_STAGE_PLASTICITY = 8, /* of the third-body layer; its time is that of the tangential problem */
-  RP_STAGE_DERIVATIVES = 9, /* rp_differentiate */
-  RP_STAGE_SUPPORT = 10,    /* rails on springs and dampers; its time is that of the contacts */
-  RP_STAGE_COUNT = 11
-} rp_stage;
+#define RP_STAGES(X)                                                        \
+  /* placement, contact search, undeformed distance */                      \
+  X(RP_STAGE_GEOMETRY, 0, "geometry")                                       \
+  X(RP_STAGE_INFLUENCE, 1, "influence")                                     \
+  X(RP_STAGE_NORMAL, 2, "normal")                                           \
+  X(RP_STAGE_TANGENTIAL, 3, "tangential")                                   \
+  X(RP_STAGE_TEMPERATURE, 4, "temperature")                                 \
+  X(RP_STAGE_FORCES, 5, "forces")                                           \
+  /* normal and tangential problem of unlike bodies, by each other */       \
+  X(RP_STAGE_COUPLING, 6, "coupling")                                       \
+  /* last step's tractions and states, in shift and transient rolling */    \
+  X(RP_STAGE_HISTORY, 7, "history")                                         \
+  /* of the third-body layer; its time is that of the tangential problem */ \
+  X(RP_STAGE_PLASTICITY, 8, "plasticity")                                   \
+  X(RP_STAGE_DERIVATIVES, 9, "derivatives") /* rp_differentiate */          \
+  /* rails on springs and dampers; its time is that of the contacts */      \
+  X(RP_STAGE_SUPPORT, 10, "rail_support")
+typedef enum rp_stage { RP_STAGES(RP_ENUM_ENTRY) RP_STAGE_COUNT } rp_stage;
 
 /* Called when a stage begins (entering = 1) and ends (0); for time shares. The core has no clock.
  */
@@ -447,25 +504,37 @@ typedef struct rp_result {
   rp_side_result side[2]; /* kind RP_PATCH: side[RP_RIGHT].patch[0] */
 } rp_result;
 
-typedef enum rp_field {
-  RP_FIELD_X = 0,                     /* m, [nx] element centres; fitted rows: [ny][nx] nodes */
-  RP_FIELD_Y = 1,                     /* m, [ny] */
-  RP_FIELD_UNDEFORMED_DISTANCE = 2,   /* m, [ny][nx]; not with fitted rows */
-  RP_FIELD_PRESSURE = 3,              /* Pa, [ny][nx] */
-  RP_FIELD_TRACTION = 4,              /* Pa on the wheel, [2][ny][nx] */
-  RP_FIELD_MICRO_SLIP = 5,            /* -, relative to the rolling speed, [2][ny][nx] */
-  RP_FIELD_ELEMENT_DIVISION = 6,      /* rp_element as a double, [ny][nx] */
-  RP_FIELD_TEMPERATURE = 7,           /* degrees C, [2][ny][nx], wheel and rail */
-  RP_FIELD_ERROR_FEATURES = 8,        /* -, [20], what the error estimate is made from */
-  RP_FIELD_FRICTION = 9,              /* -, friction coefficient of each element, [ny][nx] */
-  RP_FIELD_PLASTIC_DISPLACEMENT = 10, /* m, accumulated vector, [2][ny][nx] */
-  RP_FIELD_PLASTIC_PATH = 11,         /* m, what the yield stress depends on, [ny][nx] */
-  RP_FIELD_YIELD_STRESS = 12,         /* Pa, [ny][nx] */
-  /* of a curved reference surface, where y above is its arc length; lateral tractions and slips act
-   * along each row's own s, pressure and undeformed distance along its own n */
-  RP_FIELD_ROW_POSITION = 13, /* m, [2][ny], y and z of each row in track axes */
-  RP_FIELD_ROW_ANGLE = 14     /* rad, [ny], contact angle of each row */
-} rp_field;
+#define RP_FIELDS(X)                                                                             \
+  /* m, [nx] element centres; fitted rows: [ny][nx] nodes */                                     \
+  X(RP_FIELD_X, 0, "x")                                                                          \
+  X(RP_FIELD_Y, 1, "y") /* m, [ny] */                                                            \
+  /* m, [ny][nx]; not with fitted rows */                                                        \
+  X(RP_FIELD_UNDEFORMED_DISTANCE, 2, "undeformed_distance")                                      \
+  X(RP_FIELD_PRESSURE, 3, "pressure") /* Pa, [ny][nx] */                                         \
+  /* Pa on the wheel, [2][ny][nx] */                                                             \
+  X(RP_FIELD_TRACTION, 4, "traction")                                                            \
+  /* -, relative to the rolling speed, [2][ny][nx] */                                            \
+  X(RP_FIELD_MICRO_SLIP, 5, "micro_slip")                                                        \
+  /* rp_element as a double, [ny][nx] */                                                         \
+  X(RP_FIELD_ELEMENT_DIVISION, 6, "element_division")                                            \
+  /* degrees C, [2][ny][nx], wheel and rail */                                                   \
+  X(RP_FIELD_TEMPERATURE, 7, "temperature")                                                      \
+  /* -, [20], what the error estimate is made from */                                            \
+  X(RP_FIELD_ERROR_FEATURES, 8, "error_features")                                                \
+  /* -, friction coefficient of each element, [ny][nx] */                                        \
+  X(RP_FIELD_FRICTION, 9, "friction")                                                            \
+  /* m, accumulated vector, [2][ny][nx] */                                                       \
+  X(RP_FIELD_PLASTIC_DISPLACEMENT, 10, "plastic_displacement")                                   \
+  /* m, what the yield stress depends on, [ny][nx] */                                            \
+  X(RP_FIELD_PLASTIC_PATH, 11, "plastic_path")                                                   \
+  X(RP_FIELD_YIELD_STRESS, 12, "yield_stress") /* Pa, [ny][nx] */                                \
+  /* of a curved reference surface, where y above is its arc length; lateral tractions and slips \
+   * act along each row's own s, pressure and undeformed distance along its own n */             \
+  /* m, [2][ny], y and z of each row in track axes */                                            \
+  X(RP_FIELD_ROW_POSITION, 13, "row_position")                                                   \
+  /* rad, [ny], contact angle of each row */                                                     \
+  X(RP_FIELD_ROW_ANGLE, 14, "row_angle")
+typedef enum rp_field { RP_FIELDS(RP_ENUM_ENTRY) } rp_field;
 
 typedef struct rp_stage_info {
   const char *name;   /* "geometry", ... */
@@ -490,10 +559,12 @@ RP_API void rp_destroy(rp_contact *contact); /* null is allowed */
 RP_API rp_error rp_step(rp_contact *contact, const rp_input *input, rp_result *result,
                         rp_message *message);
 /* How a derivative was found. */
-typedef enum rp_derivative_kind {
-  RP_DERIVATIVE_EXACT = 0, /* from the solved conditions, by the implicit function theorem */
-  RP_DERIVATIVE_BY_DIFFERENCES = 1 /* central differences of steps beside the last one */
-} rp_derivative_kind;
+#define RP_DERIVATIVE_KINDS(X)                                       \
+  /* from the solved conditions, by the implicit function theorem */ \
+  X(RP_DERIVATIVE_EXACT, 0, "exact")                                 \
+  /* central differences of steps beside the last one */             \
+  X(RP_DERIVATIVE_BY_DIFFERENCES, 1, "differences")
+typedef enum rp_derivative_kind { RP_DERIVATIVE_KINDS(RP_ENUM_ENTRY) } rp_derivative_kind;
 
 /* Derivative of the last step's result in one direction (rp_default_direction): each double of
  * `direction` holds the rate of that input, its integers are ignored and so is a bulk_temperature
@@ -557,6 +628,8 @@ RP_API const char *rp_version(void);
 RP_API const char *rp_fft_backend(void);
 RP_API const char *rp_error_text(rp_error error);
 RP_API const char *rp_status_text(rp_status status);
+
+#undef RP_ENUM_ENTRY
 
 #ifdef __cplusplus
 }

@@ -353,4 +353,29 @@
   X(double, friction_coefficient, 1, number, own, 0, "", 0, 0, 0.1, "-",                           \
     "rate of the coefficient of Coulomb's law, of a direction only")
 
+/* --- choices: Y(type, list of the type's enumerators) -------------------------------------- */
+#define RP_CHOICES(Y)                                  \
+  Y(rp_side, RP_SIDES)                                 \
+  Y(rp_status, RP_STATUSES)                            \
+  Y(rp_kind, RP_KINDS)                                 \
+  Y(rp_geometry, RP_GEOMETRIES)                        \
+  Y(rp_load, RP_LOADS)                                 \
+  Y(rp_regime, RP_REGIMES)                             \
+  Y(rp_friction_law, RP_FRICTION_LAWS)                 \
+  Y(rp_slip_law, RP_SLIP_LAWS)                         \
+  Y(rp_plastic_rule, RP_PLASTIC_RULES)                 \
+  Y(rp_normal_method, RP_NORMAL_METHODS)               \
+  Y(rp_tangential_method, RP_TANGENTIAL_METHODS)       \
+  Y(rp_traction_bound, RP_TRACTION_BOUNDS)             \
+  Y(rp_flexibility_blending, RP_FLEXIBILITY_BLENDINGS) \
+  Y(rp_spin_offset, RP_SPIN_OFFSETS)                   \
+  Y(rp_patch_rule, RP_PATCH_RULES)                     \
+  Y(rp_contact_frame, RP_CONTACT_FRAMES)               \
+  Y(rp_reference_surface, RP_REFERENCE_SURFACES)       \
+  Y(rp_track, RP_TRACKS)                               \
+  Y(rp_element, RP_ELEMENTS)                           \
+  Y(rp_stage, RP_STAGES)                               \
+  Y(rp_field, RP_FIELDS)                               \
+  Y(rp_derivative_kind, RP_DERIVATIVE_KINDS)
+
 #endif

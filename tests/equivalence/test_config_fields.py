@@ -23,7 +23,10 @@ def test_the_default_config_is_the_listed_one() -> None:
     numbers = _core.config_numbers({})
     assert list(numbers) == list(_core.CONFIG_FIELDS)
     for name, field in _core.CONFIG_FIELDS.items():
-        assert numbers[name] == [field["start"]] * math.prod(field["shape"]), name
+        start = field["start"]
+        if field["role"] == "choice":
+            start = _core.CHOICES[field["type"].removeprefix("rp_")].index(start)
+        assert numbers[name] == [start] * math.prod(field["shape"]), name
 
 
 @pytest.mark.parametrize(

@@ -2,99 +2,23 @@
 
 #include <nanobind/stl/string.h>
 
-#include <cstring>
+#include <algorithm>
+#include <iterator>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 #include "railpatch_fields.h"
+#include "words.hpp"
 
 namespace railpatch::python {
 
 namespace {
 
-// --- enumerations ------------------------------------------------------------------------------
-
-struct Name {
-  const char *field;
-  const char *text;
-  int value;
-};
-
-// field of rp_config, text of the case file, value
-constexpr Name kNames[] = {
-    {"kind", "patch", RP_PATCH},
-    {"kind", "wheel_rail", RP_WHEEL_RAIL},
-    {"kind", "wheelset", RP_WHEELSET},
-    {"geometry", "semi_axes", RP_SEMI_AXES},
-    {"geometry", "curvatures", RP_CURVATURES},
-    {"geometry", "line_contact_radius", RP_LINE_CONTACT},
-    {"geometry", "undeformed_distance", RP_UNDEFORMED_DISTANCE},
-    {"load", "force", RP_FORCE},
-    {"load", "position", RP_POSITION},
-    {"regime", "none", RP_REGIME_NONE},
-    {"regime", "steady_rolling", RP_STEADY_ROLLING},
-    {"regime", "shift", RP_SHIFT},
-    {"regime", "transient_rolling", RP_TRANSIENT_ROLLING},
-    {"friction_law", "coulomb", RP_COULOMB},
-    {"friction_law", "slip_velocity", RP_SLIP_VELOCITY},
-    {"friction_law", "temperature", RP_TEMPERATURE},
-    {"slip_law", "exponential", RP_SLIP_EXPONENTIAL},
-    {"slip_law", "rational", RP_SLIP_RATIONAL},
-    {"slip_law", "linear", RP_SLIP_LINEAR},
-    {"plastic_rule", "path", RP_PLASTIC_PATH},
-    {"plastic_rule", "magnitude", RP_PLASTIC_MAGNITUDE},
-    {"normal", "hertz", RP_NORMAL_HERTZ},
-    {"normal", "half_space", RP_NORMAL_HALF_SPACE},
-    {"normal", "kik_piotrowski", RP_NORMAL_KIK_PIOTROWSKI},
-    {"normal", "analyn", RP_NORMAL_ANALYN},
-    {"tangential", "none", RP_TANGENTIAL_NONE},
-    {"tangential", "fastsim", RP_TANGENTIAL_FASTSIM},
-    {"tangential", "full", RP_TANGENTIAL_FULL},
-    {"tangential", "linear", RP_TANGENTIAL_LINEAR},
-    {"tangential", "polach", RP_TANGENTIAL_POLACH},
-    {"tangential", "fastrip", RP_TANGENTIAL_FASTRIP},
-    {"traction_bound", "parabolic", RP_BOUND_PARABOLIC},
-    {"traction_bound", "elliptic", RP_BOUND_ELLIPTIC},
-    {"flexibility_blending", "sliding", RP_BLENDING_SLIDING},
-    {"flexibility_blending", "none", RP_BLENDING_NONE},
-    {"flexibility_blending", "contact", RP_BLENDING_CONTACT},
-    {"tangential", "table", RP_TANGENTIAL_TABLE},
-    {"spin_offset", "none", RP_SPIN_OFFSET_NONE},
-    {"spin_offset", "sixth", RP_SPIN_OFFSET_SIXTH},
-    {"patch_rule", "blended", RP_PATCHES_BLENDED},
-    {"patch_rule", "contact", RP_PATCHES_CONTACT},
-    {"contact_frame", "track", RP_FRAME_TRACK},
-    {"contact_frame", "inclined", RP_FRAME_INCLINED},
-    {"reference_surface", "plane", RP_REFERENCE_PLANE},
-    {"reference_surface", "curved", RP_REFERENCE_CURVED},
-    {"track", "rail", RP_RAIL},
-    {"track", "roller", RP_ROLLER},
-    {"side", "left", RP_LEFT},
-    {"side", "right", RP_RIGHT},
-};
-
-constexpr struct {
-  const char *text;
-  rp_field value;
-} kFields[] = {
-    {"x", RP_FIELD_X},
-    {"y", RP_FIELD_Y},
-    {"undeformed_distance", RP_FIELD_UNDEFORMED_DISTANCE},
-    {"pressure", RP_FIELD_PRESSURE},
-    {"traction", RP_FIELD_TRACTION},
-    {"micro_slip", RP_FIELD_MICRO_SLIP},
-    {"element_division", RP_FIELD_ELEMENT_DIVISION},
-    {"temperature", RP_FIELD_TEMPERATURE},
-    {"error_features", RP_FIELD_ERROR_FEATURES},
-    {"friction", RP_FIELD_FRICTION},
-    {"plastic_displacement", RP_FIELD_PLASTIC_DISPLACEMENT},
-    {"plastic_path", RP_FIELD_PLASTIC_PATH},
-    {"yield_stress", RP_FIELD_YIELD_STRESS},
-    {"row_position", RP_FIELD_ROW_POSITION},
-    {"row_angle", RP_FIELD_ROW_ANGLE},
-};
-
 // --- from Python -------------------------------------------------------------------------------
+
+// words of the lists
+enum class Role { choice, side, number, place, integer, points, unmarked };
 
 // reads the keys of a dictionary and counts them, so that a misspelt key is found at the end
 class Reader {
@@ -109,52 +33,26 @@ class Reader {
 
   nb::object at(const char *key) const { return nb::object(from_[key]); }
 
-  // by role
-  template <typename T>
-  void choice(const char *key, T &to) {
-    name(key, to);
-  }
-  template <typename T>
-  void side(const char *key, T &to) {
-    name(key, to);
-  }
-  template <typename T>
-  void number(const char *key, T &to) {
-    numbers(key, to);
-  }
-  template <typename T>
-  void place(const char *key, T &to) {
-    numbers(key, to);
-  }
-  template <typename T>
-  void integer(const char *key, T &to) {
-    numbers(key, to);
-  }
-  template <typename T>
-  void points(const char *key, T &to) {
-    numbers(key, to);
-  }
-  template <typename T>
-  void unmarked(const char *key, T &to) {
-    numbers(key, to);
+  template <Role role, typename T>
+  void read(const char *key, T &to) {
+    if constexpr (role == Role::choice) {
+      word<T>(key, to);
+    } else if constexpr (role == Role::side) {
+      word<rp_side>(key, to);
+    } else {
+      if (has(key)) fill(at(key), key, to);
+    }
   }
 
-  template <typename T>
-  void numbers(const char *key, T &to) {
-    if (has(key)) fill(at(key), key, to);
-  }
-
-  template <typename T>
-  void name(const char *key, T &to) {
+  template <typename Choice, typename T>
+  void word(const char *key, T &to) {
     if (!has(key)) return;
     const auto text = nb::cast<std::string>(at(key));
-    for (const Name &entry : kNames) {
-      if (std::strcmp(entry.field, key) == 0 && text == entry.text) {
-        to = static_cast<T>(entry.value);
-        return;
-      }
-    }
-    throw nb::value_error((std::string(key) + ": no such choice: " + text).c_str());
+    const auto &words = Words<Choice>::all;
+    const auto *found = std::find(std::begin(words), std::end(words), text);
+    if (found == std::end(words))
+      throw nb::value_error((std::string(key) + ": no such choice: " + text).c_str());
+    to = static_cast<T>(found - words);
   }
 
   // raises KeyError with a key that was not read
@@ -269,56 +167,38 @@ nb::list numbers_of(const T &field) {
   }
 }
 
-nb::dict patch_dict(const rp_patch_result &patch) {
+template <typename T>
+nb::object value_of(const T &field) {
+  if constexpr (std::is_array_v<T>) {
+    return list_of(field);
+  } else if constexpr (std::is_same_v<T, rp_status>) {
+    return nb::cast(rp_status_text(field));
+  } else {
+    return nb::cast(field);
+  }
+}
+
+#define RAILPATCH_SKIP(type, field, count)
+#define RAILPATCH_VALUE(type, field, ...) to[#field] = value_of(from.field);
+
+nb::dict patch_dict(const rp_patch_result &from) {
   nb::dict to;
-  to["status"] = rp_status_text(patch.status);
-  to["normal_force"] = patch.normal_force;
-  to["approach"] = patch.approach;
-  to["creep_force"] = list_of(patch.creep_force);
-  to["spin_moment"] = patch.spin_moment;
-  to["max_pressure"] = patch.max_pressure;
-  to["contact_area"] = patch.contact_area;
-  to["elements"] = list_of(patch.elements);
-  to["max_temperature"] = patch.max_temperature;
-  to["friction_power"] = patch.friction_power;
-  to["plastic_power"] = patch.plastic_power;
-  to["elastic_energy"] = patch.elastic_energy;
-  to["normal_iterations"] = patch.normal_iterations;
-  to["newton_iterations"] = patch.newton_iterations;
-  to["inner_iterations"] = patch.inner_iterations;
-  to["outer_iterations"] = patch.outer_iterations;
-  to["ambiguous_elements"] = patch.ambiguous_elements;
-  to["residual"] = patch.residual;
+  RP_PATCH_RESULT_FIELDS(RAILPATCH_VALUE, RAILPATCH_SKIP)
   nb::dict errors;
-  errors["creep_force"] = patch.error_estimate[0];
-  errors["spin_moment"] = patch.error_estimate[1];
-  errors["max_pressure"] = patch.error_estimate[2];
+  errors["creep_force"] = from.error_estimate[0];
+  errors["spin_moment"] = from.error_estimate[1];
+  errors["max_pressure"] = from.error_estimate[2];
   to["error_estimate"] = errors;
-  to["share"] = patch.share;
-  to["position"] = list_of(patch.position);
-  to["contact_angle"] = patch.contact_angle;
-  to["creepage"] = list_of(patch.creepage);
-  to["spin_creepage"] = patch.spin_creepage;
-  to["rolling_speed"] = patch.rolling_speed;
-  to["direction"] = patch.direction;
-  to["grid"] = list_of(patch.grid);
-  to["grid_origin"] = list_of(patch.grid_origin);
-  to["element_size"] = list_of(patch.element_size);
   return to;
 }
 
-nb::dict side_dict(const rp_side_result &side) {
-  nb::list patches, alternatives;
-  for (int i = 0; i < side.patch_count; ++i) patches.append(patch_dict(side.patch[i]));
-  for (int i = 0; i < side.alternative_count; ++i)
-    alternatives.append(patch_dict(side.patch[side.patch_count + i]));
+nb::dict side_dict(const rp_side_result &from) {
   nb::dict to;
-  to["status"] = rp_status_text(side.status);
-  to["force"] = list_of(side.force);
-  to["moment"] = list_of(side.moment);
-  to["rolling_radius"] = side.rolling_radius;
-  to["rail_deflection"] = list_of(side.rail_deflection);
-  to["rail_deflection_rate"] = list_of(side.rail_deflection_rate);
+  RP_SIDE_RESULT_FIELDS(RAILPATCH_VALUE, RAILPATCH_SKIP)
+  nb::list patches, alternatives;
+  for (int i = 0; i < from.patch_count; ++i) patches.append(patch_dict(from.patch[i]));
+  for (int i = 0; i < from.alternative_count; ++i)
+    alternatives.append(patch_dict(from.patch[from.patch_count + i]));
   to["patches"] = patches;
   to["alternatives"] = alternatives;
   return to;
@@ -326,8 +206,7 @@ nb::dict side_dict(const rp_side_result &side) {
 
 }  // namespace
 
-#define RAILPATCH_READ(type, field, count, role, ...) reader.role(#field, c.field);
-#define RAILPATCH_SKIP(type, field, count)
+#define RAILPATCH_READ(type, field, count, role, ...) reader.read<Role::role>(#field, c.field);
 
 void fill_config(const nb::dict &from, Config &to) {
   rp_config &c = to.values;
@@ -374,20 +253,16 @@ nb::dict jacobian_dict(const rp_jacobian &found) {
   for (double v : found.z) z.append(v);
   to["z"] = z;
   to["z_force"] = found.z_force;
-  to["kind"] = found.kind == RP_DERIVATIVE_EXACT ? "exact" : "differences";
+  to["kind"] = Words<rp_derivative_kind>::all[found.kind];
   to["status"] = rp_status_text(found.status);
   return to;
 }
 
-nb::dict result_dict(const rp_result &result) {
+nb::dict result_dict(const rp_result &from) {
   nb::dict to;
-  to["status"] = rp_status_text(result.status);
-  to["z"] = result.z;
-  to["force"] = list_of(result.force);
-  to["moment"] = list_of(result.moment);
-  to["evaluations"] = result.evaluations;
-  to["left"] = side_dict(result.side[RP_LEFT]);
-  to["right"] = side_dict(result.side[RP_RIGHT]);
+  RP_RESULT_FIELDS(RAILPATCH_VALUE, RAILPATCH_SKIP)
+  to["left"] = side_dict(from.side[RP_LEFT]);
+  to["right"] = side_dict(from.side[RP_RIGHT]);
   return to;
 }
 
@@ -406,10 +281,10 @@ nb::list stage_list(const rp_stage_info *info, const double *seconds) {
 }
 
 rp_field field_of(const char *name) {
-  for (const auto &entry : kFields) {
-    if (std::strcmp(entry.text, name) == 0) return entry.value;
-  }
-  throw nb::key_error(name);
+  const auto &words = Words<rp_field>::all;
+  const auto *found = std::find(std::begin(words), std::end(words), std::string_view(name));
+  if (found == std::end(words)) throw nb::key_error(name);
+  return static_cast<rp_field>(found - words);
 }
 
 }  // namespace railpatch::python

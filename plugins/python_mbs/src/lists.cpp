@@ -2,11 +2,11 @@
 
 #include <nanobind/stl/string.h>
 
-#include <cstring>
 #include <string>
 #include <type_traits>
 
 #include "railpatch_fields.h"
+#include "words.hpp"
 
 namespace railpatch::python {
 
@@ -50,7 +50,7 @@ nb::dict field(const char *type, const char *role, const char *where,
   to["role"] = role;
   to["where"] = where;
   if constexpr (std::is_enum_v<std::remove_all_extents_t<T>>) {
-    to["start"] = static_cast<int>(start);
+    to["start"] = Words<std::remove_all_extents_t<T>>::all[start];
   } else {
     to["start"] = start;
   }
@@ -93,6 +93,19 @@ nb::dict listed_quantities() {
   RP_RESULT_FIELDS(RAILPATCH_QUANTITY, RAILPATCH_SKIP)
   all["result"] = to;
   return all;
+}
+
+// a type's name without rp_ -> its words
+nb::dict listed_choices() {
+  nb::dict to;
+#define RAILPATCH_CHOICE(type, LIST)                              \
+  {                                                               \
+    nb::list words;                                               \
+    for (const char *word : Words<type>::all) words.append(word); \
+    to[#type + 3] = nb::tuple(words);                             \
+  }
+  RP_CHOICES(RAILPATCH_CHOICE)
+  return to;
 }
 
 nb::dict listed_config() {

@@ -10,6 +10,8 @@ namespace nb = nanobind;
 // name -> dict of "type", "shape", "role", "mirror", "sum", "unit", "text"; for the structs
 // "patch", "side" and "result"
 nb::dict listed_quantities();
+// name of an enumeration, without rp_ -> tuple of its words
+nb::dict listed_choices();
 // name -> dict of "type", "shape", "role", "where", "start", "bounds", "low", "high", "unit",
 // "text"
 nb::dict listed_config();

@@ -264,6 +264,7 @@ NB_MODULE(_core, m) {
   m.attr("ERRORS") = texts;
 #undef RAILPATCH_ENTRY
   set_theories(m);
+  m.attr("CHOICES") = listed_choices();
   m.attr("QUANTITIES") = listed_quantities();
   m.attr("CONFIG_FIELDS") = listed_config();
   m.attr("INPUT_FIELDS") = listed_input();
