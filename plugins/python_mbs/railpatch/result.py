@@ -8,37 +8,51 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from railpatch import _core
+
+# quantities that the core gives and the JSON result leaves out, and why; by struct
+LEFT_OUT = {
+    "patch": {
+        "normal_iterations": "part of iterations",
+        "newton_iterations": "part of iterations",
+        "inner_iterations": "work of the tangential solver, for those who measure it in C",
+        "direction": "of the case",
+        "grid": "the shape of the fields",
+        "grid_origin": "in the fields x and y",
+        "element_size": "in the fields x and y",
+    },
+    "side": {
+        "patch_count": "the length of patches",
+        "alternative_count": "the length of alternatives",
+    },
+}
+# what a patch given by itself has from its case
+GIVEN = ("share", "position", "contact_angle", "creepage", "spin_creepage", "rolling_speed")
+
+
+def unit_of(struct: str, name: str) -> str:
+    """Of a quantity of the core; none for a number without one."""
+    unit = str(_core.QUANTITIES[struct][name]["unit"])
+    return "" if unit == "-" else unit
+
+
+def units_of(struct: str, added: dict[str, dict[str, str]]) -> dict[str, str]:
+    """Units by name in the core's order; added: name -> units of what stands before it."""
+    units: dict[str, str] = {}
+    for name in _core.QUANTITIES[struct]:
+        units |= added.get(name, {})
+        if name not in LEFT_OUT[struct]:
+            units[name] = unit_of(struct, name)
+    return units
+
+
+_PATCH = units_of("patch", {"normal_iterations": {"iterations": ""}})
 # quantities of a patch in the order of the JSON result, with their units
-PATCH_UNITS = {
-    "status": "",
-    "normal_force": "N",
-    "approach": "m",
-    "creep_force": "N",
-    "spin_moment": "N m",
-    "max_pressure": "Pa",
-    "contact_area": "m^2",
-    "elements": "",
-    "max_temperature": "degrees C",
-    "friction_power": "W",
-    "plastic_power": "W",
-    "elastic_energy": "J",
-    "iterations": "",
-    "outer_iterations": "",
-    "ambiguous_elements": "",
-    "residual": "",
-    "error_estimate": "N, N m, Pa",
-}
+PATCH_UNITS = {name: unit for name, unit in _PATCH.items() if name not in GIVEN}
 # what a patch of a wheel has besides
-PLACE_UNITS = {
-    "share": "",
-    "position": "m",
-    "contact_angle": "rad",
-    "creepage": "",
-    "spin_creepage": "rad/m",
-    "rolling_speed": "m/s",
-}
-WHEEL_UNITS = {"status": "", "force": "N", "moment": "N m", "z": "m"}
-DIVISION = ("exterior", "stick", "slip", "plastic")
+PLACE_UNITS = {name: unit for name, unit in _PATCH.items() if name in GIVEN}
+WHEEL_UNITS = units_of("side", {"rolling_radius": {"z": unit_of("result", "z")}})
+DIVISION: tuple[str, ...] = _core.CHOICES["element"]
 # fields with their number of components
 FIELDS = {
     "x": 0,
@@ -167,17 +181,12 @@ def known(values: list[float]) -> list[float] | None:
 
 def wheel_data(side: dict[str, Any], z: float) -> dict[str, Any]:
     """The quantities of one wheel, from the core's rp_side_result."""
-    return {
-        "status": side["status"],
-        "force": side["force"],
-        "moment": side["moment"],
-        "z": z,
-        "rolling_radius": side["rolling_radius"],
-        "rail_deflection": known(side["rail_deflection"]),
-        "rail_deflection_rate": known(side["rail_deflection_rate"]),
-        "patches": [patch_data(patch, of_wheel=True) for patch in side["patches"]],
-        "alternatives": [patch_data(patch, of_wheel=True) for patch in side["alternatives"]],
-    }
+    found = {name: z if name == "z" else side[name] for name in WHEEL_UNITS}
+    for name in ("rail_deflection", "rail_deflection_rate"):
+        found[name] = known(side[name])
+    for name in ("patches", "alternatives"):
+        found[name] = [patch_data(patch, of_wheel=True) for patch in side[name]]
+    return found
 
 
 def field_shape(name: str, grid: list[int]) -> tuple[int, ...]:

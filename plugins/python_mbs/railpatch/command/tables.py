@@ -28,6 +28,11 @@ def print_result(result: Result, console: Console | None = None) -> None:
             for side, wheel in wheels.items()
             for index, patch in enumerate(wheel["patches"])
         ]
+        columns += [
+            (f"{side} alternative {index + 1}", patch)
+            for side, wheel in wheels.items()
+            for index, patch in enumerate(wheel["alternatives"])
+        ]
         if columns:
             console.print(patch_table(columns, {**PATCH_UNITS, **PLACE_UNITS}))
     console.print(f"solved in {1e3 * data['wall_time']:.3g} ms: {', '.join(data['stages'])}")
@@ -50,7 +55,10 @@ def wheel_table(data: dict[str, Any], wheels: dict[str, dict[str, Any]]) -> Tabl
         columns["wheelset"] = data
     table = new_table(list(columns), "wheel")
     for key, unit in WHEEL_UNITS.items():
-        table.add_row(key, unit, *(spell(values[key]) for values in columns.values()))
+        # the wheelset has no rolling radius, and most rails do not deflect
+        cells = [spell(values.get(key)) for values in columns.values()]
+        if any(cells):
+            table.add_row(key, unit, *cells)
     return table
 
 

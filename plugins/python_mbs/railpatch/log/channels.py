@@ -10,12 +10,15 @@ Conventions that hold for every channel stand in ``CONVENTIONS``.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
-STATUSES = ("converged", "no_contact", "not_converged", "out_of_range")
+from railpatch import _core
+
+STATUSES: tuple[str, ...] = _core.CHOICES["status"]
 # m, over which wheel forces are averaged before their ratio is judged (EN 14363)
 SLIDING = 2.0
 # N: below, a wheel has no ratio of its forces
@@ -25,7 +28,7 @@ LEAST_LOAD = 1.0
 HUNTING = "hunting.json"
 
 # codes of element_division, in this order from 0
-ELEMENT_STATES = ("exterior", "stick", "slip", "plastic")
+ELEMENT_STATES: tuple[str, ...] = _core.CHOICES["element"]
 
 CONVENTIONS = {
     "units": "SI; temperatures in degrees Celsius, angles in rad",
@@ -101,6 +104,14 @@ def _status(text: str, required: bool = False) -> Field:
     return Field("status", "string", "", text, choices=STATUSES, required=required)
 
 
+def _listed(struct: str, name: str, frame: str = "") -> Field:
+    """A quantity of the core's result, with unit and text from its list."""
+    known = _core.QUANTITIES[struct][name]
+    kind = "double" if known["type"] == "double" else "uint32"
+    unit = "degC" if known["unit"] == "degrees C" else known["unit"]
+    return Field(name, kind, unit, known["text"], frame, size=math.prod(known["shape"]))
+
+
 WHEELSET_STATE = Message(
     "WheelsetState",
     "Position and speeds of the wheelset, and what drives it.",
@@ -147,34 +158,38 @@ ERROR_ESTIMATE = Message(
     ),
 )
 
+_IN_CONTACT_FRAME = (
+    *("creepage", "spin_creepage", "rolling_speed"),
+    *("normal_force", "approach", "creep_force", "spin_moment"),
+)
 PATCH = Message(
     "Patch",
     "One contact patch.",
     (
-        _status("how the solution of this patch ended", required=True),
-        _number("position", "m", "contact reference", "track", size=3),
-        _number("contact_angle", "rad", "rotation about x from track z to the normal", "track"),
-        _number("creepage", "-", "longitudinal and lateral creepage", "contact", size=2),
-        _number("spin_creepage", "rad/m", "spin creepage", "contact"),
-        _number("rolling_speed", "m/s", "mean speed of the two surfaces along x", "contact"),
-        _number("normal_force", "N", "normal force, >= 0", "contact"),
-        _number("approach", "m", "approach of the bodies", "contact"),
-        _number("creep_force", "N", "longitudinal and lateral creep force", "contact", size=2),
-        _number("spin_moment", "N m", "moment about the normal", "contact"),
-        _number("max_pressure", "Pa", "highest contact pressure"),
-        _number("contact_area", "m^2", "area in contact"),
-        Field("elements", ELEMENTS, "", "the element division, counted"),
-        _number("max_temperature", "degC", "highest surface temperature"),
-        _number("friction_power", "W", "power lost in friction, >= 0"),
-        _number("elastic_energy", "J", "elastic energy"),
+        # their order is that of the field numbers: what is new goes to the end
+        _status(_core.QUANTITIES["patch"]["status"]["text"], required=True),
+        _listed("patch", "position", "track"),
+        _listed("patch", "contact_angle", "track"),
+        *(_listed("patch", name, "contact") for name in _IN_CONTACT_FRAME),
+        _listed("patch", "max_pressure"),
+        _listed("patch", "contact_area"),
+        Field("elements", ELEMENTS, "", _core.QUANTITIES["patch"]["elements"]["text"]),
+        _listed("patch", "max_temperature"),
+        _listed("patch", "friction_power"),
+        _listed("patch", "elastic_energy"),
         _count("iterations", "iterations of the solution"),
-        _number("residual", "-", "residual at the end"),
+        _listed("patch", "residual"),
         _number("wall_time", "s", "wall-clock time of the solution"),
-        Field("error_estimate", ERROR_ESTIMATE, "", "estimated errors"),
-        _number("plastic_power", "W", "power of the layer's plastic displacement, >= 0"),
-        _count("outer_iterations", "rounds of stages that act on each other"),
-        _count("ambiguous_elements", "elements whose friction law has further solutions"),
-        _number("share", "-", "share of this solution in the wheel's force"),
+        Field(
+            "error_estimate",
+            ERROR_ESTIMATE,
+            "",
+            _core.QUANTITIES["patch"]["error_estimate"]["text"],
+        ),
+        _listed("patch", "plastic_power"),
+        _listed("patch", "outer_iterations"),
+        _listed("patch", "ambiguous_elements"),
+        _listed("patch", "share"),
     ),
 )
 
@@ -182,15 +197,15 @@ WHEEL_CONTACT = Message(
     "WheelContact",
     "Contact of one wheel with its rail or roller.",
     (
-        _status("how the solution of this wheel ended", required=True),
-        _number("force", "N", "contact force on the wheel", "track", size=3),
-        _number("moment", "N m", "its moment about the wheelset's centre", "track", size=3),
+        _status(_core.QUANTITIES["side"]["status"]["text"], required=True),
+        _listed("side", "force", "track"),
+        _listed("side", "moment", "track"),
         _number("z", "m", "vertical position of the wheelset, where it was found", "track"),
-        _number("rolling_radius", "m", "radius on which the wheel rolls"),
+        _listed("side", "rolling_radius"),
         _number("wall_time", "s", "wall-clock time of the solution"),
         Field("patches", PATCH, "", "the contact patches; none without contact", size=0),
-        _number("rail_deflection", "m", "of an elastic rail: lateral, vertical", "track", size=2),
-        _number("rail_deflection_rate", "m/s", "its rate in the step", "track", size=2),
+        _listed("side", "rail_deflection", "track"),
+        _listed("side", "rail_deflection_rate", "track"),
         Field(
             "alternatives",
             PATCH,
