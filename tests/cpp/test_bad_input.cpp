@@ -9,6 +9,7 @@
 #include <random>
 #include <type_traits>
 
+#include "handle/case_fields.hpp"
 #include "railpatch_fields.h"
 #include "scenes.hpp"
 
@@ -889,36 +890,9 @@ class Garbage : public testing::Test {
     if (rarely()) c.side = count();
   }
   void spoil(rp_input &in) {
-    double *const numbers[] = {&in.normal_force,
-                               &in.approach,
-                               &in.creepage[0],
-                               &in.creepage[1],
-                               &in.spin_creepage,
-                               &in.rolling_speed,
-                               &in.y,
-                               &in.z,
-                               &in.vertical_force,
-                               &in.roll,
-                               &in.yaw,
-                               &in.speed,
-                               &in.vy,
-                               &in.vz,
-                               &in.roll_rate,
-                               &in.yaw_rate,
-                               &in.pitch_rate,
-                               &in.roller_pitch_rate,
-                               &in.x,
-                               &in.pitch,
-                               &in.time_step,
-                               &in.wheel_velocity[0][1],
-                               &in.rail_angular_velocity[1][2],
-                               &in.wheel_offset[0][1],
-                               &in.wheel_rotation[1][0],
-                               &in.wheel_rotation[0][2],
-                               &in.rail_offset[1][1],
-                               &in.rail_rotation[0][0]};
-    for (double *v : numbers)
-      if (random() % 8 == 0) *v = number();
+    railpatch::for_each_number(in, [&](const char *, double &v, double) {
+      if (random() % 24 == 0) v = number();
+    });
     if (rarely()) in.direction = count();
   }
   // runs a config with some inputs; counts what was accepted
