@@ -26,22 +26,21 @@ elastic_constants combine(const double shear_modulus[2], const double poisson_ra
           0.25 * g * ((1.0 - 2.0 * nw) / gw - (1.0 - 2.0 * nr) / gr)};
 }
 
-influence::influence(const scene &scene, const fft_plans &plans)
-    : scene_(scene),
+influence::influence(const medium &of, const fft_plans &plans)
+    : medium_(of),
       plans_(plans),
-      full_(plans.max_nx(), plans.max_ny(), scene.tangential),
-      single_(plans.max_nx(), plans.max_ny(), scene.tangential) {
+      full_(plans.max_nx(), plans.max_ny(), of.tangential),
+      single_(plans.max_nx(), plans.max_ny(), of.tangential) {
   const auto nx = static_cast<size_t>(plans.max_nx()), ny = static_cast<size_t>(plans.max_ny());
   const size_t table = (nx / 2 + 1) * (ny / 2 + 1), half = (nx / 2 + 1) * ny;
   stride_ = static_cast<int>(nx / 2 + 1);
-  for (int k = 0; k < (scene.tangential ? 4 : 1); ++k) table_[k] = aligned_buffer<double>(table);
+  for (int k = 0; k < (of.tangential ? 4 : 1); ++k) table_[k] = aligned_buffer<double>(table);
   for (auto &corner : corner_) corner = aligned_buffer<double>((nx / 2 + 2) * (ny / 2 + 2));
   padded_ = aligned_buffer<double>(nx * ny);
   spectrum_ = aligned_buffer<double>(half);
   transform_ = aligned_buffer<std::complex<double>>(half);
-  if (scene.curved)
-    curved_ =
-        std::make_unique<conformal_influence>(plans, scene.tangential, scene.layer_flexibility);
+  if (of.curved)
+    curved_ = std::make_unique<conformal_influence>(plans, of.tangential, of.layer_flexibility);
 }
 
 bool influence::set_grid(const grid &g) {
@@ -64,13 +63,13 @@ bool influence::set_grid(const grid &g) {
 void influence::make_kernels(int half_x, int half_y) {
   half_x_ = half_x;
   half_y_ = half_y;
-  if (scene_.line_width > 0)
+  if (medium_.line_width > 0)
     make_line_kernels();
   else
     make_half_space_kernels();
-  if (!scene_.tangential) return;
-  table_[1][0] += scene_.layer_flexibility;
-  table_[2][0] += scene_.layer_flexibility;
+  if (!medium_.tangential) return;
+  table_[1][0] += medium_.layer_flexibility;
+  table_[2][0] += medium_.layer_flexibility;
 }
 
 void influence::make_half_space_kernels() {
@@ -83,10 +82,10 @@ void influence::make_half_space_kernels() {
       corner_[0][at] = y_log(x, y);
       corner_[1][at] = y_log(y, x);
       corner_[2][at] = -std::hypot(x, y);
-      if (scene_.by_length) make_rates(x, y, i - 0.5, at);
+      if (medium_.by_length) make_rates(x, y, i - 0.5, at);
     }
-  const double nu = scene_.elastic.poisson_ratio;
-  const double c = 1.0 / (pi * scene_.elastic.shear_modulus);
+  const double nu = medium_.elastic.poisson_ratio;
+  const double c = 1.0 / (pi * medium_.elastic.shear_modulus);
   for (int j = 0; j <= half_y_; ++j)
     for (int i = 0; i <= half_x_; ++i) {
       double sum[3];
@@ -96,7 +95,7 @@ void influence::make_half_space_kernels() {
       }
       const auto at = static_cast<size_t>(j * stride_ + i);
       table_[0][at] = c * (1.0 - nu) * (sum[0] + sum[1]);
-      if (!scene_.tangential) continue;
+      if (!medium_.tangential) continue;
       table_[1][at] = c * (sum[0] + (1.0 - nu) * sum[1]);
       table_[2][at] = c * (sum[1] + (1.0 - nu) * sum[0]);
       table_[3][at] = c * nu * sum[2];
@@ -112,15 +111,15 @@ void influence::make_rates(double x, double y, double moves, size_t at) {
 }
 
 void influence::make_line_kernels() {
-  const double nu = scene_.elastic.poisson_ratio;
-  const double c = 2.0 / (pi * scene_.elastic.shear_modulus);
+  const double nu = medium_.elastic.poisson_ratio;
+  const double c = 2.0 / (pi * medium_.elastic.shear_modulus);
   for (int i = 0; i <= half_x_; ++i) {
     const double lower = (i - 0.5) * grid_.dx, upper = (i + 0.5) * grid_.dx;
     const double value =
-        line_primitive(upper, scene_.line_width) - line_primitive(lower, scene_.line_width);
+        line_primitive(upper, medium_.line_width) - line_primitive(lower, medium_.line_width);
     const auto at = static_cast<size_t>(i);
     table_[0][at] = c * (1.0 - nu) * value;
-    if (!scene_.tangential) continue;
+    if (!medium_.tangential) continue;
     table_[1][at] = c * (1.0 - nu) * value;
     table_[2][at] = c * value;
     table_[3][at] = 0.0;
@@ -128,13 +127,13 @@ void influence::make_line_kernels() {
 }
 
 void influence::bodies_at(double x, double y, double values[3]) const {
-  const double nu = scene_.elastic.poisson_ratio;
-  const double c = 1.0 / (pi * scene_.elastic.shear_modulus);
-  if (scene_.line_width > 0) {
+  const double nu = medium_.elastic.poisson_ratio;
+  const double c = 1.0 / (pi * medium_.elastic.shear_modulus);
+  if (medium_.line_width > 0) {
     const double ends[2] = {x + 0.5 * grid_.dx, x - 0.5 * grid_.dx};
     double sum = 0;
     for (int k = 0; k < 2; ++k)
-      if (ends[k] != 0) sum += (k == 0 ? 1 : -1) * line_primitive(ends[k], scene_.line_width);
+      if (ends[k] != 0) sum += (k == 0 ? 1 : -1) * line_primitive(ends[k], medium_.line_width);
     values[0] = 2.0 * c * (1.0 - nu) * sum;
     values[1] = 2.0 * c * sum;
     values[2] = 0;
@@ -160,8 +159,8 @@ void influence::corner_at(double x, double y, double values[3]) {
 }
 
 void influence::from_corners(const double sum[3], double values[3]) const {
-  const double nu = scene_.elastic.poisson_ratio;
-  const double c = 1.0 / (pi * scene_.elastic.shear_modulus);
+  const double nu = medium_.elastic.poisson_ratio;
+  const double c = 1.0 / (pi * medium_.elastic.shear_modulus);
   values[0] = c * (sum[0] + (1.0 - nu) * sum[1]);
   values[1] = c * (sum[1] + (1.0 - nu) * sum[0]);
   values[2] = c * nu * sum[2];
@@ -191,7 +190,7 @@ void influence::transform_kernel(kernel k) {
 void influence::make_spectra() {
   using name = convolution<double>::kernel_name;
   constexpr name names[] = {name::zz, name::xx, name::yy, name::xy};
-  for (int k = scene_.tangential ? 3 : 0; k >= 0; --k) {
+  for (int k = medium_.tangential ? 3 : 0; k >= 0; --k) {
     transform_kernel(static_cast<kernel>(k));
     full_.set_spectrum(names[k], spectrum_.data());
     single_.set_spectrum(static_cast<convolution<float>::kernel_name>(names[k]), spectrum_.data());

@@ -47,7 +47,7 @@ enum class kernel { zz = 0, xx = 1, yy = 2, xy = 3 };
 
 class influence {
  public:
-  struct scene {
+  struct medium {
     elastic_constants elastic;
     double layer_flexibility = 0;  // m/Pa, thickness over shear modulus
     double line_width = 0;         // m, > 0: plane strain
@@ -57,7 +57,7 @@ class influence {
     bool curved = false;  // rows on a curved reference surface
   };
 
-  influence(const scene &scene, const fft_plans &plans);
+  influence(const medium &of, const fft_plans &plans);
 
   // Prepares kernels and spectra for a grid; false where the grid exceeds the plans. Cheap when
   // neither element size nor transform size changes.
@@ -84,7 +84,7 @@ class influence {
   void rolling_product_single(const double *px, const double *py, int direction, double *sx,
                               double *sy);
 
-  const scene &bodies() const { return scene_; }
+  const medium &bodies() const { return medium_; }
   // xx, yy and xy of the bodies at any offset (m), observer minus source.
   void bodies_at(double x, double y, double values[3]) const;
   // The same of the half-space in two steps, for many elements that share corners: primitives at a
@@ -105,7 +105,7 @@ class influence {
   void give_spectrum(kernel k);
   bool is_curved() const { return has_physics && curved_; }
 
-  scene scene_;
+  medium medium_;
   const fft_plans &plans_;
   grid grid_;
   int plan_ = -1;

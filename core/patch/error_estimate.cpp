@@ -29,7 +29,7 @@ struct network {
 #include "patch/error_model.inc"
 
 // Networks of force and moment, or null where the theory has none.
-const network *model_of(const solved_patch &patch) {
+const network *model_of(const estimated_patch &patch) {
   if (patch.tangential == RP_TANGENTIAL_FULL) return patch.fitted ? fitted_errors : uniform_errors;
   for (const auto &theory : fast_errors)
     if (theory.method == patch.tangential) return theory.errors;
@@ -115,7 +115,7 @@ struct error_model::scaled_motion {
 error_model::error_model(const elastic_constants &elastic, double layer_flexibility)
     : elastic_(elastic), layer_flexibility_(layer_flexibility), table_(elastic.poisson_ratio) {}
 
-error_model::scaled_motion error_model::scaled(const solved_patch &patch, const double axes[2],
+error_model::scaled_motion error_model::scaled(const estimated_patch &patch, const double axes[2],
                                                double capacity) const {
   const rolling_input &in = patch.rolling;
   const double g = elastic_.shear_modulus;
@@ -138,7 +138,7 @@ error_model::scaled_motion error_model::scaled(const solved_patch &patch, const 
   return m;
 }
 
-error_bounds error_model::estimate(const solved_patch &patch, const rp_patch_result &result,
+error_bounds error_model::estimate(const estimated_patch &patch, const rp_patch_result &result,
                                    double *features) const {
   error_bounds bounds;
   const bool hertz = patch.normal == RP_NORMAL_HERTZ;
@@ -170,7 +170,7 @@ error_bounds error_model::estimate(const solved_patch &patch, const rp_patch_res
   return bounds;
 }
 
-void error_model::describe_area(const solved_patch &patch, const rp_patch_result &result,
+void error_model::describe_area(const estimated_patch &patch, const rp_patch_result &result,
                                 const double axes[2], double *features) const {
   const double ratio = std::log(axes[0] / axes[1]);
   features[0] = ratio;
@@ -192,7 +192,7 @@ void error_model::describe_area(const solved_patch &patch, const rp_patch_result
   features[9] = patch.normal == RP_NORMAL_ANALYN;
 }
 
-void error_model::describe_motion(const solved_patch &patch, const rp_patch_result &result,
+void error_model::describe_motion(const estimated_patch &patch, const rp_patch_result &result,
                                   const scaled_motion &m, double force, double length,
                                   double *features) const {
   if (!(force > 0)) return;

@@ -37,7 +37,7 @@ struct contact_extent {
 contact_extent extent_of(const grid &g, const double *pressure);
 
 // What the estimate is made from besides the result.
-struct solved_patch {
+struct estimated_patch {
   rp_normal_method normal;
   rp_tangential_method tangential;
   const hertz_contact &hertz;  // where the pressure is Hertz's
@@ -59,15 +59,15 @@ class error_model {
   // layer_flexibility: m/Pa
   error_model(const elastic_constants &elastic, double layer_flexibility);
   // Of a patch in contact, by its result so far; fills features [error_feature_count].
-  error_bounds estimate(const solved_patch &patch, const rp_patch_result &result,
+  error_bounds estimate(const estimated_patch &patch, const rp_patch_result &result,
                         double *features) const;
 
  private:
   struct scaled_motion;
-  scaled_motion scaled(const solved_patch &patch, const double axes[2], double capacity) const;
-  void describe_area(const solved_patch &patch, const rp_patch_result &result, const double axes[2],
-                     double *features) const;
-  void describe_motion(const solved_patch &patch, const rp_patch_result &result,
+  scaled_motion scaled(const estimated_patch &patch, const double axes[2], double capacity) const;
+  void describe_area(const estimated_patch &patch, const rp_patch_result &result,
+                     const double axes[2], double *features) const;
+  void describe_motion(const estimated_patch &patch, const rp_patch_result &result,
                        const scaled_motion &m, double force, double length, double *features) const;
 
   elastic_constants elastic_;

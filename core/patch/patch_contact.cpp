@@ -224,11 +224,11 @@ derivative_outcome patch_contact::differentiate(const patch_problem &problem,
                                                 const derivative_options &options,
                                                 patch_change *out) {
   const stage_mark mark = shared_.marks.enter(RP_STAGE_DERIVATIVES);
-  const patch_derivative::solved solved{
+  const patch_derivative::solution found{
       shared_.scene,    problem,
       memory,           shared_.influence ? &*shared_.influence : nullptr,
       normal_.solver(), tangential_.blocks()};
-  return derivative_->solve(solved, in, count, options, out);
+  return derivative_->solve(found, in, count, options, out);
 }
 
 void patch_contact::estimate_error(const patch_problem &problem, const pressure_outcome &n,
@@ -238,8 +238,9 @@ void patch_contact::estimate_error(const patch_problem &problem, const pressure_
   const bool linear = scene.tangential == RP_TANGENTIAL_LINEAR;
   if (result.status != RP_CONVERGED && !(linear && result.status == RP_OUT_OF_RANGE)) return;
   if (scene.line_width > 0 || shared_.coupled || scene.curved) return;
-  solved_patch patch{scene.normal, scene.tangential, problem.hertz,  {}, {0, 0}, scene.is_fitted(),
-                     {1, 1},       scene.friction(), problem.rolling};
+  estimated_patch patch{scene.normal, scene.tangential, problem.hertz,
+                        {},           {0, 0},           scene.is_fitted(),
+                        {1, 1},       scene.friction(), problem.rolling};
   if (const creep_table *table = tangential_.table()) {
     patch.stated[0] = table->force_error();
     patch.stated[1] = table->moment_error();

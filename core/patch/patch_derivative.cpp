@@ -25,7 +25,7 @@ patch_derivative::patch_derivative(const patch_scene &scene, const fft_plans &pl
                                    int max_ny, bool stretches) {
   const int count = max_nx * max_ny;
   if (stretches && !(scene.line_width > 0)) {
-    influence::scene elastic{scene.elastic, 0.0, 0.0, rolls(scene)};
+    influence::medium elastic{scene.elastic, 0.0, 0.0, rolls(scene)};
     elastic.by_length = true;
     by_length_.emplace(elastic, plans);
   }
@@ -39,11 +39,11 @@ size_t patch_derivative::bytes() const {
          (tangential_ ? tangential_->bytes() : 0) + pressure_.bytes();
 }
 
-double *patch_derivative::rate_of(const solved &s, int k) {
+double *patch_derivative::rate_of(const solution &s, int k) {
   return pressure_.data() + static_cast<size_t>(k) * static_cast<size_t>(s.problem.g.count());
 }
 
-derivative_outcome patch_derivative::solve(const solved &s, const patch_variation *in, int count,
+derivative_outcome patch_derivative::solve(const solution &s, const patch_variation *in, int count,
                                            const derivative_options &options, patch_change *out) {
   derivative_outcome outcome;
   derivative_options o = options;
@@ -71,7 +71,7 @@ derivative_outcome patch_derivative::solve(const solved &s, const patch_variatio
   return outcome;
 }
 
-tangential_point patch_derivative::point_of(const solved &s) const {
+tangential_point patch_derivative::point_of(const solution &s) const {
   const patch_memory &m = s.memory;
   return {*s.a,
           by_length_ ? const_cast<influence *>(&*by_length_) : nullptr,
@@ -88,7 +88,7 @@ tangential_point patch_derivative::point_of(const solved &s) const {
           m.division.data()};
 }
 
-void patch_derivative::solve_some(const solved &s, const patch_variation *in, int count,
+void patch_derivative::solve_some(const solution &s, const patch_variation *in, int count,
                                   const derivative_options &o, bool by_resultants,
                                   patch_change *out, derivative_outcome &outcome) {
   if (normal_)
@@ -126,7 +126,7 @@ void patch_derivative::solve_some(const solved &s, const patch_variation *in, in
   for (int k = 0; k < count; ++k) add_tractions(s, in[k], t[k], o.energy, out[k]);
 }
 
-void patch_derivative::differentiate_half_space(const solved &s, const patch_variation *in,
+void patch_derivative::differentiate_half_space(const solution &s, const patch_variation *in,
                                                 int count, const derivative_options &o,
                                                 patch_change *out, derivative_outcome &outcome) {
   const patch_problem &problem = s.problem;
@@ -169,9 +169,9 @@ void patch_derivative::differentiate_half_space(const solved &s, const patch_var
   }
 }
 
-// The ellipse's pressure, sampled and then scaled to the force (patch_contact.cpp).
-void patch_derivative::differentiate_hertz(const solved &s, const patch_variation &v, double *rate,
-                                           patch_change &out) const {
+// The ellipse's pressure, sampled and then scaled to the force (normal_stage.cpp).
+void patch_derivative::differentiate_hertz(const solution &s, const patch_variation &v,
+                                           double *rate, patch_change &out) const {
   const grid &g = s.problem.g;
   const hertz_contact &c = s.problem.hertz, &d = v.hertz;
   const double a = c.semi_axes[0], b = c.semi_axes[1];
@@ -204,7 +204,7 @@ void patch_derivative::differentiate_hertz(const solved &s, const patch_variatio
 }
 
 // The pressure's wrench.
-void patch_derivative::add_pressure(const solved &s, const patch_variation &v, const double *rate,
+void patch_derivative::add_pressure(const solution &s, const patch_variation &v, const double *rate,
                                     patch_change &out) const {
   const grid &g = s.problem.g;
   const double *p = s.memory.pressure.data();
@@ -224,7 +224,7 @@ void patch_derivative::add_pressure(const solved &s, const patch_variation &v, c
 }
 
 // The tractions' wrench. In steady rolling friction takes the power -V sum p . w dA.
-void patch_derivative::add_tractions(const solved &s, const patch_variation &v,
+void patch_derivative::add_tractions(const solution &s, const patch_variation &v,
                                      const tangential_change &t, bool energy,
                                      patch_change &out) const {
   const patch_memory &m = s.memory;

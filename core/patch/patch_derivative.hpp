@@ -62,7 +62,7 @@ class patch_derivative {
                    bool stretches);
 
   // What has been solved and by what; absent stages are null.
-  struct solved {
+  struct solution {
     const patch_scene &scene;
     const patch_problem &problem;
     const patch_memory &memory;
@@ -70,25 +70,25 @@ class patch_derivative {
     normal_solver *normal;
     row_blocks *blocks;
   };
-  derivative_outcome solve(const solved &s, const patch_variation *in, int count,
+  derivative_outcome solve(const solution &s, const patch_variation *in, int count,
                            const derivative_options &o, patch_change *out);
   size_t bytes() const;
 
  private:
-  void solve_some(const solved &s, const patch_variation *in, int count,
+  void solve_some(const solution &s, const patch_variation *in, int count,
                   const derivative_options &o, bool by_resultants, patch_change *out,
                   derivative_outcome &outcome);
-  void differentiate_half_space(const solved &s, const patch_variation *in, int count,
+  void differentiate_half_space(const solution &s, const patch_variation *in, int count,
                                 const derivative_options &o, patch_change *out,
                                 derivative_outcome &outcome);
-  void differentiate_hertz(const solved &s, const patch_variation &v, double *rate,
+  void differentiate_hertz(const solution &s, const patch_variation &v, double *rate,
                            patch_change &out) const;
-  void add_pressure(const solved &s, const patch_variation &v, const double *rate,
+  void add_pressure(const solution &s, const patch_variation &v, const double *rate,
                     patch_change &out) const;
-  void add_tractions(const solved &s, const patch_variation &v, const tangential_change &t,
+  void add_tractions(const solution &s, const patch_variation &v, const tangential_change &t,
                      bool energy, patch_change &out) const;
-  tangential_point point_of(const solved &s) const;
-  double *rate_of(const solved &s, int k);
+  tangential_point point_of(const solution &s) const;
+  double *rate_of(const solution &s, int k);
 
   std::optional<influence> by_length_;
   std::optional<normal_derivative> normal_;

@@ -2,10 +2,10 @@
 
 namespace railpatch {
 
-influence::scene patch_scene::elastic_parts() const {
-  influence::scene parts{elastic, layer_flexibility, line_width, full_on_grid()};
-  parts.curved = curved;
-  return parts;
+influence::medium patch_scene::medium() const {
+  influence::medium m{elastic, layer_flexibility, line_width, full_on_grid()};
+  m.curved = curved;
+  return m;
 }
 
 bool patch_scene::estimates_force() const {

@@ -51,7 +51,7 @@ struct patch_scene {
   bool full_on_grid() const { return tangential == RP_TANGENTIAL_FULL && !is_fitted(); }
   bool needs_influence() const { return normal == RP_NORMAL_HALF_SPACE || full_on_grid(); }
   // What the influence coefficients are made of.
-  influence::scene elastic_parts() const;
+  influence::medium medium() const;
   // Pressure and traction act on each other, and both are there.
   bool couples() const {
     return has_physics && tangential == RP_TANGENTIAL_FULL && (curved || is_coupled(elastic));

@@ -9,7 +9,7 @@ namespace railpatch {
 patch_workspace::patch_workspace(const patch_scene &of, stage_marks at, const fft_plans &plans,
                                  int max_count)
     : scene(of), marks(at) {
-  if (scene.needs_influence()) influence.emplace(scene.elastic_parts(), plans);
+  if (scene.needs_influence()) influence.emplace(scene.medium(), plans);
   if (scene.couples()) {
     std::unique_ptr<coupling_operator> coupling;
     if (scene.curved)

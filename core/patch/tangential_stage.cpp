@@ -18,7 +18,7 @@ tangential_stage::tangential_stage(patch_workspace &shared, const fft_plans &pla
     // with a prescribed force no creepage is known to start from
     const bool plain = !scene.is_forced() && !scene.law && !scene.keeps_steps() && !scene.couples();
     if (plain && coarse_start::serves(max_nx, max_ny))
-      coarse_start_.emplace(scene.elastic_parts(), plans, max_nx, max_ny);
+      coarse_start_.emplace(scene.medium(), plans, max_nx, max_ny);
     bound_ = aligned_buffer<double>(count);
   }
   if (is_fast(scene.tangential)) fast_.emplace(scene.elastic, scene.fast, max_nx, max_ny);

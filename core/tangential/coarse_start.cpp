@@ -18,16 +18,16 @@ grid coarsened(const grid &g) {
 
 }  // namespace
 
-coarse_start::coarse_start(const influence::scene &scene, const fft_plans &plans, int max_nx,
+coarse_start::coarse_start(const influence::medium &of, const fft_plans &plans, int max_nx,
                            int max_ny)
     : plans_(plans.halved()),
-      influence_(scene, plans_),
+      influence_(of, plans_),
       solver_(half(max_nx), half(max_ny), tangential_solver::setup{}) {
   const int nx = half(max_nx), ny = half(max_ny);
   const auto n = static_cast<size_t>(nx) * static_cast<size_t>(ny);
   for (auto *b : {&pressure_, &bound_, &px_, &py_, &sx_, &sy_}) *b = aligned_buffer<double>(n);
   division_ = aligned_buffer<unsigned char>(n);
-  if (serves(nx, ny)) coarser_ = std::make_unique<coarse_start>(scene, plans_, nx, ny);
+  if (serves(nx, ny)) coarser_ = std::make_unique<coarse_start>(of, plans_, nx, ny);
 }
 
 size_t coarse_start::bytes() const {

@@ -14,7 +14,7 @@ namespace railpatch {
 class coarse_start {
  public:
   // Of grids up to the given size, whose products use the given transforms.
-  coarse_start(const influence::scene &scene, const fft_plans &plans, int max_nx, int max_ny);
+  coarse_start(const influence::medium &of, const fft_plans &plans, int max_nx, int max_ny);
   // Whether a grid is fine enough to be worth it.
   static bool serves(int nx, int ny) { return nx >= least_elements && ny >= least_elements; }
 

@@ -49,11 +49,11 @@ bool rail_support::evaluate(supported_wheels &wheels, trial &t) {
           load_.time_step > 0 ? (t.deflection[w][k] - before_[w][k]) / load_.time_step : 0.0;
   const std::array<lateral_vertical, 2> rates{rails_[0].rate, rails_[1].rate};
   wheels.move_rails(t.deflection.data(), rates.data());
-  if (!wheels.evaluate(t.z, t.contact.data())) return false;
+  if (!wheels.evaluate(t.z, t.wheel.data())) return false;
   double squares = 0, carrying = 0;
   t.residual = 0;
   for (std::size_t w = 0; w < at(count_); ++w) {
-    const lateral_vertical &force = t.contact[w].force;
+    const lateral_vertical &force = t.wheel[w].force;
     carrying += force[1];
     for (std::size_t k = 0; k < 2; ++k) {
       if (rigid(k)) continue;
@@ -172,7 +172,7 @@ bool rail_support::find_slopes(supported_wheels &wheels, const trial &base) {
     trial moved = base;
     for (std::size_t w = 0; w < at(count_); ++w) {
       const double depth = base.z - base.deflection[w][1] - touch_[w];
-      const double rolled = base.contact[w].rolling_speed * load_.time_step;
+      const double rolled = base.wheel[w].rolling_speed * load_.time_step;
       double &h = rails_[w].difference[k];
       if (k == 0)
         h = rolled > 0 ? std::min(lateral_difference, creepage_difference * rolled)
@@ -189,7 +189,7 @@ bool rail_support::find_slopes(supported_wheels &wheels, const trial &base) {
     for (std::size_t w = 0; w < at(count_); ++w)
       for (std::size_t i = 0; i < 2; ++i)
         rails_[w].slope[i][k] =
-            (moved.contact[w].force[i] - base.contact[w].force[i]) / rails_[w].difference[k];
+            (moved.wheel[w].force[i] - base.wheel[w].force[i]) / rails_[w].difference[k];
   }
   for (rail &r : rails_) r.time_step = load_.time_step;
   return true;
@@ -230,7 +230,7 @@ rail_support::trial rail_support::newton_step(const trial &base, double share) c
   for (std::size_t w = 0; w < at(count_); ++w) {
     // a wheel out of contact has no slopes
     static constexpr std::array<lateral_vertical, 2> none{};
-    const auto &s = length(base.contact[w].force) > 0 ? rails_[w].slope : none;
+    const auto &s = length(base.wheel[w].force) > 0 ? rails_[w].slope : none;
     double m[2][2] = {{1, 0}, {0, 1}};
     lateral_vertical right{}, right_z{0, -1};
     for (std::size_t k = 0; k < 2; ++k) {
@@ -277,7 +277,7 @@ rail_support::trial rail_support::newton_step(const trial &base, double share) c
 // Broyden's update, each direction measured by its difference.
 void rail_support::learn(const trial &base, const trial &next) {
   for (std::size_t w = 0; w < at(count_); ++w) {
-    if (!(length(base.contact[w].force) > 0)) continue;
+    if (!(length(base.wheel[w].force) > 0)) continue;
     const lateral_vertical way{next.deflection[w][0] - base.deflection[w][0],
                                next.deflection[w][1] - next.z - base.deflection[w][1] + base.z};
     lateral_vertical scaled{};
@@ -291,7 +291,7 @@ void rail_support::learn(const trial &base, const trial &next) {
     if (!(square > 1e-4)) continue;
     auto &s = rails_[w].slope;
     for (std::size_t i = 0; i < 2; ++i) {
-      const double change = next.contact[w].force[i] - base.contact[w].force[i];
+      const double change = next.wheel[w].force[i] - base.wheel[w].force[i];
       const double error = change - s[i][0] * way[0] - s[i][1] * way[1];
       for (std::size_t k = 0; k < 2; ++k) s[i][k] += error * scaled[k] / square;
     }
@@ -361,7 +361,7 @@ void rail_support::keep(const trial &last) {
     rail &r = rails_[w];
     reported_[w] = {r.deflection = last.deflection[w], r.rate};
     const double depth = last.z - last.deflection[w][1] - touch_[w];
-    const double hertz = last.contact[w].force[1] / (depth * std::sqrt(depth));
+    const double hertz = last.wheel[w].force[1] / (depth * std::sqrt(depth));
     if (depth > 1e-7 && hertz > 1e6 && hertz < 1e14) r.hertz = hertz;
   }
 }

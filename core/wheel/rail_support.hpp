@@ -17,10 +17,10 @@ namespace railpatch {
 
 using lateral_vertical = std::array<double, 2>;
 
-// The contact of the wheels as the support needs it.
+// The wheels as the support needs them.
 class supported_wheels {
  public:
-  struct contact {
+  struct wheel_on_rail {
     lateral_vertical force{};  // N, of the wheel on the rail
     double rolling_speed = 0;  // m/s
   };
@@ -30,7 +30,7 @@ class supported_wheels {
   // z where this wheel first touches its rail as it stands; false: nowhere.
   virtual bool first_touch(int wheel, double &z) = 0;
   // Solves the contacts at z; false where a force is not known.
-  virtual bool evaluate(double z, contact *out) = 0;
+  virtual bool evaluate(double z, wheel_on_rail *out) = 0;
 };
 
 struct support_load {
@@ -79,7 +79,7 @@ class rail_support {
   struct trial {
     double z = 0;
     std::array<lateral_vertical, 2> deflection{};
-    std::array<supported_wheels::contact, 2> contact{};
+    std::array<supported_wheels::wheel_on_rail, 2> wheel{};
     std::array<lateral_vertical, 2> gap{};  // N, of each rail's equation
     double missing = 0;                     // N, of the prescribed force
     double merit = 0, residual = 0;         // N; relative

@@ -29,7 +29,7 @@ class wheels_of_step final : public supported_wheels {
   bool first_touch(int wheel, double &z) override {
     return wheels_[static_cast<size_t>(wheel)].first_touch(z);
   }
-  bool evaluate(double z, contact *out) override { return evaluate_(z, out); }
+  bool evaluate(double z, wheel_on_rail *out) override { return evaluate_(z, out); }
 
  private:
   std::vector<wheel_contact> &wheels_;
@@ -41,7 +41,7 @@ class wheels_of_step final : public supported_wheels {
 }  // namespace
 
 void wheels::solve_supported(const rp_input &in, rp_result &out) {
-  const auto evaluate = [&](double z, supported_wheels::contact *found) {
+  const auto evaluate = [&](double z, supported_wheels::wheel_on_rail *found) {
     this->evaluate(z, out);
     bool known = true;
     for (size_t w = 0; w < wheels_.size(); ++w) {

@@ -20,9 +20,9 @@ double error_of(int n, double pole_x, double pole_y) {
   const grid g{
       n, n, size * unit, size * unit, (0.5 * size - 0.5) * unit, (0.5 * size - 0.5) * unit};
   const double shear[2] = {8e10, 8e10}, poisson[2] = {0.28, 0.28};
-  const influence::scene scene{combine(shear, poisson)};
+  const influence::medium medium{combine(shear, poisson)};
   const fft_plans plans({smooth_size(2 * n + 1)}, {smooth_size(2 * n - 1)});
-  coarse_start start(scene, plans, n, n);
+  coarse_start start(medium, plans, n, n);
   rolling_input input;
   input.spin_creepage = 1.0;
   input.creepage[0] = input.spin_creepage * pole_y * unit;

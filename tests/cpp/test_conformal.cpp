@@ -36,8 +36,8 @@ struct arc {
   influence a;
   field px, py, pn;
 
-  static influence::scene elastic(double layer) {
-    influence::scene s{combine(shear_modulus, poisson_ratio), layer};
+  static influence::medium elastic(double layer) {
+    influence::medium s{combine(shear_modulus, poisson_ratio), layer};
     s.curved = true;
     return s;
   }

@@ -113,9 +113,9 @@ double integrated(kernel k, int i, int j, double dx, double dy, const elastic_co
 struct set_up {
   fft_plans plans;
   influence a;
-  set_up(const influence::scene &scene, const grid &g)
+  set_up(const influence::medium &of, const grid &g)
       : plans({smooth_size(2 * g.nx + 1)}, {g.ny > 1 ? smooth_size(2 * g.ny - 1) : 1}),
-        a(scene, plans) {
+        a(of, plans) {
     EXPECT_TRUE(a.set_grid(g));
   }
 };
