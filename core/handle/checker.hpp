@@ -33,10 +33,8 @@ class checker {
   }
   void numbers(const char *name, const double *values, int count, const range &r) {
     for (int i = 0; i < count && !failed_; ++i) {
-      if (inside(values[i], r)) continue;
-      char label[64];
-      std::snprintf(label, sizeof label, "%s[%d]", name, i);
-      number(label, values[i], r);
+      // a step has no time to spell names of what is in range
+      if (!inside(values[i], r)) element(name, i, values[i], r);
     }
   }
   void integer(const char *name, int value, int low, int high) {
@@ -55,12 +53,11 @@ class checker {
       integer(name, value, static_cast<int>(r.low), static_cast<int>(r.high));
     } else if constexpr (std::rank_v<T> > 1) {
       for (const auto &row : value) field(name, row, r);
+    } else if constexpr (std::is_same_v<T, double[std::extent_v<T>]>) {
+      numbers(name, value, static_cast<int>(std::extent_v<T>), r);
     } else if constexpr (std::is_array_v<T>) {
-      for (size_t i = 0; i < std::extent_v<T> && !failed_; ++i) {
-        char label[64];
-        std::snprintf(label, sizeof label, "%s[%d]", name, static_cast<int>(i));
-        field(label, value[i], r);
-      }
+      for (size_t i = 0; i < std::extent_v<T> && !failed_; ++i)
+        element(name, static_cast<int>(i), value[i], r);
     }
   }
   // an enumeration: looked at as a number, since a value outside it must not be read as one
@@ -79,6 +76,12 @@ class checker {
   rp_error error() const { return failed_ ? RP_ERROR_VALUE : RP_OK; }
 
  private:
+  template <class T>
+  void element(const char *name, int index, const T &value, const range &r) {
+    char label[64];
+    std::snprintf(label, sizeof label, "%s[%d]", name, index);
+    field(label, value, r);
+  }
   static bool inside(double value, const range &r) {
     return (r.open_low ? value > r.low : value >= r.low) &&
            (r.open_high ? value < r.high : value <= r.high);
