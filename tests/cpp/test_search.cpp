@@ -1,0 +1,270 @@
+// Searches for fixed points and for depths on functions whose answer is known, and what they take.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "numeric/fixed_point.hpp"
+#include "numeric/force_search.hpp"
+
+namespace {
+
+using namespace railpatch;
+using vector = std::vector<double>;
+
+// --- fixed points ----------------------------------------------------------------------------
+
+// Evaluations of g until |g(x) - x| is below the tolerance.
+template <class G>
+int evaluations(fixed_point &search, vector &x, double tolerance, int most, G &&g) {
+  search.begin(x.size());
+  for (int k = 1; k <= most; ++k) {
+    const vector gx = g(x);
+    double sum = 0;
+    for (size_t i = 0; i < x.size(); ++i) sum += (gx[i] - x[i]) * (gx[i] - x[i]);
+    if (std::sqrt(sum) <= tolerance) return k;
+    search.advance(x.data(), gx.data());
+  }
+  return most + 1;
+}
+
+// g(x) = x* + M (x - x*) with eigenvalues along the axes
+struct affine {
+  vector point, eigenvalue;
+  vector operator()(const vector &x) const {
+    vector out(x.size());
+    for (size_t i = 0; i < x.size(); ++i) out[i] = point[i] + eigenvalue[i] * (x[i] - point[i]);
+    return out;
+  }
+};
+
+// On an affine map of n directions the method is GMRES in disguise: n differences, with the start
+// and the last check two evaluations more.
+TEST(FixedPoint, OfAnAffineMapIsFoundInAsManyStepsAsDirections) {
+  fixed_point search(16);
+  for (size_t n : {1u, 2u, 3u, 5u}) {
+    affine g{vector(n), vector(n)};
+    for (size_t i = 0; i < n; ++i) {
+      g.point[i] = 1.0 + static_cast<double>(i);
+      g.eigenvalue[i] = 0.9 - 0.4 * static_cast<double>(i);
+    }
+    vector x(n, 0.0);
+    const int count = evaluations(search, x, 1e-5, 40, g);
+    EXPECT_LE(count, static_cast<int>(n) + 2) << n;
+    for (size_t i = 0; i < n; ++i) EXPECT_NEAR(x[i], g.point[i], 1e-4) << n;
+  }
+}
+
+// The first step is plain: x becomes g(x).
+TEST(FixedPoint, BeginsWithAPlainStep) {
+  fixed_point search(3);
+  for (int again = 0; again < 2; ++again) {
+    search.begin(2);
+    vector x{1, 2, 9};
+    const vector gx{4, -1};
+    search.advance(x.data(), gx.data());
+    EXPECT_EQ(x, (vector{4, -1, 9}));
+    // the second is the secant's through both remainders
+    const vector second{4.5, -1.5};
+    search.advance(x.data(), second.data());
+    const double r0[2] = {3, -3}, r1[2] = {0.5, -0.5};
+    double over = 0, under = 0;
+    for (int i = 0; i < 2; ++i) {
+      over += (r1[i] - r0[i]) * r1[i];
+      under += (r1[i] - r0[i]) * (r1[i] - r0[i]);
+    }
+    const double share = over / under;
+    for (int i = 0; i < 2; ++i) {
+      const double at = i == 0 ? 4 : -1, before = i == 0 ? 1 : 2;
+      EXPECT_NEAR(x[static_cast<size_t>(i)], at + r1[i] - share * ((at - before) + (r1[i] - r0[i])),
+                  1e-11);
+    }
+  }
+}
+
+// More directions than are remembered, far beyond contraction in some: found all the same, in
+// many times fewer steps than a plain iteration of the least damping would take.
+TEST(FixedPoint, IsFoundWherePlainStepsDiverge) {
+  fixed_point search(16);
+  for (double worst : {-3.0, -20.0}) {
+    affine g{vector(12), vector(12)};
+    for (size_t i = 0; i < 12; ++i) {
+      g.point[i] = std::sin(1.0 + static_cast<double>(i));
+      g.eigenvalue[i] = 0.5 + (worst - 0.5) * static_cast<double>(i) / 11;
+    }
+    vector x(12, 0.0);
+    EXPECT_LE(evaluations(search, x, 1e-9, 400, g), 400) << worst;
+    for (size_t i = 0; i < 12; ++i) EXPECT_NEAR(x[i], g.point[i], 1e-8);
+  }
+}
+
+// Where the remainder grows to more than twice the least, the search is back at the best point, and
+// from there takes the step along the remainder half as long as before, with nothing of the past.
+TEST(FixedPoint, GoesBackToTheBestPointWithHalfTheStep) {
+  fixed_point search(1);
+  search.begin(1);
+  double x = 1, gx = 2;
+  search.advance(&x, &gx);  // remainder 1
+  EXPECT_EQ(x, 2);
+  double step = 1;
+  for (int k = 0; k < 8; ++k) {
+    gx = x + 2.01;
+    search.advance(&x, &gx);
+    step *= 0.5;
+    EXPECT_EQ(x, 1 + step) << k;
+  }
+  // the least step: from now on forward whatever comes
+  gx = x + 5;
+  search.advance(&x, &gx);
+  EXPECT_NE(x, 1 + 0.5 * step);
+
+  // twice as great is not yet too great: the secant's step
+  search.begin(1);
+  x = 1, gx = 2;
+  search.advance(&x, &gx);
+  gx = x + 2;
+  search.advance(&x, &gx);
+  EXPECT_NEAR(x, 0, 1e-10);
+  // no number at all is worse than any
+  search.begin(1);
+  x = 1, gx = 2;
+  search.advance(&x, &gx);
+  gx = std::nan("");
+  search.advance(&x, &gx);
+  EXPECT_EQ(x, 1.5);
+  // a remainder less than half of the least doubles the step again, to one at most
+  gx = x + 0.4;
+  search.advance(&x, &gx);
+  // secant from 1 with remainder 1 to 1.5 with 0.4, in one dimension whatever the step
+  EXPECT_NEAR(x, 1.5 + 0.4 * 0.5 / 0.6, 1e-9);
+}
+
+// Steps that have become short grow again: a remainder that falls to less than half of the least
+// doubles them.
+TEST(FixedPoint, StepsGrowAgain) {
+  fixed_point search(2);
+  search.begin(2);
+  vector x{0, 0};
+  const auto advance = [&](double rx, double ry) {
+    const vector gx{x[0] + rx, x[1] + ry};
+    search.advance(x.data(), gx.data());
+  };
+  advance(1, 0);
+  advance(3, 0);  // back, half the step: at (0.5, 0)
+  EXPECT_EQ(x, (vector{0.5, 0}));
+  // across: the difference of remainders is (-1, 0.4), which takes its share of the new remainder
+  const double r[2] = {0, 0.4}, d[2] = {-1, 0.4}, before[2] = {0.5, 0};
+  const double share = (r[0] * d[0] + r[1] * d[1]) / (d[0] * d[0] + d[1] * d[1]);
+  advance(r[0], r[1]);
+  for (size_t i = 0; i < 2; ++i) {
+    const double moved = i == 0 ? 0.5 : 0.0;
+    EXPECT_NEAR(x[i], before[i] + r[i] - share * (moved + d[i]), 1e-10) << i;
+  }
+}
+
+TEST(FixedPoint, SaysWhatItHolds) {
+  // five differences of both, and five vectors more
+  EXPECT_EQ(fixed_point(7).bytes(), 15 * 7 * sizeof(double));
+}
+
+// --- depth for a force -----------------------------------------------------------------------
+
+struct found {
+  int evaluations = 0;
+  double depth = 0;
+  bool converged = false, exhausted = false, too_deep = false;
+};
+
+// beyond: depth that cannot be evaluated
+template <class Force>
+found search(double target, double first, double tolerance, Force &&force, double beyond = 1) {
+  force_search s(target, first, tolerance);
+  found f;
+  double low = 0, high = 0.02;
+  while (f.evaluations < 200) {
+    f.depth = s.depth();
+    ++f.evaluations;
+    const bool deep = f.depth > beyond;
+    const double value = deep ? 0 : force(f.depth);
+    s.report(value, deep);
+    f.converged = s.converged();
+    f.exhausted = s.exhausted();
+    f.too_deep = s.too_deep();
+    if (f.converged || f.exhausted) break;
+    if (deep) {
+      EXPECT_EQ(s.residual(), HUGE_VAL);
+    } else {
+      EXPECT_EQ(s.residual(), std::abs(value - target) / target);
+    }
+    // the next depth lies between those known as too small and too great
+    (deep || value >= target ? high : low) = f.depth;
+    EXPECT_GT(s.depth(), low);
+    if (high < 0.02) {
+      EXPECT_LT(s.depth(), high);
+    }
+  }
+  return f;
+}
+
+// Exactly Hertz's law: the rule is exact from the second depth on.
+TEST(ForceSearch, OfHertzsLawTakesThreeEvaluations) {
+  const auto hertz = [](double depth) { return 3e10 * std::pow(std::max(depth, 0.0), 1.5); };
+  const double target = hertz(8e-5);
+  for (double first : {1e-6, 4e-5, 7.9e-5, 1e-4, 5e-4}) {
+    const found f = search(target, first, 1e-9, hertz);
+    EXPECT_TRUE(f.converged) << first;
+    EXPECT_LE(f.evaluations, 3) << first;
+    EXPECT_NEAR(f.depth, 8e-5, 1e-9 * 8e-5);
+    EXPECT_FALSE(f.exhausted || f.too_deep);
+  }
+  EXPECT_EQ(search(target, 8e-5, 1e-9, hertz).evaluations, 1);
+}
+
+// Laws that are not Hertz's at all, from any start: a bracket is halved at the worst.
+TEST(ForceSearch, OfOtherLawsIsFound) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (int i = 0; i < 200; ++i) {
+    const double at = 1e-3 * std::pow(10.0, -3 * share(random)), late = 0.8 * at * share(random);
+    // straight, as the fifth power, and with first touch of a second part, from which it is steep
+    const auto straight = [&](double d) { return 1e5 * d / at; };
+    const auto steep = [&](double d) { return 1e5 * std::pow(d / at, 5.0); };
+    const auto parts = [&](double d) {
+      return 1e3 * d / at + 1e5 * std::pow(std::max(0.0, d - late) / (at - late), 1.5);
+    };
+    const double first = at * std::pow(10.0, 2 * share(random) - 1.5);
+    for (const found &f :
+         {search(straight(at), first, 1e-8, straight), search(steep(at), first, 1e-8, steep),
+          search(parts(at), first, 1e-8, parts)}) {
+      EXPECT_TRUE(f.converged) << i;
+      EXPECT_NEAR(f.depth, at, 1e-6 * at) << i;
+      EXPECT_LE(f.evaluations, 45) << i;
+    }
+  }
+}
+
+TEST(ForceSearch, SaysWhyItEnds) {
+  // a force that jumps over the target: the bracket shrinks to rounding
+  const auto jump = [](double d) { return d < 1e-4 ? 1.0 : 3.0; };
+  const found over = search(2.0, 3e-5, 1e-6, jump);
+  EXPECT_FALSE(over.converged);
+  EXPECT_TRUE(over.exhausted);
+  EXPECT_FALSE(over.too_deep);
+  EXPECT_NEAR(over.depth, 1e-4, 1e-12);
+  // no depth that can be evaluated carries the force
+  const auto soft = [](double d) { return 1e3 * d; };
+  const found deep = search(1.0, 3e-5, 1e-6, soft, 5e-4);
+  EXPECT_TRUE(deep.exhausted && deep.too_deep && !deep.converged);
+  EXPECT_NEAR(deep.depth, 5e-4, 1e-12);
+  // nor any sensible one
+  const found far = search(1e3, 3e-5, 1e-6, soft);
+  EXPECT_TRUE(far.exhausted && far.too_deep && !far.converged);
+  EXPECT_GE(far.depth, 0.02);
+  EXPECT_LE(far.evaluations, 20);
+  // a depth just within what can be evaluated is found from beyond
+  const found within = search(4.9e-1, 2e-3, 1e-6, soft, 5e-4);
+  EXPECT_TRUE(within.converged && !within.too_deep);
+}
+
+}  // namespace
