@@ -16,7 +16,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from sites import Mutant, all_mutants
-from workshop import PATIENCE, ROOT, Build, Failed, Suite, covers
+from workshop import PATIENCE, ROOT, Build, Failed, Suite
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -29,11 +29,10 @@ EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 class Worker:
     """One mutant at a time: its objects, its library, its tests."""
 
-    def __init__(self, build: Build, coverage: dict[str, dict], folder: Path) -> None:
+    def __init__(self, build: Build, suites: list[Suite], folder: Path) -> None:
         self.build = build
-        self.coverage = coverage
+        self.suites = suites
         self.folder = folder
-        self.suites = build.suites()
 
     def judge(self, mutant: Mutant) -> dict | None:
         """What became of a mutant; None: it does not compile, or to the same object."""
@@ -77,47 +76,47 @@ class Worker:
 
     def _fallen(self, mutant: Mutant, library: Path) -> str | None:
         """The first test that notices."""
-        running = [
-            s for s in self.suites if covers(self.coverage[s.name], mutant.path, mutant.line)
-        ]
-        running.sort(key=lambda s: self.coverage[s.name]["seconds"])
         source = ROOT / mutant.path
         programs: dict[str, Path] = {}
-        for suite in running:
-            if suite.program and (failed := self._first(suite, library, programs)):
+        cpp = [suite for suite in self.suites if suite.program]
+        for suite in cpp:
+            if failed := self._first(suite, library, programs):
                 return failed
         if source.suffix == ".hpp":
             # tests have the header's functions in their own objects too
-            for suite in self.suites:
-                if not suite.program or not self._rebuilt(suite, source, programs):
+            for suite in cpp:
+                if not self._rebuilt(suite, source, programs):
                     continue
                 if failed := self._first(suite, library, programs):
                     return failed
-        python = [s for s in running if not s.program]
+        python = [suite for suite in self.suites if not suite.program]
         if python:
-            seconds = PATIENCE * sum(self.coverage[s.name]["seconds"] for s in python) + 10
+            seconds = PATIENCE * sum(suite.seconds for suite in python) + 10
             ended, failed = self.build.test(python, library, seconds)
             if not ended.passed:
                 return failed
         return None
 
     def _first(self, suite: Suite, library: Path, programs: dict[str, Path]) -> str | None:
-        seconds = PATIENCE * self.coverage[suite.name]["seconds"] + 2
+        seconds = PATIENCE * suite.seconds + 2
         ended, failed = self.build.test([suite], library, seconds, programs)
         return None if ended.passed else failed
 
     def _rebuilt(self, suite: Suite, header: Path, programs: dict[str, Path]) -> bool:
         """Whether a program was made anew because its own object has the header."""
+        if suite.source.stem in programs:
+            return True
+        # in its own functions, not in what it includes in turn
+        if f'#include "{header.parent.name}/{header.name}"' not in suite.source.read_text():
+            return False
         command = self.build.commands[suite.source]
         name = command.split(" -o ")[1].split()[0]
-        if header not in self.build.dependencies[name]:
-            return False
-        output = self.folder / "objects" / f"{suite.name}.o"
+        output = self.folder / "objects" / f"{suite.program.name}.o"
         if not self.build.compile(suite.source, output, f"-I{self.folder / 'text'}"):
             return False
         if stripped(output) == stripped(self.build.base / name):
             return False
-        target = f"tests/{suite.name}"
+        target = f"tests/{suite.program.name}"
         link = (
             subprocess.run(
                 ["ninja", "-C", str(self.build.base), "-t", "commands", target],
@@ -128,11 +127,11 @@ class Worker:
             .stdout.strip()
             .split("\n")[-1]
         )
-        program = self.folder / "programs" / suite.name
+        program = self.folder / "programs" / suite.program.name
         program.parent.mkdir(parents=True, exist_ok=True)
         link = link.replace(f" {name} ", f" {output} ").replace(f" -o {target} ", f" -o {program} ")
         subprocess.run(link, shell=True, cwd=self.build.base, check=True, capture_output=True)
-        programs[suite.name] = program
+        programs[suite.source.stem] = program
         return True
 
 
@@ -179,7 +178,7 @@ def survivors(run: Path) -> list[Mutant]:
 
 
 def judged(
-    build: Build, coverage: dict, candidates: list[Mutant], count: int, kept: Path
+    build: Build, suites: list[Suite], candidates: list[Mutant], count: int, kept: Path
 ) -> list[dict]:
     """The first `count` mutants of the candidates and what became of them."""
     results: dict[int, dict | None] = {}
@@ -198,7 +197,7 @@ def judged(
                 return
             number = free.pop()
         try:
-            result = Worker(build, coverage, build.folder / f"worker{number}").judge(candidates[at])
+            result = Worker(build, suites, build.folder / f"worker{number}").judge(candidates[at])
         finally:
             with lock:
                 free.append(number)
@@ -256,14 +255,13 @@ def main() -> int:
         "--continue", dest="resume", action="store_true", help="keep what is judged"
     )
     parser.add_argument("--cpp", action="store_true", help="C++ tests alone")
-    parser.add_argument("--all", action="store_true", help="all tests, whatever lines they run")
     parser.add_argument("--again", type=Path, help="judge the survivors of a kept run again")
     parser.add_argument("--only", default="", help="files whose path holds this")
     arguments = parser.parse_args()
     build = Build(arguments.output, arguments.jobs, not arguments.cpp)
     try:
         build.make()
-        coverage = build.times() if arguments.all else build.coverage()
+        suites = build.suites()
     except Failed as error:
         print(error, file=sys.stderr)
         return 2
@@ -283,7 +281,7 @@ def main() -> int:
         kept = arguments.output / f"{name}.json"
         if not arguments.resume:
             kept.unlink(missing_ok=True)
-        results = judged(build, coverage, candidates, arguments.count, kept)
+        results = judged(build, suites, candidates, arguments.count, kept)
         text, share = report(results, seed)
         kept.with_suffix(".txt").write_text(text + "\n")
         print(text, flush=True)

@@ -1,10 +1,7 @@
-"""The core as a library whose objects can be exchanged, the tests that load it, and which of its
-lines each of them runs."""
+"""The core as a library whose objects can be exchanged, and the tests that load it."""
 
 from __future__ import annotations
 
-import gzip
-import hashlib
 import json
 import os
 import re
@@ -16,7 +13,7 @@ import sys
 import tempfile
 import threading
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -26,15 +23,18 @@ LIBRARY = "librailpatch_static.so"
 OPTIMISED = "-O1 -DNDEBUG"
 # of what a test takes by itself, in processor time: a mutant that takes longer has fallen
 PATIENCE = 5
+QUICK = 0.02  # s
 
 
 @dataclass(frozen=True)
 class Suite:
-    """A C++ test program or a file of Python tests."""
+    """Some tests of a C++ program, or a file of Python tests."""
 
     name: str
     source: Path
     program: Path | None = None  # None: pytest
+    tests: str = "*"  # of a program
+    seconds: float = 0.0  # of processor time
 
 
 class Failed(Exception):
@@ -183,8 +183,8 @@ class Build:
 
     # --- tests -----------------------------------------------------------------------------------
 
-    def suites(self) -> list[Suite]:
-        """All that can be run."""
+    def programs(self) -> list[Suite]:
+        """The C++ tests."""
         tests = self.base / "tests"
         cpp = [
             Suite(path.stem, path, tests / path.stem)
@@ -194,12 +194,58 @@ class Build:
             Suite(f"test_fmu_{path.stem[5:]}", path, tests / f"test_fmu_{path.stem[5:]}")
             for path in sorted((ROOT / "tests/fmu").glob("test_*.cpp"))
         ]
-        python = [
+        return cpp + fmu
+
+    def modules(self) -> list[Suite]:
+        """The Python tests."""
+        return [
             Suite(str(path.relative_to(ROOT)), path)
             for folder in FOLDERS
             for path in sorted((ROOT / "tests" / folder).glob("test_*.py"))
         ]
-        return cpp + fmu + (python if self.python else [])
+
+    def suites(self) -> list[Suite]:
+        """All tests with their times, the quickest first. Of a program what is quick goes together,
+        and each slow test by itself."""
+        with ThreadPoolExecutor(self.jobs) as pool:
+            cpp = [part for parts in pool.map(self._parts, self.programs()) for part in parts]
+            modules = list(pool.map(self._timed, self.modules() if self.python else []))
+        return sorted(cpp, key=lambda s: s.seconds) + sorted(modules, key=lambda s: s.seconds)
+
+    def _timed(self, suite: Suite) -> Suite:
+        ended, failed = self.test([suite], self.base / "core", 600)
+        if not ended.passed:
+            raise Failed(f"without any mutant: {failed}\n{ended.output[-2000:]}")
+        return replace(suite, seconds=ended.seconds)
+
+    def _parts(self, suite: Suite) -> list[Suite]:
+        with tempfile.TemporaryDirectory() as folder:
+            output = Path(folder) / "tests.json"
+            environment = self.environment(self.base / "core") | {"GTEST_OUTPUT": f"json:{output}"}
+            ended = limited([str(suite.program), "--gtest_brief=1"], environment, 600)
+            if not ended.passed:
+                raise Failed(f"without any mutant: {suite.name}\n{ended.output[-2000:]}")
+            suites = json.loads(output.read_text())["testsuites"]
+        times = {
+            f"{test['classname']}.{test['name']}": float(test["time"].rstrip("s"))
+            for group in suites
+            for test in group["testsuite"]
+        }
+        # processor time, where other processes are in the way
+        scale = ended.seconds / max(sum(times.values()), ended.seconds, 1e-3)
+        times = {name: scale * seconds for name, seconds in times.items()}
+        quick = [name for name, seconds in times.items() if seconds < QUICK]
+        slow = [name for name, seconds in times.items() if seconds >= QUICK]
+        parts = [
+            replace(suite, name=f"{suite.name} {name}", tests=name, seconds=times[name])
+            for name in slow
+        ]
+        if quick:
+            spent = sum(times[name] for name in quick)
+            but = f"-{':'.join(slow)}" if slow else "*"
+            parts.append(replace(suite, tests=but, seconds=spent))
+        # with what they share
+        return [self._timed(part) for part in parts]
 
     def environment(self, library: Path) -> dict:
         """In which tests load the core of a folder."""
@@ -222,12 +268,12 @@ class Build:
         environment = self.environment(library)
         if suites[0].program:
             (suite,) = suites
-            program = (programs or {}).get(suite.name, suite.program)
+            program = (programs or {}).get(suite.source.stem, suite.program)
             ended = limited(
                 [str(program), "--gtest_fail_fast", "--gtest_brief=1"], environment, seconds
             )
             failed = re.search(r"\[  FAILED  \] ([^\s,]+)", ended.output)
-            return ended, f"{suite.name} {failed[1]}" if failed else f"{suite.name} stops"
+            return ended, failed[1] if failed else f"{suite.name} stops"
         command = [
             sys.executable,
             "-m",
@@ -242,117 +288,3 @@ class Build:
         ended = limited(command, environment, seconds)
         failed = re.search(r"^(?:FAILED|ERROR) (\S+)", ended.output, re.M)
         return ended, failed[1] if failed else f"tests/ stop: {ended.output[-300:]}"
-
-    # --- coverage --------------------------------------------------------------------------------
-
-    def times(self) -> dict[str, dict]:
-        """For each suite its processor time, as if it ran every line."""
-        with ThreadPoolExecutor(self.jobs) as pool:
-            seconds = list(pool.map(self._seconds, self.suites()))
-        return {
-            suite.name: {"seconds": spent, "lines": None}
-            for suite, spent in zip(self.suites(), seconds, strict=True)
-        }
-
-    def coverage(self) -> dict[str, dict]:
-        """For each suite its processor time and the lines of the core's files that it runs; kept
-        from one run to the next while neither core nor suite change."""
-        core = hashlib.sha256(OPTIMISED.encode())
-        for path in sorted((ROOT / "core").rglob("*.[chi]*")):
-            core.update(path.read_bytes())
-        kept_path = self.folder / "coverage.json.gz"
-        kept = json.loads(gzip.decompress(kept_path.read_bytes())) if kept_path.exists() else {}
-        keys = {
-            suite.name: hashlib.sha256(core.digest() + suite.source.read_bytes()).hexdigest()
-            for suite in self.suites()
-        }
-        missing = [s for s in self.suites() if kept.get(s.name, {}).get("key") != keys[s.name]]
-        if not missing:
-            return kept
-        library = self._instrumented()
-        print(f"coverage of {len(missing)} test files", flush=True)
-        with ThreadPoolExecutor(self.jobs) as pool:
-            for suite, found in zip(
-                missing, pool.map(lambda s: self._cover(s, library), missing), strict=True
-            ):
-                kept[suite.name] = {"key": keys[suite.name], **found}
-        kept_path.write_bytes(gzip.compress(json.dumps(kept).encode()))
-        return kept
-
-    def _instrumented(self) -> Path:
-        folder = self.folder / "instrumented"
-        shutil.rmtree(folder, ignore_errors=True)
-        folder.mkdir(parents=True)
-        objects = {name: folder / f"{source.stem}.o" for source, name in self.objects.items()}
-
-        def one(source: Path) -> None:
-            if not self.compile(source, objects[self.objects[source]], "--coverage -Og"):
-                raise Failed(f"{source} does not compile with --coverage")
-
-        with ThreadPoolExecutor(self.jobs) as pool:
-            list(pool.map(one, self.objects))
-        self.link_library(folder, objects, "--coverage")
-        return folder
-
-    def _cover(self, suite: Suite, library: Path) -> dict:
-        plain = self._seconds(suite)
-        folder = self.folder / "gcov" / suite.name.replace("/", "_")
-        shutil.rmtree(folder, ignore_errors=True)
-        folder.mkdir(parents=True)
-        strip = {"GCOV_PREFIX": str(folder), "GCOV_PREFIX_STRIP": str(len(library.parts) - 1)}
-        environment = self.environment(library) | strip
-        if suite.program:
-            command = [str(suite.program), "--gtest_brief=1"]
-        else:
-            command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", suite.name]
-        limited(command, environment, 300 + 20 * plain)
-        for notes in library.glob("*.gcno"):
-            (folder / notes.name).symlink_to(notes)
-        data = sorted(path.name for path in folder.glob("*.gcda"))
-        lines: dict[str, set[int]] = {}
-        known: dict[str, set[int]] = {}
-        if data:
-            output = run(["gcov", "--json-format", "--stdout", *data], cwd=folder)
-            for document in output.split("\n"):
-                if document.startswith("{"):
-                    self._read(json.loads(document), lines, known)
-        shutil.rmtree(folder)
-        return {
-            "seconds": plain,
-            "lines": {name: sorted(found) for name, found in lines.items()},
-            "known": {name: sorted(found) for name, found in known.items()},
-        }
-
-    def _read(self, document: dict, lines: dict[str, set[int]], known: dict[str, set[int]]) -> None:
-        base = Path(document["current_working_directory"])
-        for file in document["files"]:
-            path = (base / file["file"]).resolve()
-            if not path.is_relative_to(ROOT / "core"):
-                continue
-            name = str(path.relative_to(ROOT))
-            known.setdefault(name, set()).update(line["line_number"] for line in file["lines"])
-            lines.setdefault(name, set()).update(
-                line["line_number"] for line in file["lines"] if line["count"]
-            )
-
-    def _seconds(self, suite: Suite) -> float:
-        """Processor time without a mutant."""
-        ended, failed = self.test([suite], self.base / "core", 600)
-        if not ended.passed:
-            raise Failed(f"without any mutant: {failed}\n{ended.output[-2000:]}")
-        return ended.seconds
-
-
-def covers(found: dict, path: str, line: int) -> bool:
-    """Whether a suite runs a line; a line without code of its own goes with its neighbours."""
-    if found["lines"] is None:
-        return True
-    known = found["known"].get(path)
-    if not known:
-        return False
-    lines = found["lines"].get(path, [])
-    if line in known:
-        return line in lines
-    before = max((at for at in known if at < line), default=0)
-    after = min((at for at in known if at > line), default=0)
-    return before in lines or after in lines
