@@ -98,7 +98,7 @@ class Worker:
         return None
 
     def _first(self, suite: Suite, library: Path, programs: dict[str, Path]) -> str | None:
-        seconds = PATIENCE * suite.seconds + 2
+        seconds = PATIENCE * suite.most + 2
         ended, failed = self.build.test([suite], library, seconds, programs)
         return None if ended.passed else failed
 

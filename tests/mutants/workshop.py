@@ -35,6 +35,7 @@ class Suite:
     program: Path | None = None  # None: pytest
     tests: str = "*"  # of a program
     seconds: float = 0.0  # of processor time
+    most: float = 0.0  # the same of all that it shares its preparations with
 
 
 class Failed(Exception):
@@ -216,7 +217,7 @@ class Build:
         ended, failed = self.test([suite], self.base / "core", 600)
         if not ended.passed:
             raise Failed(f"without any mutant: {failed}\n{ended.output[-2000:]}")
-        return replace(suite, seconds=ended.seconds)
+        return replace(suite, seconds=ended.seconds, most=ended.seconds)
 
     def _parts(self, suite: Suite) -> list[Suite]:
         with tempfile.TemporaryDirectory() as folder:
@@ -236,6 +237,7 @@ class Build:
         times = {name: scale * seconds for name, seconds in times.items()}
         quick = [name for name, seconds in times.items() if seconds < QUICK]
         slow = [name for name, seconds in times.items() if seconds >= QUICK]
+        suite = replace(suite, most=ended.seconds)
         parts = [
             replace(suite, name=f"{suite.name} {name}", tests=name, seconds=times[name])
             for name in slow
@@ -244,8 +246,7 @@ class Build:
             spent = sum(times[name] for name in quick)
             but = f"-{':'.join(slow)}" if slow else "*"
             parts.append(replace(suite, tests=but, seconds=spent))
-        # with what they share
-        return [self._timed(part) for part in parts]
+        return parts
 
     def environment(self, library: Path) -> dict:
         """In which tests load the core of a folder."""
