@@ -120,7 +120,9 @@ class Build:
                 *("-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", f"-DPython_EXECUTABLE={sys.executable}"),
             ]
         )
-        run(["cmake", "--build", str(self.base), "-j", str(self.jobs)], env=environment)
+        targets = [] if self.python else ["--target", "tests/all"]
+        build = ["cmake", "--build", str(self.base), "-j", str(self.jobs), *targets]
+        run(build, env=environment)
         entries = json.loads((self.base / "compile_commands.json").read_text())
         self.commands = {
             Path(entry["file"]): entry["command"]
@@ -137,7 +139,8 @@ class Build:
             and match[1] in self.link
         }
         self.dependencies = self._dependencies()
-        self._make_package()
+        if self.python:
+            self._make_package()
 
     def _dependencies(self) -> dict[str, set[Path]]:
         """The project's headers that each object was made from."""
