@@ -73,6 +73,19 @@ contact lobes() {
       const bool touches = j > 0 && j < 9 && std::abs(x) < width && !(j == 4 && i == 7);
       c.pressure.push_back(touches ? 1e9 * (1 - 0.03 * x * x) * (0.5 + 0.05 * j) : 0.0);
     }
+  // hardly any pressure is contact all the same
+  c.pressure[static_cast<size_t>(2 * c.g.nx + 14)] = 0.5;
+  c.sum();
+  return c;
+}
+
+// Contact in every element, as a grid that ends before the contact does.
+contact block() {
+  contact c;
+  c.name = "block";
+  c.g = {7, 5, 6e-4, 7e-4, -1.7e-3, -1.5e-3};
+  for (int j = 0; j < c.g.ny; ++j)
+    for (int i = 0; i < c.g.nx; ++i) c.pressure.push_back(1e8 * (4 + i + 0.3 * j));
   c.sum();
   return c;
 }
@@ -102,6 +115,7 @@ const std::vector<contact> &contacts() {
     v.push_back(ellipse("wide", 4e-3, 7e-3));
     v.push_back(ellipse("long", 8e-3, 3e-3));
     v.push_back(lobes());
+    v.push_back(block());
     v.push_back(chords());
     return v;
   }();
