@@ -134,7 +134,7 @@ class System:
         by_state = np.hstack([states.by_q, states.by_v])
         wrench = self.element.derivatives() + spring.wrench_by_state()
         contact = self.element.contact_power_derivatives()
-        friction = self.element.friction_power_derivatives()
+        friction = self.element.creep_power_derivatives()
         powers = [contact, friction, *spring.power_derivatives()]
         by_motion = np.vstack(
             [

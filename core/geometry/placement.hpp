@@ -93,6 +93,24 @@ template <class T>
 vec<T> operator*(const std::type_identity_t<T> &c, const vec<T> &a) {
   return {c * a[0], c * a[1], c * a[2]};
 }
+// Angular velocity of the wheelset but for its turning about the axle, track axes: roll about x,
+// yaw about the z axis that the roll turned.
+template <class T>
+vec<T> swing_of(const basic_wheelset_state<T> &w) {
+  using std::cos;
+  using std::sin;
+  return vec<T>{w.roll_rate, T(0), T(0)} + w.yaw_rate * vec<T>{T(0), -sin(w.roll), cos(w.roll)};
+}
+
+// All of it: with the pitch about the axle.
+template <class T>
+vec<T> angular_velocity(const basic_wheelset_state<T> &w) {
+  using std::cos;
+  using std::sin;
+  const T d = cos(w.yaw);
+  return swing_of(w) + w.pitch_rate * vec<T>{-sin(w.yaw), cos(w.roll) * d, sin(w.roll) * d};
+}
+
 template <class T>
 T dot(const vec<T> &a, const vec<T> &b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -229,10 +247,9 @@ basic_creepage_state<T> placement<T>::creepages(const basic_contact_frame<T> &fr
   const basic_wheelset_state<T> &w = motion_.wheelset;
   const frame_axes<T> f = axes_of(frame);
   const vec<T> at = frame.origin + approach * f.n;  // of the wheel's undeformed surface
-  const T c = cos(w.roll), s = sin(w.roll);
   // the track frame follows the centre line: in a curve it turns about its z axis
   const vec<T> frame_spin{T(0), T(0), track_.curvature * w.speed};
-  const vec<T> swing = vec<T>{w.roll_rate, T(0), T(0)} + w.yaw_rate * vec<T>{T(0), -s, c};
+  const vec<T> swing = swing_of(w);
   const vec<T> &wheel_spin = motion_.wheel.angular_velocity,
                &rail_spin = motion_.rail.angular_velocity;
   const bool wheel_moves = moves(motion_.wheel), rail_moves = moves(motion_.rail);

@@ -445,8 +445,9 @@ typedef struct rp_patch_result {
   double contact_area;       /* m^2 */
   int32_t elements[4];       /* exterior, stick, slip, plastic; indexed by rp_element */
   double max_temperature;    /* degrees C; NaN: not part of the scene */
-  double friction_power;     /* W, >= 0: power that the creepages supply (Polach: without spin) and,
-                                of unlike bodies, the pressure by its moment against rolling; of
+  double friction_power;     /* W, >= 0, that friction turns into heat: the part of creep_power that
+                                the layer does not take (Polach: without spin) and, of unlike
+                                bodies, what the pressure supplies by its moment against rolling; of
                                 FASTSIM traction times micro-slip */
   double plastic_power;      /* W, >= 0, of the layer's plastic displacement; RP_SHIFT: both in J */
   double elastic_energy;     /* J; NaN for a line contact on fitted rows */
@@ -479,6 +480,10 @@ typedef struct rp_patch_result {
                                  fitted rows the nodes and rows */
   double grid_origin[2];      /* m, centre of element (0, 0) in the contact frame; fitted rows: 0 */
   double element_size[2];     /* m; fitted rows: 0 */
+  double creep_power;         /* W, that creepages and spin supply: -(creep_force . creepage +
+                                 spin_moment spin_creepage) rolling_speed, by every theory; over the
+                                 rolling speed it is T gamma. RP_SHIFT: J, without the speed. What
+                                 friction and layer take of it: friction_power, plastic_power */
 } rp_patch_result;
 
 /* One wheel; on a roller see rp_contact_frame. NaN where a patch could not be solved. */
@@ -493,6 +498,11 @@ typedef struct rp_side_result {
    * areas, where neighbours join or part: the force is the sum of share times force of all */
   int32_t patch_count, alternative_count;
   rp_patch_result patch[RP_MAX_PATCHES];
+  double contact_power; /* W, that force and moment give the wheelset: times its velocity and
+                           angular velocity by the input; NaN: kind RP_PATCH */
+  /* of the patches and alternatives: sums of share times each, and the greatest of all */
+  double creep_power, friction_power, plastic_power, elastic_energy;
+  double max_temperature, residual;
 } rp_side_result;
 
 typedef struct rp_result {
@@ -502,6 +512,9 @@ typedef struct rp_result {
   double moment[3];       /* N m about the wheelset centre */
   int32_t evaluations;    /* contact evaluations of each wheel spent on finding z */
   rp_side_result side[2]; /* kind RP_PATCH: side[RP_RIGHT].patch[0] */
+  /* of the wheels: sums, and the greatest */
+  double contact_power, creep_power, friction_power, plastic_power, elastic_energy;
+  double max_temperature, residual;
 } rp_result;
 
 #define RP_FIELDS(X)                                                                             \

@@ -71,7 +71,9 @@
   X(double, grid_origin, 2, number, origin, kept, alone, 0, "m",                                  \
     "centre of element (0, 0) in the contact frame")                                              \
   X(double, element_size, 2, number, even, kept, alone, 0, "m",                                   \
-    "of an element along rolling, lateral")
+    "of an element along rolling, lateral")                                                       \
+  X(double, creep_power, 1, number, even, zero_rolling, by_share, NAN, "W",                       \
+    "power that the creepages and the spin supply")
 
 #define RP_SIDE_RESULT_FIELDS(X, O)                                                      \
   X(rp_status, status, 1, status, even, kept, alone, RP_NO_CONTACT, "",                  \
@@ -88,7 +90,21 @@
   X(int32_t, patch_count, 1, label, even, kept, alone, 0, "-", "contact patches")        \
   X(int32_t, alternative_count, 1, label, even, kept, alone, 0, "-",                     \
     "solutions of other divisions into patches")                                         \
-  O(rp_patch_result, patch, RP_MAX_PATCHES)
+  O(rp_patch_result, patch, RP_MAX_PATCHES)                                              \
+  X(double, contact_power, 1, number, even, kept, added, NAN, "W",                       \
+    "power of the force and moment on the wheelset")                                     \
+  X(double, creep_power, 1, number, even, kept, added, NAN, "W",                         \
+    "power that the creepages and the spin supply, of all patches by share")             \
+  X(double, friction_power, 1, number, even, kept, added, NAN, "W",                      \
+    "power lost in friction, of all patches by share")                                   \
+  X(double, plastic_power, 1, number, even, kept, added, NAN, "W",                       \
+    "power of the layer's plastic displacement, of all patches by share")                \
+  X(double, elastic_energy, 1, number, even, kept, added, NAN, "J",                      \
+    "elastic energy, of all patches by share")                                           \
+  X(double, max_temperature, 1, number, even, kept, greatest, NAN, "degrees C",          \
+    "highest surface temperature of all patches")                                        \
+  X(double, residual, 1, estimate, even, kept, greatest, 0, "-",                         \
+    "greatest residual at the end of all patches")
 
 #define RP_RESULT_FIELDS(X, O)                                                                   \
   X(rp_status, status, 1, status, even, kept, alone, RP_CONVERGED, "", "how the solution ended") \
@@ -98,7 +114,21 @@
     "their moment about the wheelset's centre")                                                  \
   X(int32_t, evaluations, 1, count, even, kept, alone, 0, "-",                                   \
     "contact evaluations of each wheel spent on finding z")                                      \
-  O(rp_side_result, side, 2)
+  O(rp_side_result, side, 2)                                                                     \
+  X(double, contact_power, 1, number, even, kept, alone, NAN, "W",                               \
+    "power of the force and moment on the wheelset")                                             \
+  X(double, creep_power, 1, number, even, kept, alone, NAN, "W",                                 \
+    "power that the creepages and the spin supply, of all patches by share")                     \
+  X(double, friction_power, 1, number, even, kept, alone, NAN, "W",                              \
+    "power lost in friction, of all patches by share")                                           \
+  X(double, plastic_power, 1, number, even, kept, alone, NAN, "W",                               \
+    "power of the layer's plastic displacement, of all patches by share")                        \
+  X(double, elastic_energy, 1, number, even, kept, alone, NAN, "J",                              \
+    "elastic energy, of all patches by share")                                                   \
+  X(double, max_temperature, 1, number, even, kept, alone, NAN, "degrees C",                     \
+    "highest surface temperature of all patches")                                                \
+  X(double, residual, 1, estimate, even, kept, alone, 0, "-",                                    \
+    "greatest residual at the end of all patches")
 
 /* --- inputs: X(type, name, count, role, where, start, bounds, low, high, unit, text) ---------
  * role      choice: an enumeration; number; integer; side: RP_LEFT or RP_RIGHT; points: numbers of

@@ -3,14 +3,10 @@
 
 #include "normal/row_contact.hpp"
 #include "numeric/nan.hpp"
+#include "patch/status.hpp"
 #include "railpatch.h"
 
 namespace railpatch {
-
-// Worse of two outcomes, where several stages contribute to one: the first that is not good stays.
-inline void degrade(rp_status &so_far, rp_status status) {
-  if (so_far == RP_CONVERGED) so_far = status;
-}
 
 struct pressure_outcome {
   rp_status status = RP_CONVERGED;

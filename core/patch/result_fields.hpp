@@ -15,6 +15,7 @@ struct patch_scene;
 enum class field_role { status, number, count, label, estimate };
 enum class field_mirror { even, odd, vector, axial, origin };
 enum class field_unloaded { kept, zero, zero_rolling, zero_plastic, own };
+enum class field_sum { alone, by_share, added, greatest };
 
 // Every number of a member, which may be an array of arrays.
 template <class T, class F>

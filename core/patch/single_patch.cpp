@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "numeric/nan.hpp"
+#include "patch/result_sums.hpp"
 
 namespace railpatch {
 
@@ -60,8 +61,6 @@ void single_patch::step(const rp_input &in, rp_result &out) {
   rp_side_result &side = out.side[RP_RIGHT];
   rp_patch_result &result = side.patch[0];
   side.patch_count = 1;
-  std::fill_n(out.force, 3, nan);
-  std::fill_n(out.moment, 3, nan);
   if (rates_) rates_->problem = {};
   patch_memory &m = memory();
   patch_problem problem;
@@ -80,6 +79,15 @@ void single_patch::step(const rp_input &in, rp_result &out) {
     if (rates_) rates_->problem = problem;
   }
   out.status = side.status = result.status;
+  sum_patches(solver_.scene(), side);
+  sum_up(out, out);
+}
+
+// A patch has no force on a wheelset.
+void single_patch::sum_up(const rp_result &value, rp_result &sum) {
+  sum_sides({false, true}, value, sum);
+  std::fill_n(sum.force, 3, nan);
+  std::fill_n(sum.moment, 3, nan);
 }
 
 // The problem of a patch's step but for its distance. Returns whether there is a grid for it.

@@ -49,6 +49,7 @@ class single_patch final : public driver {
   bool set_grid(const patch_memory &m, patch_problem &problem) const;
   bool pose(const rp_input &input, const patch_memory &m, patch_problem &problem) const;
   void set_distance(const patch_problem &problem, patch_memory &m) const;
+  static void sum_up(const rp_result &value, rp_result &sum);
   void vary_shape(const rp_input &direction, patch_variation &v);
 
   single_patch_setup setup_;

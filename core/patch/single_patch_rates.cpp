@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "numeric/nan.hpp"
+#include "patch/creep_power.hpp"
+#include "patch/result_sums.hpp"
 #include "patch/single_patch.hpp"
 
 namespace railpatch {
@@ -104,6 +106,9 @@ void single_patch::differentiate(const rp_input &d, const rp_input &, const rp_r
   set(value.contact_area, change.contact_area, found.contact_area);
   set(value.friction_power, change.friction_power, found.friction_power);
   set(value.elastic_energy, change.elastic_energy, found.elastic_energy);
+  set(value.creep_power, change.creep_power, creep_power_rate(value, change));
+  sum_patch_rates(result.side[RP_RIGHT], side);
+  sum_up(result, out);
 }
 
 }  // namespace railpatch

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "numeric/nan.hpp"
+#include "patch/creep_power.hpp"
 #include "patch/result_fields.hpp"
 
 namespace railpatch {
@@ -369,8 +370,11 @@ derivative_outcome wheel_contact::differentiate(patch_contact &solver, const pat
       solutions_.data(), memory, patches_, grid_.sized ? nullptr : grid_.elements};
   const derivative_outcome outcome =
       work.solve(solution, solver, motions, friction, count, options, result, changes);
-  for (int k = 0; k < count; ++k)
+  for (int k = 0; k < count; ++k) {
     if (side_ == RP_LEFT) mirror(changes[k]);
+    for (int i = 0; i < patches_; ++i)
+      changes[k].patch[i].creep_power = creep_power_rate(result.patch[i], changes[k].patch[i]);
+  }
   return outcome;
 }
 
@@ -380,12 +384,6 @@ size_t wheel_contact::bytes() const {
   return wheel_->bytes() + rail_->bytes() + geometry_->bytes() +
          solutions_.size() * sizeof(patch_solution) + (sections_ ? sections_->bytes() : 0) +
          (shape_ ? shape_->bytes() : 0);
-}
-
-rp_status combine_status(rp_status a, rp_status b) {
-  if (a == RP_OUT_OF_RANGE || b == RP_OUT_OF_RANGE) return RP_OUT_OF_RANGE;
-  if (a == RP_NOT_CONVERGED || b == RP_NOT_CONVERGED) return RP_NOT_CONVERGED;
-  return a == RP_CONVERGED || b == RP_CONVERGED ? RP_CONVERGED : RP_NO_CONTACT;
 }
 
 }  // namespace railpatch

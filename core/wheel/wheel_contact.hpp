@@ -98,7 +98,4 @@ class wheel_contact {
   double time_step_ = 0;                   // s
 };
 
-// Status of several patches or wheels together: the worst; no contact only where none has any.
-rp_status combine_status(rp_status a, rp_status b);
-
 }  // namespace railpatch

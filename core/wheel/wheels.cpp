@@ -5,6 +5,8 @@
 
 #include "numeric/force_search.hpp"
 #include "numeric/nan.hpp"
+#include "patch/result_sums.hpp"
+#include "wheel/wheelset_power.hpp"
 
 namespace railpatch {
 
@@ -93,11 +95,14 @@ void wheels::step(const rp_input &in, rp_result &out) {
   } else {
     find_z(in.vertical_force, out);
   }
-  for (auto &wheel : wheels_)
-    for (int k = 0; k < 3; ++k) {
-      out.force[k] += out.side[wheel.side()].force[k];
-      out.moment[k] += out.side[wheel.side()].moment[k];
-    }
+  bool there[2] = {false, false};
+  for (const auto &wheel : wheels_) {
+    rp_side_result &side = out.side[wheel.side()];
+    there[wheel.side()] = true;
+    sum_patches(solver_.scene(), side);
+    side.contact_power = wheelset_power(in, {side.force, side.moment});
+  }
+  sum_sides(there, out, out);
 }
 
 // Finds z for a prescribed vertical force.

@@ -4,8 +4,10 @@
 
 #include "numeric/nan.hpp"
 #include "patch/result_fields.hpp"
+#include "patch/result_sums.hpp"
 #include "wheel/jacobian_columns.hpp"
 #include "wheel/wheels.hpp"
+#include "wheel/wheelset_power.hpp"
 
 namespace railpatch {
 
@@ -81,13 +83,16 @@ void wheels::differentiate(const rp_input &direction, const rp_input &input,
     next = 0;
     if (forced) for_each_side_number(changes[1], [&](double &v) { *to[next++] += z * v; });
   }
-  for (int k = 0; k < 3; ++k) {
-    out.force[k] = out.moment[k] = 0;
-    for (const auto &wheel : wheels_) {
-      out.force[k] += out.side[wheel.side()].force[k];
-      out.moment[k] += out.side[wheel.side()].moment[k];
-    }
+  bool there[2] = {false, false};
+  for (const auto &wheel : wheels_) {
+    const rp_side_result &side = result.side[wheel.side()];
+    rp_side_result &rate = out.side[wheel.side()];
+    there[wheel.side()] = true;
+    sum_patch_rates(side, rate);
+    rate.contact_power =
+        wheelset_power_rate(input, direction, {side.force, side.moment}, {rate.force, rate.moment});
   }
+  sum_sides(there, result, out);
 }
 
 void wheels::jacobian(const rp_input &input, const rp_result &result, rp_jacobian &out) {

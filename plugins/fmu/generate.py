@@ -26,7 +26,7 @@ def load(path: Path) -> Any:
 
 def place(variable: Any, field: str) -> str:
     """Where a field lies in its struct; 0 for none."""
-    struct = "Outputs" if field.startswith("sums") else STRUCTS[variable.causality]
+    struct = STRUCTS[variable.causality]
     return f"offsetof({struct}, {field})" if struct and field else "no_field"
 
 

@@ -27,6 +27,7 @@ PATCH_KEYS = [
     "contact_area",
     "elements",
     "max_temperature",
+    "creep_power",
     "friction_power",
     "plastic_power",
     "elastic_energy",

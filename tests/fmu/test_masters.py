@@ -182,7 +182,7 @@ def test_friction_takes_what_the_contact_gives(tmp_path: Path) -> None:
         method__tolerance=1e-9,
     )
     with Slave(Packer(tmp_path, {"rail": case})("rail")).initialize() as slave:
-        lost, power = slave.get("friction_power", "power")
+        lost, power = slave.get("creep_power", "power")
         assert lost > 0
         # beside it stands what the pressure does at the approach, on the tilted contact frame
         assert power == pytest.approx(-lost, rel=0.05)

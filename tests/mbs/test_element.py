@@ -193,6 +193,36 @@ def test_power_is_that_of_the_generalised_force():
         assert element.friction_power > 0 or not element.elastic_energy
 
 
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"method": {"normal": "hertz", "tangential": "fastsim"}},
+        {"method": {"normal": "hertz", "tangential": "polach"}},
+        {"layer": {"thickness": 20e-6, "shear_modulus": 8e9, "yield_stress": 2e8}},
+    ],
+    ids=["fastsim", "polach", "yields"],
+)
+def test_powers_are_those_of_the_result(changes):
+    model = samples.model()
+    case = samples.case(**changes)
+    element = ForceElement(model, "wheelset", case)
+    contact = railpatch.Contact(case)
+    q, v = samples.random_motions(5, 1)[0]
+    stepped(element, model, model.createData(), q, v)
+    moving = {key: value for key, value in element.state().items() if key in samples.MOVING}
+    result = contact.step(**moving)
+    assert result["creep_power"] > 0
+    assert element.creep_power == result["creep_power"]
+    assert element.friction_power == result["friction_power"]
+    assert element.elastic_energy == result["elastic_energy"]
+    assert element.contact_power == pytest.approx(result["contact_power"], rel=1e-9)
+    # not the same quantity
+    assert abs(element.friction_power / element.creep_power - 1) > 1e-5
+    for side, row in zip(("left", "right"), element.wheels[0], strict=True):
+        assert row[6] == result[side]["creep_power"]
+        assert row[8] == result[side]["friction_power"]
+
+
 def test_saved_state_gives_the_same_bits():
     model = samples.model()
     data = model.createData()

@@ -116,7 +116,8 @@ def test_rails_that_deviate_are_those_of_a_case():
     np.testing.assert_allclose(
         element.wheels[0, :, :6].sum(axis=0), element.contact_wrench[0], rtol=1e-12, atol=1e-9
     )
-    assert element.wheels[0, :, 6].sum() == pytest.approx(element.friction_power)
+    assert element.wheels[0, :, 6].sum() == pytest.approx(element.creep_power)
+    assert element.wheels[0, :, 8].sum() == pytest.approx(element.friction_power)
 
 
 @pytest.mark.parametrize("method", [("hertz", "fastsim"), ("half_space", "full")])

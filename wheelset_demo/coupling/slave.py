@@ -16,7 +16,7 @@ from wheelset_demo.system import Vector
 
 DISCARD = 2  # fmi2Discard
 MEAN = tuple(f"mean_{name}" for name in WRENCH)
-POWERS = ("power", "friction_power")
+POWERS = ("power", "creep_power")
 
 
 class Discarded(RuntimeError):
@@ -30,7 +30,7 @@ class CouplingFailure(RuntimeError):
 @dataclass(frozen=True)
 class Outputs:
     """At a communication point. wrench: [6], N, N m. power: W, that the contact gives the wheelset
-    by the FMU's own inputs. friction: W."""
+    by the FMU's own inputs. friction: W, that the creepages and the spin supply."""
 
     wrench: Vector
     power: float

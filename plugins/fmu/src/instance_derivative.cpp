@@ -129,7 +129,7 @@ fmi2Status Instance::differentiate(const Call &call, const std::vector<double> &
                  "scene with a larger method.max_iterations");
     return fmi2Discard;
   }
-  add_sum_rates(outputs_, input_, direction, change_);
+  fill_temperature_rates(input_, direction, change_);
   direction_ = rates;
   return fmi2OK;
 }

@@ -31,6 +31,7 @@ from railpatch.result import (
     GOOD,
     LAW_FIELDS,
     ROW_FIELDS,
+    TOTAL_UNITS,
     Result,
     patch_data,
     shaped_field,
@@ -48,6 +49,7 @@ STEP_KEYS = (
     "spin_moment",
     "creepage",
     "elements",
+    "creep_power",
     "friction_power",
     "plastic_power",
     "elastic_energy",
@@ -206,7 +208,7 @@ class Contact:
                     patch.update(self._fields(side, index, solved[index]["grid"]))
         if self._case.kind == "wheel_rail":
             return {**wheels[self._case.wheel.side], "status": raw["status"], **common}
-        total = {key: raw[key] for key in ("status", "force", "moment", "z")}
+        total = {key: raw[key] for key in TOTAL_UNITS}
         return {**total, **wheels, **common}
 
     def _fields(self, side: str, patch: int, grid: list[int]) -> dict[str, Any]:

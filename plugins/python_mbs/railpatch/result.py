@@ -52,6 +52,10 @@ PATCH_UNITS = {name: unit for name, unit in _PATCH.items() if name not in GIVEN}
 # what a patch of a wheel has besides
 PLACE_UNITS = {name: unit for name, unit in _PATCH.items() if name in GIVEN}
 WHEEL_UNITS = units_of("side", {"rolling_radius": {"z": unit_of("result", "z")}})
+# of the wheels together: what they have and the core's result has too
+TOTAL_UNITS = {
+    name: unit for name, unit in WHEEL_UNITS.items() if name in _core.QUANTITIES["result"]
+}
 DIVISION: tuple[str, ...] = _core.CHOICES["element"]
 # fields with their number of components
 FIELDS = {
@@ -89,8 +93,10 @@ class Result:
     ``error_estimate`` holds what 95 % of the errors of creep_force (N, length of the vector),
     spin_moment (N m) and max_pressure (Pa) stay below. A wheel's ``alternatives`` are solutions of
     its contact areas divided into other patches than ``patches``: where patches join or part, both
-    count, each with its ``share`` (1 elsewhere) in the force, moment and rolling radius. What the
-    scene left out is NaN or None.
+    count, each with its ``share`` (1 elsewhere) in the force, moment and rolling radius. Powers and
+    elastic energy of a wheel and of a wheelset are the sums by share, temperature and residual the
+    greatest; ``contact_power`` is what its force and moment give the wheelset. What the scene left
+    out is NaN or None.
     """
 
     def __init__(self, data: dict[str, Any]) -> None:

@@ -5,7 +5,6 @@
 #include <nanobind/ndarray.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <exception>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "convert.hpp"
+#include "patch/status.hpp"
 #include "workers.hpp"
 
 namespace railpatch::python {
@@ -24,9 +24,10 @@ using Array = nb::ndarray<nb::numpy, double, nb::ndim<2>>;
 
 static_assert(sizeof(TrackState) == 12 * sizeof(double));
 
-enum { kMotion = 18, kWrench = 6, kState = 12, kContact = 6, kPower = 3, kPlacement = 12 };
-// rails: offset and velocity, both by side; wheels: force, moment, power of friction, patches
-enum { kRails = 12, kWheel = 8, kWheels = 2 * kWheel };
+enum { kMotion = 18, kWrench = 6, kState = 12, kContact = 6, kPower = 4, kPlacement = 12 };
+// rails: offset and velocity, both by side; wheels: force, moment, creep power, patches, power of
+// friction
+enum { kRails = 12, kWheel = 9, kWheels = 2 * kWheel };
 
 Placement placement_at(const double *from) {
   Placement placement;
@@ -40,31 +41,8 @@ void check_placements(const Grid &rows, size_t count) {
   if (rows.shape(0) != count) throw nb::value_error("one placement a contact");
 }
 
-double inner(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-// contact forces' power on the wheelset: F.v + M.w, with w of the body in track axes
-double power_of(const rp_result &result, const TrackState &s, const double w[3]) {
-  const double v[3] = {s.speed, s.vy, s.vz};
-  return inner(result.force, v) + inner(result.moment, w);
-}
-
-// angular velocity in track axes; see the head of force_element.hpp
-std::array<double, 3> spin_of(const TrackState &s) {
-  const double c = std::cos(s.roll), r = std::sin(s.roll);
-  const double d = std::cos(s.yaw), t = std::sin(s.yaw);
-  return {s.roll_rate - s.pitch_rate * t, s.pitch_rate * c * d - s.yaw_rate * r,
-          s.pitch_rate * r * d + s.yaw_rate * c};
-}
-
-// what creep forces take and friction turns into heat: -(F.creepage + M spin_creepage) V
-double friction_power(const rp_patch_result &patch) {
-  const double *f = patch.creep_force, *c = patch.creepage;
-  return -(f[0] * c[0] + f[1] * c[1] + patch.spin_moment * patch.spin_creepage) *
-         patch.rolling_speed;
-}
-
-// not converged and out of range are worse than no contact, no contact is worse than contact
-rp_status worse(rp_status a, rp_status b) { return a > b ? a : b; }
+// NaN where the scene has no tangential problem: no friction
+double or_zero(double power) { return std::isnan(power) ? 0.0 : power; }
 
 struct Wheelset {
   Steppable *contact;
@@ -116,10 +94,10 @@ class ForceElement {
     std::lock_guard<std::mutex> guard(mutex_);
     workers_->run(count_, [this](size_t k) { try_wheelset(k); });
     solves_ += count_;
-    rp_status status = RP_CONVERGED;
+    rp_status status = RP_NO_CONTACT;
     for (Wheelset &w : wheelsets_) {
       if (w.refused) std::rethrow_exception(w.refused);
-      status = worse(status, w.result.status);
+      status = combine_status(status, w.result.status);
     }
     return status;
   }
@@ -192,7 +170,7 @@ class ForceElement {
     w.contact->solve(w.input, w.result);
     w.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
     state_[k] = s;
-    report(k, w.result, s);
+    report(k, w.result);
     joint_wrench(w.result.force, w.result.moment, at, w.placement, on,
                  wrench_.data() + k * kWrench);
   }
@@ -221,26 +199,21 @@ class ForceElement {
     input.pitch_rate = s.pitch_rate;
   }
 
-  void report(size_t k, const rp_result &result, const TrackState &s) {
+  void report(size_t k, const rp_result &result) {
     std::copy_n(result.force, 3, contact_.data() + k * kContact);
     std::copy_n(result.moment, 3, contact_.data() + k * kContact + 3);
     double *power = power_.data() + k * kPower;
-    std::fill_n(power, kPower, 0.0);
-    power[0] = power_of(result, s, spin_of(s).data());
+    power[0] = result.contact_power;
+    power[1] = result.elastic_energy;
+    power[2] = or_zero(result.creep_power);
+    power[3] = or_zero(result.friction_power);
     double *wheel = wheels_.data() + k * kWheels;
     for (const rp_side_result &side : result.side) {
-      double friction = 0.0;
-      for (int i = 0; i < side.patch_count + side.alternative_count; ++i) {
-        const rp_patch_result &patch = side.patch[i];
-        power[1] += patch.share * patch.elastic_energy;
-        // NaN where the scene has no tangential problem: no friction
-        if (!std::isnan(patch.creep_force[0])) friction += patch.share * friction_power(patch);
-      }
-      power[2] += friction;
       std::copy_n(side.force, 3, wheel);
       std::copy_n(side.moment, 3, wheel + 3);
-      wheel[6] = friction;
+      wheel[6] = or_zero(side.creep_power);
       wheel[7] = side.patch_count;
+      wheel[8] = or_zero(side.friction_power);
       wheel += kWheel;
     }
   }
@@ -304,11 +277,13 @@ void bind_force_element(nb::module_ &m) {
                    "In: m, along the track, of the track frame's origin.")
       .def_prop_ro("rails", &view<kRails, &E::rails>,
                    "In: beside the case's, offsets of left and right rail (m), their velocities.")
-      .def_prop_ro("wheels", &view<kWheels, &E::wheels>,
-                   "By side: force, moment about the centre, power of friction, patches.")
       .def_prop_ro(
-          "power", &view<kPower, &E::power>,
-          "Of the contacts: power of the forces (W), elastic energy (J), frictional power (W).");
+          "wheels", &view<kWheels, &E::wheels>,
+          "By side: force, moment about the centre, creep power, patches, power of friction.")
+      .def_prop_ro("power", &view<kPower, &E::power>,
+                   "Of the contacts: power of the forces (W), elastic energy (J), creep power (W), "
+                   "frictional "
+                   "power (W).");
 }
 
 }  // namespace railpatch::python

@@ -190,9 +190,14 @@ PATCH = Message(
         _listed("patch", "outer_iterations"),
         _listed("patch", "ambiguous_elements"),
         _listed("patch", "share"),
+        _listed("patch", "creep_power"),
     ),
 )
 
+_SUMS = (
+    *("contact_power", "creep_power", "friction_power", "plastic_power", "elastic_energy"),
+    *("max_temperature", "residual"),
+)
 WHEEL_CONTACT = Message(
     "WheelContact",
     "Contact of one wheel with its rail or roller.",
@@ -213,7 +218,9 @@ WHEEL_CONTACT = Message(
             "solutions of other divisions into patches, which count with their share in the force",
             size=0,
         ),
-        _number("friction_work", "J", "lost in friction since the start of the run"),
+        _number(
+            "friction_work", "J", "taken by the creepages since the start: creep_power over time"
+        ),
         _number(
             "mean_guiding_force",
             "N",
@@ -221,6 +228,7 @@ WHEEL_CONTACT = Message(
             "track",
         ),
         _number("mean_wheel_load", "N", "Q on the rail, down: mean as that of Y", "track"),
+        *(_listed("side", name) for name in _SUMS),
     ),
 )
 
@@ -307,7 +315,7 @@ ENERGY = Message(
         _number("suspension", "J", "potential energy of springs and static load"),
         _number("elastic", "J", "elastic energy of the contacts"),
         _number("contact_work", "J", "work of the contact forces on the wheelsets"),
-        _number("friction_work", "J", "lost in the contacts: creep forces times creepages"),
+        _number("friction_work", "J", "lost in the contacts: creep_power of all wheels over time"),
         _number("damping_work", "J", "taken by the dampers"),
         _number("drive_work", "J", "put in by what holds the speed"),
         _number("mechanical_residual", "J", "open in the balance of bodies and springs"),

@@ -197,10 +197,10 @@ class ForceElement:
         found[6:9] += wrench[:3]
         return found + wrench[3:] @ spin_by_state
 
-    def friction_power_derivatives(self, index: int = 0) -> NDArray[np.float64]:
-        """[12], W over units of STATE: of a wheelset's friction_power at the last step, nearly.
+    def creep_power_derivatives(self, index: int = 0) -> NDArray[np.float64]:
+        """[12], W over units of STATE: of a wheelset's creep_power at the last step, nearly.
 
-        Friction takes what the contact forces give but for the power of the normal forces, which
+        Creepages take what the contact forces give but for the power of the normal forces, which
         the contacts store. Of that only the change with the velocities is counted: at a wheelset
         that hardly moves along the normals it is the greatest by far. What the contacts leave open
         for being an approach apart, see railpatch.pinocchio.energy, is in it, by the spin mostly.
@@ -256,12 +256,12 @@ class ForceElement:
 
     @property
     def wheels(self) -> NDArray[np.float64]:
-        """[wheelsets, 2, 8], of left and right wheel at the last step.
+        """[wheelsets, 2, 9], of left and right wheel at the last step.
 
-        Force (N) and moment (N m) about the wheelset's centre, track axes, power of friction (W),
-        number of patches.
+        Force (N) and moment (N m) about the wheelset's centre, track axes, creep power (W), number
+        of patches, power of friction (W).
         """
-        return self._core.wheels.reshape(-1, 2, 8)
+        return self._core.wheels.reshape(-1, 2, 9)
 
     @property
     def lateral_normals(self) -> NDArray[np.float64]:
@@ -295,13 +295,17 @@ class ForceElement:
         return float(self._power[:, 1].sum())
 
     @property
-    def friction_power(self) -> float:
-        """W, that creep forces take and friction turns into heat, >= 0 up to rounding.
+    def creep_power(self) -> float:
+        """W, that the creepages and the spin supply, of all patches by their shares.
 
-        It is -(F.creepage + M spin_creepage) V of all patches. A sum over slipping elements would
-        miss what is lost in slip regions smaller than an element.
+        It is -(F.creepage + M spin_creepage) V, what creep forces and spin moments take.
         """
         return float(self._power[:, 2].sum())
+
+    @property
+    def friction_power(self) -> float:
+        """W, that friction turns into heat, as in results, of all patches by their shares."""
+        return float(self._power[:, 3].sum())
 
     @property
     def solve_seconds(self) -> float:

@@ -6,16 +6,17 @@ Mechanical balance, over any part of a run:
         = work of the contact forces + work of the drive - work of the dampers
 
 where the drive is what keeps the suspension's reference at its speed. The contact forces' power on
-the wheelset is F.v + M.omega. What they take goes into friction and into the elastic energy of the
-contacts:
+the wheelset is F.v + M.omega. What they take goes into the creepages, creep_power of the element,
+and into the elastic energy of the contacts:
 
-    - work of the contact forces = work of friction + change of elastic energy
+    - work of the contact forces = work of the creepages + change of elastic energy
 
 The first holds for any contact law, so it tests time stepper and force elements; the second tests
 the contact. The contact is quasi-static: its elastic energy is that of the steady state at each
 moment. The second balance also feels that creepages are taken at the undeformed wheel's surface and
 forces at the rail's, an approach apart, and that the reference's x is a mean over the patch: some
-hundredths of the friction's power on the tread, up to a fifth in yawed flange contact.
+hundredths of the creep power on the tread, up to a fifth in yawed flange contact. friction_power is
+what the theory itself counts as heat, by some theories not all of the creep power.
 """
 
 from __future__ import annotations
@@ -48,8 +49,9 @@ class Energies:
 
 @dataclass(frozen=True)
 class Powers:
-    """W. contact: of the contact forces on the wheelsets. friction: turned into heat in the
-    contacts, >= 0. damping: in the dampers, >= 0. drive: put in by the moving references."""
+    """W. contact: of the contact forces on the wheelsets. friction: supplied by the creepages and
+    the spin in the contacts, >= 0 up to rounding. damping: in the dampers, >= 0. drive: put in by
+    the moving references."""
 
     contact: float
     friction: float
@@ -85,7 +87,7 @@ def powers(element: ForceElement, suspensions: Iterable[Suspension] = ()) -> Pow
     springs = list(suspensions)
     return Powers(
         element.contact_power,
-        element.friction_power,
+        element.creep_power,
         sum(suspension.damping_power for suspension in springs),
         sum(suspension.drive_power for suspension in springs),
     )

@@ -105,6 +105,9 @@ def power_findings(step: Step, most: float) -> Iterator[Finding]:
     if size == 0:
         return
     limit = IMPOSED * step.tolerance
+    if step.spin_offset == 0:
+        miss = abs(step.patch["creep_power"] - supplied_power(step))
+        yield Finding("creep power", miss / size, SUMS)
     yield Finding("friction takes power", -step.patch["friction_power"] / size, limit)
     if np.isfinite(step.patch["plastic_power"]):
         yield Finding("plastic work", -step.patch["plastic_power"] / size, limit)

@@ -1,0 +1,28 @@
+// The power that creepages and spin supply, by the result's own numbers, and its rate.
+#pragma once
+
+#include "railpatch.h"
+
+namespace railpatch {
+
+// N, over the rolling speed: T gamma, which is positive where energy is taken.
+inline double creep_work(const rp_patch_result &r) {
+  return -(r.creep_force[0] * r.creepage[0] + r.creep_force[1] * r.creepage[1] +
+           r.spin_moment * r.spin_creepage);
+}
+
+// speed: 1 in a shift. At standstill creepages supply nothing.
+inline double creep_power(const rp_patch_result &r, double speed) {
+  return speed > 0 ? creep_work(r) * speed : 0.0;
+}
+
+// In rolling. d: the rates of the others.
+inline double creep_power_rate(const rp_patch_result &r, const rp_patch_result &d) {
+  if (!(r.rolling_speed > 0)) return 0;
+  double rate = d.spin_moment * r.spin_creepage + r.spin_moment * d.spin_creepage;
+  for (int k = 0; k < 2; ++k)
+    rate += d.creep_force[k] * r.creepage[k] + r.creep_force[k] * d.creepage[k];
+  return creep_work(r) * d.rolling_speed - rate * r.rolling_speed;
+}
+
+}  // namespace railpatch

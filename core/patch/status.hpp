@@ -1,0 +1,21 @@
+// How the statuses of parts join to that of the whole.
+#pragma once
+
+#include "railpatch.h"
+
+namespace railpatch {
+
+// Of one solution that several stages contribute to: the first that is not good stays.
+inline void degrade(rp_status &so_far, rp_status status) {
+  if (so_far == RP_CONVERGED) so_far = status;
+}
+
+// Of contacts beside each other, patches of a wheel, wheels or wheelsets: the worse where one is
+// not good, else contact where one of them has contact.
+inline rp_status combine_status(rp_status a, rp_status b) {
+  if (a == RP_OUT_OF_RANGE || b == RP_OUT_OF_RANGE) return RP_OUT_OF_RANGE;
+  if (a == RP_NOT_CONVERGED || b == RP_NOT_CONVERGED) return RP_NOT_CONVERGED;
+  return a == RP_CONVERGED || b == RP_CONVERGED ? RP_CONVERGED : RP_NO_CONTACT;
+}
+
+}  // namespace railpatch
