@@ -1,0 +1,223 @@
+// Rails on springs and dampers: the step's equations, solved by hand for contacts whose forces are
+// known in closed form.
+#include "wheel/rail_support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <vector>
+
+namespace {
+
+using namespace railpatch;
+
+// Two contacts with Hertzian springs, and lateral forces by the rail's lateral place and rate.
+struct springs final : supported_wheels {
+  int count = 2;
+  double stiffness[2] = {1.1e11, 0.8e11};  // N/m^1.5
+  double touch[2] = {0, 1e-5};             // m
+  double lateral[2] = {-2e6, -1e6};        // N/m, falls with the rail's way
+  double push[2] = {4e3, -6e3};            // N
+  double drag = 0;                         // N s/m
+  double speed = 0;                        // m/s
+  bool nowhere = false;
+  int evaluations = 0;
+  std::array<lateral_vertical, 2> at{}, rates{};
+  double z_now = 0;
+
+  void move_rails(const lateral_vertical *deflection, const lateral_vertical *rate) override {
+    for (size_t w = 0; w < static_cast<size_t>(count); ++w)
+      at[w] = deflection[w], rates[w] = rate[w];
+  }
+  bool first_touch(int wheel, double &z) override {
+    if (nowhere) return false;
+    // rails on their way down are touched later
+    z = touch[wheel] + at[static_cast<size_t>(wheel)][1];
+    return true;
+  }
+  lateral_vertical force(size_t w, double z) const {
+    const double depth = z - touch[w] - at[w][1];
+    if (!(depth > 0) || nowhere) return {0, 0};
+    return {push[w] + lateral[w] * at[w][0] - drag * rates[w][0],
+            stiffness[w] * depth * std::sqrt(depth)};
+  }
+  bool evaluate(double z, wheel_on_rail *out) override {
+    ++evaluations;
+    z_now = z;
+    for (size_t w = 0; w < static_cast<size_t>(count); ++w) out[w] = {force(w, z), speed};
+    return true;
+  }
+};
+
+support_setup setup_of(int count) {
+  support_setup s;
+  s.wheels = count;
+  s.stiffness = {2e7, 5e7};
+  s.damping = {2e4, 5e4};
+  s.tolerance = 1e-9;
+  s.modulus = 1.1e11;
+  s.radius = 0.23;
+  return s;
+}
+
+// The equations of a step, as they are told in the header.
+void expect_solved(const support_setup &setup, const rail_support &support, const springs &wheels,
+                   const support_load &load, const support_result &found,
+                   const std::array<lateral_vertical, 2> &before) {
+  ASSERT_TRUE(found.converged);
+  EXPECT_FALSE(found.beyond);
+  EXPECT_LE(found.residual, setup.tolerance);
+  double carried = 0;
+  for (size_t w = 0; w < static_cast<size_t>(setup.wheels); ++w) {
+    const lateral_vertical &u = support.deflection(static_cast<int>(w)),
+                           &rate = support.rate(static_cast<int>(w));
+    // what the contact was left with is what is reported
+    EXPECT_EQ(wheels.at[w], u);
+    EXPECT_EQ(wheels.rates[w], rate);
+    const lateral_vertical f = wheels.force(w, found.z);
+    carried += f[1];
+    const double size = std::hypot(f[0], f[1]);
+    for (size_t k = 0; k < 2; ++k) {
+      const double expected = load.time_step > 0 ? (u[k] - before[w][k]) / load.time_step : 0.0;
+      EXPECT_DOUBLE_EQ(rate[k], expected);
+      if (setup.stiffness[k] > 0) {
+        EXPECT_NEAR(setup.stiffness[k] * u[k] + setup.damping[k] * expected, f[k],
+                    3e-9 * size + 1e-6);
+      } else {
+        EXPECT_EQ(u[k], 0);
+      }
+    }
+  }
+  EXPECT_EQ(wheels.z_now, found.z);
+  if (load.prescribed)
+    EXPECT_NEAR(carried, load.force, 2e-9 * load.force);
+  else
+    EXPECT_EQ(found.z, load.z);
+}
+
+TEST(RailSupport, StepsFulfilTheirEquations) {
+  for (const int count : {1, 2})
+    for (const bool prescribed : {true, false})
+      for (const auto &stiff : std::vector<std::array<double, 2>>{{2e7, 5e7}, {0, 5e7}, {2e7, 0}})
+        for (const double drag : {0.0, 3e3})
+          for (const double speed : {0.0, 20.0}) {
+            SCOPED_TRACE(testing::Message() << count << prescribed << ' ' << stiff[0] << ' '
+                                            << stiff[1] << ' ' << drag << ' ' << speed);
+            support_setup setup = setup_of(count);
+            setup.stiffness = stiff;
+            for (size_t k = 0; k < 2; ++k)
+              if (stiff[k] == 0) setup.damping[k] = 0;
+            rail_support support(setup);
+            springs wheels;
+            wheels.count = count;
+            wheels.drag = drag;
+            wheels.speed = speed;
+            std::array<lateral_vertical, 2> before{};
+            for (int step = 0; step < 6; ++step) {
+              const support_load load{prescribed, 1e5 * (1 + 0.3 * step), 1e-4 * (step + 1),
+                                      step > 1 ? 1e-3 : 0.0};
+              wheels.push[0] = 4e3 + 500 * step;
+              const support_result found = support.solve(wheels, load);
+              expect_solved(setup, support, wheels, load, found, before);
+              for (size_t w = 0; w < 2; ++w)
+                if (static_cast<int>(w) < count)
+                  before[w] = support.deflection(static_cast<int>(w));
+            }
+          }
+}
+
+// With one wheel the vertical deflection is that of the load, by hand.
+TEST(RailSupport, AStaticLoadDeflectsByItsStiffness) {
+  rail_support support(setup_of(1));
+  springs wheels;
+  wheels.count = 1;
+  const support_result found = support.solve(wheels, {true, 8e4, 0, 0});
+  ASSERT_TRUE(found.converged);
+  const double u = 8e4 / 5e7;
+  EXPECT_NEAR(support.deflection(0)[1], u, 1e-8 * u);
+  EXPECT_NEAR(found.z, u + std::pow(8e4 / 1.1e11, 2.0 / 3), 1e-9 * u);
+  // k u = push + slope u
+  EXPECT_NEAR(support.deflection(0)[0], 4e3 / (2e7 + 2e6), 1e-10);
+  EXPECT_EQ(support.rate(0)[0], 0);
+  EXPECT_EQ(support.rate(0)[1], 0);
+}
+
+// A rail let go falls back by (c/dt)/(k + c/dt) in each step.
+TEST(RailSupport, LetGoItFallsBackStepByStep) {
+  const support_setup setup = setup_of(1);
+  rail_support support(setup);
+  springs wheels;
+  wheels.count = 1;
+  ASSERT_TRUE(support.solve(wheels, {true, 8e4, 0, 0}).converged);
+  lateral_vertical u = support.deflection(0);
+  for (int i = 0; i < 5; ++i) {
+    const support_result found = support.solve(wheels, {false, 0, -0.01, 1e-3});
+    ASSERT_TRUE(found.converged);
+    for (size_t k = 0; k < 2; ++k) {
+      const double c = setup.damping[k] / 1e-3, next = u[k] * c / (setup.stiffness[k] + c);
+      EXPECT_NEAR(support.deflection(0)[k], next, 1e-12 + 1e-9 * std::fabs(next));
+      u[k] = support.deflection(0)[k];
+    }
+  }
+}
+
+TEST(RailSupport, WithoutAContactNothingIsFound) {
+  rail_support support(setup_of(2));
+  springs wheels;
+  ASSERT_TRUE(support.solve(wheels, {true, 1e5, 0, 0}).converged);
+  const lateral_vertical last = support.rails()[0].deflection;
+  wheels.nowhere = true;
+  const support_result found = support.solve(wheels, {true, 1e5, 0.25, 1e-3});
+  EXPECT_FALSE(found.converged);
+  EXPECT_TRUE(found.beyond);
+  EXPECT_EQ(found.residual, HUGE_VAL);
+  EXPECT_EQ(support.rails()[0].deflection, last);
+  EXPECT_EQ(support.rails()[0].hertz, 0);
+  EXPECT_LT(support.rails()[0].time_step, 0);
+  support.reset();
+  for (int w = 0; w < 2; ++w) {
+    EXPECT_EQ(support.rails()[w].deflection, (lateral_vertical{0, 0}));
+    EXPECT_EQ(support.rails()[w].rate, (lateral_vertical{0, 0}));
+  }
+  EXPECT_GE(support.bytes(), sizeof(rail_support));
+}
+
+// What is kept makes steps that change little cheap.
+TEST(RailSupport, SlopesAreKeptFromStepToStep) {
+  for (const bool prescribed : {true, false}) {
+    support_setup setup = setup_of(2);
+    setup.tolerance = 1e-5;
+    rail_support support(setup);
+    springs wheels;
+    wheels.drag = 1e3;
+    wheels.speed = 20;
+    const auto load = [&](int step) {
+      return support_load{prescribed, 1e5 + 200 * std::sin(step), 1.3e-3 + 1e-6 * std::sin(step),
+                          1e-3};
+    };
+    for (int step = 0; step < 3; ++step) ASSERT_TRUE(support.solve(wheels, load(step)).converged);
+    for (int step = 3; step < 20; ++step) {
+      wheels.evaluations = 0;
+      ASSERT_TRUE(support.solve(wheels, load(step)).converged);
+      // the start, and few corrections; finding slopes anew takes two more
+      EXPECT_LE(wheels.evaluations, 6) << step;
+    }
+    // another length of step asks for them again
+    support_load other = load(20);
+    other.time_step = 2e-3;
+    wheels.push[0] += 3e4;
+    wheels.evaluations = 0;
+    ASSERT_TRUE(support.solve(wheels, other).converged);
+    EXPECT_GE(wheels.evaluations, 4);
+    EXPECT_EQ(support.rails()[0].time_step, 2e-3);
+    // slopes are those of the contact: falling with the vertical way, by the drag with the lateral
+    const rail_support::rail &r = support.rails()[0];
+    const double depth = wheels.z_now - wheels.touch[0] - r.deflection[1];
+    EXPECT_NEAR(r.slope[1][1] / (-1.5 * wheels.stiffness[0] * std::sqrt(depth)), 1, 0.05);
+    EXPECT_NEAR(r.slope[0][0] / (wheels.lateral[0] - wheels.drag / 2e-3), 1, 0.05);
+    EXPECT_NEAR(r.hertz, wheels.stiffness[0], 1e-6 * wheels.stiffness[0]);
+  }
+}
+
+}  // namespace
