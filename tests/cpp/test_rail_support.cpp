@@ -20,7 +20,9 @@ struct springs final : supported_wheels {
   double lateral[2] = {-2e6, -1e6};        // N/m, falls with the rail's way
   double push[2] = {4e3, -6e3};            // N
   double drag = 0;                         // N s/m
-  double speed = 0;                        // m/s
+  // of contacts that are inclined: each way by the other
+  double slope[2] = {0, 0};
+  double speed = 0;  // m/s
   bool nowhere = false;
   int evaluations = 0;
   std::array<lateral_vertical, 2> at{}, rates{};
@@ -33,14 +35,15 @@ struct springs final : supported_wheels {
   bool first_touch(int wheel, double &z) override {
     if (nowhere) return false;
     // rails on their way down are touched later
-    z = touch[wheel] + at[static_cast<size_t>(wheel)][1];
+    const lateral_vertical &u = at[static_cast<size_t>(wheel)];
+    z = touch[wheel] + u[1] + slope[wheel] * u[0];
     return true;
   }
   lateral_vertical force(size_t w, double z) const {
-    const double depth = z - touch[w] - at[w][1];
+    const double depth = z - touch[w] - at[w][1] - slope[w] * at[w][0];
     if (!(depth > 0) || nowhere) return {0, 0};
-    return {push[w] + lateral[w] * at[w][0] - drag * rates[w][0],
-            stiffness[w] * depth * std::sqrt(depth)};
+    const double pressed = stiffness[w] * depth * std::sqrt(depth);
+    return {push[w] + lateral[w] * at[w][0] - drag * rates[w][0] + slope[w] * pressed, pressed};
   }
   bool evaluate(double z, wheel_on_rail *out) override {
     ++evaluations;
@@ -125,6 +128,36 @@ TEST(RailSupport, StepsFulfilTheirEquations) {
                   before[w] = support.deflection(static_cast<int>(w));
             }
           }
+}
+
+// With contacts that couple both ways, by different slopes on each wheel, Newton's method is quick.
+TEST(RailSupport, CoupledContactsTakeFewEvaluations) {
+  for (const int count : {1, 2})
+    for (const bool prescribed : {true, false})
+      for (const double slope : {0.2, -0.1}) {
+        SCOPED_TRACE(testing::Message() << count << prescribed << ' ' << slope);
+        const support_setup setup = setup_of(count);
+        rail_support support(setup);
+        springs wheels;
+        wheels.count = count;
+        wheels.slope[0] = slope;
+        wheels.slope[1] = -0.5 * slope;
+        wheels.speed = 20;
+        wheels.drag = 2e3;
+        std::array<lateral_vertical, 2> before{};
+        for (int step = 0; step < 8; ++step) {
+          wheels.evaluations = 0;
+          wheels.push[0] = 4e3 + 3e3 * step;
+          wheels.push[1] = -6e3 + 1e3 * step;
+          const support_load load{prescribed, 1e5 * (1 + 0.1 * step), 1.2e-3 + 1e-4 * step, 1e-3};
+          const support_result found = support.solve(wheels, load);
+          expect_solved(setup, support, wheels, load, found, before);
+          // start, slopes by two differences, and Newton's steps to 1e-9 from within some per cent
+          EXPECT_LE(wheels.evaluations, step == 0 ? 16 : 12) << step;
+          for (size_t w = 0; w < static_cast<size_t>(count); ++w)
+            before[w] = support.deflection(static_cast<int>(w));
+        }
+      }
 }
 
 // With one wheel the vertical deflection is that of the load, by hand.
