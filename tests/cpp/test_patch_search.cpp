@@ -1,0 +1,227 @@
+// From parts of contact to patches: divisions, frames, cuts, bounds and couplings put together anew
+// from the parts that were found.
+#include "geometry/patch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "surfaces.hpp"
+
+namespace {
+
+using namespace railpatch;
+
+class PatchSearch : public testing::TestWithParam<track_kind> {
+ protected:
+  PatchSearch() : side(scene.wheel_curve, scene.rail_curve, scene.sizes, scene.track) {}
+
+  // Flange and tread bear at once where the flange has come near enough; depth of the first touch.
+  void place(double y, double depth, double yaw = 0) {
+    side_motion m;
+    m.wheelset.y = y;
+    m.wheelset.yaw = yaw;
+    side.place(m);
+    double z = 0;
+    ASSERT_TRUE(first_touch(side, z));
+    side.move_to(z + depth);
+  }
+  double flanging() {
+    double low = 0, high = 0.02;
+    while (high - low > 1e-7) {
+      const double y = 0.5 * (low + high);
+      place(y, 1e-6);
+      part_set found;
+      find_parts(side, found);
+      (found.count > 0 && found.parts[0].begin < 0.03 ? high : low) = y;
+    }
+    return high;
+  }
+  static double lateral(const contact_frame &f, const vec3 &p) {
+    return std::cos(f.contact_angle) * (p[1] - f.origin[1]) +
+           std::sin(f.contact_angle) * (p[2] - f.origin[2]);
+  }
+  // What a region says of the parts that it takes up.
+  void expect_region(const patch_region &r, const part_set &found, bool inclined,
+                     bool own_angle = true) const {
+    double weight = 0, x = 0, y = 0, angle = 0, low = HUGE_VAL, high = -HUGE_VAL;
+    for (int k = r.first_part; k < r.first_part + r.parts; ++k) {
+      const part &p = found.parts[k];
+      weight += p.weight;
+      x += p.weight * p.x;
+      y += p.weight * p.y;
+      angle += p.weight * p.angle;
+      low = std::min(low, p.x_min);
+      high = std::max(high, p.x_max);
+    }
+    const contact_frame &f = r.frame;
+    EXPECT_NEAR(r.weight, weight, 1e-12 * weight);
+    EXPECT_NEAR(f.origin[0], x / weight, 1e-14);
+    EXPECT_NEAR(f.origin[1], y / weight, 1e-14);
+    if (own_angle) {
+      EXPECT_NEAR(f.contact_angle, angle / weight, 1e-14);
+    }
+    double z = 0, unused = 0;
+    ASSERT_TRUE(side.rail_surface(f.origin[0], f.origin[1], z, unused));
+    EXPECT_EQ(f.origin[2], z);
+    EXPECT_EQ(f.inclination, inclined ? side.roller_inclination(f.origin) : 0.0);
+    EXPECT_NEAR(r.x_min, low - x / weight, 1e-14);
+    EXPECT_NEAR(r.x_max, high - x / weight, 1e-14);
+    const part &first = found.parts[r.first_part], &last = found.parts[r.first_part + r.parts - 1];
+    EXPECT_NEAR(r.s_min, lateral(f, first.first), 1e-14);
+    EXPECT_NEAR(r.s_max, lateral(f, last.last), 1e-14);
+    for (int k = 0; k + 1 < r.parts; ++k) {
+      const part &a = found.parts[r.first_part + k], &b = found.parts[r.first_part + k + 1];
+      EXPECT_NEAR(r.cut[k], 0.5 * (lateral(f, a.last) + lateral(f, b.first)), 1e-14);
+    }
+  }
+
+  surfaces::scene scene{GetParam()};
+  side_geometry side;
+};
+
+double distance(const part &a, const part &b) {
+  return std::hypot(b.first[1] - a.last[1], b.first[2] - a.last[2]);
+}
+
+TEST_P(PatchSearch, BlendedDivisionsTakeUpTheirParts) {
+  const double flange = flanging();
+  int together = 0, apart = 0, both = 0;
+  for (double beyond = -4e-5; beyond < 6e-5; beyond += 4e-6)
+    for (const bool inclined : {false, true}) {
+      if (inclined && !scene.roller()) continue;
+      place(flange + beyond, 4e-5, 2e-3);
+      patch_rules rules;
+      rules.inclined = inclined;
+      part_set found;
+      patch_region regions[8];
+      const search_result result = find_patches(side, rules, found, regions, 8);
+      ASSERT_EQ(result.status, search_status::contact);
+      double counted[max_parts] = {};
+      int lead = 0;
+      for (int i = 0; i < result.count; ++i) {
+        expect_region(regions[i], found, inclined);
+        const int first = regions[i].first_part, end = first + regions[i].parts;
+        for (int k = first; k < end; ++k) counted[k] += regions[i].share;
+        for (int k = first; k + 1 < end; ++k)
+          EXPECT_EQ(regions[i].coupling[k - first],
+                    interaction(rules.blend, found.parts[k], found.parts[k + 1]));
+        EXPECT_FALSE(regions[i].at_profile_end);
+        if (i < result.lead) lead += regions[i].parts;
+      }
+      for (int k = 0; k < found.count; ++k) EXPECT_NEAR(counted[k], 1, 1e-5);
+      // the leading division holds each part once
+      EXPECT_EQ(lead, found.count);
+      if (found.count == 2) {
+        const double join = joined(rules.blend, found.parts[0], found.parts[1]);
+        const bool one = join > 1e-6, two = join < 1 - 1e-6;
+        EXPECT_EQ(result.count, one + 2 * two);
+        EXPECT_EQ(result.lead, join < 0.5 ? 2 : 1);
+        for (int i = 0; i < result.count; ++i)
+          EXPECT_NEAR(regions[i].share, regions[i].parts == 2 ? join : 1 - join, 1e-14);
+        both += one && two;
+        ++(one ? together : apart);
+      }
+    }
+  EXPECT_GT(together + apart, 2);
+}
+
+TEST_P(PatchSearch, OfTheProgramContactByDistance) {
+  const double flange = flanging();
+  int several = 0;
+  for (double beyond = -4e-5; beyond < 6e-5; beyond += 4e-6) {
+    place(flange + beyond, 4e-5);
+    part_set found;
+    find_parts(side, found);
+    if (found.count != 2) continue;
+    ++several;
+    const part a = found.parts[0], b = found.parts[1];
+    const double d = distance(a, b);
+    patch_rules rules;
+    rules.blended = false;
+    patch_region regions[8];
+    const auto search = [&](double separate) {
+      rules.combine = 0.5 * separate;
+      rules.separate = separate;
+      rules.turn = 2 * separate;
+      rules.max_angle = 1.5;
+      return find_patches(side, rules, found, regions, 8);
+    };
+    // nearer than that distance: one, with a coupling that falls between both
+    for (const double share : {0.3, 0.6, 0.9}) {
+      ASSERT_EQ(search(d / share).count, 1);
+      expect_region(regions[0], found, false);
+      EXPECT_EQ(regions[0].parts, 2);
+      const double near = std::clamp((1 - share) / 0.5, 0.0, 1.0);
+      EXPECT_NEAR(regions[0].coupling[0], std::pow(near, 0.8), 1e-12);
+    }
+    // turned towards their mean up to the next one
+    for (const double share : {1.1, 1.5, 1.9, 2.1, 4.0}) {
+      const search_result result = search(d / share);
+      ASSERT_EQ(result.count, 2);
+      EXPECT_EQ(result.lead, 2);
+      const double by = std::clamp(2 - share, 0.0, 1.0);
+      const double mean = (a.weight * a.angle + b.weight * b.angle) / (a.weight + b.weight);
+      EXPECT_NEAR(regions[0].frame.contact_angle, a.angle + by * (mean - a.angle), 1e-12);
+      EXPECT_NEAR(regions[1].frame.contact_angle, b.angle + by * (mean - b.angle), 1e-12);
+      for (int i = 0; i < 2; ++i) expect_region(regions[i], found, false, false);
+    }
+    // angles too far apart always separate, and do not turn
+    rules.separate = 2 * d;
+    rules.turn = 3 * d;
+    rules.max_angle = 0.99 * std::fabs(a.angle - b.angle);
+    ASSERT_EQ(find_patches(side, rules, found, regions, 8).count, 2);
+    EXPECT_EQ(regions[0].frame.contact_angle, a.angle);
+    EXPECT_EQ(regions[1].frame.contact_angle, b.angle);
+    // where there is room for one, the heavier stays
+    const search_result one = find_patches(side, rules, found, regions, 1);
+    EXPECT_EQ(one.status, search_status::too_many_patches);
+    ASSERT_EQ(one.count, 1);
+    EXPECT_EQ(regions[0].first_part, a.weight < b.weight ? 1 : 0);
+    EXPECT_EQ(regions[0].frame.contact_angle, a.weight < b.weight ? b.angle : a.angle);
+  }
+  EXPECT_GT(several, 2);
+}
+
+TEST_P(PatchSearch, TellsWhereThereIsNone) {
+  patch_region regions[2];
+  part_set found;
+  place(0, -1e-4);
+  EXPECT_EQ(find_patches(side, {}, found, regions, 2).status, search_status::no_contact);
+  side_motion m;
+  m.wheelset.y = 0.5;
+  side.place(m);
+  EXPECT_TRUE(side.no_overlap());
+  double z = 7;
+  EXPECT_FALSE(first_touch(side, z));
+  EXPECT_EQ(find_patches(side, {}, found, regions, 2).status, search_status::out_of_range);
+  EXPECT_EQ(found.count, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Tracks, PatchSearch, testing::Values(track_kind::rail, track_kind::roller),
+                         [](const auto &info) {
+                           return std::string(info.param == track_kind::rail ? "rail" : "roller");
+                         });
+
+TEST(PatchRegion, IsMirroredWithItsCuts) {
+  patch_region r;
+  r.frame = {{1, 2, 3}, 0.4, 0.5};
+  r.x_min = -1, r.x_max = 2, r.s_min = -3, r.s_max = 5;
+  r.parts = 4;
+  for (int k = 0; k < 3; ++k) r.cut[k] = k - 0.5, r.coupling[k] = 0.1 * (k + 1);
+  const patch_region m = mirrored(r);
+  EXPECT_EQ(m.frame.origin, (vec3{1, -2, 3}));
+  EXPECT_EQ(m.frame.contact_angle, -0.4);
+  EXPECT_EQ(m.x_min, -1);
+  EXPECT_EQ(m.x_max, 2);
+  EXPECT_EQ(m.s_min, -5);
+  EXPECT_EQ(m.s_max, 3);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(m.cut[k], -r.cut[2 - k]);
+    EXPECT_EQ(m.coupling[k], r.coupling[2 - k]);
+  }
+}
+
+}  // namespace
