@@ -142,6 +142,85 @@ TEST(Loop, RisingLawHasOneSolutionWhateverTheStart) {
   EXPECT_NEAR(cold.mu[5], 0.6, 1e-12);  // hot behind
 }
 
+// What a result says is left, told anew: temperatures from the leading edge on, each coefficient by
+// halving.
+double change_left(const row_model &m, const temperature_law &law) {
+  std::vector<double> heat(40), next(40);
+  double worst = 0;
+  for (int i = 39; i >= 0; --i) {
+    const auto at = static_cast<size_t>(i);
+    const double per_mu = m.q[at] / m.mu[at];
+    double ahead = m.background[at];
+    for (int k = i + 1; k < 40 && k - i < m.kernel.count(); ++k)
+      ahead += m.kernel.weight(k - i) * heat[static_cast<size_t>(k)] / effusivity;
+    double low = std::min(law.reference, law.reference + law.change);
+    double high = std::max(law.reference, law.reference + law.change);
+    for (int k = 0; k < 60; ++k) {
+      const double mu = 0.5 * (low + high);
+      const double t = ahead + m.kernel.weight(0) * per_mu * mu / effusivity;
+      (law.coefficient(t) > mu ? low : high) = mu;
+    }
+    next[at] = 0.5 * (low + high);
+    heat[at] = per_mu * next[at];
+    worst = std::max(worst, std::fabs(next[at] - m.mu[at]));
+  }
+  return worst / std::max(law.reference, law.reference + law.change);
+}
+
+TEST(Loop, SaysWhatIsLeft) {
+  for (double compliance : {-1.0, 2.0, 8.0})
+    for (const temperature_law &law :
+         {temperature_law{0.3, -0.25, 30, 150}, temperature_law{0.3, -0.1, 40, 30},
+          temperature_law{0.1, 0.05, 30, 300}}) {
+      double last = HUGE_VAL;
+      for (int most : {1, 2, 3, 4, 5, 6}) {
+        row_model m;
+        std::fill(m.mu.begin(), m.mu.end(), law.reference);
+        m.stuck = 0.3;
+        m.compliance = compliance;
+        const temperature_loop_result r = m.solve(law, most);
+        EXPECT_EQ(r.iterations, m.calls);
+        EXPECT_LE(r.iterations, std::max(most, 2));
+        EXPECT_NEAR(r.residual, change_left(m, law), 1e-10) << compliance << " " << most;
+        EXPECT_EQ(r.converged, r.residual <= 1e-8);
+        // the best pass is the result: more passes are never worse
+        EXPECT_LE(r.residual, last * (1 + 1e-9)) << compliance << " " << most;
+        last = r.residual;
+      }
+      // a fixed point with two former passes mixed in: digits by the pass
+      row_model m;
+      std::fill(m.mu.begin(), m.mu.end(), law.reference);
+      m.stuck = 0.3;
+      m.compliance = compliance;
+      const temperature_loop_result r = m.solve(law);
+      EXPECT_TRUE(r.converged);
+      EXPECT_LE(r.iterations, 20) << compliance << " " << law.change;
+    }
+}
+
+// The step of Anderson's mixing does not take coefficients out of the law, and what has no contact
+// keeps its own.
+TEST(Loop, CoefficientsStayInTheLaw) {
+  const temperature_law law{0.3, -0.25, 30, 60};
+  row_model m;
+  m.stuck = 0.2;
+  m.compliance = 8;
+  m.pressure[0] = m.pressure[1] = m.pressure[39] = 0;
+  temperature_loop loop(40);
+  const temperature_loop_result r =
+      loop.solve({law, m.rows, &m.kernel, effusivity, m.background.data(), m.pressure.data()},
+                 {1e-8, 50}, m.mu.data(), m.q.data(), [&](const double *mu, double *heat) {
+                   for (size_t i = 2; i < 39; ++i) {
+                     EXPECT_GE(mu[i], 0.05 - 1e-15);
+                     EXPECT_LE(mu[i], 0.3 + 1e-15);
+                   }
+                   for (size_t i : {0u, 1u, 39u}) EXPECT_EQ(mu[i], 0.3);
+                   m.tangential(mu, heat);
+                   return true;
+                 });
+  EXPECT_TRUE(r.converged);
+}
+
 TEST(Loop, RootsOfOneElement) {
   const temperature_law falls{0.4, -0.3, 100, 50}, rises{0.1, 0.3, 100, 50};
   for (double a : {0.0, 90.0, 120.0, 400.0})
@@ -151,6 +230,10 @@ TEST(Loop, RootsOfOneElement) {
         const double slope = std::fabs(law.change / law.range) * b;
         EXPECT_NEAR(mu, law.coefficient(a + b * mu), 1e-13 * (1 + slope)) << a << " " << b;
       }
+  // 0.1 stays below 100, 0.4 above 150: both are roots, and the nearest is taken
+  EXPECT_EQ(consistent_coefficient(rises, 50, 400, 0.24), 0.1);
+  EXPECT_EQ(consistent_coefficient(rises, 50, 400, 0.26), 0.4);
+  EXPECT_EQ(consistent_coefficient(rises, 50, 400, 0.1), 0.1);
 }
 
 }  // namespace
