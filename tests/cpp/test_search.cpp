@@ -141,25 +141,26 @@ TEST(FixedPoint, GoesBackToTheBestPointWithHalfTheStep) {
 }
 
 // Steps that have become short grow again: a remainder that falls to less than half of the least
-// doubles them.
+// doubles them, another that falls does not.
 TEST(FixedPoint, StepsGrowAgain) {
-  fixed_point search(2);
-  search.begin(2);
-  vector x{0, 0};
-  const auto advance = [&](double rx, double ry) {
-    const vector gx{x[0] + rx, x[1] + ry};
-    search.advance(x.data(), gx.data());
-  };
-  advance(1, 0);
-  advance(3, 0);  // back, half the step: at (0.5, 0)
-  EXPECT_EQ(x, (vector{0.5, 0}));
-  // across: the difference of remainders is (-1, 0.4), which takes its share of the new remainder
-  const double r[2] = {0, 0.4}, d[2] = {-1, 0.4}, before[2] = {0.5, 0};
-  const double share = (r[0] * d[0] + r[1] * d[1]) / (d[0] * d[0] + d[1] * d[1]);
-  advance(r[0], r[1]);
-  for (size_t i = 0; i < 2; ++i) {
-    const double moved = i == 0 ? 0.5 : 0.0;
-    EXPECT_NEAR(x[i], before[i] + r[i] - share * (moved + d[i]), 1e-10) << i;
+  for (double across : {0.4, 0.7}) {
+    fixed_point search(2);
+    search.begin(2);
+    vector x{0, 0};
+    const auto advance = [&](double rx, double ry) {
+      const vector gx{x[0] + rx, x[1] + ry};
+      search.advance(x.data(), gx.data());
+    };
+    advance(1, 0);
+    advance(3, 0);  // back, half the step: at (0.5, 0)
+    EXPECT_EQ(x, (vector{0.5, 0}));
+    // across: the difference of remainders, (-1, across), takes its share of the new remainder
+    const double r[2] = {0, across}, d[2] = {-1, across}, moved[2] = {0.5, 0};
+    const double share = (r[0] * d[0] + r[1] * d[1]) / (d[0] * d[0] + d[1] * d[1]);
+    const double step = across < 0.5 ? 1.0 : 0.5;
+    advance(r[0], r[1]);
+    for (size_t i = 0; i < 2; ++i)
+      EXPECT_NEAR(x[i], moved[i] + step * r[i] - share * (moved[i] + step * d[i]), 1e-10) << i;
   }
 }
 

@@ -209,7 +209,7 @@ TEST(Strips, OfFewRowsEndWithTheirMoments) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> unit(0, 1);
   for (int round = 0; round < 200; ++round) {
-    const int count = 1 + round % 3, ny = 9, first = 2 + round % 4;
+    const int count = 1 + round % 3, ny = 9, first = round % 7;
     const double dy = 6e-4;
     const grid g{61, ny, 2e-4, dy, -6.1e-3, -2e-3};
     std::vector<profile> across(ny);
@@ -235,6 +235,17 @@ TEST(Strips, OfFewRowsEndWithTheirMoments) {
     for (int j = 0; j < rows.count(); ++j) carried += load_of(rows[j]);
     EXPECT_NEAR(carried, sum * dy, 1e-12 * sum * dy);
   }
+}
+
+TEST(Strips, OfALineContactAreOne) {
+  const grid g{61, 1, 2e-4, 0.02, -6.1e-3, 0};
+  contact_rows rows(5, 4, 1);
+  rows.set_pressure(g, pressed(g, {{3e6, 1.3e-4, 9e-6}}).data());
+  ASSERT_EQ(rows.count(), 1);
+  EXPECT_NEAR(rows[0].x, 1.3e-4, 1e-15);
+  EXPECT_EQ(rows[0].height, 0.02);
+  EXPECT_NEAR(rows[0].half_length, 3e-3, 1e-14);
+  EXPECT_NEAR(load_of(rows[0]), 3e6 * 0.02, 1e-8);
 }
 
 // As an outermost row loses its load the end goes over, without a jump and without a kink, to where
