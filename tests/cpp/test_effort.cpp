@@ -44,6 +44,7 @@ constexpr needed of_patches[] = {
     {"memory", {5.0, 4.3, 32.8, 0.0}},
     {"plastic", {5.0, 2.7, 11.3, 0.0}},
     {"plastic_hardening", {5.0, 2.8, 11.5, 0.0}},
+    {"plastic_magnitude", {5.0, 2.9, 11.8, 0.0}},
     {"plastic_transient", {0.2, 2.3, 9.8, 0.0}},
     {"plastic_transient_magnitude", {0.2, 2.3, 9.8, 0.0}},
     {"softening_shift", {0.2, 2.9, 10.2, 0.0}},
@@ -150,6 +151,15 @@ std::vector<family> families() {
   add("plastic", c, true);
   c.layer_hardening = 1e13;
   add("plastic_hardening", c, true);
+  c.layer_yield_stress = 2.2e8;
+  c.layer_hardening = 1e12;
+  c.plastic_rule = RP_PLASTIC_MAGNITUDE;
+  add("plastic_magnitude", c, true);
+  c = full(20);
+  c.layer_thickness = 1e-4;
+  c.layer_shear_modulus = 1e9;
+  c.layer_yield_stress = 1e8;
+  c.layer_hardening = 1e13;
   c.regime = RP_TRANSIENT_ROLLING;
   add("plastic_transient", c, false);
   c.plastic_rule = RP_PLASTIC_MAGNITUDE;
