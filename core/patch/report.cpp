@@ -1,6 +1,7 @@
 #include "patch/report.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "patch/creep_power.hpp"
 #include "patch/result_fields.hpp"
@@ -103,6 +104,19 @@ void report_apart(const patch_scene &scene, const patch_place &place, double app
 void report_beyond(const patch_place &place, rp_patch_result &result) {
   describe_place(place, result);
   result.status = RP_OUT_OF_RANGE;
+}
+
+void report_rates(const rp_patch_result &value, const patch_change &change, rp_patch_result &rate) {
+  const auto set = [](double value_of, double &to, double v) {
+    if (!std::isnan(value_of)) to = v;
+  };
+  set(value.normal_force, rate.normal_force, change.normal_force);
+  set(value.max_pressure, rate.max_pressure, change.max_pressure);
+  set(value.contact_area, rate.contact_area, change.contact_area);
+  set(value.elastic_energy, rate.elastic_energy, change.elastic_energy);
+  for (int c = 0; c < 2; ++c) set(value.creep_force[c], rate.creep_force[c], change.creep_force[c]);
+  set(value.spin_moment, rate.spin_moment, change.spin_moment);
+  set(value.friction_power, rate.friction_power, change.friction_power);
 }
 
 void report_errors(const error_bounds &bounds, rp_patch_result &result) {

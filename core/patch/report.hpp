@@ -4,6 +4,7 @@
 #include "half_space/forces.hpp"
 #include "patch/error_estimate.hpp"
 #include "patch/outcomes.hpp"
+#include "patch/patch_derivative.hpp"
 #include "patch/patch_memory.hpp"
 #include "railpatch.h"
 
@@ -21,6 +22,8 @@ void report_apart(const patch_scene &scene, const patch_place &place, double app
                   const heat_outcome &h, rp_patch_result &result);
 // A patch that no grid of this handle can hold.
 void report_beyond(const patch_place &place, rp_patch_result &result);
+// Rates of what a patch in contact found; where the result has no number, its rate stays as it is.
+void report_rates(const rp_patch_result &value, const patch_change &change, rp_patch_result &rate);
 void report_errors(const error_bounds &bounds, rp_patch_result &result);
 // What an outer loop says of a patch afterwards: a status no better, a residual no smaller.
 inline void degrade(rp_patch_result &result, rp_status status) { degrade(result.status, status); }

@@ -4,6 +4,7 @@
 
 #include "numeric/nan.hpp"
 #include "patch/creep_power.hpp"
+#include "patch/report.hpp"
 #include "patch/result_sums.hpp"
 #include "patch/single_patch.hpp"
 
@@ -94,18 +95,12 @@ void single_patch::differentiate(const rp_input &d, const rp_input &, const rp_r
     for (rp_status *status : {&out.status, &side.status, &change.status})
       if (*status == RP_CONVERGED) *status = RP_NOT_CONVERGED;
   }
-  set(value.normal_force, change.normal_force, found.normal_force);
+  report_rates(value, found, change);
   set(value.approach, change.approach, found.approach);
   for (int k = 0; k < 2; ++k) {
-    set(value.creep_force[k], change.creep_force[k], found.creep_force[k]);
     set(value.element_size[k], change.element_size[k], v.size[k]);
     set(value.grid_origin[k], change.grid_origin[k], v.origin[k]);
   }
-  set(value.spin_moment, change.spin_moment, found.spin_moment);
-  set(value.max_pressure, change.max_pressure, found.max_pressure);
-  set(value.contact_area, change.contact_area, found.contact_area);
-  set(value.friction_power, change.friction_power, found.friction_power);
-  set(value.elastic_energy, change.elastic_energy, found.elastic_energy);
   set(value.creep_power, change.creep_power, creep_power_rate(value, change));
   sum_patch_rates(result.side[RP_RIGHT], side);
   sum_up(result, out);

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "numeric/nan.hpp"
+#include "patch/report.hpp"
 #include "patch/result_fields.hpp"
 
 namespace railpatch {
@@ -302,11 +303,8 @@ void wheel_derivative::report(step &s, int index, int b, int k, const patch_chan
   const rated_frame frame = s.frame_in(b, region);
   const auto slot = static_cast<size_t>(k);
   rp_patch_result &to = s.changes[b * rate_directions + k].patch[index];
-  to.normal_force = d.normal_force;
+  report_rates(found, d, to);
   to.approach = s.depth_in(b, s.wheel.patches[index]).rate[slot];
-  to.max_pressure = d.max_pressure;
-  to.contact_area = d.contact_area;
-  to.elastic_energy = d.elastic_energy;
   to.share = s.share_in(b, region).rate[slot];
   for (size_t c = 0; c < 3; ++c) to.position[c] = frame.origin[c].rate[slot];
   to.contact_angle = frame.contact_angle.rate[slot];
@@ -317,10 +315,6 @@ void wheel_derivative::report(step &s, int index, int b, int k, const patch_chan
     to.element_size[c] = b == 0 ? s.lattice[k].size[c] : 0.0;
   }
   if (s.solver.scene().tangential == RP_TANGENTIAL_NONE) return;
-  to.creep_force[0] = d.creep_force[0];
-  to.creep_force[1] = d.creep_force[1];
-  to.spin_moment = d.spin_moment;
-  to.friction_power = d.friction_power;
   to.creepage[0] = s.rolling[b].xi.rate[slot];
   to.creepage[1] = s.rolling[b].eta.rate[slot];
   to.spin_creepage = s.rolling[b].phi.rate[slot];
