@@ -20,7 +20,7 @@ std::optional<bound_law> make_law(const rp_config &c) {
   bound_law law;
   law.by_velocity = by_velocity;
   if (by_velocity) {
-    law.slip.kind = static_cast<slip_velocity_law::shape>(c.slip_law);
+    law.slip.shape = c.slip_law;
     law.slip.kinetic = c.friction_kinetic;
     for (int i = 0; i < 2; ++i) {
       law.slip.amplitude[i] = c.friction_amplitude[i];

@@ -12,6 +12,28 @@ using std::numbers::ln2;
 
 double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1]; }
 
+// f(u) of a shape: 1 at rest, 1/2 at u = 1, nowhere below 0, falling ever more slowly, u |f'| not
+// above 1. The limits of steepest_fall rest on that.
+double shape_at(rp_slip_law shape, double u, double &slope) {
+  double f = 0;
+  slope = 0;
+  switch (shape) {
+    case RP_SLIP_EXPONENTIAL:
+      f = std::exp2(-u);
+      slope = -ln2 * f;
+      break;
+    case RP_SLIP_RATIONAL:
+      f = 1.0 / (1.0 + u);
+      slope = -f * f;
+      break;
+    case RP_SLIP_LINEAR:
+      f = std::max(0.0, 1.0 - 0.5 * u);
+      slope = f > 0 ? -0.5 : 0.0;
+      break;
+  }
+  return f;
+}
+
 }  // namespace
 
 // --- slip velocity -------------------------------------------------------------------------------
@@ -21,22 +43,8 @@ double slip_velocity_law::coefficient(double speed, double &slope) const {
   slope = 0;
   for (int i = 0; i < 2; ++i) {
     if (amplitude[i] == 0) continue;
-    const double u = speed / halving_speed[i];
-    double f = 0, df = 0;
-    switch (kind) {
-      case exponential:
-        f = std::exp2(-u);
-        df = -ln2 * f;
-        break;
-      case rational:
-        f = 1.0 / (1.0 + u);
-        df = -f * f;
-        break;
-      case linear:
-        f = std::max(0.0, 1.0 - 0.5 * u);
-        df = f > 0 ? -0.5 : 0.0;
-        break;
-    }
+    double df;
+    const double f = shape_at(shape, speed / halving_speed[i], df);
     mu += amplitude[i] * f;
     slope += amplitude[i] * df / halving_speed[i];
   }
@@ -48,10 +56,11 @@ double slip_velocity_law::greatest() const {
 }
 
 double slip_velocity_law::steepest_fall(double rate) const {
-  const double at_rest = kind == exponential ? ln2 : kind == rational ? 1.0 : 0.5;
+  double at_rest;
+  shape_at(shape, 0.0, at_rest);
   double at_once = 0, height = 0, rise = 0;
   for (int i = 0; i < 2; ++i) {
-    at_once += at_rest * std::max(amplitude[i], 0.0) / halving_speed[i] * rate;
+    at_once += -at_rest * std::max(amplitude[i], 0.0) / halving_speed[i] * rate;
     height += std::max(amplitude[i], 0.0);
     rise += std::max(-amplitude[i], 0.0);
   }

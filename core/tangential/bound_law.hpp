@@ -16,12 +16,13 @@
 // beyond |q| = b(0), where the element sticks. R above twice the steepest fall of b makes h unique.
 #pragma once
 
+#include "railpatch.h"
+
 namespace railpatch {
 
-// mu(s) = kinetic + sum of amplitude f(s/halving): f(u) = 2^-u, 1/(1 + u) or max(0, 1 - u/2).
+// mu(s) = kinetic + sum of amplitude f(s/halving), f by its shape.
 struct slip_velocity_law {
-  enum shape { exponential = 0, rational = 1, linear = 2 };
-  shape kind = exponential;
+  rp_slip_law shape = RP_SLIP_EXPONENTIAL;
   double kinetic = 0;
   double amplitude[2] = {0, 0};
   double halving_speed[2] = {1, 1};  // m/s

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <random>
 
+#include "handle/case_fields.hpp"
+
 namespace {
 
 using namespace railpatch;
@@ -28,7 +30,7 @@ draw random_draw(std::mt19937_64 &random) {
   const auto kind = random() % 3;
   law.by_velocity = kind != 0;
   if (law.by_velocity) {
-    law.slip.kind = static_cast<slip_velocity_law::shape>(random() % 3);
+    law.slip.shape = static_cast<rp_slip_law>(random() % choice_count<rp_slip_law>);
     law.slip.kinetic = 0.2 + unit(random);
     for (int i = 0; i < 2; ++i) {
       law.slip.amplitude[i] = unit(random) - (i == 1 ? 0.3 : 0.0) * law.slip.kinetic;
