@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from railpatch.case.choice import least_error
 from railpatch.case.friction import Friction, check_increasing
-from railpatch.case.theories import READERS, blends_as_contact
+from railpatch.case.theories import FAST, READERS, blends_as_contact
 from railpatch.case.types import (
     BODIES,
     CapacityPair,
@@ -25,6 +25,7 @@ from railpatch.case.types import (
     between,
     exactly_one,
     key,
+    one_of,
     relation,
     twice,
 )
@@ -110,7 +111,7 @@ class Layer(Table):
         description="m and Pa, [[plastic displacement, yield stress], ...] from [0, yield_stress] "
         "on, in place of yield_stress and hardening; the last stress holds beyond",
     )
-    plastic_rule: Literal["path", "magnitude"] = Field(
+    plastic_rule: one_of("plastic_rule") = Field(
         default="path",
         description="what the yield stress depends on (no unit): length of the plastic "
         "displacement's path, or magnitude of its vector sum",
@@ -179,7 +180,7 @@ class Method(Table):
     normal: Literal["hertz", "kik_piotrowski", "analyn", "half_space"] = Field(
         default="half_space", description="theory of the normal problem (no unit)"
     )
-    tangential: Literal["none", "linear", "polach", "fastsim", "fastrip", "table", "full"] = Field(
+    tangential: Literal[("none", *FAST, "full")] = Field(
         default="full", description="theory of the tangential problem (no unit)"
     )
     tolerance: float = key()
@@ -190,23 +191,23 @@ class Method(Table):
         "coefficient times normal force that 95 % of cases stay below; the cheapest grid, and the "
         "cheapest method where 'normal' and 'tangential' are left out, are chosen for it",
     )
-    spin_offset: Literal["none", "sixth"] = Field(
+    spin_offset: one_of("spin_offset") = Field(
         default="none",
         description="-, shift of the spin term in elements along rolling: none, or a sixth as in "
         "the program CONTACT, for comparisons",
     )
-    reference_surface: Literal["plane", "curved"] = Field(
+    reference_surface: one_of("reference_surface") = Field(
         default="plane",
         description="of half_space on wheels (no unit): plane, or curved between wheel and rail, "
         "with a normal for each row of elements, for conformal contact",
     )
     percent_kalker: float = key()
-    traction_bound: Literal["parabolic", "elliptic"] | None = Field(
+    traction_bound: one_of("traction_bound", without=("automatic",)) | None = Field(
         default=None,
         description="of fastsim (no unit): elliptic, the friction coefficient times the pressure, "
         "or parabolic, as its square; left out: parabolic with hertz, else elliptic",
     )
-    flexibility_blending: Literal["sliding", "none", "contact"] = Field(
+    flexibility_blending: one_of("flexibility_blending") = Field(
         default="sliding",
         description="of fastsim and fastrip (no unit): one flexibility for all directions as "
         "sliding becomes full, or none; contact: fastsim as in the program CONTACT, to compare "
@@ -217,13 +218,13 @@ class Method(Table):
     fastsim_k0: float = key()
     fastsim_alpha: float = key()
     fastsim_beta: float = key()
-    patch_rule: Literal["blended", "contact"] | None = Field(
+    patch_rule: one_of("patch_rule") | None = Field(
         default=None,
         description="of wheels (no unit): blended, the default, neighbouring areas of contact go "
         "over from one patch to two smoothly, both solved in between, each with its share; or "
         "contact, by distances as in the program CONTACT, for comparisons",
     )
-    contact_frame: Literal["track", "inclined"] | None = Field(
+    contact_frame: one_of("contact_frame") | None = Field(
         default=None,
         description="of wheels on rollers (no unit): track, the default, x along the track, which "
         "leaves out the normal force's part along it where a contact lies ahead of the roller's "

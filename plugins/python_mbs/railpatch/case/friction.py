@@ -5,10 +5,11 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from railpatch import _core
 from railpatch.case.types import (
     Celsius,
     Number,
@@ -18,6 +19,7 @@ from railpatch.case.types import (
     between,
     key,
     more_than,
+    one_of,
     relation,
 )
 
@@ -34,9 +36,7 @@ KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     ),
 }
 SHAPES: dict[str, tuple[str, ...]] = {
-    "exponential": ("kinetic", "amplitude", "halving_speed"),
-    "rational": ("kinetic", "amplitude", "halving_speed"),
-    "linear": ("kinetic", "amplitude", "halving_speed"),
+    **dict.fromkeys(_core.CHOICES["slip_law"], ("kinetic", "amplitude", "halving_speed")),
     "polach": ("coefficient", "polach_a", "polach_b"),
 }
 
@@ -44,13 +44,11 @@ SHAPES: dict[str, tuple[str, ...]] = {
 class Friction(Table):
     """Friction law."""
 
-    law: Literal["coulomb", "slip_velocity", "temperature"] = Field(
-        default="coulomb", description="friction law (no unit)"
-    )
+    law: one_of("friction_law") = Field(default="coulomb", description="friction law (no unit)")
     coefficient: Coefficient | None = Field(
         default=None, description="-, coefficient of friction; with polach: at rest"
     )
-    shape: Literal["exponential", "rational", "linear", "polach"] = Field(
+    shape: one_of("slip_law", besides=("polach",)) = Field(
         default="exponential",
         description="of slip_velocity (no unit): mu = kinetic + sum of amplitude f(s/halving_speed)"
         " with f(u) = 2^-u, 1/(1 + u) or max(0, 1 - u/2) over the speed s of micro-slip; polach: "

@@ -93,6 +93,12 @@ class Named(type(BaseModel)):
         return super().__new__(cls, name, bases, namespace, **more)
 
 
+def one_of(choice: str, *, without: tuple[str, ...] = (), besides: tuple[str, ...] = ()) -> Any:
+    """One of the words of a choice of the core, in its order, and of those besides."""
+    words = (word for word in _core.CHOICES[choice] if word not in without)
+    return Literal[(*words, *besides)]
+
+
 def exactly(count: int) -> Any:
     """The length of a list."""
     return Field(min_length=count, max_length=count)

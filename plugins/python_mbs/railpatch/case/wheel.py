@@ -30,6 +30,7 @@ from railpatch.case.types import (
     Vector,
     exactly_one,
     key,
+    one_of,
     relation,
 )
 from railpatch.profiles.smooth import MEASURED_WAVELENGTH
@@ -131,7 +132,7 @@ class Rail(Deviation, RailShape):
 class Track(Table):
     """Rails or rollers."""
 
-    kind: Literal["rail", "roller"] = Field(default="rail", description="(no unit)")
+    kind: one_of("track") = Field(default="rail", description="(no unit)")
     gauge: float = key()
     gauge_height: float = key()
     gauge_widening: float = key()
@@ -211,7 +212,7 @@ PROFILE_KEYS = tuple(name for name in Profiles.model_fields if name != "smoothin
 class Wheel(Table):
     """Which wheel a wheel_rail case is."""
 
-    side: Literal["left", "right"] = Field(default="right", description="side (no unit)")
+    side: one_of("side") = Field(default="right", description="side (no unit)")
 
 
 class _WheelCase(Table):
