@@ -9,8 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 from case_samples import PATCH, WHEELSET, with_values
+from railpatch import _core
 from railpatch.case import CaseError, load_scene
 from railpatch.case.to_core import config_of
+
+THEORIES = [f"'{word}'" for word in ("none", *_core.THEORIES)]
+# theories that read Kalker's coefficients, in a message's words
+WITH_COEFFICIENTS = [f"'{word}'" for word in _core.THEORY_READERS["percent_kalker"]]
 
 
 def problems_of(case: Any, **options: Any) -> list[str]:
@@ -148,8 +153,7 @@ def problems_of(case: Any, **options: Any) -> list[str]:
         (
             "method__tangential",
             "carter",
-            "method.tangential: value is 'carter', allowed 'none', 'linear', 'polach', 'fastsim', "
-            "'fastrip', 'table' or 'full'",
+            f"method.tangential: value is 'carter', allowed {', '.join(THEORIES)} or 'full'",
         ),
         ("method__percent_kalker", 0.0, "method.percent_kalker: value is 0.0, allowed > 0"),
         ("method__polach_k_a", 11.0, "method.polach_k_a: value is 11.0, allowed <= 10"),
@@ -365,7 +369,7 @@ def test_fitted_rows_rest_where_the_tangential_problem_is_left_out() -> None:
 @pytest.mark.parametrize(
     ("tangential", "key", "value", "allowed"),
     [
-        ("full", "percent_kalker", 60.0, "'linear' or 'polach' or 'fastsim' or 'fastrip'"),
+        ("full", "percent_kalker", 60.0, " or ".join(WITH_COEFFICIENTS)),
         ("fastsim", "polach_k_a", 0.5, "'polach'"),
         ("fastrip", "polach_k_s", 0.5, "'polach'"),
         ("polach", "fastsim_k0", 0.5, "'fastsim'"),

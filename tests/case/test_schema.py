@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from case_samples import PATCH, WHEELSET, with_values
+from railpatch import _core
 from railpatch.case import CaseError, json_schema, load_scene
 from railpatch.case.messages import LATER_KEYS
 from railpatch.case.moving import changed_case, moving_keys
@@ -40,15 +41,7 @@ def test_kinds_and_choices() -> None:
     assert set(schema["discriminator"]["mapping"]) == {"patch", "wheel_rail", "wheelset"}
     method = schema["$defs"]["Method"]["properties"]
     assert method["normal"]["enum"] == ["hertz", "kik_piotrowski", "analyn", "half_space"]
-    assert method["tangential"]["enum"] == [
-        "none",
-        "linear",
-        "polach",
-        "fastsim",
-        "fastrip",
-        "table",
-        "full",
-    ]
+    assert method["tangential"]["enum"] == ["none", *_core.THEORIES, "full"]
 
 
 def test_later_keys_are_no_keys_yet() -> None:

@@ -7,10 +7,11 @@
 #include <cmath>
 #include <cstring>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "profiles.hpp"
-#include "railpatch.h"
+#include "railpatch_fields.h"
 
 // sanitizers look at memory and undefined behaviour, eight times slower: there the smaller cases of
 // a test that goes through the same code with each are enough
@@ -216,56 +217,35 @@ struct varying_track {
 // --- comparison ----------------------------------------------------------------------------
 
 // Every number of a result, in order; padding left out.
+template <class T, class Add>
+void visit_member(const char *name, const T &member, Add &&add) {
+  if constexpr (std::is_array_v<T>)
+    for (const auto &part : member) visit_member(name, part, add);
+  else
+    add(name, member);
+}
+
+#define RP_VISIT(type, name, ...) visit_member(#name, r.name, add);
+#define RP_VISIT_PARTS(type, name, count) \
+  for (const type &part : r.name) visit(part, add);
+
 template <class Add>
-void visit(const rp_patch_result &p, Add &&add) {
-  add("status", p.status);
-  add("normal_force", p.normal_force);
-  add("approach", p.approach);
-  for (double v : p.creep_force) add("creep_force", v);
-  add("spin_moment", p.spin_moment);
-  add("max_pressure", p.max_pressure);
-  add("contact_area", p.contact_area);
-  for (int v : p.elements) add("elements", v);
-  add("max_temperature", p.max_temperature);
-  add("friction_power", p.friction_power);
-  add("elastic_energy", p.elastic_energy);
-  add("normal_iterations", p.normal_iterations);
-  add("newton_iterations", p.newton_iterations);
-  add("inner_iterations", p.inner_iterations);
-  add("residual", p.residual);
-  for (double v : p.error_estimate) add("error_estimate", v);
-  for (double v : p.position) add("position", v);
-  add("contact_angle", p.contact_angle);
-  for (double v : p.creepage) add("creepage", v);
-  add("spin_creepage", p.spin_creepage);
-  add("rolling_speed", p.rolling_speed);
-  add("direction", p.direction);
-  for (int v : p.grid) add("grid", v);
-  for (double v : p.grid_origin) add("grid_origin", v);
-  for (double v : p.element_size) add("element_size", v);
+void visit(const rp_patch_result &r, Add &&add) {
+  RP_PATCH_RESULT_FIELDS(RP_VISIT, RP_VISIT_PARTS)
 }
 
 template <class Add>
-void visit(const rp_side_result &s, Add &&add) {
-  add("status", s.status);
-  for (double v : s.force) add("force", v);
-  for (double v : s.moment) add("moment", v);
-  add("rolling_radius", s.rolling_radius);
-  for (double v : s.rail_deflection) add("rail_deflection", v);
-  for (double v : s.rail_deflection_rate) add("rail_deflection_rate", v);
-  add("patch_count", s.patch_count);
-  for (const rp_patch_result &p : s.patch) visit(p, add);
+void visit(const rp_side_result &r, Add &&add) {
+  RP_SIDE_RESULT_FIELDS(RP_VISIT, RP_VISIT_PARTS)
 }
 
 template <class Add>
 void visit(const rp_result &r, Add &&add) {
-  add("status", r.status);
-  add("z", r.z);
-  for (double v : r.force) add("force", v);
-  for (double v : r.moment) add("moment", v);
-  add("evaluations", r.evaluations);
-  for (const rp_side_result &s : r.side) visit(s, add);
+  RP_RESULT_FIELDS(RP_VISIT, RP_VISIT_PARTS)
 }
+
+#undef RP_VISIT
+#undef RP_VISIT_PARTS
 
 struct number {
   std::string name;

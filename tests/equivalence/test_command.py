@@ -15,8 +15,9 @@ from case_samples import PATCH, WHEELSET, with_values
 from click.testing import CliRunner, Result
 from railpatch.command.cli import cli
 from railpatch.command.group import Commands
+from railpatch.result import PATCH_UNITS
 
-# keys of the interface's JSON result, in its order
+# keys of the interface's JSON result that its readers count on
 PATCH_KEYS = [
     "status",
     "normal_force",
@@ -70,7 +71,7 @@ def test_json_of_a_patch_is_that_of_solve(tmp_path: Path) -> None:
     ran = run(tmp_path, PATCH, "solve", "--json")
     assert ran.exit_code == 0
     printed = json.loads(ran.stdout)
-    assert set(printed) == set(PATCH_KEYS)
+    assert set(printed) == {*PATCH_UNITS, "wall_time", "stages"} >= set(PATCH_KEYS)
     solved = railpatch.solve(PATCH).to_dict()
     assert {**printed, "wall_time": 0} == {**solved, "wall_time": 0}
     assert 0 < printed["wall_time"] < 5

@@ -66,7 +66,7 @@ PLAIN: dict[str, dict[str, Any]] = {
     },
     **{
         theory: {"method": {"normal": "hertz", "tangential": theory}}
-        for theory in ("linear", "polach", "fastsim", "fastrip", "table")
+        for theory in railpatch._core.THEORIES
     },
 }
 OPTIONAL_STAGES = ("temperature", "plasticity", "history", "coupling", "derivatives")

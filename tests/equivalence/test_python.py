@@ -45,9 +45,7 @@ def assert_same(one: railpatch.Result, two: railpatch.Result, scale: float, rel:
 
 
 @pytest.mark.parametrize("geometry", [{"semi_axes": [6e-3, 6e-3]}, {"curvatures": [0.5, 1.0]}])
-@pytest.mark.parametrize(
-    "tangential", ["none", "linear", "polach", "fastsim", "fastrip", "table", "full"]
-)
+@pytest.mark.parametrize("tangential", ["none", *railpatch._core.THEORIES, "full"])
 def test_step_equals_solve_of_the_changed_case(geometry: dict[str, Any], tangential: str) -> None:
     case = with_values(PATCH, geometry=geometry, method__tangential=tangential)
     if tangential == "linear":  # it holds below saturation only
