@@ -62,7 +62,7 @@ demo: setup ## set-up, roller-rig replay, wheelset on track, an FMU; logs and re
 		"$(CURDIR)/build/demo/run.mcap" \
 		"$(CURDIR)/build/demo/wheelset.mcap" "$(CURDIR)/build/demo/wheelset.html" \
 		"$(CURDIR)/build/demo/railpatch.fmu"
-	@printf '\nOpen this page first, the replay of the roller rig beside published forces:\n  %s\n' \
+	@printf '\nOpen this page first, the replay of the roller rig beside forces that CONTACT computed for it:\n  %s\n' \
 		"file://$(CURDIR)/build/demo/report.html"
 
 fmu: setup fmu-fftw ## FMUs of the default scene and of each kind for Linux, ARM, Windows; one with FFTW (GPL)

@@ -104,7 +104,10 @@ def test_schema_carries_the_table_as_comments(rig_file):
     assert comments[4, 0, 3, 0, 2, index] == " m; contact axes: approach of the bodies\n"
 
 
-@pytest.mark.parametrize("message", dict.fromkeys(c.message for c in CHANNELS), ids=lambda m: m.name)
+MESSAGES = dict.fromkeys(channel.message for channel in CHANNELS)
+
+
+@pytest.mark.parametrize("message", MESSAGES, ids=lambda m: m.name)
 def test_classes_match_the_table(message):
     descriptor = message_class(message).DESCRIPTOR
     assert [f.name for f in descriptor.fields] == [f.name for f in message.fields]

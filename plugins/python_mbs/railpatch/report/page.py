@@ -204,7 +204,7 @@ def _reference(
     places = len({m.index for m in matches})
     return matches, (
         f"<p>Open triangles: the reference ({reference.FILE}), found for {places} of "
-        f"{data.count} positions.</p>"
+        f"{data.count} positions. {reference.ABOUT}</p>"
     )
 
 
