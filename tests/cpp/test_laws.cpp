@@ -17,21 +17,20 @@ using namespace railpatch;
 
 // --- friction over slip velocity -----------------------------------------------------------------
 
-double shape(slip_velocity_law::shape kind, double u) {
-  if (kind == slip_velocity_law::exponential) return std::pow(2.0, -u);
-  if (kind == slip_velocity_law::rational) return 1 / (1 + u);
+double shape(rp_slip_law kind, double u) {
+  if (kind == RP_SLIP_EXPONENTIAL) return std::pow(2.0, -u);
+  if (kind == RP_SLIP_RATIONAL) return 1 / (1 + u);
   return std::max(0.0, 1 - u / 2);
 }
 
-constexpr slip_velocity_law::shape shapes[] = {
-    slip_velocity_law::exponential, slip_velocity_law::rational, slip_velocity_law::linear};
+constexpr rp_slip_law shapes[] = {RP_SLIP_EXPONENTIAL, RP_SLIP_RATIONAL, RP_SLIP_LINEAR};
 
 TEST(SlipVelocity, CoefficientIsTheSumOfBothParts) {
   for (auto kind : shapes)
     for (const auto &[first, second] :
          {std::pair{0.2, 0.1}, {0.2, 0.0}, {0.0, -0.1}, {-0.1, 0.3}, {0.0, 0.0}}) {
       slip_velocity_law law;
-      law.kind = kind;
+      law.shape = kind;
       law.kinetic = 0.15;
       law.amplitude[0] = first, law.amplitude[1] = second;
       law.halving_speed[0] = 0.5, law.halving_speed[1] = 3.0;
@@ -44,8 +43,7 @@ TEST(SlipVelocity, CoefficientIsTheSumOfBothParts) {
         const double h = 1e-7, there = law.coefficient(speed + h, aside),
                      back = law.coefficient(speed - h, aside);
         // a kink of the linear law between both
-        if (kind == slip_velocity_law::linear &&
-            (std::abs(speed - 1) < 2 * h || std::abs(speed - 6) < 2 * h))
+        if (kind == RP_SLIP_LINEAR && (std::abs(speed - 1) < 2 * h || std::abs(speed - 6) < 2 * h))
           continue;
         EXPECT_NEAR(slope, (there - back) / (2 * h), 1e-7);
         most = std::max(most, mu);
@@ -77,7 +75,7 @@ TEST(SlipVelocity, MemoryFollowsItsRecurrence) {
     law.by_velocity = true;
     law.step = 1e-3 * (0.5 + unit(random));
     law.speed = 20 * unit(random);
-    law.slip.kind = shapes[i % 3];
+    law.slip.shape = shapes[i % 3];
     law.slip.kinetic = 0.2;
     law.slip.amplitude[0] = 0.2 * unit(random), law.slip.amplitude[1] = 0.2 * unit(random) - 0.1;
     law.slip.halving_speed[0] = 0.1 + unit(random), law.slip.halving_speed[1] = 2;
