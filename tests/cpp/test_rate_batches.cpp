@@ -76,7 +76,7 @@ TEST(RateBatches, EveryDirectionIsWhatItIsAlone) {
   for (int count : {1, 5, 6, 7, 11, 12}) {
     SCOPED_TRACE(count);
     std::vector<rp_side_result> changes(most + 1);
-    for (rp_side_result &c : changes) c.rolling_radius = 12345;
+    for (rp_side_result &c : changes) c.rolling_radius = c.patch[0].normal_force = 12345;
     wheel.differentiate(solver, memory.data(), work, directions, friction, count, options, result,
                         changes.data());
     for (int k = 0; k < count; ++k) {
@@ -91,8 +91,10 @@ TEST(RateBatches, EveryDirectionIsWhatItIsAlone) {
               << "direction " << k << ", number " << i;
       }
     }
-    for (size_t k = static_cast<size_t>(count); k < changes.size(); ++k)
-      EXPECT_EQ(changes[k].rolling_radius, 12345);
+    for (size_t k = static_cast<size_t>(count); k < changes.size(); ++k) {
+      EXPECT_EQ(changes[k].rolling_radius, 12345) << k;
+      EXPECT_EQ(changes[k].patch[0].normal_force, 12345) << k;
+    }
   }
 }
 
