@@ -4,6 +4,7 @@
 #include "handle/case_fields.hpp"
 #include "handle/check.hpp"
 #include "handle/contact.hpp"
+#include "patch/status.hpp"
 #include "railpatch.h"
 
 using namespace railpatch;
@@ -189,6 +190,8 @@ const char *rp_error_text(rp_error error) {
   switch (error) { RP_ERRORS(RP_TEXT) }
   return "unknown error";
 }
+
+rp_status rp_join_status(rp_status a, rp_status b) { return combine_status(a, b); }
 
 const char *rp_status_text(rp_status status) {
   switch (status) { RP_STATUSES(RP_TEXT) }

@@ -641,6 +641,9 @@ RP_API const char *rp_version(void);
 RP_API const char *rp_fft_backend(void);
 RP_API const char *rp_error_text(rp_error error);
 RP_API const char *rp_status_text(rp_status status);
+/* Status of contacts beside each other, wheels or wheelsets: the worse where one is not good, else
+ * RP_CONVERGED where one of them has contact. */
+RP_API rp_status rp_join_status(rp_status a, rp_status b);
 
 #undef RP_ENUM_ENTRY
 

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "convert.hpp"
-#include "patch/status.hpp"
 #include "workers.hpp"
 
 namespace railpatch::python {
@@ -97,7 +96,7 @@ class ForceElement {
     rp_status status = RP_NO_CONTACT;
     for (Wheelset &w : wheelsets_) {
       if (w.refused) std::rethrow_exception(w.refused);
-      status = combine_status(status, w.result.status);
+      status = rp_join_status(status, w.result.status);
     }
     return status;
   }
