@@ -79,6 +79,8 @@ class Worker:
         source = ROOT / mutant.path
         programs: dict[str, Path] = {}
         cpp = [suite for suite in self.suites if suite.program]
+        # those that know the file come first
+        cpp.sort(key=lambda suite: not self.build.concerns(suite.source, source))
         for suite in cpp:
             if failed := self._first(suite, library, programs):
                 return failed

@@ -24,6 +24,7 @@ OPTIMISED = "-O1 -DNDEBUG"
 # of what a test takes by itself, in processor time: a mutant that takes longer has fallen
 PATIENCE = 5
 QUICK = 0.02  # s
+QUIET = ("--gtest_fail_fast", "--gtest_brief=1")
 
 
 @dataclass(frozen=True)
@@ -105,6 +106,7 @@ class Build:
         self.python = python  # its tests too
         self.base = folder / "base"
         self.package = folder / "package"
+        self.texts: dict[Path, str] = {}  # of tests
 
     # --- build -----------------------------------------------------------------------------------
 
@@ -184,6 +186,14 @@ class Build:
         words = [str(instead.get(word, word)) for word in self.link.split()]
         command = " ".join(words).replace(f"-o core/{LIBRARY}", f"-o {folder / LIBRARY} {flags}")
         run(command, cwd=self.base)
+
+    def concerns(self, test: Path, source: Path) -> bool:
+        """Whether a test is named after a source of the core or includes its header."""
+        if test.stem == f"test_{source.stem}":
+            return True
+        if test not in self.texts:
+            self.texts[test] = test.read_text()
+        return f'/{source.stem}.hpp"' in self.texts[test]
 
     # --- tests -----------------------------------------------------------------------------------
 
@@ -273,9 +283,8 @@ class Build:
         if suites[0].program:
             (suite,) = suites
             program = (programs or {}).get(suite.source.stem, suite.program)
-            ended = limited(
-                [str(program), "--gtest_fail_fast", "--gtest_brief=1"], environment, seconds
-            )
+            command = [str(program), f"--gtest_filter={suite.tests}", *QUIET]
+            ended = limited(command, environment, seconds)
             failed = re.search(r"\[  FAILED  \] ([^\s,]+)", ended.output)
             return ended, failed[1] if failed else f"{suite.name} stops"
         command = [
