@@ -1,5 +1,6 @@
-// The creepages that start the search for a prescribed creep force: the simplified theory carries
-// the force with them. Its march along the rows is done here anew.
+// The creepages of a prescribed creep force. Those that start the search carry the force by the
+// simplified theory, whose march along the rows is done here anew; those of the steps that solve no
+// linear systems follow what is missing of the force.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -68,6 +69,24 @@ struct rows_of_elements {
     }
     return sum;
   }
+  // of tractions, one component
+  double sum_of(const std::vector<double> &traction, int c) const {
+    double sum = 0;
+    for (size_t row = 0; row + 1 < start.size(); ++row) {
+      const int begin = start[row], n = start[row + 1] - begin;
+      for (int k = 0; k < n; ++k)
+        sum += area[static_cast<size_t>(begin + k)] *
+               traction[static_cast<size_t>(2 * begin + c * n + k)];
+    }
+    return sum;
+  }
+  // all forces larger by the factor, in the same contact
+  void scale_forces(double factor) {
+    for (double &v : bound) v *= factor;
+    for (double &v : flexibility) v /= factor;
+    for (double &v : force.force) v *= factor;
+    capacity *= factor;
+  }
 };
 
 TEST(ForceConstraint, StartsWithTheSimplifiedTheorysCreepages) {
@@ -100,6 +119,85 @@ TEST(ForceConstraint, StartsWithTheSimplifiedTheorysCreepages) {
         EXPECT_EQ(rows.force.creepage[c], 0.0);
     EXPECT_LE(miss, 1.001e-3 * size) << "case " << k << ", share " << share;
   }
+}
+
+TEST(ForceConstraint, StartsAlikeInWhateverUnitOfForce) {
+  std::mt19937_64 random(20261123);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int k = 0; k < 20; ++k) {
+    rows_of_elements rows(random);
+    const double share = 0.3 + 0.4 * unit(random), angle = 6.283 * unit(random);
+    rows.force = {
+        {true, true},
+        {share * rows.capacity * std::cos(angle), share * rows.capacity * std::sin(angle)},
+        {0, 0}};
+    // by powers of two only exponents change
+    double first[2] = {0, 0};
+    for (double factor : {1.0, 0x1p-30, 0x1p60}) {
+      rows_of_elements scaled = rows;
+      scaled.scale_forces(factor);
+      force_constraint constraint(rows.start.back());
+      const rolling_problem problem = scaled.problem();
+      constraint.begin(problem, 1e-6);
+      constraint.set_units(problem, scaled.flexibility, scaled.ramp_force);
+      constraint.guess(problem, scaled.flexibility);
+      for (int c = 0; c < 2; ++c) {
+        if (factor == 1.0) first[c] = scaled.force.creepage[c];
+        EXPECT_NEAR(scaled.force.creepage[c], first[c], 1e-9 * std::hypot(first[0], first[1]))
+            << "case " << k << ", forces times " << factor;
+      }
+    }
+  }
+}
+
+TEST(ForceConstraint, PullsByWhatIsMissingOfTheForce) {
+  std::mt19937_64 random(20261124);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int which = 1; which <= 3; ++which)
+    for (bool friction : {true, false}) {
+      rows_of_elements rows(random);
+      std::vector<double> now(rows.p.size()), then(rows.p.size());
+      for (double &v : now) v = unit(random);
+      for (double &v : then) v = unit(random);
+      if (!friction) rows.bound.assign(rows.bound.size(), 0.0);
+      for (int c = 0; c < 2; ++c) {
+        rows.force.component[c] = (which & (1 << c)) != 0;
+        rows.force.force[c] = 5 * unit(random);
+        rows.force.creepage[c] = rows.force.component[c] ? unit(random) : 0.0;
+      }
+      const prescribed_force begun = rows.force;
+      force_constraint constraint(rows.start.back());
+      const rolling_problem problem = rows.problem();
+      constraint.begin(problem, 1e-6);
+      constraint.set_units(problem, rows.flexibility, rows.ramp_force);
+
+      double given = 0;
+      for (double v : rows.rigid) given = std::max(given, std::abs(v));
+      constexpr double length = 0.3;
+      double moved = 2, turned = 5, expected_moved = 2, expected_turned = 5, again[2] = {0, 0};
+      constraint.pull(problem, now.data(), then.data(), length, &moved, &turned);
+      for (int c = 0; c < 2; ++c) {
+        // a unit of creepage where all of friction is missing
+        const double one = rows.capacity * rows.flexibility[c] / rows.ramp_force + given;
+        const double sigma = friction && begun.component[c] ? one / rows.capacity : 0.0;
+        const double step = -length * sigma * (begun.force[c] - rows.sum_of(now, c));
+        const double change = rows.sum_of(then, c) - rows.sum_of(now, c);
+        EXPECT_NEAR(rows.force.creepage[c], begun.creepage[c] + step, 1e-13);
+        if (sigma > 0) expected_moved += step * step / sigma;
+        expected_turned += sigma * length * length * change * change;
+        again[c] = begun.creepage[c] - length * sigma * (begun.force[c] - rows.sum_of(then, c));
+      }
+      EXPECT_NEAR(moved, expected_moved, 1e-12 * expected_moved);
+      EXPECT_NEAR(turned, expected_turned, 1e-12 * expected_turned);
+
+      // from where the trial began, and there to stay
+      constraint.pull_again(problem, then.data(), length);
+      for (int c = 0; c < 2; ++c) EXPECT_NEAR(rows.force.creepage[c], again[c], 1e-13);
+      rows.force.creepage[0] = rows.force.creepage[1] = 7;
+      constraint.go_back(problem);
+      for (int c = 0; c < 2; ++c)
+        EXPECT_NEAR(rows.force.creepage[c], begun.component[c] ? again[c] : 7.0, 1e-13);
+    }
 }
 
 }  // namespace

@@ -176,6 +176,29 @@ TEST_P(Parts, SmallestContactLoadsOneElement) {
   EXPECT_NEAR(sum, f.r.normal_force, 1e-12 * sum);
 }
 
+TEST_P(Parts, MirroredGridsCarryTheSame) {
+  // the valleys' lowest points: within, between rows at either side, or beyond one end of the grid
+  for (double middle : {1e-3, 8.7e-3, 9.1e-3, 10e-3})
+    for (double factor : {0.0, 0.4}) {
+      row_contact_result found[2];
+      for (int side = 0; side < 2; ++side) {
+        for (int j = 0; j < g.ny; ++j)
+          for (int i = 0; i < g.nx; ++i) {
+            const double y = (side == 0 ? 1 : -1) * g.y(j);
+            h[static_cast<size_t>(j * g.nx + i)] =
+                1.1 * g.x(i) * g.x(i) + 3 * (y - middle) * (y - middle);
+          }
+        const double end = g.y(g.ny - 1) + 0.5 * g.dy;
+        const double lowest = middle > end ? 3 * (middle - end) * (middle - end) : 0.0;
+        found[side] = solve(two(factor), lowest + 2e-5).r;
+      }
+      EXPECT_GT(found[0].normal_force, 0) << middle;
+      for (auto value : {&row_contact_result::normal_force, &row_contact_result::max_pressure,
+                         &row_contact_result::contact_area, &row_contact_result::elastic_energy})
+        EXPECT_NEAR(found[0].*value, found[1].*value, 1e-12 * found[0].*value) << middle;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, Parts,
                          testing::Values(RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN));
 

@@ -53,7 +53,7 @@ class Derivative : public testing::TestWithParam<contact_case> {
 
   state begun() const {
     state s;
-    s.g = {c.nx, c.ny, 1.1e-3, c.ny > 1 ? 1.3e-3 : c.width, -5e-3, -4.2e-3};
+    s.g = {c.nx, c.ny, 1.1e-3, c.width > 0 ? c.width : 1.3e-3, -5e-3, -4.2e-3};
     const double mx = s.g.x0 + 0.47 * c.nx * s.g.dx, my = s.g.y0 + 0.5 * (c.ny - 1) * s.g.dy;
     for (int j = 0; j < c.ny; ++j) {
       s.row_friction.push_back(1.0 + 0.03 * j);
@@ -250,6 +250,49 @@ TEST_P(Derivative, IsThatOfDifferences) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Contacts, Derivative, testing::ValuesIn(cases),
+                         [](const auto &i) { return std::string(i.param.name); });
+
+// A single row's equations are those that its preconditioner has the factors of, in single
+// precision: the first direction leaves of a residual what that leaves, less than 1e-4, the second
+// one 1e-8 and the third nothing that counts; then each residual is formed once more.
+class SingleRow : public Derivative {};
+
+TEST_P(SingleRow, IsSolvedByItsFactors) {
+  const state s = begun();
+  solved(s);
+  row_blocks &blocks = *solver.blocks();
+  const tangential_point point{a,
+                               nullptr,
+                               blocks,
+                               s.g,
+                               s.input,
+                               s.friction,
+                               s.row_friction.data(),
+                               s.pressure.data(),
+                               px.data(),
+                               py.data(),
+                               sx.data(),
+                               sy.data(),
+                               division.data()};
+  tangential_derivative derivative(c.nx, c.ny, 4);
+  EXPECT_LE(derivative.begin_resultants(point, {1e-9, false}), 1e-9);
+  // 3 resultants
+  EXPECT_LE(derivative.products(), 3 * (3 + 1));
+  tangential_variation in[2];
+  in[0].creepage[0] = in[1].creepage[1] = 1e-3;
+  tangential_change out[2];
+  EXPECT_LE(derivative.solve(point, in, 2, {1e-9, false}, out), 1e-9);
+  EXPECT_LE(derivative.products(), 2 * (3 + 1));
+}
+
+const contact_case single_rows[] = {
+    {"ahead", 25, 1, 1, 0.0, 0.0, 0.5},
+    {"back", 24, 1, -1, 0.0, 0.0, 0.5},
+    {"layer", 25, 1, 1, 2e-14, 0.0, 0.5},
+    {"sticking", 25, 1, 1, 0.0, 0.0, 0.01},
+};
+
+INSTANTIATE_TEST_SUITE_P(Contacts, SingleRow, testing::ValuesIn(single_rows),
                          [](const auto &i) { return std::string(i.param.name); });
 
 }  // namespace
