@@ -27,6 +27,8 @@ ifneq ($(shell command -v ccache),)
 export CCACHE_DIR ?= $(CURDIR)/build/cache/ccache
 export CMAKE_C_COMPILER_LAUNCHER ?= ccache
 export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
+# it keeps what was compiled with precompiled headers too
+export CCACHE_SLOPPINESS ?= pch_defines,time_macros
 endif
 
 # the FMU's functions are among the C++ tests; the FMI headers come with fmpy in this environment

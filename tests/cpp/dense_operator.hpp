@@ -35,8 +35,10 @@ class dense_operator final : public rolling_operator {
   }
   void product(const double *p, double *s) override {
     for (size_t i = 0; i < size_; ++i) {
-      s[i] = 0;
-      for (size_t j = 0; j < size_; ++j) s[i] += b_[i * size_ + j] * p[j];
+      const double *row = b_.data() + i * size_;
+      double sum = 0;
+      for (size_t j = 0; j < size_; ++j) sum += row[j] * p[j];
+      s[i] = sum;
     }
   }
   void row_matrices(int row, double *bxx, double *byy) const override {
