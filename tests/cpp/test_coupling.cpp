@@ -82,6 +82,8 @@ const size_case sizes[] = {
     {"long", {11, 4, 2e-4, 9e-4, 0, 0}, false},
     {"wide", {3, 9, 1e-3, 3e-4, 0, 0}, false},
     {"line", {21, 1, 1e-4, 0.02, 0, 0}, true},
+    // any unit of length will do
+    {"large", {5, 4, 2.0, 2.0, 0, 0}, false},
 };
 
 class Coupling : public testing::TestWithParam<size_case> {

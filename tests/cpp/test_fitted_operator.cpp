@@ -1,5 +1,6 @@
 // Slip of fitted rows: at the collocation points against the influence functions summed over many
-// more nodes, at the nodes by how it is blended, and its derivative against differences.
+// more nodes, at the nodes by how it is blended, and its derivative against differences; and the
+// elastic energy by the displacements.
 #include "tangential/fitted_operator.hpp"
 
 #include <gtest/gtest.h>
@@ -293,6 +294,48 @@ TEST_P(Slip, OfRowsIsPartOfTheProduct) {
                       1e-12 * own);
       }
   }
+}
+
+// From the displacement at the leading edges, by sums over the nodes, and from there on by the
+// slope between the nodes.
+TEST_P(Slip, MakesTheElasticEnergy) {
+  const field f = polynomials(), p = at_nodes(f);
+  const double nu = steel.poisson_ratio, g = steel.shear_modulus;
+  double energy = 0;
+  for (int j = 0; j < rows.count(); ++j) {
+    double u[2] = {0, 0};
+    for (int source = 0; source < rows.count(); ++source)
+      for (int k = 0; k < nodes; ++k) {
+        const double angle = (k + 1) * pi / points, x = position(j, 0) - position(source, angle);
+        for (int edge : {1, -1}) {
+          const double h = rows[j].y - rows[source].y + 0.5 * edge * rows[source].height;
+          const double r = std::hypot(x, h),
+                       weight = edge * rows.area(source, k) / (rows[source].height * pi * g);
+          const double pc[2] = {traction(f, source, 0, angle), traction(f, source, 1, angle)};
+          const double log = std::asinh(h / std::abs(x)), cross = -nu * x / r;
+          u[0] += weight * (((1 - nu) * log + nu * h / r) * pc[0] + cross * pc[1]);
+          u[1] += weight * ((log - nu * h / r) * pc[1] + cross * pc[0]);
+        }
+      }
+    for (int k = 0; k < nodes; ++k) {
+      const double angle = (k + 1) * pi / points, before = k * pi / points;
+      double s[2];
+      elastic_slip(f, j, k, s);
+      for (int component = 0; component < 2; ++component) {
+        // the slip is the slope upstream
+        u[component] += std::abs(position(j, before) - position(j, angle)) * s[component];
+        energy += 0.5 * rows.area(j, k) * traction(f, j, component, angle) * u[component];
+      }
+    }
+  }
+  fitted_operator b = made();
+  field s(size());
+  b.micro_slip(problem(false), p.data(), s.data());
+  const double found = b.elastic_energy(rows, p.data());
+  if (c.line)
+    EXPECT_TRUE(std::isnan(found)) << "the displacement is known up to a constant only";
+  else
+    EXPECT_NEAR(found, energy, 1e-11 * std::abs(energy));
 }
 
 INSTANTIATE_TEST_SUITE_P(Contacts, Slip, testing::ValuesIn(cases),
