@@ -1,0 +1,128 @@
+// The Newton method of inelastic laws on elements that do not feel each other, where each of them
+// can be solved by itself.
+#include "tangential/inelastic_newton.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "dense_operator.hpp"
+
+namespace {
+
+using namespace railpatch;
+using dense::dense_operator, dense::lengths;
+using field = std::vector<double>;
+
+constexpr double tolerance = 1e-10;
+
+// s = w + p of each element by itself, in units of 1
+struct lone_elements {
+  std::mt19937_64 random;
+  dense_operator b{0.0, random};
+  size_t n = b.size() / 2;
+  field friction = field(n), area = field(n), rigid = field(2 * n), p = field(2 * n, 0.0),
+        s = field(2 * n), found = field(n);
+  std::vector<carried_state> before{n, carried_state{{0, 0, 0}}}, after{n};
+  std::vector<unsigned char> state = std::vector<unsigned char>(n);
+
+  explicit lone_elements(unsigned seed) : random(seed) {
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (double &v : friction) v = 0.5 + unit(random);
+    for (double &v : area) v = 0.5 + unit(random);
+    for (size_t k = 0; k < n; ++k) {
+      const double size = friction[k] * (0.2 + unit(random)), angle = 6.283 * unit(random);
+      rigid[x(k)] = size * std::cos(angle);
+      rigid[y(k)] = size * std::sin(angle);
+    }
+  }
+  size_t row(size_t k) const {
+    size_t j = 0;
+    while (static_cast<int>(k) >= b.start()[j + 1]) ++j;
+    return j;
+  }
+  size_t x(size_t k) const { return k + static_cast<size_t>(b.start()[row(k)]); }
+  size_t y(size_t k) const { return x(k) + static_cast<size_t>(lengths[row(k)]); }
+
+  inelastic_result solve(const bound_law &law, bool carried) {
+    inelastic_newton newton(12, static_cast<int>(lengths.size()), false);
+    const rolling_problem problem{static_cast<int>(lengths.size()),
+                                  b.start().data(),
+                                  friction.data(),
+                                  area.data(),
+                                  rigid.data(),
+                                  p.data(),
+                                  s.data()};
+    inelastic_problem inelastic;
+    inelastic.law = &law;
+    inelastic.before = carried ? nullptr : before.data();
+    inelastic.after = after.data();
+    inelastic.friction = found.data();
+    inelastic.state = state.data();
+    return newton.solve(b, problem, inelastic, {tolerance, 400});
+  }
+};
+
+// Friction that falls with the slip's speed, faster than some elements can follow: how many
+// tractions there are for an element follows from changes of sign, finely sampled.
+TEST(InelasticNewton, CountsElementsOfSeveralSolutions) {
+  bound_law law;
+  law.by_velocity = true;
+  law.speed = 1;
+  law.slip.kinetic = 0.2;
+  law.slip.amplitude[0] = 0.3;
+  law.slip.halving_speed[0] = 0.05;
+  const auto coefficient = [&](double speed) {
+    double slope;
+    return law.slip.coefficient(speed, slope);
+  };
+  int all = 0;
+  for (unsigned seed = 0; seed < 3; ++seed)
+    for (bool carried : {false, true}) {
+      lone_elements e(seed);
+      const inelastic_result result = e.solve(law, carried);
+      ASSERT_TRUE(result.tangential.converged) << result.tangential.residual;
+      int ambiguous = 0, stick = 0;
+      double dissipated = 0;
+      for (size_t k = 0; k < e.n; ++k) {
+        const double px = e.p[e.x(k)], py = e.p[e.y(k)], sx = e.s[e.x(k)], sy = e.s[e.y(k)];
+        const double size = std::hypot(e.rigid[e.x(k)], e.rigid[e.y(k)]);
+        const double traction = std::hypot(px, py), slip = std::hypot(sx, sy);
+        const double rest = e.friction[k] * coefficient(0);
+        // where it slips, |p| = size - |s|
+        int solutions = size <= rest;
+        constexpr int samples = 400;
+        bool above = size > rest;
+        for (int i = 1; i <= samples; ++i) {
+          const double at = size * i / samples;
+          const bool now = size - at > e.friction[k] * coefficient(at);
+          solutions += now != above;
+          above = now;
+        }
+        ambiguous += solutions > 1;
+        // and the one found is one of them
+        stick += e.state[k] == RP_STICK;
+        if (e.state[k] == RP_STICK)
+          EXPECT_LE(traction, rest * (1 + 1e-9));
+        else
+          EXPECT_NEAR(traction, e.friction[k] * coefficient(slip), 1e-8);
+        EXPECT_NEAR(traction, size - slip, 1e-8) << "element " << k;
+        dissipated -= e.area[k] * (px * sx + py * sy);
+        EXPECT_NEAR(px * sx + py * sy, -traction * slip, 1e-8) << "opposite";
+      }
+      all += ambiguous;
+      EXPECT_EQ(result.ambiguous, ambiguous) << "carried along: " << carried;
+      EXPECT_EQ(result.tangential.stick, stick);
+      EXPECT_EQ(result.tangential.slip, static_cast<int>(e.n) - stick);
+      // of states carried along rows the supply of the rigid motion is what is dissipated
+      if (!carried) {
+        EXPECT_NEAR(result.tangential.friction, dissipated, 1e-7);
+      }
+    }
+  EXPECT_GT(all, 10);
+}
+
+}  // namespace
