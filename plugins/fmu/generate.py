@@ -1,6 +1,7 @@
-"""Writes the C++ table of variables: python generate.py TABLE.PY VARIABLES.TOML OUTPUT.INC
+"""Writes the C++ table of variables: python generate.py TABLE.PY VARIABLES.TOML FOLDER
 
-Run by CMake. Writes one line {reference, type, role, field...} for each variable.
+Run by CMake. Into variables.inc one line {reference, type, role, field...} for each variable; into
+references.inc the value references of the scene's own, by name.
 """
 
 from __future__ import annotations
@@ -33,18 +34,43 @@ def place(variable: Any, field: str) -> str:
 def line(variable: Any) -> str:
     """One entry of the C++ table."""
     low, high = (float(limit) for limit in variable.range)
+    side = 0 if variable.side is None else variable.side + 1
+    patch = 0 if variable.patch is None else variable.patch + 1
     kind = "real" if variable.base == "Real" else "integer"
     return (
         f"{{{variable.reference}, Type::{kind}, Role::{variable.causality}, "
-        f"{place(variable, variable.field)}, {place(variable, variable.plus)}, {low!r}, {high!r}}},"
+        f"{place(variable, variable.field)}, {place(variable, variable.plus)}, {low!r}, {high!r}, "
+        f"{side}, {patch}, {variable.mean_of}, Absent::{absent(variable)}, "
+        f"{str(variable.fixed).lower()}}},"
     )
 
 
+def absent(variable: Any) -> str:
+    """What it is where its patch is not."""
+    if variable.type == "Status":
+        return "no_contact"
+    return variable.absent.replace(" ", "_") or "zero"
+
+
+def names(variables: list[Any]) -> dict[str, int]:
+    """The value references of what no side has, of a vector the first."""
+    found: dict[str, int] = {}
+    for variable in variables:
+        if variable.side is None:
+            found.setdefault(variable.name.split("[")[0].replace(".", "_"), variable.reference)
+    return found
+
+
 def main() -> None:
-    """Writes the file."""
-    module, table, output = (Path(argument) for argument in sys.argv[1:])
-    lines = [line(variable) for variable in load(module).Table(table).everything()]
-    output.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    """Writes the files."""
+    module, table, folder = (Path(argument) for argument in sys.argv[1:])
+    variables = load(module).Table(table).everything()
+    references = [f"{name} = {reference}," for name, reference in names(variables).items()]
+    for name, lines in (
+        ("variables.inc", [line(variable) for variable in variables]),
+        ("references.inc", references),
+    ):
+        (folder / name).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -103,9 +103,9 @@ def main() -> None:
     shutil.rmtree(folder / "lib", ignore_errors=True)
     for name in arguments.platforms:
         build(name, folder, compiler / "zig")
-    variables = folder / arguments.platforms[0] / "plugins" / "fmu" / "generated" / "variables.inc"
+    generated = folder / arguments.platforms[0] / "plugins" / "fmu" / "generated"
     headers = package("fmpy") / "c-code"
-    gather.write(gather.sources(ROOT, variables, headers), folder / "lib" / "sources.zip")
+    gather.write(gather.sources(ROOT, generated, headers), folder / "lib" / "sources.zip")
     add_licences(folder / "lib" / "licenses", compiler)
     (folder / "lib" / "stamp.txt").write_text(stamp() + "\n")
 

@@ -27,9 +27,10 @@ compile, and the options. With fmpy on Linux:
 """
 
 
-def sources(root: Path, variables: Path, headers: Path) -> dict[str, bytes]:
-    """Path in the archive -> content. headers: FMI's."""
-    files = {"README.txt": README.encode(), "variables.inc": variables.read_bytes()}
+def sources(root: Path, generated: Path, headers: Path) -> dict[str, bytes]:
+    """Path in the archive -> content. generated: what CMake wrote; headers: FMI's."""
+    files = {"README.txt": README.encode()}
+    files |= {path.name: path.read_bytes() for path in generated.glob("*.inc")}
     core = [p for ending in ("cpp", "hpp", "inc") for p in (root / "core").glob(f"*/*.{ending}")]
     plugin = list((root / "plugins" / "fmu" / "src").glob("*.[ch]pp"))
     for path in core + plugin:

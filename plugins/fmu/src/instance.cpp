@@ -114,11 +114,11 @@ bool Instance::index_variables() {
     ++known_;
   }
   // the step is found from four parameters
-  for (uint32_t k = 0; index_of(largest_step) >= 0 && k < 4; ++k)
-    if (index_of(wheelset_mass + k) < 0 || !wheels_ || !derivatives_) return false;
+  for (uint32_t k = 0; index_of(reference::largest_step) >= 0 && k < 4; ++k)
+    if (index_of(reference::wheelset_mass + k) < 0 || !wheels_ || !derivatives_) return false;
   for (size_t i = known_; i < variables_.size(); ++i) {
     const Variable &variable = *variables_[i].variable;
-    const int of = is_mean(variable) ? index_of(variable.reference - mean_apart) : -1;
+    const int of = variable.mean_of > 0 ? index_of(variable.mean_of) : -1;
     if (of >= 0) means_.emplace_back(i, static_cast<size_t>(of));
   }
   return true;
@@ -250,7 +250,7 @@ fmi2Status Instance::run_contact(const Call &call, double time, double time_step
   for (size_t i = 0; i < known_ && error == RP_OK; ++i) {
     const Variable &variable = *variables_[i].variable;
     if (variable.role == Role::input) put_input(input_, variable, at_[i]);
-    if (variable.reference == friction_coefficient)
+    if (variable.reference == reference::friction_coefficient)
       error = rp_set_friction_coefficient(contact_.get(), at_[i], &message);
   }
   input_.time_step = time_step;
@@ -283,18 +283,14 @@ fmi2Status Instance::run_contact(const Call &call, double time, double time_step
 }
 
 bool Instance::absent(const Variable &variable) const {
-  const uint32_t side = variable.reference / 1000, patch = variable.reference % 1000 / 100;
-  if (!wheels_ || side == 0 || patch == 0) return false;
-  return static_cast<int32_t>(patch) > outputs_.result.side[side - 1].patch_count;
+  if (!wheels_ || variable.patch == 0) return false;
+  return variable.patch > outputs_.result.side[variable.side - 1].patch_count;
 }
 
 void Instance::publish() {
   for (size_t i = known_; i < values_.size(); ++i) {
     const Variable &variable = *variables_[i].variable;
-    if (absent(variable))
-      values_[i] = is_status(variable) ? double{RP_NO_CONTACT} : rest_of(outputs_, variable);
-    else
-      values_[i] = output_of(outputs_, variable);
+    values_[i] = absent(variable) ? rest_of(outputs_, variable) : output_of(outputs_, variable);
   }
   solved_ = at_;
   changed_ = false;
@@ -342,7 +338,7 @@ fmi2Status Instance::get(const Call &call, Type type, const fmi2ValueReference *
     const int index = find(call, type, references[i]);
     if (index < 0) return fmi2Error;
     of_output |= variables_[static_cast<size_t>(index)].variable->role == Role::output;
-    of_largest |= references[i] == largest_step;
+    of_largest |= references[i] == reference::largest_step;
   }
   if (of_output && changed_ && follows()) {
     const fmi2Status status = solve(call);
@@ -368,7 +364,7 @@ bool Instance::settable(const Call &call, int index, double value) {
     refuse(call, item.name + " is a parameter, which may be set in event mode");
     return false;
   }
-  if (is_profile(variable) && mode_ != Mode::instantiated && mode_ != Mode::initialization) {
+  if (variable.fixed && mode_ != Mode::instantiated && mode_ != Mode::initialization) {
     refuse(call, item.name + " is fixed: it may be set before and in initialization mode only");
     return false;
   }
@@ -378,12 +374,12 @@ bool Instance::settable(const Call &call, int index, double value) {
 bool Instance::in_range(const Call &call, int index, double value) {
   const SceneVariable &item = variables_[static_cast<size_t>(index)];
   const Variable &variable = *item.variable;
-  if (variable.reference == direction && value == 0) {
+  if (variable.reference == reference::direction && value == 0) {
     refuse(call, item.name + " is 0, allowed -1 and 1");
     return false;
   }
   // a profile must be one of those that are there
-  const double high = is_profile(variable) ? profile_count(variable) : variable.high;
+  const double high = variable.fixed ? profile_count(variable) : variable.high;
   if (value >= variable.low && value <= high) return true;
   refuse(call, item.name + " is " + text_of(value) + ", allowed " + text_of(variable.low) +
                    " ... " + text_of(high));

@@ -18,7 +18,7 @@ int Instance::find_input(const Call &call, fmi2ValueReference reference) {
 
 // The coefficient of friction counts, too: the core has derivatives by it.
 int Instance::find_known(const Call &call, fmi2ValueReference reference) {
-  return reference == friction_coefficient && index_of(reference) >= 0
+  return reference == reference::friction_coefficient && index_of(reference) >= 0
              ? index_of(reference)
              : find_input(call, reference);
 }
@@ -28,7 +28,8 @@ int Instance::find_output(const Call &call, fmi2ValueReference reference) {
   if (index < 0) return index;
   const SceneVariable &item = variables_[static_cast<size_t>(index)];
   const bool output = item.variable->role == Role::output;
-  const bool alone = is_mean(*item.variable) || item.variable->reference == largest_step;
+  const bool alone =
+      item.variable->mean_of > 0 || item.variable->reference == reference::largest_step;
   if (output && !alone) return index;
   refuse(call, item.name + (output ? " has no derivatives" : " is not an output"));
   return -1;
@@ -115,7 +116,8 @@ fmi2Status Instance::differentiate(const Call &call, const std::vector<double> &
     const Variable &variable = *variables_[i].variable;
     if (variable.type != Type::real || rates[i] == 0) continue;
     if (variable.role == Role::input) put_input(direction, variable, rates[i]);
-    if (variable.reference == friction_coefficient) direction.friction_coefficient = rates[i];
+    if (variable.reference == reference::friction_coefficient)
+      direction.friction_coefficient = rates[i];
   }
   rp_message message = {};
   const rp_error error =
@@ -146,10 +148,10 @@ fmi2Status Instance::find_largest_step(const Call &call) {
   const auto value = [&](uint32_t reference) -> double & {
     return values_[static_cast<size_t>(index_of(reference))];
   };
-  inertia.mass = value(wheelset_mass);
-  for (uint32_t k = 0; k < 3; ++k) inertia.moment[k] = value(wheelset_inertia + k);
+  inertia.mass = value(reference::wheelset_mass);
+  for (uint32_t k = 0; k < 3; ++k) inertia.moment[k] = value(reference::wheelset_inertia + k);
   const bool good = jacobian.status != RP_NOT_CONVERGED;
-  value(largest_step) = good ? largest_step_of(jacobian, inertia, with_z_) : 0;
+  value(reference::largest_step) = good ? largest_step_of(jacobian, inertia, with_z_) : 0;
   largest_known_ = true;
   return fmi2OK;
 }

@@ -5,13 +5,14 @@ namespace railpatch::fmu {
 
 namespace {
 
-constexpr uint32_t kReferences[] = {wheel_profile, rail_profile};
+constexpr uint32_t kReferences[] = {reference::profiles_wheel, reference::profiles_rail};
 
 }  // namespace
 
 double Instance::profile_count(const Variable &variable) const {
   const size_t further =
-      scene_ == nullptr ? 0 : scene_->choices[variable.reference == rail_profile].size();
+      scene_ == nullptr ? 0
+                        : scene_->choices[variable.reference == reference::profiles_rail].size();
   return static_cast<double>(1 + further);
 }
 

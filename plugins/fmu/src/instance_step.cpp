@@ -27,7 +27,7 @@ fmi2Status Instance::step(double time, double step) {
 
 int Instance::step_count(bool moving) const {
   // without history only the end counts, but for means
-  const int index = index_of(substeps);
+  const int index = index_of(reference::substeps);
   if (index < 0 || !(options_.history != 0 || moving)) return 1;
   return static_cast<int>(values_[static_cast<size_t>(index)]);
 }

@@ -37,6 +37,11 @@ const Variable *find_variable(uint32_t reference) {
   return found != std::end(kVariables) && found->reference == reference ? found : nullptr;
 }
 
+double rest_of(const Outputs &outputs, const Variable &variable) {
+  if (variable.absent == Absent::no_contact) return RP_NO_CONTACT;
+  return variable.absent == Absent::warmer_bulk ? outputs.rest_temperature : 0;
+}
+
 double output_of(const Outputs &outputs, const Variable &variable) {
   if (variable.field == no_field) return 0;
   const double value = read_field(outputs, variable.type, variable.field);

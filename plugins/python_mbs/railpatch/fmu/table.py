@@ -62,6 +62,9 @@ class Variable:
     description: str
     start: float | int | None = None
     fixed: bool = False  # a parameter that keeps its value after initialization
+    patch: int | None = None
+    mean_of: int = 0  # of a mean over a step: the value reference of what it is the mean of
+    absent: str = ""  # what it is where its patch is not: 0, or the warmer bulk temperature
 
 
 class Table:
@@ -135,6 +138,9 @@ class Table:
                     description=row["description"].format(**names),
                     start=row.get("start"),
                     fixed=row.get("fixed", False),
+                    patch=patch,
+                    mean_of=mean_of(row, side, patch, names["k"]),
+                    absent=row.get("absent", ""),
                 )
 
 
@@ -168,6 +174,13 @@ def reference_of(row: dict[str, Any], side: int | None, patch: int | None) -> in
         + (0 if side is None else 1000 * (side + 1))
         + (0 if patch is None else 100 * (patch + 1))
     )
+
+
+def mean_of(row: dict[str, Any], side: int | None, patch: int | None, component: int) -> int:
+    """Value reference of what a variable is the mean of; 0: it is none."""
+    if "mean_of" not in row:
+        return 0
+    return reference_of({"reference": row["mean_of"]}, side, patch) + component
 
 
 def level_of(row: dict[str, Any], kind: Kind) -> str:
