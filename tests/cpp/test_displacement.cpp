@@ -279,9 +279,13 @@ TEST(OffsetProduct, BetweenGridsEqualsTheDirectSum) {
   offset[0] = -0.4e-3, expect("offset along");
   offset[1] = 0.9e-3, expect("offset across");
   from.nx = 4, expect("columns before");
+  from.nx = 6, expect("more columns before");
   from.ny = 3, expect("rows before");
+  from.ny = 5, expect("more rows before");
   to.nx = 6, expect("columns now");
+  to.nx = 8, expect("more columns now");
   to.ny = 4, expect("rows now");
+  to.ny = 2, expect("fewer rows now");
   from.dx = to.dx = 3e-4, expect("length");
   from.dy = to.dy = 7e-4, expect("width");
   to.nx = 13, expect("size along");

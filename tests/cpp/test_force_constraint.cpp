@@ -154,16 +154,23 @@ TEST(ForceConstraint, PullsByWhatIsMissingOfTheForce) {
   std::mt19937_64 random(20261124);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int which = 1; which <= 3; ++which)
-    for (bool friction : {true, false}) {
+    // friction over that of the other tests
+    for (double friction : {1.0, 0x1p-20, 0.0}) {
       rows_of_elements rows(random);
       std::vector<double> now(rows.p.size()), then(rows.p.size());
       for (double &v : now) v = unit(random);
       for (double &v : then) v = unit(random);
-      if (!friction) rows.bound.assign(rows.bound.size(), 0.0);
       for (int c = 0; c < 2; ++c) {
         rows.force.component[c] = (which & (1 << c)) != 0;
         rows.force.force[c] = 5 * unit(random);
         rows.force.creepage[c] = rows.force.component[c] ? unit(random) : 0.0;
+      }
+      if (friction > 0) {
+        rows.scale_forces(friction);
+        for (auto *v : {&now, &then})
+          for (double &p : *v) p *= friction;
+      } else {
+        rows.bound.assign(rows.bound.size(), 0.0);
       }
       const prescribed_force begun = rows.force;
       force_constraint constraint(rows.start.back());
@@ -179,7 +186,7 @@ TEST(ForceConstraint, PullsByWhatIsMissingOfTheForce) {
       for (int c = 0; c < 2; ++c) {
         // a unit of creepage where all of friction is missing
         const double one = rows.capacity * rows.flexibility[c] / rows.ramp_force + given;
-        const double sigma = friction && begun.component[c] ? one / rows.capacity : 0.0;
+        const double sigma = friction > 0 && begun.component[c] ? one / rows.capacity : 0.0;
         const double step = -length * sigma * (begun.force[c] - rows.sum_of(now, c));
         const double change = rows.sum_of(then, c) - rows.sum_of(now, c);
         EXPECT_NEAR(rows.force.creepage[c], begun.creepage[c] + step, 1e-13);
