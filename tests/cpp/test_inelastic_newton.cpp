@@ -1,5 +1,5 @@
 // The Newton method of inelastic laws on elements that do not feel each other, where each of them
-// can be solved by itself.
+// can be solved by itself; and the plastic displacement that material carries along a row.
 #include "tangential/inelastic_newton.hpp"
 
 #include <gtest/gtest.h>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dense_operator.hpp"
+#include "tangential/tangential.hpp"
 
 namespace {
 
@@ -124,6 +125,61 @@ TEST(InelasticNewton, CountsElementsOfSeveralSolutions) {
       EXPECT_NEAR(result.tangential.friction, carried ? supplied : dissipated, 1e-7 * unit_area);
     }
   EXPECT_GT(all, 10);
+}
+
+// By the rule of the vector sum the law's state is the plastic displacement since the leading edge.
+TEST(PlasticDisplacement, IsSummedAlongEachRow) {
+  const int nx = 11, ny = 8;
+  const fft_plans plans({smooth_size(2 * nx + 1)}, {smooth_size(2 * ny - 1)});
+  influence a({{82e9, 0.28, 0}, 1e-14, 0}, plans);
+  const grid g{nx, ny, 1.1e-3, 1.3e-3, -5.5e-3, -4.55e-3};
+  ASSERT_TRUE(a.set_grid(g));
+  tangential_solver::setup setup;
+  setup.inelastic = setup.plastic = true;
+  tangential_solver solver(nx, ny, setup);
+  field pressure, bound;
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) {
+      const double x = g.x(i) / 5.7e-3, y = g.y(j) / 5e-3;
+      pressure.push_back(8e8 * std::sqrt(std::max(0.0, 1 - x * x - y * y)));
+      bound.push_back(0.3 * pressure.back());
+    }
+  for (int direction : {1, -1}) {
+    bound_law law;
+    law.by_magnitude = true;
+    law.yield = hardening_curve::straight(1.2e8, 1e12);
+    rolling_input input;
+    input.creepage[0] = 3e-3;
+    input.creepage[1] = -2e-3;
+    input.spin_creepage = 0.2;
+    input.direction = direction;
+    const auto n = static_cast<size_t>(g.count());
+    field px(n), py(n), sx(n), sy(n), sum_x(n), sum_y(n), yield(n), friction(n);
+    std::vector<unsigned char> division(n);
+    std::vector<carried_state> after(n, carried_state{{0, 0, 0}});
+    const inelastic_fields fields{&law,         nullptr,      after.data(),   sum_x.data(),
+                                  sum_y.data(), yield.data(), friction.data()};
+    inelastic_sums sums;
+    const tangential_result result =
+        solver.solve({a,
+                      g,
+                      pressure.data(),
+                      bound.data(),
+                      input,
+                      {1e-9, 200},
+                      {px.data(), py.data(), sx.data(), sy.data(), division.data()},
+                      &fields,
+                      &sums});
+    ASSERT_TRUE(result.converged) << result.residual;
+    EXPECT_GT(sums.plastic, 10);
+    double most = 0;
+    for (const carried_state &s : after) most = std::max(most, std::hypot(s.v[1], s.v[2]));
+    EXPECT_GT(most, 0);
+    for (size_t k = 0; k < n; ++k) {
+      EXPECT_NEAR(sum_x[k], after[k].v[1], 1e-9 * most) << k;
+      EXPECT_NEAR(sum_y[k], after[k].v[2], 1e-9 * most) << k;
+    }
+  }
 }
 
 }  // namespace
