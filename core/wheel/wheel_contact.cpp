@@ -131,7 +131,7 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
   beyond_ = found.status == search_status::out_of_range ||
             found.status == search_status::too_many_patches;
   if (beyond_) out.status = RP_OUT_OF_RANGE;
-  match_memory(memory, count);
+  match_memory(regions_.data(), count, memory, max_patches_);
   for (int i = 0; i < count; ++i)
     out.status = combine_status(
         out.status, solve_patch(solver, regions_[static_cast<size_t>(i)], i, memory, out));
@@ -152,11 +152,7 @@ search_result wheel_contact::find_regions(const patch_contact &solver) {
   return find_patches(*geometry_, rules_, parts_, regions_.data(), max_patches_);
 }
 
-// Moves the memories so that each patch finds the one of the last solution that lay nearest to it
-// and was most alike in extent; patches appear, vanish, join and part beside it. Ties go to the
-// first, so the order is a function of the last solution only.
-void wheel_contact::match_memory(patch_memory *memory, int count) const {
-  const int slots = max_patches_;
+void match_memory(const patch_region *regions, int count, patch_memory *memory, int slots) {
   if (slots == 1) return;
   const auto unlike = [&](const patch_region &region, const patch_memory &m) {
     const vec3 &at = region.frame.origin;
@@ -175,7 +171,7 @@ void wheel_contact::match_memory(patch_memory *memory, int count) const {
     for (int i = 0; i < count; ++i)
       for (int k = 0; k < slots; ++k) {
         if (taken[at(i)] >= 0 || used[at(k)]) continue;
-        const double u = unlike(regions_[at(i)], memory[k]);
+        const double u = unlike(regions[i], memory[k]);
         if (u < best) best = u, patch = i, slot = k;
       }
     if (patch < 0) break;

@@ -36,6 +36,11 @@ struct wheel_setup {
   bool round_and_rigid = true;
 };
 
+// Moves the memories so that each patch finds the one of the last solution that lay nearest to it
+// and was most alike in extent; patches appear, vanish, join and part beside it. Ties go to the
+// first, so the order is a function of the last solution only.
+void match_memory(const patch_region *regions, int count, patch_memory *memory, int slots);
+
 class wheel_contact {
  public:
   explicit wheel_contact(const wheel_setup &setup);
@@ -79,7 +84,6 @@ class wheel_contact {
                     patch_memory &memory) const;
   grid choose_grid(const patch_region &region) const;
   side_motion motion_of(const rp_input &input) const;
-  void match_memory(patch_memory *memory, int count) const;
 
   int side_, max_patches_;
   double nominal_radius_, standstill_speed_;
