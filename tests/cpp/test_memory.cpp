@@ -171,4 +171,32 @@ TEST(Memory, OfWheelsGrowsAsItSays) {
   }
 }
 
+size_t tangential_bytes(const rp_config &c) {
+  const scenes::handle h(c);
+  rp_stage_info stages[RP_STAGE_COUNT];
+  EXPECT_EQ(rp_describe(h.get(), stages), RP_OK);
+  return stages[RP_STAGE_TANGENTIAL].bytes;
+}
+
+// In steady rolling the wheels' grids move, but no step is looked back to: beside what each patch
+// keeps there is the solver of one patch.
+TEST(Memory, WheelsRollSteadilyWithTheSolverOfOnePatch) {
+  const scenes::profile_pair pair;
+  rp_config c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+  c.max_elements[0] = 30;
+  c.max_elements[1] = 26;
+  c.max_patches = 1;
+  const size_t two = tangential_bytes(c);
+  c.max_patches = 2;
+  const size_t four = tangential_bytes(c), each = (four - two) / 2;
+  rp_config patch = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL);
+  // with one free element around
+  patch.elements[0] = 28;
+  patch.elements[1] = 24;
+  EXPECT_EQ(two - 2 * each, tangential_bytes(patch) - each);
+  c.regime = patch.regime = RP_TRANSIENT_ROLLING;
+  // m, by the last step's tractions, of either direction
+  EXPECT_GE(tangential_bytes(c), four + 2 * 30 * 26 * sizeof(double));
+}
+
 }  // namespace

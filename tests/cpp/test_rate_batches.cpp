@@ -25,33 +25,64 @@ std::vector<double> numbers(rp_side_result &change) {
   return all;
 }
 
-TEST(RateBatches, EveryDirectionIsWhatItIsAlone) {
-  const scenes::profile_pair pair;
-  rp_config config = scenes::wheels(RP_WHEEL_RAIL, RP_RAIL, pair);
-  config.side = RP_RIGHT;
-  config.derivatives = 1;
-  config.load = RP_POSITION;
-  const scene made = scene_of(config);
-  const wheels_setup &setup = *made.wheels;
-  const fft_plans plans(made.transforms[0], made.transforms[1]);
-  patch_contact solver(made.patch, plans, setup.largest.nx, setup.largest.ny, made.marks);
-  std::vector<patch_memory> memory;
-  for (int i = 0; i < setup.max_patches; ++i)
-    memory.emplace_back(setup.largest.nx * setup.largest.ny, setup.largest.ny, made.patch);
-  wheel_contact wheel(setup.wheel[0]);
-  wheel_derivative work(made.patch, setup.largest.nx * setup.largest.ny, setup.largest.ny);
-  rp_input in = scenes::running(RP_RAIL);
-  in.yaw = 2e-3;
-  in.vy = 0.02;
-  wheel.place(in);
-  double z = 0;
-  ASSERT_TRUE(wheel.first_touch(z));
-  wheel.move_to(z + 6e-5);
-  rp_side_result result{};
-  wheel.evaluate(solver, memory.data(), result);
-  ASSERT_EQ(result.status, RP_CONVERGED);
-  ASSERT_TRUE(wheel.differentiates());
+// A wheel whose solution is there.
+class RateBatches : public testing::Test {
+ protected:
+  RateBatches() {
+    const wheels_setup &setup = *made.wheels;
+    for (int i = 0; i < setup.max_patches; ++i)
+      memory.emplace_back(setup.largest.nx * setup.largest.ny, setup.largest.ny, made.patch);
+    rp_input in = scenes::running(RP_RAIL);
+    in.yaw = 2e-3;
+    in.vy = 0.02;
+    wheel.place(in);
+    double z = 0;
+    EXPECT_TRUE(wheel.first_touch(z));
+    wheel.move_to(z + 6e-5);
+    wheel.evaluate(solver, memory.data(), result);
+    EXPECT_EQ(result.status, RP_CONVERGED);
+    EXPECT_TRUE(wheel.differentiates());
+  }
+  static rp_config config_of(const scenes::profile_pair &pair) {
+    rp_config c = scenes::wheels(RP_WHEEL_RAIL, RP_RAIL, pair);
+    c.side = RP_RIGHT;
+    c.derivatives = 1;
+    c.load = RP_POSITION;
+    return c;
+  }
+  void differentiate(const rp_input *directions, const double *friction, int count,
+                     rp_side_result *changes) {
+    wheel.differentiate(solver, memory.data(), work, directions, friction, count, {1e-10, false},
+                        result, changes);
+  }
+  std::vector<double> alone(const rp_input &direction, double friction) {
+    rp_side_result change{};
+    differentiate(&direction, &friction, 1, &change);
+    return numbers(change);
+  }
+  static void expect_same(const std::vector<double> &found, const std::vector<double> &expected) {
+    ASSERT_EQ(found.size(), expected.size());
+    for (size_t i = 0; i < found.size(); ++i) {
+      if (std::isnan(expected[i]))
+        EXPECT_TRUE(std::isnan(found[i])) << "number " << i;
+      else
+        EXPECT_NEAR(found[i], expected[i], 1e-6 * std::fabs(expected[i]) + 1e-9) << "number " << i;
+    }
+  }
 
+  const scenes::profile_pair pair;
+  const scene made = scene_of(config_of(pair));
+  const fft_plans plans{made.transforms[0], made.transforms[1]};
+  patch_contact solver{made.patch, plans, made.wheels->largest.nx, made.wheels->largest.ny,
+                       made.marks};
+  std::vector<patch_memory> memory;
+  wheel_contact wheel{made.wheels->wheel[0]};
+  wheel_derivative work{made.patch, made.wheels->largest.nx *made.wheels->largest.ny,
+                        made.wheels->largest.ny};
+  rp_side_result result{};
+};
+
+TEST_F(RateBatches, EveryDirectionIsWhatItIsAlone) {
   // what moves the surfaces, and then velocities alone
   constexpr int most = wheel_derivative::most_directions;
   rp_input directions[most];
@@ -64,38 +95,40 @@ TEST(RateBatches, EveryDirectionIsWhatItIsAlone) {
                              &directions[k].pitch_rate};
     *rates[k < 4 ? k : 4 + k % 3] = 1.0 + k;
   }
-  const derivative_options options{1e-10, false};
-  std::vector<std::vector<double>> alone;
-  for (int k = 0; k < most; ++k) {
-    rp_side_result change{};
-    wheel.differentiate(solver, memory.data(), work, directions + k, friction + k, 1, options,
-                        result, &change);
-    alone.push_back(numbers(change));
-  }
+  std::vector<std::vector<double>> each;
+  for (int k = 0; k < most; ++k) each.push_back(alone(directions[k], friction[k]));
   // whole batches, parts of them, and one more than asked for, which stays as it is
   for (int count : {1, 5, 6, 7, 11, 12}) {
-    SCOPED_TRACE(count);
     std::vector<rp_side_result> changes(most + 1);
     for (rp_side_result &c : changes) c.rolling_radius = c.patch[0].normal_force = 12345;
-    wheel.differentiate(solver, memory.data(), work, directions, friction, count, options, result,
-                        changes.data());
+    differentiate(directions, friction, count, changes.data());
     for (int k = 0; k < count; ++k) {
-      const std::vector<double> found = numbers(changes[static_cast<size_t>(k)]);
-      const std::vector<double> &expected = alone[static_cast<size_t>(k)];
-      ASSERT_EQ(found.size(), expected.size());
-      for (size_t i = 0; i < found.size(); ++i) {
-        if (std::isnan(expected[i]))
-          EXPECT_TRUE(std::isnan(found[i])) << "direction " << k << ", number " << i;
-        else
-          EXPECT_NEAR(found[i], expected[i], 1e-6 * std::fabs(expected[i]) + 1e-9)
-              << "direction " << k << ", number " << i;
-      }
+      SCOPED_TRACE(testing::Message() << "direction " << k << " of " << count);
+      expect_same(numbers(changes[static_cast<size_t>(k)]), each[static_cast<size_t>(k)]);
     }
     for (size_t k = static_cast<size_t>(count); k < changes.size(); ++k) {
       EXPECT_EQ(changes[k].rolling_radius, 12345) << k;
       EXPECT_EQ(changes[k].patch[0].normal_force, 12345) << k;
     }
   }
+}
+
+// Before a direction that moves the wheelset, each that moves a side is known to move surfaces.
+TEST_F(RateBatches, WhatMovesASideMovesItsSurfacesAlone) {
+  const double friction[2] = {};
+  for (const bool rail : {false, true})
+    for (int k = 0; k < 6; ++k) {
+      if (rail && k > 3) continue;  // rails turn about x only
+      SCOPED_TRACE(testing::Message() << (rail ? "rail " : "wheel ") << k);
+      rp_input directions[2] = {no_direction(), no_direction()};
+      auto &offset = rail ? directions[0].rail_offset : directions[0].wheel_offset;
+      auto &rotation = rail ? directions[0].rail_rotation : directions[0].wheel_rotation;
+      (k < 3 ? offset[RP_RIGHT][k] : rotation[RP_RIGHT][k - 3]) = 1;
+      directions[1].yaw = 1;
+      rp_side_result changes[2] = {};
+      differentiate(directions, friction, 2, changes);
+      expect_same(alone(directions[0], 0), numbers(changes[0]));
+    }
 }
 
 }  // namespace
