@@ -179,6 +179,36 @@ TEST(TransientWheels, WhatLiftsOffForgets) {
   EXPECT_EQ(scenes::difference(used.step(at(6, 4e-4)), fresh.step(at(6, 4e-4))), "");
 }
 
+// From the first step, in which little has crept yet, towards what is steady.
+TEST(TransientWheels, CreepForcesGrowWithTheWayRolled) {
+  const scenes::profile_pair pair;
+  rp_config c = scenes::wheels(RP_WHEEL_RAIL, RP_RAIL, pair);
+  rp_input in = scenes::running(RP_RAIL);
+  in.pitch_rate *= 1.0008;
+  in.yaw = 8e-4;
+  in.time_step = 5e-5;
+  const auto forces = [&](scenes::handle &h) {
+    const rp_result r = h.step(in);
+    EXPECT_EQ(r.status, RP_CONVERGED);
+    const double *f = r.side[c.side].patch[0].creep_force;
+    return std::array{f[0], f[1]};
+  };
+  scenes::handle steady(c);
+  const auto last = forces(steady);
+  c.regime = RP_TRANSIENT_ROLLING;
+  scenes::handle rolling(c);
+  std::array<double, 2> before = forces(rolling), now = before;
+  for (size_t k = 0; k < 2; ++k) EXPECT_LT(std::fabs(now[k]), 0.5 * std::fabs(last[k])) << k;
+  for (int step = 1; step < 5; ++step) {
+    before = now;
+    now = forces(rolling);
+    for (size_t k = 0; k < 2; ++k) {
+      EXPECT_GT(std::fabs(now[k]), std::fabs(before[k])) << step << ' ' << k;
+      EXPECT_LT(std::fabs(now[k]), std::fabs(last[k])) << step << ' ' << k;
+    }
+  }
+}
+
 // The wheel of a mirrored case, whose inputs are symmetric.
 TEST(TransientWheels, LeftIsTheMirrorOfRight) {
   const wavy w(RP_WHEELSET);

@@ -5,6 +5,8 @@
 #include <memory>
 #include <random>
 
+#include "geometry/geometry.hpp"
+#include "geometry/placement.hpp"
 #include "surfaces.hpp"
 
 namespace {

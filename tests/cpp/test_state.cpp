@@ -255,6 +255,47 @@ TEST_P(State, SaveChecksItsBuffer) {
   EXPECT_EQ(rp_restore_state(nullptr, state.data(), state.size()), RP_ERROR_NULL);
 }
 
+// The arrays of a config count to their last number.
+TEST(StateOfArrays, WithOtherNumbersIsRefused) {
+  std::vector<double> heights(30, 1e-5);
+  rp_config c = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL);
+  c.geometry = RP_UNDEFORMED_DISTANCE;
+  c.elements[0] = c.elements[1] = 0;
+  c.element_size[0] = c.element_size[1] = 1e-3;
+  c.undeformed_distance = heights.data();
+  c.distance_shape[0] = 6;
+  c.distance_shape[1] = 5;
+  c.layer_thickness = 1e-4;
+  c.layer_shear_modulus = 8e9;
+  c.friction_points = c.hardening_points = 4;
+  for (int i = 0; i < 4; ++i) {
+    c.friction_position[i] = c.hardening_displacement[i] = 1e-3 * i;
+    c.friction_factor[i] = 1;
+    c.hardening_stress[i] = 1e8;
+  }
+  c.layer_yield_stress = 1e8;
+  const auto state_of = [](const rp_config &config) { return scenes::handle(config).state(); };
+  scenes::handle contact(c);
+  EXPECT_EQ(contact.restore(state_of(c)), RP_OK);
+  for (int i = 0; i < 4; ++i)
+    for (double (rp_config::*array)[RP_MAX_POINTS] :
+         {&rp_config::friction_position, &rp_config::friction_factor,
+          &rp_config::hardening_displacement, &rp_config::hardening_stress}) {
+      // displacements begin at 0, and the first stress is the yield stress
+      if (i == 0 && array != &rp_config::friction_factor && array != &rp_config::friction_position)
+        continue;
+      rp_config other = c;
+      (other.*array)[i] += 1e-6 * (1 + std::fabs((other.*array)[i]));
+      EXPECT_EQ(contact.restore(state_of(other)), RP_ERROR_STATE) << i;
+    }
+  for (double &h : heights) {
+    h += 1e-9;
+    EXPECT_EQ(contact.restore(state_of(c)), RP_ERROR_STATE) << &h - heights.data();
+    h -= 1e-9;
+    h = 1e-5;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, State, testing::ValuesIn(all_scenes()),
                          [](const auto &info) { return std::string(info.param.name); });
 
