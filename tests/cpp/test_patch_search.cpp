@@ -185,6 +185,45 @@ TEST_P(PatchSearch, OfTheProgramContactByDistance) {
   EXPECT_GT(several, 2);
 }
 
+TEST_P(PatchSearch, BumpIsTheGreatestGapBetweenTwoParts) {
+  const double flange = flanging();
+  int several = 0;
+  for (double beyond = -4e-5; beyond < 6e-5; beyond += 4e-6) {
+    place(flange + beyond, 4e-5);
+    part_set found;
+    find_parts(side, found);
+    if (found.count != 2) continue;
+    ++several;
+    const part &a = found.parts[0], &b = found.parts[1];
+    double most = 0;
+    for (int i = 0; i <= 2000; ++i)
+      most = std::max(most, side.locus(a.end + (b.begin - a.end) * i / 2000).gap);
+    EXPECT_GT(a.bump_at, a.end);
+    EXPECT_LT(a.bump_at, b.begin);
+    EXPECT_EQ(a.bump, side.locus(a.bump_at).gap);
+    EXPECT_GE(a.bump, most - 1e-15);
+  }
+  EXPECT_GT(several, 2);
+}
+
+TEST_P(PatchSearch, FirstTouchLeavesNoGap) {
+  for (const double y : {0.0, 1.3e-3, -2e-3, 4.4e-3}) {
+    place(y, 0, 1e-3);
+    double near = 0, least = HUGE_VAL;
+    const double step = side.sample_s(1) - side.sample_s(0);
+    for (int i = 0; i < side.sample_count(); ++i)
+      if (side.sample_gap(i) < least) least = side.sample_gap(i), near = side.sample_s(i);
+    // thirds
+    double low = near - 2 * step, high = near + 2 * step;
+    for (int i = 0; i < 60; ++i) {
+      const double a = low + (high - low) / 3, b = high - (high - low) / 3;
+      (side.locus(a).gap < side.locus(b).gap ? high : low) =
+          side.locus(a).gap < side.locus(b).gap ? b : a;
+    }
+    EXPECT_NEAR(side.locus(0.5 * (low + high)).gap, 0, 2e-15) << y;
+  }
+}
+
 TEST_P(PatchSearch, TellsWhereThereIsNone) {
   patch_region regions[2];
   part_set found;

@@ -36,6 +36,18 @@ profiles::curve wild(unsigned seed, int count) {
   return c;
 }
 
+profiles::curve straight(double length, int count = 5) {
+  profiles::curve c;
+  for (int i = 0; i < count; ++i) {
+    c.s.push_back(length * i / (count - 1));
+    c.y.push_back(length * i / (count - 1));
+    c.z.push_back(0);
+    c.dy.push_back(1);
+    c.dz.push_back(0);
+  }
+  return c;
+}
+
 // value, slope and bend of a cubic between knots, by Hermite's basis functions
 std::array<double, 3> hermite(double h, double t, double f0, double f1, double d0, double d1) {
   const double u = t / h;
@@ -88,6 +100,24 @@ TEST(Profile, IsTheHermiteCurveOfItsKnots) {
   }
 }
 
+// of up to two metres, with knots that are anything but even
+TEST(Profile, IntervalsOfAnyLength) {
+  for (const double length : {1e-3, 0.1, 0.99, 1.01, 1.4, 2.0}) {
+    profiles::curve c = straight(length, 30);
+    for (size_t i = 1; i + 1 < 30; ++i) {
+      const double share = static_cast<double>(i) / 29;
+      c.s[i] = c.y[i] = length * share * share;
+    }
+    ASSERT_EQ(validate(view(c)), profile_fault::none);
+    const profile p(view(c));
+    for (int i = -20; i <= 1020; ++i) {
+      const double s = length * i / 1000.0;
+      ASSERT_EQ(p.interval(s), interval_of(c, s)) << length << ' ' << i;
+    }
+    for (const double s : c.s) ASSERT_EQ(p.interval(s), interval_of(c, s)) << length << ' ' << s;
+  }
+}
+
 TEST(Profile, TakesOverAnotherCurve) {
   const profiles::curve first = wild(3, 20), second = wild(4, 12);
   profile p(view(first));
@@ -122,18 +152,6 @@ TEST(Profile, InclinationAndCurvatureOfACircle) {
 }
 
 // --- what is refused ---------------------------------------------------------------------------
-
-profiles::curve straight(double length, int count = 5) {
-  profiles::curve c;
-  for (int i = 0; i < count; ++i) {
-    c.s.push_back(length * i / (count - 1));
-    c.y.push_back(length * i / (count - 1));
-    c.z.push_back(0);
-    c.dy.push_back(1);
-    c.dz.push_back(0);
-  }
-  return c;
-}
 
 TEST(Profile, FaultsAreTold) {
   const auto fault = [](const profiles::curve &c) { return validate(view(c)); };
@@ -174,6 +192,12 @@ TEST(Profile, FaultsAreTold) {
   EXPECT_EQ(stretched(0.799), profile_fault::not_arc_length);
   EXPECT_EQ(stretched(1.049), profile_fault::none);
   EXPECT_EQ(stretched(1.051), profile_fault::not_arc_length);
+  // neither bound counts
+  for (const double bound : {0.8, 1.05}) {
+    profiles::curve d = straight(1, 4);
+    for (size_t i = 0; i < 4; ++i) d.y[i] = std::array{0.0, 0.25, 0.5, bound}[i];
+    EXPECT_EQ(fault(d), profile_fault::not_arc_length) << bound;
+  }
   // slopes by something else, in either component, at either end
   for (size_t at : {0, 2, 4})
     for (const double angle : {0.0, 0.7, 2.0}) {
