@@ -112,6 +112,46 @@ TEST_P(Placement, LocusIsWhereSurfacesComeClosest) {
   }
 }
 
+// A far turned wheel over a rail, or ahead of a roller's axle: both surfaces fall alike along x.
+TEST_P(Placement, LocusIsWhereBothSurfacesFallAlike) {
+  int compared = 0;
+  double farthest = 0;
+  for (int n = 0; n < 8; ++n) {
+    side_motion m = any_motion(random, scene.roller());
+    m.wheelset.yaw = n % 2 ? 0.02 * (n - 3) : 0.03 * (n - 4);
+    m.rail.offset[0] = 0.01 * (n - 3);
+    put(m);
+    const double no = 0.5 * side_geometry::far_apart;
+    for (int i = 1; i + 1 < side.sample_count(); ++i) {
+      const double s = side.sample_s(i);
+      const locus_point l = side.locus(s);
+      if (!l.valid || side.sample_gap(i - 1) > no || side.sample_gap(i) > no ||
+          side.sample_gap(i + 1) > no)
+        continue;
+      const curve_point p = scene.wheel_curve.evaluate(s);
+      const double c = std::cos(m.wheel.rotation[0]), t = std::sin(m.wheel.rotation[0]);
+      const double across = c * p.dy - t * p.dz, down = t * p.dy + c * p.dz;
+      const double cosine = std::sqrt(1 - l.sine * l.sine);
+      const vector in_axes{l.sine * across, -down, cosine * across};
+      const vector normal = times(scene.wheel_axes(), in_axes);
+      const double of_wheel = -normal[0] / normal[2];
+      // the height of a roller's surface is taken from the sampled gap, and steps of the search,
+      // down to 1e-7, leave aside how it changes along the wheel
+      const vector a = scene.axle();
+      const double reach = a[2] - l.rail_z, x = l.wheel[0] - a[0];
+      const double of_roller = scene.roller() ? x / reach : 0;
+      const double aside = std::fabs(l.gap - side.sample_gap(i)) +
+                           1e-7 * scene.sizes.nominal_radius * std::fabs(l.sine);
+      const double allowed = 1.1 * std::fabs(of_roller / reach) * aside + 1e-12;
+      EXPECT_NEAR(of_wheel, of_roller, allowed) << n << ' ' << i << ' ' << l.sine;
+      ++compared;
+      farthest = std::max(farthest, std::fabs(l.sine));
+    }
+  }
+  EXPECT_GT(compared, 500);
+  EXPECT_GT(farthest, 0.2);
+}
+
 TEST_P(Placement, RailSurfaceIsWhereARailLies) {
   put(any_motion(random, scene.roller()));
   scene.marker_y = side.rail_marker_y();
@@ -322,6 +362,21 @@ TEST_P(Placement, RowsOfShapedSurfacesMeetWhereTheyAreClosest) {
                 1e-6);
   }
   EXPECT_GE(compared, 1);
+}
+
+// Beside the rail there is none.
+TEST_P(Placement, RowsBesideTheRailOverlapNowhere) {
+  std::vector<double> runout(16, 0.0);
+  longitudinal_shape shape({runout.data(), 16, nullptr, 0, 0, 1});
+  shape.place(0, 0, 0.46);
+  side.set_shape(&shape);
+  side_motion m;
+  m.wheelset.y = 0.04;
+  m.wheelset.z = 0.05;
+  side.place(m);
+  double y = 0, dy = 0;
+  const row_overlap o = side.overlap(scene.wheel_to, y, dy);
+  for (const double v : {o.weight, o.x, o.x_min, o.x_max}) EXPECT_EQ(v, 0);
 }
 
 // --- velocities --------------------------------------------------------------------------------
