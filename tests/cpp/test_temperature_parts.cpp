@@ -337,6 +337,33 @@ TEST(Columns, StepsCanBeCut) {
     }
 }
 
+// By the passage of an element, heat knows no other unit of time: rises go with its root, exchanges
+// stay as they are. Contacts follow each other, so that what is left of one meets the next.
+TEST(Columns, InAnyUnitOfTime) {
+  const heat_rows rows{24, 1, 4e-4, 1, 8};
+  std::vector<double> p(24);
+  for (size_t i = 0; i < 24; ++i) p[i] = i % 8 < 5 ? 1.0 : 0.0;
+  const std::vector<double> q = waves(24, 1.9);
+  for (const double slower : {1e-3, 1e4, 1e6}) {
+    moving one(rows, true), other(rows, true);
+    for (step s : ride) {
+      s.direction = 1;
+      one.go(s, q.data(), p.data());
+      s.speed /= slower;
+      other.go(s, q.data(), p.data());
+      for (size_t i = 0; i < 24; ++i) {
+        EXPECT_NEAR(one.columns.exchanged()[i], other.columns.exchanged()[i], 1e-10) << i;
+        EXPECT_NEAR(other.y[i] / std::sqrt(slower), one.y[i], 1e-10 * 1e6) << i;
+      }
+    }
+  }
+}
+
+TEST(Columns, KeepNothingWhereThereAreNone) {
+  EXPECT_EQ(heat_columns().state_size(), 0u);
+  EXPECT_EQ(heat_columns().bytes(), heat_kernel().bytes());
+}
+
 // Steady flux, steps of parts of an element: only what lies between two columns is interpolated.
 TEST(Columns, UniformFluxInPartialSteps) {
   for (int direction : {1, -1})
