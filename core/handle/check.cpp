@@ -210,7 +210,8 @@ void check_regime(const rp_config &c, checker &check) {
     wrong = wheels_cannot_roll(c);
   else if (c.spin_offset != RP_SPIN_OFFSET_NONE)
     wrong = "spin_offset must be none but with regime = steady_rolling";
-  else if (c.geometry == RP_CURVATURES && !(c.element_size[0] > 0 && c.max_elements[0] > 0))
+  else if (c.geometry == RP_CURVATURES &&
+           !(c.element_size[0] > 0 && c.max_elements[0] > 0 && c.max_elements[1] > 0))
     wrong =
         "regime = shift and transient_rolling with curvatures need element_size and "
         "max_elements: their grid is fixed";

@@ -281,10 +281,11 @@ TEST_F(Checks, Regimes) {
     accepts(sized(1e-3, 20));
     const char *fixed = "with curvatures need element_size and max_elements: their grid is fixed";
     for (const auto &wrong : {sized(1e-3, 0), sized(0, 20)}) refuses(fixed, wrong);
-    refuses(fixed, [&](rp_config &c) {
-      sized(1e-3, 20)(c);
-      c.max_elements[0] = 0;
-    });
+    for (int k = 0; k < 2; ++k)
+      refuses(fixed, [&, k](rp_config &c) {
+        sized(1e-3, 20)(c);
+        c.max_elements[k] = 0;
+      });
   }
   base = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
   base.regime = RP_TRANSIENT_ROLLING;
