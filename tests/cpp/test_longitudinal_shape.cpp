@@ -325,6 +325,58 @@ TEST(Rows, OverlapIsTheIntegralOfItsSquare) {
     }
 }
 
+// A wheel larger all round by c, seen from the round one's closest point: its own lies where
+// r sin(a - a0) + c sin a = 0.
+TEST(Rows, LeastGapOfALargerWheelHasItsClosedForm) {
+  for (const double c : {1e-3, -1e-3, 4e-4}) {
+    row_scene s([&](double) { return c; }, nullptr);
+    s.shape.place(0.3, 0, s.radius);
+    for (const double angle : {0.2, 0.11, -0.17}) {
+      const longitudinal_row r = s.row(angle, -1e-3);
+      const double where = std::atan2(r.radius * std::sin(angle), r.radius * std::cos(angle) + c);
+      double a = 0;
+      const double found = r.least(a);
+      // a parabola through places 2e-3 rad apart, aside by up to 4e-4, leaves a sixth of their cube
+      EXPECT_NEAR(a, where, 1e-9) << c << ' ' << angle;
+      EXPECT_NEAR(found, gap_of(r, where), 1e-15);
+    }
+  }
+}
+
+// Both edges of what a round wheel overlaps, r (1 - cos(a - a0)) deep; as well where the rail rises
+// further on, so that more than the overlap is looked at. Edges are searched to 1e-9 rad.
+TEST(Rows, EdgesOfARoundWheelHaveTheirClosedForm) {
+  for (const double rise : {0.0, 1e-3}) {
+    row_scene s(nullptr, [&](double x) { return x > 0.09 && x < 0.11 ? rise : 0.0; });
+    s.shape.place(0, 0, s.radius);
+    for (double depth = 1e-6; depth < 2e-4; depth *= 1.07)
+      for (const double angle : {0.0, 0.012, -0.03}) {
+        const longitudinal_row r = s.row(angle, -depth, 0.01);
+        const row_overlap o = r.overlap();
+        const double half = 2 * std::asin(std::sqrt(0.5 * depth / r.radius));
+        const double margin = 0.03 * r.radius * half;
+        EXPECT_NEAR(o.x_max, r.x(angle + half) + margin, 5e-10) << rise << ' ' << depth;
+        EXPECT_NEAR(o.x_min, r.x(angle - half) - margin, 5e-10) << rise << ' ' << depth;
+      }
+  }
+}
+
+// Dips too sharp for a parabola are searched for themselves.
+TEST(Rows, LeastGapOfSharpDips) {
+  row_scene s([](double a) { return 2e-5 * std::sin(400 * a); }, nullptr, 2400);
+  for (double pitch = 0; pitch < 0.016; pitch += 7e-4) {
+    s.shape.place(pitch, 0, s.radius);
+    const longitudinal_row r = s.row(0.002, 1e-4);
+    double least = HUGE_VAL;
+    for (double a = -0.05; a < 0.05; a += 1e-5) least = std::min(least, r.at(a));
+    double a = 0;
+    const double found = r.least(a);
+    EXPECT_EQ(found, r.at(a));
+    // a parabola that foresees its own least value to 10 nm is taken
+    EXPECT_NEAR(found, least, 1e-8) << pitch;
+  }
+}
+
 // Hertz's row: the overlap d - x^2/(2 R) has (15/16) times (16/15) d^2.5 sqrt(2 R).
 TEST(Rows, OfARoundWheelHaveTheirClosedForm) {
   row_scene s([](double) { return 0.0; }, [](double) { return 0.0; });
