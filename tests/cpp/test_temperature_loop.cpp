@@ -78,6 +78,17 @@ TEST(Loop, FullSlidingIsOnePass) {
   }
 }
 
+// Only an element's own heat counts where it rolls less than half of its length.
+TEST(Loop, StepsOfPartsOfAnElement) {
+  for (const double part : {0.1, 0.4, 0.6}) {
+    row_model m;
+    m.kernel.set(m.rows, part * m.rows.dx);
+    const temperature_law law{0.3, -0.18, 20, 40};
+    EXPECT_TRUE(m.solve(law).converged) << part;
+    EXPECT_LT(m.inconsistency(law), 1e-7) << part;
+  }
+}
+
 TEST(Loop, SlipThatAnswersConverges) {
   for (double compliance : {-2.0, 0.5, 2.0, 8.0})
     for (double change : {-0.29, -0.1, 0.1, 0.3})

@@ -359,6 +359,17 @@ TEST(Columns, InAnyUnitOfTime) {
   }
 }
 
+TEST(Columns, AreAsTheBulkWhereNothingHasRolled) {
+  const thermal_pair pair{{steel(90), cast_iron(15)}};
+  const heat_rows rows{12, 1, 4e-4, 1, 8};
+  moving m(rows, true);
+  const std::vector<double> q(12, 1e7), p(12, 0.0);
+  m.go({1.0, 0, 1}, q.data(), p.data());
+  for (const double z : {0.0, 1e-4})
+    for (const int k : {0, 1})
+      for (const double t : m.deep(pair, k, z)) EXPECT_EQ(t, pair.body[k].bulk);
+}
+
 TEST(Columns, KeepNothingWhereThereAreNone) {
   EXPECT_EQ(heat_columns().state_size(), 0u);
   EXPECT_EQ(heat_columns().bytes(), heat_kernel().bytes());
