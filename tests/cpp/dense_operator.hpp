@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -95,6 +96,21 @@ class dense_operator final : public rolling_operator {
   std::vector<int> start_;
   size_t size_ = 0;
   std::vector<double> b_;
+};
+
+// The same with which no linear system can be solved, so that steps are no numbers.
+class without_steps final : public rolling_operator {
+ public:
+  explicit without_steps(dense_operator &b) : b_(b) {}
+  void product(const double *p, double *s) override { b_.product(p, s); }
+  void product_single(const double *, double *s) override { std::fill_n(s, b_.size(), NAN); }
+  void row_matrices(int row, double *bxx, double *byy) const override {
+    b_.row_matrices(row, bxx, byy);
+  }
+  double projection_scale(int row) const override { return b_.projection_scale(row); }
+
+ private:
+  dense_operator &b_;
 };
 
 }  // namespace dense

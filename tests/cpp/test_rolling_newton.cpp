@@ -16,7 +16,7 @@
 namespace {
 
 using namespace railpatch;
-using dense::dense_operator, dense::lengths;
+using dense::dense_operator, dense::lengths, dense::without_steps;
 
 constexpr double tolerance = 1e-9;
 
@@ -79,5 +79,56 @@ INSTANTIATE_TEST_SUITE_P(Skewness, Operators,
 INSTANTIATE_TEST_SUITE_P(WithoutSteps, Operators,
                          testing::Values(std::pair(0.0, true), std::pair(0.2, true),
                                          std::pair(1.0, true)));
+
+// The safeguard's steps come closer to the solution however little B's symmetric part is.
+TEST(Safeguard, GainsOnAnySkewness) {
+  std::mt19937_64 random(20261122);
+  std::uniform_real_distribution<double> entry(-1, 1);
+  rolling_newton newton(12, static_cast<int>(lengths.size()), false);
+  for (double skewness : {1.0, 30.0, 1e3, 3e4}) {
+    dense_operator b(skewness, random);
+    without_steps hindered(b);
+    const size_t n = b.size() / 2;
+    std::vector<double> bound(n, 1e9), area(n, 1.0), rigid(2 * n), p(2 * n), s(2 * n);
+    for (double &v : rigid) v = 2 * entry(random);
+    const rolling_problem problem{static_cast<int>(lengths.size()),
+                                  b.start().data(),
+                                  bound.data(),
+                                  area.data(),
+                                  rigid.data(),
+                                  p.data(),
+                                  s.data()};
+    // to be tried once, and again and again
+    for (const tangential_options options : {tangential_options{0.9, 8}, {0.5, 200}}) {
+      std::fill(p.begin(), p.end(), 0.0);
+      const tangential_result result = newton.solve(hindered, problem, options);
+      EXPECT_TRUE(result.converged) << "skewness " << skewness << ", left " << result.residual;
+    }
+  }
+}
+
+// Where all slides fast no linear system is needed.
+TEST(Sliding, NeedsNoSteps) {
+  std::mt19937_64 random(20261123);
+  std::uniform_real_distribution<double> entry(-1, 1);
+  rolling_newton newton(12, static_cast<int>(lengths.size()), false);
+  dense_operator b(0.2, random);
+  without_steps hindered(b);
+  const size_t n = b.size() / 2;
+  std::vector<double> bound(n), area(n, 1.0), rigid(2 * n), p(2 * n), s(2 * n);
+  for (double &v : bound) v = std::fabs(entry(random));
+  for (size_t i = 0; i < rigid.size(); ++i) rigid[i] = 100 + entry(random);
+  const rolling_problem problem{static_cast<int>(lengths.size()),
+                                b.start().data(),
+                                bound.data(),
+                                area.data(),
+                                rigid.data(),
+                                p.data(),
+                                s.data()};
+  const tangential_result result = newton.solve(hindered, problem, {tolerance, 400});
+  EXPECT_TRUE(result.converged) << result.residual;
+  EXPECT_EQ(result.newton_iterations, 0);
+  EXPECT_EQ(result.slip, static_cast<int>(n));
+}
 
 }  // namespace
