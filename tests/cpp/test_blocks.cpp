@@ -236,7 +236,10 @@ TEST(RowBlocks, SolveTheirEquations) {
 // to, which no row here is long enough for.
 TEST(RowBlocks, ByWhatTheyShareSolveTheSame) {
   std::mt19937_64 random(3);
-  const int longest = 36, rows = static_cast<int>(states.size());
+  std::vector<std::string> states = ::states;
+  for (const char *rest : {"d", "dsdd", "dddddddssdd"})
+    states.push_back(std::string(69, 's') + rest);
+  const int longest = 80, rows = static_cast<int>(states.size());
   const row_matrices whole(longest);
   row_blocks blocks(longest, rows);
   std::vector<int> start{0};

@@ -204,7 +204,52 @@ TEST(ForceConstraint, PullsByWhatIsMissingOfTheForce) {
       constraint.go_back(problem);
       for (int c = 0; c < 2; ++c)
         EXPECT_NEAR(rows.force.creepage[c], begun.component[c] ? again[c] : 7.0, 1e-13);
+
+      // and back to those remembered, from there on too
+      const prescribed_force best = rows.force;
+      constraint.remember();
+      constraint.pull(problem, now.data(), then.data(), length, &moved, &turned);
+      constraint.keep(problem);
+      constraint.recall(problem);
+      for (int c = 0; c < 2; ++c) EXPECT_EQ(rows.force.creepage[c], best.creepage[c]);
+      rows.force.creepage[0] = rows.force.creepage[1] = 7;
+      constraint.go_back(problem);
+      for (int c = 0; c < 2; ++c) EXPECT_EQ(rows.force.creepage[c], best.creepage[c]);
     }
+}
+
+// A start far beyond the creepage of full sliding, and no solution: in either component.
+TEST(ForceConstraint, KnowsStartsOnTheFlat) {
+  std::mt19937_64 random(20261125);
+  for (int c = 0; c < 2; ++c) {
+    rows_of_elements rows(random);
+    double given = 0;
+    for (double v : rows.rigid) given = std::max(given, std::abs(v));
+    const double unit = rows.capacity * rows.flexibility[c] / rows.ramp_force + given;
+    // traction at its bound, all of it in this component
+    std::vector<double> sliding(rows.p.size(), 0.0);
+    for (size_t row = 0; row + 1 < rows.start.size(); ++row) {
+      const int begin = rows.start[row], n = rows.start[row + 1] - begin;
+      for (int k = 0; k < n; ++k)
+        sliding[static_cast<size_t>(2 * begin + c * n + k)] =
+            rows.bound[static_cast<size_t>(begin + k)];
+    }
+    rows.force.component[c] = true;
+    for (double creepage : {-10.0, -1.0, 1.0, 10.0})
+      for (double asked : {0.5, 1.0})
+        for (double residual : {1e-3, 0.5}) {
+          rows.force.force[c] = asked * rows.capacity;
+          rows.force.creepage[c] = creepage * unit;
+          force_constraint constraint(rows.start.back());
+          const rolling_problem problem = rows.problem();
+          constraint.begin(problem, 1e-6);
+          constraint.set_units(problem, rows.flexibility, rows.ramp_force);
+          const bool far = std::abs(creepage) > 5, unsolved = asked < 1 || residual > 0.1;
+          EXPECT_EQ(constraint.overshoots(problem, sliding.data(), residual), far && unsolved)
+              << "component " << c << ", creepage " << creepage << ", asked " << asked
+              << ", residual " << residual;
+        }
+  }
 }
 
 }  // namespace

@@ -331,6 +331,29 @@ TEST(SharedKrylov, EndsAtItsLimits) {
   EXPECT_NEAR(out.residual, 1.0, 1e-15);
 }
 
+TEST(SharedKrylov, KnowsNothingOfMoreSidesBefore) {
+  std::mt19937_64 random(7);
+  const size_t n = 20;
+  const dense m(n, 0.4, random);
+  const shared_case c = shared_sides(n, 3, random);
+  for (bool each : {true, false}) {
+    shared_krylov used(20, 30, 3), fresh(20, 30, 3);
+    vector x(c.b.size()), other(c.b.size(), 1e9);
+    const auto solve = [&](shared_krylov &solver, int sides, vector &to) {
+      return solver.solve(
+          n, sides, c.stride, c.b.data(), to.data(), {1e-9, 0.0, 200, each},
+          [&](const double *z, double *w, bool, int) { m.product(z, w); }, [](double *) {});
+    };
+    solve(used, 3, x);
+    std::fill(x.begin(), x.end(), 1e9);
+    const auto out = solve(used, 2, x), should = solve(fresh, 2, other);
+    EXPECT_TRUE(out.converged);
+    EXPECT_EQ(x, other);
+    EXPECT_EQ(out.residual, should.residual);
+    EXPECT_EQ(out.exact, should.exact);
+  }
+}
+
 TEST(SharedKrylov, SaysWhatItHolds) {
   const shared_krylov solver(10, 6, 3);
   EXPECT_EQ(solver.bytes(),

@@ -95,6 +95,10 @@ TEST(RowElements, AreThoseUnderPressureFromTheLeadingEdge) {
   for (size_t i = 0; i < 4; ++i) whole[i] = 0;
   rows.collect(p.g, whole.data(), 1);
   EXPECT_EQ(rows.common_row(), 3);
+  // with a gap in the first row alone
+  whole[1] = 1;
+  rows.collect(p.g, whole.data(), 1);
+  EXPECT_EQ(rows.common_row(), -1);
 }
 
 TEST(RowUnknowns, CountElementsThatStickTwice) {
