@@ -108,7 +108,8 @@ struct machine {
       : s(of),
         plans({smooth_size(2 * of.g.nx)}, {of.g.ny == 1 ? 1 : smooth_size(2 * of.g.ny)}),
         a(of.medium(), plans),
-        solver(of.g.count() + 5) {
+        // room for more elements than there are, or for just as many
+        solver(of.g.count() + (of.line_width > 0 ? 0 : 5)) {
     EXPECT_TRUE(a.set_grid(s.g));
   }
   solved with(bool force, double value, int most = 200, std::vector<double> start = {}) {
