@@ -111,11 +111,11 @@ std::vector<scene> all_scenes(const std::vector<double> &gap) {
 }
 
 TEST(ErrorEstimate, IsMadeFromTheResultAndItsFields) {
-  // a paraboloid with a ridge beside its middle
+  // a paraboloid with a ridge beside its middle, aslant
   std::vector<double> gap;
   for (int j = 0; j < 20; ++j)
     for (int i = 0; i < 24; ++i) {
-      const double x = (i - 11.5) * 1e-3, y = (j - 9.5) * 8e-4, ridge = (y - 3e-3) / 2e-3;
+      const double x = (i - 11.5) * 1e-3, y = (j - 9.5) * 8e-4, ridge = (y + 0.5 * x - 3e-3) / 2e-3;
       gap.push_back(0.9 * x * x + 1.5 * y * y - 1e-5 * std::exp(-ridge * ridge));
     }
   std::mt19937_64 random(20261122);

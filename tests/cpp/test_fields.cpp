@@ -101,4 +101,37 @@ TEST(Fields, AddUpToTheResult) {
   }
 }
 
+// On a curved surface the rows of a wheel lie one after the other along its section, each chord at
+// its rows' mean angle, and about the patch's own place.
+TEST(Fields, RowsOfACurvedSurfaceFollowItsAngle) {
+  const scenes::profile_pair pair;
+  rp_config c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+  c.reference_surface = RP_REFERENCE_CURVED;
+  c.element_size[0] = c.element_size[1] = 2e-3;
+  scenes::handle h(c);
+  const rp_result result = h.step(scenes::running(RP_RAIL));
+  for (const int side : {RP_LEFT, RP_RIGHT}) {
+    const rp_patch_result &p = result.side[side].patch[0];
+    ASSERT_EQ(p.status, RP_CONVERGED);
+    const auto place = h.field(side, 0, RP_FIELD_ROW_POSITION);
+    const auto angle = h.field(side, 0, RP_FIELD_ROW_ANGLE), y = h.field(side, 0, RP_FIELD_Y);
+    const auto rows = static_cast<size_t>(p.grid[1]);
+    ASSERT_EQ(place.size(), 2 * rows);
+    ASSERT_EQ(angle.size(), rows);
+    for (size_t j = 0; j + 1 < rows; ++j) {
+      const double dy = place[j + 1] - place[j], dz = place[rows + j + 1] - place[rows + j];
+      const double bend = angle[j + 1] - angle[j], size = p.element_size[1];
+      EXPECT_NEAR(std::hypot(dy, dz) / size, 1, 0.1 * std::fabs(bend) + 1e-12) << j;
+      EXPECT_NEAR(std::atan2(dz, dy), 0.5 * (angle[j] + angle[j + 1]),
+                  0.1 * std::fabs(bend) + 1e-12)
+          << j;
+      // the origin of y is the patch's place, up to the depth that the bodies are pressed in
+      if (y[j] > 0 || y[j + 1] <= 0) continue;
+      const double share = -y[j] / (y[j + 1] - y[j]);
+      EXPECT_NEAR(place[j] + share * dy, p.position[1], 1e-4);
+      EXPECT_NEAR(place[rows + j] + share * dz, p.position[2], 1e-4);
+    }
+  }
+}
+
 }  // namespace

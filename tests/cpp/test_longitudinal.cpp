@@ -7,6 +7,7 @@
 
 #include "geometry/longitudinal_shape.hpp"
 #include "half_space/offset_influence.hpp"
+#include "handle/case_fields.hpp"
 #include "scenes.hpp"
 
 namespace {
@@ -221,6 +222,30 @@ TEST(TransientWheels, LeftIsTheMirrorOfRight) {
     EXPECT_EQ(r.side[0].force[1], -r.side[1].force[1]);
     EXPECT_EQ(r.side[0].force[2], r.side[1].force[2]);
   }
+}
+
+// Differences start from what each wheel's material has carried so far.
+TEST(TransientWheels, DerivativesOfLeftMirrorThoseOfRight) {
+  wavy w(RP_WHEELSET);
+  w.config.derivatives = 1;
+  scenes::handle contact(w.config);
+  for (int k = 0; k < 2; ++k) {
+    rp_input in = w.input(k);
+    in.y = 0;
+    contact.step(in);
+  }
+  rp_input direction;
+  rp_default_input(&direction);
+  for_each_number(direction, [](const char *, double &v, double) { v = 0; });
+  direction.pitch_rate = 1;
+  rp_result change{};
+  rp_derivative_kind kind;
+  ASSERT_EQ(rp_differentiate(contact.get(), &direction, &change, &kind, nullptr), RP_OK);
+  EXPECT_EQ(kind, RP_DERIVATIVE_BY_DIFFERENCES);
+  EXPECT_NE(change.side[0].force[0], 0);
+  EXPECT_EQ(change.side[0].force[0], change.side[1].force[0]);
+  EXPECT_EQ(change.side[0].force[1], -change.side[1].force[1]);
+  EXPECT_EQ(change.side[0].force[2], change.side[1].force[2]);
 }
 
 TEST(TransientWheels, WhatTheyCannotDoIsRefused) {

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "scenes.hpp"
+
 namespace {
 
 using namespace railpatch;
@@ -62,6 +64,69 @@ TEST(GridRules, KikAndPiotrowskisCoversItsRegionAndItsContact) {
       rules.force_given = true;
       EXPECT_NEAR(rules.relative_size(hertz, k), std::sqrt(less) * needed, 1e-12 * needed) << b;
     }
+  }
+}
+
+rp_config with_room_for(int along, int across) {
+  rp_config c = scenes::patch(RP_NORMAL_HERTZ, RP_TANGENTIAL_FULL);
+  c.geometry = RP_CURVATURES;
+  c.curvatures[0] = 0.3;
+  c.curvatures[1] = 3;
+  c.elements[0] = c.elements[1] = 0;
+  c.element_size[0] = c.element_size[1] = 1e-3;
+  c.max_elements[0] = along;
+  c.max_elements[1] = across;
+  return c;
+}
+
+// Steps that remember have the whole grid from the first on. Hertz's ellipse has to lie on it.
+TEST(PatchGrids, OfStepsAreAsLargeAsTheyMayBe) {
+  rp_config c = with_room_for(24, 40);
+  c.regime = RP_TRANSIENT_ROLLING;
+  scenes::handle h(c);
+  rp_input in = scenes::patch_input(1e4, 1e-3, 0, 0);
+  in.distance = 1e-3;
+  const double stiffness = c.shear_modulus[0] / (1 - c.poisson_ratio[0]);
+  bool too_long = false;
+  for (double force = 1e4; force < 3e6; force *= 2) {
+    in.normal_force = force;
+    const hertz_contact hertz = hertz_from_force(c.curvatures, stiffness, force);
+    if (2 * hertz.semi_axes[1] > 22e-3) break;
+    const rp_patch_result r = h.step(in).side[RP_RIGHT].patch[0];
+    if (2 * hertz.semi_axes[0] > 24e-3) {
+      EXPECT_EQ(r.status, RP_OUT_OF_RANGE) << force;
+      too_long = true;
+      continue;
+    }
+    EXPECT_NE(r.status, RP_OUT_OF_RANGE) << force;
+    EXPECT_EQ(r.grid[0], 24);
+    EXPECT_EQ(r.grid[1], 40);
+  }
+  EXPECT_TRUE(too_long);
+}
+
+// The margins of unlike bodies take what room there is, along and across.
+TEST(PatchGrids, MarginsKeepWithinTheRoom) {
+  for (const bool turned : {false, true}) {
+    rp_config c = turned ? with_room_for(90, 20) : with_room_for(20, 90);
+    c.normal = RP_NORMAL_HALF_SPACE;
+    c.shear_modulus[1] = 1e9;
+    c.friction_coefficient = 1;
+    c.curvatures[0] = c.curvatures[1] = 1;
+    const double g = 2 / (1 / c.shear_modulus[0] + 1 / c.shear_modulus[1]);
+    const double nu =
+        0.5 * g *
+        (c.poisson_ratio[0] / c.shear_modulus[0] + c.poisson_ratio[1] / c.shear_modulus[1]);
+    // 17 elements across and one free on either side leave room for one more
+    double force = 1;
+    while (2e3 * hertz_from_force(c.curvatures, g / (1 - nu), force).semi_axes[0] < 16.5)
+      force *= 1.02;
+    scenes::handle h(c);
+    const rp_patch_result r = h.step(scenes::patch_input(force, 0, 0, 0)).side[RP_RIGHT].patch[0];
+    ASSERT_EQ(r.status, RP_CONVERGED);
+    EXPECT_EQ(r.grid[turned], 20);
+    EXPECT_GT(r.grid[!turned], 20);
+    EXPECT_LE(r.grid[!turned], 90);
   }
 }
 

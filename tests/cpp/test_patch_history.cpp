@@ -95,6 +95,16 @@ TEST_P(PatchHistory, WhatWasCarriedIsWhereTheMaterialIs) {
   }
 }
 
+// A smaller grid than what there is room for: nothing is written beside it.
+TEST_P(PatchHistory, WhatIsBesideTheGridStays) {
+  patch_history h(24, true, &law);
+  fill(h);
+  for (size_t k = 18; k < 24; ++k) h.before[k] = {{5, 6, 7}};
+  h.begin(g, 4e-4, px.data(), py.data());
+  for (size_t k = 18; k < 24; ++k)
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(h.before[k].v[c], 5 + c);
+}
+
 // In steady rolling there is no step before: material comes in at the front, and what it has
 // carried along the row counts.
 TEST_P(PatchHistory, PlasticWorkIsThatOfTheStepsDisplacement) {

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <vector>
 
+#include "normal/hertz.hpp"
 #include "patch/patch_scene.hpp"
+#include "patch/patch_workspace.hpp"
 #include "patch/result_fields.hpp"
 #include "scenes.hpp"
 
@@ -94,6 +96,123 @@ TEST(PatchResults, GivenHeightsAreOnTheGridOfTheirElements) {
   EXPECT_GT(touching, 20);
   EXPECT_NEAR(sum * size[0] * size[1], 5e4, 5e4 * 1e-9);
   EXPECT_NEAR(r.contact_area, touching * size[0] * size[1], 1e-12);
+}
+
+// What is left behind is as warm as the warmer body.
+TEST(PatchResults, WhereNothingTouchesTheSurfacesAreAsTheirBodies) {
+  for (const bool rail_warmer : {false, true}) {
+    patch_scene scene;
+    scene.heat.emplace();
+    scene.heat->bodies.body[rail_warmer].bulk = 80;
+    scene.heat->bodies.body[!rail_warmer].bulk = 20;
+    rp_patch_result r{};
+    set_unloaded(scene, r);
+    EXPECT_EQ(r.max_temperature, 80);
+  }
+}
+
+// The error of forces was measured for each theory as it is published, with Coulomb's constant
+// coefficient in steady rolling by given creepages, and for no other.
+TEST(PatchResults, ErrorsOfForcesAreEstimatedWhereTheyWereMeasured) {
+  const auto estimates = [](auto change, rp_tangential_method method = RP_TANGENTIAL_FASTSIM) {
+    patch_scene scene;
+    scene.normal = RP_NORMAL_HERTZ;
+    scene.tangential = method;
+    scene.fast.blending = RP_BLENDING_SLIDING;
+    scene.fast.bound = RP_BOUND_AUTOMATIC;
+    change(scene);
+    return scene.estimates_force();
+  };
+  for (const rp_tangential_method method :
+       {RP_TANGENTIAL_FULL, RP_TANGENTIAL_FASTSIM, RP_TANGENTIAL_POLACH, RP_TANGENTIAL_TABLE}) {
+    const auto refuses = [&](auto change) { EXPECT_FALSE(estimates(change, method)) << method; };
+    EXPECT_TRUE(estimates([](patch_scene &) {}, method)) << method;
+    refuses([](patch_scene &s) { s.spin_offset = true; });
+    refuses([](patch_scene &s) { s.prescribed[1] = true; });
+    refuses([](patch_scene &s) { s.law = yielding(); });
+    refuses([](patch_scene &s) {
+      s.heat.emplace();
+      s.heat->by_temperature = true;
+    });
+    // temperatures alone change nothing
+    EXPECT_TRUE(estimates([](patch_scene &s) { s.heat.emplace(); }, method)) << method;
+  }
+  for (const motion regime : {motion::shift, motion::transient})
+    EXPECT_FALSE(estimates([&](patch_scene &s) { s.regime = regime; }, RP_TANGENTIAL_FULL));
+  const auto fast_refuses = [&](auto change) { EXPECT_FALSE(estimates(change)); };
+  fast_refuses([](patch_scene &s) { s.fast.coefficient_factor = 0.9; });
+  fast_refuses([](patch_scene &s) { s.fast.polach.adhesion = 0.5; });
+  fast_refuses([](patch_scene &s) { s.fast.polach.slip = 0.5; });
+  fast_refuses([](patch_scene &s) { s.fast.reduction.k0 = 0.5; });
+  fast_refuses([](patch_scene &s) { s.fast.reduction.alpha = s.fast.reduction.beta = 0.5; });
+  fast_refuses([](patch_scene &s) { s.fast.bound = RP_BOUND_PARABOLIC; });
+  for (const rp_normal_method normal :
+       {RP_NORMAL_HALF_SPACE, RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN}) {
+    const auto other = [&](patch_scene &s) { s.normal = normal; };
+    EXPECT_TRUE(estimates(other));
+    EXPECT_FALSE(estimates(other, RP_TANGENTIAL_TABLE));
+  }
+}
+
+// Hertz's strip of any width: an area, but no approach of half-spaces.
+TEST(PatchResults, LineContactsHaveAStripsArea) {
+  for (const double width : {0.02, 0.7, 3.0}) {
+    rp_config c = scenes::patch(RP_NORMAL_HERTZ, RP_TANGENTIAL_NONE);
+    c.geometry = RP_LINE_CONTACT;
+    c.line_contact_radius = 0.25;
+    c.width = width;
+    c.elements[1] = 1;
+    scenes::handle h(c);
+    const double force = 4e6 * width;
+    const rp_patch_result r = h.step(scenes::patch_input(force, 0, 0, 0)).side[RP_RIGHT].patch[0];
+    ASSERT_EQ(r.status, RP_CONVERGED);
+    double compliance = 0;
+    for (int k = 0; k < 2; ++k) compliance += 0.5 * (1 - c.poisson_ratio[k]) / c.shear_modulus[k];
+    // a^2 = 4 F' R/(pi E*), 1/E* the sum of both bodies' (1 - nu)/(2 G) (Johnson 1985, eq. 4.43)
+    const double a = std::sqrt(4 * force / width * 0.25 * compliance / std::acos(-1.0));
+    EXPECT_NEAR(r.contact_area, 2 * a * width, 1e-12 * r.contact_area);
+    EXPECT_TRUE(std::isnan(r.approach) && std::isnan(r.elastic_energy));
+  }
+}
+
+// A strip's pressure moves unlike surfaces by K/(2 G) of it on either side, apart from each other:
+// from element to element the slip is K/G times the mean of both, twice, whatever the width.
+TEST(PatchResults, UnlikeStripsSlipByTheirPressure) {
+  const double moduli[2] = {20e9, 82e9}, ratios[2] = {0.2, 0.28};
+  for (const double width : {0.01, 4.0}) {
+    patch_scene scene;
+    scene.elastic = combine(moduli, ratios);
+    scene.line_width = width;
+    const grid g{12, 1, 1e-3, width, -5.5e-3, 0};
+    const fft_plans plans({smooth_size(2 * g.nx + 1)}, {1});
+    patch_workspace shared(scene, {}, plans, g.count());
+    ASSERT_TRUE(shared.coupled.has_value());
+    std::vector<double> p, none(12, 0.0), far(12, 0.0);
+    for (int i = 0; i < 12; ++i) p.push_back(1e7 * (1 + std::sin(i)));
+    shared.coupled->begin(g, far.data(), none.data(), none.data());
+    rolling_input rolling{{0, 0}, 0.0, 1, 0.0, nullptr};
+    rolling.regime = motion::steady;
+    shared.coupled->set_slip(p.data(), rolling);
+    const double factor = scene.elastic.mismatch / scene.elastic.shear_modulus;
+    for (int i = 0; i < 11; ++i) {
+      const auto at = static_cast<size_t>(i);
+      EXPECT_NEAR(shared.coupled->slip(0)[i], factor * (p[at] + p[at + 1]),
+                  1e-10 * std::fabs(factor) * 4e7);
+      EXPECT_NEAR(shared.coupled->slip(1)[i], 0, 1e-10 * std::fabs(factor) * 4e7);
+    }
+    // the gap's error is what the tractions move, over the scale
+    std::vector<double> moved(12);
+    coupling_influence direct(scene.elastic, true, plans);
+    ASSERT_TRUE(direct.set_grid(g));
+    direct.from_traction(p.data(), none.data(), moved.data());
+    double most = 0;
+    for (const double u : moved) most = std::max(most, std::fabs(u));
+    for (const double scale : {1e-6, 3e-5, 2.0}) {
+      shared.coupled->set_scale(scale);
+      const double error = shared.coupled->error(p.data(), p.data(), none.data(), false);
+      EXPECT_NEAR(error, most / scale, 1e-10 * most / scale);
+    }
+  }
 }
 
 }  // namespace
