@@ -42,8 +42,8 @@ TEST(Scene, GridsOfUnlikeBodiesReachAsFarAsTheyStretch) {
   c.shear_modulus[1] = 1e30;
   c.poisson_ratio[0] = c.poisson_ratio[1] = 0;
   c.friction_coefficient = 2;
-  for (const wheel_setup &w : scene_of(c).wheels->wheel)
-    EXPECT_NEAR(w.grid.reach, std::sqrt(3.0), 1e-12);
+  const scene found = scene_of(c);
+  for (const wheel_setup &w : found.wheels->wheel) EXPECT_NEAR(w.grid.reach, std::sqrt(3.0), 1e-12);
 }
 
 // Where a force or the place of a rail is found, each evaluation is ten times as exact.
