@@ -211,6 +211,32 @@ TEST(TransientWheels, CreepForcesGrowWithTheWayRolled) {
 }
 
 // The wheel of a mirrored case, whose inputs are symmetric.
+// Rails that stand aside with the wheelset, or move on with it: the material goes along.
+TEST(TransientWheels, RailsMovedAsideCarryTheirMaterial) {
+  const scenes::profile_pair pair;
+  rp_config c = scenes::wheels(RP_WHEEL_RAIL, RP_RAIL, pair);
+  c.regime = RP_TRANSIENT_ROLLING;
+  c.load = RP_FORCE;
+  scenes::handle middle(c), aside(c);
+  rp_input in = scenes::running(RP_RAIL);
+  in.vertical_force = 6e4;
+  in.pitch_rate *= 1 + 1e-3;
+  in.time_step = 1e-4;
+  for (int step = 0; step < 4; ++step) {
+    rp_input moved = in;
+    const double way = 1.5e-3 + 4e-4 * step;
+    moved.y += way;
+    for (auto &offset : moved.rail_offset) offset[1] += way;
+    const rp_side_result expected = middle.step(in).side[RP_RIGHT],
+                         found = aside.step(moved).side[RP_RIGHT];
+    ASSERT_EQ(expected.status, RP_CONVERGED);
+    ASSERT_EQ(found.status, RP_CONVERGED);
+    const double size = std::fabs(expected.force[2]);
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(found.force[k], expected.force[k], 1e-5 * size) << step << ' ' << k;
+  }
+}
+
 TEST(TransientWheels, LeftIsTheMirrorOfRight) {
   const wavy w(RP_WHEELSET);
   scenes::handle contact(w.config);

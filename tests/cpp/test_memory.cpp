@@ -178,6 +178,23 @@ size_t tangential_bytes(const rp_config &c) {
   return stages[RP_STAGE_TANGENTIAL].bytes;
 }
 
+// Geometry keeps the profiles of each wheel and rail: the same on either side.
+TEST(Memory, GeometryIsThatOfEachWheel) {
+  const scenes::profile_pair pair;
+  const auto geometry_of = [&](rp_kind kind) {
+    const size_t before = live;
+    const scenes::handle h(scenes::wheels(kind, RP_RAIL, pair));
+    rp_stage_info stages[RP_STAGE_COUNT];
+    EXPECT_EQ(rp_describe(h.get(), stages), RP_OK);
+    EXPECT_LE(stages[RP_STAGE_GEOMETRY].bytes, live - before);
+    return stages[RP_STAGE_GEOMETRY].bytes;
+  };
+  const size_t one = geometry_of(RP_WHEEL_RAIL);
+  // arc length, place and direction of each point
+  EXPECT_GE(one, 5 * sizeof(double) * (pair.wheel.s.size() + pair.rail.s.size()));
+  EXPECT_EQ(geometry_of(RP_WHEELSET), 2 * one);
+}
+
 // In steady rolling the wheels' grids move, but no step is looked back to: beside what each patch
 // keeps there is the solver of one patch.
 TEST(Memory, WheelsRollSteadilyWithTheSolverOfOnePatch) {

@@ -521,6 +521,29 @@ TEST_P(Placement, CreepagesAreThoseOfMaterialPoints) {
   }
 }
 
+// Of the wheelset with its pitch, at any angles: from where points of it go.
+TEST(WheelsetMotion, AngularVelocityIsThatOfItsPoints) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> u(-1, 1);
+  for (int n = 0; n < 20; ++n) {
+    wheelset_state w;
+    w.roll = u(random), w.yaw = u(random);
+    w.roll_rate = u(random), w.yaw_rate = u(random), w.pitch_rate = 3 * u(random);
+    const auto place = [&](double t, const vector &p) {
+      const matrix axes =
+          times(about(ex, w.roll + w.roll_rate * t), about(ez, w.yaw + w.yaw_rate * t));
+      return times(axes, times(about(ey, w.pitch_rate * t), p));
+    };
+    const vec3 spin = angular_velocity(w);
+    for (const vector &p : {ex, ey, ez}) {
+      const vector ahead = place(instant, p), behind = place(-instant, p);
+      const vec3 expected = cross(spin, place(0, p));
+      for (size_t k = 0; k < 3; ++k)
+        EXPECT_NEAR((ahead[k] - behind[k]) / (2 * instant), expected[k], 1e-9);
+    }
+  }
+}
+
 TEST_P(Placement, StandstillHasNoDirection) {
   contact_frame f = put(side_motion{});
   const creepage_state none = side.creepages(f, deep);

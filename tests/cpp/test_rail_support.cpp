@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <random>
 #include <vector>
 
 namespace {
@@ -24,6 +25,8 @@ struct springs final : supported_wheels {
   double slope[2] = {0, 0};
   double speed = 0;  // m/s
   bool nowhere = false;
+  // whether the contacts are known at a place of the first rail and z
+  std::function<bool(const lateral_vertical &, double)> known;
   int evaluations = 0;
   std::array<lateral_vertical, 2> at{}, rates{};
   double z_now = 0;
@@ -49,7 +52,7 @@ struct springs final : supported_wheels {
     ++evaluations;
     z_now = z;
     for (size_t w = 0; w < static_cast<size_t>(count); ++w) out[w] = {force(w, z), speed};
-    return true;
+    return !known || known(at[0], z);
   }
 };
 
@@ -250,6 +253,112 @@ TEST(RailSupport, SlopesAreKeptFromStepToStep) {
     EXPECT_NEAR(r.slope[1][1] / (-1.5 * wheels.stiffness[0] * std::sqrt(depth)), 1, 0.05);
     EXPECT_NEAR(r.slope[0][0] / (wheels.lateral[0] - wheels.drag / 2e-3), 1, 0.05);
     EXPECT_NEAR(r.hertz, wheels.stiffness[0], 1e-6 * wheels.stiffness[0]);
+  }
+}
+
+// Rounding of great elastic forces is no error of small ones: rails let go come to rest.
+TEST(RailSupport, LetGoFromAnywhereItFallsBack) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> u(0, 1);
+  for (int trial = 0; trial < 60; ++trial) {
+    support_setup setup = setup_of(1);
+    for (size_t k = 0; k < 2; ++k) {
+      setup.stiffness[k] = 1e7 * (1 + 9 * u(random));
+      setup.damping[k] = 1e4 * (1 + 9 * u(random));
+    }
+    rail_support support(setup);
+    springs wheels;
+    wheels.count = 1;
+    ASSERT_TRUE(support.solve(wheels, {true, 8e4, 0, 0}).converged);
+    lateral_vertical u_before = support.deflection(0);
+    for (int i = 0; i < 4; ++i) {
+      const double step = 1e-3 * (0.5 + u(random));
+      ASSERT_TRUE(support.solve(wheels, {false, 0, -0.01, step}).converged) << trial << ' ' << i;
+      for (size_t k = 0; k < 2; ++k) {
+        const double c = setup.damping[k] / step, next = u_before[k] * c / (setup.stiffness[k] + c);
+        EXPECT_NEAR(support.deflection(0)[k], next, 1e-12 + 1e-9 * std::fabs(next));
+      }
+      u_before = support.deflection(0);
+    }
+  }
+}
+
+// Differences that slopes are found by: small against the contact's depth, and as creepage.
+TEST(RailSupport, DifferencesAreSmallForTheContact) {
+  for (const double force : {300.0, 1e5})
+    for (const double speed : {0.0, 1e-3, 20.0}) {
+      const support_setup setup = setup_of(1);
+      rail_support support(setup);
+      springs wheels;
+      wheels.count = 1;
+      wheels.speed = speed;
+      wheels.push[0] = 0.1 * force;
+      const double step = 1e-3;
+      const support_load load{true, force, 0, step};
+      ASSERT_TRUE(support.solve(wheels, load).converged);
+      const lateral_vertical &h = support.rails()[0].difference;
+      const double depth = std::pow(force / wheels.stiffness[0], 2.0 / 3);
+      EXPECT_GT(h[0], 0);
+      EXPECT_GT(h[1], 0);
+      EXPECT_LE(h[0], 1e-6);
+      EXPECT_LE(h[1], 0.1 * depth) << force << ' ' << speed;
+      if (speed > 0) {
+        EXPECT_LE(h[0] / step / speed, 3e-5 * (1 + 1e-12)) << force << ' ' << speed;
+      }
+    }
+}
+
+// Contacts far softer than those of two bodies of the material: Newton's steps would go far beyond
+// what is known of them, and are shortened.
+TEST(RailSupport, StepsIntoTheContactAreShort) {
+  for (const bool rigid : {false, true})
+    for (const int count : {1, 2}) {
+      support_setup setup = setup_of(count);
+      if (rigid) setup.stiffness[1] = setup.damping[1] = 0;
+      rail_support support(setup);
+      springs wheels;
+      wheels.count = count;
+      wheels.stiffness[0] = wheels.stiffness[1] = 1e8;
+      double deepest = 0;
+      bool first = true;
+      wheels.known = [&](const lateral_vertical &u, double z) {
+        const double depth = z - u[1] - wheels.touch[0];
+        if (!first) {
+          EXPECT_LE(depth, 1.001 * (3 * deepest + 2e-5));
+        }
+        first = false;
+        deepest = std::max(deepest, depth);
+        return true;
+      };
+      const support_load load{true, 1e5, 0, 0};
+      const support_result found = support.solve(wheels, load);
+      expect_solved(setup, support, wheels, load, found, {});
+    }
+}
+
+// A step that cannot be taken is halved, 24 times with slopes found where it begins.
+TEST(RailSupport, StepsThatCannotBeTakenAreHalved) {
+  rail_support support(setup_of(1));
+  springs wheels;
+  wheels.count = 1;
+  wheels.stiffness[0] = 0.9e11;
+  std::vector<std::array<double, 2>> places;
+  // the start and the two places beside it where slopes are found
+  wheels.known = [&](const lateral_vertical &u, double z) {
+    places.push_back({u[0], z - u[1]});
+    return places.size() <= 3;
+  };
+  EXPECT_FALSE(support.solve(wheels, {true, 1e5, 0, 0}).converged);
+  // and at last the start again
+  ASSERT_EQ(places.size(), 3 + 25 + 1);
+  EXPECT_EQ(places.back(), places[0]);
+  double way = 0;
+  for (size_t i = 0; i < 25; ++i) {
+    const double now = places[3 + i][0] - places[0][0];
+    if (i > 0) {
+      EXPECT_NEAR(now, 0.5 * way, 1e-17);
+    }
+    way = now;
   }
 }
 

@@ -28,7 +28,7 @@ std::vector<double> numbers(rp_side_result &change) {
 // A wheel whose solution is there.
 class RateBatches : public testing::Test {
  protected:
-  RateBatches() {
+  explicit RateBatches(bool by_hertz = false) : made(scene_of(config_of(pair, by_hertz))) {
     const wheels_setup &setup = *made.wheels;
     for (int i = 0; i < setup.max_patches; ++i)
       memory.emplace_back(setup.largest.nx * setup.largest.ny, setup.largest.ny, made.patch);
@@ -43,11 +43,16 @@ class RateBatches : public testing::Test {
     EXPECT_EQ(result.status, RP_CONVERGED);
     EXPECT_TRUE(wheel.differentiates());
   }
-  static rp_config config_of(const scenes::profile_pair &pair) {
+  static rp_config config_of(const scenes::profile_pair &pair, bool by_hertz) {
     rp_config c = scenes::wheels(RP_WHEEL_RAIL, RP_RAIL, pair);
     c.side = RP_RIGHT;
     c.derivatives = 1;
     c.load = RP_POSITION;
+    if (by_hertz) {
+      c.normal = RP_NORMAL_HERTZ;
+      c.elements[0] = c.elements[1] = 12;
+      c.element_size[0] = c.element_size[1] = 0;
+    }
     return c;
   }
   void differentiate(const rp_input *directions, const double *friction, int count,
@@ -71,7 +76,7 @@ class RateBatches : public testing::Test {
   }
 
   const scenes::profile_pair pair;
-  const scene made = scene_of(config_of(pair));
+  const scene made;
   const fft_plans plans{made.transforms[0], made.transforms[1]};
   patch_contact solver{made.patch, plans, made.wheels->largest.nx, made.wheels->largest.ny,
                        made.marks};
@@ -129,6 +134,27 @@ TEST_F(RateBatches, WhatMovesASideMovesItsSurfacesAlone) {
       differentiate(directions, friction, 2, changes);
       expect_same(alone(directions[0], 0), numbers(changes[0]));
     }
+}
+
+class RateBatchesByHertz : public RateBatches {
+ protected:
+  RateBatchesByHertz() : RateBatches(true) {}
+};
+
+// A whole batch that moves the surfaces, and a velocity in the next one.
+TEST_F(RateBatchesByHertz, WhatMovesSurfacesDoesNotReachTheNextBatch) {
+  rp_input directions[rate_directions + 1];
+  const double friction[rate_directions + 1] = {};
+  for (rp_input &d : directions) d = no_direction();
+  directions[0].y = directions[1].z = directions[2].roll = directions[3].yaw = 1;
+  directions[4].wheel_offset[RP_RIGHT][1] = directions[5].rail_offset[RP_RIGHT][2] = 1;
+  directions[6].vy = 1;
+  rp_side_result changes[rate_directions + 1] = {};
+  differentiate(directions, friction, rate_directions + 1, changes);
+  for (int k = 0; k <= rate_directions; ++k) {
+    SCOPED_TRACE(k);
+    expect_same(numbers(changes[k]), alone(directions[k], 0));
+  }
 }
 
 }  // namespace

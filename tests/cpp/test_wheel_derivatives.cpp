@@ -251,6 +251,9 @@ TEST_P(WheelDerivatives, OfEveryNumberEqualDifferences) {
     if (result.status != RP_CONVERGED) continue;
     const std::vector<double> here = choices(h, result);
     rp_result found = differentiate(h, direction);
+    EXPECT_EQ(found.status, RP_CONVERGED);
+    for (int side = 0; side < 2; ++side)
+      EXPECT_EQ(found.side[side].status, result.side[side].status);
     // differences over two lengths: their error of curvature is what they differ by, that of the
     // steps' tolerance and of rounding is a part of the number itself
     constexpr double along[2] = {4e-6, 8e-6};
@@ -456,6 +459,69 @@ TEST(PatchDerivative, OfAnOffsetSpinIsThatOfLateralCreepageToo) {
     const auto found = rates(offset, 0, 1), expected = rates(plain, shift, 1);
     for (size_t k = 0; k < found.size(); ++k)
       EXPECT_NEAR(found[k], expected[k], 1e-4 * std::fabs(expected[k])) << k;
+  }
+}
+
+// Of a prescribed force the wheelset's way is found by the same differences, however it is asked.
+TEST(WheelDerivative, ByDifferencesTheHeightFollowsTheForce) {
+  const scenes::profile_pair pair;
+  rp_config c = scenes::wheels(RP_WHEEL_RAIL, RP_RAIL, pair);
+  c.derivatives = 1;
+  c.patch_rule = RP_PATCHES_CONTACT;
+  scenes::handle h(c);
+  rp_input in = scenes::running(RP_RAIL), direction;
+  in.vertical_force = 6e4;
+  ASSERT_EQ(h.step(in).status, RP_CONVERGED);
+  rp_jacobian found{};
+  ASSERT_EQ(rp_get_jacobian(h.get(), &found, nullptr), RP_OK);
+  EXPECT_EQ(found.kind, RP_DERIVATIVE_BY_DIFFERENCES);
+  rp_default_direction(&direction);
+  direction.vertical_force = 1;
+  rp_result change{};
+  rp_derivative_kind kind{};
+  ASSERT_EQ(rp_differentiate(h.get(), &direction, &change, &kind, nullptr), RP_OK);
+  EXPECT_EQ(found.z_force, change.z);
+  EXPECT_GT(found.z_force, 0);
+}
+
+// With a wheel on tread and flange root, moving wheel and rail alike changes nothing.
+TEST(WheelDerivative, OfTwoPatchesMovingBothBodiesAlikeIsZero) {
+  const scenes::profile_pair pair;
+  rp_config c = scenes::wheels(RP_WHEEL_RAIL, RP_RAIL, pair);
+  c.load = RP_FORCE;
+  c.side = RP_RIGHT;
+  rp_input in = scenes::running(RP_RAIL);
+  in.vertical_force = 6e4;
+  in.y = 5.95e-3;
+  {
+    scenes::handle find(c);
+    in.z = find.step(in).z;
+  }
+  c.derivatives = 1;
+  c.load = RP_POSITION;
+  scenes::handle h(c);
+  const rp_result r = h.step(in);
+  ASSERT_EQ(r.status, RP_CONVERGED);
+  ASSERT_EQ(r.side[RP_RIGHT].patch_count, 2);
+  const auto rates = [&](const rp_input &direction) {
+    rp_result change{};
+    rp_derivative_kind kind{};
+    EXPECT_EQ(rp_differentiate(h.get(), &direction, &change, &kind, nullptr), RP_OK);
+    EXPECT_EQ(kind, RP_DERIVATIVE_EXACT);
+    return change.side[RP_RIGHT];
+  };
+  for (const int k : {1, 2}) {
+    rp_input wheel = no_direction(), both = no_direction();
+    (k == 1 ? wheel.y : wheel.z) = 1;
+    (k == 1 ? both.y : both.z) = both.rail_offset[RP_RIGHT][k] = 1;
+    const rp_side_result alone = rates(wheel), alike = rates(both);
+    const double stiffness = std::fabs(alone.force[2]);
+    EXPECT_GT(stiffness, 1e7);
+    for (int i = 0; i < 6; ++i) EXPECT_NEAR(component(alike, i), 0, 1e-6 * stiffness) << i;
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_NE(alone.patch[i].normal_force, 0);
+      EXPECT_NEAR(alike.patch[i].normal_force, 0, 1e-6 * stiffness) << i;
+    }
   }
 }
 
