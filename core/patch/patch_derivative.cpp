@@ -61,8 +61,6 @@ derivative_outcome patch_derivative::solve(const solution &s, const patch_variat
   const bool rolling = tangential_ && s.problem.rolling_speed > 0;
   if (rolling && by_resultants) {
     outcome.residual = tangential_->begin_resultants(point_of(s), {o.tolerance, o.energy});
-    outcome.tangential_products += tangential_->products();
-    outcome.exact_products += tangential_->exact_products();
   }
   const int step = by_resultants ? at_once : few;
   for (int k = 0; k < count; k += step)
@@ -119,8 +117,6 @@ void patch_derivative::solve_some(const solution &s, const patch_variation *in, 
     } else {
       const double residual = tangential_->solve(point, v, count, {o.tolerance, o.energy}, t);
       outcome.residual = std::max(outcome.residual, residual);
-      outcome.tangential_products += tangential_->products();
-      outcome.exact_products += tangential_->exact_products();
     }
   }
   for (int k = 0; k < count; ++k) add_tractions(s, in[k], t[k], o.energy, out[k]);
@@ -146,7 +142,6 @@ void patch_derivative::differentiate_half_space(const solution &s, const patch_v
       p};
   const double residual = normal_->solve(point, v, count, o.tolerance, rate_of(s, 0), approach);
   outcome.residual = std::max(outcome.residual, residual);
-  outcome.normal_products += normal_->products();
   const auto n = static_cast<size_t>(g.count());
   for (int k = 0; k < count; ++k) {
     const double *rate = rate_of(s, k);

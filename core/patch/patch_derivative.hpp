@@ -52,7 +52,6 @@ struct derivative_options {
 struct derivative_outcome {
   double residual = 0;  // greatest, relative
   bool converged = true;
-  int normal_products = 0, tangential_products = 0, exact_products = 0;
 };
 
 class patch_derivative {

@@ -258,9 +258,6 @@ void wheel_derivative::solve_patch(step &s, int index) {
       s.solver.differentiate(solution.problem, s.wheel.memory[index], in, s.count, s.options, out);
   s.outcome.residual = std::max(s.outcome.residual, ended.residual);
   s.outcome.converged = s.outcome.converged && ended.converged;
-  s.outcome.normal_products += ended.normal_products;
-  s.outcome.tangential_products += ended.tangential_products;
-  s.outcome.exact_products += ended.exact_products;
   for (int b = 0; b < blocks && s.geometry[b]; ++b) {
     const patch_change *changes = out + b * rate_directions;
     add_forces(s, index, b, changes);
