@@ -291,6 +291,7 @@ void fitted_operator::collocation_slip(int row, const double *v, int begin, int 
 }
 
 void fitted_operator::micro_slip(const rolling_problem &problem, const double *p, double *s) {
+  for (int c = 0; c < 2; ++c) creepage_[c] = problem.creepage(c);
   for (int j = 0; j < count_; ++j) {
     double *t = slip_.data() + j * stride_;
     collocation_slip(j, p, 0, count_, t);
@@ -421,8 +422,8 @@ double fitted_operator::elastic_energy(const contact_rows &rows, const double *p
       // slip minus rigid slip is the displacement's slope downstream
       const double step = rows[j].half_length * (before - rows.cosine(k));
       before = rows.cosine(k);
-      u[0] += step * (t[k] - w[k]);
-      u[1] += step * (t[points_ + k] - w[points_ + k]);
+      u[0] += step * (t[k] - w[k] - creepage_[0]);
+      u[1] += step * (t[points_ + k] - w[points_ + k] - creepage_[1]);
       energy +=
           rows.area(j, k) * (p[2 * j * nodes_ + k] * u[0] + p[(2 * j + 1) * nodes_ + k] * u[1]);
     }

@@ -94,6 +94,7 @@ class fitted_operator final : public rolling_operator {
   aligned_buffer<double> matrix_;     // blocks [target row][source row]
   aligned_buffer<double> rigid_;      // [row][stride], at the collocation points
   aligned_buffer<double> slip_;       // [row][stride], of the last call of micro_slip
+  double creepage_[2] = {0, 0};       // found for a prescribed force, of that call
   aligned_buffer<double> change_;     // scratch of one row
   aligned_buffer<double> kernel_[4];  // scratch of some nodes: distance, xx, yy, xy
   aligned_buffer<slip_blend> blends_;
