@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "numeric/sums.hpp"
 #include "tangential/rolling_newton.hpp"
 
 namespace dense {
@@ -35,12 +36,7 @@ class dense_operator final : public rolling_operator {
     }
   }
   void product(const double *p, double *s) override {
-    for (size_t i = 0; i < size_; ++i) {
-      const double *row = b_.data() + i * size_;
-      double sum = 0;
-      for (size_t j = 0; j < size_; ++j) sum += row[j] * p[j];
-      s[i] = sum;
-    }
+    for (size_t i = 0; i < size_; ++i) s[i] = dot(b_.data() + i * size_, p, size_);
   }
   void row_matrices(int row, double *bxx, double *byy) const override {
     const size_t n = static_cast<size_t>(lengths[static_cast<size_t>(row)]);
