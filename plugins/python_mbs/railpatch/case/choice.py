@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from math import exp, inf, log
 from typing import Any
 
-from scipy.optimize import brentq
-from scipy.special import elliprd
+import scipy
 
 from railpatch.case.theories import FAST, has_tractions
 
@@ -102,10 +101,13 @@ def ratio_of_curvatures(along: float, across: float) -> float:
 
     def excess(logarithm: float) -> float:
         square = exp(2 * logarithm)
-        return float(log(elliprd(0, 1, square) / elliprd(0, square, 1)) - log(along / across))
+        return float(
+            log(scipy.special.elliprd(0, 1, square) / scipy.special.elliprd(0, square, 1))
+            - log(along / across)
+        )
 
     limit = log(1e6)
     # a long contact has the smaller curvature along its length
     if excess(-limit) * excess(limit) > 0:
         return exp(limit if along < across else -limit)
-    return exp(brentq(excess, -limit, limit, xtol=1e-9))
+    return exp(scipy.optimize.brentq(excess, -limit, limit, xtol=1e-9))

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from railpatch.case.gap import read_rows
 from railpatch.case.rolling import Flat, Joint, RailShape, WheelShape
@@ -110,9 +110,9 @@ def wheel_runout(wheel: WheelShape, radius: float, folder: Path, key: str) -> Va
     runout = flat_runout(radius, wheel.flat, angles)
     if given is not None:
         around = 2 * np.pi * np.arange(len(given) + 1) / len(given)
-        runout = runout + CubicSpline(around, np.append(given, given[0]), bc_type="periodic")(
-            angles
-        )
+        runout = runout + scipy.interpolate.CubicSpline(
+            around, np.append(given, given[0]), bc_type="periodic"
+        )(angles)
     return runout
 
 
@@ -152,7 +152,7 @@ def surface_of(rows: Values, key: str) -> Any:
     x, height = rows[:, 0], rows[:, 1]
     if len(x) < 4 or not np.all(np.diff(x) > 0):
         raise CaseError(f"{key}: value is {len(x)} rows, allowed 4 or more of growing positions")
-    spline = CubicSpline(x, height, bc_type="clamped")
+    spline = scipy.interpolate.CubicSpline(x, height, bc_type="clamped")
     return lambda at: spline(np.clip(at, x[0], x[-1]))
 
 

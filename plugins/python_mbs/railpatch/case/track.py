@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
 
 from railpatch.case.gap import read_rows
 from railpatch.case.load import Scene
@@ -44,7 +44,7 @@ class Irregularity:
         if (np.diff(positions) <= 0).any():
             first = positions[1:][np.diff(positions) <= 0][0]
             raise CaseError(f"{KEY}: x is {first:g} after a greater one, allowed increasing values")
-        self._spline = CubicSpline(positions, values, bc_type="clamped")
+        self._spline = scipy.interpolate.CubicSpline(positions, values, bc_type="clamped")
         self._slope = self._spline.derivative()
 
     def at(self, x: ArrayLike) -> NDArray[np.float64]:

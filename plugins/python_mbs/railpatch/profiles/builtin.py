@@ -6,7 +6,7 @@ import math
 import re
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from railpatch.errors import ProfileError
 from railpatch.profiles.curve import Profile
@@ -106,7 +106,7 @@ def inclined(rail: Profile, slope: float) -> Profile:
         ends = turned.evaluate([s - step, s + step])[1]
         return float(ends[1] - ends[0])
 
-    y, z = turned.evaluate(brentq(fall, low, high, xtol=1e-14))
+    y, z = turned.evaluate(scipy.optimize.brentq(fall, low, high, xtol=1e-14))
     return turned.moved(-float(y), -float(z))
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+import scipy
 
 from railpatch.profiles.curve import Profile
 
@@ -34,5 +34,6 @@ def resampled(profile: Profile, count: int) -> Profile:
     y, z = profile.evaluate(at)
     s = at - begin
     ends = [((1, getattr(profile, d)[0]), (1, getattr(profile, d)[-1])) for d in ("dy", "dz")]
-    fy, fz = CubicSpline(s, y, bc_type=ends[0]), CubicSpline(s, z, bc_type=ends[1])
+    fy = scipy.interpolate.CubicSpline(s, y, bc_type=ends[0])
+    fz = scipy.interpolate.CubicSpline(s, z, bc_type=ends[1])
     return Profile(profile.name, s, y, z, fy(s, 1), fz(s, 1), profile.notes)

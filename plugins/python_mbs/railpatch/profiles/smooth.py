@@ -9,8 +9,8 @@ length of which half the amplitude is kept: lambda = (L / 2 pi)^4.
 from __future__ import annotations
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline, make_smoothing_spline
 
 from railpatch.errors import ProfileError
 from railpatch.profiles.curve import Profile
@@ -99,18 +99,20 @@ def smoothed(s: Array, y: Array, z: Array, weight: Array, wavelength: float) -> 
     ds = np.diff(s)
     share = 0.5 * (np.append(ds, 0.0) + np.insert(ds, 0, 0.0)) * weight
     lam = (wavelength / (2 * np.pi)) ** 4
-    fy = make_smoothing_spline(s, y, w=share, lam=lam)
-    fz = make_smoothing_spline(s, z, w=share, lam=lam)
+    fy = scipy.interpolate.make_smoothing_spline(s, y, w=share, lam=lam)
+    fz = scipy.interpolate.make_smoothing_spline(s, z, w=share, lam=lam)
     return fy(s), fz(s)
 
 
 def spline_profile(name: str, s: Array, y: Array, z: Array, notes: tuple[str, ...]) -> Profile:
     """C2 cubic spline through the points, over the arc length of the curve itself."""
-    first_y, first_z = CubicSpline(s, y, bc_type="natural"), CubicSpline(s, z, bc_type="natural")
+    first_y, first_z = (
+        scipy.interpolate.CubicSpline(s, values, bc_type="natural") for values in (y, z)
+    )
     node, weight = np.polynomial.legendre.leggauss(5)
     half = 0.5 * np.diff(s)
     at = s[:-1, None] + half[:, None] * (1 + node)
     length = half * (np.hypot(first_y(at, 1), first_z(at, 1)) @ weight)
     arc = np.concatenate([[0.0], np.cumsum(length)])
-    fy, fz = CubicSpline(arc, y, bc_type="natural"), CubicSpline(arc, z, bc_type="natural")
+    fy, fz = (scipy.interpolate.CubicSpline(arc, values, bc_type="natural") for values in (y, z))
     return Profile(name, arc, y, z, fy(arc, 1), fz(arc, 1), notes)

@@ -22,8 +22,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 Array = NDArray[np.float64]
 # of the integral over the phase angle
@@ -62,7 +62,7 @@ class RadiusIntegral:
             return 0.0
         if rise(low) * rise(high) > 0:
             return math.nan
-        return float(brentq(rise, low, high, xtol=1e-15))
+        return float(scipy.optimize.brentq(rise, low, high, xtol=1e-15))
 
 
 def equivalent_conicity(
