@@ -219,13 +219,13 @@ def judged(
     return [results[at] for at in sorted(results) if results[at]][:count]
 
 
-def report(results: list[dict], seed: int) -> tuple[str, float]:
+def report(results: list[dict], name: str) -> tuple[str, float]:
     """In words, and the share that fell."""
     reasons = equivalents()
     fallen = [r for r in results if r["fallen"]]
     rest = [r for r in results if not r["fallen"]]
     lines = [
-        f"seed {seed}: {len(fallen)} of {len(results)} mutants fell "
+        f"{name}: {len(fallen)} of {len(results)} mutants fell "
         f"({100 * len(fallen) / len(results):.1f} %)"
     ]
     by_kind = Counter("C++" if not r["fallen"].startswith("tests/") else "Python" for r in fallen)
@@ -267,13 +267,12 @@ def main() -> int:
     except Failed as error:
         print(error, file=sys.stderr)
         return 2
+    only = f"_{arguments.only}".replace("/", "_") if arguments.only else ""
+    runs = {f"seed_{seed}{only}": drawn(seed) for seed in arguments.seeds}
+    if arguments.again:
+        runs = {f"{arguments.again.stem}_again": survivors(arguments.again)}
     bad = False
-    for seed in arguments.seeds:
-        name = f"seed_{seed}" + (f"_{arguments.only}".replace("/", "_") if arguments.only else "")
-        candidates = drawn(seed)
-        if arguments.again:
-            name = f"{arguments.again.stem}_again"
-            candidates = survivors(arguments.again)
+    for name, candidates in runs.items():
         candidates = [
             m
             for m in candidates
@@ -284,7 +283,7 @@ def main() -> int:
         if not arguments.resume:
             kept.unlink(missing_ok=True)
         results = judged(build, suites, candidates, arguments.count, kept)
-        text, share = report(results, seed)
+        text, share = report(results, name)
         kept.with_suffix(".txt").write_text(text + "\n")
         print(text, flush=True)
         bad = bad or share < arguments.least
