@@ -207,6 +207,8 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
     std::fill_n(out.force, 3, nan);
     std::fill_n(out.moment, 3, nan);
     beyond_ = true;
+    // nor are there fields: those of an earlier height of this step belong to no result
+    memory.solved = false;
     memory.history.clear_now();
     report_beyond(problem.place, result);
     return result.status;

@@ -54,6 +54,34 @@ std::vector<scene> all_scenes() {
   return all;
 }
 
+// A wheel that no grid holds has no fields, whatever heights the search for its load went through.
+TEST(Fields, OfAWheelBeyondItsGridAreNone) {
+  const scenes::profile_pair pair;
+  for (const rp_kind kind : {RP_WHEEL_RAIL, RP_WHEELSET})
+    for (const int most : {22, 0}) {
+      SCOPED_TRACE(std::to_string(kind) + " " + std::to_string(most));
+      rp_config c = scenes::wheels(kind, RP_RAIL, pair);
+      c.load = RP_FORCE;
+      c.max_elements[0] = c.max_elements[1] = most;
+      handle h(c);
+      rp_input in = scenes::running(RP_RAIL);
+      bool beyond = false;
+      for (double force = 1e3; force < 2e7; force *= 3) {
+        in.vertical_force = force;
+        const rp_result r = h.step(in);
+        for (int side = 0; side < 2; ++side)
+          for (int i = 0; i < RP_MAX_PATCHES; ++i) {
+            const rp_patch_result &p = r.side[side].patch[i];
+            const size_t nx = static_cast<size_t>(p.grid[0]), ny = static_cast<size_t>(p.grid[1]);
+            EXPECT_EQ(h.field(side, i, RP_FIELD_X).size(), nx) << force;
+            EXPECT_EQ(h.field(side, i, RP_FIELD_PRESSURE).size(), nx * ny) << force;
+            beyond |= p.status == RP_OUT_OF_RANGE && nx == 0;
+          }
+      }
+      EXPECT_TRUE(beyond);
+    }
+}
+
 TEST(Fields, AddUpToTheResult) {
   for (const scene &s : all_scenes()) {
     SCOPED_TRACE(s.name);
