@@ -261,6 +261,8 @@ void check_grid(const rp_config &c, checker &check) {
     check.field(k == 0 ? "max_elements[0]" : "max_elements[1]", c.max_elements[k],
                 config_range::max_elements);
   }
+  check.require(!counted || (c.max_elements[0] == 0 && c.max_elements[1] == 0),
+                "max_elements must be 0 with elements: it is a capacity for element_size");
 }
 
 void check_patch(const rp_config &c, checker &check) {

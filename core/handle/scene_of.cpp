@@ -135,7 +135,7 @@ grid_rules grid_rules_of(const rp_config &c, const patch_scene &scene) {
 
 // Elements of one patch's grid, with a border of one element that stays free of contact: of a patch
 // given directly,
-grid_size largest_of_patch(const rp_config &c, const grid_rules &rules) {
+grid_size largest_of_patch(const rp_config &c, const patch_scene &scene, const grid_rules &rules) {
   if (!needs_grid(c)) return {};
   if (c.geometry == RP_UNDEFORMED_DISTANCE) return {c.distance_shape[0], c.distance_shape[1]};
   const bool ellipse = c.geometry == RP_SEMI_AXES;
@@ -143,13 +143,16 @@ grid_size largest_of_patch(const rp_config &c, const grid_rules &rules) {
   const auto cells = [&](int k) {
     if (k == 1 && c.geometry == RP_LINE_CONTACT) return 1;
     if (!rules.sized) return rules.with_margin(c.elements[k]) + 2;
+    // where nothing says more a square of 128
+    int needed = 130;
     if (ellipse) {
       const double across = 2.0 * rules.relative_size(unit, k) * c.semi_axes[k];
       const double wanted = std::min(2000.0, std::ceil(across / c.element_size[k]));
-      return rules.with_margin(static_cast<int>(wanted)) + 3;
+      needed = rules.with_margin(static_cast<int>(wanted)) + 3;
     }
-    // else a square of 128
-    return c.max_elements[k] == 0 ? 130 : c.max_elements[k];
+    if (rules.most[k] == 0) return needed;
+    // of an ellipse that stays as it is, but steps that remember have the whole grid
+    return ellipse && !scene.keeps_steps() ? std::min(rules.most[k], needed) : rules.most[k];
   };
   return {cells(0), cells(1)};
 }
@@ -160,7 +163,7 @@ grid_size largest_of_wheels(const rp_config &c, const grid_rules &rules) {
   const double overlap[2] = {has_shape(c) ? 0.120 : 0.060, 0.050};
   const auto cells = [&](int k) {
     if (!rules.sized) return rules.with_margin(c.elements[k]) + 2;
-    if (c.max_elements[k] != 0) return c.max_elements[k];
+    if (rules.most[k] > 0) return rules.most[k];
     return static_cast<int>(std::clamp(std::ceil(overlap[k] / c.element_size[k]), 16.0, 400.0));
   };
   return {cells(0), cells(1)};
@@ -198,7 +201,7 @@ single_patch_setup single_patch_of(const rp_config &c, const patch_scene &scene)
   setup.width = c.width;
   setup.has_grid = needs_grid(c);
   setup.grid = grid_rules_of(c, scene);
-  setup.largest = largest_of_patch(c, setup.grid);
+  setup.largest = largest_of_patch(c, scene, setup.grid);
   if (c.geometry == RP_UNDEFORMED_DISTANCE) setup.distance = c.undeformed_distance;
   return setup;
 }

@@ -272,7 +272,8 @@ typedef struct rp_config {
   /* grid: elements across the contact's bounding box, or the element size; the other zero */
   int32_t elements[2];
   double element_size[2];  /* m */
-  int32_t max_elements[2]; /* with element_size: capacity of one patch's grid; 0: chosen */
+  int32_t max_elements[2]; /* with element_size: capacity of one patch's grid, in shift and
+                              transient rolling of a patch the grid itself; 0: chosen */
   int32_t fitted[2];       /* nodes along rolling and rows of the tangential problem on rows fitted
                               to the contact area, 2304 nodes in all at most; 0: tangential
                               problem on the grid above */

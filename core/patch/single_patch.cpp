@@ -171,9 +171,9 @@ bool single_patch::set_grid(const patch_memory &m, patch_problem &problem) const
   // shift and transient rolling stay on the grid of their first step
   if (m.history.begun) {
     g = m.g;
-  } else if (rules.most[0] > 0 && setup_.geometry != RP_UNDEFORMED_DISTANCE) {
-    g.nx = rules.most[0];
-    if (setup_.geometry != RP_LINE_CONTACT) g.ny = rules.most[1];
+  } else if (setup_.geometry != RP_UNDEFORMED_DISTANCE) {
+    if (rules.most[0] > 0) g.nx = rules.most[0];
+    if (rules.most[1] > 0 && setup_.geometry != RP_LINE_CONTACT) g.ny = rules.most[1];
     centre();
   }
   // Hertz's ellipse is drawn on the grid and not found on it

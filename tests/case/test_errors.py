@@ -55,6 +55,16 @@ def problems_of(case: Any, **options: Any) -> list[str]:
         ("grid__elements", [16, 0], "grid.elements[1]: value is 0, allowed >= 1"),
         ("grid__elements", [16.0, 16], "grid.elements[0]: value is 16.0, allowed a whole number"),
         ("grid__element_size", [1e-4, 1e-4], "grid: value is elements and element_size, allowed"),
+        (
+            "grid__max_elements",
+            [24, 24],
+            "grid.max_elements: value is [24, 24], allowed only with element_size",
+        ),
+        (
+            "grid",
+            {"fitted": [8, 8], "max_elements": [24, 24]},
+            "grid.max_elements: value is [24, 24], allowed only with element_size",
+        ),
         ("grid__fitted", [2, 8], "grid.fitted: value is [2, 8], allowed 3 to 64 nodes"),
         ("grid__fitted", [8, 1], "grid.fitted: value is [8, 1], allowed 3 to 64 rows"),
         ("grid__fitted", [65, 8], "grid.fitted[0]: value is 65, allowed <= 64"),

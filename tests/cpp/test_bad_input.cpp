@@ -875,6 +875,9 @@ class Garbage : public testing::Test {
       if (rarely()) c.element_size[k] = std::fabs(number());
       if (c.element_size[k] > 0 && random() % 2) c.elements[k] = 0;
     }
+    // a capacity goes with elements of a size
+    const bool counted = c.elements[0] > 0 || c.elements[1] > 0;
+    if (counted && !rarely()) c.max_elements[0] = c.max_elements[1] = 0;
     if (random() % 2) c.geometry = static_cast<rp_geometry>(random() % 4);
     if (c.geometry == RP_LINE_CONTACT) c.elements[1] = 1;
     if (random() % 2) c.load = static_cast<rp_load>(random() % 2);

@@ -106,10 +106,6 @@ TEST_F(Checks, IntegersHaveTheirRanges) {
        [](rp_config &c) -> int32_t & { return c.elements[0]; }, 2, 1000},
       {"elements[1] is %d, allowed is 2 ... 1000",
        [](rp_config &c) -> int32_t & { return c.elements[1]; }, 2, 1000},
-      {"max_elements[0] is %d, allowed is 0 ... 1002",
-       [](rp_config &c) -> int32_t & { return c.max_elements[0]; }, 0, 1002},
-      {"max_elements[1] is %d, allowed is 0 ... 1002",
-       [](rp_config &c) -> int32_t & { return c.max_elements[1]; }, 0, 1002},
       {"max_iterations is %d, allowed is 1 ... 100000",
        [](rp_config &c) -> int32_t & { return c.max_iterations; }, 1, 100000},
       {"force_prescribed[1] is %d, allowed is 0 ... 1",
@@ -136,6 +132,21 @@ TEST_F(Checks, GridsAreCountedOrSized) {
   refuses(one, [](rp_config &c) { c.elements[0] = c.elements[1] = 0; });
   refuses("elements[0] is 0", [](rp_config &c) { c.elements[0] = 0; });
   refuses("elements[1] is 0", [](rp_config &c) { c.elements[1] = 0; });
+  for (int k = 0; k < 2; ++k) {
+    refuses("max_elements must be 0 with elements", [&](rp_config &c) { c.max_elements[k] = 20; });
+    const auto capacity = [&](int most) {
+      return [=](rp_config &c) {
+        for (int i = 0; i < 2; ++i) c.elements[i] = 0, c.element_size[i] = 1e-3;
+        c.max_elements[k] = most;
+      };
+    };
+    for (const int good : {0, 1002}) accepts(capacity(good));
+    char words[80];
+    for (const int bad : {-1, 1003}) {
+      std::snprintf(words, sizeof words, "max_elements[%d] is %d, allowed is 0 ... 1002", k, bad);
+      refuses(words, capacity(bad));
+    }
+  }
   // closed forms have none, and say nothing of it
   base.elements[0] = base.elements[1] = 0;
   base.normal = RP_NORMAL_HERTZ;
@@ -280,7 +291,7 @@ TEST_F(Checks, Regimes) {
     };
     accepts(sized(1e-3, 20));
     const char *fixed = "with curvatures need element_size and max_elements: their grid is fixed";
-    for (const auto &wrong : {sized(1e-3, 0), sized(0, 20)}) refuses(fixed, wrong);
+    for (const auto &wrong : {sized(1e-3, 0), sized(0, 0)}) refuses(fixed, wrong);
     for (int k = 0; k < 2; ++k)
       refuses(fixed, [&, k](rp_config &c) {
         sized(1e-3, 20)(c);

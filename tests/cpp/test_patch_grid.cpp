@@ -105,6 +105,50 @@ TEST(PatchGrids, OfStepsAreAsLargeAsTheyMayBe) {
   EXPECT_TRUE(too_long);
 }
 
+// The same of an ellipse given by its semi-axes, whose grid needs no capacity to be known.
+TEST(PatchGrids, OfStepsOnAnEllipseAreWhatTheyMayBe) {
+  for (const rp_regime regime : {RP_SHIFT, RP_TRANSIENT_ROLLING, RP_STEADY_ROLLING})
+    for (const int along : {0, 28, 40})
+      for (const int across : {0, 30}) {
+        rp_config c = with_room_for(along, across);
+        c.geometry = RP_SEMI_AXES;
+        c.element_size[0] = c.element_size[1] = 5e-4;
+        c.regime = regime;
+        scenes::handle h(c);
+        rp_input in = scenes::patch_input(1e5, 1e-6, 0, 0);
+        if (regime == RP_TRANSIENT_ROLLING) in.distance = 1e-3;
+        for (int k = 0; k < 2; ++k) {
+          const rp_patch_result r = h.step(in).side[RP_RIGHT].patch[0];
+          EXPECT_EQ(r.status, RP_CONVERGED);
+          // 24 elements across 12 mm and one free on either side
+          const bool steady = regime == RP_STEADY_ROLLING;
+          EXPECT_EQ(r.grid[0], steady || along == 0 ? 26 : along);
+          EXPECT_EQ(r.grid[1], steady || across == 0 ? 26 : across);
+          EXPECT_NEAR(r.grid_origin[0], -0.5 * (r.grid[0] - 1) * 5e-4, 1e-12);
+          EXPECT_NEAR(r.grid_origin[1], -0.5 * (r.grid[1] - 1) * 5e-4, 1e-12);
+        }
+      }
+}
+
+// An ellipse does not fit less than it needs; more than that is not kept for it.
+TEST(PatchGrids, OfAnEllipseKeepWithinTheirCapacity) {
+  const auto bytes = [](const rp_config &c) {
+    const scenes::handle h(c);
+    rp_stage_info stages[RP_STAGE_COUNT];
+    EXPECT_EQ(rp_describe(h.get(), stages), RP_OK);
+    return stages[RP_STAGE_GEOMETRY].bytes;
+  };
+  rp_config c = with_room_for(0, 0);
+  c.geometry = RP_SEMI_AXES;
+  c.element_size[0] = c.element_size[1] = 5e-4;
+  const size_t chosen = bytes(c);
+  c.max_elements[0] = c.max_elements[1] = 200;
+  EXPECT_EQ(bytes(c), chosen);
+  c.max_elements[1] = 25;
+  scenes::handle h(c);
+  EXPECT_EQ(h.step(scenes::patch_input(1e5, 1e-6, 0, 0)).status, RP_OUT_OF_RANGE);
+}
+
 // The margins of unlike bodies take what room there is, along and across.
 TEST(PatchGrids, MarginsKeepWithinTheRoom) {
   for (const bool turned : {false, true}) {

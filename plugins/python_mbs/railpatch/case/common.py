@@ -68,8 +68,9 @@ class Grid(Table):
     )
     max_elements: CapacityPair | None = Field(
         default=None,
-        description="-, capacity of one patch's grid [along rolling, lateral]; left out: chosen "
-        "from the scene",
+        description="-, with element_size: capacity of one patch's grid [along rolling, lateral], "
+        "in shift and transient rolling of a patch the grid itself; left out: chosen from the "
+        "scene",
     )
 
     fitted: FittedPair | None = Field(
@@ -83,6 +84,8 @@ class Grid(Table):
     def _one_way(self) -> Grid:
         if self.fitted is None or self.elements or self.element_size:
             exactly_one(self, ("elements", "element_size"))
+        if self.max_elements is not None and self.element_size is None:
+            raise relation("max_elements", str(self.max_elements), "only with element_size")
         if self.fitted is not None and self.fitted[0] < 3:
             raise relation("fitted", str(self.fitted), "3 to 64 nodes along rolling")
         if self.fitted is not None and self.fitted[0] * self.fitted[1] > MAX_FITTED_NODES:
