@@ -82,6 +82,7 @@ void check_fast(const rp_config &c, checker &check) {
       message.add_readers(", and not contact with ", option, reads_contact_blending);
     check.require(false, message.text);
   };
+  require(c.percent_kalker == 100.0, reads_percent, reads_percent, "percent_kalker must be 100");
   require(c.polach_k_a == 1.0 && c.polach_k_s == 1.0, reads_polach, reads_polach,
           "polach_k_a and polach_k_s must be 1");
   require(c.fastsim_k0 == 1.0 && c.fastsim_alpha == 1.0 && c.fastsim_beta == 0.0, reads_reduction,

@@ -8,6 +8,7 @@
 
 #include "handle/check.hpp"
 #include "scenes.hpp"
+#include "tables.hpp"
 
 namespace {
 
@@ -336,6 +337,20 @@ TEST_F(Checks, FastTheories) {
   }
   accepts([](rp_config &c) { c.traction_bound = RP_BOUND_PARABOLIC; });
   accepts([](rp_config &c) { c.percent_kalker = 60; });
+  const tables::table table = tables::small();
+  const auto by_table = [&](double percent) {
+    return [&table, percent](rp_config &c) {
+      c.tangential = RP_TANGENTIAL_TABLE;
+      c.creep_table = table.data();
+      c.creep_table_size = table.size();
+      c.percent_kalker = percent;
+    };
+  };
+  accepts(by_table(100));
+  refuses(
+      "percent_kalker must be 100 where tangential is not linear or polach or fastsim or "
+      "fastrip",
+      by_table(60));
   refuses("a fast theory has no third-body layer", [](rp_config &c) {
     c.layer_thickness = 1e-5;
     c.layer_shear_modulus = 8e9;
