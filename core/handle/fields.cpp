@@ -9,7 +9,7 @@ namespace railpatch {
 namespace {
 
 rp_error error_features_of(const patch_memory &m, double *values, size_t *count) {
-  if (!m.solved) return RP_ERROR_NO_FIELD;
+  if (!m.solved || !m.estimated) return RP_ERROR_NO_FIELD;
   const size_t capacity = *count;
   *count = m.error_features.size();
   if (capacity < m.error_features.size() || !values) return RP_ERROR_SIZE;

@@ -42,7 +42,12 @@ extern "C" {
 
 #define RP_VERSION "0.1.0"
 
-enum { RP_MAX_PATCHES = 6, RP_MESSAGE_SIZE = 320, RP_MAX_POINTS = 32 };
+enum {
+  RP_MAX_PATCHES = 6,
+  RP_MESSAGE_SIZE = 320,
+  RP_MAX_POINTS = 32,
+  RP_ERROR_FEATURES = 23 /* of RP_FIELD_ERROR_FEATURES */
+};
 
 /* --- errors: the call was wrong, outputs are untouched ------------------------------------- */
 #define RP_ERRORS(X)                                                          \
@@ -533,7 +538,7 @@ typedef struct rp_result {
   X(RP_FIELD_ELEMENT_DIVISION, 6, "element_division")                                            \
   /* degrees C, [2][ny][nx], wheel and rail */                                                   \
   X(RP_FIELD_TEMPERATURE, 7, "temperature")                                                      \
-  /* -, [20], what the error estimate is made from */                                            \
+  /* -, [RP_ERROR_FEATURES], what the error estimate is made from; not where there is none */    \
   X(RP_FIELD_ERROR_FEATURES, 8, "error_features")                                                \
   /* -, friction coefficient of each element, [ny][nx] */                                        \
   X(RP_FIELD_FRICTION, 9, "friction")                                                            \

@@ -24,7 +24,7 @@
 namespace railpatch {
 
 // the first of them describe the contact area and the grid, the others the motion
-constexpr int pressure_feature_count = 12, error_feature_count = 23;
+constexpr int pressure_feature_count = 12, error_feature_count = RP_ERROR_FEATURES;
 
 // The contact area as a grid of elements has it; zeros where it is a closed form.
 struct contact_extent {

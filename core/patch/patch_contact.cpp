@@ -94,6 +94,7 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
                           rp_patch_result &result, patch_wrench &wrench) {
   const patch_scene &scene = shared_.scene;
   memory.solved = true;
+  memory.estimated = false;
   begin_solve(problem, memory);
   pressure_outcome n = find_pressure(problem, memory);
   if (!n.loaded) {
@@ -252,6 +253,7 @@ void patch_contact::estimate_error(const patch_problem &problem, const pressure_
   for (int k = 0; k < 2 && has_tractions(scene.tangential); ++k)
     patch.tangential_grid[k] = scene.is_fitted() ? scene.fitted[k] : patch.extent.across[k];
   if (scene.normal == RP_NORMAL_HERTZ) patch.extent = {};
+  memory.estimated = true;
   report_errors(errors_.estimate(patch, result, memory.error_features.data()), result);
 }
 

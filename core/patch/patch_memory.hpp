@@ -69,6 +69,7 @@ struct patch_memory {
   aligned_buffer<double> node_x, node_y, node_pressure;  // fitted rows only
   aligned_buffer<double> row_friction;                   // factor of each grid row, where it varies
   aligned_buffer<double> creepage;                       // [2], of a prescribed creep force only
+  bool estimated = false;  // the last step's errors, from the features
   std::array<double, error_feature_count> error_features{};
   patch_history history;
   physics_part<heat_memory> heat;

@@ -110,6 +110,44 @@ std::vector<scene> all_scenes(const std::vector<double> &gap) {
   return all;
 }
 
+rp_error error_of(const scenes::handle &h, size_t count) {
+  std::vector<double> values(count);
+  return rp_get_field(h.get(), RP_RIGHT, 0, RP_FIELD_ERROR_FEATURES, values.data(), &count);
+}
+
+// Features belong to the last step's estimate, and are not there without one.
+TEST(ErrorEstimate, HasNoFeaturesWhereItIsNotMade) {
+  rp_config c = scenes::patch(RP_NORMAL_HERTZ, RP_TANGENTIAL_FULL);
+  c.max_iterations = 2;
+  scenes::handle newton(c);
+  const rp_input still = scenes::patch_input(1e5, 0, 0, 0);
+  for (int k = 0; k < 2; ++k) {
+    ASSERT_EQ(newton.step(still).status, RP_CONVERGED);
+    EXPECT_EQ(error_of(newton, RP_ERROR_FEATURES), RP_OK);
+    EXPECT_EQ(error_of(newton, RP_ERROR_FEATURES - 1), RP_ERROR_SIZE);
+    ASSERT_EQ(newton.step(scenes::patch_input(1e5, 8e-4, -6e-4, 0.4)).status, RP_NOT_CONVERGED);
+    EXPECT_EQ(error_of(newton, RP_ERROR_FEATURES), RP_ERROR_NO_FIELD);
+    rp_reset(newton.get());
+  }
+  c = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_NONE, 0);
+  c.geometry = RP_UNDEFORMED_DISTANCE;
+  c.load = RP_POSITION;
+  c.element_size[0] = c.element_size[1] = 1e-3;
+  std::vector<double> gap(25, 1e-6);
+  gap[12] = 0;
+  c.undeformed_distance = gap.data();
+  c.distance_shape[0] = c.distance_shape[1] = 5;
+  scenes::handle lifted(c);
+  rp_input in = still;
+  in.approach = 1e-7;
+  ASSERT_EQ(lifted.step(in).status, RP_CONVERGED);
+  EXPECT_EQ(error_of(lifted, RP_ERROR_FEATURES), RP_OK);
+  in.approach = -1e-7;
+  ASSERT_EQ(lifted.step(in).status, RP_NO_CONTACT);
+  EXPECT_EQ(lifted.field(RP_RIGHT, 0, RP_FIELD_PRESSURE), std::vector<double>(25, 0.0));
+  EXPECT_EQ(error_of(lifted, RP_ERROR_FEATURES), RP_ERROR_NO_FIELD);
+}
+
 TEST(ErrorEstimate, IsMadeFromTheResultAndItsFields) {
   // a paraboloid with a ridge beside its middle, aslant
   std::vector<double> gap;

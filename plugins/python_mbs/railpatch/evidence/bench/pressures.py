@@ -11,6 +11,7 @@ from railpatch.evidence.bench.methods import room
 from railpatch.evidence.bench.positions import random_patch
 from railpatch.evidence.bench.problems import Batch
 from railpatch.evidence.bench.samples import (
+    FEATURES,
     GRIDS,
     NORMALS,
     SEED,
@@ -26,7 +27,6 @@ from railpatch.evidence.bench.truth import TruthFile, batches_of
 
 COUNTS = {"random": 60, "surface": 150, "position": 300}
 PASSES = 4  # grids of each contact and theory
-FEATURES = 23  # of the core
 TESTS = 0.25  # of the counts: those to test on
 
 Task = tuple[int, str, int]  # seed, source, number
