@@ -80,12 +80,16 @@ uint64_t fingerprint_of_arrays(const rp_config &c) {
     for (const double *values : {p.arc_length, p.y, p.z, p.dy, p.dz})
       add(values, static_cast<size_t>(std::max(p.count, 0)));
   };
-  for (const rp_profile *p : {&c.wheel[0], &c.wheel[1], &c.rail[0], &c.rail[1]}) add_profile(*p);
+  // only profiles that a wheel is made from have been looked at
+  const auto is_used = [&](int side) { return c.kind != RP_WHEEL_RAIL || side == c.side; };
+  for (int side = 0; side < 2; ++side)
+    if (is_used(side)) add_profile(c.wheel[side]);
+  for (int side = 0; side < 2; ++side)
+    if (is_used(side) && c.section_count[side] == 0) add_profile(c.rail[side]);
   for (int side = 0; side < 2; ++side) {
     add(c.runout[side], static_cast<size_t>(c.runout_count[side]));
     add(c.rail_height[side], static_cast<size_t>(c.rail_height_count[side]));
-    // of a side without a wheel nothing has been looked at
-    if (c.kind == RP_WHEEL_RAIL && side != c.side) continue;
+    if (!is_used(side)) continue;
     add(c.section_position[side], static_cast<size_t>(c.section_count[side]));
     for (int k = 0; k < c.section_count[side]; ++k) add_profile(c.rail_sections[side][k]);
   }

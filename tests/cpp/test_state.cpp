@@ -296,6 +296,24 @@ TEST(StateOfArrays, WithOtherNumbersIsRefused) {
   }
 }
 
+// Profiles that no wheel is made from are not read, nor do they tell scenes apart.
+TEST(StateOfArrays, OfASideWithoutAWheelAreNotRead) {
+  const auto *nowhere = reinterpret_cast<const double *>(alignof(double));
+  const rp_profile wild{nowhere, nowhere, nowhere, nowhere, nowhere, 1 << 20};
+  const scenes::varying_track track;
+  for (const int side : {RP_LEFT, RP_RIGHT}) {
+    rp_config c = scenes::wheels(RP_WHEEL_RAIL, RP_RAIL, pair());
+    c.side = side;
+    const std::vector<unsigned char> state = scenes::handle(c).state();
+    c.wheel[1 - side] = c.rail[1 - side] = wild;
+    EXPECT_EQ(scenes::handle(c).restore(state), RP_OK);
+  }
+  rp_config c = track.config(RP_WHEELSET);
+  const std::vector<unsigned char> state = scenes::handle(c).state();
+  c.rail[RP_RIGHT] = wild;
+  EXPECT_EQ(scenes::handle(c).restore(state), RP_OK);
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, State, testing::ValuesIn(all_scenes()),
                          [](const auto &info) { return std::string(info.param.name); });
 
