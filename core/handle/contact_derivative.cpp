@@ -8,6 +8,7 @@
 #include "handle/check.hpp"
 #include "numeric/nan.hpp"
 #include "patch/result_fields.hpp"
+#include "patch/status.hpp"
 #include "wheel/input_numbers.hpp"
 
 namespace railpatch {
@@ -21,7 +22,7 @@ constexpr double fine_tolerance = 1e-9;
 }  // namespace
 
 derivative_record::derivative_record(const rp_config &config, driver &driver) {
-  if (driver.is_exact()) return;
+  if (driver.solver().scene().exact) return;
   rp_config own = config;
   own.derivatives = 0;
   own.observer = nullptr;
@@ -134,7 +135,7 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
   const double length = std::cbrt(beside.tolerance_) / reach;
   rp_result ends[2];
   double places[2] = {-length, length};
-  rp_status worst = RP_CONVERGED;
+  bool failed = false;
   for (int k = 0; k < 2; ++k) {
     rp_input in = moved(bulk_temperature_, record.input, rates, places[k]);
     double friction = friction_coefficient() + std::exchange(in.friction_coefficient, 0.0);
@@ -147,21 +148,20 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
     beside.copy_state(start);
     beside.set_friction_coefficient(friction);
     beside.step(in, ends[k]);
-    if (ends[k].status == RP_NOT_CONVERGED || ends[k].status == RP_OUT_OF_RANGE)
-      worst = RP_NOT_CONVERGED;
+    const rp_status status = ends[k].status;
+    failed = failed || status == RP_NOT_CONVERGED || status == RP_OUT_OF_RANGE;
   }
   if (places[1] > places[0]) {
     divide(ends, places[1] - places[0], out);
   } else {
     // neither side is allowed
     for_each_result_number(out, [](double &v) { v = nan; });
-    worst = RP_NOT_CONVERGED;
+    failed = true;
   }
-  if (worst == RP_CONVERGED) return;
-  const auto is_good = [](rp_status s) { return s == RP_CONVERGED || s == RP_NO_CONTACT; };
-  if (is_good(out.status)) out.status = worst;
-  for (auto &side : out.side)
-    if (is_good(side.status)) side.status = worst;
+  if (!failed) return;
+  fail_rates(out.status);
+  for (int side = 0; side < 2; ++side)
+    if (driver_->find(side, 0)) fail_rates(out.side[side]);
 }
 
 }  // namespace railpatch

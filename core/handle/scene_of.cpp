@@ -102,6 +102,7 @@ patch_scene patch_scene_of(const rp_config &c) {
   scene.stretches = c.kind != RP_PATCH && c.elements[0] > 0;
   scene.curved = c.reference_surface == RP_REFERENCE_CURVED;
   scene.fast = fast_of(c, scene.tangential);
+  scene.exact = scene.derivatives && scene.differentiates();
   return scene;
 }
 
@@ -191,6 +192,11 @@ void set_transforms(const rp_config &c, grid_size largest, scene &made) {
                                     : std::vector<int>{1};
 }
 
+bool all_differentiate(const wheels_setup &wheels) {
+  return std::all_of(wheels.wheel.begin(), wheels.wheel.end(),
+                     [](const wheel_setup &wheel) { return wheel.differentiates(); });
+}
+
 single_patch_setup single_patch_of(const rp_config &c, const patch_scene &scene) {
   single_patch_setup setup;
   setup.geometry = c.geometry;
@@ -221,6 +227,8 @@ scene scene_of(const rp_config &c) {
     const grid_rules rules = grid_rules_of(c, made.patch);
     wheels_setup &wheels = made.wheels.emplace(wheels_of(c, made.patch));
     for (auto &wheel : wheels.wheel) wheel.grid = rules;
+    made.patch.exact = made.patch.exact && all_differentiate(wheels);
+    for (auto &wheel : wheels.wheel) wheel.keeps_solutions = made.patch.exact;
     wheels.largest = largest = largest_of_wheels(c, rules);
   }
   set_transforms(c, largest, made);

@@ -6,6 +6,10 @@ namespace railpatch {
 
 namespace {
 
+#define RP_STAGE_NAME(name, value, word) word,
+constexpr const char *stage_names[] = {RP_STAGES(RP_STAGE_NAME)};
+#undef RP_STAGE_NAME
+
 const char *normal_reason(rp_normal_method method) {
   switch (method) {
     case RP_NORMAL_HERTZ:
@@ -50,7 +54,7 @@ const char *temperature_reason(const patch_scene &scene) {
 }
 
 const char *influence_reason(const patch_scene &scene) {
-  const bool on_grid = scene.tangential == RP_TANGENTIAL_FULL && !scene.is_fitted();
+  const bool on_grid = scene.full_on_grid();
   if (scene.normal == RP_NORMAL_HALF_SPACE)
     return on_grid ? "normal = half_space and tangential = full need it"
                    : "normal = half_space needs it";
@@ -79,10 +83,10 @@ const char *plasticity_reason(const patch_scene &scene) {
                                      : "no third-body layer";
 }
 
-const char *derivative_reason(bool asked, const patch_scene &scene) {
-  if (!asked) return "derivatives are not asked for";
-  return scene.differentiates() ? "derivatives are asked for: from the solved conditions"
-                                : "derivatives are asked for: by differences of further steps";
+const char *derivative_reason(const patch_scene &scene) {
+  if (!scene.derivatives) return "derivatives are not asked for";
+  return scene.exact ? "derivatives are asked for: from the solved conditions"
+                     : "derivatives are asked for: by differences of further steps";
 }
 
 }  // namespace
@@ -110,27 +114,25 @@ void contact::describe(rp_stage_info *info) const {
     traction += solver.tangential_bytes() - solver.history_bytes() - solver.plastic_bytes();
   const size_t support = driver_->support_bytes();
   const size_t influence = solver.influence_bytes();
-  info[RP_STAGE_GEOMETRY] = {"geometry", 1, driver_->geometry_reason(), distance};
-  info[RP_STAGE_INFLUENCE] = {"influence", influence > 0, influence_reason(scene), influence};
-  info[RP_STAGE_NORMAL] = {"normal", 1, normal_reason(scene.normal),
-                           normal + solver.normal_bytes()};
-  const char *why = scene.has_regime ? tangential_reason(scene) : "regime = none";
-  info[RP_STAGE_TANGENTIAL] = {"tangential", tangential, why, traction};
-  info[RP_STAGE_TEMPERATURE] = {"temperature", scene.heat.has_value(), temperature_reason(scene),
-                                heat + solver.heat_bytes()};
-  info[RP_STAGE_FORCES] = {"forces", 1, "resultants of pressure and traction",
-                           solver.scratch_bytes()};
-  info[RP_STAGE_COUPLING] = {"coupling", scene.couples(), coupling_reason(scene),
-                             solver.coupling_bytes()};
-  info[RP_STAGE_HISTORY] = {"history", scene.keeps_steps(), history_reason(scene), history};
-  info[RP_STAGE_SUPPORT] = {"rail_support", support > 0,
-                            support > 0 ? "rails have a stiffness: deflections by Newton's method"
-                                        : "the rails are rigid",
-                            support};
-  info[RP_STAGE_PLASTICITY] = {"plasticity", scene.yields(), plasticity_reason(scene), plastic};
-  const bool asked = scene.derivatives;
-  info[RP_STAGE_DERIVATIVES] = {"derivatives", asked, derivative_reason(asked, scene),
-                                derivative_bytes()};
+  const auto set = [&](rp_stage stage, bool present, const char *reason, size_t bytes) {
+    info[stage] = {stage_names[stage], present, reason, bytes};
+  };
+  set(RP_STAGE_GEOMETRY, true, driver_->geometry_reason(), distance);
+  set(RP_STAGE_INFLUENCE, influence > 0, influence_reason(scene), influence);
+  set(RP_STAGE_NORMAL, true, normal_reason(scene.normal), normal + solver.normal_bytes());
+  set(RP_STAGE_TANGENTIAL, tangential,
+      scene.has_regime ? tangential_reason(scene) : "regime = none", traction);
+  set(RP_STAGE_TEMPERATURE, scene.heat.has_value(), temperature_reason(scene),
+      heat + solver.heat_bytes());
+  set(RP_STAGE_FORCES, true, "resultants of pressure and traction", solver.scratch_bytes());
+  set(RP_STAGE_COUPLING, scene.couples(), coupling_reason(scene), solver.coupling_bytes());
+  set(RP_STAGE_HISTORY, scene.keeps_steps(), history_reason(scene), history);
+  set(RP_STAGE_SUPPORT, support > 0,
+      support > 0 ? "rails have a stiffness: deflections by Newton's method"
+                  : "the rails are rigid",
+      support);
+  set(RP_STAGE_PLASTICITY, scene.yields(), plasticity_reason(scene), plastic);
+  set(RP_STAGE_DERIVATIVES, scene.derivatives, derivative_reason(scene), derivative_bytes());
 }
 
 }  // namespace railpatch

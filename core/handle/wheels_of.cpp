@@ -57,7 +57,6 @@ wheel_setup wheel_of(const rp_config &c, int side) {
   setup.rules.blended = c.patch_rule == RP_PATCHES_BLENDED;
   setup.rules.inclined = c.contact_frame == RP_FRAME_INCLINED;
   setup.max_patches = c.max_patches;
-  setup.derivatives = c.derivatives != 0;
   setup.round_and_rigid = setup.sections.empty() && !setup.shape.given() &&
                           c.reference_surface == RP_REFERENCE_PLANE && !has_support(c);
   return setup;

@@ -48,9 +48,7 @@ class driver {
   };
   virtual kept_numbers kept() { return {}; }
 
-  // Whether rates come from the solved equations; and these, of the last step (input, result), into
-  // a change of nothing.
-  virtual bool is_exact() const = 0;
+  // Rates of the last step (input, result) into a change of nothing, in scenes with exact ones.
   virtual void differentiate(const rp_input &direction, const rp_input &input,
                              const rp_result &result, rp_result &change) = 0;
   // By pose and velocity, of wheels, whose height may be found by their load.

@@ -21,8 +21,7 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
       tangential_(shared_, plans, max_nx, max_ny),
       heat_(shared_, max_nx, max_ny),
       errors_(scene.elastic, scene.layer_flexibility) {
-  if (scene.derivatives && scene.differentiates())
-    derivative_.emplace(scene, plans, max_nx, max_ny, scene.stretches);
+  if (scene.exact) derivative_.emplace(scene, plans, max_nx, max_ny, scene.stretches);
 }
 
 void patch_contact::begin_step(const patch_problem &problem, patch_memory &memory) {

@@ -36,8 +36,7 @@ class patch_contact {
   void start_from(patch_memory &memory, const grid &g);
 
   // Derivatives of the last step's solution, which `memory` holds, in `count` directions; for
-  // scenes with derivatives, which differentiate. The memory and later steps stay as they are.
-  bool differentiates() const { return derivative_.has_value(); }
+  // scenes with exact ones. The memory and later steps stay as they are.
   derivative_outcome differentiate(const patch_problem &problem, const patch_memory &memory,
                                    const patch_variation *in, int count,
                                    const derivative_options &options, patch_change *out);

@@ -35,7 +35,8 @@ struct patch_scene {
   double normal_tolerance = 1e-5;
   int max_iterations = 100;
   bool spin_offset = false;  // x + dq/6 in the spin term
-  bool derivatives = false;  // patch_contact::differentiate is asked for
+  bool derivatives = false;  // rates of results are asked for
+  bool exact = false;        // and come from the solved equations, of the whole scene
   bool stretches = false;    // grids whose dx and dy change at different rates
   bool curved = false;       // reference surface, of wheels
   int fitted[2] = {0, 0};    // nodes and strips of the tangential problem; 0: on the uniform grid
@@ -61,7 +62,7 @@ struct patch_scene {
     return normal == RP_NORMAL_HERTZ &&
            (is_fitted() || (is_fast(tangential) && !has_tractions(tangential)));
   }
-  // Whether the solution's derivatives come from its equations (patch_derivative.hpp).
+  // Whether a patch's derivatives can come from its equations (patch_derivative.hpp).
   bool differentiates() const;
   double modulus() const { return elastic.shear_modulus / (1.0 - elastic.poisson_ratio); }
 };

@@ -24,7 +24,7 @@ single_patch::single_patch(const single_patch_setup &setup, const patch_scene &s
     std::copy_n(setup.distance, count, distance_.data());
     setup_.distance = nullptr;
   }
-  if (!scene.derivatives || !scene.differentiates()) return;
+  if (!scene.exact) return;
   rates_.emplace();
   rates_->distance = aligned_buffer<double>(count);
   if (scene.friction_variation.varies()) rates_->row_friction = aligned_buffer<double>(count);

@@ -27,7 +27,6 @@ class single_patch final : public driver {
 
   void step(const rp_input &input, rp_result &result) override;
   const patch_memory *find(int side, int patch) const override;
-  bool is_exact() const override { return solver_.scene().differentiates(); }
   void differentiate(const rp_input &direction, const rp_input &input, const rp_result &result,
                      rp_result &change) override;
   const char *geometry_reason() const override;
@@ -35,7 +34,7 @@ class single_patch final : public driver {
   size_t derivative_bytes() const override;
 
  private:
-  // The last step's problem and rates of what is on its grid, in scenes with derivatives.
+  // The last step's problem and rates of what is on its grid, in scenes with exact derivatives.
   struct rates {
     patch_problem problem;
     aligned_buffer<double> distance, row_friction;

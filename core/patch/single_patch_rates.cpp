@@ -7,6 +7,7 @@
 #include "patch/report.hpp"
 #include "patch/result_sums.hpp"
 #include "patch/single_patch.hpp"
+#include "patch/status.hpp"
 
 namespace railpatch {
 
@@ -92,8 +93,8 @@ void single_patch::differentiate(const rp_input &d, const rp_input &, const rp_r
   patch_change found;
   const derivative_outcome outcome = solver_.differentiate(problem, m, &v, 1, {}, &found);
   if (!outcome.converged) {
-    for (rp_status *status : {&out.status, &side.status, &change.status})
-      if (*status == RP_CONVERGED) *status = RP_NOT_CONVERGED;
+    fail_rates(out.status);
+    fail_rates(side);
   }
   report_rates(value, found, change);
   set(value.approach, change.approach, found.approach);

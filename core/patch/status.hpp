@@ -18,4 +18,15 @@ inline rp_status combine_status(rp_status a, rp_status b) {
   return a == RP_CONVERGED || b == RP_CONVERGED ? RP_CONVERGED : RP_NO_CONTACT;
 }
 
+// Of rates that did not converge: what is good of the result is not of its rates.
+inline void fail_rates(rp_status &status) {
+  if (status == RP_CONVERGED || status == RP_NO_CONTACT) status = RP_NOT_CONVERGED;
+}
+// Of a wheel with all its patches.
+inline void fail_rates(rp_side_result &side) {
+  fail_rates(side.status);
+  for (int i = 0; i < side.patch_count + side.alternative_count; ++i)
+    fail_rates(side.patch[i].status);
+}
+
 }  // namespace railpatch

@@ -50,7 +50,6 @@ wheel_contact::wheel_contact(const wheel_setup &setup)
       nominal_radius_(setup.sizes.nominal_radius),
       standstill_speed_(setup.sizes.standstill_speed),
       grid_(setup.grid),
-      round_and_rigid_(setup.round_and_rigid),
       rules_(setup.rules) {
   if (!setup.sections.empty())
     sections_ = std::make_unique<rail_sections>(setup.sections.data(), setup.section_position,
@@ -58,7 +57,7 @@ wheel_contact::wheel_contact(const wheel_setup &setup)
   wheel_ = std::make_unique<profile>(setup.wheel);
   rail_ = std::make_unique<profile>(setup.rail);
   geometry_ = std::make_unique<side_geometry>(*wheel_, *rail_, setup.sizes, setup.track);
-  if (setup.derivatives) solutions_.resize(static_cast<size_t>(setup.max_patches));
+  if (setup.keeps_solutions) solutions_.resize(static_cast<size_t>(setup.max_patches));
   if (!setup.shape.given()) return;
   shape_ = std::make_unique<longitudinal_shape>(setup.shape);
   geometry_->set_shape(shape_.get());
@@ -349,10 +348,6 @@ void wheel_contact::set_friction(const patch_contact &solver, const contact_fram
       geometry_->rail_surface(frame.origin[0], frame.origin[1] + across, z, slope);
     memory.row_friction[static_cast<size_t>(j)] = solver.scene().friction_variation.at(-slope);
   }
-}
-
-bool wheel_contact::differentiates() const {
-  return round_and_rigid_ && wheel_derivative::covers(rules_);
 }
 
 derivative_outcome wheel_contact::differentiate(patch_contact &solver, const patch_memory *memory,

@@ -30,10 +30,12 @@ struct wheel_setup {
   patch_rules rules;
   grid_rules grid;
   int max_patches = 1;
-  bool derivatives = false;
+  bool keeps_solutions = false;  // for exact derivatives
   // neither shape nor rail varies, gives way or is seen as curved: derivatives of these are not
   // known
   bool round_and_rigid = true;
+  // Whether the geometry's derivatives are known.
+  bool differentiates() const { return round_and_rigid && wheel_derivative::covers(rules); }
 };
 
 // Moves the memories so that each patch finds the one of the last solution that lay nearest to it
@@ -52,8 +54,6 @@ class wheel_contact {
   bool first_touch(double &z) const;
   // Solves the contact at the placed position. memory: of this side's patches, max_patches.
   void evaluate(patch_contact &solver, patch_memory *memory, rp_side_result &result);
-  // Whether the geometry's derivatives are known.
-  bool differentiates() const;
   // Derivatives of that solution by rates of the inputs and of the friction coefficient: changes[k]
   // those of its numbers in direction k, of which only the first rate_directions may be more than
   // velocities.
@@ -88,7 +88,6 @@ class wheel_contact {
   int side_, max_patches_;
   double nominal_radius_, standstill_speed_;
   grid_rules grid_;
-  bool round_and_rigid_;
   bool beyond_ = false;
   std::unique_ptr<rail_sections> sections_;  // where the rail's profile varies along the track
   std::unique_ptr<profile> wheel_, rail_;
@@ -98,7 +97,7 @@ class wheel_contact {
   part_set parts_;
   std::array<patch_region, RP_MAX_PATCHES> regions_;
   int patches_ = 0;                        // of the last state
-  std::vector<patch_solution> solutions_;  // of these; only where derivatives are asked for
+  std::vector<patch_solution> solutions_;  // of these; only for exact derivatives
   double time_step_ = 0;                   // s
 };
 

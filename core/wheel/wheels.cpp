@@ -28,7 +28,7 @@ wheels::wheels(const wheels_setup &setup, const patch_scene &scene, const fft_pl
   wheels_.reserve(setup.wheel.size());
   for (const auto &wheel : setup.wheel) wheels_.emplace_back(wheel);
   if (setup.support) support_.emplace(*setup.support);
-  if (!scene.derivatives || !is_exact()) return;
+  if (!scene.exact) return;
   rates_ = std::make_unique<rates>(
       rates{wheel_derivative(scene, setup.largest.nx * setup.largest.ny, setup.largest.ny), {}});
   rates_->changes.resize(2 * static_cast<size_t>(wheel_derivative::most_directions));

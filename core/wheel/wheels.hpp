@@ -35,7 +35,6 @@ class wheels final : public driver {
   const patch_memory *find(int side, int patch) const override;
   bool mirrors(int side) const override { return side == RP_LEFT; }
   kept_numbers kept() override;
-  bool is_exact() const override;
   void differentiate(const rp_input &direction, const rp_input &input, const rp_result &result,
                      rp_result &change) override;
   bool has_jacobian() const override { return true; }

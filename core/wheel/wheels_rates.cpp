@@ -5,6 +5,7 @@
 #include "numeric/nan.hpp"
 #include "patch/result_fields.hpp"
 #include "patch/result_sums.hpp"
+#include "patch/status.hpp"
 #include "wheel/jacobian_columns.hpp"
 #include "wheel/wheels.hpp"
 #include "wheel/wheelset_power.hpp"
@@ -20,12 +21,6 @@ constexpr int direction_count = static_cast<int>(std::size(directions));
 static_assert(direction_count <= wheel_derivative::most_directions);
 
 }  // namespace
-
-bool wheels::is_exact() const {
-  return solver_.scene().differentiates() &&
-         std::all_of(wheels_.begin(), wheels_.end(),
-                     [](const wheel_contact &wheel) { return wheel.differentiates(); });
-}
 
 size_t wheels::derivative_bytes() const {
   const size_t own = rates_ ? sizeof *rates_ + rates_->wheels.bytes() +
@@ -63,8 +58,9 @@ void wheels::differentiate(const rp_input &direction, const rp_input &input,
                             result.side[side], changes);
     missing -= changes[0].force[2];
     if (forced) slope += changes[1].force[2];
-    if (!outcome.converged) degrade(out.side[side].status, RP_NOT_CONVERGED);
-    if (!outcome.converged) degrade(out.status, RP_NOT_CONVERGED);
+    if (outcome.converged) continue;
+    fail_rates(out.status);
+    fail_rates(out.side[side]);
   }
   const double z = !forced ? direction.z : slope != 0 ? missing / slope : nan;
   // what the result does not know stays NaN

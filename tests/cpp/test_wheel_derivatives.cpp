@@ -428,6 +428,97 @@ TEST(WheelDerivative, ByDifferencesWhereThereAreNoExactOnes) {
     }
 }
 
+// What `rp_describe` says of the derivatives is what they are found by.
+TEST(WheelDerivative, TheStageSaysHowTheyAreFound) {
+  const scenes::profile_pair pair;
+  const std::vector<double> uneven(64, 1e-5);
+  const auto expect = [](rp_config c, rp_derivative_kind expected, const char *words) {
+    SCOPED_TRACE(words);
+    c.derivatives = 1;
+    c.load = RP_FORCE;
+    scenes::handle h(c);
+    rp_input in = scenes::running(c.track);
+    in.vertical_force = 6e4;
+    ASSERT_EQ(h.step(in).status, RP_CONVERGED);
+    rp_stage_info stages[RP_STAGE_COUNT];
+    ASSERT_EQ(rp_describe(h.get(), stages), RP_OK);
+    const std::string reason = stages[RP_STAGE_DERIVATIVES].reason;
+    EXPECT_NE(reason.find(words), std::string::npos) << reason;
+    const rp_input direction = no_direction();
+    rp_result change{};
+    rp_derivative_kind kind;
+    ASSERT_EQ(rp_differentiate(h.get(), &direction, &change, &kind, nullptr), RP_OK);
+    EXPECT_EQ(kind, expected);
+  };
+  const auto exact = [&](const rp_config &c) {
+    expect(c, RP_DERIVATIVE_EXACT, "from the solved conditions");
+  };
+  const auto by_differences = [&](const rp_config &c) {
+    expect(c, RP_DERIVATIVE_BY_DIFFERENCES, "by differences of further steps");
+  };
+  const rp_config rail = scenes::wheels(RP_WHEEL_RAIL, RP_RAIL, pair);
+  exact(rail);
+  rp_config c = scenes::wheels(RP_WHEEL_RAIL, RP_ROLLER, pair);
+  exact(c);
+  c.contact_frame = RP_FRAME_INCLINED;
+  by_differences(c);
+  c = rail;
+  c.patch_rule = RP_PATCHES_CONTACT;
+  by_differences(c);
+  c = rail;
+  c.tangential = RP_TANGENTIAL_FASTSIM;
+  by_differences(c);
+  c = rail;
+  c.runout[c.side] = uneven.data();
+  c.runout_count[c.side] = static_cast<int32_t>(uneven.size());
+  by_differences(c);
+  c = rail;
+  c.rail_stiffness[1] = 5e7;
+  by_differences(c);
+  const scenes::varying_track track;
+  c = track.config(RP_WHEEL_RAIL);
+  c.rail_stiffness[0] = c.rail_stiffness[1] = c.rail_damping[0] = c.rail_damping[1] = 0;
+  by_differences(c);
+}
+
+// Steps beside the last one that do not converge are told where there is something to tell: of the
+// side in use and its patches.
+TEST(WheelDerivative, DifferencesThatFailAreThoseOfTheSidesInUse) {
+  const scenes::profile_pair pair;
+  std::vector<std::pair<rp_config, rp_input>> all;
+  rp_config c = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FASTSIM);
+  all.emplace_back(c, scenes::patch_input(8e4, 4e-4, -2e-4, 0.3));
+  for (const int side : {RP_LEFT, RP_RIGHT}) {
+    c = scenes::wheels(RP_WHEEL_RAIL, RP_RAIL, pair);
+    c.side = side;
+    c.load = RP_FORCE;
+    c.patch_rule = RP_PATCHES_CONTACT;
+    all.emplace_back(c, scenes::running(RP_RAIL));
+    all.back().second.vertical_force = 6e4;
+  }
+  for (auto &[config, in] : all) {
+    config.derivatives = 1;
+    config.tolerance = 1e-2;
+    bool found = false;
+    for (config.max_iterations = 1; config.max_iterations < 40 && !found; ++config.max_iterations) {
+      scenes::handle h(config);
+      const rp_result r = h.step(in);
+      rp_input faster = no_direction();
+      faster.speed = faster.normal_force = 1;
+      rp_result change{};
+      ASSERT_EQ(rp_differentiate(h.get(), &faster, &change, nullptr, nullptr), RP_OK);
+      if (r.status != RP_CONVERGED || change.status == RP_CONVERGED) continue;
+      found = true;
+      const int used = config.kind == RP_PATCH ? RP_RIGHT : config.side;
+      EXPECT_EQ(change.status, RP_NOT_CONVERGED);
+      EXPECT_EQ(change.side[used].status, RP_NOT_CONVERGED);
+      EXPECT_EQ(change.side[used].patch[0].status, RP_NOT_CONVERGED);
+      EXPECT_EQ(change.side[1 - used].status, r.side[1 - used].status);
+    }
+    EXPECT_TRUE(found);
+  }
+}
+
 // An offset in the spin's term is a lateral creepage of its own.
 TEST(PatchDerivative, OfAnOffsetSpinIsThatOfLateralCreepageToo) {
   rp_config c = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL, 12);
