@@ -42,7 +42,7 @@ std::optional<bound_law> make_law(const rp_config &c) {
 
 // Where temperatures are asked for.
 std::optional<heat_scene> make_heat(const rp_config &c) {
-  if (c.temperature == 0 || c.tangential == RP_TANGENTIAL_NONE) return std::nullopt;
+  if (c.temperature == 0) return std::nullopt;
   heat_scene heat;
   for (int k = 0; k < 2; ++k)
     heat.bodies.body[k] = {c.conductivity[k], c.heat_capacity[k], c.density[k],

@@ -52,11 +52,6 @@ struct patch_history {
   void for_each_kept(size_t count, F &&f) const {
     visit(*this, count, f);
   }
-  size_t kept_bytes(size_t count) const {
-    size_t sum = 0;
-    for_each_kept(count, [&](const double *, size_t bytes) { sum += bytes; });
-    return sum;
-  }
   // all, and what of it is the last step's and the plastic layer's
   size_t bytes() const;
   size_t step_bytes() const {

@@ -38,9 +38,8 @@ struct slip_velocity_law {
 // Yield stress over accumulated plastic displacement: straight between points, going on with
 // last_slope.
 struct hardening_curve {
-  static constexpr int max_points = 32;
   int points = 0;  // 0: no yield
-  double displacement[max_points] = {}, stress[max_points] = {};
+  double displacement[RP_MAX_POINTS] = {}, stress[RP_MAX_POINTS] = {};
   double last_slope = 0;
   // tau = yield_stress + hardening u, not below a tenth of the yield stress
   static hardening_curve straight(double yield_stress, double hardening);
