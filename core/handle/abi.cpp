@@ -96,8 +96,8 @@ rp_error rp_differentiate(rp_contact *contact, const rp_input *direction, rp_res
   if (const rp_error error = check_direction(*direction, message); error != RP_OK) return error;
   if (!contact->handle.has_solution()) {
     set_message(message,
-                "rp_differentiate needs a step since rp_create, rp_reset or "
-                "rp_restore_state");
+                "rp_differentiate needs a step since rp_create, rp_reset, rp_restore_state or "
+                "rp_set_friction_coefficient");
     return RP_ERROR_STATE;
   }
   try {
@@ -123,7 +123,8 @@ rp_error rp_get_jacobian(rp_contact *contact, rp_jacobian *out, rp_message *mess
   }
   if (!contact->handle.has_solution()) {
     set_message(message,
-                "rp_get_jacobian needs a step since rp_create, rp_reset or rp_restore_state");
+                "rp_get_jacobian needs a step since rp_create, rp_reset, rp_restore_state or "
+                "rp_set_friction_coefficient");
     return RP_ERROR_STATE;
   }
   try {

@@ -299,7 +299,7 @@ typedef struct rp_config {
   double friction_reference;        /* -, of the temperature law, below its first temperature */
   double friction_change;           /* -, from there to the end of the range */
   double friction_reference_temperature; /* degrees C */
-  double friction_temperature_range;     /* degrees C, > 0 */
+  double friction_temperature_range;     /* K, > 0 */
   /* factor of the friction law over the lateral position (kind RP_PATCH, m) or the angle of the
    * rail's surface (wheels, rad, > 0 towards the gauge face on either side); linear between the
    * points, constant beyond */
@@ -591,8 +591,8 @@ typedef enum rp_derivative_kind { RP_DERIVATIVE_KINDS(RP_ENUM_ENTRY) } rp_deriva
  * number itself is NaN, and of residual and error_estimate; counts of elements and iterations are
  * 0, other counts and statuses those of the result, or RP_NOT_CONVERGED where the rates did not
  * converge. kind (may be null) says how they were found. Needs config.derivatives = 1 and a step
- * since rp_create, rp_reset or rp_restore_state; the state, the last solution and its fields stay
- * as they are.
+ * since rp_create, rp_reset, rp_restore_state or an rp_set_friction_coefficient that changed it;
+ * the state, the last solution and its fields stay as they are.
  *
  * Exact ones are those of the returned solution's active sets: elements in contact, in stick and in
  * slip stay what they are. Where an element is just about to change, that is the one-sided
@@ -624,9 +624,11 @@ typedef struct rp_jacobian {
 RP_API rp_error rp_get_jacobian(rp_contact *contact, rp_jacobian *out, rp_message *message);
 
 /* Changes the coefficient of Coulomb's law (0 ... 10) for the steps that follow; part of the state.
- * Other laws have their own numbers and do not read it. */
+ * Other laws have their own numbers and do not read it. Derivatives of the last step are gone where
+ * the coefficient is another. */
 RP_API rp_error rp_set_friction_coefficient(rp_contact *contact, double value, rp_message *message);
-/* Forgets the warm start: the next step is the same as the first one after rp_create. */
+/* Forgets the warm start: the next step is the same as the first one after rp_create, but for a
+ * coefficient set by rp_set_friction_coefficient, which stays. */
 RP_API void rp_reset(rp_contact *contact);
 
 /* Copies a field of the last step's patch (row by row, x fastest) as doubles. count: in the

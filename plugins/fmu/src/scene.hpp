@@ -5,8 +5,7 @@
 //   guid {...}
 //   set FIELD VALUE...                          a field of rp_config
 //   profile wheel|rail SIDE ARRAY COUNT VALUE...
-//   section SIDE INDEX ARRAY COUNT VALUE...     a rail's profile along the track, indices from 0
-//   on;
+//   section SIDE INDEX ARRAY COUNT VALUE...     a rail's profile along the track, indices from 0;
 //                                               ARRAY may be position: one value
 //   choice wheel|rail NUMBER ARRAY COUNT VALUE...
 //                                               a further profile for both sides, which a parameter

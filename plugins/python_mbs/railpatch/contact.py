@@ -89,6 +89,7 @@ class Contact:
         or approach; in transient rolling distance and steps: one step rolls distance/steps.
         wheel_rail, wheelset: the position and velocity keys of [wheelset] with left and right,
         roller_pitch_rate, track = {"left": ..., "right": ...}; left and right in part or whole.
+        all, with temperatures: temperature = {"wheel": ..., "rail": ...}, in part or whole.
         fields: add the fields of each patch. Other keys raise CaseError and nothing changes.
         """
         case = changed_case(self._case, changes)
