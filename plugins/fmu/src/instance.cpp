@@ -277,7 +277,7 @@ fmi2Status Instance::run_contact(const Call &call, double time, double time_step
              std::string(call.name) + ": " + failure(time, outputs_.result));
     return fmi2Discard;
   }
-  fill_temperatures(outputs_, input_);
+  set_rest_temperature(outputs_, input_);
   solution_ = Solution::held;
   return fmi2OK;
 }

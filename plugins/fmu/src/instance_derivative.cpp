@@ -131,7 +131,7 @@ fmi2Status Instance::differentiate(const Call &call, const std::vector<double> &
                  "scene with a larger method.max_iterations");
     return fmi2Discard;
   }
-  fill_temperature_rates(input_, direction, change_);
+  set_rest_temperature_rate(input_, direction, change_);
   direction_ = rates;
   return fmi2OK;
 }

@@ -12,11 +12,9 @@ struct Outputs {
   double rest_temperature;
 };
 
-// Without contact a patch's temperature becomes the warmer bulk temperature of the input (NaN: the
-// scene has none).
-void fill_temperatures(Outputs &outputs, const rp_input &input);
-
-// The same of rates: change.result holds the result's, direction the input's.
-void fill_temperature_rates(const rp_input &input, const rp_input &direction, Outputs &change);
+// By the input's bulk temperatures (NaN: the scene has none).
+void set_rest_temperature(Outputs &outputs, const rp_input &input);
+// By their rates.
+void set_rest_temperature_rate(const rp_input &input, const rp_input &direction, Outputs &change);
 
 }  // namespace railpatch::fmu
