@@ -372,6 +372,36 @@ def test_fitted_rows_are_of_the_full_theory(change: dict[str, Any], problem: str
     assert problems_of(with_values(PATCH, **change)) == [problem]
 
 
+@pytest.mark.parametrize("case", [PATCH, WHEELSET])
+def test_temperature_needs_a_tangential_problem(case: dict[str, Any]) -> None:
+    heated = with_values(case, temperature={"wheel": 20.0, "rail": 20.0})
+    load_scene(heated)
+    assert problems_of(with_values(heated, method__tangential="none")) == [
+        "method.tangential: value is 'none', allowed 'full' with temperature"
+    ]
+
+
+@pytest.mark.parametrize("motion", [None, {"regime": "none"}])
+def test_temperature_needs_rolling(motion: Any) -> None:
+    heated = with_values(PATCH, temperature={"wheel": 20.0}, motion=motion)
+    assert problems_of(heated) == [
+        "motion.regime: value is 'none', allowed 'steady_rolling' or 'transient_rolling' with "
+        "temperature"
+    ]
+
+
+@pytest.mark.parametrize(
+    "motion", [{"regime": "shift"}, {"regime": "transient_rolling", "distance": 1e-3}]
+)
+def test_an_offset_spin_rolls_steadily(motion: dict[str, Any]) -> None:
+    case = with_values(PATCH, motion=motion, method__spin_offset="sixth")
+    assert problems_of(case) == [
+        f"method.spin_offset: value is 'sixth', allowed 'none' with regime = '{motion['regime']}'"
+    ]
+    # without a tangential problem nothing reads it
+    load_scene(with_values(case, method__tangential="none"))
+
+
 def test_fitted_rows_rest_where_the_tangential_problem_is_left_out() -> None:
     load_scene(with_values(PATCH, grid__fitted=[8, 8], method__tangential="none"))
 
@@ -477,6 +507,14 @@ def test_wrong_accuracies(values: dict[str, Any], line: str) -> None:
             {"layer": {"thickness": 1e-5, "shear_modulus": 1e9, "yield_stress": 1e8}},
             "layer.yield_stress: value is 100000000.0, allowed to be left out with "
             "reference_surface = 'curved'",
+        ),
+        (
+            {"method__derivatives": True},
+            "method.derivatives: value is True, allowed False with reference_surface = 'curved'",
+        ),
+        (
+            {"method__tangential": "none", "method__derivatives": True},
+            "method.derivatives: value is True, allowed False with reference_surface = 'curved'",
         ),
         (
             {"temperature": {"wheel": 20.0, "rail": 20.0}},

@@ -284,6 +284,12 @@ def check_physics(
         raise relation("temperature", "missing", "the table [temperature] with this friction law")
 
 
+def check_unheated(heat: Temperature | None) -> None:
+    """Without friction nothing heats the surfaces."""
+    if heat is not None:
+        raise relation("method.tangential", "'none'", "'full' with temperature")
+
+
 def check_accuracy(
     grid: Grid | None, method: Method, *, ellipse: bool = False, line: bool = False
 ) -> None:
@@ -341,6 +347,8 @@ def check_reference(
         raise relation("grid.fitted", str(grid.fitted), f"to be left out {with_it}")
     if heat is not None:
         raise relation("temperature", "given", f"to be left out {with_it}")
+    if method.derivatives:
+        raise relation("method.derivatives", "True", f"False {with_it}")
     if method.tangential == "none":
         return
     if friction is not None and friction.law != "coulomb":

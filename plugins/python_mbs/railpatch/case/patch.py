@@ -21,6 +21,7 @@ from railpatch.case.common import (
     check_physics,
     check_plane,
     check_tangential,
+    check_unheated,
     couples,
 )
 from railpatch.case.types import (
@@ -218,6 +219,11 @@ class PatchCase(Table):
             check_tangential(self.material, self.friction, self.layer, self.grid, self.method)
             check_physics(self.friction, self.layer, self.temperature, self.grid, self.method)
             self._check_regime()
+        elif self.temperature is not None and self.method.tangential != "none":
+            allowed = "'steady_rolling' or 'transient_rolling' with temperature"
+            raise relation("motion.regime", repr(self.motion.regime), allowed)
+        else:
+            check_unheated(self.temperature)
         if self.friction is not None and self.friction.along_track is not None:
             shown = str(self.friction.along_track)
             raise relation("friction.along_track", shown, "to be left out with kind = 'patch'")
@@ -286,6 +292,9 @@ class PatchCase(Table):
         if self.grid is not None and self.grid.fitted is not None:
             shown = str(self.grid.fitted)
             raise relation("grid.fitted", shown, f"to be left out with regime = '{regime}'")
+        if self.method.spin_offset != "none":
+            shown = repr(self.method.spin_offset)
+            raise relation("method.spin_offset", shown, f"'none' with regime = '{regime}'")
         if self.method.accuracy is not None:
             shown = f"to be left out with regime = '{regime}': give 'grid'"
             raise relation("method.accuracy", self.method.accuracy, shown)

@@ -18,6 +18,7 @@ from railpatch.case.common import (
     check_physics,
     check_reference,
     check_tangential,
+    check_unheated,
 )
 from railpatch.case.rails import RailSupport, Sections, check_sections
 from railpatch.case.rolling import RailShape, WheelMotion, WheelShape, check_rolling
@@ -265,6 +266,8 @@ class _WheelCase(Table):
         if self.has_tangential:
             check_tangential(self.material, self.friction, self.layer, self.grid, self.method)
             check_physics(self.friction, self.layer, self.temperature, self.grid, self.method)
+        else:
+            check_unheated(self.temperature)
         check_fitted(self.grid, self.method)
         check_accuracy(self.grid, self.method)
         check_reference(
