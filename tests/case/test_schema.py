@@ -12,7 +12,6 @@ import pytest
 from case_samples import PATCH, WHEELSET, with_values
 from railpatch import _core
 from railpatch.case import CaseError, json_schema, load_scene
-from railpatch.case.messages import LATER_KEYS
 from railpatch.case.moving import changed_case, moving_keys
 
 # "m, ..." of a value, "... (m, rad)" of a table, "... (no unit)" of a choice
@@ -42,12 +41,6 @@ def test_kinds_and_choices() -> None:
     method = schema["$defs"]["Method"]["properties"]
     assert method["normal"]["enum"] == ["hertz", "kik_piotrowski", "analyn", "half_space"]
     assert method["tangential"]["enum"] == ["none", *_core.THEORIES, "full"]
-
-
-def test_later_keys_are_no_keys_yet() -> None:
-    names = {key.split(".")[1] for key, _ in properties()}
-    for keys in LATER_KEYS.values():
-        assert not names & set(keys)
 
 
 def test_the_readme_case_is_accepted(tmp_path: Path) -> None:

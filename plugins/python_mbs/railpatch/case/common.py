@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+from pydantic import Field, model_validator
 
 from railpatch.case.choice import least_error
 from railpatch.case.friction import Friction, check_increasing
@@ -17,39 +17,22 @@ from railpatch.case.types import (
     ElementSize,
     FittedPair,
     HardeningTable,
-    HeatPair,
     Modulus,
-    ModulusPair,
-    RatioPair,
     Table,
     between,
     exactly_one,
     key,
+    of_bodies,
     one_of,
     relation,
-    twice,
 )
-
-
-def either(item: dict[str, object]) -> WithJsonSchema:
-    """JSON schema of one number or [wheel, rail]."""
-    pair = {"type": "array", "items": item, "minItems": 2, "maxItems": 2}
-    return WithJsonSchema({"anyOf": [item, pair]})
 
 
 class Material(Table):
     """Elastic constants of wheel and rail; steel where the table is left out."""
 
-    shear_modulus: Annotated[
-        ModulusPair,
-        BeforeValidator(twice),
-        either({"type": "number", "minimum": 1.0, "maximum": 1e15}),
-    ] = Field(default=[82e9, 82e9], description="Pa, shear modulus, or [wheel, rail]")
-    poisson_ratio: Annotated[
-        RatioPair,
-        BeforeValidator(twice),
-        either({"type": "number", "minimum": 0, "maximum": 0.5}),
-    ] = Field(default=[0.28, 0.28], description="-, Poisson's ratio, or [wheel, rail]")
+    shear_modulus: of_bodies("shear_modulus") = key(", or [wheel, rail]")
+    poisson_ratio: of_bodies("poisson_ratio") = key(", or [wheel, rail]")
 
 
 # of the core: memory grows with the square
@@ -158,13 +141,9 @@ class Temperature(Table):
         description="whether wheel and rail may become unequally warm in later steps (no unit); "
         "where they are unequal from the start they may anyway",
     )
-    conductivity: HeatPair = Field(
-        default=[50.0, 50.0], description="W/(m K), thermal conductivity, or [wheel, rail]"
-    )
-    heat_capacity: HeatPair = Field(
-        default=[450.0, 450.0], description="J/(kg K), specific heat capacity, or [wheel, rail]"
-    )
-    density: HeatPair = Field(default=[7850.0, 7850.0], description="kg/m^3, or [wheel, rail]")
+    conductivity: of_bodies("conductivity") = key(", or [wheel, rail]")
+    heat_capacity: of_bodies("heat_capacity") = key(", or [wheel, rail]")
+    density: of_bodies("density") = key(", or [wheel, rail]")
     depth: float = key(of="temperature_depth")
 
     @property

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from railpatch.case.types import MOST_ELEMENTS
+from railpatch.case.types import listed
 from railpatch.errors import CaseError
 
 KEY = "geometry.undeformed_distance"
@@ -29,8 +29,9 @@ def read_gap(value: str | list[list[float]] | None, folder: Path) -> NDArray[np.
                 f"{KEY}: line {line} holds {len(row)} values, allowed {columns} as in the first"
             )
     shape = (len(rows), columns)
-    if min(shape) < 3 or max(shape) > MOST_ELEMENTS:
-        raise CaseError(f"{KEY}: shape is {shape}, allowed 3 ... {MOST_ELEMENTS} in each direction")
+    least, most = (int(listed("distance_shape")[end]) for end in ("low", "high"))
+    if min(shape) < least or max(shape) > most:
+        raise CaseError(f"{KEY}: shape is {shape}, allowed {least} ... {most} in each direction")
     return np.array([row for _, row in rows], dtype=float)
 
 

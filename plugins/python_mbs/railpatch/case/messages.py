@@ -7,9 +7,6 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-# keys of the interface that this version does not have yet
-LATER_KEYS: dict[str, tuple[str, ...]] = {}
-
 ALLOWED = {
     "greater_than": "> {gt}",
     "greater_than_equal": ">= {ge}",
@@ -54,7 +51,7 @@ def problem(model: type[BaseModel], item: Any, prefix: str) -> str:
         return f"{key}: value is {context['shown']}, allowed {context['allowed']}"
     table = table_at(model, loc[:-1])
     if item["type"] == "extra_forbidden":
-        return unknown_key(key, str(loc[-1]), item["input"], table, spell(prefix, loc[:-1]))
+        return unknown_key(key, str(loc[-1]), item["input"], table)
     if item["type"] == "missing":
         description = table.model_fields[str(loc[-1])].description if table else "a value"
         return f"{key}: value is missing, allowed {description}"
@@ -101,12 +98,8 @@ def table_at(model: type[BaseModel], loc: list[Any]) -> type[BaseModel] | None:
     return table
 
 
-def unknown_key(
-    key: str, name: str, value: Any, table: type[BaseModel] | None, table_key: str
-) -> str:
+def unknown_key(key: str, name: str, value: Any, table: type[BaseModel] | None) -> str:
     """Names the key, what is allowed there, and the key that was perhaps meant."""
-    if name in LATER_KEYS.get(table_key, ()):
-        return f"{key}: value is {show(value)}, allowed: leave it out, not in this version"
     names = list(table.model_fields) if table else []
     text = f"{key}: value is {show(value)}, but the key is unknown, allowed {', '.join(names)}"
     close = difflib.get_close_matches(name, names, 1)

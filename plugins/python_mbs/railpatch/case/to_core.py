@@ -22,7 +22,7 @@ from railpatch.case.messages import show
 from railpatch.case.moving import BY_TABLE, moving_keys, refuse_unknown
 from railpatch.case.patch import SHAPES, STEPWISE, PatchCase
 from railpatch.case.resolve import resolved
-from railpatch.case.types import BODIES, MOST_POINTS, SIDES, Table
+from railpatch.case.types import BODIES, MOST_POINTS, SIDES, Table, listed
 from railpatch.case.wheel import Deviation, WheelRailCase, WheelsetCase
 from railpatch.errors import CaseError
 from railpatch.profiles import Profile, load_profile
@@ -131,9 +131,11 @@ def points_config(prefix: str, names: tuple[str, str], points: list[list[float]]
 def grid_config(case: Case) -> dict[str, Any]:
     """Elements by number or by size; the other is zero."""
     line = isinstance(case, PatchCase) and case.geometry.line_contact_radius is not None
+    usual = listed("elements")["start"]
+    counted = [usual, 1 if line else usual]
     if case.grid is None:
-        return {"elements": [24, 1 if line else 24], "element_size": [0.0, 0.0]}
-    standard = [0, 0] if case.grid.element_size else [24, 1 if line else 24]
+        return {"elements": counted, "element_size": [0.0, 0.0]}
+    standard = [0, 0] if case.grid.element_size else counted
     return {
         "elements": case.grid.elements or standard,
         "element_size": case.grid.element_size or [0.0, 0.0],

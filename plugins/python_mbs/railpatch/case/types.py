@@ -18,8 +18,6 @@ from railpatch import _core
 SIDES = ("left", "right")
 # that touch, in the core's order
 BODIES = ("wheel", "rail")
-# elements of one patch along one axis; a grid has a border of one element besides
-MOST_ELEMENTS = 1000
 
 
 def between(low: float, high: float) -> Any:
@@ -55,6 +53,36 @@ def limits(name: str) -> dict[str, Any]:
 def within(name: str) -> Any:
     """The range of a field of the core, for one of its numbers."""
     return Field(**limits(name))
+
+
+def up_to(name: str) -> Any:
+    """At least one, and no more than a field of the core takes."""
+    return Field(ge=1, le=limits(name)["le"])
+
+
+# of a JSON schema, by the words of pydantic's Field
+WORDS_OF_SCHEMA = {
+    "ge": "minimum",
+    "gt": "exclusiveMinimum",
+    "le": "maximum",
+    "lt": "exclusiveMaximum",
+}
+
+
+def of_bodies(name: str) -> Any:
+    """One number for wheel and rail, or one of each, in the range of a field of the core."""
+    number = {"type": "number"} | {
+        WORDS_OF_SCHEMA[word]: value
+        for word, value in limits(name).items()
+        if word in WORDS_OF_SCHEMA
+    }
+    pair = {"type": "array", "items": number, "minItems": 2, "maxItems": 2}
+    return Annotated[
+        list[Annotated[float, within(name)]],
+        exactly(2),
+        BeforeValidator(lambda value: twice(value)),
+        WithJsonSchema({"anyOf": [number, pair]}),
+    ]
 
 
 class Key:
@@ -110,9 +138,9 @@ NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Shift = Annotated[float, within("wheel_offset")]  # m
 Angle = Annotated[float, within("wheel_rotation")]  # rad
 Modulus = Annotated[float, within("shear_modulus")]  # Pa
-Ratio = Annotated[float, within("poisson_ratio")]
-Count = Annotated[int, Field(ge=1, le=MOST_ELEMENTS)]
-Capacity = Annotated[int, Field(ge=1, le=MOST_ELEMENTS + 2)]
+# of a line contact 1 across
+Count = Annotated[int, up_to("elements")]
+Capacity = Annotated[int, up_to("max_elements")]
 
 Pair = Annotated[list[Number], exactly(2)]
 # one for each step
@@ -120,11 +148,9 @@ Pairs = Annotated[list[Pair], Field(min_length=1, max_length=1_000_000)]
 # a number, or the word that leaves the component to its creepage
 ForcePair = Annotated[list[Number | Literal["creepage"]], exactly(2)]
 CountPair = Annotated[list[Count], exactly(2)]
-Nodes = Annotated[int, Field(ge=1, le=64)]
+Nodes = Annotated[int, up_to("fitted")]
 FittedPair = Annotated[list[Nodes], exactly(2)]
 CapacityPair = Annotated[list[Capacity], exactly(2)]
-ModulusPair = Annotated[list[Modulus], exactly(2)]
-RatioPair = Annotated[list[Ratio], exactly(2)]
 ElementSize = Annotated[list[Annotated[float, within("element_size")]], exactly(2)]
 SemiAxes = Annotated[list[Annotated[float, within("semi_axes")]], exactly(2)]
 Curvatures = Annotated[list[Annotated[float, within("curvatures")]], exactly(2)]
@@ -140,24 +166,6 @@ MOST_POINTS = listed("friction_position")["shape"][0]
 Points = Annotated[list[Pair], Field(min_length=2, max_length=MOST_POINTS)]
 HardeningTable = Annotated[
     list[Annotated[list[NotNegative], exactly(2)]], Field(min_length=2, max_length=MOST_POINTS)
-]
-HeatPair = Annotated[
-    list[Positive],
-    exactly(2),
-    BeforeValidator(lambda value: twice(value)),
-    WithJsonSchema(
-        {
-            "anyOf": [
-                {"type": "number", "exclusiveMinimum": 0},
-                {
-                    "type": "array",
-                    "items": {"type": "number", "exclusiveMinimum": 0},
-                    "minItems": 2,
-                    "maxItems": 2,
-                },
-            ]
-        }
-    ),
 ]
 
 
