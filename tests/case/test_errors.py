@@ -422,7 +422,7 @@ def test_fitted_rows_rest_where_the_tangential_problem_is_left_out() -> None:
 def test_keys_of_other_theories(tangential: str, key: str, value: Any, allowed: str) -> None:
     case = with_values(PATCH, method={"tangential": tangential, key: value})
     assert problems_of(case) == [
-        f"method.{key}: value is {value!r}, allowed it only with tangential = {allowed}"
+        f"method.{key}: value is {value!r}, allowed only with tangential = {allowed}"
     ]
     # without a tangential problem nothing reads them
     load_scene(with_values(case, method__tangential="none"))

@@ -16,7 +16,8 @@ DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 def test_the_page_of_channels_is_the_table():
     """It is what railpatch.log.channels.markdown() gives, to the letter."""
-    assert (DOCS / "log_channels.md").read_text(encoding="utf-8") == markdown()
+    page = DOCS / "log_channels.md"
+    assert page.read_text(encoding="utf-8") == markdown(), f"{page} is not markdown(): write it"
 
 
 def test_topics_and_keys_of_the_page_exist():

@@ -227,7 +227,7 @@ class Method(Table):
             value = getattr(self, name)
             if self.tangential not in readers and value != type(self).model_fields[name].default:
                 allowed = " or ".join(f"'{reader}'" for reader in readers)
-                raise relation(name, repr(value), f"it only with tangential = {allowed}")
+                raise relation(name, repr(value), f"only with tangential = {allowed}")
         if self.flexibility_blending == "contact" and not blends_as_contact(self.tangential):
             allowed = f"'sliding' or 'none' with tangential = {self.tangential!r}"
             raise relation("flexibility_blending", "'contact'", allowed)

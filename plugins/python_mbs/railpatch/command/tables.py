@@ -77,7 +77,7 @@ def spell(value: Any) -> str:
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
     if isinstance(value, float):
-        return f"{value:.6g}"
+        return f"{value + 0.0:.6g}"
     if isinstance(value, list):
         return " ".join(spell(item) for item in value)
     if isinstance(value, dict):

@@ -60,10 +60,15 @@ def libraries_of(backend: str, folder: Path | None = None) -> Libraries:
     own = resources.files("railpatch.fmu")
     root: Traversable = own / "lib" if folder is None else folder
     made = root / "stamp.txt"
-    if folder is not None and (not made.is_file() or made.read_text().strip() != stamp()):
+    if folder is not None and not made.is_file():
+        raise CaseError(
+            f"--libraries: value is {str(folder)!r}, which holds no libraries of an FMU, "
+            "allowed a folder that `make fmu` or `make fmu-fftw` made"
+        )
+    if folder is not None and made.read_text().strip() != stamp():
         raise CaseError(
             f"--libraries: value is {str(folder)!r}, whose libraries are of another version, "
-            "allowed those of this one: run `make fmu` again"
+            "allowed those of this one: run `make fmu` or `make fmu-fftw` again"
         )
     binaries = {}
     for place in sorted(root.iterdir(), key=lambda p: p.name) if root.is_dir() else ():

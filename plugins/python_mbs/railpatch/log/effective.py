@@ -126,5 +126,8 @@ def grid_of(case: Any) -> str:
     if grid is None:
         return ""
     given = grid.model_dump(mode="json", exclude_none=True)
-    parts = [f"{name} {value[0]:g} x {value[1]:g}" for name, value in given.items()]
+    parts = [
+        f"{name} {value[0]:g} x {value[1]:g}{' m' if name == 'element_size' else ''}"
+        for name, value in given.items()
+    ]
     return ", ".join(parts).replace("_", " ")

@@ -49,6 +49,8 @@ def plot(figure: go.Figure, name: str) -> str:
         div_id=name,
         config={
             "displaylogo": False,
+            # newer versions have a button that uploads the data
+            "showSendToCloud": False,
             "displayModeBar": "hover",
             "responsive": True,
             "modeBarButtonsToRemove": ["select2d", "lasso2d"],

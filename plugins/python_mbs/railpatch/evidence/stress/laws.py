@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from railpatch.case.common import Layer
@@ -9,6 +11,14 @@ from railpatch.case.friction import Friction
 from railpatch.evidence.stress.half_space import Array
 
 LEAST_YIELD = 0.1  # of the initial yield stress, below which a softening layer does not go
+
+# by the speed over that which halves a term, and how steeply each falls at rest
+SHAPES: dict[str, Callable[[Array], Array]] = {
+    "exponential": lambda u: np.exp2(-u),
+    "rational": lambda u: 1 / (1 + u),
+    "linear": lambda u: np.maximum(0, 1 - u / 2),
+}
+STEEPEST = {"exponential": np.log(2.0), "rational": 1.0, "linear": 0.5}
 
 
 def by_speed(friction: Friction, speed: Array) -> Array:
@@ -18,20 +28,14 @@ def by_speed(friction: Friction, speed: Array) -> Array:
     value = np.full_like(speed, friction.kinetic_coefficient)
     for amplitude, halving in zip(*friction.terms, strict=True):
         u = speed / halving
-        if friction.shape == "rational":
-            value += amplitude / (1 + u)
-        elif friction.shape == "linear":
-            value += amplitude * np.maximum(0, 1 - u / 2)
-        else:
-            value += amplitude * np.exp2(-u)
+        value += amplitude * SHAPES[friction.shape](u)
     return value
 
 
 def steepest_fall(friction: Friction) -> float:
     """s/m, of the coefficient with the speed of micro-slip: of each term at rest, without
     memory."""
-    slopes = {"rational": 1.0, "linear": 0.5}
-    slope = slopes.get(friction.shape, np.log(2.0))
+    slope = STEEPEST[friction.shape]
     terms = zip(*friction.terms, strict=True)
     return sum(slope * max(amplitude, 0.0) / halving for amplitude, halving in terms)
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from railpatch.evidence.bench.problems import merged
 from railpatch.evidence.stress.inelastic_trials import SLIDING
+from railpatch.evidence.stress.laws import SHAPES
 from railpatch.evidence.stress.trial import (
     CREEPAGE,
     FORCE,
@@ -122,7 +123,7 @@ class Draw:
     def slip_velocity(self) -> dict[str, Any]:
         """Falling or rising friction."""
         random = self.random
-        shape = str(random.choice(["exponential", "rational", "linear"]))
+        shape = str(random.choice(list(SHAPES)))
         rising = self.chance(0.3)
         self.features.append(f"{'rising' if rising else 'falling'} friction")
         if not rising:
