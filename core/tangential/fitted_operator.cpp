@@ -18,10 +18,11 @@ constexpr int batch = 64;
 // A squared slip below this is zero: its inverse must be a number.
 constexpr double least_square = 1e-290;
 
-// Strip edges at y = upper, lower from observers a distance x ahead: the kernels times pi G.
+// Strip edges at y = upper, lower from observers a distance x ahead: the kernels times pi G. Of a
+// row on itself: by symmetry x and y do not act on each other.
 RAILPATCH_DISPATCH
 void strip_kernels(int count, const double *distance, double upper, double lower, double nu,
-                   double *xx, double *yy, double *xy) {
+                   double *xx, double *yy) {
   const double upper2 = upper * upper, lower2 = lower * lower;
   for (int i = 0; i < count; ++i) {
     const double x = distance[i];
@@ -30,7 +31,6 @@ void strip_kernels(int count, const double *distance, double upper, double lower
     const double shear = nu * x * (cu * iu * iu - cl * il * il), direct = (cu - cl) / x;
     xx[i] = shear + (1.0 - nu) * direct;
     yy[i] = direct - shear;
-    xy[i] = nu * (cu * cu * iu - cl * cl * il);
   }
 }
 
@@ -207,22 +207,21 @@ void fitted_operator::assemble(int target, int source) {
         x[l * points_ + i] = direction_ * (t.x - s.x) +
                              t.half_length * point_cosine_[static_cast<size_t>(i)] -
                              s.half_length * r.cosine[static_cast<size_t>(first + l)];
-    make_kernels(count * points_, upper, lower);
+    make_kernels(count * points_, upper, lower, target == source);
     gather(r, first, count, scale, target != source, to);
   }
 }
 
-void fitted_operator::make_kernels(int count, double upper, double lower) {
+void fitted_operator::make_kernels(int count, double upper, double lower, bool own) {
   const double *x = kernel_[0].data(), nu = elastic_.poisson_ratio;
   double *xx = kernel_[1].data(), *yy = kernel_[2].data(), *xy = kernel_[3].data();
   if (line_)
     for (int i = 0; i < count; ++i) {
       yy[i] = 2.0 / x[i];
       xx[i] = (1.0 - nu) * yy[i];
-      xy[i] = 0;
     }
-  else if (lower < 0 && upper > 0)
-    strip_kernels(count, x, upper, lower, nu, xx, yy, xy);
+  else if (own)
+    strip_kernels(count, x, upper, lower, nu, xx, yy);
   else
     strip_kernels_beside(count, x, upper, lower, nu, xx, yy, xy);
 }

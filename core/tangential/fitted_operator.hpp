@@ -70,7 +70,7 @@ class fitted_operator final : public rolling_operator {
   void make_refinement(refinement &r, int factor);
   void make_blocks();
   void assemble(int target, int source);
-  void make_kernels(int count, double upper, double lower);
+  void make_kernels(int count, double upper, double lower, bool own);
   void gather(const refinement &r, int first, int count, double scale, bool coupled,
               double *px) const;
   void mirror(int target, int source);

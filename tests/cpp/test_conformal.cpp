@@ -346,6 +346,8 @@ TEST(ConformalRows, TurnWithTheirSurroundings) {
   for (int j = 0; j < g.ny; ++j) {
     EXPECT_NEAR(turned.angle(j), rows.angle(j) + by, 1e-9);
     EXPECT_NEAR(turned.y(j), std::cos(by) * rows.y(j) - std::sin(by) * rows.z(j), 1e-11);
+    // each row has its own radius
+    EXPECT_NE(rows.slip(0, j, 0), 0);
     EXPECT_NEAR(turned.slip(0, j, 0), rows.slip(0, j, 0), 1e-10);
     EXPECT_NEAR(turned.slip(1, j, 1e-3), rows.slip(1, j, 1e-3), 1e-10);
   }

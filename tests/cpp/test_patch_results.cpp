@@ -65,6 +65,22 @@ TEST(PatchResults, CoulombsLawHasOneSolution) {
 }
 
 // Pressures and area are those of elements as they were given.
+// Nothing rolls: no micro-slip has happened, whatever is asked for.
+TEST(PatchResults, AtStandstillThereAreNoTractions) {
+  for (const rp_tangential_method method : {RP_TANGENTIAL_FULL, RP_TANGENTIAL_FASTSIM}) {
+    scenes::handle h(scenes::patch(RP_NORMAL_HALF_SPACE, method));
+    rp_input in = scenes::patch_input(8e4, 1e-3, 2e-4, 0.1);
+    in.rolling_speed = 0;
+    const rp_result result = h.step(in);
+    const rp_patch_result &r = result.side[RP_RIGHT].patch[0];
+    ASSERT_EQ(r.status, RP_CONVERGED);
+    EXPECT_GT(r.normal_force, 0);
+    for (const double v : {r.creep_force[0], r.creep_force[1], r.spin_moment, r.friction_power})
+      EXPECT_EQ(v, 0);
+    EXPECT_EQ(r.elements[RP_SLIP], 0);
+  }
+}
+
 TEST(PatchResults, GivenHeightsAreOnTheGridOfTheirElements) {
   constexpr int nx = 21, ny = 17;
   constexpr double size[2] = {8e-4, 1.1e-3};

@@ -221,6 +221,8 @@ std::vector<double> touching(const heat_rows &r) {
   return p;
 }
 
+TEST(Columns, OfNoGridKeepNothing) { EXPECT_EQ(heat_columns().state_size(), 0u); }
+
 TEST(Columns, RowsAreOnTheirOwn) {
   const thermal_pair pair{{steel(90), cast_iron(15)}};
   const heat_rows all{20, 3, 4e-4, 1, 8}, one{20, 1, 4e-4, 1, 8};
