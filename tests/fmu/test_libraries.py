@@ -58,7 +58,8 @@ def test_libraries_of_another_version_are_refused(
     if text is not None:
         (folder / "stamp.txt").write_text(text)
     path = tmp_path / "none.fmu"
-    with pytest.raises(CaseError, match=r"libraries are of another version.*make fmu"):
+    found = "holds no libraries" if text is None else "libraries are of another version"
+    with pytest.raises(CaseError, match=rf"{found}.*make fmu"):
         pack_fmu(load_scene(SCENES["patch"]), path, backend=OWN, libraries=folder)
     assert not path.exists()
 

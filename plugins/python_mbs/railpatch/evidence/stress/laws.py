@@ -15,10 +15,11 @@ LEAST_YIELD = 0.1  # of the initial yield stress, below which a softening layer 
 # by the speed over that which halves a term, and how steeply each falls at rest
 SHAPES: dict[str, Callable[[Array], Array]] = {
     "exponential": lambda u: np.exp2(-u),
+    "polach": lambda u: np.exp2(-u),  # from other numbers
     "rational": lambda u: 1 / (1 + u),
     "linear": lambda u: np.maximum(0, 1 - u / 2),
 }
-STEEPEST = {"exponential": np.log(2.0), "rational": 1.0, "linear": 0.5}
+STEEPEST = {"exponential": np.log(2.0), "polach": np.log(2.0), "rational": 1.0, "linear": 0.5}
 
 
 def by_speed(friction: Friction, speed: Array) -> Array:

@@ -123,7 +123,7 @@ class Draw:
     def slip_velocity(self) -> dict[str, Any]:
         """Falling or rising friction."""
         random = self.random
-        shape = str(random.choice(list(SHAPES)))
+        shape = str(random.choice([name for name in SHAPES if name != "polach"]))
         rising = self.chance(0.3)
         self.features.append(f"{'rising' if rising else 'falling'} friction")
         if not rising:
