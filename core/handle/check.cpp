@@ -179,7 +179,7 @@ void check_build(const rp_config &c, checker &check) {
           "normal and tangential directions");
 }
 
-// Wheels roll on from tractions, and nothing else that the material would carry along.
+// Wheels roll on from tractions and friction, and nothing else that the material would carry along.
 const char *wheels_cannot_roll(const rp_config &c) {
   if (c.regime == RP_SHIFT)
     return "regime must be none, steady_rolling or transient_rolling for wheels";
@@ -187,8 +187,9 @@ const char *wheels_cannot_roll(const rp_config &c) {
     return "spin_offset must be none but with regime = steady_rolling";
   if (!(c.element_size[0] > 0))
     return "regime = transient_rolling of wheels needs element_size in place of elements";
-  if (c.friction_law != RP_COULOMB)
-    return "regime = transient_rolling of wheels needs friction_law = coulomb in this version";
+  if (c.friction_law == RP_TEMPERATURE)
+    return "regime = transient_rolling of wheels needs friction_law = coulomb or slip_velocity in "
+           "this version";
   if (c.layer_yield_stress > 0)
     return "layer_yield_stress must be 0 with regime = transient_rolling of wheels in this version";
   if (c.reference_surface != RP_REFERENCE_PLANE)

@@ -5,7 +5,7 @@
 
 namespace railpatch {
 
-patch_history::patch_history(int max_count, bool steps, const bound_law *law) {
+patch_history::patch_history(int max_count, bool steps, bool moves, const bound_law *law) {
   const auto n = static_cast<size_t>(max_count);
   if (steps)
     for (auto *b : {&last_px, &last_py}) *b = aligned_buffer<double>(n);
@@ -13,6 +13,7 @@ patch_history::patch_history(int max_count, bool steps, const bound_law *law) {
   after = aligned_buffer<carried_state>(n);
   friction = aligned_buffer<double>(n);
   if (steps) before = aligned_buffer<carried_state>(n);
+  if (steps && moves) last_states = aligned_buffer<carried_state>(n);
   if (!law->plastic()) return;
   yield_stress = aligned_buffer<double>(n);
   for (int c = 0; c < 2; ++c) {
@@ -54,6 +55,41 @@ void patch_history::remember(const grid &g, const std::array<double, 3> &referen
   last_share = share;
   std::copy_n(px, g.count(), last_px.data());
   std::copy_n(py, g.count(), last_py.data());
+  if (has_law()) std::copy_n(after.data(), g.count(), last_states.data());
+}
+
+void patch_history::begin_states(const grid &g) {
+  if (has_law()) std::fill_n(before.data(), g.count(), carried_state{{0, 0, 0}});
+}
+
+// Straight between elements in both directions, nothing beyond. Divisions into patches count with
+// their shares, as tractions do: what several of them carry is their mean.
+void patch_history::add_states(const grid &g, const past_tractions &past) {
+  const patch_history &last = *past.history;
+  if (!last.has_law()) return;
+  const grid &from = last.last_grid;
+  const auto first = static_cast<ptrdiff_t>(past.first_row) * from.nx;
+  const carried_state *states = last.last_states.data() + first;
+  const int nx = from.nx, ny = past.rows;
+  const double place[2] = {past.offset[0] / g.dx, past.offset[1] / g.dy};
+  const double whole[2] = {std::floor(place[0]), std::floor(place[1])};
+  const double u = place[0] - whole[0], v = place[1] - whole[1];
+  const double weight[2][2] = {{(1 - v) * (1 - u), (1 - v) * u}, {v * (1 - u), v * u}};
+  const auto within = [](double w, int n) {
+    return static_cast<int>(std::clamp(w, -2.0 - n, 2.0 + n));
+  };
+  const int column = within(whole[0], std::max(nx, g.nx)), row = within(whole[1], std::max(ny, g.ny));
+  for (int j = 0; j < g.ny; ++j)
+    for (int i = 0; i < g.nx; ++i) {
+      double *to = before[static_cast<size_t>(j * g.nx + i)].v;
+      for (int b = 0; b < 2; ++b)
+        for (int a = 0; a < 2; ++a) {
+          const int k = column + i + a, l = row + j + b;
+          if (k < 0 || l < 0 || k >= nx || l >= ny) continue;
+          const double *state = states[l * nx + k].v;
+          for (int c = 0; c < 3; ++c) to[c] += last.last_share * weight[b][a] * state[c];
+        }
+    }
 }
 
 void patch_history::shift_states(const grid &g, double upstream) {

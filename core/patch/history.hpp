@@ -10,10 +10,21 @@
 
 namespace railpatch {
 
+struct patch_history;
+
+// Tractions of a wheel's last step, in rows of what a patch remembers, as seen from the grid of a
+// problem: its element (0, 0) was at offset from that of the first row.
+struct past_tractions {
+  const patch_history *history;
+  int first_row, rows;
+  double offset[2];  // m
+};
+
 struct patch_history {
   patch_history() = default;
   // steps: the last step's tractions count; law: null for Coulomb friction without plasticity.
-  patch_history(int max_count, bool steps, const bound_law *law);
+  // moves: of wheels, whose grid moves.
+  patch_history(int max_count, bool steps, bool moves, const bound_law *law);
   bool keeps_steps() const { return has_physics && last_px.size() > 0; }
   bool has_law() const { return has_physics && after.size() > 0; }
 
@@ -24,15 +35,21 @@ struct patch_history {
   double last_share = 1;
   std::array<double, 3> last_reference{};  // m, without the rail's offset
   aligned_buffer<double> last_px, last_py;
+  aligned_buffer<carried_state> last_states;  // the same of a law
   aligned_buffer<carried_state> before, after;
   aligned_buffer<double> plastic_before[2], plastic[2], yield_stress, friction;
 
   // Begins a step: what the last one left becomes what was before, moved with the material from
   // x + upstream to x. Also where there is no law.
   void begin(const grid &g, double upstream, const double *px, const double *py);
-  // The same for wheels: keeps the last step's tractions while this one is solved, once or often.
+  // The same for wheels: keeps the last step's tractions, and what a law carries, while this one is
+  // solved, once or often.
   void remember(const grid &g, const std::array<double, 3> &reference, double share,
                 const double *px, const double *py);
+  // Of wheels, where there is a law: begins what was before with nothing, and adds what the last
+  // step of a patch left where each element's material was then.
+  void begin_states(const grid &g);
+  void add_states(const grid &g, const past_tractions &past);
   // Sets what is carried as no contact leaves it, for elements that then are in contact to differ.
   void start_from_before(const grid &g, const bound_law &law);
   // J/m^2 of the step's plastic displacement, in steady rolling over one element; traction p.
@@ -55,7 +72,8 @@ struct patch_history {
   // all, and what of it is the last step's and the plastic layer's
   size_t bytes() const;
   size_t step_bytes() const {
-    return 2 * last_px.bytes() + before.bytes() + 2 * plastic_before[0].bytes();
+    return 2 * last_px.bytes() + before.bytes() + last_states.bytes() +
+           2 * plastic_before[0].bytes();
   }
   size_t plastic_bytes() const { return 2 * plastic[0].bytes() + yield_stress.bytes(); }
 

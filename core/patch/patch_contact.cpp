@@ -120,6 +120,12 @@ void patch_contact::begin_solve(const patch_problem &problem, patch_memory &memo
     shared_.influence->set_grid(problem.g);
     if (memory.curved) shared_.influence->set_rows(memory.curved->cosine(), memory.curved->sine());
   }
+  if (problem.past && memory.history.has_law()) {
+    const stage_mark mark = shared_.marks.enter(RP_STAGE_HISTORY);
+    memory.history.begin_states(problem.g);
+    for (int k = 0; k < problem.past_count; ++k)
+      memory.history.add_states(problem.g, problem.past[k]);
+  }
   if (shared_.coupled) {
     const stage_mark mark = shared_.marks.enter(RP_STAGE_COUPLING);
     shared_.coupled->begin(problem.g, memory.undeformed_distance.data(), memory.px.data(),

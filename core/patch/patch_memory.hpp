@@ -17,14 +17,6 @@
 
 namespace railpatch {
 
-// Tractions of a wheel's last step, in rows of what a patch remembers, as seen from the grid of a
-// problem: its element (0, 0) was at offset from that of the first row.
-struct past_tractions {
-  const patch_history *history;
-  int first_row, rows;
-  double offset[2];  // m
-};
-
 // Where a patch lies and how it rolls, as its result states it.
 struct patch_place {
   bool on_wheel = false;  // else only the motion is known

@@ -248,7 +248,9 @@ void wheel_contact::place_patch(const patch_contact &solver, patch_region &regio
   const creepage_state rolling = geometry_->creepages(region.frame, depth);
   if (memory.curved) memory.curved->set_slip(*geometry_, depth, rolling.rolling_speed);
   problem.rolling_speed = rolling.rolling_speed;
-  problem.rolling = {{rolling.xi, rolling.eta}, rolling.phi, rolling.direction < 0 ? -1 : 1, 0.0};
+  problem.rolling = {{rolling.xi, rolling.eta}, rolling.phi, rolling.direction < 0 ? -1 : 1};
+  // what slip is divided by, near standstill too: so the slip velocity is that of the surfaces
+  problem.rolling.speed = rolling.rolling_speed;
   problem.parts = parts_on(region, problem.g);
   patch_place &place = problem.place;
   place.on_wheel = true;
@@ -296,7 +298,6 @@ void wheel_contact::set_past(const patch_memory *memory, const patch_region &reg
                              patch_problem &problem, past_tractions *past) const {
   rolling_input &rolling = problem.rolling;
   const double speed = problem.rolling_speed, slow = standstill_speed_;
-  rolling.speed = speed;
   // what stands still does not roll on; near standstill creepages refer to another speed
   rolling.regime = speed > 0 ? motion::transient : motion::shift;
   if (speed > 0) rolling.distance = speed * time_step_;

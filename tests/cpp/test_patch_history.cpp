@@ -53,7 +53,7 @@ class PatchHistory : public testing::TestWithParam<bool> {
 };
 
 TEST_P(PatchHistory, FreshMaterialHasNothing) {
-  patch_history h(18, true, &law);
+  patch_history h(18, true, false, &law);
   EXPECT_TRUE(h.keeps_steps() && h.has_law());
   h.begin(g, 1e-3, px.data(), py.data());
   h.start_from_before(g, law);
@@ -69,7 +69,7 @@ TEST_P(PatchHistory, FreshMaterialHasNothing) {
 TEST_P(PatchHistory, WhatWasCarriedIsWhereTheMaterialIs) {
   for (const double upstream : {0.0, 1e-3, 4e-4, -1.7e-3, 9e-3}) {
     SCOPED_TRACE(upstream);
-    patch_history h(18, true, &law);
+    patch_history h(18, true, false, &law);
     fill(h);
     h.begin(g, upstream, px.data(), py.data());
     h.start_from_before(g, law);
@@ -97,7 +97,7 @@ TEST_P(PatchHistory, WhatWasCarriedIsWhereTheMaterialIs) {
 
 // A smaller grid than what there is room for: nothing is written beside it.
 TEST_P(PatchHistory, WhatIsBesideTheGridStays) {
-  patch_history h(24, true, &law);
+  patch_history h(24, true, false, &law);
   fill(h);
   for (size_t k = 18; k < 24; ++k) h.before[k] = {{5, 6, 7}};
   h.begin(g, 4e-4, px.data(), py.data());
@@ -110,7 +110,7 @@ TEST_P(PatchHistory, WhatIsBesideTheGridStays) {
 TEST_P(PatchHistory, PlasticWorkIsThatOfTheStepsDisplacement) {
   for (const bool steps : {true, false})
     for (const int direction : {1, -1}) {
-      patch_history h(18, steps, &law);
+      patch_history h(18, steps, false, &law);
       if (steps) {
         fill(h);
         h.begin(g, 0, px.data(), py.data());
