@@ -74,9 +74,27 @@ rp_derivative_kind contact::differentiate(const rp_input &direction, rp_result &
 
 namespace {
 
-// The length of a direction from an input, in the input's own units.
-double reach_of(const rp_input &input, const rp_input &rates) {
-  double reach = 0;
+// m/s: along x the wheel's surface past the rail's, where it rolls without slip none
+double slip_speed(const rp_config &c, const rp_input &in) {
+  const double roller = c.track == RP_ROLLER ? c.roller_radius * in.roller_pitch_rate : 0.0;
+  return in.speed + c.nominal_radius * in.pitch_rate + roller;
+}
+
+// What slip changes by a good part of what matters: some thousandths of the rolling speed, and as
+// much as of the lateral velocity.
+constexpr double slip_range = 1e-3, slip_scale = 0.01;
+
+double reach_of_slip(const rp_config &c, const rp_input &input, const rp_input &rates) {
+  if (c.kind == RP_PATCH) return 0;
+  const double turning = c.track == RP_ROLLER ? c.roller_radius * input.roller_pitch_rate : 0.0;
+  const double rolling = std::max(std::fabs(input.speed), std::fabs(turning));
+  return std::fabs(slip_speed(c, rates)) / std::max(slip_scale, slip_range * rolling);
+}
+
+// The length of a direction from an input, in the input's own units. Of speed and pitch rates, which
+// nearly cancel, not only their own sizes count.
+double reach_of(const rp_config &c, const rp_input &input, const rp_input &rates) {
+  double reach = reach_of_slip(c, input, rates);
   const double *values[input_numbers];
   int numbers = 0;
   for_each_number(input, [&](const char *, const double &v, double) { values[numbers++] = &v; });
@@ -130,7 +148,7 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
   rp_input rates = d;
   for (double &rate : rates.bulk_temperature)
     if (std::isnan(rate)) rate = 0;
-  const double reach = reach_of(record.input, rates);
+  const double reach = reach_of(config_, record.input, rates);
   if (!(reach > 0)) return;
   const double length = std::cbrt(beside.tolerance_) / reach;
   rp_result ends[2];
