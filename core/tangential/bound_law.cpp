@@ -68,7 +68,11 @@ double slip_velocity_law::steepest_fall(double rate) const {
   // with D the way: d (mu_before - mu)/(d + D)^2 + D/(d + D) |dmu/dD|, mu_before not above the
   // law's greatest, and D |dmu/dD| not above the height for any of the laws; mu_before may be as
   // much above mu as the law rises
-  return std::min(1.25 * at_once, 2.0 * height / memory_distance) + rise / memory_distance;
+  const double moving =
+      std::min(1.25 * at_once, 2.0 * height / memory_distance) + rise / memory_distance;
+  // slower than s_0 the way is its least, however little is slipped, and the second term alone
+  const double least = rate > 0 ? memory_speed / rate : 0.0;
+  return std::max(moving, least / (memory_distance + least) * at_once);
 }
 
 // --- yield stress --------------------------------------------------------------------------------

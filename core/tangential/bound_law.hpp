@@ -87,7 +87,8 @@ class bound_law {
   double resolve(double friction, const carried_state &before, const double e[2], double size,
                  double stiffness, double low = 0) const;
   double at_rest(double friction, const carried_state &before) const;
-  // of b in any state, Pa and Pa/m
+  // of b in any state, Pa and Pa/m; where friction rises with slip while the layer softens, both in
+  // series, b may fall faster, and without limit where they do so at the same rate
   double greatest(double friction) const;
   double steepest_fall(double friction) const;
   // the same while plastic displacement grows

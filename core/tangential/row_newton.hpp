@@ -79,6 +79,7 @@ class row_newton {
     micro_slip(t, t.problem.traction, t.problem.micro_slip);
     return measure(t, t.problem.traction, t.problem.micro_slip, f_.data());
   }
+  void evaluate_slip(Task &t) { micro_slip(t, t.problem.traction, t.problem.micro_slip); }
   double evaluate_trial(Task &t) {
     micro_slip(t, trial_p_.data(), trial_s_.data());
     return measure(t, trial_p_.data(), trial_s_.data(), trial_f_.data());

@@ -129,6 +129,15 @@ inline rp_config wheels(rp_kind kind, rp_track track, const profile_pair &pair) 
   return c;
 }
 
+// Friction that falls by half from sticking to the slip of tenths of a metre per second.
+inline void set_falling_friction(rp_config &c) {
+  c.friction_law = RP_SLIP_VELOCITY;
+  c.friction_kinetic = 0.15;
+  c.friction_amplitude[0] = 0.2;
+  c.friction_halving_speed[0] = 0.05;
+  c.friction_memory_distance = 5e-4;
+}
+
 inline rp_input patch_input(double force, double xi, double eta, double phi) {
   rp_input in;
   rp_default_input(&in);

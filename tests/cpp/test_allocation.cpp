@@ -335,7 +335,6 @@ TEST(Step, OnATrackThatVariesAllocatesNothing) {
     }
 }
 
-// The transforms alone, in sizes up to grids of 250 elements.
 // A flat wheel and a rail with a dip, with patches that move over the rail.
 TEST(Step, OfTransientRollingWheelsAllocatesNothing) {
   const scenes::profile_pair pair;
@@ -360,8 +359,11 @@ TEST(Step, OfTransientRollingWheelsAllocatesNothing) {
     inputs.push_back(in);
   }
   EXPECT_EQ(run(c, inputs).allocated, 0);
+  scenes::set_falling_friction(c);
+  EXPECT_EQ(run(c, inputs).allocated, 0);
 }
 
+// The transforms alone, in sizes up to grids of 250 elements.
 TEST(Transforms, AllocateNothing) {
   std::vector<int> sizes;
   for (int n = 4; n <= 500; n = railpatch::smooth_size(n + 1)) sizes.push_back(n);

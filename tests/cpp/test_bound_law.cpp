@@ -155,4 +155,39 @@ TEST(BoundLaw, ResolventSolvesTheLaw) {
   }
 }
 
+// Laws and memories of all sizes: speeds at which the law has fallen before the least way of the
+// memory, terms that rise, what material may carry.
+TEST(BoundLaw, FrictionFallsNoFasterThanItsLimit) {
+  std::mt19937_64 random(31);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const auto decades = [&](double low, double high) {
+    return std::pow(10.0, low + (high - low) * unit(random));
+  };
+  int near = 0;
+  for (int i = 0; i < 200000; ++i) {
+    bound_law law;
+    law.by_velocity = true;
+    law.speed = 1;
+    slip_velocity_law &slip = law.slip;
+    slip.shape = static_cast<rp_slip_law>(random() % choice_count<rp_slip_law>);
+    slip.amplitude[0] = 0.4 * unit(random);
+    slip.amplitude[1] = random() % 3 ? 0.4 * (unit(random) - 0.5) : 0.0;
+    slip.kinetic = std::max(-slip.amplitude[1], 0.0) + 0.2 * unit(random);
+    for (double &h : slip.halving_speed) h = decades(-2, 2);
+    slip.memory_distance = random() % 3 ? decades(-2, 2) : 0.0;
+    slip.memory_speed = decades(-3, 1);
+    carried_state before{};
+    if (law.remembers()) {
+      const double least = slip.kinetic + std::min(slip.amplitude[1], 0.0) - slip.standing();
+      const double most = slip.greatest() - slip.standing();
+      before.v[0] = random() % 3 ? least + (most - least) * unit(random) : most;
+    }
+    const double e[2] = {1, 0}, m = decades(-4, 3);
+    const double fall = -law.evaluate(1.0, before, e, m).by_slip, most = law.steepest_fall(1.0);
+    ASSERT_LE(fall, most * (1 + 1e-9) + 1e-15) << i;
+    near += fall > 0.9 * most;
+  }
+  EXPECT_GT(near, 1000);
+}
+
 }  // namespace

@@ -306,8 +306,11 @@ TEST_F(Checks, Regimes) {
     c.elements[0] = c.elements[1] = 20;
     c.element_size[0] = c.element_size[1] = 0;
   });
-  refuses("friction_law = coulomb in this version",
-          [](rp_config &c) { c.friction_law = RP_SLIP_VELOCITY; });
+  accepts([](rp_config &c) { c.friction_law = RP_SLIP_VELOCITY; });
+  refuses("friction_law = coulomb or slip_velocity in this version", [](rp_config &c) {
+    c.friction_law = RP_TEMPERATURE;
+    c.temperature = 1;
+  });
   refuses("layer_yield_stress must be 0 with regime = transient_rolling of wheels",
           [](rp_config &c) { c.layer_yield_stress = 1e8; });
   refuses("reference_surface must be plane with regime = transient_rolling of wheels",

@@ -129,7 +129,8 @@ struct wavy {
   std::vector<double> runout, height;
   rp_config config;
 
-  explicit wavy(rp_kind kind) : config(scenes::wheels(kind, RP_RAIL, pair)) {
+  explicit wavy(rp_kind kind, bool falling = false) : config(scenes::wheels(kind, RP_RAIL, pair)) {
+    if (falling) scenes::set_falling_friction(config);
     for (int i = 0; i < 720; ++i) runout.push_back(1e-4 * std::sin(2 * pi * 20 * i / 720));
     for (int i = 0; i < 200; ++i) height.push_back(-1e-4 * std::exp(-std::pow((i - 100) / 15., 2)));
     config.regime = RP_TRANSIENT_ROLLING;
@@ -152,32 +153,35 @@ struct wavy {
 };
 
 TEST(TransientWheels, AStateRestoredStepsToTheSameBits) {
-  for (rp_kind kind : {RP_WHEEL_RAIL, RP_WHEELSET}) {
-    const wavy w(kind);
-    scenes::handle first(w.config), second(w.config);
-    for (int k = 0; k < 6; ++k) first.step(w.input(k));
-    const auto state = first.state();
-    ASSERT_EQ(second.restore(state), RP_OK);
-    for (int k = 6; k < 12; ++k) {
-      const rp_result a = first.step(w.input(k)), b = second.step(w.input(k));
-      EXPECT_EQ(a.status, RP_CONVERGED);
-      EXPECT_EQ(scenes::difference(a, b), "");
+  for (rp_kind kind : {RP_WHEEL_RAIL, RP_WHEELSET})
+    for (bool falling : {false, true}) {
+      const wavy w(kind, falling);
+      scenes::handle first(w.config), second(w.config);
+      for (int k = 0; k < 6; ++k) first.step(w.input(k));
+      const auto state = first.state();
+      ASSERT_EQ(second.restore(state), RP_OK);
+      for (int k = 6; k < 12; ++k) {
+        const rp_result a = first.step(w.input(k)), b = second.step(w.input(k));
+        EXPECT_EQ(a.status, RP_CONVERGED);
+        EXPECT_EQ(scenes::difference(a, b), "");
+      }
     }
-  }
 }
 
 TEST(TransientWheels, WhatLiftsOffForgets) {
-  wavy w(RP_WHEEL_RAIL);
-  w.config.load = RP_POSITION;
-  const auto at = [&](int k, double z) {
-    rp_input in = w.input(k);
-    in.z = z;
-    return in;
-  };
-  scenes::handle used(w.config), fresh(w.config);
-  for (int k = 0; k < 5; ++k) EXPECT_EQ(used.step(at(k, 4e-4)).status, RP_CONVERGED);
-  EXPECT_EQ(used.step(at(5, -2e-3)).status, RP_NO_CONTACT);
-  EXPECT_EQ(scenes::difference(used.step(at(6, 4e-4)), fresh.step(at(6, 4e-4))), "");
+  for (bool falling : {false, true}) {
+    wavy w(RP_WHEEL_RAIL, falling);
+    w.config.load = RP_POSITION;
+    const auto at = [&](int k, double z) {
+      rp_input in = w.input(k);
+      in.z = z;
+      return in;
+    };
+    scenes::handle used(w.config), fresh(w.config);
+    for (int k = 0; k < 5; ++k) EXPECT_EQ(used.step(at(k, 4e-4)).status, RP_CONVERGED);
+    EXPECT_EQ(used.step(at(5, -2e-3)).status, RP_NO_CONTACT);
+    EXPECT_EQ(scenes::difference(used.step(at(6, 4e-4)), fresh.step(at(6, 4e-4))), "");
+  }
 }
 
 // From the first step, in which little has crept yet, towards what is steady.
@@ -238,15 +242,17 @@ TEST(TransientWheels, RailsMovedAsideCarryTheirMaterial) {
 }
 
 TEST(TransientWheels, LeftIsTheMirrorOfRight) {
-  const wavy w(RP_WHEELSET);
-  scenes::handle contact(w.config);
-  for (int k = 0; k < 6; ++k) {
-    rp_input in = w.input(k);
-    in.y = 0;
-    const rp_result r = contact.step(in);
-    EXPECT_EQ(r.side[0].force[0], r.side[1].force[0]);
-    EXPECT_EQ(r.side[0].force[1], -r.side[1].force[1]);
-    EXPECT_EQ(r.side[0].force[2], r.side[1].force[2]);
+  for (bool falling : {false, true}) {
+    const wavy w(RP_WHEELSET, falling);
+    scenes::handle contact(w.config);
+    for (int k = 0; k < 6; ++k) {
+      rp_input in = w.input(k);
+      in.y = 0;
+      const rp_result r = contact.step(in);
+      EXPECT_EQ(r.side[0].force[0], r.side[1].force[0]);
+      EXPECT_EQ(r.side[0].force[1], -r.side[1].force[1]);
+      EXPECT_EQ(r.side[0].force[2], r.side[1].force[2]);
+    }
   }
 }
 
@@ -287,7 +293,7 @@ TEST(TransientWheels, WhatTheyCannotDoIsRefused) {
   };
   refused([](rp_config &c) { c.regime = RP_SHIFT; }, "regime");
   refused([](rp_config &c) { c.temperature = 1; }, "temperature");
-  refused([](rp_config &c) { c.friction_law = RP_SLIP_VELOCITY; }, "friction_law");
+  refused([](rp_config &c) { c.friction_law = RP_TEMPERATURE, c.temperature = 1; }, "friction_law");
   refused([](rp_config &c) { c.layer_yield_stress = 1e8; }, "layer_yield_stress");
   refused([](rp_config &c) { c.poisson_ratio[0] = 0.1; }, "(1-2nu)/G");
   refused([](rp_config &c) { c.normal = RP_NORMAL_ANALYN; }, "half_space");

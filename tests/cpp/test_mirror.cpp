@@ -119,6 +119,8 @@ struct scene {
   rp_normal_method normal = RP_NORMAL_HALF_SPACE;
   int fitted = 0;
   rp_reference_surface surface = RP_REFERENCE_PLANE;
+  bool falling = false;  // friction
+  rp_regime regime = RP_STEADY_ROLLING;
 };
 
 void PrintTo(const scene &s, std::ostream *out) { *out << s.name; }
@@ -138,6 +140,12 @@ const scene all_scenes[] = {
      RP_REFERENCE_CURVED},
     {"curved_roller", RP_WHEEL_RAIL, RP_ROLLER, RP_POSITION, 0.0, RP_NORMAL_HALF_SPACE, 0,
      RP_REFERENCE_CURVED},
+    {"falling_friction_on_rails", RP_WHEELSET, RP_RAIL, RP_FORCE, 0.0, RP_NORMAL_HALF_SPACE, 0,
+     RP_REFERENCE_PLANE, true},
+    {"falling_friction_on_a_roller", RP_WHEEL_RAIL, RP_ROLLER, RP_POSITION, 0.0, RP_NORMAL_ANALYN,
+     0, RP_REFERENCE_PLANE, true},
+    {"falling_friction_with_history", RP_WHEELSET, RP_RAIL, RP_FORCE, 1.0 / 500,
+     RP_NORMAL_HALF_SPACE, 0, RP_REFERENCE_PLANE, true, RP_TRANSIENT_ROLLING},
 };
 
 class Mirror : public testing::TestWithParam<scene> {
@@ -146,6 +154,7 @@ class Mirror : public testing::TestWithParam<scene> {
   rp_input random_input(std::mt19937_64 &random) {
     std::uniform_real_distribution<double> u(-1, 1);
     rp_input in = scenes::running(GetParam().track);
+    in.time_step = 1e-4;
     in.vertical_force = GetParam().kind == RP_WHEELSET ? 1.2e5 : 6e4;
     in.y = 4e-3 * u(random);
     in.yaw = 5e-3 * u(random);
@@ -182,6 +191,8 @@ TEST_P(Mirror, EqualsTheMirroredMotion) {
   c.curvature = GetParam().curvature;
   c.normal = GetParam().normal;
   c.reference_surface = GetParam().surface;
+  c.regime = GetParam().regime;
+  if (GetParam().falling) scenes::set_falling_friction(c);
   c.fitted[0] = GetParam().fitted;
   c.fitted[1] = GetParam().fitted > 0 ? GetParam().fitted + 1 : 0;
   c.load = RP_FORCE;

@@ -89,6 +89,9 @@ std::vector<scene> all_scenes() {
   curved.reference_surface = RP_REFERENCE_CURVED;
   add("wheelset_curved_surface", curved, wheel_inputs(RP_RAIL));
   add("wheelset_roller", scenes::wheels(RP_WHEELSET, RP_ROLLER, pair()), wheel_inputs(RP_ROLLER));
+  rp_config falling = scenes::wheels(RP_WHEELSET, RP_RAIL, pair());
+  scenes::set_falling_friction(falling);
+  add("wheelset_falling_friction", falling, wheel_inputs(RP_RAIL));
   rp_config one = scenes::wheels(RP_WHEEL_RAIL, RP_RAIL, pair());
   one.side = RP_LEFT;
   add("left_wheel", one, wheel_inputs(RP_RAIL));
