@@ -21,8 +21,11 @@ namespace {
 constexpr int max_fitted_nodes = 48 * 48;
 
 #define RP_NO_FIELD(type, name, count)
+// A choice is one of its words in every case: whoever reads all members reads it too.
+#define RP_IS_CHECKED(role, where) \
+  ((case_role::role == case_role::choice ? case_part::always : case_part::where) == part)
 #define RP_CHECK_CONFIG(type, name, count, role, where, ...) \
-  if (case_part::where == part) check.field(#name, c.name, config_range::name);
+  if (RP_IS_CHECKED(role, where)) check.field(#name, c.name, config_range::name);
 #define RP_CHECK_INPUT(type, name, count, role, where, ...) \
   if (case_part::where == part) check.field(#name, in.name, input_range::name);
 

@@ -2,6 +2,7 @@
 // told in the rule's own words.
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <numeric>
@@ -95,6 +96,17 @@ TEST_F(Checks, NumbersHaveTheirRanges) {
   });
   // a layer's modulus counts with a layer only
   accepts([](rp_config &c) { c.layer_thickness = 0, c.layer_shear_modulus = 0; });
+}
+
+// What one kind of case does not read is a word of its choice all the same.
+TEST_F(Checks, ChoicesAreWordsInEveryCase) {
+  const int none = 99;
+  for (const bool on_wheels : {false, true}) {
+    if (on_wheels) base = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+    refuses("geometry is 99", [&](rp_config &c) { std::memcpy(&c.geometry, &none, sizeof none); });
+    refuses("track is 99", [&](rp_config &c) { std::memcpy(&c.track, &none, sizeof none); });
+    refuses("slip_law is 99", [&](rp_config &c) { std::memcpy(&c.slip_law, &none, sizeof none); });
+  }
 }
 
 TEST_F(Checks, IntegersHaveTheirRanges) {
