@@ -91,8 +91,8 @@ double reach_of_slip(const rp_config &c, const rp_input &input, const rp_input &
   return std::fabs(slip_speed(c, rates)) / std::max(slip_scale, slip_range * rolling);
 }
 
-// The length of a direction from an input, in the input's own units. Of speed and pitch rates, which
-// nearly cancel, not only their own sizes count.
+// The length of a direction from an input, in the input's own units. Of speed and pitch rates,
+// which nearly cancel, not only their own sizes count.
 double reach_of(const rp_config &c, const rp_input &input, const rp_input &rates) {
   double reach = reach_of_slip(c, input, rates);
   const double *values[input_numbers];

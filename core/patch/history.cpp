@@ -78,7 +78,8 @@ void patch_history::add_states(const grid &g, const past_tractions &past) {
   const auto within = [](double w, int n) {
     return static_cast<int>(std::clamp(w, -2.0 - n, 2.0 + n));
   };
-  const int column = within(whole[0], std::max(nx, g.nx)), row = within(whole[1], std::max(ny, g.ny));
+  const int column = within(whole[0], std::max(nx, g.nx)),
+            row = within(whole[1], std::max(ny, g.ny));
   for (int j = 0; j < g.ny; ++j)
     for (int i = 0; i < g.nx; ++i) {
       double *to = before[static_cast<size_t>(j * g.nx + i)].v;

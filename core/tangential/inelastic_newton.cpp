@@ -286,8 +286,9 @@ double inelastic_newton::descend(task &t, double goal) {
   return error <= least ? error : recall(t);
 }
 
-// Solves one element after another, along each row; in steady rolling rows feel each other's changes
-// afterwards, in a step of transient rolling, where they are coupled far more strongly, at once.
+// Solves one element after another, along each row; in steady rolling rows feel each other's
+// changes afterwards, in a step of transient rolling, where they are coupled far more strongly, at
+// once.
 void inelastic_newton::sweep(task &t) {
   double *p = t.problem.traction, *s = t.problem.micro_slip;
   for (int row = 0; row < t.problem.rows; ++row) {

@@ -54,6 +54,11 @@ WARM_LAW = {
     "reference_temperature": 25.0,
     "temperature_range": 300.0,
 }
+# with a memory of the friction coefficient
+FALLING = {
+    **{"law": "slip_velocity", "kinetic": 0.1, "amplitude": 0.25, "halving_speed": 0.02},
+    "memory_distance": 1e-3,
+}
 SCENES: dict[str, dict[str, Any]] = {
     "patch": PATCH,
     "patch_approach": with_values(
@@ -97,6 +102,14 @@ SCENES: dict[str, dict[str, Any]] = {
     "patches": PATCHES,
     "frictionless": with_values(RAIL, method={"tangential": "none"}, friction=None),
     "transient": with_values(RAIL, motion__regime="transient_rolling", wheelset__time_step=STEP),
+    "falling_wheels": with_values(RAIL, wheelset__pitch_rate=-2.01 / 0.46, friction=FALLING),
+    "falling_transient": with_values(
+        RAIL,
+        motion__regime="transient_rolling",
+        wheelset__time_step=STEP,
+        wheelset__pitch_rate=-2.05 / 0.46,
+        friction=FALLING,
+    ),
     "transient_patch": with_values(
         PATCH, motion__regime="transient_rolling", motion__distance=1e-2, motion__steps=1
     ),
@@ -168,6 +181,8 @@ MOTIONS: dict[str, list[dict[str, float]]] = {
     "left_wheel": [{"wheelset.yaw": -1e-3, "track.left.offset[2]": 1e-4}],
     "patches": [{"wheelset.y": y} for y in (5.75e-3, 6e-3, 6.25e-3, 5.5e-3, 0.0)],
     "frictionless": [{"wheelset.yaw": 1e-3}, {"wheelset.z": 2.1e-4}],
+    "falling_wheels": [{"wheelset.yaw": 1e-3}, {"wheelset.vy": 0.01}, {"wheelset.speed": 2.2}],
+    "falling_transient": [{"wheelset.yaw": 1e-3}, {"wheelset.vy": 0.01}, {"wheelset.z": 2.1e-4}],
     "transient": [{"wheelset.yaw": 1e-3}, {"wheelset.vy": 0.01}, {"wheelset.z": 2.1e-4}],
     "transient_patch": [{"creepage[1]": 5e-4}, {"creepage[2]": -5e-4, "normal_force": 6e4}],
     "supported": [{"wheelset.y": 1e-4}, {"wheelset.z": 2.2e-4, "track.left.velocity[2]": 0.01}],
