@@ -78,14 +78,16 @@ double temperature_stage::finish(const double *pressure, heat_memory &memory) {
     steady_->rise(flux_.data(), nullptr, rise_.data());
   const double per_body = 1.0 / scene_.bodies.effusivity();
   const double *e = exchanged();
-  double greatest = -273.15;
+  const bool touches = std::any_of(pressure, pressure + count(), [](double p) { return p > 0; });
+  double greatest =
+      touches ? -273.15 : std::max(scene_.bodies.body[0].bulk, scene_.bodies.body[1].bulk);
   for (int k = 0; k < 2; ++k)
     for (int i = 0; i < count(); ++i) {
       const auto at = static_cast<size_t>(i);
       const double t = scene_.bodies.surface(k, e ? e[i] : 0.0, rise_[at] * per_body);
       memory.temperature[k][at] = t;
       // written so that a temperature that is no number stays visible
-      if (!(t <= greatest)) greatest = t;
+      if (pressure[at] > 0 && !(t <= greatest)) greatest = t;
     }
   // no contact, no coefficient
   for (size_t at = 0; at < memory.friction.size() && at < static_cast<size_t>(count()); ++at)

@@ -118,6 +118,10 @@ class Layer(Table):
                 raise relation("hardening_table", shown, "a first displacement of 0")
         elif self.hardening is not None and self.yield_stress is None:
             raise relation("hardening", self.hardening, "only with yield_stress")
+        for name in () if self.is_plastic else ("plastic_rule", "plastic_heat_fraction"):
+            if getattr(self, name) != type(self).model_fields[name].default:
+                shown = repr(getattr(self, name))
+                raise relation(name, shown, "only with yield_stress or hardening_table")
         return self
 
     @property
@@ -259,6 +263,11 @@ def check_physics(
         if method.accuracy is not None:
             allowed = f"to be left out with {asking}: give 'grid'"
             raise relation("method.accuracy", method.accuracy, allowed)
+    if layer is not None and heat is None:
+        fraction = Layer.model_fields["plastic_heat_fraction"].default
+        if layer.plastic_heat_fraction != fraction:
+            shown = layer.plastic_heat_fraction
+            raise relation("layer.plastic_heat_fraction", shown, "only with [temperature]")
     if friction is not None and friction.law == "temperature" and heat is None:
         raise relation("temperature", "missing", "the table [temperature] with this friction law")
 

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from railpatch.case.common import couples
 from railpatch.case.types import (
     SIDES,
     Number,
@@ -145,5 +146,7 @@ def check_rolling(case: Any) -> None:
         raise relation("layer", "one that yields", f"an elastic layer {where}")
     if case.temperature is not None:
         raise relation("temperature", "given", f"to be left out {where}")
+    if couples(case.material):
+        raise relation("material", "unlike bodies", f"equal (1 - 2 nu)/G {where}")
     if case.method.spin_offset != "none":
         raise relation("method.spin_offset", repr(case.method.spin_offset), f"'none' {where}")

@@ -112,7 +112,7 @@ def layer_config(case: Case) -> dict[str, Any]:
 
 def temperature_config(case: Case) -> dict[str, Any]:
     """Surface temperature."""
-    if case.temperature is None:
+    if not has_heat(case):
         return {}
     found = passed("temperature", case.temperature, _core.CONFIG_FIELDS)
     return {"temperature": 1, **found, **bulk_of(case)}
@@ -229,8 +229,15 @@ def input_of(case: Case) -> dict[str, Any]:
 
 def bulk_of(case: Case) -> dict[str, Any]:
     """Bulk temperatures, in a scene that has them."""
-    heat = case.temperature
-    return {} if heat is None else {"bulk_temperature": [getattr(heat, body) for body in BODIES]}
+    if not has_heat(case):
+        return {}
+    return {"bulk_temperature": [getattr(case.temperature, body) for body in BODIES]}
+
+
+def has_heat(case: Case) -> bool:
+    """Whether there are temperatures; wheels whose tangential problem is left out have none."""
+    rolls = isinstance(case, PatchCase) or case.has_tangential
+    return case.temperature is not None and rolls
 
 
 def rates_of(case: Case, direction: Mapping[str, Any]) -> dict[str, Any]:
