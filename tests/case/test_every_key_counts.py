@@ -506,6 +506,18 @@ IDLE = [
         for table in ("wheelset", "track")
         for side in ("left", "right")
     ),
+    Idle(
+        "friction",
+        lambda c, k, v: get(c, "layer.yield_stress") and get(c, "friction.law") == "slip_velocity",
+        "the layer yields before friction is reached",
+        (),
+    ),
+    Idle(
+        "layer.plastic_rule",
+        lambda c, k, v: get(c, "layer.hardening_table") is not None,
+        "a path that does not turn is as long as its sum",
+        ("plastic layer",),
+    ),
     Idle("wheelset.x", needs_no_length, "nothing varies along the track", ("joint",)),
     Idle("wheelset.pitch", runs_round, "the wheels are round", ("runout",)),
     Idle("wheelset.time_step", steady, "each step stands alone", ("transient",)),
