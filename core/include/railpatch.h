@@ -450,7 +450,7 @@ typedef struct rp_patch_result {
   double max_pressure;       /* Pa */
   double contact_area;       /* m^2 */
   int32_t elements[4];       /* exterior, stick, slip, plastic; indexed by rp_element */
-  double max_temperature;    /* degrees C; NaN: not part of the scene */
+  double max_temperature;    /* degrees C, of the contact; NaN: not part of the scene */
   double friction_power;     /* W, >= 0, that friction turns into heat: the part of creep_power that
                                 the layer does not take (Polach: without spin) and, of unlike
                                 bodies, what the pressure supplies by its moment against rolling; of

@@ -36,7 +36,7 @@
   X(double, contact_area, 1, number, even, zero, alone, NAN, "m^2", "area in contact")            \
   X(int32_t, elements, 4, count, even, kept, alone, 0, "-", "the element division, counted")      \
   X(double, max_temperature, 1, number, even, own, greatest, NAN, "degrees C",                    \
-    "highest surface temperature")                                                                \
+    "highest surface temperature of the contact")                                                 \
   X(double, friction_power, 1, number, even, zero_rolling, by_share, NAN, "W",                    \
     "power lost in friction, >= 0")                                                               \
   X(double, plastic_power, 1, number, even, zero_plastic, by_share, NAN, "W",                     \
@@ -102,7 +102,7 @@
   X(double, elastic_energy, 1, number, even, kept, added, NAN, "J",                      \
     "elastic energy, of all patches by share")                                           \
   X(double, max_temperature, 1, number, even, kept, greatest, NAN, "degrees C",          \
-    "highest surface temperature of all patches")                                        \
+    "highest surface temperature of all contacts")                                       \
   X(double, residual, 1, estimate, even, kept, greatest, 0, "-",                         \
     "greatest residual at the end of all patches")
 
@@ -126,7 +126,7 @@
   X(double, elastic_energy, 1, number, even, kept, alone, NAN, "J",                              \
     "elastic energy, of all patches by share")                                                   \
   X(double, max_temperature, 1, number, even, kept, alone, NAN, "degrees C",                     \
-    "highest surface temperature of all patches")                                                \
+    "highest surface temperature of all contacts")                                               \
   X(double, residual, 1, estimate, even, kept, alone, 0, "-",                                    \
     "greatest residual at the end of all patches")
 
