@@ -15,7 +15,10 @@ from fmu_scenes import MOTIONS, SCENES
 from slave import DISCARD, ERROR, OK, Fmu, Integer, Real, Reference, Size, Slave
 
 Unpack = Callable[..., Fmu]
-HISTORY = ("transient", "transient_patch", "supported", "springs", "plastic", "falling", "hot")
+HISTORY = (
+    "transient", "transient_patch", "supported", "springs", "plastic", "falling", "hot",
+    "falling_wheels", "falling_transient",
+)  # fmt: skip
 NONE = Size(0)
 INSTANTIATED, INITIALIZATION, EVENT, CONTINUOUS, TERMINATED, ERROR_STATE = range(6)
 ALL = {INSTANTIATED, INITIALIZATION, EVENT, CONTINUOUS, TERMINATED, ERROR_STATE}

@@ -153,7 +153,7 @@ def temperature_findings(step: Step) -> Iterator[Finding]:
     yield Finding("below bulk temperature", (coldest - float(temperature.min())) / size, 1e-9)
     yield Finding(
         "greatest temperature",
-        abs(step.patch["max_temperature"] - float(step["temperature"].max())) / size,
+        abs(step.patch["max_temperature"] - float(temperature.max())) / size,
         1e-9,
     )
     if step.regime == "steady_rolling" and heat.depth == 0 and step.patch["rolling_speed"] > 0:
