@@ -26,6 +26,7 @@
 #include "geometry/longitudinal_shape.hpp"
 #include "geometry/placement.hpp"
 #include "geometry/profile.hpp"
+#include "geometry/surface_slopes.hpp"
 
 namespace railpatch {
 
@@ -97,6 +98,11 @@ class side_geometry : private placement<double> {
   // What varies along the rolling direction, null: nothing; place it before place().
   void set_shape(const longitudinal_shape *shape) { shape_ = shape; }
   bool shaped() const { return shape_ != nullptr; }
+  // Whether the rail has no slope along x.
+  bool level() const {
+    return track_.kind == track_kind::rail && !(shape_ && shape_->has_height());
+  }
+  bool one_point() const { return sizes_.one_point; }
   // With a shape: the overlap along x in the row at s, y at its mean and dy/ds of the meridian.
   row_overlap overlap(double s, double &y, double &dy) const;
 
@@ -115,11 +121,19 @@ class side_geometry : private placement<double> {
   // h[ny][nx], x fastest; no_surface beyond the profiles.
   void undeformed_distance(const contact_frame &frame, const surface_grid &grid, double *h) const;
 
+  // The rail's slopes on a grid, zero where the rail does not reach; along_rows: by element where
+  // they differ along x, else those at x = 0.
+  void rail_slopes(const contact_frame &frame, const surface_grid &grid, bool along_rows,
+                   surface_slopes &out) const;
+
   // Where the lines along n through a grid's elements meet one of the surfaces.
   void meet_surface(body which, const contact_frame &frame, const surface_grid &grid,
                     surface_visitor &visitor) const;
 
   using placement<double>::creepages;
+  // m, along n from a frame's origin: of the point whose velocities are a wheel's and a rail's, and
+  // at which creep forces act.
+  using placement<double>::contact_depth;
   // From the wheelset centre to the contact reference, track axes: for moments.
   using placement<double>::lever;
   // Distance of the wheel's contact point from the wheelset's axis.

@@ -70,6 +70,11 @@ class longitudinal_shape {
   double runout(double angle) const { return has_runout() ? runout_.at(pitch_ - angle) : 0.0; }
   // m, xi ahead of the wheelset's centre
   double height(double xi) const { return has_height() ? height_.at(x_ + xi) : 0.0; }
+  double height_slope(double xi) const {
+    double slope;
+    height_.at(x_ + xi, slope);
+    return slope;
+  }
   // not less than their sum anywhere near
   double greatest() const { return greatest_; }
   std::size_t bytes() const { return sizeof *this + runout_.bytes() + height_.bytes(); }

@@ -51,6 +51,9 @@ struct track_config {
 struct wheel_config {
   double nominal_radius = 0, flange_back_distance = 0, flange_back_position = 0;  // m
   double standstill_speed = 0;                                                    // m/s
+  // velocities of wheel and rail are those at one point, see contact_depth(); else of a point on
+  // each, as the program CONTACT has it
+  bool one_point = true;
 };
 
 // All that moves in a step, for one side.
@@ -227,6 +230,18 @@ struct placement {
 
   basic_creepage_state<T> creepages(const basic_contact_frame<T> &frame, const T &approach) const;
 
+  // Where the velocities of both surfaces, as far from it as their curvatures along x say, agree
+  // when they roll on each other: the same point for both lets a common motion of both make no slip
+  // and gives back as power what the creepages take.
+  T contact_depth(const basic_contact_frame<T> &frame, const T &approach) const {
+    using std::sqrt;
+    if (!sizes_.one_point) return T(0);
+    if (track_.kind == track_kind::rail) return approach;
+    const T ahead = frame.origin[0] - axle_x_, below = axle_z_ - frame.origin[2];
+    const T radius = sqrt(ahead * ahead + below * below);
+    return approach * radius / (radius + rolling_radius(frame, approach));
+  }
+
   vec<T> lever(const basic_contact_frame<T> &frame) const { return frame.origin - centre_; }
 
   T rolling_radius(const basic_contact_frame<T> &frame, const T &approach) const {
@@ -246,7 +261,9 @@ basic_creepage_state<T> placement<T>::creepages(const basic_contact_frame<T> &fr
   using std::sin;
   const basic_wheelset_state<T> &w = motion_.wheelset;
   const frame_axes<T> f = axes_of(frame);
-  const vec<T> at = frame.origin + approach * f.n;  // of the wheel's undeformed surface
+  const T depth = contact_depth(frame, approach);
+  const vec<T> under = frame.origin + depth * f.n;
+  const vec<T> at = sizes_.one_point ? under : frame.origin + approach * f.n;
   // the track frame follows the centre line: in a curve it turns about its z axis
   const vec<T> frame_spin{T(0), T(0), track_.curvature * w.speed};
   const vec<T> swing = swing_of(w);
@@ -264,13 +281,13 @@ basic_creepage_state<T> placement<T>::creepages(const basic_contact_frame<T> &fr
   if (rail_moves) spin = spin - (roller ? vec<T>{rail_spin[0], T(0), rail_spin[2]} : rail_spin);
   T forward = carried[0], backward = turned[0];
   if (rail_moves && !roller) {
-    const vec<T> below = rail_rate(frame.origin);
+    const vec<T> below = rail_rate(under);
     forward -= below[0];
     slip = slip - below;
   }
   if (roller) {
-    vec<T> below = cross(roller_spin, frame.origin - vec<T>{axle_x_, T(0), axle_z_});
-    if (rail_moves) below = below + rail_rate(frame.origin);
+    vec<T> below = cross(roller_spin, under - vec<T>{axle_x_, T(0), axle_z_});
+    if (rail_moves) below = below + rail_rate(under);
     forward = -below[0];
     backward = slip[0];
     slip = slip - below;

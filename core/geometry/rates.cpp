@@ -49,20 +49,6 @@ basic_side_motion<rated> gather_motion(const side_motion &at, const motion_rates
   return out;
 }
 
-rated unknown(double value, size_t slot) {
-  rated out(value);
-  out.rate[slot] = 1.0;
-  return out;
-}
-
-// The unknown of a slot as a function of the others, where its residual stays zero.
-rated solved(double value, const rated &residual, size_t slot) {
-  rated out(value);
-  for (size_t k = 0; k < out.rate.size(); ++k)
-    out.rate[k] = k == slot ? 0.0 : -residual.rate[k] / residual.rate[slot];
-  return out;
-}
-
 }  // namespace
 
 moving_geometry::moving_geometry(const side_geometry &side, const motion_rates &motion)

@@ -18,6 +18,20 @@ constexpr size_t sine_slot = rate_directions, arc_slot = rate_directions + 1;
 using rated = dual<rate_directions + 2>;
 using rated_frame = basic_contact_frame<rated>;
 
+inline rated unknown(double value, size_t slot) {
+  rated out(value);
+  out.rate[slot] = 1.0;
+  return out;
+}
+
+// The unknown of a slot as a function of the others, where its residual stays zero.
+inline rated solved(double value, const rated &residual, size_t slot) {
+  rated out(value);
+  for (size_t k = 0; k < out.rate.size(); ++k)
+    out.rate[k] = k == slot ? 0.0 : -residual.rate[k] / residual.rate[slot];
+  return out;
+}
+
 // Directions: rates of everything that moves, of a right-hand side.
 struct motion_rates {
   std::array<side_motion, rate_directions> direction;
@@ -44,6 +58,7 @@ class moving_geometry : private placement<rated> {
   rated_locus locus(const rated &s) const;
   bool rail_surface(const rated &x, const rated &y, rated &z, rated &angle) const;
   using placement<rated>::creepages;
+  using placement<rated>::contact_depth;
   using placement<rated>::lever;
   using placement<rated>::rolling_radius;
 
@@ -54,6 +69,9 @@ class moving_geometry : private placement<rated> {
   // Where there is no surface they mean nothing.
   void distance_rates(const rated_frame &frame, const surface_grid &grid,
                       const lattice_rates *lattice, int count, double *const *rates) const;
+  // The same of the rail's slopes, out[k].
+  void rail_slope_rates(const rated_frame &frame, const surface_grid &grid,
+                        const lattice_rates *lattice, int count, surface_slopes *out) const;
 
  private:
   // The profile in its meridian plane.

@@ -1,5 +1,7 @@
 #include "half_space/forces.hpp"
 
+#include <cstddef>
+
 namespace railpatch {
 
 patch_wrench sum_tractions(const grid &g, const double *pressure, const double *px,
@@ -23,6 +25,72 @@ patch_wrench sum_tractions(const grid &g, const double *pressure, const double *
     w.moment[k] *= area;
   }
   return w;
+}
+
+void add_depth(double depth, double longitudinal, double lateral, patch_wrench &wrench) {
+  wrench.moment[0] -= depth * lateral;
+  wrench.moment[1] += depth * longitudinal;
+}
+
+void add_inclined(double force, double moment, double s, double height, double across, double along,
+                  patch_wrench &wrench) {
+  const double lateral = across * force, longitudinal = along * force;
+  wrench.force[0] += longitudinal;
+  wrench.force[1] += lateral;
+  wrench.moment[0] -= height * lateral;
+  wrench.moment[1] += height * longitudinal;
+  wrench.moment[2] += across * moment - s * longitudinal;
+}
+
+namespace {
+
+// use(row, place among the slopes, force, its moment along x, the force's columns summed) of each
+// stretch of equal slopes that is loaded.
+template <class Use>
+void for_loads(const grid &g, const double *pressure, const surface_slopes &slopes, Use use) {
+  const double area = g.dx * g.dy;
+  for (int j = 0; j < g.ny; ++j) {
+    double force = 0, moment = 0, columns = 0;
+    for (int i = 0; i < g.nx; ++i) {
+      const double load = area * pressure[j * g.nx + i];
+      force += load;
+      moment += g.x(i) * load;
+      columns += i * load;
+      if (slopes.columns == 1 && i + 1 < g.nx) continue;
+      if (force != 0)
+        use(j, slopes.place(j) + (slopes.columns > 1 ? i : 0), force, moment, columns);
+      force = moment = columns = 0;
+    }
+  }
+}
+
+}  // namespace
+
+void add_inclined(const grid &g, const double *pressure, const surface_slopes &slopes,
+                  patch_wrench &wrench) {
+  for_loads(g, pressure, slopes, [&](int row, auto at, double force, double moment, double) {
+    add_inclined(force, moment, g.y(row), slopes.height[at], slopes.across[at], slopes.along[at],
+                 wrench);
+  });
+}
+
+void add_inclined_rates(const grid &g, const double *pressure, const surface_slopes &slopes,
+                        const surface_slopes *rates, const double origin[2], const double size[2],
+                        patch_wrench &wrench) {
+  for_loads(
+      g, pressure, slopes, [&](int row, auto at, double force, double moment, double columns) {
+        const double z = slopes.height[at], across = slopes.across[at], along = slopes.along[at];
+        const double moved = origin[0] * force + size[0] * columns, ds = origin[1] + row * size[1];
+        wrench.moment[2] += across * moved - ds * along * force;
+        if (!rates) return;
+        const double dz = rates->height[at], lateral = rates->across[at] * force,
+                     longitudinal = rates->along[at] * force;
+        wrench.force[0] += longitudinal;
+        wrench.force[1] += lateral;
+        wrench.moment[0] -= z * lateral + dz * across * force;
+        wrench.moment[1] += z * longitudinal + dz * along * force;
+        wrench.moment[2] += rates->across[at] * moment - g.y(row) * longitudinal;
+      });
 }
 
 }  // namespace railpatch

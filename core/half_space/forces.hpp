@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "geometry/surface_slopes.hpp"
 #include "half_space/influence.hpp"
 
 namespace railpatch {
@@ -20,6 +21,23 @@ using patch_wrench = basic_wrench<double>;
 // px, py may be null where the scene has no tangential stage.
 patch_wrench sum_tractions(const grid &g, const double *pressure, const double *px,
                            const double *py);
+
+// Adds what pressure has beside its force along n, as it acts along the normals of an inclined
+// surface.
+void add_inclined(const grid &g, const double *pressure, const surface_slopes &slopes,
+                  patch_wrench &wrench);
+// The same of a force (N) with its moment along x (N m), where the surface has the same slopes.
+void add_inclined(double force, double moment, double s, double height, double across, double along,
+                  patch_wrench &wrench);
+// Adds the rates where the elements of a pressure move by origin + index size (m), and the slopes
+// by their rates (null: by none).
+void add_inclined_rates(const grid &g, const double *pressure, const surface_slopes &slopes,
+                        const surface_slopes *rates, const double origin[2], const double size[2],
+                        patch_wrench &wrench);
+
+// Moves forces in the plane from the contact reference to a depth (m) along n.
+void add_depth(double depth, double longitudinal, double lateral, patch_wrench &wrench);
+
 // Adds the wrench at a contact reference `lever` away from the wheelset centre (track axes), in a
 // frame turned by the contact angle about x and then inclined about y.
 template <class T>

@@ -101,6 +101,9 @@ patch_scene patch_scene_of(const rp_config &c) {
   scene.derivatives = c.derivatives != 0;
   scene.stretches = c.kind != RP_PATCH && c.elements[0] > 0;
   scene.curved = c.reference_surface == RP_REFERENCE_CURVED;
+  scene.local_normals = c.kind != RP_PATCH && c.patch_rule == RP_PATCHES_BLENDED;
+  scene.slopes_along_rows =
+      c.track == RP_ROLLER || c.rail_height_count[0] + c.rail_height_count[1] > 0;
   scene.fast = fast_of(c, scene.tangential);
   scene.exact = scene.derivatives && scene.differentiates();
   return scene;

@@ -52,7 +52,7 @@ wheel_setup wheel_of(const rp_config &c, int side) {
                  c.rail_height[side], c.rail_height_count[side],
                  c.rail_height_start, c.rail_height_spacing};
   setup.sizes = {c.nominal_radius, c.flange_back_distance, c.flange_back_position,
-                 c.standstill_speed};
+                 c.standstill_speed, c.patch_rule == RP_PATCHES_BLENDED};
   setup.track = track_of(c, side);
   setup.rules.blended = c.patch_rule == RP_PATCHES_BLENDED;
   setup.rules.inclined = c.contact_frame == RP_FRAME_INCLINED;

@@ -182,19 +182,21 @@ typedef enum rp_spin_offset { RP_SPIN_OFFSETS(RP_ENUM_ENTRY) } rp_spin_offset;
 /* which parts of contact of a wheel, the stretches where the profiles overlap, are one patch */
 #define RP_PATCH_RULES(X)                                                                        \
   /* force without jumps: neighbours go over from one patch to two smoothly; in between both     \
-   * solutions count, each with its share */                                                     \
+   * solutions count, each with its share. Slip and creep force belong to one point of both      \
+   * bodies, pressure acts along the surface's normals: their power balances, docs/power.md */   \
   X(RP_PATCHES_BLENDED, 0, "blended")                                                            \
   /* as in the program CONTACT: one patch below 8 mm, with part of the interaction from 4 mm on, \
-   * and angles turned together up to 12 mm */                                                   \
+   * and angles turned together up to 12 mm; slip by a point on each body, forces at the         \
+   * reference, pressure along the frame's normal */                                             \
   X(RP_PATCHES_CONTACT, 1, "contact")
 typedef enum rp_patch_rule { RP_PATCH_RULES(RP_ENUM_ENTRY) } rp_patch_rule;
 
 /* x axis of the contact frame where a contact lies ahead of a roller's top, or behind */
-#define RP_CONTACT_FRAMES(X)                                                                 \
-  /* the track's: the part Fn x/R of the normal force along track x is left out of force and \
-   * moment, as in the published results of the program CONTACT */                           \
-  X(RP_FRAME_TRACK, 0, "track")                                                              \
-  X(RP_FRAME_INCLINED, 1, "inclined") /* along the roller's surface: nothing is left out */
+#define RP_CONTACT_FRAMES(X)                                                                  \
+  /* the track's: with patch_rule = contact the part Fn x/R of the normal force along track x \
+   * is left out of force and moment, as in the published results of the program CONTACT */   \
+  X(RP_FRAME_TRACK, 0, "track")                                                               \
+  X(RP_FRAME_INCLINED, 1, "inclined") /* along the roller's surface */
 typedef enum rp_contact_frame { RP_CONTACT_FRAMES(RP_ENUM_ENTRY) } rp_contact_frame;
 
 /* of the half-space theories for wheels */

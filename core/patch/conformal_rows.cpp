@@ -17,7 +17,7 @@ constexpr int most_arc_steps = 64;
 }  // namespace
 
 conformal_rows::conformal_rows(int max_rows) {
-  for (auto *b : {&y_, &z_, &angle_, &s_, &n_, &cos_, &sin_, &xi_, &eta_, &phi_, &valid_})
+  for (auto *b : {&y_, &z_, &angle_, &s_, &n_, &cos_, &sin_, &xi_, &eta_, &phi_, &valid_, &below_})
     *b = aligned_buffer<double>(static_cast<size_t>(max_rows));
 }
 
@@ -28,6 +28,7 @@ bool conformal_rows::begin(const side_geometry &side, patch_region &region) {
   const section_point p = side.section(reference_, first_.start);
   if (!p.valid) return false;
   height_ = 0.5 * (p.wheel + p.rail);
+  lift_ = side.one_point() ? height_ : 0.0;
   first_.y = reference_.origin[1] - height_ * std::sin(reference_.contact_angle);
   first_.z = reference_.origin[2] + height_ * std::cos(reference_.contact_angle);
   first_.angle = reference_.contact_angle + 0.5 * (p.wheel_angle + p.rail_angle);
@@ -109,8 +110,11 @@ contact_frame conformal_rows::frame(int row) const {
   return {{reference_.origin[0], y_[j], z_[j]}, angle_[j]};
 }
 
-void conformal_rows::place(const side_geometry &side, const grid &g, double *distance) {
+void conformal_rows::place(const side_geometry &side, const grid &g, double *distance,
+                           const surface_slopes &slopes) {
   rows_ = g.ny;
+  slopes_ = slopes;
+  slopes_.columns = side.level() ? 1 : g.nx;
   const int start =
       static_cast<int>(std::clamp(std::round(-g.y0 / g.dy), 0.0, static_cast<double>(g.ny - 1)));
   const point middle = step(side, first_, g.y(start), 0.0);
@@ -131,6 +135,10 @@ void conformal_rows::place(const side_geometry &side, const grid &g, double *dis
       side.undeformed_distance(frame(row), {g.nx, 1, g.x0, 0.0, g.dx, g.dy}, h);
     else
       std::fill_n(h, g.nx, side_geometry::no_surface);
+    if (!slopes_.height) continue;
+    const auto first = slopes_.place(row);
+    surface_slopes of_row{slopes.height + first, slopes.across + first, slopes.along + first};
+    side.rail_slopes(frame(row), {g.nx, 1, g.x0, 0.0, g.dx, g.dy}, true, of_row);
   }
 }
 
@@ -146,6 +154,8 @@ void conformal_rows::set_slip(const side_geometry &side, double depth, double ro
     xi_[j] = scale * c.xi;
     eta_[j] = scale * c.eta;
     phi_[j] = scale * c.phi;
+    // of the tractions below the curve
+    below_[j] = side.one_point() ? side.contact_depth(f, depth) - height_ : 0.0;
   }
 }
 
@@ -154,11 +164,23 @@ patch_wrench conformal_rows::sum_tractions(const grid &g, const double *pressure
   patch_wrench w{};
   for (int j = 0; j < g.ny; ++j) {
     const auto row = static_cast<size_t>(j);
-    const double c = cos_[row], t = sin_[row], s = s_[row], n = n_[row];
+    const double c = cos_[row], t = sin_[row], s = s_[row], n = n_[row] + lift_;
+    // moments of what acts below the curve
+    double deep_x = 0, deep_s = 0;
     for (int i = 0; i < g.nx; ++i) {
       const int at = j * g.nx + i;
       const double x = g.x(i), p = pressure[at];
-      const double along = px ? px[at] : 0.0, across = px ? py[at] : 0.0;
+      double along = px ? px[at] : 0.0;
+      double across = px ? py[at] : 0.0;
+      deep_x += below_[row] * along;
+      deep_s += below_[row] * across;
+      if (slopes_.height) {
+        const auto to = slopes_.place(j) + (slopes_.columns > 1 ? i : 0);
+        along += slopes_.along[to] * p;
+        across += slopes_.across[to] * p;
+        deep_x += slopes_.height[to] * slopes_.along[to] * p;
+        deep_s += slopes_.height[to] * slopes_.across[to] * p;
+      }
       const double f[3] = {along, c * across + t * p, t * across - c * p};
       const double m[3] = {s * f[2] - n * f[1], n * f[0] - x * f[2], x * f[1] - s * f[0]};
       for (int k = 0; k < 3; ++k) {
@@ -166,6 +188,9 @@ patch_wrench conformal_rows::sum_tractions(const grid &g, const double *pressure
         w.moment[k] += m[k];
       }
     }
+    w.moment[0] -= deep_s;
+    w.moment[1] += c * deep_x;
+    w.moment[2] += t * deep_x;
   }
   const double area = g.dx * g.dy;
   for (int k = 0; k < 3; ++k) {

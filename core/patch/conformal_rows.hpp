@@ -22,7 +22,10 @@ class conformal_rows {
   // Begins a patch; its bounds along s become arc lengths. false where the curve does not reach.
   bool begin(const side_geometry &side, patch_region &region);
   // Places the rows of a grid and measures the undeformed distance along their normals, [ny][nx].
-  void place(const side_geometry &side, const grid &g, double *distance);
+  // slopes: filled with those of the rail in each row's frame, where pressure acts along its
+  // normals.
+  void place(const side_geometry &side, const grid &g, double *distance,
+             const surface_slopes &slopes = {});
   // Rigid slip of each row at the depth that the wheel's surface has at the reference, relative to
   // the patch's rolling speed (m/s).
   void set_slip(const side_geometry &side, double depth, double rolling_speed);
@@ -32,7 +35,7 @@ class conformal_rows {
     const auto j = static_cast<size_t>(row);
     return component == 0 ? xi_[j] : eta_[j] + phi_[j] * x;
   }
-  // In the frame of the patch.
+  // In the frame of the patch; pressure acts along the rows' normals, or along the rail's.
   patch_wrench sum_tractions(const grid &g, const double *pressure, const double *px,
                              const double *py) const;
   const double *cosine() const { return cos_.data(); }
@@ -41,7 +44,7 @@ class conformal_rows {
   double angle(int row) const { return angle_[static_cast<size_t>(row)]; }
   double y(int row) const { return y_[static_cast<size_t>(row)]; }
   double z(int row) const { return z_[static_cast<size_t>(row)]; }
-  size_t bytes() const { return 11 * y_.bytes(); }
+  size_t bytes() const { return 12 * y_.bytes(); }
 
  private:
   struct point {
@@ -56,9 +59,11 @@ class conformal_rows {
 
   contact_frame reference_;
   point first_;
-  double height_ = 0;  // m, of the curve above the reference, along n
+  double height_ = 0;      // m, of the curve's point along n from the reference
+  double lift_ = 0;        // m, the same where rows are seen from there
+  surface_slopes slopes_;  // of the rail against the rows' frames; null: not asked for
   int rows_ = 0;
-  aligned_buffer<double> y_, z_, angle_, s_, n_, cos_, sin_, xi_, eta_, phi_, valid_;
+  aligned_buffer<double> y_, z_, angle_, s_, n_, cos_, sin_, xi_, eta_, phi_, valid_, below_;
 };
 
 }  // namespace railpatch

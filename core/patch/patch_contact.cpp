@@ -10,6 +10,20 @@ namespace {
 // of unlike bodies' tangential problem, after which it is given up
 constexpr int most_failures = 5;
 
+// Of an elliptic pressure that is not on the grid, by rows with the slopes of their middle.
+void add_inclined_ellipse(const hertz_contact &hertz, const grid &g, const surface_slopes &slopes,
+                          patch_wrench &wrench) {
+  const auto share = [&](double y) {
+    const double t = std::clamp(y / hertz.semi_axes[1], -1.0, 1.0);
+    return 0.75 * (t - t * t * t / 3.0);
+  };
+  for (int j = 0; j < g.ny; ++j) {
+    const double y = g.y(j), half = 0.5 * g.dy;
+    const double force = hertz.normal_force * (share(y + half) - share(y - half));
+    add_inclined(force, 0, y, slopes.height[j], slopes.across[j], slopes.along[j], wrench);
+  }
+}
+
 }  // namespace
 
 patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, int max_nx,
@@ -110,6 +124,7 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   const stage_mark mark = shared_.marks.enter(RP_STAGE_FORCES);
   wrench = sum_forces(problem, n, t, memory);
   report(scene, problem, n, t, h, wrench, result);
+  complete(problem, memory, wrench);
   estimate_error(problem, n, memory, result);
 }
 
@@ -222,6 +237,19 @@ patch_wrench patch_contact::sum_forces(const patch_problem &problem, const press
   }
   tangential_.set_resultants(t, memory, wrench);
   return wrench;
+}
+
+// Creep forces act at their depth, and pressure along the normals of the surface; a curved
+// reference surface has both in its sums.
+void patch_contact::complete(const patch_problem &problem, const patch_memory &memory,
+                             patch_wrench &wrench) const {
+  if (memory.slope_fields.size() == 0 || memory.curved) return;
+  const grid &g = problem.g;
+  add_depth(problem.place.contact_depth, wrench.force[0], wrench.force[1], wrench);
+  if (shared_.scene.closed_form())
+    add_inclined_ellipse(problem.hertz, g, memory.slopes, wrench);
+  else
+    add_inclined(g, memory.pressure.data(), memory.slopes, wrench);
 }
 
 derivative_outcome patch_contact::differentiate(const patch_problem &problem,

@@ -94,7 +94,15 @@ void patch_derivative::solve_some(const solution &s, const patch_variation *in, 
   else
     for (int k = 0; k < count; ++k) differentiate_hertz(s, in[k], rate_of(s, k), out[k]);
   for (int k = 0; k < count; ++k) add_pressure(s, in[k], rate_of(s, k), out[k]);
-  if (!tangential_) return;
+  if (tangential_) differentiate_tractions(s, in, count, o, by_resultants, out, outcome);
+  for (int k = 0; k < count && s.memory.slope_fields.size(); ++k)
+    complete(s, in[k], rate_of(s, k), out[k]);
+}
+
+void patch_derivative::differentiate_tractions(const solution &s, const patch_variation *in,
+                                               int count, const derivative_options &o,
+                                               bool by_resultants, patch_change *out,
+                                               derivative_outcome &outcome) {
   tangential_change t[at_once];
   if (s.problem.rolling_speed > 0) {
     tangential_variation v[at_once];
@@ -216,6 +224,28 @@ void patch_derivative::add_pressure(const solution &s, const patch_variation &v,
   out.wrench.force[2] = -area * force;
   out.wrench.moment[0] = -area * moment[0];
   out.wrench.moment[1] = area * moment[1];
+}
+
+// What patch_contact::complete adds.
+void patch_derivative::complete(const solution &s, const patch_variation &v, const double *rate,
+                                patch_change &out) const {
+  const patch_memory &m = s.memory;
+  const grid &g = s.problem.g;
+  const double *p = m.pressure.data();
+  patch_wrench whole{}, sum{};
+  add_inclined(g, p, m.slopes, whole);
+  add_inclined(g, rate, m.slopes, sum);
+  add_inclined_rates(g, p, m.slopes, v.slopes, v.origin, v.size, sum);
+  if (tangential_) {
+    const patch_wrench w = sum_tractions(g, p, m.px.data(), m.py.data());
+    add_depth(v.contact_depth, w.force[0], w.force[1], sum);
+    add_depth(s.problem.place.contact_depth, out.creep_force[0], out.creep_force[1], sum);
+  }
+  const double growth = v.size[0] / g.dx + v.size[1] / g.dy;
+  for (int k = 0; k < 3; ++k) {
+    out.wrench.force[k] += sum.force[k] + growth * whole.force[k];
+    out.wrench.moment[k] += sum.moment[k] + growth * whole.moment[k];
+  }
 }
 
 // The tractions' wrench. In steady rolling friction takes the power -V sum p . w dA.

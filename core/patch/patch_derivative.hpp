@@ -25,6 +25,8 @@ struct patch_variation {
   const double *row_friction = nullptr;  // -, [ny], factor of each row; null: zero
   // m, of dx, dy and of x0, y0: the centre of element i moves by origin + i size
   double size[2] = {0, 0}, origin[2] = {0, 0};
+  const surface_slopes *slopes = nullptr;                // rates of those in the memory; null: zero
+  double contact_depth = 0;                              // m
   double part_factor[contact_parts::capacity - 1] = {};  // of problem.parts.factor
   hertz_contact hertz;                                   // with normal = hertz, hertz_rate_of_*
   double normal_force = 0, approach = 0;                 // of the one that is prescribed
@@ -77,6 +79,9 @@ class patch_derivative {
   void solve_some(const solution &s, const patch_variation *in, int count,
                   const derivative_options &o, bool by_resultants, patch_change *out,
                   derivative_outcome &outcome);
+  void differentiate_tractions(const solution &s, const patch_variation *in, int count,
+                               const derivative_options &o, bool by_resultants, patch_change *out,
+                               derivative_outcome &outcome);
   void differentiate_half_space(const solution &s, const patch_variation *in, int count,
                                 const derivative_options &o, patch_change *out,
                                 derivative_outcome &outcome);
@@ -84,6 +89,8 @@ class patch_derivative {
                            patch_change &out) const;
   void add_pressure(const solution &s, const patch_variation &v, const double *rate,
                     patch_change &out) const;
+  void complete(const solution &s, const patch_variation &v, const double *rate,
+                patch_change &out) const;
   void add_tractions(const solution &s, const patch_variation &v, const tangential_change &t,
                      bool energy, patch_change &out) const;
   tangential_point point_of(const solution &s) const;

@@ -9,6 +9,12 @@ patch_memory::patch_memory(int max_count, int max_rows, const patch_scene &scene
   undeformed_distance = aligned_buffer<double>(n);
   if (!scene.closed_form()) pressure = aligned_buffer<double>(n);
   if (scene.curved) curved.emplace(max_rows);
+  if (scene.local_normals) {
+    const int each = scene.slopes_along_rows && !scene.closed_form() ? max_count : max_rows;
+    slope_fields = aligned_buffer<double>(3 * static_cast<size_t>(each));
+    double *at = slope_fields.data();
+    slopes = {at, at + each, at + 2 * each};
+  }
   if (!has_tractions(scene.tangential)) return;
   if (scene.friction_variation.varies())
     row_friction = aligned_buffer<double>(static_cast<size_t>(max_rows));
@@ -29,7 +35,7 @@ patch_memory::patch_memory(int max_count, int max_rows, const patch_scene &scene
 size_t patch_memory::bytes() const {
   return undeformed_distance.bytes() + pressure.bytes() + 4 * px.bytes() + division.bytes() +
          2 * node_x.bytes() + node_y.bytes() + row_friction.bytes() + creepage.bytes() +
-         history.bytes() + (curved ? curved->bytes() : 0);
+         slope_fields.bytes() + history.bytes() + (curved ? curved->bytes() : 0);
 }
 
 void patch_memory::unload(const grid &on, const bound_law *law) {

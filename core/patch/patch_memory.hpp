@@ -21,8 +21,9 @@ namespace railpatch {
 struct patch_place {
   bool on_wheel = false;  // else only the motion is known
   double position[3] = {nan, nan, nan}, contact_angle = nan;
-  double depth = 0;  // m, greatest interpenetration
-  double share = 1;  // in the wheel's force
+  double depth = 0;          // m, greatest interpenetration
+  double contact_depth = 0;  // m, along n from the position: where creep forces act
+  double share = 1;          // in the wheel's force
   double rolling_speed = nan;
   int direction = 0;  // 0: standstill
 };
@@ -60,6 +61,8 @@ struct patch_memory {
   aligned_buffer<unsigned char> division;
   aligned_buffer<double> node_x, node_y, node_pressure;  // fitted rows only
   aligned_buffer<double> row_friction;                   // factor of each grid row, where it varies
+  aligned_buffer<double> slope_fields;                   // of slopes
+  surface_slopes slopes;                                 // where pressure acts along local normals
   aligned_buffer<double> creepage;                       // [2], of a prescribed creep force only
   bool estimated = false;  // the last step's errors, from the features
   std::array<double, error_feature_count> error_features{};

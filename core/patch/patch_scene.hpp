@@ -39,8 +39,10 @@ struct patch_scene {
   bool exact = false;        // and come from the solved equations, of the whole scene
   bool stretches = false;    // grids whose dx and dy change at different rates
   bool curved = false;       // reference surface, of wheels
-  int fitted[2] = {0, 0};    // nodes and strips of the tangential problem; 0: on the uniform grid
-  fast_options fast;         // where the tangential theory is a fast one
+  // pressure acts along those of the rail's surface, of wheels, which differ along rows too
+  bool local_normals = false, slopes_along_rows = false;
+  int fitted[2] = {0, 0};  // nodes and strips of the tangential problem; 0: on the uniform grid
+  fast_options fast;       // where the tangential theory is a fast one
   std::optional<heat_scene> heat;       // where temperatures are asked for
   bool prescribed[2] = {false, false};  // components of the creep force: their creepage is found
   double friction() const { return friction_coefficient * friction_scale; }

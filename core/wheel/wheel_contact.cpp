@@ -257,6 +257,7 @@ void wheel_contact::place_patch(const patch_contact &solver, patch_region &regio
   std::copy_n(region.frame.origin.begin(), 3, place.position);
   place.contact_angle = region.frame.contact_angle;
   place.depth = depth;
+  place.contact_depth = geometry_->contact_depth(region.frame, depth);
   place.rolling_speed = rolling.rolling_speed;
   place.direction = rolling.direction;
 }
@@ -265,10 +266,13 @@ void wheel_contact::place_patch(const patch_contact &solver, patch_region &regio
 double wheel_contact::place_grid(const patch_contact &solver, patch_region &region, const grid &g,
                                  patch_memory &memory) const {
   double *h = memory.undeformed_distance.data();
+  const surface_grid on{g.nx, g.ny, g.x0, g.y0, g.dx, g.dy};
   if (memory.curved)
-    memory.curved->place(*geometry_, g, h);
+    memory.curved->place(*geometry_, g, h, memory.slopes);
   else
-    geometry_->undeformed_distance(region.frame, {g.nx, g.ny, g.x0, g.y0, g.dx, g.dy}, h);
+    geometry_->undeformed_distance(region.frame, on, h);
+  if (memory.slope_fields.size() && !memory.curved)
+    geometry_->rail_slopes(region.frame, on, !solver.scene().closed_form(), memory.slopes);
   if (memory.row_friction.size() > 0) set_friction(solver, region.frame, memory);
   return -*std::min_element(h, h + g.count());
 }

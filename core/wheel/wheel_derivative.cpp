@@ -40,10 +40,17 @@ wheel_derivative::wheel_derivative(const patch_scene &scene, int max_count, int 
   if (scene.friction_variation.varies())
     row_friction_ =
         aligned_buffer<double>::uninitialized(directions * static_cast<size_t>(max_rows));
+  if (!scene.local_normals) return;
+  const auto each = static_cast<size_t>(scene.slopes_along_rows ? max_count : max_rows);
+  slope_fields_ = aligned_buffer<double>::uninitialized(3 * directions * each);
+  for (size_t k = 0; k < directions; ++k) {
+    double *at = slope_fields_.data() + 3 * k * each;
+    slopes_[k] = {at, at + each, at + 2 * each};
+  }
 }
 
 size_t wheel_derivative::bytes() const {
-  return sizeof *this + distance_.bytes() + row_friction_.bytes();
+  return sizeof *this + distance_.bytes() + row_friction_.bytes() + slope_fields_.bytes();
 }
 
 // What is known of the wheel on the way through its patches. Directions come in blocks, each with a
@@ -185,6 +192,14 @@ void wheel_derivative::set_shape(step &s, int index, patch_variation *in) {
   }
 }
 
+// Slopes of the rail's surface.
+void wheel_derivative::set_slopes(step &s, int index, patch_variation *in) {
+  const grid &g = s.wheel.patches[index].problem.g;
+  s.geometry[0]->rail_slope_rates(s.frame, {g.nx, g.ny, g.x0, g.y0, g.dx, g.dy}, s.lattice,
+                                  s.moving, slopes_);
+  for (int k = 0; k < s.moving; ++k) in[k].slopes = &slopes_[k];
+}
+
 // The friction of each row by the angle of the rail's surface there: wheel_contact::set_friction.
 void wheel_derivative::set_friction(step &s, int index, const lattice_rates *lattice,
                                     patch_variation *in) {
@@ -210,10 +225,13 @@ void wheel_derivative::set_motion(step &s, int index, patch_variation *in) {
   const patch_region &region = s.wheel.regions[index];
   for (int b = 0; b < blocks && s.geometry[b]; ++b) {
     const rated_frame frame = s.frame_in(b, region);
-    s.rolling[b] = s.geometry[b]->creepages(frame, s.depth_in(b, s.wheel.patches[index]));
+    const rated approach = s.depth_in(b, s.wheel.patches[index]);
+    s.rolling[b] = s.geometry[b]->creepages(frame, approach);
+    const rated contact_depth = s.geometry[b]->contact_depth(frame, approach);
     for (int k = 0; k < s.size[b]; ++k) {
       const auto slot = static_cast<size_t>(k);
       patch_variation &v = in[b * rate_directions + k];
+      v.contact_depth = contact_depth.rate[slot];
       v.creepage[0] = s.rolling[b].xi.rate[slot];
       v.creepage[1] = s.rolling[b].eta.rate[slot];
       v.spin_creepage = s.rolling[b].phi.rate[slot];
@@ -252,6 +270,7 @@ void wheel_derivative::solve_patch(step &s, int index) {
   patch_change out[most_directions];
   set_shape(s, index, in);
   if (s.moving > 0 && row_friction_.size() > 0) set_friction(s, index, s.lattice, in);
+  if (s.moving > 0 && slope_fields_.size() > 0) set_slopes(s, index, in);
   set_motion(s, index, in);
   if (scene.normal == RP_NORMAL_HERTZ && s.moving > 0) set_hertz(s, index, in);
   const derivative_outcome ended =

@@ -59,6 +59,7 @@ class wheel_derivative {
   struct step;
   void solve_patch(step &s, int index);
   void set_shape(step &s, int index, patch_variation *in);
+  void set_slopes(step &s, int index, patch_variation *in);
   void set_friction(step &s, int index, const lattice_rates *lattice, patch_variation *in);
   void set_motion(step &s, int index, patch_variation *in);
   void set_hertz(step &s, int index, patch_variation *in);
@@ -66,7 +67,8 @@ class wheel_derivative {
   void report(step &s, int index, int block, int direction, const patch_change &change);
 
   int max_count_, max_rows_;
-  aligned_buffer<double> distance_, row_friction_;  // rates by direction
+  aligned_buffer<double> distance_, row_friction_, slope_fields_;  // rates by direction
+  surface_slopes slopes_[rate_directions];
 };
 
 }  // namespace railpatch

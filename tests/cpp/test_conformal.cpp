@@ -372,8 +372,10 @@ TEST(CurvedSurface, OfEqualBarrelsIsThePlane) {
   c.rail[RP_RIGHT] = rail.view();
   c.element_size[0] = c.element_size[1] = 5e-4;
   c.tolerance = 1e-12;
-  for (rp_tangential_method method : {RP_TANGENTIAL_NONE, RP_TANGENTIAL_FULL}) {
+  for (int n = 0; n < 4; ++n) {
+    const rp_tangential_method method = n % 2 ? RP_TANGENTIAL_FULL : RP_TANGENTIAL_NONE;
     c.tangential = method;
+    c.patch_rule = n < 2 ? RP_PATCHES_CONTACT : RP_PATCHES_BLENDED;
     rp_input in = scenes::running(RP_RAIL);
     in.y = arcs.side->rail_marker_y() - 0.68;
     in.yaw = 0.002;
@@ -396,7 +398,9 @@ TEST(CurvedSurface, OfEqualBarrelsIsThePlane) {
       EXPECT_NEAR(b.moment[k], a.moment[k], allowed * 8e4) << k;
     }
     if (method == RP_TANGENTIAL_NONE) continue;
-    EXPECT_NEAR(b.patch[0].spin_moment, a.patch[0].spin_moment, allowed * 8e4 * 6e-3);
+    // where pressure has its own normals, its part is in the curved surface's
+    if (c.patch_rule == RP_PATCHES_CONTACT)
+      EXPECT_NEAR(b.patch[0].spin_moment, a.patch[0].spin_moment, allowed * 8e4 * 6e-3);
     EXPECT_NEAR(b.patch[0].friction_power / a.patch[0].friction_power, 1, allowed);
     EXPECT_NEAR(b.patch[0].elastic_energy / a.patch[0].elastic_energy, 1, allowed);
   }

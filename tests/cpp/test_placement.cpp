@@ -466,9 +466,15 @@ TEST_P(Placement, CreepagesAreThoseOfMaterialPoints) {
   std::uniform_real_distribution<double> u(-1, 1);
   for (const double slow : {0.0, 0.5, 200.0}) {
     scene.sizes.standstill_speed = slow;
-    side_geometry with(scene.wheel_curve, scene.rail_curve, scene.sizes, scene.track);
-    for (int n = 0; n < 40; ++n) {
+    side_geometry one(scene.wheel_curve, scene.rail_curve, scene.sizes, scene.track);
+    wheel_config sizes = scene.sizes;
+    sizes.one_point = false;
+    side_geometry two(scene.wheel_curve, scene.rail_curve, sizes, scene.track);
+    for (int n = 0; n < 80; ++n) {
       SCOPED_TRACE(testing::Message() << slow << ' ' << n);
+      // velocities at one point, or of each body's surface
+      const bool shared = n < 40;
+      side_geometry &with = shared ? one : two;
       side_motion m = any_motion(random, scene.roller());
       // either body may be at rest in its axes, and rolling may go either way
       if (n % 3 == 1) m.wheel.velocity = m.wheel.angular_velocity = {};
@@ -482,14 +488,24 @@ TEST_P(Placement, CreepagesAreThoseOfMaterialPoints) {
       if (n % 2) f.inclination = 0.03 * u(random);
       const double depth = 4e-5;
       const surfaces::frame axes(f);
-      const vector on_wheel = plus(axes.origin, axes.n, depth);
+      vector on_wheel = plus(axes.origin, axes.n, depth), on_rail = axes.origin;
+      if (shared) {
+        const double reach =
+            std::hypot(f.origin[0] - scene.axle()[0], f.origin[2] - scene.axle()[2]);
+        const double wheel_radius = with.rolling_radius(f, depth);
+        const double below = scene.roller() ? depth * reach / (reach + wheel_radius) : depth;
+        EXPECT_NEAR(with.contact_depth(f, depth), below, 1e-18);
+        on_wheel = on_rail = plus(axes.origin, axes.n, below);
+      } else {
+        EXPECT_EQ(with.contact_depth(f, depth), 0);
+      }
       const auto at = [&](auto &&place, const vector &p) {
         return velocity(scene, [&](const later &l) { return place(l, p); });
       };
       const auto carried = [](const later &l, const vector &p) { return l.carried(p); };
       const auto rolled = [](const later &l, const vector &p) { return l.rolled(p); };
       const auto rail = [](const later &l, const vector &p) { return l.of_rail(p); };
-      const vector c = at(carried, on_wheel), r = at(rolled, on_wheel), b = at(rail, axes.origin);
+      const vector c = at(carried, on_wheel), r = at(rolled, on_wheel), b = at(rail, on_rail);
       const vector slip = plus(plus(c, r), b, -1);
       vector spin{};
       spin = plus(spin, spin_of([&](const vector &p) { return at(carried, p); }, on_wheel));
@@ -512,8 +528,8 @@ TEST_P(Placement, CreepagesAreThoseOfMaterialPoints) {
       EXPECT_EQ(found.direction, heading > 0 ? 1 : -1);
       // the axis and what turns about it
       const matrix turned = scene.wheel_axes();
-      const vector arm =
-          times(surfaces::transposed(turned), plus(on_wheel, scene.axis_point(), -1));
+      const vector arm = times(surfaces::transposed(turned),
+                               plus(plus(axes.origin, axes.n, depth), scene.axis_point(), -1));
       EXPECT_NEAR(with.rolling_radius(f, depth), std::hypot(arm[0], arm[2]), 1e-14);
       for (size_t k = 0; k < 3; ++k)
         EXPECT_NEAR(with.lever(f)[k], axes.origin[k] - scene.centre()[k], 1e-15);

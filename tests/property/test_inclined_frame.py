@@ -41,7 +41,8 @@ def moment_about(result: railpatch.Result, point: list[float], axis: list[float]
 
 
 def test_pressure_turns_neither_roller_nor_wheel() -> None:
-    left_out = railpatch.solve(case("track", tangential="none"))
+    left_out = railpatch.solve(case("track", tangential="none", patch_rule="contact"))
+    along = railpatch.solve(case("track", tangential="none"))
     whole = railpatch.solve(case("inclined", tangential="none"))
     # some 0.018 rad * 0.7 m * R/(R + r) ahead of the top: the lever that the track's frame leaves
     lever = abs(whole["patches"][0]["position"][0])
@@ -49,9 +50,12 @@ def test_pressure_turns_neither_roller_nor_wheel() -> None:
     roller = [0.0, 0.0, ROLLER], [0.0, 1.0, 0.0]
     assert abs(moment_about(left_out, *roller)) > 0.9 * LOAD * lever
     # to the patch's own breadth and the rounding of element sums
-    assert abs(moment_about(whole, *roller)) < 1e-3 * LOAD * lever
+    for result in (whole, along):
+        assert abs(moment_about(result, *roller)) < 1e-3 * LOAD * lever
     axle = [0.0, 0.002, whole["z"] - RADIUS], [-sin(0.018), cos(0.018), 0.0]
     assert abs(moment_about(whole, *axle)) < 1e-3 * LOAD * lever
+    # pressure acts along the roller's normals in either frame
+    np.testing.assert_allclose(along["force"], whole["force"], atol=1e-4 * LOAD)
     assert whole["force"][0] == pytest.approx(
         LOAD * whole["patches"][0]["position"][0] / ROLLER, rel=0.03
     )

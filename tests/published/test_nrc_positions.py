@@ -10,6 +10,8 @@ depends more on how the measured profiles are smoothed.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from railpatch import Contact
@@ -27,7 +29,11 @@ def compared():
     """One entry a wheel: row, number of patches, force on the roller (N, [3]), published force."""
     scene_file = rig_scene.default_scene()
     assert scene_file.name == rig_scene.MEASURED
-    contact = Contact(rig_scene.load_rig_scene(scene_file).at_height())
+    scene = rig_scene.load_rig_scene(scene_file)
+    # points and normals of the program that gave the forces
+    method = scene.case.method.model_copy(update={"patch_rule": "contact"})
+    scene = replace(scene, case=scene.case.model_copy(update={"method": method}))
+    contact = Contact(scene.at_height())
     entries = []
     for _, row in read_rows(reference.find()):
         result = contact.step(

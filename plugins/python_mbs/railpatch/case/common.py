@@ -207,14 +207,15 @@ class Method(Table):
     patch_rule: one_of("patch_rule") | None = Field(
         default=None,
         description="of wheels (no unit): blended, the default, neighbouring areas of contact go "
-        "over from one patch to two smoothly, both solved in between, each with its share; or "
-        "contact, by distances as in the program CONTACT, for comparisons",
+        "over from one patch to two smoothly, both solved in between, each with its share, "
+        "pressure along the surface's normals, slip and creep force at one point; or contact, by "
+        "distances, normals and points as in the program CONTACT, for comparisons",
     )
     contact_frame: one_of("contact_frame") | None = Field(
         default=None,
         description="of wheels on rollers (no unit): track, the default, x along the track, which "
-        "leaves out the normal force's part along it where a contact lies ahead of the roller's "
-        "top, as published results do; or inclined, x along the roller's surface",
+        "with patch_rule contact leaves out the normal force's part along it where a contact lies "
+        "ahead of the roller's top, as published results do; or inclined, x along the surface",
     )
     standstill_speed: float | None = key("; left out: 0.001", default=None)
 
