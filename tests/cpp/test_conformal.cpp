@@ -399,8 +399,9 @@ TEST(CurvedSurface, OfEqualBarrelsIsThePlane) {
     }
     if (method == RP_TANGENTIAL_NONE) continue;
     // where pressure has its own normals, its part is in the curved surface's
-    if (c.patch_rule == RP_PATCHES_CONTACT)
+    if (c.patch_rule == RP_PATCHES_CONTACT) {
       EXPECT_NEAR(b.patch[0].spin_moment, a.patch[0].spin_moment, allowed * 8e4 * 6e-3);
+    }
     EXPECT_NEAR(b.patch[0].friction_power / a.patch[0].friction_power, 1, allowed);
     EXPECT_NEAR(b.patch[0].elastic_energy / a.patch[0].elastic_energy, 1, allowed);
   }
