@@ -203,7 +203,11 @@ TEST(Memory, WheelsRollSteadilyWithTheSolverOfOnePatch) {
   c.max_elements[0] = 30;
   c.max_elements[1] = 26;
   c.max_patches = 1;
+  // slopes of the rail for each row, of height, across and along
+  const size_t by_slopes = tangential_bytes(c);
+  c.patch_rule = RP_PATCHES_CONTACT;
   const size_t two = tangential_bytes(c);
+  EXPECT_EQ(by_slopes - two, 2 * 3 * 26 * sizeof(double));
   c.max_patches = 2;
   const size_t four = tangential_bytes(c), each = (four - two) / 2;
   rp_config patch = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL);

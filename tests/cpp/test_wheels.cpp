@@ -33,6 +33,25 @@ sums summed(const rp_side_result &side, const double centre[3]) {
   return out;
 }
 
+// N and N m that a side has beside the sum of one patch: their size, and along its normal.
+struct apart {
+  double force = 0, force_along = 0, moment = 0, moment_along = 0;
+};
+
+apart beside(const rp_side_result &side, const sums &of_patch) {
+  apart out;
+  const double angle = side.patch[0].contact_angle;
+  const double n[3] = {0, -std::sin(angle), std::cos(angle)};
+  for (int i = 0; i < 3; ++i) {
+    const double f = side.force[i] - of_patch.force[i], m = side.moment[i] - of_patch.moment[i];
+    out.force_along += f * n[i];
+    out.moment_along += m * n[i];
+    out.force = std::max(out.force, std::fabs(f));
+    out.moment = std::max(out.moment, std::fabs(m));
+  }
+  return out;
+}
+
 class Wheels : public testing::TestWithParam<rp_track> {
  protected:
   rp_config config(rp_kind kind) const {
@@ -51,9 +70,11 @@ class Wheels : public testing::TestWithParam<rp_track> {
   scenes::profile_pair pair;
 };
 
+// By the rule "contact" pressure acts along the frame's normal, and its force is the patch's.
 TEST_P(Wheels, ForcesAndMomentsAreThoseOfTheirPatches) {
   for (const rp_kind kind : {RP_WHEEL_RAIL, RP_WHEELSET}) {
-    const rp_config c = config(kind);
+    rp_config c = config(kind);
+    c.patch_rule = RP_PATCHES_CONTACT;
     scenes::handle h(c);
     for (int n = 0; n < 8; ++n) {
       SCOPED_TRACE(testing::Message() << kind << ' ' << n);
@@ -76,17 +97,11 @@ TEST_P(Wheels, ForcesAndMomentsAreThoseOfTheirPatches) {
         // the running circle's, but for the flange's depth
         EXPECT_NEAR(found.rolling_radius, c.nominal_radius, 0.02);
         if (found.patch_count + found.alternative_count > 1) continue;
-        // pressure has a moment of its own about the reference, along the surface
-        const rp_patch_result &p = found.patch[0];
-        const double n[3] = {0, -std::sin(p.contact_angle), std::cos(p.contact_angle)};
-        double along = 0, size = 0;
-        for (int i = 0; i < 3; ++i) {
-          const double own = found.moment[i] - expected.moment[i];
-          along += own * n[i];
-          size = std::max(size, std::fabs(own));
-        }
-        EXPECT_NEAR(along, 0, 1e-9 * expected.load);
-        EXPECT_LE(size, 1e-3 * expected.load);
+        // pressure has a moment of its own about the reference, along the surface; parts of contact
+        // that are one patch lie no further from it than the rule says
+        const apart own = beside(found, expected);
+        EXPECT_NEAR(own.moment_along, 0, 1e-9 * expected.load);
+        EXPECT_LE(own.moment, 8e-3 * expected.load);
       }
       for (int i = 0; i < 3; ++i) {
         EXPECT_NEAR(r.force[i], force[i], 1e-12 * std::fabs(vertical));
@@ -95,6 +110,37 @@ TEST_P(Wheels, ForcesAndMomentsAreThoseOfTheirPatches) {
       EXPECT_NEAR(vertical, in.vertical_force, 1.01 * c.tolerance * in.vertical_force);
       EXPECT_GT(r.evaluations, 0);
     }
+  }
+}
+
+// With normals of its own pressure has a part in the frame's plane, no more than the surface turns
+// by over the contact, and the same force along the frame's normal.
+TEST_P(Wheels, PressureAlongItsNormalsHasAPartInThePlane) {
+  for (int n = 0; n < 8; ++n) {
+    SCOPED_TRACE(n);
+    rp_config c = config(RP_WHEEL_RAIL);
+    c.load = RP_POSITION;
+    rp_input in = input(n);
+    {
+      rp_config by_force = c;
+      by_force.load = RP_FORCE;
+      in.z = scenes::handle(by_force).step(in).z;
+    }
+    const rp_result r = scenes::handle(c).step(in);
+    c.patch_rule = RP_PATCHES_CONTACT;
+    const rp_result other = scenes::handle(c).step(in);
+    ASSERT_EQ(r.status, RP_CONVERGED);
+    ASSERT_EQ(other.status, RP_CONVERGED);
+    const rp_side_result &found = r.side[c.side];
+    if (found.patch_count + found.alternative_count > 1) continue;
+    const double centre[3] = {0, in.y, r.z - c.nominal_radius};
+    const sums expected = summed(found, centre);
+    const apart own = beside(found, expected);
+    EXPECT_NEAR(own.force_along, 0, 1e-9 * expected.load);
+    EXPECT_GT(own.force, 0);
+    // rad, half of a contact that is less than 20 mm across on arcs of 80 mm and more
+    EXPECT_LE(own.force, 10e-3 / 80e-3 * expected.load);
+    EXPECT_EQ(found.patch[0].normal_force, other.side[c.side].patch[0].normal_force);
   }
 }
 
