@@ -23,9 +23,11 @@ the pitch rate by 2.6e-3 rad/s; balancing their exact moment about the axle move
 rad/s. What the positions satisfy, within 1e-4 rad/s, is the sum of the whole longitudinal forces in
 track axes: creep force plus the part of the normal force along x, which a yawed wheel has because
 it touches its roller ahead of the roller's top, or behind. This is axle_torque = "track", which the
-scene of the NRC run asks for, to be compared with those positions. The default, "wheelset", is
-Eq. 55 to the letter: pressures on a body of revolution have no moment about its axis, so it is the
-torque on a free axle.
+scene of the NRC run asks for, to be compared with those positions. The default, "wheelset", is the
+torque on a free axle: the moment of all contact forces about it, as forces and moments are whole
+where pressure acts along the surfaces' normals (patch_rule = "blended", contact_frame =
+"inclined"). By the rule of the program CONTACT, which leaves the pressures' part along x out, it is
+Eq. 55 to the letter: pressures on a body of revolution have no moment about its axis.
 """
 
 from __future__ import annotations
@@ -142,22 +144,25 @@ class Balancer:
             return Evaluation(None, False, result)
         solved = all(result[side]["status"] == "converged" for side in SIDES)
         return Evaluation(
-            residuals(self._scene, position, result),
+            residuals(self._scene, position, unknowns, result),
             solved,
             result,
-            lambda: self._slope(position, result),
+            lambda: self._slope(position, unknowns, result),
         )
 
     def _step(self, position: Position, unknowns: Vector) -> Result:
         self._latest = self._contact.step(**moved(position, unknowns))
         return self._latest
 
-    def _slope(self, position: Position, result: Result) -> Vector:
+    def _slope(self, position: Position, unknowns: Vector, result: Result) -> Vector:
         """[3, 3], of the residuals at the last state solved, with respect to the unknowns."""
         columns = []
         for name in UNKNOWNS:
             rates = self._contact.differentiate(**{name: 1.0})
-            columns.append(residual_rates(self._scene, position, result, rates))
+            column = residual_rates(self._scene, position, result, rates)
+            if turns_the_axle(self._scene):
+                column[0] = axle_moment_rate(position, unknowns, result, rates, name)
+            columns.append(column)
         return np.column_stack(columns)
 
 
@@ -209,19 +214,50 @@ def best_of(first: Root, second: Root) -> Root:
     )
 
 
-def residuals(scene: RigScene, position: Position, result: Result) -> Vector:
+def residuals(scene: RigScene, position: Position, unknowns: Vector, result: Result) -> Vector:
     """f1, f2, f3 in N m, N, N m, [3]; see the head of this file."""
-    along = wheelset_force if scene.rig.balance.axle_torque == "wheelset" else track_force
+    if turns_the_axle(scene):
+        torque = axle_moment(position, unknowns, result)
+    else:
+        along = wheelset_force if scene.rig.balance.axle_torque == "wheelset" else track_force
+        torque = math.fsum(
+            along(scene, position, result[side]) * result[side]["rolling_radius"] for side in SIDES
+        )
+    return np.array([torque, -result["force"][2] - scene.vertical_force, result["moment"][0]])
+
+
+def is_whole(scene: RigScene) -> bool:
+    """Whether the forces hold the pressures' part along x."""
+    method = scene.case.method
+    return method.patch_rule != "contact" or method.contact_frame == "inclined"
+
+
+def turns_the_axle(scene: RigScene) -> bool:
+    """Whether f1 is the moment about the axle, which forces alone are not."""
+    return scene.rig.balance.axle_torque == "wheelset" and is_whole(scene)
+
+
+def axle_of(yaw: float, roll: float) -> Vector:
+    """-, [3], to the right along the axle, track axes."""
     return np.array(
-        [
-            math.fsum(
-                along(scene, position, result[side]) * result[side]["rolling_radius"]
-                for side in SIDES
-            ),
-            -result["force"][2] - scene.vertical_force,
-            result["moment"][0],
-        ]
+        [-math.sin(yaw) * math.cos(roll), math.cos(yaw) * math.cos(roll), math.sin(roll)]
     )
+
+
+def axle_moment(position: Position, unknowns: Vector, result: Result) -> float:
+    """N m, of the contact forces about the axle."""
+    return float(axle_of(position.yaw, unknowns[1]) @ np.array(result["moment"]))
+
+
+def axle_moment_rate(
+    position: Position, unknowns: Vector, result: Result, rates: Result, name: str
+) -> float:
+    """Its rate with one of the unknowns."""
+    rate = axle_of(position.yaw, unknowns[1]) @ np.array(rates["moment"])
+    if name == "roll":
+        turned = axle_of(position.yaw, unknowns[1] + 0.5 * math.pi)
+        rate += turned @ np.array(result["moment"])
+    return float(rate)
 
 
 def residual_rates(scene: RigScene, position: Position, result: Result, rates: Result) -> Vector:
@@ -251,9 +287,12 @@ def wheelset_force_rate(scene: RigScene, position: Position, _wheel: dict, rate:
 def track_force(scene: RigScene, _position: Position, wheel: dict) -> float:
     """N, longitudinal force in track axes, the normal force's part included.
 
-    The contact's own axes leave that part out: their x axis is the track's. On a roller of radius R
-    the normal through a point at x, z of the track is inclined by x/(R - z) along x.
+    By the rule of the program CONTACT the contact's own axes leave that part out: their x axis is
+    the track's. On a roller of radius R the normal through a point at x, z of the track is inclined
+    by x/(R - z) along x.
     """
+    if is_whole(scene):
+        return wheel["force"][0]
     return wheel["force"][0] + math.fsum(
         patch["share"]
         * patch["normal_force"]
@@ -266,6 +305,8 @@ def track_force(scene: RigScene, _position: Position, wheel: dict) -> float:
 def track_force_rate(scene: RigScene, _position: Position, wheel: dict, rate: dict) -> float:
     """Of the same."""
     total = rate["force"][0]
+    if is_whole(scene):
+        return total
     for patch, change in zip(solutions(wheel), solutions(rate), strict=True):
         height = scene.case.track.roller_radius - patch["position"][2]
         angle = patch["contact_angle"]

@@ -48,9 +48,10 @@ class BalanceTable(Table):
     )
     axle_torque: Literal["track", "wheelset"] = Field(
         default="wheelset",
-        description="which longitudinal forces balance about the axle (no unit): those in wheelset "
-        "axes (a free axle, the report's Eq. 51), or those in track axes with the part of the "
-        "normal force along x, as in the published positions of the NRC run",
+        description="what balances about the axle (no unit): the moment of all contact forces (a "
+        "free axle, the report's Eq. 51; with patch_rule = contact the longitudinal forces in "
+        "wheelset axes), or the longitudinal forces in track axes with the part of the normal "
+        "force along x, as in the published positions of the NRC run",
     )
     tolerance: Annotated[float, Field(ge=1e-8, le=1e-2)] = Field(
         default=5e-5,

