@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -19,7 +21,7 @@ double at_poisson_ratio(const double (&values)[orders], double nu) {
   for (size_t k = 0; k < orders; ++k) {
     double weight = values[k];
     const auto node = [](size_t i) {
-      return 0.25 * (1.0 - std::cos(std::numbers::pi * static_cast<double>(i) / 4.0));
+      return 0.25 * (1.0 - cos(std::numbers::pi * static_cast<double>(i) / 4.0));
     };
     for (size_t i = 0; i < orders; ++i)
       if (i != k) weight *= (nu - node(i)) / (node(k) - node(i));
@@ -74,8 +76,8 @@ coefficient_table::coefficient_table(double poisson_ratio) {
 }
 
 creepage_coefficients coefficient_table::at(double axis_ratio) const {
-  const double greatest = std::log(kalker_greatest_ratio), step = 2.0 * greatest / (nodes - 1);
-  const double t = std::clamp(std::log(axis_ratio), -greatest, greatest);
+  const double greatest = log(kalker_greatest_ratio), step = 2.0 * greatest / (nodes - 1);
+  const double t = std::clamp(log(axis_ratio), -greatest, greatest);
   const double place = (t + greatest) / step;
   const int node = std::clamp(static_cast<int>(place), 0, nodes - 2);
   // cubic Hermite polynomial
@@ -95,8 +97,8 @@ creepage_coefficients published_coefficients(double axis_ratio, double poisson_r
   const double clamped = std::clamp(axis_ratio, 0.1, 10.0);
   size_t row = 0;
   while (row + 2 < published.size() && published_ratio(row + 1) < clamped) ++row;
-  const double lower = std::log(published_ratio(row)), upper = std::log(published_ratio(row + 1));
-  const double t = (std::log(clamped) - lower) / (upper - lower);
+  const double lower = log(published_ratio(row)), upper = log(published_ratio(row + 1));
+  const double t = (log(clamped) - lower) / (upper - lower);
   double c[3];
   for (size_t k = 0; k < 3; ++k)
     c[k] = (1.0 - t) * between_poisson_ratios(&published[row][3 * k], poisson_ratio) +

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
 #include "numeric/simd.hpp"
 
 namespace railpatch {
@@ -212,7 +213,7 @@ void creep_table::interpolate_remainder(const axis &ratio, const axis &psi, cons
 creep_forces creep_table::evaluate(const creep_problem &p) const {
   const creep_table_header &d = header();
   creep_forces out{};
-  const double ratio = std::log(p.semi_axes[0] / p.semi_axes[1]);
+  const double ratio = log(p.semi_axes[0] / p.semi_axes[1]);
   out.in_range = poisson_in_range_ && ratio >= d.log_ratio[0] && ratio <= d.log_ratio[1];
   if (!(p.bound > 0)) return out;
   const double inside = std::clamp(ratio, d.log_ratio[0], d.log_ratio[1]);
@@ -232,17 +233,16 @@ creep_forces creep_table::evaluate(const creep_problem &p) const {
   const double shrink = most > greatest ? greatest / most : 1.0;
   double n[3] = {scale[0] * std::abs(xi * shrink), mirror * scale[1] * (eta * shrink),
                  scale[2] * c * std::abs(phi * shrink)};
-  const double size = std::hypot(n[0], n[1], n[2]);
+  const double size = hypot(hypot(n[0], n[1]), n[2]);
   if (size == 0) return out;
   for (double &component : n) component /= size;
   const double stiffness = p.shear_modulus * c * c * size;
   const double t = stiffness / (d.radius * p.bound + stiffness);
 
-  const double level = std::hypot(n[0], n[1]);
+  const double level = hypot(n[0], n[1]);
   const axis at_t = locate(t * (d.t_count - 3), d.t_count);
-  const axis at_psi = locate(std::atan2(n[2], level) * (2.0 / pi) * (d.psi_count - 3), d.psi_count);
-  const axis at_theta =
-      locate((std::atan2(n[1], n[0]) / pi + 0.5) * (d.theta_count - 3), d.theta_count);
+  const axis at_psi = locate(atan2(n[2], level) * (2.0 / pi) * (d.psi_count - 3), d.psi_count);
+  const axis at_theta = locate((atan2(n[1], n[0]) / pi + 0.5) * (d.theta_count - 3), d.theta_count);
   double m[5], h[3];
   interpolate_linear(at_ratio, at_t, m);
   interpolate_remainder(at_ratio, at_psi, at_theta, at_t, h);
@@ -251,7 +251,7 @@ creep_forces creep_table::evaluate(const creep_problem &p) const {
   double fy = t * (m[1] * n[1] + m[2] * n[2] + share * h[1]);
   const double mz = t * (m[3] * n[1] + m[4] * n[2] + share * h[2]);
 
-  const double cut = limit(std::hypot(fx, fy));
+  const double cut = limit(hypot(fx, fy));
   // where xi vanishes, so does the force along it
   const double along = xi > 0 ? 1.0 : (xi < 0 ? -1.0 : 0.0);
   out.force[0] = p.direction * along * cut * p.bound * fx;

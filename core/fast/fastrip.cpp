@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "fast/fastsim.hpp"
+#include "numeric/elementary.hpp"
 #include "railpatch.h"
 
 namespace railpatch {
@@ -31,7 +32,7 @@ strip_factors factors_of(const elastic_constants &elastic, const creepage_coeffi
 double cap_integral(double h, double x) {
   if (!(h > 0)) return 0;
   const double u = std::clamp(x / h, -1.0, 1.0);
-  return 0.5 * h * h * (u * std::sqrt(1.0 - u * u) + std::asin(u));
+  return 0.5 * h * h * (u * std::sqrt(1.0 - u * u) + asin(u));
 }
 
 // One strip; x from its middle, positive towards the leading edge.
@@ -50,7 +51,7 @@ struct strip {
     if (d > 1e-6 * half) return {outer, (outer - cap_integral(stick, x - d)) / d};
     // the limit d -> 0: sqrt((half - x)/(half + x))
     const double u = std::clamp(x / half, -1.0, 1.0);
-    return {outer, half * (std::asin(u) + std::sqrt(1.0 - u * u))};
+    return {outer, half * (asin(u) + std::sqrt(1.0 - u * u))};
   }
 };
 
@@ -74,7 +75,7 @@ bool stick_traction(const strip &s, const strip::integrals &from, const strip::i
   const double difference = (to.difference - from.difference) / length;
   q[0] = s.a * difference;
   q[1] = s.b * difference - s.t * (to.outer - from.outer) / length;
-  const double size = std::hypot(q[0], q[1]);
+  const double size = hypot(q[0], q[1]);
   if (!(size > bound)) return false;
   q[0] *= bound / size;
   q[1] *= bound / size;
@@ -90,7 +91,7 @@ void slip_traction(const flexibilities &l, double length, const double w[2], dou
     p[1] = trial[1];
     return;
   }
-  const double size = std::hypot(trial[0], trial[1]);
+  const double size = hypot(trial[0], trial[1]);
   for (int k = 0; k < 2; ++k) p[k] = size == 0 ? 0.0 : bound * (trial[k] / size);
 }
 

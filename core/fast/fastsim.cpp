@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
 #include "railpatch.h"
 
 namespace railpatch {
@@ -26,8 +27,8 @@ flexibilities blend(const flexibilities &l, const creepage_coefficients &c, doub
   const double xi = input.creepage[0] / greatest, eta = input.creepage[1] / greatest;
   const double spin = turn / greatest;
   const double unit = capacity / (semi_axes[0] * semi_axes[1] * shear_modulus);
-  const double saturating = std::hypot(unit / c.c11, unit / c.c22);
-  const double creepage = greatest * std::hypot(xi, eta);
+  const double saturating = hypot(unit / c.c11, unit / c.c22);
+  const double creepage = greatest * hypot(xi, eta);
   const double w = saturating > 0 ? std::min(1.0, creepage / saturating / 3.0) : 1.0;
   const double one = (xi * xi + eta * eta + spin * spin) /
                      (xi * xi / l.l1 + eta * eta / l.l2 + spin * spin / l.l3);
@@ -40,7 +41,7 @@ bool march(const flexibilities &l, double length, double wx, double wy, double b
   p[0] -= length * wx / l.l1;
   p[1] -= length * wy / l.l2;
   s[0] = s[1] = 0;
-  const double size = std::hypot(p[0], p[1]);
+  const double size = hypot(p[0], p[1]);
   if (!(size > bound)) return false;
   const double cut = 1.0 - bound / size;
   s[0] = -l.l1 * cut * p[0] / length;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -30,7 +32,7 @@ tangential_result solve_linear(const fast_problem &p, tangential_fields /*fields
   sums.moment += p.centre[0] * sums.force[1] - p.centre[1] * sums.force[0];
   tangential_result result;
   result.friction = sums.friction;
-  result.converged = std::hypot(sums.force[0], sums.force[1]) <= p.capacity;
+  result.converged = hypot(sums.force[0], sums.force[1]) <= p.capacity;
   return result;
 }
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 using std::numbers::pi;
@@ -15,9 +17,9 @@ resultant_creepage resultant_of(const creepage_coefficients &c, double shear_mod
   const double with_spin = eta + input.direction * input.spin_creepage * semi_axes[0];
   resultant_creepage r{};
   r.lateral = std::abs(with_spin) > std::abs(eta) ? with_spin : eta;
-  r.size = std::hypot(input.creepage[0], r.lateral);
+  r.size = hypot(input.creepage[0], r.lateral);
   if (!(r.size > 0)) return r;
-  const double weighted = std::hypot(c.c11 * input.creepage[0], c.c22 * r.lateral);
+  const double weighted = hypot(c.c11 * input.creepage[0], c.c22 * r.lateral);
   r.gradient = shear_modulus * pi * semi_axes[0] * semi_axes[1] * weighted / (4.0 * capacity);
   return r;
 }
@@ -34,14 +36,14 @@ creep_resultants polach(const creepage_coefficients &c, double shear_modulus,
   const double adhesion = factors.adhesion * r.gradient;
   // x/(1 + x^2), for any x
   const double hump = adhesion > 0 ? 1.0 / (adhesion + 1.0 / adhesion) : 0.0;
-  const double size = 2.0 * capacity / pi * (hump + std::atan(factors.slip * r.gradient));
+  const double size = 2.0 * capacity / pi * (hump + atan(factors.slip * r.gradient));
   const double eta = input.creepage[1];
   out.force[0] = -size * (input.creepage[0] / r.size);
   out.force[1] = -size * (eta / r.size);
   out.friction = -(out.force[0] * input.creepage[0] + out.force[1] * eta);
 
   const double a = semi_axes[0], b = semi_axes[1];
-  const double shape = 1.0 + 6.3 * (1.0 - std::exp(-a / b));
+  const double shape = 1.0 + 6.3 * (1.0 - exp(-a / b));
   const double spin = 8.0 / 3.0 * shear_modulus * b * std::sqrt(a * b) * c.c23 *
                       std::abs(r.lateral) / (capacity * shape);
   // with t = 1/(1 + e_s^2), d = 1 - 2 t: what follows keeps its digits at large spin

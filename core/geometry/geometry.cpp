@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "numeric/elementary.hpp"
 #include "numeric/nan.hpp"
 
 namespace railpatch {
@@ -51,7 +52,7 @@ double added(const surface &f, const vec3 &q, double &slope) {
     slope = 0;
     return -f.shape->height(q[0]);
   }
-  const double added = f.shape->runout(std::atan2(q[0], q[2]), slope);
+  const double added = f.shape->runout(atan2(q[0], q[2]), slope);
   slope *= (q[2] * f.qn[0] - q[0] * f.qn[2]) / (q[0] * q[0] + q[2] * q[2]);
   return added;
 }
@@ -97,14 +98,14 @@ double across(const surface &f, const hit &h) {
   const double r = f.radius + f.sign * m.z, dr = f.sign * m.dz;
   const vec3 normal =
       f.prismatic ? vec3{0, -dr, m.dy} : vec3{q[0] / r * m.dy, -dr, q[2] / r * m.dy};
-  return std::atan(-dot(normal, f.qs) / dot(normal, f.qn));
+  return atan(-dot(normal, f.qs) / dot(normal, f.qn));
 }
 
 // the sample of the meridian nearest to the frame's origin starts the search
 hit nearest(const surface &f) {
   const placed_profile &m = *f.meridian;
   const double u = f.q0[1];
-  const double r = f.prismatic ? f.q0[2] : std::hypot(f.q0[0], f.q0[2]);
+  const double r = f.prismatic ? f.q0[2] : hypot(f.q0[0], f.q0[2]);
   double best = std::numeric_limits<double>::infinity();
   int at = m.first();
   for (int i = m.first(); i <= m.last(); ++i) {
@@ -338,7 +339,7 @@ bool side_geometry::rail_surface(double x, double y, double &z, double &angle) c
 }
 
 double side_geometry::roller_inclination(const vec3 &at) const {
-  return std::atan2(at[0] - axle_x_, axle_z_ - at[2]);
+  return atan2(at[0] - axle_x_, axle_z_ - at[2]);
 }
 
 locus_point side_geometry::locus(double s) const {
@@ -363,7 +364,7 @@ longitudinal_row side_geometry::row_of(const curve_point &p, double sine, double
   const double r = sizes_.nominal_radius + p.z;
   longitudinal_row row;
   row.shape = shape_;
-  row.angle = std::asin(sine);
+  row.angle = asin(sine);
   row.radius = r;
   row.gap = gap;
   row.x0 = wheel_point(p, sine)[0];

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -106,7 +108,7 @@ void longitudinal_shape::place(double pitch, double x, double radius) {
   greatest_ = 0;
   if (has_runout()) {
     const double runout = runout_.greatest(pitch - reach, pitch + reach);
-    greatest_ += runout > 0 ? runout : runout * std::cos(reach);
+    greatest_ += runout > 0 ? runout : runout * cos(reach);
   }
   if (has_height()) greatest_ += height_.greatest(x - reach * radius, x + reach * radius);
 }
@@ -117,20 +119,18 @@ double longitudinal_shape::runout(double angle, double &slope) const {
   return value;
 }
 
-double longitudinal_row::x(double a) const {
-  return x0 + advance * (std::sin(a) - std::sin(angle));
-}
+double longitudinal_row::x(double a) const { return x0 + advance * (sin(a) - sin(angle)); }
 
 double longitudinal_row::at(double a) const {
-  const double half = std::sin(0.5 * (a - angle)), place = x(a), apart = place - x0;
-  return gap + 2 * radius * half * half + bend * apart * apart - shape->runout(a) * std::cos(a) -
+  const double half = sin(0.5 * (a - angle)), place = x(a), apart = place - x0;
+  return gap + 2 * radius * half * half + bend * apart * apart - shape->runout(a) * cos(a) -
          shape->height(place);
 }
 
 // Beyond this angle from the round wheel's closest point the gap is greater than level.
 double longitudinal_row::half_width(double level) const {
   const double rise = std::max(level - gap + shape->greatest(), 0.0);
-  return std::min(2 * std::asin(std::min(std::sqrt(0.5 * rise / radius), 0.1)),
+  return std::min(2 * asin(std::min(std::sqrt(0.5 * rise / radius), 0.1)),
                   longitudinal_shape::widest);
 }
 

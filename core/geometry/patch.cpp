@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -157,7 +159,7 @@ void sum_shaped_rows(const side_geometry &side, part &p) {
   const double half = 0.5 * (p.end - p.begin), middle = 0.5 * (p.end + p.begin);
   const auto at = [&](int i) {
     const double share = std::clamp((i - 0.5) / part_rows, 0.0, 1.0);
-    return middle - half * std::cos(std::numbers::pi * share);
+    return middle - half * cos(std::numbers::pi * share);
   };
   p.first = side.locus(p.begin).wheel;
   p.last = side.locus(p.end).wheel;
@@ -218,7 +220,7 @@ patch_region describe(const side_geometry &side, const patch_rules &r, const par
     }
     const double d = facing_distance(p, next);
     const double share = std::clamp((r.separate - d) / (r.separate - r.combine), 0.0, 1.0);
-    out.coupling[i - g.begin] = std::pow(share, r.coupling_exponent);
+    out.coupling[i - g.begin] = pow(share, r.coupling_exponent);
   }
   return out;
 }

@@ -35,6 +35,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 constexpr int max_parts = 8;  // of one patch, and of one wheel
@@ -92,7 +94,7 @@ void sum_rows(const Locus &locus, basic_part<T> &p) {
   const T half = 0.5 * (p.end - p.begin), middle = 0.5 * (p.end + p.begin);
   decltype(locus(p.begin)) row[part_rows + 2];
   for (int i = 1; i <= part_rows; ++i)
-    row[i] = locus(middle - half * std::cos(std::numbers::pi * (i - 0.5) / part_rows));
+    row[i] = locus(middle - half * cos(std::numbers::pi * (i - 0.5) / part_rows));
   row[0] = locus(p.begin);
   row[part_rows + 1] = locus(p.end);
   p.first = row[0].wheel;
@@ -118,13 +120,11 @@ void sum_rows(const Locus &locus, basic_part<T> &p) {
 
 template <class T>
 T facing_distance(const basic_part<T> &a, const basic_part<T> &b) {
-  using std::hypot;
   return hypot(b.first[1] - a.last[1], b.first[2] - a.last[2]);
 }
 
 template <class T>
 T lateral_width(const basic_part<T> &p) {
-  using std::hypot;
   return hypot(p.last[1] - p.first[1], p.last[2] - p.first[2]);
 }
 
@@ -141,7 +141,6 @@ template <class T>
 T interaction(const blend_rules &rule, const basic_part<T> &a, const basic_part<T> &b) {
   using std::max;
   using std::min;
-  using std::pow;
   const T near = (rule.none - facing_distance(a, b)) / (rule.none - rule.full);
   if (!(near > 0)) return T(0);
   return near < 1.0 ? pow(near, 0.8) : T(1);
@@ -191,8 +190,6 @@ basic_interval<T> sum_parts(const basic_part<T> *parts, int begin, int end) {
 // Lateral position in a frame of origin and contact angle.
 template <class T>
 T lateral_in(const std::array<T, 3> &origin, const T &contact_angle, const std::array<T, 3> &p) {
-  using std::cos;
-  using std::sin;
   return cos(contact_angle) * (p[1] - origin[1]) + sin(contact_angle) * (p[2] - origin[2]);
 }
 

@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "numeric/dual.hpp"
+#include "numeric/elementary.hpp"
 
 namespace railpatch {
 
@@ -100,16 +101,12 @@ vec<T> operator*(const std::type_identity_t<T> &c, const vec<T> &a) {
 // yaw about the z axis that the roll turned.
 template <class T>
 vec<T> swing_of(const basic_wheelset_state<T> &w) {
-  using std::cos;
-  using std::sin;
   return vec<T>{w.roll_rate, T(0), T(0)} + w.yaw_rate * vec<T>{T(0), -sin(w.roll), cos(w.roll)};
 }
 
 // All of it: with the pitch about the axle.
 template <class T>
 vec<T> angular_velocity(const basic_wheelset_state<T> &w) {
-  using std::cos;
-  using std::sin;
   const T d = cos(w.yaw);
   return swing_of(w) + w.pitch_rate * vec<T>{-sin(w.yaw), cos(w.roll) * d, sin(w.roll) * d};
 }
@@ -138,8 +135,6 @@ vec<T> turn_back(const mat<T> &m, const vec<T> &a) {
 // Rx(roll) Rz(yaw): its first row has no z component, which keeps the locus in closed form
 template <class T>
 mat<T> roll_yaw(const T &roll, const T &yaw) {
-  using std::cos;
-  using std::sin;
   const T c = cos(roll), s = sin(roll), d = cos(yaw), t = sin(yaw);
   return {{{d, -t, T(0)}, {c * t, c * d, -s}, {s * t, s * d, c}}};
 }
@@ -150,11 +145,9 @@ struct frame_axes {
 };
 template <class T>
 frame_axes<T> axes_of(const basic_contact_frame<T> &f) {
-  using std::cos;
-  using std::sin;
   const T c = cos(f.contact_angle), s = sin(f.contact_angle);
   if (f.inclination == 0) return {{T(1), T(0), T(0)}, {T(0), c, s}, {T(0), -s, c}};
-  const double d = std::cos(f.inclination), t = std::sin(f.inclination);
+  const double d = cos(f.inclination), t = sin(f.inclination);
   return {{T(d), T(0), T(t)}, {-t * s, c, d * s}, {-t * c, -s, d * c}};
 }
 
@@ -256,9 +249,7 @@ struct placement {
 template <class T>
 basic_creepage_state<T> placement<T>::creepages(const basic_contact_frame<T> &frame,
                                                 const T &approach) const {
-  using std::cos;
   using std::fabs;
-  using std::sin;
   const basic_wheelset_state<T> &w = motion_.wheelset;
   const frame_axes<T> f = axes_of(frame);
   const T depth = contact_depth(frame, approach);

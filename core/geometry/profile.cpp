@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -45,14 +47,14 @@ profile_fault validate(const profile_view &v) {
     if (!finite(v, i)) return profile_fault::not_finite;
     if (i == 0) continue;
     if (!(v.s[i] > v.s[i - 1])) return profile_fault::not_increasing;
-    length += std::hypot(v.y[i] - v.y[i - 1], v.z[i] - v.z[i - 1]);
+    length += hypot(v.y[i] - v.y[i - 1], v.z[i] - v.z[i - 1]);
   }
   if (length > max_length) return profile_fault::too_long;
   // chords are shorter than arcs, so a wide margin serves: this finds derivatives by something else
   const double ratio = length / (v.s[v.n - 1] - v.s[0]);
   if (!(ratio > 0.8 && ratio < 1.05)) return profile_fault::not_arc_length;
   for (int i = 0; i < v.n; ++i) {
-    const double speed = std::hypot(v.dy[i], v.dz[i]);
+    const double speed = hypot(v.dy[i], v.dz[i]);
     if (!(speed > 0.5 && speed < 2)) return profile_fault::not_arc_length;
   }
   return v.y[v.n - 1] > v.y[0] ? profile_fault::none : profile_fault::wrong_direction;
@@ -78,10 +80,10 @@ const char *text(profile_fault fault) {
   return "unknown";
 }
 
-double inclination(const curve_point &p) { return std::atan2(p.dz, p.dy); }
+double inclination(const curve_point &p) { return atan2(p.dz, p.dy); }
 
 double curvature(const curve_point &p) {
-  const double speed = std::hypot(p.dy, p.dz);
+  const double speed = hypot(p.dy, p.dz);
   return (p.dy * p.d2z - p.dz * p.d2y) / (speed * speed * speed);
 }
 
@@ -169,8 +171,8 @@ void placed_profile::place(double angle, double y, double z) {
   if (placed_ && angle == angle_ && y == y_ && z == z_) return;
   placed_ = true;
   angle_ = angle;
-  cos_ = std::cos(angle);
-  sin_ = std::sin(angle);
+  cos_ = cos(angle);
+  sin_ = sin(angle);
   y_ = y;
   z_ = z;
   for (size_t i = 0; i < raw_.size(); ++i) samples_[i] = turned(raw_[i]);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 namespace {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -12,9 +14,9 @@ using std::numbers::pi;
 
 // y ln r + x atan(y/x); lengths over a typical one, which the alternating sum takes out again
 double primitive(double x, double y, double length) {
-  const double r = std::hypot(x, y);
-  const double first = r > 0 ? y * std::log(r / length) : 0.0;
-  return first + (x != 0 ? x * std::atan(y / x) : 0.0);
+  const double r = hypot(x, y);
+  const double first = r > 0 ? y * log(r / length) : 0.0;
+  return first + (x != 0 ? x * atan(y / x) : 0.0);
 }
 
 // int sign(x - s) ds over a strip of width dx around the origin

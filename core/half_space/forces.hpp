@@ -8,6 +8,7 @@
 
 #include "geometry/surface_slopes.hpp"
 #include "half_space/influence.hpp"
+#include "numeric/elementary.hpp"
 
 namespace railpatch {
 
@@ -43,15 +44,13 @@ void add_depth(double depth, double longitudinal, double lateral, patch_wrench &
 template <class T>
 void add_wrench(const basic_wrench<T> &wrench, const T &contact_angle, const T lever[3], T force[3],
                 T moment[3], double inclination = 0) {
-  using std::cos;
-  using std::sin;
   const T c = cos(contact_angle), s = sin(contact_angle);
   const auto rotate = [&](const T v[3], T out[3]) {
     out[0] = v[0];
     out[1] = c * v[1] - s * v[2];
     out[2] = s * v[1] + c * v[2];
     if (inclination == 0) return;
-    const double d = std::cos(inclination), t = std::sin(inclination);
+    const double d = cos(inclination), t = sin(inclination);
     const T along = out[0], down = out[2];
     out[0] = d * along - t * down;
     out[2] = t * along + d * down;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -11,10 +13,10 @@ namespace {
 using std::numbers::pi;
 
 // y ln(x + r) with the part that cancels in differences along x taken out: ln(x+r) - ln|y|.
-double y_log(double x, double y) { return y * std::asinh(x / std::abs(y)); }
+double y_log(double x, double y) { return y * asinh(x / std::abs(y)); }
 
 // primitive of ln(width/|x|)
-double line_primitive(double x, double width) { return x * (1.0 + std::log(width / std::abs(x))); }
+double line_primitive(double x, double width) { return x * (1.0 + log(width / std::abs(x))); }
 
 }  // namespace
 
@@ -81,7 +83,7 @@ void influence::make_half_space_kernels() {
       const auto at = static_cast<size_t>(j * nx + i);
       corner_[0][at] = y_log(x, y);
       corner_[1][at] = y_log(y, x);
-      corner_[2][at] = -std::hypot(x, y);
+      corner_[2][at] = -hypot(x, y);
       if (medium_.by_length) make_rates(x, y, i - 0.5, at);
     }
   const double nu = medium_.elastic.poisson_ratio;
@@ -104,9 +106,9 @@ void influence::make_half_space_kernels() {
 
 // A corner at (i - 1/2) dx moves by i - 1/2 with dx.
 void influence::make_rates(double x, double y, double moves, size_t at) {
-  const double r = std::hypot(x, y);
+  const double r = hypot(x, y);
   corner_[0][at] = moves * y / r;
-  corner_[1][at] = moves * (std::asinh(y / std::abs(x)) - y / r);
+  corner_[1][at] = moves * (asinh(y / std::abs(x)) - y / r);
   corner_[2][at] = -moves * x / r;
 }
 
@@ -145,7 +147,7 @@ void influence::bodies_at(double x, double y, double values[3]) const {
     const double u = x + (k & 1 ? -0.5 : 0.5) * grid_.dx, v = y + (k & 2 ? -0.5 : 0.5) * grid_.dy;
     sum[0] += sign * (v != 0 ? y_log(u, v) : 0.0);
     sum[1] += sign * (u != 0 ? y_log(v, u) : 0.0);
-    sum[2] -= sign * std::hypot(u, v);
+    sum[2] -= sign * hypot(u, v);
   }
   values[0] = c * (sum[0] + (1.0 - nu) * sum[1]);
   values[1] = c * (sum[1] + (1.0 - nu) * sum[0]);
@@ -155,7 +157,7 @@ void influence::bodies_at(double x, double y, double values[3]) const {
 void influence::corner_at(double x, double y, double values[3]) {
   values[0] = y != 0 ? y_log(x, y) : 0.0;
   values[1] = x != 0 ? y_log(y, x) : 0.0;
-  values[2] = -std::hypot(x, y);
+  values[2] = -hypot(x, y);
 }
 
 void influence::from_corners(const double sum[3], double values[3]) const {

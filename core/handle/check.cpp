@@ -12,6 +12,7 @@
 #include "half_space/physics.hpp"
 #include "handle/case_fields.hpp"
 #include "handle/checker.hpp"
+#include "numeric/elementary.hpp"
 
 namespace railpatch {
 
@@ -325,7 +326,7 @@ void check_force(const rp_config &c, double friction, const rp_input &in, checke
   check.number("rolling_speed, with a prescribed tangential_force,", in.rolling_speed, positive);
   if (c.load == RP_FORCE)
     check.number("tangential_force, by the friction coefficient times normal_force, in magnitude",
-                 std::hypot(in.tangential_force[0], in.tangential_force[1]),
+                 hypot(in.tangential_force[0], in.tangential_force[1]),
                  {0, most_friction(c, friction) * in.normal_force * (1.0 + 1e-12), false, false});
 }
 

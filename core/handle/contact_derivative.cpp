@@ -6,6 +6,7 @@
 
 #include "handle/case_fields.hpp"
 #include "handle/check.hpp"
+#include "numeric/elementary.hpp"
 #include "numeric/nan.hpp"
 #include "patch/result_fields.hpp"
 #include "patch/status.hpp"
@@ -150,7 +151,7 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
     if (std::isnan(rate)) rate = 0;
   const double reach = reach_of(config_, record.input, rates);
   if (!(reach > 0)) return;
-  const double length = std::cbrt(beside.tolerance_) / reach;
+  const double length = cbrt(beside.tolerance_) / reach;
   rp_result ends[2];
   double places[2] = {-length, length};
   bool failed = false;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "handle/contact.hpp"
+#include "numeric/elementary.hpp"
 
 namespace railpatch {
 
@@ -22,7 +23,7 @@ struct plastic_path {
   const patch_history &history;
   double operator[](size_t at) const {
     const double *u = history.after[at].v + 1;
-    return std::hypot(u[0], u[1]);
+    return hypot(u[0], u[1]);
   }
 };
 

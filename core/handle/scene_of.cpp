@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "handle/check.hpp"
+#include "numeric/elementary.hpp"
 
 namespace railpatch {
 
@@ -115,8 +116,8 @@ patch_scene patch_scene_of(const rp_config &c) {
 double reach_of(const rp_config &c, const patch_scene &scene) {
   const elastic_constants &e = scene.elastic;
   if (scene.tangential != RP_TANGENTIAL_FULL || !is_coupled(e)) return 1.0;
-  const double share = std::atan(most_friction(c, c.friction_coefficient) * std::abs(e.mismatch) /
-                                 (1.0 - e.poisson_ratio)) /
+  const double share = atan(most_friction(c, c.friction_coefficient) * std::abs(e.mismatch) /
+                            (1.0 - e.poisson_ratio)) /
                        std::numbers::pi;
   // contacts that reach beyond are reported: mu K/(1 - nu) of more than 2
   return std::min(most_reach, (1.0 + 2.0 * share) / std::sqrt(1.0 - 4.0 * share * share));

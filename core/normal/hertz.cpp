@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -84,13 +86,13 @@ hertz_contact from_logs(const hertz_contact &c, const double curvatures[2], cons
 
 // ln(c0/c1) of an ellipse with ln(a/b) = t, falling from +inf to -inf.
 double log_curvature_ratio(double t) {
-  const double a2 = std::exp(t), b2 = std::exp(-t);
-  return std::log(carlson_rd(0, b2, a2) / carlson_rd(0, a2, b2));
+  const double a2 = exp(t), b2 = exp(-t);
+  return log(carlson_rd(0, b2, a2) / carlson_rd(0, a2, b2));
 }
 
 // ln(a/b) for given curvatures: bisection to the last bit is cheap and cannot fail.
 double log_axis_ratio(double c0, double c1) {
-  const double target = std::log(c0 / c1);
+  const double target = log(c0 / c1);
   double lower = -25, upper = 25;
   for (int i = 0; i < 100 && upper - lower > 1e-15 * std::max(1.0, std::abs(lower)); ++i) {
     const double t = 0.5 * (lower + upper);
@@ -104,7 +106,7 @@ struct unit_ellipse {
 };
 
 unit_ellipse shape(double log_ratio) {
-  const double a = std::exp(0.5 * log_ratio), b = 1.0 / a;
+  const double a = exp(0.5 * log_ratio), b = 1.0 / a;
   return {a, b, carlson_rd(0, b * b, a * a), carlson_rf(0, a * a, b * b)};
 }
 
@@ -122,7 +124,7 @@ hertz_contact complete(double a, double b, const double curvatures[2], double mo
 
 hertz_contact hertz_from_force(const double curvatures[2], double modulus, double force) {
   const unit_ellipse u = shape(log_axis_ratio(curvatures[0], curvatures[1]));
-  const double size = std::cbrt(force * u.rd0 / (2.0 * pi * modulus * curvatures[0]));
+  const double size = cbrt(force * u.rd0 / (2.0 * pi * modulus * curvatures[0]));
   return complete(size * u.a, size * u.b, curvatures, modulus, force);
 }
 

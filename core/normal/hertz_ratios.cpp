@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "normal/hertz.hpp"
+#include "numeric/elementary.hpp"
 
 namespace railpatch {
 
@@ -27,21 +28,20 @@ double cubic(const double *v, double x) {
 
 hertz_ratios::hertz_ratios() : edge_(count), pressure_(count) {
   for (int i = 0; i < count; ++i) {
-    const double ratio = std::exp(step * (i - half_count));
+    const double ratio = exp(step * (i - half_count));
     const double curvatures[2] = {ratio, 1.0};
     const hertz_contact h = hertz_from_approach(curvatures, 1.0, 1.0);
-    edge_[static_cast<size_t>(i)] = std::log(ratio * h.semi_axes[0] * h.semi_axes[0]);
-    pressure_[static_cast<size_t>(i)] = std::log(h.max_pressure / (ratio * h.semi_axes[0]));
+    edge_[static_cast<size_t>(i)] = log(ratio * h.semi_axes[0] * h.semi_axes[0]);
+    pressure_[static_cast<size_t>(i)] = log(h.max_pressure / (ratio * h.semi_axes[0]));
   }
 }
 
 hertz_ratios::values hertz_ratios::at(double a, double b) const {
-  const double ratio = std::log(a / b);
+  const double ratio = log(a / b);
   // the lower end also for what is no number
   const double t = ratio > -end ? std::min(ratio, end) / step : -half_count;
-  return {std::exp(cubic(edge_.data(), half_count + t)),
-          std::exp(cubic(edge_.data(), half_count - t)),
-          std::exp(cubic(pressure_.data(), half_count + t))};
+  return {exp(cubic(edge_.data(), half_count + t)), exp(cubic(edge_.data(), half_count - t)),
+          exp(cubic(pressure_.data(), half_count + t))};
 }
 
 }  // namespace railpatch

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -119,7 +121,7 @@ double row_contact::guess_approach(const grid &g, double force) const {
   // at depth 1: F = 2/3 pi a b p0, and F grows with depth^1.5
   const double size = hz.edge_along / a * std::sqrt(hz.edge_across / b);
   const double unit = 2.0 / 3.0 * pi * modulus_ * a * hz.pressure * size;
-  return deep.lowest + std::pow(force / unit, 2.0 / 3.0);
+  return deep.lowest + pow(force / unit, 2.0 / 3.0);
 }
 
 row_contact_result row_contact::solve(const grid &g, const double *h, const row_contact_load &load,
@@ -154,17 +156,17 @@ row_contact_result row_contact::solve(const grid &g, const double *h, const row_
 double row_contact::search(const grid &g, const row_contact_load &load, double first,
                            const contact_parts &parts, row_contact_result &result) {
   const double lowest = find_deepest(g, 0, g.ny).lowest;
-  double t = std::log(std::max(first - lowest, least_depth)), lower = -1e3, upper = 1e3;
+  double t = log(std::max(first - lowest, least_depth)), lower = -1e3, upper = 1e3;
   double best = t, last = t, last_error = 0, slope = 1.5;
   result.residual = HUGE_VAL;
   while (result.iterations < max_evaluations) {
-    const double ratio = evaluate(g, lowest + std::exp(t), parts).force / load.force;
+    const double ratio = evaluate(g, lowest + exp(t), parts).force / load.force;
     ++result.iterations;
     if (std::abs(ratio - 1) < result.residual) {
       result.residual = std::abs(ratio - 1);
       best = t;
     }
-    const double error = std::log(std::max(ratio, 1e-300));
+    const double error = log(std::max(ratio, 1e-300));
     (error < 0 ? lower : upper) = t;
     if (result.residual <= force_tolerance || upper - lower < 1e-15 * std::abs(t)) break;
     if (t != last) slope = std::clamp((error - last_error) / (t - last), 0.5, 20.0);
@@ -175,7 +177,7 @@ double row_contact::search(const grid &g, const row_contact_load &load, double f
   }
   // a closed bracket leaves what rounding of the approach leaves
   result.converged = result.residual <= 1e-9;
-  return lowest + std::exp(best);
+  return lowest + exp(best);
 }
 
 // All ways of taking neighbouring parts together or apart, weighted.
@@ -290,9 +292,9 @@ void row_contact::kik_piotrowski(const grid &g, const deepest_point &deep, int b
     const double y = g.y(j) - deep.y, x = vertex_[at(j)] - vertex_[at(deep.row)];
     displacement += s.integral([&](double t, double squared) {
       const double lateral = std::max(std::abs(y + t), 1e-12 * l0);
-      return row_potential(squared, std::hypot(lateral, x)) + 2 * l0 * std::log(lateral / l0);
+      return row_potential(squared, hypot(lateral, x)) + 2 * l0 * log(lateral / l0);
     });
-    displacement -= 2 * l0 * (s.log_integral(y) - s.width() * std::log(l0));
+    displacement -= 2 * l0 * (s.log_integral(y) - s.width() * log(l0));
   }
   if (!(displacement > 0)) return;
   const double factor = pi * modulus_ * deep.depth / displacement;

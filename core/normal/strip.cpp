@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -15,7 +17,7 @@ constexpr double gauss5[] = {-0.90617984593866399, -0.53846931010568309, 0.0, 0.
 constexpr double weight5[] = {0.23692688505618909, 0.47862867049936647, 0.56888888888888889,
                               0.47862867049936647, 0.23692688505618909};
 
-double log_primitive(double y) { return y == 0 ? 0.0 : y * (std::log(std::abs(y)) - 1); }
+double log_primitive(double y) { return y == 0 ? 0.0 : y * (log(std::abs(y)) - 1); }
 
 // Real roots in ascending order, without cancellation; their number.
 int roots(const quadratic &q, double r[2]) {

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "numeric/elementary.hpp"
 #include "numeric/simd.hpp"
 
 namespace railpatch {
@@ -205,8 +206,8 @@ void batch_fft<T>::set_length(int length) {
     for (; rest % f == 0; rest /= f) factor_[factors_++] = f;
   for (int k = 0; k < length; ++k) {
     const double angle = 2.0 * std::numbers::pi * k / length;
-    cosine_[static_cast<size_t>(k)] = static_cast<T>(std::cos(angle));
-    sine_[static_cast<size_t>(k)] = static_cast<T>(-std::sin(angle));
+    cosine_[static_cast<size_t>(k)] = static_cast<T>(cos(angle));
+    sine_[static_cast<size_t>(k)] = static_cast<T>(-sin(angle));
   }
 }
 

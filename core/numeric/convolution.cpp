@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
 #include "numeric/simd.hpp"
 
 namespace railpatch {
@@ -93,9 +94,9 @@ void convolution<T>::set_size(int nx, int ny, int transform_nx, int transform_ny
   for (int k = 0; k < transform_nx; ++k) {
     // 1 - exp(i angle), without the difference of nearly equal numbers
     const double angle = 2.0 * std::numbers::pi * k / transform_nx;
-    const double sine = std::sin(0.5 * angle);
+    const double sine = sin(0.5 * angle);
     turn_re_[static_cast<size_t>(k)] = static_cast<T>(2.0 * sine * sine);
-    turn_im_[static_cast<size_t>(k)] = static_cast<T>(-std::sin(angle));
+    turn_im_[static_cast<size_t>(k)] = static_cast<T>(-sin(angle));
   }
 }
 

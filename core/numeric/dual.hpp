@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 template <int n>
@@ -64,11 +66,11 @@ dual<n> sqrt(const dual<n> &a) {
 }
 template <int n>
 dual<n> sin(const dual<n> &a) {
-  return a.through(std::sin(a.value), std::cos(a.value));
+  return a.through(sin(a.value), cos(a.value));
 }
 template <int n>
 dual<n> cos(const dual<n> &a) {
-  return a.through(std::cos(a.value), -std::sin(a.value));
+  return a.through(cos(a.value), -sin(a.value));
 }
 template <int n>
 dual<n> fabs(const dual<n> &a) {
@@ -77,13 +79,13 @@ dual<n> fabs(const dual<n> &a) {
 template <int n>
 dual<n> atan2(const dual<n> &y, const dual<n> &x) {
   const double square = x.value * x.value + y.value * y.value;
-  dual<n> out(std::atan2(y.value, x.value));
+  dual<n> out(atan2(y.value, x.value));
   for (size_t k = 0; k < n; ++k) out.rate[k] = (x.value * y.rate[k] - y.value * x.rate[k]) / square;
   return out;
 }
 template <int n>
 dual<n> hypot(const dual<n> &a, const dual<n> &b) {
-  const double length = std::hypot(a.value, b.value);
+  const double length = hypot(a.value, b.value);
   dual<n> out(length);
   if (!(length > 0)) return out;
   for (size_t k = 0; k < n; ++k) out.rate[k] = (a.value * a.rate[k] + b.value * b.rate[k]) / length;
@@ -91,8 +93,8 @@ dual<n> hypot(const dual<n> &a, const dual<n> &b) {
 }
 template <int n>
 dual<n> pow(const dual<n> &a, double exponent) {
-  const double slope = a.value != 0 ? exponent * std::pow(a.value, exponent - 1) : 0.0;
-  return a.through(std::pow(a.value, exponent), slope);
+  const double slope = a.value != 0 ? exponent * pow(a.value, exponent - 1) : 0.0;
+  return a.through(pow(a.value, exponent), slope);
 }
 
 inline double value_of(double a) { return a; }

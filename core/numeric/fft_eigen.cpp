@@ -1,5 +1,29 @@
 // The permissive backend: one-dimensional transforms of Eigen's own FFT, rows and then columns.
+#include <Eigen/Core>
 #include <algorithm>
+
+#include "numeric/elementary.hpp"
+
+// the library makes its tables by these: from functions that are the same on every computer
+namespace Eigen {
+namespace numext {
+template <>
+inline double sin(const double &x) {
+  return railpatch::sin(x);
+}
+template <>
+inline double cos(const double &x) {
+  return railpatch::cos(x);
+}
+}  // namespace numext
+namespace internal {
+inline std::complex<double> exp(const std::complex<double> &z) {
+  const double size = railpatch::exp(z.real());
+  return {size * railpatch::cos(z.imag()), size * railpatch::sin(z.imag())};
+}
+}  // namespace internal
+}  // namespace Eigen
+
 #include <unsupported/Eigen/FFT>
 
 #include "numeric/fft.hpp"

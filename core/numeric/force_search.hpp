@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 class force_search {
@@ -40,7 +42,7 @@ class force_search {
 
  private:
   static constexpr double max_depth = 0.02;  // m
-  static double root(double force) { return std::cbrt(force > 0 ? force * force : 0.0); }
+  static double root(double force) { return cbrt(force > 0 ? force * force : 0.0); }
 
   double secant(double force) const {
     const double value = root(force), goal = root(target_);

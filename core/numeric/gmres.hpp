@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/elementary.hpp"
 #include "numeric/memory.hpp"
 #include "numeric/sums.hpp"
 
@@ -100,7 +101,7 @@ class gmres {
       h[i] = t;
     }
     const auto at = static_cast<size_t>(k);
-    const double r = std::hypot(h[k], h[k + 1]);
+    const double r = hypot(h[k], h[k + 1]);
     cosine_[at] = r > 0 ? h[k] / r : 1.0;
     sine_[at] = r > 0 ? h[k + 1] / r : 0.0;
     h[k] = r;

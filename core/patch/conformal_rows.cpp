@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/elementary.hpp"
 #include "numeric/nan.hpp"
 
 namespace railpatch {
@@ -29,8 +30,8 @@ bool conformal_rows::begin(const side_geometry &side, patch_region &region) {
   if (!p.valid) return false;
   height_ = 0.5 * (p.wheel + p.rail);
   lift_ = side.one_point() ? height_ : 0.0;
-  first_.y = reference_.origin[1] - height_ * std::sin(reference_.contact_angle);
-  first_.z = reference_.origin[2] + height_ * std::cos(reference_.contact_angle);
+  first_.y = reference_.origin[1] - height_ * sin(reference_.contact_angle);
+  first_.z = reference_.origin[2] + height_ * cos(reference_.contact_angle);
   first_.angle = reference_.contact_angle + 0.5 * (p.wheel_angle + p.rail_angle);
   first_.valid = true;
   bool reached = arc_length(side, region.s_min) && arc_length(side, region.s_max);
@@ -46,21 +47,21 @@ conformal_rows::point conformal_rows::step(const side_geometry &side, const poin
   to.angle = from.angle + bend;
   for (int k = 0; k < most_turns; ++k) {
     const double middle = 0.5 * (from.angle + to.angle);
-    const contact_frame f{{reference_.origin[0], from.y + length * std::cos(middle),
-                           from.z + length * std::sin(middle)},
-                          to.angle};
+    const contact_frame f{
+        {reference_.origin[0], from.y + length * cos(middle), from.z + length * sin(middle)},
+        to.angle};
     const section_point p = side.section(f, to.start);
     if (!p.valid) {
       to = from;
       to.valid = false;
-      to.y += length * std::cos(from.angle);
-      to.z += length * std::sin(from.angle);
+      to.y += length * cos(from.angle);
+      to.z += length * sin(from.angle);
       to.start[0] = to.start[1] = nan;
       return to;
     }
     const double height = 0.5 * (p.wheel + p.rail), turn = 0.5 * (p.wheel_angle + p.rail_angle);
-    to.y = f.origin[1] - height * std::sin(to.angle);
-    to.z = f.origin[2] + height * std::cos(to.angle);
+    to.y = f.origin[1] - height * sin(to.angle);
+    to.z = f.origin[2] + height * cos(to.angle);
     to.angle += turn;
     to.valid = true;
     if (std::fabs(turn) < steady_angle) break;
@@ -70,7 +71,7 @@ conformal_rows::point conformal_rows::step(const side_geometry &side, const poin
 
 // From a distance along the reference's s to the arc length of the curve's point there.
 bool conformal_rows::arc_length(const side_geometry &side, double &s) const {
-  const double c = std::cos(reference_.contact_angle), t = std::sin(reference_.contact_angle);
+  const double c = cos(reference_.contact_angle), t = sin(reference_.contact_angle);
   const double length = s / arc_steps;
   if (length == 0) return true;
   point at = first_;
@@ -93,7 +94,7 @@ bool conformal_rows::arc_length(const side_geometry &side, double &s) const {
 
 void conformal_rows::keep(int row, const point &p) {
   const auto j = static_cast<size_t>(row);
-  const double c = std::cos(reference_.contact_angle), t = std::sin(reference_.contact_angle);
+  const double c = cos(reference_.contact_angle), t = sin(reference_.contact_angle);
   const double dy = p.y - first_.y, dz = p.z - first_.z;
   y_[j] = p.y;
   z_[j] = p.z;
@@ -101,8 +102,8 @@ void conformal_rows::keep(int row, const point &p) {
   valid_[j] = p.valid ? 1.0 : 0.0;
   s_[j] = c * dy + t * dz;
   n_[j] = c * dz - t * dy;
-  cos_[j] = std::cos(p.angle - reference_.contact_angle);
-  sin_[j] = std::sin(p.angle - reference_.contact_angle);
+  cos_[j] = cos(p.angle - reference_.contact_angle);
+  sin_[j] = sin(p.angle - reference_.contact_angle);
 }
 
 contact_frame conformal_rows::frame(int row) const {
@@ -147,8 +148,8 @@ void conformal_rows::set_slip(const side_geometry &side, double depth, double ro
     const auto j = static_cast<size_t>(row);
     // as deep below the curve as the reference is
     contact_frame f = frame(row);
-    f.origin[1] += height_ * std::sin(f.contact_angle);
-    f.origin[2] -= height_ * std::cos(f.contact_angle);
+    f.origin[1] += height_ * sin(f.contact_angle);
+    f.origin[2] -= height_ * cos(f.contact_angle);
     const creepage_state c = side.creepages(f, depth);
     const double scale = rolling_speed > 0 ? c.rolling_speed / rolling_speed : 0.0;
     xi_[j] = scale * c.xi;

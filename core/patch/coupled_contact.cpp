@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "numeric/elementary.hpp"
 #include "numeric/sums.hpp"
 
 namespace railpatch {
@@ -106,7 +107,7 @@ double coupled_contact::error(const double *pressure, const double *px, const do
 }
 
 double coupled_contact::tolerance(double whole) const {
-  const double share = std::max(0.5 * std::pow(0.5, rounds_ / 4), least_share);
+  const double share = std::max(0.5 * pow(0.5, rounds_ / 4), least_share);
   return std::max(share * whole, std::min(whole, least_tolerance));
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -56,7 +58,7 @@ constexpr double rounding = 1e-10, force_floor = 3e-4;
 constexpr double farthest[2] = {16.0, 4.0};
 
 // of a number of elements, 0 for what has none
-double fineness(int count) { return count > 0 ? std::log(count / 16.0) : 0.0; }
+double fineness(int count) { return count > 0 ? log(count / 16.0) : 0.0; }
 
 }  // namespace
 
@@ -92,7 +94,7 @@ contact_extent extent_of(const grid &g, const double *pressure) {
   for (int k = 0; k < 2; ++k) {
     // of an ellipse a twentieth of the squared width; elements have their own
     const double variance = square[k] - e.centre[k] * e.centre[k] + size[k] * size[k] / 12.0;
-    e.spread[k] = 20.0 * variance / std::pow(e.across[k] * size[k], 2);
+    e.spread[k] = 20.0 * variance / pow(e.across[k] * size[k], 2);
   }
   const double ellipse = 0.25 * pi * e.across[0] * e.across[1];
   e.box_share = count / ellipse;
@@ -103,12 +105,12 @@ contact_extent extent_of(const grid &g, const double *pressure) {
 // for `coupling`: it tells whether spin adds to the lateral creepage or takes away from it.
 struct error_model::scaled_motion {
   double xi = 0, eta = 0, spin = 0, coupling = 0;
-  double size() const { return std::hypot(xi, eta); }
+  double size() const { return hypot(xi, eta); }
   double sum() const { return size() + spin; }
   // over mu Fn
   double linear_force() const {
     const double turned = coupling < 0 ? eta - spin : eta + spin;
-    return std::hypot(xi, turned);
+    return hypot(xi, turned);
   }
 };
 
@@ -153,8 +155,7 @@ error_bounds error_model::estimate(const estimated_patch &patch, const rp_patch_
   if (!(axes[0] > 0 && axes[1] > 0)) return bounds;
   describe_area(patch, result, axes, features);
   const network *pressure = pressure_model_of(patch.normal);
-  bounds.max_pressure =
-      result.max_pressure * (pressure ? std::exp(pressure->at(features)) : rounding);
+  bounds.max_pressure = result.max_pressure * (pressure ? exp(pressure->at(features)) : rounding);
   const network *model = model_of(patch);
   if (!model) return bounds;
   const double force = patch.friction_coefficient * result.normal_force;
@@ -163,7 +164,7 @@ error_bounds error_model::estimate(const estimated_patch &patch, const rp_patch_
   describe_motion(patch, result, m, force, length, features);
   const double share = m.sum() / (1.0 + m.sum()), least = force_floor * std::min(1.0, m.sum());
   const auto relative = [&](int k) {
-    return std::max(least, share * patch.stated[k] * std::exp(model[k].at(features)));
+    return std::max(least, share * patch.stated[k] * exp(model[k].at(features)));
   };
   bounds.creep_force = force * relative(0);
   bounds.spin_moment = force * length * relative(1);
@@ -172,21 +173,21 @@ error_bounds error_model::estimate(const estimated_patch &patch, const rp_patch_
 
 void error_model::describe_area(const estimated_patch &patch, const rp_patch_result &result,
                                 const double axes[2], double *features) const {
-  const double ratio = std::log(axes[0] / axes[1]);
+  const double ratio = log(axes[0] / axes[1]);
   features[0] = ratio;
   // the moment about the reference has the force's error with this lever
   const double *centre = patch.extent.centre;
-  features[1] = std::hypot(centre[0], centre[1]) / std::sqrt(axes[0] * axes[1]);
+  features[1] = hypot(centre[0], centre[1]) / std::sqrt(axes[0] * axes[1]);
   features[2] = elastic_.poisson_ratio - 0.28;
   if (patch.normal == RP_NORMAL_HERTZ) return;
   const contact_extent &e = patch.extent;
   features[3] = fineness(e.across[0]);
   features[4] = fineness(e.across[1]);
   // all four zero for an ellipse
-  features[5] = std::log(result.max_pressure * result.contact_area / (1.5 * result.normal_force));
-  features[6] = std::log(e.box_share);
-  features[10] = std::log(e.spread[0]);
-  features[11] = std::log(e.spread[1]);
+  features[5] = log(result.max_pressure * result.contact_area / (1.5 * result.normal_force));
+  features[6] = log(e.box_share);
+  features[10] = log(e.spread[0]);
+  features[11] = log(e.spread[1]);
   features[7] = patch.normal == RP_NORMAL_HALF_SPACE;
   features[8] = patch.normal == RP_NORMAL_KIK_PIOTROWSKI;
   features[9] = patch.normal == RP_NORMAL_ANALYN;
@@ -201,17 +202,17 @@ void error_model::describe_motion(const estimated_patch &patch, const rp_patch_r
   const double moment = result.spin_moment - centre[0] * f[1] + centre[1] * f[0];
   const int stick = result.elements[RP_STICK], slip = result.elements[RP_SLIP];
   double *motion = features + pressure_feature_count;
-  motion[0] = std::log(1.0 + std::min(m.size(), farthest[0]));
-  motion[1] = std::log(1.0 + std::min(m.spin, farthest[1]));
+  motion[0] = log(1.0 + std::min(m.size(), farthest[0]));
+  motion[1] = log(1.0 + std::min(m.spin, farthest[1]));
   motion[2] = m.xi * m.xi / (square + 0.0025);
   motion[3] = m.coupling / (0.05 + square + m.spin * m.spin);
   motion[4] = linear / (1.0 + linear);
-  motion[5] = std::hypot(f[0], f[1]) / force;
+  motion[5] = hypot(f[0], f[1]) / force;
   motion[6] = std::abs(moment) / (force * length);
   motion[7] = stick + slip > 0 ? static_cast<double>(stick) / (stick + slip) : 0.0;
   motion[8] = fineness(patch.tangential_grid[0]);
   motion[9] = fineness(patch.tangential_grid[1]);
-  motion[10] = std::log(1.0 + 20.0 * layer_flexibility_ * elastic_.shear_modulus / length);
+  motion[10] = log(1.0 + 20.0 * layer_flexibility_ * elastic_.shear_modulus / length);
 }
 
 }  // namespace railpatch

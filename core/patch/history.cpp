@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 patch_history::patch_history(int max_count, bool steps, bool moves, const bound_law *law) {
@@ -128,7 +130,7 @@ void patch_history::start_from_before(const grid &g, const bound_law &law) {
   for (size_t i = 0; i < count; ++i) {
     const double *u = after[i].v + 1;
     double slope;
-    yield_stress[i] = law.yield.at(law.by_magnitude ? std::hypot(u[0], u[1]) : u[0], slope);
+    yield_stress[i] = law.yield.at(law.by_magnitude ? hypot(u[0], u[1]) : u[0], slope);
   }
 }
 

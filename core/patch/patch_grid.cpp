@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "normal/row_contact.hpp"
+#include "numeric/elementary.hpp"
 
 namespace railpatch {
 
@@ -30,7 +31,7 @@ double grid_rules::relative_size(const hertz_contact &hertz, int k) const {
   const double size =
       std::sqrt(half[0] / hertz.semi_axes[0]) * std::sqrt(half[1] / hertz.semi_axes[1]);
   // at equal force the approach is smaller, and with it both regions
-  const double load = force_given ? 1.0 / std::cbrt(size) : 1.0;
+  const double load = force_given ? 1.0 / cbrt(size) : 1.0;
   return load * std::max(size, half[k] / hertz.semi_axes[k]);
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -19,7 +21,7 @@ double shape_at(rp_slip_law shape, double u, double &slope) {
   slope = 0;
   switch (shape) {
     case RP_SLIP_EXPONENTIAL:
-      f = std::exp2(-u);
+      f = exp2(-u);
       slope = -ln2 * f;
       break;
     case RP_SLIP_RATIONAL:
@@ -183,7 +185,7 @@ bound_law::yielding bound_law::yield_at(const carried_state &before, const doubl
     return y;
   }
   const double w[2] = {before.v[1] + m * e[0], before.v[2] + m * e[1]};
-  const double across[2] = {-e[1], e[0]}, size = std::hypot(w[0], w[1]);
+  const double across[2] = {-e[1], e[0]}, size = hypot(w[0], w[1]);
   y.stress = yield.at(size, slope);
   const double n[2] = {size > 0 ? w[0] / size : e[0], size > 0 ? w[1] / size : e[1]};
   y.by_slip = slope * dot(n, e);
@@ -207,7 +209,7 @@ bound_law::yielding bound_law::until(const carried_state &before, const double e
     y.slip_by_level = y.by_slip != 0 ? 1.0 / y.by_slip : 0.0;
     return y;
   }
-  const double *u = before.v + 1, size = std::hypot(u[0], u[1]), along = dot(u, e);
+  const double *u = before.v + 1, size = hypot(u[0], u[1]), along = dot(u, e);
   const double inside = along < 0 ? yield.next_below(size, level) : -1;
   const double least = size * size - along * along;  // square of the least magnitude on the way
   double m = HUGE_VAL;

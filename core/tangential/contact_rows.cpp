@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -40,8 +42,8 @@ contact_rows::contact_rows(int nodes, int strips, int max_grid_rows)
       areas_(static_cast<size_t>(strips)) {
   for (int k = 0; k < nodes; ++k) {
     const double angle = (k + 1) * pi / (nodes + 1);
-    cosine_[static_cast<size_t>(k)] = std::cos(angle);
-    sine_[static_cast<size_t>(k)] = std::sin(angle);
+    cosine_[static_cast<size_t>(k)] = cos(angle);
+    sine_[static_cast<size_t>(k)] = sin(angle);
   }
 }
 
@@ -164,7 +166,7 @@ double contact_rows::weigh(contact_area &p, double peak_load) {
   double sum = 0;
   for (int i = p.first; i <= p.last; ++i) {
     const auto at = static_cast<size_t>(i);
-    density_[at] = std::pow(density_base + points_[at].load / peak_load, density_power);
+    density_[at] = pow(density_base + points_[at].load / peak_load, density_power);
     if (i > p.first)
       sum += 0.5 * (density_[at] + density_[at - 1]) * (points_[at].y - points_[at - 1].y);
     weight_[at] = sum;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
 #include "numeric/nan.hpp"
 #include "numeric/simd.hpp"
 
@@ -91,7 +92,7 @@ fitted_operator::fitted_operator(const elastic_constants &elastic, double layer_
   point_cosine_ = aligned_buffer<double>(n + 1);
   tau_ = aligned_buffer<double>(n);
   for (int i = 0; i < points_; ++i)
-    point_cosine_[static_cast<size_t>(i)] = std::cos((2 * i + 1) * pi / (2.0 * points_));
+    point_cosine_[static_cast<size_t>(i)] = cos((2 * i + 1) * pi / (2.0 * points_));
   for (int k = 0; k < nodes_; ++k) {
     const double *c = point_cosine_.data() + k;
     tau_[static_cast<size_t>(k)] = (c[0] - rows.cosine(k)) / (c[0] - c[1]);
@@ -124,8 +125,8 @@ void fitted_operator::make_refinement(refinement &r, int factor) {
   r.sine = aligned_buffer<double>(static_cast<size_t>(fine));
   for (int l = 0; l < fine; ++l) {
     const double angle = (l + 1) * pi / (fine + 1);
-    r.cosine[static_cast<size_t>(l)] = std::cos(angle);
-    r.sine[static_cast<size_t>(l)] = std::sin(angle);
+    r.cosine[static_cast<size_t>(l)] = cos(angle);
+    r.sine[static_cast<size_t>(l)] = sin(angle);
     const int base = (l + 1) / factor;
     const double u = static_cast<double>(l + 1 - base * factor) / factor;
     const double weights[4] = {-u * (u - 1) * (u - 2) / 6, (u + 1) * (u - 1) * (u - 2) / 2,
@@ -262,7 +263,7 @@ void fitted_operator::mirror(int target, int source) {
 // -direction dp/dx at the collocation points, zero traction at both edges.
 void fitted_operator::add_layer(int row) {
   const contact_row &r = rows_[static_cast<size_t>(row)];
-  const auto node = [&](int k) { return r.half_length * std::cos(k * pi / points_); };
+  const auto node = [&](int k) { return r.half_length * cos(k * pi / points_); };
   double *px = matrix_.data() + (block(row, row) - matrix_.data());
   double *py = px + nodes_ * stride_;
   for (int i = 0; i < points_; ++i) {
@@ -395,16 +396,16 @@ void fitted_operator::edge_displacement(const contact_rows &rows, int row, const
     const double *px = p + 2 * source * nodes_, *py = px + nodes_;
     for (int k = 0; k < nodes_; ++k) {
       const double x = t.x - s.x + direction_ * (t.half_length - s.half_length * rows.cosine(k));
-      const double ru = std::hypot(x, upper), rl = std::hypot(x, lower);
+      const double ru = hypot(x, upper), rl = hypot(x, lower);
       const double iu = 1.0 / ru, il = 1.0 / rl, share = upper * iu - lower * il;
       // asinh(upper/|x|) - asinh(lower/|x|), beside a strip also where x = 0
-      const double log = lower > 0   ? std::log((upper + ru) / (lower + rl))
-                         : upper < 0 ? std::log((rl - lower) / (ru - upper))
-                                     : std::log((upper + ru) * (rl - lower) / (x * x));
+      const double rise = lower > 0   ? log((upper + ru) / (lower + rl))
+                          : upper < 0 ? log((rl - lower) / (ru - upper))
+                                      : log((upper + ru) * (rl - lower) / (x * x));
       const double w = weight * rows.sine(k);
       const double cross = nu * x * (il - iu);
-      u[0] += w * (((1.0 - nu) * log + nu * share) * px[k] + cross * py[k]);
-      u[1] += w * ((log - nu * share) * py[k] + cross * px[k]);
+      u[0] += w * (((1.0 - nu) * rise + nu * share) * px[k] + cross * py[k]);
+      u[1] += w * ((rise - nu * share) * py[k] + cross * px[k]);
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/elementary.hpp"
 #include "numeric/sums.hpp"
 #include "tangential/rolling_operator.hpp"
 
@@ -33,7 +34,7 @@ struct simplified_force {
           p[c] -= w * area / flexibility[c];
           dp[c][c] -= area / flexibility[c];
         }
-        if (const double size = std::hypot(p[0], p[1]); size > bound) slide(bound, size, p, dp);
+        if (const double size = hypot(p[0], p[1]); size > bound) slide(bound, size, p, dp);
         for (int c = 0; c < 2; ++c) {
           force[c] += area * p[c];
           for (int d = 0; d < 2; ++d) slope[c][d] += area * dp[c][d];
@@ -69,7 +70,7 @@ void force_constraint::begin(const rolling_problem &problem, double tolerance) {
   travelled_ = 0;
   for (int c = 0; c < 2; ++c)
     if (force.component[c]) {
-      target_size_ = std::hypot(target_size_, force.force[c]);
+      target_size_ = hypot(target_size_, force.force[c]);
       target_[unknowns_] = force.force[c];
       component_[unknowns_++] = c;
     }
@@ -100,7 +101,7 @@ double force_constraint::remainder(int m, const rolling_problem &problem) const 
 
 double force_constraint::miss(const rolling_problem &problem, const double *p) const {
   double sum = 0;
-  for (int m = 0; m < unknowns_; ++m) sum = std::hypot(sum, target_[m] - carried(m, problem, p));
+  for (int m = 0; m < unknowns_; ++m) sum = hypot(sum, target_[m] - carried(m, problem, p));
   return weight_ * sum;
 }
 
@@ -113,7 +114,7 @@ bool force_constraint::overshoots(const rolling_problem &problem, const double *
   double far = 0, excess = 0;
   for (int m = 0; m < unknowns_; ++m) {
     const double force = carried(m, problem, p);
-    far = std::hypot(far, kept_[m] / unit_[m]);
+    far = hypot(far, kept_[m] / unit_[m]);
     excess += force * (force - target_[m]);
   }
   return far > flat_from &&
@@ -160,13 +161,13 @@ void force_constraint::move(const rolling_problem &problem, double length) const
 bool force_constraint::bounded(const double *creepage, double *step) const {
   double now = 0, length = 0, there = 0;
   for (int m = 0; m < unknowns_; ++m) {
-    now = std::hypot(now, creepage[m] / unit_[m]);
-    length = std::hypot(length, step[m] / unit_[m]);
+    now = hypot(now, creepage[m] / unit_[m]);
+    length = hypot(length, step[m] / unit_[m]);
   }
   const double longest = 0.5 + 0.5 * now;
   for (int m = 0; m < unknowns_; ++m) {
     if (!(length <= longest)) step[m] = std::isfinite(length) ? step[m] * (longest / length) : 0.0;
-    there = std::hypot(there, (creepage[m] + step[m]) / unit_[m]);
+    there = hypot(there, (creepage[m] + step[m]) / unit_[m]);
   }
   return there > most_creepage && there > now;
 }
@@ -194,7 +195,7 @@ void force_constraint::guess(const rolling_problem &problem, const double flexib
     double slope[2][2] = {}, miss = 0;
     for (int m = 0; m < unknowns_; ++m) {
       step[m] = now.force[component_[m]] - share * target_[m];
-      miss = std::hypot(miss, step[m]);
+      miss = hypot(miss, step[m]);
       for (int k = 0; k < unknowns_; ++k)
         slope[m][k] = -now.slope[component_[m]][component_[k]] +
                       (m == k ? least_slope * capacity_ / unit_[m] : 0.0);

@@ -1,3 +1,4 @@
+#include "numeric/elementary.hpp"
 #include "tangential/inelastic_task.hpp"
 
 #include <algorithm>
@@ -192,7 +193,7 @@ bool inelastic_newton::go_to_branch(task &t) {
     const double stiffness = own_stiffness(t, at.row, at.k, at.e);
     const double size = b.bound + stiffness * at.m;
     const double rest = t.law.at_rest(t.friction[at.k], *at.before);
-    const double before = std::hypot(started_[at.ix], started_[at.iy]);
+    const double before = hypot(started_[at.ix], started_[at.iy]);
     const bool unstable = stiffness + b.by_slip < 0;
     const bool sticks =
         unstable ? before >= b.bound : size <= rest && size - before < before - b.bound;
@@ -257,12 +258,11 @@ double inelastic_newton::scale_of_solution(const task &t) const {
   apply_law(t, t.problem.traction, t.problem.micro_slip, 1.0, [&](const inelastic_element &at) {
     const double bound =
         at.stick ? t.law.at_rest(t.friction[at.k], *at.before) : std::min(at.bound(), most_[at.k]);
-    const double asked =
-        t.b.projection_scale(at.row) *
-        std::hypot(w[at.ix] + t.problem.creepage(0), w[at.iy] + t.problem.creepage(1));
+    const double asked = t.b.projection_scale(at.row) *
+                         hypot(w[at.ix] + t.problem.creepage(0), w[at.iy] + t.problem.creepage(1));
     sum += square(std::min(bound, asked));
   });
-  return t.force ? std::hypot(std::sqrt(sum), t.force->size()) : std::sqrt(sum);
+  return t.force ? hypot(std::sqrt(sum), t.force->size()) : std::sqrt(sum);
 }
 
 // Slow but sure steps from the best traction until |F| is down at `goal`, or as long as there are
@@ -304,7 +304,7 @@ void inelastic_newton::sweep(task &t) {
                                 row_matrix_[1][static_cast<size_t>(k * n + k)]);
       double q[2], e[2] = {1, 0};
       for (int c = 0; c < 2; ++c) q[c] = *traction[c] - *slip[c] / own;
-      const double size = std::hypot(q[0], q[1]), stiffness = 1.0 / (own * t.law.step);
+      const double size = hypot(q[0], q[1]), stiffness = 1.0 / (own * t.law.step);
       double bound = size, m = 0;
       if (size > 0)
         for (int c = 0; c < 2; ++c) e[c] = q[c] / size;
@@ -343,7 +343,7 @@ void inelastic_newton::finish(task &t) {
     const int ix = static_cast<int>(at.ix), iy = static_cast<int>(at.iy);
     // a sticking element keeps its traction: r s, below the tolerance where it slides, can be much
     // greater than the traction itself where r is that of a steep law
-    const double traction = std::hypot(p[ix], p[iy]);
+    const double traction = hypot(p[ix], p[iy]);
     const double bound = at.stick ? std::min(traction, b.bound) : b.bound;
     const double slip = (at.m - b.plastic) / t.law.step;
     if (!at.stick) {

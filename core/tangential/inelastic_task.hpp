@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "numeric/elementary.hpp"
 #include "tangential/inelastic_newton.hpp"
 
 namespace railpatch {
@@ -46,7 +47,7 @@ void inelastic_newton::apply_law(const task &t, const double *p, const double *s
     const double q[2] = {p[ix] - r * s[ix], p[iy] - r * s[iy]};
     at.row = row, at.k = k, at.ix = ix, at.iy = iy;
     at.before = t.carried() ? &upstream : t.inelastic.before + k;
-    at.size = std::hypot(q[0], q[1]);
+    at.size = hypot(q[0], q[1]);
     at.stiffness = r / t.law.step;
     at.stick = at.size <= t.law.at_rest(t.friction[k], *at.before);
     for (int c = 0; c < 2; ++c) at.e[c] = at.size > 0 ? q[c] / at.size : c == 0 ? 1.0 : 0.0;

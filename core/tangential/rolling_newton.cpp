@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -101,7 +103,7 @@ double rolling_newton::slide(task &t, double error, double goal) {
   while (error > goal) {
     bool fast = true;
     t.for_each_element([&](size_t k, size_t ix, size_t iy) {
-      const double bound = t.problem.bound[k], slip = std::hypot(s[ix], s[iy]);
+      const double bound = t.problem.bound[k], slip = hypot(s[ix], s[iy]);
       fast = fast && bound <= fast_sliding * r_[k] * slip;
       const double factor = slip > 0 ? -bound / slip : 0.0;
       trial_p_[ix] = factor * s[ix];
@@ -120,7 +122,7 @@ void rolling_newton::residual(const task &t, const double *p, const double *s, d
   t.for_each_element([&](size_t k, size_t ix, size_t iy) {
     const double bound = t.problem.bound[k];
     const double qx = p[ix] - r_[k] * s[ix], qy = p[iy] - r_[k] * s[iy];
-    const double q = std::hypot(qx, qy);
+    const double q = hypot(qx, qy);
     const bool stick = q <= bound;
     f[ix] = stick ? r_[k] * s[ix] : p[ix] - bound * qx / q;
     f[iy] = stick ? r_[k] * s[iy] : p[iy] - bound * qy / q;
@@ -151,7 +153,7 @@ void rolling_newton::linearise(task &t) {
   t.for_each_element([&](size_t k, size_t ix, size_t iy) {
     const double bound = t.problem.bound[k], r = r_[k];
     const double qx = p[ix] - r * s[ix], qy = p[iy] - r * s[iy];
-    const double q = std::hypot(qx, qy);
+    const double q = hypot(qx, qy);
     if (q <= bound) {
       linear_[k] = {{1.0, 0.0}, 0.0, r, true};
     } else {
@@ -289,7 +291,7 @@ void rolling_newton::finish(task &t) {
   const double *p = problem.traction, *w = problem.rigid_slip;
   double *s = problem.micro_slip;
   t.for_each_element([&](size_t k, size_t ix, size_t iy) {
-    const bool stick = std::hypot(p[ix] - r_[k] * s[ix], p[iy] - r_[k] * s[iy]) <= problem.bound[k];
+    const bool stick = hypot(p[ix] - r_[k] * s[ix], p[iy] - r_[k] * s[iy]) <= problem.bound[k];
     // in stick the micro-slip is the solver's residual: zero by definition
     if (stick) s[ix] = s[iy] = 0.0;
     stick_[k] = stick;

@@ -24,6 +24,7 @@
 #include <cmath>
 #include <optional>
 
+#include "numeric/elementary.hpp"
 #include "numeric/gmres.hpp"
 #include "numeric/sums.hpp"
 #include "tangential/rolling_operator.hpp"
@@ -146,10 +147,10 @@ double row_newton<Law, Task>::scale(const Task &t) const {
   const double *w = t.problem.rigid_slip;
   double sum = 0;
   t.for_each_element([&](size_t k, size_t ix, size_t iy) {
-    const double f = std::min(t.problem.bound[k], r_[k] * std::hypot(w[ix], w[iy]));
+    const double f = std::min(t.problem.bound[k], r_[k] * hypot(w[ix], w[iy]));
     sum += f * f;
   });
-  return t.force ? std::hypot(std::sqrt(sum), t.force->size()) : std::sqrt(sum);
+  return t.force ? hypot(std::sqrt(sum), t.force->size()) : std::sqrt(sum);
 }
 
 template <class Law, class Task>
@@ -157,7 +158,7 @@ double row_newton<Law, Task>::measure(const Task &t, const double *p, const doub
                                       double *f) const {
   law().residual(t, p, s, f);
   const double size = std::sqrt(dot(f, f, t.size()));
-  return t.force ? std::hypot(size, t.force->miss(t.problem, p)) : size;
+  return t.force ? hypot(size, t.force->miss(t.problem, p)) : size;
 }
 
 template <class Law, class Task>
@@ -171,7 +172,7 @@ void row_newton<Law, Task>::take_trial(Task &t) {
 template <class Law, class Task>
 void row_newton<Law, Task>::project(const Task &t, double *p) const {
   t.for_each_element([&](size_t k, size_t ix, size_t iy) {
-    const double bound = t.problem.bound[k], size = std::hypot(p[ix], p[iy]);
+    const double bound = t.problem.bound[k], size = hypot(p[ix], p[iy]);
     if (size <= bound) return;
     p[ix] *= bound / size;
     p[iy] *= bound / size;
@@ -205,7 +206,7 @@ void row_newton<Law, Task>::march(Task &t) {
       for (int c = 0; c < 2; ++c)
         grown[c] -= (t.problem.rigid_slip[at[c]] + t.problem.creepage(c)) *
                     t.problem.area[begin + k] / t.flexibility[c];
-      const double size = std::hypot(grown[0], grown[1]);
+      const double size = hypot(grown[0], grown[1]);
       const double bound = law().start_bound(t, static_cast<size_t>(begin + k));
       for (int c = 0; c < 2; ++c) {
         if (size > bound) grown[c] *= bound / size;

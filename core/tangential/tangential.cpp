@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/elementary.hpp"
 #include "railpatch.h"
 
 namespace railpatch {
@@ -208,7 +209,7 @@ void tangential_solver::carry_plastic(const inelastic_fields &fields) {
     fields.friction[at] = friction_[k];
     if (!fields.plastic_x) return;
     fields.yield_stress[at] = yield_stress_[k];
-    const double size = std::hypot(p_[ix], p_[iy]);
+    const double size = hypot(p_[ix], p_[iy]);
     const double share = size > 0 ? plastic_slip_[k] / size : 0.0;
     double *total[2] = {fields.plastic_x + at, fields.plastic_y + at};
     const double add[2] = {share * p_[ix], share * p_[iy]};

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
 #include "numeric/sums.hpp"
 #include "railpatch.h"
 
@@ -64,7 +65,7 @@ void tangential_derivative::collect(const tangential_point &point) {
         point.row_friction ? point.row_friction[static_cast<int>(at) / g.nx] : 1.0;
     const double bound = point.friction_coefficient * factor * point.pressure[at];
     const double qx = point.px[at] - scale * point.sx[at];
-    const double qy = point.py[at] - scale * point.sy[at], q = std::hypot(qx, qy);
+    const double qy = point.py[at] - scale * point.sy[at], q = hypot(qx, qy);
     normal_[0][e] = normal_[1][e] = 0;
     if (bound > 0 && point.division[at] == RP_STICK) {
       linear_[e] = {{1.0, 0.0}, 0.0, scale, true};

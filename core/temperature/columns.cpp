@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
 #include "numeric/simd.hpp"
 
 namespace railpatch {
@@ -55,7 +56,7 @@ double least_node(int max_nx) { return std::sqrt(8.0 / (longest * max_nx)); }
 
 int mode_count(int max_nx) {
   const double top = std::sqrt(20.0 / shortest) / least_node(max_nx);
-  return 1 + static_cast<int>(std::ceil(std::asinh(top) / step));
+  return 1 + static_cast<int>(std::ceil(asinh(top) / step));
 }
 
 }  // namespace
@@ -65,16 +66,16 @@ double dawson(double x) {
   // the sum's terms beyond 36 are below rounding; n0 even
   const double n0 = 2.0 * std::round(0.5 * x / h);
   const double xp = x - n0 * h;
-  double e1 = std::exp(2.0 * xp * h), d1 = n0 + 1, d2 = n0 - 1, sum = 0;
+  double e1 = exp(2.0 * xp * h), d1 = n0 + 1, d2 = n0 - 1, sum = 0;
   const double e2 = e1 * e1;
   for (int i = 0; i < 18; ++i) {
     const double odd = (2 * i + 1) * h;
-    sum += std::exp(-odd * odd) * (e1 / d1 + 1.0 / (d2 * e1));
+    sum += exp(-odd * odd) * (e1 / d1 + 1.0 / (d2 * e1));
     d1 += 2;
     d2 -= 2;
     e1 *= e2;
   }
-  return inv_sqrtpi * std::exp(-xp * xp) * sum;
+  return inv_sqrtpi * exp(-xp * xp) * sum;
 }
 
 // What one column has exchanged: closed form of its last contact, modes of those before.
@@ -96,8 +97,8 @@ heat_columns::heat_columns(int max_nx, int max_ny, bool exchanges)
     *b = aligned_buffer<double>(m);
   for (size_t k = 0; k < m; ++k) {
     const double u = step * static_cast<double>(k);
-    node_[k] = x0 * std::sinh(u);
-    node_weight_[k] = (k == 0 ? 1.0 : 2.0) * x0 * step * std::cosh(u) / pi;
+    node_[k] = x0 * sinh(u);
+    node_weight_[k] = (k == 0 ? 1.0 : 2.0) * x0 * step * cosh(u) / pi;
   }
   for (auto *b : {&sum_, &memory_}) *b = aligned_buffer<double>(capacity_);
   if (exchanges) exchanged_ = aligned_buffer<double>(capacity_);
@@ -144,7 +145,7 @@ void heat_columns::set_factors(double duration) {
   if (duration == duration_) return;
   duration_ = duration;
   for (size_t k = 0; k < node_.size(); ++k) {
-    const double fall = std::expm1(-rate_[k] * duration);
+    const double fall = expm1(-rate_[k] * duration);
     decay_[k] = 1.0 + fall;
     gain_[k] = rate_[k] > 0 ? -fall / rate_[k] : duration;
   }
@@ -155,8 +156,8 @@ void heat_columns::set_factors(double duration) {
 double heat_columns::local_part(double age) const {
   double sum = constant_flux(age + unit_, 0.0) - constant_flux(age, 0.0);
   for (size_t k = 0; k < node_.size(); ++k) {
-    const double mode = rate_[k] > 0 ? -std::expm1(-rate_[k] * unit_) / rate_[k] : unit_;
-    sum -= weight_[k] * std::exp(-rate_[k] * age) * mode;
+    const double mode = rate_[k] > 0 ? -expm1(-rate_[k] * unit_) / rate_[k] : unit_;
+    sum -= weight_[k] * exp(-rate_[k] * age) * mode;
   }
   return sum;
 }
@@ -334,7 +335,7 @@ void heat_columns::pass(exchange_column &c, double duration, bool touches) {
     for (size_t k = 0; c.touched > 0 && k < node_.size(); ++k) {
       const double x = std::sqrt(rate_[k]), root = std::sqrt(c.touched);
       const double met = x > 0 ? dawson(x * root) / x : root;
-      column_[k] += c.jump * 2.0 * inv_sqrtpi * met * std::exp(-rate_[k] * (c.since - c.touched));
+      column_[k] += c.jump * 2.0 * inv_sqrtpi * met * exp(-rate_[k] * (c.since - c.touched));
       c.again = true;
     }
     c.jump = jump;
@@ -388,10 +389,10 @@ void heat_columns::set_unit(double unit, double *state) {
 // From nodes x to nodes factor x; beyond the last node a mode follows its flux.
 void heat_columns::convert_modes(double factor, double *modes, const double *flux, int column) {
   double *y = modes + column;
-  const double x0 = node_[1] / std::sinh(step);
+  const double x0 = node_[1] / sinh(step);
   for (size_t k = 0; k < node_.size(); ++k) scratch_[k] = y[k * capacity_];
   for (size_t k = 0; k < node_.size(); ++k) {
-    const double at = std::asinh(factor * node_[k] / x0) / step;
+    const double at = asinh(factor * node_[k] / x0) / step;
     double moved = 0;
     for_each_point(std::min(at, modes_ - 4.0),
                    [&](int i, double share) { moved += share * scratch_[static_cast<size_t>(i)]; });
@@ -406,12 +407,12 @@ void heat_columns::convert_modes(double factor, double *modes, const double *flu
 // the cosine is not: sixteen points a mode, each from six modes.
 void heat_columns::weigh(double depth) {
   constexpr int finer = 16;
-  const double x0 = node_[1] / std::sinh(step), root_unit = std::sqrt(unit_);
+  const double x0 = node_[1] / sinh(step), root_unit = std::sqrt(unit_);
   std::fill(scratch_.begin(), scratch_.end(), 0.0);
   for (int m = 0; m <= finer * (modes_ - 4); ++m) {
     const double u = step * m / finer;
-    const double w = (m == 0 ? 1.0 : 2.0) * x0 * std::cosh(u) * step / (finer * pi * root_unit) *
-                     std::cos(x0 * std::sinh(u) * depth / root_unit);
+    const double w = (m == 0 ? 1.0 : 2.0) * x0 * cosh(u) * step / (finer * pi * root_unit) *
+                     cos(x0 * sinh(u) * depth / root_unit);
     for_each_point(1.0 * m / finer,
                    [&](int k, double share) { scratch_[static_cast<size_t>(k)] += w * share; });
   }

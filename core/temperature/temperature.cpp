@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
 #include "numeric/simd.hpp"
 
 namespace railpatch {
@@ -57,18 +58,18 @@ double constant_flux(double age, double depth) {
   const double root = std::sqrt(age);
   if (depth == 0) return 2.0 * inv_sqrtpi * root;
   const double u = depth / (2.0 * root);
-  return 2.0 * root * (inv_sqrtpi * std::exp(-u * u) - u * std::erfc(u));
+  return 2.0 * root * (inv_sqrtpi * exp(-u * u) - u * erfc(u));
 }
 
 double levelled(double touched, double since, double depth) {
   if (!(touched > 0)) return 0.0;
-  if (touched >= since) return std::erfc(depth / (2.0 * std::sqrt(since)));
-  const double end = std::asin(std::sqrt(touched / since));
+  if (touched >= since) return erfc(depth / (2.0 * std::sqrt(since)));
+  const double end = asin(std::sqrt(touched / since));
   if (depth == 0) return 2.0 / pi * end;
   const double u2 = depth * depth / (4.0 * since);
   const auto term = [&](double angle) {
-    const double c = std::cos(angle);
-    return std::exp(-u2 / (c * c));
+    const double c = cos(angle);
+    return exp(-u2 / (c * c));
   };
   // smooth, but steep towards pi/2: panels that halve towards the end
   double sum = 0, begin = 0;

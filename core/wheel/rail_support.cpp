@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -18,7 +20,7 @@ constexpr double most_residual = 1e-3;  // of a start for the next step
 constexpr double rounding = 1e-12;      // relative, of k u and c u_before/dt
 constexpr double nowhere = HUGE_VAL;
 
-double length(const lateral_vertical &v) { return std::hypot(v[0], v[1]); }
+double length(const lateral_vertical &v) { return hypot(v[0], v[1]); }
 
 }  // namespace
 
@@ -98,7 +100,7 @@ rail_support::trial rail_support::first_guess() const {
   const auto force = [&](double z) {
     double sum = 0;
     for (std::size_t w = 0; w < at(count_); ++w)
-      if (touch_[w] < nowhere) sum += rails_[w].hertz * std::pow(guessed_depth(w, z), 1.5);
+      if (touch_[w] < nowhere) sum += rails_[w].hertz * pow(guessed_depth(w, z), 1.5);
     return sum;
   };
   if (load_.prescribed) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/elementary.hpp"
 #include "numeric/nan.hpp"
 #include "patch/creep_power.hpp"
 #include "patch/result_fields.hpp"
@@ -155,7 +156,7 @@ void match_memory(const patch_region *regions, int count, patch_memory *memory, 
   if (slots == 1) return;
   const auto unlike = [&](const patch_region &region, const patch_memory &m) {
     const vec3 &at = region.frame.origin;
-    const double moved = std::hypot(at[1] - m.reference[1], at[2] - m.reference[2]);
+    const double moved = hypot(at[1] - m.reference[1], at[2] - m.reference[2]);
     if (!m.warm || moved > warm_distance) return HUGE_VAL;
     const double low = m.g.y0, high = m.g.y(m.g.ny - 1);
     return moved + std::fabs(region.s_min - low) + std::fabs(region.s_max - high);
@@ -215,7 +216,7 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
 
   // the reference moves with the contact; a new contact elsewhere starts afresh
   const vec3 &origin = region.frame.origin;
-  if (std::hypot(origin[1] - memory.reference[1], origin[2] - memory.reference[2]) > warm_distance)
+  if (hypot(origin[1] - memory.reference[1], origin[2] - memory.reference[2]) > warm_distance)
     memory.warm = false;
   memory.reference = origin;
   solver.start_from(memory, g);
@@ -345,7 +346,7 @@ void wheel_contact::set_past(const patch_memory *memory, const patch_region &reg
 void wheel_contact::set_friction(const patch_contact &solver, const contact_frame &frame,
                                  patch_memory &memory) const {
   for (int j = 0; j < memory.g.ny; ++j) {
-    const double across = std::cos(frame.contact_angle) * memory.g.y(j);
+    const double across = cos(frame.contact_angle) * memory.g.y(j);
     double z = 0, slope = frame.contact_angle;
     if (memory.curved)
       slope = memory.curved->angle(j);

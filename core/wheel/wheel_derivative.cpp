@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "numeric/elementary.hpp"
 #include "numeric/nan.hpp"
 #include "patch/report.hpp"
 #include "patch/result_fields.hpp"

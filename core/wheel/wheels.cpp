@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/elementary.hpp"
 #include "numeric/force_search.hpp"
 #include "numeric/nan.hpp"
 #include "patch/result_sums.hpp"
@@ -123,7 +124,7 @@ void wheels::find_z(double target, rp_result &out) {
     // a ball on a plane with the load of one wheel and a typical combined radius
     const double load = target / static_cast<double>(wheels_.size());
     const double modulus = solver_.scene().modulus(), radius = 0.5 * nominal_radius_;
-    depth = std::cbrt(9.0 * load * load / (16.0 * modulus * modulus * radius));
+    depth = cbrt(9.0 * load * load / (16.0 * modulus * modulus * radius));
   }
   force_search search(target, depth, tolerance_);
   for (int i = 0; i < max_searches; ++i) {

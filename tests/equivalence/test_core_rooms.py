@@ -13,6 +13,9 @@ INTERFACE = {"railpatch.h", "railpatch_fields.h"}
 LOOKS_INSIDE = {
     "timing.cpp": {"numeric/fft.hpp", "numeric/memory.hpp"},  # times the FFT itself
     "module.cpp": {"fast/theories.hpp"},  # hands the table of theories on to Python
+    # functions that are the same on every computer: for Python, for the angles of bodies
+    "elementary.cpp": {"numeric/elementary.hpp"},
+    "frames.cpp": {"numeric/elementary.hpp"},
 }
 
 Sources = dict[str, str]

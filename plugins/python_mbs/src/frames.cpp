@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "force_element.hpp"
+#include "numeric/elementary.hpp"
 
 namespace railpatch::python {
 
@@ -53,13 +54,13 @@ TrackState track_state(const Placement &joint, const double velocity[6], const P
   s.x = p.x;
   s.y = p.y;
   s.z = p.z + nominal_radius;
-  const double level = std::hypot(a.y, a.z);  // cos yaw, the yaw angle being below a quarter turn
-  s.roll = std::atan2(a.z, a.y);
-  s.yaw = std::atan2(-a.x, level);
+  const double level = hypot(a.y, a.z);  // cos yaw, the yaw angle being below a quarter turn
+  s.roll = atan2(a.z, a.y);
+  s.yaw = atan2(-a.x, level);
   const double c = a.y / level, r = a.z / level;
   // x axis after Rx(roll) Rz(yaw) is (cos yaw, sin yaw g), z axis h; e turned by pitch from there
   const double along = e.x * level - a.x * (c * e.y + r * e.z);
-  s.pitch = std::atan2(r * e.y - c * e.z, along);
+  s.pitch = atan2(r * e.y - c * e.z, along);
   s.speed = v.x + frame_speed;
   s.vy = v.y;
   s.vz = v.z;

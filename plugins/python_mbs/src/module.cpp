@@ -12,6 +12,7 @@
 #include <string>
 
 #include "convert.hpp"
+#include "elementary.hpp"
 #include "fast/theories.hpp"
 #include "force_element.hpp"
 #include "lists.hpp"
@@ -294,6 +295,7 @@ NB_MODULE(_core, m) {
       .def("reset", &Contact::reset, "Forgets the warm start.")
       .def("describe", &Contact::describe, "Stages with reason, bytes and measured seconds.");
 
+  bind_elementary(m);
   bind_force_element(m);
 }
 
