@@ -9,13 +9,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from railpatch.case.gap import read_rows
 from railpatch.case.rolling import Flat, Joint, RailShape, WheelShape
 from railpatch.case.types import SIDES
 from railpatch.errors import CaseError
+from railpatch.profiles.elementary import acos, cos, tan
+from railpatch.profiles.spline import cubic_spline
 
 Values = NDArray[np.float64]
 FLAT_SPACING = 5e-4  # m, along the circumference
@@ -30,13 +31,13 @@ def flat_runout(radius: float, flat: Flat, angles: Values) -> Values:
     A chord: R cos(a_f)/cos(a) - R for |a| < a_f, R (1 - cos a_f) = depth. Its ends, where it meets
     the circle at the angle a_f, are parabolas over the length of rounding, at most a third of it.
     """
-    half = np.arccos(1.0 - flat.depth / radius)
+    half = acos(1.0 - flat.depth / radius)
     a = (angles - flat.angle + np.pi) % (2 * np.pi) - np.pi
     inside = np.abs(a) < 2 * half
     chord = np.full_like(a, flat.depth)
-    chord[inside] = radius * (np.cos(half) / np.cos(a[inside]) - 1.0)
+    chord[inside] = radius * (cos(half) / cos(a[inside]) - 1.0)
     # least of chord and circle, rounded where they differ by less than b
-    b = np.tan(half) * min(0.5 * flat.rounding, radius * half / 3)
+    b = tan(half) * min(0.5 * flat.rounding, radius * half / 3)
     return smooth_least(chord, b)
 
 
@@ -69,7 +70,7 @@ def joint_height(joint: Joint, x: Values) -> Values:
 def rise(t: Values) -> Values:
     """From 0 at t = -1/2 to 1 at t = 1/2, with two continuous derivatives."""
     u = np.clip(t + 0.5, 0.0, 1.0)
-    return u**3 * (10.0 - u * (15.0 - 6.0 * u))
+    return u * u * u * (10.0 - u * (15.0 - 6.0 * u))
 
 
 def shape_config(case: Any, folder: Path) -> dict[str, Any]:
@@ -110,9 +111,7 @@ def wheel_runout(wheel: WheelShape, radius: float, folder: Path, key: str) -> Va
     runout = flat_runout(radius, wheel.flat, angles)
     if given is not None:
         around = 2 * np.pi * np.arange(len(given) + 1) / len(given)
-        runout = runout + scipy.interpolate.CubicSpline(
-            around, np.append(given, given[0]), bc_type="periodic"
-        )(angles)
+        runout = runout + cubic_spline(around, np.append(given, given[0]), "periodic")(angles)
     return runout
 
 
@@ -152,7 +151,7 @@ def surface_of(rows: Values, key: str) -> Any:
     x, height = rows[:, 0], rows[:, 1]
     if len(x) < 4 or not np.all(np.diff(x) > 0):
         raise CaseError(f"{key}: value is {len(x)} rows, allowed 4 or more of growing positions")
-    spline = scipy.interpolate.CubicSpline(x, height, bc_type="clamped")
+    spline = cubic_spline(x, height, (0.0, 0.0))
     return lambda at: spline(np.clip(at, x[0], x[-1]))
 
 

@@ -14,13 +14,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from railpatch.case.gap import read_rows
 from railpatch.case.load import Scene
 from railpatch.case.patch import PatchCase
 from railpatch.errors import CaseError
+from railpatch.profiles.spline import cubic_spline
 
 KEY = "track.irregularity"
 COLUMNS = ("x", "left lateral", "left vertical", "right lateral", "right vertical")
@@ -44,7 +44,7 @@ class Irregularity:
         if (np.diff(positions) <= 0).any():
             first = positions[1:][np.diff(positions) <= 0][0]
             raise CaseError(f"{KEY}: x is {first:g} after a greater one, allowed increasing values")
-        self._spline = scipy.interpolate.CubicSpline(positions, values, bc_type="clamped")
+        self._spline = cubic_spline(positions, values, (0.0, 0.0))
         self._slope = self._spline.derivative()
 
     def at(self, x: ArrayLike) -> NDArray[np.float64]:

@@ -10,6 +10,7 @@ import scipy
 
 from railpatch.errors import ProfileError
 from railpatch.profiles.curve import Profile
+from railpatch.profiles.elementary import GAUSS_8, atan, hypot, weighted_sum
 from railpatch.profiles.formulas import (
     Piece,
     arc_piece,
@@ -97,7 +98,7 @@ def crown(name: str, argument: str, role: Role) -> Piece:
 
 def inclined(rail: Profile, slope: float) -> Profile:
     """Turned towards the track's centre by atan(slope), highest point moved to (0, 0)."""
-    turned = rail.moved(0.0, 0.0, -math.atan(slope))
+    turned = rail.moved(0.0, 0.0, -float(atan(slope)))
     top = int(np.argmin(turned.z))
     low, high = turned.arc_length[[max(top - 1, 0), min(top + 1, turned.z.size - 1)]]
 
@@ -112,16 +113,17 @@ def inclined(rail: Profile, slope: float) -> Profile:
 
 def from_pieces(name: str, pieces: list[Piece]) -> Profile:
     """Hermite knots in m over the pieces (mm); at a joint the mean of both sides is taken."""
-    node, weight = np.polynomial.legendre.leggauss(8)
+    node, weight = np.array(GAUSS_8[0]), GAUSS_8[1]
     length, y, z, dy, dz = ([] for _ in range(5))
     arc = 0.0
     for first, last, point, rate in pieces:
-        rough = float(np.hypot(*rate(np.linspace(first, last, 65))).mean() * (last - first))
+        rough = float(hypot(*rate(np.linspace(first, last, 65))).mean() * (last - first))
         t = np.linspace(first, last, max(4, math.ceil(rough / SPACING)) + 1)
         half = 0.5 * np.diff(t)[:, None]
-        step = (np.hypot(*rate(t[:-1, None] + half * (1 + node))) @ weight) * half[:, 0]
+        at = t[:-1, None] + half * (1 + node)
+        step = weighted_sum(hypot(*rate(at)), weight) * half[:, 0]
         s = arc + np.concatenate([[0.0], np.cumsum(step)])
-        speed = np.hypot(*rate(t))
+        speed = hypot(*rate(t))
         knots = [s, *point(t), *(component / speed for component in rate(t))]
         for column, values in zip((length, y, z, dy, dz), knots, strict=True):
             if column:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from railpatch.errors import ProfileError
+from railpatch.profiles.elementary import cos, sin
 
 Array = NDArray[np.float64]
 
@@ -54,7 +55,7 @@ class Profile:
 
     def moved(self, dy: float, dz: float, angle: float = 0.0) -> Profile:
         """Turned by angle (rad, about x: y towards z), then moved by (dy, dz) in m."""
-        c, s = np.cos(angle), np.sin(angle)
+        c, s = cos(angle), sin(angle)
         return Profile(
             self.name,
             self.arc_length,

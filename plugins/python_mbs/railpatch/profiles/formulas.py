@@ -13,6 +13,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from railpatch.profiles.elementary import asin, atan, cos, sin
+
 Array = NDArray[np.float64]
 # a piece of a profile: first and last parameter, point(t) -> y, z and rate(t) -> dy/dt, dz/dt
 Pair = tuple[Array, Array]
@@ -133,13 +135,13 @@ def arc_piece(first: float, last: float, arc: tuple[float, ...]) -> Piece:
     centre_y, centre_z, radius, sign = arc
 
     def angle(y: float) -> float:
-        return math.asin(max(-1.0, min(1.0, (y - centre_y) / radius)))
+        return float(asin(max(-1.0, min(1.0, (y - centre_y) / radius))))
 
     return (
         angle(first),
         angle(last),
-        lambda t: (centre_y + radius * np.sin(t), centre_z + sign * radius * np.cos(t)),
-        lambda t: (radius * np.cos(t), -sign * radius * np.sin(t)),
+        lambda t: (centre_y + radius * sin(t), centre_z + sign * radius * cos(t)),
+        lambda t: (radius * cos(t), -sign * radius * sin(t)),
     )
 
 
@@ -234,7 +236,7 @@ def head_pieces(name: str) -> list[Piece]:
         if number + 1 < len(drawn):
             outer = 0.5 * width
         else:
-            outer = centre_y + radius * math.cos(math.atan(HEAD_SIDE))
+            outer = centre_y + radius * float(cos(atan(HEAD_SIDE)))
         arcs.append((inner, outer, (centre_y, centre_z, radius, -1.0)))
         inner = outer
     depth = centre_z - math.sqrt(radius**2 - (inner - centre_y) ** 2)

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import scipy
 
 from railpatch.profiles.curve import Profile
+from railpatch.profiles.spline import slopes
 
 SPACING = 1e-4  # m, at most, but for MOST_KNOTS
 MOST_KNOTS = 3000
@@ -33,7 +33,6 @@ def resampled(profile: Profile, count: int) -> Profile:
     at[-1] = end
     y, z = profile.evaluate(at)
     s = at - begin
-    ends = [((1, getattr(profile, d)[0]), (1, getattr(profile, d)[-1])) for d in ("dy", "dz")]
-    fy = scipy.interpolate.CubicSpline(s, y, bc_type=ends[0])
-    fz = scipy.interpolate.CubicSpline(s, z, bc_type=ends[1])
-    return Profile(profile.name, s, y, z, fy(s, 1), fz(s, 1), profile.notes)
+    dy = slopes(s, y, (float(profile.dy[0]), float(profile.dy[-1])))
+    dz = slopes(s, z, (float(profile.dz[0]), float(profile.dz[-1])))
+    return Profile(profile.name, s, y, z, dy, dz, profile.notes)

@@ -13,6 +13,7 @@ import numpy as np
 
 from railpatch.errors import ProfileError
 from railpatch.profiles.columns import from_points, parse_numbers
+from railpatch.profiles.elementary import cos, hypot, sin
 from railpatch.profiles.raw import RawProfile, Role
 
 ROLE_OF_TYPE: dict[int, Role] = {0: "rail", 1: "wheel"}
@@ -114,7 +115,7 @@ def process(
     z = points[:, 1] + number(path, keys, "spline.shift.z", 0.0)
     unit = number(path, keys, "spline.units.ang.f", 1.0, positive=True)
     angle = number(path, keys, "spline.rotate", 0.0) / unit
-    y, z = y * np.cos(angle) - z * np.sin(angle), y * np.sin(angle) + z * np.cos(angle)
+    y, z = y * cos(angle) - z * sin(angle), y * sin(angle) + z * cos(angle)
     kept = np.ones(y.size, dtype=bool)
     for axis, values in (("y", y), ("z", z)):
         low = number(path, keys, f"spline.bound.{axis}.min", 1.0)
@@ -135,7 +136,7 @@ def far_enough(y: np.ndarray, z: np.ndarray, distance: float) -> np.ndarray:
     kept = np.ones(y.size, dtype=bool)
     last = 0
     for i in range(1, y.size):
-        if np.hypot(y[i] - y[last], z[i] - z[last]) < distance:
+        if hypot(y[i] - y[last], z[i] - z[last]) < distance:
             kept[i] = False
         else:
             last = i

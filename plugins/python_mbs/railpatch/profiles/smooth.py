@@ -9,12 +9,13 @@ length of which half the amplitude is kept: lambda = (L / 2 pi)^4.
 from __future__ import annotations
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from railpatch.errors import ProfileError
 from railpatch.profiles.curve import Profile
+from railpatch.profiles.elementary import GAUSS_5, hypot, weighted_sum
 from railpatch.profiles.raw import RawProfile
+from railpatch.profiles.spline import cubic_spline, slopes, smoothed_values
 
 Array = NDArray[np.float64]
 
@@ -51,7 +52,7 @@ def fit_profile(raw: RawProfile, smoothing: float | None = None) -> Profile:
 
 def chord_length(y: Array, z: Array) -> Array:
     """m, [n], running length along the polygon."""
-    return np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(y), np.diff(z)))])
+    return np.concatenate([[0.0], np.cumsum(hypot(np.diff(y), np.diff(z)))])
 
 
 def clean(raw: RawProfile) -> tuple[NDArray[np.intp], list[str]]:
@@ -64,7 +65,7 @@ def clean(raw: RawProfile) -> tuple[NDArray[np.intp], list[str]]:
     turned: list[int] = []
     duplicates = 0
     for i in range(count):
-        if kept and np.hypot(raw.y[i] - raw.y[kept[-1]], raw.z[i] - raw.z[kept[-1]]) < MIN_DISTANCE:
+        if kept and hypot(raw.y[i] - raw.y[kept[-1]], raw.z[i] - raw.z[kept[-1]]) < MIN_DISTANCE:
             duplicates += 1
             continue
         while len(kept) > 1 and turns_back(raw, kept[-2], kept[-1], i):
@@ -98,21 +99,18 @@ def smoothed(s: Array, y: Array, z: Array, weight: Array, wavelength: float) -> 
     """The points moved onto the smoothing spline over the chord length s."""
     ds = np.diff(s)
     share = 0.5 * (np.append(ds, 0.0) + np.insert(ds, 0, 0.0)) * weight
-    lam = (wavelength / (2 * np.pi)) ** 4
-    fy = scipy.interpolate.make_smoothing_spline(s, y, w=share, lam=lam)
-    fz = scipy.interpolate.make_smoothing_spline(s, z, w=share, lam=lam)
-    return fy(s), fz(s)
+    square = (wavelength / (2 * np.pi)) ** 2
+    stiffness = square * square
+    return smoothed_values(s, y, share, stiffness), smoothed_values(s, z, share, stiffness)
 
 
 def spline_profile(name: str, s: Array, y: Array, z: Array, notes: tuple[str, ...]) -> Profile:
     """C2 cubic spline through the points, over the arc length of the curve itself."""
-    first_y, first_z = (
-        scipy.interpolate.CubicSpline(s, values, bc_type="natural") for values in (y, z)
-    )
-    node, weight = np.polynomial.legendre.leggauss(5)
+    first_y, first_z = (cubic_spline(s, values, "natural") for values in (y, z))
+    node, weight = GAUSS_5
     half = 0.5 * np.diff(s)
-    at = s[:-1, None] + half[:, None] * (1 + node)
-    length = half * (np.hypot(first_y(at, 1), first_z(at, 1)) @ weight)
+    at = s[:-1, None] + half[:, None] * (1 + np.array(node))
+    length = half * weighted_sum(hypot(first_y(at, 1), first_z(at, 1)), weight)
     arc = np.concatenate([[0.0], np.cumsum(length)])
-    fy, fz = (scipy.interpolate.CubicSpline(arc, values, bc_type="natural") for values in (y, z))
-    return Profile(name, arc, y, z, fy(arc, 1), fz(arc, 1), notes)
+    dy, dz = (slopes(arc, values, "natural") for values in (y, z))
+    return Profile(name, arc, y, z, dy, dz, notes)
