@@ -105,6 +105,7 @@ test: ## set-up and every check; what each part and the slowest tests took
 	@$(BIN)/python .ci/summary.py build/junit/parts $(addprefix build/junit/,cpp.xml python.xml asan.xml)
 
 test-long: setup ## what is slow by nature, before a release: hours
+	@.ci/system-packages qemu-x86_64:qemu-user
 	@mkdir -p build/junit
 	$(PYTEST) -m long --junit-xml=build/junit/long.xml
 	@$(MAKE) --no-print-directory mutants

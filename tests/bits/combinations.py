@@ -3,6 +3,7 @@ pair of features that the case's checks accept."""
 
 from __future__ import annotations
 
+import random
 from collections.abc import Iterator
 from itertools import combinations
 from typing import Any
@@ -192,3 +193,12 @@ def all_cases() -> Iterator[tuple[str, Case]]:
     ):
         for name, case in accepted_pairs(base, features):
             yield f"{kind}: {name}", case
+
+
+def sample(count: int, seed: int = 1) -> list[tuple[str, Case]]:
+    """That many of all: those with one feature, so that each kind, method, regime and law is among
+    them, and as many pairs of features as are left."""
+    cases = list(all_cases())
+    alone = [named for named in cases if " + " not in named[0]]
+    pairs = [named for named in cases if " + " in named[0]]
+    return alone + random.Random(seed).sample(pairs, max(count - len(alone), 0))

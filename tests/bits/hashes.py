@@ -22,7 +22,7 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import railpatch
-from bits.combinations import Case, all_cases
+from bits.combinations import Case, all_cases, sample
 
 TIMES = ("wall_time",)
 # what follows from other numbers of the result, and has tests of its own: of patches and wheels
@@ -116,12 +116,14 @@ def main() -> int:
     parser.add_argument("--without", nargs="*", default=[], metavar="NAME")
     parser.add_argument("--only", default="", help="names that begin so")
     parser.add_argument("--every", type=int, default=1, metavar="N", help="each Nth case")
+    parser.add_argument("--sample", type=int, metavar="N", help="N cases that hold every feature")
     arguments = parser.parse_args()
     if arguments.compare:
         found = [json.loads(path.read_text()) for path in arguments.compare]
         return min(compare(*found), 1)
     left_out = (*TIMES, *arguments.without)
-    chosen = [(n, c) for n, c in all_cases() if n.startswith(arguments.only)][:: arguments.every]
+    cases = all_cases() if arguments.sample is None else sample(arguments.sample)
+    chosen = [(n, c) for n, c in cases if n.startswith(arguments.only)][:: arguments.every]
     found = {name: outcome(case, left_out) for name, case in chosen}
     counts = Counter(text.split(" ")[0].split(":")[0] for text in found.values())
     total = hashlib.sha256("".join(found.values()).encode()).hexdigest()[:24]
