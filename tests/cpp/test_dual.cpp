@@ -52,11 +52,11 @@ TEST(Dual, OperationsHaveTheRatesOfDifferences) {
       expect_derivative("/=", a, b, [](auto x, auto y) { return x /= y; });
       for (const number &v : {a, c}) {
         expect_derivative("sin", v, b, [](auto x, auto) {
-          using std::sin;
+          using railpatch::sin;
           return sin(x);
         });
         expect_derivative("cos", v, b, [](auto x, auto) {
-          using std::cos;
+          using railpatch::cos;
           return cos(x);
         });
         expect_derivative("fabs", v, b, [](auto x, auto) {
@@ -64,11 +64,11 @@ TEST(Dual, OperationsHaveTheRatesOfDifferences) {
           return fabs(x);
         });
         expect_derivative("atan2", v, b, [](auto x, auto y) {
-          using std::atan2;
+          using railpatch::atan2;
           return atan2(x, y);
         });
         expect_derivative("hypot", v, b, [](auto x, auto y) {
-          using std::hypot;
+          using railpatch::hypot;
           return hypot(x, y);
         });
       }
@@ -78,7 +78,7 @@ TEST(Dual, OperationsHaveTheRatesOfDifferences) {
       });
       for (double exponent : {-1.5, 0.25, 1.0, 3.0})
         expect_derivative("pow", a, b, [=](auto x, auto) {
-          using std::pow;
+          using railpatch::pow;
           return pow(x, exponent);
         });
       EXPECT_EQ(a < b, a.value < b.value);
