@@ -1,9 +1,9 @@
 """Time steppers: explicit Runge-Kutta of order 4, linearly implicit Rosenbrock of order 2.
 
 The creep forces damp the wheelset like f/(V m), with f some 1e7 N: the slower it runs, the stiffer
-it is. Steps of rk4 (Kutta 1901) are bounded by 2.8 V m/f and by 2.8 over the frequency at which the
-wheelset bounces on its contacts, some 1500 rad/s. ros2 has no bound on these; its steps are chosen
-for accuracy.
+it is. Steps of rk4 (Kutta 1901) are bounded by 2.785 V/(f (1/m + r^2/I)), with the radius r and the
+inertia I about the axle, and by 2.8 over the frequency at which the wheelset bounces on its
+contacts, some 1500 rad/s. ros2 has no bound on these; its steps are chosen for accuracy.
 
 ros2 (Verwer, Spee, Blom, Hundsdorfer, SIAM J. Sci. Comput. 20 (1999) 1456-1480) solves
 

@@ -267,6 +267,12 @@ void check_grid(const rp_config &c, checker &check) {
     check.field(k == 0 ? "max_elements[0]" : "max_elements[1]", c.max_elements[k],
                 config_range::max_elements);
   }
+  // theories that take the shape of rows by parabolas need three elements either way, which grids
+  // of other sizes always have
+  const bool by_parabolas = c.normal == RP_NORMAL_KIK_PIOTROWSKI || c.normal == RP_NORMAL_ANALYN;
+  for (int k = 0; k < 2; ++k)
+    check.require(!by_parabolas || c.max_elements[k] == 0 || c.max_elements[k] > 2,
+                  "max_elements must be 0 or at least 3 with normal = kik_piotrowski and analyn");
   check.require(!counted || (c.max_elements[0] == 0 && c.max_elements[1] == 0),
                 "max_elements must be 0 with elements: it is a capacity for element_size");
 }

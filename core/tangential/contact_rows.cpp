@@ -72,19 +72,24 @@ void contact_rows::set_line(double half_length, double width, double normal_forc
 }
 
 void contact_rows::set_pressure(const grid &g, const double *pressure) {
-  const int points = collect(g, pressure);
+  collect(g, pressure);
   count_ = 0;
-  if (points == 0) return;
+  if (area_count_ == 0) return;
   const profile_point *p = points_.data();
   if (g.ny == 1)
     return set_line(std::sqrt(p[1].half_length_squared), g.dy, p[1].load * g.dy, p[1].x);
-  share_strips(points);
+  share_strips();
 }
 
 // Every area gets at least one strip, and the more the wider it is and the more it carries.
-void contact_rows::share_strips(int points) {
+void contact_rows::share_strips() {
   double peak = 0, whole = 0, before = 0;
-  for (int i = 0; i < points; ++i) peak = std::max(peak, points_[static_cast<size_t>(i)].load);
+  // of points of areas only: what stands beside them is of rows that gave way, or of another step
+  for (int k = 0; k < area_count_; ++k) {
+    const contact_area &area = areas_[static_cast<size_t>(k)];
+    for (int i = area.first; i <= area.last; ++i)
+      peak = std::max(peak, points_[static_cast<size_t>(i)].load);
+  }
   for (int k = 0; k < area_count_; ++k) whole += weigh(areas_[static_cast<size_t>(k)], peak);
   int strip = 0;
   for (int k = 0; k < area_count_; ++k) {
@@ -97,9 +102,9 @@ void contact_rows::share_strips(int points) {
   }
 }
 
-// The grid's rows in contact, with the ends of every area between rows without contact; returns
-// the number of points. Where there are more areas than strips, the last strip holds the rest.
-int contact_rows::collect(const grid &g, const double *pressure) {
+// The grid's rows in contact, with the ends of every area between rows without contact. Where there
+// are more areas than strips, the last strip holds the rest.
+void contact_rows::collect(const grid &g, const double *pressure) {
   int points = 0, begin = 0, last = -1;
   area_count_ = 0;
   for (int j = 0; j < g.ny; ++j) {
@@ -123,9 +128,7 @@ int contact_rows::collect(const grid &g, const double *pressure) {
     points_[static_cast<size_t>(points++)] = {g.y(j), sum * g.dx, x, 4.0 * std::max(0.0, variance)};
     last = j;
   }
-  if (last < 0) return 0;
-  close_area(g, begin, points);
-  return points + 1;
+  if (last >= 0) close_area(g, begin, points);
 }
 
 // An area of contact from the points between its ends; nothing is transferred at those.

@@ -64,12 +64,12 @@ class contact_rows {
   struct bends {
     double load, squared;
   };
-  int collect(const grid &g, const double *pressure);
+  void collect(const grid &g, const double *pressure);
   void close_area(const grid &g, int first, int last);
   double edge(const profile_point *first, int step, int rows, double dy) const;
   double edge_beyond(const profile_point *first, int step, double dy) const;
   bends bend(const contact_area &area, int i) const;
-  void share_strips(int points);
+  void share_strips();
   double weigh(contact_area &p, double peak_load);
   double place(const contact_area &p, double weight) const;
   void cut_strips(const contact_area &p, int first_strip, int strips);

@@ -170,6 +170,24 @@ TEST_F(Checks, GridsAreCountedOrSized) {
   refuses(one, [](rp_config &c) { c.regime = RP_REGIME_NONE; });
 }
 
+TEST_F(Checks, ParabolasOfRowsNeedThreeElements) {
+  base.geometry = RP_CURVATURES;
+  base.elements[0] = base.elements[1] = 0;
+  base.element_size[0] = base.element_size[1] = 1e-3;
+  for (const rp_normal_method method : {RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN}) {
+    base.normal = method;
+    for (int k = 0; k < 2; ++k)
+      for (const int few : {1, 2})
+        refuses("max_elements must be 0 or at least 3", [&](rp_config &c) {
+          c.max_elements[0] = c.max_elements[1] = 10;
+          c.max_elements[k] = few;
+        });
+    accepts([](rp_config &c) { c.max_elements[0] = c.max_elements[1] = 3; });
+  }
+  base.normal = RP_NORMAL_HALF_SPACE;
+  accepts([](rp_config &c) { c.max_elements[0] = 10, c.max_elements[1] = 2; });
+}
+
 TEST_F(Checks, FittedRowsHaveTheirs) {
   const auto rows = [](int nodes, int across) {
     return [=](rp_config &c) { c.fitted[0] = nodes, c.fitted[1] = across; };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -138,6 +139,40 @@ TEST(ContactRows, FollowAnEllipseThatFewGridRowsCross) {
         EXPECT_NEAR(row.x, 0.0, 1e-12);
       }
     }
+}
+
+// Whatever they were fitted to before.
+TEST(ContactRows, AreThoseOfThePressureAlone) {
+  std::mt19937_64 random(20261123);
+  std::uniform_real_distribution<double> part(0, 1);
+  const int nx = 9, ny = 21;
+  const grid g{nx, ny, 1e-3, 1e-3, -4e-3, -10e-3};
+  // rows between two borders, the outermost ones hardly loaded
+  const auto pressure = [&] {
+    std::vector<double> p(static_cast<size_t>(nx * ny), 0.0);
+    const double middle = 4 + 12 * part(random), half = 1 + 6 * part(random);
+    const double peak = std::pow(10.0, 6 + 3 * part(random));
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i) {
+        const double u = (j - middle) / half, v = (i - 4) / 4.5;
+        p[static_cast<size_t>(j * nx + i)] = peak * std::sqrt(std::max(0.0, 1 - u * u - v * v));
+      }
+    return p;
+  };
+  contact_rows used(7, 12, ny);
+  for (int n = 0; n < 2000; ++n) {
+    const std::vector<double> p = pressure();
+    contact_rows fresh(7, 12, ny);
+    fresh.set_pressure(g, p.data());
+    used.set_pressure(g, p.data());
+    ASSERT_EQ(used.count(), fresh.count());
+    for (int j = 0; j < fresh.count(); ++j) {
+      EXPECT_EQ(used[j].y, fresh[j].y) << "pressure " << n << ", row " << j;
+      EXPECT_EQ(used[j].height, fresh[j].height);
+      EXPECT_EQ(used[j].half_length, fresh[j].half_length);
+      EXPECT_EQ(used[j].peak, fresh[j].peak);
+    }
+  }
 }
 
 TEST(ContactRows, AreEmptyWithoutPressure) {

@@ -1,7 +1,7 @@
 """Steps of 1 ms from 0.2 to 80 m/s with exact derivatives, and what the balances leave open.
 
 The scene is hunting.toml, whose wheels stay on the treads. The reference is rk4 with steps below
-its bound, 2.8 V m/f and 2.8 over the frequency of the bounce, see wheelset_demo/steppers.py.
+its bound, see wheelset_demo/steppers.py: of the wheelset's spin 10.7 us at 0.2 m/s.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from wheelset_demo.system import COUNT
 from wheelset_demo.trace import Trace
 
 # m/s: s, duration; s, step of the reference
-CASES = {0.2: (0.04, 2e-5), 2.0: (0.2, 1e-4), 20.0: (0.4, 5e-4), 80.0: (0.4, 5e-4)}
+CASES = {0.2: (0.04, 1e-5), 2.0: (0.2, 1e-4), 20.0: (0.4, 5e-4), 80.0: (0.4, 5e-4)}
 RELEASED = 2e-3  # m
 STEP = 1e-3  # s
 WAVE = 16.6  # m, Klingel's of these wheels and rails
