@@ -45,7 +45,7 @@ CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
 SOURCES := $(shell find core plugins rig_model wheelset_demo -type f -not -name '*.pyc' 2>/dev/null) \
 	CMakeLists.txt README.md
 
-.PHONY: help demo viewer fmu fmu-clients fmu-fftw test test-long lint format clean setup system test-cpp \
+.PHONY: help tools build-asan demo viewer fmu fmu-clients fmu-fftw test test-long lint format clean setup system test-cpp \
 	test-python test-asan pruning mutants
 
 help: ## this list
@@ -97,10 +97,21 @@ viewer: demo ## the demo's logs in a viewer that others wrote, a picture of each
 	tests/viewer/run build/viewer $(BIN)/railpatch build/demo/run.mcap 90 build/demo/wheelset.mcap 1.5 \
 		build/viewer/vehicle.mcap 3
 
-PARTS := system setup lint test-cpp test-python test-asan pruning
+PARTS := system tools setup lint test-cpp test-python test-asan pruning
 test: ## set-up and every check; what each part and the slowest tests took
 	@rm -f build/junit/parts
-	@for part in $(PARTS); do .ci/part build/junit/parts $$part $(MAKE) --no-print-directory $$part; done
+	@# what the sanitizers run on is compiled beside, where a processor would wait
+	@beside=; trap 'kill -- -$$beside 2>/dev/null || true' EXIT; \
+	for part in $(PARTS); do \
+		if [ $$part = setup ]; then \
+			set -m; \
+			nice -n 19 .ci/part build/junit/parts 'asan build, beside' \
+				$(MAKE) --no-print-directory build-asan >build/asan.log 2>&1 & beside=$$!; \
+			set +m; \
+		fi; \
+		if [ $$part = test-asan ]; then wait $$beside || true; beside=; fi; \
+		.ci/part build/junit/parts $$part $(MAKE) --no-print-directory $$part; \
+	done
 	@printf '\nall checks passed:\n'
 	@$(BIN)/python .ci/summary.py build/junit/parts $(addprefix build/junit/,cpp.xml python.xml asan.xml)
 
@@ -109,6 +120,8 @@ test-long: setup ## what is slow by nature, before a release: hours
 	@mkdir -p build/junit
 	$(PYTEST) -m long --junit-xml=build/junit/long.xml
 	@$(MAKE) --no-print-directory mutants
+
+tools: $(VENV)/tools
 
 setup: $(VENV)/installed ## system packages, virtual environment, package; FFT=fftw: with FFTW, under the GPL
 
@@ -128,9 +141,11 @@ test-cpp: $(VENV)/tools ## C and C++ tests, release build
 	@mkdir -p build/junit
 	ctest --preset release --output-junit "$(CURDIR)/build/junit/cpp.xml"
 
-test-asan: $(VENV)/tools ## the same with Eigen's transforms, address and undefined-behaviour sanitizers
+build-asan: $(VENV)/tools
 	cmake --preset asan $(FMU)
 	cmake --build --preset asan
+
+test-asan: build-asan ## the same with Eigen's transforms, address and undefined-behaviour sanitizers
 	@mkdir -p build/junit
 	ctest --preset asan --output-junit "$(CURDIR)/build/junit/asan.xml"
 

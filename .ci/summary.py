@@ -9,6 +9,7 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 SLOWEST = 10
+BESIDE = ", beside"  # parts that run while others do
 
 
 def cases(path: Path) -> list[ElementTree.Element]:
@@ -33,11 +34,12 @@ def print_parts(path: Path) -> None:
     """Seconds by the clock, their share, seconds of the processors."""
     parts = [line.split("\t") for line in path.read_text().splitlines()]
     rows = [(name, float(clock), float(processors)) for name, clock, processors in parts]
-    total = ("together", sum(row[1] for row in rows), sum(row[2] for row in rows))
+    clock = sum(row[1] for row in rows if not row[0].endswith(BESIDE))
+    total = ("together", clock, sum(row[2] for row in rows))
     print(f"  {'part':<24} {'s':>6}  share  s of processors")
     for name, clock, processors in (*rows, total):
-        share = clock / max(total[1], 1e-9)
-        print(f"  {name:<24} {clock:>6.0f}  {share:>5.0%}  {processors:>6.0f}")
+        share = "" if name.endswith(BESIDE) else f"{clock / max(total[1], 1e-9):.0%}"
+        print(f"  {name:<24} {clock:>6.0f}  {share:>5}  {processors:>6.0f}")
 
 
 def print_slowest(paths: list[Path]) -> None:
