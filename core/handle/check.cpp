@@ -38,6 +38,11 @@ void check_ranges(const rp_input &in, case_part part, checker &check) {
   RP_INPUT_FIELDS(RP_CHECK_INPUT, RP_NO_FIELD)
 }
 
+// Whether a case asks for a place of the spin term that only steps have.
+bool shifts_spin(const rp_config &c) {
+  return c.spin_offset != RP_SPIN_OFFSET_AUTOMATIC && c.spin_offset != RP_SPIN_OFFSET_NONE;
+}
+
 void check_fitted(const rp_config &c, checker &check) {
   if (c.fitted[0] == 0 && c.fitted[1] == 0) return;
   const bool line = c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT;
@@ -48,8 +53,8 @@ void check_fitted(const rp_config &c, checker &check) {
   // a scene whose tangential problem is left out for a while keeps its rows
   check.require(c.tangential == RP_TANGENTIAL_FULL || c.tangential == RP_TANGENTIAL_NONE,
                 "fitted needs tangential = full");
-  check.require(c.spin_offset == RP_SPIN_OFFSET_NONE,
-                "spin_offset must be none with fitted: it belongs to the uniform grid");
+  check.require(!shifts_spin(c),
+                "spin_offset must be automatic or none with fitted: it belongs to the uniform grid");
 }
 
 // A message that names fast theories by what they read.
@@ -187,8 +192,6 @@ void check_build(const rp_config &c, checker &check) {
 const char *wheels_cannot_roll(const rp_config &c) {
   if (c.regime == RP_SHIFT)
     return "regime must be none, steady_rolling or transient_rolling for wheels";
-  if (c.spin_offset != RP_SPIN_OFFSET_NONE)
-    return "spin_offset must be none but with regime = steady_rolling";
   if (!(c.element_size[0] > 0))
     return "regime = transient_rolling of wheels needs element_size in place of elements";
   if (c.friction_law == RP_TEMPERATURE)
@@ -214,8 +217,8 @@ void check_regime(const rp_config &c, checker &check) {
     wrong = "regime = shift and transient_rolling need tangential = full and no fitted rows";
   else if (c.kind != RP_PATCH)
     wrong = wheels_cannot_roll(c);
-  else if (c.spin_offset != RP_SPIN_OFFSET_NONE)
-    wrong = "spin_offset must be none but with regime = steady_rolling";
+  else if (shifts_spin(c) && c.regime == RP_SHIFT)
+    wrong = "spin_offset must be automatic or none with regime = shift: nothing rolls";
   else if (c.geometry == RP_CURVATURES &&
            !(c.element_size[0] > 0 && c.max_elements[0] > 0 && c.max_elements[1] > 0))
     wrong =
@@ -238,8 +241,9 @@ void check_table(const rp_config &c, checker &check) {
   check.require(!line, "a creep table has no line contact: use tangential = full");
   check.require(!(c.layer_thickness > 0),
                 "a creep table has no third-body layer: use tangential = full");
-  check.require(c.spin_offset == RP_SPIN_OFFSET_NONE,
-                "spin_offset must be none with a creep table: it belongs to the uniform grid");
+  check.require(!shifts_spin(c),
+                "spin_offset must be automatic or none with a creep table: it belongs to the "
+                "uniform grid");
   if (check.error() != RP_OK) return;
   const char *defect = creep_table::defect(c.creep_table, c.creep_table_size);
   if (!defect) return;

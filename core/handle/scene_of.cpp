@@ -70,6 +70,27 @@ fast_options fast_of(const rp_config &c, rp_tangential_method theory) {
   return fast;
 }
 
+// Of the way of a step. Of the bodies' own flexibility a quarter errs least (as in vortex
+// lattices, where slip is collocated three quarters of an element behind the edge), of a layer's
+// none: measured, see docs/physics.md.
+double usual_spin_offset(const rp_config &c, const patch_scene &scene) {
+  const bool quarter = scene.full_on_grid() && scene.regime != motion::shift;
+  return quarter && !(c.layer_thickness > 0) ? 0.25 : 0.0;
+}
+
+double spin_offset_of(const rp_config &c, const patch_scene &scene) {
+  switch (c.spin_offset) {
+    case RP_SPIN_OFFSET_NONE:
+      return 0.0;
+    case RP_SPIN_OFFSET_SIXTH:
+      return 1.0 / 6.0;
+    case RP_SPIN_OFFSET_QUARTER:
+      return 0.25;
+    default:
+      return usual_spin_offset(c, scene);
+  }
+}
+
 patch_scene patch_scene_of(const rp_config &c) {
   patch_scene scene;
   scene.elastic = combine(c.shear_modulus, c.poisson_ratio);
@@ -98,7 +119,8 @@ patch_scene patch_scene_of(const rp_config &c) {
   scene.heat = make_heat(c);
   for (int k = 0; k < 2; ++k) scene.fitted[k] = c.fitted[k];
   for (int k = 0; k < 2; ++k) scene.prescribed[k] = c.force_prescribed[k] != 0;
-  scene.spin_offset = c.spin_offset == RP_SPIN_OFFSET_SIXTH;
+  scene.spin_offset = spin_offset_of(c, scene);
+  scene.usual_spin = scene.spin_offset == usual_spin_offset(c, scene);
   scene.derivatives = c.derivatives != 0;
   scene.stretches = c.kind != RP_PATCH && c.elements[0] > 0;
   scene.curved = c.reference_surface == RP_REFERENCE_CURVED;

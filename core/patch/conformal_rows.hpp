@@ -35,6 +35,8 @@ class conformal_rows {
     const auto j = static_cast<size_t>(row);
     return component == 0 ? xi_[j] : eta_[j] + phi_[j] * x;
   }
+  // rad/m, of each row
+  const double *spin() const { return phi_.data(); }
   // In the frame of the patch; pressure acts along the rows' normals, or along the rail's.
   patch_wrench sum_tractions(const grid &g, const double *pressure, const double *px,
                              const double *py) const;

@@ -56,7 +56,7 @@ derivative_outcome patch_derivative::solve(const solution &s, const patch_variat
   if (s.a) s.a->set_grid(g);
   if (by_length_) by_length_->set_grid(g);
   rolling_ = s.problem.rolling;
-  if (s.scene.spin_offset) rolling_.spin_offset = rolling_.direction * g.dx / 6.0;
+  rolling_.spin_offset = s.scene.spin_offset * rolling_.direction * g.dx;
   const bool by_resultants = count > few;
   const bool rolling = tangential_ && s.problem.rolling_speed > 0;
   if (rolling && by_resultants) {
@@ -114,7 +114,7 @@ void patch_derivative::differentiate_tractions(const solution &s, const patch_va
               in[k].spin_creepage,
               {in[k].size[0], in[k].size[1]},
               {in[k].origin[0], in[k].origin[1]},
-              s.scene.spin_offset ? rolling_.direction * in[k].size[0] / 6.0 : 0.0};
+              s.scene.spin_offset * rolling_.direction * in[k].size[0]};
       const double *rate = v[k].pressure;
       if (std::all_of(rate, rate + s.problem.g.count(), [](double r) { return r == 0; }))
         v[k].pressure = nullptr;
@@ -259,14 +259,12 @@ void patch_derivative::add_tractions(const solution &s, const patch_variation &v
   const double speed = s.problem.rolling_speed;
   if (!(speed > 0)) return;
   const patch_wrench w = sum_tractions(s.problem.g, m.pressure.data(), m.px.data(), m.py.data());
-  const double offset = rolling_.spin_offset;
-  const double turn = s.scene.spin_offset ? rolling_.direction * v.size[0] / 6.0 : 0.0;
   const double work = rolling_.creepage[0] * w.force[0] + rolling_.creepage[1] * w.force[1] +
-                      rolling_.spin_creepage * (w.moment[2] + offset * w.force[1]);
+                      rolling_.spin_creepage * w.moment[2];
   const double rate = v.creepage[0] * w.force[0] + v.creepage[1] * w.force[1] +
-                      v.spin_creepage * (w.moment[2] + offset * w.force[1]) +
+                      v.spin_creepage * w.moment[2] +
                       rolling_.creepage[0] * t.force[0] + rolling_.creepage[1] * t.force[1] +
-                      rolling_.spin_creepage * (t.moment + offset * t.force[1] + turn * w.force[1]);
+                      rolling_.spin_creepage * t.moment;
   out.friction_power = -(v.rolling_speed * work + speed * rate);
 }
 

@@ -11,7 +11,7 @@ influence::medium patch_scene::medium() const {
 bool patch_scene::estimates_force() const {
   // of a prescribed force the creepage errs
   const bool by_temperature = heat && heat->by_temperature;
-  if (spin_offset || is_forced() || law || keeps_steps() || by_temperature ||
+  if (!usual_spin || is_forced() || law || keeps_steps() || by_temperature ||
       friction_variation.varies())
     return false;
   if (!is_fast(tangential)) return true;

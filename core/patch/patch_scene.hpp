@@ -34,7 +34,8 @@ struct patch_scene {
   double tolerance = 1e-5;
   double normal_tolerance = 1e-5;
   int max_iterations = 100;
-  bool spin_offset = false;  // x + dq/6 in the spin term
+  double spin_offset = 0;    // of a step's way, added to x in the spin term
+  bool usual_spin = true;    // that is the one by default
   bool derivatives = false;  // rates of results are asked for
   bool exact = false;        // and come from the solved equations, of the whole scene
   bool stretches = false;    // grids whose dx and dy change at different rates

@@ -97,7 +97,8 @@ rolling_input tangential_stage::rolling_of(const patch_problem &problem, const p
     for (int c = 0; c < 2; ++c) rolling.coupled[c] = coupled->slip(c);
   }
   const grid &g = problem.g;
-  if (scene.spin_offset) rolling.spin_offset = rolling.direction * g.dx / 6.0;
+  const double way = rolling.regime == motion::transient ? rolling.distance : g.dx;
+  rolling.spin_offset = scene.spin_offset * rolling.direction * way;
   if (memory.curved && problem.rolling_speed > 0) add_slip_of_rows(g, *memory.curved, rolling);
   return rolling;
 }
@@ -165,6 +166,7 @@ tangential_result tangential_stage::solve_with_heat(const patch_problem &problem
 void tangential_stage::add_slip_of_rows(const grid &g, const conformal_rows &rows,
                                         rolling_input &rolling) {
   rolling.creepage[0] = rolling.creepage[1] = rolling.spin_creepage = 0;
+  rolling.row_spin = rows.spin();
   for (int c = 0; c < 2; ++c) {
     double *slip = shared_.coupled->slip(c);
     for (int j = 0; j < g.ny; ++j)

@@ -139,6 +139,7 @@ tangential_result tangential_solver::solve(const tangential_problem &problem) {
   if (!has_physics || input.regime == motion::steady) {
     grid_operator b(*this, problem);
     result = run(b);
+    take_offset_work(problem, result);
   } else {
     add_history(problem);
     step_operator b(*this, problem);
@@ -153,6 +154,27 @@ tangential_result tangential_solver::solve(const tangential_problem &problem) {
   }
   release(problem.g, problem.fields);
   return result;
+}
+
+// The place of the spin term belongs to the discretisation: forces and moment, summed at the
+// elements, do no work by it, so friction and layer, each by its share, take none.
+void tangential_solver::take_offset_work(const tangential_problem &problem,
+                                         tangential_result &result) const {
+  const rolling_input &input = problem.input;
+  if (input.spin_offset == 0) return;
+  double sum = 0;
+  elements_.for_each([&](size_t k, size_t at, size_t, size_t iy) {
+    sum += input.spin_of(static_cast<int>(at) / problem.g.nx) * p_[iy] * area_[k];
+  });
+  const double more = input.spin_offset * sum;
+  const double plastic = problem.sums ? problem.sums->plastic_work : 0.0;
+  if (!(plastic > 0)) {
+    result.friction += more;
+    return;
+  }
+  const double factor = std::max(0.0, 1.0 + more / (result.friction + plastic));
+  result.friction *= factor;
+  problem.sums->plastic_work *= factor;
 }
 
 // The displacement of the last step, as a part of the rigid slip.

@@ -43,6 +43,8 @@ struct rolling_input {
     return creepage[0] != 0 || creepage[1] != 0 || spin_creepage != 0 || force || px || before[0] ||
            coupled[0];
   }
+  const double *row_spin = nullptr;  // in place of the spin above, which is then 0: of curved rows
+  double spin_of(int row) const { return row_spin ? row_spin[row] : spin_creepage; }
   double slip(int component, double x, double y) const {
     return component == 0 ? creepage[0] - spin_creepage * y
                           : creepage[1] + spin_creepage * (x + spin_offset);
@@ -111,6 +113,7 @@ class tangential_solver {
   class step_operator;
   void collect(const tangential_problem &problem);
   void add_history(const tangential_problem &problem);
+  void take_offset_work(const tangential_problem &problem, tangential_result &result) const;
   tangential_result solve_inelastic(rolling_operator &b, const rolling_problem &rows,
                                     const tangential_problem &problem);
   void carry_plastic(const inelastic_fields &fields);

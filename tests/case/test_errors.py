@@ -357,7 +357,7 @@ def test_what_this_version_cannot_combine(change: dict[str, Any], problem: str) 
         ),
         (
             {"grid__fitted": [8, 8], "method__spin_offset": "sixth"},
-            "method.spin_offset: value is 'sixth', allowed 'none' with grid.fitted",
+            "method.spin_offset: value is 'sixth', allowed 'automatic', 'none' with grid.fitted",
         ),
         (
             {
@@ -451,7 +451,7 @@ def test_fastrip_has_no_compatible_blending() -> None:
         ),
         (
             {"method": {"accuracy": 0.01, "spin_offset": "sixth"}},
-            "method.spin_offset: value is 'sixth', allowed 'none' with accuracy",
+            "method.spin_offset: value is 'sixth', allowed 'automatic', 'none' with accuracy",
         ),
         (
             {"geometry": {"line_contact_radius": 0.3, "width": 0.01}, "method__accuracy": 0.01},

@@ -204,7 +204,7 @@ TEST_F(Checks, FittedRowsHaveTheirs) {
   accepts([](rp_config &c) { c.tangential = RP_TANGENTIAL_NONE; });
   refuses("fitted needs tangential = full",
           [](rp_config &c) { c.tangential = RP_TANGENTIAL_FASTSIM; });
-  refuses("spin_offset must be none with fitted",
+  refuses("spin_offset must be automatic or none with fitted",
           [](rp_config &c) { c.spin_offset = RP_SPIN_OFFSET_SIXTH; });
   base.geometry = RP_LINE_CONTACT;
   base.elements[1] = 1;
@@ -310,8 +310,13 @@ TEST_F(Checks, Regimes) {
     refuses(full, [](rp_config &c) { c.tangential = RP_TANGENTIAL_FASTSIM; });
     refuses(full, [](rp_config &c) { c.fitted[0] = c.fitted[1] = 8; });
     accepts([](rp_config &c) { c.tangential = RP_TANGENTIAL_NONE; });
-    refuses("spin_offset must be none but with regime = steady_rolling",
-            [](rp_config &c) { c.spin_offset = RP_SPIN_OFFSET_SIXTH; });
+    for (const rp_spin_offset offset : {RP_SPIN_OFFSET_SIXTH, RP_SPIN_OFFSET_QUARTER}) {
+      const auto shifted = [=](rp_config &c) { c.spin_offset = offset; };
+      if (regime == RP_SHIFT)
+        refuses("spin_offset must be automatic or none with regime = shift", shifted);
+      else
+        accepts(shifted);
+    }
     const auto sized = [](double size, int most) {
       return [=](rp_config &c) {
         c.geometry = RP_CURVATURES;
@@ -348,8 +353,7 @@ TEST_F(Checks, Regimes) {
   refuses("temperature must be 0 with regime = transient_rolling of wheels",
           [](rp_config &c) { c.temperature = 1; });
   refuses("needs equal (1-2nu)/G of both bodies", [](rp_config &c) { c.poisson_ratio[0] = 0.1; });
-  refuses("spin_offset must be none but",
-          [](rp_config &c) { c.spin_offset = RP_SPIN_OFFSET_SIXTH; });
+  accepts([](rp_config &c) { c.spin_offset = RP_SPIN_OFFSET_SIXTH; });
 }
 
 TEST_F(Checks, FastTheories) {

@@ -113,7 +113,8 @@ class Solved:
         slip = np.empty((self.ny, self.nx, 2))
         for row in range(self.ny):
             for column in range(self.nx):
-                x = patch["position"][0] + patch["x"][column]
+                # a quarter of an element upstream, as the rest of the step's slip is
+                x = patch["position"][0] + patch["x"][column] + 0.25 * self.dx
                 at = np.array([x, *position[:, row]]) + depth * axes[row, 2]
                 turned = np.cross(PITCH_RATE * axle, at - centre)
                 slip[row, column] = axes[row, :2] @ (np.array([SPEED, 0, 0]) + turned)

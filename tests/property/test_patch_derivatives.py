@@ -70,7 +70,7 @@ def random_case(rng: np.random.Generator) -> tuple[dict[str, Any], dict[str, Any
         max_iterations=3000,
         derivatives=True,
         normal="hertz" if hertz else "half_space",
-        spin_offset="sixth" if rng.random() < 0.2 else "none",
+        spin_offset="sixth" if rng.random() < 0.2 else "automatic",
         **({"tangential": "none"} if rng.random() < 0.1 else {}),
     )
     if shape in ("semi_axes", "curvatures") and rng.random() < 0.3:

@@ -148,5 +148,3 @@ def check_rolling(case: Any) -> None:
         raise relation("temperature", "given", f"to be left out {where}")
     if couples(case.material):
         raise relation("material", "unlike bodies", f"equal (1 - 2 nu)/G {where}")
-    if case.method.spin_offset != "none":
-        raise relation("method.spin_offset", repr(case.method.spin_offset), f"'none' {where}")

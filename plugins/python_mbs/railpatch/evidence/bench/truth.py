@@ -10,7 +10,7 @@ import hashlib
 import json
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from railpatch import _core
-from railpatch.evidence.bench.methods import FITTED, UNIFORM, Method
+from railpatch.evidence.bench.methods import FITTED, UNIFORM, Method, tangential
 from railpatch.evidence.bench.sets import SETS, AnyBatch
 from railpatch.evidence.bench.shapes import Floats
 from railpatch.evidence.bench.steps import steps_of
@@ -66,16 +66,18 @@ class Recipe:
 # from both sides: each recipe has both. Uniform elements are much longer than thin layers (D) are
 # thick: fitted rows, closer at the edges and within 0.05 % of each other, are the truth there
 UNIFORM_ORDER, FITTED_ORDER = 1.07, 1.7
+# the orders are those of grids that read the spin at the elements
+PLAIN = replace(UNIFORM, overrides=tangential("full", spin_offset="none"))
 MANY = tuple(range(40, 81))
 RECIPES = (
-    Recipe("uniform", UNIFORM, MANY[::8], UNIFORM_ORDER, "ABC"),
+    Recipe("uniform", PLAIN, MANY[::8], UNIFORM_ORDER, "ABC"),
     Recipe("fitted rows", FITTED, tuple(range(14, 23)), FITTED_ORDER, "ACD"),
     Recipe("fitted rows, fine", FITTED, (27, 32, 38, 44), FITTED_ORDER, "A", most=40),
-    Recipe("uniform, many", UNIFORM, MANY, UNIFORM_ORDER, "D"),
-    Recipe("uniform, odd", UNIFORM, MANY[7::8], UNIFORM_ORDER, "B"),
-    Recipe("uniform, pairs", UNIFORM, tuple(n for n in MANY if n % 4 < 2), UNIFORM_ORDER, "W"),
+    Recipe("uniform, many", PLAIN, MANY, UNIFORM_ORDER, "D"),
+    Recipe("uniform, odd", PLAIN, MANY[7::8], UNIFORM_ORDER, "B"),
+    Recipe("uniform, pairs", PLAIN, tuple(n for n in MANY if n % 4 < 2), UNIFORM_ORDER, "W"),
     Recipe(
-        "uniform, other pairs", UNIFORM, tuple(n for n in MANY if n % 4 > 1), UNIFORM_ORDER, "W"
+        "uniform, other pairs", PLAIN, tuple(n for n in MANY if n % 4 > 1), UNIFORM_ORDER, "W"
     ),
 )
 

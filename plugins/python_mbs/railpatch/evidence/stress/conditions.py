@@ -105,9 +105,8 @@ def power_findings(step: Step, most: float) -> Iterator[Finding]:
     if size == 0:
         return
     limit = IMPOSED * step.tolerance
-    if step.spin_offset == 0:
-        miss = abs(step.patch["creep_power"] - supplied_power(step))
-        yield Finding("creep power", miss / size, SUMS)
+    miss = abs(step.patch["creep_power"] - supplied_power(step))
+    yield Finding("creep power", miss / size, SUMS)
     yield Finding("friction takes power", -step.patch["friction_power"] / size, limit)
     if np.isfinite(step.patch["plastic_power"]):
         yield Finding("plastic work", -step.patch["plastic_power"] / size, limit)
@@ -124,7 +123,7 @@ def supplied_power(step: Step) -> float:
     """W, of the creepages (shift: J); the wheel's forces act against them."""
     xi, eta, phi = step.motion
     force, moment = step.patch["creep_force"], step.patch["spin_moment"]
-    work = force[0] * xi + force[1] * (eta + phi * step.spin_offset) + moment * phi
+    work = force[0] * xi + force[1] * eta + moment * phi
     speed = 1.0 if step.regime == "shift" else step.patch["rolling_speed"]
     return float(-speed * work)
 

@@ -350,6 +350,7 @@ def options() -> Iterator[Trial]:
             moves({}, {"normal_force": 2 * FORCE}, expects=("not_converged", "converged")),
             "too few: says so and gives the best so far",
         )  # fmt: skip
-    yield Trial(
-        "option", "spin term of a sixth", nominal(motion, {"method": {"spin_offset": "sixth"}})
-    )
+    for offset in ("none", "sixth"):
+        yield Trial(
+            "option", f"spin term, {offset}", nominal(motion, {"method": {"spin_offset": offset}})
+        )

@@ -173,9 +173,13 @@ class Step:
     @property
     def spin_offset(self) -> float:
         """m, added to x in the spin term."""
-        if self.case.method.spin_offset == "none":
+        method = self.case.method
+        shares = {"none": 0.0, "sixth": 1 / 6, "quarter": 1 / 4, "automatic": 1 / 4}
+        on_grid = method.tangential == "full" and not self.fitted and self.regime != "shift"
+        layer = self.case.layer is not None and self.case.layer.thickness > 0
+        if method.spin_offset == "automatic" and (layer or not on_grid):
             return 0.0
-        return self.direction * self.patch["element_size"][0] / 6
+        return self.direction * shares[method.spin_offset] * self.rolled
 
     @property
     def history(self) -> Step | None:
