@@ -67,9 +67,10 @@ void fast_solver::set_bound(const fast_patch &patch) {
   const double *axes = patch.hertz.semi_axes;
   const bool ellipse = axes[0] > 0 && !patch.rows;
   const bool automatic = options_.bound == RP_BOUND_AUTOMATIC;
+  const bool as_contact = options_.blending == RP_BLENDING_CONTACT;
   const bool parabolic = (theory_.reads & reads_bound) != 0 &&
-                         (automatic ? ellipse : options_.bound == RP_BOUND_PARABOLIC);
-  if (ellipse && options_.blending == RP_BLENDING_CONTACT) {
+                         (automatic ? ellipse && as_contact : options_.bound == RP_BOUND_PARABOLIC);
+  if (ellipse && as_contact) {
     // as it is at the elements' centres, not scaled
     const double peak = (parabolic ? 4.0 / 3.0 : 1.0) * mu * patch.hertz.max_pressure;
     for (int j = 0; j < g.ny; ++j)

@@ -193,7 +193,8 @@ class Method(Table):
     traction_bound: one_of("traction_bound", without=("automatic",)) | None = Field(
         default=None,
         description="of fastsim (no unit): elliptic, the friction coefficient times the pressure, "
-        "or parabolic, as its square; left out: parabolic with hertz, else elliptic",
+        "or parabolic, as its square; left out: elliptic, which errs less, but parabolic with "
+        "hertz and flexibility_blending = 'contact'",
     )
     flexibility_blending: one_of("flexibility_blending") = Field(
         default="sliding",
