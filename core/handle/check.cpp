@@ -53,8 +53,9 @@ void check_fitted(const rp_config &c, checker &check) {
   // a scene whose tangential problem is left out for a while keeps its rows
   check.require(c.tangential == RP_TANGENTIAL_FULL || c.tangential == RP_TANGENTIAL_NONE,
                 "fitted needs tangential = full");
-  check.require(!shifts_spin(c),
-                "spin_offset must be automatic or none with fitted: it belongs to the uniform grid");
+  check.require(
+      !shifts_spin(c),
+      "spin_offset must be automatic or none with fitted: it belongs to the uniform grid");
 }
 
 // A message that names fast theories by what they read.

@@ -13,7 +13,7 @@ namespace railpatch {
 
 namespace {
 
-constexpr uint32_t state_magic = 0x52505332;  // "RPS2"
+constexpr uint32_t state_magic = 0x52505333;  // "RPS3"
 
 struct state_header {
   uint32_t magic, kind;

@@ -155,9 +155,10 @@ typedef enum rp_normal_method { RP_NORMAL_METHODS(RP_ENUM_ENTRY) } rp_normal_met
 typedef enum rp_tangential_method { RP_TANGENTIAL_METHODS(RP_ENUM_ENTRY) } rp_tangential_method;
 
 /* of FASTSIM; the bound of FaStrip is elliptic */
-#define RP_TRACTION_BOUNDS(X)                                                     \
-  X(RP_BOUND_AUTOMATIC, 0, "automatic") /* with Hertz parabolic, else elliptic */ \
-  X(RP_BOUND_PARABOLIC, 1, "parabolic") /* as the square of the pressure */       \
+#define RP_TRACTION_BOUNDS(X)                                                            \
+  /* elliptic, of Hertz with flexibility_blending = contact parabolic: what errs less */ \
+  X(RP_BOUND_AUTOMATIC, 0, "automatic")                                                  \
+  X(RP_BOUND_PARABOLIC, 1, "parabolic") /* as the square of the pressure */              \
   X(RP_BOUND_ELLIPTIC, 2, "elliptic")   /* friction coefficient times pressure */
 typedef enum rp_traction_bound { RP_TRACTION_BOUNDS(RP_ENUM_ENTRY) } rp_traction_bound;
 
@@ -175,12 +176,12 @@ typedef enum rp_flexibility_blending {
 
 /* how far upstream of an element its spin term is read, of the way dq of a step: an element in
  * steady rolling, else input.distance */
-#define RP_SPIN_OFFSETS(X)                                                              \
-  /* a quarter for tangential = full on the uniform grid, but in a shift and with an    \
-   * elastic layer; else none */                                                        \
-  X(RP_SPIN_OFFSET_AUTOMATIC, 0, "automatic")                                           \
-  X(RP_SPIN_OFFSET_NONE, 1, "none")                                                     \
-  X(RP_SPIN_OFFSET_SIXTH, 2, "sixth") /* x + dq/6, as the program CONTACT does */       \
+#define RP_SPIN_OFFSETS(X)                                                           \
+  /* a quarter for tangential = full on the uniform grid, but in a shift and with an \
+   * elastic layer; else none */                                                     \
+  X(RP_SPIN_OFFSET_AUTOMATIC, 0, "automatic")                                        \
+  X(RP_SPIN_OFFSET_NONE, 1, "none")                                                  \
+  X(RP_SPIN_OFFSET_SIXTH, 2, "sixth") /* x + dq/6, as the program CONTACT does */    \
   X(RP_SPIN_OFFSET_QUARTER, 3, "quarter")
 typedef enum rp_spin_offset { RP_SPIN_OFFSETS(RP_ENUM_ENTRY) } rp_spin_offset;
 
@@ -458,10 +459,11 @@ typedef struct rp_patch_result {
   double contact_area;       /* m^2 */
   int32_t elements[4];       /* exterior, stick, slip, plastic; indexed by rp_element */
   double max_temperature;    /* degrees C, of the contact; NaN: not part of the scene */
-  double friction_power;     /* W, >= 0, that friction turns into heat: the part of creep_power that
-                                the layer does not take (Polach: without spin) and, of unlike
-                                bodies, what the pressure supplies by its moment against rolling; of
-                                FASTSIM traction times micro-slip */
+  double friction_power;     /* W, that friction turns into heat: the part of creep_power that the
+                                layer does not take (Polach: without spin) and, of unlike bodies,
+                                what the pressure supplies by its moment against rolling; of FASTSIM
+                                traction times micro-slip. In shift and transient rolling also less
+                                what elastic energy grows by; elsewhere >= 0 */
   double plastic_power;      /* W, >= 0, of the layer's plastic displacement; RP_SHIFT: both in J */
   double elastic_energy;     /* J; NaN for a line contact on fitted rows */
   int32_t normal_iterations; /* conjugate-gradient steps; evaluations of the fast theories */
@@ -495,8 +497,11 @@ typedef struct rp_patch_result {
   double element_size[2];     /* m; fitted rows: 0 */
   double creep_power;         /* W, that creepages and spin supply: -(creep_force . creepage +
                                  spin_moment spin_creepage) rolling_speed, by every theory; over the
-                                 rolling speed it is T gamma. RP_SHIFT: J, without the speed. What
-                                 friction and layer take of it: friction_power, plastic_power */
+                                 rolling speed it is T gamma. In shift and transient rolling force
+                                 and moment are the means of the step's both ends, and creepage is
+                                 that of its middle. RP_SHIFT: J, without the speed. What friction
+                                 and layer take of it: friction_power, plastic_power; in shift and
+                                 transient rolling the rest is the tractions' elastic energy */
 } rp_patch_result;
 
 /* One wheel; on a roller see rp_contact_frame. NaN where a patch could not be solved. */

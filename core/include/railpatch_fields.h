@@ -244,7 +244,7 @@
   X(int32_t, max_iterations, 1, integer, always, 100, "[]", 1, 100000, "-",                        \
     "most iterations of each solver")                                                              \
   X(rp_spin_offset, spin_offset, 1, choice, always, RP_SPIN_OFFSET_AUTOMATIC, "", 0, 0, "",        \
-    "how far upstream of an element its spin term is read, of the way of a step")                                            \
+    "how far upstream of an element its spin term is read, of the way of a step")                  \
   X(rp_reference_surface, reference_surface, 1, choice, always, RP_REFERENCE_PLANE, "", 0, 0, "",  \
     "plane, or curved between wheel and rail")                                                     \
   X(double, percent_kalker, 1, number, always, 100, "(]", 0, 200, "%",                             \

@@ -40,7 +40,7 @@ void heat_stage::set_flux(const patch_problem &problem, const patch_memory &memo
     for (int i = 0; i < problem.g.count(); ++i) work[static_cast<size_t>(i)] *= rate;
     plastic = work.data();
   }
-  stage_->heat(memory.px.data(), memory.py.data(), memory.sx.data(), memory.sy.data(), plastic, q);
+  stage_->heat(shared_.friction.data(), plastic, q);
 }
 
 }  // namespace railpatch

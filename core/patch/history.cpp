@@ -10,7 +10,7 @@ namespace railpatch {
 patch_history::patch_history(int max_count, bool steps, bool moves, const bound_law *law) {
   const auto n = static_cast<size_t>(max_count);
   if (steps)
-    for (auto *b : {&last_px, &last_py}) *b = aligned_buffer<double>(n);
+    for (auto *b : {&last_px, &last_py, &energy, &last_energy}) *b = aligned_buffer<double>(n);
   if (!law) return;
   after = aligned_buffer<carried_state>(n);
   friction = aligned_buffer<double>(n);
@@ -33,13 +33,14 @@ void patch_history::begin(const grid &g, double upstream, const double *px, cons
   const auto count = static_cast<size_t>(g.count());
   if (!begun) {
     // fresh material everywhere, without traction
-    for (auto *b : {&last_px, &last_py}) std::fill_n(b->data(), count, 0.0);
+    for (auto *b : {&last_px, &last_py, &last_energy}) std::fill_n(b->data(), count, 0.0);
     if (has_law()) std::fill_n(before.data(), count, carried_state{{0, 0, 0}});
     for (auto &p : plastic_before)
       if (p.size()) std::fill_n(p.data(), count, 0.0);
   } else {
     std::copy_n(px, count, last_px.data());
     std::copy_n(py, count, last_py.data());
+    std::copy_n(energy.data(), count, last_energy.data());
     if (has_law()) shift_states(g, upstream);
     for (int c = 0; c < 2; ++c)
       if (plastic[c].size())
@@ -57,6 +58,7 @@ void patch_history::remember(const grid &g, const std::array<double, 3> &referen
   last_share = share;
   std::copy_n(px, g.count(), last_px.data());
   std::copy_n(py, g.count(), last_py.data());
+  std::copy_n(energy.data(), g.count(), last_energy.data());
   if (has_law()) std::copy_n(after.data(), g.count(), last_states.data());
 }
 

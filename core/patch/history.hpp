@@ -36,6 +36,11 @@ struct patch_history {
   std::array<double, 3> last_reference{};  // m, without the rail's offset
   aligned_buffer<double> last_px, last_py;
   aligned_buffer<carried_state> last_states;  // the same of a law
+  // J/m^2, elastic energy of the tractions on their elements, and of the last step's
+  aligned_buffer<double> energy, last_energy;
+  // of wheels: creepages, spin, rolling speed (m/s) and way per second along x at the last step's
+  // end
+  std::array<double, 5> last_rolling{};
   aligned_buffer<carried_state> before, after;
   aligned_buffer<double> plastic_before[2], plastic[2], yield_stress, friction;
 
@@ -72,7 +77,7 @@ struct patch_history {
   // all, and what of it is the last step's and the plastic layer's
   size_t bytes() const;
   size_t step_bytes() const {
-    return 2 * last_px.bytes() + before.bytes() + last_states.bytes() +
+    return 4 * last_px.bytes() + before.bytes() + last_states.bytes() +
            2 * plastic_before[0].bytes();
   }
   size_t plastic_bytes() const { return 2 * plastic[0].bytes() + yield_stress.bytes(); }
@@ -82,6 +87,7 @@ struct patch_history {
   static void visit(History &h, size_t count, F &&f) {
     // carried states are three numbers each
     static_assert(sizeof(carried_state) == 3 * sizeof(double));
+    if (h.energy.size()) f(h.energy.data(), count * sizeof(double));
     if (h.has_law()) f(h.after[0].v, count * sizeof(carried_state));
     for (auto &p : h.plastic)
       if (p.size()) f(p.data(), count * sizeof(double));

@@ -27,6 +27,7 @@ struct traction_outcome {
   int outer_iterations = 0;  // of friction by temperature, and of unlike bodies
   double residual = 0;
   double friction_power = 0;
+  double supplied = nan;  // W, by creepages and spin, where steps go on from the last one's
   double plastic_power = nan;
   double elastic_energy = 0, coupling_energy = 0;
   double moment = 0, force[2] = {0, 0};  // of theories without tractions

@@ -51,6 +51,7 @@ void patch_contact::remember(patch_memory &memory) const {
                           {memory.reference[0], memory.reference[1] - memory.rail[0],
                            memory.reference[2] - memory.rail[1]},
                           memory.share, memory.px.data(), memory.py.data());
+  memory.history.last_rolling = memory.rolling;
 }
 
 heat_outcome patch_contact::leave_contact(const rolling_input &step, patch_memory &memory) {
@@ -290,7 +291,8 @@ void patch_contact::estimate_error(const patch_problem &problem, const pressure_
   report_errors(errors_.estimate(patch, result, memory.error_features.data()), result);
 }
 
-void patch_contact::unload(const grid &g, patch_memory &memory) const {
+void patch_contact::unload(const grid &g, patch_memory &memory) {
+  if (shared_.friction.size()) std::fill_n(shared_.friction.data(), g.count(), 0.0);
   const auto &law = shared_.scene.law;
   memory.unload(g, law ? &*law : nullptr);
 }

@@ -56,7 +56,7 @@ class patch_contact {
   size_t derivative_bytes() const { return derivative_ ? derivative_->bytes() : 0; }
   size_t heat_bytes() const { return heat_.bytes(); }
   // of what the stages pass on to each other
-  size_t scratch_bytes() const { return 2 * shared_.scratch[0].bytes(); }
+  size_t scratch_bytes() const { return 2 * shared_.scratch[0].bytes() + shared_.friction_bytes(); }
 
  private:
   void begin_solve(const patch_problem &problem, patch_memory &memory);
@@ -71,7 +71,7 @@ class patch_contact {
                 patch_wrench &wrench) const;
   void estimate_error(const patch_problem &problem, const pressure_outcome &n, patch_memory &memory,
                       rp_patch_result &result) const;
-  void unload(const grid &g, patch_memory &memory) const;
+  void unload(const grid &g, patch_memory &memory);
 
   patch_workspace shared_;
   int max_nx_, max_ny_;

@@ -262,9 +262,8 @@ void patch_derivative::add_tractions(const solution &s, const patch_variation &v
   const double work = rolling_.creepage[0] * w.force[0] + rolling_.creepage[1] * w.force[1] +
                       rolling_.spin_creepage * w.moment[2];
   const double rate = v.creepage[0] * w.force[0] + v.creepage[1] * w.force[1] +
-                      v.spin_creepage * w.moment[2] +
-                      rolling_.creepage[0] * t.force[0] + rolling_.creepage[1] * t.force[1] +
-                      rolling_.spin_creepage * t.moment;
+                      v.spin_creepage * w.moment[2] + rolling_.creepage[0] * t.force[0] +
+                      rolling_.creepage[1] * t.force[1] + rolling_.spin_creepage * t.moment;
   out.friction_power = -(v.rolling_speed * work + speed * rate);
 }
 

@@ -53,9 +53,11 @@ struct patch_memory {
   bool warm = false;    // pressure and traction may serve as a start
   bool beyond = false;  // the normal problem left its range: what the patch carries is not known
   grid g;
-  double share = 1;                   // in the wheel's force
-  double rail[2] = {0, 0};            // m, lateral and vertical offset of the rail
-  double approach = 0;                // m, of the last step's normal problem on the half-space
+  double share = 1;         // in the wheel's force
+  double rail[2] = {0, 0};  // m, lateral and vertical offset of the rail
+  double approach = 0;      // m, of the last step's normal problem on the half-space
+  // of wheels in transient rolling, at the step's end: see patch_history::last_rolling
+  std::array<double, 5> rolling{};
   std::array<double, 3> reference{};  // m, contact reference, track axes of a right wheel
   aligned_buffer<double> undeformed_distance, pressure, px, py, sx, sy;
   aligned_buffer<unsigned char> division;

@@ -11,6 +11,7 @@ namespace railpatch {
 struct patch_state_head {
   grid g;
   std::array<double, 3> reference;
+  std::array<double, 5> rolling;
   double share, rail[2];
   uint64_t warm, begun;
 };
@@ -18,6 +19,7 @@ struct patch_state_head {
 inline patch_state_head head_of(const patch_memory &m) {
   return {m.g,
           m.reference,
+          m.rolling,
           m.share,
           {m.rail[0], m.rail[1]},
           m.warm ? 1u : 0u,
@@ -27,6 +29,7 @@ inline patch_state_head head_of(const patch_memory &m) {
 inline void set_head(patch_memory &m, const patch_state_head &head) {
   m.g = head.g;
   m.reference = head.reference;
+  m.rolling = head.rolling;
   m.share = head.share;
   for (int k = 0; k < 2; ++k) m.rail[k] = head.rail[k];
   m.warm = head.warm != 0;

@@ -24,6 +24,10 @@ struct patch_workspace {
   std::optional<railpatch::influence> influence;
   physics_part<coupled_contact> coupled;
   aligned_buffer<double> scratch[2];
+  // where friction's work is asked for element by element: N/m^2 over the way of the step, and what
+  // it is found from
+  aligned_buffer<double> friction, mean[2], moved[2];
+  size_t friction_bytes() const { return 5 * friction.bytes(); }
 };
 
 }  // namespace railpatch

@@ -51,8 +51,7 @@ void describe_tractions(const patch_scene &scene, const traction_outcome &t,
   result.creep_force[0] = wrench.force[0];
   result.creep_force[1] = wrench.force[1];
   result.spin_moment = wrench.moment[2];
-  result.creep_power =
-      creep_power(result, scene.regime == motion::shift ? 1.0 : result.rolling_speed);
+  result.creep_power = scene.keeps_steps() ? t.supplied : creep_power(result, result.rolling_speed);
   result.friction_power = t.friction_power;
   result.plastic_power = t.plastic_power;
   result.elastic_energy += t.elastic_energy;

@@ -59,13 +59,15 @@ traction_outcome tangential_stage::solve(const patch_problem &problem,
   found.residual = t.residual;
   const double rate = scene.regime == motion::shift ? 1.0 : problem.rolling_speed;
   found.friction_power = rate * t.friction;
+  found.supplied *= rate;
   if (scene.yields()) found.plastic_power *= rate;
   found.converged = t.converged;
   if (!t.converged)
     degrade(found.status, scene.tangential != RP_TANGENTIAL_FULL || t.out_of_range
                               ? RP_OUT_OF_RANGE
                               : RP_NOT_CONVERGED);
-  if (scene.tangential == RP_TANGENTIAL_FULL)
+  // what shift and transient rolling know already
+  if (scene.tangential == RP_TANGENTIAL_FULL && !scene.keeps_steps())
     found.elastic_energy =
         fitted_ ? fitted_->elastic_energy(*fitted_rows_) : elastic_energy(problem, memory);
   return found;
@@ -225,6 +227,17 @@ tangential_result tangential_stage::solve_on_grid(const patch_problem &problem,
       zero(memory.px.data()) && zero(memory.py.data()))
     coarse_start_->find(g, memory.pressure.data(), bound_.data(), rolling, options,
                         memory.fields());
+  tangential_result t = solve_by_law(problem, rolling, memory, options, found);
+  if (shared_.scene.keeps_steps()) close_step(problem, rolling, memory, t, found);
+  if (shared_.scene.heat) find_friction_heat(problem, rolling, memory, t.friction);
+  return t;
+}
+
+tangential_result tangential_stage::solve_by_law(const patch_problem &problem,
+                                                 const rolling_input &rolling, patch_memory &memory,
+                                                 const tangential_options &options,
+                                                 traction_outcome &found) {
+  const grid &g = problem.g;
   if (!has_physics || !shared_.scene.law)
     return tangential_->solve({*shared_.influence, g, memory.pressure.data(), bound_.data(),
                                rolling, options, memory.fields()});
@@ -256,18 +269,27 @@ tangential_result tangential_stage::solve_fitted(const patch_problem &problem,
                         {shared_.scene.tolerance, shared_.scene.max_iterations}, memory.nodes());
 }
 
-double tangential_stage::elastic_energy(const patch_problem &problem, const patch_memory &memory) {
+// Of the tractions; where steps go on from it, its density is kept.
+double tangential_stage::elastic_energy(const patch_problem &problem, patch_memory &memory) {
   const grid &g = problem.g;
+  double *density = memory.history.energy.size() ? memory.history.energy.data() : nullptr;
+  if (density) std::fill_n(density, g.count(), 0.0);
   const auto loaded = [&](const aligned_buffer<double> &p) {
     return std::any_of(p.data(), p.data() + g.count(), [](double v) { return v != 0; });
   };
-  if (!loaded(memory.px) && !loaded(memory.py)) return 0.0;
+  if (!loaded(memory.px) && !loaded(memory.py)) {
+    for (auto &u : shared_.scratch) std::fill_n(u.data(), g.count(), 0.0);
+    return 0.0;
+  }
   shared_.influence->tangential_product(memory.px.data(), memory.py.data(),
                                         shared_.scratch[0].data(), shared_.scratch[1].data());
   double sum = 0;
   for (int i = 0; i < g.count(); ++i) {
     const auto at = static_cast<size_t>(i);
-    sum += memory.px[at] * shared_.scratch[0][at] + memory.py[at] * shared_.scratch[1][at];
+    const double twice =
+        memory.px[at] * shared_.scratch[0][at] + memory.py[at] * shared_.scratch[1][at];
+    sum += twice;
+    if (density) density[i] = 0.5 * twice;
   }
   return 0.5 * sum * g.dx * g.dy;
 }

@@ -51,8 +51,18 @@ class tangential_stage {
   // mu: of each element, null: as in the scene
   tangential_result solve_on_grid(const patch_problem &problem, const rolling_input &rolling,
                                   patch_memory &memory, const double *mu, traction_outcome &found);
+  tangential_result solve_by_law(const patch_problem &problem, const rolling_input &rolling,
+                                 patch_memory &memory, const tangential_options &options,
+                                 traction_outcome &found);
   void set_bound(const grid &g, const patch_memory &memory, const double *mu);
-  double elastic_energy(const patch_problem &problem, const patch_memory &memory);
+  double elastic_energy(const patch_problem &problem, patch_memory &memory);
+  // of friction_work.cpp
+  void close_step(const patch_problem &problem, const rolling_input &rolling, patch_memory &memory,
+                  tangential_result &t, traction_outcome &found);
+  void find_friction(const patch_problem &problem, const rolling_input &rolling,
+                     const patch_memory &memory);
+  void find_friction_heat(const patch_problem &problem, const rolling_input &rolling,
+                          const patch_memory &memory, double taken);
 
   patch_workspace &shared_;
   std::optional<tangential_solver> tangential_;

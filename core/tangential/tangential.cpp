@@ -144,13 +144,6 @@ tangential_result tangential_solver::solve(const tangential_problem &problem) {
     add_history(problem);
     step_operator b(*this, problem);
     result = run(b);
-    // elastic energy changes: what friction takes is what slips against it
-    if (!inelastic_) {
-      result.friction = 0;
-      elements_.for_each([&](size_t k, size_t, size_t ix, size_t iy) {
-        result.friction -= (p_[ix] * s_[ix] + p_[iy] * s_[iy]) * area_[k];
-      });
-    }
   }
   release(problem.g, problem.fields);
   return result;
@@ -177,19 +170,23 @@ void tangential_solver::take_offset_work(const tangential_problem &problem,
   problem.sums->plastic_work *= factor;
 }
 
+void tangential_solver::displacement_before(influence &a, const grid &g, const rolling_input &input,
+                                            double *ux, double *uy) {
+  if (input.upstream() != 0)
+    offset_->product(a, g, input.upstream(), input.px, input.py, ux, uy);
+  else
+    a.tangential_product(input.px, input.py, ux, uy);
+}
+
 // The displacement of the last step, as a part of the rigid slip.
 void tangential_solver::add_history(const tangential_problem &problem) {
   const rolling_input &input = problem.input;
   const double *before[2] = {input.before[0], input.before[1]};
   if (!before[0]) {
     if (!input.px) return;
-    double *ux = elements_.x(), *uy = elements_.y();
-    if (input.upstream() != 0)
-      offset_->product(problem.a, problem.g, input.upstream(), input.px, input.py, ux, uy);
-    else
-      problem.a.tangential_product(input.px, input.py, ux, uy);
-    before[0] = ux;
-    before[1] = uy;
+    displacement_before(problem.a, problem.g, input, elements_.x(), elements_.y());
+    before[0] = elements_.x();
+    before[1] = elements_.y();
   }
   elements_.for_each([&](size_t, size_t at, size_t ix, size_t iy) {
     rigid_[ix] -= before[0][at] / input.distance;

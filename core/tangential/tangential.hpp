@@ -98,6 +98,10 @@ class tangential_solver {
   tangential_result solve(const tangential_problem &problem);
   // The preconditioner's, for linear systems of the same rows between solves; null: other laws.
   row_blocks *blocks() { return newton_ ? &newton_->blocks() : nullptr; }
+  // Displacement that the last step's tractions (input.px, py) caused where the material of the
+  // elements was.
+  void displacement_before(influence &a, const grid &g, const rolling_input &input, double *ux,
+                           double *uy);
   // See half_space/offset_influence.hpp; on the grid of a.
   void add_moved(const influence &a, const grid &from, const grid &to, const double offset[2],
                  double share, const double *px, const double *py, double *ux, double *uy) {

@@ -33,14 +33,18 @@ void temperature_loop::pass(const problem &p, const double *mu, const double *q,
       next_[at] = mu[at];
       heat_[at] = q[at];
       if (!(p.pressure[at] > 0)) continue;
-      const double h = mu[at] > 0 ? q[at] / mu[at] : 0.0;
+      const double h = mu[at] > 0 ? std::max(q[at], 0.0) / mu[at] : 0.0;
+      // what does not go with the coefficient
+      const double fixed = q[at] - h * mu[at];
       double temperature = p.background[at];
       for (int m = 1; m <= std::min(k, kernel.count() - 1); ++m)
         temperature +=
             per_body * kernel.weight(m) * heat_[static_cast<size_t>(row + i + ahead * m)];
-      const double own = kernel.count() > 0 ? per_body * kernel.weight(0) * h : 0.0;
+      const double weight = kernel.count() > 0 ? per_body * kernel.weight(0) : 0.0;
+      temperature += weight * fixed;
+      const double own = weight * h;
       next_[at] = consistent_coefficient(p.law, temperature, own, keep ? mu[at] : p.law.reference);
-      heat_[at] = mu[at] > 0 ? h * next_[at] : q[at];
+      heat_[at] = h * next_[at] + fixed;
     }
   }
 }

@@ -66,9 +66,8 @@ void temperature_stage::begin(const heat_rows &rows, double distance, const doub
   }
 }
 
-void temperature_stage::heat(const double *px, const double *py, const double *sx, const double *sy,
-                             const double *plastic, double *q) const {
-  friction_heat(count(), rows_.speed, px, py, sx, sy, plastic, scene_.plastic_fraction, q);
+void temperature_stage::heat(const double *friction, const double *plastic, double *q) const {
+  friction_heat(count(), rows_.speed, friction, plastic, scene_.plastic_fraction, q);
 }
 
 double temperature_stage::finish(const double *pressure, heat_memory &memory) {

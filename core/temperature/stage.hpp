@@ -40,9 +40,9 @@ class temperature_stage {
   // Before the tangential problem: what the surfaces have without this step's heat. distance (m)
   // counts in transient rolling only. The memory's friction is the start.
   void begin(const heat_rows &rows, double distance, const double *pressure, heat_memory &memory);
-  // Heat of a tangential solution: W/m^2, [ny][nx]; plastic: of plastic work, or null.
-  void heat(const double *px, const double *py, const double *sx, const double *sy,
-            const double *plastic, double *q) const;
+  // Heat of a tangential solution: W/m^2, [ny][nx], from friction's work (N/m^2 over the way
+  // rolled) and plastic work (W/m^2, or null).
+  void heat(const double *friction, const double *plastic, double *q) const;
   // Finds the memory's friction; see temperature_loop.
   template <class Tangential>
   temperature_loop_result solve(const double *pressure, const temperature_loop_options &options,
@@ -52,7 +52,7 @@ class temperature_stage {
         options, memory.friction.data(), flux_.data(), tangential);
   }
   // After it: fields of temperature, and in transient rolling the step is taken over. Gives the
-  // greatest surface temperature (degrees C).
+  // greatest surface temperature in contact (degrees C); without contact, of both bodies.
   double finish(const double *pressure, heat_memory &memory);
   double *flux() { return flux_.data(); }  // of the step, for finish
   size_t bytes() const;

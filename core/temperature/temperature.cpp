@@ -20,13 +20,6 @@ RAILPATCH_DISPATCH void add_shifted(int n, double w, const double *q, double *y)
   for (int i = 0; i < n; ++i) y[i] += w * q[i];
 }
 
-RAILPATCH_DISPATCH void friction_power(int n, double speed, const double *px, const double *py,
-                                       const double *sx, const double *sy, double *q) {
-  RAILPATCH_INDEPENDENT
-  for (int i = 0; i < n; ++i)
-    q[i] = speed * std::sqrt((px[i] * px[i] + py[i] * py[i]) * (sx[i] * sx[i] + sy[i] * sy[i]));
-}
-
 // Gauss-Legendre on (-1, 1) with 16 nodes: the positive half (Abramowitz and Stegun 1964,
 // table 25.4)
 constexpr double node[8] = {0.0950125098376374402, 0.2816035507792589132, 0.4580167776572273863,
@@ -165,9 +158,9 @@ void heat_exchange::set_row(const heat_rows &rows, const double *pressure) {
 
 double heat_exchange::at(int k, double depth) const { return value(k + 0.5, depth); }
 
-void friction_heat(int count, double speed, const double *px, const double *py, const double *sx,
-                   const double *sy, const double *plastic_power, double fraction, double *q) {
-  friction_power(count, speed, px, py, sx, sy, q);
+void friction_heat(int count, double speed, const double *friction, const double *plastic_power,
+                   double fraction, double *q) {
+  for (int i = 0; i < count; ++i) q[i] = speed * friction[i];
   if (plastic_power) add_shifted(count, fraction, plastic_power, q);
 }
 

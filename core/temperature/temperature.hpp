@@ -111,9 +111,10 @@ class heat_exchange {
 // duration `touched`, begun `since` ago, has levelled out at a depth; touched = since: erfc.
 double levelled(double touched, double since, double depth);
 
-// Flux of the friction, W/m^2: |p| |s| V and a fraction of the plastic power (null: none).
-void friction_heat(int count, double speed, const double *px, const double *py, const double *sx,
-                   const double *sy, const double *plastic_power, double fraction, double *q);
+// Flux of the friction, W/m^2: its work over the way rolled (N/m^2) times V, and a fraction of the
+// plastic power (null: none).
+void friction_heat(int count, double speed, const double *friction, const double *plastic_power,
+                   double fraction, double *q);
 
 // Steady rolling: Y and, where the pair exchanges heat, E of whole fields.
 class steady_temperature {

@@ -224,7 +224,10 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
   place_patch(solver, region, memory, problem);
   const double depth = problem.place.depth;
   past_tractions past[RP_MAX_PATCHES];
-  if (solver.scene().keeps_steps()) set_past(memories, region, problem, past);
+  if (solver.scene().keeps_steps()) {
+    memory.rolling = rolling_of(problem);
+    set_past(memories, region, problem, past);
+  }
   if (solver.scene().normal == RP_NORMAL_HERTZ)
     problem.hertz = hertz_of(region, depth, solver.scene().modulus());
   patch_wrench wrench;
@@ -301,13 +304,6 @@ void wheel_contact::add_force(const patch_region &region, double depth, patch_wr
 // goes to a patch where it lies nearer to its parts than to others, and near at all.
 void wheel_contact::set_past(const patch_memory *memory, const patch_region &region,
                              patch_problem &problem, past_tractions *past) const {
-  rolling_input &rolling = problem.rolling;
-  const double speed = problem.rolling_speed, slow = standstill_speed_;
-  // what stands still does not roll on; near standstill creepages refer to another speed
-  rolling.regime = speed > 0 ? motion::transient : motion::shift;
-  if (speed > 0) rolling.distance = speed * time_step_;
-  const double moved = speed < slow ? std::sqrt(std::max(slow * (2 * speed - slow), 0.0)) : speed;
-  const double rolled = problem.place.direction * moved * time_step_;
   problem.past = past;
   const vec3 &rail = geometry_->motion().rail.offset;
   const contact_frame &frame = region.frame;
@@ -334,10 +330,54 @@ void wheel_contact::set_past(const patch_memory *memory, const patch_region &reg
     const int begin = row(low), end = row(high);
     if (end <= begin) continue;
     past_tractions &p = past[problem.past_count++];
-    p = {&h, begin, end - begin, {0, 0}};
-    p.offset[0] = frame.origin[0] + problem.g.x0 + rolled - h.last_reference[0] - g.x0;
-    p.offset[1] = problem.g.y0 - place - g.y(begin);
+    p = {&h, begin, end - begin, {0, problem.g.y0 - place - g.y(begin)}};
   }
+  const double rolled = set_rolling(problem);
+  for (int k = 0; k < problem.past_count; ++k) {
+    const patch_history &h = *past[k].history;
+    past[k].offset[0] =
+        frame.origin[0] + problem.g.x0 + rolled - h.last_reference[0] - h.last_grid.x0;
+  }
+}
+
+// What a patch goes on with: creepages, spin, rolling speed, and the way per second along x. Near
+// standstill creepages refer to another speed than that of the way.
+std::array<double, 5> wheel_contact::rolling_of(const patch_problem &problem) const {
+  const double speed = problem.rolling_speed, slow = standstill_speed_;
+  const double moved = speed < slow ? std::sqrt(std::max(slow * (2 * speed - slow), 0.0)) : speed;
+  const rolling_input &r = problem.rolling;
+  return {r.creepage[0], r.creepage[1], r.spin_creepage, speed, problem.place.direction * moved};
+}
+
+// The motion of a step is the mean of the velocities at both its ends, where material has been in
+// contact before. Returns the way rolled along x (m).
+double wheel_contact::set_rolling(patch_problem &problem) const {
+  rolling_input &rolling = problem.rolling;
+  std::array<double, 5> now = rolling_of(problem);
+  std::array<double, 5> last{};
+  double shares = 0;
+  for (int k = 0; k < problem.past_count; ++k) {
+    const patch_history &h = *problem.past[k].history;
+    shares += h.last_share;
+    for (size_t i = 0; i < 5; ++i)
+      last[i] += h.last_share * h.last_rolling[i] * (i < 3 ? h.last_rolling[3] : 1.0);
+  }
+  if (shares > 0) {
+    // slip is what has a mean, creepage is slip over the speed
+    const double speed = 0.5 * (now[3] + last[3] / shares);
+    for (size_t i = 0; i < 3; ++i)
+      now[i] = speed > 0 ? 0.5 * (now[i] * now[3] + last[i] / shares) / speed : 0.0;
+    now[3] = speed;
+    now[4] = 0.5 * (now[4] + last[4] / shares);
+  }
+  rolling.creepage[0] = now[0];
+  rolling.creepage[1] = now[1];
+  rolling.spin_creepage = now[2];
+  problem.rolling_speed = rolling.speed = now[3];
+  // what stands still does not roll on
+  rolling.regime = now[3] > 0 ? motion::transient : motion::shift;
+  if (now[3] > 0) rolling.distance = now[3] * time_step_;
+  return now[4] * time_step_;
 }
 
 // The factor of each row by the angle of the rail's surface there, > 0 towards the gauge face; a

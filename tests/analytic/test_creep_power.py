@@ -91,7 +91,8 @@ def test_of_a_shift_it_is_work() -> None:
     )
     result = railpatch.solve(case)
     data = {**result.data, "creepage": [1e-5, 2e-5], "spin_creepage": 1e-4}
-    assert result["creep_power"] == pytest.approx(supplied(data, 1.0), rel=1e-12)
+    # force and moment have grown from nothing: their means are half of what they are now
+    assert result["creep_power"] == pytest.approx(0.5 * supplied(data, 1.0), rel=1e-12)
     assert result["creep_power"] > 0
 
 

@@ -83,12 +83,12 @@ TEST(HeatParts, LawAndItsSlope) {
 }
 
 TEST(HeatParts, FrictionHeat) {
-  const std::vector<double> px{3e8, -1e8}, py{4e8, 0}, sx{0.0, 6e-3}, sy{5e-3, -8e-3}, w{2e6, 0};
+  const std::vector<double> friction{5e8 * 5e-3, 1e8 * 1e-2}, w{2e6, 0};
   std::vector<double> q(2);
-  friction_heat(2, 20, px.data(), py.data(), sx.data(), sy.data(), nullptr, 0.4, q.data());
+  friction_heat(2, 20, friction.data(), nullptr, 0.4, q.data());
   EXPECT_NEAR(q[0], 20 * 5e8 * 5e-3, 1e-6);
   EXPECT_NEAR(q[1], 20 * 1e8 * 1e-2, 1e-6);
-  friction_heat(2, 20, px.data(), py.data(), sx.data(), sy.data(), w.data(), 0.4, q.data());
+  friction_heat(2, 20, friction.data(), w.data(), 0.4, q.data());
   EXPECT_NEAR(q[0], 20 * 5e8 * 5e-3 + 0.4 * 2e6, 1e-6);
   EXPECT_NEAR(q[1], 20 * 1e8 * 1e-2, 1e-6);
 }
@@ -470,11 +470,11 @@ TEST(Stage, IsTheSumOfItsParts) {
         EXPECT_NEAR(memory.friction[i], scene.law.coefficient(hot), 1e-14);
       }
       // some slip behind the leading edge; plastic work
-      std::vector<double> px(40, 2e8), py(40, -1e8), s(40), work(40, 3e5);
-      for (size_t i = 0; i < 40; ++i) s[i] = p[i] > 0 ? 1e-4 * static_cast<double>(i % 20) : 0.0;
-      stage.heat(px.data(), py.data(), s.data(), zero.data(), work.data(), heat.data());
+      std::vector<double> friction(40), work(40, 3e5);
       for (size_t i = 0; i < 40; ++i)
-        EXPECT_NEAR(heat[i], 8 * std::sqrt(5e16) * s[i] + 0.6 * 3e5, 1e-6);
+        friction[i] = p[i] > 0 ? 2e4 * static_cast<double>(i % 20) : 0.0;
+      stage.heat(friction.data(), work.data(), heat.data());
+      for (size_t i = 0; i < 40; ++i) EXPECT_NEAR(heat[i], 8 * friction[i] + 0.6 * 3e5, 1e-6);
       std::copy(heat.begin(), heat.end(), stage.flux());
       const double top = stage.finish(p.data(), memory);
       if (c.transient)

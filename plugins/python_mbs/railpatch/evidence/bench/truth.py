@@ -76,9 +76,7 @@ RECIPES = (
     Recipe("uniform, many", PLAIN, MANY, UNIFORM_ORDER, "D"),
     Recipe("uniform, odd", PLAIN, MANY[7::8], UNIFORM_ORDER, "B"),
     Recipe("uniform, pairs", PLAIN, tuple(n for n in MANY if n % 4 < 2), UNIFORM_ORDER, "W"),
-    Recipe(
-        "uniform, other pairs", PLAIN, tuple(n for n in MANY if n % 4 > 1), UNIFORM_ORDER, "W"
-    ),
+    Recipe("uniform, other pairs", PLAIN, tuple(n for n in MANY if n % 4 > 1), UNIFORM_ORDER, "W"),
 )
 
 

@@ -19,7 +19,6 @@ from railpatch.evidence.stress.inelastic import (
     bound_of,
     friction_of,
     inelastic_findings,
-    plastic_increment,
 )
 from railpatch.evidence.stress.step import Finding, Step, curvatures_of
 
@@ -105,9 +104,11 @@ def power_findings(step: Step, most: float) -> Iterator[Finding]:
     if size == 0:
         return
     limit = IMPOSED * step.tolerance
-    miss = abs(step.patch["creep_power"] - supplied_power(step))
-    yield Finding("creep power", miss / size, SUMS)
-    yield Finding("friction takes power", -step.patch["friction_power"] / size, limit)
+    if step.history_known:
+        miss = abs(step.patch["creep_power"] - supplied_power(step))
+        yield Finding("creep power", miss / size, SUMS)
+    if step.regime == "steady_rolling":
+        yield Finding("friction takes power", -step.patch["friction_power"] / size, limit)
     if np.isfinite(step.patch["plastic_power"]):
         yield Finding("plastic work", -step.patch["plastic_power"] / size, limit)
     # FASTSIM's foundation keeps energy in the traction at the trailing edge; Polach's power is
@@ -120,9 +121,16 @@ def power_findings(step: Step, most: float) -> Iterator[Finding]:
 
 
 def supplied_power(step: Step) -> float:
-    """W, of the creepages (shift: J); the wheel's forces act against them."""
+    """W, of the creepages (shift: J); the wheel's forces act against them, in shift and transient
+    rolling the means of those at both ends of the step."""
     xi, eta, phi = step.motion
-    force, moment = step.patch["creep_force"], step.patch["spin_moment"]
+    force, moment = np.array(step.patch["creep_force"]), step.patch["spin_moment"]
+    if step.regime in ("shift", "transient_rolling"):
+        before = step.history
+        force, moment = 0.5 * force, 0.5 * moment
+        if before is not None:
+            force = force + 0.5 * np.array(before.patch["creep_force"])
+            moment += 0.5 * before.patch["spin_moment"]
     work = force[0] * xi + force[1] * eta + moment * phi
     speed = 1.0 if step.regime == "shift" else step.patch["rolling_speed"]
     return float(-speed * work)
@@ -261,20 +269,35 @@ def slip_findings(step: Step) -> Iterator[Finding]:
 def energy_balance(step: Step) -> float:
     """-, what is left of the step's energies over the greatest of them; NaN where there is none.
 
-    The work of the creepages is what friction and plastic displacement take by the solver's own
-    slip, and what the bodies store or lose by their displacement, which is computed again.
+    The work of the creepages, by the tractions at both ends of the step, is what friction and
+    plastic displacement take as the result says, and what the bodies store or lose: the change of
+    the tractions' energy by their displacements, which are computed again.
     """
     if not step.good or not step.has("traction") or not step.has("pressure") or step.fitted:
         return float("nan")
     if step.case.method.tangential != "full" or step.regime == "none" or not step.history_known:
         return float("nan")
-    traction, rolled = step["traction"], step.rolled
-    work = -float((traction * step.rigid_slip).sum()) * rolled
-    taken = -float((traction * step["micro_slip"]).sum()) * rolled
-    if step.has("plastic_displacement"):
-        taken += float((traction * plastic_increment(step)).sum())
-    stored = float((traction * (step.displacement - step.displacement_before)).sum())
+    # pressure has its part in the energy of unlike bodies
+    if step.unlike:
+        return float("nan")
+    speed = 1.0 if step.regime == "shift" else step.patch["rolling_speed"]
+    if not speed > 0:
+        return float("nan")
+    time = step.rolled / speed
+    work = supplied_power(step) * time
+    plastic = step.patch["plastic_power"]
+    taken = (step.patch["friction_power"] + (plastic if np.isfinite(plastic) else 0.0)) * time
+    stored = 0.0
+    if step.regime != "steady_rolling":
+        before = step.history
+        stored = stored_energy(step) - (stored_energy(before) if before is not None else 0.0)
     # energy that could be turned over: traction by the greatest slip asked for
-    size = float((np.hypot(*traction) * np.hypot(*step.asked_slip)).sum()) * rolled
-    size = max(size, abs(work), abs(taken), abs(stored))
+    size = float((np.hypot(*step["traction"]) * np.hypot(*step.asked_slip)).sum())
+    size = max(size * step.rolled * step.area, abs(work), abs(taken), abs(stored))
     return abs(work - taken - stored) / size if size > 0 else 0.0
+
+
+def stored_energy(step: Step) -> float:
+    """J, of the tractions and the displacement they cause."""
+    displacement = step.half_space.tangential(step["traction"])
+    return 0.5 * float((step["traction"] * displacement).sum()) * step.area

@@ -103,6 +103,14 @@ class Step:
         return float(modulus), float(modulus * np.mean(ratios / moduli))
 
     @property
+    def unlike(self) -> bool:
+        """Whether pressure and traction act on each other (K of Kalker 1990, eq. 1.44)."""
+        moduli, ratios = map(np.array, (self.case.material.shear_modulus,
+                                        self.case.material.poisson_ratio))  # fmt: skip
+        parts = np.broadcast_to((1 - 2 * ratios) / moduli, 2)
+        return bool(abs(parts[0] - parts[1]) > 1e-9 * abs(parts).max())
+
+    @property
     def layer(self) -> float:
         """m/Pa, flexibility of the third-body layer."""
         found = self.case.layer

@@ -1,0 +1,140 @@
+// The work of a step: what creepages supply, what friction takes, and where.
+//
+// Of material that moves by one step from x + dq to x, friction takes -(p + p_before)/2 . s over
+// the way: the traction is the mean of both ends, and elements that have just left contact count.
+// With s = w + (u - u_before)/dq, tractions symmetric in their displacement (Betti) and a
+// displacement that moves with its tractions, sum (p + p_before)/2 . (u - u_before) is the change
+// of sum p . u/2: so the work of the rigid slip is that of friction and the change of elastic
+// energy, exactly; in steady rolling it is all friction's.
+#include <algorithm>
+#include <cmath>
+
+#include "numeric/sums.hpp"
+#include "patch/tangential_stage.hpp"
+
+namespace railpatch {
+
+namespace {
+
+// What tractions that material brings along do, and hold.
+struct carried_work {
+  double force[2] = {0, 0}, moment = 0, energy = 0;  // N, N m, J
+};
+
+// Rows of the last step, whose first element's material was at x0, y0 then.
+void add_rows(const patch_history &history, const grid &g, int first_row, int rows, double x0,
+              double y0, double share, carried_work &sum) {
+  const double area = share * g.dx * g.dy;
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < g.nx; ++i) {
+      const auto at = static_cast<size_t>((first_row + j) * g.nx + i);
+      const double px = history.last_px[at], py = history.last_py[at];
+      sum.force[0] += area * px;
+      sum.force[1] += area * py;
+      sum.moment += area * ((x0 + i * g.dx) * py - (y0 + j * g.dy) * px);
+      sum.energy += area * history.last_energy[at];
+    }
+}
+
+carried_work carried_by(const patch_problem &problem, const patch_memory &memory) {
+  carried_work sum;
+  const grid &g = problem.g;
+  if (!problem.past) {
+    add_rows(memory.history, g, 0, g.ny, g.x0, g.y0, 1.0, sum);
+    return sum;
+  }
+  const double rolled = problem.rolling.upstream();
+  for (int k = 0; k < problem.past_count; ++k) {
+    const past_tractions &past = problem.past[k];
+    add_rows(*past.history, past.history->last_grid, past.first_row, past.rows,
+             g.x0 - past.offset[0] + rolled, g.y0 - past.offset[1], past.history->last_share, sum);
+  }
+  return sum;
+}
+
+}  // namespace
+
+// Where tractions go on from the last step's: what creepages supply by the mean of both, and what
+// of it friction takes, and the layer by its share.
+void tangential_stage::close_step(const patch_problem &problem, const rolling_input &rolling,
+                                  patch_memory &memory, tangential_result &t,
+                                  traction_outcome &found) {
+  const grid &g = problem.g;
+  const patch_wrench now =
+      sum_tractions(g, memory.pressure.data(), memory.px.data(), memory.py.data());
+  const carried_work before = carried_by(problem, memory);
+  found.elastic_energy = elastic_energy(problem, memory);
+  double work = 0;
+  for (int c = 0; c < 2; ++c) {
+    const double found_creepage = rolling.force ? rolling.force->creepage[c] : 0.0;
+    work += 0.5 * (now.force[c] + before.force[c]) * (rolling.creepage[c] + found_creepage);
+  }
+  work += 0.5 * (now.moment[2] + before.moment) * rolling.spin_creepage;
+  found.supplied = -work;
+  // of unlike bodies pressure has its part in the energy: friction is counted where it is
+  if (shared_.coupled) {
+    find_friction(problem, rolling, memory);
+    t.friction = total(shared_.friction.data(), static_cast<size_t>(g.count())) * g.dx * g.dy;
+    return;
+  }
+  const double taken = found.supplied - (found.elastic_energy - before.energy) / rolling.distance;
+  const double plastic = shared_.scene.yields() ? found.plastic_power : 0.0;
+  if (!(plastic > 0)) {
+    t.friction = taken;
+    return;
+  }
+  const double factor = std::max(0.0, taken / (t.friction + plastic));
+  t.friction *= factor;
+  found.plastic_power *= factor;
+}
+
+// N/m^2 over the way of the step, of each element's material.
+void tangential_stage::find_friction(const patch_problem &problem, const rolling_input &rolling,
+                                     const patch_memory &memory) {
+  const grid &g = problem.g;
+  const bool steady = rolling.regime == motion::steady;
+  const double *px = memory.px.data(), *py = memory.py.data();
+  double *before[2] = {shared_.mean[0].data(), shared_.mean[1].data()};
+  const double upstream = steady ? rolling.direction * g.dx : rolling.upstream();
+  shift_field(g, upstream, 0.0, steady ? px : memory.history.last_px.data(), before[0]);
+  shift_field(g, upstream, 0.0, steady ? py : memory.history.last_py.data(), before[1]);
+  // of elements that have left contact: what the tractions add to their slip
+  double *moved[2] = {shared_.moved[0].data(), shared_.moved[1].data()};
+  if (steady) {
+    shared_.influence->rolling_product(px, py, rolling.direction, moved[0], moved[1]);
+  } else {
+    tangential_->displacement_before(*shared_.influence, g, rolling, moved[0], moved[1]);
+    // elastic_energy left the present displacement there
+    for (int c = 0; c < 2; ++c)
+      for (size_t i = 0; i < static_cast<size_t>(g.count()); ++i)
+        moved[c][i] = (shared_.scratch[c][i] - moved[c][i]) / rolling.distance;
+  }
+  for (int j = 0; j < g.ny; ++j)
+    for (int i = 0; i < g.nx; ++i) {
+      const auto at = static_cast<size_t>(j * g.nx + i);
+      double slip[2] = {memory.sx[at], memory.sy[at]};
+      const bool left = !(memory.pressure[at] > 0) && (before[0][at] != 0 || before[1][at] != 0);
+      for (int c = 0; left && c < 2; ++c) {
+        slip[c] = rolling.slip(c, g.x(i), g.y(j)) + moved[c][at];
+        if (rolling.coupled[c]) slip[c] += rolling.coupled[c][at];
+        if (rolling.force) slip[c] += rolling.force->creepage[c];
+      }
+      shared_.friction[at] =
+          -0.5 * ((px[at] + before[0][at]) * slip[0] + (py[at] + before[1][at]) * slip[1]);
+    }
+}
+
+// The place of the spin term and steps of parts of an element leave the sum a little off what
+// friction takes: all of that becomes heat.
+void tangential_stage::find_friction_heat(const patch_problem &problem,
+                                          const rolling_input &rolling, const patch_memory &memory,
+                                          double taken) {
+  find_friction(problem, rolling, memory);
+  const grid &g = problem.g;
+  const auto count = static_cast<size_t>(g.count());
+  const double sum = total(shared_.friction.data(), count) * g.dx * g.dy;
+  if (!(sum > 0 && taken > 0)) return;
+  for (size_t i = 0; i < count; ++i) shared_.friction[i] *= taken / sum;
+}
+
+}  // namespace railpatch
