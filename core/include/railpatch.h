@@ -177,11 +177,11 @@ typedef enum rp_flexibility_blending {
 /* how far upstream of an element its spin term is read, of the way dq of a step: an element in
  * steady rolling, else input.distance */
 #define RP_SPIN_OFFSETS(X)                                                           \
+  X(RP_SPIN_OFFSET_NONE, 0, "none")                                                  \
+  X(RP_SPIN_OFFSET_SIXTH, 1, "sixth") /* x + dq/6, as the program CONTACT does */    \
   /* a quarter for tangential = full on the uniform grid, but in a shift and with an \
    * elastic layer; else none */                                                     \
-  X(RP_SPIN_OFFSET_AUTOMATIC, 0, "automatic")                                        \
-  X(RP_SPIN_OFFSET_NONE, 1, "none")                                                  \
-  X(RP_SPIN_OFFSET_SIXTH, 2, "sixth") /* x + dq/6, as the program CONTACT does */    \
+  X(RP_SPIN_OFFSET_AUTOMATIC, 2, "automatic")                                        \
   X(RP_SPIN_OFFSET_QUARTER, 3, "quarter")
 typedef enum rp_spin_offset { RP_SPIN_OFFSETS(RP_ENUM_ENTRY) } rp_spin_offset;
 
