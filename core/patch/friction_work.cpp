@@ -16,6 +16,8 @@ namespace railpatch {
 
 namespace {
 
+constexpr double rounding = 1e-14;  // relative, of sums over elements
+
 // What tractions that material brings along do, and hold.
 struct carried_work {
   double force[2] = {0, 0}, moment = 0, energy = 0;  // N, N m, J
@@ -77,7 +79,12 @@ void tangential_stage::close_step(const patch_problem &problem, const rolling_in
     t.friction = total(shared_.friction.data(), static_cast<size_t>(g.count())) * g.dx * g.dy;
     return;
   }
-  const double taken = found.supplied - (found.elastic_energy - before.energy) / rolling.distance;
+  const double grown = (found.elastic_energy - before.energy) / rolling.distance;
+  double taken = found.supplied - grown;
+  // where all sticks the two are equal, but for what their sums are rounded by
+  const double largest =
+      std::max(std::abs(found.supplied), (found.elastic_energy + before.energy) / rolling.distance);
+  if (std::abs(taken) <= rounding * largest) taken = 0;
   const double plastic = shared_.scene.yields() ? found.plastic_power : 0.0;
   if (!(plastic > 0)) {
     t.friction = taken;

@@ -120,6 +120,33 @@ def test_work_is_frictions_and_elastic_energy(extra: dict[str, Any], share: floa
     assert scale <= 1e-9 * moved
 
 
+@pytest.mark.parametrize("forth", [1, -1])
+def test_friction_is_what_its_elements_take(forth: int) -> None:
+    """-(p + p_before)/2 . s of each, also of those that have just left contact."""
+    random = np.random.default_rng(8)
+    contact = rolling(14, [0.0, 0.0], motion__direction=forth)
+    way = 2 * A / 14
+    before = None
+    for _ in range(12):
+        creepage = CREEPAGE * random.uniform(-1.5, 1.5, 2)
+        result = contact.step(creepage=creepage.tolist(), fields=True)
+        assert result.status == "converged"
+        traction = np.array(result["traction"])
+        space = HalfSpace(traction.shape[1:], way, way, SHEAR_MODULUS, POISSON_RATIO)
+        carried = np.zeros_like(traction)
+        slip = creepage[:, None, None] + space.tangential(traction) / way
+        if before is not None:
+            ahead = slice(1, None) if forth > 0 else slice(None, -1)
+            behind = slice(None, -1) if forth > 0 else slice(1, None)
+            carried[..., behind] = before[..., ahead]
+            slip -= space.tangential(before, forth * way) / way
+        slip = np.where(result["pressure"] > 0, result["micro_slip"], slip)
+        taken = -0.5 * SPEED * ((traction + carried) * slip).sum() * way**2
+        supplied = SPEED * 0.3 * 3e4 * np.hypot(*creepage)
+        assert taken == pytest.approx(result["friction_power"], abs=1e-6 * supplied)
+        before = traction
+
+
 def response(elements: int, wavelength: float, read: float) -> complex:
     """H/H0 of the longitudinal force; creepage read at so much of a step before its end."""
     small = 1e-3 * CREEPAGE

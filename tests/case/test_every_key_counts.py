@@ -396,7 +396,18 @@ def fast_with_own_spin(case: Case, path: str, value: Any) -> bool:
 def bound_by_default(case: Case, path: str, value: Any) -> bool:
     normal = get(case, "method.normal", "half_space")
     quadratic = case["kind"] == "patch" and normal == "half_space"
-    return value == ("parabolic" if normal == "hertz" or quadratic else "elliptic")
+    as_contact = get(case, "method.flexibility_blending") == "contact"
+    ellipse = normal == "hertz" or quadratic
+    return value == ("parabolic" if ellipse and as_contact else "elliptic")
+
+
+def spin_by_default(case: Case, path: str, value: Any) -> bool:
+    if get(case, "method.spin_offset") is not None:
+        return False
+    steps = get(case, "method.tangential", "full") == "full" and not get(case, "grid.fitted")
+    rolls = get(case, "motion.regime") != "shift"
+    layer = get(case, "layer.thickness", 0.0) > 0
+    return value == ("quarter" if steps and rolls and not layer else "none")
 
 
 def untouched(case: Case, path: str, value: Any) -> bool:
@@ -450,6 +461,7 @@ IDLE = [
         "Polach's theory takes the spin of the whole patch",
         (),
     ),
+    Idle("method.spin_offset", spin_by_default, "the one that is taken anyway", ()),
     Idle(
         "method.fastsim_beta",
         lambda c, k, v: get(c, "method.fastsim_alpha", 1.0) == 1.0,

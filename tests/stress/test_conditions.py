@@ -92,6 +92,48 @@ def test_energy_of_a_spoilt_field(step: Step) -> None:
     assert energy_balance(spoilt(step, "micro_slip", lambda s: 1.1 * s)) > 1e-3
 
 
+@pytest.fixture(scope="module", params=["transient_rolling", "shift"])
+def later(request: pytest.FixtureRequest) -> Step:
+    """What goes on from steps before, and slides in part."""
+    motion: dict[str, Any] = {**MOTION, "regime": request.param}
+    if request.param == "transient_rolling":
+        motion |= {"distance": 7.5e-4, "steps": 1}
+    else:
+        motion |= {"creepage": [8e-6, 2e-6], "spin_creepage": 2e-4}
+    scene = load_scene(nominal({"motion": motion, "grid": {"elements": [16, 20]}}))
+    contact, values = _core.Contact(config_of(scene), False), input_of(scene.case)
+    step = None
+    for _ in range(8):
+        step = steps_of(contact, scene.case, values, contact.step(values), step)[0]
+    assert step is not None
+    return step
+
+
+def test_energies_of_a_step(later: Step) -> None:
+    assert later.good
+    assert later.history is not None
+    assert max(worst(later).values()) <= 1
+    assert energy_balance(later) <= 1e-5
+
+
+@pytest.mark.parametrize("name", ["traction", "micro_slip"])
+def test_energy_of_a_spoilt_field_of_a_step(later: Step, name: str) -> None:
+    assert energy_balance(spoilt(later, name, lambda p: 1.1 * p)) > 1e-3
+
+
+@pytest.mark.parametrize("name", ["friction_power", "creep_force"])
+def test_energy_of_a_spoilt_power(step: Step, later: Step, name: str) -> None:
+    for one in (step, later):
+        value = (1.1 * np.array(one.patch[name])).tolist()
+        assert energy_balance(replace(one, patch={**one.patch, name: value})) > 1e-3
+
+
+def test_energy_of_another_step_before(later: Step) -> None:
+    assert later.before is not None
+    other = spoilt(later.before, "traction", lambda p: 1.1 * p)
+    assert energy_balance(replace(later, before=other)) > 1e-3
+
+
 def test_no_number_is_found(step: Step) -> None:
     assert not list(no_numbers(step))
     hole = spoilt(step, "traction", lambda p: np.where(p == p.min(), np.nan, p))

@@ -169,13 +169,19 @@ def gapless(step: Step) -> Array:
 
 
 def heat_flux(step: Step) -> Array:
-    """W/m^2, [ny, nx], that friction and the layer's plastic work give to both bodies."""
+    """W/m^2, [ny, nx], that friction and the layer's plastic work give to both bodies.
+
+    What the place of the spin term leaves of friction's power goes to the elements by their share.
+    """
     layer = step.case.layer
-    speed, traction = step.patch["rolling_speed"], step["traction"]
-    flux = -(traction * step["micro_slip"]).sum(axis=0) * speed
+    work = step.friction_work
+    total = float(work.sum()) * step.area
+    taken = step.patch["friction_power"]
+    flux = work * (taken / total if total > 0 and taken > 0 else 1.0 / step.rolled)
     if layer is not None and layer.is_plastic:
-        work = (traction * plastic_increment(step)).sum(axis=0)
-        flux = flux + layer.plastic_heat_fraction * work * speed / step.rolled
+        speed = step.patch["rolling_speed"]
+        plastic = (step["traction"] * plastic_increment(step)).sum(axis=0)
+        flux = flux + layer.plastic_heat_fraction * plastic * speed / step.rolled
     return flux
 
 

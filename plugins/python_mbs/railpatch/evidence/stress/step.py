@@ -12,7 +12,7 @@ from scipy.special import ellipe, ellipk
 from railpatch.case.load import Case
 from railpatch.case.patch import PatchCase
 from railpatch.evidence.stress import laws
-from railpatch.evidence.stress.half_space import Array, HalfSpace
+from railpatch.evidence.stress.half_space import Array, HalfSpace, shifted
 
 FIELDS = (
     "x",
@@ -225,11 +225,32 @@ class Step:
         return self.half_space.tangential(self.history["traction"], self.ahead)
 
     @cached_property
+    def surface_slip(self) -> Array:
+        """[2, ny, nx], of the surfaces on each other, also beside the contact, by the displacements
+        of independent code."""
+        return self.rigid_slip + (self.displacement - self.displacement_before) / self.rolled
+
+    @cached_property
     def slip(self) -> Array:
-        """[2, ny, nx], inelastic slip: micro-slip and plastic displacement of the step, by the
-        displacements of independent code."""
-        change = self.displacement - self.displacement_before
-        return np.where(self.contact, self.rigid_slip + change / self.rolled, 0.0)
+        """[2, ny, nx], inelastic slip: micro-slip and plastic displacement of the step."""
+        return np.where(self.contact, self.surface_slip, 0.0)
+
+    @cached_property
+    def traction_before(self) -> Array:
+        """Pa, [2, ny, nx], of the same material one step before."""
+        found = self if self.regime == "steady_rolling" else self.history
+        if found is None:
+            return np.zeros_like(self["traction"])
+        return shifted(found["traction"], self.ahead / self.half_space.dx)
+
+    @cached_property
+    def friction_work(self) -> Array:
+        """N/m, [ny, nx], what friction takes over the way of the step: by the traction at its
+        middle, the mean of both ends, and in elements that have just left contact too."""
+        before = self.traction_before
+        left = ~self.contact & (before != 0).any(axis=0)
+        slip = np.where(left, self.surface_slip, self["micro_slip"])
+        return -0.5 * ((self["traction"] + before) * slip).sum(axis=0) * self.rolled
 
     @cached_property
     def asked_slip(self) -> Array:
