@@ -48,15 +48,19 @@ class patch_contact {
   void set_bulk_temperature(int k, double value) { heat_.set_bulk(k, value); }
   size_t influence_bytes() const { return shared_.influence ? shared_.influence->bytes() : 0; }
   size_t coupling_bytes() const { return shared_.coupled ? shared_.coupled->bytes() : 0; }
-  size_t history_bytes() const { return tangential_.history_bytes(); }
+  size_t history_bytes() const {
+    return tangential_.history_bytes() + (shared_.scene.heat ? 0 : shared_.friction_bytes());
+  }
   size_t plastic_bytes() const { return tangential_.plastic_bytes(); }
   size_t normal_bytes() const { return normal_.bytes(); }
   // with those of history and plasticity
   size_t tangential_bytes() const { return tangential_.bytes(); }
   size_t derivative_bytes() const { return derivative_ ? derivative_->bytes() : 0; }
-  size_t heat_bytes() const { return heat_.bytes(); }
+  size_t heat_bytes() const {
+    return heat_.bytes() + (shared_.scene.heat ? shared_.friction_bytes() : 0);
+  }
   // of what the stages pass on to each other
-  size_t scratch_bytes() const { return 2 * shared_.scratch[0].bytes() + shared_.friction_bytes(); }
+  size_t scratch_bytes() const { return 2 * shared_.scratch[0].bytes(); }
 
  private:
   void begin_solve(const patch_problem &problem, patch_memory &memory);

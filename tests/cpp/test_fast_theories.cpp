@@ -233,7 +233,8 @@ struct setting {
 
   std::vector<double> bound() const {
     const bool is_ellipse = c.hertz.semi_axes[0] > 0;
-    bool squares = o.bound == RP_BOUND_PARABOLIC || (o.bound == RP_BOUND_AUTOMATIC && is_ellipse);
+    const bool by_default = is_ellipse && o.blending == RP_BLENDING_CONTACT;
+    bool squares = o.bound == RP_BOUND_PARABOLIC || (o.bound == RP_BOUND_AUTOMATIC && by_default);
     if (o.theory == RP_TANGENTIAL_FASTRIP) squares = false;
     std::vector<double> g = c.pressure;
     double sum = 0;

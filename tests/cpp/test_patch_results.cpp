@@ -143,7 +143,7 @@ TEST(PatchResults, ErrorsOfForcesAreEstimatedWhereTheyWereMeasured) {
        {RP_TANGENTIAL_FULL, RP_TANGENTIAL_FASTSIM, RP_TANGENTIAL_POLACH, RP_TANGENTIAL_TABLE}) {
     const auto refuses = [&](auto change) { EXPECT_FALSE(estimates(change, method)) << method; };
     EXPECT_TRUE(estimates([](patch_scene &) {}, method)) << method;
-    refuses([](patch_scene &s) { s.spin_offset = true; });
+    refuses([](patch_scene &s) { s.usual_spin = false; });
     refuses([](patch_scene &s) { s.prescribed[1] = true; });
     refuses([](patch_scene &s) { s.law = yielding(); });
     refuses([](patch_scene &s) {

@@ -524,33 +524,45 @@ TEST(PatchDerivative, OfAnOffsetSpinIsThatOfLateralCreepageToo) {
   rp_config c = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL, 12);
   c.derivatives = 1;
   c.tolerance = 1e-9;
+  c.spin_offset = RP_SPIN_OFFSET_NONE;
   scenes::handle plain(c);
-  c.spin_offset = RP_SPIN_OFFSET_SIXTH;
-  scenes::handle offset(c);
-  for (const int way : {1, -1}) {
-    rp_input in = scenes::patch_input(8e4, 4e-4, -2e-4, 0.3);
-    in.direction = way;
-    const rp_patch_result r = offset.step(in).side[RP_RIGHT].patch[0];
-    ASSERT_EQ(r.status, RP_CONVERGED);
-    const double shift = way * r.element_size[0] / 6;
-    in.creepage[1] += shift * in.spin_creepage;
-    const rp_patch_result same = plain.step(in).side[RP_RIGHT].patch[0];
-    EXPECT_NEAR(r.creep_force[1], same.creep_force[1], 1e-6 * std::fabs(same.creep_force[1]));
-    const auto rates = [](scenes::handle &h, double lateral, double spin) {
-      rp_input direction = no_direction();
-      direction.creepage[1] = lateral;
-      direction.spin_creepage = spin;
-      rp_result change{};
-      rp_derivative_kind kind;
-      EXPECT_EQ(rp_differentiate(h.get(), &direction, &change, &kind, nullptr), RP_OK);
-      EXPECT_EQ(kind, RP_DERIVATIVE_EXACT);
-      const rp_patch_result &p = change.side[RP_RIGHT].patch[0];
-      return std::array{p.creep_force[0], p.creep_force[1], p.spin_moment, p.friction_power};
-    };
-    const auto found = rates(offset, 0, 1), expected = rates(plain, shift, 1);
-    for (size_t k = 0; k < found.size(); ++k)
-      EXPECT_NEAR(found[k], expected[k], 1e-4 * std::fabs(expected[k])) << k;
-  }
+  const std::pair<rp_spin_offset, double> places[] = {{RP_SPIN_OFFSET_SIXTH, 1.0 / 6},
+                                                      {RP_SPIN_OFFSET_QUARTER, 0.25},
+                                                      {RP_SPIN_OFFSET_AUTOMATIC, 0.25}};
+  for (const auto &[place, share] : places)
+    for (const int way : {1, -1}) {
+      c.spin_offset = place;
+      scenes::handle offset(c);
+      rp_input in = scenes::patch_input(8e4, 4e-4, -2e-4, 0.3);
+      in.direction = way;
+      const rp_patch_result r = offset.step(in).side[RP_RIGHT].patch[0];
+      ASSERT_EQ(r.status, RP_CONVERGED);
+      const double shift = way * r.element_size[0] * share;
+      in.creepage[1] += shift * in.spin_creepage;
+      const rp_patch_result same = plain.step(in).side[RP_RIGHT].patch[0];
+      EXPECT_NEAR(r.creep_force[1], same.creep_force[1], 1e-6 * std::fabs(same.creep_force[1]));
+      const auto rates = [](scenes::handle &h, double lateral, double spin) {
+        rp_input direction = no_direction();
+        direction.creepage[1] = lateral;
+        direction.spin_creepage = spin;
+        rp_result change{};
+        rp_derivative_kind kind;
+        EXPECT_EQ(rp_differentiate(h.get(), &direction, &change, &kind, nullptr), RP_OK);
+        EXPECT_EQ(kind, RP_DERIVATIVE_EXACT);
+        const rp_patch_result &p = change.side[RP_RIGHT].patch[0];
+        return std::array{p.creep_force[0], p.creep_force[1], p.spin_moment, p.friction_power};
+      };
+      const auto found = rates(offset, 0, 1);
+      auto expected = rates(plain, shift, 1);
+      // but friction's power is without it
+      const double speed = in.rolling_speed, spin = in.spin_creepage;
+      EXPECT_NEAR(r.friction_power,
+                  same.friction_power + speed * shift * spin * same.creep_force[1],
+                  1e-6 * same.friction_power);
+      expected[3] += speed * shift * (same.creep_force[1] + spin * expected[1]);
+      for (size_t k = 0; k < found.size(); ++k)
+        EXPECT_NEAR(found[k], expected[k], 1e-4 * std::fabs(expected[k])) << k;
+    }
 }
 
 // Of a prescribed force the wheelset's way is found by the same differences, however it is asked.

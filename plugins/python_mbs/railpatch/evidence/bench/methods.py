@@ -137,13 +137,13 @@ LABELS = {
     "linear": "linear theory",
     "polach": "Polach",
     "table": "table of the full theory",
-    "fastsim": "FASTSIM, parabolic",
+    "fastsim": "FASTSIM, elliptic",
     "fastrip": "FaStrip",
 }
 # of the theory of the same name
 OPTIONS: dict[str, tuple[tuple[str, str, dict[str, str]], ...]] = {
     "fastsim": (
-        ("fastsim_elliptic", "FASTSIM, elliptic", {"traction_bound": "elliptic"}),
+        ("fastsim_parabolic", "FASTSIM, parabolic", {"traction_bound": "parabolic"}),
         ("fastsim_contact", "FASTSIM as in CONTACT", {"flexibility_blending": "contact"}),
     ),
 }
