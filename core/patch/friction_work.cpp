@@ -131,17 +131,22 @@ void tangential_stage::find_friction(const patch_problem &problem, const rolling
     }
 }
 
-// The place of the spin term and steps of parts of an element leave the sum a little off what
-// friction takes: all of that becomes heat.
+// No element gives heat back, not where traction has turned round within the step. That, the place
+// of the spin term and steps of parts of an element leave the sum a little off what friction takes:
+// all of it becomes heat.
 void tangential_stage::find_friction_heat(const patch_problem &problem,
                                           const rolling_input &rolling, const patch_memory &memory,
                                           double taken) {
   find_friction(problem, rolling, memory);
   const grid &g = problem.g;
   const auto count = static_cast<size_t>(g.count());
+  // written so that what is no number stays visible
+  for (size_t i = 0; i < count; ++i)
+    if (shared_.friction[i] < 0) shared_.friction[i] = 0;
   const double sum = total(shared_.friction.data(), count) * g.dx * g.dy;
-  if (!(sum > 0 && taken > 0)) return;
-  for (size_t i = 0; i < count; ++i) shared_.friction[i] *= taken / sum;
+  if (sum == 0) return;
+  const double factor = taken < 0 ? 0.0 : taken / sum;
+  for (size_t i = 0; i < count; ++i) shared_.friction[i] *= factor;
 }
 
 }  // namespace railpatch

@@ -44,8 +44,9 @@ def law(change: float, span: float, start: float = 60.0) -> dict[str, Any]:
 
 def friction_flux(result: railpatch.Result, case: dict[str, Any]) -> np.ndarray:
     """W/m^2, -V s . (p + p_before)/2 of material that moves by an element; where it has just left
-    contact, with the slip of displacements by other code. The sum is the friction power: what the
-    place of the spin term leaves of it goes to the elements by their share."""
+    contact, with the slip of displacements by other code. No element gives heat back, and the sum
+    is the friction power: what that and the place of the spin term leave of it goes to the elements
+    by their share."""
     motion = case["motion"]
     (xi, eta), phi = motion["creepage"], motion.get("spin_creepage", 0.0)
     direction = motion.get("direction", 1)
@@ -63,6 +64,7 @@ def friction_flux(result: railpatch.Result, case: dict[str, Any]) -> np.ndarray:
     beside = np.array([xi - phi * y, eta + phi * (x + 0.25 * direction * dx)]) + change / dx
     slip = np.where(result["pressure"] > 0, result["micro_slip"], beside)
     flux = -0.5 * motion["rolling_speed"] * ((traction + before) * slip).sum(axis=0)
+    flux = np.maximum(flux, 0.0)
     return flux * result["friction_power"] / (flux.sum() * dx * dy)
 
 

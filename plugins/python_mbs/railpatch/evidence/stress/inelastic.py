@@ -171,13 +171,14 @@ def gapless(step: Step) -> Array:
 def heat_flux(step: Step) -> Array:
     """W/m^2, [ny, nx], that friction and the layer's plastic work give to both bodies.
 
-    What the place of the spin term leaves of friction's power goes to the elements by their share.
+    No element gives heat back; what that and the place of the spin term leave of friction's power
+    goes to the elements by their share.
     """
     layer = step.case.layer
-    work = step.friction_work
+    work = np.maximum(step.friction_work, 0.0)
     total = float(work.sum()) * step.area
-    taken = step.patch["friction_power"]
-    flux = work * (taken / total if total > 0 and taken > 0 else 1.0 / step.rolled)
+    taken = max(step.patch["friction_power"], 0.0)
+    flux = work * (taken / total) if total > 0 else work
     if layer is not None and layer.is_plastic:
         speed = step.patch["rolling_speed"]
         plastic = (step["traction"] * plastic_increment(step)).sum(axis=0)
