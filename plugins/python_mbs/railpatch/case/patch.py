@@ -20,6 +20,7 @@ from railpatch.case.common import (
     check_fitted,
     check_physics,
     check_plane,
+    check_spin_offset,
     check_tangential,
     check_unheated,
     couples,
@@ -292,9 +293,8 @@ class PatchCase(Table):
         if self.grid is not None and self.grid.fitted is not None:
             shown = str(self.grid.fitted)
             raise relation("grid.fitted", shown, f"to be left out with regime = '{regime}'")
-        if self.method.spin_offset != "none":
-            shown = repr(self.method.spin_offset)
-            raise relation("method.spin_offset", shown, f"'none' with regime = '{regime}'")
+        if regime == "shift":
+            check_spin_offset(self.method, f"with regime = '{regime}'")
         if self.method.accuracy is not None:
             shown = f"to be left out with regime = '{regime}': give 'grid'"
             raise relation("method.accuracy", self.method.accuracy, shown)
