@@ -32,6 +32,7 @@ import numpy as np
 from pydantic import Field
 from railpatch import Contact, Result
 from railpatch.case import WheelsetCase
+from railpatch.case.common import without_friction
 from railpatch.case.load import Scene, check_case, plain, read_toml, refuse_others
 from railpatch.case.types import SIDES, NotNegative, Number, Table
 from railpatch.errors import CaseError
@@ -121,10 +122,9 @@ class CurveScene:
 
     def frictionless(self, side: str) -> Scene:
         """One wheel without friction, with half the load."""
-        content = self.case.model_dump(exclude={"kind"})
+        content = without_friction(self.case.model_dump())
         content |= {"kind": "wheel_rail", "wheel": {"side": side}}
         content["wheelset"]["vertical_force"] = 0.5 * self.vertical_force
-        content["method"]["tangential"] = "none"
         return Scene(check_case(content), self.folder)
 
 

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 from railpatch.case import WheelsetCase
+from railpatch.case.common import without_friction
 from railpatch.case.load import Scene, check_case, check_table, plain, read_toml, refuse_others
 from railpatch.case.types import Number, Pair, Positive, Table, relation
 from railpatch.case.wheel import PROFILE_KEYS
@@ -160,18 +161,10 @@ class RigScene:
 
     def frictionless(self, side: str) -> Scene:
         """One wheel without friction, with half the load."""
-        content = self.case.model_dump(exclude={"wheelset", "method", "kind"})
-        wheelset = self.case.wheelset.model_dump()
-        method = self.case.method.model_dump()
-        return self._scene(
-            content
-            | {
-                "kind": "wheel_rail",
-                "wheel": {"side": side},
-                "wheelset": wheelset | {"vertical_force": 0.5 * self.vertical_force},
-                "method": method | {"tangential": "none"},
-            }
-        )
+        content = without_friction(self.case.model_dump())
+        content |= {"kind": "wheel_rail", "wheel": {"side": side}}
+        content["wheelset"]["vertical_force"] = 0.5 * self.vertical_force
+        return self._scene(content)
 
     @staticmethod
     def _scene(content: dict[str, Any]) -> Scene:

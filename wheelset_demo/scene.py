@@ -187,7 +187,8 @@ class WheelsetScene(RunScene):
     def at_rest(self) -> Scene:
         """The case with the load prescribed and without friction, for a first estimate."""
         method = self.case.method.model_copy(update={"tangential": "none"})
-        return Scene(self.case.model_copy(update={"method": method}), Path())
+        update = {"method": method, "temperature": None}
+        return Scene(self.case.model_copy(update=update), Path())
 
 
 def load_wheelset_scene(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from railpatch import CaseError, Contact
+from railpatch.case.common import without_friction
 from railpatch.case.types import SIDES
 
 from wheelset_demo.scene import WheelsetScene
@@ -80,12 +81,11 @@ def jacobian(
 def estimate(scene: WheelsetScene) -> Vector:
     """[12], both wheels each with half the load, rolling without creepage on the mean radius."""
     wheelset = scene.case.wheelset
-    content = scene.case.model_dump()
+    content = without_friction(scene.case.model_dump())
     half = content["wheelset"] | {"vertical_force": 0.5 * wheelset.vertical_force}
     sides = {}
     for side in SIDES:
         single = {**content, "kind": "wheel_rail", "wheel": {"side": side}, "wheelset": half}
-        single["method"] = content["method"] | {"tangential": "none"}
         result = Contact(single).step()
         if result.status in BAD or not result["patches"]:
             raise CaseError(

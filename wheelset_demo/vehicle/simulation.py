@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 from railpatch import CaseError, Contact
+from railpatch.case.common import without_friction
 from railpatch.case.types import SIDES
 
 from wheelset_demo.system import BAD, WORKS
@@ -111,10 +112,10 @@ def at_start(scene: VehicleScene, system: VehicleSystem) -> VehicleState:
 
 def wheels_under_load(scene: VehicleScene) -> tuple[float, float]:
     """m: how far a wheelset in the middle is pressed down by the axle load, its rolling radius."""
-    content = scene.case.model_dump()
-    wheelset = content["wheelset"] | {"vertical_force": scene.axle_load, "z": None}
-    method = content["method"] | {"tangential": "none", "derivatives": False}
-    result = Contact({**content, "wheelset": wheelset, "method": method}).step()
+    content = without_friction(scene.case.model_dump())
+    content["wheelset"] |= {"vertical_force": scene.axle_load, "z": None}
+    content["method"]["derivatives"] = False
+    result = Contact(content).step()
     if result.status in BAD or result.status == "no_contact":
         raise CaseError(
             f"vehicle: the axle load is {scene.axle_load:.6g} N, allowed one that the wheels can "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -274,6 +274,16 @@ def check_physics(
             raise relation("layer.plastic_heat_fraction", shown, "only with [temperature]")
     if friction is not None and friction.law == "temperature" and heat is None:
         raise relation("temperature", "missing", "the table [temperature] with this friction law")
+
+
+def without_friction(content: dict[str, Any]) -> dict[str, Any]:
+    """The content of a case for a first estimate: without tangential problem and what belongs to it
+    alone."""
+    return {
+        **content,
+        "method": {**content["method"], "tangential": "none"},
+        "temperature": None,
+    }
 
 
 def check_unheated(heat: Temperature | None) -> None:

@@ -277,7 +277,12 @@ PATCH_FIELDS = Message(
             + ", ".join(f"{code} {name}" for code, name in enumerate(ELEMENT_STATES)),
             size=0,
         ),
-        _number("temperature", "degC", "surface temperature, rows * columns values", size=0),
+        _number(
+            "temperature",
+            "degC",
+            "surface temperature of the wheel, then of the rail; 2 * rows * columns values",
+            size=0,
+        ),
     ),
 )
 

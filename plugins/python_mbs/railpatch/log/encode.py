@@ -24,7 +24,8 @@ from railpatch.log.channels import (
 from railpatch.log.quick import UINT32_MAX, quick
 from railpatch.log.schema import message_class
 
-_VECTOR_FIELDS = ("traction", "micro_slip")
+# of two components: along and across, or of wheel and rail
+_VECTOR_FIELDS = ("traction", "micro_slip", "temperature")
 
 
 def encode(message: Message, values: Mapping[str, Any], topic: str) -> Any:
@@ -50,8 +51,8 @@ def encode_fields(patches: Sequence[Mapping[str, Any]], topic: str) -> Any | Non
     """The snapshot message of one wheel, or None where no patch has fields.
 
     ``patches`` are patch results made with fields: ``x`` and ``y`` of shape (columns,) and (rows,)
-    or (rows, columns), ``pressure``, ``element_division`` and ``temperature`` of shape
-    (rows, columns), ``traction`` and ``micro_slip`` of shape (2, rows, columns). Other keys of a
+    or (rows, columns), ``pressure`` and ``element_division`` of shape (rows, columns),
+    ``traction``, ``micro_slip`` and ``temperature`` of shape (2, rows, columns). Other keys of a
     patch result are not looked at; patches without pressure are left out.
     """
     if isinstance(patches, (str, Mapping)) or not isinstance(patches, Sequence):
