@@ -229,7 +229,7 @@ tangential_result tangential_stage::solve_on_grid(const patch_problem &problem,
                         memory.fields());
   tangential_result t = solve_by_law(problem, rolling, memory, options, found);
   if (shared_.scene.keeps_steps()) close_step(problem, rolling, memory, t, found);
-  if (shared_.scene.heat) find_friction_heat(problem, rolling, memory, t.friction);
+  if (has_physics && shared_.scene.heat) find_friction_heat(problem, rolling, memory, t.friction);
   return t;
 }
 
