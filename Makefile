@@ -109,7 +109,9 @@ test: ## set-up and every check; what each part and the slowest tests took
 				$(MAKE) --no-print-directory build-asan >build/asan.log 2>&1 & beside=$$!; \
 			set +m; \
 		fi; \
-		if [ $$part = test-asan ]; then wait $$beside || true; beside=; fi; \
+		if [ $$part = test-asan ]; then \
+			.ci/part build/junit/parts 'waiting for it' tail --pid=$$beside -f /dev/null; beside=; \
+		fi; \
 		.ci/part build/junit/parts $$part $(MAKE) --no-print-directory $$part; \
 	done
 	@printf '\nall checks passed:\n'
