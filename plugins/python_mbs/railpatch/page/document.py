@@ -29,11 +29,13 @@ table.summary td:first-child { color: var(--soft); white-space: nowrap; padding-
 details { margin: 10px 0; } summary { cursor: pointer; color: var(--soft); }
 pre { background: var(--panel); padding: 12px; overflow-x: auto; font-size: 12.5px; }
 figure { margin: 0; }
-@media (max-width: 600px) { body { padding: 14px 12px 40px; } .modebar { display: none; } }
+@media (max-width: 600px) {
+  body { padding: 14px 12px 40px; } .modebar { display: none !important; }
+}
 @media print {
   :root { --ink: #1d2126; --soft: #5d6672; --line: #d9dde2; --ground: #ffffff; --panel: #f5f7f9;
     --warn: #fff1d6; --warn-ink: #6b4500; }
-  body { max-width: none; padding: 0; } .modebar { display: none; }
+  body { max-width: none; padding: 0; } .modebar { display: none !important; }
   figure, tr { break-inside: avoid; } h2, h3 { break-after: avoid; }
   .scroll, pre { overflow: visible; } pre { white-space: pre-wrap; }
 }
