@@ -36,7 +36,8 @@ figure { margin: 0; }
   :root { --ink: #1d2126; --soft: #5d6672; --line: #d9dde2; --ground: #ffffff; --panel: #f5f7f9;
     --warn: #fff1d6; --warn-ink: #6b4500; }
   body { max-width: none; padding: 0; } .modebar { display: none !important; }
-  figure, tr { break-inside: avoid; } h2, h3, h2 + p, h3 + p, p + p { break-after: avoid; }
+  figure, tr, p { break-inside: avoid; } h2, h3, h2 + p, h3 + p, p + p { break-after: avoid; }
+  body > h2:first-of-type { break-before: page; }
   .scroll, pre { overflow: visible; } pre { white-space: pre-wrap; }
 }
 """

@@ -38,7 +38,33 @@ def styled(figure: go.Figure, height: int) -> go.Figure:
     }
     figure.update_xaxes(**lines)
     figure.update_yaxes(**lines, automargin=True)
+    _titles_above(figure)
     return figure
+
+
+def _titles_above(figure: go.Figure) -> None:
+    """Titles of y axes above their panels, where a panel stands to the left: they need no width."""
+    titled = [axis for axis in figure.select_yaxes() if axis.title.text]
+    inner = [axis for axis in titled if _left(figure, axis) > 0]
+    if not inner:
+        return
+    for axis in titled:
+        figure.add_annotation(
+            text=axis.title.text,
+            x=_left(figure, axis),
+            y=axis.domain[1],
+            xref="paper",
+            yref="paper",
+            xanchor="left",
+            yanchor="bottom",
+            showarrow=False,
+        )
+        axis.title.text = None
+
+
+def _left(figure: go.Figure, axis) -> float:
+    """Where the panel of a y axis begins, from 0 to 1."""
+    return figure.layout[f"xaxis{(axis.anchor or 'x')[1:]}"].domain[0]
 
 
 def plot(figure: go.Figure, name: str) -> str:

@@ -31,7 +31,7 @@ def traction_curves(data: Positions, matches: list[Match]) -> go.Figure:
         horizontal_spacing=0.05,
         subplot_titles=("left wheel", "right wheel"),
     )
-    factor, label = scaled("/wheelset/state", "yaw", "angle of attack (yaw)")
+    factor, label = scaled("/wheelset/state", "yaw", "yaw")
     yaw = factor * data.state["yaw"]
     for column, side in enumerate(SIDES, start=1):
         add = Adder(figure, data, 1, column)
@@ -127,24 +127,27 @@ def patches(data: Positions) -> go.Figure:
 
 
 def contact_work(data: Positions) -> go.Figure:
-    """Wall time and iterations of the contact problems over the run."""
-    figure = make_subplots(1, 2, horizontal_spacing=0.12)
+    """Wall time of the contact problems over the run, and iterations where the log has them."""
+    counts = {
+        (side, kind): data.stats[f"{side}_{kind}_iterations"]
+        for side in SIDES
+        for kind in ("normal", "tangential")
+    }
+    counted = any(np.isfinite(count).any() for count in counts.values())
+    figure = make_subplots(1, 2 if counted else 1, horizontal_spacing=0.12)
     for name, side in (("in all", None), *((f"{side} wheel", side) for side in SIDES)):
         values = data.stats[f"{side}_wall_time" if side else "wall_time"]
         color = COLORS[side] if side else GREY
         Adder(figure, data, 1, 1).line(data.along, values, name, color)
-    for side in SIDES:
-        for kind, dash in (("normal", "dot"), ("tangential", "dash")):
-            Adder(figure, data, 1, 2).line(
-                data.along,
-                data.stats[f"{side}_{kind}_iterations"],
-                f"{side}, {kind}",
-                COLORS[side],
-                dash=dash,
-            )
+    for (side, kind), count in counts.items():
+        if counted:
+            dash = "dot" if kind == "normal" else "dash"
+            name = f"{side}, {kind}"
+            Adder(figure, data, 1, 2).line(data.along, count, name, COLORS[side], dash=dash)
     figure.update_yaxes(rangemode="tozero")
     figure.update_yaxes(title_text="wall time [s]", col=1)
-    figure.update_yaxes(title_text="iterations", col=2)
+    if counted:
+        figure.update_yaxes(title_text="iterations", col=2)
     figure.update_xaxes(title_text=data.along_label)
     return styled(figure, 360)
 

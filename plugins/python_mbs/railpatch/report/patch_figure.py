@@ -13,7 +13,7 @@ from railpatch.log.channels import ELEMENT_STATES
 from railpatch.page.figures import styled
 
 _STATE_COLORS = ("rgba(128,128,128,0.12)", "#3b7dc4", "#e0812b", "#b23a48")
-_ROWS = ("pressure", "traction", "element division")
+_ROWS = ("pressure", "traction", "division")
 _ARROWS = 16  # at most, along each direction
 
 
@@ -32,19 +32,19 @@ def patch_figure(chosen: dict[str, Any]) -> go.Figure:
         _pressure(figure, grid, column, 1e-6 * top)
         _traction(figure, grid, column)
         _division(figure, grid, column)
-    for state, color in zip(ELEMENT_STATES[1:], _STATE_COLORS[1:], strict=True):
+    for number in states_of(chosen)[1:]:
         figure.add_trace(
             go.Scatter(
                 x=[None],
                 y=[None],
                 mode="markers",
-                name=state,
-                marker={"color": color, "symbol": "square", "size": 12},
+                name=ELEMENT_STATES[number],
+                marker={"color": _STATE_COLORS[number], "symbol": "square", "size": 12},
             ),
             row=3,
             col=1,
         )
-    styled(figure, 900)
+    styled(figure, 800)
     figure.update_layout(
         legend={"y": 0.005, "yanchor": "bottom", "x": 0.5, "xanchor": "center"},
         margin={"b": 90, "r": 60},
@@ -61,6 +61,16 @@ def patch_figure(chosen: dict[str, Any]) -> go.Figure:
             )
     figure.update_xaxes(title_text="along rolling [mm]", row=3)
     return figure
+
+
+def states_of(chosen: dict[str, Any]) -> list[int]:
+    """Numbers of the elements' states that a figure of these patches tells apart.
+
+    The third is that of a layer that yields, which few scenes have.
+    """
+    shown = [grid for side in SIDES if (grid := most_loaded(chosen[side]))]
+    yields = any(g["element_division"] is not None and 3 in g["element_division"] for g in shown)
+    return [0, 1, 2, 3] if yields else [0, 1, 2]
 
 
 def most_loaded(patches: list[dict[str, Any]]) -> dict[str, Any] | None:

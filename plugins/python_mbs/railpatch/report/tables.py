@@ -167,7 +167,8 @@ def _course(data: Positions) -> list[Sequence[object]]:
         ("roller_pitch_rate", "roller speed", "rad/s"),
     ):
         values = state[name][np.isfinite(state[name])]
-        if values.size:
+        # a wheelset on rollers stands still
+        if values.size and not (name == "speed" and np.isfinite(state["roller_pitch_rate"]).any()):
             low, high = number(values.min()), number(values.max())
             rows.append((text, f"{low} {unit}" if low == high else f"{low} to {high} {unit}"))
     for side in SIDES:
