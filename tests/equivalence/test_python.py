@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import struct
 import threading
 from pathlib import Path
 from typing import Any
@@ -164,7 +165,10 @@ def test_wrong_states_are_refused_and_change_nothing() -> None:
     damaged = state[:-9] + bytes([state[-9] ^ 1]) + state[-8:]
     expected = contact.step(creepage=[2e-3, 0.0]).to_dict()
     contact.restore(state)
-    for wrong in (b"", b"railpatch1", state[:-1], state[:40], damaged, wheel):
+    # every byte of head and tables counts: 10 of the mark, 8 of the head
+    (size,) = struct.unpack("<I", state[10:14])
+    turned = [state[:i] + bytes([state[i] ^ 1]) + state[i + 1 :] for i in range(18 + size)]
+    for wrong in (b"", b"railpatch2", state[:-1], state[:40], damaged, wheel, None, 5, *turned):
         with pytest.raises(railpatch.CaseError):
             contact.restore(wrong)
     again = contact.step(creepage=[2e-3, 0.0]).to_dict()

@@ -8,6 +8,7 @@ import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+from zlib import crc32
 
 import numpy as np
 
@@ -38,9 +39,10 @@ from railpatch.result import (
     wheel_data,
 )
 
-# saved state: mark, length of the moving tables as JSON, the JSON, the core's state
-MARK = b"railpatch1"
-LENGTH = struct.Struct("<I")
+# saved state: mark, head of the moving tables as JSON, the JSON, the core's state
+MARK = b"railpatch2"
+# length and check sum of the tables
+HEAD = struct.Struct("<II")
 # quantities of each step of shift or transient rolling
 STEP_KEYS = (
     "status",
@@ -170,7 +172,7 @@ class Contact:
         tables = sorted(set(moving_keys(self._case).values()))
         content = {name: getattr(self._case, name).model_dump() for name in tables}
         text = json.dumps(content).encode()
-        return MARK + LENGTH.pack(len(text)) + text + self._core.save()
+        return MARK + HEAD.pack(len(text), crc32(text)) + text + self._core.save()
 
     def restore(self, state: bytes) -> None:
         """Brings back a saved state of a contact of the same case; the next step gives the same
@@ -181,7 +183,7 @@ class Contact:
                 name: check_table(type(getattr(self._case, name)), content, name)
                 for name, content in tables.items()
             }
-        except (ValueError, AttributeError, struct.error):
+        except (ValueError, TypeError, AttributeError, struct.error):
             raise CaseError("state: value is no state of this case, allowed: save()") from None
         self._core.restore(core_state)
         self._last = None
@@ -224,12 +226,15 @@ class Contact:
 
 
 def split_state(state: bytes) -> tuple[dict[str, Any], bytes]:
-    """Moving tables and the core's state. Raises ValueError, struct.error."""
-    start = len(MARK) + LENGTH.size
+    """Moving tables and the core's state. Raises ValueError, TypeError, struct.error."""
+    start = len(MARK) + HEAD.size
     if state[: len(MARK)] != MARK:
         raise ValueError("no mark")
-    (size,) = LENGTH.unpack(state[len(MARK) : start])
-    tables = json.loads(state[start : start + size])
+    size, check = HEAD.unpack(state[len(MARK) : start])
+    text = state[start : start + size]
+    if crc32(text) != check:
+        raise ValueError("damaged")
+    tables = json.loads(text)
     if not isinstance(tables, dict):
         raise ValueError("no tables")
     return tables, state[start + size :]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -27,6 +28,9 @@ KINDS: dict[str, type[PatchCase] | type[WheelRailCase] | type[WheelsetCase]] = {
     "wheel_rail": WheelRailCase,
     "wheelset": WheelsetCase,
 }
+# bytes of a file and tables or arrays in each other, far above what any scene has
+LARGEST = 64_000_000
+DEEPEST = 32
 # tables that a contact case has not, by which files of other commands are known
 OTHERS = {"vehicle": "vehicle", "rig": "rig", "curve": "curve", "body": "wheelset"}
 
@@ -47,6 +51,10 @@ def load_scene(source: Mapping[str, Any] | str | Path, folder: str | Path | None
     """
     if isinstance(source, Mapping):
         content, home = dict(source), Path(folder or ".")
+    elif not isinstance(source, str | PathLike):
+        raise CaseError(
+            f"case: value is {show(source)}, allowed a dictionary or the path of a TOML file"
+        )
     else:
         path = Path(source)
         content, home = read_toml(path), Path(folder or path.parent)
@@ -68,13 +76,30 @@ def refuse_others(content: Mapping[str, Any], command: str | None = None) -> Non
 def read_toml(path: Path) -> dict[str, Any]:
     """The content of a TOML file."""
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        size = path.stat().st_size
+        if size > LARGEST:
+            raise CaseError(f"{path}: has {size} bytes, allowed at most {LARGEST}")
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+        if depth(content) > DEEPEST:
+            raise RecursionError
     except OSError as error:
         raise CaseError(f"{path}: cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
         raise CaseError(f"{path}: is not a text file in UTF-8") from None
     except tomllib.TOMLDecodeError as error:
         raise CaseError(f"{path}: is not TOML: {error}") from None
+    except RecursionError:
+        raise CaseError(f"{path}: is nested too deeply, allowed {DEEPEST} levels") from None
+    return content
+
+
+def depth(content: Any) -> int:
+    """How many tables and arrays lie in each other at most; counted without recursion."""
+    level, found = [content], 0
+    while level := [v for v in level if isinstance(v, dict | list)]:
+        found += 1
+        level = [v for part in level for v in (part.values() if isinstance(part, dict) else part)]
+    return found
 
 
 def plain(value: Any) -> Any:

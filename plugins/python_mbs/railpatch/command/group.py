@@ -202,6 +202,13 @@ class Commands(click.Group):
             raise WrongCall(str(error)) from None
         except MemoryError as error:
             raise WrongCall(f"grid: {error or 'out of memory'}, allowed what fits") from None
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            # files that are named are refused where they are opened
+            if error.filename is not None:
+                raise wrong_call(error) from None
+            raise WrongCall(f"output: cannot be written: {error.strerror or error}") from None
 
     @staticmethod
     def _outside() -> dict[str, EntryPoint]:

@@ -11,6 +11,7 @@ from typing import Any
 from railpatch.command.group import WrongCall
 
 Name = str | os.PathLike[str] | None
+PAGE = (".html", ".htm", "")
 READ = {".toml": "the scene", ".mcap": "the log"}
 
 
@@ -27,6 +28,13 @@ def check_output(output: Path | None, *inputs: Name) -> None:
     except OSError as error:
         reason = error.strerror or error
         raise refusal(output, f"a file that can be written: {reason}") from None
+
+
+def check_page(output: Path, *inputs: Name) -> None:
+    """As check_output, and the name is none of another format. Raises WrongCall."""
+    if output.suffix.lower() not in PAGE and not output.is_char_device():
+        raise refusal(output, f"a name that ends in {' or '.join(filter(None, PAGE))}")
+    check_output(output, *inputs)
 
 
 def refuse_same(output: Path | None, *inputs: Name) -> None:

@@ -11,6 +11,7 @@ import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib import resources
+from io import BytesIO
 from pathlib import Path
 from typing import Literal
 
@@ -29,6 +30,7 @@ from railpatch.fmu.scene import kind_of, scene_text, variables_of
 from railpatch.fmu.sources import build_description, with_source_files
 from railpatch.fmu.table import Kind, Table, Variable
 from railpatch.result import GOOD
+from railpatch.writing import write_whole
 
 Backend = Literal["eigen", "fftw"]
 # "exact": where the core has them without further solves
@@ -103,17 +105,14 @@ def pack_fmu(
     contents = contents_of(scene, output.stem, name, backend, options, libraries)
     guid = guid_of(contents)
     files = files_of(contents, guid)
-    temporary = output.with_name(f".{output.name}.{os.getpid()}")
+    packed = BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for path, content in sorted(files.items()):
+            archive.writestr(entry(path), content)
     try:
-        with zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
-            for path, content in sorted(files.items()):
-                archive.writestr(entry(path), content)
-        temporary.replace(output)
+        return write_whole(output, packed.getvalue())
     except OSError as error:
         raise CaseError(f"{output}: cannot be written: {error.strerror or error}") from None
-    finally:
-        temporary.unlink(missing_ok=True)
-    return output
 
 
 def contents_of(

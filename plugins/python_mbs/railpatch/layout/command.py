@@ -9,6 +9,7 @@ import click
 from railpatch.command.group import output_option, quiet_flag, wrong_call
 from railpatch.command.output import check_output
 from railpatch.layout.plots import KINDS
+from railpatch.writing import write_whole
 
 
 @click.command("layout")
@@ -42,7 +43,7 @@ def layout(run: Path | None, output: Path, kind: str, wheelsets: int, quiet: boo
             log = read_run(run)
             about, topics = log.metadata["railpatch"], log.counts
             kind, wheelsets = kind_of(about, topics)
-        output.write_text(layout_text(kind, wheelsets, topics), encoding="utf-8")
+        write_whole(output, layout_text(kind, wheelsets, topics).encode())
     except (RunFileError, ValueError, OSError) as error:
         raise wrong_call(error) from None
     if not quiet:

@@ -7,7 +7,7 @@ wheel_left and wheel_right, which turn about the axle; track holds roller_left a
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -140,10 +140,15 @@ def contacts(
         )
         for (name, place), values in wheels.items()
         for index, patch in enumerate(values.get("patches") or ())
-        if patch.get("position") is not None
+        if _is_known(patch.get("position"))
     ]
     # a patch of the moment before may be gone
     return SceneUpdate(deletions=[{"type": 1, "timestamp": stamp}], entities=entities)
+
+
+def _is_known(position: Sequence[float | None] | None) -> bool:
+    """A patch that was not solved has no position, or one of unknown numbers."""
+    return position is not None and all(v is not None and math.isfinite(v) for v in position)
 
 
 def _patch(patch: Mapping[str, Any], scale: float) -> dict[str, Any]:

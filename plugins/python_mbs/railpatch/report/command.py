@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from railpatch.command.group import quiet_flag, wrong_call
-from railpatch.command.output import check_output
+from railpatch.command.output import check_page
 
 
 @click.command("report")
@@ -41,7 +41,7 @@ def report(run: str, output: str, at: float | None, reference: str | None, quiet
 
     The page needs no network. A log that was cut off is reported up to its end.
     """
-    check_output(Path(output), run)
+    check_page(Path(output), run)
     # plotly takes a while to import; other commands need not wait for it
     from railpatch.report import write_report
 

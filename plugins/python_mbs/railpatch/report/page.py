@@ -16,10 +16,11 @@ from railpatch.page.figures import plot
 from railpatch.page.tables import number, table, whole
 from railpatch.report import balance_figures, figures, reference, tables
 from railpatch.report.data import Positions, positions, snapshot
-from railpatch.report.patch_figure import most_loaded, patch_figure
+from railpatch.report.patch_figure import most_loaded, patch_figure, states_of
 from railpatch.report.vehicle import page as vehicle_page
 from railpatch.report.vehicle.data import vehicle_run
 from railpatch.report.warnings import warnings
+from railpatch.writing import write_whole
 
 
 def write_report(
@@ -45,9 +46,7 @@ def write_report(
         data = positions(run)
         body = "".join([_head(data), *_sections(data, reference_dir, at)])
     page = document(run.metadata["railpatch"].get("scene", "run"), body + _ending(run))
-    output = Path(output)
-    output.write_text(page, encoding="utf-8")
-    return output
+    return write_whole(output, page.encode())
 
 
 def _head(data: Positions) -> str:
@@ -66,7 +65,8 @@ def _sections(
     body = data.counterpart
     parts = [
         f"<h2>Traction curves</h2><p>Lateral over vertical force, in track axes: the same ratio "
-        f"for wheel and {body}. Negative where the {body} pushes the wheel to the right.</p>"
+        f"for wheel and {body}. Negative where the {body} pushes the wheel to the right. "
+        f"Yaw is the angle of attack.</p>"
         f"{remark}",
         plot(figures.traction_curves(data, matches), "traction"),
         f"<h2>Forces on the {body}</h2><p>In track axes: x forward, y right, z down. The log holds "
@@ -167,7 +167,7 @@ def _patch_section(data: Positions, at: float | None) -> list[str]:
     yaw = number(1e3 * data.state["yaw"][index])
     where = f"Position {index}, {data.along_label} {number(data.along[index])}, yaw {yaw} mrad"
     lines = [_patch_line(data, side, chosen) for side in SIDES]
-    states = ", ".join(ELEMENT_STATES[1:])
+    states = ", ".join(ELEMENT_STATES[number] for number in states_of(chosen)[1:])
     return [
         f"<h2>One patch of each wheel</h2><p>{escape(where)}. {escape(' '.join(lines))} Arrows: "
         f"traction on the wheel. Elements in contact are in one of the states {states}. Rolling is "

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 from pathlib import Path
 
@@ -11,6 +10,7 @@ import click
 from railpatch.command.group import output_option, progress_bar, quiet_flag
 from railpatch.command.output import check_output
 from railpatch.errors import CaseError
+from railpatch.writing import write_whole
 
 
 @click.command()
@@ -36,9 +36,7 @@ def table(output: Path, jobs: int, keep: bool, quiet: bool) -> None:
     try:
         with progress_bar("table", part_count(recipe), quiet) as step:
             data = make_table(recipe, parts, jobs, step)
-        temporary = output.with_name(f".{output.name}.{os.getpid()}")
-        temporary.write_bytes(data)
-        temporary.replace(output)
+        write_whole(output, data)
     except OSError as error:
         raise CaseError(f"{output}: cannot be written: {error.strerror or error}") from None
     if not keep:

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from railpatch.command.group import WrongCall, output_option, quiet_flag, wrong_call
-from railpatch.command.output import check_output
+from railpatch.command.output import check_page
 from railpatch.profiles.pairing.contact_points import Dimensions
 
 
@@ -53,7 +53,7 @@ def profile(
     """
     if rail is not None and wheel is not None:
         raise WrongCall("--rail, --wheel: both given, allowed one: the profile's partner")
-    check_output(output, source, rail, wheel)
+    check_page(output, source, rail, wheel)
     # plotly takes a while to import; other commands need not wait for it
     from railpatch.profiles.pairing.page import write_profile_page
 

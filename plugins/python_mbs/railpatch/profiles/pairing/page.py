@@ -15,6 +15,7 @@ from railpatch.profiles.pairing import figures
 from railpatch.profiles.pairing.contact_points import ContactPoints, Dimensions, contact_points
 from railpatch.profiles.raw import Role
 from railpatch.profiles.shape import CORNER_RADIUS, CURVATURE_STEP, Shape, shape_of
+from railpatch.writing import write_whole
 
 PARTNERS: dict[Role, str] = {"wheel": "UIC60@1:40", "rail": "S1002"}
 # built-in names that are one or the other, and those that are either
@@ -54,9 +55,7 @@ def write_profile_page(
             *pair_section(points, str(pair[0]), str(pair[1])),
         ]
     )
-    output = Path(output)
-    output.write_text(document(Path(source).name, body), encoding="utf-8")
-    return output
+    return write_whole(output, document(Path(source).name, body).encode())
 
 
 def role_of(source: str | Path) -> Role:
