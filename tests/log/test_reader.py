@@ -53,9 +53,17 @@ def test_absent_vectors_are_rows_of_nan(tmp_path):
 
 
 def test_unknown_names(run):
-    assert len(run["/no/such"]) == 0
+    with pytest.raises(KeyError, match=r"no channel '/no/such'; this log has .*/wheelset/state"):
+        run["/no/such"]
+    assert len(run["/vehicle/state"]) == 0
     with pytest.raises(KeyError, match="no field 'yaww'"):
         run["/wheelset/state"]["yaww"]
+
+
+def test_a_run_shows_itself_in_a_line(run):
+    messages = sum(len(series) for series in run.channels.values())
+    shown = f"Run({str(run.path)!r}: {len(run.channels)} channels, {messages} messages)"
+    assert repr(run) == shown
 
 
 def test_no_contact_is_a_result(tmp_path):

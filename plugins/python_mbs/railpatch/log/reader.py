@@ -23,6 +23,7 @@ from mcap_protobuf.decoder import DecoderFactory
 from zstandard import ZstdError
 
 from railpatch.log.channels import WELL_KNOWN
+from railpatch.log.channels import channel as known_channel
 
 # what a file that ends within a record can make the mcap library raise
 _CUT_OFF = (
@@ -106,7 +107,20 @@ class Run:
         return self.metadata.get("railpatch.end", {}).get("stopped_by", "")
 
     def __getitem__(self, topic: str) -> Series:
+        """The channel's series, empty where the run did not write it; KeyError where no run does,
+        which names those that this one wrote."""
+        if topic not in self.channels:
+            try:
+                known_channel(topic)
+            except KeyError:
+                wrote = ", ".join(sorted(self.channels)) or "none"
+                raise KeyError(f"no channel {topic!r}; this log has {wrote}") from None
         return self.channels.get(topic) or Series()
+
+    def __repr__(self) -> str:
+        messages = sum(map(len, self.channels.values()))
+        cut = ", truncated" if self.truncated else ""
+        return f"Run({str(self.path)!r}: {len(self.channels)} channels, {messages} messages{cut})"
 
 
 def read_run(path: str | PathLike[str]) -> Run:
