@@ -14,6 +14,7 @@ from railpatch.command.group import (
     json_option,
     quiet_flag,
     version_option,
+    wrong_call,
 )
 
 CASE = click.Path(path_type=Path)
@@ -95,13 +96,47 @@ def explain(context: click.Context, case: Path, quiet: bool) -> None:
 
 
 @cli.command()
+@click.option(
+    "--kind",
+    metavar="KIND",
+    help="Of such scenes only: patch, wheel_rail, wheelset, rig, curve, wheelset_run, vehicle.",
+)
 @QUIET
-def schema(quiet: bool) -> None:
-    """Print the JSON schema of case files: every key with unit, range and default."""
-    from railpatch.case import json_schema
+def schema(kind: str | None, quiet: bool) -> None:
+    """Print the JSON schema of case files: every key with unit, range and default.
 
+    Without --kind that of the cases of one contact: patch, wheel_rail, wheelset.
+    """
+    from railpatch.case import json_schema
+    from railpatch.case.kinds import kind_of
+
+    content = json_schema() if kind is None else kind_of(kind).schema()
     if not quiet:
-        click.echo(json.dumps(json_schema(), indent=2))
+        click.echo(json.dumps(content, indent=2))
+
+
+@cli.command()
+@click.argument("kind", metavar="KIND")
+@click.argument("folder", metavar="DIR", type=click.Path(file_okay=False, path_type=Path))
+@QUIET
+def init(kind: str, folder: Path, quiet: bool) -> None:
+    """Write a scene to start from into a folder, with all its files.
+
+    KIND: patch, wheel_rail, wheelset, rig, curve, wheelset_run or vehicle. Beside the scene stand
+    the profiles that it names and its JSON schema, by which editors check it. Files that are there
+    are never replaced.
+    """
+    from railpatch.case.kinds import kind_of, write_example
+
+    found = kind_of(kind)
+    try:
+        written = write_example(found, folder)
+    except OSError as error:
+        raise wrong_call(error) from None
+    if not quiet:
+        for path in written:
+            click.echo(path)
+        click.echo(f"next: {found.command.replace('SCENE', str(written[0]))}")
 
 
 def main() -> None:

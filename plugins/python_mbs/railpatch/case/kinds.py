@@ -1,0 +1,104 @@
+"""The kinds of scene files: what their tables are, an example of each, the command that takes it.
+
+Packages that run contacts add kinds of their own by entry points of the group "railpatch.kinds",
+each the name of a function that gives a SceneKind.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from importlib.metadata import entry_points
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, create_model
+
+from railpatch.case.load import KINDS, read_toml
+from railpatch.errors import CaseError
+from railpatch.writing import write_whole
+
+ENTRY_POINT_GROUP = "railpatch.kinds"
+
+
+@dataclass(frozen=True)
+class SceneKind:
+    """One kind of scene file.
+
+    model: its tables. scene: an example, with the files that it names beside it. command: what
+    takes such a file, with SCENE for its name.
+    """
+
+    name: str
+    model: type[BaseModel]
+    scene: Path
+    command: str
+
+    def schema(self) -> dict[str, Any]:
+        """The JSON schema of such files."""
+        from railpatch import __version__
+
+        return {
+            "$schema": "https://json-schema.org/draft/2020-12/schema",
+            "$id": f"urn:railpatch:{__version__}:{self.name}",
+            **self.model.model_json_schema(),
+            "title": f"Railpatch scene: {self.name}",
+        }
+
+    def files(self) -> list[Path]:
+        """The profile files that the example names."""
+        named = read_toml(self.scene).get("profiles", {}).values()
+        places = [self.scene.parent / name for name in named if isinstance(name, str)]
+        return sorted({place for place in places if place.is_file()})
+
+
+def with_tables(
+    case: type[BaseModel], tables: Mapping[str, Any], *optional: str
+) -> type[BaseModel]:
+    """A case's model with tables of a run beside its own. optional: those that may be left out."""
+    fields: dict[str, Any] = {
+        name: (table | None, None) if name in optional else (table, ...)
+        for name, table in tables.items()
+    }
+    return create_model(f"Run{case.__name__}", __base__=case, **fields)
+
+
+@cache
+def kinds() -> dict[str, SceneKind]:
+    """All kinds by name: those of one contact first."""
+    examples = {"patch": "patch", "wheel_rail": "wheel", "wheelset": "wheelset_rail"}
+    folder = Path(str(resources.files("railpatch.fmu"))) / "kinds"
+    found = {
+        name: SceneKind(name, KINDS[name], folder / f"{file}.toml", "railpatch solve SCENE")
+        for name, file in examples.items()
+    }
+    entries = sorted(entry_points(group=ENTRY_POINT_GROUP), key=lambda entry: entry.name)
+    return found | {entry.name: entry.load()() for entry in entries}
+
+
+def kind_of(name: str) -> SceneKind:
+    """The kind of that name. Raises CaseError."""
+    if name not in kinds():
+        raise CaseError(f"kind: value is {name!r}, allowed {', '.join(kinds())}")
+    return kinds()[name]
+
+
+def write_example(kind: SceneKind, folder: Path) -> list[Path]:
+    """Writes the example into a folder; returns what was written, the scene first.
+
+    Raises CaseError where one of the files is there already, then nothing is written; OSError.
+    """
+    schema = f"{kind.name}.schema.json"
+    contents = {
+        f"{kind.name}.toml": f"#:schema {schema}\n".encode() + kind.scene.read_bytes(),
+        schema: (json.dumps(kind.schema(), indent=2) + "\n").encode(),
+        **{file.name: file.read_bytes() for file in kind.files()},
+    }
+    there = [name for name in contents if (folder / name).exists()]
+    if there:
+        raise CaseError(f"{folder}: has {', '.join(there)}, allowed a folder without")
+    folder.mkdir(parents=True, exist_ok=True)
+    return [write_whole(folder / name, content) for name, content in contents.items()]
