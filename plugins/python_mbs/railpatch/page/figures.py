@@ -64,7 +64,8 @@ def _titles_above(figure: go.Figure) -> None:
 
 def _left(figure: go.Figure, axis) -> float:
     """Where the panel of a y axis begins, from 0 to 1."""
-    return figure.layout[f"xaxis{(axis.anchor or 'x')[1:]}"].domain[0]
+    domain = figure.layout[f"xaxis{(axis.anchor or 'x')[1:]}"].domain
+    return domain[0] if domain else 0.0
 
 
 def plot(figure: go.Figure, name: str) -> str:
