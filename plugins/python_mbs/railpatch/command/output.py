@@ -32,9 +32,9 @@ def check_output(output: Path | None, *inputs: Name) -> None:
 
 def check_page(output: Path, *inputs: Name) -> None:
     """As check_output, and the name is none of another format. Raises WrongCall."""
+    check_output(output, *inputs)
     if output.suffix.lower() not in PAGE and not output.is_char_device():
         raise refusal(output, f"a name that ends in {' or '.join(filter(None, PAGE))}")
-    check_output(output, *inputs)
 
 
 def refuse_same(output: Path | None, *inputs: Name) -> None:
