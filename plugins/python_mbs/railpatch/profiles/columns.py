@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from railpatch.errors import ProfileError
-from railpatch.profiles.raw import RawProfile, Role
+from railpatch.profiles.orientation import check_columns
+from railpatch.profiles.raw import METRES, RawProfile, Reading, Role
 
 COMMENT = ("!", "#", "%", "//")
 # a profile is some 0.1 m wide: a larger spread than this of the first column means mm
@@ -31,8 +32,30 @@ def parse_numbers(path: Path, line: int, text: str, least: int = 2) -> list[floa
     return values
 
 
-def read_columns(path: Path, text: str, role: Role | None) -> RawProfile:
+def with_points(path: Path, text: str) -> tuple[str, str]:
+    """The text with decimal points, and a note where it had decimal commas.
+
+    A comma between digits is a decimal one where something else separates the numbers. Raises
+    ProfileError where commas may be either.
+    """
+    if not re.search(r"\d,\d", text):
+        return text, ""
+    rows = [row for row in text.splitlines() if re.search(r"\d,\d", row)]
+    apart = [len(re.split(r"[;\t]|(?<=\d) +(?=[-+\d])", row.strip().rstrip(";"))) for row in rows]
+    if min(apart) >= 2:
+        return re.sub(r"(?<=\d),(?=\d)", ".", text), "decimal commas"
+    if any(row.count(",") > 2 and "." not in row for row in rows):
+        raise ProfileError(
+            path,
+            f"has commas that may be decimal ones or stand between numbers: {rows[0][:60]!r}; "
+            "allowed decimal points, or ';' between numbers",
+        )
+    return text, ""
+
+
+def read_columns(path: Path, text: str, role: Role | None, reading: Reading) -> RawProfile:
     """Columns y, z and an optional weight; mm or m, told by the width; one line of titles."""
+    text, commas = with_points(path, text)
     if role is None:
         raise ProfileError(path, "say whether this is a 'wheel' or a 'rail' profile")
     points: list[list[float]] = []
@@ -49,7 +72,10 @@ def read_columns(path: Path, text: str, role: Role | None) -> RawProfile:
         lines.append(number)
     if not points:
         raise ProfileError(path, "holds no points")
-    return from_points(path, points, lines, role, measured=False)
+    raw = from_points(path, points, lines, role, measured=False, reading=reading)
+    if commas:
+        raw.notes.insert(0, commas)
+    return raw
 
 
 def from_points(
@@ -59,11 +85,18 @@ def from_points(
     role: Role,
     *,
     measured: bool,
+    reading: Reading,
     unit: float | None = None,
 ) -> RawProfile:
     """Builds a RawProfile of [y, z, weight] rows; unit: m per unit of length, None: detected."""
     array = np.array(points, dtype=float)
     notes: list[str] = []
+    if len(points) >= 5 and check_columns(path, array, reading.swap):
+        array[:, :2] = array[:, 1::-1]
+        notes.append("columns taken as z, y")
+    if reading.unit is not None:
+        unit = METRES[reading.unit]
+        notes.append(f"unit of length {reading.unit} as asked")
     if unit is None:
         in_mm = np.ptp(array[:, 0]) > METRE_WIDTH
         unit = 1e-3 if in_mm else 1.0

@@ -7,12 +7,12 @@ from pathlib import Path
 
 from railpatch.errors import ProfileError
 from railpatch.profiles.columns import from_points, parse_numbers
-from railpatch.profiles.raw import RawProfile, Role
+from railpatch.profiles.raw import RawProfile, Reading, Role
 
 HEADER = re.compile(r"\s*([A-Za-z][\w.]*)\s*=(.*)")
 
 
-def read_miniprof(path: Path, text: str, role: Role | None) -> RawProfile:
+def read_miniprof(path: Path, text: str, role: Role | None, reading: Reading) -> RawProfile:
     """Reads the columns X and Y named by ColumnDef (Y is the height); XYPoints must agree.
 
     Xoffset and Yoffset of the header describe the instrument and are not added.
@@ -32,7 +32,7 @@ def read_miniprof(path: Path, text: str, role: Role | None) -> RawProfile:
     if not points:
         raise ProfileError(path, "holds no points")
     check_count(path, header, len(points))
-    return from_points(path, points, lines, role, measured=True, unit=1e-3)
+    return from_points(path, points, lines, role, measured=True, reading=reading, unit=1e-3)
 
 
 def split_header(path: Path, text: str) -> tuple[dict[str, str], list[tuple[int, str]]]:

@@ -1,4 +1,4 @@
-"""Points of a profile as read from a file, brought to metres and right-hand orientation."""
+"""Points of a profile as read from a file, and what the file does not say of them itself."""
 
 from __future__ import annotations
 
@@ -11,14 +11,29 @@ from numpy.typing import NDArray
 from railpatch.errors import ProfileError
 
 Role = Literal["wheel", "rail"]
+Unit = Literal["m", "mm", "in"]
+Mirror = Literal["none", "y", "z", "yz"]
 Array = NDArray[np.float64]
 
+METRES: dict[Unit, float] = {"m": 1.0, "mm": 1e-3, "in": 0.0254}
 # m, a wheel or rail profile narrower or wider than this is a mistake in the units
 WIDTH_RANGE = (0.01, 0.5)
-# z is taken as pointing down unless the deviations from the median are this much larger upwards
-UP_RATIO = 1.5
-# m, a wheel's flange is recognised when it stands out of the tread by more than this
-FLANGE_HEIGHT = 0.01
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a file does not say of itself. None: found by rules, and asked for where they are not
+    certain.
+
+    unit: of length in the file. swap: the columns are z, y in place of y, z. mirror: the axes that
+    point the other way in the file than from the flange or gauge side to the field side, and down.
+    origin: [y, z], m, of the profile's origin in the file's axes, after swap and mirror.
+    """
+
+    unit: Unit | None = None
+    swap: bool | None = None
+    mirror: Mirror | None = None
+    origin: tuple[float, float] | None = None
 
 
 @dataclass
@@ -32,7 +47,7 @@ class RawProfile:
     weight: Array  # -, [n], weight of each point in the smoothing
     line: NDArray[np.int64]  # [n], line number of each point in the file
     measured: bool  # a measurement with noise (True) or designed points (False)
-    notes: list[str] = field(default_factory=list)  # what the reader changed
+    notes: list[str] = field(default_factory=list)  # what was assumed and changed
 
 
 def check_points(raw: RawProfile) -> None:
@@ -51,25 +66,6 @@ def check_points(raw: RawProfile) -> None:
     if not WIDTH_RANGE[0] <= width <= WIDTH_RANGE[1]:
         raise ProfileError(
             raw.source,
-            f"is {width:.6g} m wide, allowed {WIDTH_RANGE[0]} ... {WIDTH_RANGE[1]} m: "
-            "wrong unit of length?",
+            f"is {width:.6g} m wide, allowed {WIDTH_RANGE[0]} ... {WIDTH_RANGE[1]} m: wrong unit "
+            f"of length? unit may be {', '.join(METRES)}",
         )
-
-
-def orient(raw: RawProfile) -> None:
-    """Turns the points to z down, flange at -y, first point on the flange or gauge side."""
-    median = np.median(raw.z)
-    down, up = raw.z.max() - median, median - raw.z.min()
-    # flange of a wheel and sides of a rail both lie below the running surface
-    if up > UP_RATIO * down:
-        raw.z = -raw.z
-        raw.notes.append("z pointed up: mirrored")
-        down = up
-    if raw.role == "wheel" and down > FLANGE_HEIGHT:
-        flange = raw.y[np.argmax(raw.z)]
-        if flange > 0.5 * (raw.y.max() + raw.y.min()):
-            raw.y = -raw.y
-            raw.notes.append("flange lay at +y: mirrored")
-    if raw.y[0] > raw.y[-1]:
-        for name in ("y", "z", "weight", "line"):
-            setattr(raw, name, getattr(raw, name)[::-1].copy())

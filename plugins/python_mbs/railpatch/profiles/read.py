@@ -8,7 +8,8 @@ from pathlib import Path
 from railpatch.errors import ProfileError
 from railpatch.profiles.columns import read_columns
 from railpatch.profiles.miniprof import read_miniprof
-from railpatch.profiles.raw import RawProfile, Role, check_points, orient
+from railpatch.profiles.orientation import orient
+from railpatch.profiles.raw import RawProfile, Reading, Role, check_points
 from railpatch.profiles.simpack import read_simpack
 
 # extension -> what the file is said to be
@@ -17,25 +18,28 @@ SIMPACK_EXTENSIONS = (".prr", ".prw")
 MAX_BYTES = 20_000_000
 
 
-def read_profile(path: str | Path, role: Role | None = None) -> RawProfile:
+def read_profile(
+    path: str | Path, role: Role | None = None, reading: Reading | None = None
+) -> RawProfile:
     """Reads SIMPACK (.prr, .prw), MiniProf (.ban, .whl) or two plain columns.
 
-    role: "wheel" or "rail"; may be left out where extension or header tell.
+    role: "wheel" or "rail"; may be left out where extension or header tell. reading: what the file
+    does not say of itself.
     Returns points in metres, right-hand orientation, z down. Raises ProfileError.
     """
-    path = Path(path)
+    path, reading = Path(path), reading or Reading()
     text = read_text(path)
     role = agreed_role(path, role)
     if re.search(r"^\s*(header|spline|point)\.begin", text, re.MULTILINE):
-        raw = read_simpack(path, text, role)
+        raw = read_simpack(path, text, role, reading)
     elif path.suffix.lower() in SIMPACK_EXTENSIONS:
         raise ProfileError(path, "is no SIMPACK profile: 'point.begin' is missing")
     elif re.search(r"^\s*[A-Za-z]\w*\s*=", text, re.MULTILINE):
-        raw = read_miniprof(path, text, role)
+        raw = read_miniprof(path, text, role, reading)
     else:
-        raw = read_columns(path, text, role)
+        raw = read_columns(path, text, role, reading)
     check_points(raw)
-    orient(raw)
+    orient(raw, reading)
     return raw
 
 

@@ -14,13 +14,13 @@ import numpy as np
 from railpatch.errors import ProfileError
 from railpatch.profiles.columns import from_points, parse_numbers
 from railpatch.profiles.elementary import cos, hypot, sin
-from railpatch.profiles.raw import RawProfile, Role
+from railpatch.profiles.raw import RawProfile, Reading, Role
 
 ROLE_OF_TYPE: dict[int, Role] = {0: "rail", 1: "wheel"}
 KEY = re.compile(r"([\w.]+)\s*=\s*(.*)")
 
 
-def read_simpack(path: Path, text: str, role: Role | None) -> RawProfile:
+def read_simpack(path: Path, text: str, role: Role | None, reading: Reading) -> RawProfile:
     """Reads header keys and points of a SIMPACK profile."""
     keys, points, lines = split_blocks(path, text)
     if not points:
@@ -38,6 +38,7 @@ def read_simpack(path: Path, text: str, role: Role | None) -> RawProfile:
         [line for line, keep in zip(lines, kept, strict=True) if keep],
         role,
         measured=False,
+        reading=reading,
         unit=unit,
     )
     if number(path, keys, "spline.inversion", 0.0):

@@ -1,0 +1,64 @@
+"""How noisy the points of a profile are, and how far they are to be smoothed for it.
+
+Across a piece that is smooth over five points each of them lies where the four others say; what it
+is off by is noise. A smoothing spline that keeps half the amplitude at the wave length L leaves of
+noise s at points d apart a curvature whose standard deviation is
+
+    s_k = s sqrt(d I / 2 pi) (2 pi / L)^2.5,  I = integral of u^4 / (1 + u^4)^2 = 0.5554
+
+(its transfer function 1 / (1 + (L / wave length)^4) on white noise of the spectrum s^2 d). The
+curvatures of wheel and rail tell the pressure, so s_k is what is bounded.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from railpatch.profiles.elementary import hypot
+
+Array = NDArray[np.float64]
+
+# integral of u^4 / (1 + u^4)^2 over the whole line: pi sqrt(2) / 8
+INTEGRAL = 0.5553603672697958
+# 1/m, standard deviation of the curvature that noise may leave: a head's crown has 3.3
+ROUGHNESS = 1.0
+# the standard deviation over the median of the deviations of normal noise
+NORMAL = 1.4826022185056018
+
+
+def noise_of(y: Array, z: Array, s: Array) -> float:
+    """m, standard deviation of the points across the profile; 0 for fewer than nine points."""
+    if y.size < 9:
+        return 0.0
+    weights, gain = five_point_weights(s)
+    parts = []
+    for values in (y, z):
+        windows = np.lib.stride_tricks.sliding_window_view(values, 5)
+        parts.append((windows * weights).sum(axis=1))
+    ty, tz = y[4:] - y[:-4], z[4:] - z[:-4]
+    across = (parts[1] * ty - parts[0] * tz) / hypot(ty, tz)
+    return float(NORMAL * np.median(np.abs(across) / gain))
+
+
+def five_point_weights(s: Array) -> tuple[Array, Array]:
+    """Of each five neighbours: those whose sum is how far the middle one is off the cubic through
+    the others; and the factor by which the sum is noisier than a point. [n - 4, 5], [n - 4]."""
+    window = np.lib.stride_tricks.sliding_window_view(s, 5)
+    others = (0, 1, 3, 4)
+    weights = np.ones(window.shape)
+    for i in others:
+        for j in others:
+            if j != i:
+                weights[:, i] *= (window[:, 2] - window[:, j]) / (window[:, i] - window[:, j])
+        weights[:, i] *= -1.0
+    return weights, np.sqrt((weights * weights).sum(axis=1))
+
+
+def wavelength_for(noise: float, spacing: float) -> float:
+    """m, at which half the amplitude is kept, so that noise (m) leaves the curvature ROUGHNESS.
+
+    spacing: m, of the points.
+    """
+    share = noise * np.sqrt(spacing * INTEGRAL / (2 * np.pi)) / ROUGHNESS
+    return float(2 * np.pi * share**0.4)
