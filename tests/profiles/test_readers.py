@@ -38,9 +38,11 @@ def test_two_columns_in_m_with_commas_and_titles(write: Write) -> None:
 def test_z_up_and_flange_at_plus_y_are_detected(write: Write) -> None:
     path = write("w.txt", columns(-Y, -Z))
     assert_is_the_wheel(path)
-    assert read_profile(path, "wheel").notes[-2:] == [
-        "z pointed up: mirrored",
-        "flange lay at +y: mirrored",
+    assert read_profile(path, "wheel").notes == [
+        "unit of length taken as mm",
+        "y mirrored: the flange lay at +y",
+        "z mirrored: the flange pointed to -z",
+        "points turned round, to begin at -y",
     ]
 
 
@@ -98,7 +100,7 @@ def test_nrc_wheels_and_rollers() -> None:
     wheel = read_profile(NRC["wheel_left"], "wheel")
     assert wheel.y.size == 667
     assert wheel.y[0] == pytest.approx(0.1423e-3)
-    assert wheel.notes == ["unit of length taken as mm"]
+    assert wheel.notes == ["unit of length taken as mm", "points turned round, to begin at -y"]
     tape = np.interp(0.070, wheel.y, wheel.z)
     assert wheel.z.max() - tape == pytest.approx(27.8749e-3, abs=5e-5)  # Sh of the header
     roller = read_profile(NRC["rail_right"], "rail")

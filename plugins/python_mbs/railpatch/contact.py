@@ -17,6 +17,7 @@ from railpatch.case.load import Case, Scene, check_table, load_scene
 from railpatch.case.messages import show
 from railpatch.case.moving import changed_case, moving_keys
 from railpatch.case.patch import Motion, PatchCase
+from railpatch.case.scene_profiles import profile_notes
 from railpatch.case.to_core import (
     FORCE_AND_MOMENT,
     POSE_AND_VELOCITY,
@@ -73,7 +74,7 @@ class Contact:
         self, case: CaseSource, *, folder: str | Path | None = None, timing: bool = False
     ) -> None:
         scene = case if isinstance(case, Scene) else load_scene(case, folder)
-        self._case = scene.case
+        self._case, self._folder = scene.case, scene.folder
         self._irregularity = irregularity_of(scene)
         self._core = _core.Contact(config_of(scene), timing)
         self._last: tuple[dict[str, Any], float] | None = None
@@ -83,6 +84,15 @@ class Contact:
     def case(self) -> Case:
         """The checked case with the moving inputs of the last step."""
         return self._case
+
+    def profile_notes(self) -> dict[str, list[str]]:
+        """What was assumed of each profile file and done to it: unit, axes, noise, smoothing.
+
+        The files are read once more. Raises ProfileError.
+        """
+        if self._case.kind == "patch":
+            return {}
+        return profile_notes(self._case, self._folder)
 
     def step(self, *, fields: bool = False, **changes: Any) -> Result:
         """Solves with some moving inputs changed; the others keep their last value.
@@ -251,6 +261,14 @@ def solve(case: CaseSource, fields: bool = False, *, folder: str | Path | None =
     Result.status.
     """
     contact = Contact(case, folder=folder)
+    result = _solved(contact, fields)
+    if notes := contact.profile_notes():
+        result.data["profiles"] = notes
+    return result
+
+
+def _solved(contact: Contact, fields: bool) -> Result:
+    """All steps of a contact's case."""
     motion = contact.case.motion if contact.case.kind == "patch" else None
     if motion is None or motion.steps is None:
         return contact.step(fields=fields)

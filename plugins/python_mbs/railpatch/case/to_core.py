@@ -22,10 +22,11 @@ from railpatch.case.messages import show
 from railpatch.case.moving import BY_TABLE, moving_keys, refuse_unknown
 from railpatch.case.patch import SHAPES, STEPWISE, PatchCase
 from railpatch.case.resolve import resolved
+from railpatch.case.scene_profiles import Placed, named_profile, scene_profiles
 from railpatch.case.types import BODIES, MOST_POINTS, SIDES, Table, listed
 from railpatch.case.wheel import Deviation, WheelRailCase, WheelsetCase
 from railpatch.errors import CaseError
-from railpatch.profiles import Profile, load_profile
+from railpatch.profiles import Profile
 from railpatch.profiles.sections import matching_sections
 
 WheelCase = WheelRailCase | WheelsetCase
@@ -159,28 +160,20 @@ def patch_config(case: PatchCase, folder: Path) -> dict[str, Any]:
 
 def wheel_config(case: WheelCase, folder: Path) -> dict[str, Any]:
     """Load, regime, profiles, rails and shapes of wheels."""
+    placed = scene_profiles(case, folder)
     config: dict[str, Any] = {
         "load": "position" if case.wheelset.z is not None else "force",
         "regime": case.motion.regime if case.has_tangential else "none",
-        **{body: profile_pair(case, folder, body) for body in BODIES},
+        **{body: profile_pair(placed, body) for body in BODIES},
         **passed("rail_support", case.track.rail_support, _core.CONFIG_FIELDS),
     }
     return {**config, **sections_config(case, folder), **shape_config(case, folder)}
 
 
-def profile_pair(case: WheelCase, folder: Path, body: Any) -> list[Any]:
-    """[left, right] of the wheels or the rails; None for a side that has no wheel."""
-    pair: list[Any] = []
-    for side in SIDES:
-        by_sections = body == "rail" and getattr(case.track, side).sections is not None
-        if side not in case.sides or by_sections:
-            pair.append(None)
-            continue
-        _, name = case.profiles.of(body, side)
-        assert name is not None
-        profile = load_profile(name, body, folder=folder, smoothing=case.profiles.smoothing)
-        pair.append(profile_arrays(profile))
-    return pair
+def profile_pair(placed: list[Placed], body: str) -> list[Any]:
+    """[left, right] of the wheels or the rails; None for a side that has none of its own."""
+    found = {p.side: profile_arrays(p.profile) for p in placed if p.body == body}
+    return [found.get(side) for side in SIDES]
 
 
 def profile_arrays(profile: Profile) -> dict[str, Any]:
@@ -199,10 +192,7 @@ def sections_config(case: WheelCase, folder: Path) -> dict[str, Any]:
         return {}
     profiles = []
     for sections in found:
-        loaded = [
-            load_profile(s.profile, "rail", folder=folder, smoothing=case.profiles.smoothing)
-            for s in sections
-        ]
+        loaded = [named_profile(case, "rail", s.profile, folder) for s in sections]
         profiles.append([profile_arrays(p) for p in matching_sections(loaded)] if loaded else [])
     positions = [[section.position for section in sections] for sections in found]
     return {"rail_sections": profiles, "section_position": positions}

@@ -26,6 +26,7 @@ from railpatch.case.types import (
     SIDES,
     AngleVector,
     Number,
+    Pair,
     ShiftVector,
     Table,
     Vector,
@@ -34,6 +35,8 @@ from railpatch.case.types import (
     one_of,
     relation,
 )
+from railpatch.profiles import Reading
+from railpatch.profiles.builtin import builtin_profile
 from railpatch.profiles.smooth import MEASURED_WAVELENGTH
 
 Text = Annotated[str, Field(min_length=1)]
@@ -172,6 +175,33 @@ class Track(Table):
         return (*SIDES, "roller_pitch_rate") if self.kind == "roller" else SIDES
 
 
+class ProfileFile(Table):
+    """What profile files do not say of themselves; left out: found by rules, or asked for."""
+
+    unit: Literal["m", "mm", "in"] | None = Field(
+        default=None, description="of length in the files (no unit)"
+    )
+    swap: bool | None = Field(
+        default=None, description="whether the columns are z, y in place of y, z (no unit)"
+    )
+    mirror: Literal["none", "y", "z", "yz"] | None = Field(
+        default=None,
+        description="axes that point the other way than from the flange or gauge side to the field "
+        "side, and down (no unit)",
+    )
+    origin: Pair | None = Field(
+        default=None,
+        description="m, [y, z] of the profile's origin in the files' axes, after swap and mirror: "
+        "of a wheel where the nominal radius is measured",
+    )
+
+    @property
+    def reading(self) -> Reading:
+        """For the readers of files."""
+        origin = None if self.origin is None else (self.origin[0], self.origin[1])
+        return Reading(self.unit, self.swap, self.mirror, origin)
+
+
 class Profiles(Table):
     """Profiles by path (relative to the case file) or built-in name; by side or for both."""
 
@@ -188,7 +218,14 @@ class Profiles(Table):
     smoothing: Annotated[float, Field(ge=0, le=0.1)] | None = Field(
         default=None,
         description="m, wave length of which half the amplitude is kept in profile files; 0: "
-        f"interpolation; left out: {MEASURED_WAVELENGTH} for MiniProf measurements, 0 for others",
+        f"interpolation; left out: what the noise of the points asks for, at least "
+        f"{MEASURED_WAVELENGTH} for MiniProf measurements",
+    )
+    wheel_file: ProfileFile | None = Field(
+        default=None, description="how the wheels' files are read (m, no unit)"
+    )
+    rail_file: ProfileFile | None = Field(
+        default=None, description="how the rails' or rollers' files are read (m, no unit)"
     )
 
     @model_validator(mode="after")
@@ -205,9 +242,16 @@ class Profiles(Table):
             return body, getattr(self, body)
         return f"{body}_{side}", getattr(self, f"{body}_{side}")
 
+    def reading(self, body: Literal["wheel", "rail"]) -> Reading:
+        """How files of one body are read."""
+        table = getattr(self, f"{body}_file")
+        return Reading() if table is None else table.reading
+
 
 # of [profiles], those that name one
-PROFILE_KEYS = tuple(name for name in Profiles.model_fields if name != "smoothing")
+PROFILE_KEYS = tuple(
+    name for name in Profiles.model_fields if not name.endswith("_file") and name != "smoothing"
+)
 
 
 class Wheel(Table):
@@ -275,6 +319,8 @@ class _WheelCase(Table):
         )
         check_rolling(self)
         self._check_frame()
+        for body in ("wheel", "rail"):
+            self._check_read(body)
         for side in self.sides:
             for body in ("wheel", "rail"):
                 key, value = self.profiles.of(body, side)
@@ -285,6 +331,18 @@ class _WheelCase(Table):
                         f"profiles.{key}", "missing", f"'{key}', or '{body}' for both sides"
                     )
         return self
+
+    def _check_read(self, body: Literal["wheel", "rail"]) -> None:
+        """What is said of files is said of some."""
+        names = [self.profiles.of(body, side)[1] for side in self.sides]
+        if body == "rail":
+            rails = [getattr(self.track, side) for side in self.sides]
+            names += [part.profile for rail in rails for part in rail.sections or ()]
+        files = [name for name in names if name and builtin_profile(name, body) is None]
+        table = getattr(self.profiles, f"{body}_file")
+        if table is not None and not files:
+            shown = table.model_dump(exclude_none=True)
+            raise relation(f"profiles.{body}_file", shown, f"with a file as {body} profile")
 
     def _check_sections(self, key: str, value: str | None) -> None:
         """A rail has one profile or sections."""

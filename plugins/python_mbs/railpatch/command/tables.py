@@ -8,6 +8,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from railpatch.case.scene_profiles import note_lines
 from railpatch.case.types import SIDES
 from railpatch.result import PATCH_UNITS, PLACE_UNITS, WHEEL_UNITS, Result
 
@@ -35,6 +36,8 @@ def print_result(result: Result, console: Console | None = None) -> None:
         ]
         if columns:
             console.print(patch_table(columns, {**PATCH_UNITS, **PLACE_UNITS}))
+    for line in note_lines(data.get("profiles", {})):
+        console.print(line, highlight=False)
     console.print(f"solved in {1e3 * data['wall_time']:.3g} ms: {', '.join(data['stages'])}")
 
 

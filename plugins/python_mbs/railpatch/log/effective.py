@@ -8,12 +8,14 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel
 
 from railpatch.case.load import check_case, check_table, plain, tomllib
 from railpatch.case.resolve import resolved
+from railpatch.case.scene_profiles import note_lines, profile_notes
 from railpatch.errors import CaseError
 
 # name of the attachment
@@ -25,7 +27,8 @@ PROFILES = "profiles"
 @dataclass(frozen=True)
 class Effective:
     """data: JSON of all tables, complete, null where a key is left out. about: metadata of the log:
-    theory, grid, step and duration (s), and the keys that differ from the case file."""
+    theory, grid, step and duration (s), the keys that differ from the case file, and what was
+    assumed of its profile files."""
 
     data: bytes
     about: dict[str, str]
@@ -46,7 +49,9 @@ def effective(
     """
     content = dumped(case) | {name: dumped(table) for name, table in tables.items()}
     given = content[PROFILES].items()
-    content[PROFILES] = {key: names.get(value, value) for key, value in given}
+    content[PROFILES] = {
+        key: names.get(value, value) if isinstance(value, str) else value for key, value in given
+    }
     read = as_read(text, tables)
     return Effective(
         json.dumps(content, allow_nan=False, indent=1).encode(),
@@ -56,6 +61,7 @@ def effective(
             "step": f"{step:.9g}",
             "duration": f"{duration:.9g}",
             "overrides": "; ".join(differences(read, content)),
+            "profiles": " | ".join(note_lines(profile_notes(case, Path()))),
         },
     )
 

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
+from railpatch.case.scene_profiles import named_profile
 from railpatch.case.types import SIDES
 from railpatch.case.wheel import Deviation, WheelsetCase
-from railpatch.profiles import load_profile
 from railpatch.profiles.raw import Role
 
 KINDS = ("rail", "roller")
@@ -171,6 +172,6 @@ def curve(case: WheelsetCase, role: Role, side: str, deviation: Deviation) -> np
     assert name is not None
     mirror = -1.0 if side == "left" else 1.0
     _, y, z = deviation.offset
-    profile = load_profile(name, role, smoothing=case.profiles.smoothing)
+    profile = named_profile(case, role, name, Path())
     moved = profile.moved(mirror * y, z, mirror * deviation.rotation[0])
     return np.column_stack([moved.y, moved.z])

@@ -11,7 +11,7 @@ from pathlib import Path
 from railpatch.errors import ProfileError
 from railpatch.profiles.builtin import builtin_profile
 from railpatch.profiles.curve import Profile
-from railpatch.profiles.raw import RawProfile, Role
+from railpatch.profiles.raw import RawProfile, Reading, Role
 from railpatch.profiles.read import read_profile
 from railpatch.profiles.smooth import MEASURED_WAVELENGTH, fit_profile
 
@@ -20,6 +20,7 @@ __all__ = [
     "Profile",
     "ProfileError",
     "RawProfile",
+    "Reading",
     "builtin_profile",
     "fit_profile",
     "load_profile",
@@ -33,6 +34,7 @@ def load_profile(
     *,
     folder: str | Path | None = None,
     smoothing: float | None = None,
+    reading: Reading | None = None,
 ) -> Profile:
     """A profile by built-in name or file, ready for the core.
 
@@ -40,13 +42,17 @@ def load_profile(
         "cylinder") or path; a relative path starts at ``folder``.
     role: "wheel" or "rail" (a roller's profile is a rail).
     smoothing: m, wave length of which half the amplitude is kept; 0 interpolates the points;
-        default MEASURED_WAVELENGTH for MiniProf files, 0 for others. Not for built-in names.
+        default what the points' noise asks for, at least
+        MEASURED_WAVELENGTH for MiniProf files. Not for built-in names.
+    reading: what a file does not say of itself; not for built-in names.
     Raises ProfileError.
     """
     built_in = builtin_profile(str(source), role)
     if built_in is not None:
+        if reading not in (None, Reading()):
+            raise ProfileError(source, f"is a built-in profile: {reading} is for files only")
         return built_in
     path = Path(source)
     if folder is not None and not path.is_absolute():
         path = Path(folder) / path
-    return fit_profile(read_profile(path, role), smoothing)
+    return fit_profile(read_profile(path, role, reading), smoothing)

@@ -144,6 +144,7 @@ def made_with(about: dict[str, str]) -> list[Sequence[object]]:
         rows.append(("theory", ", ".join(filter(None, (about["theory"], about.get("grid"))))))
     if about.get("step"):
         rows.append(("time step", f"{about['step']} s, for {about['duration']} s"))
+    rows += [("profile", line) for line in about.get("profiles", "").split(" | ") if line]
     if "overrides" in about:
         rows.append(("not as in the case file", about["overrides"] or "nothing"))
     return rows

@@ -1,0 +1,83 @@
+"""Noise of points, found and smoothed: against the noise that was put on, and the spline's own
+transfer function."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from railpatch.profiles import ProfileError, RawProfile, builtin_profile, fit_profile
+from railpatch.profiles.noise import (
+    INTEGRAL,
+    ROUGHNESS,
+    five_point_weights,
+    noise_of,
+    wavelength_for,
+)
+from railpatch.profiles.shape import shape_of
+
+
+def noisy(name: str, role: str, spacing: float, noise: float, seed: int) -> RawProfile:
+    """Points of a built-in profile, moved across it."""
+    profile = builtin_profile(name, role)
+    s = np.arange(profile.arc_length[0], profile.arc_length[-1], spacing)
+    y, z = profile.evaluate(s)
+    ahead = np.array(profile.evaluate(s + 1e-6)) - (y, z)
+    tangent = ahead / np.hypot(*ahead)
+    off = noise * np.random.default_rng(seed).standard_normal(s.size)
+    y, z = y - off * tangent[1], z + off * tangent[0]
+    return RawProfile(name, role, y, z, np.ones(s.size), np.arange(s.size), measured=False)
+
+
+@pytest.mark.parametrize(("name", "role"), [("S1002", "wheel"), ("UIC60@1:40", "rail")])
+@pytest.mark.parametrize("spacing", [5e-5, 2e-4, 5e-4])
+@pytest.mark.parametrize("noise", [1e-6, 5e-6, 2e-5])
+def test_noise_that_was_put_on_is_found(name: str, role: str, spacing: float, noise: float) -> None:
+    raw = noisy(name, role, spacing, noise, 3)
+    s = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(raw.y), np.diff(raw.z)))])
+    # the median of n neighbouring residuals scatters by some 1.2 sqrt(2 / n)
+    assert noise_of(raw.y, raw.z, s) == pytest.approx(noise, rel=4 * 1.2 * (2 / s.size) ** 0.5)
+
+
+def test_designed_points_have_none() -> None:
+    for name, role in (("S1002", "wheel"), ("UIC60", "rail"), ("cone@1:20", "wheel")):
+        raw = noisy(name, role, 2e-4, 0.0, 0)
+        assert noise_of(raw.y, raw.z, raw.y) < 1e-8
+        assert not any("noise" in note for note in fit_profile(raw).notes)
+
+
+def test_weights_vanish_on_cubics() -> None:
+    s = np.sort(np.random.default_rng(5).uniform(0, 1, 40))
+    weights, gain = five_point_weights(s)
+    windows = np.lib.stride_tricks.sliding_window_view(s**3 - 2 * s**2 + s - 4, 5)
+    np.testing.assert_allclose((weights * windows).sum(axis=1), 0, atol=1e-12 * gain.max())
+    # equal spacing: the middle point less (-1, 4, 4, -1) / 6 of its neighbours
+    weights, gain = five_point_weights(np.arange(9.0))
+    np.testing.assert_allclose(6 * weights[0], [1, -4, 6, -4, 1], atol=1e-14)
+    assert gain[0] == pytest.approx(70**0.5 / 6)
+
+
+def test_the_wave_length_bounds_the_curvature() -> None:
+    """White noise through the smoothing spline, on a flat rail: numbers of the fit itself."""
+    spacing, noise = 2e-4, 5e-6
+    length = wavelength_for(noise, spacing)
+    y = spacing * np.arange(4000)
+    curvatures = []
+    for seed in range(3):
+        z = noise * np.random.default_rng(seed).standard_normal(y.size)
+        raw = RawProfile("made", "rail", y, z, np.ones(y.size), np.arange(y.size), measured=False)
+        curvature = shape_of(fit_profile(raw, length)).curvature
+        curvatures.append(curvature[200:-200])
+    assert np.std(curvatures) == pytest.approx(ROUGHNESS, rel=0.05)
+
+
+def test_the_integral() -> None:
+    u = np.linspace(0, 200, 2_000_001)
+    assert 2 * np.trapezoid(u**4 / (1 + u**4) ** 2, u) == pytest.approx(INTEGRAL, rel=1e-6)
+
+
+def test_noise_beyond_what_arcs_bear_is_refused() -> None:
+    raw = noisy("S1002", "wheel", 5e-4, 2e-5, 1)
+    with pytest.raises(ProfileError, match=r"asks for smoothing over 11 mm: allowed"):
+        fit_profile(raw)
+    notes = fit_profile(raw, 0.011).notes
+    assert notes[-1] == "smoothed over more than the arcs of wheels and rails bear"
