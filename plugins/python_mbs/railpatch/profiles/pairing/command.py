@@ -9,6 +9,7 @@ import click
 from railpatch.command.group import WrongCall, output_option, quiet_flag, wrong_call
 from railpatch.command.output import check_page
 from railpatch.profiles.pairing.contact_points import Dimensions
+from railpatch.profiles.raw import Mirror, Reading, Role, Unit
 
 
 def length_option(name: str, field: str, text: str) -> click.Option:
@@ -29,6 +30,19 @@ def length_option(name: str, field: str, text: str) -> click.Option:
     metavar="LENGTH",
     help="m, wave length of which half the amplitude is kept in profile files; 0: interpolation.",
 )
+@click.option(
+    "--role", type=click.Choice(["wheel", "rail"]), help="Where neither name nor partner tells."
+)
+@click.option("--unit", type=click.Choice(["m", "mm", "in"]), help="Of length in the file.")
+@click.option("--swap/--no-swap", default=None, help="Whether its columns are z, y.")
+@click.option(
+    "--mirror",
+    type=click.Choice(["none", "y", "z", "yz"]),
+    help="Axes that point the other way than from flange or gauge side to field side, and down.",
+)
+@click.option(
+    "--origin", type=float, nargs=2, metavar="Y Z", help="m, the profile's origin in the file."
+)
 @length_option("--gauge", "gauge", "m, track gauge.")
 @length_option("--radius", "nominal_radius", "m, wheel radius at the profile's z = 0.")
 @length_option("--flange-back-distance", "flange_back_distance", "m, between the flange backs.")
@@ -42,6 +56,11 @@ def profile(
     rail: str | None,
     wheel: str | None,
     smoothing: float | None,
+    role: Role | None,
+    unit: Unit | None,
+    swap: bool | None,
+    mirror: Mirror | None,
+    origin: tuple[float, float] | None,
     quiet: bool,
     **lengths: float,
 ) -> None:
@@ -57,12 +76,15 @@ def profile(
     # plotly takes a while to import; other commands need not wait for it
     from railpatch.profiles.pairing.page import write_profile_page
 
-    role = "wheel" if rail is not None else "rail" if wheel is not None else None
+    by_partner: Role | None = "wheel" if rail is not None else "rail" if wheel is not None else None
+    if role is not None and by_partner not in (None, role):
+        raise WrongCall(f"--role: value is {role!r}, allowed {by_partner!r} with such a partner")
     try:
         written = write_profile_page(
             source,
             output,
-            role=role,
+            role=role or by_partner,
+            reading=Reading(unit, swap, mirror, origin),
             partner=rail or wheel,
             dimensions=Dimensions(**lengths),
             smoothing=smoothing,

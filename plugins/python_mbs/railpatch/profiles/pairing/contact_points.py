@@ -7,14 +7,17 @@ each wheel lies on its own rail.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from railpatch.contact import Contact
 from railpatch.profiles.pairing.conicity import equivalent_conicity
+from railpatch.profiles.raw import Reading, Role
 
 Array = NDArray[np.float64]
 # N, flattens a wheel on a rail by some 5e-8 m
@@ -88,10 +91,12 @@ def contact_points(
     dimensions: Dimensions | None = None,
     *,
     smoothing: float | None = None,
+    readings: Mapping[Role, Reading | None] | None = None,
 ) -> ContactPoints:
     """Contact points, angles and rolling radii of a wheel on a rail, both sides alike.
 
-    wheel, rail: built-in names or files, as for load_profile; smoothing: m, likewise. y: m, lateral
+    wheel, rail: built-in names or files, as for load_profile; smoothing: m, likewise. readings: of
+    the files, by role. y: m, lateral
     positions, increasing and symmetric about 0; by default -10 mm to 10 mm by 0.05 mm.
     Raises ProfileError, CaseError, ValueError.
     """
@@ -99,7 +104,7 @@ def contact_points(
     if at.size < 3 or (np.diff(at) <= 0).any() or not np.array_equal(at, -at[::-1]):
         raise ValueError("y must increase, be symmetric about 0 and hold 3 positions or more")
     sizes = dimensions or Dimensions()
-    contact = Contact(pair_case(wheel, rail, sizes, smoothing))
+    contact = Contact(pair_case(wheel, rail, sizes, smoothing, readings or {}))
     values = np.full((3, at.size), np.nan)
     touches = np.zeros(at.size, dtype=np.int64)
     for index, place in enumerate(at):
@@ -114,12 +119,22 @@ def contact_points(
 
 
 def pair_case(
-    wheel: str | Path, rail: str | Path, sizes: Dimensions, smoothing: float | None
+    wheel: str | Path,
+    rail: str | Path,
+    sizes: Dimensions,
+    smoothing: float | None,
+    readings: Mapping[Role, Reading | None],
 ) -> dict:
     """The case of the right wheel at rest under a light load."""
-    profiles = {"wheel": str(wheel), "rail": str(rail)}
+    profiles: dict[str, Any] = {"wheel": str(wheel), "rail": str(rail)}
     if smoothing is not None:
         profiles["smoothing"] = smoothing
+    for role, reading in readings.items():
+        given = {
+            key: value for key, value in asdict(reading or Reading()).items() if value is not None
+        }
+        if given:
+            profiles[f"{role}_file"] = given
     return {
         "kind": "wheel_rail",
         # odd: an element lies where the approach is greatest

@@ -13,7 +13,7 @@ from railpatch.page.figures import plot
 from railpatch.profiles import load_profile, read_profile
 from railpatch.profiles.pairing import figures
 from railpatch.profiles.pairing.contact_points import ContactPoints, Dimensions, contact_points
-from railpatch.profiles.raw import Role
+from railpatch.profiles.raw import Reading, Role
 from railpatch.profiles.shape import CORNER_RADIUS, CURVATURE_STEP, Shape, shape_of
 from railpatch.writing import write_whole
 
@@ -34,19 +34,23 @@ def write_profile_page(
     partner: str | Path | None = None,
     dimensions: Dimensions | None = None,
     smoothing: float | None = None,
+    reading: Reading | None = None,
 ) -> Path:
     """Writes the page on a profile by built-in name or file; returns ``output``.
 
     role: "wheel" or "rail"; may be left out where name, extension or header tell. partner: the
     other profile; by default UIC60@1:40 for a wheel and S1002 for a rail. smoothing: m, as in
-    load_profile, for the files of both.
+    load_profile, for the files of both. reading: what the profile's file does not say of itself.
     Raises ProfileError, CaseError, OSError; nothing is written then.
     """
     role = role or role_of(source)
-    shape = shape_of(profile := load_profile(source, role, smoothing=smoothing))
+    profile = load_profile(source, role, smoothing=smoothing, reading=reading)
+    shape = shape_of(profile)
     other = partner or PARTNERS[role]
     pair = (source, other) if role == "wheel" else (other, source)
-    points = contact_points(*pair, dimensions=dimensions, smoothing=smoothing)
+    points = contact_points(
+        *pair, dimensions=dimensions, smoothing=smoothing, readings={role: reading}
+    )
     body = "".join(
         [
             f"<h1>{escape(Path(source).name)}</h1><p class=sub>{role} profile</p>",
