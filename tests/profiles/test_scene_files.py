@@ -1,4 +1,4 @@
-"""Own profile files in a scene and on the page: read as it is said, and what was assumed is told."""
+"""Own profile files in a scene and on the page: read as is said, with what was assumed told."""
 
 from __future__ import annotations
 
