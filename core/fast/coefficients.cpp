@@ -15,20 +15,31 @@ namespace {
 
 constexpr size_t orders = 5;  // Poisson's ratios of the computed table
 
-// Lagrange polynomial through the Chebyshev-Lobatto points of 0 ... 1/2
-double at_poisson_ratio(const double (&values)[orders], double nu) {
-  double sum = 0;
-  for (size_t k = 0; k < orders; ++k) {
-    double weight = values[k];
-    const auto node = [](size_t i) {
-      return 0.25 * (1.0 - cos(std::numbers::pi * static_cast<double>(i) / 4.0));
-    };
+// Lagrange polynomials through the Chebyshev-Lobatto points of 0 ... 1/2: the factors of the one of
+// each point are the same for every entry of the table
+class between_orders {
+ public:
+  explicit between_orders(double nu) {
+    double node[orders];
     for (size_t i = 0; i < orders; ++i)
-      if (i != k) weight *= (nu - node(i)) / (node(k) - node(i));
-    sum += weight;
+      node[i] = 0.25 * (1.0 - cos(std::numbers::pi * static_cast<double>(i) / 4.0));
+    for (size_t k = 0; k < orders; ++k)
+      for (size_t i = 0; i < orders; ++i)
+        factor_[k][i] = i == k ? 1.0 : (nu - node[i]) / (node[k] - node[i]);
   }
-  return sum;
-}
+  double operator()(const double (&values)[orders]) const {
+    double sum = 0;
+    for (size_t k = 0; k < orders; ++k) {
+      double weight = values[k];
+      for (double factor : factor_[k]) weight *= factor;
+      sum += weight;
+    }
+    return sum;
+  }
+
+ private:
+  double factor_[orders][orders];
+};
 
 // rows a/b = 0.1 ... 1 and then b/a = 0.9 ... 0.1; columns c11, c22, c23 at nu = 0, 1/4, 1/2
 constexpr std::array<std::array<double, 9>, 19> published = {{
@@ -69,10 +80,10 @@ double between_poisson_ratios(const double *v, double nu) {
 
 coefficient_table::coefficient_table(double poisson_ratio) {
   static_assert(nodes == kalker_nodes);
+  const between_orders at_poisson_ratio(poisson_ratio);
   for (size_t i = 0; i < nodes; ++i)
     for (size_t k = 0; k < 4; ++k)
-      for (size_t d = 0; d < 2; ++d)
-        values_[i][k][d] = at_poisson_ratio(kalker_values[i][k][d], poisson_ratio);
+      for (size_t d = 0; d < 2; ++d) values_[i][k][d] = at_poisson_ratio(kalker_values[i][k][d]);
 }
 
 creepage_coefficients coefficient_table::at(double axis_ratio) const {
