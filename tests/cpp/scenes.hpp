@@ -129,6 +129,12 @@ inline rp_config wheels(rp_kind kind, rp_track track, const profile_pair &pair) 
   return c;
 }
 
+// Wheels on elements of 2 mm, where it does not matter how many there are.
+inline rp_config coarse(rp_config c) {
+  c.element_size[0] = c.element_size[1] = 2e-3;
+  return c;
+}
+
 // Friction that falls by half from sticking to the slip of tenths of a metre per second.
 inline void set_falling_friction(rp_config &c) {
   c.friction_law = RP_SLIP_VELOCITY;

@@ -253,7 +253,7 @@ TEST(Step, WithACreepTableAllocatesNothing) {
     EXPECT_EQ(run(c, patch_inputs()).allocated, 0) << "normal " << normal;
   }
   const scenes::profile_pair pair;
-  rp_config c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+  rp_config c = scenes::coarse(scenes::wheels(RP_WHEELSET, RP_RAIL, pair));
   c.tangential = RP_TANGENTIAL_TABLE;
   c.creep_table = table.data();
   c.creep_table_size = table.size();
@@ -310,7 +310,7 @@ TEST(Step, OfAWheelsetWithRowsAllocatesNothing) {
   const scenes::profile_pair pair;
   for (rp_normal_method normal : {RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN})
     for (rp_tangential_method tangential : {RP_TANGENTIAL_FASTSIM, RP_TANGENTIAL_FULL}) {
-      rp_config c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+      rp_config c = scenes::coarse(scenes::wheels(RP_WHEELSET, RP_RAIL, pair));
       c.normal = normal;
       c.tangential = tangential;
       std::vector<rp_input> inputs;
@@ -327,7 +327,7 @@ TEST(Step, OnATrackThatVariesAllocatesNothing) {
   const scenes::varying_track track;
   for (rp_kind kind : {RP_WHEELSET, RP_WHEEL_RAIL})
     for (rp_load load : {RP_FORCE, RP_POSITION}) {
-      rp_config c = track.config(kind);
+      rp_config c = scenes::coarse(track.config(kind));
       c.load = load;
       std::vector<rp_input> inputs = scenes::varying_track::inputs();
       for (rp_input &in : inputs) in.z = 1.5e-3;
@@ -341,7 +341,7 @@ TEST(Step, OfTransientRollingWheelsAllocatesNothing) {
   std::vector<double> runout(1500, 0.0), height(100, 0.0);
   for (int i = 0; i < 20; ++i) runout[static_cast<size_t>(i)] = -1e-5 * i * (20 - i) / 10;
   for (int i = 40; i < 60; ++i) height[static_cast<size_t>(i)] = -1e-4;
-  rp_config c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+  rp_config c = scenes::coarse(scenes::wheels(RP_WHEELSET, RP_RAIL, pair));
   c.regime = RP_TRANSIENT_ROLLING;
   for (int side = 0; side < 2; ++side) {
     c.runout[side] = runout.data();
@@ -394,7 +394,7 @@ TEST(Derivatives, OfAWheelsetAllocateNothing) {
   const scenes::profile_pair pair;
   for (rp_patch_rule rule : {RP_PATCHES_BLENDED, RP_PATCHES_CONTACT})
     for (int elements : {0, 10}) {
-      rp_config c = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+      rp_config c = scenes::coarse(scenes::wheels(RP_WHEELSET, RP_RAIL, pair));
       c.derivatives = 1;
       c.patch_rule = rule;
       c.elements[0] = c.elements[1] = elements;
@@ -431,7 +431,7 @@ TEST(Step, OfAWheelsetAllocatesNothing) {
                                                                 {RP_ROLLER, RP_REFERENCE_PLANE},
                                                                 {RP_RAIL, RP_REFERENCE_CURVED}};
   for (const auto &[track, surface] : scene_of) {
-    rp_config c = scenes::wheels(RP_WHEELSET, track, pair);
+    rp_config c = scenes::coarse(scenes::wheels(RP_WHEELSET, track, pair));
     c.reference_surface = surface;
     std::vector<rp_input> inputs;
     for (double y : {0.0, 5e-4, 2e-3, 5e-3, 5.9e-3, 6e-3, 6.05e-3, -4e-3}) {

@@ -188,6 +188,8 @@ TEST_P(Mirror, EqualsTheMirroredMotion) {
   // the profiles of the two sides differ: the left rail is worn by 10 micrometres
   for (double &z : two.rail.z) z += 1e-5;
   rp_config c = scenes::wheels(GetParam().kind, GetParam().track, one);
+  // rows of strips need their elements where the contact is narrow
+  if (GetParam().normal == RP_NORMAL_HALF_SPACE) c = scenes::coarse(c);
   c.curvature = GetParam().curvature;
   c.normal = GetParam().normal;
   c.reference_surface = GetParam().surface;
