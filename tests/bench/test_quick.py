@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 from railpatch.command.cli import cli
-from railpatch.evidence.bench import methods, run
+from railpatch.evidence.bench import cost, evaluations, features, methods, run
 from railpatch.evidence.bench.measure import COLUMNS
 from railpatch.evidence.bench.methods import METHODS, UNIFORM, Method
 from railpatch.evidence.bench.sets import SETS
@@ -42,7 +42,14 @@ def bench(*arguments: str) -> Result:
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("bench") / "out"
-    result = bench("--quick", "-o", str(path))
+    with pytest.MonkeyPatch.context() as patch:
+        # all is timed, but not over and over
+        patch.setattr(methods, "FAST_REPEAT", 1)
+        patch.setattr(cost, "MOST_PASSES", 1)
+        patch.setattr(evaluations, "QUICK_PASSES", 2)
+        patch.setattr(features, "QUICK_PASSES", 2)
+        patch.setattr(run, "QUICK_RIG_POSITIONS", 5)
+        result = bench("--quick", "-o", str(path))
     assert result.exit_code == 0, result.output
     for name in FILES:
         assert str(path / name) in result.output
