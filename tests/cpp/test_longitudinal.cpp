@@ -129,7 +129,8 @@ struct wavy {
   std::vector<double> runout, height;
   rp_config config;
 
-  explicit wavy(rp_kind kind, bool falling = false) : config(scenes::wheels(kind, RP_RAIL, pair)) {
+  explicit wavy(rp_kind kind, bool falling = false)
+      : config(scenes::coarse(scenes::wheels(kind, RP_RAIL, pair))) {
     if (falling) scenes::set_falling_friction(config);
     for (int i = 0; i < 720; ++i) runout.push_back(1e-4 * std::sin(2 * pi * 20 * i / 720));
     for (int i = 0; i < 200; ++i) height.push_back(-1e-4 * std::exp(-std::pow((i - 100) / 15., 2)));

@@ -20,7 +20,7 @@ std::vector<job> jobs(const scenes::profile_pair &pair) {
   for (int i = 0; i < 8; ++i)
     patch.inputs.push_back(scenes::patch_input(5e4 + 1e4 * i, 3e-4 * i, -1e-4 * i, 0.05 * i));
   all.push_back(patch);
-  job wheelset{scenes::wheels(RP_WHEELSET, RP_RAIL, pair), {}};
+  job wheelset{scenes::coarse(scenes::wheels(RP_WHEELSET, RP_RAIL, pair)), {}};
   for (int i = 0; i < 4; ++i) {
     wheelset.inputs.push_back(scenes::running(RP_RAIL));
     wheelset.inputs.back().y = 2e-3 * i;

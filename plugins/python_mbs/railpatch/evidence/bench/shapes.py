@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 from scipy.special import ellipe, ellipk
 
 SHEAR_MODULUS = 82e9  # Pa
@@ -88,7 +88,7 @@ class Surface:
 
     def distance(self, x: Floats, y: Floats) -> Floats:
         """m, [len(y), len(x)]."""
-        c0, c1, c2 = CubicSpline(self.y, self.rows)(y).T[:, :, None]
+        c0, c1, c2 = scipy.interpolate.CubicSpline(self.y, self.rows)(y).T[:, :, None]
         return c0 + c1 * x + c2 * x**2
 
     def tables(self, elements: int, room: float = 0.0) -> dict[str, Any]:

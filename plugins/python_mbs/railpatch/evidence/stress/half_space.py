@@ -12,10 +12,20 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.signal import fftconvolve
 
 Array = NDArray[np.float64]
+
+
+def convolved(kernel: Array, values: Array) -> Array:
+    """Where the kernel [2 ny - 1, 2 nx - 1] covers all values [ny, nx]."""
+    # scipy.signal has the same, and takes longer to import than many a trial takes
+    full = [a + b - 1 for a, b in zip(kernel.shape, values.shape, strict=True)]
+    size = [scipy.fft.next_fast_len(n, real=True) for n in full]
+    product = scipy.fft.rfft2(kernel, size) * scipy.fft.rfft2(values, size)
+    ny, nx = values.shape
+    return scipy.fft.irfft2(product, size)[ny - 1 : full[0] - ny + 1, nx - 1 : full[1] - nx + 1]
 
 
 def corners(
@@ -102,7 +112,7 @@ class HalfSpace:
 
     def normal(self, pressure: Array) -> Array:
         """u_n in the whole grid from the pressure."""
-        return fftconvolve(self.kernels()[0], pressure, mode="valid")
+        return convolved(self.kernels()[0], pressure)
 
     def tangential(self, traction: Array, ahead: float = 0.0) -> Array:
         """[2, ny, nx], displacement at points `ahead` m along x of the elements' centres."""
@@ -110,8 +120,8 @@ class HalfSpace:
         px, py = traction
         u = np.array(
             [
-                fftconvolve(xx, px, mode="valid") + fftconvolve(xy, py, mode="valid"),
-                fftconvolve(xy, px, mode="valid") + fftconvolve(yy, py, mode="valid"),
+                convolved(xx, px) + convolved(xy, py),
+                convolved(xy, px) + convolved(yy, py),
             ]
         )
         return u + self.layer * shifted(traction, ahead / self.dx)
@@ -128,13 +138,11 @@ class HalfSpace:
 
     def from_pressure(self, pressure: Array, ahead: float = 0.0) -> Array:
         """[2, ny, nx], tangential displacement that the pressure of unlike bodies causes."""
-        return np.array([fftconvolve(k, pressure, mode="valid") for k in self.coupling(ahead)])
+        return np.array([convolved(k, pressure) for k in self.coupling(ahead)])
 
     def from_traction(self, traction: Array) -> Array:
         """u_n in the whole grid that the tractions of unlike bodies cause."""
-        x, y = (
-            fftconvolve(k, p, mode="valid") for k, p in zip(self.coupling(), traction, strict=True)
-        )
+        x, y = (convolved(k, p) for k, p in zip(self.coupling(), traction, strict=True))
         return -(x + y)
 
     def flexibility(self, ahead: float | None = None) -> float:
