@@ -1,5 +1,5 @@
 // What follows for every member of rp_config and rp_input from its line in railpatch_fields.h: its
-// range.
+// range, and its default.
 #pragma once
 
 #include "railpatch_fields.h"
@@ -29,6 +29,14 @@ namespace input_range {
 RP_INPUT_FIELDS(RP_RANGE, RP_NO_FIELD)
 }
 #undef RP_RANGE
+
+// what rp_default_config gives, of those that other checks compare with
+#define RP_START(type, name, count, role, where, start, ...) \
+  inline constexpr double name = static_cast<double>(start);
+namespace config_start {
+RP_CONFIG_FIELDS(RP_START, RP_NO_FIELD)
+}
+#undef RP_START
 
 // How many choices an enumeration has; their values count from 0.
 template <class E>

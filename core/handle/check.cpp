@@ -38,9 +38,21 @@ void check_ranges(const rp_input &in, case_part part, checker &check) {
   RP_INPUT_FIELDS(RP_CHECK_INPUT, RP_NO_FIELD)
 }
 
-// Whether a case asks for a place of the spin term that only steps have.
-bool shifts_spin(const rp_config &c) {
-  return c.spin_offset != RP_SPIN_OFFSET_AUTOMATIC && c.spin_offset != RP_SPIN_OFFSET_NONE;
+// A place of the spin term that is asked for, where no steps from element to element read it.
+void check_spin_offset(const rp_config &c, checker &check) {
+  if (c.spin_offset == RP_SPIN_OFFSET_AUTOMATIC || c.spin_offset == RP_SPIN_OFFSET_NONE) return;
+  const char *wrong = nullptr;
+  if (c.fitted[0] > 0 || c.fitted[1] > 0)
+    wrong = "spin_offset must be automatic or none with fitted: it belongs to the uniform grid";
+  else if (!has_tangential(c))
+    wrong = "spin_offset must be automatic or none without a tangential problem";
+  else if (is_fast(c.tangential) && !has_tractions(c.tangential))
+    wrong =
+        "spin_offset must be automatic or none where tangential gives no tractions: it belongs to "
+        "steps from element to element";
+  else if (c.regime == RP_SHIFT)
+    wrong = "spin_offset must be automatic or none with regime = shift: nothing rolls";
+  check.require(wrong == nullptr, wrong ? wrong : "");
 }
 
 void check_fitted(const rp_config &c, checker &check) {
@@ -53,9 +65,6 @@ void check_fitted(const rp_config &c, checker &check) {
   // a scene whose tangential problem is left out for a while keeps its rows
   check.require(c.tangential == RP_TANGENTIAL_FULL || c.tangential == RP_TANGENTIAL_NONE,
                 "fitted needs tangential = full");
-  check.require(
-      !shifts_spin(c),
-      "spin_offset must be automatic or none with fitted: it belongs to the uniform grid");
 }
 
 // A message that names fast theories by what they read.
@@ -132,6 +141,10 @@ void check_friction(const rp_config &c, checker &check) {
                config_range::friction_along_factor, check);
   check.require(c.friction_along_points == 0 || c.kind != RP_PATCH,
                 "friction_along_points must be 0 for kind = patch: it has no place along a track");
+  check.require(c.friction_memory_distance > 0 ||
+                    c.friction_memory_speed == config_start::friction_memory_speed,
+                "friction_memory_speed must be 0.001 with friction_memory_distance = 0: nothing is "
+                "remembered");
   if (check.error() != RP_OK || !has_tangential(c)) return;
   double least = c.friction_kinetic;
   for (double amplitude : c.friction_amplitude) least += std::min(amplitude, 0.0);
@@ -144,6 +157,8 @@ void check_friction(const rp_config &c, checker &check) {
                 "friction_points must be 0 but with tangential = full and no fitted rows");
   check.require(c.friction_law != RP_TEMPERATURE || c.friction_memory_distance == 0,
                 "friction_memory_distance must be 0 with friction_law = temperature");
+  check.require(c.friction_law != RP_COULOMB || c.friction_memory_distance == 0,
+                "friction_memory_distance must be 0 with friction_law = coulomb");
   check.require(c.friction_law != RP_TEMPERATURE || c.temperature == 1,
                 "friction_law = temperature needs temperature = 1");
   check.require(c.friction_law == RP_COULOMB || c.regime != RP_SHIFT,
@@ -218,8 +233,6 @@ void check_regime(const rp_config &c, checker &check) {
     wrong = "regime = shift and transient_rolling need tangential = full and no fitted rows";
   else if (c.kind != RP_PATCH)
     wrong = wheels_cannot_roll(c);
-  else if (shifts_spin(c) && c.regime == RP_SHIFT)
-    wrong = "spin_offset must be automatic or none with regime = shift: nothing rolls";
   else if (c.geometry == RP_CURVATURES &&
            !(c.element_size[0] > 0 && c.max_elements[0] > 0 && c.max_elements[1] > 0))
     wrong =
@@ -242,9 +255,6 @@ void check_table(const rp_config &c, checker &check) {
   check.require(!line, "a creep table has no line contact: use tangential = full");
   check.require(!(c.layer_thickness > 0),
                 "a creep table has no third-body layer: use tangential = full");
-  check.require(!shifts_spin(c),
-                "spin_offset must be automatic or none with a creep table: it belongs to the "
-                "uniform grid");
   if (check.error() != RP_OK) return;
   const char *defect = creep_table::defect(c.creep_table, c.creep_table_size);
   if (!defect) return;
@@ -261,6 +271,8 @@ void check_grid(const rp_config &c, checker &check) {
   const bool shaped = c.kind == RP_PATCH && c.geometry == RP_UNDEFORMED_DISTANCE;
   check.require(counted != sized, "exactly one of elements and element_size must be given");
   check.require(!shaped || sized, "undeformed_distance needs element_size");
+  check.require(!shaped || (c.max_elements[0] == 0 && c.max_elements[1] == 0),
+                "max_elements must be 0 with undeformed_distance: distance_shape is the grid");
   for (int k = 0; k < 2; ++k) {
     const bool line = k == 1 && c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT;
     if (counted)
@@ -391,6 +403,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   check_ranges(c, c.kind == RP_PATCH ? case_part::patch : case_part::wheels, check);
   if (check.error() != RP_OK) return check.error();
   check_grid(c, check);
+  check_spin_offset(c, check);
   check_prescribed(c, check);
   check_table(c, check);
   check_friction(c, check);

@@ -286,7 +286,8 @@ typedef struct rp_config {
   int32_t elements[2];
   double element_size[2];  /* m */
   int32_t max_elements[2]; /* with element_size: capacity of one patch's grid, in shift and
-                              transient rolling of a patch the grid itself; 0: chosen */
+                              transient rolling of a patch the grid itself; 0: chosen, and with
+                              undeformed_distance, whose shape is the grid */
   int32_t fitted[2];       /* nodes along rolling and rows of the tangential problem on rows fitted
                               to the contact area, 2304 nodes in all at most; 0: tangential
                               problem on the grid above */
@@ -303,7 +304,7 @@ typedef struct rp_config {
   double friction_amplitude[2];     /* -, at rest above the kinetic one; 0: no such term */
   double friction_halving_speed[2]; /* m/s, > 0 */
   double friction_memory_distance;  /* m, over which mu follows mu(s); 0: at once */
-  double friction_memory_speed;     /* m/s, > 0, least speed of following */
+  double friction_memory_speed;     /* m/s, > 0, least speed of following; 1e-3 without distance */
   double friction_reference;        /* -, of the temperature law, below its first temperature */
   double friction_change;           /* -, from there to the end of the range */
   double friction_reference_temperature; /* degrees C */

@@ -98,7 +98,7 @@ def test_of_a_shift_it_is_work() -> None:
 
 def test_nothing_at_standstill_and_where_nothing_rolls() -> None:
     assert railpatch.solve(with_values(PATCH, motion__rolling_speed=0.0))["creep_power"] == 0
-    none = railpatch.solve(with_values(PATCH, method__tangential="none"))
+    none = railpatch.solve(with_values(PATCH, method__tangential="none", friction=None))
     assert np.isnan(none["creep_power"])
     apart = railpatch.solve(with_values(WHEELSET, wheelset__z=-5e-3))
     assert apart.status == "no_contact"

@@ -334,7 +334,7 @@ def test_x_says_nothing_where_nothing_varies() -> None:
         (sections((0.0, "no such profile")), "no such profile"),
         (
             {"track__right": {"sections": [{"position": 0.0, "profile": "UIC60"}]}},
-            "profiles.rail: value is 'arc@0.3', allowed to be left out",
+            "profiles.rail: value is 'arc@0.3', allowed none: it must be left out",
         ),
         ({"wheelset__time_step": -1.0}, "wheelset.time_step"),
         ({"wheelset__right": {"velocity": [0.0, 0.0]}}, "wheelset.right.velocity"),

@@ -20,7 +20,12 @@ EDGE = np.arccos(1 - DEPTH / RADIUS)  # rad, half the angle of the flat
 def one_wheel(**values: Any) -> dict[str, Any]:
     case = with_values(
         copy.deepcopy(WHEELSET),
-        **{"method__tangential": "none", "grid__element_size": [5e-4, 5e-4], **values},
+        **{
+            "method__tangential": "none",
+            "friction": None,
+            "grid__element_size": [5e-4, 5e-4],
+            **values,
+        },
     )
     case["kind"] = "wheel_rail"
     return case

@@ -126,7 +126,7 @@ def test_non_elliptic_patches_fill_their_box(elements: int) -> None:
     assert sum(name.startswith("rig") for name in names) > 20
     for batch in batches[::4]:
         assert isinstance(batch.shape, Surface)
-        contact = contact_of(batch, {"method": {"tangential": "none"}}, elements)
+        contact = contact_of(batch, {"method": {"tangential": "none"}, "friction": None}, elements)
         _, results = contact.time_steps(batch.inputs()[:1], [True], 1)
         patch = results[0]["right"]["patches"][0]
         assert patch["status"] == "converged", batch.name
@@ -181,7 +181,7 @@ def test_sample(name: str) -> None:
 
 def test_wheel_runs_keep_one_patch_of_changing_shape() -> None:
     for batch in batches_of("W"):
-        contact = contact_of(batch, {"method": {"tangential": "none"}}, 24)
+        contact = contact_of(batch, {"method": {"tangential": "none"}, "friction": None}, 24)
         inputs = batch.inputs()
         _, results = contact.time_steps(inputs, [True] * len(inputs), 1)
         patches = [result["right"]["patches"] for result in results]

@@ -34,7 +34,7 @@ COMMON: dict[str, Feature] = {
     "normal hertz": {"method__normal": "hertz"},
     "normal kik_piotrowski": {"method__normal": "kik_piotrowski"},
     "normal analyn": {"method__normal": "analyn"},
-    "tangential none": {"method__tangential": "none"},
+    "tangential none": {"method__tangential": "none", "friction": None},
     "tangential linear": {"method__tangential": "linear"},
     "tangential polach": {"method__tangential": "polach"},
     "tangential fastsim": {"method__tangential": "fastsim"},
@@ -114,6 +114,8 @@ OF_PATCHES: dict[str, Feature] = {
         "motion__regime": "none",
         "motion__creepage": None,
         "motion__spin_creepage": None,
+        "motion__rolling_speed": None,
+        "friction": None,
     },
     "shift": {"motion__regime": "shift", "motion__creepage": [1e-5, 3e-6]},
     "transient": {

@@ -2,7 +2,8 @@
 
 Every key of the schema is changed on every kind, method, regime and law. The change shows in the
 numbers of the results, or the case is refused by a text that names the key, or the key stands in
-IDLE with the reason why it does nothing there. One key at a time on base cases, and on pairs of
+IDLE with the reason why it does nothing there. That a method, regime or law does not read a key is
+no reason: such a key is refused. One key at a time on base cases, and on pairs of
 features: some here, all in `make test-long`.
 """
 
@@ -24,6 +25,7 @@ from case_samples import with_values
 from railpatch import _core
 from railpatch.case import to_core
 from railpatch.case.load import KINDS
+from railpatch.case.theories import READERS
 from railpatch.case.types import Table
 
 Case = dict[str, Any]
@@ -32,7 +34,7 @@ Case = dict[str, Any]
 
 SMALL = {"patch": {"elements": [8, 8]}, "wheels": {"element_size": [1.6e-3, 1.6e-3]}}
 # tangential methods and regimes differ by what they read; these are not worth a base of their own
-LEFT_OUT = {"derivatives", "element size", "elements", "no motion"}
+LEFT_OUT = {"derivatives", "element size", "elements"}
 # a wheel that is as warm as the rail or nearly so, in place of one that is warmer than the contact
 ALONE = {"temperature": {"wheel": 22.0, "rail": 20.0, "exchange": True}}
 LOADED = {"wheelset__z": None, "wheelset__vertical_force": 1.2e5}
@@ -343,7 +345,7 @@ def has_tangential(case: Case) -> bool:
 
 
 def varies_along(case: Case) -> bool:
-    text = str(case.get("track"))
+    text = of_own_side(case, "track")
     return any(word in text for word in ("running_surface", "joint", "sections", "irregularity"))
 
 
@@ -377,20 +379,20 @@ def other_side(case: Case, path: str, value: Any) -> bool:
     return get(case, "wheel.side", "right") != path.split(".")[1]
 
 
+def of_own_side(case: Case, table: str) -> str:
+    """What a table says of the sides that have a wheel."""
+    other = {"left": "right", "right": "left"}[get(case, "wheel.side", "right")]
+    dropped = other if case["kind"] == "wheel_rail" else ""
+    return str({key: value for key, value in case[table].items() if key != dropped})
+
+
 def needs_no_length(case: Case, path: str, value: Any) -> bool:
     return not varies_along(case) and not get(case, "friction.along_track")
 
 
 def runs_round(case: Case, path: str, value: Any) -> bool:
-    return "runout" not in str(case) and "flat" not in str(case["wheelset"])
-
-
-def steady(case: Case, path: str, value: Any) -> bool:
-    return get(case, "motion.regime") is None and get(case, "track.rail_support") is None
-
-
-def fast_with_own_spin(case: Case, path: str, value: Any) -> bool:
-    return get(case, "method.tangential") == "polach"
+    own = of_own_side(case, "wheelset")
+    return "runout" not in own and "flat" not in own.replace("flange", "")
 
 
 def bound_by_default(case: Case, path: str, value: Any) -> bool:
@@ -405,7 +407,7 @@ def spin_by_default(case: Case, path: str, value: Any) -> bool:
     if get(case, "method.spin_offset") is not None:
         return False
     steps = get(case, "method.tangential", "full") == "full" and not get(case, "grid.fitted")
-    rolls = get(case, "motion.regime") != "shift"
+    rolls = get(case, "motion.regime") not in ("shift", "none")
     layer = get(case, "layer.thickness", 0.0) > 0
     return value == ("quarter" if steps and rolls and not layer else "none")
 
@@ -417,51 +419,61 @@ def untouched(case: Case, path: str, value: Any) -> bool:
     return not any(step[side]["patches"] for step in steps_of(contact, case))
 
 
+def yields(case: Case) -> bool:
+    return any(get(case, f"layer.{key}") for key in ("yield_stress", "hardening_table"))
+
+
+def closed(case: Case, path: str, value: Any) -> bool:
+    if case["kind"] != "patch" or get(case, "method.normal") != "hertz":
+        return False
+    method = get(case, "method.tangential", "full")
+    return get(case, "grid.fitted") is not None or method in ("linear", "polach", "table")
+
+
 def still(case: Case, path: str, value: Any) -> bool:
     return get(case, "motion.rolling_speed") == 0
 
 
-def forgets(case: Case, path: str, value: Any) -> bool:
-    return get(case, "friction.memory_distance", 0.0) == 0
+def without_spin(case: Case, path: str, value: Any) -> bool:
+    turning = ("wheelset.speed", "wheelset.pitch_rate", "wheelset.yaw_rate")
+    turning += ("track.roller_pitch_rate",)
+    return case["kind"] != "patch" and not any(get(case, key) for key in turning)
 
 
+# keys of [method] that only rolling reads
+OF_ROLLING = [f"method.{name}" for name in ("tangential", "spin_offset", *READERS)]
 IDLE = [
+    Idle("grid", closed, "closed forms have no elements: the text of [grid] says so", ()),
     Idle("method.max_iterations", nowhere, "a limit that these cases do not reach"),
     Idle("method.tolerance", nowhere, "what is solved better than asked for stays as it is"),
     Idle("grid.max_elements", nowhere, "room for more than these cases need"),
     Idle("wheelset.max_patches", nowhere, "room for more than these cases need"),
     Idle("profiles.smoothing", nowhere, "of profile files; built-in profiles are formulas"),
-    *(
-        Idle(table, without_tangential, "the tangential problem is left out by the method", ())
-        for table in ("friction", "layer", "motion", "temperature")
-    ),
+    Idle("motion", without_tangential, "how bodies move, even where nothing sticks to them", ()),
     *(
         Idle(key, still, "where nothing rolls there is no micro-slip and no traction", ())
-        for key in ("friction", "layer", "motion", "method.tangential")
+        for key in ("friction", "layer", "motion", *OF_ROLLING)
     ),
-    Idle("friction.memory_speed", forgets, "nothing is remembered", ("slip velocity",)),
-    *(
-        Idle(f"method.{key}", without_tangential, "the tangential problem is left out", names)
-        for key, names in (
-            ("percent_kalker", ("tangential fastsim",)),
-            ("traction_bound", ("tangential fastsim",)),
-            ("flexibility_blending", ("tangential fastsim",)),
-            ("polach_k_a", ("tangential polach",)),
-            ("polach_k_s", ("tangential polach",)),
-            ("fastsim_k0", ("tangential fastsim",)),
-            ("fastsim_alpha", ("modified fastsim",)),
-            ("fastsim_beta", ("modified fastsim",)),
-            ("spin_offset", ()),
-        )
-    ),
-    Idle("grid.fitted", without_tangential, "rows are those of the tangential problem", ()),
+    Idle("method.spin_offset", without_spin, "wheels that do not turn have no spin", ()),
     Idle(
-        "method.spin_offset",
-        fast_with_own_spin,
-        "Polach's theory takes the spin of the whole patch",
-        (),
+        "method.flexibility_blending",
+        without_spin,
+        "full sliding has no flexibility",
+        ("tangential fastsim",),
     ),
     Idle("method.spin_offset", spin_by_default, "the one that is taken anyway", ()),
+    Idle(
+        "method.tangential",
+        lambda c, k, v: get(c, "motion.regime") == "none",
+        "without motion none is taken anyway",
+        (),
+    ),
+    Idle(
+        "friction",
+        lambda c, k, v: get(c, "method.tangential") == "linear",
+        "says where the linear theory ends, in the status alone",
+        (),
+    ),
     Idle(
         "method.fastsim_beta",
         lambda c, k, v: get(c, "method.fastsim_alpha", 1.0) == 1.0,
@@ -520,7 +532,7 @@ IDLE = [
     ),
     Idle(
         "friction",
-        lambda c, k, v: get(c, "layer.yield_stress") and get(c, "friction.law") == "slip_velocity",
+        lambda c, k, v: yields(c),
         "the layer yields before friction is reached",
         (),
     ),
@@ -532,7 +544,6 @@ IDLE = [
     ),
     Idle("wheelset.x", needs_no_length, "nothing varies along the track", ("joint",)),
     Idle("wheelset.pitch", runs_round, "the wheels are round", ("runout",)),
-    Idle("wheelset.time_step", steady, "each step stands alone", ("transient",)),
 ]
 
 
@@ -559,8 +570,9 @@ def differs(a: dict[str, Any], b: dict[str, Any]) -> bool:
     return not all(same(a[key], b[key]) for key in a)
 
 
-# what the solver spent is not what it found; fields would hide what no number of the result shows
-SPENT = ("iterations", "residual", "evaluations", "ambiguous")
+# what the solver spent is not what it found, nor what it thinks of its errors; fields would hide
+# what no number of the result shows
+SPENT = ("iterations", "residual", "evaluations", "ambiguous", "error_estimate")
 OF_FIELDS = ("temperature.depth",)
 
 

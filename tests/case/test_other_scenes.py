@@ -55,5 +55,5 @@ def test_a_theory_that_cannot_have_the_scenes_friction(tmp_path: Path):
     file.write_text(text.replace(old, law))
     ran = invoke("vehicle", file, "--method", "fastsim", "--duration", 0.01)
     assert ran.exit_code == 2
-    allowed = "value is 'fastsim', allowed 'full' with friction.law"
+    allowed = "value is 'fastsim', allowed 'full' with friction.law = 'slip_velocity'"
     assert ran.stderr == f"Error: --method fastsim: method.tangential: {allowed}\n"

@@ -37,7 +37,11 @@ LAYER = {"shear_modulus": 1e9, "thickness": 1e-5, "yield_stress": 1e8}
         ({"motion__regime": "transient_rolling"}, "wheelset.time_step: value is 0.0"),
         ({**TRANSIENT, "grid": {"elements": [20, 20]}}, "grid.element_size: value is missing"),
         ({**TRANSIENT, "method__tangential": "fastsim"}, "method.tangential: value is 'fastsim'"),
-        ({**TRANSIENT, "layer": LAYER}, "layer: value is one that yields"),
+        (
+            {"wheelset__right": {"flat": {"depth": 2e-5, "rounding": 6e-3}}},
+            "wheelset.right.flat.rounding: value is 0.006, allowed <= 0.00286, a third of the",
+        ),
+        ({**TRANSIENT, "layer": LAYER}, "layer.yield_stress: value is given"),
         ({**TRANSIENT, "temperature": {}}, "temperature: value is given"),
         ({"motion__regime": "shift"}, "motion.regime: value is 'shift'"),
     ],

@@ -52,7 +52,7 @@ def test_the_readme_case_is_accepted(tmp_path: Path) -> None:
 
 
 def test_one_number_stands_for_both_bodies() -> None:
-    ratios = with_values(PATCH, material__poisson_ratio=[0.31, 0.28], motion=None)
+    ratios = with_values(PATCH, material__poisson_ratio=[0.31, 0.28], motion=None, friction=None)
     case = load_scene(ratios).case
     assert case.material.shear_modulus == [82e9, 82e9]
     assert case.material.poisson_ratio == [0.31, 0.28]

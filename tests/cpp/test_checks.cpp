@@ -244,9 +244,19 @@ TEST_F(Checks, PointsOfTablesIncrease) {
 }
 
 TEST_F(Checks, FrictionLaws) {
+  const auto remembers = [](double distance, double speed) {
+    return [=](rp_config &c) {
+      c.friction_memory_distance = distance;
+      c.friction_memory_speed = speed;
+    };
+  };
   const auto law = [](rp_friction_law l) { return [l](rp_config &c) { c.friction_law = l; }; };
   accepts(law(RP_SLIP_VELOCITY));
+  refuses("friction_memory_distance must be 0 with friction_law = coulomb", remembers(1e-3, 1e-3));
   base.friction_law = RP_SLIP_VELOCITY;
+  accepts(remembers(1e-3, 0.02));
+  refuses("friction_memory_speed must be 0.001 with friction_memory_distance = 0",
+          remembers(0, 0.02));
   const char *grid = "friction_law must be coulomb but with tangential = full and no fitted rows";
   refuses(grid, [](rp_config &c) { c.tangential = RP_TANGENTIAL_FASTSIM; });
   refuses(grid, [](rp_config &c) { c.fitted[0] = c.fitted[1] = 8; });
@@ -354,6 +364,21 @@ TEST_F(Checks, Regimes) {
           [](rp_config &c) { c.temperature = 1; });
   refuses("needs equal (1-2nu)/G of both bodies", [](rp_config &c) { c.poisson_ratio[0] = 0.1; });
   accepts([](rp_config &c) { c.spin_offset = RP_SPIN_OFFSET_SIXTH; });
+}
+
+TEST_F(Checks, SpinIsReadAtElements) {
+  for (const rp_spin_offset offset : {RP_SPIN_OFFSET_SIXTH, RP_SPIN_OFFSET_QUARTER}) {
+    base.spin_offset = offset;
+    for (const rp_tangential_method reads :
+         {RP_TANGENTIAL_FULL, RP_TANGENTIAL_FASTSIM, RP_TANGENTIAL_FASTRIP})
+      accepts([&](rp_config &c) { c.tangential = reads; });
+    for (const rp_tangential_method sums : {RP_TANGENTIAL_LINEAR, RP_TANGENTIAL_POLACH})
+      refuses("spin_offset must be automatic or none where tangential gives no tractions",
+              [&](rp_config &c) { c.tangential = sums; });
+    const char *without = "spin_offset must be automatic or none without a tangential problem";
+    refuses(without, [](rp_config &c) { c.tangential = RP_TANGENTIAL_NONE; });
+    refuses(without, [](rp_config &c) { c.regime = RP_REGIME_NONE; });
+  }
 }
 
 TEST_F(Checks, FastTheories) {
@@ -498,6 +523,9 @@ TEST_F(Checks, Distances) {
   base.distance_shape[0] = base.distance_shape[1] = 3;
   base.undeformed_distance = gap.data();
   accepts();
+  for (int k = 0; k < 2; ++k)
+    refuses("max_elements must be 0 with undeformed_distance: distance_shape is the grid",
+            [k](rp_config &c) { c.max_elements[k] = 8; });
   refuses("distance_shape[0] is 2", [](rp_config &c) { c.distance_shape[0] = 2; });
   gap[8] = 1.001;
   refuses("undeformed_distance[8] is 1.001", [](rp_config &) {});

@@ -146,7 +146,7 @@ def test_no_contact_is_exit_code_0(tmp_path: Path) -> None:
 
 
 def test_explain_tells_what_is_left_out(tmp_path: Path) -> None:
-    ran = run(tmp_path, with_values(PATCH, method__tangential="none"), "explain")
+    ran = run(tmp_path, with_values(PATCH, method__tangential="none", friction=None), "explain")
     assert ran.exit_code == 0
     rows = {line.split()[0]: line.split()[1:] for line in ran.stdout.splitlines() if line.strip()}
     assert rows["tangential"][0] == "no"

@@ -58,11 +58,12 @@ PLAIN: dict[str, dict[str, Any]] = {
     },
     "fitted rows": {"grid": {"fitted": [10, 10]}, "method__normal": "hertz"},
     "Hertz": {"method__normal": "hertz"},
-    "frictionless": {"method__tangential": "none"},
-    "no motion": {"motion": {"regime": "none"}},
+    "frictionless": {"method__tangential": "none", "friction": None},
+    "no motion": {"motion": {"regime": "none"}, "friction": None},
     "unlike, frictionless": {
         "material__shear_modulus": [82e9, 2e9],
         "method__tangential": "none",
+        "friction": None,
     },
     **{
         theory: {"method": {"normal": "hertz", "tangential": theory}}
@@ -205,7 +206,11 @@ def test_no_contact_ends_early(name: str) -> None:
     [
         (with_values(PATCH, **PLAIN["no motion"]), "tangential", "regime = none"),
         (with_values(PATCH, **PLAIN["frictionless"]), "tangential", "tangential = none"),
-        (with_values(WHEELSET, method__tangential="none"), "tangential", "tangential = none"),
+        (
+            with_values(WHEELSET, method__tangential="none", friction=None),
+            "tangential",
+            "tangential = none",
+        ),
         (with_values(PATCH, **PLAIN["table"]), "influence", "neither"),
         (with_values(PATCH, **PLAIN["Hertz"]), "influence", "tangential = full"),
         (with_values(PATCH, **PLAIN["frictionless"]), "influence", "normal = half_space"),
@@ -249,5 +254,6 @@ def test_plane_reference_holds_nothing_of_the_curved_one() -> None:
     for stage in ("influence", "coupling", "geometry"):
         assert curved[stage]["bytes"] > plain[stage]["bytes"], stage
     # without friction there is nothing to go round
-    normal = stages_of(railpatch.Contact(with_values(curved_case, method__tangential="none")))
+    calm = with_values(curved_case, method__tangential="none", friction=None)
+    normal = stages_of(railpatch.Contact(calm))
     assert not normal["coupling"]["present"]

@@ -49,6 +49,8 @@ def assert_same(one: railpatch.Result, two: railpatch.Result, scale: float, rel:
 @pytest.mark.parametrize("tangential", ["none", *railpatch._core.THEORIES, "full"])
 def test_step_equals_solve_of_the_changed_case(geometry: dict[str, Any], tangential: str) -> None:
     case = with_values(PATCH, geometry=geometry, method__tangential=tangential)
+    if tangential == "none":
+        case = with_values(case, friction=None)
     if tangential == "linear":  # it holds below saturation only
         case = with_values(case, friction__coefficient=10.0)
     contact = railpatch.Contact(case)
@@ -291,7 +293,9 @@ def test_threads_with_handles_of_their_own() -> None:
 
 
 def test_stages_tell_reason_memory_and_time() -> None:
-    contact = railpatch.Contact(with_values(PATCH, method__tangential="none"), timing=True)
+    contact = railpatch.Contact(
+        with_values(PATCH, method__tangential="none", friction=None), timing=True
+    )
     contact.step()
     stages = {stage["name"]: stage for stage in contact.stages()}
     assert list(stages) == [

@@ -137,7 +137,7 @@ SCENES: dict[str, dict[str, Any]] = {
     "flat": with_values(
         RAIL,
         wheelset__z=3e-4,
-        wheelset__left__flat={"depth": 1e-4, "rounding": 0.01},
+        wheelset__left__flat={"depth": 1e-4, "rounding": 6e-3},
         track__right__joint={"position": 0.5, "depth": 1e-4},
     ),
 }

@@ -21,6 +21,7 @@ def wheel_case(method: str, **values: Any) -> dict[str, Any]:
         WHEELSET,
         method={"normal": method, "tangential": "none"},
         grid__element_size=[2e-4, 2e-4],
+        friction=None,
         **values,
     )
 
@@ -50,6 +51,7 @@ def test_load_is_met(method: str, tangential: str) -> None:
     case = with_values(
         WHEELSET,
         method={"normal": method, "tangential": tangential},
+        friction=None if tangential == "none" else WHEELSET["friction"],
         wheelset__y=1e-3,
         wheelset__z=None,
         wheelset__vertical_force=1.2e5,

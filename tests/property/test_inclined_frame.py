@@ -28,7 +28,7 @@ def case(frame: str, **method: object) -> dict:
         "track": {"kind": "roller", "roller_radius": ROLLER, "roller_pitch_rate": 5.587302},
         "profiles": {"wheel": "cone@1:20", "rail": "arc@0.3"},
         "grid": {"element_size": [4e-4, 4e-4]},
-        "friction": {"coefficient": 0.5},
+        **({} if method.get("tangential") == "none" else {"friction": {"coefficient": 0.5}}),
         "method": {"contact_frame": frame, "tolerance": 1e-8, **method},
     }
 

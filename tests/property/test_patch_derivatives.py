@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import railpatch
+from case_samples import with_values
 from patch_cases import patch_case
 from railpatch import _core
 from railpatch.errors import CaseError
@@ -71,10 +72,13 @@ def random_case(rng: np.random.Generator) -> tuple[dict[str, Any], dict[str, Any
         derivatives=True,
         normal="hertz" if hertz else "half_space",
         spin_offset="sixth" if rng.random() < 0.2 else "automatic",
-        **({"tangential": "none"} if rng.random() < 0.1 else {}),
     )
+    if rng.random() < 0.1:
+        case = with_values(case, layer=None, method__spin_offset=None, method__tangential="none")
     if shape in ("semi_axes", "curvatures") and rng.random() < 0.3:
         case["friction"]["factor"] = [[-3e-3, 0.7], [1e-3, 1.2], [3e-3, 0.9]]
+    if case["method"].get("tangential") == "none":
+        del case["friction"]
     load = "approach" if position else "normal_force"
     scales = {
         load: case["load"][load],

@@ -102,7 +102,11 @@ def case_of(track: str, side: str, elements: int, **method: Any) -> dict[str, An
 
 def at_height(case: dict[str, Any], **method: Any) -> dict[str, Any]:
     wheelset = {k: v for k, v in case["wheelset"].items() if k != "vertical_force"}
-    return {**case, "wheelset": {**wheelset, "z": 0.0}, "method": {**case["method"], **method}}
+    found = {**case, "wheelset": {**wheelset, "z": 0.0}, "method": {**case["method"], **method}}
+    if method.get("tangential") == "none":
+        del found["friction"]
+        found["method"].pop("flexibility_blending", None)
+    return found
 
 
 def power(result: Any, state: State) -> float:

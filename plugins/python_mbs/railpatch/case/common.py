@@ -7,10 +7,11 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from railpatch.case.choice import least_error
-from railpatch.case.friction import Friction, check_increasing
-from railpatch.case.theories import FAST, READERS, blends_as_contact
+from railpatch.case.friction import Friction, increasing
+from railpatch.case.theories import FAST, READERS, blends_as_contact, has_tractions
 from railpatch.case.types import (
     BODIES,
+    LEFT_OUT,
     CapacityPair,
     Celsius,
     CountPair,
@@ -18,12 +19,14 @@ from railpatch.case.types import (
     FittedPair,
     HardeningTable,
     Modulus,
+    Problems,
     Table,
     between,
     exactly_one,
     key,
     of_bodies,
     one_of,
+    refuse,
     relation,
 )
 
@@ -67,13 +70,16 @@ class Grid(Table):
     def _one_way(self) -> Grid:
         if self.fitted is None or self.elements or self.element_size:
             exactly_one(self, ("elements", "element_size"))
-        if self.max_elements is not None and self.element_size is None:
-            raise relation("max_elements", str(self.max_elements), "only with element_size")
-        if self.fitted is not None and self.fitted[0] < 3:
-            raise relation("fitted", str(self.fitted), "3 to 64 nodes along rolling")
-        if self.fitted is not None and self.fitted[0] * self.fitted[1] > MAX_FITTED_NODES:
-            raise relation("fitted", str(self.fitted), f"{MAX_FITTED_NODES} nodes in all")
+        refuse(self._problems())
         return self
+
+    def _problems(self) -> Problems:
+        if self.max_elements is not None and self.element_size is None:
+            yield relation("max_elements", str(self.max_elements), "only with element_size")
+        if self.fitted is not None and self.fitted[0] < 3:
+            yield relation("fitted", str(self.fitted), "3 to 64 nodes along rolling")
+        if self.fitted is not None and self.fitted[0] * self.fitted[1] > MAX_FITTED_NODES:
+            yield relation("fitted", str(self.fitted), f"{MAX_FITTED_NODES} nodes in all")
 
 
 class Layer(Table):
@@ -106,23 +112,26 @@ class Layer(Table):
 
     @model_validator(mode="after")
     def _plastic(self) -> Layer:
+        refuse(self._problems())
+        return self
+
+    def _problems(self) -> Problems:
         if self.thickness > 0 and self.shear_modulus is None:
-            raise relation("shear_modulus", "missing", "a number with thickness > 0")
+            yield relation("shear_modulus", "missing", "a number with thickness > 0")
         if self.hardening_table is not None:
             for name in ("yield_stress", "hardening"):
                 if getattr(self, name) is not None:
-                    raise relation(name, getattr(self, name), "to be left out with hardening_table")
-            check_increasing("hardening_table", self.hardening_table)
+                    yield relation(name, getattr(self, name), f"{LEFT_OUT} with hardening_table")
+            yield from increasing("hardening_table", self.hardening_table)
             if self.hardening_table[0][0] != 0:
                 shown = str(self.hardening_table[0])
-                raise relation("hardening_table", shown, "a first displacement of 0")
+                yield relation("hardening_table", shown, "a first displacement of 0")
         elif self.hardening is not None and self.yield_stress is None:
-            raise relation("hardening", self.hardening, "only with yield_stress")
+            yield relation("hardening", self.hardening, "only with yield_stress")
         for name in () if self.is_plastic else ("plastic_rule", "plastic_heat_fraction"):
             if getattr(self, name) != type(self).model_fields[name].default:
                 shown = repr(getattr(self, name))
-                raise relation(name, shown, "only with yield_stress or hardening_table")
-        return self
+                yield relation(name, shown, "only with yield_stress or hardening_table")
 
     @property
     def is_plastic(self) -> bool:
@@ -133,6 +142,12 @@ class Layer(Table):
 def has_layer(layer: Layer | None) -> bool:
     """Whether there is a layer of some thickness, or one that yields."""
     return layer is not None and (layer.thickness > 0 or layer.is_plastic)
+
+
+def yields_by(layer: Layer | None) -> str:
+    """The key that lets a layer yield."""
+    by_table = layer is not None and layer.hardening_table is not None
+    return f"layer.{'hardening_table' if by_table else 'yield_stress'}"
 
 
 class Temperature(Table):
@@ -229,17 +244,20 @@ class Method(Table):
 
     @model_validator(mode="after")
     def _read_by_theory(self) -> Method:
-        if self.tangential == "none":
-            return self
+        refuse(self._unread())
+        return self
+
+    def _unread(self) -> Problems:
+        where = f"with tangential = {self.tangential!r}"
         for name, readers in READERS.items():
             value = getattr(self, name)
             if self.tangential not in readers and value != type(self).model_fields[name].default:
                 allowed = " or ".join(f"'{reader}'" for reader in readers)
-                raise relation(name, repr(value), f"only with tangential = {allowed}")
-        if self.flexibility_blending == "contact" and not blends_as_contact(self.tangential):
-            allowed = f"'sliding' or 'none' with tangential = {self.tangential!r}"
-            raise relation("flexibility_blending", "'contact'", allowed)
-        return self
+                yield relation(name, repr(value), f"only with tangential = {allowed}")
+            elif value == "contact" and not blends_as_contact(self.tangential):
+                yield relation(name, repr(value), f"'sliding' or 'none' {where}")
+        if self.tangential == "none" or not has_tractions(self.tangential):
+            yield from check_spin_offset(self, where, table="")
 
 
 def check_physics(
@@ -248,12 +266,13 @@ def check_physics(
     heat: Temperature | None,
     grid: Grid | None,
     method: Method,
-) -> None:
+) -> Problems:
     """Where the inelastic laws and temperature belong: the full theory on the uniform grid."""
+    law = "" if friction is None else f" = {friction.law!r}"
     asked = {
-        "friction.law": friction is not None and friction.law != "coulomb",
+        f"friction.law{law}": friction is not None and friction.law != "coulomb",
         "friction.factor": friction is not None and friction.factor is not None,
-        "layer.yield_stress": layer is not None and layer.is_plastic,
+        yields_by(layer): layer is not None and layer.is_plastic,
         "temperature": heat is not None,
     }
     for asking, needed in asked.items():
@@ -261,68 +280,85 @@ def check_physics(
             continue
         if method.tangential != "full":
             shown = repr(method.tangential)
-            raise relation("method.tangential", shown, f"'full' with {asking}")
+            yield relation("method.tangential", shown, f"'full' with {asking}")
         if grid is not None and grid.fitted is not None:
-            raise relation("grid.fitted", str(grid.fitted), f"to be left out with {asking}")
+            yield relation("grid.fitted", str(grid.fitted), f"{LEFT_OUT} with {asking}")
         if method.accuracy is not None:
-            allowed = f"to be left out with {asking}: give 'grid'"
-            raise relation("method.accuracy", method.accuracy, allowed)
+            allowed = f"{LEFT_OUT} with {asking}: give 'grid'"
+            yield relation("method.accuracy", method.accuracy, allowed)
     if layer is not None and heat is None:
         fraction = Layer.model_fields["plastic_heat_fraction"].default
         if layer.plastic_heat_fraction != fraction:
             shown = layer.plastic_heat_fraction
-            raise relation("layer.plastic_heat_fraction", shown, "only with [temperature]")
+            yield relation("layer.plastic_heat_fraction", shown, "only with [temperature]")
     if friction is not None and friction.law == "temperature" and heat is None:
-        raise relation("temperature", "missing", "the table [temperature] with this friction law")
+        yield relation("temperature", "missing", "the table [temperature] with this friction law")
 
 
 def without_friction(content: dict[str, Any]) -> dict[str, Any]:
     """The content of a case for a first estimate: without tangential problem and what belongs to it
     alone."""
+    method = {k: v for k, v in content["method"].items() if k not in OF_TANGENTIAL}
+    grid = content["grid"]
+    if grid is not None:
+        grid = {**grid, "fitted": None}
+    counted = grid is not None and (grid["elements"] or grid["element_size"])
     return {
         **content,
-        "method": {**content["method"], "tangential": "none"},
-        "temperature": None,
+        **dict.fromkeys(PHYSICS),
+        "grid": grid if counted else None,
+        "method": {**method, "tangential": "none"},
     }
 
 
-def check_unheated(heat: Temperature | None) -> None:
-    """Without friction nothing heats the surfaces."""
-    if heat is not None:
-        raise relation("method.tangential", "'none'", "'full' with temperature")
+# tables, and keys of [method], that belong to the tangential problem alone
+PHYSICS = ("friction", "layer", "temperature")
+OF_TANGENTIAL = ("spin_offset", *READERS)
+
+
+def check_left_out(case: Any, why: str) -> Problems:
+    """What nothing reads in a scene without tangential problem. why: it has none."""
+    for name in PHYSICS:
+        if getattr(case, name) is not None:
+            yield relation(name, "given", f"{LEFT_OUT} {why}")
+    if case.grid is not None and case.grid.fitted is not None:
+        allowed = f"{LEFT_OUT} {why}: rows are those of the tangential problem"
+        yield relation("grid.fitted", str(case.grid.fitted), allowed)
+    yield from check_spin_offset(case.method, why, table="method.")
+    if case.method.tangential not in ("full", "none"):
+        yield relation("method.tangential", repr(case.method.tangential), f"{LEFT_OUT} {why}")
 
 
 def check_accuracy(
     grid: Grid | None, method: Method, *, ellipse: bool = False, line: bool = False
-) -> None:
+) -> Problems:
     """What a wanted accuracy is not combined with, and theories that do not reach it."""
     if method.accuracy is None:
         return
     key, shown = "method.accuracy", repr(method.accuracy)
     if grid is not None:
-        raise relation(key, f"{shown} and grid is given", "exactly one of 'accuracy' and 'grid'")
+        yield relation(key, f"{shown} and grid is given", "exactly one of 'accuracy' and 'grid'")
     if line:
-        raise relation(key, shown, "to be left out with a line contact: give 'grid'")
-    check_spin_offset(method, "with accuracy")
+        yield relation(key, shown, f"{LEFT_OUT} with a line contact: give 'grid'")
+    yield from check_spin_offset(method, "with accuracy")
     least = least_error(method, ellipse=ellipse)
     if method.accuracy < least:
         theories = f"normal = '{method.normal}' and tangential = '{method.tangential}'"
         known = f">= {least:g}, what {theories} reach"
-        raise relation(key, shown, known if least < 1 else f"to be left out with {theories}")
+        yield relation(key, shown, known if least < 1 else f"{LEFT_OUT} with {theories}")
 
 
-def check_fitted(grid: Grid | None, method: Method, *, line: bool = False) -> None:
+def check_fitted(grid: Grid | None, method: Method, *, line: bool = False) -> Problems:
     """What rows fitted to the contact area are not combined with."""
-    if grid is None or grid.fitted is None:
+    if grid is None or grid.fitted is None or method.tangential == "none":
         return
-    # a scene whose tangential problem is left out for a while keeps its rows
-    if method.tangential not in ("full", "none"):
-        raise relation("grid.fitted", str(grid.fitted), "tangential = 'full', or no fitted rows")
-    check_spin_offset(method, "with grid.fitted")
+    if method.tangential != "full":
+        yield relation("grid.fitted", str(grid.fitted), "tangential = 'full', or no fitted rows")
+    yield from check_spin_offset(method, "with grid.fitted")
     if line and grid.fitted[1] != 1:
-        raise relation("grid.fitted", str(grid.fitted), "[n, 1] with a line contact")
+        yield relation("grid.fitted", str(grid.fitted), "[n, 1] with a line contact")
     if not line and grid.fitted[1] < 3:
-        raise relation("grid.fitted", str(grid.fitted), "3 to 64 rows")
+        yield relation("grid.fitted", str(grid.fitted), "3 to 64 rows")
 
 
 def check_reference(
@@ -332,51 +368,46 @@ def check_reference(
     heat: Temperature | None,
     grid: Grid | None,
     method: Method,
-) -> None:
+) -> Problems:
     """What a curved reference surface is not combined with."""
     if method.reference_surface == "plane":
         return
     with_it = "with reference_surface = 'curved'"
     if method.normal != "half_space":
-        raise relation("method.normal", repr(method.normal), f"'half_space' {with_it}")
+        yield relation("method.normal", repr(method.normal), f"'half_space' {with_it}")
     if method.tangential not in ("full", "none"):
-        raise relation("method.tangential", repr(method.tangential), f"'full' or 'none' {with_it}")
+        yield relation("method.tangential", repr(method.tangential), f"'full' or 'none' {with_it}")
     if method.accuracy is not None:
-        raise relation("method.accuracy", method.accuracy, f"to be left out {with_it}: give 'grid'")
+        yield relation("method.accuracy", method.accuracy, f"{LEFT_OUT} {with_it}: give 'grid'")
     if grid is not None and grid.fitted is not None:
-        raise relation("grid.fitted", str(grid.fitted), f"to be left out {with_it}")
+        yield relation("grid.fitted", str(grid.fitted), f"{LEFT_OUT} {with_it}")
     if heat is not None:
-        raise relation("temperature", "given", f"to be left out {with_it}")
+        yield relation("temperature", "given", f"{LEFT_OUT} {with_it}")
     if method.derivatives:
-        raise relation("method.derivatives", "True", f"False {with_it}")
+        yield relation("method.derivatives", "True", f"False {with_it}")
     if method.tangential == "none":
         return
     if friction is not None and friction.law != "coulomb":
-        raise relation("friction.law", repr(friction.law), f"'coulomb' {with_it}")
+        yield relation("friction.law", repr(friction.law), f"'coulomb' {with_it}")
     if layer is not None and layer.is_plastic:
-        raise relation("layer.yield_stress", layer.yield_stress, f"to be left out {with_it}")
+        shown = "given" if layer.yield_stress is None else layer.yield_stress
+        yield relation(yields_by(layer), shown, f"{LEFT_OUT} {with_it}")
     if couples(material):
-        raise relation("material", "unlike bodies", f"equal (1 - 2 nu)/G {with_it}")
+        yield relation("material", "unlike bodies", f"equal (1 - 2 nu)/G {with_it}")
 
 
-def check_plane(method: Method) -> None:
+def check_plane(method: Method) -> Problems:
     """Patches given directly have no normals of their own."""
     if method.reference_surface != "plane":
         shown = repr(method.reference_surface)
-        raise relation("method.reference_surface", shown, "'plane' with kind = 'patch'")
+        yield relation("method.reference_surface", shown, "'plane' with kind = 'patch'")
 
 
-def check_table(method: Method) -> None:
-    """What a table of creep forces is not combined with."""
-    if method.tangential == "table":
-        check_spin_offset(method, "with 'table'")
-
-
-def check_spin_offset(method: Method, where: str) -> None:
+def check_spin_offset(method: Method, where: str, table: str = "method.") -> Problems:
     """Only steps on the uniform grid have a place of the spin term that can be chosen."""
     if method.spin_offset not in ("automatic", "none"):
-        allowed = f"'automatic', 'none' {where}"
-        raise relation("method.spin_offset", repr(method.spin_offset), allowed)
+        allowed = f"'automatic', 'none' {where}: no steps from element to element read it"
+        yield relation(f"{table}spin_offset", repr(method.spin_offset), allowed)
 
 
 def check_tangential(
@@ -385,17 +416,19 @@ def check_tangential(
     layer: Layer | None,
     grid: Grid | None,
     method: Method,
-) -> None:
+    regime: str,
+) -> Problems:
     """What a tangential problem needs, and what this version cannot combine."""
     if friction is None:
-        raise relation("friction", "missing", "the table [friction] with 'coefficient'")
-    check_table(method)
+        asking = f"method.tangential = {method.tangential!r} and motion.regime = {regime!r}"
+        allowed = f"the table [friction] with 'coefficient' with {asking}"
+        yield relation("friction", "missing", allowed)
     if method.tangential != "full" and has_layer(layer):
-        raise relation(
+        yield relation(
             "method.tangential", repr(method.tangential), "'full' with a layer of thickness > 0"
         )
     if couples(material):
-        check_coupled(grid, method)
+        yield from check_coupled(grid, method)
 
 
 def couples(material: Material) -> bool:
@@ -405,14 +438,14 @@ def couples(material: Material) -> bool:
     return abs(wheel - rail) > 1e-12 * max(wheel, rail)
 
 
-def check_coupled(grid: Grid | None, method: Method) -> None:
+def check_coupled(grid: Grid | None, method: Method) -> Problems:
     """Bodies whose normal and tangential problem go together: the exact theory on the grid."""
     why = "with unlike (1 - 2 nu)/G of wheel and rail in 'material'"
     if method.tangential != "full":
-        raise relation("method.tangential", repr(method.tangential), f"'full' {why}")
+        yield relation("method.tangential", repr(method.tangential), f"'full' {why}")
     if method.normal != "half_space":
-        raise relation("method.normal", repr(method.normal), f"'half_space' {why}")
+        yield relation("method.normal", repr(method.normal), f"'half_space' {why}")
     if grid is not None and grid.fitted is not None:
-        raise relation("grid.fitted", str(grid.fitted), f"to be left out {why}")
+        yield relation("grid.fitted", str(grid.fitted), f"{LEFT_OUT} {why}")
     if method.accuracy is not None:
-        raise relation("method.accuracy", method.accuracy, f"to be left out {why}: give 'grid'")
+        yield relation("method.accuracy", method.accuracy, f"{LEFT_OUT} {why}: give 'grid'")

@@ -11,15 +11,18 @@ from pydantic import Field, model_validator
 
 from railpatch import _core
 from railpatch.case.types import (
+    LEFT_OUT,
     Celsius,
     Number,
     Points,
     Positive,
+    Problems,
     Table,
     between,
     key,
     more_than,
     one_of,
+    refuse,
     relation,
 )
 
@@ -98,6 +101,11 @@ class Friction(Table):
 
     @model_validator(mode="after")
     def _by_law(self) -> Friction:
+        refuse(self._keys_of_law())
+        refuse(self._values())
+        return self
+
+    def _keys_of_law(self) -> Problems:
         needed, optional = KEYS[self.law]
         if self.law == "slip_velocity":
             needed = SHAPES[self.shape]
@@ -106,42 +114,44 @@ class Friction(Table):
             allowed.add("shape")
         for name in needed:
             if getattr(self, name) is None:
-                raise relation(name, "missing", f"a number with {self._named()}")
+                yield relation(name, "missing", f"a number with {self._named()}")
         for name, field in type(self).model_fields.items():
             if name not in allowed and getattr(self, name) != field.default:
                 shown = repr(getattr(self, name))
-                raise relation(name, shown, f"to be left out with {self._named()}")
+                yield relation(name, shown, f"{LEFT_OUT} with {self._named()}")
+        if self.memory_distance == 0 and "memory_speed" in allowed:
+            least = type(self).model_fields["memory_speed"].default
+            if self.memory_speed != least:
+                why = "only with memory_distance > 0: nothing is remembered without"
+                yield relation("memory_speed", self.memory_speed, why)
         for name in ("factor", "along_track"):
-            if getattr(self, name) is not None:
-                check_increasing(name, getattr(self, name))
-        self._check_values()
-        return self
+            yield from increasing(name, getattr(self, name) or ())
 
     def _named(self) -> str:
         shape = f" and shape = '{self.shape}'" if self.law == "slip_velocity" else ""
         return f"law = '{self.law}'{shape}"
 
-    def _check_values(self) -> None:
+    def _values(self) -> Problems:
         if len(self.terms[0]) != len(self.terms[1]):
             shown = str(self.halving_speed)
-            raise relation("halving_speed", shown, "as many numbers as amplitude")
+            yield relation("halving_speed", shown, "as many numbers as amplitude")
         if self.law == "slip_velocity" and self.shape != "polach":
             assert self.kinetic is not None
             if self.kinetic + sum(min(a, 0.0) for a in self.terms[0]) < 0:
                 shown = str(self.amplitude)
-                raise relation("amplitude", shown, "a law that does not fall below 0")
+                yield relation("amplitude", shown, "a law that does not fall below 0")
         if self.law == "temperature":
             assert self.reference is not None
             assert self.change is not None
             if not 0 <= self.reference + self.change <= 10:
-                raise relation("change", self.change, "reference + change within 0 ... 10")
+                yield relation("change", self.change, "reference + change within 0 ... 10")
         for name in ("factor", "along_track"):
             points = getattr(self, name)
             if (
                 points is not None
                 and not 0 <= min(v for _, v in points) <= max(v for _, v in points) <= 100
             ):
-                raise relation(name, str(points), "factors within 0 ... 100")
+                yield relation(name, str(points), "factors within 0 ... 100")
 
     @property
     def terms(self) -> tuple[list[float], list[float]]:
@@ -189,8 +199,8 @@ def as_list(value: float | list[float] | None) -> list[float]:
     return value if isinstance(value, list) else [] if value is None else [value]
 
 
-def check_increasing(name: str, points: Sequence[Sequence[float]]) -> None:
-    """Raises where the first numbers of the pairs do not increase."""
+def increasing(name: str, points: Sequence[Sequence[float]]) -> Problems:
+    """Where the first numbers of the pairs do not increase."""
     places = [place for place, _ in points]
     if any(b <= a for a, b in itertools.pairwise(places)):
-        raise relation(name, str(points), "pairs with increasing first numbers")
+        yield relation(name, str(points), "pairs with increasing first numbers")

@@ -34,6 +34,11 @@ def problems(model: type[BaseModel], error: ValidationError, prefix: str = "") -
         # of the union path | rows only the branch that was meant is of use
         if item["loc"][-1:] == ("str",) and isinstance(item["input"], list):
             continue
+        if item["type"] == "relations":
+            loc = tuple(item["loc"])
+            each = [{"type": "relation", "loc": loc, "ctx": c} for c in item["ctx"]["found"]]
+            found += dict.fromkeys(problem(model, one, prefix) for one in each)
+            continue
         text = problem(model, item, prefix)
         # the branches of a union report the same key several times
         if text.split(":")[0] not in {line.split(":")[0] for line in found}:

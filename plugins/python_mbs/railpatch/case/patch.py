@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Annotated, Literal
 
@@ -18,24 +19,27 @@ from railpatch.case.common import (
     Temperature,
     check_accuracy,
     check_fitted,
+    check_left_out,
     check_physics,
     check_plane,
     check_spin_offset,
     check_tangential,
-    check_unheated,
     couples,
 )
 from railpatch.case.types import (
+    LEFT_OUT,
     Curvatures,
     ForcePair,
     Pair,
     Pairs,
     Positive,
+    Problems,
     SemiAxes,
     Shift,
     Table,
     exactly_one,
     key,
+    refuse,
     relation,
 )
 
@@ -118,6 +122,8 @@ class Motion(Table):
     @property
     def moving(self) -> tuple[str, ...]:
         """Creepages and forces as they are prescribed; distance and steps where they count."""
+        if self.regime == "none":
+            return ()
         keys = ["creepage", "spin_creepage", "rolling_speed", "direction"]
         if all(self.prescribed):
             keys.remove("creepage")
@@ -139,15 +145,24 @@ class Motion(Table):
         return [0.0 if force == "creepage" else force for force in self.tangential_force or (0, 0)]
 
     @model_validator(mode="after")
-    def _by_regime(self) -> Motion:
+    def _of_each_other(self) -> Motion:
+        refuse(itertools.chain(self._by_regime(), self._by_step(), self._by_force()))
+        return self
+
+    def _by_regime(self) -> Problems:
         rolls = self.regime == "transient_rolling"
         if rolls and self.distance is None:
-            raise relation("distance", "missing", "a number > 0 with regime = 'transient_rolling'")
+            yield relation("distance", "missing", "a number > 0 with regime = 'transient_rolling'")
         if not rolls and self.distance is not None:
-            raise relation("distance", self.distance, "only with regime = 'transient_rolling'")
+            yield relation("distance", self.distance, "only with regime = 'transient_rolling'")
         if not rolls and self.regime != "shift" and self.steps is not None:
-            raise relation("steps", self.steps, "only with regime = 'transient_rolling' or 'shift'")
-        return self
+            yield relation("steps", self.steps, "only with regime = 'transient_rolling' or 'shift'")
+        if self.regime != "none":
+            return
+        for name in ("creepage", "direction", "spin_creepage", "rolling_speed"):
+            value = getattr(self, name)
+            if value != type(self).model_fields[name].default:
+                yield relation(name, str(value), f"{LEFT_OUT} with regime = 'none'")
 
     @property
     def creepages(self) -> list[list[float]]:
@@ -156,30 +171,26 @@ class Motion(Table):
             return [list(pair) for pair in self.creepage if isinstance(pair, list)]
         return [[float(value) for value in self.creepage if not isinstance(value, list)]]
 
-    @model_validator(mode="after")
-    def _one_creepage_a_step(self) -> Motion:
+    def _by_step(self) -> Problems:
         count = len(self.creepages)
         if count > 1 and count != (self.steps or 1):
-            raise relation("creepage", f"{count} pairs", f"one pair, or steps = {self.steps} pairs")
-        return self
+            yield relation("creepage", f"{count} pairs", f"one pair, or steps = {self.steps} pairs")
 
-    @model_validator(mode="after")
-    def _one_of_force_and_creepage(self) -> Motion:
+    def _by_force(self) -> Problems:
         if self.tangential_force is None:
-            return self
+            return
         for pair in self.creepages:
             for prescribed, creepage in zip(self.prescribed, pair, strict=True):
                 if not prescribed or creepage == 0:
                     continue
                 shown = str(self.creepage)
-                raise relation("creepage", shown, "0 where tangential_force gives the force")
+                yield relation("creepage", shown, "0 where tangential_force gives the force")
         if not any(self.prescribed):
-            raise relation(
+            yield relation(
                 "tangential_force", str(self.tangential_force), "at least one force in N"
             )
         if not self.rolling_speed > 0:
-            raise relation("rolling_speed", self.rolling_speed, "> 0 with tangential_force")
-        return self
+            yield relation("rolling_speed", self.rolling_speed, "> 0 with tangential_force")
 
 
 class PatchCase(Table):
@@ -190,7 +201,9 @@ class PatchCase(Table):
     geometry: Geometry = Field(description="shape of the undeformed bodies (m, 1/m)")
     load: Load = Field(description="normal force (N) or approach (m)")
     grid: Grid | None = Field(
-        default=None, description="elements (-, m); left out: 24 across the contact"
+        default=None,
+        description="elements (-, m); left out: 24 across the contact. Hertz's ellipse with a "
+        "theory that gives no tractions, or with fitted rows, has none and reads none",
     )
     motion: Motion = Field(
         default=Motion(regime="none"), description="relative motion (-, rad/m, m/s)"
@@ -216,62 +229,86 @@ class PatchCase(Table):
 
     @model_validator(mode="after")
     def _relations(self) -> PatchCase:
+        refuse(
+            itertools.chain(
+                self._check_physics(),
+                self._check_of_wheels(),
+                self._check_shape(),
+            )
+        )
+        return self
+
+    def _check_physics(self) -> Problems:
         if self.has_tangential:
-            check_tangential(self.material, self.friction, self.layer, self.grid, self.method)
-            check_physics(self.friction, self.layer, self.temperature, self.grid, self.method)
-            self._check_regime()
-        elif self.temperature is not None and self.method.tangential != "none":
-            allowed = "'steady_rolling' or 'transient_rolling' with temperature"
-            raise relation("motion.regime", repr(self.motion.regime), allowed)
+            yield from check_tangential(
+                self.material,
+                self.friction,
+                self.layer,
+                self.grid,
+                self.method,
+                self.motion.regime,
+            )
+            yield from check_physics(
+                self.friction, self.layer, self.temperature, self.grid, self.method
+            )
+            yield from self._check_regime()
         else:
-            check_unheated(self.temperature)
+            none = "motion.regime" if self.motion.regime == "none" else "method.tangential"
+            yield from check_left_out(self, f"with {none} = 'none'")
+        if any(self.motion.prescribed):
+            yield from self._check_force()
+
+    def _check_of_wheels(self) -> Problems:
+        """Keys that patches given directly have not."""
         if self.friction is not None and self.friction.along_track is not None:
             shown = str(self.friction.along_track)
-            raise relation("friction.along_track", shown, "to be left out with kind = 'patch'")
-        if any(self.motion.prescribed):
-            self._check_force()
+            yield relation("friction.along_track", shown, f"{LEFT_OUT} with kind = 'patch'")
         for name in WHEEL_METHOD:
             value = getattr(self.method, name)
             if value is not None:
-                raise relation(f"method.{name}", repr(value), "only with wheels")
-        line = self.geometry.line_contact_radius is not None
-        check_fitted(self.grid, self.method, line=line)
-        check_plane(self.method)
-        ellipse = not line and self.geometry.undeformed_distance is None
-        check_accuracy(self.grid, self.method, ellipse=ellipse, line=line)
-        if ellipse and self.method.accuracy is not None:
-            self._check_ratio()
-        if line:
-            self._check_line()
-        gap = self.geometry.undeformed_distance
-        if gap is not None and self.method.accuracy is not None:
-            raise relation(
-                "method.accuracy",
-                self.method.accuracy,
-                "to be left out with geometry.undeformed_distance: give 'grid'",
-            )
-        if gap is not None and (self.grid is None or self.grid.element_size is None):
-            raise relation(
-                "grid.element_size", "missing", "[dx, dy] in m with geometry.undeformed_distance"
-            )
-        if gap is not None and self.method.normal == "hertz":
-            raise relation(
-                "method.normal",
-                "'hertz'",
-                "'half_space', 'kik_piotrowski' or 'analyn' with undeformed_distance",
-            )
-        return self
+                yield relation(f"method.{name}", repr(value), "only with wheels")
+        yield from check_plane(self.method)
 
-    def _check_ratio(self) -> None:
+    def _check_shape(self) -> Problems:
+        """What the shape is not combined with, and what it needs."""
+        line = self.geometry.line_contact_radius is not None
+        gap = self.geometry.undeformed_distance is not None
+        ellipse = not line and not gap
+        yield from check_fitted(self.grid, self.method, line=line)
+        if not gap:
+            yield from check_accuracy(self.grid, self.method, ellipse=ellipse, line=line)
+        if ellipse and self.method.accuracy is not None:
+            yield from self._check_ratio()
+        if line:
+            yield from self._check_line()
+        if gap:
+            yield from self._check_gap()
+
+    def _check_gap(self) -> Problems:
+        """What an undeformed distance needs: its own grid."""
+        where = "with geometry.undeformed_distance"
+        if self.method.accuracy is not None:
+            allowed = f"{LEFT_OUT} {where}: give 'grid'"
+            yield relation("method.accuracy", self.method.accuracy, allowed)
+        if self.grid is None or self.grid.element_size is None:
+            yield relation("grid.element_size", "missing", f"[dx, dy] in m {where}")
+        elif self.grid.max_elements is not None:
+            allowed = f"{LEFT_OUT} {where}: its rows and columns are the grid"
+            yield relation("grid.max_elements", str(self.grid.max_elements), allowed)
+        if self.method.normal == "hertz":
+            allowed = "'half_space', 'kik_piotrowski' or 'analyn' with undeformed_distance"
+            yield relation("method.normal", "'hertz'", allowed)
+
+    def _check_ratio(self) -> Problems:
         """Where the errors that an accuracy is chosen by were measured."""
         ratio = axis_ratio(self)
         low, high = RATIOS
         if ratio is not None and not low * (1 - 1e-9) <= ratio <= high * (1 + 1e-9):
             shown = f"{self.method.accuracy!r} with a/b = {ratio:.3g}"
             allowed = f"a/b of {low:g} ... {high:g}; for others give 'grid'"
-            raise relation("method.accuracy", shown, allowed)
+            yield relation("method.accuracy", shown, allowed)
 
-    def _check_regime(self) -> None:
+    def _check_regime(self) -> Problems:
         """What shift and transient rolling need: a grid that is fixed in the contact frame."""
         regime = self.motion.regime
         if regime == "shift":
@@ -280,36 +317,36 @@ class PatchCase(Table):
                 ("temperature", self.temperature is not None),
             ):
                 if asked:
-                    raise relation("motion.regime", "'shift'", f"a regime that rolls with {key}")
+                    yield relation("motion.regime", "'shift'", f"a regime that rolls with {key}")
         if regime == "steady_rolling":
             return
         by_heat = self.friction is not None and self.friction.law == "temperature"
         if by_heat and couples(self.material):
             allowed = "'steady_rolling' with friction.law = 'temperature' and unlike (1 - 2 nu)/G"
-            raise relation("motion.regime", f"'{regime}'", f"{allowed} in 'material'")
+            yield relation("motion.regime", f"'{regime}'", f"{allowed} in 'material'")
         if self.method.tangential != "full":
             shown = repr(self.method.tangential)
-            raise relation("method.tangential", shown, f"'full' with regime = '{regime}'")
+            yield relation("method.tangential", shown, f"'full' with regime = '{regime}'")
         if self.grid is not None and self.grid.fitted is not None:
             shown = str(self.grid.fitted)
-            raise relation("grid.fitted", shown, f"to be left out with regime = '{regime}'")
+            yield relation("grid.fitted", shown, f"{LEFT_OUT} with regime = '{regime}'")
         if regime == "shift":
-            check_spin_offset(self.method, f"with regime = '{regime}'")
+            yield from check_spin_offset(self.method, f"with regime = '{regime}'")
         if self.method.accuracy is not None:
-            shown = f"to be left out with regime = '{regime}': give 'grid'"
-            raise relation("method.accuracy", self.method.accuracy, shown)
+            shown = f"{LEFT_OUT} with regime = '{regime}': give 'grid'"
+            yield relation("method.accuracy", self.method.accuracy, shown)
         sized = self.grid is not None and self.grid.element_size and self.grid.max_elements
         if self.geometry.curvatures is not None and not sized:
             allowed = f"element_size and max_elements with curvatures and regime = '{regime}'"
-            raise relation("grid", "another", allowed)
+            yield relation("grid", "another", allowed)
 
-    def _check_force(self) -> None:
+    def _check_force(self) -> Problems:
         """What a prescribed tangential force needs."""
         if self.motion.regime == "none":
-            raise relation("motion.regime", "'none'", "a regime of motion with tangential_force")
+            yield relation("motion.regime", "'none'", "a regime of motion with tangential_force")
         if self.method.tangential != "full":
             shown = repr(self.method.tangential)
-            raise relation("method.tangential", shown, "'full' with motion.tangential_force")
+            yield relation("method.tangential", shown, "'full' with motion.tangential_force")
         if self.load.normal_force is None or self.friction is None:
             return
         most = self.friction.greatest_anywhere * self.load.normal_force
@@ -318,19 +355,19 @@ class PatchCase(Table):
             plain = self.friction.law == "coulomb" and self.friction.factor is None
             which = "friction.coefficient" if plain else "the greatest friction coefficient"
             allowed = f"at most {which} * load.normal_force = {most:g} N in magnitude"
-            raise relation("motion.tangential_force", shown, allowed)
+            yield relation("motion.tangential_force", shown, allowed)
 
-    def _check_line(self) -> None:
+    def _check_line(self) -> Problems:
         """What a line contact is not combined with."""
         if self.load.approach is not None:
-            raise relation("load.approach", self.load.approach, "normal_force with a line contact")
+            yield relation("load.approach", self.load.approach, "normal_force with a line contact")
         if self.method.normal in ("kik_piotrowski", "analyn"):
             shown = f"'{self.method.normal}'"
-            raise relation("method.normal", shown, "'half_space' or 'hertz' with a line contact")
+            yield relation("method.normal", shown, "'half_space' or 'hertz' with a line contact")
         if self.has_tangential and self.method.tangential != "full":
-            raise relation(
+            yield relation(
                 "method.tangential", repr(self.method.tangential), "'full' with a line contact"
             )
         elements = self.grid and self.grid.elements
         if elements and elements[1] != 1:
-            raise relation("grid.elements", str(elements), "[n, 1] with a line contact")
+            yield relation("grid.elements", str(elements), "[n, 1] with a line contact")

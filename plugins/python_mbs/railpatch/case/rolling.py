@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from railpatch.case.common import couples
+from railpatch.case.common import couples, yields_by
 from railpatch.case.types import (
+    LEFT_OUT,
     SIDES,
     Number,
+    Problems,
     Table,
     between,
     exactly,
@@ -32,8 +35,14 @@ class Flat(Table):
         default=0.0, description="rad, the wheelset's pitch at which its middle is lowest"
     )
     rounding: Annotated[float, between(5e-4, 0.05)] = Field(
-        default=5e-3, description="m, length over which each end is rounded"
+        default=5e-3,
+        description="m, length over which each end is rounded, at most a third of the flat's "
+        "length; left out: 0.005, or that third where it is less",
     )
+
+    def length(self, radius: float) -> float:
+        """m, of the chord."""
+        return 2 * math.sqrt(self.depth * (2 * radius - self.depth))
 
 
 class Joint(Table):
@@ -117,34 +126,52 @@ def shape_keys(case: Any) -> list[str]:
     ]
 
 
-def check_rolling(case: Any) -> None:
+def check_flat(case: Any, side: str) -> Problems:
+    """Rounded ends that would overlap."""
+    flat = getattr(case.wheelset, side).flat
+    if flat is None or flat.rounding == Flat.model_fields["rounding"].default:
+        return
+    most = flat.length(case.wheelset.nominal_radius) / 3
+    if flat.rounding > most * (1 + 1e-9):
+        allowed = f"<= {most:.4g}, a third of the flat's length"
+        yield relation(f"wheelset.{side}.flat.rounding", flat.rounding, allowed)
+
+
+def check_rolling(case: Any) -> Problems:
     """What transient rolling and shapes along x are not combined with."""
     shaped = shape_keys(case)
+    for side in case.sides:
+        yield from check_flat(case, side)
     if shaped and case.method.normal != "half_space":
-        raise relation(shaped[0], "given", "only with method.normal = 'half_space'")
+        yield relation(shaped[0], "given", "only with method.normal = 'half_space'")
     curved = case.method.reference_surface != "plane"
     if shaped and curved:
-        raise relation(shaped[0], "given", "only with method.reference_surface = 'plane'")
+        yield relation(shaped[0], "given", "only with method.reference_surface = 'plane'")
     heights = [key for key in shaped if key.startswith("track")]
     if heights and case.track.kind == "roller":
-        raise relation(heights[0], "given", "only with track.kind = 'rail'")
+        yield relation(heights[0], "given", "only with track.kind = 'rail'")
     if case.motion.regime == "steady_rolling":
+        if case.wheelset.time_step > 0 and case.track.rail_support is None:
+            allowed = "0 but with motion.regime = 'transient_rolling' or track.rail_support"
+            yield relation("wheelset.time_step", case.wheelset.time_step, allowed)
         return
     where = "with motion.regime = 'transient_rolling'"
     if not case.wheelset.time_step > 0:
-        raise relation("wheelset.time_step", case.wheelset.time_step, f"> 0 {where}")
+        yield relation("wheelset.time_step", case.wheelset.time_step, f"> 0 {where}")
     if case.method.tangential != "full":
-        raise relation("method.tangential", repr(case.method.tangential), f"'full' {where}")
+        yield relation("method.tangential", repr(case.method.tangential), f"'full' {where}")
     if curved:
-        raise relation("method.reference_surface", "'curved'", f"'plane' {where}")
-    if case.grid is None or case.grid.element_size is None or case.grid.fitted is not None:
-        raise relation("grid.element_size", "missing", f"a size, and no fitted rows, {where}")
+        yield relation("method.reference_surface", "'curved'", f"'plane' {where}")
+    if case.grid is not None and case.grid.fitted is not None:
+        yield relation("grid.fitted", str(case.grid.fitted), f"{LEFT_OUT} {where}")
+    if case.grid is None or case.grid.element_size is None:
+        yield relation("grid.element_size", "missing", f"[dx, dy] in m {where}")
     if case.friction is not None and case.friction.law == "temperature":
         shown = repr(case.friction.law)
-        raise relation("friction.law", shown, f"'coulomb' or 'slip_velocity' {where}")
+        yield relation("friction.law", shown, f"'coulomb' or 'slip_velocity' {where}")
     if case.layer is not None and case.layer.is_plastic:
-        raise relation("layer", "one that yields", f"an elastic layer {where}")
+        yield relation(yields_by(case.layer), "given", f"an elastic layer {where}")
     if case.temperature is not None:
-        raise relation("temperature", "given", f"to be left out {where}")
+        yield relation("temperature", "given", f"{LEFT_OUT} {where}")
     if couples(case.material):
-        raise relation("material", "unlike bodies", f"equal (1 - 2 nu)/G {where}")
+        yield relation("material", "unlike bodies", f"equal (1 - 2 nu)/G {where}")

@@ -7,6 +7,7 @@ compares all.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
@@ -185,11 +186,28 @@ def twice(value: Any) -> Any:
     return value if isinstance(value, list) else [value, value]
 
 
+# what a check of several relations gives: one for each that is broken
+Problems = Iterator[PydanticCustomError]
+# of a key that nothing would read
+LEFT_OUT = "none: it must be left out"
+
+
 def relation(key: str, value: Any, allowed: str) -> PydanticCustomError:
-    """Error of a relation between keys; the key is relative to the table that raises it."""
+    """Error of a relation between keys; the key is relative to the table that raises it. Checks
+    of several relations give all that are broken, for refuse()."""
     return PydanticCustomError(
         "relation", "relation", {"key": key, "shown": value, "allowed": allowed}
     )
+
+
+def refuse(found: Iterable[PydanticCustomError]) -> None:
+    """Raises one error for all problems of a table's keys, if there are any."""
+    problems = list(found)
+    if len(problems) == 1:
+        raise problems[0]
+    if problems:
+        known = {"found": [problem.context for problem in problems]}
+        raise PydanticCustomError("relations", "relations", known)
 
 
 def exactly_one(table: BaseModel, names: tuple[str, ...]) -> None:

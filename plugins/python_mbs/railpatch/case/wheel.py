@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
@@ -15,24 +16,27 @@ from railpatch.case.common import (
     Temperature,
     check_accuracy,
     check_fitted,
+    check_left_out,
     check_physics,
     check_reference,
     check_tangential,
-    check_unheated,
 )
 from railpatch.case.rails import RailSupport, Sections, check_sections
 from railpatch.case.rolling import RailShape, WheelMotion, WheelShape, check_rolling
 from railpatch.case.types import (
+    LEFT_OUT,
     SIDES,
     AngleVector,
     Number,
     Pair,
+    Problems,
     ShiftVector,
     Table,
     Vector,
     exactly_one,
     key,
     one_of,
+    refuse,
     relation,
 )
 from railpatch.profiles import Reading
@@ -295,44 +299,58 @@ class _WheelCase(Table):
         """Whether the scene has a tangential problem."""
         return self.method.tangential != "none"
 
-    def _check_frame(self) -> None:
+    def _check_frame(self) -> Problems:
         if self.method.contact_frame != "inclined":
             return
         if self.track.kind != "roller":
-            raise relation("method.contact_frame", "'inclined'", "'track' with kind = 'rail'")
+            yield relation("method.contact_frame", "'inclined'", "'track' with kind = 'rail'")
         if self.method.reference_surface != "plane":
             shown = repr(self.method.reference_surface)
             where = "with contact_frame = 'inclined'"
-            raise relation("method.reference_surface", shown, f"'plane' {where}")
+            yield relation("method.reference_surface", shown, f"'plane' {where}")
 
     @model_validator(mode="after")
     def _relations(self) -> _WheelCase:
+        refuse(itertools.chain(self._check_physics(), self._check_profiles()))
+        return self
+
+    def _check_physics(self) -> Problems:
         if self.has_tangential:
-            check_tangential(self.material, self.friction, self.layer, self.grid, self.method)
-            check_physics(self.friction, self.layer, self.temperature, self.grid, self.method)
+            yield from check_tangential(
+                self.material,
+                self.friction,
+                self.layer,
+                self.grid,
+                self.method,
+                self.motion.regime,
+            )
+            yield from check_physics(
+                self.friction, self.layer, self.temperature, self.grid, self.method
+            )
         else:
-            check_unheated(self.temperature)
-        check_fitted(self.grid, self.method)
-        check_accuracy(self.grid, self.method)
-        check_reference(
+            yield from check_left_out(self, "with method.tangential = 'none'")
+        yield from check_fitted(self.grid, self.method)
+        yield from check_accuracy(self.grid, self.method)
+        yield from check_reference(
             self.material, self.friction, self.layer, self.temperature, self.grid, self.method
         )
-        check_rolling(self)
-        self._check_frame()
+        yield from check_rolling(self)
+        yield from self._check_frame()
+
+    def _check_profiles(self) -> Problems:
         for body in ("wheel", "rail"):
-            self._check_read(body)
+            yield from self._check_read(body)
         for side in self.sides:
             for body in ("wheel", "rail"):
                 key, value = self.profiles.of(body, side)
                 if body == "rail" and getattr(self.track, side).sections is not None:
-                    self._check_sections(key, value)
+                    yield from self._check_sections(key, value)
                 elif value is None:
-                    raise relation(
+                    yield relation(
                         f"profiles.{key}", "missing", f"'{key}', or '{body}' for both sides"
                     )
-        return self
 
-    def _check_read(self, body: Literal["wheel", "rail"]) -> None:
+    def _check_read(self, body: Literal["wheel", "rail"]) -> Problems:
         """What is said of files is said of some."""
         names = [self.profiles.of(body, side)[1] for side in self.sides]
         if body == "rail":
@@ -342,14 +360,14 @@ class _WheelCase(Table):
         table = getattr(self.profiles, f"{body}_file")
         if table is not None and not files:
             shown = table.model_dump(exclude_none=True)
-            raise relation(f"profiles.{body}_file", shown, f"with a file as {body} profile")
+            yield relation(f"profiles.{body}_file", shown, f"with a file as {body} profile")
 
-    def _check_sections(self, key: str, value: str | None) -> None:
+    def _check_sections(self, key: str, value: str | None) -> Problems:
         """A rail has one profile or sections."""
         every = all(getattr(self.track, side).sections is not None for side in self.sides)
         if value is not None and (every or key != "rail"):
-            allowed = "to be left out where the track's rail has 'sections'"
-            raise relation(f"profiles.{key}", repr(value), allowed)
+            allowed = f"{LEFT_OUT} where the track's rail has 'sections'"
+            yield relation(f"profiles.{key}", repr(value), allowed)
 
 
 class WheelRailCase(_WheelCase):

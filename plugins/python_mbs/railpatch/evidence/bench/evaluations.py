@@ -63,7 +63,9 @@ def height(grid: dict[str, Any]) -> float:
 
 def at_height(grid: dict[str, Any], method: dict[str, Any]) -> Any:
     """The scene with z prescribed."""
-    fixed = {"wheelset": {"vertical_force": None, "z": height(grid)}}
+    fixed: dict[str, Any] = {"wheelset": {"vertical_force": None, "z": height(grid)}}
+    if method.get("tangential") == "none":
+        fixed["friction"] = None
     return load_scene(merged(wheel_scene(grid, method), fixed))
 
 

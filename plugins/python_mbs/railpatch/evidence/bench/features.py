@@ -67,7 +67,7 @@ FEATURES: tuple[tuple[str, dict[str, Any]], ...] = (
     ("transient rolling, a step", {"motion": ROLLING}),
     ("the same, layer that yields", {"motion": ROLLING, "layer": YIELDING}),
     ("the same, temperature", {"motion": ROLLING, "layer": YIELDING, "temperature": WARM}),
-    ("frictionless", {"method": {"tangential": "none"}}),
+    ("frictionless", {"friction": None, "method": {"tangential": "none"}}),
 )
 
 

@@ -82,7 +82,10 @@ def of_theory(
     """Errors of one theory on some grids."""
     features, errors = [], []
     for elements in grids:
-        overrides: dict[str, Any] = {"method": {"tangential": "none", "normal": normal}}
+        overrides: dict[str, Any] = {
+            "friction": None,
+            "method": {"tangential": "none", "normal": normal},
+        }
         if normal != "half_space":
             overrides.update(room(batch, int(elements)))
         contact = contact_of(batch, overrides, int(elements))

@@ -296,8 +296,8 @@ def fine_truth(batch: Batch, overrides: Mapping[str, Any]) -> Floats:
 def fine_pressure(batch: Batch) -> float:
     """Greatest pressure over its scale; near kinks it scatters from grid to grid."""
     step = batch.take(np.array([0]))
-    method = {"method": {"tangential": "none", "tolerance": 1e-7}}
-    results = [contact_of(step, method, n).step(step.inputs()[0]) for n in PRESSURE]
+    overrides = {"friction": None, "method": {"tangential": "none", "tolerance": 1e-7}}
+    results = [contact_of(step, overrides, n).step(step.inputs()[0]) for n in PRESSURE]
     return float(np.mean(steps_of(batch.take(np.zeros(len(PRESSURE), int)), results).pressure))
 
 
