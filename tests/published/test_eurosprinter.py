@@ -11,12 +11,25 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import railpatch
+import scipy.special
 from patch_cases import Line, check, patch_case, solve
 from published_data import numbers
 
 FORCE, FRICTION, SPEED = 106.7e3, 0.33, 10.0
 A, B = 6.304e-3, 12.607e-3
 FULL_THEORY = 0.01  # of F_n
+ELEMENT = [1.1 * 2 * A / 48, 1.1 * 2 * B / 44]
+EXTENDED = {
+    "friction": {
+        "law": "slip_velocity",
+        "kinetic": 0.14,
+        "amplitude": 0.19,
+        "halving_speed": 1.25,
+        "memory_distance": 3e-6,
+        "memory_speed": 1e-3,
+    },
+    "layer": {"shear_modulus": 8.2e9, "thickness": 1.25e-3},
+}
 SIMPLIFIED = 0.02  # of F_n: the flexibilities there are blended, and the grid is not known
 
 
@@ -81,19 +94,12 @@ def test_extended_model(curve: list[dict[str, float]]) -> None:
     case = patch_case(
         {"semi_axes": [A, B]},
         force=FORCE,
-        element_size=[1.1 * 2 * A / 48, 1.1 * 2 * B / 44],
+        element_size=ELEMENT,
         creepage=[0.0, 0.0],
         speed=SPEED,
-        layer={"shear_modulus": 8.2e9, "thickness": 1.25e-3},
+        layer=EXTENDED["layer"],
     )
-    case["friction"] = {
-        "law": "slip_velocity",
-        "kinetic": 0.14,
-        "amplitude": 0.19,
-        "halving_speed": 1.25,
-        "memory_distance": 3e-6,
-        "memory_speed": 1e-3,
-    }
+    case["friction"] = EXTENDED["friction"]
     contact = railpatch.Contact(case)
     lines = []
     for creepage, target in zip(creepages, wanted, strict=True):
@@ -102,3 +108,47 @@ def test_extended_model(curve: list[dict[str, float]]) -> None:
         found = result["creep_force"][0] / FORCE
         lines.append(Line(f"creepage {creepage:.4f}", found, target, 0.02 * max(wanted)))
     check(lines)
+
+
+def test_extended_model_on_a_wheel(curve: list[dict[str, float]]) -> None:
+    """The locomotive's wheel, a cylinder of 625 mm, on a crown that gives it the same ellipse."""
+    # Hertz: the curvatures' ratio by that of the axes (Johnson 1985, eq. 4.28)
+    long, short = scipy.special.ellipk(0.75), scipy.special.ellipe(0.75)
+    radius, ratio = 0.625, (4 * short - long) / (long - short)
+    case = {
+        "kind": "wheel_rail",
+        "grid": {"element_size": ELEMENT},
+        "wheelset": {
+            "vertical_force": FORCE,
+            "speed": SPEED,
+            "pitch_rate": -SPEED / radius,
+            "nominal_radius": radius,
+            "flange_back_distance": 1.36,
+            "flange_back_position": -0.07,
+        },
+        "track": {"gauge": 1.435},
+        "profiles": {"wheel": "cylinder", "rail": f"arc@{ratio * radius:.6f}"},
+        **EXTENDED,
+    }
+    at_rest = railpatch.solve(case)
+    assert at_rest["patches"][0]["contact_area"] == pytest.approx(np.pi * A * B, rel=0.02)
+    del case["wheelset"]["vertical_force"]
+    case["wheelset"]["z"] = at_rest["z"]
+    contact = railpatch.Contact(case)
+    lines = []
+    for row in curve[::5]:
+        creepage = -row["extended_creepage"]
+        # rolling speed is the mean of wheel's and rail's
+        step = {
+            "speed": SPEED * (1 + creepage / 2),
+            "pitch_rate": -SPEED * (1 - creepage / 2) / radius,
+        }
+        result = contact.step(**step)
+        assert result.status == "converged"
+        patch = result["patches"][0]
+        assert patch["creepage"][0] == pytest.approx(creepage, abs=2e-3 * abs(creepage) + 1e-7)
+        assert patch["rolling_speed"] == pytest.approx(SPEED, rel=1e-3)
+        found = patch["creep_force"][0] / FORCE
+        lines.append(Line(f"creepage {creepage:.4f}", found, row["extended_force"], 0.0))
+    most = max(row["extended_force"] for row in curve)
+    check([Line(one.scene, one.value, one.target, 0.02 * most) for one in lines])
