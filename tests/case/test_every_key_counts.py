@@ -53,15 +53,18 @@ SHALLOW = {
 
 
 def features(kind: str) -> dict[str, dict[str, Any]]:
-    """By name; those whose base case is refused fall out of themselves."""
+    """By name; pairs whose case is refused fall out of themselves."""
     own = OF_PATCHES if kind == "patch" else OF_WHEELS
     found = {name: f for name, f in {**COMMON, **own}.items() if name not in LEFT_OUT}
     if kind != "patch":
         found |= {name: {**LOADED, **shape} for name, shape in SHALLOW.items()}
         found["curve"] = {**LOADED, **found["curve"]}
         found["roller"] = {**found["roller"], "wheelset__yaw": 4e-3}
+        found["inclined frame"] = {**found["roller"], **found["inclined frame"]}
         found["flange"] = TWO_AREAS
         found["patch rule"] = {**TWO_AREAS, "method__patch_rule": "contact"}
+    if kind == "wheelset":
+        del found["other side"]
     return {**found, "temperature": ALONE, "warm wheel": HEAT}
 
 
@@ -690,7 +693,8 @@ def test_keys_of_all_pairs(names: tuple[str, ...]) -> None:
 
 
 def test_how_much_is_looked_at(capsys: pytest.CaptureFixture[str]) -> None:
-    """Values of keys by kind, methods, regime and law, without solving any."""
+    """Values of keys by kind, methods, regime and law, without solving any: no base case is
+    refused."""
     seen: set[tuple[str, ...]] = set()
     keys: set[tuple[str, str]] = set()
     for names in SINGLE:
@@ -699,6 +703,7 @@ def test_how_much_is_looked_at(capsys: pytest.CaptureFixture[str]) -> None:
             if others(path, field, value):
                 seen.add((path, *traits(case)))
                 keys.add((case["kind"], path))
+        railpatch.case.load_scene(case)
     bases = {traits(with_features(*names)) for names in SINGLE}
     with capsys.disabled():
         print(
@@ -707,3 +712,8 @@ def test_how_much_is_looked_at(capsys: pytest.CaptureFixture[str]) -> None:
         )
     assert len(keys) > 180
     assert len(seen) > 2500
+    # each as often as the schema allows, with every theory and law
+    theories = {"none", *railpatch._core.THEORIES, "full"}
+    assert {base[2] for base in bases} == theories
+    assert {base[4] for base in bases} == set(railpatch._core.CHOICES["friction_law"])
+    assert {base[3] for base in bases} == {"none", "shift", "transient_rolling", "steady_rolling"}
