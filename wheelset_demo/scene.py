@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import Field, model_validator
 from railpatch.case import WheelsetCase
+from railpatch.case.common import without_friction
 from railpatch.case.load import Scene, check_case, check_table, plain, read_toml, refuse_others
 from railpatch.case.types import NotNegative, Positive, Table, relation
 from railpatch.case.wheel import PROFILE_KEYS
@@ -186,9 +187,7 @@ class WheelsetScene(RunScene):
 
     def at_rest(self) -> Scene:
         """The case with the load prescribed and without friction, for a first estimate."""
-        method = self.case.method.model_copy(update={"tangential": "none"})
-        update = {"method": method, "temperature": None}
-        return Scene(self.case.model_copy(update=update), Path())
+        return Scene(check_case(without_friction(self.case.model_dump())), Path())
 
 
 def load_wheelset_scene(
