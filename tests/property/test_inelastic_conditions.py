@@ -56,8 +56,9 @@ def random_case(seed: int) -> dict[str, Any]:
             "amplitude": 0.5 * friction,
             "halving_speed": float(10 ** rng.uniform(0.5, 2.0) * size * speed),
             "memory_distance": float(rng.choice([0.0, 0.1 * a])),
-            "memory_speed": 0.1 * size * speed,
         }
+        if case["friction"]["memory_distance"] > 0:
+            case["friction"]["memory_speed"] = 0.1 * size * speed
     if kind != 1:
         elastic = SHEAR_MODULUS / a
         case["layer"] = {
