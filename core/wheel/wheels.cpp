@@ -11,12 +11,6 @@
 
 namespace railpatch {
 
-namespace {
-
-constexpr int max_searches = 60;
-
-}  // namespace
-
 wheels::wheels(const wheels_setup &setup, const patch_scene &scene, const fft_plans &plans,
                stage_marks marks)
     : driver(scene, plans, setup.largest, marks,
@@ -127,7 +121,7 @@ void wheels::find_z(double target, rp_result &out) {
     depth = cbrt(9.0 * load * load / (16.0 * modulus * modulus * radius));
   }
   force_search search(target, depth, tolerance_);
-  for (int i = 0; i < max_searches; ++i) {
+  for (int i = 0; i < force_search::most_steps; ++i) {
     depth = search.depth();
     const double force = evaluate(touch + depth, out);
     // a creep force outside its theory's range is a force all the same

@@ -1,6 +1,7 @@
 // Searches for fixed points and for depths on functions whose answer is known, and what they take.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -244,6 +245,76 @@ TEST(ForceSearch, OfOtherLawsIsFound) {
     }
     // a bracket of a factor of 30 halved to 1e-8 takes 32, and some steps up come before
     for (const found &f : gentle) EXPECT_LE(f.evaluations, 40) << i;
+  }
+}
+
+// Where one patch becomes two: continuous, but over some nanometres 20 % of the force are added.
+struct steep_rise {
+  double stiffness, from, over, share;
+  double operator()(double depth) const {
+    const double t = std::clamp((depth - from) / over, 0.0, 1.0);
+    const double risen = t * t * t * (10 - t * (15 - 6 * t));
+    return stiffness * std::pow(depth, 1.5) * (1 + share * risen);
+  }
+};
+
+// Evaluations of halving alone, from a bracket that is known.
+template <class Force>
+int halvings(double target, double high, double tolerance, Force &&force) {
+  double low = 0;
+  for (int count = 1;; ++count) {
+    const double middle = 0.5 * (low + high), value = force(middle);
+    if (std::abs(value - target) <= tolerance * target) return count;
+    (value < target ? low : high) = middle;
+  }
+}
+
+// Targets from below the foot of the rise to above its top: dearer than halving by no more than the
+// steps before and those granted, cheaper in the mean.
+TEST(ForceSearch, FindsEveryForceOfASteepRise) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> share(0, 1);
+  int sum = 0, sum_of_halvings = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double at = 1e-4 * (0.3 + 0.7 * share(random));
+    const steep_rise force{5e10, at, std::pow(10.0, -11 + 4 * share(random)), 0.5 * share(random)};
+    const double foot = force(at), top = force(at + force.over);
+    const double target = foot + (1.4 * share(random) - 0.2) * (top - foot);
+    const found f = search(target, at * (0.5 + share(random)), 1e-5, force);
+    EXPECT_TRUE(f.converged) << i << " " << target;
+    const int halved = halvings(target, 2 * at, 1e-5, force);
+    EXPECT_LE(f.evaluations, halved + 8 + 3) << i;
+    sum += f.evaluations;
+    sum_of_halvings += halved;
+  }
+  EXPECT_LT(sum, sum_of_halvings);
+}
+
+// Whatever a force does as it grows, the search ends within the steps it names, and says that
+// there is a jump where there is one: at its place to rounding.
+TEST(ForceSearch, EndsWithinItsBound) {
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (int i = 0; i < 2000; ++i) {
+    double depth[8], rise[8];
+    for (int k = 0; k < 8; ++k) {
+      depth[k] = std::pow(10.0, -9 + 6.5 * share(random));
+      rise[k] = std::pow(10.0, 5 * share(random));
+    }
+    const auto stairs = [&](double d) {
+      double sum = 1e3 * d;
+      for (int k = 0; k < 8; ++k) sum += d > depth[k] ? rise[k] : 0.0;
+      return sum;
+    };
+    const double target = stairs(1e-2) * share(random);
+    const found f = search(target, std::pow(10.0, -9 + 6 * share(random)), 1e-9, stairs,
+                           i % 3 == 0 ? 1e-3 * share(random) : 1.0);
+    EXPECT_LE(f.evaluations, force_search::most_steps) << i;
+    EXPECT_TRUE(f.converged || f.exhausted) << i;
+    if (f.converged || f.too_deep) continue;
+    bool jumps = false;
+    for (const double d : depth) jumps = jumps || std::abs(f.depth - d) <= 1e-11 * d + 1e-15;
+    EXPECT_TRUE(jumps) << i << " " << f.depth;
   }
 }
 
