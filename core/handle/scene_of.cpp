@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "handle/case_fields.hpp"
 #include "handle/check.hpp"
 #include "numeric/elementary.hpp"
 
@@ -170,8 +171,9 @@ grid_size largest_of_patch(const rp_config &c, const patch_scene &scene, const g
   const auto cells = [&](int k) {
     if (k == 1 && c.geometry == RP_LINE_CONTACT) return 1;
     if (!rules.sized) return rules.with_margin(c.elements[k]) + 2;
-    // where nothing says more a square of 128
-    int needed = 130;
+    // where nothing says more a square of 128; one row is no burden, and as long as may be asked
+    const bool line = c.geometry == RP_LINE_CONTACT;
+    int needed = line ? static_cast<int>(config_range::max_elements.high) : 130;
     if (ellipse) {
       const double across = 2.0 * rules.relative_size(unit, k) * c.semi_axes[k];
       const double wanted = std::min(2000.0, std::ceil(across / c.element_size[k]));
@@ -211,7 +213,8 @@ void set_transforms(const rp_config &c, grid_size largest, scene &made) {
   made.transforms[1] = {1};
   if (!made.patch.needs_influence()) return;
   const int n[2] = {2 * largest.nx + 1, largest.ny > 1 ? 2 * largest.ny - 1 : 1};
-  const bool fixed = made.single && !(c.geometry == RP_CURVATURES && c.element_size[0] > 0);
+  const bool by_load = c.geometry == RP_CURVATURES || c.geometry == RP_LINE_CONTACT;
+  const bool fixed = made.single && !(by_load && c.element_size[0] > 0);
   for (int k = 0; k < 2; ++k)
     made.transforms[k] = !fixed     ? ladder(std::min(n[k], 16), n[k])
                          : n[k] > 1 ? std::vector<int>{smooth_size(n[k])}

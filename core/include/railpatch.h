@@ -287,7 +287,9 @@ typedef struct rp_config {
   double element_size[2];  /* m */
   int32_t max_elements[2]; /* with element_size: capacity of one patch's grid, in shift and
                               transient rolling of a patch the grid itself; 0: chosen, and with
-                              undeformed_distance, whose shape is the grid */
+                              undeformed_distance, whose shape is the grid; by curvatures 130,
+                              along a line contact 1002: a contact that needs more is
+                              RP_OUT_OF_RANGE */
   int32_t fitted[2];       /* nodes along rolling and rows of the tangential problem on rows fitted
                               to the contact area, 2304 nodes in all at most; 0: tangential
                               problem on the grid above */

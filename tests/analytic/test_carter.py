@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import railpatch
 from patch_cases import Line, check, modulus, patch_case, solve
 
 RADIUS, WIDTH, FRICTION = 0.5, 1.0, 0.3
@@ -63,6 +64,27 @@ def test_convergence_is_of_first_order() -> None:
     assert np.all((orders > 0.8) & (orders < 1.2)), table
     # two coarse grids extrapolate to the closed form
     assert abs(2 * errors[1] - errors[0]) < 1e-3, table
+
+
+@pytest.mark.parametrize("across", [40, 128, 129, 300])
+def test_elements_of_a_size_are_as_many_as_the_contact_takes(across: int) -> None:
+    """The same grid as by their number, without a word of its capacity: the same force."""
+    counted = case(across, CREEPAGE)
+    sized = {**counted, "grid": {"element_size": [2 * A / across, WIDTH]}}
+    one, other = (solve(c, fields=True) for c in (counted, sized))
+    assert one["status"] == other["status"] == "converged"
+    assert len(one["x"]) == len(other["x"]) == across + 2
+    lines = [Line("force", other["creep_force"][0], one["creep_force"][0], 1e-4 * FRICTION * FORCE)]
+    # of first order, 0.02 at 50 elements
+    force = other["creep_force"][0] / (FRICTION * FORCE * WIDTH)
+    lines.append(Line("Carter", force, 0.64, 0.02 * 0.64 * 50 / across))
+    check(lines)
+
+
+@pytest.mark.parametrize(("across", "status"), [(1000, "converged"), (1010, "out_of_range")])
+def test_finer_grids_than_any_are_out_of_range(across: int, status: str) -> None:
+    sized = patch_case(SHAPE, force=FORCE * WIDTH, element_size=[2 * A / across, WIDTH])
+    assert railpatch.Contact(sized).step()["status"] == status
 
 
 def test_creep_curve() -> None:

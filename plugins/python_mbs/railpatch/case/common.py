@@ -56,7 +56,8 @@ class Grid(Table):
         default=None,
         description="-, with element_size: capacity of one patch's grid [along rolling, lateral], "
         "in shift and transient rolling of a patch the grid itself; left out: chosen from the "
-        "scene",
+        "scene, by curvatures 130, along a line contact 1002; a contact that needs more is "
+        "out_of_range",
     )
 
     fitted: FittedPair | None = Field(
