@@ -101,15 +101,6 @@ double log_axis_ratio(double c0, double c1) {
   return 0.5 * (lower + upper);
 }
 
-struct unit_ellipse {
-  double a, b, rd0, rf;  // semi-axes with a b = 1 and their integrals
-};
-
-unit_ellipse shape(double log_ratio) {
-  const double a = exp(0.5 * log_ratio), b = 1.0 / a;
-  return {a, b, carlson_rd(0, b * b, a * a), carlson_rf(0, a * a, b * b)};
-}
-
 hertz_contact complete(double a, double b, const double curvatures[2], double modulus,
                        double force) {
   const double rf = carlson_rf(0, a * a, b * b);
@@ -122,17 +113,32 @@ hertz_contact complete(double a, double b, const double curvatures[2], double mo
 
 }  // namespace
 
+hertz_shape hertz_shape_of(const double curvatures[2]) {
+  const double a = exp(0.5 * log_axis_ratio(curvatures[0], curvatures[1])), b = 1.0 / a;
+  return {{curvatures[0], curvatures[1]},
+          a,
+          b,
+          carlson_rd(0, b * b, a * a),
+          carlson_rf(0, a * a, b * b)};
+}
+
+hertz_contact hertz_from_force(const hertz_shape &u, double modulus, double force) {
+  const double size = cbrt(force * u.rd0 / (2.0 * pi * modulus * u.curvatures[0]));
+  return complete(size * u.a, size * u.b, u.curvatures, modulus, force);
+}
+
 hertz_contact hertz_from_force(const double curvatures[2], double modulus, double force) {
-  const unit_ellipse u = shape(log_axis_ratio(curvatures[0], curvatures[1]));
-  const double size = cbrt(force * u.rd0 / (2.0 * pi * modulus * curvatures[0]));
-  return complete(size * u.a, size * u.b, curvatures, modulus, force);
+  return hertz_from_force(hertz_shape_of(curvatures), modulus, force);
 }
 
 hertz_contact hertz_from_approach(const double curvatures[2], double modulus, double approach) {
-  const unit_ellipse u = shape(log_axis_ratio(curvatures[0], curvatures[1]));
-  const double size = std::sqrt(approach * u.rd0 / (3.0 * curvatures[0] * u.rf));
-  const double force = 2.0 * pi * modulus * curvatures[0] * size * size * size / u.rd0;
-  return complete(size * u.a, size * u.b, curvatures, modulus, force);
+  return hertz_from_approach(hertz_shape_of(curvatures), modulus, approach);
+}
+
+hertz_contact hertz_from_approach(const hertz_shape &u, double modulus, double approach) {
+  const double size = std::sqrt(approach * u.rd0 / (3.0 * u.curvatures[0] * u.rf));
+  const double force = 2.0 * pi * modulus * u.curvatures[0] * size * size * size / u.rd0;
+  return complete(size * u.a, size * u.b, u.curvatures, modulus, force);
 }
 
 hertz_contact hertz_from_ellipse(const double semi_axes[2], double modulus, double force) {

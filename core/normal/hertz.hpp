@@ -26,6 +26,15 @@ inline double inside_ellipse(const double semi_axes[2], double x, double y) {
   return 1.0 - u * u - v * v;
 }
 
+// What curvatures say of the ellipse without a load: found by bisection, so where they stay as they
+// are it is found once.
+struct hertz_shape {
+  double curvatures[2];  // 1/m
+  double a, b, rd0, rf;  // semi-axes with a b = 1, and their integrals R_D(0, b^2, a^2) and R_F
+};
+hertz_shape hertz_shape_of(const double curvatures[2]);
+hertz_contact hertz_from_force(const hertz_shape &shape, double modulus, double force);
+hertz_contact hertz_from_approach(const hertz_shape &shape, double modulus, double approach);
 hertz_contact hertz_from_force(const double curvatures[2], double modulus, double force);
 hertz_contact hertz_from_approach(const double curvatures[2], double modulus, double approach);
 // The curvatures that give the ellipse under the load.

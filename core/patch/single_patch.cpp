@@ -24,6 +24,7 @@ single_patch::single_patch(const single_patch_setup &setup, const patch_scene &s
     std::copy_n(setup.distance, count, distance_.data());
     setup_.distance = nullptr;
   }
+  if (setup.geometry == RP_CURVATURES) shape_ = hertz_shape_of(setup.curvatures);
   if (!scene.exact) return;
   rates_.emplace();
   rates_->distance = aligned_buffer<double>(count);
@@ -114,8 +115,8 @@ hertz_contact single_patch::hertz_of(const rp_input &in) const {
       return force ? hertz_from_ellipse(setup_.semi_axes, modulus, in.normal_force)
                    : hertz_ellipse_from_approach(setup_.semi_axes, modulus, in.approach);
     case RP_CURVATURES:
-      return force ? hertz_from_force(setup_.curvatures, modulus, in.normal_force)
-                   : hertz_from_approach(setup_.curvatures, modulus, in.approach);
+      return force ? hertz_from_force(shape_, modulus, in.normal_force)
+                   : hertz_from_approach(shape_, modulus, in.approach);
     case RP_LINE_CONTACT:
       return hertz_line(setup_.line_contact_radius, setup_.width, modulus, in.normal_force);
     case RP_UNDEFORMED_DISTANCE:

@@ -52,6 +52,7 @@ class single_patch final : public driver {
   void vary_shape(const rp_input &direction, patch_variation &v);
 
   single_patch_setup setup_;
+  hertz_shape shape_{};              // of curvatures that are given
   aligned_buffer<double> distance_;  // m, of the case
   std::optional<rates> rates_;
 };

@@ -148,6 +148,27 @@ void expect_rates(const hertz_contact &found, const hertz_contact &wanted,
   EXPECT_NEAR(found.max_pressure, wanted.max_pressure, error * at.max_pressure);
 }
 
+// The shape is without a load: what is kept of it gives each load's ellipse to the bit.
+TEST(Hertz, OfAShapeThatIsKept) {
+  for (double ratio : {1e-3, 0.4, 1.0, 7.0}) {
+    const double curvatures[2] = {ratio, 0.8};
+    const hertz_shape shape = hertz_shape_of(curvatures);
+    EXPECT_NEAR(shape.a * shape.b, 1.0, 1e-15);
+    for (double size : {0.3, 1.0, 40.0}) {
+      const hertz_contact pairs[2][2] = {{hertz_from_force(shape, modulus, 1e3 * size),
+                                          hertz_from_force(curvatures, modulus, 1e3 * size)},
+                                         {hertz_from_approach(shape, modulus, 1e-5 * size),
+                                          hertz_from_approach(curvatures, modulus, 1e-5 * size)}};
+      for (const auto &[kept, found] : pairs) {
+        for (int k = 0; k < 2; ++k) EXPECT_EQ(kept.semi_axes[k], found.semi_axes[k]);
+        EXPECT_EQ(kept.normal_force, found.normal_force);
+        EXPECT_EQ(kept.approach, found.approach);
+        EXPECT_EQ(kept.max_pressure, found.max_pressure);
+      }
+    }
+  }
+}
+
 TEST(Hertz, RatesAreThoseOfTheSolution) {
   // nearly circular ones too: (a^2 - b^2)/(a^2 + b^2) on both sides of 1e-3
   for (double ratio : {0.07, 0.6, 0.9989, 0.9991, 1.0, 1.0004, 1.00099, 1.00101, 1.7, 21.0}) {
