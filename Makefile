@@ -45,8 +45,8 @@ CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
 SOURCES := $(shell find core plugins rig_model wheelset_demo -type f -not -name '*.pyc' 2>/dev/null) \
 	CMakeLists.txt README.md
 
-.PHONY: help tools asan-core build-asan demo viewer fmu fmu-clients fmu-fftw test test-long lint format clean setup system test-cpp \
-	test-python test-asan pruning mutants
+.PHONY: help tools asan-core build-asan demo viewer fmu fmu-clients fmu-fftw test test-long lint format clean setup \
+	system test-cpp test-python test-asan pruning mutants bits-steps
 
 help: ## this list
 	@echo "make targets:"
@@ -79,6 +79,7 @@ fmu: setup fmu-fftw ## FMUs of the default scene and of each kind for Linux, ARM
 		$(BIN)/railpatch fmu --scene $$kind --libraries build/fmu/lib -o build/fmu/$$kind.fmu; \
 		$(BIN)/python plugins/fmu/cross/check.py build/fmu/$$kind.fmu build/fmu/check; \
 	done
+	$(BIN)/python tests/bits/systems.py build/fmu
 
 fmu-fftw: setup ## the FMU's library with FFTW, for `railpatch fmu --fft fftw --libraries`
 	cmake --preset release $(RELEASE)
@@ -125,7 +126,12 @@ test: ## set-up and every check; what each part and the slowest tests took
 	@printf '\nall checks passed:\n'
 	@$(BIN)/python .ci/summary.py build/junit/parts $(addprefix build/junit/,cpp.xml python.xml asan.xml)
 
-test-long: setup ## what is slow by nature, before a release: hours
+# solves cases by the C interface: tests/bits
+bits-steps: $(VENV)/tools
+	cmake --preset release $(RELEASE)
+	cmake --build --preset release --target bits_steps
+
+test-long: setup bits-steps ## what is slow by nature, before a release: hours
 	@.ci/system-packages qemu-x86_64:qemu-user
 	@mkdir -p build/junit
 	$(PYTEST) -m long --junit-xml=build/junit/long.xml
@@ -165,7 +171,7 @@ test-asan: build-asan ## the same with Eigen's transforms, address and undefined
 
 # each process has a half of the tests, in their order; the first at its end takes from the other
 PYTEST := $(BIN)/python -m pytest --numprocesses=$(JOBS) --dist=worksteal
-test-python: setup fmu-fftw ## pytest, against the installed package
+test-python: setup fmu-fftw bits-steps ## pytest, against the installed package
 	@mkdir -p build/junit
 	$(PYTEST) --junit-xml=build/junit/python.xml
 

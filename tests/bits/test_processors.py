@@ -12,9 +12,13 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 import railpatch._core
+from bits import interface
+from bits.combinations import sample
+from bits.hashes import changes, plain
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -23,6 +27,8 @@ PLAIN = {
     "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX,-AVX512F",
     "OPENBLAS_CORETYPE": "Nehalem",
 }
+# steps.c: `make test-python` and `make test-long` build it
+PROGRAM = ROOT / "build" / "release" / "tests" / "bits" / "bits_steps"
 FUNCTIONS = (
     "a?sinh?|a?cosh?|a?tanh?|atan2|sincos|exp2?|exp10|expm1|log|log2|log10|log1p|pow|cbrt|hypot"
     "|erfc?|[lt]gamma|fma"
@@ -58,6 +64,55 @@ def test_results_do_not_hang_on_what_libraries_use(tmp_path: Path) -> None:
     assert {name: text for name, text in there.items() if here[name] != text} == {}
 
 
+@pytest.fixture(scope="session")
+def program() -> Path:
+    assert PROGRAM.exists(), f"{PROGRAM} is missing: cmake --build build/release -t bits_steps"
+    return PROGRAM
+
+
+@pytest.fixture(scope="session")
+def cases(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A third of those with one feature or none."""
+    return interface.write(tmp_path_factory.mktemp("bits"), sample(0)[::3])
+
+
+def numbers_of(value: Any) -> set[str]:
+    """All numbers of a result, in hexadecimal."""
+    if isinstance(value, dict):
+        return set().union(*(numbers_of(item) for k, item in value.items() if k != "wall_time"))
+    if isinstance(value, list):
+        return set().union(*(numbers_of(item) for item in value))
+    return {value.hex()} if isinstance(value, float) else set()
+
+
+def test_c_interface_gives_what_python_gives(cases: Path, program: Path) -> None:
+    """To the bit: every number of Python's results, fields included, is among those of C."""
+    lines = interface.run([program], cases)
+    assert len(lines) >= 30
+    named = dict(sample(0))
+    for number, line in list(enumerate(lines))[::3]:
+        name, outcome, _ = line.split(" | ")
+        contact, expected, statuses = railpatch.Contact(named[name]), set(), []
+        for step in range(3):
+            result = plain(contact.step(**changes(named[name], step), fields=True))
+            statuses.append(result["status"])
+            expected |= numbers_of(result)
+        assert outcome.split(",")[:3] == statuses  # rates follow
+        printed = interface.run([program], cases, str(number))
+        found = {float.fromhex(text).hex() for text in printed}
+        assert len(expected) > 100
+        assert expected - found == set(), name
+
+
+def test_c_interface_does_not_hang_on_what_the_c_library_uses(
+    cases: Path, program: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    here = interface.run([program], cases)
+    for name, value in PLAIN.items():
+        monkeypatch.setenv(name, value)
+    assert interface.differing(here, interface.run([program], cases)) == []
+
+
 def test_no_function_of_c_is_called() -> None:
     """Neither by the sources nor by the library, but for those that are exact."""
     called = re.compile(rf"std::({FUNCTIONS})\(")
@@ -81,12 +136,29 @@ def test_no_function_of_c_is_called() -> None:
         assert [match[0] for match in imported.findall(names)] == []
 
 
+def emulated() -> str:
+    """QEMU's program."""
+    emulator = shutil.which("qemu-x86_64")
+    assert emulator is not None, "qemu-x86_64 is missing: apt install qemu-user"
+    return emulator
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("processor", ["Nehalem", "Haswell", "EPYC"])
+def test_c_interface_gives_the_same_on_emulated_processors(
+    tmp_path: Path, program: Path, processor: str
+) -> None:
+    cases = interface.write(tmp_path, sample(800), 200)
+    here = interface.run([program], cases)
+    there = interface.run([emulated(), "-cpu", processor, program], cases)
+    assert interface.differing(here, there) == []
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("processor", ["Nehalem", "Haswell", "EPYC"])
 def test_results_are_the_same_on_emulated_processors(tmp_path: Path, processor: str) -> None:
     """200 cases; Nehalem knows neither AVX nor FMA."""
-    emulator = shutil.which("qemu-x86_64")
-    assert emulator is not None, "qemu-x86_64 is missing: apt install qemu-user"
+    emulator = emulated()
     here = found(tmp_path / "here.json", 200)
     there = found(tmp_path / "there.json", 200, emulator, "-cpu", processor)
     assert {name: text for name, text in there.items() if here[name] != text} == {}

@@ -67,7 +67,7 @@ def build(name: str, folder: Path, zig: Path) -> None:
     tree = folder / name
     settings = [f"-D{key}={value}" for key, value in options.items()]
     run("cmake", "-S", ROOT, "-B", tree, "-G", "Ninja", *settings)
-    run("cmake", "--build", tree, "--target", "railpatch_fmu")
+    run("cmake", "--build", tree, "--target", "railpatch_fmu", "bits_steps")
     made = tree / "plugins" / "fmu" / f"railpatch_fmu_eigen{ENDINGS[system]}"
     place = folder / "lib" / name
     place.mkdir(parents=True, exist_ok=True)
