@@ -57,6 +57,11 @@ double slip_velocity_law::greatest() const {
   return kinetic + std::max(amplitude[0], 0.0) + std::max(amplitude[1], 0.0);
 }
 
+bool slip_velocity_law::rises(double carried) const {
+  return amplitude[0] < 0 || amplitude[1] < 0 ||
+         (memory_distance > 0 && carried < greatest() - standing());
+}
+
 double slip_velocity_law::steepest_fall(double rate) const {
   double at_rest;
   shape_at(shape, 0.0, at_rest);
@@ -244,7 +249,17 @@ double bound_law::greatest(double friction) const {
   return plastic() ? std::min(g, yield.greatest()) : g;
 }
 
+// Of layer and friction that move together tau = g, so b' = tau' g'/(tau' + g'): where the two have
+// other signs it is steeper than either, and b jumps where both cancel.
+bool bound_law::falls_in_series(double friction, double carried) const {
+  return plastic() && by_velocity && slip.rises(carried) && fall_of_each(friction) > 0;
+}
+
 double bound_law::steepest_fall(double friction) const {
+  return falls_in_series(friction, -HUGE_VAL) ? HUGE_VAL : fall_of_each(friction);
+}
+
+double bound_law::fall_of_each(double friction) const {
   const double ahead = fall_ahead(friction);
   // only where plastic displacement is undone does a hardening layer soften
   return plastic() && by_magnitude ? std::max(ahead, yield.steepest()) : ahead;
@@ -428,7 +443,7 @@ void bound_law::carry_on(bound_point &b, const carried_state &before, const doub
 
 bool bound_law::ambiguous(double friction, const carried_state &before, const double e[2],
                           double size, double stiffness) const {
-  if (stiffness >= steepest_fall(friction)) return false;
+  if (stiffness >= fall_of_each(friction) && !falls_in_series(friction, before.v[0])) return false;
   const double g = friction_at(friction, before.v[0], 0).bound;
   double limit = 0;
   if (plastic() && yield_at(before, e, 0).stress < g) limit = until(before, e, g).slip;

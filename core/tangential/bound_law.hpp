@@ -31,6 +31,8 @@ struct slip_velocity_law {
   double coefficient(double speed, double &slope) const;
   double standing() const { return kinetic + amplitude[0] + amplitude[1]; }
   double greatest() const;
+  // Whether mu may rise with slip from what the material carries.
+  bool rises(double carried) const;
   // Steepest fall of mu with the length of slip, 1/m, at a rate (1/s) of speed over length.
   double steepest_fall(double rate) const;
 };
@@ -87,10 +89,12 @@ class bound_law {
   double resolve(double friction, const carried_state &before, const double e[2], double size,
                  double stiffness, double low = 0) const;
   double at_rest(double friction, const carried_state &before) const;
-  // of b in any state, Pa and Pa/m; where friction rises with slip while the layer softens, both in
-  // series, b may fall faster, and without limit where they do so at the same rate
+  // of b in any state, Pa and Pa/m. Where friction rises with slip it takes the layer on, both in
+  // series: if then one of them falls, b falls without limit, as fast as the other rises
   double greatest(double friction) const;
   double steepest_fall(double friction) const;
+  // of friction alone and of the layer alone, the greater: always finite
+  double fall_of_each(double friction) const;
   // the same while plastic displacement grows
   double fall_ahead(double friction) const;
   // Whether more than one m, stick among them, solves size - stiffness m = b(m).
@@ -104,6 +108,7 @@ class bound_law {
   struct plastic_part {
     double by_slip, by_angle, by_state[3];
   };
+  bool falls_in_series(double friction, double carried) const;
   slipping friction_at(double normal, double carried, double slip) const;
   yielding yield_at(const carried_state &before, const double e[2], double m) const;
   yielding until(const carried_state &before, const double e[2], double level) const;

@@ -46,7 +46,7 @@ inelastic_result inelastic_newton::solve(rolling_operator &b, const rolling_prob
   bool undone = false;
   for (int k = 0; k < problem.count(); ++k) {
     most_[static_cast<size_t>(k)] = t.law.greatest(problem.bound[k]);
-    const double fall = t.law.steepest_fall(problem.bound[k]);
+    const double fall = t.law.fall_of_each(problem.bound[k]);
     t.falls = t.falls || fall > 0;
     undone = undone || fall > t.law.fall_ahead(problem.bound[k]);
   }
@@ -73,7 +73,7 @@ void inelastic_newton::set_stiffness(const task &t, bool undone) {
     const double typical = t.b.projection_scale(row);
     for (int k = t.problem.row_start[row]; k < t.problem.row_start[row + 1]; ++k) {
       const double friction = t.friction[k];
-      const double fall = undone ? t.law.steepest_fall(friction) : t.law.fall_ahead(friction);
+      const double fall = undone ? t.law.fall_of_each(friction) : t.law.fall_ahead(friction);
       r_[static_cast<size_t>(k)] = std::max(typical, steepness_margin * t.law.step * fall);
     }
   }

@@ -140,7 +140,7 @@ TEST(BoundLaw, ResolventSolvesTheLaw) {
   std::uniform_real_distribution<double> unit(0, 1);
   for (int i = 0; i < 20000; ++i) {
     const draw d = random_draw(random);
-    const double stiffness = 0.1 + 2 * d.law.steepest_fall(d.friction);
+    const double stiffness = 0.1 + 2 * d.law.fall_of_each(d.friction);
     const double size = d.law.at_rest(d.friction, d.before) * (1 + unit(random)) + 1e-6;
     const double m = d.law.resolve(d.friction, d.before, d.e, size, stiffness);
     ASSERT_GT(m, 0) << i;
@@ -153,6 +153,33 @@ TEST(BoundLaw, ResolventSolvesTheLaw) {
     // b falls nowhere faster than what makes it unique
     EXPECT_GE(b.by_slip, -d.law.steepest_fall(d.friction) * (1 + 1e-9)) << i;
   }
+}
+
+// tau = 0.7 - u meets g = 0.4 + 1.2 s from m = 0.25 on: then each metre of m takes six of the layer
+// and five of slip back, until at 0.3 there is no slip left. Three solutions at twice the layer's
+// own fall, (1.12 - 2 m): where friction rises, where both give way, and where the layer softens.
+TEST(BoundLaw, RisingFrictionLetsASofteningLayerFallFaster) {
+  bound_law law;
+  law.by_velocity = true;
+  law.speed = law.step = 1;
+  law.slip.shape = RP_SLIP_LINEAR;
+  law.slip.kinetic = 1;
+  law.slip.amplitude[0] = -0.6;
+  law.slip.halving_speed[0] = 0.25;
+  law.yield = hardening_curve::straight(0.7, -1);
+  const carried_state before{};
+  const double e[2] = {1, 0};
+  for (const auto &[m, bound, slope] :
+       {std::array{0.2, 0.64, 1.2}, {0.26, 0.64, -6.0}, {0.29, 0.46, -6.0}, {0.5, 0.2, -1.0}}) {
+    const bound_point b = law.evaluate(1, before, e, m);
+    EXPECT_NEAR(b.bound, bound, 1e-14) << m;
+    EXPECT_NEAR(b.by_slip, slope, 1e-12) << m;
+  }
+  EXPECT_EQ(law.fall_of_each(1), 1);
+  EXPECT_EQ(law.steepest_fall(1), HUGE_VAL);
+  EXPECT_TRUE(law.ambiguous(1, before, e, 1.12, 2));
+  // of a line steeper than all of it one
+  EXPECT_FALSE(law.ambiguous(1, before, e, 0.58 + 8 * 0.27, 8));
 }
 
 // Laws and memories of all sizes: speeds at which the law has fallen before the least way of the
