@@ -240,7 +240,7 @@ def turns_the_axle(scene: RigScene) -> bool:
 def axle_of(yaw: float, roll: float) -> Vector:
     """-, [3], to the right along the axle, track axes."""
     return np.array(
-        [-math.sin(yaw) * math.cos(roll), math.cos(yaw) * math.cos(roll), math.sin(roll)]
+        [-math.sin(yaw), math.cos(roll) * math.cos(yaw), math.sin(roll) * math.cos(yaw)]
     )
 
 
@@ -255,8 +255,9 @@ def axle_moment_rate(
     """Its rate with one of the unknowns."""
     rate = axle_of(position.yaw, unknowns[1]) @ np.array(rates["moment"])
     if name == "roll":
-        turned = axle_of(position.yaw, unknowns[1] + 0.5 * math.pi)
-        rate += turned @ np.array(result["moment"])
+        # of what turns with the roll, the axle's part across the track
+        across = axle_of(position.yaw, unknowns[1]) * [0.0, 1.0, 1.0]
+        rate += np.cross([1.0, 0.0, 0.0], across) @ np.array(result["moment"])
     return float(rate)
 
 
