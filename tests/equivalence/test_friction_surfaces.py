@@ -101,6 +101,9 @@ def test_wheelset_run(tmp_path: Path) -> None:
     plain = simulate(wheelset_scenes.scene(tmp_path, "s1002.toml", distance=1.0))
     assert trace.work("friction")[-1] > 0
     assert trace.work("friction")[-1] != plain.work("friction")[-1]
+    lost = trace.work("friction")[-1] + trace.work("damping")[-1]
+    # as much as the energy tests of wheelsets allow
+    assert np.abs(trace.mechanical_residual()).max() < 0.005 * lost
 
 
 def test_vehicle_run() -> None:
