@@ -38,7 +38,7 @@
   X(double, max_temperature, 1, number, even, own, greatest, NAN, "degrees C",                    \
     "highest surface temperature of the contact")                                                 \
   X(double, friction_power, 1, number, even, zero_rolling, by_share, NAN, "W",                    \
-    "power lost in friction, >= 0")                                                               \
+    "power that friction turns into heat")                                                        \
   X(double, plastic_power, 1, number, even, zero_plastic, by_share, NAN, "W",                     \
     "power of the layer's plastic displacement, >= 0")                                            \
   X(double, elastic_energy, 1, number, even, zero, by_share, NAN, "J", "elastic energy")          \

@@ -2,8 +2,7 @@
 // by the processor and differ from system to system; these are made of nothing but +, -, *, / and
 // square roots, which IEEE 754 rounds in one way (no fused multiply-add: -ffp-contract=off).
 //
-// Errors, measured by test_elementary: below 0.51 units in the last place for exp, exp2, log, pow
-// of moderate results, atan, atan2, asin and cbrt, below 1.1 for the others, below 4 for erfc.
+// Errors are units in the last place: docs/same_bits.md says how many, test_elementary holds them.
 // Limits and signs of zero are those of C. Names are found in the core before those of C: none is
 // written std::.
 #pragma once
