@@ -52,6 +52,41 @@ class PatchHistory : public testing::TestWithParam<bool> {
   double slope = 0;
 };
 
+// Of wheels, whose grid moves either way: straight between elements, so linear numbers stay what
+// they are, and nothing where there was no row. Two divisions count by their shares.
+TEST_P(PatchHistory, StatesAreReadWhereTheMaterialWas) {
+  const auto linear = [&](double i, double j, int c) { return 1e-6 * (2 + i - 3 * j + c * i); };
+  patch_history last[2] = {{18, true, true, &law}, {18, true, true, &law}}, h(18, true, true, &law);
+  for (int k = 0; k < 2; ++k) {
+    fill(last[k]);
+    for (int j = 0; j < g.ny; ++j)
+      for (int i = 0; i < g.nx; ++i)
+        for (int c = 0; c < 3; ++c)
+          last[k].after[static_cast<size_t>(j * g.nx + i)].v[c] = (1 + k) * linear(i, j, c);
+    last[k].remember(g, {}, k == 0 ? 0.3 : 0.7, px.data(), py.data());
+  }
+  for (const double along : {0.0, 1.3, -2.0, 40.0})
+    for (const double across : {0.0, 0.25, -1.5}) {
+      h.begin_states(g);
+      // the second one's first row is not this patch's
+      h.add_states(g, {&last[0], 0, 3, {along * g.dx, across * g.dy}});
+      h.add_states(g, {&last[1], 1, 2, {along * g.dx, (across - 1) * g.dy}});
+      for (int j = 0; j < g.ny; ++j)
+        for (int i = 0; i < g.nx; ++i)
+          for (int c = 0; c < 3; ++c) {
+            const double x = i + along, y = j + across;
+            const double found = h.before[static_cast<size_t>(j * g.nx + i)].v[c];
+            const bool beside = x <= -1 || x >= 6 || y <= -1 || y >= 3;
+            if (beside) {
+              EXPECT_EQ(found, 0.0);
+            }
+            if (x < 0 || x > 5 || y < 0 || y > 2 || (y > 0 && y < 1)) continue;
+            const double share = y >= 1 ? 0.3 + 2 * 0.7 : 0.3;
+            EXPECT_NEAR(found, share * linear(x, y, c), 1e-19) << along << " " << across;
+          }
+    }
+}
+
 TEST_P(PatchHistory, FreshMaterialHasNothing) {
   patch_history h(18, true, false, &law);
   EXPECT_TRUE(h.keeps_steps() && h.has_law());
