@@ -45,11 +45,11 @@ carried_work carried_by(const patch_problem &problem, const patch_memory &memory
     add_rows(memory.history, g, 0, g.ny, g.x0, g.y0, 1.0, sum);
     return sum;
   }
-  const double rolled = problem.rolling.upstream();
   for (int k = 0; k < problem.past_count; ++k) {
     const past_tractions &past = problem.past[k];
     add_rows(*past.history, past.history->last_grid, past.first_row, past.rows,
-             g.x0 - past.offset[0] + rolled, g.y0 - past.offset[1], past.history->last_share, sum);
+             g.x0 - past.offset[0] + problem.rolled, g.y0 - past.offset[1],
+             past.history->last_share, sum);
   }
   return sum;
 }

@@ -41,6 +41,7 @@ struct patch_problem {
   contact_parts parts;
   const past_tractions *past = nullptr;  // of wheels in transient rolling, with their number
   int past_count = 0;
+  double rolled = 0;  // m along x in the step, with it: near standstill not all of rolling.distance
 };
 
 // Fields of the last solution, [ny][nx] of the grid or, for what belongs to the tangential problem

@@ -99,8 +99,9 @@ rolling_input tangential_stage::rolling_of(const patch_problem &problem, const p
     for (int c = 0; c < 2; ++c) rolling.coupled[c] = coupled->slip(c);
   }
   const grid &g = problem.g;
-  const double way = rolling.regime == motion::transient ? rolling.distance : g.dx;
-  rolling.spin_offset = scene.spin_offset * rolling.direction * way;
+  const double way =
+      rolling.regime == motion::transient ? rolling.upstream() : rolling.direction * g.dx;
+  rolling.spin_offset = scene.spin_offset * (problem.past ? problem.rolled : way);
   if (memory.curved && problem.rolling_speed > 0) add_slip_of_rows(g, *memory.curved, rolling);
   return rolling;
 }

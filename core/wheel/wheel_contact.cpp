@@ -332,11 +332,11 @@ void wheel_contact::set_past(const patch_memory *memory, const patch_region &reg
     past_tractions &p = past[problem.past_count++];
     p = {&h, begin, end - begin, {0, problem.g.y0 - place - g.y(begin)}};
   }
-  const double rolled = set_rolling(problem);
+  problem.rolled = set_rolling(problem);
   for (int k = 0; k < problem.past_count; ++k) {
     const patch_history &h = *past[k].history;
     past[k].offset[0] =
-        frame.origin[0] + problem.g.x0 + rolled - h.last_reference[0] - h.last_grid.x0;
+        frame.origin[0] + problem.g.x0 + problem.rolled - h.last_reference[0] - h.last_grid.x0;
   }
 }
 

@@ -40,6 +40,22 @@ def creep_force(result: Any) -> np.ndarray:
     return np.array(patch_of(result)["creep_force"])
 
 
+def test_near_standstill_material_comes_from_where_it_was() -> None:
+    """What creepages supply is by force and moment at both ends of the step, about one point. Below
+    the standstill speed creepages refer to a greater speed than that of the way."""
+    slow = {"wheelset__z": 1.6e-4, "wheelset__y": 1e-3, "wheelset__yaw": 1e-3}
+    contact = railpatch.Contact(rolling(0.01, method__standstill_speed=1.0, **slow))
+    before = np.zeros(3)
+    for vy in (1e-3, 2e-3, -1e-3, 0.0):
+        changes = {"speed": 0.5, "pitch_rate": -0.5 / RADIUS, "vy": vy}
+        patch = patch_of(contact.step(**changes))
+        now = np.array([*patch["creep_force"], patch["spin_moment"]])
+        slip = np.array([*patch["creepage"], patch["spin_creepage"]]) * patch["rolling_speed"]
+        supplied = -0.5 * (now + before) @ slip
+        assert patch["creep_power"] == pytest.approx(supplied, rel=1e-9)
+        before = now
+
+
 POSE = {"wheelset__z": 1.5e-4, "wheelset__y": 1e-3, "wheelset__yaw": 1e-3}
 
 
