@@ -175,7 +175,7 @@ typedef enum rp_flexibility_blending {
 } rp_flexibility_blending;
 
 /* how far upstream of an element its spin term is read, of the way dq of a step: an element in
- * steady rolling, else input.distance */
+ * steady rolling, else input.distance or a wheel's way, at most the length of the contact */
 #define RP_SPIN_OFFSETS(X)                                                           \
   X(RP_SPIN_OFFSET_NONE, 0, "none")                                                  \
   X(RP_SPIN_OFFSET_SIXTH, 1, "sixth") /* x + dq/6, as the program CONTACT does */    \

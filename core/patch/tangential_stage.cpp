@@ -1,8 +1,29 @@
 #include "patch/tangential_stage.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace railpatch {
+
+namespace {
+
+// m, along x: of the ellipse whose pressure has the same variance. It moves without jumps.
+double contact_length(const grid &g, const double *pressure) {
+  double sum = 0, first = 0, second = 0;
+  for (int j = 0; j < g.ny; ++j)
+    for (int i = 0; i < g.nx; ++i) {
+      const double p = pressure[j * g.nx + i], x = g.x(i);
+      sum += p;
+      first += p * x;
+      second += p * x * x;
+    }
+  if (!(sum > 0)) return 0.0;
+  const double centre = first / sum, variance = second / sum - centre * centre;
+  // elements have their own
+  return std::sqrt(20.0 * (std::max(variance, 0.0) + g.dx * g.dx / 12.0));
+}
+
+}  // namespace
 
 tangential_stage::tangential_stage(patch_workspace &shared, const fft_plans &plans, int max_nx,
                                    int max_ny)
@@ -99,11 +120,19 @@ rolling_input tangential_stage::rolling_of(const patch_problem &problem, const p
     for (int c = 0; c < 2; ++c) rolling.coupled[c] = coupled->slip(c);
   }
   const grid &g = problem.g;
-  const double way =
-      rolling.regime == motion::transient ? rolling.upstream() : rolling.direction * g.dx;
-  rolling.spin_offset = scene.spin_offset * (problem.past ? problem.rolled : way);
+  if (scene.spin_offset != 0) rolling.spin_offset = spin_offset_of(problem, memory, rolling);
   if (memory.curved && problem.rolling_speed > 0) add_slip_of_rows(g, *memory.curved, rolling);
   return rolling;
+}
+
+// A part of the way that material has come in contact: of the step's, but no more than its length.
+double tangential_stage::spin_offset_of(const patch_problem &problem, const patch_memory &memory,
+                                        const rolling_input &rolling) const {
+  const double part = shared_.scene.spin_offset;
+  if (rolling.regime != motion::transient) return part * rolling.direction * problem.g.dx;
+  const double length = contact_length(problem.g, memory.pressure.data());
+  const double way = problem.past ? problem.rolled : rolling.upstream();
+  return part * std::clamp(way, -length, length);
 }
 
 // Of the components of a prescribed force the creepage is what the last step, or round, found.

@@ -36,6 +36,8 @@ class tangential_stage {
  private:
   rolling_input rolling_of(const patch_problem &problem, const patch_memory &memory,
                            prescribed_force &force);
+  double spin_offset_of(const patch_problem &problem, const patch_memory &memory,
+                        const rolling_input &rolling) const;
   void prescribe(const patch_problem &problem, const patch_memory &memory, rolling_input &rolling,
                  prescribed_force &force) const;
   void find_before(const patch_problem &problem, rolling_input &rolling);

@@ -147,6 +147,23 @@ def test_friction_is_what_its_elements_take(forth: int) -> None:
         before = traction
 
 
+def test_spin_is_read_within_the_contact() -> None:
+    """In steps longer than the contact no material has come further than its length: the spin read
+    a quarter of that upstream is a lateral creepage."""
+    spin, share = 0.4, 40.0
+    motion = {"motion__spin_creepage": spin}
+    far = rolling(16, [3e-4, 1e-4], share, **motion).step(fields=True)
+    x, pressure = np.array(far["x"]), np.array(far["pressure"]).sum(axis=0)
+    dx = x[1] - x[0]
+    variance = np.average((x - np.average(x, weights=pressure)) ** 2, weights=pressure)
+    # a twentieth of the squared length of an ellipse; of 16 elements as of the ellipse nearly
+    length = np.sqrt(20 * (variance + dx**2 / 12))
+    assert length == pytest.approx(2 * A, rel=0.01)
+    shifted = [3e-4, 1e-4 + 0.25 * spin * length]
+    near = rolling(16, shifted, share, **motion, method__spin_offset="none").step()
+    assert far["creep_force"] == pytest.approx(near["creep_force"], rel=1e-6)
+
+
 def response(elements: int, wavelength: float, read: float) -> complex:
     """H/H0 of the longitudinal force; creepage read at so much of a step before its end."""
     small = 1e-3 * CREEPAGE

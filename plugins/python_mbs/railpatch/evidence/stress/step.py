@@ -187,7 +187,20 @@ class Step:
         layer = self.case.layer is not None and self.case.layer.thickness > 0
         if method.spin_offset == "automatic" and (layer or not on_grid):
             return 0.0
-        return self.direction * shares[method.spin_offset] * self.rolled
+        way = min(self.rolled, self.contact_length)
+        return self.direction * shares[method.spin_offset] * way
+
+    @property
+    def contact_length(self) -> float:
+        """m, along x, of an ellipse whose pressure has the same variance."""
+        dx = self.half_space.dx
+        columns = self["pressure"].sum(axis=0)
+        if not columns.any():
+            return 0.0
+        x = dx * np.arange(len(columns))
+        mean = (columns * x).sum() / columns.sum()
+        variance = (columns * (x - mean) ** 2).sum() / columns.sum() + dx**2 / 12
+        return float(np.sqrt(20 * variance))
 
     @property
     def history(self) -> Step | None:
