@@ -86,11 +86,13 @@ void tangential_stage::close_step(const patch_problem &problem, const rolling_in
       std::max(std::abs(found.supplied), (found.elastic_energy + before.energy) / rolling.distance);
   if (std::abs(taken) <= rounding * largest) taken = 0;
   const double plastic = shared_.scene.yields() ? found.plastic_power : 0.0;
-  if (!(plastic > 0)) {
+  // a step in which traction turns round may give work back, which no plastic displacement does
+  if (!(plastic > 0) || taken <= 0) {
+    if (plastic > 0) found.plastic_power = 0;
     t.friction = taken;
     return;
   }
-  const double factor = std::max(0.0, taken / (t.friction + plastic));
+  const double factor = taken / (t.friction + plastic);
   t.friction *= factor;
   found.plastic_power *= factor;
 }

@@ -59,6 +59,25 @@ double temperature_loop::change(int n, const double *mu) const {
   return greatest;
 }
 
+// Greatest distance of a coefficient from the law at the temperature that the heat q gives.
+double temperature_loop::missed(const problem &p, const double *mu, const double *q) const {
+  const int nx = p.rows.nx, ahead = p.rows.direction;
+  const double per_body = 1.0 / p.effusivity;
+  const heat_kernel &kernel = *p.kernel;
+  double greatest = 0;
+  for (int j = 0; j < p.rows.ny; ++j)
+    for (int k = 0; k < nx; ++k) {
+      const int i = j * nx + (ahead > 0 ? nx - 1 - k : k);
+      if (!(p.pressure[i] > 0)) continue;
+      double rise = 0;
+      for (int m = 0; m <= std::min(k, kernel.count() - 1); ++m)
+        rise += kernel.weight(m) * q[i + ahead * m];
+      const double d = std::fabs(p.law.coefficient(p.background[i] + per_body * rise) - mu[i]);
+      if (!(d <= greatest)) greatest = d;
+    }
+  return greatest;
+}
+
 // Anderson's mixing: the combination of this pass and the former two whose changes are least in the
 // sum of squares.
 void temperature_loop::advance(const problem &p, double *mu) {

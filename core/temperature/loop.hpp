@@ -23,8 +23,10 @@ struct temperature_loop_options {
 struct temperature_loop_result {
   bool converged = false;
   int iterations = 0;  // tangential problems solved
-  // greatest change of a friction coefficient that the next pass would make, relative to the law's
-  // greatest; of a converged result the tangential problem is the one of these coefficients
+  // greatest change of a friction coefficient that the next pass would make, and where that is
+  // within the tolerance also how far one is from the law at the temperatures of its own heat,
+  // relative to the law's greatest; of a converged result the tangential problem is the one of
+  // these coefficients
   double residual = 0;
 };
 
@@ -51,6 +53,7 @@ class temperature_loop {
  private:
   void pass(const problem &p, const double *mu, const double *q, bool keep);
   double change(int n, const double *mu) const;
+  double missed(const problem &p, const double *mu, const double *q) const;
   void advance(const problem &p, double *mu);
   void restart(int n, double *mu);
 
@@ -86,7 +89,11 @@ temperature_loop_result temperature_loop::solve(const problem &p,
     // passes should have settled: then each keeps its own
     pass(p, mu, q, result.iterations > 6);
     const double now = change(n, mu);
-    result.residual = scale > 0 ? now / scale : now;
+    const auto relative = [&](double value) { return scale > 0 ? value / scale : value; };
+    result.residual = relative(now);
+    // a pass follows its own coefficients downstream: a steep law is missed by more than it changes
+    if (result.residual <= options.tolerance)
+      result.residual = std::max(result.residual, relative(missed(p, mu, q)));
     result.converged = solved && result.residual <= options.tolerance;
     if (result.converged || !(now >= 0)) return result;
     // tractions that are only so exact give the best coefficients another change the second time

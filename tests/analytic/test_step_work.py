@@ -120,6 +120,31 @@ def test_work_is_frictions_and_elastic_energy(extra: dict[str, Any], share: floa
     assert scale <= 1e-9 * moved
 
 
+@pytest.mark.parametrize("thickness", [0.0, 2e-5])
+def test_a_layer_that_yields_takes_no_work_that_comes_back(thickness: float) -> None:
+    """Unloaded and turned round within one step, traction gives work back: friction's part is
+    below 0 there, and the book stays closed."""
+    layer: dict[str, Any] = {"thickness": thickness, "yield_stress": 5e7, "hardening": 1e12}
+    if thickness:
+        layer["shear_modulus"] = 8e9
+    flexibility = thickness / 8e9
+    contact = rolling(14, [CREEPAGE, 0.0], 2.0, layer=layer)
+    time = 4 * A / 14 / SPEED
+    energy, least = 0.0, 0.0
+    for force, size in ((3e4, 1.0), (3e4, 2.0), (3e3, -30.0), (3e4, 1.0)):
+        result = contact.step(creepage=[size * CREEPAGE, 0.0], normal_force=force, fields=True)
+        assert result.status == "converged"
+        now = stored(result, flexibility)
+        assert result["plastic_power"] >= 0
+        taken = (result["friction_power"] + result["plastic_power"]) * time
+        supplied = result["creep_power"] * time
+        moved = abs(supplied) + now + energy
+        assert supplied - taken == pytest.approx(now - energy, abs=1e-9 * moved)
+        least = min(least, result["friction_power"])
+        energy = now
+    assert least < 0
+
+
 @pytest.mark.parametrize("forth", [1, -1])
 def test_friction_is_what_its_elements_take(forth: int) -> None:
     """-(p + p_before)/2 . s of each, also of those that have just left contact."""
