@@ -1,5 +1,7 @@
 #include "patch/heat_stage.hpp"
 
+#include <algorithm>
+
 namespace railpatch {
 
 heat_stage::heat_stage(patch_workspace &shared, int max_nx, int max_ny) : shared_(shared) {
@@ -17,9 +19,12 @@ void heat_stage::begin(const patch_problem &problem, patch_memory &memory) {
   const stage_mark mark = shared_.marks.enter(RP_STAGE_TEMPERATURE);
   const grid &g = problem.g;
   const rolling_input &rolling = problem.rolling;
-  stage_->begin({g.nx, g.ny, g.dx, rolling.direction, problem.rolling_speed},
-                rolling.regime == motion::transient ? rolling.distance : 0.0,
-                memory.pressure.data(), *memory.heat);
+  const bool steps = rolling.regime == motion::transient;
+  // work of a step is that of its way, half of which lies upstream; longer ones than an element are
+  // no finer in place
+  const double way = steps ? std::min(rolling.distance / g.dx, 1.0) : 1.0;
+  stage_->begin({g.nx, g.ny, g.dx, rolling.direction, problem.rolling_speed, 0.5 * way},
+                steps ? rolling.distance : 0.0, memory.pressure.data(), *memory.heat);
 }
 
 heat_outcome heat_stage::finish(const patch_problem &problem, patch_memory &memory) {

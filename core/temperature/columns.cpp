@@ -40,6 +40,17 @@ RAILPATCH_DISPATCH void scale(int n, double decay, double *y) {
   for (int i = 0; i < n; ++i) y[i] *= decay;
 }
 
+// Each element takes the value of the one behind it.
+void shift_row(int nx, int direction, double *row) {
+  if (direction > 0) {
+    std::copy_backward(row, row + nx - 1, row + nx);
+    row[0] = 0;
+  } else {
+    std::copy(row + 1, row + nx, row);
+    row[nx - 1] = 0;
+  }
+}
+
 // f(k, share): the value at `at` of a function even in k, by Lagrange's polynomial on 6 points.
 template <class F>
 void for_each_point(double at, F &&f) {
@@ -172,12 +183,15 @@ heat_columns::movement heat_columns::move(double offset) const {
   m.offset = place - whole * dx;
   if (std::fabs(m.offset) < snap * dx) m.offset = 0;
   m.travelled = std::clamp(0.5 * dx - rows_.direction * m.offset, 0.0, dx);
+  m.heated = m.travelled + rows_.upstream * dx;
+  m.ahead = m.heated > (1.0 + snap) * dx ? -1 : 0;
+  m.heated = std::min(m.heated + m.ahead * dx, dx);
   return m;
 }
 
 template <class F>
-void heat_columns::for_each_interval(F &&f) const {
-  const double dx = rows_.dx, own = std::min(movement_.travelled, distance_);
+void heat_columns::for_each_interval(double travelled, F &&f) const {
+  const double dx = rows_.dx, own = std::min(travelled, distance_);
   const double before = (distance_ - own) / dx;
   // what lies further ahead than the grid is no contact
   const int whole = static_cast<int>(std::min(std::floor(before + snap), 1.0 * rows_.nx));
@@ -263,34 +277,45 @@ void heat_columns::shift_columns(double *field) const {
   }
 }
 
+// The step's flux of the elements so many ahead of the columns, over a part of the step.
+void heat_columns::heat_rows_of(const double *q, double duration, int ahead, double *state) {
+  const int nx = rows_.nx, n = nx * rows_.ny;
+  set_factors(duration);
+  // the columns whose element then was outside the grid, and the others; towards +x
+  const int outside = std::min(std::abs(ahead), nx), inside = nx - outside;
+  const int towards = rows_.direction * ahead;
+  const int still = towards > 0 ? inside : 0, heated = towards < 0 ? outside : 0;
+  const int from = towards > 0 ? outside : 0;
+  for (int k = 0; k < modes_; ++k) {
+    const auto mode = static_cast<size_t>(k);
+    double *y = state + head_size + mode * capacity_;
+    for (int at = 0; at < n; at += nx) {
+      scale(outside, decay_[mode], y + at + still);
+      decay_and_add(inside, decay_[mode], gain_[mode], q + at + from, y + at + heated);
+    }
+  }
+}
+
 void heat_columns::commit(const double *q, const double *pressure, double *state) {
   if (!(rows_.speed > 0) || distance_ == 0) return;
   const int nx = rows_.nx, n = nx * rows_.ny;
   for (int k = 0; k < modes_; ++k)
     shift_columns(state + head_size + static_cast<size_t>(k) * capacity_);
-  for_each_interval([&](double duration, int ahead) {
-    set_factors(duration);
-    const int inside = std::max(nx - ahead, 0), lead = nx - inside;
-    for (int k = 0; k < modes_; ++k) {
-      const auto mode = static_cast<size_t>(k);
-      double *y = state + head_size + mode * capacity_;
-      for (int at = 0; at < n; at += nx) {
-        // the columns whose place then was ahead of the grid, and the others
-        const bool forward = rows_.direction > 0;
-        scale(lead, decay_[mode], y + at + (forward ? inside : 0));
-        decay_and_add(inside, decay_[mode], gain_[mode], q + at + (forward ? lead : 0),
-                      y + at + (forward ? 0 : lead));
-      }
-    }
+  for_each_interval(movement_.heated, [&](double duration, int ahead) {
+    heat_rows_of(q, duration, ahead + movement_.ahead, state);
   });
-  std::copy_n(q, n, state + flux_at());
+  double *last = state + flux_at();
+  std::copy_n(q, n, last);
+  // the column's last element is the one behind its own
+  if (movement_.ahead < 0)
+    for (int at = 0; at < n; at += nx) shift_row(nx, rows_.direction, last + at);
   state[at_offset] = movement_.offset;
   if (!exchanges_) return;
   double *e = state + exchange_at();
   for (int k = 0; k < modes_ + 4; ++k) shift_columns(e + static_cast<size_t>(k) * capacity_);
   for (int c = 0; c < n; ++c) {
     exchange_column column = load(state, c);
-    for_each_interval([&](double duration, int ahead) {
+    for_each_interval(movement_.travelled, [&](double duration, int ahead) {
       pass(column, duration, touched_by(pressure, c / nx, c % nx + rows_.direction * ahead));
     });
     store(column, state, c);
@@ -364,7 +389,7 @@ void heat_columns::exchange(const double *pressure, const double *state) {
       column = load(state, c - movement_.shift);
     else
       std::fill_n(column_.data(), modes_, 0.0);
-    for_each_interval([&](double duration, int ahead) {
+    for_each_interval(movement_.travelled, [&](double duration, int ahead) {
       pass(column, duration, touched_by(pressure, c / nx, i + rows_.direction * ahead));
     });
     sum_[static_cast<size_t>(c)] = column.touches() ? 1.0 : value(column);

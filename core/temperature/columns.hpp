@@ -60,11 +60,15 @@ class heat_columns {
     double offset = 0;     // m, of the columns at the step's end
     int shift = 0;         // columns by which the material moves along x
     double travelled = 0;  // m, of the column in its last element
+    // the same of the flux's elements, and how many of these it is ahead of the column's own
+    double heated = 0;
+    int ahead = 0;  // -1 or 0
   };
   movement move(double offset) const;
-  // f(duration in s, elements ahead of the last one), in order of time
+  // f(duration in s, elements ahead of the last one), in order of time; travelled: m, in the last
   template <class F>
-  void for_each_interval(F &&f) const;
+  void for_each_interval(double travelled, F &&f) const;
+  void heat_rows_of(const double *q, double duration, int ahead, double *state);
   void set_rates(double unit);
   void set_unit(double unit, double *state);
   void convert_modes(double factor, double *modes, const double *flux, int column);

@@ -83,7 +83,7 @@ void heat_kernel::set(const heat_rows &rows, double distance, double root_depth)
   const double unit = rows.dx / rows.speed, root = std::sqrt(unit);
   double last = 0;
   for (int m = 0; m < rows.nx; ++m) {
-    const double end = std::min(m + 0.5, reach);
+    const double end = std::min(m + 0.5 + rows.upstream, reach);
     const double span = end - last;
     if (!(span > 0)) break;
     // at the surface the difference of roots without cancellation

@@ -59,10 +59,12 @@ struct heat_rows {
   double dx = 0;      // m
   int direction = 1;  // rolling towards +x or -x
   double speed = 0;   // m/s; 0: no power, and no rise
+  // elements, 0 ... 0.5, by which flux acts upstream of the element that it is counted at
+  double upstream = 0;
 };
 
 // Y at element centres from flux that is constant over each element, exactly: an element's own flux
-// acts over half of it, and counts once.
+// acts over half of it, and counts once; with rows.upstream over that much more.
 class heat_kernel {
  public:
   heat_kernel() = default;

@@ -74,9 +74,11 @@ def test_power_and_heat_settle_on_those_of_steady_rolling(elements: int, load: f
     )
 
 
-def test_peak_temperature_on_coarse_grids() -> None:
-    """Near full sliding, where the force hardly depends on the grid."""
-    creepage = [1.5 * CREEPAGE, 0.0]
+@pytest.mark.parametrize("load", [0.3, 0.5])
+def test_peak_temperature_on_coarse_grids(load: float) -> None:
+    """Half saturated and less: an element's heat is that of its way from the next one upstream.
+    Read half an element further on it was 3.4 and 11 % low at 24 across, 14 and 31 % at 12."""
+    creepage = [load * CREEPAGE, 0.0]
     warm = {"temperature": {"wheel": 0.0, "rail": 0.0}}
     peaks = {n: railpatch.solve(case(n, creepage, **warm))["max_temperature"] for n in (24, 96)}
     check([Line("24 across", peaks[24] / peaks[96], 1.0, 5e-3)])

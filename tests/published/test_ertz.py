@@ -54,14 +54,16 @@ def test_peak_on_a_hundred_elements(direction: int) -> None:
 
 
 def test_convergence_to_the_closed_form() -> None:
-    """The rise half an element about the peak is flat: errors are those of the flux."""
+    """The rise is that of the flux's own elements: its errors are those of the edges."""
     errors = [
         abs(solve(ertz_case(elements))["max_temperature"] / PEAK - 1)
-        for elements in ([12, 41], [48, 81], [192, 101])
+        for elements in ([12, 41], [24, 41], [96, 81], [192, 101])
     ]
-    assert errors[1] < errors[0] / 2
+    # a heated element is felt as far as its material has come: 1.1 % at 12 across without
+    assert errors[0] < 3e-3
+    assert errors[2] < errors[1] / 2
     # the closed form is quoted to five digits
-    assert errors[2] < max(errors[1] / 2, 1e-3)
+    assert errors[3] < max(errors[2] / 2, 1e-3)
 
 
 def sliding_march(change: float, span: float, own_heat: float = 1.0, n: int = 1500) -> float:

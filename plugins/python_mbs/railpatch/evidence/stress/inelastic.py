@@ -199,8 +199,9 @@ def surface_temperature(step: Step) -> Array:
     mixed = (wheel * heat.wheel + rail * heat.rail) / (wheel + rail)
     flux = heat_flux(step)[:, :: -step.direction]  # from the leading edge on
     nx = flux.shape[1]
-    # roots of the times since an element's edges passed the centre of another one
-    root = np.sqrt(np.concatenate([[0.0], np.arange(nx) + 0.5]))
+    # an element's work is that of its way from the one upstream: roots of the times since its ends
+    # passed the centre of another one
+    root = np.sqrt(np.arange(nx + 1))
     weight = 2 * np.sqrt(step.half_space.dx / (np.pi * step.patch["rolling_speed"]))
     kernel = weight * np.diff(root) / (wheel + rail)
     rise = np.array([np.convolve(row, kernel)[:nx] for row in flux])[:, :: -step.direction]
