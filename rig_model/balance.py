@@ -98,6 +98,9 @@ class Balancer:
         first = self._frictionless.estimate(positions[0].y, positions[0].yaw)
         settings = settings_of(scene, first)
         self._latest: Result | None = None
+        # of bodies that store heat: s, of the last position, and not yet gone by in the contact
+        self._time = positions[0].time
+        self._pending = 0.0
         self._broyden = None if self._exact else Broyden(settings)
         self._solver = self._broyden or Newton(settings)
         baseline = Baseline(scene, self._frictionless, [position.y for position in positions])
@@ -105,6 +108,8 @@ class Balancer:
 
     def solve(self, position: Position) -> Balance:
         """Searches the balance at a position, starting from those before."""
+        self._pending += max(position.time - self._time, 0.0)
+        self._time = position.time
         root = self._search(position, self._start(position))
         if not root.converged:
             # what was known misled the search: afresh
@@ -122,7 +127,8 @@ class Balancer:
         if balance.result is self._latest:
             return self._contact.last(fields=True)
         unknowns = np.array([balance.z, balance.roll, balance.pitch_rate])
-        return self._contact.step(**moved(balance.position, unknowns), fields=True)
+        # no further time goes by
+        return self._contact.step(**moved(balance.position, unknowns), time_step=0.0, fields=True)
 
     def _start(self, position: Position) -> Vector:
         """Where the search starts; sets Broyden's Jacobian where that is known."""
@@ -151,7 +157,15 @@ class Balancer:
         )
 
     def _step(self, position: Position, unknowns: Vector) -> Result:
-        self._latest = self._contact.step(**moved(position, unknowns))
+        heat = self._scene.case.temperature
+        if heat is None or heat.bulk is None:
+            self._latest = self._contact.step(**moved(position, unknowns))
+            return self._latest
+        # the time since the last position goes by once, before the first state that is solved
+        changes = moved(position, unknowns)
+        self._latest = self._contact.step(**changes, time_step=self._pending)
+        if self._latest.status in ("converged", "no_contact"):
+            self._pending = 0.0
         return self._latest
 
     def _slope(self, position: Position, unknowns: Vector, result: Result) -> Vector:

@@ -220,6 +220,10 @@ def check_wheelset(case: Any) -> None:
         problems.append(f"wheelset.speed: value is {case.wheelset.speed}, allowed > 0 m/s")
     if not case.has_tangential:
         problems.append("method.tangential: value is 'none', allowed one with creep forces")
+    if case.temperature is not None and case.temperature.bulk is not None:
+        problems.append(
+            "temperature.bulk: value is given, allowed to be left out: a steady curve has no time"
+        )
     if problems:
         raise CaseError(problems)
 

@@ -324,9 +324,13 @@ void check_bulk(const rp_config &c, const rp_input &in, checker &check) {
     step[k] = given ? in.bulk_temperature[k] : c.bulk_temperature[k];
     check.require(!given || c.temperature == 1,
                   "bulk_temperature must be left NaN in a scene without temperature");
+    check.require(!given || c.bulk_mass[k] == 0,
+                  "bulk_temperature must be left NaN of a body with bulk_mass");
   }
   check.field("bulk_temperature", step, input_range::bulk_temperature);
-  const bool exchanges = c.heat_exchange == 1 || c.bulk_temperature[0] != c.bulk_temperature[1];
+  const bool stores = c.bulk_mass[0] > 0 || c.bulk_mass[1] > 0;
+  const bool exchanges =
+      c.heat_exchange == 1 || stores || c.bulk_temperature[0] != c.bulk_temperature[1];
   check.require(exchanges || step[0] == step[1],
                 "bulk_temperature of wheel and rail must be equal in a scene with equal ones and "
                 "heat_exchange = 0");
@@ -409,6 +413,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   check_friction(c, check);
   check_plastic(c, check);
   check_temperature(c, check);
+  check_stored_heat(c, check);
   check_regime(c, check);
   check_build(c, check);
   if (c.layer_thickness > 0)

@@ -90,6 +90,18 @@ void check_longitudinal(const rp_config &c, checker &check) {
 
 }  // namespace
 
+void check_stored_heat(const rp_config &c, checker &check) {
+  if (check.error() != RP_OK) return;
+  for (int k = 0; k < 2; ++k)
+    check.require(c.air_conductance[k] == 0 || c.bulk_mass[k] > 0,
+                  "air_conductance must be 0 of a body with bulk_mass = 0");
+  if (c.bulk_mass[0] == 0 && c.bulk_mass[1] == 0) return;
+  check.require(c.temperature == 1, "bulk_mass needs temperature = 1");
+  check.require(c.kind != RP_PATCH,
+                "bulk_mass needs kind = wheel_rail or wheelset: a patch has no time");
+  check.require(c.regime == RP_STEADY_ROLLING, "bulk_mass needs regime = steady_rolling");
+}
+
 void check_wheels(const rp_config &c, checker &check) {
   if (c.track == RP_ROLLER) {
     check.field("roller_radius", c.roller_radius, config_range::roller_radius);

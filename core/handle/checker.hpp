@@ -99,5 +99,7 @@ inline bool has_tangential(const rp_config &c) {
 void check_wheels(const rp_config &c, checker &check);
 // What goes with a curved reference surface.
 void check_reference(const rp_config &c, checker &check);
+// Of bodies that the contacts' heat warms.
+void check_stored_heat(const rp_config &c, checker &check);
 
 }  // namespace railpatch

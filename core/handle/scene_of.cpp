@@ -49,7 +49,8 @@ std::optional<heat_scene> make_heat(const rp_config &c) {
   for (int k = 0; k < 2; ++k)
     heat.bodies.body[k] = {c.conductivity[k], c.heat_capacity[k], c.density[k],
                            c.bulk_temperature[k]};
-  heat.exchanges = c.heat_exchange == 1 || heat.bodies.exchanges();
+  const bool stores = c.bulk_mass[0] > 0 || c.bulk_mass[1] > 0;
+  heat.exchanges = c.heat_exchange == 1 || heat.bodies.exchanges() || stores;
   heat.by_temperature = c.friction_law == RP_TEMPERATURE;
   heat.law = {c.friction_reference, c.friction_change, c.friction_reference_temperature,
               c.friction_temperature_range};

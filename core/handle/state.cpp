@@ -103,7 +103,7 @@ uint64_t contact::fingerprint(const rp_config &c) {
 }
 
 size_t contact::state_size() const {
-  size_t size = sizeof(state_header) + driver_->kept().bytes;
+  size_t size = sizeof(state_header) + driver_->kept().all_bytes();
   for (const auto &m : driver_->memories()) {
     const patch_state_head head = head_of(m);
     size += sizeof head;
@@ -125,6 +125,7 @@ void contact::save_state(unsigned char *buffer) const {
   }
   const driver::kept_numbers kept = driver_->kept();
   put(kept.more, kept.bytes);
+  put(kept.heat, kept.heat_bytes);
   const auto bytes = static_cast<size_t>(at - buffer);
   state_header header{state_magic,
                       static_cast<uint32_t>(config_.kind),
@@ -160,6 +161,7 @@ bool contact::restore_state(const unsigned char *buffer, size_t size) {
   }
   const driver::kept_numbers kept = driver_->kept();
   take(kept.more, kept.bytes);
+  take(kept.heat, kept.heat_bytes);
   if (kept.depth) *kept.depth = header.depth;
   driver_->solver().set_friction_coefficient(header.friction_coefficient);
   if (derivative_) derivative_->solved = false;
@@ -180,6 +182,7 @@ void contact::copy_state(const contact &from) {
   }
   const driver::kept_numbers kept = driver_->kept(), source = from.driver_->kept();
   if (kept.bytes) std::memcpy(kept.more, source.more, kept.bytes);
+  if (kept.heat_bytes) std::memcpy(kept.heat, source.heat, kept.heat_bytes);
   if (kept.depth) *kept.depth = *source.depth;
   driver_->solver().set_friction_coefficient(from.friction_coefficient());
 }
@@ -197,7 +200,7 @@ bool contact::state_fits(const unsigned char *at, size_t size) const {
     at += bytes;
     size -= bytes;
   }
-  return size == driver_->kept().bytes;
+  return size == driver_->kept().all_bytes();
 }
 
 }  // namespace railpatch

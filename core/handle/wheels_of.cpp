@@ -86,6 +86,15 @@ wheels_setup wheels_of(const rp_config &c, const patch_scene &scene) {
                                   c.tolerance,
                                   scene.modulus(),
                                   0.5 * c.nominal_radius};
+  if (c.bulk_mass[0] > 0 || c.bulk_mass[1] > 0) {
+    bulk_setup &bulk = setup.bulk.emplace();
+    for (int k = 0; k < 2; ++k) {
+      bulk.capacity[k] = c.bulk_mass[k] * c.heat_capacity[k];
+      bulk.conductance[k] = c.air_conductance[k];
+      bulk.start[k] = c.bulk_temperature[k];
+    }
+    bulk.air = c.air_temperature;
+  }
   return setup;
 }
 

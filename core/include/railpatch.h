@@ -407,6 +407,14 @@ typedef struct rp_config {
 
   rp_observer observer; /* may be null */
   void *observer_user;
+
+  /* bulk temperatures that heat raises and the air takes away, of each wheel and its rail or
+   * roller: mass heat_capacity dT/dt = heat - air_conductance (T - air_temperature). They begin at
+   * bulk_temperature and go on by input.time_step with the last step's wheel_heat and rail_heat;
+   * kinds RP_WHEEL_RAIL and RP_WHEELSET, RP_STEADY_ROLLING. Part of the state */
+  double bulk_mass[2];       /* kg, 0: the bulk temperature stays as given */
+  double air_conductance[2]; /* W/K, 0 where bulk_mass is 0 */
+  double air_temperature;    /* degrees C */
 } rp_config;
 
 typedef struct rp_input {
@@ -422,7 +430,7 @@ typedef struct rp_input {
   double spin_creepage;       /* rad/m; RP_SHIFT: rad, rotation in this step */
   double rolling_speed;       /* m/s, >= 0; 0 is standstill: no creep force */
   int32_t direction;          /* rolling towards +x (1) or -x (-1) */
-  double bulk_temperature[2]; /* degrees C; NaN: the config's */
+  double bulk_temperature[2]; /* degrees C; NaN: the config's; of a body with bulk_mass NaN */
   double distance;            /* m, > 0, rolled in this step where regime = RP_TRANSIENT_ROLLING */
 
   /* wheelset: position, attitude (roll-yaw-pitch) and velocity in track axes */
@@ -440,8 +448,9 @@ typedef struct rp_input {
    * profile's origin, a roller about its axle (y). */
   double wheel_velocity[2][3], wheel_angular_velocity[2][3];
   double rail_velocity[2][3], rail_angular_velocity[2][3];
-  double time_step;         /* s, >= 0, since the last step, for rails on dampers (0: at rest)
-                               and for regime = RP_TRANSIENT_ROLLING (> 0) */
+  double time_step;         /* s, >= 0, since the last step, for rails on dampers (0: at rest),
+                               for regime = RP_TRANSIENT_ROLLING (> 0) and for bodies with
+                               bulk_mass */
   double roller_pitch_rate; /* rad/s */
 
   double friction_coefficient; /* -, of a direction (rp_differentiate) only: rate of the coefficient
@@ -505,6 +514,9 @@ typedef struct rp_patch_result {
                                  that of its middle. RP_SHIFT: J, without the speed. What friction
                                  and layer take of it: friction_power, plastic_power; in shift and
                                  transient rolling the rest is the tractions' elastic energy */
+  double wheel_heat, rail_heat; /* W, into each body: its part of friction and plastic work by the
+                                   effusivities, and what it gets from the other one. NaN: no
+                                   temperature in the scene, or exchanged in transient rolling */
 } rp_patch_result;
 
 /* One wheel; on a roller see rp_contact_frame. NaN where a patch could not be solved. */
@@ -524,6 +536,9 @@ typedef struct rp_side_result {
   /* of the patches and alternatives: sums of share times each, and the greatest of all */
   double creep_power, friction_power, plastic_power, elastic_energy;
   double max_temperature, residual;
+  double wheel_heat, rail_heat;
+  double wheel_temperature, rail_temperature; /* degrees C, bulk, that the step was solved with;
+                                                 NaN: no temperature in the scene */
 } rp_side_result;
 
 typedef struct rp_result {
@@ -536,6 +551,7 @@ typedef struct rp_result {
   /* of the wheels: sums, and the greatest */
   double contact_power, creep_power, friction_power, plastic_power, elastic_energy;
   double max_temperature, residual;
+  double wheel_heat, rail_heat;
 } rp_result;
 
 #define RP_FIELDS(X)                                                                             \

@@ -73,7 +73,9 @@
   X(double, element_size, 2, number, even, kept, alone, 0, "m",                                   \
     "of an element along rolling, lateral")                                                       \
   X(double, creep_power, 1, number, even, zero_rolling, by_share, NAN, "W",                       \
-    "power that the creepages and the spin supply")
+    "power that the creepages and the spin supply")                                               \
+  X(double, wheel_heat, 1, number, even, own, by_share, NAN, "W", "heat into the wheel")          \
+  X(double, rail_heat, 1, number, even, own, by_share, NAN, "W", "heat into the rail or roller")
 
 #define RP_SIDE_RESULT_FIELDS(X, O)                                                      \
   X(rp_status, status, 1, status, even, kept, alone, RP_NO_CONTACT, "",                  \
@@ -104,7 +106,15 @@
   X(double, max_temperature, 1, number, even, kept, greatest, NAN, "degrees C",          \
     "highest surface temperature of all contacts")                                       \
   X(double, residual, 1, estimate, even, kept, greatest, 0, "-",                         \
-    "greatest residual at the end of all patches")
+    "greatest residual at the end of all patches")                                       \
+  X(double, wheel_heat, 1, number, even, kept, added, NAN, "W",                          \
+    "heat into the wheel, of all patches by share")                                      \
+  X(double, rail_heat, 1, number, even, kept, added, NAN, "W",                           \
+    "heat into the rail or roller, of all patches by share")                             \
+  X(double, wheel_temperature, 1, number, even, kept, alone, NAN, "degrees C",           \
+    "bulk temperature of the wheel")                                                     \
+  X(double, rail_temperature, 1, number, even, kept, alone, NAN, "degrees C",            \
+    "bulk temperature of the rail or roller")
 
 #define RP_RESULT_FIELDS(X, O)                                                                   \
   X(rp_status, status, 1, status, even, kept, alone, RP_CONVERGED, "", "how the solution ended") \
@@ -128,7 +138,9 @@
   X(double, max_temperature, 1, number, even, kept, alone, NAN, "degrees C",                     \
     "highest surface temperature of all contacts")                                               \
   X(double, residual, 1, estimate, even, kept, alone, 0, "-",                                    \
-    "greatest residual at the end of all patches")
+    "greatest residual at the end of all patches")                                               \
+  X(double, wheel_heat, 1, number, even, kept, alone, NAN, "W", "heat into the wheels")          \
+  X(double, rail_heat, 1, number, even, kept, alone, NAN, "W", "heat into the rails or rollers")
 
 /* --- inputs: X(type, name, count, role, where, start, bounds, low, high, unit, text) ---------
  * role      choice: an enumeration; number; integer; side: RP_LEFT or RP_RIGHT; points: numbers of
@@ -315,7 +327,14 @@
   X(double, rail_height_spacing, 1, number, wheels, 1e-3, "[]", 1e-6, 1e3, "m",                    \
     "along the track, between two heights")                                                        \
   O(rp_observer, observer, 1)                                                                      \
-  O(void *, observer_user, 1)
+  O(void *, observer_user, 1)                                                                      \
+  X(double, bulk_mass, 2, number, always, 0, "[]", 0, 1e9, "kg",                                   \
+    "that the contacts' heat warms, of each wheel and its rail or roller; 0: the bulk "            \
+    "temperature "                                                                                 \
+    "stays as given")                                                                              \
+  X(double, air_conductance, 2, number, always, 0, "[]", 0, 1e9, "W/K",                            \
+    "of such a body's surface to the air")                                                         \
+  X(double, air_temperature, 1, number, always, 20, "[]", -273.15, 1e4, "degrees C", "of the air")
 
 /* X(type, name, count, role, where, start, bounds, low, high, scale, unit, text), as above and
  * role      place: a number whose size says nothing about how fast things change there
@@ -377,7 +396,9 @@
   X(double, rail_angular_velocity, 2 * 3, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, 0.01,      \
     "rad/s", "rate of rail_rotation")                                                              \
   X(double, time_step, 1, number, own, 0, "[)", 0, HUGE_VAL, 1e-3, "s",                            \
-    "since the last step, for rails on dampers (0: at rest) and transient rolling (> 0)")          \
+    "since the last step, for rails on dampers (0: at rest), transient rolling (> 0) and bodies "  \
+    "that "                                                                                        \
+    "store heat")                                                                                  \
   X(double, roller_pitch_rate, 1, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, 1, "rad/s",        \
     "about the roller's axle, above 0 forward (roller)")                                           \
   X(double, friction_coefficient, 1, number, own, 0, "", 0, 0, 0.1, "-",                           \

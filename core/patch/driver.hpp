@@ -45,6 +45,9 @@ class driver {
     double *depth = nullptr;  // m
     void *more = nullptr;     // plain bytes
     size_t bytes = 0;
+    void *heat = nullptr;  // the same of bodies that store it
+    size_t heat_bytes = 0;
+    size_t all_bytes() const { return bytes + heat_bytes; }
   };
   virtual kept_numbers kept() { return {}; }
 

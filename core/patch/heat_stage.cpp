@@ -31,7 +31,9 @@ heat_outcome heat_stage::finish(const patch_problem &problem, patch_memory &memo
   if (!stage_) return {};
   const stage_mark mark = shared_.marks.enter(RP_STAGE_TEMPERATURE);
   set_flux(problem, memory, stage_->flux());
-  return {true, stage_->finish(memory.pressure.data(), *memory.heat)};
+  heat_outcome found{true, stage_->finish(memory.pressure.data(), *memory.heat), {0, 0}};
+  for (int k = 0; k < 2; ++k) found.heat[k] = stage_->heat_into(k, problem.g.dy);
+  return found;
 }
 
 void heat_stage::set_flux(const patch_problem &problem, const patch_memory &memory, double *q) {

@@ -36,6 +36,7 @@ struct traction_outcome {
 struct heat_outcome {
   bool found = false;
   double max_temperature = 0;  // degrees C
+  double heat[2] = {0, 0};     // W, into wheel and rail
 };
 
 }  // namespace railpatch

@@ -10,6 +10,13 @@ namespace railpatch {
 
 namespace {
 
+void describe_heat(const heat_outcome &h, rp_patch_result &result) {
+  if (!h.found) return;
+  result.max_temperature = h.max_temperature;
+  result.wheel_heat = h.heat[0];
+  result.rail_heat = h.heat[1];
+}
+
 // Fitted rows have elements of many sizes: their places are in the fields.
 void describe_grid(const patch_scene &scene, const grid &g, rp_patch_result &result) {
   const bool fitted = scene.is_fitted();
@@ -81,14 +88,14 @@ void report(const patch_scene &scene, const patch_problem &problem, const pressu
   result.contact_area = n.contact_area;
   result.elastic_energy = n.elastic_energy;
   if (scene.tangential != RP_TANGENTIAL_NONE) describe_tractions(scene, t, wrench, result);
-  if (h.found) result.max_temperature = h.max_temperature;
+  describe_heat(h, result);
 }
 
 void report_unloaded(const patch_scene &scene, const patch_problem &problem,
                      const pressure_outcome &n, const heat_outcome &h, rp_patch_result &result) {
   describe(scene, problem, n, result);
   set_unloaded(scene, result);
-  if (h.found) result.max_temperature = h.max_temperature;
+  describe_heat(h, result);
 }
 
 void report_apart(const patch_scene &scene, const patch_place &place, double approach,
@@ -97,7 +104,7 @@ void report_apart(const patch_scene &scene, const patch_place &place, double app
   result.status = RP_NO_CONTACT;
   result.approach = approach;
   set_unloaded(scene, result);
-  if (h.found) result.max_temperature = h.max_temperature;
+  describe_heat(h, result);
 }
 
 void report_beyond(const patch_place &place, rp_patch_result &result) {

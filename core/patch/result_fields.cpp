@@ -88,9 +88,10 @@ void set_unloaded(const patch_scene &scene, rp_patch_result &result) {
   RP_PATCH_RESULT_FIELDS(RP_UNLOAD, RP_NONE)
   if (rolling) result.error_estimate[0] = result.error_estimate[1] = 0;
   result.error_estimate[2] = 0;
-  if (scene.heat)
-    result.max_temperature =
-        std::max(scene.heat->bodies.body[0].bulk, scene.heat->bodies.body[1].bulk);
+  if (!scene.heat) return;
+  result.max_temperature =
+      std::max(scene.heat->bodies.body[0].bulk, scene.heat->bodies.body[1].bulk);
+  result.wheel_heat = result.rail_heat = 0;
 }
 
 void mirror(rp_side_result &r) {

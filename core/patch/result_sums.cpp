@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "patch/patch_scene.hpp"
+
 namespace railpatch {
 
 namespace {
@@ -86,6 +88,10 @@ void sum_wheels(const bool (&there)[2], const Result &value, Result &out) {
 }  // namespace
 
 void sum_patches(const patch_scene &scene, rp_side_result &side) {
+  if (scene.heat) {
+    side.wheel_temperature = scene.heat->bodies.body[0].bulk;
+    side.rail_temperature = scene.heat->bodies.body[1].bulk;
+  }
   if (count_of(side) > 0) return sum_loaded(side);
   rp_patch_result none = empty_patch_result();
   set_unloaded(scene, none);

@@ -1,6 +1,10 @@
 #include "temperature/stage.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "numeric/nan.hpp"
+#include "numeric/sums.hpp"
 
 namespace railpatch {
 
@@ -102,6 +106,19 @@ double temperature_stage::finish(const double *pressure, heat_memory &memory) {
     }
   }
   return greatest;
+}
+
+double temperature_stage::heat_into(int body, double dy) const {
+  const thermal_pair &pair = scene_.bodies;
+  const double flux = total(flux_.data(), static_cast<size_t>(count())) * rows_.dx * dy;
+  const double own = pair.share(body) * flux;
+  if (!pair.exchanges()) return own;
+  if (columns_) return nan;
+  if (!(rows_.speed > 0)) return own;
+  const thermal_body &b = pair.body[body], &other = pair.body[1 - body];
+  const double unit = std::sqrt(rows_.dx * rows_.speed);
+  const double level = b.effusivity() * pair.share(1 - body) * (other.bulk - b.bulk);
+  return own + level * unit * steady_->exchanged_heat() * dy;
 }
 
 }  // namespace railpatch

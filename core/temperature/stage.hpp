@@ -55,6 +55,9 @@ class temperature_stage {
   // greatest surface temperature in contact (degrees C); without contact, of both bodies.
   double finish(const double *pressure, heat_memory &memory);
   double *flux() { return flux_.data(); }  // of the step, for finish
+  // W, after finish: a body's share of the flux and what it gets from the other one, with rows dy
+  // (m) apart. NaN where columns of a transient contact exchange heat.
+  double heat_into(int body, double dy) const;
   size_t bytes() const;
 
  private:

@@ -156,6 +156,17 @@ void heat_exchange::set_row(const heat_rows &rows, const double *pressure) {
   }
 }
 
+double heat_exchange::heat() const {
+  double sum = 0;
+  for (int s = 0; s < stretches_; ++s) {
+    const stretch &c = stretch_[static_cast<size_t>(s)];
+    // flux jump/sqrt(pi t) while it touches
+    sum += c.jump * 2.0 * inv_sqrtpi * std::sqrt(std::min(c.exit, 1.0 * nx_) - c.entry);
+  }
+  for (int k = 0; again_ && k < nx_; ++k) sum += flux_[static_cast<size_t>(k)];
+  return sum;
+}
+
 double heat_exchange::at(int k, double depth) const { return value(k + 0.5, depth); }
 
 void friction_heat(int count, double speed, const double *friction, const double *plastic_power,
@@ -175,9 +186,11 @@ void steady_temperature::set(const heat_rows &rows) {
 }
 
 void steady_temperature::exchange(const double *pressure, double *e, double depth) {
+  exchanged_heat_ = 0;
   for (int j = 0; j < rows_.ny; ++j) {
     const ptrdiff_t row = static_cast<ptrdiff_t>(j) * rows_.nx;
     exchange_.set_row(rows_, pressure + row);
+    exchanged_heat_ += exchange_.heat();
     for (int k = 0; k < rows_.nx; ++k)
       e[row + (rows_.direction > 0 ? rows_.nx - 1 - k : k)] = exchange_.at(k, depth);
   }

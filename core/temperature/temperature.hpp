@@ -95,6 +95,9 @@ class heat_exchange {
   void set_row(const heat_rows &rows, const double *pressure);
   // k: elements behind the row's leading end; depth in sqrt(kappa dx/V).
   double at(int k, double depth = 0) const;
+  // Heat that passes the row, of a body with effusivity 1 and a difference of 1, per passage of
+  // sqrt(dx/V).
+  double heat() const;
   size_t bytes() const { return stretch_.bytes() + flux_.bytes(); }
 
  private:
@@ -134,12 +137,14 @@ class steady_temperature {
   void at_depth(const thermal_pair &pair, int k, double z, const double *q, const double *pressure,
                 double *temperature);
   const heat_kernel &kernel() const { return kernel_; }
+  double exchanged_heat() const { return exchanged_heat_; }  // of all rows at the surface
   size_t bytes() const { return kernel_.bytes() + deep_.bytes() + exchange_.bytes(); }
 
  private:
   heat_rows rows_;
   heat_kernel kernel_, deep_;
   heat_exchange exchange_;
+  double exchanged_heat_ = 0;
 };
 
 }  // namespace railpatch

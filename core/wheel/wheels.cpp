@@ -23,6 +23,7 @@ wheels::wheels(const wheels_setup &setup, const patch_scene &scene, const fft_pl
   wheels_.reserve(setup.wheel.size());
   for (const auto &wheel : setup.wheel) wheels_.emplace_back(wheel);
   if (setup.support) support_.emplace(*setup.support);
+  if (setup.bulk) bulk_.emplace(*setup.bulk);
   if (!scene.exact) return;
   rates_ = std::make_unique<rates>(
       rates{wheel_derivative(scene, setup.largest.nx * setup.largest.ny, setup.largest.ny), {}});
@@ -38,13 +39,23 @@ const patch_memory *wheels::find(int side, int patch) const {
 
 driver::kept_numbers wheels::kept() {
   static_assert(std::is_trivially_copyable_v<rail_support::rail>);
-  if (!support_) return {&depth_, nullptr, 0};
-  return {&depth_, support_->rails(), 2 * sizeof(rail_support::rail)};
+  static_assert(std::is_trivially_copyable_v<bulk_temperatures::numbers>);
+  kept_numbers kept{&depth_};
+  if (support_) {
+    kept.more = support_->rails();
+    kept.bytes = 2 * sizeof(rail_support::rail);
+  }
+  if (bulk_) {
+    kept.heat = bulk_->kept();
+    kept.heat_bytes = sizeof(bulk_temperatures::numbers);
+  }
+  return kept;
 }
 
 void wheels::reset() {
   depth_ = 0;
   if (support_) support_->reset();
+  if (bulk_) bulk_->reset();
 }
 
 const char *wheels::geometry_reason() const {
@@ -65,6 +76,7 @@ double wheels::evaluate(double z, rp_result &out) {
     wheel_contact &wheel = wheels_[w];
     rp_side_result &side = out.side[wheel.side()];
     wheel.move_to(z);
+    set_bulk(wheel.side());
     wheel.evaluate(solver_, memory_of(w), side);
     vertical -= side.force[2];
     status = combine_status(status, side.status);
@@ -76,6 +88,7 @@ double wheels::evaluate(double z, rp_result &out) {
 
 void wheels::step(const rp_input &in, rp_result &out) {
   if (friction_along_.varies()) solver_.set_friction_scale(friction_along_.at(in.x));
+  if (bulk_) bulk_->begin(in.time_step);
   if (solver_.scene().keeps_steps())
     for (auto &m : memory_) solver_.remember(m);
   {
@@ -94,10 +107,30 @@ void wheels::step(const rp_input &in, rp_result &out) {
   for (const auto &wheel : wheels_) {
     rp_side_result &side = out.side[wheel.side()];
     there[wheel.side()] = true;
+    set_bulk(wheel.side());
     sum_patches(solver_.scene(), side);
     side.contact_power = wheelset_power(in, {side.force, side.moment});
   }
   sum_sides(there, out, out);
+  if (bulk_) keep_heat(out);
+}
+
+// Of bodies that store heat: what the step begins with.
+void wheels::set_bulk(int side) {
+  for (int k = 0; bulk_ && k < 2; ++k)
+    if (bulk_->setup().stores(k)) solver_.set_bulk_temperature(k, bulk_->now(side, k));
+}
+
+// A step that is no solution leaves temperatures and heat as they were.
+void wheels::keep_heat(const rp_result &out) {
+  if (out.status != RP_CONVERGED && out.status != RP_NO_CONTACT) return;
+  double heat[2][2] = {{0, 0}, {0, 0}};
+  for (const auto &wheel : wheels_) {
+    const rp_side_result &side = out.side[wheel.side()];
+    heat[wheel.side()][0] = side.wheel_heat;
+    heat[wheel.side()][1] = side.rail_heat;
+  }
+  bulk_->keep(heat);
 }
 
 // Finds z for a prescribed vertical force.

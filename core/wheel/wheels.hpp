@@ -8,6 +8,7 @@
 
 #include "patch/driver.hpp"
 #include "tangential/friction_factor.hpp"
+#include "temperature/bulk.hpp"
 #include "wheel/rail_support.hpp"
 #include "wheel/wheel_contact.hpp"
 #include "wheel/wheel_derivative.hpp"
@@ -23,6 +24,7 @@ struct wheels_setup {
   double nominal_radius = 0;       // m
   friction_factor friction_along;  // by x
   std::optional<support_setup> support;
+  std::optional<bulk_setup> bulk;
 };
 
 class wheels final : public driver {
@@ -54,6 +56,8 @@ class wheels final : public driver {
   patch_memory *memory_of(size_t wheel) { return memory_.data() + wheel * patches_; }
   const patch_memory *memory_of(size_t wheel) const { return memory_.data() + wheel * patches_; }
   double evaluate(double z, rp_result &result);
+  void set_bulk(int side);
+  void keep_heat(const rp_result &result);
   void find_z(double vertical_force, rp_result &result);
   void solve_supported(const rp_input &input, rp_result &result);
   void report_search(bool converged, rp_status otherwise, double residual, rp_result &result) const;
@@ -65,7 +69,8 @@ class wheels final : public driver {
   double tolerance_, nominal_radius_;
   double depth_ = 0;  // m, last z found minus first touch; 0: none
   friction_factor friction_along_;
-  std::optional<rail_support> support_;  // where rails are on springs
+  std::optional<rail_support> support_;    // where rails are on springs
+  std::optional<bulk_temperatures> bulk_;  // where bodies store heat
   std::unique_ptr<rates> rates_;
 };
 

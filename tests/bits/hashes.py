@@ -26,7 +26,8 @@ from bits.combinations import Case, all_cases, sample
 
 TIMES = ("wall_time",)
 # what follows from other numbers of the result, and has tests of its own: of patches and wheels
-FOLLOW = ("creep_power", "contact_power")
+FOLLOW = ("creep_power", "contact_power", "wheel_heat", "rail_heat")
+FOLLOW += ("wheel_temperature", "rail_temperature")
 SUMS = ("friction_power", "plastic_power", "elastic_energy", "max_temperature", "residual")
 
 

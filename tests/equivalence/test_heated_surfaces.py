@@ -7,9 +7,12 @@ the bodies.
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+import pytest
+import railpatch
 import vehicle_scenes
 import wheelset_scenes
 from click.testing import CliRunner
@@ -42,6 +45,54 @@ def test_rig(tmp_path: Path) -> None:
         assert (warm.z, warm.roll, warm.pitch_rate) == (plain.z, plain.roll, plain.pitch_rate)
         assert warm.result["max_temperature"] > BULK + 0.1
         assert np.isnan(plain.result["max_temperature"])
+
+
+def test_rig_stores_heat(tmp_path: Path) -> None:
+    """Between positions each body takes the heat that it had at the one before."""
+    source = scenes() / NOMINAL
+    for profile in source.parent.glob("*.csv"):
+        (tmp_path / profile.name).write_bytes(profile.read_bytes())
+    heated = tmp_path / "scene.toml"
+    mass, conductance, air = [0.5, 2.0], [3.0, 1.0], 20.0
+    heated.write_text(
+        source.read_text()
+        + TEXT
+        + f"\n[temperature.bulk]\nmass = {mass}\nair_conductance = {conductance}\n"
+        + f"air_temperature = {air}\n"
+    )
+    scene = load_rig_scene(heated, {"positions": 3})
+    balancer = Balancer(scene)
+    positions = scene.positions()
+    found = [balancer.solve(position) for position in positions]
+    assert all(balance.status == "converged" for balance in found)
+    for (at, balance), (later, after) in pairwise(zip(positions, found, strict=True)):
+        time = later.time - at.time
+        assert time > 0
+        for side in ("left", "right"):
+            before, now = balance.result[side], after.result[side]
+            for k, body in enumerate(("wheel", "rail")):
+                end = air + before[f"{body}_heat"] / conductance[k]
+                start = before[f"{body}_temperature"]
+                left = np.exp(-conductance[k] * time / (mass[k] * 450.0))
+                wanted = end + (start - end) * left
+                assert now[f"{body}_temperature"] == pytest.approx(wanted, rel=1e-9)
+
+
+def test_what_has_no_time_refuses_bodies_that_store_heat(tmp_path: Path) -> None:
+    """Curves, FMUs, and the force element with its runs, by name."""
+    bulk = "\n[temperature.bulk]\nmass = 100.0\n"
+    curve, case, run = (tmp_path / f"{name}.toml" for name in ("curve", "case", "run"))
+    curve.write_text(CURVE.read_text() + TEXT + bulk)
+    with pytest.raises(railpatch.CaseError, match=r"temperature\.bulk"):
+        load_curve_scene(curve)
+    kinds = Path(railpatch.__file__).parent / "fmu" / "kinds"
+    case.write_text((kinds / "wheelset_temperature.toml").read_text() + bulk)
+    run.write_text(wheelset_scenes.text_of("s1002.toml", distance=0.5) + TEXT + bulk)
+    for arguments in (["fmu", str(case), "-o", str(tmp_path / "a.fmu")],
+                      ["wheelset", str(run), "-o", str(tmp_path / "a.mcap")]):  # fmt: skip
+        result = CliRunner().invoke(cli, arguments)
+        assert result.exit_code == 2, arguments
+        assert "temperature.bulk" in result.output
 
 
 def test_curve(tmp_path: Path) -> None:

@@ -35,7 +35,8 @@ PATCH_FIELDS = (
 
 
 # of stages that the scenes have not
-NOT_THERE = {"max_temperature", "plastic_power"}
+NOT_THERE = {"max_temperature", "plastic_power", "wheel_heat", "rail_heat"}
+NOT_THERE |= {"wheel_temperature", "rail_temperature"}
 
 
 def shown(result: Result) -> str:

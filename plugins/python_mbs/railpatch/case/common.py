@@ -24,6 +24,7 @@ from railpatch.case.types import (
     between,
     exactly_one,
     key,
+    listed,
     of_bodies,
     one_of,
     refuse,
@@ -151,6 +152,33 @@ def yields_by(layer: Layer | None) -> str:
     return f"layer.{'hardening_table' if by_table else 'yield_stress'}"
 
 
+class Bulk(Table):
+    """Bodies whose bulk temperature the contacts' heat raises and the air takes away.
+
+    mass c dT/dt = heat - air_conductance (T - air_temperature), by wheelset.time_step from step to
+    step.
+    """
+
+    mass: of_bodies("bulk_mass") = key(", or [wheel, rail]", of="bulk_mass")
+    air_conductance: of_bodies("air_conductance") = key(", or [wheel, rail]")
+    air_temperature: float = key()
+
+    @model_validator(mode="after")
+    def _cooled(self) -> Bulk:
+        if max(self.mass) == 0:
+            raise relation("mass", self.mass, "> 0 for wheel, rail or both")
+        bodies = zip(self.air_conductance, self.mass, strict=True)
+        cooled = [conductance > 0 and mass == 0 for conductance, mass in bodies]
+        if any(cooled):
+            raise relation("air_conductance", self.air_conductance, "0 of a body with mass 0")
+        if (
+            max(self.air_conductance) == 0
+            and self.air_temperature != listed("air_temperature")["start"]
+        ):
+            raise relation("air_temperature", self.air_temperature, "only with air_conductance")
+        return self
+
+
 class Temperature(Table):
     """Surface temperature of wheel and rail; the table is left out for none."""
 
@@ -165,11 +193,22 @@ class Temperature(Table):
     heat_capacity: of_bodies("heat_capacity") = key(", or [wheel, rail]")
     density: of_bodies("density") = key(", or [wheel, rail]")
     depth: float = key(of="temperature_depth")
+    bulk: Bulk | None = Field(
+        default=None,
+        description="bodies that the heat warms, by wheelset.time_step (degrees C, kg, W/K)",
+    )
 
     @property
     def moving(self) -> tuple[str, ...]:
-        """The bulk temperatures."""
-        return BODIES
+        """The bulk temperatures that are given."""
+        return tuple(body for body, stores in zip(BODIES, self.stores, strict=True) if not stores)
+
+    @property
+    def stores(self) -> tuple[bool, bool]:
+        """Whether the run finds the temperature of wheel and rail."""
+        if self.bulk is None:
+            return False, False
+        return self.bulk.mass[0] > 0, self.bulk.mass[1] > 0
 
 
 # what only wheels read

@@ -260,6 +260,8 @@ class PatchCase(Table):
 
     def _check_of_wheels(self) -> Problems:
         """Keys that patches given directly have not."""
+        if self.temperature is not None and self.temperature.bulk is not None:
+            yield relation("temperature.bulk", "given", f"{LEFT_OUT} with kind = 'patch': no time")
         if self.friction is not None and self.friction.along_track is not None:
             shown = str(self.friction.along_track)
             yield relation("friction.along_track", shown, f"{LEFT_OUT} with kind = 'patch'")

@@ -151,8 +151,12 @@ def check_rolling(case: Any) -> Problems:
     if heights and case.track.kind == "roller":
         yield relation(heights[0], "given", "only with track.kind = 'rail'")
     if case.motion.regime == "steady_rolling":
-        if case.wheelset.time_step > 0 and case.track.rail_support is None:
-            allowed = "0 but with motion.regime = 'transient_rolling' or track.rail_support"
+        heated = case.temperature is not None and case.temperature.bulk is not None
+        if case.wheelset.time_step > 0 and case.track.rail_support is None and not heated:
+            allowed = (
+                "0 but with motion.regime = 'transient_rolling', track.rail_support or "
+                "temperature.bulk"
+            )
             yield relation("wheelset.time_step", case.wheelset.time_step, allowed)
         return
     where = "with motion.regime = 'transient_rolling'"

@@ -31,7 +31,7 @@ from railpatch.profiles.sections import matching_sections
 
 WheelCase = WheelRailCase | WheelsetCase
 # first word of a field that holds a key of the table
-WORDS = {"friction": "friction_", "layer": "layer_", "rail_support": "rail_"}
+WORDS = {"friction": "friction_", "layer": "layer_", "rail_support": "rail_", "bulk": "bulk_"}
 # keys whose field has another name
 NAMES = {
     "temperature.depth": "temperature_depth",
@@ -116,6 +116,7 @@ def temperature_config(case: Case) -> dict[str, Any]:
     if not has_heat(case):
         return {}
     found = passed("temperature", case.temperature, _core.CONFIG_FIELDS)
+    found |= passed("bulk", case.temperature.bulk, _core.CONFIG_FIELDS)
     return {"temperature": 1, **found, **bulk_of(case)}
 
 
@@ -214,7 +215,10 @@ def input_of(case: Case) -> dict[str, Any]:
             sides = [getattr(getattr(case, table), side) for side in SIDES]
             for key in DEVIATION:
                 values[f"{body}_{key}"] = [getattr(side, key) for side in sides]
-    return {**values, **bulk_of(case)}
+    if has_heat(case):
+        given = zip(bulk_of(case)["bulk_temperature"], case.temperature.stores, strict=True)
+        values["bulk_temperature"] = [math.nan if stores else value for value, stores in given]
+    return values
 
 
 def bulk_of(case: Case) -> dict[str, Any]:

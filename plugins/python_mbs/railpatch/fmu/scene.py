@@ -161,6 +161,9 @@ def scene_text(
     """resources/scene.txt; plugins/fmu/src/scene.hpp tells its form."""
     if getattr(getattr(scene.case, "track", None), "irregularity", None) is not None:
         raise CaseError("track.irregularity: given, allowed in an FMU none")
+    heat = scene.case.temperature
+    if heat is not None and heat.bulk is not None:
+        raise CaseError("temperature.bulk: given, allowed in an FMU none: temperatures are inputs")
     config = {**config_of(scene), "derivatives": int(derivatives)}
     options = options_of(scene.case, kind)
     body = "\n".join([*lines_of(config, options, variables, guid, choices), ""])

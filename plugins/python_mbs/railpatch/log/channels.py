@@ -191,12 +191,15 @@ PATCH = Message(
         _listed("patch", "ambiguous_elements"),
         _listed("patch", "share"),
         _listed("patch", "creep_power"),
+        _listed("patch", "wheel_heat"),
+        _listed("patch", "rail_heat"),
     ),
 )
 
 _SUMS = (
     *("contact_power", "creep_power", "friction_power", "plastic_power", "elastic_energy"),
     *("max_temperature", "residual"),
+    *("wheel_heat", "rail_heat", "wheel_temperature", "rail_temperature"),
 )
 WHEEL_CONTACT = Message(
     "WheelContact",

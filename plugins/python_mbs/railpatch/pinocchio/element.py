@@ -413,6 +413,8 @@ def check_case(case: Any) -> None:
         problems.append(
             f"wheelset.time_step: value is {case.wheelset.time_step}, allowed 0: {several}"
         )
+    if case.temperature is not None and case.temperature.bulk is not None:
+        problems.append(f"temperature.bulk: value is given, allowed to be left out: {several}")
     if problems:
         raise CaseError(problems)
 
