@@ -286,10 +286,11 @@ void check_grid(const rp_config &c, checker &check) {
   }
   // theories that take the shape of rows by parabolas need three elements either way, which grids
   // of other sizes always have
-  const bool by_parabolas = c.normal == RP_NORMAL_KIK_PIOTROWSKI || c.normal == RP_NORMAL_ANALYN;
+  const bool by_parabolas = takes_rows(c.normal);
   for (int k = 0; k < 2; ++k)
     check.require(!by_parabolas || c.max_elements[k] == 0 || c.max_elements[k] > 2,
-                  "max_elements must be 0 or at least 3 with normal = kik_piotrowski and analyn");
+                  "max_elements must be 0 or at least 3 with normal = kik_piotrowski, "
+                  "kik_piotrowski_corrected and analyn");
   check.require(!counted || (c.max_elements[0] == 0 && c.max_elements[1] == 0),
                 "max_elements must be 0 with elements: it is a capacity for element_size");
 }
@@ -308,8 +309,8 @@ void check_patch(const rp_config &c, checker &check) {
   if (c.geometry != RP_UNDEFORMED_DISTANCE) return;
   check.require(c.undeformed_distance != nullptr, "undeformed_distance is null");
   check.require(c.normal != RP_NORMAL_HERTZ,
-                "undeformed_distance needs normal = half_space, kik_piotrowski or analyn: Hertz "
-                "takes quadratic shapes only");
+                "undeformed_distance needs normal = half_space, kik_piotrowski, "
+                "kik_piotrowski_corrected or analyn: Hertz takes quadratic shapes only");
   check.field("distance_shape", c.distance_shape, config_range::distance_shape);
   if (check.error() == RP_OK)
     check.numbers("undeformed_distance", c.undeformed_distance,

@@ -156,8 +156,9 @@ grid_rules grid_rules_of(const rp_config &c, const patch_scene &scene) {
     rules.most[k] = c.max_elements[k];
   }
   rules.reach = reach_of(c, scene);
-  rules.interpenetrates =
-      c.normal == RP_NORMAL_KIK_PIOTROWSKI && c.geometry != RP_UNDEFORMED_DISTANCE;
+  rules.corrected = c.normal == RP_NORMAL_KIK_PIOTROWSKI_CORRECTED;
+  rules.interpenetrates = (rules.corrected || c.normal == RP_NORMAL_KIK_PIOTROWSKI) &&
+                          c.geometry != RP_UNDEFORMED_DISTANCE;
   rules.force_given = c.load == RP_FORCE;
   return rules;
 }

@@ -16,6 +16,8 @@ const char *normal_reason(rp_normal_method method) {
       return "normal = hertz: closed form";
     case RP_NORMAL_KIK_PIOTROWSKI:
       return "normal = kik_piotrowski: virtual interpenetration, row by row";
+    case RP_NORMAL_KIK_PIOTROWSKI_CORRECTED:
+      return "normal = kik_piotrowski_corrected: virtual interpenetration by Hertz, row by row";
     case RP_NORMAL_ANALYN:
       return "normal = analyn: assumed deformation, row by row";
     case RP_NORMAL_HALF_SPACE:

@@ -139,7 +139,9 @@ typedef enum rp_plastic_rule { RP_PLASTIC_RULES(RP_ENUM_ENTRY) } rp_plastic_rule
   /* Piotrowski and Kik 2008, by virtual interpenetration */     \
   X(RP_NORMAL_KIK_PIOTROWSKI, 2, "kik_piotrowski")               \
   /* Sichani, Enblom and Berg 2014, by an assumed deformation */ \
-  X(RP_NORMAL_ANALYN, 3, "analyn")
+  X(RP_NORMAL_ANALYN, 3, "analyn")                               \
+  /* Kik-Piotrowski, corrected so that an ellipse is Hertz's */  \
+  X(RP_NORMAL_KIK_PIOTROWSKI_CORRECTED, 4, "kik_piotrowski_corrected")
 typedef enum rp_normal_method { RP_NORMAL_METHODS(RP_ENUM_ENTRY) } rp_normal_method;
 
 #define RP_TANGENTIAL_METHODS(X)                                                       \

@@ -59,6 +59,12 @@ struct row_contact::deepest_point {
   int row;           // nearest
 };
 
+// How the contact of Kik-Piotrowski comes from the overlap of the undeformed bodies.
+struct row_contact::overlap {
+  double share;     // -, depth of the overlap over the interpenetration
+  double stretch2;  // -, squared stretch along rolling; across it is the inverse
+};
+
 row_contact::row_contact(rp_normal_method method, double modulus, int max_ny)
     : method_(method), modulus_(modulus) {
   for (auto *b : {&vertex_, &lowest_, &curvature_, &stretched_, &chord_, &load_})
@@ -253,30 +259,46 @@ void row_contact::analyn(const grid &g, const deepest_point &deep, int begin, in
   }
 }
 
-// Squared stretch of the interpenetration region along rolling; across it is the inverse.
-double row_contact::shape_correction(const grid &g, const deepest_point &deep, int begin,
-                                     int end) const {
-  const double depth = virtual_interpenetration * deep.depth;
+// Hertz's ellipse whose undeformed bodies overlap over the same length and width at a depth:
+// Hertz's a/b = sqrt(B/A edge_along/edge_across) against L/W = sqrt(B/A).
+hertz_ratios::values row_contact::ellipse_of_overlap(const grid &g, const deepest_point &deep,
+                                                     int begin, int end, double depth) const {
   double longest = depth / curvature_[at(deep.row)];
   for (int j = begin; j < end; ++j)
     longest = std::max(longest, (depth + deep.lowest - lowest_[at(j)]) / curvature_[at(j)]);
   const double width = overlap_width(g, deep.lowest + depth, begin, end);
-  // Hertz's a/b = sqrt(B/A edge_along/edge_across) against L/W = sqrt(B/A)
-  const hertz_ratios::values hz = hertz_.at(width * width, 4 * longest);
-  return std::sqrt(hz.edge_along / hz.edge_across);
+  return hertz_.at(width * width, 4 * longest);
+}
+
+row_contact::overlap row_contact::overlap_of(const grid &g, const deepest_point &deep, int begin,
+                                             int end) const {
+  overlap o{virtual_interpenetration, 1.0};
+  hertz_ratios::values hz{};
+  if (method_ == RP_NORMAL_KIK_PIOTROWSKI_CORRECTED) {
+    // of a circle, then of what was found
+    o.share = 0.5;
+    for (int pass = 0; pass < 2; ++pass) {
+      hz = ellipse_of_overlap(g, deep, begin, end, o.share * deep.depth);
+      o.share = std::sqrt(hz.edge_along * hz.edge_across);
+    }
+  } else {
+    hz = ellipse_of_overlap(g, deep, begin, end, o.share * deep.depth);
+  }
+  o.stretch2 = std::sqrt(hz.edge_along / hz.edge_across);
+  return o;
 }
 
 void row_contact::kik_piotrowski(const grid &g, const deepest_point &deep, int begin, int end,
                                  totals &way) {
-  const double depth = virtual_interpenetration * deep.depth;
-  const double stretch2 = shape_correction(g, deep, begin, end), stretch = std::sqrt(stretch2);
+  const overlap o = overlap_of(g, deep, begin, end);
+  const double depth = o.share * deep.depth;
+  const double stretch2 = o.stretch2, stretch = std::sqrt(stretch2);
   const double first = g.y(begin) - 0.5 * g.dy, last = g.y(end - 1) + 0.5 * g.dy;
   for (int j = 0; j < g.ny; ++j) {
     const double y = std::clamp(deep.y + (g.y(j) - deep.y) * stretch, first, last);
     // never beyond the overlap of the undeformed bodies
-    stretched_[at(j)] =
-        std::max(value_at(lowest_.data(), g, y),
-                 deep.lowest + virtual_interpenetration * (lowest_[at(j)] - deep.lowest));
+    stretched_[at(j)] = std::max(value_at(lowest_.data(), g, y),
+                                 deep.lowest + o.share * (lowest_[at(j)] - deep.lowest));
   }
   const auto chord = [&](int j) {
     const quadratic f = through(stretched_.data(), g, j) - deep.lowest;

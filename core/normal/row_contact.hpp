@@ -12,6 +12,14 @@
 // the overlap of the undeformed bodies. One k for all rows follows from the displacement d at the
 // deepest point; in it all of a row is as far away as its vertex.
 //
+// Corrected: 0.55 is near what Hertz's circle has, 1/2 (Kik and Piotrowski 1996), and no slender
+// ellipse. Hertz's ellipse of the curvatures A and B has A a^2 = e d and B b^2 = (1 - e) d, e a
+// function of A/B alone (Johnson 1985, section 4.2, which is the shape's correction too: Ayasse and
+// Chollet 2005, Vehicle System Dynamics 43), so its area is that of the overlap of the undeformed
+// bodies at the depth sqrt(e (1 - e)) d. That factor stands for 0.55, with A/B = (W/L)^2 of the
+// overlap at this depth, found by two passes from a circle's. Quadratic surfaces then have Hertz's
+// ellipse, force and pressure.
+//
 // ANALYN (Sichani, Enblom and Berg 2014, Vehicle System Dynamics 52). The surfaces deform by
 // alpha A x^2 + beta f, with alpha, beta and k of each row from the Hertzian contact (a, b, p0) of
 // the row's own curvatures A and B = f''/2 at the approach d:
@@ -56,6 +64,12 @@ struct row_contact_result {
   int iterations = 0;           // evaluations for the prescribed force
 };
 
+// Whether a theory is one of these.
+inline bool takes_rows(rp_normal_method method) {
+  return method == RP_NORMAL_KIK_PIOTROWSKI || method == RP_NORMAL_ANALYN ||
+         method == RP_NORMAL_KIK_PIOTROWSKI_CORRECTED;
+}
+
 class row_contact {
  public:
   row_contact(rp_normal_method method, double modulus, int max_ny);
@@ -83,7 +97,10 @@ class row_contact {
   totals evaluate(const grid &g, double approach, const contact_parts &parts);
   void evaluate_group(const grid &g, double approach, int begin, int end, totals &way);
   double overlap_width(const grid &g, double level, int begin, int end) const;
-  double shape_correction(const grid &g, const deepest_point &deep, int begin, int end) const;
+  struct overlap;
+  hertz_ratios::values ellipse_of_overlap(const grid &g, const deepest_point &deep, int begin,
+                                          int end, double depth) const;
+  overlap overlap_of(const grid &g, const deepest_point &deep, int begin, int end) const;
   void kik_piotrowski(const grid &g, const deepest_point &deep, int begin, int end, totals &way);
   void analyn(const grid &g, const deepest_point &deep, int begin, int end, totals &way);
   void add_row(int row, const strip &s, const quadratic &chord, const quadratic &f, double depth,

@@ -13,8 +13,7 @@ using std::numbers::pi;
 normal_stage::normal_stage(patch_workspace &shared, int max_nx, int max_ny) : shared_(shared) {
   const patch_scene &scene = shared.scene;
   if (scene.normal == RP_NORMAL_HALF_SPACE) normal_.emplace(max_nx * max_ny);
-  if (scene.normal == RP_NORMAL_KIK_PIOTROWSKI || scene.normal == RP_NORMAL_ANALYN)
-    rows_.emplace(scene.normal, scene.modulus(), max_ny);
+  if (takes_rows(scene.normal)) rows_.emplace(scene.normal, scene.modulus(), max_ny);
 }
 
 pressure_outcome normal_stage::solve(const patch_problem &problem, patch_memory &memory) {

@@ -22,17 +22,18 @@ int grid_rules::with_margin(int n) const {
 
 // Kik-Piotrowski needs its contact, an ellipse with Hertz's axis ratio and the area
 // pi 0.55 d/sqrt(A B), and the interpenetration region it is stretched from; with (a b) that is s^2
-// times as large, its force at equal approach d is s times as large.
+// times as large, its force at equal approach d is s times as large. Corrected, the overlap's depth
+// is that of Hertz's area, sqrt(A B) a b, and s is 1.
 double grid_rules::relative_size(const hertz_contact &hertz, int k) const {
   if (!interpenetrates) return 1.0;
-  const double half[2] = {
-      std::sqrt(virtual_interpenetration * hertz.approach / hertz.curvatures[0]),
-      std::sqrt(virtual_interpenetration * hertz.approach / hertz.curvatures[1])};
-  const double size =
-      std::sqrt(half[0] / hertz.semi_axes[0]) * std::sqrt(half[1] / hertz.semi_axes[1]);
+  const double *c = hertz.curvatures, *axes = hertz.semi_axes;
+  const double depth = corrected ? std::sqrt(c[0]) * axes[0] * std::sqrt(c[1]) * axes[1]
+                                 : virtual_interpenetration * hertz.approach;
+  const double half[2] = {std::sqrt(depth / c[0]), std::sqrt(depth / c[1])};
+  const double size = std::sqrt(half[0] / axes[0]) * std::sqrt(half[1] / axes[1]);
   // at equal force the approach is smaller, and with it both regions
   const double load = force_given ? 1.0 / cbrt(size) : 1.0;
-  return load * std::max(size, half[k] / hertz.semi_axes[k]);
+  return load * std::max(size, half[k] / axes[k]);
 }
 
 }  // namespace railpatch

@@ -13,6 +13,7 @@ struct grid_rules {
   // of unlike bodies' contact area, over Hertz's: tractions shift and stretch it; 1: they do not
   double reach = 1;
   bool interpenetrates = false;  // the theory's grid covers the virtual interpenetration
+  bool corrected = false;        // which is that of Hertz's area
   bool force_given = true;
 
   // n elements across Hertz's contact and those to add on either side.

@@ -162,8 +162,8 @@ def problems_of(case: Any, **options: Any) -> list[str]:
         (
             "method__normal",
             "stripes",
-            "method.normal: value is 'stripes', allowed 'hertz', 'kik_piotrowski', 'analyn' or "
-            "'half_space'",
+            "method.normal: value is 'stripes', allowed 'hertz', 'kik_piotrowski', "
+            "'kik_piotrowski_corrected', 'analyn' or 'half_space'",
         ),
         (
             "method__tangential",

@@ -40,7 +40,8 @@ def test_kinds_and_choices() -> None:
     schema = json_schema()
     assert set(schema["discriminator"]["mapping"]) == {"patch", "wheel_rail", "wheelset"}
     method = schema["$defs"]["Method"]["properties"]
-    assert method["normal"]["enum"] == ["hertz", "kik_piotrowski", "analyn", "half_space"]
+    by_rows = ["kik_piotrowski", "kik_piotrowski_corrected", "analyn"]
+    assert method["normal"]["enum"] == ["hertz", *by_rows, "half_space"]
     assert method["tangential"]["enum"] == ["none", *_core.THEORIES, "full"]
 
 

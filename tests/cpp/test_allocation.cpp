@@ -211,8 +211,8 @@ std::vector<rp_input> patch_inputs() {
 }
 
 TEST(Step, OfAPatchAllocatesNothing) {
-  for (rp_normal_method normal :
-       {RP_NORMAL_HERTZ, RP_NORMAL_HALF_SPACE, RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN})
+  for (rp_normal_method normal : {RP_NORMAL_HERTZ, RP_NORMAL_HALF_SPACE, RP_NORMAL_KIK_PIOTROWSKI,
+                                  RP_NORMAL_KIK_PIOTROWSKI_CORRECTED, RP_NORMAL_ANALYN})
     for (rp_tangential_method tangential :
          {RP_TANGENTIAL_NONE, RP_TANGENTIAL_FASTSIM, RP_TANGENTIAL_FULL, RP_TANGENTIAL_LINEAR,
           RP_TANGENTIAL_POLACH, RP_TANGENTIAL_FASTRIP})
@@ -308,7 +308,8 @@ TEST(Step, WithAPrescribedForceAllocatesNothing) {
 // Wheelsets by the theories that build the contact from rows.
 TEST(Step, OfAWheelsetWithRowsAllocatesNothing) {
   const scenes::profile_pair pair;
-  for (rp_normal_method normal : {RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN})
+  for (rp_normal_method normal :
+       {RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_KIK_PIOTROWSKI_CORRECTED, RP_NORMAL_ANALYN})
     for (rp_tangential_method tangential : {RP_TANGENTIAL_FASTSIM, RP_TANGENTIAL_FULL}) {
       rp_config c = scenes::coarse(scenes::wheels(RP_WHEELSET, RP_RAIL, pair));
       c.normal = normal;

@@ -358,7 +358,7 @@ TEST(Config, ChoicesAndCountsAreChecked) {
       {"geometry", [](rp_config &c, int v) { put(c.geometry, v); }, -1, 4},
       {"load", [](rp_config &c, int v) { put(c.load, v); }, -1, 2},
       {"regime", [](rp_config &c, int v) { put(c.regime, v); }, -1, 4},
-      {"normal", [](rp_config &c, int v) { put(c.normal, v); }, -1, 4},
+      {"normal", [](rp_config &c, int v) { put(c.normal, v); }, -1, 5},
       {"tangential", [](rp_config &c, int v) { put(c.tangential, v); }, -1, 6},
       {"traction_bound", [](rp_config &c, int v) { put(c.traction_bound, v); }, -1, 3},
       {"flexibility_blending", [](rp_config &c, int v) { put(c.flexibility_blending, v); }, -1, 3},
@@ -416,7 +416,8 @@ TEST(Config, RelationsAreChecked) {
   c.load = RP_FORCE;
   c.tangential = RP_TANGENTIAL_FASTSIM;
   expect_refused(c, RP_ERROR_VALUE, "fast theory");
-  for (rp_normal_method method : {RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN}) {
+  for (rp_normal_method method :
+       {RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_KIK_PIOTROWSKI_CORRECTED, RP_NORMAL_ANALYN}) {
     c.tangential = RP_TANGENTIAL_FULL;
     c.normal = method;
     expect_refused(c, RP_ERROR_VALUE, "line contact");
@@ -495,7 +496,8 @@ TEST(Config, UndeformedDistanceIsChecked) {
   rp_config d = c;
   d.normal = RP_NORMAL_HERTZ;
   expect_refused(d, RP_ERROR_VALUE, "undeformed_distance");
-  for (rp_normal_method method : {RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN}) {
+  for (rp_normal_method method :
+       {RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_KIK_PIOTROWSKI_CORRECTED, RP_NORMAL_ANALYN}) {
     d.normal = method;
     const scenes::handle usable(d);
   }
@@ -882,7 +884,7 @@ class Garbage : public testing::Test {
     if (c.geometry == RP_LINE_CONTACT) c.elements[1] = 1;
     if (random() % 2) c.load = static_cast<rp_load>(random() % 2);
     if (random() % 2) c.regime = static_cast<rp_regime>(random() % 4);
-    if (random() % 2) c.normal = static_cast<rp_normal_method>(random() % 4);
+    if (random() % 2) c.normal = static_cast<rp_normal_method>(random() % 5);
     if (random() % 2) c.tangential = static_cast<rp_tangential_method>(random() % 8);
     if (random() % 2) c.spin_offset = static_cast<rp_spin_offset>(random() % 4);
     if (random() % 60 == 0) put(c.kind, static_cast<int>(random()));

@@ -174,7 +174,8 @@ TEST_F(Checks, ParabolasOfRowsNeedThreeElements) {
   base.geometry = RP_CURVATURES;
   base.elements[0] = base.elements[1] = 0;
   base.element_size[0] = base.element_size[1] = 1e-3;
-  for (const rp_normal_method method : {RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN}) {
+  for (const rp_normal_method method :
+       {RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_KIK_PIOTROWSKI_CORRECTED, RP_NORMAL_ANALYN}) {
     base.normal = method;
     for (int k = 0; k < 2; ++k)
       for (const int few : {1, 2})

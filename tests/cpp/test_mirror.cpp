@@ -132,6 +132,7 @@ const scene all_scenes[] = {
     {"wheelset_on_rails", RP_WHEELSET, RP_RAIL, RP_FORCE, 1.0 / 500},
     {"wheelset_on_rollers", RP_WHEELSET, RP_ROLLER, RP_FORCE, 0.0},
     {"kik_piotrowski", RP_WHEELSET, RP_RAIL, RP_FORCE, 0.0, RP_NORMAL_KIK_PIOTROWSKI},
+    {"corrected", RP_WHEELSET, RP_RAIL, RP_FORCE, 0.0, RP_NORMAL_KIK_PIOTROWSKI_CORRECTED},
     {"analyn", RP_WHEEL_RAIL, RP_ROLLER, RP_POSITION, 0.0, RP_NORMAL_ANALYN},
     {"fitted_half_space", RP_WHEELSET, RP_RAIL, RP_FORCE, 0.0, RP_NORMAL_HALF_SPACE, 7},
     {"fitted_kik_piotrowski", RP_WHEELSET, RP_ROLLER, RP_FORCE, 0.0, RP_NORMAL_KIK_PIOTROWSKI, 8},

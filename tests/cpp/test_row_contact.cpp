@@ -205,6 +205,7 @@ TEST_P(Parts, MirroredGridsCarryTheSame) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Parts,
-                         testing::Values(RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN));
+                         testing::Values(RP_NORMAL_KIK_PIOTROWSKI,
+                                         RP_NORMAL_KIK_PIOTROWSKI_CORRECTED, RP_NORMAL_ANALYN));
 
 }  // namespace

@@ -215,23 +215,38 @@ struct once_more {
     return out;
   }
 
-  sums kik(double y0, double low, int row, double d, int begin, int end, double weight) {
-    const double part = 0.55 * d;
+  // Hertz's ellipse whose bodies overlap over the length and width of these at a depth, with the
+  // ratio L/W = sqrt(B/A), at an approach of 1
+  struct overlapping {
+    hertz_contact ellipse;
+    double long_by_wide;
+  };
+  overlapping overlap(double low, int row, double part, int begin, int end) const {
     double half_length2 = part / curvature[at(row)];
     for (int j = begin; j < end; ++j)
       half_length2 = std::max(half_length2, (part + low - lowest[at(j)]) / curvature[at(j)]);
     const double width = width_below(low + part, begin, end);
-    // Hertz's ellipse whose interpenetration has the ratio L/W = sqrt(B/A)
     const double ab[2] = {1 / (4 * half_length2), 1 / (width * width)};
-    const hertz_contact ellipse = hertz_from_approach(ab, 1.0, 1.0);
-    const double ratio = ellipse.semi_axes[0] / ellipse.semi_axes[1];
+    return {hertz_from_approach(ab, 1.0, 1.0), 2 * std::sqrt(half_length2) / width};
+  }
+
+  sums kik(double y0, double low, int row, double d, int begin, int end, double weight) {
+    double share = method == RP_NORMAL_KIK_PIOTROWSKI ? 0.55 : 0.5;
+    overlapping o = overlap(low, row, share * d, begin, end);
+    // Hertz's area by an overlap: a b = share d/sqrt(A B), of what a circle's share shows
+    for (int pass = 0; pass < 2 && method != RP_NORMAL_KIK_PIOTROWSKI; ++pass) {
+      const hertz_contact &e = o.ellipse;
+      share = e.semi_axes[0] * e.semi_axes[1] * std::sqrt(e.curvatures[0] * e.curvatures[1]);
+      if (pass == 0) o = overlap(low, row, share * d, begin, end);
+    }
+    const double part = share * d, ratio = o.ellipse.semi_axes[0] / o.ellipse.semi_axes[1];
     // length and width by r and 1/r: r^2 L/W = a/b
-    const double r2 = ratio / (2 * std::sqrt(half_length2) / width), r = std::sqrt(r2);
+    const double r2 = ratio / o.long_by_wide, r = std::sqrt(r2);
     std::vector<double> f(at(s.g.ny));
     const double first = s.g.y(begin) - s.g.dy / 2, last = s.g.y(end - 1) + s.g.dy / 2;
     for (int j = 0; j < s.g.ny; ++j) {
       const double y = std::min(std::max(y0 + (s.g.y(j) - y0) * r, first), last);
-      f[at(j)] = std::max(nearest(lowest, y), low + 0.55 * (lowest[at(j)] - low));
+      f[at(j)] = std::max(nearest(lowest, y), low + share * (lowest[at(j)] - low));
     }
     const auto l2 = [&](double y, int j) {
       return (part - (of_row(f, j, y) - low)) * r2 / curvature[at(j)];
@@ -430,6 +445,7 @@ TEST_P(RowTheories, BordersAndNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, RowTheories,
-                         testing::Values(RP_NORMAL_KIK_PIOTROWSKI, RP_NORMAL_ANALYN));
+                         testing::Values(RP_NORMAL_KIK_PIOTROWSKI,
+                                         RP_NORMAL_KIK_PIOTROWSKI_CORRECTED, RP_NORMAL_ANALYN));
 
 }  // namespace

@@ -13,7 +13,7 @@ import pytest
 import railpatch
 from case_samples import WHEELSET, with_values
 
-METHODS = ("kik_piotrowski", "analyn")
+METHODS = ("kik_piotrowski", "kik_piotrowski_corrected", "analyn")
 
 
 def wheel_case(method: str, **values: Any) -> dict[str, Any]:

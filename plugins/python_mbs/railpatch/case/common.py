@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from railpatch.case.choice import least_error
 from railpatch.case.friction import Friction, increasing
-from railpatch.case.theories import FAST, READERS, blends_as_contact, has_tractions
+from railpatch.case.theories import BY_ROWS, FAST, READERS, blends_as_contact, has_tractions
 from railpatch.case.types import (
     BODIES,
     LEFT_OUT,
@@ -218,8 +218,10 @@ WHEEL_METHOD = ("patch_rule", "contact_frame", "standstill_speed")
 class Method(Table):
     """Which theory solves which problem."""
 
-    normal: Literal["hertz", "kik_piotrowski", "analyn", "half_space"] = Field(
-        default="half_space", description="theory of the normal problem (no unit)"
+    normal: Literal[("hertz", *BY_ROWS, "half_space")] = Field(
+        default="half_space",
+        description="theory of the normal problem (no unit); kik_piotrowski_corrected: with the "
+        "overlap's depth by Hertz, so that an ellipse is Hertz's",
     )
     tangential: Literal[("none", *FAST, "full")] = Field(
         default="full", description="theory of the tangential problem (no unit)"

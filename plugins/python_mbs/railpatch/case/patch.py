@@ -26,6 +26,7 @@ from railpatch.case.common import (
     check_tangential,
     couples,
 )
+from railpatch.case.theories import BY_ROWS
 from railpatch.case.types import (
     LEFT_OUT,
     Curvatures,
@@ -298,7 +299,8 @@ class PatchCase(Table):
             allowed = f"{LEFT_OUT} {where}: its rows and columns are the grid"
             yield relation("grid.max_elements", str(self.grid.max_elements), allowed)
         if self.method.normal == "hertz":
-            allowed = "'half_space', 'kik_piotrowski' or 'analyn' with undeformed_distance"
+            others = ", ".join(repr(name) for name in BY_ROWS)
+            allowed = f"'half_space', {others} with undeformed_distance"
             yield relation("method.normal", "'hertz'", allowed)
 
     def _check_ratio(self) -> Problems:
@@ -363,7 +365,7 @@ class PatchCase(Table):
         """What a line contact is not combined with."""
         if self.load.approach is not None:
             yield relation("load.approach", self.load.approach, "normal_force with a line contact")
-        if self.method.normal in ("kik_piotrowski", "analyn"):
+        if self.method.normal in BY_ROWS:
             shown = f"'{self.method.normal}'"
             yield relation("method.normal", shown, "'half_space' or 'hertz' with a line contact")
         if self.has_tangential and self.method.tangential != "full":

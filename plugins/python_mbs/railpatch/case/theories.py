@@ -7,6 +7,8 @@ from railpatch import _core
 FAST: tuple[str, ...] = tuple(_core.THEORIES)
 # keys of [method] that only some theories read, and which
 READERS: dict[str, tuple[str, ...]] = _core.THEORY_READERS
+# normal theories that build contacts of any shape from rows along rolling
+BY_ROWS = ("kik_piotrowski", "kik_piotrowski_corrected", "analyn")
 FAST_NUMBERS = tuple(
     name for name in READERS if name not in ("traction_bound", "flexibility_blending")
 )
