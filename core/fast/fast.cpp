@@ -6,6 +6,7 @@
 
 #include "fast/fastsim.hpp"
 #include "fast/polach.hpp"
+#include "numeric/elementary.hpp"
 
 namespace railpatch {
 
@@ -63,7 +64,7 @@ creepage_coefficients fast_solver::coefficients(double axis_ratio) const {
 // mu times the force.
 void fast_solver::set_bound(const fast_patch &patch) {
   const grid &g = patch.g;
-  const double mu = patch.friction_coefficient, *p = patch.pressure;
+  const double mu = options_.law ? 1.0 : patch.friction_coefficient, *p = patch.pressure;
   const double *axes = patch.hertz.semi_axes;
   const bool ellipse = axes[0] > 0 && !patch.rows;
   const bool automatic = options_.bound == RP_BOUND_AUTOMATIC;
@@ -86,6 +87,30 @@ void fast_solver::set_bound(const fast_patch &patch) {
       parabolic && squares > 0 ? patch.normal_force / (squares * g.dx * g.dy) : 1.0;
   for (int i = 0; i < g.count(); ++i)
     bound_[static_cast<size_t>(i)] = mu * scale * (parabolic ? p[i] * p[i] : p[i]);
+}
+
+double fast_solver::friction_at(const fast_patch &patch, double speed) const {
+  if (!options_.law) return patch.friction_coefficient;
+  double slope;
+  return patch.friction_scale * options_.law->coefficient(speed, slope);
+}
+
+// Multiplies the bound by each element's friction coefficient; returns their mean by pressure.
+double fast_solver::follow_slip(const fast_patch &patch, const rolling_input &rolling) {
+  const grid &g = patch.g;
+  double sum = 0, load = 0;
+  for (int j = 0; j < g.ny; ++j)
+    for (int i = 0; i < g.nx; ++i) {
+      const int at = j * g.nx + i;
+      const double p = patch.pressure[at];
+      if (!(p > 0)) continue;
+      const double slip = hypot(rolling.slip(0, g.x(i), g.y(j)), rolling.slip(1, g.x(i), g.y(j)));
+      const double mu = friction_at(patch, rolling.speed * slip);
+      bound_[static_cast<size_t>(at)] *= mu;
+      sum += mu * p;
+      load += p;
+    }
+  return load > 0 ? sum / load : 0.0;
 }
 
 // x of the contact's ends in each row.
@@ -122,7 +147,7 @@ tangential_result fast_solver::solve(const fast_patch &patch, const rolling_inpu
                        table(),
                        e.axes,
                        e.centre,
-                       patch.friction_coefficient * patch.normal_force,
+                       0.0,
                        {},
                        rolling,
                        patch.g,
@@ -134,8 +159,14 @@ tangential_result fast_solver::solve(const fast_patch &patch, const rolling_inpu
   problem.at_centre.creepage[0] -= rolling.spin_creepage * e.centre[1];
   problem.at_centre.creepage[1] += rolling.spin_creepage * e.centre[0];
   if (theory_.reads & reads_percent) problem.coefficients = coefficients(e.axes[0] / e.axes[1]);
+  const double *creepage = problem.at_centre.creepage;
+  double mu = friction_at(patch, rolling.speed * hypot(creepage[0], creepage[1]));
   if (theory_.tractions) {
     set_bound(patch);
+    if (options_.law) mu = follow_slip(patch, rolling);
+  }
+  problem.capacity = mu * patch.normal_force;
+  if (theory_.tractions) {
     find_rows(patch, rolling.direction);
     problem.l = flexibilities_of(problem);
   }
@@ -153,8 +184,10 @@ flexibilities fast_solver::flexibilities_of(const fast_problem &p) const {
   if (options_.blending != RP_BLENDING_NONE) l = blend(l, c, g, p.axes, p.capacity, p.at_centre);
   // without friction there is no gradient, and no traction either
   if (!(p.capacity > 0)) return l;
-  const double gradient = resultant_of(c, g, p.axes, p.capacity, p.at_centre).gradient;
-  const double k = options_.reduction.at(gradient);
+  const stiffness_reduction &reduction = options_.reduction;
+  double gradient = resultant_of(c, g, p.axes, p.capacity, p.at_centre).gradient;
+  if (options_.blending == RP_BLENDING_CONTACT) gradient *= reduction.k0;
+  const double k = reduction.at(gradient);
   return {l.l1 / k, l.l2 / k, l.l3 / k};
 }
 

@@ -4,6 +4,11 @@
 // centre of pressure, the others at the middle of each row.
 //
 // Theories that give resultants only need no grid and no fields.
+//
+// Where friction follows the speed of slip, it is that of the rigid slip, V |w|: of each element,
+// and for resultants of the creepage at the centre of pressure (Polach 2005, Wear 258; Spiryagin,
+// Polach and Cole 2013). Without spin that is V times the creepage everywhere. Rigid slip knows
+// nothing of where the material began to slip, so there is no memory.
 #pragma once
 
 #include <optional>
@@ -26,6 +31,7 @@ struct fast_patch {
   double normal_force;         // N
   double contact_area;         // m^2
   double friction_coefficient;
+  double friction_scale = 1;  // of a law of slip velocity
 };
 
 class fast_solver {
@@ -50,6 +56,8 @@ class fast_solver {
   flexibilities flexibilities_of(const fast_problem &problem) const;
   creepage_coefficients coefficients(double axis_ratio) const;
   void set_bound(const fast_patch &patch);
+  double friction_at(const fast_patch &patch, double speed) const;
+  double follow_slip(const fast_patch &patch, const rolling_input &rolling);
   void find_rows(const fast_patch &patch, int direction);
 
   elastic_constants elastic_;

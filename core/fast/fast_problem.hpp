@@ -2,8 +2,11 @@
 // theories (theories.hpp) has one function for each.
 #pragma once
 
+#include <optional>
+
 #include "fast/coefficients.hpp"
 #include "railpatch.h"
+#include "tangential/bound_law.hpp"
 #include "tangential/tangential.hpp"
 
 namespace railpatch {
@@ -30,7 +33,8 @@ struct fast_options {
   rp_flexibility_blending blending = RP_BLENDING_SLIDING;
   polach_factors polach;
   stiffness_reduction reduction;
-  const void *creep_table = nullptr;  // the caller's, without defect; of theory table
+  const void *creep_table = nullptr;     // the caller's, without defect; of theory table
+  std::optional<slip_velocity_law> law;  // in place of Coulomb's, without memory
 };
 
 struct flexibilities {
@@ -54,10 +58,10 @@ struct creep_resultants {
 struct fast_problem {
   const elastic_constants &elastic;
   const fast_options &options;
-  const creep_table *table;            // of theory table, else null
-  const double *axes;                  // m [2], of the ellipse that is or stands for the contact
-  const double *centre;                // m [2], of that ellipse
-  double capacity;                     // N, friction coefficient times normal force
+  const creep_table *table;  // of theory table, else null
+  const double *axes;        // m [2], of the ellipse that is or stands for the contact
+  const double *centre;      // m [2], of that ellipse
+  double capacity;           // N, friction coefficient times normal force; of a law the mean one
   creepage_coefficients coefficients;  // of theories that read percent_kalker
   rolling_input at_centre;             // creepages at the ellipse's centre
   // of theories with tractions

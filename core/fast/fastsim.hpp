@@ -1,7 +1,9 @@
 // FASTSIM, the simplified theory of rolling contact (Kalker 1982, Vehicle System Dynamics 11), with
 // three flexibilities L1, L2, L3 from the creepage coefficients, marched along the rows of the
 // uniform grid from the leading edge. Modified FASTSIM (Spiryagin, Polach, Cole 2013, Vehicle
-// System Dynamics 51) divides them by k = k0 (alpha + (1 - alpha)/(1 + beta e)), e: see polach.hpp.
+// System Dynamics 51) divides them by k = k0 (alpha + (1 - alpha)/(1 + beta e)), e: see polach.hpp;
+// with the flexibilities of the program CONTACT e is that of the stiffness times k0, as its
+// published curve shows (to 0.4 % of e, the reading error of beta there being 0.8 %).
 //
 // Blended flexibilities (the program CONTACT): from w = 0 at small creepage to w = 1 where the
 // creepage is three times that which saturates the linear theory, L_i -> (1 - w) L_i + w L*, L* one

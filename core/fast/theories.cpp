@@ -16,12 +16,14 @@ constexpr fast_theory theories[] = {
     {RP_TANGENTIAL_LINEAR, "linear", resultants, solve_linear,
      "tangential = linear: creepage coefficients, no traction field", reads_percent},
     {RP_TANGENTIAL_POLACH, "polach", resultants, solve_polach,
-     "tangential = polach: closed form, no traction field", reads_percent | reads_polach},
+     "tangential = polach: closed form, no traction field",
+     reads_percent | reads_polach | reads_slip_law},
     {RP_TANGENTIAL_FASTSIM, "fastsim", tractions, solve_fastsim,
      "tangential = fastsim: simplified theory",
-     reads_percent | reads_bound | reads_blending | reads_contact_blending | reads_reduction},
+     reads_percent | reads_bound | reads_blending | reads_contact_blending | reads_reduction |
+         reads_slip_law},
     {RP_TANGENTIAL_FASTRIP, "fastrip", tractions, solve_fastrip,
-     "tangential = fastrip: strip theory", reads_percent | reads_blending},
+     "tangential = fastrip: strip theory", reads_percent | reads_blending | reads_slip_law},
     {RP_TANGENTIAL_TABLE, "table", resultants, solve_table,
      "tangential = table: full theory, interpolated; the table is the caller's", 0},
 };

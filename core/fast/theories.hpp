@@ -17,6 +17,7 @@ enum theory_option : unsigned {
   reads_contact_blending = 8,  // and as in the program CONTACT
   reads_polach = 16,
   reads_reduction = 32,
+  reads_slip_law = 64,  // friction that follows the speed of slip
 };
 
 // Fills the fields (theories with tractions) or the resultants about the reference. Not

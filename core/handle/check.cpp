@@ -67,53 +67,6 @@ void check_fitted(const rp_config &c, checker &check) {
                 "fitted needs tangential = full");
 }
 
-// A message that names fast theories by what they read.
-struct rule_text {
-  char text[RP_MESSAGE_SIZE] = {};
-
-  void add(const char *part) {
-    const size_t length = std::strlen(text);
-    std::snprintf(text + length, sizeof text - length, "%s", part);
-  }
-  // "<before>a or b"
-  void add_readers(const char *before, unsigned read, unsigned unread = 0) {
-    for (const fast_theory &theory : fast_theories()) {
-      if (!(theory.reads & read) || theory.reads & unread) continue;
-      add(before);
-      add(theory.name);
-      before = " or ";
-    }
-  }
-};
-
-// What only some of the fast theories read must not be set for others.
-void check_fast(const rp_config &c, checker &check) {
-  if (!has_tangential(c)) return;
-  const fast_theory *theory = theory_of(c.tangential);
-  check.require(theory || c.percent_kalker == 100.0,
-                "percent_kalker must be 100 with tangential = full: it has no coefficients");
-  const auto require = [&](bool unset, unsigned needed, unsigned option, const char *rule) {
-    if (unset || (theory && theory->reads & needed)) return;
-    rule_text message;
-    message.add(rule);
-    message.add_readers(" where tangential is not ", option);
-    if (option == reads_blending)
-      message.add_readers(", and not contact with ", option, reads_contact_blending);
-    check.require(false, message.text);
-  };
-  require(c.percent_kalker == 100.0, reads_percent, reads_percent, "percent_kalker must be 100");
-  require(c.polach_k_a == 1.0 && c.polach_k_s == 1.0, reads_polach, reads_polach,
-          "polach_k_a and polach_k_s must be 1");
-  require(c.fastsim_k0 == 1.0 && c.fastsim_alpha == 1.0 && c.fastsim_beta == 0.0, reads_reduction,
-          reads_reduction, "fastsim_k0 and fastsim_alpha must be 1, fastsim_beta 0");
-  require(c.traction_bound == RP_BOUND_AUTOMATIC, reads_bound, reads_bound,
-          "traction_bound must be automatic");
-  const bool contact = c.flexibility_blending == RP_BLENDING_CONTACT;
-  require(c.flexibility_blending == RP_BLENDING_SLIDING,
-          contact ? reads_contact_blending : reads_blending, reads_blending,
-          "flexibility_blending must be sliding");
-}
-
 // Pairs of a table: increasing places, values in a range.
 void check_points(const char *points, int count, const char *place, const double *places,
                   const char *value, const double *values, const range &r, checker &check) {
@@ -151,8 +104,7 @@ void check_friction(const rp_config &c, checker &check) {
   check.require(least >= 0,
                 "friction_kinetic with negative friction_amplitude: the law falls below 0");
   const bool grid = c.tangential == RP_TANGENTIAL_FULL && c.fitted[0] == 0;
-  check.require(c.friction_law == RP_COULOMB || grid,
-                "friction_law must be coulomb but with tangential = full and no fitted rows");
+  check_law_of_theory(c, grid, check);
   check.require(c.friction_points == 0 || grid,
                 "friction_points must be 0 but with tangential = full and no fitted rows");
   check.require(c.friction_law != RP_TEMPERATURE || c.friction_memory_distance == 0,

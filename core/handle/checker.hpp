@@ -1,5 +1,5 @@
-// Ranges of numbers, and what remembers the first field that is out of its own: for check.cpp and
-// check_wheels.cpp.
+// Ranges of numbers, and what remembers the first field that is out of its own: for check.cpp,
+// check_fast.cpp and check_wheels.cpp.
 #pragma once
 
 #include <cstdio>
@@ -95,6 +95,10 @@ inline bool has_tangential(const rp_config &c) {
   return c.regime != RP_REGIME_NONE && c.tangential != RP_TANGENTIAL_NONE;
 }
 
+// What only some of the fast theories read must not be set for others.
+void check_fast(const rp_config &c, checker &check);
+// Which theories follow a law beside Coulomb's; grid: the full theory on the uniform grid.
+void check_law_of_theory(const rp_config &c, bool grid, checker &check);
 // What wheels, rails and rollers have beside the rest.
 void check_wheels(const rp_config &c, checker &check);
 // What goes with a curved reference surface.

@@ -15,22 +15,26 @@ namespace {
 // of grids of unlike bodies, over Hertz's contact
 constexpr double most_reach = 2.5;
 
+slip_velocity_law slip_law_of(const rp_config &c) {
+  slip_velocity_law law;
+  law.shape = c.slip_law;
+  law.kinetic = c.friction_kinetic;
+  for (int i = 0; i < 2; ++i) {
+    law.amplitude[i] = c.friction_amplitude[i];
+    law.halving_speed[i] = c.friction_halving_speed[i];
+  }
+  law.memory_distance = c.friction_memory_distance;
+  law.memory_speed = c.friction_memory_speed;
+  return law;
+}
+
 // Where friction is more than Coulomb's, or the layer yields.
 std::optional<bound_law> make_law(const rp_config &c) {
   const bool by_velocity = c.friction_law == RP_SLIP_VELOCITY;
   if (!has_physics || (!by_velocity && !(c.layer_yield_stress > 0))) return std::nullopt;
   bound_law law;
   law.by_velocity = by_velocity;
-  if (by_velocity) {
-    law.slip.shape = c.slip_law;
-    law.slip.kinetic = c.friction_kinetic;
-    for (int i = 0; i < 2; ++i) {
-      law.slip.amplitude[i] = c.friction_amplitude[i];
-      law.slip.halving_speed[i] = c.friction_halving_speed[i];
-    }
-    law.slip.memory_distance = c.friction_memory_distance;
-    law.slip.memory_speed = c.friction_memory_speed;
-  }
+  if (by_velocity) law.slip = slip_law_of(c);
   law.by_magnitude = c.plastic_rule == RP_PLASTIC_MAGNITUDE;
   if (!(c.layer_yield_stress > 0)) return law;
   law.yield = hardening_curve::straight(c.layer_yield_stress, c.layer_hardening);
@@ -69,6 +73,7 @@ fast_options fast_of(const rp_config &c, rp_tangential_method theory) {
   fast.blending = c.flexibility_blending;
   fast.polach = {c.polach_k_a, c.polach_k_s};
   fast.reduction = {c.fastsim_k0, c.fastsim_alpha, c.fastsim_beta};
+  if (has_physics && c.friction_law == RP_SLIP_VELOCITY) fast.law = slip_law_of(c);
   return fast;
 }
 

@@ -15,6 +15,7 @@ bool patch_scene::estimates_force() const {
       friction_variation.varies())
     return false;
   if (!is_fast(tangential)) return true;
+  if (fast.law) return false;
   // what an ellipse in place of another shape does was not measured
   if (tangential == RP_TANGENTIAL_TABLE && normal != RP_NORMAL_HERTZ) return false;
   const polach_factors &p = fast.polach;

@@ -163,7 +163,8 @@ tangential_result tangential_stage::solve_by_theory(const patch_problem &problem
                          pressure.rows,
                          pressure.normal_force,
                          pressure.contact_area,
-                         shared_.scene.friction()};
+                         shared_.scene.friction(),
+                         shared_.scene.friction_scale};
   creep_resultants sums;
   const tangential_result t = fast_->solve(patch, rolling, memory.fields(), sums);
   std::copy_n(sums.force, 2, found.force);

@@ -258,9 +258,24 @@ TEST_F(Checks, FrictionLaws) {
   accepts(remembers(1e-3, 0.02));
   refuses("friction_memory_speed must be 0.001 with friction_memory_distance = 0",
           remembers(0, 0.02));
-  const char *grid = "friction_law must be coulomb but with tangential = full and no fitted rows";
-  refuses(grid, [](rp_config &c) { c.tangential = RP_TANGENTIAL_FASTSIM; });
+  const char *grid =
+      "friction_law must be coulomb but with tangential = full and no fitted rows, or "
+      "slip_velocity "
+      "with tangential = polach or fastsim or fastrip";
   refuses(grid, [](rp_config &c) { c.fitted[0] = c.fitted[1] = 8; });
+  refuses(grid, [](rp_config &c) { c.tangential = RP_TANGENTIAL_LINEAR; });
+  for (const auto theory : {RP_TANGENTIAL_FASTSIM, RP_TANGENTIAL_FASTRIP, RP_TANGENTIAL_POLACH}) {
+    accepts([=](rp_config &c) { c.tangential = theory; });
+    refuses("friction_memory_distance must be 0 with a fast theory", [=](rp_config &c) {
+      c.tangential = theory;
+      c.friction_memory_distance = 1e-6;
+    });
+    refuses(grid, [=](rp_config &c) {
+      c.tangential = theory;
+      c.friction_law = RP_TEMPERATURE;
+      c.temperature = 1;
+    });
+  }
   const char *below = "friction_kinetic with negative friction_amplitude: the law falls below 0";
   const auto amplitudes = [](double a, double b) {
     return [=](rp_config &c) {

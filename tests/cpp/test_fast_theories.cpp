@@ -32,7 +32,7 @@ struct contact {
   double force = 0, area = 0;
 
   fast_patch patch(double mu) const {
-    return {g, pressure.data(), hertz, rows ? &*rows : nullptr, force, area, mu};
+    return {g, pressure.data(), hertz, rows ? &*rows : nullptr, force, area, mu, mu};
   }
   double p(int i, int j) const { return pressure[static_cast<size_t>(j * g.nx + i)]; }
   void sum() {
@@ -159,6 +159,15 @@ struct answer {
   }
 };
 
+// Of the law of slip velocity, with one term; speed: m/s.
+double law_once_more(const slip_velocity_law &law, double speed) {
+  const double u = speed / law.halving_speed[0];
+  const double f = law.shape == RP_SLIP_EXPONENTIAL ? std::pow(0.5, u)
+                   : law.shape == RP_SLIP_RATIONAL  ? 1 / (1 + u)
+                                                    : std::max(0.0, 1 - u / 2);
+  return law.kinetic + law.amplitude[0] * f;
+}
+
 struct setting {
   const contact &c;
   const fast_options &o;
@@ -196,7 +205,22 @@ struct setting {
     xi = in.creepage[0] - in.spin_creepage * y0;
     eta = in.creepage[1] + in.spin_creepage * x0;
   }
-  double capacity() const { return mu * c.force; }
+  // beside mu: of a law, of which mu is the scale, by the rigid slip
+  double law(double slip) const { return o.law ? law_once_more(*o.law, in.speed * slip) : 1; }
+  double law(int i, int j) const {
+    const double x = c.g.x(i) + in.spin_offset, y = c.g.y(j), phi = in.spin_creepage;
+    return law(std::hypot(in.creepage[0] - phi * y, in.creepage[1] + phi * x));
+  }
+  double capacity() const {
+    if (!o.law || o.theory == RP_TANGENTIAL_POLACH) return mu * law(std::hypot(xi, eta)) * c.force;
+    double sum = 0, load = 0;
+    for (int j = 0; j < c.g.ny; ++j)
+      for (int i = 0; i < c.g.nx; ++i) {
+        sum += mu * law(i, j) * c.p(i, j);
+        load += c.p(i, j);
+      }
+    return sum / load * c.force;
+  }
 
   // Polach's: the creepage that saturates
   double eta_c() const {
@@ -225,13 +249,21 @@ struct setting {
       for (double &v : l) v = (1 - w) * v + w * one;
     }
     const stiffness_reduction &r = o.reduction;
-    const double factor =
-        r.beta > 0 ? r.k0 * (r.alpha + (1 - r.alpha) / (1 + r.beta * gradient())) : r.k0;
+    // the program CONTACT's is that of the stiffness times k0
+    const double e = (o.blending == RP_BLENDING_CONTACT ? r.k0 : 1.0) * gradient();
+    const double factor = r.beta > 0 ? r.k0 * (r.alpha + (1 - r.alpha) / (1 + r.beta * e)) : r.k0;
     for (double &v : l) v /= factor;
     return l;
   }
 
   std::vector<double> bound() const {
+    std::vector<double> g = bound_at_rest();
+    for (int j = 0; j < c.g.ny && o.law; ++j)
+      for (int i = 0; i < c.g.nx; ++i) g[static_cast<size_t>(j * c.g.nx + i)] *= law(i, j);
+    return g;
+  }
+  // without what a law makes of it
+  std::vector<double> bound_at_rest() const {
     const bool is_ellipse = c.hertz.semi_axes[0] > 0;
     const bool by_default = is_ellipse && o.blending == RP_BLENDING_CONTACT;
     bool squares = o.bound == RP_BOUND_PARABOLIC || (o.bound == RP_BOUND_AUTOMATIC && by_default);
@@ -546,6 +578,41 @@ TEST(FastTheories, PolachInClosedForm) {
       const setting s(c, o, in, 0.31), smooth(c, o, in, 0.0);
       expect_sums(s, polach_once_more(s));
       expect_sums(smooth, polach_once_more(smooth));
+    }
+}
+
+slip_velocity_law falling(rp_slip_law shape) {
+  slip_velocity_law law;
+  law.shape = shape;
+  law.kinetic = 0.12;
+  law.amplitude[0] = 0.25;
+  law.halving_speed[0] = 0.02;
+  return law;
+}
+
+TEST(FastTheories, FrictionFollowsTheRigidSlip) {
+  int count = 0;
+  for (const contact &c : contacts())
+    for (rolling_input in : inputs()) {
+      in.speed = 9.0;
+      fast_options o;
+      o.law = falling(static_cast<rp_slip_law>(count++ % 3));
+      o.reduction = {0.8, 0.3, 0.7};
+      for (auto blending : {RP_BLENDING_SLIDING, RP_BLENDING_CONTACT}) {
+        o.blending = blending;
+        const setting s(c, o, in, 0.9);
+        expect_fields(s, fastsim_once_more(s));
+        if (HasFatalFailure()) return;
+      }
+      o.blending = RP_BLENDING_SLIDING;
+      o.theory = RP_TANGENTIAL_POLACH;
+      const setting polach(c, o, in, 0.9);
+      expect_sums(polach, polach_once_more(polach));
+      if (c.name == "lobes") continue;
+      o.theory = RP_TANGENTIAL_FASTRIP;
+      const setting strips(c, o, in, 0.9);
+      expect_fields(strips, fastrip_once_more(strips));
+      if (HasFatalFailure()) return;
     }
 }
 

@@ -90,6 +90,11 @@ SCENES: dict[str, dict[str, Any]] = {
         PATCH,
         friction={"law": "slip_velocity", "kinetic": 0.2, "amplitude": 0.2, "halving_speed": 0.1},
     ),
+    "modified": with_values(
+        PATCH,
+        method={"normal": "kik_piotrowski_corrected", "tangential": "fastsim", "fastsim_beta": 0.6},
+        friction={"law": "slip_velocity", "kinetic": 0.2, "amplitude": 0.2, "halving_speed": 0.1},
+    ),
     "hot": with_values(PATCH, motion__creepage=[1e-2, 0.0], friction=WARM_LAW, temperature=HEAT),
     "warm": with_values(RAIL, wheelset__pitch_rate=-2.3 / 0.46, temperature=HEAT),
     "prescribed_force": with_values(
@@ -163,6 +168,7 @@ MOTIONS: dict[str, list[dict[str, float]]] = {
     "layer": [{"creepage[1]": 2e-3}],
     "plastic": [{"creepage[2]": 1e-3}, {"normal_force": 6e4}],
     "falling": [{"creepage[1]": 4e-3}, {"spin_creepage": 0.2}],
+    "modified": [{"creepage[1]": 4e-3}, {"spin_creepage": 0.2}, {"normal_force": 2e4}],
     "hot": [{"temperature.wheel": 150.0}, {"creepage[1]": 4e-3, "temperature.rail": 40.0}],
     "warm": [{"temperature.rail": 45.0}, {"wheelset.z": -1e-3}, {"wheelset.z": 2.1e-4}],
     "rail": [

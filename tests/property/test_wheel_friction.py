@@ -223,7 +223,21 @@ def test_no_law_is_missing() -> None:
     assert rules == words(Layer, "plastic_rule")
 
 
-@pytest.mark.parametrize("normal", ["hertz", "kik_piotrowski", "analyn"])
+@pytest.mark.parametrize("pose", POSES)
+@pytest.mark.parametrize("theory", ["fastsim", "fastrip", "polach"])
+def test_fast_theories(theory: str, pose: str) -> None:
+    case = wheel_case("exponential", pose, method__tangential=theory)
+    for patch, alone in pairs(case, 2):
+        assert patch["status"] == alone.status == "converged"
+        force = np.array(patch["creep_force"])
+        size = max(np.abs(force).max(), 1e-3 * patch["normal_force"])
+        assert np.abs(np.array(alone["creep_force"]) - force).max() <= 1e-6 * size
+        assert alone["friction_power"] == pytest.approx(patch["friction_power"], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "normal", ["hertz", "kik_piotrowski", "kik_piotrowski_corrected", "analyn"]
+)
 def test_approximate_pressures_fall_too(normal: str) -> None:
     """With Coulomb friction between the law's coefficients at rest and at high speed."""
     forces = []

@@ -223,6 +223,7 @@ void set_theories(nb::module_ &m) {
     nb::dict row;
     row["tractions"] = theory.tractions;
     row["contact_blending"] = (theory.reads & reads_contact_blending) != 0;
+    row["slip_law"] = (theory.reads & reads_slip_law) != 0;
     theories[theory.name] = row;
   }
   for (const option_key &option : option_keys()) {

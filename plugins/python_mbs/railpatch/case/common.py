@@ -8,7 +8,14 @@ from pydantic import Field, model_validator
 
 from railpatch.case.choice import least_error
 from railpatch.case.friction import Friction, increasing
-from railpatch.case.theories import BY_ROWS, FAST, READERS, blends_as_contact, has_tractions
+from railpatch.case.theories import (
+    BY_ROWS,
+    FAST,
+    READERS,
+    blends_as_contact,
+    follows_slip,
+    has_tractions,
+)
 from railpatch.case.types import (
     BODIES,
     LEFT_OUT,
@@ -211,6 +218,7 @@ class Temperature(Table):
         return self.bulk.mass[0] > 0, self.bulk.mass[1] > 0
 
 
+SLIP = "slip_velocity"
 # what only wheels read
 WHEEL_METHOD = ("patch_rule", "contact_frame", "standstill_speed")
 
@@ -309,7 +317,8 @@ def check_physics(
     grid: Grid | None,
     method: Method,
 ) -> Problems:
-    """Where the inelastic laws and temperature belong: the full theory on the uniform grid."""
+    """Where the inelastic laws and temperature belong: the full theory on the uniform grid, and
+    friction that follows the speed of slip to fast theories too."""
     law = "" if friction is None else f" = {friction.law!r}"
     asked = {
         f"friction.law{law}": friction is not None and friction.law != "coulomb",
@@ -320,9 +329,14 @@ def check_physics(
     for asking, needed in asked.items():
         if not needed:
             continue
-        if method.tangential != "full":
+        by_slip = asking == f"friction.law = '{SLIP}'"
+        if by_slip and friction is not None and follows_slip(method.tangential):
+            yield from check_without_memory(friction, method.tangential)
+        elif method.tangential != "full":
+            others = [f"'{name}'" for name in FAST if by_slip and follows_slip(name)]
+            allowed = " or ".join(["'full'", *others])
             shown = repr(method.tangential)
-            yield relation("method.tangential", shown, f"'full' with {asking}")
+            yield relation("method.tangential", shown, f"{allowed} with {asking}")
         if grid is not None and grid.fitted is not None:
             yield relation("grid.fitted", str(grid.fitted), f"{LEFT_OUT} with {asking}")
         if method.accuracy is not None:
@@ -335,6 +349,15 @@ def check_physics(
             yield relation("layer.plastic_heat_fraction", shown, "only with [temperature]")
     if friction is not None and friction.law == "temperature" and heat is None:
         yield relation("temperature", "missing", "the table [temperature] with this friction law")
+
+
+def check_without_memory(friction: Friction, tangential: str) -> Problems:
+    """Fast theories follow the speed of the rigid slip, which has no beginning."""
+    if friction.memory_distance > 0:
+        allowed = (
+            f"0 with method.tangential = {tangential!r}: friction follows the rigid slip there"
+        )
+        yield relation("friction.memory_distance", friction.memory_distance, allowed)
 
 
 def without_friction(content: dict[str, Any]) -> dict[str, Any]:

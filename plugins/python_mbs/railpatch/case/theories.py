@@ -22,3 +22,8 @@ def has_tractions(tangential: str) -> bool:
 def blends_as_contact(tangential: str) -> bool:
     """Whether it knows the flexibilities of the program CONTACT."""
     return tangential in FAST and bool(_core.THEORIES[tangential]["contact_blending"])
+
+
+def follows_slip(tangential: str) -> bool:
+    """Whether friction follows the speed of slip in it, without memory."""
+    return tangential in FAST and bool(_core.THEORIES[tangential]["slip_law"])
