@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from railpatch.case.theories import BY_ROWS
 from railpatch.evidence.stress.trial import (
     CREEPAGE,
     FORCE,
@@ -78,7 +79,7 @@ def shapes() -> Iterator[Trial]:
                 "shape", f"a/b = {ratio:g}", nominal(shape, motion, method),
                 moves({}, expects=expected(name)), note,
             )  # fmt: skip
-        for normal in ("kik_piotrowski", "analyn"):
+        for normal in BY_ROWS:
             method = {"method": {"normal": normal, "tangential": "fastsim"}}
             yield Trial(
                 "shape", f"a/b = {ratio:g}, {normal}", nominal(shape, motion, method),
