@@ -99,6 +99,7 @@ class WheelDerivatives : public testing::TestWithParam<scene> {
   rp_config config() const {
     const scene &s = GetParam();
     rp_config c = scenes::wheels(RP_WHEELSET, s.track, pair);
+    if (scenes::sanitized) c = scenes::coarse(c);
     c.load = s.load;
     c.normal = s.normal;
     c.regime = s.regime;
