@@ -519,6 +519,10 @@ typedef struct rp_patch_result {
   double wheel_heat, rail_heat; /* W, into each body: its part of friction and plastic work by the
                                    effusivities, and what it gets from the other one. NaN: no
                                    temperature in the scene, or exchanged in transient rolling */
+  double pressure_energy;       /* J, the part of elastic_energy that the pressure alone stores. In
+                                   steady rolling the balance of power with wheel and rail is that of
+                                   this one: nothing supplies what tractions store, each step has
+                                   those of an endless rolling. NaN as elastic_energy */
 } rp_patch_result;
 
 /* One wheel; on a roller see rp_contact_frame. NaN where a patch could not be solved. */
@@ -541,6 +545,7 @@ typedef struct rp_side_result {
   double wheel_heat, rail_heat;
   double wheel_temperature, rail_temperature; /* degrees C, bulk, that the step was solved with;
                                                  NaN: no temperature in the scene */
+  double pressure_energy;                     /* J, sum of share times each */
 } rp_side_result;
 
 typedef struct rp_result {
@@ -554,6 +559,7 @@ typedef struct rp_result {
   double contact_power, creep_power, friction_power, plastic_power, elastic_energy;
   double max_temperature, residual;
   double wheel_heat, rail_heat;
+  double pressure_energy; /* J, sum of the wheels */
 } rp_result;
 
 #define RP_FIELDS(X)                                                                             \

@@ -75,7 +75,9 @@
   X(double, creep_power, 1, number, even, zero_rolling, by_share, NAN, "W",                       \
     "power that the creepages and the spin supply")                                               \
   X(double, wheel_heat, 1, number, even, own, by_share, NAN, "W", "heat into the wheel")          \
-  X(double, rail_heat, 1, number, even, own, by_share, NAN, "W", "heat into the rail or roller")
+  X(double, rail_heat, 1, number, even, own, by_share, NAN, "W", "heat into the rail or roller")  \
+  X(double, pressure_energy, 1, number, even, zero, by_share, NAN, "J",                           \
+    "elastic energy of the pressure alone")
 
 #define RP_SIDE_RESULT_FIELDS(X, O)                                                      \
   X(rp_status, status, 1, status, even, kept, alone, RP_NO_CONTACT, "",                  \
@@ -114,7 +116,9 @@
   X(double, wheel_temperature, 1, number, even, kept, alone, NAN, "degrees C",           \
     "bulk temperature of the wheel")                                                     \
   X(double, rail_temperature, 1, number, even, kept, alone, NAN, "degrees C",            \
-    "bulk temperature of the rail or roller")
+    "bulk temperature of the rail or roller")                                            \
+  X(double, pressure_energy, 1, number, even, kept, added, NAN, "J",                     \
+    "elastic energy of the pressure alone, of all patches by share")
 
 #define RP_RESULT_FIELDS(X, O)                                                                   \
   X(rp_status, status, 1, status, even, kept, alone, RP_CONVERGED, "", "how the solution ended") \
@@ -140,7 +144,9 @@
   X(double, residual, 1, estimate, even, kept, alone, 0, "-",                                    \
     "greatest residual at the end of all patches")                                               \
   X(double, wheel_heat, 1, number, even, kept, alone, NAN, "W", "heat into the wheels")          \
-  X(double, rail_heat, 1, number, even, kept, alone, NAN, "W", "heat into the rails or rollers")
+  X(double, rail_heat, 1, number, even, kept, alone, NAN, "W", "heat into the rails or rollers") \
+  X(double, pressure_energy, 1, number, even, kept, alone, NAN, "J",                             \
+    "elastic energy of the pressure alone, of all patches by share")
 
 /* --- inputs: X(type, name, count, role, where, start, bounds, low, high, unit, text) ---------
  * role      choice: an enumeration; number; integer; side: RP_LEFT or RP_RIGHT; points: numbers of

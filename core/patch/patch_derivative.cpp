@@ -162,7 +162,7 @@ void patch_derivative::differentiate_half_space(const solution &s, const patch_v
       whole += p[i] * u;
     }
     out[k].approach = approach[k];
-    out[k].elastic_energy = 0.5 * (energy + growth * whole) * g.dx * g.dy;
+    out[k].elastic_energy = out[k].pressure_energy = 0.5 * (energy + growth * whole) * g.dx * g.dy;
     const auto top = std::max_element(p, p + n) - p;
     out[k].max_pressure = rate[top];
     out[k].contact_area =
@@ -202,7 +202,7 @@ void patch_derivative::differentiate_hertz(const solution &s, const patch_variat
   out.approach = line ? nan : d.approach;
   out.contact_area = line ? 2.0 * d.semi_axes[0] * s.scene.line_width
                           : std::numbers::pi * a * b * (along + across);
-  out.elastic_energy =
+  out.elastic_energy = out.pressure_energy =
       line ? nan : 0.4 * (d.normal_force * c.approach + c.normal_force * d.approach);
 }
 

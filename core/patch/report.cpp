@@ -86,7 +86,7 @@ void report(const patch_scene &scene, const patch_problem &problem, const pressu
   result.normal_force = scene.curved ? -wrench.force[2] : n.normal_force;
   result.max_pressure = n.max_pressure;
   result.contact_area = n.contact_area;
-  result.elastic_energy = n.elastic_energy;
+  result.elastic_energy = result.pressure_energy = n.elastic_energy;
   if (scene.tangential != RP_TANGENTIAL_NONE) describe_tractions(scene, t, wrench, result);
   describe_heat(h, result);
 }
@@ -120,6 +120,7 @@ void report_rates(const rp_patch_result &value, const patch_change &change, rp_p
   set(value.max_pressure, rate.max_pressure, change.max_pressure);
   set(value.contact_area, rate.contact_area, change.contact_area);
   set(value.elastic_energy, rate.elastic_energy, change.elastic_energy);
+  set(value.pressure_energy, rate.pressure_energy, change.pressure_energy);
   for (int c = 0; c < 2; ++c) set(value.creep_force[c], rate.creep_force[c], change.creep_force[c]);
   set(value.spin_moment, rate.spin_moment, change.spin_moment);
   set(value.friction_power, rate.friction_power, change.friction_power);

@@ -32,6 +32,7 @@ PATCH_KEYS = [
     "friction_power",
     "plastic_power",
     "elastic_energy",
+    "pressure_energy",
     "iterations",
     "outer_iterations",
     "ambiguous_elements",

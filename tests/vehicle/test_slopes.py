@@ -114,10 +114,10 @@ def test_force_along_a_slope(y):
 
 def missing(simulation: Simulation) -> float:
     """-, of the friction's work, in the balance of the contacts of a whole run."""
-    before = simulation.element.elastic_energy
+    before = simulation.element.pressure_energy
     *_, state = simulation.steps()
     contact, friction, *_ = state.work
-    stored = simulation.element.elastic_energy - before
+    stored = simulation.element.pressure_energy - before
     return abs(contact + friction + stored) / friction
 
 

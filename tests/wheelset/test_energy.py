@@ -1,4 +1,4 @@
-"""The balance of energies: open by less than 0.5 % of what friction and dampers take."""
+"""The balance of energies: open by less than 0.3 % of what friction and dampers take."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from wheelset_demo.simulation import simulate
 from wheelset_demo.summary import summarise
 from wheelset_demo.trace import Trace
 
-LIMIT = 0.005
+LIMIT = 0.003
 
 
 def shown(name: str, trace: Trace, measured) -> tuple[float, float]:
@@ -50,12 +50,13 @@ def test_explicit_stepper_closes_the_mechanical_balance(tmp_path: Path, measured
 
 def test_flange_contact_and_lift_off(tmp_path: Path, measured):
     # wheels bounce off the flanges: the mechanical balance does not care, the steps must be short
-    values = {"speed": 40.0, "distance": 3.0, "step": 1e-4, "stepper": "rk4", "log_every": 20}
+    # and the log dense, as a contact on the flange comes and goes within some steps of 2 ms
+    values = {"speed": 40.0, "distance": 3.0, "step": 1e-4, "stepper": "rk4", "log_every": 5}
     content = scenes.text_of("s1002.toml", **values)
     file = tmp_path / "scene.toml"
     file.write_text(content.replace("[wheelset]\n", "[wheelset]\nyaw = 0.01\n"))
     trace = simulate(scenes.load_wheelset_scene(file))
-    mechanical, _ = shown("flange contact", trace, measured)
+    mechanical, contact = shown("flange contact", trace, measured)
     assert trace.failure is None
     assert sum(summarise(trace).in_the_air.values()) > 0
     angles = [
@@ -65,3 +66,4 @@ def test_flange_contact_and_lift_off(tmp_path: Path, measured):
     ]
     assert np.abs(angles).max(initial=0) < 1.3
     assert mechanical == pytest.approx(0, abs=1e-3)
+    assert contact < LIMIT

@@ -316,14 +316,14 @@ class VehicleSystem:
         return ", ".join(found)
 
     def stored(self, state: VehicleState) -> Vector:
-        """J, [4]: kinetic, gravity, suspension, elastic energy of the contacts, at a state whose
-        rates were the last ones asked for."""
+        """J, [4]: kinetic, gravity, suspension, elastic energy of pressure in the contacts, of a
+        state whose rates were the last ones asked for."""
         return np.array(
             [
                 pin.computeKineticEnergy(self.model, self.data, state.q, state.v),
                 pin.computePotentialEnergy(self.model, self.data, state.q),
                 self.suspension.potential(state.series),
-                self.element.elastic_energy,
+                self.element.pressure_energy,
             ]
         )
 

@@ -56,6 +56,7 @@ STEP_KEYS = (
     "friction_power",
     "plastic_power",
     "elastic_energy",
+    "pressure_energy",
     "iterations",
     "residual",
 )

@@ -23,7 +23,7 @@ using Array = nb::ndarray<nb::numpy, double, nb::ndim<2>>;
 
 static_assert(sizeof(TrackState) == 12 * sizeof(double));
 
-enum { kMotion = 18, kWrench = 6, kState = 12, kContact = 6, kPower = 4, kPlacement = 12 };
+enum { kMotion = 18, kWrench = 6, kState = 12, kContact = 6, kPower = 5, kPlacement = 12 };
 // rails: offset and velocity, both by side; wheels: force, moment, creep power, patches, power of
 // friction
 enum { kRails = 12, kWheel = 9, kWheels = 2 * kWheel };
@@ -206,6 +206,7 @@ class ForceElement {
     power[1] = result.elastic_energy;
     power[2] = or_zero(result.creep_power);
     power[3] = or_zero(result.friction_power);
+    power[4] = result.pressure_energy;
     double *wheel = wheels_.data() + k * kWheels;
     for (const rp_side_result &side : result.side) {
       std::copy_n(side.force, 3, wheel);
@@ -281,8 +282,7 @@ void bind_force_element(nb::module_ &m) {
           "By side: force, moment about the centre, creep power, patches, power of friction.")
       .def_prop_ro("power", &view<kPower, &E::power>,
                    "Of the contacts: power of the forces (W), elastic energy (J), creep power (W), "
-                   "frictional "
-                   "power (W).");
+                   "frictional power (W), elastic energy of the pressure (J).");
 }
 
 }  // namespace railpatch::python

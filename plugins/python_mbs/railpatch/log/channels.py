@@ -193,6 +193,7 @@ PATCH = Message(
         _listed("patch", "creep_power"),
         _listed("patch", "wheel_heat"),
         _listed("patch", "rail_heat"),
+        _listed("patch", "pressure_energy"),
     ),
 )
 
@@ -200,6 +201,7 @@ _SUMS = (
     *("contact_power", "creep_power", "friction_power", "plastic_power", "elastic_energy"),
     *("max_temperature", "residual"),
     *("wheel_heat", "rail_heat", "wheel_temperature", "rail_temperature"),
+    "pressure_energy",
 )
 WHEEL_CONTACT = Message(
     "WheelContact",
@@ -321,7 +323,7 @@ ENERGY = Message(
         _number("kinetic", "J", "kinetic energy of all bodies", "track"),
         _number("gravity", "J", "potential energy of gravity"),
         _number("suspension", "J", "potential energy of springs and static load"),
-        _number("elastic", "J", "elastic energy of the contacts"),
+        _number("elastic", "J", "elastic energy of the pressure in the contacts"),
         _number("contact_work", "J", "work of the contact forces on the wheelsets"),
         _number("friction_work", "J", "lost in the contacts: creep_power of all wheels over time"),
         _number("damping_work", "J", "taken by the dampers"),

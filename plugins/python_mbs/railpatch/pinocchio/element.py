@@ -295,6 +295,11 @@ class ForceElement:
         return float(self._power[:, 1].sum())
 
     @property
+    def pressure_energy(self) -> float:
+        """J, of that what the pressure stores: it and creep_power balance the contacts' power."""
+        return float(self._power[:, 4].sum())
+
+    @property
     def creep_power(self) -> float:
         """W, that the creepages and the spin supply, of all patches by their shares.
 

@@ -7,16 +7,15 @@ Mechanical balance, over any part of a run:
 
 where the drive is what keeps the suspension's reference at its speed. The contact forces' power on
 the wheelset is F.v + M.omega. What they take goes into the creepages, creep_power of the element,
-and into the elastic energy of the contacts:
+and into the elastic energy of the pressure in the contacts, pressure_energy:
 
-    - work of the contact forces = work of the creepages + change of elastic energy
+    - work of the contact forces = work of the creepages + change of pressure's elastic energy
 
 The first holds for any contact law, so it tests time stepper and force elements; the second tests
-the contact. The contact is quasi-static: its elastic energy is that of the steady state at each
-moment. The second balance also feels that creepages are taken at the undeformed wheel's surface and
-forces at the rail's, an approach apart, and that the reference's x is a mean over the patch: some
-hundredths of the creep power on the tread, up to a fifth in yawed flange contact. friction_power is
-what the theory itself counts as heat, by some theories not all of the creep power.
+the contact: docs/power.md. The tractions' elastic energy has no part in it: in steady rolling each
+step has the tractions of an endless one, whose energy nothing supplies, and in transient rolling
+the work of the creepages holds it. friction_power is what the theory itself counts as heat, by some
+theories not all of the creep power.
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ from railpatch.pinocchio.suspension import Suspension
 @dataclass(frozen=True)
 class Energies:
     """J. kinetic: of all bodies in the world frame. gravity, suspension: potential energies.
-    elastic: of the contacts."""
+    elastic: of the pressure in the contacts."""
 
     kinetic: float
     gravity: float
@@ -78,7 +77,7 @@ def energies(
         pin.computeKineticEnergy(model, data, q, v),
         pin.computePotentialEnergy(model, data, q),
         sum(suspension.potential for suspension in suspensions),
-        element.elastic_energy,
+        element.pressure_energy,
     )
 
 
