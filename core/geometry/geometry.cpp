@@ -353,6 +353,11 @@ locus_point side_geometry::locus(double s) const {
   l.valid = rail_surface(l.wheel[0], l.wheel[1], l.rail_z, l.contact_angle);
   if (!l.valid) return l;
   l.gap = l.rail_z - l.wheel[2];
+  const double cosine = std::sqrt(1 - sine * sine);
+  const vec3 normal = turn(wheel_axes_, {sine * p.dy, -p.dz, cosine * p.dy});
+  l.normal = (1 / normal[2]) * normal;
+  // as the search asks for
+  if (track_.kind == track_kind::rail) l.normal[0] = 0;
   // how the gap opens in x
   l.curvature = 0.5 / (sizes_.nominal_radius + p.z);
   if (track_.kind == track_kind::roller) l.curvature += 0.5 / (axle_z_ - l.rail_z);

@@ -55,6 +55,7 @@ struct locus_point {
   double rail_z = 0;         // m, of the rail surface there
   double contact_angle = 0;  // rad, of the rail surface
   double curvature = 0;      // 1/m, the gap grows with curvature x^2
+  vec3 normal{};             // of the wheel's surface there, over its part along z
 };
 
 // Both surfaces on the line along n through a frame's origin.

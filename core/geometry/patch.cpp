@@ -201,6 +201,7 @@ patch_region describe(const side_geometry &side, const patch_rules &r, const par
   if (r.inclined) out.frame.inclination = side.roller_inclination(out.frame.origin);
   out.weight = g.weight;
   out.share = g.share;
+  if (r.blended) out.angle_slope = g.angle_slope;
   out.first_part = g.begin;
   out.parts = g.end - g.begin;
   const basic_bounds<double> bounds = bounds_of(parts, g, out.frame.origin, contact_angle);

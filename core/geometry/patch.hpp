@@ -37,6 +37,7 @@ struct patch_region {
   double x_min = 0, x_max = 0, s_min = 0, s_max = 0;  // m
   double weight = 0;                                  // of all rows, to compare patches
   double share = 1;                                   // that this solution has in the wheel's force
+  place_slope angle_slope;                            // blended rule only
   bool at_profile_end = false;                        // cut off by the end of a profile
   // parts follow each other in s: between part k and k + 1 lies s = cut[k], and there tractions
   // on one side act on the other with the factor coupling[k]

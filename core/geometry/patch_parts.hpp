@@ -12,8 +12,8 @@
 // Choices by value (comparisons, min, max) keep to one smooth branch each.
 //
 // T: double, or a type with its operators, comparisons with itself and double, and sqrt, hypot,
-// cos, sin, fabs found by argument. Locus: locus(T s) gives .valid, .wheel[3], .gap, .contact_angle
-// and .curvature, as side_geometry::locus does.
+// cos, sin, fabs found by argument. Locus: locus(T s) gives .valid, .wheel[3], .gap,
+// .contact_angle, .curvature and .normal[3], as side_geometry::locus does.
 //
 // Blended rule. Every interval [i ... j] of neighbouring parts may be solved as one patch, and
 // counts with the share
@@ -35,6 +35,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/place_slope.hpp"
 #include "numeric/elementary.hpp"
 
 namespace railpatch {
@@ -64,6 +65,8 @@ struct basic_part {
   // between this part and the next: the greatest gap, m, and its arc length on the wheel
   T bump{};
   double bump_at = 0;
+  // how these change with the wheel's place; zero where a wheel or rail is shaped along x
+  basic_place_slope<T> weight_slope{}, angle_slope{};
 };
 using part = basic_part<double>;
 
@@ -74,6 +77,7 @@ struct basic_interval {
   bool leads = true;              // belongs to the division of greatest share
   T weight{}, x{}, y{}, angle{};  // weighted means
   T share{};
+  basic_place_slope<T> angle_slope{};
 };
 using part_interval = basic_interval<double>;
 
@@ -110,12 +114,19 @@ void sum_rows(const Locus &locus, basic_part<T> &p) {
     p.x += weight * l.wheel[0];
     p.y += weight * l.wheel[1];
     p.angle += weight * l.contact_angle;
+    // the weight goes with depth^2.5, and hardly with the curvature
+    const basic_place_slope<T> deeper = depth_slope(l.wheel, l.normal);
+    const T growth = 2.5 * weight / depth;
+    p.weight_slope.add(growth, deeper);
+    p.angle_slope.add(growth * l.contact_angle, deeper);
     const T low = l.wheel[0] - reach, high = l.wheel[0] + reach;
     if (!any || low < p.x_min) p.x_min = low;
     if (!any || p.x_max < high) p.x_max = high;
     any = true;
   }
   for (T *v : {&p.x, &p.y, &p.angle}) *v /= p.weight;
+  p.angle_slope.add(-p.angle, p.weight_slope);
+  p.angle_slope = scaled(1.0 / p.weight, p.angle_slope);
 }
 
 template <class T>
@@ -184,6 +195,11 @@ basic_interval<T> sum_parts(const basic_part<T> *parts, int begin, int end) {
     g.angle += p.weight * p.angle;
   }
   for (T *v : {&g.x, &g.y, &g.angle}) *v /= g.weight;
+  for (int i = begin; i < end; ++i) {
+    const basic_part<T> &p = parts[i];
+    g.angle_slope.add(p.weight / g.weight, p.angle_slope);
+    g.angle_slope.add((p.angle - g.angle) / g.weight, p.weight_slope);
+  }
   return g;
 }
 

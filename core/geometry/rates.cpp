@@ -122,6 +122,9 @@ rated_locus moving_geometry::locus(const rated &s) const {
   l.valid = rail_surface(l.wheel[0], l.wheel[1], rail_z, l.contact_angle);
   if (!l.valid) return l;
   l.gap = rail_z - l.wheel[2];
+  const vec<rated> normal = turn(m, {sine * p.dy, -p.dz, sqrt(1.0 - sine * sine) * p.dy});
+  l.normal = (1.0 / normal[2]) * normal;
+  if (track_.kind == track_kind::rail) l.normal[0] = 0.0;
   l.curvature = 0.5 / (sizes_.nominal_radius + p.z);
   if (track_.kind == track_kind::roller) l.curvature += 0.5 / (axle_z_ - rail_z);
   return l;

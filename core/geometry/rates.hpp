@@ -40,7 +40,7 @@ struct motion_rates {
 
 struct rated_locus {
   bool valid = false;
-  vec<rated> wheel;
+  vec<rated> wheel, normal;
   rated gap, contact_angle, curvature;
 };
 

@@ -93,4 +93,86 @@ void add_inclined_rates(const grid &g, const double *pressure, const surface_slo
       });
 }
 
+// A surface n = f(x, s) against which the plane turns about x changes by -(s + f f_s), so the
+// distance h from the rail's f to the wheel's f - h by -(f h_s + h f_s - h h_s); and likewise about
+// s.
+namespace {
+
+struct turned_distance {
+  double f, h;               // the rail's surface, the distance
+  double rise[2], slope[2];  // their slopes along x and s
+
+  double value(int k) const { return f * slope[k] + h * rise[k] - h * slope[k]; }
+  double rate(int k, const turned_distance &d) const {
+    return d.f * slope[k] + f * d.slope[k] + d.h * rise[k] + h * d.rise[k] - d.h * slope[k] -
+           h * d.slope[k];
+  }
+};
+
+double lateral_slope(const grid &g, const double *h, int at) {
+  return (h[at + g.nx] - h[at - g.nx]) / (2 * g.dy);
+}
+
+double longitudinal_slope(const grid &g, const double *h, int at) {
+  return (h[at + 1] - h[at - 1]) / (2 * g.dx);
+}
+
+// use(element, place among the slopes, distance there) of all that carry pressure, but for those at
+// the grid's ends.
+template <class Use>
+void for_turned(const grid &g, const double *pressure, const double *h,
+                const surface_slopes &slopes, Use use) {
+  for (int j = 1; j + 1 < g.ny; ++j)
+    for (int i = 1; i + 1 < g.nx; ++i) {
+      const int at = j * g.nx + i;
+      if (!(pressure[at] > 0)) continue;
+      const auto from = slopes.place(j) + (slopes.columns > 1 ? i : 0);
+      use(at, from,
+          turned_distance{slopes.height[from],
+                          h[at],
+                          {slopes.along[from], slopes.across[from]},
+                          {longitudinal_slope(g, h, at), lateral_slope(g, h, at)}});
+    }
+}
+
+}  // namespace
+
+turning_energy energy_of_turning(const grid &g, const double *pressure, const double *h,
+                                 const surface_slopes &slopes) {
+  double sum[2] = {0, 0};
+  for_turned(g, pressure, h, slopes, [&](int at, auto, const turned_distance &d) {
+    for (int k = 0; k < 2; ++k) sum[k] += pressure[at] * d.value(k);
+  });
+  const double area = g.dx * g.dy;
+  return {sum[1] * area, -sum[0] * area};
+}
+
+turning_energy energy_of_turning_rate(const grid &g, const double *pressure,
+                                      const double *pressure_rate, const double *h,
+                                      const double *distance_rate, const surface_slopes &slopes,
+                                      const surface_slopes *slope_rates, const double size[2]) {
+  const double growth = size[0] / g.dx + size[1] / g.dy;
+  double sum[2] = {0, 0};
+  for_turned(g, pressure, h, slopes, [&](int at, auto from, const turned_distance &d) {
+    turned_distance change{};
+    if (slope_rates) {
+      change.f = slope_rates->height[from];
+      change.rise[0] = slope_rates->along[from];
+      change.rise[1] = slope_rates->across[from];
+    }
+    change.slope[0] = -d.slope[0] * size[0] / g.dx;
+    change.slope[1] = -d.slope[1] * size[1] / g.dy;
+    if (distance_rate) {
+      change.h = distance_rate[at];
+      change.slope[0] += longitudinal_slope(g, distance_rate, at);
+      change.slope[1] += lateral_slope(g, distance_rate, at);
+    }
+    for (int k = 0; k < 2; ++k)
+      sum[k] += (pressure_rate[at] + growth * pressure[at]) * d.value(k) +
+                pressure[at] * d.rate(k, change);
+  });
+  const double area = g.dx * g.dy;
+  return {sum[1] * area, -sum[0] * area};
+}
+
 }  // namespace railpatch

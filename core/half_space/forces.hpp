@@ -36,6 +36,25 @@ void add_inclined_rates(const grid &g, const double *pressure, const surface_slo
                         const surface_slopes *rates, const double origin[2], const double size[2],
                         patch_wrench &wrench);
 
+// N m, what the elastic energy grows by as the half-space turns about x and s against the bodies.
+// Pressure has its moment about the rail's surface; about the wheel's it differs by as much.
+struct turning_energy {
+  double about_x = 0, about_s = 0;
+};
+turning_energy energy_of_turning(const grid &g, const double *pressure,
+                                 const double *undeformed_distance, const surface_slopes &slopes);
+// Adds the moments that a wheel has about its own surface beside those about the rail's.
+inline void add_turning(const turning_energy &turning, patch_wrench &wrench) {
+  wrench.moment[0] += turning.about_x;
+  wrench.moment[1] += turning.about_s;
+}
+// Its rate; those of distance and slopes may be null: zero. size: m, of the elements.
+turning_energy energy_of_turning_rate(const grid &g, const double *pressure,
+                                      const double *pressure_rate,
+                                      const double *undeformed_distance,
+                                      const double *distance_rate, const surface_slopes &slopes,
+                                      const surface_slopes *slope_rates, const double size[2]);
+
 // Moves forces in the plane from the contact reference to a depth (m) along n.
 void add_depth(double depth, double longitudinal, double lateral, patch_wrench &wrench);
 

@@ -109,6 +109,7 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   const patch_scene &scene = shared_.scene;
   memory.solved = true;
   memory.estimated = false;
+  memory.turning = {};
   begin_solve(problem, memory);
   pressure_outcome n = find_pressure(problem, memory);
   if (!n.loaded) {
@@ -242,7 +243,7 @@ patch_wrench patch_contact::sum_forces(const patch_problem &problem, const press
 
 // Creep forces act at their depth, and pressure along the normals of the surface; a curved
 // reference surface has both in its sums.
-void patch_contact::complete(const patch_problem &problem, const patch_memory &memory,
+void patch_contact::complete(const patch_problem &problem, patch_memory &memory,
                              patch_wrench &wrench) const {
   if (memory.slope_fields.size() == 0 || memory.curved) return;
   const grid &g = problem.g;
@@ -251,6 +252,10 @@ void patch_contact::complete(const patch_problem &problem, const patch_memory &m
     add_inclined_ellipse(problem.hertz, g, memory.slopes, wrench);
   else
     add_inclined(g, memory.pressure.data(), memory.slopes, wrench);
+  if (!shared_.scene.turns()) return;
+  memory.turning = energy_of_turning(g, memory.pressure.data(), memory.undeformed_distance.data(),
+                                     memory.slopes);
+  add_turning(memory.turning, wrench);
 }
 
 derivative_outcome patch_contact::differentiate(const patch_problem &problem,

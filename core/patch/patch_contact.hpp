@@ -71,8 +71,7 @@ class patch_contact {
                                  patch_memory &memory);
   patch_wrench sum_forces(const patch_problem &problem, const pressure_outcome &n,
                           const traction_outcome &t, patch_memory &memory) const;
-  void complete(const patch_problem &problem, const patch_memory &memory,
-                patch_wrench &wrench) const;
+  void complete(const patch_problem &problem, patch_memory &memory, patch_wrench &wrench) const;
   void estimate_error(const patch_problem &problem, const pressure_outcome &n, patch_memory &memory,
                       rp_patch_result &result) const;
   void unload(const grid &g, patch_memory &memory);

@@ -241,6 +241,11 @@ void patch_derivative::complete(const solution &s, const patch_variation &v, con
     add_depth(v.contact_depth, w.force[0], w.force[1], sum);
     add_depth(s.problem.place.contact_depth, out.creep_force[0], out.creep_force[1], sum);
   }
+  if (s.scene.turns()) {
+    out.turning = energy_of_turning_rate(g, p, rate, m.undeformed_distance.data(), v.distance,
+                                         m.slopes, v.slopes, v.size);
+    add_turning(out.turning, out.wrench);
+  }
   const double growth = v.size[0] / g.dx + v.size[1] / g.dy;
   for (int k = 0; k < 3; ++k) {
     out.wrench.force[k] += sum.force[k] + growth * whole.force[k];

@@ -42,6 +42,7 @@ struct patch_change {
   double creep_force[2] = {0, 0}, spin_moment = 0;
   double max_pressure = 0, contact_area = 0;
   double friction_power = 0, elastic_energy = 0, pressure_energy = 0;
+  turning_energy turning;  // where the scene has it
 };
 
 struct derivative_options {

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "half_space/forces.hpp"
 #include "half_space/physics.hpp"
 #include "normal/hertz.hpp"
 #include "normal/normal.hpp"
@@ -66,6 +67,7 @@ struct patch_memory {
   aligned_buffer<double> row_friction;                   // factor of each grid row, where it varies
   aligned_buffer<double> slope_fields;                   // of slopes
   surface_slopes slopes;                                 // where pressure acts along local normals
+  turning_energy turning;                                // of the last solution, where it has one
   aligned_buffer<double> creepage;                       // [2], of a prescribed creep force only
   bool estimated = false;  // the last step's errors, from the features
   std::array<double, error_feature_count> error_features{};

@@ -60,6 +60,8 @@ struct patch_scene {
   bool couples() const {
     return has_physics && tangential == RP_TANGENTIAL_FULL && (curved || is_coupled(elastic));
   }
+  // The pressure is that of a plane half-space, whose energy turns with the frame (docs/power.md).
+  bool turns() const { return local_normals && normal == RP_NORMAL_HALF_SPACE && !curved; }
   // No pressure and no traction on a uniform grid: all is closed form or on rows of its own.
   bool closed_form() const {
     return normal == RP_NORMAL_HERTZ &&

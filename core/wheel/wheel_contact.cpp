@@ -238,6 +238,7 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
 
   if (!solutions_.empty()) solutions_[static_cast<size_t>(index)] = {true, problem, wrench, depth};
   add_force(region, depth, wrench, result.normal_force, out);
+  if (solver.scene().turns()) add_turning_force(region, memory.turning.about_x, out);
   // beyond a profile's end there is no surface: an edge in contact is outside the theory
   if (region.at_profile_end) degrade(result, RP_OUT_OF_RANGE);
   beyond_ = beyond_ || memory.beyond || (region.at_profile_end && result.status == RP_OUT_OF_RANGE);
@@ -296,6 +297,14 @@ void wheel_contact::add_force(const patch_region &region, double depth, patch_wr
   const vec3 lever = geometry_->lever(region.frame);
   add_wrench(wrench, region.frame.contact_angle, lever.data(), out.force, out.moment,
              region.frame.inclination);
+}
+
+// The energy changes with the frame's angle too, as that follows the wheel's place: force and
+// moment take that.
+void wheel_contact::add_turning_force(const patch_region &region, double turning,
+                                      rp_side_result &out) const {
+  const vec3 centre = region.frame.origin - geometry_->lever(region.frame);
+  add_yielding(scaled(region.share * turning, region.angle_slope), centre, out.force, out.moment);
 }
 
 // The rail's material stays where it is on the rail, while the wheel moves on by the distance

@@ -75,6 +75,7 @@ struct wheel_derivative::step {
   // of the patch at hand, in the first block
   rated_frame frame;
   rated share, depth;
+  basic_place_slope<rated> angle_slope;
   lattice_rates lattice[rate_directions];
   basic_bounds<rated> bounds;
   basic_creepage_state<rated> rolling[blocks];
@@ -162,6 +163,7 @@ void wheel_derivative::set_shape(step &s, int index, patch_variation *in) {
   s.frame.contact_angle = with_value(parts.angle, region.frame.contact_angle);
   const rated share = interval_share(s.join, s.wheel.parts.count, region.first_part, end);
   s.share = with_value(share, region.share);
+  s.angle_slope = parts.angle_slope;
   s.bounds = bounds_of(s.parts, parts, s.frame.origin, s.frame.contact_angle);
 
   double *rates[rate_directions];
@@ -305,12 +307,24 @@ void wheel_derivative::add_forces(step &s, int index, int b, const patch_change 
   }
   const vec<rated> lever = s.geometry[b]->lever(frame);
   add_wrench(wrench, frame.contact_angle, lever.data(), s.force[b].data(), s.moment[b].data());
+  add_turning_force(s, index, b, changes);
   const double normal_force = s.result.patch[index].normal_force;
   if (!(normal_force > 0)) return;
   const rated load =
       share * rates_of(normal_force, [](const patch_change &d) { return d.normal_force; });
   s.load[b] += load;
   s.loaded_radius[b] += load * s.geometry[b]->rolling_radius(frame, s.depth_in(b, solution));
+}
+
+// wheel_contact::add_turning_force: nothing but what moves the surfaces changes it.
+void wheel_derivative::add_turning_force(step &s, int index, int b, const patch_change *changes) {
+  if (!s.solver.scene().turns() || b > 0 || s.moving == 0) return;
+  rated turning(s.wheel.memory[index].turning.about_x);
+  for (int k = 0; k < s.size[b]; ++k)
+    turning.rate[static_cast<size_t>(k)] = changes[k].turning.about_x;
+  const vec<rated> centre = s.frame.origin - s.geometry[b]->lever(s.frame);
+  add_yielding(scaled(s.share * turning, s.angle_slope), centre, s.force[b].data(),
+               s.moment[b].data());
 }
 
 // The patch's own numbers in direction k of a block.

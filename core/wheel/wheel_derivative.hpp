@@ -64,6 +64,7 @@ class wheel_derivative {
   void set_motion(step &s, int index, patch_variation *in);
   void set_hertz(step &s, int index, patch_variation *in);
   void add_forces(step &s, int index, int block, const patch_change *changes);
+  void add_turning_force(step &s, int index, int block, const patch_change *changes);
   void report(step &s, int index, int block, int direction, const patch_change &change);
 
   int max_count_, max_rows_;

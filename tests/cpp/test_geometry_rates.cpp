@@ -158,6 +158,42 @@ TEST_P(GeometryRates, AreThoseOfDifferencesInEveryDirection) {
   }
 }
 
+// How a part changes with the wheel's place, against its rates with the wheelset's y, z, roll, yaw.
+TEST_P(GeometryRates, PlaceSlopesAreRatesWithTheWheelset) {
+  motion_rates motion;
+  motion.count = 4;
+  using w = wheelset_state;
+  size_t slot = 0;
+  for (double w::*number : {&w::y, &w::z, &w::roll, &w::yaw})
+    motion.direction[slot++].wheelset.*number = 1;
+  const basic_part<rated> rates = moving_geometry(side, motion).part_of(found.parts[0]);
+  const part &p = found.parts[0];
+  const w &at = here.wheelset;
+  const vec3 centre{0, at.y, at.z - scene.sizes.nominal_radius};
+  const vec3 axis{0, -std::sin(at.roll), std::cos(at.roll)};  // of the yaw
+  const auto along = [&](const place_slope &slope) {
+    const vec3 turning = slope.by_turn - cross(centre, slope.by_offset);
+    return std::array{slope.by_offset[1], slope.by_offset[2], turning[0], dot(turning, axis)};
+  };
+  // sums over 64 rows, without what the curvature along x changes by
+  const auto expect = [&](const char *name, const place_slope &slope, const rated &rate,
+                          const std::array<double, 4> &usual) {
+    for (size_t k = 0; k < 4; ++k)
+      EXPECT_NEAR(along(slope)[k], rate.rate[k], 5e-3 * std::fabs(usual[k]) + 1e-9)
+          << name << ", direction " << k;
+  };
+  expect("weight", p.weight_slope, rates.weight,
+         {rates.weight.rate[0], rates.weight.rate[1], rates.weight.rate[2], rates.weight.rate[3]});
+  // a mean over the part changes by its angles' half range times the weight's own
+  std::array<double, 4> usual = along(p.weight_slope);
+  const double range = side.locus(p.end).contact_angle - side.locus(p.begin).contact_angle;
+  for (double &u : usual) u *= 0.5 * range / p.weight;
+  expect("angle", p.angle_slope, rates.angle, usual);
+  const rated gap = moving_geometry(side, motion).locus(rated(s)).gap;
+  const locus_point l = side.locus(s);
+  EXPECT_NEAR(depth_slope(l.wheel, l.normal).by_offset[2], -gap.rate[1], 1e-12);
+}
+
 // Elements that move with their lattice, and a frame that moves.
 TEST_P(GeometryRates, DistancesFollowLatticeAndFrame) {
   const moving_geometry moving(side, motion_rates{{}, 4});

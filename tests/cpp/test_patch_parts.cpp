@@ -55,13 +55,13 @@ struct bowl {
   struct point {
     bool valid;
     T gap, contact_angle, curvature;
-    std::array<T, 3> wheel;
+    std::array<T, 3> wheel, normal;
   };
   T depth, half, middle;
 
   point operator()(const T &s) const {
     const T t = (s - middle) / half;
-    return {true, depth * (t * t - 1.0), 0.1 * s, T(1.1), {0.02 * s, s, T(0)}};
+    return {true, depth * (t * t - 1.0), 0.1 * s, T(1.1), {0.02 * s, s, T(0)}, {T(0), T(0), T(1)}};
   }
 };
 

@@ -202,11 +202,37 @@ def test_in_random_states(track: str, measured) -> None:
 def test_in_many_random_states(track: str, measured) -> None:
     balance = measure(track, 48, 500)
     check(track, balance, measured)
-    assert np.mean(balance.part("open") < 1e-3) > 0.9
+    assert np.mean(balance.part("open") < 1e-3) > 0.95
     alone = ~np.array(balance.shared)
     left_open = np.sum(np.abs(balance.open)[alone])
     assert left_open < 2e-4 * np.sum(np.array(balance.friction)[alone])
     assert left_open < 2e-3 * np.sum(np.abs(balance.elastic)[alone])
+
+
+def test_where_the_plane_turns_fast(measured) -> None:
+    """In the flange root, at 139 rad/s: forces follow from the energy by the plane's angle too."""
+    rng = np.random.default_rng(20261123)
+    state = [random_state(rng, "rail") for _ in range(202)][-1]
+    balance = Balance()
+    Scene("rail", 48).add(state, balance)
+    measured(f"power, flange root: open by {shown(balance.part('open'))}")
+    assert balance.part("open")[0] < 1e-3
+
+
+@pytest.mark.parametrize("track", ["rail", "roller"])
+def test_turning_about_the_axle_is_free(track: str, measured) -> None:
+    """A round wheel may turn under pressure alone: that has no moment about the axle."""
+    rng = np.random.default_rng(11)
+    levers = []
+    for _ in range(12):
+        state = random_state(rng, track)
+        case = case_of(track, state.side, 64, tangential="none")
+        found = Contact(case).step(vertical_force=state.load, **state.changes())
+        axle = axes_of(state)[:, 1]
+        levers.append(abs(axle @ found["moment"]) / np.linalg.norm(found["force"]))
+    measured(f"power, {track}: lever of pressure about the axle {max(levers):.3g} m")
+    # at 40 rad/s 0.1 % of what it takes to press the surfaces together at 20 mm/s
+    assert max(levers) < 1e-3 * 0.02 / 40
 
 
 def check(track: str, balance: Balance, measured) -> None:
