@@ -28,8 +28,8 @@ def test_newton_takes_few_evaluations(found):
     """Of the full theory: it starts from a balance with FASTSIM."""
     for item in found["newton"]:
         assert item.converged
-        # at 175 m the contact lies on the flange root, where elements of 0.5 mm that come into contact
-        # change the stiffness by a fifth within a micrometre: no quadratic convergence to the end
+        # at 175 m the contact lies on the flange root, where elements of 0.5 mm that come into
+        # contact change the stiffness by a fifth within a micrometre: no quadratic convergence
         assert item.evaluations <= 6, item.radius
     for newton, broyden in zip(found["newton"], found["broyden"], strict=True):
         assert broyden.converged
