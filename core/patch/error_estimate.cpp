@@ -12,12 +12,13 @@ namespace {
 
 using std::numbers::pi;
 
-// values: w0, then of each unit w, v0 and v [inputs]
+// values: w0, then of each unit w, v0 and v [inputs]; offsets: by theory of the normal problem
 struct network {
   const double *values;
   int inputs, units;
-  double at(const double *features) const {
-    double sum = values[0];
+  double offsets[4];
+  double at(const double *features, rp_normal_method normal) const {
+    double sum = values[0] + offsets[normal];
     const double *unit = values + 1;
     for (int k = 0; k < units; ++k, unit += inputs + 2) {
       double t = unit[1];
@@ -30,9 +31,16 @@ struct network {
 
 #include "patch/error_model.inc"
 
+bool has_exact_pressure(rp_normal_method normal) {
+  return normal == RP_NORMAL_HERTZ || normal == RP_NORMAL_HALF_SPACE;
+}
+
 // Networks of force and moment, or null where the theory has none.
 const network *model_of(const estimated_patch &patch) {
-  if (patch.tangential == RP_TANGENTIAL_FULL) return patch.fitted ? fitted_errors : uniform_errors;
+  if (patch.tangential == RP_TANGENTIAL_FULL) {
+    if (has_exact_pressure(patch.normal)) return patch.fitted ? fitted_errors : uniform_errors;
+    return patch.fitted ? fitted_approximate_errors : uniform_approximate_errors;
+  }
   for (const auto &theory : fast_errors)
     if (theory.method == patch.tangential) return theory.errors;
   return nullptr;
@@ -59,6 +67,32 @@ constexpr double farthest[2] = {16.0, 4.0};
 
 // of a number of elements, 0 for what has none
 double fineness(int count) { return count > 0 ? log(count / 16.0) : 0.0; }
+
+// elements across, of uniform grids and of fitted rows, up to which models are fitted, and the
+// order that errors fall with on finer ones
+struct finest_grid {
+  int across;
+  double order;
+};
+constexpr finest_grid finest_uniform{40, 1.0}, finest_rows{24, 1.5};
+
+// The finenesses either way at the finest that models know, by their mean. Returns by how much it
+// is exceeded.
+double limit_fineness(int across, double *fineness_of) {
+  const double beyond = 0.5 * (fineness_of[0] + fineness_of[1]) - fineness(across);
+  if (!(beyond > 0)) return 0;
+  for (int k = 0; k < 2; ++k) fineness_of[k] -= beyond;
+  return beyond;
+}
+
+// Of errors on a grid by those on the finest that models know. What a theory of the normal problem
+// or a fast one errs by itself does not shrink with the grid.
+double shrinkage(const estimated_patch &patch, double *fineness_of) {
+  const finest_grid &finest = patch.fitted ? finest_rows : finest_uniform;
+  const double beyond = limit_fineness(finest.across, fineness_of);
+  const bool exact = patch.tangential == RP_TANGENTIAL_FULL && has_exact_pressure(patch.normal);
+  return exact ? exp(-finest.order * beyond) : 1.0;
+}
 
 }  // namespace
 
@@ -155,16 +189,19 @@ error_bounds error_model::estimate(const estimated_patch &patch, const rp_patch_
   if (!(axes[0] > 0 && axes[1] > 0)) return bounds;
   describe_area(patch, result, axes, features);
   const network *pressure = pressure_model_of(patch.normal);
-  bounds.max_pressure = result.max_pressure * (pressure ? exp(pressure->at(features)) : rounding);
+  bounds.max_pressure =
+      result.max_pressure * (pressure ? exp(pressure->at(features, patch.normal)) : rounding);
   const network *model = model_of(patch);
   if (!model) return bounds;
   const double force = patch.friction_coefficient * result.normal_force;
   const double length = std::sqrt(axes[0] * axes[1]);
   const scaled_motion m = scaled(patch, axes, force);
   describe_motion(patch, result, m, force, length, features);
-  const double share = m.sum() / (1.0 + m.sum()), least = force_floor * std::min(1.0, m.sum());
+  const double share =
+      m.sum() / (1.0 + m.sum()) * shrinkage(patch, features + pressure_feature_count + 8);
+  const double least = force_floor * std::min(1.0, m.sum());
   const auto relative = [&](int k) {
-    return std::max(least, share * patch.stated[k] * exp(model[k].at(features)));
+    return std::max(least, share * patch.stated[k] * exp(model[k].at(features, patch.normal)));
   };
   bounds.creep_force = force * relative(0);
   bounds.spin_moment = force * length * relative(1);
@@ -183,6 +220,7 @@ void error_model::describe_area(const estimated_patch &patch, const rp_patch_res
   const contact_extent &e = patch.extent;
   features[3] = fineness(e.across[0]);
   features[4] = fineness(e.across[1]);
+  limit_fineness(finest_uniform.across, features + 3);
   // all four zero for an ellipse
   features[5] = log(result.max_pressure * result.contact_area / (1.5 * result.normal_force));
   features[6] = log(e.box_share);

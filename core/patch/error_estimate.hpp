@@ -10,8 +10,11 @@
 // Creep forces from a table have the error that the table states as a further factor.
 // with s the sum of scaled creepage and spin (see features), c^2 = a b. The floor is the accuracy
 // of the results that the errors were measured against. The model is a network of one hidden layer,
-//   model(f) = w0 + sum_k w_k g(v_k0 + v_k . f),  g(t) = t/(1 + |t|).
-// Every feature is the same for the patch's mirror images and in any units, so the estimate is too.
+//   model(f) = w0 + sum_k w_k g(v_k0 + v_k . f),  g(t) = t/(1 + |t|),
+// with a constant for each theory of the normal problem besides.
+// On grids finer than those of the fit the exact theory's estimates fall on by a power, all others
+// stay. Every feature is the same for the patch's mirror images and in any units, so the estimate
+// is too.
 #pragma once
 
 #include "fast/coefficients.hpp"
