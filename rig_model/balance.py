@@ -38,6 +38,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from railpatch import Contact, Result
 from railpatch.case.types import SIDES
+from railpatch.result import CARRIES
 
 from rig_model.broyden import Broyden
 from rig_model.newton import Newton
@@ -61,7 +62,8 @@ PITCH_LIMIT = 2e-3
 class Balance:
     """What was found at one position.
 
-    status: "converged" only if the residuals are small and both wheels' contact was solved; else
+    status: "converged" only if the residuals are small and both wheels' contact was solved,
+    "accuracy_not_met" where that is not as accurate as the scene asks for; else
     "not_converged", or "out_of_range" where no state with both wheels in contact was found; the
     values are then those of the best try. residuals: [3], N m, N, N m; None without contact.
     evaluations: of both wheels; iterations: steps of the search; restarts: Jacobians by
@@ -82,7 +84,7 @@ class Balance:
     @property
     def converged(self) -> bool:
         """Whether the position is balanced."""
-        return self.status == "converged"
+        return self.status in CARRIES
 
 
 class Balancer:
@@ -148,7 +150,7 @@ class Balancer:
         result = self._step(position, unknowns)
         if not all(result[side]["patches"] for side in SIDES) or result.status == "out_of_range":
             return Evaluation(None, False, result)
-        solved = all(result[side]["status"] == "converged" for side in SIDES)
+        solved = all(result[side]["status"] in CARRIES for side in SIDES)
         return Evaluation(
             residuals(self._scene, position, unknowns, result),
             solved,
@@ -186,7 +188,7 @@ def balance_of(position: Position, root: Root) -> Balance:
     missed = "out_of_range" if root.residual is None else "not_converged"
     return Balance(
         position,
-        "converged" if root.converged else missed,
+        str(root.payload.status) if root.converged else missed,
         z,
         roll,
         pitch_rate,

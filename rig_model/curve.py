@@ -36,6 +36,7 @@ from railpatch.case.common import without_friction
 from railpatch.case.load import Scene, check_case, plain, read_toml, refuse_others
 from railpatch.case.types import SIDES, NotNegative, Number, Table
 from railpatch.errors import CaseError
+from railpatch.result import CARRIES
 from scipy.optimize import brentq
 
 from rig_model.broyden import Broyden
@@ -132,7 +133,8 @@ class CurveScene:
 class SteadyCurve:
     """What was found in one curve.
 
-    status: "converged" only if the residuals are small and both wheels' contact was solved; else
+    status: "converged" only if the residuals are small and both wheels' contact was solved,
+    "accuracy_not_met" where that is not as accurate as the scene asks for; else
     "not_converged", or "out_of_range" where no state with both wheels in contact was found.
     unknowns: [5], y, z (m), roll, yaw (rad), pitch rate (rad/s). residuals: [5], N, N, N m, N m,
     N m; None without contact. evaluations: of both wheels; start_evaluations: of both wheels with
@@ -171,7 +173,7 @@ class SteadyCurve:
     @property
     def converged(self) -> bool:
         """Whether the wheelset is in balance."""
-        return self.status == "converged"
+        return self.status in CARRIES
 
     def to_dict(self) -> dict[str, Any]:
         """radius (m) and the keys of UNITS; force: on the wheel, track axes; contact_angle: of each
@@ -259,7 +261,7 @@ def steady_curve(
     missed = "out_of_range" if root.residual is None else "not_converged"
     return SteadyCurve(
         radius,
-        "converged" if root.converged else missed,
+        str(root.payload.status) if root.converged else missed,
         root.x,
         root.residual,
         root.evaluations,
@@ -303,7 +305,7 @@ def evaluate(scene: CurveScene, radius: float, contact: Contact, unknowns: Vecto
     result = contact.step(**state)
     if not all(result[side]["patches"] for side in SIDES) or result.status == "out_of_range":
         return Evaluation(None, False, result)
-    solved = all(result[side]["status"] == "converged" for side in SIDES)
+    solved = all(result[side]["status"] in CARRIES for side in SIDES)
     wrench = np.array([*result["force"], *result["moment"]])
 
     def slope() -> Vector:
@@ -407,5 +409,5 @@ class Frictionless:
     def _stand(self, y: float, roll: float) -> dict[str, Result] | None:
         """Both wheels at a lateral position (m) and roll angle (rad); None off the rails."""
         wheels = {side: wheel.step(y=y, roll=roll) for side, wheel in self._wheels.items()}
-        good = all(wheel.good and wheel["patches"] for wheel in wheels.values())
+        good = all(wheel.solved and wheel["patches"] for wheel in wheels.values())
         return wheels if good else None

@@ -54,7 +54,7 @@ class Frictionless:
         """
         wheels = {side: wheel.step(y=y, yaw=yaw) for side, wheel in self._wheels.items()}
         track, wheelset = self._scene.case.track, self._scene.case.wheelset
-        if not all(wheel.good and wheel["patches"] for wheel in wheels.values()):
+        if not all(wheel.solved and wheel["patches"] for wheel in wheels.values()):
             rate = -track.roller_pitch_rate * track.roller_radius / wheelset.nominal_radius
             return Estimate(np.array([0.0, 0.0, rate]), USUAL_APPROACH, track.gauge, False)
         left, right = (reference(wheels[side]) for side in SIDES)

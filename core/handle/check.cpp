@@ -18,9 +18,6 @@ namespace railpatch {
 
 namespace {
 
-// Their influence coefficients are four numbers for every pair of nodes, here 170 MB.
-constexpr int max_fitted_nodes = 48 * 48;
-
 #define RP_NO_FIELD(type, name, count)
 // A choice is one of its words in every case: whoever reads all members reads it too.
 #define RP_IS_CHECKED(role, where) \
@@ -62,9 +59,10 @@ void check_fitted(const rp_config &c, checker &check) {
   check.field("fitted[1]", c.fitted[1], line ? only_one : config_range::fitted);
   if (check.error() == RP_OK)
     check.integer("fitted[0] * fitted[1]", c.fitted[0] * c.fitted[1], 3, max_fitted_nodes);
-  // a scene whose tangential problem is left out for a while keeps its rows
-  check.require(c.tangential == RP_TANGENTIAL_FULL || c.tangential == RP_TANGENTIAL_NONE,
-                "fitted needs tangential = full");
+  // they may be left out for a while, or come after a table
+  const bool full = c.tangential == RP_TANGENTIAL_FULL || c.tangential == RP_TANGENTIAL_NONE;
+  check.require(full || (c.tangential == RP_TANGENTIAL_TABLE && c.finer_grids > 0),
+                "fitted needs tangential = full, or table with finer_grids");
 }
 
 // Pairs of a table: increasing places, values in a range.
@@ -213,6 +211,20 @@ void check_table(const rp_config &c, checker &check) {
   char text[RP_MESSAGE_SIZE];
   std::snprintf(text, sizeof text, "creep_table %s", defect);
   check.require(false, text);
+}
+
+// Results that are to be as accurate as asked for, by estimates and finer grids.
+void check_accuracy(const rp_config &c, checker &check) {
+  check.require(c.finer_grids == 0 || c.accuracy > 0,
+                "finer_grids must be 0 without accuracy: nothing goes on to them");
+  if (!(c.accuracy > 0) || !has_tangential(c)) return;
+  check.require(c.regime == RP_STEADY_ROLLING,
+                "accuracy must be 0 but in steady rolling: other steps keep their grid");
+  if (c.finer_grids == 0) return;
+  check.require(c.tangential != RP_TANGENTIAL_TABLE || c.fitted[0] > 0,
+                "finer_grids with a creep table need fitted: the full theory's nodes and rows");
+  check.require(!needs_grid(c) || c.element_size[0] == 0,
+                "finer_grids need elements in place of element_size: grids of any number");
 }
 
 void check_grid(const rp_config &c, checker &check) {
@@ -368,6 +380,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   check_temperature(c, check);
   check_stored_heat(c, check);
   check_regime(c, check);
+  check_accuracy(c, check);
   check_build(c, check);
   if (c.layer_thickness > 0)
     check.field("layer_shear_modulus", c.layer_shear_modulus, config_range::layer_shear_modulus);

@@ -9,6 +9,9 @@ namespace railpatch {
 inline constexpr uint32_t config_cookie = 0x52504331;  // "RPC1"
 inline constexpr uint32_t input_cookie = 0x52504931;   // "RPI1"
 
+// Influence coefficients of fitted rows are four numbers for every pair of nodes, here 170 MB.
+inline constexpr int max_fitted_nodes = 48 * 48;
+
 // Whether the scene has a uniform grid: closed forms with fitted rows have none.
 bool needs_grid(const rp_config &c);
 // Whether its creep forces come from a table.

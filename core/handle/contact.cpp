@@ -3,12 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "handle/check.hpp"
 #include "handle/contact_derivative.hpp"
 #include "patch/result_fields.hpp"
 
 namespace railpatch {
 
 namespace {
+
+// Excess below which the next step begins on a coarser grid, whose estimate is some 1.8 times as
+// great: two thirds of what is allowed, so that it does not come back at once; and below which a
+// table takes over again.
+constexpr double sure_of_coarser = 0.37, sure_of_closed = 0.67;
 
 std::unique_ptr<driver> make_driver(const scene &made, const fft_plans &plans) {
   if (made.single)
@@ -18,13 +24,18 @@ std::unique_ptr<driver> make_driver(const scene &made, const fft_plans &plans) {
 
 }  // namespace
 
-contact::contact(const rp_config &config, const scene &made)
-    : config_(config),
-      fingerprint_(fingerprint(config)),
-      plans_(made.transforms[0], made.transforms[1]),
-      driver_(make_driver(made, plans_)),
-      tolerance_(made.tolerance),
-      bulk_temperature_{made.bulk_temperature[0], made.bulk_temperature[1]} {
+contact::grid_level::grid_level(const scene &made)
+    : plans(made.transforms[0], made.transforms[1]), solver(make_driver(made, plans)) {}
+
+contact::contact(const rp_config &config) : config_(config), fingerprint_(fingerprint(config)) {
+  const std::vector<rp_config> configs = configs_of_levels(config);
+  for (const rp_config &c : configs) {
+    const scene made = scene_of(c);
+    levels_.push_back(std::make_unique<grid_level>(made));
+    tolerance_ = made.tolerance;
+    std::copy_n(made.bulk_temperature, 2, bulk_temperature_);
+  }
+  select(0);
   if (config.derivatives != 0) derivative_ = std::make_unique<derivative_record>(config, *driver_);
   // nothing else of the caller's memory is kept than the creep table
   config_.undeformed_distance = nullptr;
@@ -41,6 +52,13 @@ contact::~contact() = default;
 
 void contact::step(const rp_input &input, rp_result &result) {
   if (derivative_) begin_record();
+  const rp_result out = config_.accuracy > 0 ? solve_to_accuracy(input) : solve(input);
+  result = out;
+  if (derivative_) end_record(input, out);
+}
+
+// On the present grid.
+rp_result contact::solve(const rp_input &input) {
   rp_result out = empty_result();
   for (auto &m : driver_->memories()) m.solved = false;
   for (int k = 0; k < 2; ++k) {
@@ -48,23 +66,81 @@ void contact::step(const rp_input &input, rp_result &result) {
     driver_->solver().set_bulk_temperature(k, std::isnan(given) ? bulk_temperature_[k] : given);
   }
   driver_->step(input, out);
-  result = out;
-  if (derivative_) end_record(input, out);
+  return out;
+}
+
+// From the last step's grid to finer ones until the estimate is small enough.
+rp_result contact::solve_to_accuracy(const rp_input &input) {
+  rp_result out;
+  if (solve_closed(input, out)) return out;
+  const size_t coarsest = uses_table(config_) ? 1 : 0;
+  if (level_ > coarsest && excess_ < sure_of_coarser) go_on(level_ - 1);
+  out = solve(input);
+  excess_ = excess(out);
+  while (excess_ > 1 && std::isfinite(excess_) && level_ + 1 < levels_.size()) {
+    go_on(level_ + 1);
+    const rp_result finer = solve(input);
+    if (finer.status == RP_NOT_CONVERGED || finer.status == RP_OUT_OF_RANGE) {
+      // a solution that is not as accurate is worth more than none
+      select(level_ - 1);
+      break;
+    }
+    out = finer;
+    excess_ = excess(out);
+  }
+  if (excess_ > 1) report_inaccurate(patch().friction(), config_.accuracy, out);
+  return out;
+}
+
+// A table costs nothing beside a grid and is asked first. Once it was not good enough it has to be
+// so by some margin, lest a smooth run alternates. Returns whether that is all.
+bool contact::solve_closed(const rp_input &input, rp_result &out) {
+  if (level_ == 0 || !uses_table(config_)) return false;
+  const size_t last = level_;
+  carry_kept(*levels_[last]->solver, *levels_[0]->solver);
+  select(0);
+  out = solve(input);
+  const double found = excess(out);
+  if (out.status != RP_NOT_CONVERGED && out.status != RP_OUT_OF_RANGE && found < sure_of_closed) {
+    excess_ = found;
+    return true;
+  }
+  select(last);
+  return false;
+}
+
+double contact::excess(const rp_result &result) const {
+  return excess_of(result, patch().friction(), config_.accuracy);
+}
+
+void contact::select(size_t level) {
+  level_ = level;
+  driver_ = levels_[level]->solver.get();
+}
+
+// With what the present level found as a start.
+void contact::go_on(size_t level) {
+  carry_over(*driver_, *levels_[level]->solver);
+  select(level);
 }
 
 void contact::set_friction_coefficient(double value) {
   // derivatives are those of the coefficient that the last step was solved with
   if (derivative_ && value != friction_coefficient()) derivative_->solved = false;
-  driver_->solver().set_friction_coefficient(value);
+  for (auto &level : levels_) level->solver->solver().set_friction_coefficient(value);
 }
 
 void contact::reset() {
-  for (auto &m : driver_->memories()) {
-    m.warm = m.solved = false;
-    m.history.clear();
-    if (m.heat) m.heat->clear();
+  for (auto &level : levels_) {
+    for (auto &m : level->solver->memories()) {
+      m.warm = m.solved = false;
+      m.history.clear();
+      if (m.heat) m.heat->clear();
+    }
+    level->solver->reset();
   }
-  driver_->reset();
+  select(0);
+  excess_ = 0;
   if (derivative_) derivative_->solved = false;
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "handle/grid_levels.hpp"
 #include "handle/scene_of.hpp"
 #include "patch/driver.hpp"
 
@@ -15,7 +16,7 @@ struct derivative_record;  // contact_derivative.hpp
 class contact {
  public:
   // The config has been checked; throws profile_error or std::bad_alloc.
-  explicit contact(const rp_config &config) : contact(config, scene_of(config)) {}
+  explicit contact(const rp_config &config);
   ~contact();
 
   void step(const rp_input &input, rp_result &result);
@@ -39,25 +40,38 @@ class contact {
   const rp_config &config() const { return config_; }
 
  private:
-  contact(const rp_config &config, const scene &made);
+  // A grid to solve on, with what is made for it.
+  struct grid_level {
+    explicit grid_level(const scene &made);
+    fft_plans plans;
+    std::unique_ptr<driver> solver;
+  };
+  rp_result solve(const rp_input &input);
+  rp_result solve_to_accuracy(const rp_input &input);
+  bool solve_closed(const rp_input &input, rp_result &out);
+  double excess(const rp_result &result) const;
+  void select(size_t level);
+  void go_on(size_t level);
   const patch_scene &patch() const { return driver_->solver().scene(); }
   // Tells the states of one config from those of another.
   static uint64_t fingerprint(const rp_config &config);
-  bool state_fits(const unsigned char *patches, size_t size) const;
+  static bool state_fits(driver &target, const unsigned char *patches, size_t size);
   // Takes over what later steps of another handle of the same scene depend on.
   void copy_state(const contact &from);
   void begin_record();
   void end_record(const rp_input &input, const rp_result &result);
   void jacobian_by_differences(rp_jacobian &out);
   void differentiate_by_differences(const rp_input &direction, rp_result &change);
-  size_t derivative_bytes() const;
 
   rp_config config_;
   uint64_t fingerprint_;
-  fft_plans plans_;
-  std::unique_ptr<driver> driver_;
-  double tolerance_;
-  double bulk_temperature_[2];                     // degrees C, where a step says nothing else
+  std::vector<std::unique_ptr<grid_level>>
+      levels_;                // from the coarsest; one where no accuracy is asked for
+  size_t level_ = 0;          // of the last step
+  driver *driver_ = nullptr;  // of that level
+  double excess_ = 0;         // of the last step's estimate over what is allowed
+  double tolerance_ = 0;
+  double bulk_temperature_[2] = {0, 0};            // degrees C, where a step says nothing else
   std::unique_ptr<derivative_record> derivative_;  // null: no derivatives
 };
 

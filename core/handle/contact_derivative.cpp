@@ -44,10 +44,6 @@ size_t derivative_record::bytes() const {
   return sum;
 }
 
-size_t contact::derivative_bytes() const {
-  return driver_->derivative_bytes() + (derivative_ ? derivative_->bytes() : 0);
-}
-
 bool contact::has_solution() const { return derivative_ && derivative_->solved; }
 
 void contact::begin_record() {
@@ -165,8 +161,10 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
       places[k] = 0;
     }
     beside.copy_state(start);
+    // on the grid that the last step ended on, whatever the estimate
+    if (beside.level_ != level_) beside.go_on(level_);
     beside.set_friction_coefficient(friction);
-    beside.step(in, ends[k]);
+    ends[k] = beside.solve(in);
     const rp_status status = ends[k].status;
     failed = failed || status == RP_NOT_CONVERGED || status == RP_OUT_OF_RANGE;
   }

@@ -1,4 +1,4 @@
-#include "handle/contact.hpp"
+#include "handle/contact_derivative.hpp"
 
 // Which stages a scene has, and why.
 
@@ -91,15 +91,14 @@ const char *derivative_reason(const patch_scene &scene) {
                      : "derivatives are asked for: by differences of further steps";
 }
 
-}  // namespace
-
-void contact::describe(rp_stage_info *info) const {
-  const patch_scene &scene = patch();
-  const patch_contact &solver = driver_->solver();
+// Of one grid's driver.
+void describe_driver(const driver &of, rp_stage_info *info) {
+  const patch_contact &solver = of.solver();
+  const patch_scene &scene = solver.scene();
   const bool tangential = scene.tangential != RP_TANGENTIAL_NONE;
-  size_t distance = driver_->geometry_bytes(), normal = 0, traction = 0, heat = 0;
+  size_t distance = of.geometry_bytes(), normal = 0, traction = 0, heat = 0;
   size_t history = solver.history_bytes(), plastic = solver.plastic_bytes();
-  for (const auto &m : driver_->memories()) {
+  for (const auto &m : of.memories()) {
     distance += m.undeformed_distance.bytes();
     normal += m.pressure.bytes();
     traction += m.bytes() - m.undeformed_distance.bytes() - m.pressure.bytes() -
@@ -114,12 +113,12 @@ void contact::describe(rp_stage_info *info) const {
   }
   if (tangential)
     traction += solver.tangential_bytes() - solver.history_bytes() - solver.plastic_bytes();
-  const size_t support = driver_->support_bytes();
+  const size_t support = of.support_bytes();
   const size_t influence = solver.influence_bytes();
   const auto set = [&](rp_stage stage, bool present, const char *reason, size_t bytes) {
     info[stage] = {stage_names[stage], present, reason, bytes};
   };
-  set(RP_STAGE_GEOMETRY, true, driver_->geometry_reason(), distance);
+  set(RP_STAGE_GEOMETRY, true, of.geometry_reason(), distance);
   set(RP_STAGE_INFLUENCE, influence > 0, influence_reason(scene), influence);
   set(RP_STAGE_NORMAL, true, normal_reason(scene.normal), normal + solver.normal_bytes());
   set(RP_STAGE_TANGENTIAL, tangential,
@@ -134,7 +133,24 @@ void contact::describe(rp_stage_info *info) const {
                   : "the rails are rigid",
       support);
   set(RP_STAGE_PLASTICITY, scene.yields(), plasticity_reason(scene), plastic);
-  set(RP_STAGE_DERIVATIVES, scene.derivatives, derivative_reason(scene), derivative_bytes());
+  set(RP_STAGE_DERIVATIVES, scene.derivatives, derivative_reason(scene), of.derivative_bytes());
+}
+
+}  // namespace
+
+// Of finer grids what they hold besides, and the stages that the first one has not.
+void contact::describe(rp_stage_info *info) const {
+  describe_driver(*levels_[0]->solver, info);
+  for (size_t k = 1; k < levels_.size(); ++k) {
+    rp_stage_info finer[RP_STAGE_COUNT];
+    describe_driver(*levels_[k]->solver, finer);
+    for (int stage = 0; stage < RP_STAGE_COUNT; ++stage) {
+      finer[stage].bytes += info[stage].bytes;
+      if (finer[stage].present && !info[stage].present) info[stage] = finer[stage];
+      info[stage].bytes = finer[stage].bytes;
+    }
+  }
+  if (derivative_) info[RP_STAGE_DERIVATIVES].bytes += derivative_->bytes();
 }
 
 }  // namespace railpatch

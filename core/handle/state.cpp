@@ -13,7 +13,7 @@ namespace railpatch {
 
 namespace {
 
-constexpr uint32_t state_magic = 0x52505333;  // "RPS3"
+constexpr uint32_t state_magic = 0x52505334;  // "RPS4"
 
 struct state_header {
   uint32_t magic, kind;
@@ -21,6 +21,8 @@ struct state_header {
   // the checksum covers all that follows
   uint64_t fingerprint;
   double depth, friction_coefficient;
+  uint64_t level;
+  double excess;
 };
 // of one patch, at most
 constexpr size_t max_state_fields = 16;
@@ -133,7 +135,9 @@ void contact::save_state(unsigned char *buffer) const {
                       0,
                       fingerprint_,
                       kept.depth ? *kept.depth : 0.0,
-                      friction_coefficient()};
+                      friction_coefficient(),
+                      level_,
+                      excess_};
   std::memcpy(buffer, &header, sizeof header);
   header.checksum = checksum(buffer + checked_from, bytes - checked_from);
   std::memcpy(buffer, &header, sizeof header);
@@ -146,8 +150,13 @@ bool contact::restore_state(const unsigned char *buffer, size_t size) {
   const bool ours = header.magic == state_magic &&
                     header.kind == static_cast<uint32_t>(config_.kind) && header.bytes == size &&
                     header.fingerprint == fingerprint_ &&
-                    header.checksum == checksum(buffer + checked_from, size - checked_from);
-  if (!ours || !state_fits(buffer + sizeof header, size - sizeof header)) return false;
+                    header.checksum == checksum(buffer + checked_from, size - checked_from) &&
+                    header.level < levels_.size();
+  if (!ours) return false;
+  driver &target = *levels_[header.level]->solver;
+  if (!state_fits(target, buffer + sizeof header, size - sizeof header)) return false;
+  select(header.level);
+  excess_ = header.excess;
   const unsigned char *at = buffer + sizeof header;
   const auto take = [&](void *data, size_t bytes) {
     if (bytes) std::memcpy(data, at, bytes);
@@ -163,12 +172,15 @@ bool contact::restore_state(const unsigned char *buffer, size_t size) {
   take(kept.more, kept.bytes);
   take(kept.heat, kept.heat_bytes);
   if (kept.depth) *kept.depth = header.depth;
-  driver_->solver().set_friction_coefficient(header.friction_coefficient);
+  for (auto &level : levels_)
+    level->solver->solver().set_friction_coefficient(header.friction_coefficient);
   if (derivative_) derivative_->solved = false;
   return true;
 }
 
 void contact::copy_state(const contact &from) {
+  select(from.level_);
+  excess_ = from.excess_;
   for (size_t k = 0; k < driver_->memories().size(); ++k) {
     const patch_memory &source = from.driver_->memories()[k];
     patch_memory &m = driver_->memories()[k];
@@ -184,23 +196,24 @@ void contact::copy_state(const contact &from) {
   if (kept.bytes) std::memcpy(kept.more, source.more, kept.bytes);
   if (kept.heat_bytes) std::memcpy(kept.heat, source.heat, kept.heat_bytes);
   if (kept.depth) *kept.depth = *source.depth;
-  driver_->solver().set_friction_coefficient(from.friction_coefficient());
+  for (auto &level : levels_)
+    level->solver->solver().set_friction_coefficient(from.friction_coefficient());
 }
 
 // Walks the patches without changing anything: every grid must fit this handle's memory.
-bool contact::state_fits(const unsigned char *at, size_t size) const {
-  for (const auto &m : driver_->memories()) {
+bool contact::state_fits(driver &target, const unsigned char *at, size_t size) {
+  for (const auto &m : target.memories()) {
     patch_state_head head;
     if (size < sizeof head) return false;
     std::memcpy(&head, at, sizeof head);
-    if (!holds(m, head) || !driver_->solver().fits(head.g)) return false;
+    if (!holds(m, head) || !target.solver().fits(head.g)) return false;
     size_t bytes = sizeof head;
     for_each_state_field(m, head, [&](const double *, size_t field) { bytes += field; });
     if (size < bytes) return false;
     at += bytes;
     size -= bytes;
   }
-  return size == driver_->kept().all_bytes();
+  return size == target.kept().all_bytes();
 }
 
 }  // namespace railpatch

@@ -63,11 +63,13 @@ enum {
   X(RP_ERROR_INTERNAL, 9, "internal error")
 
 /* --- solve status: the call was right, this is how the solve ended ------------------------- */
-#define RP_STATUSES(X)                    \
-  X(RP_CONVERGED, 0, "converged")         \
-  X(RP_NO_CONTACT, 1, "no_contact")       \
-  X(RP_NOT_CONVERGED, 2, "not_converged") \
-  X(RP_OUT_OF_RANGE, 3, "out_of_range")
+#define RP_STATUSES(X)                                                                          \
+  X(RP_CONVERGED, 0, "converged")                                                               \
+  X(RP_NO_CONTACT, 1, "no_contact")                                                             \
+  X(RP_NOT_CONVERGED, 2, "not_converged")                                                       \
+  X(RP_OUT_OF_RANGE, 3, "out_of_range")                                                         \
+  /* solved, but the creep force's error estimate is above config.accuracy, or there is none */ \
+  X(RP_ACCURACY_NOT_MET, 4, "accuracy_not_met")
 
 #define RP_ENUM_ENTRY(name, value, text) name = value,
 typedef enum rp_error { RP_ERRORS(RP_ENUM_ENTRY) } rp_error;
@@ -417,6 +419,17 @@ typedef struct rp_config {
   double bulk_mass[2];       /* kg, 0: the bulk temperature stays as given */
   double air_conductance[2]; /* W/K, 0 where bulk_mass is 0 */
   double air_temperature;    /* degrees C */
+
+  /* a promise for every result: a step whose error estimate of the creep force, of any patch, is
+   * above this share of friction coefficient times normal force is solved again on a finer grid,
+   * from the tractions found. The next step begins on the grid of the last one, or on a coarser one
+   * where that is good enough by far. What is above it on the finest grid, or has no estimate, ends
+   * as RP_ACCURACY_NOT_MET. 0: one grid; else steady rolling */
+  double accuracy;     /* -, 0 ... 1 */
+  int32_t finer_grids; /* allotted beside the grid above, each with 1.4 times its elements, nodes
+                          and rows either way, as far as fitted allows; only with accuracy. With
+                          tangential = RP_TANGENTIAL_TABLE they are those of the full theory,
+                          beginning with fitted itself, and the table is asked first */
 } rp_config;
 
 typedef struct rp_input {

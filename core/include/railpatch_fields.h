@@ -340,7 +340,12 @@
     "stays as given")                                                                              \
   X(double, air_conductance, 2, number, always, 0, "[]", 0, 1e9, "W/K",                            \
     "of such a body's surface to the air")                                                         \
-  X(double, air_temperature, 1, number, always, 20, "[]", -273.15, 1e4, "degrees C", "of the air")
+  X(double, air_temperature, 1, number, always, 20, "[]", -273.15, 1e4, "degrees C", "of the air") \
+  X(double, accuracy, 1, number, always, 0, "[]", 0, 1, "-",                                       \
+    "error estimate of the creep force over friction coefficient times normal force above which "  \
+    "a step goes on to a finer grid; 0: none")                                                     \
+  X(int32_t, finer_grids, 1, integer, always, 0, "[]", 0, 8, "-",                                  \
+    "grids that steps may go on to, with accuracy")
 
 /* X(type, name, count, role, where, start, bounds, low, high, scale, unit, text), as above and
  * role      place: a number whose size says nothing about how fast things change there

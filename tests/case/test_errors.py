@@ -555,7 +555,7 @@ def test_fastrip_has_no_compatible_blending() -> None:
 @pytest.mark.parametrize(
     ("values", "line"),
     [
-        ({"method__accuracy": 1e-4}, "method.accuracy: value is 0.0001, allowed >= 0.002"),
+        ({"method__accuracy": 1e-4}, "method.accuracy: value is 0.0001, allowed >= 0.001"),
         ({"method__accuracy": 0.5}, "method.accuracy: value is 0.5, allowed <= 0.2"),
         (
             {"method": {"accuracy": 0.01, "tangential": "fastsim"}},

@@ -243,6 +243,16 @@ TEST(Step, OfFittedRowsAllocatesNothing) {
     }
 }
 
+TEST(Step, ThatGoesOnToFinerGridsAllocatesNothing) {
+  for (int nodes : {0, 6}) {
+    rp_config c = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL, 8);
+    c.fitted[0] = c.fitted[1] = nodes;
+    c.accuracy = 0.01;
+    c.finer_grids = 2;
+    EXPECT_EQ(run(c, patch_inputs()).allocated, 0) << "nodes " << nodes;
+  }
+}
+
 TEST(Step, WithACreepTableAllocatesNothing) {
   const tables::table table = tables::small();
   for (rp_normal_method normal :

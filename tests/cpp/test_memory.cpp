@@ -82,6 +82,10 @@ std::vector<scene> patches() {
   add("rows", scenes::patch(RP_NORMAL_KIK_PIOTROWSKI, RP_TANGENTIAL_FASTSIM));
   add("force", scenes::forced_patch());
   rp_config c = full;
+  c.accuracy = 0.01;
+  c.finer_grids = 1;
+  add("finer grids", c);
+  c = full;
   c.friction_points = 2;
   c.friction_position[1] = 1e-3;
   c.friction_factor[0] = 1;

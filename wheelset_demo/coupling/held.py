@@ -35,7 +35,7 @@ from wheelset_demo.system import (
     suspension_of,
 )
 
-STATUS_GOOD = (0, 1)  # converged, no contact
+STATUS_GOOD = (0, 1, 4)  # converged, no contact, accuracy not met
 
 
 class HeldContact(Protocol):

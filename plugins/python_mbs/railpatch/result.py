@@ -77,6 +77,10 @@ FIELDS = {
 LAW_FIELDS = ("friction", "plastic_displacement", "plastic_path", "yield_stress")
 ROW_FIELDS = ("row_position", "row_angle")  # of curved reference surfaces
 GOOD = ("converged", "no_contact")
+# whose numbers are a solution
+SOLVED = (*GOOD, "accuracy_not_met")
+# and that have contact
+CARRIES = ("converged", "accuracy_not_met")
 _INF = math.inf
 
 
@@ -110,13 +114,18 @@ class Result:
 
     @property
     def status(self) -> str:
-        """ "converged", "no_contact", "not_converged" or "out_of_range"."""
+        """ "converged", "no_contact", "not_converged", "out_of_range" or "accuracy_not_met"."""
         return str(self.data["status"])
 
     @property
     def good(self) -> bool:
         """Whether the solve ended well; no contact is a valid result."""
         return self.status in GOOD
+
+    @property
+    def solved(self) -> bool:
+        """Whether the numbers are a solution, be it as accurate as asked for or not."""
+        return self.status in SOLVED
 
     def to_dict(self) -> dict[str, Any]:
         """The JSON result: plain numbers and lists, None for what is left out."""

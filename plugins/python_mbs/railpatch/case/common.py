@@ -236,11 +236,13 @@ class Method(Table):
     )
     tolerance: float = key()
     max_iterations: int | None = key("; left out: the core's choice", default=None)
-    accuracy: Annotated[float, between(0.002, 0.2)] | None = Field(
+    accuracy: Annotated[float, between(0.001, 0.2)] | None = Field(
         default=None,
         description="-, wanted instead of [grid]: error of the creep force over friction "
-        "coefficient times normal force that 95 % of cases stay below; the cheapest grid, and the "
-        "cheapest method where 'normal' and 'tangential' are left out, are chosen for it",
+        "coefficient times normal force, promised for each result: the cheapest grid, and the "
+        "cheapest method where 'normal' and 'tangential' are left out, are chosen for it, and "
+        "finer ones follow while the error estimate is above it; else the status is "
+        "accuracy_not_met",
     )
     spin_offset: one_of("spin_offset") = Field(
         default="automatic",

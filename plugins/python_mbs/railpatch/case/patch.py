@@ -258,6 +258,9 @@ class PatchCase(Table):
             yield from check_left_out(self, f"with {none} = 'none'")
         if any(self.motion.prescribed):
             yield from self._check_force()
+            if self.method.accuracy is not None:
+                shown = f"{LEFT_OUT} with motion.tangential_force, found is the creepage"
+                yield relation("method.accuracy", self.method.accuracy, f"{shown}: give 'grid'")
 
     def _check_of_wheels(self) -> Problems:
         """Keys that patches given directly have not."""

@@ -6,6 +6,7 @@ from __future__ import annotations
 from railpatch.case.accuracy import fitted_size
 from railpatch.case.choice import (
     FAST_ELEMENTS,
+    FINER,
     NORMAL,
     REACHED,
     ROWS_ON_APPROXIMATE,
@@ -46,7 +47,11 @@ def choose(case: Case) -> Choice | None:
     normal = method.normal if given else "hertz"
     tangential = "table" if takes_table(case, ratio, normal) else method.tangential
     if tangential == "table" and normal == "hertz":
-        return Choice(normal, tangential, FAST_ELEMENTS, None, TABLE_ON_ELLIPSE)
+        # where the table's own estimate is too great the full theory follows
+        scale = smallest(ROWS_ON_ELLIPSE, method.accuracy)
+        follows = fitted_size(scale, ratio or 1.0) if takes_table(case, ratio, normal) else None
+        finer = 1 + FINER if follows else 0
+        return Choice(normal, tangential, FAST_ELEMENTS, follows, TABLE_ON_ELLIPSE, finer)
     rows = ROWS_ON_ELLIPSE if normal == "hertz" else ROWS_ON_PRESSURE
     scale = smallest(rows, method.accuracy)
     errors = [REACHED[name] for name in (normal, tangential) if name in REACHED]
@@ -57,7 +62,7 @@ def choose(case: Case) -> Choice | None:
         size = (ROWS_ON_APPROXIMATE, ROWS_ON_APPROXIMATE)
         return Choice(normal, tangential, NORMAL * ROWS_ON_APPROXIMATE, size, REACHED[normal])
     size = fitted_size(scale, ratio if normal == "hertz" and ratio else 1.0)
-    return Choice(normal, tangential, NORMAL * scale, size, rows[scale])
+    return Choice(normal, tangential, NORMAL * scale, size, rows[scale], FINER)
 
 
 def resolved(case: Case) -> Case:

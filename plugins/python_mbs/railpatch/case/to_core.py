@@ -21,7 +21,7 @@ from railpatch.case.longitudinal import shape_config
 from railpatch.case.messages import show
 from railpatch.case.moving import BY_TABLE, moving_keys, refuse_unknown
 from railpatch.case.patch import SHAPES, STEPWISE, PatchCase
-from railpatch.case.resolve import resolved
+from railpatch.case.resolve import choose, resolved
 from railpatch.case.scene_profiles import Placed, named_profile, scene_profiles
 from railpatch.case.types import BODIES, MOST_POINTS, SIDES, Table, listed
 from railpatch.case.wheel import Deviation, WheelRailCase, WheelsetCase
@@ -67,8 +67,10 @@ def passed(name: str, table: Table | None, fields: Mapping[str, Any]) -> dict[st
 
 def config_of(scene: Scene) -> dict[str, Any]:
     """Fields of rp_config. Raises CaseError, ProfileError."""
-    case = resolved(scene.case)
+    case, choice = resolved(scene.case), choose(scene.case)
     config: dict[str, Any] = {"kind": case.kind, **grid_config(case)}
+    if choice is not None and case.has_tangential:
+        config |= {"accuracy": scene.case.method.accuracy, "finer_grids": choice.finer}
     for name in ("material", "method", "motion", "geometry", "wheelset", "track", "wheel"):
         config |= passed(name, getattr(case, name, None), _core.CONFIG_FIELDS)
     config |= friction_config(case) | layer_config(case) | temperature_config(case)

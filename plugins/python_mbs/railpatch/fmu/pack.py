@@ -29,7 +29,7 @@ from railpatch.fmu.reference import reference_csv
 from railpatch.fmu.scene import kind_of, scene_text, variables_of
 from railpatch.fmu.sources import build_description, with_source_files
 from railpatch.fmu.table import Kind, Table, Variable
-from railpatch.result import GOOD
+from railpatch.result import SOLVED
 from railpatch.writing import write_whole
 
 Backend = Literal["eigen", "fftw"]
@@ -192,7 +192,7 @@ def derivative_kind(scene: Scene, name: str, *, asked: bool) -> str:
     method = scene.case.method.model_copy(update={"derivatives": asked})
     contact = Contact(Scene(scene.case.model_copy(update={"method": method}), scene.folder))
     status = contact.step().status
-    if status not in GOOD:
+    if status not in SOLVED:
         raise CaseError(f"{name}: the start values cannot be solved: {status}")
     return contact.differentiate()["kind"] if asked else "none"
 

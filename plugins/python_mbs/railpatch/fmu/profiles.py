@@ -14,7 +14,7 @@ from railpatch.case.to_core import config_of
 from railpatch.contact import Contact
 from railpatch.errors import CaseError, ProfileError
 from railpatch.fmu.table import MOST_ITEMS
-from railpatch.result import GOOD
+from railpatch.result import SOLVED
 
 Body = Literal["wheel", "rail"]
 BODIES: tuple[Body, ...] = ("wheel", "rail")
@@ -115,5 +115,5 @@ def check_starts(choices: Choices, name: str) -> None:
             status = Contact(scene).step().status
         except (CaseError, ProfileError) as error:
             raise CaseError(f"{name} with {label}: {error}") from None
-        if status not in GOOD:
+        if status not in SOLVED:
             raise CaseError(f"{name} with {label}: the start values cannot be solved: {status}")

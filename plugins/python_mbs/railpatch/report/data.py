@@ -10,10 +10,10 @@ import numpy as np
 from railpatch.case.types import SIDES
 from railpatch.log.channels import unit
 from railpatch.log.reader import Run, Series
+from railpatch.result import SOLVED
 
 # how units of the log are shown: factor and unit
 _SHOWN = {"N": (1e-3, "kN"), "m": (1e3, "mm"), "rad": (1e3, "mrad"), "Pa": (1e-6, "MPa")}
-_GOOD = ("converged", "no_contact")
 
 
 class ReportError(ValueError):
@@ -168,7 +168,7 @@ def _solved(contact: dict[str, Series], balance: Series) -> np.ndarray:
     for index, message in enumerate(balance.messages):
         found = [contact[side].messages[index]["status"] for side in SIDES]
         found += [message["status"]] if message else []
-        solved[index] = all(status in _GOOD for status in found)
+        solved[index] = all(status in SOLVED for status in found)
     return solved
 
 

@@ -13,8 +13,7 @@ from railpatch.case.types import SIDES
 from railpatch.log.channels import LEAST_LOAD, SLIDING
 from railpatch.log.reader import Run, Series
 from railpatch.report.data import ReportError, at_times, grid_of
-
-_GOOD = ("converged", "no_contact")
+from railpatch.result import SOLVED
 
 Wheel = tuple[int, str]
 
@@ -56,7 +55,7 @@ class VehicleRun:
     @cached_property
     def solved(self) -> np.ndarray:
         """[n], whether all contacts of a step were solved."""
-        return np.all([np.isin(found, _GOOD) for found in self.statuses.values()], axis=0)
+        return np.all([np.isin(found, SOLVED) for found in self.statuses.values()], axis=0)
 
     @cached_property
     def loads(self) -> dict[Wheel, np.ndarray]:
