@@ -473,9 +473,10 @@ def test_steps_that_stand_alone_take_no_time() -> None:
     case = with_values(WHEELSET, wheelset__time_step=1e-3)
     assert problems_of(case) == [
         "wheelset.time_step: value is 0.001, allowed 0 but with motion.regime = "
-        "'transient_rolling' or track.rail_support"
+        "'transient_rolling', track.rail_support or temperature.bulk"
     ]
     load_scene(with_values(case, track__rail_support={"stiffness": [2e7, 8e7]}))
+    load_scene(with_values(case, temperature={"bulk": {"mass": 300.0}}))
     load_scene(with_values(case, motion={"regime": "transient_rolling"}))
 
 
@@ -495,10 +496,10 @@ def test_all_conflicts_of_a_scene_are_told_at_once() -> None:
     """Between tables and within them; the first line as it is alone."""
     law = {"law": "slip_velocity", "kinetic": 0.1, "amplitude": 0.2, "halving_speed": 1.0}
     case = with_values(PATCH, friction=law, layer=LAYER, grid={"fitted": [8, 8]}, temperature={})
-    polach = with_values(case, method={"tangential": "polach"})
-    found = problems_of(polach)
+    linear = with_values(case, method={"tangential": "linear"})
+    found = problems_of(linear)
     assert (
-        found[0] == problems_of(with_values(PATCH, layer=LAYER, **{"method": polach["method"]}))[0]
+        found[0] == problems_of(with_values(PATCH, layer=LAYER, **{"method": linear["method"]}))[0]
     )
     why = [line.rpartition("with ")[2] for line in found if line.startswith("method.tangential")]
     assert why == ["a layer of thickness > 0", "friction.law = 'slip_velocity'", "temperature"]

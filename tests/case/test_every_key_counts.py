@@ -23,7 +23,7 @@ from bits.combinations import COMMON, HEAT, OF_PATCHES, OF_WHEELS, PATCH_BASE, W
 from bits.combinations import WHEELSET_BASE as ON_RAILS
 from case_samples import with_values
 from railpatch import _core
-from railpatch.case import to_core
+from railpatch.case import scene_profiles
 from railpatch.case.load import KINDS
 from railpatch.case.theories import READERS
 from railpatch.case.types import Table
@@ -317,17 +317,17 @@ def run(case: Case, *, fields: bool = False) -> dict[str, Any]:
 @pytest.fixture(scope="module", autouse=True)
 def profiles_read_once() -> Iterator[None]:
     """Splines of built-in profiles are the same in every case."""
-    first = to_core.load_profile
+    first = scene_profiles.load_profile
 
     @functools.cache
-    def read(name: str, body: Any, folder: Path, smoothing: float | None) -> Any:
-        return first(name, body, folder=folder, smoothing=smoothing)
+    def read(name: str, body: Any, folder: Path, smoothing: float | None, reading: Any) -> Any:
+        return first(name, body, folder=folder, smoothing=smoothing, reading=reading)
 
-    to_core.load_profile = lambda name, body, *, folder, smoothing: read(
-        name, body, folder, smoothing
+    scene_profiles.load_profile = lambda name, body, *, folder, smoothing, reading: read(
+        name, body, folder, smoothing, reading
     )
     yield
-    to_core.load_profile = first
+    scene_profiles.load_profile = first
 
 
 # --- what may do nothing -------------------------------------------------------------------------

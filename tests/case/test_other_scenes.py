@@ -53,7 +53,8 @@ def test_a_theory_that_cannot_have_the_scenes_friction(tmp_path: Path):
     old = next(line for line in text.splitlines(True) if line.startswith("coefficient"))
     file = tmp_path / "scene.toml"
     file.write_text(text.replace(old, law))
-    ran = invoke("vehicle", file, "--method", "fastsim", "--duration", 0.01)
+    ran = invoke("vehicle", file, "--method", "fitted", "--duration", 0.01)
     assert ran.exit_code == 2
-    allowed = "value is 'fastsim', allowed 'full' with friction.law = 'slip_velocity'"
-    assert ran.stderr == f"Error: --method fastsim: method.tangential: {allowed}\n"
+    allowed = "none: it must be left out with friction.law = 'slip_velocity'"
+    assert ran.stderr.startswith("Error: --method fitted: grid.fitted: value is [")
+    assert ran.stderr.endswith(f"], allowed {allowed}\n")

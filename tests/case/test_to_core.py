@@ -29,6 +29,7 @@ MADE = {
     "friction_along_points": "friction.along_track",
     "friction_along_position": "friction.along_track",
     "friction_along_factor": "friction.along_track",
+    "finer_grids": "method.accuracy",
     "hardening_points": "layer.hardening_table",
     "hardening_displacement": "layer.hardening_table",
     "hardening_stress": "layer.hardening_table",

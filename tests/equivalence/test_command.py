@@ -57,8 +57,15 @@ def toml(case: dict[str, Any]) -> str:
     lines = [f"{key} = {json.dumps(value)}" for key, value in case.items() if key == "kind"]
     for name, table in case.items():
         if isinstance(table, dict):
-            lines += [f"[{name}]", *(f"{key} = {json.dumps(table[key])}" for key in table)]
+            lines += [f"[{name}]", *(f"{key} = {inline(table[key])}" for key in table)]
     return "\n".join(lines) + "\n"
+
+
+def inline(value: Any) -> str:
+    """A value as TOML in a line."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {inline(item)}" for key, item in value.items()) + " }"
+    return json.dumps(value)
 
 
 def run(tmp_path: Path, case: dict[str, Any] | str, *arguments: str) -> Result:
@@ -128,8 +135,10 @@ def test_profiles_are_found_beside_the_case(tmp_path: Path) -> None:
     case = with_values(
         WHEELSET, wheelset__z=None, wheelset__vertical_force=2e4, profiles__wheel="cone.txt"
     )
+    case["profiles"]["wheel_file"] = {"mirror": "none"}
     from_file = json.loads(run(tmp_path, case, "solve", "--json").stdout)
-    built_in = railpatch.solve(with_values(case, profiles__wheel="cone@1:20"))
+    case["profiles"] = {"wheel": "cone@1:20", "rail": case["profiles"]["rail"]}
+    built_in = railpatch.solve(case)
     assert from_file["z"] == pytest.approx(built_in["z"], abs=1e-9)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 import resource
@@ -295,8 +296,11 @@ def test_fmpy_simulates_a_choice(fmi_type: str, pack: Pack) -> None:
 
 
 def wheel_file(path: Path) -> str:
-    """A conical wheel as points in mm, with a round edge so that it is no line."""
-    points = (f"{y} {-y / 30 + 1e-6 * y * y}\n" for y in range(-65, 66))
+    """A conical wheel as points in mm, with a round edge so that it is no line, and a flange."""
+    points = (
+        f"{y} {-y / 30 + 1e-6 * y * y + 25 * math.exp(-(((y + 54) / 6) ** 2))}\n"
+        for y in range(-65, 66)
+    )
     path.write_text("".join(points))
     return str(path)
 

@@ -25,7 +25,9 @@ SLOPE, CROWN = 1 / 20, 0.3  # of the cones; m, radius of the rails' heads
 @pytest.fixture
 def turned_round(tmp_path: Path) -> WheelsetScene:
     """hunting.toml with such wheels, and without springs and dampers for y and yaw."""
-    text = scenes.text_of("hunting.toml").replace("cone@1:20", "turned.csv")
+    text = scenes.text_of("hunting.toml").replace(
+        '"cone@1:20"', '"turned.csv"\nwheel_file = { mirror = "none" }'
+    )
     for key in ("y", "yaw"):
         text, count = re.subn(rf"(?m)^{key} = (4e5|2e3|1e3) .*$", f"{key} = 0", text)
         assert count == 2

@@ -17,6 +17,7 @@ from typing import Any
 
 from pydantic import BaseModel, create_model
 
+from railpatch._core import version
 from railpatch.case.load import KINDS, read_toml
 from railpatch.errors import CaseError
 from railpatch.writing import write_whole
@@ -39,11 +40,9 @@ class SceneKind:
 
     def schema(self) -> dict[str, Any]:
         """The JSON schema of such files."""
-        from railpatch import __version__
-
         return {
             "$schema": "https://json-schema.org/draft/2020-12/schema",
-            "$id": f"urn:railpatch:{__version__}:{self.name}",
+            "$id": f"urn:railpatch:{version()}:{self.name}",
             **self.model.model_json_schema(),
             "title": f"Railpatch scene: {self.name}",
         }

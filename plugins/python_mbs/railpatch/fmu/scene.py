@@ -72,12 +72,14 @@ def has_history(case: Case) -> bool:
     """Whether a step depends on earlier ones, not only through the solver's start.
 
     Laws of friction that fall, and layers that yield, may have several solutions: the one next to
-    the last step's is taken.
+    the last step's is taken. In fast theories friction follows the rigid slip, and has one. With an
+    accuracy a step begins on the grid where the last one ended.
     """
     if case.has_tangential:
-        if case.motion.regime == "transient_rolling":
+        if case.motion.regime == "transient_rolling" or case.method.accuracy is not None:
             return True
-        if case.friction is not None and case.friction.law != "coulomb":
+        full = case.method.tangential == "full"
+        if full and case.friction is not None and case.friction.law != "coulomb":
             return True
         if case.layer is not None and case.layer.is_plastic:
             return True
