@@ -133,7 +133,7 @@ def test_element_follows_its_law(name: str, path: str, rule: str, axis: int) -> 
         star = spring.path if rule == "path" else abs(spring.plastic)
         lines.append(Line("  u*", result["plastic_path"][1, 1], star, 1e-6 * STEP))
         assert result["plastic_power"] >= 0
-        # no slip; in the step where stress turns round its mean, and so its work, is next to nothing
+        # no slip; where stress turns round in a step its mean, and so its work, is next to none
         turned = stress * last < 0
         assert result["friction_power"] == 0 or turned
         assert abs(result["friction_power"]) <= abs(result["creep_power"])
