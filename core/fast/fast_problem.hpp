@@ -2,9 +2,9 @@
 // theories (theories.hpp) has one function for each.
 #pragma once
 
-#include <optional>
 
 #include "fast/coefficients.hpp"
+#include "half_space/physics.hpp"
 #include "railpatch.h"
 #include "tangential/bound_law.hpp"
 #include "tangential/tangential.hpp"
@@ -34,7 +34,7 @@ struct fast_options {
   polach_factors polach;
   stiffness_reduction reduction;
   const void *creep_table = nullptr;     // the caller's, without defect; of theory table
-  std::optional<slip_velocity_law> law;  // in place of Coulomb's, without memory
+  physics_part<slip_velocity_law> law;  // in place of Coulomb's, without memory
 };
 
 struct flexibilities {
