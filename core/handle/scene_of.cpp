@@ -73,7 +73,7 @@ fast_options fast_of(const rp_config &c, rp_tangential_method theory) {
   fast.blending = c.flexibility_blending;
   fast.polach = {c.polach_k_a, c.polach_k_s};
   fast.reduction = {c.fastsim_k0, c.fastsim_alpha, c.fastsim_beta};
-  if (has_physics && c.friction_law == RP_SLIP_VELOCITY) fast.law = slip_law_of(c);
+  if (has_physics && c.friction_law == RP_SLIP_VELOCITY) fast.law.emplace(slip_law_of(c));
   return fast;
 }
 
