@@ -2,7 +2,6 @@
 // theories (theories.hpp) has one function for each.
 #pragma once
 
-
 #include "fast/coefficients.hpp"
 #include "half_space/physics.hpp"
 #include "railpatch.h"
@@ -33,7 +32,7 @@ struct fast_options {
   rp_flexibility_blending blending = RP_BLENDING_SLIDING;
   polach_factors polach;
   stiffness_reduction reduction;
-  const void *creep_table = nullptr;     // the caller's, without defect; of theory table
+  const void *creep_table = nullptr;    // the caller's, without defect; of theory table
   physics_part<slip_velocity_law> law;  // in place of Coulomb's, without memory
 };
 
