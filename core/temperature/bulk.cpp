@@ -33,6 +33,14 @@ void bulk_temperatures::begin(double seconds) {
     }
 }
 
+bool bulk_temperatures::within_range() const {
+  constexpr double coldest = -273.15, hottest = 1e4;
+  for (const auto &side : now_)
+    for (int k = 0; k < 2; ++k)
+      if (setup_.stores(k) && !(side[k] > coldest && side[k] < hottest)) return false;
+  return true;
+}
+
 void bulk_temperatures::keep(const double (&heat)[2][2]) {
   kept_.begun = 1;
   for (int side = 0; side < 2; ++side)

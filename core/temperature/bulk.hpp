@@ -35,6 +35,8 @@ class bulk_temperatures {
   // over by keep, so that a step that failed can be made again.
   void begin(double seconds);
   double now(int side, int body) const { return now_[side][body]; }
+  // Whether no body that stores heat is colder than bodies can be, or hotter than any steel.
+  bool within_range() const;
   void keep(const double (&heat)[2][2]);
   numbers *kept() { return &kept_; }
 

@@ -112,6 +112,8 @@ void wheels::step(const rp_input &in, rp_result &out) {
     side.contact_power = wheelset_power(in, {side.force, side.moment});
   }
   sum_sides(there, out, out);
+  // steps too long for what flows off drive temperatures apart without bound
+  if (bulk_ && !bulk_->within_range()) report_search(false, RP_OUT_OF_RANGE, out.residual, out);
   if (bulk_) keep_heat(out);
 }
 

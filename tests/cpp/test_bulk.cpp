@@ -45,6 +45,15 @@ TEST(Bulk, StepsGoOnFromThoseThatWereKept) {
   bulk.keep(heat);
   bulk.begin(0);
   EXPECT_DOUBLE_EQ(bulk.now(0, 0), 51);
+  EXPECT_TRUE(bulk.within_range());
+  // a held flow leads below absolute zero, and above what steel bears
+  for (double flow : {-4e5, 1e7, std::nan("")}) {
+    const double away[2][2] = {{0, 0}, {flow, 0}};
+    bulk.reset();
+    bulk.keep(away);
+    bulk.begin(1);
+    EXPECT_FALSE(bulk.within_range()) << flow;
+  }
   bulk.reset();
   bulk.begin(10);
   EXPECT_EQ(bulk.now(1, 0), 50);
