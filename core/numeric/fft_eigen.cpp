@@ -1,6 +1,7 @@
 // The permissive backend: one-dimensional transforms of Eigen's own FFT, rows and then columns.
 #include <Eigen/Core>
 #include <algorithm>
+#include <utility>
 
 #include "numeric/elementary.hpp"
 

@@ -1,6 +1,7 @@
 #include <fftw3.h>
 
 #include <mutex>
+#include <utility>
 
 #include "numeric/fft.hpp"
 

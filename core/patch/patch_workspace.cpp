@@ -1,6 +1,7 @@
 #include "patch/patch_workspace.hpp"
 
 #include <memory>
+#include <utility>
 
 #include "half_space/conformal_coupling.hpp"
 

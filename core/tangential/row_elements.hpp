@@ -2,6 +2,7 @@
 // components (rolling_newton.hpp). And the one way from a grid to such rows and back.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdlib>
 

@@ -57,10 +57,10 @@ def dispatched() -> str:
 
 def test_results_do_not_hang_on_what_libraries_use(tmp_path: Path) -> None:
     plain = {**PLAIN, "NPY_DISABLE_CPU_FEATURES": dispatched()}
-    here = found(tmp_path / "here.json", 110)
-    there = found(tmp_path / "there.json", 110, environment=plain)
+    here = found(tmp_path / "here.json", 80)
+    there = found(tmp_path / "there.json", 80, environment=plain)
     solved = sum(not text.startswith("refused") for text in here.values())
-    assert solved > 60
+    assert solved > 40
     assert {name: text for name, text in there.items() if here[name] != text} == {}
 
 

@@ -18,6 +18,28 @@ LOOKS_INSIDE = {
     "frames.cpp": {"numeric/elementary.hpp"},
 }
 
+# what the standard headers give that a build with RAILPATCH_PCH reads before each file
+STANDARD = {
+    "algorithm": "all_of any_of clamp copy copy_backward copy_if copy_n count count_if equal fill fill_n"
+    " find find_if for_each generate iota is_sorted lower_bound max max_element min min_element minmax"
+    " none_of nth_element partition remove_if replace reverse rotate sort stable_sort transform unique"
+    " upper_bound",
+    "array": "array",
+    "cmath": "abs acos asin atan atan2 cbrt ceil copysign cos cosh erf exp fabs floor fmax fmin fmod"
+    " frexp hypot isfinite isinf isnan ldexp lerp llround log log1p lround nearbyint pow remainder rint"
+    " round signbit sin sinh sqrt tan tanh trunc",
+    "complex": "complex conj polar",
+    "cstring": "memcmp memcpy memmove memset strchr strcmp strlen strncmp strstr",
+    "limits": "numeric_limits",
+    "memory": "make_shared make_unique shared_ptr uninitialized_value_construct_n unique_ptr",
+    "numbers": "numbers",
+    "optional": "make_optional nullopt optional",
+    "utility": "as_const declval exchange forward in_range index_sequence integer_sequence"
+    " make_index_sequence make_pair move pair swap",
+    "vector": "vector",
+}
+GIVEN_BY = {name: header for header, names in STANDARD.items() for name in names.split()}
+
 Sources = dict[str, str]
 
 
@@ -65,6 +87,26 @@ def upward(texts: Sources, rooms: list[str]) -> list[str]:
     return found
 
 
+def left_to_others(texts: Sources) -> list[str]:
+    """Names of the standard library for which neither a file nor what it includes has the header."""
+    given: dict[str, set[str]] = {}
+
+    def standard(path: str) -> set[str]:
+        if path not in given:
+            text = texts.get(path, texts.get(f"include/{path}", ""))
+            own = set(re.findall(r"^\s*#\s*include\s+<(\w+)>", text, re.MULTILINE))
+            given[path] = own.union(*map(standard, includes(text)))
+        return given[path]
+
+    return [
+        f"{path} uses std::{name} without <{GIVEN_BY[name]}>"
+        for path, text in texts.items()
+        if not path.endswith(".inc")
+        for name in sorted(set(re.findall(r"\bstd::(\w+)", re.sub(r"//.*", "", text))))
+        if name in GIVEN_BY and GIVEN_BY[name] not in standard(path)
+    ]
+
+
 def shared_names(texts: Sources) -> list[str]:
     """Base names that files of more than one room have."""
     rooms: dict[str, set[str]] = {}
@@ -97,6 +139,15 @@ def test_no_include_points_up() -> None:
     texts = sources(CORE)
     assert len(texts) > 100
     assert upward(texts, documented_rooms()) == []
+
+
+def test_files_include_what_they_use() -> None:
+    """Builds that read the standard headers beforehand would not tell."""
+    assert left_to_others(sources(CORE)) == []
+    options = (CORE / "CMakeLists.txt").read_text(encoding="utf-8")
+    listed = re.search(r"target_precompile_headers\((.*?)\)", options, re.DOTALL)
+    assert listed is not None
+    assert set(re.findall(r"<(\w+)>", listed[1])) == set(STANDARD)
 
 
 def test_names_are_unique() -> None:
@@ -132,5 +183,10 @@ def test_what_breaks_the_rules_is_named() -> None:
         "low/c.cpp includes b.hpp, which is in no room",
     ]
     assert shared_names(texts) == ["c in high, low"]
+    texts = {
+        "low/a.hpp": "#include <cmath>\n#include <vector>",
+        "low/a.cpp": '#include "low/a.hpp"\nstd::sqrt(2.0); std::max(1, 2); std::vector<int> a;',
+    }
+    assert left_to_others(texts) == ["low/a.cpp uses std::max without <algorithm>"]
     plugins = {"x/timing.cpp": '#include "railpatch.h"\n#include "low/a.hpp"'}
-    assert beyond_the_interface(plugins, texts) == ["x/timing.cpp includes low/a.hpp"]
+    assert beyond_the_interface(plugins, {"low/a.hpp": ""}) == ["x/timing.cpp includes low/a.hpp"]

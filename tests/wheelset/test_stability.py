@@ -18,7 +18,7 @@ from wheelset_demo.system import COUNT
 from wheelset_demo.trace import Trace
 
 # m/s: s, duration; s, step of the reference
-CASES = {0.2: (0.04, 1e-5), 2.0: (0.2, 1e-4), 20.0: (0.4, 5e-4), 80.0: (0.4, 5e-4)}
+CASES = {0.2: (0.02, 1e-5), 2.0: (0.1, 1e-4), 20.0: (0.4, 5e-4), 80.0: (0.4, 5e-4)}
 RELEASED = 2e-3  # m
 STEP = 1e-3  # s
 WAVE = 16.6  # m, Klingel's of these wheels and rails
