@@ -38,12 +38,20 @@ CASES: dict[str, tuple[list[Any], dict[str, tuple[Any, Any]]]] = {
             "run.threads": (1, 2),
         },
     ),
-    "hunting": (["hunting", "--speed", 30.0], {"wheelset.speed": (50.0, 30.0)}),
+    "hunting": (["hunting", "fast.toml", "--speed", 30.0], {"wheelset.speed": (50.0, 30.0)}),
     "rig": (
         ["rig", "--method", "newton", "--positions", 2],
         {"rig.balance.method": ("broyden", "newton"), "rig.positions": (37, 2)},
     ),
 }
+
+
+def quick_hunting() -> str:
+    """The scene of the package, with a fast theory."""
+    text = CliRunner().invoke(cli, ["hunting", "--show-scene"]).stdout
+    methods = '[method]\nnormal = "hertz"\ntangential = "polach"\n'
+    assert text.count("[method]\n") == 1
+    return text.replace("[method]\n", methods)
 
 
 def invoke(*arguments: object) -> None:
@@ -62,8 +70,13 @@ def effective(run: Run) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_the_log_holds_the_file_and_what_ran(tmp_path: Path, name: str):
+def test_the_log_holds_the_file_and_what_ran(
+    tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch
+):
     arguments, keys = CASES[name]
+    monkeypatch.chdir(tmp_path)
+    if "fast.toml" in arguments:
+        Path("fast.toml").write_text(quick_hunting(), encoding="utf-8")
     log, page = tmp_path / "run.mcap", tmp_path / "report.html"
     invoke(*arguments, "-o", log)
     run = read_run(log)
