@@ -20,14 +20,15 @@ LOOKS_INSIDE = {
 
 # what the standard headers give that a build with RAILPATCH_PCH reads before each file
 STANDARD = {
-    "algorithm": "all_of any_of clamp copy copy_backward copy_if copy_n count count_if equal fill fill_n"
-    " find find_if for_each generate iota is_sorted lower_bound max max_element min min_element minmax"
-    " none_of nth_element partition remove_if replace reverse rotate sort stable_sort transform unique"
-    " upper_bound",
+    "algorithm": "all_of any_of clamp copy copy_backward copy_if copy_n count count_if equal"
+    " fill fill_n find find_if for_each generate iota is_sorted lower_bound max"
+    " max_element min min_element minmax none_of nth_element partition remove_if"
+    " replace reverse rotate sort stable_sort transform unique upper_bound",
     "array": "array",
-    "cmath": "abs acos asin atan atan2 cbrt ceil copysign cos cosh erf exp fabs floor fmax fmin fmod"
-    " frexp hypot isfinite isinf isnan ldexp lerp llround log log1p lround nearbyint pow remainder rint"
-    " round signbit sin sinh sqrt tan tanh trunc",
+    "cmath": "abs acos asin atan atan2 cbrt ceil copysign cos cosh erf exp fabs floor fmax"
+    " fmin fmod frexp hypot isfinite isinf isnan ldexp lerp llround log log1p"
+    " lround nearbyint pow remainder rint round signbit sin sinh sqrt tan tanh"
+    " trunc",
     "complex": "complex conj polar",
     "cstring": "memcmp memcpy memmove memset strchr strcmp strlen strncmp strstr",
     "limits": "numeric_limits",
@@ -88,7 +89,7 @@ def upward(texts: Sources, rooms: list[str]) -> list[str]:
 
 
 def left_to_others(texts: Sources) -> list[str]:
-    """Names of the standard library for which neither a file nor what it includes has the header."""
+    """Names for which neither a file nor what it includes has the standard header."""
     given: dict[str, set[str]] = {}
 
     def standard(path: str) -> set[str]:
