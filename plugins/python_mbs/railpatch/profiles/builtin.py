@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import re
 
@@ -35,6 +36,7 @@ RAILS = ("UIC60", "60E1", "54E1")
 PATTERN = re.compile(r"(S1002|UIC60|60E1|54E1|cone|arc|cylinder)(?:@(.*))?")
 
 
+@functools.lru_cache(maxsize=64)
 def builtin_profile(name: str, role: Role) -> Profile | None:
     """The built-in profile of that name, or None where the name is not built in.
 
@@ -43,6 +45,7 @@ def builtin_profile(name: str, role: Role) -> Profile | None:
     the track's centre by atan(1/40), ...; highest point at (0, 0).
     "cone@1:20": line z = -y/20, wheel or roller. "cylinder": z = 0. "arc@R": crown of radius R in m
     for a rail, the same convex shape for a wheel. The last three are 0.14 m wide at most.
+    The same object each time, whose arrays cannot be written to.
     Raises ProfileError where the name is known, but not for this role or not with this number.
     """
     match = PATTERN.fullmatch(name)
@@ -108,7 +111,7 @@ def inclined(rail: Profile, slope: float) -> Profile:
         return float(ends[1] - ends[0])
 
     y, z = turned.evaluate(scipy.optimize.brentq(fall, low, high, xtol=1e-14))
-    return turned.moved(-float(y), -float(z))
+    return read_only(turned.moved(-float(y), -float(z)))
 
 
 def from_pieces(name: str, pieces: list[Piece]) -> Profile:
@@ -132,4 +135,11 @@ def from_pieces(name: str, pieces: list[Piece]) -> Profile:
             column.extend(values)
         arc = s[-1]
     m = [1e-3 * np.array(column) for column in (length, y, z)]
-    return Profile(name, m[0], m[1], m[2], np.array(dy), np.array(dz))
+    return read_only(Profile(name, m[0], m[1], m[2], np.array(dy), np.array(dz)))
+
+
+def read_only(profile: Profile) -> Profile:
+    """The same one, whose arrays cannot be written to."""
+    for array in (profile.arc_length, profile.y, profile.z, profile.dy, profile.dz):
+        array.flags.writeable = False
+    return profile
