@@ -101,4 +101,5 @@ def of_theory(
         np.full((count, 3), np.nan),
         np.full(count, place[0]),
         np.full(count, place[1] + 10**6 * place[0]),
+        np.full(count, float(np.divide(*batch.shape.semi_axes(batch.normal_force)[0]))),
     )

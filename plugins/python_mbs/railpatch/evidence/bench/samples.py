@@ -9,7 +9,7 @@ fitted to the contact, extrapolated.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
@@ -97,13 +97,19 @@ class Family:
         error = describe_table(default_table().tobytes())["error"]["all"]
         return error["force"][1], error["moment"][1]
 
-    def choices(self, problem: Problem, random: np.random.Generator) -> Iterator[dict[str, Any]]:
-        """Overrides of the case: every normal theory that applies, on a random grid."""
+    def choices(
+        self, problem: Problem, random: np.random.Generator, *, every: bool = False
+    ) -> Iterator[dict[str, Any]]:
+        """Overrides of the case: every normal theory that applies, on a random grid.
+
+        every: whatever its share.
+        """
         ellipse = problem.batch.exact_pressure
         if problem.batch.layer is not None and self.tangential != "full":
             return
         for normal, share in self.normals.items():
-            if (normal == "hertz" and not ellipse) or random.random() >= share:
+            left_out = random.random() >= share and not every
+            if (normal == "hertz" and not ellipse) or left_out:
                 continue
             elements = int(random.choice(GRIDS))
             yield self.overrides(problem, normal, elements, random)
@@ -141,7 +147,7 @@ class Samples:
 
     features: [n, 23] of the core. errors: [n, 3] of force over mu Fn, moment over that times c,
     pressure over itself; estimates: the same of the core's present model. source: [n], index in
-    SOURCES. case: [n], number of the problem: the same for all cases of a contact.
+    SOURCES. case: [n], number of the problem: the same for all cases of a contact. ratio: [n], a/b.
     """
 
     features: Floats
@@ -149,6 +155,7 @@ class Samples:
     estimates: Floats
     source: NDArray[np.int64]
     case: NDArray[np.int64]
+    ratio: Floats
 
     def part(self, chosen: NDArray[Any]) -> Samples:
         """Some of the cases."""
@@ -158,12 +165,13 @@ class Samples:
             self.estimates[chosen],
             self.source[chosen],
             self.case[chosen],
+            self.ratio[chosen],
         )
 
 
 def joined(parts: list[Samples]) -> Samples:
     """All of them as one."""
-    names = ("features", "errors", "estimates", "source", "case")
+    names = [each.name for each in fields(Samples)]
     return Samples(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
@@ -194,22 +202,24 @@ def unit_of_ratio(ratio: float) -> Floats:
     return np.exp(logs) / (FRICTION * FORCE)
 
 
-def with_motion(batch: Batch, random: np.random.Generator) -> Batch:
+def with_motion(batch: Batch, random: np.random.Generator, steps: int) -> Batch:
     """The batch with random motions."""
     axes = batch.shape.semi_axes(batch.normal_force)[0]
     c2, capacity = float(axes.prod()), batch.friction * float(batch.normal_force[0])
     unit = unit_of_ratio(float(axes[0] / axes[1])) * capacity / c2
-    creepage, spin = random_motion(random, STEPS)
+    creepage, spin = random_motion(random, steps)
     return replace(
         batch,
-        normal_force=np.full(STEPS, batch.normal_force[0]),
+        normal_force=np.full(steps, batch.normal_force[0]),
         creepage=creepage * unit[:2],
         spin=spin * unit[2] / np.sqrt(c2),
         direction=int(random.choice((-1, 1))),
     )
 
 
-def random_ellipse(random: np.random.Generator, index: int) -> tuple[Batch, dict[str, Any]]:
+def random_ellipse(
+    random: np.random.Generator, index: int, steps: int = STEPS
+) -> tuple[Batch, dict[str, Any]]:
     """A Hertzian contact, with its material."""
     ratio, c = np.exp(random.uniform(*np.log(RATIO))), 10 ** random.uniform(-3, -2)
     batch = Batch(
@@ -224,10 +234,10 @@ def random_ellipse(random: np.random.Generator, index: int) -> tuple[Batch, dict
     if random.random() < LAYERED:
         modulus = next(iter(LAYERS.values()))[0]
         batch = replace(batch, layer=(modulus, float(10 ** random.uniform(-5, -2.7))))
-    return with_motion(batch, random), {"material": {"poisson_ratio": nu}}
+    return with_motion(batch, random, steps), {"material": {"poisson_ratio": nu}}
 
 
-def random_surface(random: np.random.Generator, index: int) -> Batch:
+def random_surface(random: np.random.Generator, index: int, steps: int = STEPS) -> Batch:
     """A contact whose lateral curvature changes from value to value."""
     ratio, force = np.exp(random.uniform(*np.log(RATIO))), 82e3
     b = 6e-3 / np.sqrt(ratio)
@@ -256,15 +266,15 @@ def random_surface(random: np.random.Generator, index: int) -> Batch:
         creepage=np.zeros((1, 2)),
         spin=np.zeros(1),
     )
-    return with_motion(batch, random)
+    return with_motion(batch, random, steps)
 
 
-def random_position(random: np.random.Generator, index: int) -> Batch:
+def random_position(random: np.random.Generator, index: int, steps: int = STEPS) -> Batch:
     """A wheel on a rail or roller, with parts of the motion that it has there and random ones."""
     batch = random_patch(random, index)
-    other = with_motion(batch, random)
-    own = (random.random(STEPS) < OWN)[:, None]
-    part = 10 ** random.uniform(-1.5, 0.3, STEPS)[:, None]
+    other = with_motion(batch, random, steps)
+    own = (random.random(steps) < OWN)[:, None]
+    part = 10 ** random.uniform(-1.5, 0.3, steps)[:, None]
     return replace(
         other,
         direction=batch.direction,
@@ -306,9 +316,14 @@ def fine_pressure(batch: Batch) -> float:
     return float(np.mean(steps_of(batch.take(np.zeros(len(PRESSURE), int)), results).pressure))
 
 
-def problems(seed: int, mapping: Callable[..., Iterable[Problem]] = map) -> list[Problem]:
-    """Those to fit a model to, with their truth. mapping: as map, perhaps in several processes."""
-    found = list(mapping(with_truth, unsolved(seed)))
+def problems(
+    seed: int,
+    mapping: Callable[..., Iterable[Problem]] = map,
+    part: float = 1.0,
+    steps: int = STEPS,
+) -> list[Problem]:
+    """Random ones with their truth. mapping: as map, perhaps in several processes."""
+    found = list(mapping(with_truth, unsolved(seed, part, steps)))
     return [replace(p, number=number) for number, p in enumerate(found)]
 
 
@@ -319,16 +334,16 @@ def with_truth(problem: Problem) -> Problem:
     return replace(problem, truth=fine_truth(problem.batch, problem.overrides))
 
 
-def unsolved(seed: int, part: float = 1.0) -> Iterator[Problem]:
-    """Random problems without their truth. part: of the numbers above."""
+def unsolved(seed: int, part: float = 1.0, steps: int = STEPS) -> Iterator[Problem]:
+    """Random problems without their truth. part: of the numbers above. steps: motions of each."""
     random, none = np.random.default_rng(seed), np.empty((0, 4))
     for index in range(round(part * SHAPES)):
-        batch, material = random_ellipse(random, index)
+        batch, material = random_ellipse(random, index, steps)
         yield Problem(batch, none, material, "random")
     for index in range(round(part * SURFACES)):
-        yield Problem(random_surface(random, index), none, {}, "surface")
+        yield Problem(random_surface(random, index, steps), none, {}, "surface")
     for index in range(round(part * POSITIONS)):
-        yield Problem(random_position(random, index), none, {}, "position")
+        yield Problem(random_position(random, index, steps), none, {}, "position")
 
 
 def other_problems(names: str = "ABCD") -> Iterator[Problem]:
@@ -379,5 +394,5 @@ def compared(
     scale = np.stack([unit.force, unit.force * length, pressure], axis=1)
     good = np.isfinite(errors).all(axis=1) & np.isfinite(estimate).all(axis=1)
     source = np.full(len(batch), SOURCES.index(problem.source))
-    case = np.full(len(batch), problem.number)
-    return Samples(features, errors, estimate / scale, source, case).part(good)
+    case, ratio = np.full(len(batch), problem.number), np.full(len(batch), problem.axis_ratio)
+    return Samples(features, errors, estimate / scale, source, case, ratio).part(good)
