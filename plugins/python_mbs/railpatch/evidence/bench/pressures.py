@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -42,7 +43,8 @@ def random_contact(task: Task) -> tuple[Batch, float]:
     seed, source, index = task
     random = np.random.default_rng([seed, SOURCES.index(source), index])
     if source == "random":
-        return random_ellipse(random, index)[0].take(np.array([0])), 1.0
+        # a layer is for tractions
+        return replace(random_ellipse(random, index)[0].take(np.array([0])), layer=None), 1.0
     make = random_surface if source == "surface" else random_patch
     batch = make(random, index).take(np.array([0]))
     return batch, fine_pressure(batch)
