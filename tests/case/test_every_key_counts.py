@@ -423,6 +423,19 @@ def untouched(case: Case, path: str, value: Any) -> bool:
     return not any(step[side]["patches"] for step in steps_of(contact, case))
 
 
+def sticks(case: Case, path: str, value: Any) -> bool:
+    if case["kind"] == "patch":
+        return False
+    contact = railpatch.Contact(case)
+    patches = [
+        patch
+        for step in steps_of(contact, case)
+        for side in ("left", "right")
+        for patch in step.data.get(side, {}).get("patches", ())
+    ]
+    return bool(patches) and not any(patch["elements"]["slip"] for patch in patches)
+
+
 def yields(case: Case) -> bool:
     return any(get(case, f"layer.{key}") for key in ("yield_stress", "hardening_table"))
 
@@ -545,6 +558,13 @@ IDLE = [
         lambda c, k, v: get(c, "layer.hardening_table") is not None,
         "a path that does not turn is as long as its sum",
         ("plastic layer",),
+    ),
+    Idle("friction", sticks, "two short steps from rest slide nowhere", ()),
+    Idle(
+        "wheelset.x",
+        lambda c, k, v: get(c, "method.tangential") == "linear" and not varies_along(c),
+        "friction along the track, which says where the linear theory ends",
+        ("joint",),
     ),
     Idle("wheelset.x", needs_no_length, "nothing varies along the track", ("joint",)),
     Idle("wheelset.pitch", runs_round, "the wheels are round", ("runout",)),
