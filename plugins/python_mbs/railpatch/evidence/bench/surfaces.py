@@ -128,7 +128,8 @@ def patches_of(scene: Scene, states: Iterator[tuple[str, dict[str, Any]]]) -> It
             patches = result[side]["patches"]
             load = sum(patch["normal_force"] for patch in patches)
             for index, patch in enumerate(patches):
-                if patch["normal_force"] < LEAST_LOAD * load:
+                # one that no grid holds has neither force nor fields
+                if not patch["normal_force"] >= LEAST_LOAD * load:
                     continue
                 fields = {
                     key: contact.field(SIDES.index(side), index, key)
