@@ -198,3 +198,13 @@ const char *rp_status_text(rp_status status) {
   switch (status) { RP_STATUSES(RP_TEXT) }
   return "unknown status";
 }
+
+const char *rp_reason_text(rp_reason reason) {
+  switch (reason) { RP_REASONS(RP_TEXT) }
+  return "unknown reason";
+}
+
+const char *rp_warning_text(rp_warning warning) {
+  switch (warning) { RP_WARNINGS(RP_TEXT) }
+  return "unknown warning";
+}

@@ -5,6 +5,7 @@
 
 #include "handle/check.hpp"
 #include "handle/contact_derivative.hpp"
+#include "handle/warnings.hpp"
 #include "patch/result_fields.hpp"
 
 namespace railpatch {
@@ -27,7 +28,8 @@ std::unique_ptr<driver> make_driver(const scene &made, const fft_plans &plans) {
 contact::grid_level::grid_level(const scene &made)
     : plans(made.transforms[0], made.transforms[1]), solver(make_driver(made, plans)) {}
 
-contact::contact(const rp_config &config) : config_(config), fingerprint_(fingerprint(config)) {
+contact::contact(const rp_config &config)
+    : config_(config), warnings_(warnings_of_case(config)), fingerprint_(fingerprint(config)) {
   const std::vector<rp_config> configs = configs_of_levels(config);
   for (const rp_config &c : configs) {
     const scene made = scene_of(c);
@@ -52,7 +54,8 @@ contact::~contact() = default;
 
 void contact::step(const rp_input &input, rp_result &result) {
   if (derivative_) begin_record();
-  const rp_result out = config_.accuracy > 0 ? solve_to_accuracy(input) : solve(input);
+  rp_result out = config_.accuracy > 0 ? solve_to_accuracy(input) : solve(input);
+  report_warnings(config_, warnings_, input, out);
   result = out;
   if (derivative_) end_record(input, out);
 }

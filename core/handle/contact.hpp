@@ -64,6 +64,7 @@ class contact {
   void differentiate_by_differences(const rp_input &direction, rp_result &change);
 
   rp_config config_;
+  uint32_t warnings_ = 0;  // of the case
   uint64_t fingerprint_;
   std::vector<std::unique_ptr<grid_level>>
       levels_;                // from the coarsest; one where no accuracy is asked for

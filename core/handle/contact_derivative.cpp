@@ -176,9 +176,9 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
     failed = true;
   }
   if (!failed) return;
-  fail_rates(out.status);
+  fail_rates(out);
   for (int side = 0; side < 2; ++side)
-    if (driver_->find(side, 0)) fail_rates(out.side[side]);
+    if (driver_->find(side, 0)) fail_rates_of_wheel(out.side[side]);
 }
 
 }  // namespace railpatch

@@ -136,14 +136,15 @@ double excess_of(const rp_result &result, double friction, double accuracy) {
 }
 
 void report_inaccurate(double friction, double accuracy, rp_result &out) {
-  const auto mark = [](rp_status &status) {
-    if (status == RP_CONVERGED) status = RP_ACCURACY_NOT_MET;
-  };
   for_each_solution(out, [&](rp_side_result &side, rp_patch_result &patch) {
-    if (!(excess_of(patch, friction, accuracy) > 1)) return;
-    mark(patch.status);
-    mark(side.status);
-    mark(out.status);
+    const double excess = excess_of(patch, friction, accuracy);
+    if (!(excess > 1)) return;
+    const verdict found = std::isinf(excess)
+                              ? verdict{RP_ACCURACY_NOT_MET, RP_REASON_NO_ESTIMATE}
+                              : verdict{RP_ACCURACY_NOT_MET, RP_REASON_ACCURACY, excess * accuracy};
+    degrade(patch, found);
+    degrade(side, found);
+    degrade(out, found);
   });
 }
 

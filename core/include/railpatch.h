@@ -71,9 +71,87 @@ enum {
   /* solved, but the creep force's error estimate is above config.accuracy, or there is none */ \
   X(RP_ACCURACY_NOT_MET, 4, "accuracy_not_met")
 
+/* --- why a result is not good, or has no contact though it was asked for; reason_value is of what
+ * the text says, NaN where it says nothing ---------------------------------------------------- */
+#define RP_REASONS(X)                                                                              \
+  X(RP_REASON_NONE, 0, "")                                                                         \
+  X(RP_REASON_NORMAL_ITERATIONS, 1,                                                                \
+    "the normal problem's residual is still above the tolerance after the allowed iterations: "    \
+    "more max_iterations, a greater tolerance")                                                    \
+  X(RP_REASON_BORDER, 2,                                                                           \
+    "the contact reaches the border of its grid: a larger grid, or a smaller load")                \
+  X(RP_REASON_TRACTION_ITERATIONS, 3,                                                              \
+    "the tractions' residual is still above the tolerance after the allowed iterations: more "     \
+    "max_iterations, a greater tolerance, smaller steps")                                          \
+  X(RP_REASON_THEORY, 4,                                                                           \
+    "the contact's ratio of axes a/b is outside the range of the tangential theory: another "      \
+    "method.tangential")                                                                           \
+  X(RP_REASON_LINEAR, 5,                                                                           \
+    "the linear theory's creep force, over what friction can carry, is above 1: smaller "          \
+    "creepages, or another method.tangential")                                                     \
+  X(RP_REASON_PRESCRIBED_FORCE, 6,                                                                 \
+    "no creepage was found that gives the prescribed tangential force: a smaller force")           \
+  X(RP_REASON_HEAT_LOOP, 7,                                                                        \
+    "friction and temperature do not agree, by the residual: finer elements, a friction that "     \
+    "changes more gently with temperature")                                                        \
+  X(RP_REASON_COUPLING, 8,                                                                         \
+    "pressure and tractions of unlike bodies do not agree, by the residual: more max_iterations")  \
+  X(RP_REASON_FORCE_SEARCH, 9,                                                                     \
+    "no height z was found that carries the vertical force, by the relative residual: look at "    \
+    "the profiles for steps, or prescribe z")                                                      \
+  X(RP_REASON_TOO_DEEP, 10,                                                                        \
+    "no height z within reach carries the vertical force, by the relative residual: a smaller "    \
+    "vertical_force, a greater stiffness of the bodies")                                           \
+  X(RP_REASON_NO_OVERLAP, 11,                                                                      \
+    "at no height would wheel and rail meet: their profiles lie side by side, see y, gauge and "   \
+    "flange_back_distance")                                                                        \
+  X(RP_REASON_RAIL_SEARCH, 12,                                                                     \
+    "no deflection of the rails balances the contact forces, by the relative residual: smaller "   \
+    "steps, stiffer rails")                                                                        \
+  X(RP_REASON_RAIL_BEYOND, 13,                                                                     \
+    "the rails' deflection leads to where a contact force is not known: stiffer rails, a smaller " \
+    "load")                                                                                        \
+  X(RP_REASON_PROFILE_END, 14,                                                                     \
+    "the contact reaches the end of a profile, at this lateral position (m, track): profiles "     \
+    "that go on, or another y")                                                                    \
+  X(RP_REASON_TOO_MANY_PATCHES, 15,                                                                \
+    "the wheel has more patches than it may have: greater wheelset.max_patches, smoother "         \
+    "profiles")                                                                                    \
+  X(RP_REASON_GRID_ROOM, 16,                                                                       \
+    "the contact asks for more elements than there is room for: greater grid.max_elements or "     \
+    "element_size, or grid.elements")                                                              \
+  X(RP_REASON_NO_GRID, 17,                                                                         \
+    "no grid covers the contact, which is as narrow as a line or too far off its reference")       \
+  X(RP_REASON_BULK_TEMPERATURE, 18,                                                                \
+    "a bulk temperature leaves its range: a greater mass or conductance, shorter steps")           \
+  X(RP_REASON_ACCURACY, 19,                                                                        \
+    "the creep force's error estimate, over friction times normal force, stays above the "         \
+    "accuracy on the finest grid")                                                                 \
+  X(RP_REASON_NO_ESTIMATE, 20,                                                                     \
+    "the creep force has no error estimate that could meet the accuracy")                          \
+  X(RP_REASON_DERIVATIVE, 21, "the derivative's equations were not solved to their tolerance")
+
+/* --- warnings: bits of what can hardly be meant. X(name, value, text): the bit is 1 << value ---
+ */
+#define RP_WARNINGS(X)                                                                             \
+  X(RP_WARNING_STIFFNESS, 0, "shear_modulus is outside 1e8 to 1e12 Pa")                            \
+  X(RP_WARNING_FRICTION, 1, "friction is above 1")                                                 \
+  X(RP_WARNING_LOAD, 2, "a normal force is outside 100 N to 500 kN")                               \
+  X(RP_WARNING_HIGH_PRESSURE, 3, "max_pressure is above 5 GPa")                                    \
+  X(RP_WARNING_LOW_PRESSURE, 4, "max_pressure is below 10 MPa, between bodies as stiff as steel")  \
+  X(RP_WARNING_CREEPAGE, 5, "a creepage is above 0.1")                                             \
+  X(RP_WARNING_TURNING, 6, "pitch_rate: the wheel is locked or turns against its way")             \
+  X(RP_WARNING_ONE_WHEEL, 7, "one wheel of the wheelset carries nothing")                          \
+  X(RP_WARNING_RADIUS, 8, "the wheel's radius is outside 1 to 8 times the width of its profile")   \
+  X(RP_WARNING_FLANGE, 9, "y is beyond 25 mm: the flange would be on top of the rail, or past it") \
+  X(RP_WARNING_LAYER, 10, "the layer is thicker than the contact is long or wide")                 \
+  X(RP_WARNING_COARSE, 11, "a grid has fewer than 8 elements across")
+
 #define RP_ENUM_ENTRY(name, value, text) name = value,
 typedef enum rp_error { RP_ERRORS(RP_ENUM_ENTRY) } rp_error;
 typedef enum rp_status { RP_STATUSES(RP_ENUM_ENTRY) } rp_status;
+typedef enum rp_reason { RP_REASONS(RP_ENUM_ENTRY) } rp_reason;
+typedef enum rp_warning { RP_WARNINGS(RP_ENUM_ENTRY) } rp_warning;
 
 /* --- choices: X(enumerator, value, word); the words are those of case files and results. What a
  * comment says of a choice stands beside it or above ---------------------------------------- */
@@ -536,6 +614,8 @@ typedef struct rp_patch_result {
                                    steady rolling the balance of power with wheel and rail is that of
                                    this one: nothing supplies what tractions store, each step has
                                    those of an endless rolling. NaN as elastic_energy */
+  rp_reason reason;             /* why the status is not good */
+  double reason_value;          /* of what the reason's text says; NaN: of nothing */
 } rp_patch_result;
 
 /* One wheel; on a roller see rp_contact_frame. NaN where a patch could not be solved. */
@@ -559,6 +639,10 @@ typedef struct rp_side_result {
   double wheel_temperature, rail_temperature; /* degrees C, bulk, that the step was solved with;
                                                  NaN: no temperature in the scene */
   double pressure_energy;                     /* J, sum of share times each */
+  rp_reason reason; /* why the status is not good: that of the patch, or of the wheel itself */
+  double reason_value;
+  uint32_t
+      warnings; /* bits 1 << RP_WARNING_... of what can hardly be meant, though it was solved */
 } rp_side_result;
 
 typedef struct rp_result {
@@ -573,6 +657,9 @@ typedef struct rp_result {
   double max_temperature, residual;
   double wheel_heat, rail_heat;
   double pressure_energy; /* J, sum of the wheels */
+  rp_reason reason;       /* why the status is not good: that of the wheel, or of both together */
+  double reason_value;
+  uint32_t warnings; /* those of both wheels */
 } rp_result;
 
 #define RP_FIELDS(X)                                                                             \
@@ -701,6 +788,8 @@ RP_API const char *rp_version(void);
 RP_API const char *rp_fft_backend(void);
 RP_API const char *rp_error_text(rp_error error);
 RP_API const char *rp_status_text(rp_status status);
+RP_API const char *rp_reason_text(rp_reason reason);
+RP_API const char *rp_warning_text(rp_warning warning);
 /* Status of contacts beside each other, wheels or wheelsets: the worse where one is not good, else
  * RP_CONVERGED where one of them has contact. */
 RP_API rp_status rp_join_status(rp_status a, rp_status b);

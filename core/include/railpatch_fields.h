@@ -77,7 +77,11 @@
   X(double, wheel_heat, 1, number, even, own, by_share, NAN, "W", "heat into the wheel")          \
   X(double, rail_heat, 1, number, even, own, by_share, NAN, "W", "heat into the rail or roller")  \
   X(double, pressure_energy, 1, number, even, zero, by_share, NAN, "J",                           \
-    "elastic energy of the pressure alone")
+    "elastic energy of the pressure alone")                                                       \
+  X(rp_reason, reason, 1, status, even, kept, alone, RP_REASON_NONE, "",                          \
+    "why the status is not good")                                                                 \
+  X(double, reason_value, 1, estimate, even, kept, alone, NAN, "",                                \
+    "of what the reason says, in its units")
 
 #define RP_SIDE_RESULT_FIELDS(X, O)                                                      \
   X(rp_status, status, 1, status, even, kept, alone, RP_NO_CONTACT, "",                  \
@@ -118,7 +122,13 @@
   X(double, rail_temperature, 1, number, even, kept, alone, NAN, "degrees C",            \
     "bulk temperature of the rail or roller")                                            \
   X(double, pressure_energy, 1, number, even, kept, added, NAN, "J",                     \
-    "elastic energy of the pressure alone, of all patches by share")
+    "elastic energy of the pressure alone, of all patches by share")                     \
+  X(rp_reason, reason, 1, status, even, kept, alone, RP_REASON_NONE, "",                 \
+    "why the status is not good")                                                        \
+  X(double, reason_value, 1, estimate, even, kept, alone, NAN, "",                       \
+    "of what the reason says, in its units")                                             \
+  X(uint32_t, warnings, 1, label, even, kept, alone, 0, "",                              \
+    "what can hardly be meant, though it was solved")
 
 #define RP_RESULT_FIELDS(X, O)                                                                   \
   X(rp_status, status, 1, status, even, kept, alone, RP_CONVERGED, "", "how the solution ended") \
@@ -146,7 +156,13 @@
   X(double, wheel_heat, 1, number, even, kept, alone, NAN, "W", "heat into the wheels")          \
   X(double, rail_heat, 1, number, even, kept, alone, NAN, "W", "heat into the rails or rollers") \
   X(double, pressure_energy, 1, number, even, kept, alone, NAN, "J",                             \
-    "elastic energy of the pressure alone, of all patches by share")
+    "elastic energy of the pressure alone, of all patches by share")                             \
+  X(rp_reason, reason, 1, status, even, kept, alone, RP_REASON_NONE, "",                         \
+    "why the status is not good")                                                                \
+  X(double, reason_value, 1, estimate, even, kept, alone, NAN, "",                               \
+    "of what the reason says, in its units")                                                     \
+  X(uint32_t, warnings, 1, label, even, kept, alone, 0, "",                                      \
+    "what can hardly be meant, though it was solved")
 
 /* --- inputs: X(type, name, count, role, where, start, bounds, low, high, unit, text) ---------
  * role      choice: an enumeration; number; integer; side: RP_LEFT or RP_RIGHT; points: numbers of

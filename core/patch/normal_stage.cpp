@@ -31,7 +31,7 @@ pressure_outcome normal_stage::solve(const patch_problem &problem, patch_memory 
     found.exterior = count - touching;
     found.loaded = touching > 0;
   }
-  if (!found.loaded) degrade(found.status, RP_NO_CONTACT);
+  if (!found.loaded) degrade(found, RP_NO_CONTACT, RP_REASON_NONE);
   return found;
 }
 
@@ -50,9 +50,9 @@ pressure_outcome normal_stage::solve_half_space(const patch_problem &problem,
           : normal_->with_approach(*shared_.influence, g, h, problem.approach, options, p,
                                    problem.parts);
   pressure_outcome found;
-  if (!n.converged) degrade(found.status, RP_NOT_CONVERGED);
+  if (!n.converged) degrade(found, RP_NOT_CONVERGED, RP_REASON_NORMAL_ITERATIONS, n.residual);
   if (shared_.coupled) shared_.coupled->set_scale(n.scale);
-  if (n.touches_border) degrade(found.status, RP_OUT_OF_RANGE);
+  if (n.touches_border) degrade(found, RP_OUT_OF_RANGE, RP_REASON_BORDER);
   found.normal_force = n.normal_force;
   found.approach = n.approach;
   found.iterations = n.iterations;
@@ -73,8 +73,8 @@ pressure_outcome normal_stage::solve_rows(const patch_problem &problem, patch_me
                    {problem.force_given, problem.force, problem.approach, problem.hertz.approach},
                    problem.parts, memory.pressure.data());
   pressure_outcome found;
-  if (!n.converged) degrade(found.status, RP_NOT_CONVERGED);
-  if (n.touches_border) degrade(found.status, RP_OUT_OF_RANGE);
+  if (!n.converged) degrade(found, RP_NOT_CONVERGED, RP_REASON_NORMAL_ITERATIONS, n.residual);
+  if (n.touches_border) degrade(found, RP_OUT_OF_RANGE, RP_REASON_BORDER);
   found.normal_force = n.normal_force;
   found.approach = n.approach;
   found.iterations = n.iterations;

@@ -8,8 +8,7 @@
 
 namespace railpatch {
 
-struct pressure_outcome {
-  rp_status status = RP_CONVERGED;
+struct pressure_outcome : verdict {
   bool loaded = false;  // the bodies touch
   double normal_force = 0, approach = 0, max_pressure = 0, contact_area = 0;
   double elastic_energy = 0, residual = 0;
@@ -18,8 +17,7 @@ struct pressure_outcome {
   const row_contact *rows = nullptr;  // where the theory knows the ends of the rows
 };
 
-struct traction_outcome {
-  rp_status status = RP_CONVERGED;
+struct traction_outcome : verdict {
   bool converged = false;
   double creepage[2] = {0, 0};  // of the components of a prescribed force
   int exterior = 0, stick = 0, slip = 0, plastic = 0, ambiguous = 0;  // elements

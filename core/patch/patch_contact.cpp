@@ -203,7 +203,7 @@ traction_outcome patch_contact::solve_in_turn(const patch_problem &problem, pres
     if (!(gap_error <= t.residual)) t.residual = gap_error;
     failures += !t.converged;
     if (agreed || failures == most_failures || round >= shared_.scene.max_iterations) {
-      if (!agreed) degrade(t.status, RP_NOT_CONVERGED);
+      if (!agreed) degrade(t, RP_NOT_CONVERGED, RP_REASON_COUPLING, gap_error);
       return t;
     }
     {

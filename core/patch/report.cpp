@@ -46,6 +46,8 @@ void describe(const patch_scene &scene, const patch_problem &problem, const pres
   result.residual = n.residual;
   result.elements[RP_EXTERIOR] = n.exterior;
   result.status = n.status;
+  result.reason = n.reason;
+  result.reason_value = n.reason_value;
   if (scene.tangential == RP_TANGENTIAL_NONE) return;
   std::copy_n(problem.rolling.creepage, 2, result.creepage);
   result.spin_creepage = problem.rolling.spin_creepage;
@@ -73,7 +75,7 @@ void describe_tractions(const patch_scene &scene, const traction_outcome &t,
   result.outer_iterations = t.outer_iterations;
   // written so that a residual that is no number stays visible
   if (!(t.residual <= result.residual)) result.residual = t.residual;
-  degrade(result.status, t.status);
+  degrade(result, t);
 }
 
 }  // namespace
@@ -107,9 +109,14 @@ void report_apart(const patch_scene &scene, const patch_place &place, double app
   describe_heat(h, result);
 }
 
-void report_beyond(const patch_place &place, rp_patch_result &result) {
+void report_beyond(const patch_place &place, const grid &g, rp_patch_result &result) {
   describe_place(place, result);
-  result.status = RP_OUT_OF_RANGE;
+  result.status = RP_CONVERGED;
+  const double count = static_cast<double>(g.nx) * g.ny;
+  if (count > 0)
+    degrade(result, RP_OUT_OF_RANGE, RP_REASON_GRID_ROOM, count);
+  else
+    degrade(result, RP_OUT_OF_RANGE, RP_REASON_NO_GRID);
 }
 
 void report_rates(const rp_patch_result &value, const patch_change &change, rp_patch_result &rate) {
@@ -132,8 +139,8 @@ void report_errors(const error_bounds &bounds, rp_patch_result &result) {
   result.error_estimate[2] = bounds.max_pressure;
 }
 
-void report_search(rp_status status, double residual, rp_patch_result &result) {
-  degrade(result, status);
+void report_search(const verdict &found, double residual, rp_patch_result &result) {
+  degrade(result, found);
   result.residual = std::max(result.residual, residual);
 }
 

@@ -20,13 +20,12 @@ void report_unloaded(const patch_scene &scene, const patch_problem &problem,
 // Bodies that are apart by their approach: no problem was there to solve.
 void report_apart(const patch_scene &scene, const patch_place &place, double approach,
                   const heat_outcome &h, rp_patch_result &result);
-// A patch that no grid of this handle can hold.
-void report_beyond(const patch_place &place, rp_patch_result &result);
+// A patch that no grid of this handle can hold; g: the one it asks for, empty where there is none.
+void report_beyond(const patch_place &place, const grid &g, rp_patch_result &result);
 // Rates of what a patch in contact found; where the result has no number, its rate stays as it is.
 void report_rates(const rp_patch_result &value, const patch_change &change, rp_patch_result &rate);
 void report_errors(const error_bounds &bounds, rp_patch_result &result);
 // What an outer loop says of a patch afterwards: a status no better, a residual no smaller.
-inline void degrade(rp_patch_result &result, rp_status status) { degrade(result.status, status); }
-void report_search(rp_status status, double residual, rp_patch_result &result);
+void report_search(const verdict &found, double residual, rp_patch_result &result);
 
 }  // namespace railpatch

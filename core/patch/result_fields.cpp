@@ -26,8 +26,15 @@ void turn(T &field, field_mirror how) {
 #define RP_NONE(type, name, count)
 #define RP_TURN(type, name, count, role, mirror, ...) turn(r.name, field_mirror::mirror);
 
+// One reason tells a place.
+template <class Result>
+void mirror_reason(Result &r) {
+  if (r.reason == RP_REASON_PROFILE_END) r.reason_value = -r.reason_value;
+}
+
 void mirror(rp_patch_result &r) {
   RP_PATCH_RESULT_FIELDS(RP_TURN, RP_NONE)
+  mirror_reason(r);
   r.grid_origin[1] = -(r.grid_origin[1] + (r.grid[1] - 1) * r.element_size[1]);
 }
 

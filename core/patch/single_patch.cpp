@@ -70,7 +70,7 @@ void single_patch::step(const rp_input &in, rp_result &out) {
     const heat_outcome h = solver_.leave_contact(motion_of(in), m);
     report_apart(solver_.scene(), problem.place, in.approach, h, result);
   } else if (!pose(in, m, problem)) {
-    report_beyond(problem.place, result);
+    report_beyond(problem.place, problem.g, result);
   } else {
     solver_.begin_step(problem, m);
     solver_.start_from(m, problem.g);
@@ -80,6 +80,8 @@ void single_patch::step(const rp_input &in, rp_result &out) {
     if (rates_) rates_->problem = problem;
   }
   out.status = side.status = result.status;
+  out.reason = side.reason = result.reason;
+  out.reason_value = side.reason_value = result.reason_value;
   sum_patches(solver_.scene(), side);
   sum_up(out, out);
 }

@@ -93,8 +93,8 @@ void single_patch::differentiate(const rp_input &d, const rp_input &, const rp_r
   patch_change found;
   const derivative_outcome outcome = solver_.differentiate(problem, m, &v, 1, {}, &found);
   if (!outcome.converged) {
-    fail_rates(out.status);
-    fail_rates(side);
+    fail_rates(out);
+    fail_rates_of_wheel(side);
   }
   report_rates(value, found, change);
   set(value.approach, change.approach, found.approach);

@@ -83,15 +83,30 @@ traction_outcome tangential_stage::solve(const patch_problem &problem,
   found.supplied *= rate;
   if (scene.yields()) found.plastic_power *= rate;
   found.converged = t.converged;
-  if (!t.converged)
-    degrade(found.status, scene.tangential != RP_TANGENTIAL_FULL || t.out_of_range
-                              ? RP_OUT_OF_RANGE
-                              : RP_NOT_CONVERGED);
+  if (!t.converged) explain(problem, pressure, t, found);
   // what shift and transient rolling know already
   if (scene.tangential == RP_TANGENTIAL_FULL && !scene.keeps_steps())
     found.elastic_energy =
         fitted_ ? fitted_->elastic_energy(*fitted_rows_) : elastic_energy(problem, memory);
   return found;
+}
+
+// Why there is no solution. A fast theory that gives none is outside its range.
+void tangential_stage::explain(const patch_problem &problem, const pressure_outcome &pressure,
+                               const tangential_result &t, traction_outcome &found) const {
+  const patch_scene &scene = shared_.scene;
+  const double *axes = problem.hertz.semi_axes;
+  if (scene.tangential == RP_TANGENTIAL_LINEAR)
+    degrade(found, RP_OUT_OF_RANGE, RP_REASON_LINEAR,
+            hypot(found.force[0], found.force[1]) / (scene.friction() * pressure.normal_force));
+  else if (scene.tangential != RP_TANGENTIAL_FULL)
+    degrade(found, RP_OUT_OF_RANGE, RP_REASON_THEORY, axes[1] > 0 ? axes[0] / axes[1] : nan);
+  else if (scene.is_forced())
+    degrade(found, t.out_of_range ? RP_OUT_OF_RANGE : RP_NOT_CONVERGED, RP_REASON_PRESCRIBED_FORCE);
+  else if (t.of_heat)
+    degrade(found, RP_NOT_CONVERGED, RP_REASON_HEAT_LOOP, t.residual);
+  else
+    degrade(found, RP_NOT_CONVERGED, RP_REASON_TRACTION_ITERATIONS, t.residual);
 }
 
 // The step as the tangential theories take it; `force` holds what is prescribed of it. First what
@@ -190,6 +205,7 @@ tangential_result tangential_stage::solve_with_heat(const patch_problem &problem
   found.outer_iterations = loop.iterations;
   last.newton_iterations = newton;
   last.products = products;
+  last.of_heat = last.converged && !loop.converged;
   last.converged = last.converged && loop.converged;
   if (!(loop.residual <= last.residual)) last.residual = loop.residual;
   return last;

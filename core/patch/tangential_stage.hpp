@@ -42,6 +42,8 @@ class tangential_stage {
                  prescribed_force &force) const;
   void find_before(const patch_problem &problem, rolling_input &rolling);
   void add_slip_of_rows(const grid &g, const conformal_rows &rows, rolling_input &rolling);
+  void explain(const patch_problem &problem, const pressure_outcome &pressure,
+               const tangential_result &t, traction_outcome &found) const;
   tangential_result solve_by_theory(const patch_problem &problem, const pressure_outcome &pressure,
                                     const rolling_input &rolling, patch_memory &memory,
                                     heat_stage &heat, traction_outcome &found);

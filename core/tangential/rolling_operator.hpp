@@ -58,6 +58,7 @@ struct tangential_options {
 struct tangential_result {
   bool converged = false;
   bool out_of_range = false;  // not converged, since the prescribed force cannot be carried
+  bool of_heat = false;       // not converged, as friction and temperature do not agree
   double residual = 0;
   int newton_iterations = 0;
   int products = 0;

@@ -58,11 +58,12 @@ void wheels::solve_supported(const rp_input &in, rp_result &out) {
   out.z = found.z;
   if (found.beyond) {
     if (load.prescribed) out.z = nan;
-    report_search(false, RP_OUT_OF_RANGE, found.residual, out);
-    out.status = RP_OUT_OF_RANGE;
+    report_search({RP_OUT_OF_RANGE, RP_REASON_RAIL_BEYOND, found.residual}, found.residual, out);
     return;
   }
-  report_search(found.converged, RP_NOT_CONVERGED, found.residual, out);
+  verdict ended;
+  if (!found.converged) ended = {RP_NOT_CONVERGED, RP_REASON_RAIL_SEARCH, found.residual};
+  report_search(ended, found.residual, out);
   for (size_t w = 0; w < wheels_.size(); ++w)
     for (size_t k = 0; k < 2; ++k) {
       rp_side_result &side = out.side[wheels_[w].side()];

@@ -131,11 +131,13 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
   out.rolling_radius = 0;
   beyond_ = found.status == search_status::out_of_range ||
             found.status == search_status::too_many_patches;
-  if (beyond_) out.status = RP_OUT_OF_RANGE;
+  if (found.status == search_status::out_of_range) fail(RP_REASON_NO_OVERLAP, nan, out);
+  if (beyond_) fail(RP_REASON_TOO_MANY_PATCHES, max_patches_, out);
   match_memory(regions_.data(), count, memory, max_patches_);
-  for (int i = 0; i < count; ++i)
-    out.status = combine_status(
-        out.status, solve_patch(solver, regions_[static_cast<size_t>(i)], i, memory, out));
+  for (int i = 0; i < count; ++i) {
+    solve_patch(solver, regions_[static_cast<size_t>(i)], i, memory, out);
+    combine(out, out.patch[i]);
+  }
   for (int i = count; i < max_patches_; ++i) {
     memory[i].warm = memory[i].solved = false;
     memory[i].history.clear_now();
@@ -146,6 +148,11 @@ void wheel_contact::evaluate(patch_contact &solver, patch_memory *memory, rp_sid
     if (out.patch[i].normal_force > 0) load += out.patch[i].share * out.patch[i].normal_force;
   out.rolling_radius = load > 0 ? out.rolling_radius / load : nan;
   if (side_ == RP_LEFT) mirror(out);
+}
+
+// A wheel whose patches are not known.
+void wheel_contact::fail(rp_reason reason, double value, rp_side_result &out) {
+  combine(out, verdict{RP_OUT_OF_RANGE, reason, value});
 }
 
 search_result wheel_contact::find_regions(const patch_contact &solver) {
@@ -192,8 +199,8 @@ void match_memory(const patch_region *regions, int count, patch_memory *memory, 
   }
 }
 
-rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region, int index,
-                                     patch_memory *memories, rp_side_result &out) {
+void wheel_contact::solve_patch(patch_contact &solver, patch_region &region, int index,
+                                patch_memory *memories, rp_side_result &out) {
   rp_patch_result &result = out.patch[index];
   patch_memory &memory = memories[index];
   if (!solutions_.empty()) solutions_[static_cast<size_t>(index)].solved = false;
@@ -211,8 +218,8 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
     // nor are there fields: those of an earlier height of this step belong to no result
     memory.solved = false;
     memory.history.clear_now();
-    report_beyond(problem.place, result);
-    return result.status;
+    report_beyond(problem.place, usable ? g : grid{}, result);
+    return;
   }
 
   // the reference moves with the contact; a new contact elsewhere starts afresh
@@ -241,9 +248,9 @@ rp_status wheel_contact::solve_patch(patch_contact &solver, patch_region &region
   add_force(region, depth, wrench, result.normal_force, out);
   if (solver.scene().turns()) add_turning_force(region, memory.turning.about_x, out);
   // beyond a profile's end there is no surface: an edge in contact is outside the theory
-  if (region.at_profile_end) degrade(result, RP_OUT_OF_RANGE);
+  if (region.at_profile_end)
+    degrade(result, RP_OUT_OF_RANGE, RP_REASON_PROFILE_END, region.frame.origin[1]);
   beyond_ = beyond_ || memory.beyond || (region.at_profile_end && result.status == RP_OUT_OF_RANGE);
-  return result.status;
 }
 
 // What geometry says of a patch: its distance, how it rolls, where it lies.

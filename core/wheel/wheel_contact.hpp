@@ -67,8 +67,9 @@ class wheel_contact {
   size_t bytes() const;
 
  private:
-  rp_status solve_patch(patch_contact &solver, patch_region &region, int index,
-                        patch_memory *memories, rp_side_result &result);
+  static void fail(rp_reason reason, double value, rp_side_result &out);
+  void solve_patch(patch_contact &solver, patch_region &region, int index, patch_memory *memories,
+                   rp_side_result &result);
   search_result find_regions(const patch_contact &solver);
   void place_patch(const patch_contact &solver, patch_region &region, patch_memory &memory,
                    patch_problem &problem) const;

@@ -71,7 +71,7 @@ size_t wheels::geometry_bytes() const {
 // Solves all wheels at z; returns their vertical force on the rails.
 double wheels::evaluate(double z, rp_result &out) {
   double vertical = 0;
-  rp_status status = RP_NO_CONTACT;
+  verdict found{RP_NO_CONTACT};
   for (size_t w = 0; w < wheels_.size(); ++w) {
     wheel_contact &wheel = wheels_[w];
     rp_side_result &side = out.side[wheel.side()];
@@ -79,10 +79,12 @@ double wheels::evaluate(double z, rp_result &out) {
     set_bulk(wheel.side());
     wheel.evaluate(solver_, memory_of(w), side);
     vertical -= side.force[2];
-    status = combine_status(status, side.status);
+    combine(found, side);
   }
   ++out.evaluations;
-  out.status = status;
+  out.status = found.status;
+  out.reason = found.reason;
+  out.reason_value = found.reason_value;
   return vertical;
 }
 
@@ -113,7 +115,8 @@ void wheels::step(const rp_input &in, rp_result &out) {
   }
   sum_sides(there, out, out);
   // steps too long for what flows off drive temperatures apart without bound
-  if (bulk_ && !bulk_->within_range()) report_search(false, RP_OUT_OF_RANGE, out.residual, out);
+  if (bulk_ && !bulk_->within_range())
+    report_search({RP_OUT_OF_RANGE, RP_REASON_BULK_TEMPERATURE}, out.residual, out);
   if (bulk_) keep_heat(out);
 }
 
@@ -145,7 +148,8 @@ void wheels::find_z(double target, rp_result &out) {
   if (touch == HUGE_VAL) {
     evaluate(0.0, out);
     out.z = nan;
-    out.status = RP_OUT_OF_RANGE;
+    out.status = RP_NO_CONTACT;
+    combine(out, verdict{RP_OUT_OF_RANGE, RP_REASON_NO_OVERLAP});
     return;
   }
   double depth = depth_;
@@ -166,21 +170,23 @@ void wheels::find_z(double target, rp_result &out) {
     if (search.converged() || search.exhausted()) break;
   }
   out.z = touch + depth;
-  report_search(search.converged(), search.too_deep() ? RP_OUT_OF_RANGE : RP_NOT_CONVERGED,
-                search.residual(), out);
+  verdict found;
+  if (!search.converged())
+    found = search.too_deep()
+                ? verdict{RP_OUT_OF_RANGE, RP_REASON_TOO_DEEP, search.residual()}
+                : verdict{RP_NOT_CONVERGED, RP_REASON_FORCE_SEARCH, search.residual()};
+  report_search(found, search.residual(), out);
   depth_ = search.converged() ? depth : 0.0;
 }
 
 // What does not carry the force asked for is no solution of the case, wheel by wheel.
-void wheels::report_search(bool converged, rp_status otherwise, double residual,
-                           rp_result &out) const {
-  const rp_status found = converged ? RP_CONVERGED : otherwise;
+void wheels::report_search(const verdict &found, double residual, rp_result &out) const {
   for (auto &side : out.side) {
-    degrade(side.status, found);
+    degrade(side, found);
     for (int i = 0; i < side.patch_count + side.alternative_count; ++i)
       railpatch::report_search(found, residual, side.patch[i]);
   }
-  if (found != RP_CONVERGED && out.status != RP_OUT_OF_RANGE) out.status = found;
+  if (found.status != RP_CONVERGED) combine(out, found);
 }
 
 }  // namespace railpatch

@@ -60,7 +60,7 @@ class wheels final : public driver {
   void keep_heat(const rp_result &result);
   void find_z(double vertical_force, rp_result &result);
   void solve_supported(const rp_input &input, rp_result &result);
-  void report_search(bool converged, rp_status otherwise, double residual, rp_result &result) const;
+  void report_search(const verdict &found, double residual, rp_result &result) const;
   double friction_rate(const rp_input &direction, const rp_input &input) const;
 
   std::vector<wheel_contact> wheels_;

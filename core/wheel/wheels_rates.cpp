@@ -59,8 +59,8 @@ void wheels::differentiate(const rp_input &direction, const rp_input &input,
     missing -= changes[0].force[2];
     if (forced) slope += changes[1].force[2];
     if (outcome.converged) continue;
-    fail_rates(out.status);
-    fail_rates(out.side[side]);
+    fail_rates(out);
+    fail_rates_of_wheel(out.side[side]);
   }
   const double z = !forced ? direction.z : slope != 0 ? missing / slope : nan;
   // what the result does not know stays NaN
@@ -109,7 +109,7 @@ void wheels::jacobian(const rp_input &input, const rp_result &result, rp_jacobia
     const derivative_outcome outcome =
         wheel.differentiate(solver_, memory_of(w), rates_->wheels, inputs, friction, count, options,
                             result.side[side], rates_->changes.data());
-    if (!outcome.converged) degrade(out.status, RP_NOT_CONVERGED);
+    if (!outcome.converged && out.status == RP_CONVERGED) out.status = RP_NOT_CONVERGED;
     for (int k = 0; k < count; ++k) {
       const rp_side_result &change = rates_->changes[static_cast<size_t>(k)];
       for (int i = 0; i < 6; ++i) out.side[side][i][directions[k]] = component(change, i);

@@ -211,6 +211,7 @@ class Contact:
             patch = raw["right"]["patches"][0]
             found = any(self._case.motion.prescribed)
             data = patch_data(patch, of_wheel=False, creepage_found=found)
+            data["warnings"] = raw["warnings"]
             if fields:
                 data.update(self._fields("right", 0, patch["grid"]))
             return {**data, **common}

@@ -20,10 +20,12 @@ LEFT_OUT = {
         "grid": "the shape of the fields",
         "grid_origin": "in the fields x and y",
         "element_size": "in the fields x and y",
+        "reason_value": "in the text of reason",
     },
     "side": {
         "patch_count": "the length of patches",
         "alternative_count": "the length of alternatives",
+        "reason_value": "in the text of reason",
     },
 }
 # what a patch given by itself has from its case
@@ -116,6 +118,16 @@ class Result:
     def status(self) -> str:
         """ "converged", "no_contact", "not_converged", "out_of_range" or "accuracy_not_met"."""
         return str(self.data["status"])
+
+    @property
+    def reason(self) -> str | None:
+        """Why the status is not good: which condition, by what number, and what to change."""
+        return self.data.get("reason")
+
+    @property
+    def warnings(self) -> list[str]:
+        """What can hardly be meant, though it was solved: a unit, a sign, a grid."""
+        return list(self.data.get("warnings", ()))
 
     @property
     def good(self) -> bool:

@@ -3,6 +3,9 @@
 #include <nanobind/stl/string.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <iterator>
 #include <string>
 #include <string_view>
@@ -167,12 +170,38 @@ nb::list numbers_of(const T &field) {
   }
 }
 
+// texts of the bits
+nb::list warnings_of(uint32_t bits) {
+  nb::list texts;
+#define RAILPATCH_WARNING(name, value, text) \
+  if (bits & (uint32_t{1} << (value))) texts.append(text);
+  RP_WARNINGS(RAILPATCH_WARNING)
+  return texts;
+}
+
+// None where all is well
+template <typename Result>
+nb::object reason_of(const Result &from) {
+  if (from.reason == RP_REASON_NONE) return nb::none();
+  std::string text = rp_reason_text(from.reason);
+  if (!std::isnan(from.reason_value)) {
+    char number[32];
+    std::snprintf(number, sizeof number, " (%.4g)", from.reason_value);
+    text += number;
+  }
+  return nb::cast(text);
+}
+
 template <typename T>
 nb::object value_of(const T &field) {
   if constexpr (std::is_array_v<T>) {
     return list_of(field);
   } else if constexpr (std::is_same_v<T, rp_status>) {
     return nb::cast(rp_status_text(field));
+  } else if constexpr (std::is_same_v<T, rp_reason>) {
+    return nb::none();  // with its value: reason_of
+  } else if constexpr (std::is_same_v<T, uint32_t>) {
+    return warnings_of(field);
   } else {
     return nb::cast(field);
   }
@@ -189,6 +218,7 @@ nb::dict patch_dict(const rp_patch_result &from) {
   errors["spin_moment"] = from.error_estimate[1];
   errors["max_pressure"] = from.error_estimate[2];
   to["error_estimate"] = errors;
+  to["reason"] = reason_of(from);
   return to;
 }
 
@@ -201,6 +231,7 @@ nb::dict side_dict(const rp_side_result &from) {
     alternatives.append(patch_dict(from.patch[from.patch_count + i]));
   to["patches"] = patches;
   to["alternatives"] = alternatives;
+  to["reason"] = reason_of(from);
   return to;
 }
 
@@ -263,6 +294,7 @@ nb::dict result_dict(const rp_result &from) {
   RP_RESULT_FIELDS(RAILPATCH_VALUE, RAILPATCH_SKIP)
   to["left"] = side_dict(from.side[RP_LEFT]);
   to["right"] = side_dict(from.side[RP_RIGHT]);
+  to["reason"] = reason_of(from);
   return to;
 }
 

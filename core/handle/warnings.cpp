@@ -1,0 +1,117 @@
+#include "handle/warnings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace railpatch {
+
+namespace {
+
+// the texts of RP_WARNINGS name them
+constexpr double shear_moduli[2] = {1e8, 1e12};  // Pa
+constexpr double steel[2] = {6e10, 1e11};        // Pa, shear moduli of steels are 7.5e10 to 8.5e10
+constexpr double most_friction = 1;              // -
+constexpr double loads[2] = {100, 5e5};          // N
+constexpr double pressures[2] = {1e7, 5e9};      // Pa
+constexpr double most_creepage = 0.1;            // -
+constexpr double least_speed = 0.01;             // m/s, below which nothing is said of turning
+constexpr double radii[2] = {1, 8};              // of wheels, over the width of their profiles
+constexpr double flange_way = 0.025;             // m
+constexpr int least_elements = 8;
+
+uint32_t bit(rp_warning warning, bool given) {
+  return given ? uint32_t{1} << warning : uint32_t{0};
+}
+
+// NaN is within: it says that there is no such number
+bool outside(double value, const double (&range)[2]) {
+  return value < range[0] || value > range[1];
+}
+
+// A patch is that of the right side.
+bool in_use(const rp_config &config, int side) {
+  return config.kind == RP_WHEELSET || side == (config.kind == RP_PATCH ? RP_RIGHT : config.side);
+}
+
+bool moves(const rp_config &config) {
+  if (config.tangential == RP_TANGENTIAL_NONE) return false;
+  return config.kind != RP_PATCH || (config.regime != RP_REGIME_NONE && config.regime != RP_SHIFT);
+}
+
+// Whether a wheel on its way does not turn, or the other way round.
+bool turns_wrongly(const rp_config &config, const rp_input &in, int side) {
+  double way = in.speed;
+  if (config.track == RP_ROLLER) way += in.roller_pitch_rate * config.roller_radius;
+  const double rate = in.pitch_rate + in.wheel_angular_velocity[side][1];
+  return std::fabs(way) > least_speed && !(-rate * way > 0);
+}
+
+uint32_t warnings_of_patch(const rp_config &config, const rp_patch_result &patch) {
+  bool hard = true;
+  for (double modulus : config.shear_modulus) hard = hard && !outside(modulus, steel);
+  uint32_t found = bit(RP_WARNING_HIGH_PRESSURE, patch.max_pressure > pressures[1]) |
+                   bit(RP_WARNING_LOW_PRESSURE,
+                       hard && patch.max_pressure < pressures[0] && patch.max_pressure > 0);
+  if (moves(config) && patch.direction != 0)
+    found |= bit(RP_WARNING_CREEPAGE, std::fabs(patch.creepage[0]) > most_creepage ||
+                                          std::fabs(patch.creepage[1]) > most_creepage);
+  const double width = 2 * std::sqrt(patch.contact_area / std::numbers::pi);
+  const bool line = config.kind == RP_PATCH && config.geometry == RP_LINE_CONTACT;
+  found |= bit(RP_WARNING_LAYER, !line && config.layer_thickness > width && width > 0);
+  bool coarse = false;
+  for (int k = 0; k < (line ? 1 : 2); ++k)
+    coarse = coarse || (patch.grid[k] > 0 && patch.grid[k] < least_elements);
+  return found | bit(RP_WARNING_COARSE, coarse && config.fitted[0] == 0);
+}
+
+uint32_t warnings_of_side(const rp_config &config, const rp_input &input, int side,
+                          const rp_side_result &wheel) {
+  uint32_t found = 0;
+  double load = 0;
+  for (int i = 0; i < wheel.patch_count + wheel.alternative_count; ++i) {
+    const rp_patch_result &patch = wheel.patch[i];
+    if (patch.status == RP_NO_CONTACT) continue;
+    load += patch.share * patch.normal_force;
+    found |= warnings_of_patch(config, patch);
+  }
+  found |= bit(RP_WARNING_LOAD, load != 0 && outside(load, loads));
+  if (config.kind == RP_PATCH) return found;
+  return found | bit(RP_WARNING_TURNING, moves(config) && turns_wrongly(config, input, side)) |
+         bit(RP_WARNING_FLANGE, std::fabs(input.y) > flange_way);
+}
+
+}  // namespace
+
+uint32_t warnings_of_case(const rp_config &config) {
+  bool soft = false, odd = false;
+  for (double modulus : config.shear_modulus) soft = soft || outside(modulus, shear_moduli);
+  for (int side = 0; side < 2; ++side) {
+    const rp_profile &profile = config.wheel[side];
+    if (config.kind == RP_PATCH || !in_use(config, side) || !profile.y || profile.count < 2)
+      continue;
+    const auto [low, high] = std::minmax_element(profile.y, profile.y + profile.count);
+    odd = odd || outside(config.nominal_radius / (*high - *low), radii);
+  }
+  return bit(RP_WARNING_STIFFNESS, soft) | bit(RP_WARNING_RADIUS, odd) |
+         bit(RP_WARNING_FRICTION, config.tangential != RP_TANGENTIAL_NONE &&
+                                      config.friction_coefficient > most_friction);
+}
+
+void report_warnings(const rp_config &config, uint32_t of_case, const rp_input &input,
+                     rp_result &result) {
+  int touching = 0;
+  for (int side = 0; side < 2; ++side) {
+    if (!in_use(config, side)) continue;
+    rp_side_result &wheel = result.side[side];
+    wheel.warnings = of_case | warnings_of_side(config, input, side, wheel);
+    touching += wheel.patch_count > 0;
+  }
+  // said of the wheel in the air
+  if (config.kind == RP_WHEELSET && touching == 1)
+    for (auto &wheel : result.side)
+      if (wheel.patch_count == 0) wheel.warnings |= bit(RP_WARNING_ONE_WHEEL, true);
+  result.warnings = result.side[0].warnings | result.side[1].warnings;
+}
+
+}  // namespace railpatch
