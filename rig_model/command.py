@@ -15,6 +15,8 @@ from railpatch.command.group import (
     quiet_flag,
     scene_argument,
     show_scene_option,
+    strict_flag,
+    tell_warnings,
     wrong_calls,
 )
 from railpatch.command.output import check_output
@@ -39,10 +41,16 @@ def default_scene_text() -> str:
     help="Replaces rig.balance.method: how balances are searched.",
 )
 @show_scene_option(default_scene_text)
+@strict_flag()
 @quiet_flag("Print no summary and no progress.")
 @click.pass_context
 def rig(
-    context: click.Context, scene: Path | None, output: Path, quiet: bool, **overrides: Any
+    context: click.Context,
+    scene: Path | None,
+    output: Path,
+    strict: bool,
+    quiet: bool,
+    **overrides: Any,
 ) -> None:
     """Replay a run of NRC's roller rig: balance every position, write the log.
 
@@ -64,6 +72,7 @@ def rig(
             summary = replay(loaded, output, advance)
     if not quiet:
         click.echo(summary.text())
+    tell_warnings(summary.warned.lines(), strict=strict, quiet=quiet)
     if not summary.good:
         if not quiet:
             missed = len(summary.converged) - int(summary.converged.sum())
@@ -97,6 +106,7 @@ def default_curve_text() -> str:
 )
 @json_option()
 @show_scene_option(default_curve_text)
+@strict_flag()
 @quiet_flag()
 @click.pass_context
 def curve(
@@ -104,6 +114,7 @@ def curve(
     scene: Path | None,
     radius: tuple[float, ...],
     as_json: bool,
+    strict: bool,
     quiet: bool,
 ) -> None:
     """Find the steady position of a wheelset in curves, by Newton's and by Broyden's method.
@@ -121,8 +132,19 @@ def curve(
         click.echo(json.dumps(rows, allow_nan=False))
     elif not quiet:
         print_curves(found)
+    tell_warnings(warned_of(curves).lines(), strict=strict, quiet=quiet)
     if not all(item.converged for item in curves):
         context.exit(EXIT_NOT_CONVERGED)
+
+
+def warned_of(curves: list[Any]) -> Any:
+    """Warnings by the curves' radii."""
+    from railpatch.result import Warned
+
+    warned = Warned()
+    for item in curves:
+        warned.add(f"{item.radius:g} m", item.result.warnings)
+    return warned
 
 
 def print_curves(found: dict[str, Any]) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from railpatch.case.types import SIDES
 from railpatch.log import RunLog, scene_geometry
+from railpatch.result import Warned
 
 from rig_model.balance import Balance, Balancer
 from rig_model.record import Recorder, attachments, ran_with
@@ -23,7 +24,7 @@ class Summary:
     """Of a run with n positions.
 
     path: of the log. converged: [n]. evaluations: [n], of both wheels. wall_time: s, [n], of
-    finding each balance. logging_share: of the run, in the log.
+    finding each balance. logging_share: of the run, in the log. warned: of all positions.
     """
 
     path: Path
@@ -31,6 +32,7 @@ class Summary:
     evaluations: NDArray[np.int64]
     wall_time: NDArray[np.float64]
     logging_share: float
+    warned: Warned
 
     @property
     def good(self) -> bool:
@@ -66,6 +68,7 @@ def replay(
     recorder = Recorder(scene)
     snapshots = scene.snapshot_every()
     rows = []
+    warned = Warned()
     with RunLog(
         path,
         case_text=scene.text,
@@ -84,7 +87,8 @@ def replay(
                     fields = balancer.fields(balance)
                     messages["fields"] = {side: fields[side]["patches"] for side in SIDES}
                 log.write(position.time, **messages)
+            warned.add(f"{position.time:.4g} s", balance.result.warnings)
             rows.append((balance.converged, balance.evaluations, wall_time))
             progress(balance)
     converged, evaluations, wall_times = (np.array(column) for column in zip(*rows, strict=True))
-    return Summary(Path(path), converged, evaluations, wall_times, log.share)
+    return Summary(Path(path), converged, evaluations, wall_times, log.share, warned)

@@ -16,6 +16,8 @@ from railpatch.command.group import (
     quiet_flag,
     scene_argument,
     show_scene_option,
+    strict_flag,
+    tell_warnings,
     wrong_calls,
 )
 from railpatch.command.output import check_output, files_of
@@ -40,6 +42,7 @@ def default_scene_text() -> str:
 )
 @json_option("Print the summary as one JSON object.")
 @show_scene_option(default_scene_text)
+@strict_flag()
 @quiet_flag("Print no summary and no progress.")
 @click.pass_context
 def wheelset(
@@ -47,6 +50,7 @@ def wheelset(
     scene: Path | None,
     output: Path,
     as_json: bool,
+    strict: bool,
     quiet: bool,
     **overrides: Any,
 ) -> None:
@@ -70,6 +74,7 @@ def wheelset(
     elif not quiet:
         click.echo(f"{'scene':<16}{loaded.name}")
         click.echo(summary.text())
+    tell_warnings(summary.warnings, strict=strict, quiet=quiet)
     if not summary.good:
         if not quiet:
             click.echo(f"status: {summary.message}; the log up to there is in {output}", err=True)

@@ -90,7 +90,7 @@ def estimate(scene: WheelsetScene) -> Vector:
         if result.status in BAD or not result["patches"]:
             raise CaseError(
                 f"wheelset.y: value is {wheelset.y}, allowed one where both wheels can carry "
-                f"the load: {side} wheel {result.status}"
+                f"the load: {side} wheel {result.status}: {result.reason}"
             )
         sides[side] = result
     at = {side: np.array(sides[side]["patches"][0]["position"]) for side in SIDES}

@@ -58,6 +58,7 @@ class Summary:
     momentum_error: float
     turning_error: float
     in_the_air: dict[str, int]
+    warnings: list[str]
     evaluations: int
     solve_seconds: float
     wall_time: float
@@ -130,6 +131,7 @@ def summarise(
         in_the_air={
             side: sum(status[side] == "no_contact" for status in trace.statuses) for side in SIDES
         },
+        warnings=trace.warned.lines(),
         evaluations=trace.evaluations,
         solve_seconds=trace.solve_seconds,
         wall_time=wall_time,

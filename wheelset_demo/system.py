@@ -156,7 +156,11 @@ class System:
     def statuses(self) -> str:
         """How the last contact ended, by side."""
         result = self.element.result()
-        return ", ".join(f"{side} wheel {result[side]['status']}" for side in SIDES)
+        texts = {side: f"{side} wheel {result[side]['status']}" for side in SIDES}
+        reasons = {side: result[side]["reason"] for side in SIDES}
+        return ", ".join(
+            f"{texts[side]}: {reasons[side]}" if reasons[side] else texts[side] for side in SIDES
+        )
 
     def energies(self, state: State) -> Energies:
         """Of a state whose rates were the last ones asked for."""

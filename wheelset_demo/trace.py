@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from railpatch import Result
 from railpatch.case.types import SIDES
+from railpatch.result import Warned
 
 from wheelset_demo.scene import WheelsetScene
 from wheelset_demo.system import WORKS, ContactFailure, State, System
@@ -24,8 +25,8 @@ class Trace:
     J, by STORES. impulses, momenta: [n][6], N s, N m s, by IMPULSES, since the start and of all
     bodies. radii: [n][2], m, rolling radii left and right. contacts: [n][2], m, lateral
     positions of the contacts, weighted with their load; NaN for a wheel in the air. statuses: [n],
-    by side. result: of the last step. failure: what ended the run before its end. evaluations,
-    solve_seconds: contact work of the whole run.
+    by side. warned: of all steps. result: of the last one. failure: what ended the run before its
+    end. evaluations, solve_seconds: contact work of the whole run.
     """
 
     scene: WheelsetScene
@@ -38,6 +39,7 @@ class Trace:
     radii: list[list[float]] = field(default_factory=list)
     contacts: list[list[float]] = field(default_factory=list)
     statuses: list[dict[str, str]] = field(default_factory=list)
+    warned: Warned = field(default_factory=Warned)
     result: Result | None = None
     failure: ContactFailure | None = None
     evaluations: int = 0
@@ -57,6 +59,7 @@ class Trace:
         self.radii.append([result[side]["rolling_radius"] for side in SIDES])
         self.contacts.append([lateral(result[side]["patches"]) for side in SIDES])
         self.statuses.append({side: result[side]["status"] for side in SIDES})
+        self.warned.add(f"{state.time:.4g} s", result.warnings)
         self.result = result
 
     def snapshot_due(self) -> bool:

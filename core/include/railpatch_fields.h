@@ -80,7 +80,7 @@
     "elastic energy of the pressure alone")                                                       \
   X(rp_reason, reason, 1, status, even, kept, alone, RP_REASON_NONE, "",                          \
     "why the status is not good")                                                                 \
-  X(double, reason_value, 1, estimate, even, kept, alone, NAN, "",                                \
+  X(double, reason_value, 1, estimate, even, kept, alone, NAN, "-",                               \
     "of what the reason says, in its units")
 
 #define RP_SIDE_RESULT_FIELDS(X, O)                                                      \
@@ -125,9 +125,9 @@
     "elastic energy of the pressure alone, of all patches by share")                     \
   X(rp_reason, reason, 1, status, even, kept, alone, RP_REASON_NONE, "",                 \
     "why the status is not good")                                                        \
-  X(double, reason_value, 1, estimate, even, kept, alone, NAN, "",                       \
+  X(double, reason_value, 1, estimate, even, kept, alone, NAN, "-",                      \
     "of what the reason says, in its units")                                             \
-  X(uint32_t, warnings, 1, label, even, kept, alone, 0, "",                              \
+  X(uint32_t, warnings, 1, status, even, kept, alone, 0, "",                             \
     "what can hardly be meant, though it was solved")
 
 #define RP_RESULT_FIELDS(X, O)                                                                   \
@@ -159,9 +159,9 @@
     "elastic energy of the pressure alone, of all patches by share")                             \
   X(rp_reason, reason, 1, status, even, kept, alone, RP_REASON_NONE, "",                         \
     "why the status is not good")                                                                \
-  X(double, reason_value, 1, estimate, even, kept, alone, NAN, "",                               \
+  X(double, reason_value, 1, estimate, even, kept, alone, NAN, "-",                              \
     "of what the reason says, in its units")                                                     \
-  X(uint32_t, warnings, 1, label, even, kept, alone, 0, "",                                      \
+  X(uint32_t, warnings, 1, status, even, kept, alone, 0, "",                                     \
     "what can hardly be meant, though it was solved")
 
 /* --- inputs: X(type, name, count, role, where, start, bounds, low, high, unit, text) ---------

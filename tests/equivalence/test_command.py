@@ -79,7 +79,7 @@ def test_json_of_a_patch_is_that_of_solve(tmp_path: Path) -> None:
     ran = run(tmp_path, PATCH, "solve", "--json")
     assert ran.exit_code == 0
     printed = json.loads(ran.stdout)
-    assert set(printed) == {*PATCH_UNITS, "wall_time", "stages"} >= set(PATCH_KEYS)
+    assert set(printed) == {*PATCH_UNITS, "warnings", "wall_time", "stages"} >= set(PATCH_KEYS)
     solved = railpatch.solve(PATCH).to_dict()
     assert {**printed, "wall_time": 0} == {**solved, "wall_time": 0}
     assert 0 < printed["wall_time"] < 5

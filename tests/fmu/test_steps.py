@@ -36,7 +36,7 @@ def test_a_step_discarded_in_the_middle_is_as_never_made(unpacked: Unpack) -> No
         assert slave.set_derivatives({"wheelset.z": rate}) == OK
         # the approach grows by 2 mm: too large a patch on the way
         assert slave.step(STEP, 20 * STEP) == DISCARD
-        [(status, category, text)] = slave.log
+        [(status, category, text)] = [line for line in slave.log if "Warning" not in line[1]]
         assert (status, category) == (DISCARD, "logStatusDiscard")
         assert "smaller step" in text
         failed_at = float(text.split("at time ")[1].split()[0].rstrip(":"))

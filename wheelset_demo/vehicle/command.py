@@ -17,6 +17,8 @@ from railpatch.command.group import (
     quiet_flag,
     scene_argument,
     show_scene_option,
+    strict_flag,
+    tell_warnings,
     wrong_calls,
 )
 from railpatch.command.output import check_output, files_of
@@ -48,6 +50,7 @@ def default_scene_text() -> str:
 @click.option("--threads", type=int, metavar="NUMBER", help="Replaces run.threads.")
 @json_option("Print the summaries as one JSON object.")
 @show_scene_option(default_scene_text)
+@strict_flag()
 @quiet_flag("Print no summary and no progress.")
 @click.pass_context
 def vehicle(
@@ -57,6 +60,7 @@ def vehicle(
     compare: bool,
     output: Path | None,
     as_json: bool,
+    strict: bool,
     quiet: bool,
     **overrides: Any,
 ) -> None:
@@ -91,6 +95,8 @@ def vehicle(
         click.echo(json.dumps({"scene": loaded.name, "runs": content}, allow_nan=False))
     elif not quiet:
         show(loaded.name, found)
+    warned = dict.fromkeys(text for summary in found.values() for text in summary.warnings)
+    tell_warnings(warned, strict=strict, quiet=quiet)
     failed = {name: summary for name, summary in found.items() if not summary.good}
     for name, summary in failed.items():
         if not quiet:

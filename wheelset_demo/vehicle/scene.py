@@ -38,6 +38,13 @@ BOXES = 2 * WHEELSETS
 LONGEST = 1e5
 Triple = Annotated[list[NotNegative], exactly(3)]
 NONE = [0.0, 0.0, 0.0]
+# kg: railway vehicles from a narrow-gauge tram to a loaded freight wagon
+PLAUSIBLE = {
+    "car_body": (3e3, 1.2e5),
+    "bogie_frame": (300.0, 2e4),
+    "wheelset": (300.0, 5e3),
+    "axle_box": (10.0, 1e3),
+}
 
 
 class BodyTable(Table):
@@ -59,6 +66,16 @@ class AxleBoxTable(BodyTable):
     """A body that pitches about the end of an axle."""
 
     lateral: Positive = Field(description="m, of its centre from the vehicle's middle")
+
+
+def doubtful_bodies(scene: VehicleScene) -> list[str]:
+    """Warnings of bodies whose mass no railway vehicle has."""
+    found = []
+    for name, (low, high) in PLAUSIBLE.items():
+        mass = getattr(scene.vehicle, name).mass
+        if not low <= mass <= high:
+            found.append(f"vehicle.{name}.mass is {mass:g} kg, outside {low:g} to {high:g} kg")
+    return found
 
 
 class VehicleTable(Table):

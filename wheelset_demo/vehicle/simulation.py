@@ -119,7 +119,7 @@ def wheels_under_load(scene: VehicleScene) -> tuple[float, float]:
     if result.status in BAD or result.status == "no_contact":
         raise CaseError(
             f"vehicle: the axle load is {scene.axle_load:.6g} N, allowed one that the wheels can "
-            f"carry: {result.status}"
+            f"carry: {result.status}: {result.reason}"
         )
     radii = [result[side]["rolling_radius"] for side in SIDES]
     return float(result["z"]), float(np.mean(radii))

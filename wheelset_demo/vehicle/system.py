@@ -312,7 +312,10 @@ class VehicleSystem:
             result = self.element.result(k)
             for side in SIDES:
                 if result[side]["status"] in BAD:
-                    found.append(f"wheelset {k + 1}, {side} wheel {result[side]['status']}")
+                    found.append(
+                        f"wheelset {k + 1}, {side} wheel {result[side]['status']}: "
+                        f"{result[side]['reason']}"
+                    )
         return ", ".join(found)
 
     def stored(self, state: VehicleState) -> Vector:

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from railpatch.result import Warned
 
 from wheelset_demo.scene import GRAVITY
 from wheelset_demo.system import WORKS, ContactFailure
 from wheelset_demo.vehicle.means import rail_forces
-from wheelset_demo.vehicle.scene import VehicleScene
+from wheelset_demo.vehicle.scene import VehicleScene, doubtful_bodies
 from wheelset_demo.vehicle.simulation import Simulation
 from wheelset_demo.vehicle.system import VehicleState
 
@@ -48,6 +49,7 @@ class VehicleTrace:
     felt: list[Vector] = field(default_factory=list)
     works: list[Vector] = field(default_factory=list)
     energies: list[Vector] = field(default_factory=list)
+    warned: Warned = field(default_factory=Warned)
     failure: ContactFailure | None = None
     logging_share: float | None = None
 
@@ -66,6 +68,7 @@ class VehicleTrace:
         self.felt.append(felt_by_car_body(simulation))
         self.works.append(state.work)
         self.energies.append(simulation.energies)
+        self.warned.add(f"{state.time:.4g} s", element.warnings)
 
     def array(self, name: str) -> Vector:
         """[n, ...], by the names of the fields."""
@@ -141,7 +144,7 @@ class VehicleSummary:
     open_balance: J, most that was missing in the energy of bodies and springs; lost: J, in friction
     and dampers. seconds: of the time steps: total, by the clock; cpu, of all
     threads, and of it contact (force element) and derivatives. real_time: -, total over the time
-    simulated.
+    simulated. warnings: of the scene's bodies and of all logged steps.
     """
 
     good: bool
@@ -159,6 +162,7 @@ class VehicleSummary:
     lost: float
     seconds: dict[str, float]
     real_time: float
+    warnings: list[str]
     logging_share: float | None = None
 
     def to_dict(self) -> dict[str, Any]:
@@ -239,5 +243,6 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
         lost=trace.lost(),
         seconds=seconds,
         real_time=wall / time if time > 0 else 0.0,
+        warnings=[*doubtful_bodies(simulation.scene), *trace.warned.lines()],
         logging_share=trace.logging_share,
     )

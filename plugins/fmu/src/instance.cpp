@@ -277,6 +277,7 @@ fmi2Status Instance::run_contact(const Call &call, double time, double time_step
              std::string(call.name) + ": " + failure(time, outputs_.result));
     return fmi2Discard;
   }
+  warn(time);
   set_rest_temperature(outputs_, input_);
   solution_ = Solution::held;
   return fmi2OK;
@@ -302,15 +303,25 @@ std::string Instance::failure(double time, const rp_result &result) const {
   for (int side = 0; wheels_ && side < 2; ++side)
     if (result.side[side].status == result.status)
       where += side == RP_LEFT ? " (left wheel)" : " (right wheel)";
+  std::string why = rp_reason_text(result.reason);
+  if (!std::isnan(result.reason_value)) why += " (" + text_of(result.reason_value) + ")";
   const std::string at = "at time " + text_of(time);
   if (result.status == RP_NOT_CONVERGED)
-    return at + " the contact did not converge" + where +
-           ": take a smaller step, or make the FMU of a scene with a larger method.tolerance or "
-           "method.max_iterations";
-  return at + " the contact is out of its range of validity" + where +
-         ": take a smaller step or smaller inputs, such that contact stays on the profiles and the "
-         "approach small; or make the FMU of a scene with larger grid.max_elements or "
-         "wheelset.max_patches";
+    return at + " the contact did not converge" + where + ", as " + why +
+           ". Take a smaller step, or make the FMU of another scene";
+  return at + " the contact is out of its range of validity" + where + ", as " + why +
+         ". Take a smaller step or smaller inputs, or make the FMU of another scene";
+}
+
+// What can hardly be meant, each once.
+void Instance::warn(double time) {
+  const uint32_t fresh = outputs_.result.warnings & ~warned_;
+  warned_ |= fresh;
+#define RP_WARN(name, value, text)      \
+  if (fresh & (uint32_t{1} << (value))) \
+    log_.say(fmi2Warning, Category::warning, "at time " + text_of(time) + " " text);
+  RP_WARNINGS(RP_WARN)
+#undef RP_WARN
 }
 
 // --- values ------------------------------------------------------------------------------------

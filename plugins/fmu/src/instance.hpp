@@ -98,6 +98,7 @@ class Instance {
   fmi2Status advance(const Call &call, double time, double time_step);
   fmi2Status run_contact(const Call &call, double time, double time_step);
   std::string failure(double time, const rp_result &result) const;
+  void warn(double time);
   // of a patch that the last solve did not have
   bool absent(const Variable &variable) const;
   void publish();
@@ -152,6 +153,7 @@ class Instance {
   double time_ = 0, start_ = 0, stop_ = 0;
   bool stop_defined_ = false;
   bool largest_known_ = false;  // the largest step, which is found where it is read
+  uint32_t warned_ = 0;         // warnings that were told
   bool changed_ = true;         // an input or parameter was set after the last solve
   Solution solution_ = Solution::none;
   std::vector<double> values_;

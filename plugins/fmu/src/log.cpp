@@ -7,7 +7,7 @@ namespace railpatch::fmu {
 
 namespace {
 
-constexpr uint32_t kAll = 3;
+constexpr uint32_t kAll = 7;
 // of the same line one after the other
 constexpr int kMostRepeats = 100;
 
@@ -17,11 +17,14 @@ constexpr struct {
 } kCategories[] = {
     {"logStatusError", static_cast<uint32_t>(Category::error)},
     {"logStatusDiscard", static_cast<uint32_t>(Category::discard)},
+    {"logStatusWarning", static_cast<uint32_t>(Category::warning)},
     {"logAll", kAll},
 };
 
 const char *name_of(Category category) {
-  return kCategories[category == Category::error ? 0 : 1].name;
+  for (const auto &known : kCategories)
+    if (known.mask == static_cast<uint32_t>(category)) return known.name;
+  return kCategories[0].name;
 }
 
 // The logger takes a printf format in which "#" opens a value reference.

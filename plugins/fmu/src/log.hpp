@@ -9,7 +9,7 @@
 
 namespace railpatch::fmu {
 
-enum class Category : uint32_t { error = 1, discard = 2 };
+enum class Category : uint32_t { error = 1, discard = 2, warning = 4 };
 
 class Log {
  public:

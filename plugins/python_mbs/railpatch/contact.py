@@ -47,6 +47,7 @@ HEAD = struct.Struct("<II")
 # quantities of each step of shift or transient rolling
 STEP_KEYS = (
     "status",
+    "reason",
     "normal_force",
     "creep_force",
     "spin_moment",
@@ -252,18 +253,27 @@ def split_state(state: bytes) -> tuple[dict[str, Any], bytes]:
     return tables, state[start + size :]
 
 
-def solve(case: CaseSource, fields: bool = False, *, folder: str | Path | None = None) -> Result:
+def solve(
+    case: CaseSource,
+    fields: bool = False,
+    *,
+    folder: str | Path | None = None,
+    strict: bool = False,
+) -> Result:
     """Solves one case.
 
     case: dictionary or path of a TOML file. fields: add pressure, traction, ... of each patch.
     folder: where relative paths start; default the file's folder, or the working directory.
     Shift and transient rolling: all steps of the case; the result is that of the last one, with the
     status of the first step that was not good if there is one, and ``steps`` holds some quantities
-    of each. Raises CaseError, ProfileError. A solve that does not converge is no error: see
+    of each. strict: a warning of the result raises CaseError.
+    Raises CaseError, ProfileError. A solve that does not converge is no error: see
     Result.status.
     """
     contact = Contact(case, folder=folder)
     result = _solved(contact, fields)
+    if strict and result.warnings:
+        raise CaseError(result.warnings)
     if notes := contact.profile_notes():
         result.data["profiles"] = notes
     return result
@@ -284,6 +294,7 @@ def solve_steps(contact: Contact, motion: Motion, fields: bool) -> Result:
     # the case's way is that of all steps
     case = contact.case
     rows: list[dict[str, Any]] = []
+    warnings: dict[str, None] = {}
     wall_time = 0.0
     for index in range(count):
         pair = pairs[index] if len(pairs) > 1 else pairs[0]
@@ -291,6 +302,7 @@ def solve_steps(contact: Contact, motion: Motion, fields: bool) -> Result:
         result = contact._solve(case, pair, fields=fields and last)
         rows.append({name: result[name] for name in STEP_KEYS if name in result.data})
         wall_time += result["wall_time"]
-    bad = [row["status"] for row in rows if row["status"] not in GOOD]
-    status = bad[0] if bad else result["status"]
-    return Result({**result.data, "status": status, "wall_time": wall_time, "steps": rows})
+        warnings |= dict.fromkeys(result.warnings)
+    ended = next((row for row in rows if row["status"] not in GOOD), result)
+    of_all = {"status": ended["status"], "reason": ended["reason"], "warnings": list(warnings)}
+    return Result({**result.data, **of_all, "wall_time": wall_time, "steps": rows})

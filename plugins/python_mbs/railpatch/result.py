@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -142,6 +143,26 @@ class Result:
     def to_dict(self) -> dict[str, Any]:
         """The JSON result: plain numbers and lists, None for what is left out."""
         return plain_json(self.data)
+
+
+class Warned:
+    """Warnings of a run: in how many of its steps, and when first."""
+
+    def __init__(self) -> None:
+        self.found: dict[str, tuple[int, str]] = {}
+
+    def add(self, when: str, texts: Iterable[str]) -> None:
+        """Those of a step. when: its time or place, with the unit."""
+        for text in texts:
+            count, first = self.found.get(text, (0, when))
+            self.found[text] = count + 1, first
+
+    def lines(self) -> list[str]:
+        """One for each."""
+        return [
+            f"{text}; in {count} step{'s' if count > 1 else ''}, first at {first}"
+            for text, (count, first) in self.found.items()
+        ]
 
 
 def plain_json(value: Any) -> Any:

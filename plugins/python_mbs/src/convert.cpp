@@ -170,15 +170,6 @@ nb::list numbers_of(const T &field) {
   }
 }
 
-// texts of the bits
-nb::list warnings_of(uint32_t bits) {
-  nb::list texts;
-#define RAILPATCH_WARNING(name, value, text) \
-  if (bits & (uint32_t{1} << (value))) texts.append(text);
-  RP_WARNINGS(RAILPATCH_WARNING)
-  return texts;
-}
-
 // None where all is well
 template <typename Result>
 nb::object reason_of(const Result &from) {
@@ -296,6 +287,14 @@ nb::dict result_dict(const rp_result &from) {
   to["right"] = side_dict(from.side[RP_RIGHT]);
   to["reason"] = reason_of(from);
   return to;
+}
+
+nb::list warnings_of(uint32_t bits) {
+  nb::list texts;
+#define RAILPATCH_WARNING(name, value, text) \
+  if (bits & (uint32_t{1} << (value))) texts.append(text);
+  RP_WARNINGS(RAILPATCH_WARNING)
+  return texts;
 }
 
 nb::list stage_list(const rp_stage_info *info, const double *seconds) {

@@ -35,6 +35,8 @@ void fill_input(const nb::dict &from, rp_input &to);
 // every plain field as a list of numbers, defaults filled in, enumerations as their values
 nb::dict config_dict(const rp_config &config);
 nb::dict result_dict(const rp_result &result);
+// texts of bits 1 << RP_WARNING_...
+nb::list warnings_of(uint32_t bits);
 nb::dict jacobian_dict(const rp_jacobian &found);
 nb::list stage_list(const rp_stage_info *info, const double *seconds);
 

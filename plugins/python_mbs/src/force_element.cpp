@@ -114,6 +114,12 @@ class ForceElement {
     return result_dict(wheelsets_[k].result);
   }
 
+  nb::list warnings() const {
+    uint32_t bits = 0;
+    for (const Wheelset &w : wheelsets_) bits |= w.result.warnings;
+    return warnings_of(bits);
+  }
+
   double seconds() const {
     double sum = 0;
     for (const Wheelset &w : wheelsets_) sum += w.seconds;
@@ -257,6 +263,7 @@ void bind_force_element(nb::module_ &m) {
            nb::arg("mx"), nb::arg("my"), nb::arg("mz"),
            "Another wrench at a wheelset's centre, track axes, into its row of 'placed'.")
       .def("result", &E::result, nb::arg("index"), "The last step's rp_result.")
+      .def("warnings", &E::warnings, "Texts, of all wheelsets at the last step.")
       .def_prop_ro("seconds", &E::seconds,
                    "Wall-clock time inside the contact solves, of all threads.")
       .def_prop_ro("helper_seconds", &E::helper_seconds,

@@ -13,6 +13,8 @@ from railpatch.command.group import (
     WrongCall,
     json_option,
     quiet_flag,
+    strict_flag,
+    tell_warnings,
     version_option,
     wrong_call,
 )
@@ -49,10 +51,17 @@ def cli() -> None:
 @click.argument("case", metavar="CASE.toml", type=CASE)
 @json_option()
 @click.option("--fields", is_flag=True, help="With --json: add pressure, traction, ... as arrays.")
+@strict_flag()
 @QUIET
 @click.pass_context
-def solve(context: click.Context, case: Path, as_json: bool, fields: bool, quiet: bool) -> None:
-    """Solve one contact case."""
+def solve(
+    context: click.Context, case: Path, as_json: bool, fields: bool, strict: bool, quiet: bool
+) -> None:
+    """Solve one contact case.
+
+    What can hardly be meant, a load of 50 N or a wheel that is locked, is solved all the same, with
+    a warning.
+    """
     if fields and not as_json:
         raise WrongCall("--fields: value is True, allowed only with --json")
     from railpatch.contact import solve as solve_case
@@ -64,9 +73,10 @@ def solve(context: click.Context, case: Path, as_json: bool, fields: bool, quiet
         from railpatch.command.tables import print_result
 
         print_result(result)
+    tell_warnings(result.warnings, strict=strict, quiet=quiet)
     if not result.good:
         if not quiet:
-            click.echo(f"status: {result.status}", err=True)
+            click.echo(f"status: {result.status}: {result.reason}", err=True)
         context.exit(EXIT_NOT_CONVERGED)
 
 

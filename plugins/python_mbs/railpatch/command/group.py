@@ -6,7 +6,7 @@ command. --quiet and --version are added where the command has none of its own.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
@@ -116,6 +116,23 @@ def json_option(text: str = "Print one JSON object.") -> Callable[..., Any]:
 def quiet_flag(text: str = "Print nothing.") -> Callable[..., Any]:
     """--quiet, of a command that has something to be quiet about."""
     return click.option("--quiet", is_flag=True, help=text)
+
+
+def strict_flag() -> Callable[..., Any]:
+    """--strict, of a command that has warnings."""
+    return click.option(
+        "--strict", is_flag=True, help="Warnings are errors: the call was wrong, exit code 2."
+    )
+
+
+def tell_warnings(texts: Iterable[str], *, strict: bool, quiet: bool) -> None:
+    """Prints them to stderr. Raises WrongCall where they are errors."""
+    lines = list(texts)
+    if strict and lines:
+        raise WrongCall("\n".join(f"{line} (--strict)" for line in lines))
+    for line in lines:
+        if not quiet:
+            click.echo(f"warning: {line}", err=True)
 
 
 def show_scene_option(text: Callable[[], str]) -> Callable[..., Any]:

@@ -44,6 +44,7 @@ OF_SLAVES = (
 CATEGORIES = {
     "logStatusError": "The call was wrong, or cannot be carried out",
     "logStatusDiscard": "A step or value that the contact could not solve, and what to change",
+    "logStatusWarning": "What can hardly be meant, though it was solved",
     "logAll": "All messages",
 }
 

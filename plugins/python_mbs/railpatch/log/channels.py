@@ -104,6 +104,11 @@ def _status(text: str, required: bool = False) -> Field:
     return Field("status", "string", "", text, choices=STATUSES, required=required)
 
 
+def _text(struct: str, name: str, size: int = 1) -> Field:
+    """A text of the core's result."""
+    return Field(name, "string", "", _core.QUANTITIES[struct][name]["text"], size=size)
+
+
 def _listed(struct: str, name: str, frame: str = "") -> Field:
     """A quantity of the core's result, with unit and text from its list."""
     known = _core.QUANTITIES[struct][name]
@@ -194,6 +199,7 @@ PATCH = Message(
         _listed("patch", "wheel_heat"),
         _listed("patch", "rail_heat"),
         _listed("patch", "pressure_energy"),
+        _text("patch", "reason"),
     ),
 )
 
@@ -234,6 +240,8 @@ WHEEL_CONTACT = Message(
         ),
         _number("mean_wheel_load", "N", "Q on the rail, down: mean as that of Y", "track"),
         *(_listed("side", name) for name in _SUMS),
+        _text("side", "reason"),
+        _text("side", "warnings", size=0),
     ),
 )
 

@@ -28,7 +28,8 @@ class _Plan:
     """What a dict with certain keys, some of them None, is to have.
 
     numbers, counts: get the values of these fields. lists: names and lengths of lists of numbers.
-    texts: names and choices. parts, many: names and messages. dropped: keys to leave out.
+    texts: names and choices. parts, many: names and messages. lines: names of lists of texts.
+    dropped: keys to leave out.
     """
 
     numbers: _Get
@@ -37,6 +38,7 @@ class _Plan:
     texts: tuple[tuple[str, frozenset[str]], ...]
     parts: tuple[tuple[str, Message], ...]
     many: tuple[tuple[str, Message], ...]
+    lines: tuple[str, ...]
     dropped: frozenset[str]
 
 
@@ -78,6 +80,9 @@ def _collect(
     for name, choices in plan.texts:
         if type(values[name]) is not str or (choices and values[name] not in choices):
             return None
+    for name in plan.lines:
+        if type(values[name]) is not list or not all(type(text) is str for text in values[name]):
+            return None
     if not plan.dropped and not plan.parts and not plan.many:
         return values
     found = {key: value for key, value in values.items() if key not in plan.dropped}
@@ -107,17 +112,19 @@ def _plan(message: Message, keys: tuple[Any, ...], absent: tuple[Any, ...]) -> _
         return None
     chosen = [fields[key] for key in there if key in fields]
     plain = [field for field in chosen if not isinstance(field.kind, Message)]
-    if any(field.size != 1 and field.kind != "double" for field in plain):
+    if any(field.size != 1 and field.kind == "uint32" for field in plain):
         return None
+    listed = [field for field in plain if field.size != 1]
     single = {kind: [f.name for f in plain if f.kind == kind and f.size == 1] for kind in KINDS}
     nested = [field for field in chosen if isinstance(field.kind, Message)]
     return _Plan(
         _getter(single["double"]),
         _getter(single["uint32"]),
-        tuple((f.name, f.size) for f in plain if f.size != 1),
-        tuple((f.name, frozenset(f.choices)) for f in plain if f.kind == "string"),
+        tuple((f.name, f.size) for f in listed if f.kind == "double"),
+        tuple((f.name, frozenset(f.choices)) for f in plain if f.kind == "string" and f.size == 1),
         tuple((f.name, f.kind) for f in nested if f.size == 1),
         tuple((f.name, f.kind) for f in nested if f.size != 1),
+        tuple(f.name for f in listed if f.kind == "string"),
         frozenset(dropped.intersection(keys)),
     )
 

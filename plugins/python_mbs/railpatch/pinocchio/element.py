@@ -335,6 +335,11 @@ class ForceElement:
         """
         return Result(self.contacts[index]._data(self._core.result(index), np.nan, fields))
 
+    @property
+    def warnings(self) -> list[str]:
+        """What can hardly be meant of the last step, of all wheelsets: see Result.warnings."""
+        return self._core.warnings()
+
     def reset(self) -> None:
         """Forgets the last solutions: the next step starts as the first one did."""
         for contact in self.contacts:
