@@ -43,10 +43,12 @@ struct turning_energy {
 };
 turning_energy energy_of_turning(const grid &g, const double *pressure,
                                  const double *undeformed_distance, const surface_slopes &slopes);
-// Adds the moments that a wheel has about its own surface beside those about the rail's.
-inline void add_turning(const turning_energy &turning, patch_wrench &wrench) {
+// Adds the moments that a wheel has about its own surface beside those about the rail's. About s,
+// where the half-space does not turn along with a roller, wheel and roller have one moment of both:
+// part: that of the wheel's own.
+inline void add_turning(const turning_energy &turning, double part, patch_wrench &wrench) {
   wrench.moment[0] += turning.about_x;
-  wrench.moment[1] += turning.about_s;
+  wrench.moment[1] += part * turning.about_s;
 }
 // Its rate; those of distance and slopes may be null: zero. size: m, of the elements.
 turning_energy energy_of_turning_rate(const grid &g, const double *pressure,

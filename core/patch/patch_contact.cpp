@@ -255,7 +255,7 @@ void patch_contact::complete(const patch_problem &problem, patch_memory &memory,
   if (!shared_.scene.turns()) return;
   memory.turning = energy_of_turning(g, memory.pressure.data(), memory.undeformed_distance.data(),
                                      memory.slopes);
-  add_turning(memory.turning, wrench);
+  add_turning(memory.turning, problem.place.depth_part(), wrench);
 }
 
 derivative_outcome patch_contact::differentiate(const patch_problem &problem,

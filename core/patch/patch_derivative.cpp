@@ -244,7 +244,8 @@ void patch_derivative::complete(const solution &s, const patch_variation &v, con
   if (s.scene.turns()) {
     out.turning = energy_of_turning_rate(g, p, rate, m.undeformed_distance.data(), v.distance,
                                          m.slopes, v.slopes, v.size);
-    add_turning(out.turning, out.wrench);
+    add_turning(out.turning, s.problem.place.depth_part(), out.wrench);
+    out.wrench.moment[1] += v.depth_part * m.turning.about_s;
   }
   const double growth = v.size[0] / g.dx + v.size[1] / g.dy;
   for (int k = 0; k < 3; ++k) {

@@ -26,7 +26,7 @@ struct patch_variation {
   // m, of dx, dy and of x0, y0: the centre of element i moves by origin + i size
   double size[2] = {0, 0}, origin[2] = {0, 0};
   const surface_slopes *slopes = nullptr;                // rates of those in the memory; null: zero
-  double contact_depth = 0;                              // m
+  double contact_depth = 0, depth_part = 0;              // m, -
   double part_factor[contact_parts::capacity - 1] = {};  // of problem.parts.factor
   hertz_contact hertz;                                   // with normal = hertz, hertz_rate_of_*
   double normal_force = 0, approach = 0;                 // of the one that is prescribed

@@ -27,6 +27,9 @@ struct patch_place {
   double share = 1;          // in the wheel's force
   double rolling_speed = nan;
   int direction = 0;  // 0: standstill
+
+  // Of the depth, where creep forces act: 1 on a rail.
+  double depth_part() const { return depth > 0 ? contact_depth / depth : 1.0; }
 };
 
 // One step's problem; the undeformed distance is in patch_memory.

@@ -231,10 +231,12 @@ void wheel_derivative::set_motion(step &s, int index, patch_variation *in) {
     const rated approach = s.depth_in(b, s.wheel.patches[index]);
     s.rolling[b] = s.geometry[b]->creepages(frame, approach);
     const rated contact_depth = s.geometry[b]->contact_depth(frame, approach);
+    const rated depth_part = contact_depth / approach;
     for (int k = 0; k < s.size[b]; ++k) {
       const auto slot = static_cast<size_t>(k);
       patch_variation &v = in[b * rate_directions + k];
       v.contact_depth = contact_depth.rate[slot];
+      v.depth_part = approach.value > 0 ? depth_part.rate[slot] : 0.0;
       v.creepage[0] = s.rolling[b].xi.rate[slot];
       v.creepage[1] = s.rolling[b].eta.rate[slot];
       v.spin_creepage = s.rolling[b].phi.rate[slot];
