@@ -26,6 +26,19 @@ int index(double value, int low, int high) {
   return rounded > low ? static_cast<int>(std::min(rounded, static_cast<double>(high))) : low;
 }
 
+// A place among n > 1 elements: between `first` and the next one, to which its share is due. What
+// is put there in these parts has its centre there, so it moves evenly and has no side of its own.
+struct between {
+  int first;
+  double share;
+};
+
+between elements_at(double place, int n) {
+  const double inside = place > 0 ? std::min(place, n - 1.0) : 0.0;
+  const int first = std::min(static_cast<int>(inside), n - 2);
+  return {first, inside - first};
+}
+
 // The parabola through three rows as a function of y - y(j).
 quadratic through(const double *f, const grid &g, int j) {
   const int m = std::clamp(j, 1, g.ny - 2);
@@ -329,6 +342,14 @@ void row_contact::kik_piotrowski(const grid &g, const deepest_point &deep, int b
   }
 }
 
+// A load at a row's vertex.
+void row_contact::set_point(const grid &g, int row, double load, double *pressure) const {
+  const between at_vertex = elements_at((vertex_[at(row)] - g.x0) / g.dx, g.nx);
+  double *to = pressure + row * g.nx + at_vertex.first;
+  to[0] = (1 - at_vertex.share) * load;
+  to[1] = at_vertex.share * load;
+}
+
 // Each row's elements carry the row's load, in the shape of its pressure at their centres; what
 // lies in strips whose middle is not in contact is shared by all.
 void row_contact::sample(const grid &g, double force, double *pressure,
@@ -343,14 +364,19 @@ void row_contact::sample(const grid &g, double force, double *pressure,
       row[i] = std::sqrt(std::max(0.0, chord_[at(j)] - x * x));
       total += row[i];
     }
-    if (!(total > 0)) row[index((vertex_[at(j)] - g.x0) / g.dx, 0, g.nx - 1)] = total = 1;
+    if (!(total > 0)) {
+      set_point(g, j, 1.0, pressure);
+      total = 1;
+    }
     for (int i = 0; i < g.nx; ++i) row[i] *= load_[at(j)] / total;
     sum += load_[at(j)];
   }
   if (!(sum > 0) && force > 0) {
     // contact between the middles of two rows
-    const int j = find_deepest(g, 0, g.ny).row;
-    pressure[j * g.nx + index((vertex_[at(j)] - g.x0) / g.dx, 0, g.nx - 1)] = sum = 1;
+    const between rows = elements_at((find_deepest(g, 0, g.ny).y - g.y0) / g.dy, g.ny);
+    set_point(g, rows.first, 1 - rows.share, pressure);
+    set_point(g, rows.first + 1, rows.share, pressure);
+    sum = 1;
   }
   for (int i = 0; i < g.count() && sum > 0; ++i) pressure[i] *= force / (sum * g.dx * g.dy);
   for (int j = 0; j < g.ny; ++j)

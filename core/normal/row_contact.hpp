@@ -105,6 +105,7 @@ class row_contact {
   void analyn(const grid &g, const deepest_point &deep, int begin, int end, totals &way);
   void add_row(int row, const strip &s, const quadratic &chord, const quadratic &f, double depth,
                double factor, totals &way);
+  void set_point(const grid &g, int row, double load, double *pressure) const;
   void sample(const grid &g, double force, double *pressure, row_contact_result &result) const;
 
   rp_normal_method method_;

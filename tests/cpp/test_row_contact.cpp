@@ -163,18 +163,52 @@ TEST_P(Parts, BetweenAreBlended) {
   EXPECT_NEAR(sum, between.r.normal_force, 1e-12 * sum);
 }
 
-TEST_P(Parts, SmallestContactLoadsOneElement) {
+TEST_P(Parts, SmallestContactLoadsTheElementsAroundIt) {
   // 10 micrometres long and wide, between the middles of the elements
   const found f = solve({}, 1e-10);
-  double sum = 0;
-  int loaded = 0;
-  for (double p : f.pressure) {
-    sum += p * g.dx * g.dy;
-    loaded += p > 0;
-  }
-  EXPECT_EQ(loaded, 1);
+  double sum = 0, x = 0, y = 0;
+  for (int j = 0; j < g.ny; ++j)
+    for (int i = 0; i < g.nx; ++i) {
+      const double load = f.pressure[static_cast<size_t>(j * g.nx + i)] * g.dx * g.dy;
+      if (load > 0) {
+        EXPECT_LT(std::fabs(g.x(i)), g.dx);
+        EXPECT_LT(std::fabs(g.y(j) + 4e-3), g.dy);
+      }
+      sum += load;
+      x += load * g.x(i);
+      y += load * g.y(j);
+    }
   EXPECT_GT(f.r.normal_force, 0);
   EXPECT_NEAR(sum, f.r.normal_force, 1e-12 * sum);
+  EXPECT_NEAR(x / sum, 0, 1e-12);
+  EXPECT_NEAR(y / sum, -4e-3, 1e-12);
+}
+
+TEST_P(Parts, SymmetricSurfacesHaveSymmetricPressure) {
+  // chords of the last rows reach no element's middle: between the two in the middle of a row
+  for (const auto &[nx, ny] : {std::pair{6, 17}, {17, 6}, {6, 16}, {12, 13}, {5, 4}}) {
+    g = {nx, ny, 5e-4, 2.5e-4, -0.5 * (nx - 1) * 5e-4, -0.5 * (ny - 1) * 2.5e-4};
+    const double length = 0.5 * nx * g.dx, width = 0.5 * ny * g.dy;
+    for (const double part : {0.9, 0.6, 0.3, 0.05}) {
+      h.clear();
+      for (int j = 0; j < ny; ++j)
+        for (int i = 0; i < nx; ++i) {
+          const double x = g.x(i) / length, y = g.y(j) / width;
+          h.push_back(2e-5 * (x * x + y * y) / (part * part));
+        }
+      const found f = solve({});
+      EXPECT_GT(f.r.normal_force, 0);
+      for (int j = 0; j < ny; ++j)
+        for (int i = 0; i < nx; ++i) {
+          const auto of = [&](int column, int row) {
+            return f.pressure[static_cast<size_t>(row * nx + column)];
+          };
+          const double near = 1e-9 * f.r.max_pressure;
+          EXPECT_NEAR(of(i, j), of(nx - 1 - i, j), near) << nx << ' ' << ny << ' ' << part;
+          EXPECT_NEAR(of(i, j), of(i, ny - 1 - j), near) << nx << ' ' << ny << ' ' << part;
+        }
+    }
+  }
 }
 
 TEST_P(Parts, MirroredGridsCarryTheSame) {
