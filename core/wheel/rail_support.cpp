@@ -17,10 +17,7 @@ constexpr double lateral_difference = 1e-6, creepage_difference = 3e-5;
 // -, creepage by vertical velocities on treads is smaller by the contact angle's sine
 constexpr double normal_share = 30;
 constexpr double most_residual = 1e-3;  // of a start for the next step
-constexpr double rounding = 1e-12;      // relative, of k u and c u_before/dt
-constexpr double nowhere = HUGE_VAL;
-
-double length(const lateral_vertical &v) { return hypot(v[0], v[1]); }
+constexpr double searched = 1e-3;       // residual that a search is to have first
 
 }  // namespace
 
@@ -312,10 +309,32 @@ support_result rail_support::solve(supported_wheels &wheels, const support_load 
     stay();
     return {false, true, HUGE_VAL, base.z};
   }
+  bool last_is_base = improve(wheels, base);
+  // a coarse search and Newton's method from there, then a search to the end
+  for (const double goal : {std::max(searched, tolerance_), 0.5 * tolerance_}) {
+    if (base.residual <= tolerance_) break;
+    trial found = base;
+    last_is_base = false;
+    if (!search(wheels, found, goal)) continue;
+    release_lifted(found);
+    if (!evaluate(wheels, found)) continue;
+    base = found;
+    last_is_base = improve(wheels, base);
+  }
+  // what is kept of the contact belongs to the place that is reported
+  if (!last_is_base) evaluate(wheels, base);
+  keep(base);
+  if (!(base.residual <= std::max(tolerance_, most_residual))) stay();
+  return {base.residual <= tolerance_, false, base.residual, base.z};
+}
+
+// Newton's method from an iterate that has been evaluated. Returns whether it was the last to be.
+bool rail_support::improve(supported_wheels &wheels, trial &base) {
+  const int most = evaluations_ + most_evaluations;
   bool fresh = false, last_is_base = true;
   int rejected = 0;
   double share = 1;
-  while (base.residual > tolerance_ && evaluations_ < most_evaluations) {
+  while (base.residual > tolerance_ && evaluations_ < most) {
     const bool other_step = std::any_of(rails_.begin(), rails_.begin() + count_,
                                         [&](rail &r) { return r.time_step != load_.time_step; });
     if (!fresh && (other_step || rejected >= 2)) {
@@ -342,11 +361,7 @@ support_result rail_support::solve(supported_wheels &wheels, const support_load 
     if (++rejected > most_rejected) break;
     share *= 0.5;
   }
-  // what is kept of the contact belongs to the place that is reported
-  if (!last_is_base) evaluate(wheels, base);
-  keep(base);
-  if (!(base.residual <= std::max(tolerance_, most_residual))) stay();
-  return {base.residual <= tolerance_, false, base.residual, base.z};
+  return last_is_base;
 }
 
 // What is no solution is no start: the rails stay where they were.

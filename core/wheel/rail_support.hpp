@@ -7,11 +7,15 @@
 // z and by u_z are opposite, and each wheel has a 2 x 2 matrix of slopes. They are found by
 // differences, updated by Broyden's rule (Broyden 1965, Math. Comp. 19, eq. 4.5) and kept from step
 // to step. A step is taken where it makes the residual smaller; else it is shortened, then the
-// slopes are found afresh.
+// slopes are found afresh. Where no shorter step helps, as at a bend of the forces, the place is
+// bracketed (rail_support_search.cpp), and Newton's method goes on from there.
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
+
+#include "numeric/elementary.hpp"
 
 namespace railpatch {
 
@@ -23,6 +27,7 @@ class supported_wheels {
   struct wheel_on_rail {
     lateral_vertical force{};  // N, of the wheel on the rail
     double rolling_speed = 0;  // m/s
+    bool known = true;
   };
   virtual ~supported_wheels() = default;
   // Moves the rails: deflection (m) and rate (m/s) of each.
@@ -85,7 +90,14 @@ class rail_support {
     double merit = 0, residual = 0;         // N; relative
     bool nowhere = false;                   // no wheel has a rail below it
   };
+  struct both_roots;
+  static constexpr double nowhere = HUGE_VAL;
+  static constexpr double rounding = 1e-12;   // relative, of k u and c u_before/dt
+  static constexpr int most_searched = 6000;  // evaluations of a step that is bracketed
   static std::size_t at(int wheel) { return static_cast<std::size_t>(wheel); }
+  static double length(const lateral_vertical &v) { return hypot(v[0], v[1]); }
+  // One wheel has all of the prescribed force: its rail's vertical place is known.
+  bool load_alone() const { return load_.prescribed && count_ == 1; }
   bool rigid(std::size_t k) const { return !(stiffness_[k] > 0); }
   double total(std::size_t k) const;                       // N/m, k + c/dt
   double carried(std::size_t wheel, std::size_t k) const;  // N, c/dt u_before
@@ -100,6 +112,14 @@ class rail_support {
   double allowed_part(const trial &base, const std::array<lateral_vertical, 2> &fixed,
                       const std::array<lateral_vertical, 2> &by_z, double dz, double share) const;
   void learn(const trial &base, const trial &next);
+  bool improve(supported_wheels &wheels, trial &base);
+  bool search(supported_wheels &wheels, trial &t, double tolerance);
+  bool search_sideways(supported_wheels &wheels, trial &t, double tolerance);
+  bool search_depth(supported_wheels &wheels, trial &t, double tolerance);
+  void place(std::size_t wheel, double depth, trial &t) const;
+  double guessed_depth_of(std::size_t wheel, double z) const;
+  double size_of(const trial &t) const;
+  void release_lifted(trial &t) const;
   void keep(const trial &last);
 
   int count_;

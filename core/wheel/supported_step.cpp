@@ -48,7 +48,8 @@ void wheels::solve_supported(const rp_input &in, rp_result &out) {
       const rp_side_result &side = out.side[wheels_[w].side()];
       found[w] = {{-side.force[1], -side.force[2]}, 0};
       if (side.patch_count > 0) found[w].rolling_speed = side.patch[0].rolling_speed;
-      known = known && !wheels_[w].beyond();
+      found[w].known = !wheels_[w].beyond();
+      known = known && found[w].known;
     }
     return known;
   };

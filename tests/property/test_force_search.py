@@ -106,3 +106,46 @@ def test_what_is_missed_is_a_jump() -> None:
         assert below < force < above
         assert above - below > 1e-3 * force
     assert missed > 0
+
+
+# y, yaw, N, stiffness lateral and vertical: at the flange root, on rails that give way by more than
+# the contact is wide
+ON_SPRINGS = {
+    "wheel_rail": [
+        (0.007331, 0.01442, 111e3, [3.4e6, 2.7e7]),
+        (0.006638, -0.00632, 83.5e3, [8.1e6, 4.5e7]),
+        (0.007139, -0.00933, 29e3, [3.8e6, 6.3e7]),
+        (0.006996, -0.00761, 15.7e3, [4.4e6, 3.4e7]),
+    ],
+    "wheelset": [
+        (0.005558, 0.01569, 49.9e3, [2.2e7, 6.7e7]),
+        (0.006349, 0.0014, 80.8e3, [7.7e6, 5e7]),
+        (0.007186, -0.01337, 22.8e3, [2.5e7, 4.9e7]),
+    ],
+}
+
+
+@pytest.mark.parametrize("kind", ["wheel_rail", "wheelset"])
+def test_places_of_elastic_rails_are_found(kind: str) -> None:
+    for y, yaw, force, stiffness in ON_SPRINGS[kind]:
+        support = {"stiffness": stiffness, "damping": [0.0, 0.0]}
+        scene = load_scene(
+            with_values(
+                BASE,
+                kind=kind,
+                method__tangential="table",
+                friction={"coefficient": 0.3},
+                track__rail_support=support,
+                wheelset__vertical_force=force,
+                wheelset__y=y,
+                wheelset__yaw=yaw,
+            )
+        )
+        found = _core.Contact(config_of(scene), False).step(input_of(scene.case))
+        assert found["status"] == "converged", (y, yaw, force)
+        for side in ("left", "right") if kind == "wheelset" else ("right",):
+            wheel = found[side]
+            push = -np.array(wheel["force"][1:])
+            left = np.array(stiffness) * wheel["rail_deflection"] - push
+            assert np.abs(left).max() <= TOLERANCE * np.linalg.norm(push)
+        assert -found["force"][2] == pytest.approx(force, rel=TOLERANCE)
