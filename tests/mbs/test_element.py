@@ -62,6 +62,25 @@ def test_lateral_forces_without_friction_are_those_of_the_normals():
     assert parts[1].min() > 1e-3
 
 
+def test_lateral_forces_of_normals_on_a_curved_surface():
+    """The lateral creep force there holds a part of pressure."""
+    model = samples.model()
+    on_the_root = samples.rolling(0, 4.5e-3, -4e-4, 0, 0, 0)
+    found = []
+    for coefficient in (1e-6, 0.3):
+        method = {"reference_surface": "curved"}
+        case = samples.case(friction={"coefficient": coefficient}, method=method)
+        element = ForceElement(model, "wheelset", case)
+        stepped(element, model, model.createData(), on_the_root, samples.RATES)
+        found.append((element.wheels[0, 1, 1], element.lateral_normals[0, 1]))
+    (free, normals), (with_creep, beside_creep) = found
+    assert abs(free) > 1e4
+    assert normals == pytest.approx(free, rel=1e-5)
+    # creep changes the pressure a little there, and adds a force of its own
+    assert beside_creep == pytest.approx(normals, rel=0.02)
+    assert abs(with_creep - beside_creep) > 0.05 * abs(normals)
+
+
 def test_wheels_in_the_air():
     model = samples.model()
     data = model.createData()

@@ -268,7 +268,9 @@ class ForceElement:
     def lateral_normals(self) -> NDArray[np.float64]:
         """N, [wheelsets, 2], of left and right wheel: the parts to the right of pressures in
         `wheels`, at the last step; the rest of the lateral force is of creep."""
-        rows = [self._core.result(index) for index in range(len(self.joints))]
+        # the tractions' part is known row by row where each has an angle of its own
+        curved = self.contacts[0].case.method.reference_surface == "curved"
+        rows = [self.result(index, fields=curved) for index in range(len(self.joints))]
         return np.array([[lateral_normal(result[side]) for side in SIDES] for result in rows])
 
     def track_rotation(self, index: int) -> NDArray[np.float64]:
@@ -392,12 +394,20 @@ def joint_index(model: pin.Model, joint: str | int) -> int:
 
 def lateral_normal(wheel: dict[str, Any]) -> float:
     """N, to the right on a wheel, of the pressures: what its creep forces leave."""
-    creep = sum(
-        patch["share"] * patch["creep_force"][1] * math.cos(patch["contact_angle"])
-        for kind in PATCHES
-        for patch in wheel[kind]
-    )
-    return wheel["force"][1] - creep
+    creep = sum(patch["share"] * lateral_creep(patch) for kind in PATCHES for patch in wheel[kind])
+    return float(wheel["force"][1] - creep)
+
+
+def lateral_creep(patch: dict[str, Any]) -> float:
+    """N, to the right on a wheel, of a patch's tractions; on a curved reference surface, where the
+    lateral `creep_force` holds a part of pressure, by its rows."""
+    angles = np.asarray(patch.get("row_angle", ()))
+    if not angles.size:
+        return float(patch["creep_force"][1] * math.cos(patch["contact_angle"]))
+    if not np.size(patch["traction"]):
+        return 0.0
+    area = (patch["x"][1] - patch["x"][0]) * (patch["y"][1] - patch["y"][0])
+    return float(area * np.cos(angles) @ np.sum(patch["traction"][1], axis=1))
 
 
 def check_case(case: Any) -> None:
