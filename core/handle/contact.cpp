@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "handle/check.hpp"
 #include "handle/contact_derivative.hpp"
@@ -38,6 +39,7 @@ contact::contact(const rp_config &config)
     std::copy_n(made.bulk_temperature, 2, bulk_temperature_);
   }
   select(0);
+  noted_.resize(driver_->kept().all_bytes());
   if (config.derivatives != 0) derivative_ = std::make_unique<derivative_record>(config, *driver_);
   // nothing else of the caller's memory is kept than the creep table
   config_.undeformed_distance = nullptr;
@@ -78,10 +80,12 @@ rp_result contact::solve_to_accuracy(const rp_input &input) {
   if (solve_closed(input, out)) return out;
   const size_t coarsest = uses_table(config_) ? 1 : 0;
   if (level_ > coarsest && excess_ < sure_of_coarser) go_on(level_ - 1);
+  note_kept();
   out = solve(input);
   excess_ = excess(out);
   while (excess_ > 1 && std::isfinite(excess_) && level_ + 1 < levels_.size()) {
     go_on(level_ + 1);
+    take_noted();
     const rp_result finer = solve(input);
     if (finer.status == RP_NOT_CONVERGED || finer.status == RP_OUT_OF_RANGE) {
       // a solution that is not as accurate is worth more than none
@@ -145,6 +149,18 @@ void contact::reset() {
   select(0);
   excess_ = 0;
   if (derivative_) derivative_->solved = false;
+}
+
+void contact::note_kept() {
+  const driver::kept_numbers kept = driver_->kept();
+  if (kept.bytes) std::memcpy(noted_.data(), kept.more, kept.bytes);
+  if (kept.heat_bytes) std::memcpy(noted_.data() + kept.bytes, kept.heat, kept.heat_bytes);
+}
+
+void contact::take_noted() {
+  const driver::kept_numbers kept = driver_->kept();
+  if (kept.bytes) std::memcpy(kept.more, noted_.data(), kept.bytes);
+  if (kept.heat_bytes) std::memcpy(kept.heat, noted_.data() + kept.bytes, kept.heat_bytes);
 }
 
 }  // namespace railpatch

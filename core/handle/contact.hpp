@@ -49,6 +49,9 @@ class contact {
   rp_result solve(const rp_input &input);
   rp_result solve_to_accuracy(const rp_input &input);
   bool solve_closed(const rp_input &input, rp_result &out);
+  // What the wheels keep beside the patches, as the present step found it: time goes by once.
+  void note_kept();
+  void take_noted();
   double excess(const rp_result &result) const;
   void select(size_t level);
   void go_on(size_t level);
@@ -71,6 +74,7 @@ class contact {
   size_t level_ = 0;          // of the last step
   driver *driver_ = nullptr;  // of that level
   double excess_ = 0;         // of the last step's estimate over what is allowed
+  std::vector<unsigned char> noted_;
   double tolerance_ = 0;
   double bulk_temperature_[2] = {0, 0};            // degrees C, where a step says nothing else
   std::unique_ptr<derivative_record> derivative_;  // null: no derivatives

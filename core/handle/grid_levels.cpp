@@ -151,6 +151,7 @@ void report_inaccurate(double friction, double accuracy, rp_result &out) {
 void carry_kept(driver &from, driver &to) {
   const driver::kept_numbers source = from.kept(), kept = to.kept();
   if (kept.bytes) std::memcpy(kept.more, source.more, kept.bytes);
+  if (kept.heat_bytes) std::memcpy(kept.heat, source.heat, kept.heat_bytes);
   if (kept.depth) *kept.depth = *source.depth;
 }
 

@@ -494,7 +494,8 @@ typedef struct rp_config {
 
   /* bulk temperatures that heat raises and the air takes away, of each wheel and its rail or
    * roller: mass heat_capacity dT/dt = heat - air_conductance (T - air_temperature). They begin at
-   * bulk_temperature and go on by input.time_step with the last step's wheel_heat and rail_heat;
+   * bulk_temperature and go on by input.time_step: with the last step's heat of friction, and with
+   * what flows between the bodies, that changes with their temperatures, exactly;
    * kinds RP_WHEEL_RAIL and RP_WHEELSET, RP_STEADY_ROLLING. Part of the state */
   double bulk_mass[2];       /* kg, 0: the bulk temperature stays as given */
   double air_conductance[2]; /* W/K, 0 where bulk_mass is 0 */

@@ -33,6 +33,7 @@ heat_outcome heat_stage::finish(const patch_problem &problem, patch_memory &memo
   set_flux(problem, memory, stage_->flux());
   heat_outcome found{true, stage_->finish(memory.pressure.data(), *memory.heat), {0, 0}};
   for (int k = 0; k < 2; ++k) found.heat[k] = stage_->heat_into(k, problem.g.dy);
+  memory.heat->conductance = stage_->exchange_conductance(problem.g.dy);
   return found;
 }
 

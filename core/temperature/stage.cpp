@@ -114,11 +114,14 @@ double temperature_stage::heat_into(int body, double dy) const {
   const double own = pair.share(body) * flux;
   if (!pair.exchanges()) return own;
   if (columns_) return nan;
-  if (!(rows_.speed > 0)) return own;
-  const thermal_body &b = pair.body[body], &other = pair.body[1 - body];
+  return own + exchange_conductance(dy) * (pair.body[1 - body].bulk - pair.body[body].bulk);
+}
+
+double temperature_stage::exchange_conductance(double dy) const {
+  if (!steady_ || !exchanged_.size() || !(rows_.speed > 0)) return 0;
+  const thermal_pair &pair = scene_.bodies;
   const double unit = std::sqrt(rows_.dx * rows_.speed);
-  const double level = b.effusivity() * pair.share(1 - body) * (other.bulk - b.bulk);
-  return own + level * unit * steady_->exchanged_heat() * dy;
+  return pair.body[0].effusivity() * pair.share(1) * unit * steady_->exchanged_heat() * dy;
 }
 
 }  // namespace railpatch

@@ -26,6 +26,7 @@ struct heat_memory {
   aligned_buffer<double> temperature[2];  // degrees C, wheel and rail
   aligned_buffer<double> friction;        // -, of a law of temperature
   aligned_buffer<double> columns;         // transient: the state of heat_columns
+  double conductance = 0;                 // W/K, between the bodies at the last step
   void clear();
   void forget_friction();  // it starts at the law of what is there without friction's heat
   size_t bytes() const { return 2 * temperature[0].bytes() + friction.bytes() + columns.bytes(); }
@@ -58,6 +59,9 @@ class temperature_stage {
   // W, after finish: a body's share of the flux and what it gets from the other one, with rows dy
   // (m) apart. NaN where columns of a transient contact exchange heat.
   double heat_into(int body, double dy) const;
+  // W/K, of that exchange: heat from the warmer body over the difference of bulk temperatures.
+  // Steady rolling; 0 in scenes whose bodies are equally warm.
+  double exchange_conductance(double dy) const;
   size_t bytes() const;
 
  private:

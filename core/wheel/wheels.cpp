@@ -114,7 +114,7 @@ void wheels::step(const rp_input &in, rp_result &out) {
     side.contact_power = wheelset_power(in, {side.force, side.moment});
   }
   sum_sides(there, out, out);
-  // steps too long for what flows off drive temperatures apart without bound
+  // more heat than the air takes
   if (bulk_ && !bulk_->within_range())
     report_search({RP_OUT_OF_RANGE, RP_REASON_BULK_TEMPERATURE}, out.residual, out);
   if (bulk_) keep_heat(out);
@@ -129,13 +129,18 @@ void wheels::set_bulk(int side) {
 // A step that is no solution leaves temperatures and heat as they were.
 void wheels::keep_heat(const rp_result &out) {
   if (out.status != RP_CONVERGED && out.status != RP_NO_CONTACT) return;
-  double heat[2][2] = {{0, 0}, {0, 0}};
-  for (const auto &wheel : wheels_) {
-    const rp_side_result &side = out.side[wheel.side()];
-    heat[wheel.side()][0] = side.wheel_heat;
-    heat[wheel.side()][1] = side.rail_heat;
+  bulk_flow flow[2];
+  for (size_t w = 0; w < wheels_.size(); ++w) {
+    const rp_side_result &side = out.side[wheels_[w].side()];
+    bulk_flow &own = flow[wheels_[w].side()];
+    own.heat[0] = side.wheel_heat;
+    own.heat[1] = side.rail_heat;
+    for (int i = 0; i < side.patch_count + side.alternative_count; ++i) {
+      const patch_memory &m = memory_of(w)[i];
+      if (m.solved) own.exchange += side.patch[i].share * m.heat->conductance;
+    }
   }
-  bulk_->keep(heat);
+  bulk_->keep(flow);
 }
 
 // Finds z for a prescribed vertical force.

@@ -1,5 +1,6 @@
 """Bulk temperature in a run: each body is one mass that the contacts' heat warms and the air cools,
-m c dT/dt = Q - H (T - T_air). With Q held over a step its solution is an exponential."""
+m c dT/dt = F + G (T_other - T) - H (T - T_air). With the heat F of friction and the exchange G held
+over a step its solution is that of a linear system."""
 
 from __future__ import annotations
 
@@ -8,10 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 import railpatch
+from bulk_samples import HEAT_CAPACITY, exchange_of, lumped
 from case_samples import with_values
 
 EFFUSIVITY = np.sqrt(50.0 * 450.0 * 7850.0)
-HEAT_CAPACITY, AIR = 450.0, 15.0
+AIR = 15.0
 
 
 def wheel(**values: Any) -> dict[str, Any]:
@@ -44,19 +46,9 @@ def wheel(**values: Any) -> dict[str, Any]:
     return with_values(case, **values)
 
 
-def lumped(case: dict[str, Any], body: int, start: float, heat: float, time: float) -> float:
-    """Degrees C after a time of constant heat: the closed form."""
-    bulk = case["temperature"]["bulk"]
-    mass, conductance = bulk["mass"][body], bulk["air_conductance"][body]
-    if conductance == 0:
-        return start + heat * time / (mass * HEAT_CAPACITY)
-    end = AIR + heat / conductance
-    return end + (start - end) * np.exp(-conductance * time / (mass * HEAT_CAPACITY))
-
-
-@pytest.mark.parametrize("conductance", [[12.0, 30.0], [0.0, 0.0]])
+@pytest.mark.parametrize("conductance", [[12.0, 30.0], [0.0, 0.0], [0.0, 30.0]])
 def test_steps_follow_the_closed_form(conductance: list[float]) -> None:
-    """And heat into the bodies is what they store and what the air takes, step by step."""
+    """And heat of friction is what the bodies store and what the air takes, step by step."""
     case = wheel(temperature__bulk__air_conductance=conductance)
     if not any(conductance):
         del case["temperature"]["bulk"]["air_temperature"]
@@ -64,25 +56,62 @@ def test_steps_follow_the_closed_form(conductance: list[float]) -> None:
     before = contact.step(time_step=0.0)
     assert before.status == "converged"
     assert before["wheel_temperature"] == 60.0
-    stored, taken, heat = np.zeros(2), np.zeros(2), np.zeros(2)
-    for time in (1e-3, 0.5, 4.0, 30.0, 0.0, 200.0):
-        after = contact.step(time_step=time)
-        assert after.status == "converged"
-        for k, body in enumerate(("wheel", "rail")):
-            start, end = before[f"{body}_temperature"], after[f"{body}_temperature"]
-            flow = before[f"{body}_heat"]
-            assert end == pytest.approx(lumped(case, k, start, flow, time), rel=1e-12)
-            capacity = case["temperature"]["bulk"]["mass"][k] * HEAT_CAPACITY
-            heat[k] += flow * time
-            stored[k] += capacity * (end - start)
-            if conductance[k]:
-                # integral of H (T - T_air) over the exponential
-                rate = conductance[k] / capacity
-                final = AIR + flow / conductance[k]
-                faded = -np.expm1(-rate * time) / rate
-                taken[k] += conductance[k] * ((final - AIR) * time + (start - final) * faded)
-        before = after
-    np.testing.assert_allclose(heat, stored + taken, rtol=1e-12)
+    capacity = np.array([3.0, 5.0]) * HEAT_CAPACITY
+    friction, kept = 0.0, 0.0
+    for time in (1e-3, 0.5, 4.0, 30.0, 0.0, 20.0):
+        after_it = contact.step(time_step=time)
+        assert after_it.status == "converged"
+        wanted, lost = lumped(case["temperature"]["bulk"], before, time)
+        found = np.array([after_it[f"{body}_temperature"] for body in ("wheel", "rail")])
+        # the exchange is read from a difference of heat flows
+        np.testing.assert_allclose(found, wanted, rtol=1e-9)
+        started = [before[f"{body}_temperature"] for body in ("wheel", "rail")]
+        friction += before["friction_power"] * time
+        kept += (capacity * (found - started)).sum() + lost.sum()
+        # temperatures are rounded: so is the heat that the bodies hold
+        rounded = 4 * np.finfo(float).eps * (capacity * np.abs(found)).sum()
+        assert kept == pytest.approx(friction, rel=1e-9 if any(conductance) else 1e-12, abs=rounded)
+        before = after_it
+
+
+def test_no_step_is_too_long() -> None:
+    """Bodies of half a gram beside a contact that levels them within milliseconds: a step of any
+    length goes to the balance, where both are as warm as friction and the air make them, and the
+    next one stays."""
+    case = wheel(temperature__bulk={"mass": [0.0004, 0.0005], "air_conductance": [40.0, 60.0],
+                                    "air_temperature": AIR})  # fmt: skip
+    contact = railpatch.Contact(case)
+    first = contact.step()
+    g, friction = exchange_of(first), 0.5 * first["friction_power"]
+    assert 0.0004 * HEAT_CAPACITY / g < 0.01
+    balance = np.linalg.solve([[g + 40.0, -g], [-g, g + 60.0]],
+                              [friction + 40.0 * AIR, friction + 60.0 * AIR])  # fmt: skip
+    for time in (1e3, 1e9, 1e3):
+        result = contact.step(time_step=time)
+        assert result.status == "converged"
+        found = [result["wheel_temperature"], result["rail_temperature"]]
+        np.testing.assert_allclose(found, balance, rtol=1e-6)
+
+
+def test_steps_converge_with_their_length() -> None:
+    """Friction that falls with temperature is held over a step: first order in time, against
+    steps an eighth as long as the shortest."""
+    law = {"law": "temperature", "reference": 0.35, "change": -0.2, "reference_temperature": 20.0,
+           "temperature_range": 400.0}  # fmt: skip
+    case = wheel(friction=law, temperature__bulk__mass=[0.5, 0.8],
+                 grid={"element_size": [1.6e-3, 1.6e-3]})  # fmt: skip
+
+    def end(steps: int) -> float:
+        contact = railpatch.Contact(case)
+        contact.step()
+        for _ in range(steps):
+            result = contact.step(time_step=16.0 / steps)
+        return result["wheel_temperature"]
+
+    fine = end(64)
+    coarse, half = abs(end(4) - fine), abs(end(8) - fine)
+    # of first order, whose reference errs too: (1/4 - 1/64)/(1/8 - 1/64) = 15/7
+    assert coarse / half == pytest.approx(15 / 7, rel=0.15)
 
 
 def test_heat_is_that_of_friction_and_of_the_other_body() -> None:
@@ -171,6 +200,17 @@ def test_wheels_of_a_wheelset_have_their_own() -> None:
 def test_what_does_nothing_is_refused(changes: dict[str, Any], key: str) -> None:
     with pytest.raises(railpatch.CaseError, match=rf"temperature\.bulk.*{key}"):
         railpatch.Contact(wheel(**changes))
+
+
+def test_a_single_solve_says_that_no_time_passes() -> None:
+    case = wheel()
+    alone = railpatch.solve(case)
+    (note,) = alone["notes"]
+    assert note.startswith("temperature.bulk: no time passes")
+    del case["temperature"]["bulk"]
+    without = railpatch.solve(case)
+    assert "notes" not in without.data
+    assert alone["wheel_heat"] == without["wheel_heat"]
 
 
 def test_a_found_temperature_is_no_input() -> None:
