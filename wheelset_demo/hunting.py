@@ -17,7 +17,7 @@ import numpy as np
 from railpatch import CaseError
 from scipy.optimize import brentq
 
-from wheelset_demo.scene import WheelsetScene
+from wheelset_demo.scene import WheelsetScene, refuse_bulk
 from wheelset_demo.simulation import Simulation
 from wheelset_demo.start import released
 from wheelset_demo.system import COUNT, System, Vector
@@ -62,6 +62,7 @@ class Mode:
 def linearised(scene: WheelsetScene, speed: float) -> Vector:
     """[11, 11], of the rates of coordinates without pitch and of velocities, straight on at a
     speed (m/s). Raises CaseError, ContactFailure."""
+    refuse_bulk(scene.case, "the search for a hunting speed")
     straight = scene.at_speed(speed, 0.0)
     system = System(straight, exact=True)
     state = released(straight, system)

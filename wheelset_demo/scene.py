@@ -266,6 +266,15 @@ def track_problems(case: Any, instead: str = "") -> list[str]:
     return problems
 
 
+def refuse_bulk(case: Any, run: str) -> None:
+    """Refuses bodies that store heat where no time passes for them. run: what has none."""
+    if case.temperature is not None and case.temperature.bulk is not None:
+        raise CaseError(
+            f"temperature.bulk: value is given, allowed to be left out: {run} has no time in which "
+            "wheels warm"
+        )
+
+
 def start_problems(case: Any, found: tuple[str, ...], why: str) -> list[str]:
     """Of a case without creep forces, or with keys of [wheelset] that are not to be given."""
     problems = []

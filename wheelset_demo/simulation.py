@@ -55,6 +55,7 @@ class Simulation:
                             log.write(self.state.time, **recorder.messages(trace, self.state))
                 if index < steps:
                     self.state = stepper.step(self.state, rates)
+                    self.system.element.pass_time(run.step)
                     if advance is not None:
                         advance(self.state)
         except ContactFailure as failure:

@@ -15,6 +15,7 @@ import pytest
 import railpatch
 import vehicle_scenes
 import wheelset_scenes
+from bulk_samples import lumped
 from click.testing import CliRunner
 from railpatch.case.common import Temperature
 from railpatch.command.cli import cli
@@ -48,18 +49,15 @@ def test_rig(tmp_path: Path) -> None:
 
 
 def test_rig_stores_heat(tmp_path: Path) -> None:
-    """Between positions each body takes the heat that it had at the one before."""
+    """Between positions bodies take the heat of friction that they had at the one before."""
     source = scenes() / NOMINAL
     for profile in source.parent.glob("*.csv"):
         (tmp_path / profile.name).write_bytes(profile.read_bytes())
     heated = tmp_path / "scene.toml"
-    mass, conductance, air = [0.5, 2.0], [3.0, 1.0], 20.0
-    heated.write_text(
-        source.read_text()
-        + TEXT
-        + f"\n[temperature.bulk]\nmass = {mass}\nair_conductance = {conductance}\n"
-        + f"air_temperature = {air}\n"
-    )
+    bulk = {"mass": [0.5, 2.0], "air_conductance": [3.0, 1.0], "air_temperature": 20.0}
+    table = "\n".join(f"{key} = {value}" for key, value in bulk.items())
+    text = TEXT.replace(f"rail = {BULK}", f"rail = {BULK + 2}")
+    heated.write_text(f"{source.read_text()}{text}\n[temperature.bulk]\n{table}\n")
     scene = load_rig_scene(heated, {"positions": 3})
     balancer = Balancer(scene)
     positions = scene.positions()
@@ -69,17 +67,13 @@ def test_rig_stores_heat(tmp_path: Path) -> None:
         time = later.time - at.time
         assert time > 0
         for side in ("left", "right"):
-            before, now = balance.result[side], after.result[side]
-            for k, body in enumerate(("wheel", "rail")):
-                end = air + before[f"{body}_heat"] / conductance[k]
-                start = before[f"{body}_temperature"]
-                left = np.exp(-conductance[k] * time / (mass[k] * 450.0))
-                wanted = end + (start - end) * left
-                assert now[f"{body}_temperature"] == pytest.approx(wanted, rel=1e-9)
+            wanted, _ = lumped(bulk, balance.result[side], time)
+            now = [after.result[side][f"{body}_temperature"] for body in ("wheel", "rail")]
+            np.testing.assert_allclose(now, wanted, rtol=1e-7)
 
 
 def test_what_has_no_time_refuses_bodies_that_store_heat(tmp_path: Path) -> None:
-    """Curves, FMUs, and the force element with its runs, by name."""
+    """Curves and FMUs, by name; and rails that a run finds always new."""
     bulk = "\n[temperature.bulk]\nmass = 100.0\n"
     curve, case, run = (tmp_path / f"{name}.toml" for name in ("curve", "case", "run"))
     curve.write_text(CURVE.read_text() + TEXT + bulk)

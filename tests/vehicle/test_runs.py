@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pinocchio as pin
 import pytest
 import vehicle_scenes as scenes
+from railpatch import CaseError
+from railpatch.case.common import Bulk, Temperature
+from railpatch.case.types import SIDES
 
 from wheelset_demo.scene import GRAVITY
 from wheelset_demo.vehicle import Simulation
@@ -199,3 +204,31 @@ def test_states_of_a_run():
     np.testing.assert_allclose(times, [0.0, 0.005, 0.01, 0.015, 0.02], atol=1e-12)
     works = simulation.state.work
     assert works[1] == pytest.approx(works[4:].sum())
+
+
+def test_wheels_warm() -> None:
+    """Each wheel of a vehicle its own, on rails that are always new; one step of time a step."""
+    given = scenes.scene(method=FULL, duration=0.01, log_every=1)
+    heat = Temperature(wheel=40.0, rail=20.0, bulk=Bulk(mass=[0.05, 0.0]))
+    warm = replace(given, case=given.case.model_copy(update={"temperature": heat}))
+    simulation = Simulation(warm)
+
+    def now(name: str) -> np.ndarray:
+        results = [simulation.element.result(k) for k in range(4)]
+        return np.array([[result[side][name] for side in SIDES] for result in results])
+
+    steps, before, lost = simulation.steps(), None, np.zeros((4, 2))
+    for _ in steps:
+        flow = now("wheel_heat")
+        if before is not None:
+            lost += 0.5 * given.run.step * (before + flow)
+        before = flow
+    assert (now("rail_temperature") == 20.0).all()
+    cooled = 0.05 * heat.heat_capacity[0] * (now("wheel_temperature") - 40.0)
+    assert (cooled < 0).all()
+    # heat is held over a step, what flows hardly changes
+    np.testing.assert_allclose(cooled, lost, rtol=1e-2)
+    rails = heat.model_copy(update={"bulk": Bulk(mass=1.0)})
+    case = given.case.model_copy(update={"temperature": rails})
+    with pytest.raises(CaseError, match=r"temperature\.bulk\.mass.*always new"):
+        Simulation(replace(given, case=case))

@@ -22,7 +22,7 @@ from railpatch.pinocchio.element import STATE
 from railpatch.pinocchio.model import WHEELSET
 
 from wheelset_demo.coupling.instance import WRENCH, FmuFailure, UnpackedFmu
-from wheelset_demo.scene import WheelsetScene
+from wheelset_demo.scene import WheelsetScene, refuse_bulk
 from wheelset_demo.start import released
 from wheelset_demo.system import (
     BAD,
@@ -50,6 +50,7 @@ class ElementContact:
 
     def __init__(self, scene: WheelsetScene) -> None:
         """Raises CaseError, ProfileError."""
+        refuse_bulk(scene.case, "a contact held between communication points")
         self._model = model_of(scene)
         self._data = self._model.createData()
         self._element = ForceElement(self._model, WHEELSET, scene.at_height())

@@ -57,6 +57,7 @@ class Simulation:
 
     def _step(self) -> None:
         before = self.system.positions.mean()
+        self.element.pass_time(self.scene.run.step)
         self.state, self.rates = self._stepper.step(self.state, self.rates)
         self.means.add(float(self.system.positions.mean() - before), self.element.wheels)
 

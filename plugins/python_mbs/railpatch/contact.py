@@ -276,7 +276,20 @@ def solve(
         raise CaseError(result.warnings)
     if notes := contact.profile_notes():
         result.data["profiles"] = notes
+    if notes := notes_of_solve(contact.case):
+        result.data["notes"] = notes
     return result
+
+
+def notes_of_solve(case: Case) -> list[str]:
+    """What of a case a single solve leaves without effect."""
+    heat = case.temperature
+    if heat is None or heat.bulk is None or not case.has_tangential:
+        return []
+    return [
+        "temperature.bulk: no time passes in a single solve: bulk temperatures are those given, "
+        "wheel_heat and rail_heat what would warm the bodies"
+    ]
 
 
 def _solved(contact: Contact, fields: bool) -> Result:

@@ -48,7 +48,8 @@ struct Wheelset {
   rp_input given, input;  // as the case has it, as it was last solved
   rp_result result;
   Placement placement;
-  double seconds;
+  double seconds;  // spent
+  double waiting;  // s, gone by since the last step
   std::exception_ptr refused;
 };
 
@@ -75,7 +76,7 @@ class ForceElement {
       w.input = w.given;
       w.result = {};
       w.placement = placement_at(placements.data() + kPlacement * k);
-      w.seconds = 0;
+      w.seconds = w.waiting = 0;
     }
     positions_.resize(count_);
     rails_.resize(count_ * kRails);
@@ -99,6 +100,11 @@ class ForceElement {
       status = rp_join_status(status, w.result.status);
     }
     return status;
+  }
+
+  // for bodies that store heat; goes by in the next step that is solved
+  void pass_time(double seconds) {
+    for (Wheelset &w : wheelsets_) w.waiting += seconds;
   }
 
   // a wrench at the centre, in track axes, to the row of `placed`
@@ -172,7 +178,9 @@ class ForceElement {
     fill(s, w.input);
     move_rails(w, rails_.data() + k * kRails);
     const auto begin = Clock::now();
+    w.input.time_step = w.waiting;
     w.contact->solve(w.input, w.result);
+    if (w.result.status != RP_NOT_CONVERGED && w.result.status != RP_OUT_OF_RANGE) w.waiting = 0;
     w.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
     state_[k] = s;
     report(k, w.result);
@@ -259,6 +267,8 @@ void bind_force_element(nb::module_ &m) {
       .def("step", &E::step,
            "Reads 'motion', solves all contacts, writes the other arrays; returns the worst "
            "status. The interpreter's lock is released.")
+      .def("pass_time", &E::pass_time, nb::arg("seconds"),
+           "Time that goes by before the next step, for bodies that store heat.")
       .def("place", &E::place, nb::arg("index"), nb::arg("fx"), nb::arg("fy"), nb::arg("fz"),
            nb::arg("mx"), nb::arg("my"), nb::arg("mz"),
            "Another wrench at a wheelset's centre, track axes, into its row of 'placed'.")

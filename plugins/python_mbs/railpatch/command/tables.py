@@ -38,6 +38,8 @@ def print_result(result: Result, console: Console | None = None) -> None:
             console.print(patch_table(columns, {**PATCH_UNITS, **PLACE_UNITS}))
     for line in note_lines(data.get("profiles", {})):
         console.print(line, highlight=False)
+    for line in data.get("notes", []):
+        console.print(line, highlight=False)
     console.print(f"solved in {1e3 * data['wall_time']:.3g} ms: {', '.join(data['stages'])}")
 
 

@@ -92,6 +92,8 @@ class ForceElement:
             check_case(contact.case)
             if contact.case.track.irregularity is not None:
                 raise CaseError("track.irregularity: given, allowed in a multibody model none")
+        heats = [contact.case.temperature for contact in self.contacts]
+        self._stores = [heat is not None and heat.bulk is not None for heat in heats]
         self.frame_speed = float(frame_speed)
         self.wheelset = pin.SE3.Identity() if wheelset is None else wheelset
         self._core = _core.ForceElement(
@@ -148,6 +150,20 @@ class ForceElement:
             vector = fext[joint].vector
             vector += wrench
         return STATUSES[status]
+
+    def pass_time(self, seconds: float) -> None:
+        """Lets time (s) go by before the next step, for the wheels' bulk temperatures.
+
+        To be called once a time step of the run: forces may be asked for several times a step, and
+        those after the first find the same temperatures. Wheels are warmed by the heat of the last
+        step that was solved, as the case's [temperature.bulk] says; results have
+        wheel_temperature. Cases without that table do not change with time. Raises CaseError for a
+        negative time.
+        """
+        if not 0 <= seconds < math.inf:
+            raise CaseError(f"seconds: value is {show(seconds)}, allowed >= 0 and finite")
+        if any(self._stores):
+            self._core.pass_time(float(seconds))
 
     def place(self, index: int, force: Sequence[float], moment: Sequence[float]) -> NDArray:
         """[6], another wrench on a wheelset, as fext wants it, at the last step's position.
@@ -434,10 +450,24 @@ def check_case(case: Any) -> None:
         problems.append(
             f"wheelset.time_step: value is {case.wheelset.time_step}, allowed 0: {several}"
         )
-    if case.temperature is not None and case.temperature.bulk is not None:
-        problems.append(f"temperature.bulk: value is given, allowed to be left out: {several}")
+    problems += problems_of_bulk(case)
     if problems:
         raise CaseError(problems)
+
+
+def problems_of_bulk(case: WheelsetCase) -> list[str]:
+    """Of bodies that store heat under a wheelset that moves."""
+    if case.temperature is None or case.temperature.bulk is None:
+        return []
+    problems = []
+    if case.temperature.stores[1] and case.track.kind == "rail":
+        problems.append(
+            f"temperature.bulk.mass: value is {show(list(case.temperature.bulk.mass))}, allowed "
+            "[wheel, 0]: the rail under a wheelset that moves is always new"
+        )
+    if case.track.rail_support is not None:
+        problems.append("temperature.bulk: value is given, allowed without track.rail_support")
+    return problems
 
 
 def at_height(case: WheelsetCase, folder: Path) -> Scene:

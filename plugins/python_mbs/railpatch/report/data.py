@@ -81,6 +81,11 @@ class Positions:
         """Whether the wheelset travels."""
         return bool(np.ptp(np.nan_to_num(self.state["x"])) > 0)
 
+    @property
+    def has_bulk(self) -> bool:
+        """Whether bulk temperatures were logged."""
+        return any(has_bulk(self.contact[side]) for side in SIDES)
+
     def patch_count(self, side: str) -> np.ndarray:
         """Patches of one side at each position, shape (n,)."""
         return np.array([len(m["patches"]) for m in self.contact[side].messages])
@@ -153,6 +158,11 @@ def at_times(series: Series, times: np.ndarray) -> Series:
     """The messages at these times; an empty one where there is none."""
     by_time = dict(zip(series.time.tolist(), series.messages, strict=True))
     return Series(times, [by_time.get(time, {}) for time in times.tolist()])
+
+
+def has_bulk(contact: Series) -> bool:
+    """Whether a wheel's messages have bulk temperatures."""
+    return bool(np.isfinite(contact["wheel_temperature"]).any())
 
 
 def _vectors(values: np.ndarray) -> np.ndarray:

@@ -174,6 +174,19 @@ def balance_work(data: Positions) -> go.Figure:
     return styled(figure, 360)
 
 
+def bulk_temperatures(data: Positions) -> go.Figure:
+    """Of wheels and rails or rollers over the run."""
+    figure = make_subplots(1, 1)
+    add = Adder(figure, data, 1, 1)
+    for side in SIDES:
+        for body, name, dash in (("wheel", "wheel", "solid"), ("rail", data.counterpart, "dash")):
+            values = data.contact[side][f"{body}_temperature"]
+            add.line(data.along, values, f"{side} {name}", COLORS[side], dash=dash)
+    figure.update_yaxes(title_text="bulk temperature [°C]")
+    figure.update_xaxes(title_text=data.along_label)
+    return styled(figure, 360)
+
+
 def _of_patches(data: Positions, side: str, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Position index and value of every patch; of ``position`` the lateral part."""
     index, values = [], []

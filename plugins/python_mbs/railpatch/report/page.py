@@ -79,6 +79,12 @@ def _sections(
         "track's centre line; a contact angle is positive at a left wheel's flange.</p>",
         plot(figures.patches(data), "patches"),
     ]
+    if data.has_bulk:
+        parts += [
+            f"<h2>Bulk temperatures</h2><p>Of wheels and {body}s, that their surfaces have before "
+            "the contact warms them.</p>",
+            plot(figures.bulk_temperatures(data), "bulk-temperatures"),
+        ]
     parts += _patch_section(data, at)
     if data.has_stats:
         parts += [

@@ -48,6 +48,12 @@ def friction(data: VehicleRun) -> go.Figure:
     return _sides(data, "lost in friction [kJ]", lambda wheel: 1e-3 * data.friction_work(wheel))
 
 
+def bulk_temperatures(data: VehicleRun) -> go.Figure:
+    """Of the wheels; rails, which are always new, have the temperature that the case gives."""
+    title = "bulk temperature [°C]"
+    return _sides(data, title, lambda wheel: data.contact[wheel]["wheel_temperature"])
+
+
 def _sides(data: VehicleRun, title: str, values: Callable[[Wheel], np.ndarray]) -> go.Figure:
     """Left wheels beside right ones, one line for each wheelset."""
     figure = make_subplots(

@@ -12,6 +12,7 @@ from railpatch.case.types import SIDES
 from railpatch.page import tables
 from railpatch.page.figures import plot
 from railpatch.report import balance_figures
+from railpatch.report.data import has_bulk
 from railpatch.report.patch_figure import patch_figure
 from railpatch.report.tables import identity
 from railpatch.report.vehicle import figures as vehicle_figures
@@ -129,6 +130,11 @@ def _sections(data: VehicleRun) -> list[str]:
         ]
     if any(np.isfinite(data.friction_work(wheel)).any() for wheel in data.contact):
         parts += ["<h2>Friction</h2>", plot(figures.friction(data), "friction")]
+    if any(has_bulk(contact) for contact in data.contact.values()):
+        parts += [
+            "<h2>Bulk temperatures of the wheels</h2>",
+            plot(figures.bulk_temperatures(data), "bulk-temperatures"),
+        ]
     if len(data.run["/vehicle/energy"]):
         parts += ["<h2>Energies</h2>", plot(balance_figures.energy(data), "energy")]
     if len(data.run["/solver/stats"]) and data.count > 1:
