@@ -38,6 +38,15 @@ SMALL = {"patch": {"elements": [8, 8]}, "wheels": {"element_size": [1.6e-3, 1.6e
 LEFT_OUT = {"derivatives", "element size", "elements"}
 # a wheel that is as warm as the rail or nearly so, in place of one that is warmer than the contact
 ALONE = {"temperature": {"wheel": 22.0, "rail": 20.0, "exchange": True}}
+STORED = {
+    **{f"temperature__{key}": value for key, value in HEAT["temperature"].items()},
+    "temperature__bulk": {
+        "mass": [0.2, 0.3],
+        "air_conductance": [12.0, 30.0],
+        "air_temperature": 5.0,
+    },
+    "wheelset__time_step": 0.5,
+}
 LOADED = {"wheelset__z": None, "wheelset__vertical_force": 1.2e5}
 # two areas of contact on the right rail
 TWO_AREAS = {
@@ -63,6 +72,7 @@ def features(kind: str) -> dict[str, dict[str, Any]]:
         found["roller"] = {**found["roller"], "wheelset__yaw": 4e-3}
         found["inclined frame"] = {**found["roller"], **found["inclined frame"]}
         found["flange"] = TWO_AREAS
+        found["stored heat"] = STORED
         found["patch rule"] = {**TWO_AREAS, "method__patch_rule": "contact"}
     if kind == "wheelset":
         del found["other side"]
@@ -100,6 +110,7 @@ WHEELS = (
     "warm wheel",
     "tangential fastsim",
     "plastic layer",
+    "stored heat",
 )
 WHEELS += ("transient", "roller", "rail support", "flange", "joint")
 
@@ -116,6 +127,7 @@ VALUES: dict[str, Any] = {
     "friction": {"coefficient": 0.2},
     "layer": {"thickness": 5e-5, "shear_modulus": 8e9},
     "temperature": {"wheel": 20.0, "rail": 20.0},
+    "temperature.bulk": {"mass": 0.1, "air_conductance": 20.0, "air_temperature": 9.0},
     "grid": {"elements": [9, 9]},
     "grid.elements": [9, 9],
     "grid.element_size": [1.1e-3, 1.1e-3],
@@ -535,6 +547,12 @@ IDLE = [
         "temperature.exchange",
         lambda c, k, v: c["temperature"]["wheel"] != c["temperature"]["rail"],
         "bodies that are unequally warm from the start exchange heat anyway",
+    ),
+    Idle(
+        "temperature.bulk",
+        lambda c, k, v: not get(c, "wheelset.time_step"),
+        "no time passes between the steps",
+        ("rail support", "warm wheel"),
     ),
     Idle(
         "layer.shear_modulus",
