@@ -104,6 +104,8 @@ class Contact:
         wheel_rail, wheelset: the position and velocity keys of [wheelset] with left and right,
         roller_pitch_rate, track = {"left": ..., "right": ...}; left and right in part or whole.
         all, with temperatures: temperature = {"wheel": ..., "rail": ...}, in part or whole.
+        Bodies of temperature.bulk go on by time_step, by default that of the case; before the first
+        step, and by 0, no time passes.
         fields: add the fields of each patch. Other keys raise CaseError and nothing changes.
         """
         case = changed_case(self._case, changes)
