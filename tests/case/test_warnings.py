@@ -1,0 +1,169 @@
+"""What can hardly be meant is solved with a warning, and what is not solved says why."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+import railpatch
+from bits.combinations import sample
+from case_samples import PATCH, WHEELSET, with_values
+from click.testing import CliRunner
+from railpatch.case.kinds import kinds
+from railpatch.command.cli import cli
+
+from wheelset_demo.vehicle.scene import doubtful_bodies, load_vehicle_scene
+
+LOADED = with_values(WHEELSET, wheelset__z=None, wheelset__vertical_force=1.2e5)
+STILL = {"grid__element_size": [1e-3, 1e-3]}
+# what was meant -> the case, and words of what is said
+MISTAKES: dict[str, tuple[dict[str, Any], str]] = {
+    "GPa as Pa": (with_values(PATCH, material={"shear_modulus": 82.0}), "shear_modulus"),
+    "MPa as Pa": (with_values(PATCH, material={"shear_modulus": 82e3}), "shear_modulus"),
+    "kN as N": (with_values(LOADED, wheelset__vertical_force=120.0), "normal force"),
+    "t as N": (with_values(PATCH, load={"normal_force": 10.0}), "normal force"),
+    "vehicle's load on one wheel": (with_values(PATCH, load={"normal_force": 6e5}), "500 kN"),
+    "a wheel on a needle": (
+        with_values(PATCH, geometry={"semi_axes": [1e-3, 1e-3]}, load={"normal_force": 3e4}),
+        "5 GPa",
+    ),
+    "a soft cushion": (
+        with_values(PATCH, geometry={"semi_axes": [2e-2, 2e-2]}, load={"normal_force": 2e3}),
+        "10 MPa",
+    ),
+    "creepage in per cent": (with_values(PATCH, motion__creepage=[0.3, 0.0]), "creepage"),
+    "creepage in per mille": (with_values(PATCH, motion__creepage=[0.0, 2.0]), "creepage"),
+    "pitch rate of the other sign": (with_values(LOADED, wheelset__pitch_rate=4.35), "pitch_rate"),
+    "pitch rate left at 0": (with_values(LOADED, wheelset__pitch_rate=0.0), "pitch_rate"),
+    "rolling backwards": (with_values(LOADED, wheelset__speed=-2.0), "pitch_rate"),
+    "y without roll": (with_values(LOADED, wheelset__y=3e-3, **STILL), "one wheel"),
+    "y in cm": (with_values(LOADED, wheelset__y=0.05, **STILL), "25 mm"),
+    "radius in dm": (with_values(LOADED, wheelset__nominal_radius=4.6), "radius"),
+    "radius of a toy": (with_values(LOADED, wheelset__nominal_radius=0.046), "radius"),
+    "friction in per cent": (with_values(PATCH, friction__coefficient=3.0), "friction"),
+    "layer in mm": (
+        with_values(PATCH, layer={"shear_modulus": 6e9, "thickness": 0.02}),
+        "layer",
+    ),
+    "a grid of 6 x 6": (with_values(PATCH, grid={"elements": [6, 6]}), "8 elements"),
+}
+# the condition -> the case, its status and a word of the reason
+UNSOLVED: dict[str, tuple[dict[str, Any], str, str]] = {
+    "normal": (
+        with_values(PATCH, geometry={"curvatures": [1.0, 1.5]}, method={"max_iterations": 1}),
+        "not_converged",
+        "normal problem",
+    ),
+    "tractions": (
+        with_values(PATCH, method={"normal": "hertz", "max_iterations": 1}),
+        "not_converged",
+        "tractions",
+    ),
+    "border": (
+        with_values(PATCH, geometry={"curvatures": [1.0, 1.5]}, grid={"element_size": [5e-4, 5e-4],
+                    "max_elements": [8, 8]}),
+        "out_of_range",
+        "grid",
+    ),
+    "linear": (
+        with_values(PATCH, method={"tangential": "linear"}, motion__creepage=[0.01, 0.0]),
+        "out_of_range",
+        "linear",
+    ),
+    "side by side": (with_values(LOADED, wheelset__y=0.3), "out_of_range", "track.gauge"),
+    "too deep": (
+        with_values(LOADED, wheelset__vertical_force=1e9, **STILL), "out_of_range", "room"
+    ),
+    "accuracy": (
+        with_values(PATCH, grid=None, method={"tangential": "fastsim", "accuracy": 0.001}),
+        "accuracy_not_met",
+        "estimate",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", MISTAKES)
+def test_a_mistake_is_warned_of(name: str) -> None:
+    case, words = MISTAKES[name]
+    result = railpatch.solve(case)
+    assert any(words in text for text in result.warnings), result.warnings
+    assert result.to_dict()["warnings"] == result.warnings
+    with pytest.raises(railpatch.CaseError, match=words):
+        railpatch.solve(case, strict=True)
+
+
+def test_correct_cases_have_none() -> None:
+    """Of every kind, method, regime and law, on grids that are as fine as a user's."""
+    solved = 0
+    for name, case in sample(0):
+        fine = dict(case)
+        if case["kind"] == "patch" and "grid" in case and "elements" in case["grid"]:
+            fine = with_values(case, grid__elements=[10, 10])
+        try:
+            result = railpatch.solve(fine)
+        except railpatch.CaseError:
+            continue
+        if not result.solved:
+            continue
+        solved += 1
+        meant = "8 elements" if case["kind"] != "patch" else "none"
+        assert [text for text in result.warnings if meant not in text] == [], name
+    assert solved > 50
+
+
+@pytest.mark.parametrize("kind", sorted(kinds()))
+def test_packaged_scenes_have_none(kind: str, tmp_path: Path) -> None:
+    quick = {
+        "rig": ["--positions", "3", "-o", str(tmp_path / "a.mcap")],
+        "wheelset_run": ["--distance", "0.2", "-o", str(tmp_path / "b.mcap")],
+        "vehicle": ["--duration", "0.01", "--method", "fastsim"],
+    }
+    scene = kinds()[kind]
+    command = scene.command.split()
+    arguments = [str(scene.scene) if word == "SCENE" else word for word in command[1:]]
+    ran = CliRunner().invoke(cli, [arguments[0], arguments[1], *quick.get(kind, []), "--strict"])
+    assert ran.exit_code == 0, ran.output
+    assert "warning" not in ran.stderr
+
+
+def test_a_command_warns_and_strict_refuses(tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(
+        'kind = "patch"\n[geometry]\nsemi_axes = [0.006, 0.006]\n[load]\nnormal_force = 10.0\n'
+        "[friction]\ncoefficient = 0.3\n[motion]\ncreepage = [0.001, 0.0]\n"
+        "[grid]\nelements = [12, 12]\n"
+    )
+    ran = CliRunner().invoke(cli, ["solve", str(path)])
+    assert ran.exit_code == 0
+    assert "warning: a normal force is outside 100 N to 500 kN" in ran.stderr
+    ran = CliRunner().invoke(cli, ["solve", str(path), "--strict"])
+    assert ran.exit_code == 2
+    assert "100 N to 500 kN" in ran.stderr
+
+
+def test_bodies_of_a_vehicle() -> None:
+    scene = load_vehicle_scene(None, {})
+    assert doubtful_bodies(scene) == []
+    light = scene.vehicle.car_body.model_copy(update={"mass": 32.0})
+    object.__setattr__(scene, "vehicle", scene.vehicle.model_copy(update={"car_body": light}))
+    [text] = doubtful_bodies(scene)
+    assert "vehicle.car_body.mass is 32 kg" in text
+
+
+@pytest.mark.parametrize("name", UNSOLVED)
+def test_what_is_not_solved_says_why(name: str) -> None:
+    case, status, words = UNSOLVED[name]
+    result = railpatch.solve(case)
+    assert result.status == status
+    assert result.reason is not None
+    assert words in result.reason
+    assert result.to_dict()["reason"] == result.reason
+
+
+def test_what_is_solved_has_no_reason() -> None:
+    result = railpatch.solve(LOADED)
+    assert (result.status, result.reason) == ("converged", None)
+    for side in ("left", "right"):
+        assert result[side]["reason"] is None
+        assert [patch["reason"] for patch in result[side]["patches"]] == [None]
