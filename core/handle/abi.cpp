@@ -121,6 +121,10 @@ rp_error rp_get_jacobian(rp_contact *contact, rp_jacobian *out, rp_message *mess
                                    : "kind is patch, rp_get_jacobian needs wheel_rail or wheelset");
     return RP_ERROR_VALUE;
   }
+  if (contact->handle.config().roll_balanced != 0 || contact->handle.config().axle_free != 0) {
+    set_message(message, "roll_balanced and axle_free: rp_get_jacobian needs 0");
+    return RP_ERROR_VALUE;
+  }
   if (!contact->handle.has_solution()) {
     set_message(message,
                 "rp_get_jacobian needs a step since rp_create, rp_reset, rp_restore_state or "

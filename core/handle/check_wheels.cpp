@@ -102,6 +102,16 @@ void check_stored_heat(const rp_config &c, checker &check) {
   check.require(c.regime == RP_STEADY_ROLLING, "bulk_mass needs regime = steady_rolling");
 }
 
+void check_balance(const rp_config &c, checker &check) {
+  const bool wheelset = c.kind == RP_WHEELSET;
+  check.require(c.roll_balanced == 0 || wheelset,
+                "roll_balanced needs kind = wheelset: one wheel alone has a roll moment");
+  check.require(c.axle_free == 0 || wheelset, "axle_free needs kind = wheelset");
+  check.require(
+      c.axle_free == 0 || has_tangential(c),
+      "axle_free needs a tangential problem: without creep forces nothing turns the axle");
+}
+
 void check_wheels(const rp_config &c, checker &check) {
   if (c.track == RP_ROLLER) {
     check.field("roller_radius", c.roller_radius, config_range::roller_radius);

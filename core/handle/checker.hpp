@@ -105,5 +105,6 @@ void check_wheels(const rp_config &c, checker &check);
 void check_reference(const rp_config &c, checker &check);
 // Of bodies that the contacts' heat warms.
 void check_stored_heat(const rp_config &c, checker &check);
+void check_balance(const rp_config &c, checker &check);
 
 }  // namespace railpatch

@@ -111,9 +111,9 @@ patch_scene patch_scene_of(const rp_config &c) {
   scene.tangential = c.regime == RP_REGIME_NONE ? RP_TANGENTIAL_NONE : c.tangential;
   scene.tolerance = scene.normal_tolerance = c.tolerance;
   // the search for z sees the force change only where each force is known better than it asks for
-  if (c.kind != RP_PATCH && (c.load == RP_FORCE || has_support(c)))
+  if (c.kind != RP_PATCH && (c.load == RP_FORCE || has_support(c) || is_balanced(c)))
     scene.normal_tolerance = std::max(0.1 * c.tolerance, 1e-12);
-  if (has_support(c)) scene.tolerance = scene.normal_tolerance;
+  if (has_support(c) || is_balanced(c)) scene.tolerance = scene.normal_tolerance;
   // with neither nothing is left out, and the method says so
   scene.has_regime = c.regime != RP_REGIME_NONE || c.tangential == RP_TANGENTIAL_NONE;
   scene.max_iterations = c.max_iterations;
@@ -135,7 +135,7 @@ patch_scene patch_scene_of(const rp_config &c) {
   scene.slopes_along_rows =
       c.track == RP_ROLLER || c.rail_height_count[0] + c.rail_height_count[1] > 0;
   scene.fast = fast_of(c, scene.tangential);
-  scene.exact = scene.derivatives && scene.differentiates();
+  scene.exact = (scene.derivatives || is_balanced(c)) && scene.differentiates();
   return scene;
 }
 

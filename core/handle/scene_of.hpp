@@ -35,5 +35,7 @@ struct profile_error {
 // The parts of a scene that are files of their own: wheels, but for the greatest grid.
 wheels_setup wheels_of(const rp_config &config, const patch_scene &scene);
 bool has_support(const rp_config &config);
+// Whether a wheelset's roll angle or pitch rate is found.
+bool is_balanced(const rp_config &config);
 
 }  // namespace railpatch

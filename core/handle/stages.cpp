@@ -86,6 +86,7 @@ const char *plasticity_reason(const patch_scene &scene) {
 }
 
 const char *derivative_reason(const patch_scene &scene) {
+  if (!scene.derivatives && scene.exact) return "the wheelset's balance is found by them";
   if (!scene.derivatives) return "derivatives are not asked for";
   return scene.exact ? "derivatives are asked for: from the solved conditions"
                      : "derivatives are asked for: by differences of further steps";
@@ -133,7 +134,8 @@ void describe_driver(const driver &of, rp_stage_info *info) {
                   : "the rails are rigid",
       support);
   set(RP_STAGE_PLASTICITY, scene.yields(), plasticity_reason(scene), plastic);
-  set(RP_STAGE_DERIVATIVES, scene.derivatives, derivative_reason(scene), of.derivative_bytes());
+  set(RP_STAGE_DERIVATIVES, scene.derivatives || scene.exact, derivative_reason(scene),
+      of.derivative_bytes());
 }
 
 }  // namespace

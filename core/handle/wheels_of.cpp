@@ -1,4 +1,6 @@
 // The wheels' part of a scene.
+#include <algorithm>
+
 #include "handle/scene_of.hpp"
 
 namespace railpatch {
@@ -68,6 +70,8 @@ bool has_support(const rp_config &c) {
   return c.kind != RP_PATCH && (c.rail_stiffness[0] > 0 || c.rail_stiffness[1] > 0);
 }
 
+bool is_balanced(const rp_config &c) { return c.roll_balanced != 0 || c.axle_free != 0; }
+
 wheels_setup wheels_of(const rp_config &c, const patch_scene &scene) {
   wheels_setup setup;
   for (int side = 0; side < 2; ++side)
@@ -76,6 +80,11 @@ wheels_setup wheels_of(const rp_config &c, const patch_scene &scene) {
   setup.force_given = c.load == RP_FORCE;
   setup.tolerance = c.tolerance;
   setup.nominal_radius = c.nominal_radius;
+  setup.whole_forces = c.patch_rule != RP_PATCHES_CONTACT || c.contact_frame == RP_FRAME_INCLINED;
+  if (is_balanced(c))
+    setup.balance = balance_setup{c.roll_balanced != 0, c.axle_free != 0, 0.5 * c.gauge,
+                                  c.track == RP_ROLLER ? c.roller_radius : 0.0,
+                                  std::max(c.standstill_speed, 1e-3)};
   if (c.friction_along_points > 0)
     setup.friction_along = friction_factor(c.friction_along_points, c.friction_along_position,
                                            c.friction_along_factor);

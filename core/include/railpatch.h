@@ -511,6 +511,13 @@ typedef struct rp_config {
                           and rows either way, as far as fitted allows; only with accuracy. With
                           tangential = RP_TANGENTIAL_TABLE they are those of the full theory,
                           beginning with fitted itself, and the table is asked first */
+
+  /* a wheelset in balance (RP_WHEELSET): what each step finds in place of an input, which then is
+   * not read. Derivatives are those of the balance, which follows. Not with rp_get_jacobian */
+  int32_t roll_balanced; /* 1: the roll angle at which the contact forces have no moment about the
+                            track's x through the wheelset's centre */
+  int32_t axle_free;     /* 1: the pitch rate at which axle_torque is 0: no drive, no brake; with a
+                            tangential problem */
 } rp_config;
 
 typedef struct rp_input {
@@ -659,7 +666,11 @@ typedef struct rp_result {
   double contact_power, creep_power, friction_power, plastic_power, elastic_energy;
   double max_temperature, residual;
   double wheel_heat, rail_heat;
-  double pressure_energy; /* J, sum of the wheels */
+  double pressure_energy;  /* J, sum of the wheels */
+  double roll, pitch_rate; /* rad, rad/s, given or found (wheel kinds) */
+  double axle_torque; /* N m, of the contact forces about the axle: their moment; with patch_rule =
+                         contact in the track's frame, which leaves the pressures' part along x out,
+                         the forces along the wheelset's x times the rolling radii */
   rp_reason reason;       /* why the status is not good: that of the wheel, or of both together */
   double reason_value;
   uint32_t warnings; /* those of both wheels */

@@ -157,6 +157,10 @@
   X(double, rail_heat, 1, number, even, kept, alone, NAN, "W", "heat into the rails or rollers") \
   X(double, pressure_energy, 1, number, even, kept, alone, NAN, "J",                             \
     "elastic energy of the pressure alone, of all patches by share")                             \
+  X(double, roll, 1, number, even, kept, alone, NAN, "rad", "roll angle of the wheelset")        \
+  X(double, pitch_rate, 1, number, even, kept, alone, NAN, "rad/s", "about the axle")            \
+  X(double, axle_torque, 1, number, even, kept, alone, NAN, "N m",                               \
+    "torque of the contact forces about the axle") \
   X(rp_reason, reason, 1, status, even, kept, alone, RP_REASON_NONE, "",                         \
     "why the status is not good")                                                                \
   X(double, reason_value, 1, estimate, even, kept, alone, NAN, "-",                              \
@@ -361,7 +365,11 @@
     "error estimate of the creep force over friction coefficient times normal force above which "  \
     "a step goes on to a finer grid; 0: none")                                                     \
   X(int32_t, finer_grids, 1, integer, always, 0, "[]", 0, 8, "-",                                  \
-    "grids that steps may go on to, with accuracy")
+    "grids that steps may go on to, with accuracy")                                                \
+  X(int32_t, roll_balanced, 1, integer, always, 0, "[]", 0, 1, "-",                                \
+    "whether the roll angle is found at which the contact forces have no roll moment")             \
+  X(int32_t, axle_free, 1, integer, always, 0, "[]", 0, 1, "-",                                    \
+    "whether the pitch rate is found at which the contact forces have no torque about the axle")
 
 /* X(type, name, count, role, where, start, bounds, low, high, scale, unit, text), as above and
  * role      place: a number whose size says nothing about how fast things change there

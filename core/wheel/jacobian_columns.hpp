@@ -6,7 +6,7 @@
 
 namespace railpatch {
 
-constexpr int jacobian_columns = 12, z_column = 2;
+constexpr int jacobian_columns = 12, z_column = 2, roll_column = 3, pitch_rate_column = 11;
 
 inline double *pose_and_velocity(rp_input &in, int column) {
   double *const numbers[jacobian_columns] = {&in.x,   &in.y,         &in.z,        &in.roll,

@@ -19,11 +19,13 @@ wheels::wheels(const wheels_setup &setup, const patch_scene &scene, const fft_pl
       force_given_(setup.force_given),
       tolerance_(setup.tolerance),
       nominal_radius_(setup.nominal_radius),
+      whole_forces_(setup.whole_forces),
       friction_along_(setup.friction_along) {
   wheels_.reserve(setup.wheel.size());
   for (const auto &wheel : setup.wheel) wheels_.emplace_back(wheel);
   if (setup.support) support_.emplace(*setup.support);
   if (setup.bulk) bulk_.emplace(*setup.bulk);
+  balance_ = setup.balance;
   if (!scene.exact) return;
   rates_ = std::make_unique<rates>(
       rates{wheel_derivative(scene, setup.largest.nx * setup.largest.ny, setup.largest.ny), {}});
@@ -93,6 +95,17 @@ void wheels::step(const rp_input &in, rp_result &out) {
   if (bulk_) bulk_->begin(in.time_step);
   if (solver_.scene().keeps_steps())
     for (auto &m : memory_) solver_.remember(m);
+  if (!balance_) {
+    solve(in, out);
+    return finish(in, out);
+  }
+  rp_input found = in;
+  solve_balanced(found, out);
+  finish(found, out);
+}
+
+// At the place and with the velocities of an input.
+void wheels::solve(const rp_input &in, rp_result &out) {
   {
     const stage_mark mark = solver_.marks().enter(RP_STAGE_GEOMETRY);
     for (auto &wheel : wheels_) wheel.place(in);
@@ -105,6 +118,10 @@ void wheels::step(const rp_input &in, rp_result &out) {
   } else {
     find_z(in.vertical_force, out);
   }
+}
+
+// Sums of what was solved, and what the next step begins with.
+void wheels::finish(const rp_input &in, rp_result &out) {
   bool there[2] = {false, false};
   for (const auto &wheel : wheels_) {
     rp_side_result &side = out.side[wheel.side()];
@@ -114,6 +131,9 @@ void wheels::step(const rp_input &in, rp_result &out) {
     side.contact_power = wheelset_power(in, {side.force, side.moment});
   }
   sum_sides(there, out, out);
+  out.roll = in.roll;
+  out.pitch_rate = in.pitch_rate;
+  out.axle_torque = torque(in, out);
   // more heat than the air takes
   if (bulk_ && !bulk_->within_range())
     report_search({RP_OUT_OF_RANGE, RP_REASON_BULK_TEMPERATURE}, out.residual, out);

@@ -1,7 +1,8 @@
 // The steps of one wheel or of a wheelset: all wheels at one height, the height found for a
-// prescribed vertical force, rails that deflect.
+// prescribed vertical force, roll angle and pitch rate found for a balance, rails that deflect.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -9,11 +10,20 @@
 #include "patch/driver.hpp"
 #include "tangential/friction_factor.hpp"
 #include "temperature/bulk.hpp"
+#include "wheel/moment_balance.hpp"
 #include "wheel/rail_support.hpp"
 #include "wheel/wheel_contact.hpp"
 #include "wheel/wheel_derivative.hpp"
 
 namespace railpatch {
+
+// What of a wheelset in balance is found, and what its search starts from.
+struct balance_setup {
+  bool roll = false, axle = false;
+  double half_width = 0;     // m, of the track
+  double roller_radius = 0;  // m; 0: rails
+  double least_speed = 0;    // m/s, of rolling, that steps of the pitch rate are measured with
+};
 
 struct wheels_setup {
   std::vector<wheel_setup> wheel;  // of the sides in use
@@ -25,6 +35,8 @@ struct wheels_setup {
   friction_factor friction_along;  // by x
   std::optional<support_setup> support;
   std::optional<bulk_setup> bulk;
+  std::optional<balance_setup> balance;
+  bool whole_forces = true;  // forces hold the pressures' part along x
 };
 
 class wheels final : public driver {
@@ -55,7 +67,22 @@ class wheels final : public driver {
   };
   patch_memory *memory_of(size_t wheel) { return memory_.data() + wheel * patches_; }
   const patch_memory *memory_of(size_t wheel) const { return memory_.data() + wheel * patches_; }
+  // Rates of the wheels by side.
+  using side_rates = std::array<const rp_side_result *, 2>;
+  // A state of the wheelset whose balance is searched (balanced_step.cpp).
+  struct balanced_state;
   double evaluate(double z, rp_result &result);
+  void solve(const rp_input &input, rp_result &result);
+  void solve_balanced(rp_input &input, rp_result &result);
+  bool touching_roll(rp_input &input);
+  double torque(const rp_input &input, const rp_result &result) const;
+  double torque_rate(const rp_input &input, const rp_input &direction, const rp_result &result,
+                     const side_rates &rate) const;
+  int found_columns(int (&columns)[3]) const;
+  double found_rate(int column, const rp_input &input, const rp_input &direction,
+                    const rp_result &result, const side_rates &rate) const;
+  bool balance_slopes(const rp_input &input, const rp_result &result, balance_slope &slope);
+  void finish(const rp_input &input, rp_result &result);
   void set_bulk(int side);
   void keep_heat(const rp_result &result);
   void find_z(double vertical_force, rp_result &result);
@@ -67,10 +94,12 @@ class wheels final : public driver {
   size_t patches_;  // of each wheel
   bool force_given_;
   double tolerance_, nominal_radius_;
+  bool whole_forces_;
   double depth_ = 0;  // m, last z found minus first touch; 0: none
   friction_factor friction_along_;
   std::optional<rail_support> support_;    // where rails are on springs
   std::optional<bulk_temperatures> bulk_;  // where bodies store heat
+  std::optional<balance_setup> balance_;   // where roll angle or pitch rate are found
   std::unique_ptr<rates> rates_;
 };
 

@@ -22,6 +22,26 @@ T power(const basic_wheelset_state<T> &w, const vec<T> &force, const vec<T> &mom
 
 }  // namespace
 
+// along the axle, as what turns about it at 1 rad/s does
+double axle_torque(const rp_input &in, const double *m) {
+  wheelset_state w;
+  w.roll = in.roll;
+  w.yaw = in.yaw;
+  w.pitch_rate = 1.0;
+  return dot(vec3{m[0], m[1], m[2]}, angular_velocity(w));
+}
+
+double axle_torque_rate(const rp_input &in, const rp_input &d, const double *m,
+                        const double *rate) {
+  basic_wheelset_state<rated> w;
+  w.roll = with_rate(in.roll, d.roll);
+  w.yaw = with_rate(in.yaw, d.yaw);
+  w.pitch_rate = rated(1.0);
+  vec<rated> moment;
+  for (size_t k = 0; k < 3; ++k) moment[k] = with_rate(m[k], rate[k]);
+  return dot(moment, angular_velocity(w)).rate[0];
+}
+
 double wheelset_power(const rp_input &in, const force_and_moment &on) {
   const wheelset_state w{in.y,  in.z,  in.roll,      in.yaw,      in.speed,
                          in.vy, in.vz, in.roll_rate, in.yaw_rate, in.pitch_rate};

@@ -12,6 +12,10 @@ struct force_and_moment {
 };
 
 double wheelset_power(const rp_input &input, const force_and_moment &on);
+// Their torque about the axle: the moment, and its rate.
+double axle_torque(const rp_input &input, const double *moment);
+double axle_torque_rate(const rp_input &input, const rp_input &direction, const double *moment,
+                        const double *rate);
 double wheelset_power_rate(const rp_input &input, const rp_input &direction,
                            const force_and_moment &on, const force_and_moment &rate);
 

@@ -272,6 +272,20 @@ TEST(Step, WithACreepTableAllocatesNothing) {
   EXPECT_EQ(run(c, std::vector{in}).allocated, 0);
 }
 
+// With slopes from the contacts and by differences.
+TEST(Step, OfAWheelsetInBalanceAllocatesNothing) {
+  const scenes::profile_pair pair;
+  rp_config c = scenes::coarse(scenes::wheels(RP_WHEELSET, RP_RAIL, pair));
+  c.roll_balanced = c.axle_free = 1;
+  rp_input in = scenes::running(RP_RAIL);
+  in.y = 2e-3;
+  in.vertical_force = 1.2e5;
+  for (rp_tangential_method tangential : {RP_TANGENTIAL_FULL, RP_TANGENTIAL_POLACH}) {
+    c.tangential = tangential;
+    EXPECT_EQ(run(c, std::vector{in}).allocated, 0) << tangential;
+  }
+}
+
 // Curvatures with a fixed element size: the grid grows and shrinks with the load.
 TEST(Step, OfAGrowingGridAllocatesNothing) {
   for (rp_normal_method normal :
