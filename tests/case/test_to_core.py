@@ -34,6 +34,8 @@ MADE = {
     "hardening_displacement": "layer.hardening_table",
     "hardening_stress": "layer.hardening_table",
     "distance_shape": "geometry.undeformed_distance",
+    "roll_balanced": "wheelset.roll = 'balanced'",
+    "axle_free": "wheelset.pitch_rate = 'free'",
     "section_count": "track.left.sections",
     "runout_count": "wheelset.left.runout, flat",
     "rail_height_count": "track.left.running_surface, joint",

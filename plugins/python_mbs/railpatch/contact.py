@@ -15,7 +15,7 @@ import numpy as np
 from railpatch import _core
 from railpatch.case.load import Case, Scene, check_table, load_scene
 from railpatch.case.messages import show
-from railpatch.case.moving import changed_case, moving_keys
+from railpatch.case.moving import changed_case, moving_keys, with_numbers
 from railpatch.case.patch import Motion, PatchCase
 from railpatch.case.scene_profiles import profile_notes
 from railpatch.case.to_core import (
@@ -34,6 +34,7 @@ from railpatch.result import (
     LAW_FIELDS,
     ROW_FIELDS,
     TOTAL_UNITS,
+    WHEELSET_UNITS,
     Result,
     patch_data,
     shaped_field,
@@ -103,6 +104,7 @@ class Contact:
         or approach; in transient rolling distance and steps: one step rolls distance/steps.
         wheel_rail, wheelset: the position and velocity keys of [wheelset] with left and right,
         roller_pitch_rate, track = {"left": ..., "right": ...}; left and right in part or whole.
+        Not roll = "balanced" and pitch_rate = "free", which the step finds: the result has them.
         all, with temperatures: temperature = {"wheel": ..., "rail": ...}, in part or whole.
         Bodies of temperature.bulk go on by time_step, by default that of the case; before the first
         step, and by 0, no time passes.
@@ -146,7 +148,8 @@ class Contact:
         NaN where it has none, and ``kind``: "exact", from the solved conditions, or "differences"
         of further steps, for methods without exact ones. Where an element is about to change
         between stick, slip and no contact, exact rates are those of its present state. Needs
-        method.derivatives = true and a step; changes nothing. Raises CaseError.
+        method.derivatives = true and a step; changes nothing. Of a wheelset in balance roll and
+        pitch rate follow. Raises CaseError.
         """
         rates = rates_of(self._case, direction)
         begin = time.perf_counter()
@@ -170,6 +173,9 @@ class Contact:
             raise CaseError("kind: value is 'patch', allowed wheel_rail, wheelset for jacobian()")
         if not self._case.method.derivatives:
             raise CaseError("method.derivatives: value is False, allowed True for jacobian()")
+        for name in self._case.wheelset.found:
+            shown = show(getattr(self._case.wheelset, name))
+            raise CaseError(f"wheelset.{name}: value is {shown}, allowed a number for jacobian()")
         raw = self._core.jacobian()
         shape = (len(FORCE_AND_MOMENT), len(POSE_AND_VELOCITY))
         arrays = {side: np.array(raw[side]).reshape(shape) for side in self._case.sides}
@@ -226,7 +232,7 @@ class Contact:
                     patch.update(self._fields(side, index, solved[index]["grid"]))
         if self._case.kind == "wheel_rail":
             return {**wheels[self._case.wheel.side], "status": raw["status"], **common}
-        total = {key: raw[key] for key in TOTAL_UNITS}
+        total = {key: raw[key] for key in (*TOTAL_UNITS, *WHEELSET_UNITS)}
         return {**total, **wheels, **common}
 
     def _fields(self, side: str, patch: int, grid: list[int]) -> dict[str, Any]:
@@ -292,6 +298,21 @@ def notes_of_solve(case: Case) -> list[str]:
         "temperature.bulk: no time passes in a single solve: bulk temperatures are those given, "
         "wheel_heat and rail_heat what would warm the bodies"
     ]
+
+
+def at_balance(scene: Scene, name: str) -> Scene:
+    """The scene with the numbers of the balance in place of the words that ask for them.
+
+    name: of the scene, for the error. Raises CaseError where the balance is not found.
+    """
+    found = () if isinstance(scene.case, PatchCase) else scene.case.wheelset.found
+    if not found:
+        return scene
+    result = Contact(scene).step()
+    if not result.solved:
+        raise CaseError(f"{name}: the balance of the wheelset is not found: {result.reason}")
+    numbers = {key: result[key] for key in found}
+    return Scene(with_numbers(scene.case, numbers), scene.folder)
 
 
 def _solved(contact: Contact, fields: bool) -> Result:

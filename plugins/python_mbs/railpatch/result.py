@@ -59,6 +59,8 @@ WHEEL_UNITS = units_of("side", {"rolling_radius": {"z": unit_of("result", "z")}}
 TOTAL_UNITS = {
     name: unit for name, unit in WHEEL_UNITS.items() if name in _core.QUANTITIES["result"]
 }
+# of a wheelset besides, given or found
+WHEELSET_UNITS = {name: unit_of("result", name) for name in ("roll", "pitch_rate", "axle_torque")}
 DIVISION: tuple[str, ...] = _core.CHOICES["element"]
 # fields with their number of components
 FIELDS = {

@@ -40,10 +40,18 @@ def problems(model: type[BaseModel], error: ValidationError, prefix: str = "") -
             found += dict.fromkeys(problem(model, one, prefix) for one in each)
             continue
         text = problem(model, item, prefix)
+        # a number or a word in its place
+        if item["type"] == "literal_error" and found and found[-1] == number_of(text):
+            found[-1] += f" or {item['ctx']['expected']}"
         # the branches of a union report the same key several times
         if text.split(":")[0] not in {line.split(":")[0] for line in found}:
             found.append(text)
     return found
+
+
+def number_of(text: str) -> str:
+    """The line on the same value if a number were allowed."""
+    return f"{text.rsplit(', allowed ', 1)[0]}, allowed {ALLOWED['float_type']}"
 
 
 def problem(model: type[BaseModel], item: Any, prefix: str) -> str:
@@ -63,8 +71,6 @@ def problem(model: type[BaseModel], item: Any, prefix: str) -> str:
     template = ALLOWED.get(item["type"])
     if item["loc"][-1:] == ("str",):
         template = "a path or rows of numbers"
-    if item["loc"][-1:] == ("float",) and item["type"] == "float_type":
-        template = "a number or 'creepage'"
     allowed = template.format(**context) if template else item["msg"]
     return f"{key}: value is {show(item['input'])}, allowed {allowed}"
 
@@ -72,7 +78,7 @@ def problem(model: type[BaseModel], item: Any, prefix: str) -> str:
 def is_branch(part: Any) -> bool:
     """pydantic puts the name of a union's branch, 'str' or 'list[...]', into the location."""
     return isinstance(part, str) and (
-        part in ("str", "float") or part.startswith(("list[", "literal["))
+        part in ("str", "float", "constrained-float") or part.startswith(("list[", "literal["))
     )
 
 

@@ -51,6 +51,13 @@ def changed_case(case: Case, changes: Mapping[str, Any]) -> Case:
     changed = case.model_copy(
         update={name: changed_table(case, name, values) for name, values in tables.items()}
     )
+    if not isinstance(case, PatchCase) and changed.wheelset.found != case.wheelset.found:
+        name = next(name for name in changed.wheelset.found if name not in case.wheelset.found)
+        shown = show(getattr(changed.wheelset, name))
+        raise CaseError(
+            f"wheelset.{name}: value is {shown}, allowed a number: whether it is found does not "
+            "change"
+        )
     if isinstance(case, PatchCase) and changed.motion.prescribed != case.motion.prescribed:
         given = show(changed.motion.tangential_force)
         raise CaseError(
@@ -58,6 +65,11 @@ def changed_case(case: Case, changes: Mapping[str, Any]) -> Case:
             f"{case.motion.tangential_force}: which are prescribed does not change"
         )
     return changed
+
+
+def with_numbers(case: Case, numbers: Mapping[str, float]) -> Case:
+    """The case of a wheelset with numbers in place of what it says to find."""
+    return case.model_copy(update={"wheelset": changed_table(case, "wheelset", dict(numbers))})
 
 
 def changed_table(case: Case, name: str, values: dict[str, Any]) -> Any:

@@ -164,8 +164,11 @@ def patch_config(case: PatchCase, folder: Path) -> dict[str, Any]:
 def wheel_config(case: WheelCase, folder: Path) -> dict[str, Any]:
     """Load, regime, profiles, rails and shapes of wheels."""
     placed = scene_profiles(case, folder)
+    found = case.wheelset.found
     config: dict[str, Any] = {
         "load": "position" if case.wheelset.z is not None else "force",
+        "roll_balanced": int("roll" in found),
+        "axle_free": int("pitch_rate" in found),
         "regime": case.motion.regime if case.has_tangential else "none",
         **{body: profile_pair(placed, body) for body in BODIES},
         **passed("rail_support", case.track.rail_support, _core.CONFIG_FIELDS),
@@ -213,6 +216,8 @@ def input_of(case: Case) -> dict[str, Any]:
         if motion.distance is not None:
             values["distance"] = motion.distance / (motion.steps or 1)
     else:
+        for name in case.wheelset.found:
+            del values[name]
         for table, body in BODY_OF_TABLE.items():
             sides = [getattr(getattr(case, table), side) for side in SIDES]
             for key in DEVIATION:

@@ -56,6 +56,11 @@ def within(name: str) -> Any:
     return Field(**limits(name))
 
 
+def number_or(name: str, word: str) -> Any:
+    """A number in the range of a field of the core, or a word in its place."""
+    return Annotated[float, within(name)] | Literal[word]
+
+
 def up_to(name: str) -> Any:
     """At least one, and no more than a field of the core takes."""
     return Field(ge=1, le=limits(name)["le"])
@@ -89,26 +94,27 @@ def of_bodies(name: str) -> Any:
 class Key:
     """A key that stands in the core's lists under its own name, or under ``of``."""
 
-    def __init__(self, more: str, of: str | None, options: dict[str, Any]) -> None:
-        self.more, self.of, self.options = more, of, options
+    def __init__(self, more: str, of: str | None, bounded: bool, options: dict[str, Any]) -> None:
+        self.more, self.of, self.bounded, self.options = more, of, bounded, options
 
     def field(self, name: str) -> Any:
         """What pydantic takes. A list's range is in its type."""
         known = listed(self.of or name)
-        options = {} if known["shape"] else limits(self.of or name)
+        options = {} if known["shape"] or not self.bounded else limits(self.of or name)
         start = known["start"]
         options["default"] = [start] * known["shape"][0] if known["shape"] else start
         options["description"] = f"{known['unit']}, {known['text']}{self.more}"
         return Field(**{**options, **self.options})
 
 
-def key(more: str = "", *, of: str | None = None, **options: Any) -> Any:
+def key(more: str = "", *, of: str | None = None, bounded: bool = True, **options: Any) -> Any:
     """A key of a table with range, unit, default and text of the core's field of its name.
 
-    more: goes on with the text. of: the field's name where it is another. options: of pydantic's
-    Field, in place of the core's; default=... for a key that is needed.
+    more: goes on with the text. of: the field's name where it is another. bounded: whether the
+    range is set; else it is in the type. options: of pydantic's Field, in place of the core's;
+    default=... for a key that is needed.
     """
-    return Key(more, of, options)
+    return Key(more, of, bounded, options)
 
 
 class Named(type(BaseModel)):

@@ -35,6 +35,7 @@ from railpatch.case.types import (
     Vector,
     exactly_one,
     key,
+    number_or,
     one_of,
     refuse,
     relation,
@@ -52,6 +53,8 @@ WHEELSET_STATE = (
     *("speed", "vy", "vz", "roll_rate", "pitch_rate", "yaw_rate"),
     "time_step",
 )
+# of these, what a step finds where the word stands in place of a number
+FOUND = {"roll": "balanced", "pitch_rate": "free"}
 
 
 class Deviation(Table):
@@ -87,7 +90,11 @@ class Wheelset(Table):
     y: float = key()
     z: float | None = key("; or vertical_force", default=None)
     vertical_force: float | None = key(default=None)
-    roll: float = key()
+    roll: number_or("roll", FOUND["roll"]) = key(
+        "; 'balanced': that at which the contact forces have no roll moment about the wheelset's "
+        "centre (wheelset)",
+        bounded=False,
+    )
     pitch: Number = Field(
         default=0.0, description="rad, about the axle, for what varies around the wheels"
     )
@@ -97,7 +104,10 @@ class Wheelset(Table):
     vz: float = key()
     roll_rate: float = key()
     yaw_rate: float = key()
-    pitch_rate: float = key()
+    pitch_rate: number_or("pitch_rate", FOUND["pitch_rate"]) = key(
+        "; 'free': that at which the contact forces have no torque about the axle (wheelset)",
+        bounded=False,
+    )
     time_step: float = key()
     nominal_radius: float = key(default=...)
     flange_back_distance: float = key(default=...)
@@ -119,7 +129,13 @@ class Wheelset(Table):
     def moving(self) -> tuple[str, ...]:
         """Position and velocity, not the dimensions."""
         height = "z" if self.z is not None else "vertical_force"
-        return (*WHEELSET_STATE, height, *SIDES)
+        given = (name for name in WHEELSET_STATE if name not in self.found)
+        return (*given, height, *SIDES)
+
+    @property
+    def found(self) -> tuple[str, ...]:
+        """The keys that a step finds, of a wheelset in balance."""
+        return tuple(name for name, word in FOUND.items() if getattr(self, name) == word)
 
 
 class Rail(Deviation, RailShape):
@@ -336,6 +352,16 @@ class _WheelCase(Table):
         )
         yield from check_rolling(self)
         yield from self._check_frame()
+        yield from self._check_balance()
+
+    def _check_balance(self) -> Problems:
+        for name in self.wheelset.found:
+            shown = repr(FOUND[name])
+            if len(self.sides) == 1:
+                yield relation(f"wheelset.{name}", shown, "a number with kind = 'wheel_rail'")
+            elif name == "pitch_rate" and not self.has_tangential:
+                allowed = "a number with method.tangential = 'none': nothing turns the axle"
+                yield relation(f"wheelset.{name}", shown, allowed)
 
     def _check_profiles(self) -> Problems:
         for body in ("wheel", "rail"):

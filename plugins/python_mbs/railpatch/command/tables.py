@@ -10,7 +10,7 @@ from rich.table import Table
 
 from railpatch.case.scene_profiles import note_lines
 from railpatch.case.types import SIDES
-from railpatch.result import PATCH_UNITS, PLACE_UNITS, WHEEL_UNITS, Result
+from railpatch.result import PATCH_UNITS, PLACE_UNITS, WHEEL_UNITS, WHEELSET_UNITS, Result
 
 
 def print_result(result: Result, console: Console | None = None) -> None:
@@ -59,7 +59,7 @@ def wheel_table(data: dict[str, Any], wheels: dict[str, dict[str, Any]]) -> Tabl
     if len(wheels) > 1:
         columns["wheelset"] = data
     table = new_table(list(columns), "wheel")
-    for key, unit in WHEEL_UNITS.items():
+    for key, unit in {**WHEEL_UNITS, **WHEELSET_UNITS}.items():
         # the wheelset has no rolling radius, and most rails do not deflect
         cells = [spell(values.get(key)) for values in columns.values()]
         if any(cells):

@@ -18,7 +18,7 @@ from typing import Literal
 from railpatch import _core
 from railpatch.case.load import Scene
 from railpatch.case.to_core import config_of
-from railpatch.contact import Contact
+from railpatch.contact import Contact, at_balance
 from railpatch.errors import CaseError
 from railpatch.fmu.description import Labels, description_xml
 from railpatch.fmu.document import index_html
@@ -124,6 +124,7 @@ def contents_of(
     folder: Path | None,
 ) -> Contents:
     """Everything that is known before the GUID."""
+    scene = at_balance(scene, name)
     libraries = libraries_of(backend, folder)
     table = Table(Path(str(resources.files("railpatch.fmu") / "variables.toml")))
     check_regime(scene)

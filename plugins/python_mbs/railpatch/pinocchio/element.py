@@ -441,6 +441,11 @@ def check_case(case: Any) -> None:
             f"track.curvature: value is {case.track.curvature}, allowed 0: `tracks` say where the "
             "track is"
         )
+    problems += [
+        f"wheelset.{name}: value is {show(getattr(case.wheelset, name))}, allowed a number: the "
+        "model gives position and velocity"
+        for name in case.wheelset.found
+    ]
     several = "forces are asked for several times a step"
     if case.motion.regime != "steady_rolling":
         problems.append(
