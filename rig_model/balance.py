@@ -152,10 +152,10 @@ class Balancer:
             return Evaluation(None, False, result)
         solved = all(result[side]["status"] in CARRIES for side in SIDES)
         return Evaluation(
-            residuals(self._scene, position, unknowns, result),
+            residuals(self._scene, result),
             solved,
             result,
-            lambda: self._slope(position, unknowns, result),
+            lambda: self._slope(result),
         )
 
     def _step(self, position: Position, unknowns: Vector) -> Result:
@@ -170,15 +170,12 @@ class Balancer:
             self._pending = 0.0
         return self._latest
 
-    def _slope(self, position: Position, unknowns: Vector, result: Result) -> Vector:
+    def _slope(self, result: Result) -> Vector:
         """[3, 3], of the residuals at the last state solved, with respect to the unknowns."""
         columns = []
         for name in UNKNOWNS:
             rates = self._contact.differentiate(**{name: 1.0})
-            column = residual_rates(self._scene, position, result, rates)
-            if turns_the_axle(self._scene):
-                column[0] = axle_moment_rate(position, unknowns, result, rates, name)
-            columns.append(column)
+            columns.append(residual_rates(self._scene, result, rates))
         return np.column_stack(columns)
 
 
@@ -230,14 +227,13 @@ def best_of(first: Root, second: Root) -> Root:
     )
 
 
-def residuals(scene: RigScene, position: Position, unknowns: Vector, result: Result) -> Vector:
+def residuals(scene: RigScene, result: Result) -> Vector:
     """f1, f2, f3 in N m, N, N m, [3]; see the head of this file."""
-    if turns_the_axle(scene):
-        torque = axle_moment(position, unknowns, result)
+    if scene.rig.balance.axle_torque == "wheelset":
+        torque = result["axle_torque"]
     else:
-        along = wheelset_force if scene.rig.balance.axle_torque == "wheelset" else track_force
         torque = math.fsum(
-            along(scene, position, result[side]) * result[side]["rolling_radius"] for side in SIDES
+            track_force(scene, result[side]) * result[side]["rolling_radius"] for side in SIDES
         )
     return np.array([torque, -result["force"][2] - scene.vertical_force, result["moment"][0]])
 
@@ -248,60 +244,20 @@ def is_whole(scene: RigScene) -> bool:
     return method.patch_rule != "contact" or method.contact_frame == "inclined"
 
 
-def turns_the_axle(scene: RigScene) -> bool:
-    """Whether f1 is the moment about the axle, which forces alone are not."""
-    return scene.rig.balance.axle_torque == "wheelset" and is_whole(scene)
-
-
-def axle_of(yaw: float, roll: float) -> Vector:
-    """-, [3], to the right along the axle, track axes."""
-    return np.array(
-        [-math.sin(yaw), math.cos(roll) * math.cos(yaw), math.sin(roll) * math.cos(yaw)]
-    )
-
-
-def axle_moment(position: Position, unknowns: Vector, result: Result) -> float:
-    """N m, of the contact forces about the axle."""
-    return float(axle_of(position.yaw, unknowns[1]) @ np.array(result["moment"]))
-
-
-def axle_moment_rate(
-    position: Position, unknowns: Vector, result: Result, rates: Result, name: str
-) -> float:
-    """Its rate with one of the unknowns."""
-    rate = axle_of(position.yaw, unknowns[1]) @ np.array(rates["moment"])
-    if name == "roll":
-        # of what turns with the roll, the axle's part across the track
-        across = axle_of(position.yaw, unknowns[1]) * [0.0, 1.0, 1.0]
-        rate += np.cross([1.0, 0.0, 0.0], across) @ np.array(result["moment"])
-    return float(rate)
-
-
-def residual_rates(scene: RigScene, position: Position, result: Result, rates: Result) -> Vector:
+def residual_rates(scene: RigScene, result: Result, rates: Result) -> Vector:
     """Rates of f1, f2, f3, [3], where those of the result are known."""
-    torque = scene.rig.balance.axle_torque
-    force = wheelset_force_rate if torque == "wheelset" else track_force_rate
-    along = wheelset_force if torque == "wheelset" else track_force
-    axle = 0.0
-    for side in SIDES:
-        wheel, rate = result[side], rates[side]
-        axle += force(scene, position, wheel, rate) * wheel["rolling_radius"]
-        axle += along(scene, position, wheel) * rate["rolling_radius"]
+    if scene.rig.balance.axle_torque == "wheelset":
+        axle = rates["axle_torque"]
+    else:
+        axle = 0.0
+        for side in SIDES:
+            wheel, rate = result[side], rates[side]
+            axle += track_force_rate(scene, wheel, rate) * wheel["rolling_radius"]
+            axle += track_force(scene, wheel) * rate["rolling_radius"]
     return np.array([axle, -rates["force"][2], rates["moment"][0]])
 
 
-def wheelset_force(_scene: RigScene, position: Position, wheel: dict) -> float:
-    """N, longitudinal force in wheelset axes."""
-    x, y, _ = wheel["force"]
-    return math.cos(position.yaw) * x + math.sin(position.yaw) * y
-
-
-def wheelset_force_rate(scene: RigScene, position: Position, _wheel: dict, rate: dict) -> float:
-    """The force is linear in those of the wheel."""
-    return wheelset_force(scene, position, rate)
-
-
-def track_force(scene: RigScene, _position: Position, wheel: dict) -> float:
+def track_force(scene: RigScene, wheel: dict) -> float:
     """N, longitudinal force in track axes, the normal force's part included.
 
     By the rule of the program CONTACT the contact's own axes leave that part out: their x axis is
@@ -319,7 +275,7 @@ def track_force(scene: RigScene, _position: Position, wheel: dict) -> float:
     )
 
 
-def track_force_rate(scene: RigScene, _position: Position, wheel: dict, rate: dict) -> float:
+def track_force_rate(scene: RigScene, wheel: dict, rate: dict) -> float:
     """Of the same."""
     total = rate["force"][0]
     if is_whole(scene):

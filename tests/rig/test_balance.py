@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from rig_model.balance import Balancer, axle_moment, axle_moment_rate, axle_of
+from rig_model.balance import Balancer
 from rig_model.scene import load_rig_scene
 
 LOAD = 133.95e3
@@ -59,26 +58,6 @@ def test_forces_balance(run):
         # the patches' own moments about their reference, some 20 N m, are left out here
         assert roll_moment == pytest.approx(0, abs=50 + TOLERANCE)
         assert np.abs(balance.residuals).max() <= TOLERANCE
-
-
-def test_axle_is_that_of_a_wheelset_that_rolls_and_then_yaws():
-    for yaw, roll in ((0.3, 0.2), (-0.4, 0.5)):
-        c, s, d, t = math.cos(roll), math.sin(roll), math.cos(yaw), math.sin(yaw)
-        turned = np.array([[1, 0, 0], [0, c, -s], [0, s, c]]) @ [[d, -t, 0], [t, d, 0], [0, 0, 1]]
-        np.testing.assert_allclose(axle_of(yaw, roll), turned @ [0, 1, 0], atol=1e-15)
-
-
-def test_axle_moment_rate_is_that_of_the_turned_axle():
-    position, moment = SimpleNamespace(yaw=0.3), {"moment": [300.0, -20.0, 500.0]}
-    rates = {"moment": [4.0, -7.0, 9.0]}
-    for name in ("roll", "pitch_rate"):
-        ends = []
-        for change in (-1e-4, 1e-4):
-            unknowns = np.array([0.0, 0.2 + (change if name == "roll" else 0.0), 0.0])
-            moved = np.array(moment["moment"]) + change * np.array(rates["moment"])
-            ends.append(axle_moment(position, unknowns, {"moment": moved}))
-        found = axle_moment_rate(position, np.array([0.0, 0.2, 0.0]), moment, rates, name)
-        assert found == pytest.approx((ends[1] - ends[0]) / 2e-4, rel=1e-7)
 
 
 def test_load_shifts_with_yaw(run):
