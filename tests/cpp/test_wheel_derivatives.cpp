@@ -262,6 +262,8 @@ TEST_P(WheelDerivatives, OfEveryNumberEqualDifferences) {
     constexpr double rounding = 5e-11;
     std::vector<double> rates, difference[2], exact, number;
     rp_result base = result;
+    // what is left of the moment's parts along the axle is rounded as they are
+    base.axle_torque = std::hypot(base.moment[0], base.moment[1], base.moment[2]);
     for_each_result_number(base, [&](double &v) { number.push_back(v); });
     for_each_number(direction, [&](const char *, double &v, double) { rates.push_back(v); });
     for_each_result_number(found, [&](double &v) { exact.push_back(v); });
