@@ -218,6 +218,11 @@ def check_wheelset(case: Any) -> None:
         problems.append(f"track.curvature: value is {shown}, allowed in [curve] as radius")
     if case.wheelset.vertical_force is None:
         problems.append("wheelset.z: value is given, allowed 'vertical_force' in its place")
+    problems += [
+        f"wheelset.{name}: value is {getattr(case.wheelset, name)!r}, allowed to be left out: the "
+        "curve's position is found"
+        for name in case.wheelset.found
+    ]
     if not case.wheelset.speed > 0:
         problems.append(f"wheelset.speed: value is {case.wheelset.speed}, allowed > 0 m/s")
     if not case.has_tangential:

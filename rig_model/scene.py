@@ -258,7 +258,7 @@ def check_machine(case: Any, rig: Rig) -> None:
     for key, other in FOUND.items():
         value = getattr(case.wheelset, key)
         if value != 0.0:
-            problems.append(f"wheelset.{key}: value is {value}, allowed in [rig] as {other}")
+            problems.append(f"wheelset.{key}: value is {value!r}, allowed in [rig] as {other}")
     if problems:
         raise CaseError(problems)
 

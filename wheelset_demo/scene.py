@@ -282,7 +282,7 @@ def start_problems(case: Any, found: tuple[str, ...], why: str) -> list[str]:
         problems.append("method.tangential: value is 'none', allowed a method: creep forces guide")
     given = {key: getattr(case.wheelset, key) for key in found}
     return problems + [
-        f"wheelset.{key}: value is {value}, allowed: leave it out, {why}"
+        f"wheelset.{key}: value is {value!r}, allowed: leave it out, {why}"
         for key, value in given.items()
         if value != 0
     ]

@@ -58,6 +58,11 @@ WRONG = {
     ),
     "standstill": ("= 5.587302", "= 0.0", ("track.roller_pitch_rate", "0.0", "not 0")),
     "height": ("vertical_force = 133.95e3", "z = 0.0", ("wheelset.z", "vertical_force")),
+    "balanced roll": (
+        "[wheelset]",
+        '[wheelset]\nroll = "balanced"',
+        ("wheelset.roll", "'balanced'", "start"),
+    ),
     "found roll": ("[wheelset]", "[wheelset]\nroll = 0.1", ("wheelset.roll", "0.1", "start")),
     "found yaw": ("[wheelset]", "[wheelset]\nyaw = 0.1", ("wheelset.yaw", "0.1", "[rig] as yaw")),
     "found y": ("[wheelset]", "[wheelset]\ny = 0.1", ("wheelset.y", "lateral_position")),

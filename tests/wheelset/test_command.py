@@ -138,6 +138,11 @@ def test_steps_that_are_too_long_end_the_run(stepper: str, tmp_path: Path):
         ("y = 0.004", "y = 0.03", "wheelset.y: value is 0.03, allowed one where both wheels"),
         ("speed = 20.0", "speed = 0.0", "wheelset.speed: value is 0.0, allowed > 0 m/s"),
         ("speed = 20.0", "speed = 20.0\nroll = 0.1", "wheelset.roll: value is 0.1, allowed: leave"),
+        (
+            "speed = 20.0",
+            'speed = 20.0\nroll = "balanced"',
+            "wheelset.roll: value is 'balanced', allowed: leave",
+        ),
         ("vertical_force = 120e3", "z = 0.0", "wheelset.z: value is given, allowed 'vertical"),
         ("vertical_force = 120e3", "vertical_force = 1e3", "allowed >= 15696, the weight"),
         ("step = 1e-3", "step = 1.0", "run.step: value is 1.0, allowed <= 0.1"),
