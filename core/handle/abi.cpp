@@ -4,6 +4,7 @@
 #include "handle/case_fields.hpp"
 #include "handle/check.hpp"
 #include "handle/contact.hpp"
+#include "numeric/interrupt.hpp"
 #include "patch/status.hpp"
 #include "railpatch.h"
 
@@ -16,6 +17,11 @@ struct rp_contact {
 
 // No exception leaves this file: creation may run out of memory or meet a bad profile; a step
 // throws nothing of its own.
+
+static rp_error stopped(rp_message *message, const char *call) {
+  set_message(message, "%s was interrupted", call);
+  return RP_ERROR_INTERRUPTED;
+}
 
 #define RP_NO_FIELD(type, name, count)
 #define RP_START(type, name, count, role, where, start, ...) \
@@ -76,6 +82,9 @@ rp_error rp_step(rp_contact *contact, const rp_input *input, rp_result *result,
   try {
     contact->handle.step(*input, *result);
     return RP_OK;
+  } catch (const interrupted &) {
+    contact->handle.reset();
+    return stopped(message, "rp_step");
   } catch (...) {
     set_message(message, "internal error in rp_step");
     return RP_ERROR_INTERNAL;
@@ -104,6 +113,8 @@ rp_error rp_differentiate(rp_contact *contact, const rp_input *direction, rp_res
     const rp_derivative_kind found = contact->handle.differentiate(*direction, *change);
     if (kind) *kind = found;
     return RP_OK;
+  } catch (const interrupted &) {
+    return stopped(message, "rp_differentiate");
   } catch (...) {
     set_message(message, "internal error in rp_differentiate");
     return RP_ERROR_INTERNAL;
@@ -134,6 +145,8 @@ rp_error rp_get_jacobian(rp_contact *contact, rp_jacobian *out, rp_message *mess
   try {
     contact->handle.jacobian(*out);
     return RP_OK;
+  } catch (const interrupted &) {
+    return stopped(message, "rp_get_jacobian");
   } catch (...) {
     set_message(message, "internal error in rp_get_jacobian");
     return RP_ERROR_INTERNAL;

@@ -160,11 +160,15 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
       friction = friction_coefficient();
       places[k] = 0;
     }
+    // whatever an interrupted one has left there
+    if (derivative_->broken) beside.reset();
     beside.copy_state(start);
+    derivative_->broken = true;
     // on the grid that the last step ended on, whatever the estimate
     if (beside.level_ != level_) beside.go_on(level_);
     beside.set_friction_coefficient(friction);
     ends[k] = beside.solve(in);
+    derivative_->broken = false;
     const rp_status status = ends[k].status;
     failed = failed || status == RP_NOT_CONVERGED || status == RP_OUT_OF_RANGE;
   }

@@ -11,6 +11,7 @@ struct derivative_record {
   derivative_record(const rp_config &config, driver &driver);
 
   bool solved = false;  // there is a last step
+  bool broken = false;  // the step beside it was interrupted
   rp_input input{};
   rp_result result{};
   // handles for differences, where the derivatives are not exact: one that makes the steps beside

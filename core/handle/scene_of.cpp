@@ -135,6 +135,7 @@ patch_scene patch_scene_of(const rp_config &c) {
   scene.slopes_along_rows =
       c.track == RP_ROLLER || c.rail_height_count[0] + c.rail_height_count[1] > 0;
   scene.fast = fast_of(c, scene.tangential);
+  scene.ask = {c.interrupt, c.interrupt_user};
   scene.exact = (scene.derivatives || is_balanced(c)) && scene.differentiates();
   return scene;
 }

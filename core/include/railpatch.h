@@ -60,7 +60,8 @@ enum {
   X(RP_ERROR_STATE, 6, "the state buffer does not fit this handle")           \
   X(RP_ERROR_NO_FIELD, 7, "the field does not exist in this scene")           \
   X(RP_ERROR_SIZE, 8, "the buffer is too small")                              \
-  X(RP_ERROR_INTERNAL, 9, "internal error")
+  X(RP_ERROR_INTERNAL, 9, "internal error")                                   \
+  X(RP_ERROR_INTERRUPTED, 10, "interrupted")
 
 /* --- solve status: the call was right, this is how the solve ended ------------------------- */
 #define RP_STATUSES(X)                                                                          \
@@ -348,6 +349,9 @@ typedef enum rp_stage { RP_STAGES(RP_ENUM_ENTRY) RP_STAGE_COUNT } rp_stage;
  */
 typedef void (*rp_observer)(void *user, rp_stage stage, int entering);
 
+/* Asked between iterations whether the step is to end: 0 to go on. */
+typedef int (*rp_interrupt)(void *user);
+
 typedef struct rp_config {
   uint32_t cookie; /* set by rp_default_config */
   rp_kind kind;
@@ -518,6 +522,12 @@ typedef struct rp_config {
                             track's x through the wheelset's centre */
   int32_t axle_free;     /* 1: the pitch rate at which axle_torque is 0: no drive, no brake; with a
                             tangential problem */
+
+  /* may be null. Where it asks for the end rp_step returns RP_ERROR_INTERRUPTED within the time of
+   * some products of the influence coefficients: the result is untouched, the handle as after
+   * rp_reset. rp_differentiate and rp_get_jacobian by differences leave the handle as it was */
+  rp_interrupt interrupt;
+  void *interrupt_user;
 } rp_config;
 
 typedef struct rp_input {
@@ -727,7 +737,7 @@ RP_API rp_error rp_create(const rp_config *config, rp_contact **contact, rp_mess
 RP_API void rp_destroy(rp_contact *contact); /* null is allowed */
 
 /* Solves one state. The last solution is kept as the next start. On error the result and the
- * handle are untouched. */
+ * handle are untouched; see rp_config.interrupt for the one exception. */
 RP_API rp_error rp_step(rp_contact *contact, const rp_input *input, rp_result *result,
                         rp_message *message);
 /* How a derivative was found. */

@@ -369,7 +369,9 @@
   X(int32_t, roll_balanced, 1, integer, always, 0, "[]", 0, 1, "-",                                \
     "whether the roll angle is found at which the contact forces have no roll moment")             \
   X(int32_t, axle_free, 1, integer, always, 0, "[]", 0, 1, "-",                                    \
-    "whether the pitch rate is found at which the contact forces have no torque about the axle")
+    "whether the pitch rate is found at which the contact forces have no torque about the axle")   \
+  O(rp_interrupt, interrupt, 1)                                                                    \
+  O(void *, interrupt_user, 1)
 
 /* X(type, name, count, role, where, start, bounds, low, high, scale, unit, text), as above and
  * role      place: a number whose size says nothing about how fast things change there

@@ -55,6 +55,7 @@ normal_result normal_solver::solve(problem &s, double *p) {
   evaluate(s, p);
   // iterate until the conditions hold on a settled contact area
   for (; result.iterations < s.options.max_iterations; ++result.iterations) {
+    s.options.ask.check();
     if (s.worst <= s.options.tolerance * s.scale) {
       if (!s.exact) evaluate(s, p);
       if (s.worst <= s.options.tolerance * s.scale) break;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "half_space/influence.hpp"
+#include "numeric/interrupt.hpp"
 
 namespace railpatch {
 
@@ -22,6 +23,7 @@ struct contact_parts {
 struct normal_options {
   double tolerance;  // of e on the contact area, relative to the greatest displacement
   int max_iterations;
+  interrupt ask{};
 };
 
 struct normal_result {

@@ -6,6 +6,7 @@
 #include "fast/fast.hpp"
 #include "half_space/coupling.hpp"
 #include "half_space/physics.hpp"
+#include "numeric/interrupt.hpp"
 #include "railpatch.h"
 #include "tangential/friction_factor.hpp"
 #include "tangential/tangential.hpp"
@@ -37,6 +38,7 @@ struct patch_scene {
   double spin_offset = 0;    // of a step's way, added to x in the spin term
   bool usual_spin = true;    // that is the one by default
   bool derivatives = false;  // rates of results are asked for
+  interrupt ask{};           // of the caller, between iterations
   bool exact = false;        // and come from the solved equations, of the whole scene
   bool stretches = false;    // grids whose dx and dy change at different rates
   bool curved = false;       // reference surface, of wheels

@@ -265,7 +265,7 @@ tangential_result tangential_stage::solve_on_grid(const patch_problem &problem,
   // the outer loops see the tractions' errors as changes of the heat and of the gap
   const double tolerance =
       mu ? std::max(0.1 * shared_.scene.tolerance, 1e-12) : shared_.scene.tolerance;
-  tangential_options options{tolerance, shared_.scene.max_iterations};
+  tangential_options options{tolerance, shared_.scene.max_iterations, shared_.scene.ask};
   if (shared_.coupled) options.tolerance = shared_.coupled->tolerance(options.tolerance);
   const auto zero = [&](const double *p) {
     return std::all_of(p, p + g.count(), [](double v) { return v == 0; });
@@ -313,7 +313,8 @@ tangential_result tangential_stage::solve_fitted(const patch_problem &problem,
   else
     fitted_rows_->set_ellipse(hertz.semi_axes, hertz.normal_force);
   return fitted_->solve(*fitted_rows_, shared_.scene.friction(), rolling,
-                        {shared_.scene.tolerance, shared_.scene.max_iterations}, memory.nodes());
+                        {shared_.scene.tolerance, shared_.scene.max_iterations, shared_.scene.ask},
+                        memory.nodes());
 }
 
 // Of the tractions; where steps go on from it, its density is kept.

@@ -45,7 +45,7 @@ void coarse_start::find(const grid &g, const double *pressure, const double *bou
   std::fill_n(own.px, coarse.count(), 0.0);
   std::fill_n(own.py, coarse.count(), 0.0);
   const tangential_options loose{std::max(start_tolerance, options.tolerance),
-                                 options.max_iterations};
+                                 options.max_iterations, options.ask};
   if (coarser_ && serves(coarse.nx, coarse.ny))
     coarser_->find(coarse, pressure_.data(), bound_.data(), input, loose, own);
   solver_.solve({influence_, coarse, pressure_.data(), bound_.data(), input, loose, own});

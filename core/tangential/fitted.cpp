@@ -47,12 +47,14 @@ tangential_result fitted_solver::solve(const contact_rows &rows, double friction
   const bool warm = std::any_of(p_.data(), p_.data() + size, [](double p) { return p != 0; });
   const bool twice = warm && !input.force && options.max_iterations > 1;
   const int most = twice ? options.max_iterations / 2 : options.max_iterations;
-  tangential_result result = newton_.solve(operator_, problem, {options.tolerance, most});
+  tangential_result result =
+      newton_.solve(operator_, problem, {options.tolerance, most, options.ask});
   if (twice && !result.converged) {
     const tangential_result first = result;
     std::fill_n(p_.data(), size, 0.0);
-    result = newton_.solve(operator_, problem,
-                           {options.tolerance, options.max_iterations - first.newton_iterations});
+    result = newton_.solve(
+        operator_, problem,
+        {options.tolerance, options.max_iterations - first.newton_iterations, options.ask});
     result.newton_iterations += first.newton_iterations;
     result.products += first.products;
   }

@@ -43,6 +43,7 @@ inelastic_result inelastic_newton::solve(rolling_operator &b, const rolling_prob
                                          const tangential_options &options) {
   task t{
       {b, problem, problem.force ? &*force_ : nullptr}, inelastic, *inelastic.law, problem.bound};
+  t.ask = options.ask;
   bool undone = false;
   for (int k = 0; k < problem.count(); ++k) {
     most_[static_cast<size_t>(k)] = t.law.greatest(problem.bound[k]);

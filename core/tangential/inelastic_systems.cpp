@@ -91,6 +91,7 @@ void inelastic_newton::fill_block(const task &t, int row) {
     return change <= greatest_change;
   };
   if (has_factors && std::equal(now, now + count, before, near)) return;
+  t.ask.check();
   has_factors = 1;
   std::copy_n(now, count, before);
   t.b.row_matrices(row, row_matrix_[0].data(), row_matrix_[1].data());

@@ -36,6 +36,7 @@ size_t rolling_newton::bytes() const {
 tangential_result rolling_newton::solve(rolling_operator &b, const rolling_problem &problem,
                                         const tangential_options &options) {
   task t{b, problem, problem.force ? &*force_ : nullptr};
+  t.ask = options.ask;
   if (t.force) t.force->begin(problem, options.tolerance);
   for (int row = 0; row < problem.rows; ++row)
     std::fill(r_.data() + problem.row_start[row], r_.data() + problem.row_start[row + 1],
@@ -164,7 +165,9 @@ void rolling_newton::linearise(task &t) {
   t.b.linearise();
   for (int row = 0; row < t.problem.rows; ++row) {
     const element_linearisation *elements = linear_.data() + t.problem.row_start[row];
-    if (blocks_.serves(row, elements) || blocks_.set_row(row, elements)) continue;
+    if (blocks_.serves(row, elements)) continue;
+    t.ask.check();
+    if (blocks_.set_row(row, elements)) continue;
     t.b.row_matrices(row, row_matrix_[0].data(), row_matrix_[1].data());
     blocks_.set_row(row, row_matrix_[0].data(), row_matrix_[1].data(), elements);
   }

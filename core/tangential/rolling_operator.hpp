@@ -2,6 +2,7 @@
 // discretisation gives them. Notation and vectors: rolling_newton.hpp.
 #pragma once
 
+#include "numeric/interrupt.hpp"
 #include "tangential/force_constraint.hpp"
 #include "tangential/row_elements.hpp"
 
@@ -53,6 +54,7 @@ class rolling_operator {
 struct tangential_options {
   double tolerance;    // of the residual, relative to that of zero traction
   int max_iterations;  // Newton steps
+  interrupt ask{};
 };
 
 struct tangential_result {

@@ -38,6 +38,7 @@ struct row_task {
   force_constraint *force;  // null: none
   tangential_result result{};
   double flexibility[2] = {0, 0}, ramp_force = 0;
+  interrupt ask{};
 
   // of vectors
   size_t size() const { return 2 * static_cast<size_t>(problem.count()); }
@@ -268,7 +269,10 @@ double row_newton<Law, Task>::line_search(Task &t, double current) {
 
 template <class Law, class Task>
 void row_newton<Law, Task>::solve_linear(Task &t, size_t n, double tolerance) {
-  const auto apply = [&](const double *v, double *out) { law().apply_jacobian(t, v, out); };
+  const auto apply = [&](const double *v, double *out) {
+    t.ask.check();
+    law().apply_jacobian(t, v, out);
+  };
   const auto precondition = [&](double *v) { law().precondition(t, v); };
   double *right = right_.data(), *z = unknowns_.data();
   if (!t.force) {

@@ -72,6 +72,7 @@ size_t wheels::geometry_bytes() const {
 
 // Solves all wheels at z; returns their vertical force on the rails.
 double wheels::evaluate(double z, rp_result &out) {
+  solver_.scene().ask.check();
   double vertical = 0;
   verdict found{RP_NO_CONTACT};
   for (size_t w = 0; w < wheels_.size(); ++w) {
