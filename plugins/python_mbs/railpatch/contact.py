@@ -109,6 +109,8 @@ class Contact:
         Bodies of temperature.bulk go on by time_step, by default that of the case; before the first
         step, and by 0, no time passes.
         fields: add the fields of each patch. Other keys raise CaseError and nothing changes.
+        Ctrl-C, or another signal whose handler raises, ends the step within 0.2 s: the moving
+        inputs stay, and the next step starts as after reset().
         """
         case = changed_case(self._case, changes)
         if isinstance(case, PatchCase) and len(case.motion.creepages) > 1:
@@ -124,7 +126,14 @@ class Contact:
         if creepage is not None:
             values["creepage"] = creepage
         begin = time.perf_counter()
-        raw = self._core.step(values)
+        try:
+            raw = self._core.step(values)
+        except CaseError:
+            raise
+        except BaseException:
+            # interrupted: the core has forgotten its last solution
+            self._last = None
+            raise
         wall_time = time.perf_counter() - begin
         self._case = case
         self._last = raw, wall_time

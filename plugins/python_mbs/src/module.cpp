@@ -70,6 +70,45 @@ class StageClock {
   Clock::time_point since_;
 };
 
+// Asks Python's signal handlers now and then, while a call of the interpreter's own thread waits
+// for the library with the interpreter's lock released.
+class Signals {
+ public:
+  // As long as it lives the library asks.
+  class Watch {
+   public:
+    explicit Watch(Signals &signals) : signals_(signals) {
+      signals_.next_ = Clock::now() + kPause;
+      signals_.watched_ = true;
+    }
+    ~Watch() { signals_.watched_ = false; }
+    Watch(const Watch &) = delete;
+    Watch &operator=(const Watch &) = delete;
+
+   private:
+    Signals &signals_;
+  };
+
+  static int ask(void *user) { return static_cast<Signals *>(user)->raised() ? 1 : 0; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds kPause{40};
+
+  // a handler that raises leaves its exception with the interpreter
+  bool raised() {
+    if (!watched_) return false;
+    const auto now = Clock::now();
+    if (now < next_) return false;
+    next_ = now + kPause;
+    nb::gil_scoped_acquire locked;
+    return PyErr_CheckSignals() != 0;
+  }
+
+  bool watched_ = false;
+  Clock::time_point next_;
+};
+
 // the lock keeps one handle to one thread at a time, as railpatch.h asks for, while the
 // interpreter's lock is released
 class Contact : public Steppable {
@@ -82,6 +121,8 @@ class Contact : public Steppable {
       c.values.observer = StageClock::observe;
       c.values.observer_user = &clock_;
     }
+    c.values.interrupt = Signals::ask;
+    c.values.interrupt_user = &signals_;
     rp_message message = {};
     rp_contact *contact = nullptr;
     check(rp_create(&c.values, &contact, &message), &message);
@@ -93,10 +134,15 @@ class Contact : public Steppable {
     rp_default_input(&input);
     fill_input(values, input);
     rp_result result;
+    rp_message message = {};
+    rp_error code = RP_OK;
     {
       nb::gil_scoped_release unlocked;
-      solve(input, result);
+      std::lock_guard<std::mutex> guard(mutex_);
+      const Signals::Watch watch(signals_);
+      code = rp_step(contact_.get(), &input, &result, &message);
     }
+    raise(code, message);
     return result_dict(result);
   }
 
@@ -106,23 +152,29 @@ class Contact : public Steppable {
     fill_input(rates, direction);
     rp_result change;
     rp_derivative_kind kind = RP_DERIVATIVE_EXACT;
+    rp_message message = {};
+    rp_error code = RP_OK;
     {
       nb::gil_scoped_release unlocked;
-      rp_message message = {};
       std::lock_guard<std::mutex> guard(mutex_);
-      check(rp_differentiate(contact_.get(), &direction, &change, &kind, &message), &message);
+      const Signals::Watch watch(signals_);
+      code = rp_differentiate(contact_.get(), &direction, &change, &kind, &message);
     }
+    raise(code, message);
     return nb::make_tuple(result_dict(change), kind == RP_DERIVATIVE_EXACT);
   }
 
   nb::dict jacobian() {
     rp_jacobian found;
+    rp_message message = {};
+    rp_error code = RP_OK;
     {
       nb::gil_scoped_release unlocked;
-      rp_message message = {};
       std::lock_guard<std::mutex> guard(mutex_);
-      check(rp_get_jacobian(contact_.get(), &found, &message), &message);
+      const Signals::Watch watch(signals_);
+      code = rp_get_jacobian(contact_.get(), &found, &message);
     }
+    raise(code, message);
     return jacobian_dict(found);
   }
 
@@ -188,6 +240,13 @@ class Contact : public Steppable {
     void operator()(rp_contact *contact) const { rp_destroy(contact); }
   };
 
+  // what a signal's handler raised, or what was wrong
+  static void raise(rp_error code, const rp_message &message) {
+    if (code == RP_ERROR_INTERRUPTED && PyErr_Occurred()) throw nb::python_error();
+    check(code, &message);
+  }
+
+  Signals signals_;
   Bytes table_;  // the contact uses it in place
   std::unique_ptr<rp_contact, Destroy> contact_;
   StageClock clock_;
