@@ -74,65 +74,68 @@ enum {
 
 /* --- why a result is not good, or has no contact though it was asked for; reason_value is of what
  * the text says, NaN where it says nothing ---------------------------------------------------- */
-#define RP_REASONS(X)                                                                      \
-  X(RP_REASON_NONE, 0, "")                                                                 \
-  X(RP_REASON_NORMAL_ITERATIONS, 1,                                                        \
-    "the normal problem's residual is still above the tolerance after the allowed "        \
-    "iterations: greater method.max_iterations or method.tolerance")                       \
-  X(RP_REASON_BORDER, 2,                                                                   \
-    "the contact reaches the border of its grid: a larger grid, or a smaller load")        \
-  X(RP_REASON_TRACTION_ITERATIONS, 3,                                                      \
-    "the tractions' residual is still above the tolerance after the allowed iterations: "  \
-    "greater method.max_iterations or method.tolerance, smaller steps")                    \
-  X(RP_REASON_THEORY, 4,                                                                   \
-    "the contact's ratio of axes a/b is outside the range of the tangential theory: "      \
-    "another method.tangential")                                                           \
-  X(RP_REASON_LINEAR, 5,                                                                   \
-    "the linear theory's creep force, over what friction can carry, is above 1: smaller "  \
-    "creepages, or another method.tangential")                                             \
-  X(RP_REASON_PRESCRIBED_FORCE, 6,                                                         \
-    "no creepage was found that gives the prescribed tangential force: a smaller force")   \
-  X(RP_REASON_HEAT_LOOP, 7,                                                                \
-    "friction and temperature do not agree, by the residual: finer elements, a friction "  \
-    "that changes more gently with temperature")                                           \
-  X(RP_REASON_COUPLING, 8,                                                                 \
-    "pressure and tractions of unlike bodies do not agree, by the residual: greater "      \
-    "method.max_iterations")                                                               \
-  X(RP_REASON_FORCE_SEARCH, 9,                                                             \
-    "no height z was found that carries the vertical force, by the relative residual: "    \
-    "look at the profiles for steps, or prescribe wheelset.z")                             \
-  X(RP_REASON_TOO_DEEP, 10,                                                                \
-    "no height z within reach carries the vertical force, by the relative residual: a "    \
-    "smaller wheelset.vertical_force, stiffer material")                                   \
-  X(RP_REASON_NO_OVERLAP, 11,                                                              \
-    "at no height would wheel and rail meet: their profiles lie side by side, see "        \
-    "wheelset.y, track.gauge and wheelset.flange_back_distance")                           \
-  X(RP_REASON_RAIL_SEARCH, 12,                                                             \
-    "no deflection of the rails balances the contact forces, by the relative residual: "   \
-    "smaller steps, stiffer rails")                                                        \
-  X(RP_REASON_RAIL_BEYOND, 13,                                                             \
-    "the rails' deflection leads to where a contact force is not known: stiffer rails, a " \
-    "smaller load")                                                                        \
-  X(RP_REASON_PROFILE_END, 14,                                                             \
-    "the contact reaches the end of a profile, at this lateral position (m, track): "      \
-    "profiles that go on, or another wheelset.y")                                          \
-  X(RP_REASON_TOO_MANY_PATCHES, 15,                                                        \
-    "the wheel has more patches than it may have: greater wheelset.max_patches, smoother " \
-    "profiles")                                                                            \
-  X(RP_REASON_GRID_ROOM, 16,                                                               \
-    "the contact asks for more elements than there is room for: greater grid.max_elements" \
-    " or element_size, or grid.elements")                                                  \
-  X(RP_REASON_NO_GRID, 17,                                                                 \
-    "no grid covers the contact, which is as narrow as a line or too far off its "         \
-    "reference")                                                                           \
-  X(RP_REASON_BULK_TEMPERATURE, 18,                                                        \
-    "a bulk temperature leaves its range: a greater mass or conductance, shorter steps")   \
-  X(RP_REASON_ACCURACY, 19,                                                                \
-    "the creep force's error estimate, over friction times normal force, stays above the " \
-    "accuracy on the finest grid")                                                         \
-  X(RP_REASON_NO_ESTIMATE, 20,                                                             \
-    "the creep force has no error estimate that could meet the accuracy")                  \
-  X(RP_REASON_DERIVATIVE, 21, "the derivative's equations were not solved to their tolerance")
+#define RP_REASONS(X)                                                                          \
+  X(RP_REASON_NONE, 0, "")                                                                     \
+  X(RP_REASON_NORMAL_ITERATIONS, 1,                                                            \
+    "the normal problem's residual is still above the tolerance after the allowed "            \
+    "iterations: greater method.max_iterations or method.tolerance")                           \
+  X(RP_REASON_BORDER, 2,                                                                       \
+    "the contact reaches the border of its grid: a larger grid, or a smaller load")            \
+  X(RP_REASON_TRACTION_ITERATIONS, 3,                                                          \
+    "the tractions' residual is still above the tolerance after the allowed iterations: "      \
+    "greater method.max_iterations or method.tolerance, smaller steps")                        \
+  X(RP_REASON_THEORY, 4,                                                                       \
+    "the contact's ratio of axes a/b is outside the range of the tangential theory: "          \
+    "another method.tangential")                                                               \
+  X(RP_REASON_LINEAR, 5,                                                                       \
+    "the linear theory's creep force, over what friction can carry, is above 1: smaller "      \
+    "creepages, or another method.tangential")                                                 \
+  X(RP_REASON_PRESCRIBED_FORCE, 6,                                                             \
+    "no creepage was found that gives the prescribed tangential force: a smaller force")       \
+  X(RP_REASON_HEAT_LOOP, 7,                                                                    \
+    "friction and temperature do not agree, by the residual: finer elements, a friction "      \
+    "that changes more gently with temperature")                                               \
+  X(RP_REASON_COUPLING, 8,                                                                     \
+    "pressure and tractions of unlike bodies do not agree, by the residual: greater "          \
+    "method.max_iterations")                                                                   \
+  X(RP_REASON_FORCE_SEARCH, 9,                                                                 \
+    "no height z was found that carries the vertical force, by the relative residual: "        \
+    "look at the profiles for steps, or prescribe wheelset.z")                                 \
+  X(RP_REASON_TOO_DEEP, 10,                                                                    \
+    "no height z within reach carries the vertical force, by the relative residual: a "        \
+    "smaller wheelset.vertical_force, stiffer material")                                       \
+  X(RP_REASON_NO_OVERLAP, 11,                                                                  \
+    "at no height would wheel and rail meet: their profiles lie side by side, see "            \
+    "wheelset.y, track.gauge and wheelset.flange_back_distance")                               \
+  X(RP_REASON_RAIL_SEARCH, 12,                                                                 \
+    "no deflection of the rails balances the contact forces, by the relative residual: "       \
+    "smaller steps, stiffer rails")                                                            \
+  X(RP_REASON_RAIL_BEYOND, 13,                                                                 \
+    "the rails' deflection leads to where a contact force is not known: stiffer rails, a "     \
+    "smaller load")                                                                            \
+  X(RP_REASON_PROFILE_END, 14,                                                                 \
+    "the contact reaches the end of a profile, at this lateral position (m, track): "          \
+    "profiles that go on, or another wheelset.y")                                              \
+  X(RP_REASON_TOO_MANY_PATCHES, 15,                                                            \
+    "the wheel has more patches than it may have: greater wheelset.max_patches, smoother "     \
+    "profiles")                                                                                \
+  X(RP_REASON_GRID_ROOM, 16,                                                                   \
+    "the contact asks for more elements than there is room for: greater grid.max_elements"     \
+    " or element_size, or grid.elements")                                                      \
+  X(RP_REASON_NO_GRID, 17,                                                                     \
+    "no grid covers the contact, which is as narrow as a line or too far off its "             \
+    "reference")                                                                               \
+  X(RP_REASON_BULK_TEMPERATURE, 18,                                                            \
+    "a bulk temperature leaves its range: a greater mass or conductance, shorter steps")       \
+  X(RP_REASON_ACCURACY, 19,                                                                    \
+    "the creep force's error estimate, over friction times normal force, stays above the "     \
+    "accuracy on the finest grid")                                                             \
+  X(RP_REASON_NO_ESTIMATE, 20,                                                                 \
+    "the creep force has no error estimate that could meet the accuracy")                      \
+  X(RP_REASON_DERIVATIVE, 21, "the derivative's equations were not solved to their tolerance") \
+  X(RP_REASON_BALANCE, 22,                                                                     \
+    "no roll angle or pitch rate was found that balances the wheelset, by the relative "       \
+    "residual: another wheelset.y or load, or a number for wheelset.roll or pitch_rate")
 
 /* --- warnings: bits of what can hardly be meant. X(name, value, text): the bit is 1 << value ---
  */
@@ -681,7 +684,7 @@ typedef struct rp_result {
   double axle_torque; /* N m, of the contact forces about the axle: their moment; with patch_rule =
                          contact in the track's frame, which leaves the pressures' part along x out,
                          the forces along the wheelset's x times the rolling radii */
-  rp_reason reason;       /* why the status is not good: that of the wheel, or of both together */
+  rp_reason reason;   /* why the status is not good: that of the wheel, or of both together */
   double reason_value;
   uint32_t warnings; /* those of both wheels */
 } rp_result;

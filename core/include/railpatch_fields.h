@@ -160,7 +160,7 @@
   X(double, roll, 1, number, even, kept, alone, NAN, "rad", "roll angle of the wheelset")        \
   X(double, pitch_rate, 1, number, even, kept, alone, NAN, "rad/s", "about the axle")            \
   X(double, axle_torque, 1, number, even, kept, alone, NAN, "N m",                               \
-    "torque of the contact forces about the axle") \
+    "torque of the contact forces about the axle")                                               \
   X(rp_reason, reason, 1, status, even, kept, alone, RP_REASON_NONE, "",                         \
     "why the status is not good")                                                                \
   X(double, reason_value, 1, estimate, even, kept, alone, NAN, "-",                              \

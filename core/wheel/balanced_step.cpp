@@ -162,8 +162,7 @@ void wheels::solve_balanced(rp_input &in, rp_result &out) {
   if (balance_->roll && !touching_roll(in)) {
     in.roll = 0;
     state.solve();
-    report_search(false, RP_OUT_OF_RANGE, HUGE_VAL, out);
-    out.status = RP_OUT_OF_RANGE;
+    report_search({RP_OUT_OF_RANGE, RP_REASON_BALANCE}, HUGE_VAL, out);
     return fail();
   }
   const double turning = balance_->roller_radius * in.roller_pitch_rate;
@@ -184,10 +183,12 @@ void wheels::solve_balanced(rp_input &in, rp_result &out) {
   const balance_outcome found = find_balance(state, search);
   state.set(found.unknown);
   if (!found.known) {
-    report_search(false, RP_OUT_OF_RANGE, HUGE_VAL, out);
+    report_search({RP_OUT_OF_RANGE, RP_REASON_BALANCE}, HUGE_VAL, out);
     return fail();
   }
-  report_search(found.converged, RP_NOT_CONVERGED, found.residual, out);
+  verdict ended;
+  if (!found.converged) ended = {RP_NOT_CONVERGED, RP_REASON_BALANCE, found.residual};
+  report_search(ended, found.residual, out);
 }
 
 }  // namespace railpatch

@@ -12,6 +12,9 @@ from railpatch.case.scene_profiles import note_lines
 from railpatch.case.types import SIDES
 from railpatch.result import PATCH_UNITS, PLACE_UNITS, WHEEL_UNITS, WHEELSET_UNITS, Result
 
+# told in lines of their own, not in columns
+IN_WORDS = ("reason", "warnings")
+
 
 def print_result(result: Result, console: Console | None = None) -> None:
     """The quantities of a result, one column for each patch."""
@@ -47,6 +50,8 @@ def patch_table(columns: list[tuple[str, dict[str, Any]]], units: dict[str, str]
     """One row for each quantity that the scene has."""
     table = new_table([name for name, _ in columns], "patch")
     for key, unit in units.items():
+        if key in IN_WORDS:
+            continue
         cells = [spell(patch[key]) for _, patch in columns]
         if any(cells):
             table.add_row(key, unit, *cells)
@@ -60,6 +65,8 @@ def wheel_table(data: dict[str, Any], wheels: dict[str, dict[str, Any]]) -> Tabl
         columns["wheelset"] = data
     table = new_table(list(columns), "wheel")
     for key, unit in {**WHEEL_UNITS, **WHEELSET_UNITS}.items():
+        if key in IN_WORDS:
+            continue
         # the wheelset has no rolling radius, and most rails do not deflect
         cells = [spell(values.get(key)) for values in columns.values()]
         if any(cells):
