@@ -60,8 +60,11 @@ uint32_t warnings_of_patch(const rp_config &config, const rp_patch_result &patch
   const bool line = config.kind == RP_PATCH && config.geometry == RP_LINE_CONTACT;
   found |= bit(RP_WARNING_LAYER, !line && config.layer_thickness > width && width > 0);
   bool coarse = false;
-  for (int k = 0; k < (line ? 1 : 2); ++k)
-    coarse = coarse || (patch.grid[k] > 0 && patch.grid[k] < least_elements);
+  for (int k = 0; k < (line ? 1 : 2); ++k) {
+    // a grid of the case's own number has a border around it
+    const int count = config.elements[k] > 0 ? config.elements[k] : patch.grid[k];
+    coarse = coarse || (patch.grid[k] > 0 && count < least_elements);
+  }
   return found | bit(RP_WARNING_COARSE, coarse && config.fitted[0] == 0);
 }
 

@@ -157,7 +157,7 @@
   X(double, rail_heat, 1, number, even, kept, alone, NAN, "W", "heat into the rails or rollers") \
   X(double, pressure_energy, 1, number, even, kept, alone, NAN, "J",                             \
     "elastic energy of the pressure alone, of all patches by share")                             \
-  X(double, roll, 1, number, even, kept, alone, NAN, "rad", "roll angle of the wheelset")        \
+  X(double, roll, 1, number, odd, kept, alone, NAN, "rad", "roll angle of the wheelset")         \
   X(double, pitch_rate, 1, number, even, kept, alone, NAN, "rad/s", "about the axle")            \
   X(double, axle_torque, 1, number, even, kept, alone, NAN, "N m",                               \
     "torque of the contact forces about the axle")                                               \

@@ -67,7 +67,13 @@ TEST(GridLevels, SayWhereTheAccuracyCannotBeHad) {
   EXPECT_EQ(a.status, RP_ACCURACY_NOT_MET);
   EXPECT_EQ(a.side[RP_RIGHT].status, RP_ACCURACY_NOT_MET);
   EXPECT_EQ(a.side[RP_RIGHT].patch[0].status, RP_ACCURACY_NOT_MET);
-  a.status = a.side[RP_RIGHT].status = a.side[RP_RIGHT].patch[0].status = RP_CONVERGED;
+  rp_side_result &side = a.side[RP_RIGHT];
+  rp_patch_result &patch = side.patch[0];
+  EXPECT_EQ(a.reason, RP_REASON_ACCURACY);
+  EXPECT_NEAR(a.reason_value, patch.error_estimate[0] / (friction * force), 1e-12);
+  a.status = side.status = patch.status = RP_CONVERGED;
+  a.reason = side.reason = patch.reason = RP_REASON_NONE;
+  a.reason_value = side.reason_value = patch.reason_value = b.reason_value;
   EXPECT_EQ(scenes::difference(a, b), "");
   EXPECT_STREQ(rp_status_text(RP_ACCURACY_NOT_MET), "accuracy_not_met");
 }

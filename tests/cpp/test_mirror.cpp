@@ -59,6 +59,7 @@ rp_result mirrored(rp_result r) {
   r.force[1] = -r.force[1];
   r.moment[0] = -r.moment[0];
   r.moment[2] = -r.moment[2];
+  r.roll = -r.roll;
   for (rp_side_result &s : r.side) s = mirrored(s);
   std::swap(r.side[0], r.side[1]);
   return r;

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import railpatch
+from case_samples import WHEELSET
 from profile_files import columns
 from railpatch.profiles import ProfileError, builtin_profile, read_profile
 from railpatch.profiles.orientation import check_placed, lean
@@ -141,3 +143,17 @@ def test_a_wheel_far_from_its_origin_is_asked_for(write: Write) -> None:
     with pytest.raises(ProfileError, match=r"lies 50\.?\d* mm below the nominal radius"):
         check_placed("w.txt", 1e-3 * y, 1e-3 * (z + 50), -0.07)
     check_placed("w.txt", 1e-3 * y, 1e-3 * z, -0.07)
+
+
+def test_a_rail_cut_above_the_gauge_is_refused(write: Write) -> None:
+    """At 7 mm beside its middle such a rail met the wheel with 2522 MPa in place of 1403."""
+    y, z = points(*RAIL)
+    case = {**WHEELSET, "profiles": {"wheel": "S1002", "rail": "rail.txt"}}
+    for depth in (10.0, 15.0):
+        kept = (z - z.min() <= depth) | (y > 0)
+        path = write("rail.txt", columns(y[kept], z[kept]))
+        if depth < 14:
+            with pytest.raises(ProfileError, match=r"below its top .*track\.gauge_height, 14 mm"):
+                railpatch.Contact(case, folder=path.parent)
+        else:
+            railpatch.Contact(case, folder=path.parent)

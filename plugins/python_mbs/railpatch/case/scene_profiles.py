@@ -9,7 +9,7 @@ from typing import Literal
 from railpatch.case.wheel import WheelRailCase, WheelsetCase
 from railpatch.profiles import Profile, load_profile
 from railpatch.profiles.builtin import builtin_profile
-from railpatch.profiles.orientation import check_placed
+from railpatch.profiles.orientation import check_gauge_side, check_placed
 
 Body = Literal["wheel", "rail"]
 WheelCase = WheelRailCase | WheelsetCase
@@ -46,6 +46,8 @@ def scene_profiles(case: WheelCase, folder: Path) -> list[Placed]:
             profile = named_profile(case, body, name, folder)
             if body == "wheel":
                 check_wheel(case, side, name, profile)
+            elif builtin_profile(name, body) is None:
+                check_gauge_side(name, profile.y, profile.z, case.track.gauge_height)
             found.append(Placed(side, body, profile))
     return found
 

@@ -184,6 +184,23 @@ def check_placed(name: object, y: Array, z: Array, flange_back: float) -> None:
         )
 
 
+def check_gauge_side(name: object, y: Array, z: Array, gauge_height: float) -> None:
+    """Refuses a rail that is cut off above where its gauge is measured: it would be placed by the
+    point where it ends, towards the wheel by what is missing.
+
+    y, z: m, of the profile. gauge_height: m, below the top.
+    """
+    top = int(np.argmin(z))
+    depth = float(z[: top + 1].max() - z[top])
+    if depth < gauge_height:
+        raise ProfileError(
+            name,
+            f"ends {1e3 * depth:.4g} mm below its top on the gauge side (-y), allowed "
+            f"track.gauge_height, {1e3 * gauge_height:.4g} mm, or more: the rail is placed by its "
+            "point there. Measure further down, or say a smaller gauge_height with the gauge there",
+        )
+
+
 def check_lean(raw: RawProfile) -> None:
     """Refuses a symmetric head that leans away from the track: y seems to be mirrored."""
     angle = lean(raw.y, raw.z)
