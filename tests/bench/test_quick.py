@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 from railpatch.command.cli import cli
-from railpatch.evidence.bench import cost, evaluations, features, methods, run
+from railpatch.evidence.bench import cost, evaluations, features, methods, run, tail
 from railpatch.evidence.bench.measure import COLUMNS
 from railpatch.evidence.bench.methods import METHODS, UNIFORM, Method
 from railpatch.evidence.bench.sets import SETS
@@ -25,6 +25,7 @@ FILES = (
     "cases.csv.gz",
     "cost.csv",
     "features.csv",
+    "tail.csv",
     "run.json",
     "frontier.svg",
 )
@@ -48,6 +49,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         patch.setattr(cost, "MOST_PASSES", 1)
         patch.setattr(evaluations, "QUICK_PASSES", 2)
         patch.setattr(features, "QUICK_PASSES", 2)
+        patch.setattr(tail, "QUICK_STEPS", 20)
         patch.setattr(run, "QUICK_RIG_POSITIONS", 5)
         result = bench("--quick", "-o", str(path))
     assert result.exit_code == 0, result.output

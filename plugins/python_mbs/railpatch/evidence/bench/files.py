@@ -14,18 +14,20 @@ from railpatch.evidence.bench.page import page
 from railpatch.evidence.bench.picture import write_pictures
 from railpatch.evidence.bench.run import Report
 from railpatch.evidence.bench.sets import SEED
+from railpatch.evidence.bench.tail import Tail
 from railpatch.evidence.bench.targets import rows
 
 
 def write_report(report: Report, folder: Path) -> list[Path]:
-    """Writes report.html, summary.csv, cases.csv.gz, cost.csv, features.csv, run.json, frontier.svg
-    and .png."""
+    """Writes report.html, summary.csv, cases.csv.gz, cost.csv, features.csv, tail.csv, run.json,
+    frontier.svg and .png."""
     folder.mkdir(parents=True, exist_ok=True)
     written = [
         write_summary(report, folder / "summary.csv"),
         write_cases(report.measured, folder / "cases.csv.gz"),
         write_cost(report, folder / "cost.csv"),
         write_features(report.features, folder / "features.csv"),
+        write_tails(report.tails, folder / "tail.csv"),
         write_run(report, folder / "run.json"),
         *write_pictures(report, folder),
     ]
@@ -75,6 +77,15 @@ def write_features(features: list[FeatureCost], path: Path) -> Path:
         writer = csv.DictWriter(file, list(asdict(features[0])))
         writer.writeheader()
         writer.writerows(asdict(feature) for feature in features)
+    return path
+
+
+def write_tails(tails: list[Tail], path: Path) -> Path:
+    """One line for each method and what is prescribed; columns as in ``tail.Tail.row``."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, list(tails[0].row()))
+        writer.writeheader()
+        writer.writerows(one.row() for one in tails)
     return path
 
 

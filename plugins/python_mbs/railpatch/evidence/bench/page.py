@@ -11,6 +11,7 @@ from railpatch.evidence.bench.machine import FFT_SIZE
 from railpatch.evidence.bench.run import Report
 from railpatch.evidence.bench.sets import SEED, SETS
 from railpatch.evidence.bench.statistics import COVERED, FACTOR, WITHIN, Summary
+from railpatch.evidence.bench.tail import BOUNDS, SHARES, quantile
 from railpatch.evidence.bench.targets import rows
 from railpatch.evidence.bench.truth import batches_of
 from railpatch.page.document import document
@@ -41,7 +42,8 @@ def page(report: Report) -> str:
     """The HTML text."""
     parts = [head(report), targets(report), *figures(report)]
     parts += [set_section(report, name) for name in report.plan.sets]
-    parts += [features(report), wheel_evaluations(report), calibration(report), truth(report)]
+    parts += [features(report), wheel_evaluations(report), slowest_steps(report)]
+    parts += [calibration(report), truth(report)]
     return document("error against run time", "".join(parts))
 
 
@@ -198,6 +200,43 @@ def wheel_evaluations(report: Report) -> str:
         f"placement, profiles sampled every 0.2 mm: {number(1e6 * report.search)} µs (median).</p>"
         + table(("grid", "force [ms]", "derivatives [ms]", "ratio", "their memory [kB]", ""), lines)
     )
+
+
+def slowest_steps(report: Report) -> str:
+    """How far the slowest steps of a moving wheel are from the usual ones."""
+    lines, bins = [], []
+    for one in report.tails:
+        head = [one.name, one.prescribed]
+        times = [quantile(one.seconds, share) for share in SHARES]
+        work = [quantile(one.evaluations, share) for share in SHARES[::3]]
+        work += [quantile(one.iterations, share) for share in SHARES[::3]]
+        ratios = [f"{times[k] / times[0]:.1f}" for k in (2, 3)]
+        lines.append(
+            [
+                *head,
+                *(number(1e6 * t) for t in times),
+                *ratios,
+                *(f"{w:.0f}" for w in work),
+                one.lifted,
+                one.bad,
+            ]
+        )
+        bins.append([*head, *one.histogram()])
+    percentiles = [f"{share:g} % [µs]" for share in SHARES]
+    ranges = [f"to {bound:g}" for bound in BOUNDS] + ["beyond"]
+    return (
+        "<h2>The slowest steps</h2><p>S1002 on UIC60, steps as at 1 ms: a random walk over tread, "
+        "root and flange; where the position is prescribed, off the rail and back too. Times that "
+        "so many steps are not above, and their ratio to the median. Evaluations of a step, and "
+        "iterations in its last one: median and most; they do not depend on the machine.</p>"
+        + table(
+            ("method", "prescribed", *percentiles, "99.99 %, ratio", "100 %, ratio",
+             "evaluations", "most", "iterations", "most", "no contact", "bad"),
+            lines,
+        )
+        + "<p>Histogram: steps by their time in medians.</p>"
+        + table(("method", "prescribed", *ranges), bins)
+    )  # fmt: skip
 
 
 def calibration(report: Report) -> str:

@@ -14,6 +14,7 @@ from railpatch.evidence.bench.measure import Measured, measure
 from railpatch.evidence.bench.methods import Method
 from railpatch.evidence.bench.sets import SETS
 from railpatch.evidence.bench.statistics import summarize
+from railpatch.evidence.bench.tail import Tail, tails
 from railpatch.evidence.bench.targets import Outcome
 from railpatch.evidence.bench.truth import TruthFile, batches_of
 
@@ -46,7 +47,7 @@ class Plan:
     @property
     def total(self) -> int:
         """Steps of the progress bar."""
-        return len(self.points()) + len(self.sizes()) + 4
+        return len(self.points()) + len(self.sizes()) + 5
 
     def check(self) -> None:
         """Makes one contact of every method and set. Raises CaseError where a case is refused."""
@@ -66,6 +67,7 @@ class Report:
     features: list[FeatureCost]
     evaluations: list[Evaluation]
     search: float  # s, contact search of one wheel
+    tails: list[Tail]
 
 
 def run_bench(
@@ -91,4 +93,5 @@ def run_bench(
     features = feature_costs(plan.quick, progress)
     wheels = evaluations(plan.quick, progress)
     search = search_time(plan.quick)
-    return Report(plan, machine, truth, measured, outcome, features, wheels, search)
+    walks = tails(plan.quick, progress)
+    return Report(plan, machine, truth, measured, outcome, features, wheels, search, walks)
