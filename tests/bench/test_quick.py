@@ -130,7 +130,7 @@ def test_page(folder: Path, summary: list[dict[str, str]]) -> None:
         assert f"Set {name}: {problem_set.title}" in text
     for target in TARGETS:
         assert target.title in text.replace("&#x27;", "'")
-    for word in ("FFT", "Truth", "Error estimates", "CONTACT"):
+    for word in ("FFT", "Truth", "Error estimates", "The slowest steps", "CONTACT"):
         assert word in text
     for figure in ("frontier", "cost"):
         assert f'id="{figure}"' in page
