@@ -9,15 +9,15 @@ namespace railpatch {
 namespace {
 
 // the texts of RP_WARNINGS name them
-constexpr double shear_moduli[2] = {1e8, 1e12};  // Pa
-constexpr double steel[2] = {6e10, 1e11};        // Pa, shear moduli of steels are 7.5e10 to 8.5e10
-constexpr double most_friction = 1;              // -
-constexpr double loads[2] = {100, 5e5};          // N
-constexpr double pressures[2] = {1e7, 5e9};      // Pa
-constexpr double most_creepage = 0.1;            // -
-constexpr double least_speed = 0.01;             // m/s, below which nothing is said of turning
-constexpr double radii[2] = {1, 8};              // of wheels, over the width of their profiles
-constexpr double flange_way = 0.025;             // m
+constexpr double modulus_range[2] = {1e8, 1e12};  // Pa
+constexpr double steel_range[2] = {6e10, 1e11};   // Pa, shear moduli of steels are 7.5e10 to 8.5e10
+constexpr double doubtful_friction = 1;           // -
+constexpr double load_range[2] = {100, 5e5};      // N
+constexpr double pressure_range[2] = {1e7, 5e9};  // Pa
+constexpr double doubtful_creepage = 0.1;         // -
+constexpr double least_way = 0.01;                // m/s, below which nothing is said of turning
+constexpr double radius_range[2] = {1, 8};        // of wheels, over the width of their profiles
+constexpr double flange_way = 0.025;              // m
 constexpr int least_elements = 8;
 
 uint32_t bit(rp_warning warning, bool given) {
@@ -44,18 +44,18 @@ bool turns_wrongly(const rp_config &config, const rp_input &in, int side) {
   double way = in.speed;
   if (config.track == RP_ROLLER) way += in.roller_pitch_rate * config.roller_radius;
   const double rate = in.pitch_rate + in.wheel_angular_velocity[side][1];
-  return std::fabs(way) > least_speed && !(-rate * way > 0);
+  return std::fabs(way) > least_way && !(-rate * way > 0);
 }
 
 uint32_t warnings_of_patch(const rp_config &config, const rp_patch_result &patch) {
   bool hard = true;
-  for (double modulus : config.shear_modulus) hard = hard && !outside(modulus, steel);
-  uint32_t found = bit(RP_WARNING_HIGH_PRESSURE, patch.max_pressure > pressures[1]) |
+  for (double modulus : config.shear_modulus) hard = hard && !outside(modulus, steel_range);
+  uint32_t found = bit(RP_WARNING_HIGH_PRESSURE, patch.max_pressure > pressure_range[1]) |
                    bit(RP_WARNING_LOW_PRESSURE,
-                       hard && patch.max_pressure < pressures[0] && patch.max_pressure > 0);
+                       hard && patch.max_pressure < pressure_range[0] && patch.max_pressure > 0);
   if (moves(config) && patch.direction != 0)
-    found |= bit(RP_WARNING_CREEPAGE, std::fabs(patch.creepage[0]) > most_creepage ||
-                                          std::fabs(patch.creepage[1]) > most_creepage);
+    found |= bit(RP_WARNING_CREEPAGE, std::fabs(patch.creepage[0]) > doubtful_creepage ||
+                                          std::fabs(patch.creepage[1]) > doubtful_creepage);
   const double width = 2 * std::sqrt(patch.contact_area / std::numbers::pi);
   const bool line = config.kind == RP_PATCH && config.geometry == RP_LINE_CONTACT;
   found |= bit(RP_WARNING_LAYER, !line && config.layer_thickness > width && width > 0);
@@ -78,7 +78,7 @@ uint32_t warnings_of_side(const rp_config &config, const rp_input &input, int si
     load += patch.share * patch.normal_force;
     found |= warnings_of_patch(config, patch);
   }
-  found |= bit(RP_WARNING_LOAD, load != 0 && outside(load, loads));
+  found |= bit(RP_WARNING_LOAD, load != 0 && outside(load, load_range));
   if (config.kind == RP_PATCH) return found;
   return found | bit(RP_WARNING_TURNING, moves(config) && turns_wrongly(config, input, side)) |
          bit(RP_WARNING_FLANGE, std::fabs(input.y) > flange_way);
@@ -88,17 +88,17 @@ uint32_t warnings_of_side(const rp_config &config, const rp_input &input, int si
 
 uint32_t warnings_of_case(const rp_config &config) {
   bool soft = false, odd = false;
-  for (double modulus : config.shear_modulus) soft = soft || outside(modulus, shear_moduli);
+  for (double modulus : config.shear_modulus) soft = soft || outside(modulus, modulus_range);
   for (int side = 0; side < 2; ++side) {
     const rp_profile &profile = config.wheel[side];
     if (config.kind == RP_PATCH || !in_use(config, side) || !profile.y || profile.count < 2)
       continue;
     const auto [low, high] = std::minmax_element(profile.y, profile.y + profile.count);
-    odd = odd || outside(config.nominal_radius / (*high - *low), radii);
+    odd = odd || outside(config.nominal_radius / (*high - *low), radius_range);
   }
   return bit(RP_WARNING_STIFFNESS, soft) | bit(RP_WARNING_RADIUS, odd) |
          bit(RP_WARNING_FRICTION, config.tangential != RP_TANGENTIAL_NONE &&
-                                      config.friction_coefficient > most_friction);
+                                      config.friction_coefficient > doubtful_friction);
 }
 
 void report_warnings(const rp_config &config, uint32_t of_case, const rp_input &input,
