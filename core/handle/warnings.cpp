@@ -40,10 +40,10 @@ bool moves(const rp_config &config) {
 }
 
 // Whether a wheel on its way does not turn, or the other way round.
-bool turns_wrongly(const rp_config &config, const rp_input &in, int side) {
+bool turns_wrongly(const rp_config &config, const rp_input &in, double pitch_rate, int side) {
   double way = in.speed;
   if (config.track == RP_ROLLER) way += in.roller_pitch_rate * config.roller_radius;
-  const double rate = in.pitch_rate + in.wheel_angular_velocity[side][1];
+  const double rate = pitch_rate + in.wheel_angular_velocity[side][1];
   return std::fabs(way) > least_way && !(-rate * way > 0);
 }
 
@@ -68,8 +68,9 @@ uint32_t warnings_of_patch(const rp_config &config, const rp_patch_result &patch
   return found | bit(RP_WARNING_COARSE, coarse && config.fitted[0] == 0);
 }
 
-uint32_t warnings_of_side(const rp_config &config, const rp_input &input, int side,
-                          const rp_side_result &wheel) {
+// pitch_rate: given or found
+uint32_t warnings_of_side(const rp_config &config, const rp_input &input, double pitch_rate,
+                          int side, const rp_side_result &wheel) {
   uint32_t found = 0;
   double load = 0;
   for (int i = 0; i < wheel.patch_count + wheel.alternative_count; ++i) {
@@ -80,7 +81,8 @@ uint32_t warnings_of_side(const rp_config &config, const rp_input &input, int si
   }
   found |= bit(RP_WARNING_LOAD, load != 0 && outside(load, load_range));
   if (config.kind == RP_PATCH) return found;
-  return found | bit(RP_WARNING_TURNING, moves(config) && turns_wrongly(config, input, side)) |
+  return found |
+         bit(RP_WARNING_TURNING, moves(config) && turns_wrongly(config, input, pitch_rate, side)) |
          bit(RP_WARNING_FLANGE, std::fabs(input.y) > flange_way);
 }
 
@@ -107,7 +109,7 @@ void report_warnings(const rp_config &config, uint32_t of_case, const rp_input &
   for (int side = 0; side < 2; ++side) {
     if (!in_use(config, side)) continue;
     rp_side_result &wheel = result.side[side];
-    wheel.warnings = of_case | warnings_of_side(config, input, side, wheel);
+    wheel.warnings = of_case | warnings_of_side(config, input, result.pitch_rate, side, wheel);
     touching += wheel.patch_count > 0;
   }
   // said of the wheel in the air

@@ -1,6 +1,7 @@
 // Rates of wheels, where they come from the equations: in one direction, and by pose and velocity.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "numeric/nan.hpp"
 #include "patch/result_fields.hpp"
