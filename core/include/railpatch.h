@@ -24,7 +24,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#if defined(_WIN32)
+#if defined(RP_INSIDE) /* part of another library, which does not export it */
+#define RP_API
+#elif defined(_WIN32)
 #if defined(RP_BUILD)
 #define RP_API __declspec(dllexport)
 #elif defined(RP_SHARED)
@@ -537,7 +539,7 @@ typedef struct rp_input {
   uint32_t cookie; /* set by rp_default_input */
 
   /* patch */
-  double normal_force;        /* N, > 0, load = RP_FORCE */
+  double normal_force;        /* N, >= 0 (0: no contact), load = RP_FORCE */
   double approach;            /* m, load = RP_POSITION */
   double creepage[2];         /* -, longitudinal, lateral; 0 where the force is prescribed.
                                  RP_SHIFT: m, displacement of the wheel in this step */
@@ -552,7 +554,7 @@ typedef struct rp_input {
   /* wheelset: position, attitude (roll-yaw-pitch) and velocity in track axes */
   double x, pitch;       /* m, along the track; rad, about the axle: for what varies with them */
   double y, z;           /* m; z where load = RP_POSITION */
-  double vertical_force; /* N on the wheel or on both, > 0, where load = RP_FORCE */
+  double vertical_force; /* N on the wheel or on both, >= 0 (0: no contact), load = RP_FORCE */
   double roll, yaw;      /* rad */
   double speed, vy, vz;  /* m/s, forward (0 on a rig), lateral, vertical */
   double roll_rate, yaw_rate, pitch_rate;          /* rad/s */

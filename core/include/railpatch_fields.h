@@ -380,7 +380,8 @@
  */
 #define RP_INPUT_FIELDS(X, O)                                                                      \
   O(uint32_t, cookie, 1)                                                                           \
-  X(double, normal_force, 1, number, own, 1e5, "()", 0, HUGE_VAL, 0, "N", "normal force")          \
+  X(double, normal_force, 1, number, own, 1e5, "[)", 0, HUGE_VAL, 0, "N",                          \
+    "normal force; 0: without contact")                                                            \
   X(double, approach, 1, number, own, 0, "()", -HUGE_VAL, HUGE_VAL, 0, "m",                        \
     "approach of the bodies; below 0 they are apart")                                              \
   X(double, creepage, 2, number, patch, 0, "()", -HUGE_VAL, HUGE_VAL, 1e-3, "-",                   \
@@ -403,9 +404,9 @@
   X(double, y, 1, number, wheels, 0, "[]", -1, 1, 1e-3, "m",                                       \
     "lateral position of its centre, to the right")                                                \
   X(double, z, 1, number, own, 0, "[]", -1, 1, 1e-4, "m", "vertical position of its centre, down") \
-  X(double, vertical_force, 1, number, own, 1e5, "()", 0, HUGE_VAL, 0, "N",                        \
+  X(double, vertical_force, 1, number, own, 1e5, "[)", 0, HUGE_VAL, 0, "N",                        \
     "vertical force on the wheel (wheel_rail) or on both wheels together (wheelset); z is then "   \
-    "found")                                                                                       \
+    "found; 0: the wheels just touch, without contact")                                            \
   X(double, roll, 1, number, wheels, 0, "[]", -1.5, 1.5, 1e-4, "rad", "about x")                   \
   X(double, yaw, 1, number, wheels, 0, "[]", -1.5, 1.5, 1e-3, "rad", "about z")                    \
   X(double, speed, 1, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, 1, "m/s",                      \

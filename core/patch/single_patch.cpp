@@ -53,9 +53,17 @@ rolling_input single_patch::motion_of(const rp_input &in) const {
   return step;
 }
 
+// Whether the patch is off without a solve: no load, or an approach that leaves a gap.
 bool single_patch::is_apart(const rp_input &in) const {
-  return !setup_.force_given && setup_.geometry != RP_UNDEFORMED_DISTANCE &&
-         in.approach < least_approach;
+  if (setup_.force_given) return in.normal_force == 0;
+  return setup_.geometry != RP_UNDEFORMED_DISTANCE && in.approach < least_approach;
+}
+
+// Bodies without load just touch.
+double single_patch::approach_apart(const rp_input &in) const {
+  if (!setup_.force_given) return in.approach;
+  const double *h = distance_.data();
+  return distance_.size() ? *std::min_element(h, h + distance_.size()) : 0.0;
 }
 
 void single_patch::step(const rp_input &in, rp_result &out) {
@@ -68,7 +76,7 @@ void single_patch::step(const rp_input &in, rp_result &out) {
   problem.place.rolling_speed = in.rolling_speed;
   if (is_apart(in)) {
     const heat_outcome h = solver_.leave_contact(motion_of(in), m);
-    report_apart(solver_.scene(), problem.place, in.approach, h, result);
+    report_apart(solver_.scene(), problem.place, approach_apart(in), h, result);
   } else if (!pose(in, m, problem)) {
     report_beyond(problem.place, problem.g, result);
   } else {

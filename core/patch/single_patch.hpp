@@ -42,6 +42,7 @@ class single_patch final : public driver {
   patch_memory &memory() { return memory_.front(); }
   rolling_input motion_of(const rp_input &input) const;
   bool is_apart(const rp_input &input) const;
+  double approach_apart(const rp_input &input) const;
   hertz_contact hertz_of(const rp_input &input) const;
   hertz_contact hertz_rate(const hertz_contact &hertz, const rp_input &direction) const;
   grid hertz_grid(const hertz_contact &hertz) const;

@@ -67,7 +67,7 @@ bool rail_support::evaluate(supported_wheels &wheels, trial &t) {
   if (load_.prescribed) {
     t.missing = carrying - load_.force;
     squares += t.missing * t.missing;
-    t.residual = std::max(t.residual, std::fabs(t.missing) / load_.force);
+    if (t.missing != 0) t.residual = std::max(t.residual, std::fabs(t.missing) / load_.force);
   }
   t.merit = std::sqrt(squares);
   return std::isfinite(t.merit);
@@ -304,6 +304,7 @@ support_result rail_support::solve(supported_wheels &wheels, const support_load 
     before_[w] = rails_[w].deflection;
     last_rate_[w] = rails_[w].rate[0];
   }
+  if (load.prescribed && load.force == 0) return let_go(wheels);
   trial base;
   if (!start(wheels, base)) {
     stay();
@@ -362,6 +363,39 @@ bool rail_support::improve(supported_wheels &wheels, trial &base) {
     share *= 0.5;
   }
   return last_is_base;
+}
+
+// Without load the rails go back by themselves, and the wheels just touch them.
+support_result rail_support::let_go(supported_wheels &wheels) {
+  trial t;
+  const auto back = [&](std::size_t w, std::size_t k) {
+    return rigid(k) ? 0.0 : carried(w, k) / total(k);
+  };
+  for (std::size_t w = 0; w < at(count_); ++w) t.deflection[w] = {back(w, 0), back(w, 1)};
+  const lateral_vertical still[2] = {};
+  wheels.move_rails(t.deflection.data(), still);
+  double touch = nowhere;
+  for (int w = 0; w < count_; ++w) {
+    double z = 0;
+    touch_[at(w)] = nowhere;
+    if (!wheels.first_touch(w, z)) continue;
+    touch_[at(w)] = z - t.deflection[at(w)][1];
+    touch = std::min(touch, z);
+  }
+  bool known = touch < nowhere, apart = false;
+  for (double lift = 0; known && !apart && lift < most_lift;
+       lift = lift > 0 ? 2 * lift : least_lift) {
+    t.z = touch - lift;
+    known = evaluate(wheels, t);
+    apart = length(t.wheel[0].force) == 0 && length(t.wheel[1].force) == 0;
+  }
+  if (!known) {
+    if (!(touch < nowhere)) evaluate(wheels, t);
+    stay();
+    return {false, true, HUGE_VAL, t.z};
+  }
+  keep(t);
+  return {apart, false, t.residual, t.z};
 }
 
 // What is no solution is no start: the rails stay where they were.

@@ -21,6 +21,10 @@ namespace railpatch {
 
 using lateral_vertical = std::array<double, 2>;
 
+// m; how far wheels without load are lifted off what rounding leaves of a contact: doubled from the
+// least up to the most
+inline constexpr double least_lift = 1e-14, most_lift = 1e-6;
+
 // The wheels as the support needs them.
 class supported_wheels {
  public:
@@ -106,6 +110,7 @@ class rail_support {
   double guessed_depth(std::size_t wheel, double z) const;
   bool start(supported_wheels &wheels, trial &t);
   bool start_beside(supported_wheels &wheels, trial &t);
+  support_result let_go(supported_wheels &wheels);
   void stay();
   bool find_slopes(supported_wheels &wheels, const trial &base);
   trial newton_step(const trial &base, double share) const;

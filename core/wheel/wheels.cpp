@@ -178,6 +178,10 @@ void wheels::find_z(double target, rp_result &out) {
     combine(out, verdict{RP_OUT_OF_RANGE, RP_REASON_NO_OVERLAP});
     return;
   }
+  if (target == 0) {
+    rest_at(touch, out);
+    return;
+  }
   double depth = depth_;
   if (!(depth > 0)) {
     // a ball on a plane with the load of one wheel and a typical combined radius
@@ -203,6 +207,17 @@ void wheels::find_z(double target, rp_result &out) {
                 : verdict{RP_NOT_CONVERGED, RP_REASON_FORCE_SEARCH, search.residual()};
   report_search(found, search.residual(), out);
   depth_ = search.converged() ? depth : 0.0;
+}
+
+// Without load the wheels just touch; what rounding leaves of a contact there they are lifted off.
+void wheels::rest_at(double touch, rp_result &out) {
+  bool apart = false;
+  for (double lift = 0; !apart && lift < most_lift; lift = lift > 0 ? 2 * lift : least_lift) {
+    evaluate(out.z = touch - lift, out);
+    apart = out.status == RP_NO_CONTACT;
+  }
+  report_search(apart, RP_NOT_CONVERGED, 0.0, out);
+  depth_ = 0;
 }
 
 // What does not carry the force asked for is no solution of the case, wheel by wheel.

@@ -86,6 +86,7 @@ class wheels final : public driver {
   void set_bulk(int side);
   void keep_heat(const rp_result &result);
   void find_z(double vertical_force, rp_result &result);
+  void rest_at(double touch, rp_result &result);
   void solve_supported(const rp_input &input, rp_result &result);
   void report_search(const verdict &found, double residual, rp_result &result) const;
   double friction_rate(const rp_input &direction, const rp_input &input) const;

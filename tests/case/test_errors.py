@@ -29,7 +29,7 @@ def problems_of(case: Any, **options: Any) -> list[str]:
     [
         ("kind", "wheel", "kind: value is 'wheel', allowed 'patch', 'wheel_rail' or 'wheelset'"),
         ("kind", None, "kind: value is missing, allowed 'patch', 'wheel_rail' or 'wheelset'"),
-        ("load__normal_force", 0.0, "load.normal_force: value is 0.0, allowed > 0.0"),
+        ("load__normal_force", -1.0, "load.normal_force: value is -1.0, allowed >= 0.0"),
         ("load__normal_force", "1e5", "load.normal_force: value is '1e5', allowed a number"),
         ("load__normal_force", True, "load.normal_force: value is True, allowed a number"),
         (
@@ -233,7 +233,7 @@ def test_every_problem_is_told_at_once_with_a_hint() -> None:
         PATCH, friction__coeficient=0.3, load__normal_force=-1.0, method__tolerance="small"
     )
     assert problems_of(case) == [
-        "load.normal_force: value is -1.0, allowed > 0.0",
+        "load.normal_force: value is -1.0, allowed >= 0.0",
         "friction.coeficient: value is 0.3, but the key is unknown, allowed law, coefficient, "
         "shape, kinetic, amplitude, halving_speed, polach_a, polach_b, memory_distance, "
         "memory_speed, reference, change, reference_temperature, temperature_range, factor, "

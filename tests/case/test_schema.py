@@ -111,7 +111,7 @@ def test_changes_of_a_wheelset_may_be_partial() -> None:
         (PATCH, {"approach": 1e-5}, "approach: value is 1e-05, but this is no moving input"),
         (PATCH, {"coefficient": 0.2}, "coefficient: value is 0.2, but this is no moving input"),
         (PATCH, {"creepage": [0.0]}, "motion.creepage: value is [0.0], allowed 2 values"),
-        (PATCH, {"normal_force": -1.0}, "load.normal_force: value is -1.0, allowed > 0"),
+        (PATCH, {"normal_force": -1.0}, "load.normal_force: value is -1.0, allowed >= 0"),
         (WHEELSET, {"nominal_radius": 0.5}, "nominal_radius: value is 0.5, but this is no moving"),
         (WHEELSET, {"vertical_force": 1e4}, "vertical_force: value is 10000.0, but this is no"),
         (WHEELSET, {"roller_pitch_rate": 1.0}, "roller_pitch_rate: value is 1.0, but this is no"),

@@ -602,7 +602,7 @@ TEST(Input, OfAPatchIsChecked) {
   const rp_config c = default_config();
   expect_inputs_checked(
       c, scenes::patch_input(1e5, 1e-3, 0, 0.1),
-      {{"normal_force", [](rp_input &in) -> double & { return in.normal_force; }, {0, -1e5}},
+      {{"normal_force", [](rp_input &in) -> double & { return in.normal_force; }, {-1e-9, -1e5}},
        {"creepage[0]", [](rp_input &in) -> double & { return in.creepage[0]; }, {}},
        {"creepage[1]", [](rp_input &in) -> double & { return in.creepage[1]; }, {}},
        {"spin_creepage", [](rp_input &in) -> double & { return in.spin_creepage; }, {}},
@@ -709,7 +709,7 @@ TEST(Input, OfAWheelsetIsChecked) {
       {"roll_rate", [](rp_input &in) -> double & { return in.roll_rate; }, {}},
       {"yaw_rate", [](rp_input &in) -> double & { return in.yaw_rate; }, {}},
       {"pitch_rate", [](rp_input &in) -> double & { return in.pitch_rate; }, {}},
-      {"vertical_force", [](rp_input &in) -> double & { return in.vertical_force; }, {0, -1}},
+      {"vertical_force", [](rp_input &in) -> double & { return in.vertical_force; }, {-1e-9, -1}},
       {"wheel_offset[1]", [](rp_input &in) -> double & { return in.wheel_offset[0][1]; }, {2}},
       {"wheel_offset[2]", [](rp_input &in) -> double & { return in.wheel_offset[1][2]; }, {2}},
       {"wheel_rotation[0]", [](rp_input &in) -> double & { return in.wheel_rotation[0][0]; }, {2}},

@@ -117,7 +117,7 @@ def test_errors_go_to_stderr_with_exit_code_2(tmp_path: Path) -> None:
     ran = run(tmp_path, bad, "solve", "--json")
     assert ran.exit_code == 2
     assert ran.stdout == ""
-    assert "load.normal_force: value is -1.0, allowed > 0" in ran.stderr
+    assert "load.normal_force: value is -1.0, allowed >= 0" in ran.stderr
     assert "did you mean 'coefficient'?" in ran.stderr
     profiles = {"wheel": "absent.whl", "rail": "UIC60"}
     ran = run(tmp_path, with_values(WHEELSET, profiles=profiles), "solve")
@@ -217,11 +217,11 @@ def test_other_packages_add_commands(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_the_installed_command(tmp_path: Path) -> None:
     path = tmp_path / "case.toml"
-    path.write_text(toml(with_values(PATCH, load__normal_force=0.0)))
+    path.write_text(toml(with_values(PATCH, load__normal_force=-1.0)))
     command = Path(sys.executable).with_name("railpatch")
     ran = subprocess.run([command, "solve", path], capture_output=True, text=True, check=False)
     assert ran.returncode == 2
     assert ran.stdout == ""
-    assert "load.normal_force: value is 0.0, allowed > 0.0" in ran.stderr
+    assert "load.normal_force: value is -1.0, allowed >= 0.0" in ran.stderr
     assert "Traceback" not in ran.stderr
     assert sorted(tmp_path.iterdir()) == [path]
