@@ -106,7 +106,7 @@ def test_wrong_values_are_refused_and_change_nothing(unpacked: Unpack) -> None:
         output = fmu.references["creep_force[1]"]
         real, whole = (Real * 2)(1e4, 1e4), (Integer * 1)(1)
         refused(slave, "SetReal", (Reference * 1)(output), one, real)
-        for value in (math.nan, math.inf, -math.inf, 0.0, -1.0, 1e12):
+        for value in (math.nan, math.inf, -math.inf, -1e-9, -1.0, 1e12):
             refused(slave, "SetReal", (Reference * 1)(force), one, (Real * 1)(value))
         # the first is good, the second not: neither is set
         refused(slave, "SetReal", (Reference * 2)(force, 99), Size(2), real)
@@ -197,13 +197,12 @@ def test_instantiation_is_forgiving_where_it_can(unpacked: Unpack) -> None:
 
 
 def test_the_log_can_be_switched(unpacked: Unpack, capfd: pytest.CaptureFixture[str]) -> None:
+    """But for what tells why a call failed, which is always said, up to a hundred times alike."""
     with Slave(unpacked("patch"), logging=False).initialize() as slave:
-        assert slave.call("GetReal", None, Size(1), None) == ERROR
-        assert slave.log == []
+        refused(slave, "GetReal", None, Size(1), None)
         names = (ct.c_char_p * 1)(b"logStatusDiscard")
         assert slave.call("SetDebugLogging", 1, Size(1), names) == OK
-        assert slave.call("GetReal", None, Size(1), None) == ERROR
-        assert slave.log == []
+        refused(slave, "GetReal", None, Size(1), None)
         assert slave.call("SetDebugLogging", 1, Size(1), (ct.c_char_p * 1)(b"logAll")) == OK
         refused(slave, "GetReal", None, Size(1), None)
         refused(slave, "SetDebugLogging", 1, Size(1), (ct.c_char_p * 1)(b"other"))
@@ -214,7 +213,5 @@ def test_the_log_can_be_switched(unpacked: Unpack, capfd: pytest.CaptureFixture[
         assert 1 < len(slave.log) < 200
         assert "left out" in slave.log[-1][2]
         assert slave.call("SetDebugLogging", 0, NONE, None) == OK
-        slave.log.clear()
-        slave.call("GetInteger", None, Size(1), None)
-        assert slave.log == []
+        refused(slave, "GetInteger", None, Size(1), None)
     assert capfd.readouterr() == ("", "")

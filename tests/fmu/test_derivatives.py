@@ -177,7 +177,6 @@ def test_wrong_calls(exact: Callable[..., Fmu]) -> None:
             (creep, 99),
             (force, force),
             (creep, creep),
-            (fmu.references["status"], force),
             (creep, fmu.references["direction"]),
         ):
             slave.log.clear()

@@ -17,7 +17,7 @@ fmi2Status none(fmi2Component component, const Call &call, const char *type,
     if (references == nullptr) return i.refuse(call, "vr is NULL");
     if (values == nullptr) return i.refuse(call, "value is NULL");
     return i.refuse(call, std::string("there is no ") + type + " with value reference " +
-                              std::to_string(references[0]));
+                              text_of_whole(references[0]));
   });
 }
 
@@ -57,6 +57,10 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
         fmuType == fmi2CoSimulation ? Interface::co_simulation : Interface::model_exchange;
     return Instance::create(interface, fmuGUID, fmuResourceLocation, std::move(log)).release();
   } catch (...) {
+    if (functions != nullptr && functions->logger != nullptr)
+      functions->logger(functions->componentEnvironment,
+                        instanceName != nullptr ? instanceName : "", fmi2Error, "logStatusError",
+                        "fmi2Instantiate: out of memory");
     return nullptr;
   }
 }

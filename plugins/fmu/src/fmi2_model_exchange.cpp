@@ -11,7 +11,7 @@ namespace {
 fmi2Status nothing(fmi2Component component, const Call &call, const char *what, size_t count) {
   return run(component, call, [&](Instance &i) {
     if (count == 0) return fmi2OK;
-    return i.refuse(call, std::string(what) + " is " + std::to_string(count) + ", allowed 0");
+    return i.refuse(call, std::string(what) + " is " + text_of_whole(count) + ", allowed 0");
   });
 }
 

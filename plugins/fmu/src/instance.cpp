@@ -334,7 +334,7 @@ int Instance::find(const Call &call, Type type, fmi2ValueReference reference) {
   const int index = index_of(reference);
   const auto at = static_cast<size_t>(index);
   if (index >= 0 && variables_[at].variable->type == type) return index;
-  refuse(call, index < 0 ? "there is no variable with value reference " + std::to_string(reference)
+  refuse(call, index < 0 ? "there is no variable with value reference " + text_of_whole(reference)
                          : variables_[at].name + " is not of this type");
   return -1;
 }
@@ -355,7 +355,8 @@ fmi2Status Instance::get(const Call &call, Type type, const fmi2ValueReference *
     const fmi2Status status = solve(call);
     if (status != fmi2OK) return status;
   }
-  if (of_largest && !largest_known_ && solution_ != Solution::none) {
+  const bool of_failed = mode_ == Mode::step_failed || mode_ == Mode::terminated;
+  if (of_largest && !largest_known_ && (solution_ != Solution::none || of_failed)) {
     const fmi2Status status = find_largest_step(call);
     if (status != fmi2OK) return status;
   }

@@ -84,6 +84,7 @@ class Instance {
   int find_input(const Call &call, fmi2ValueReference reference);
   int find_known(const Call &call, fmi2ValueReference reference);
   int find_output(const Call &call, fmi2ValueReference reference);
+  int find_unknown(const Call &call, fmi2ValueReference reference);
   bool settable(const Call &call, int index, double value);
   bool in_range(const Call &call, int index, double value);
   bool index_variables();  // false: they do not belong together
@@ -106,6 +107,8 @@ class Instance {
   void end_inputs(bool moving, double step);
   int step_count(bool moving) const;
   fmi2Status march(double time, double step);
+  // Solves what the outputs belong to; the next step starts from the state as it was.
+  fmi2Status solve_again(const Call &call);
   // Sees to it that the contact holds the outputs' solution.
   fmi2Status hold_solution(const Call &call);
   fmi2Status differentiate(const Call &call, const std::vector<double> &rates);

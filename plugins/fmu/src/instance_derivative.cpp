@@ -35,6 +35,15 @@ int Instance::find_output(const Call &call, fmi2ValueReference reference) {
   return -1;
 }
 
+// Beside those the discrete outputs, which have steps and no slopes.
+int Instance::find_unknown(const Call &call, fmi2ValueReference reference) {
+  const int index = index_of(reference);
+  if (index < 0) return find_output(call, reference);
+  const Variable &variable = *variables_[static_cast<size_t>(index)].variable;
+  const bool discrete = variable.type != Type::real && variable.role == Role::output;
+  return discrete ? index : find_output(call, reference);
+}
+
 fmi2Status Instance::directional_derivative(const fmi2ValueReference *unknown, size_t unknown_count,
                                             const fmi2ValueReference *known, size_t known_count,
                                             const double *seed, double *change) {
@@ -49,7 +58,7 @@ fmi2Status Instance::directional_derivative(const fmi2ValueReference *unknown, s
   if (known_count > 0 && (known == nullptr || seed == nullptr))
     return refuse(call, known == nullptr ? "vKnown_ref is NULL" : "dvKnown is NULL");
   for (size_t i = 0; i < unknown_count; ++i)
-    if (find_output(call, unknown[i]) < 0) return fmi2Error;
+    if (find_unknown(call, unknown[i]) < 0) return fmi2Error;
   std::vector<double> rates(known_);
   for (size_t i = 0; i < known_count; ++i) {
     const int index = find_known(call, known[i]);
@@ -75,7 +84,7 @@ fmi2Status Instance::output_derivatives(const fmi2ValueReference *references, si
                             : (order == nullptr ? "order is NULL" : "value is NULL"));
   for (size_t i = 0; i < count; ++i) {
     if (find_output(call, references[i]) < 0) return fmi2Error;
-    if (order[i] != 1) return refuse(call, "order is " + std::to_string(order[i]) + ", allowed 1");
+    if (order[i] != 1) return refuse(call, "order is " + text_of_whole(order[i]) + ", allowed 1");
   }
   const fmi2Status status = differentiate(call, rates_);
   for (size_t i = 0; i < count && status == fmi2OK; ++i) values[i] = rate_of(references[i]);
@@ -84,19 +93,22 @@ fmi2Status Instance::output_derivatives(const fmi2ValueReference *references, si
 
 double Instance::rate_of(fmi2ValueReference reference) const {
   const Variable &variable = *variables_[static_cast<size_t>(index_of(reference))].variable;
+  if (variable.type != Type::real) return 0;
   return absent(variable) ? rest_of(change_, variable) : output_of(change_, variable);
+}
+
+fmi2Status Instance::solve_again(const Call &call) {
+  pending_.resize(rp_state_size(contact_.get()));
+  const rp_error error = rp_save_state(contact_.get(), pending_.data(), pending_.size());
+  if (error != RP_OK) return refuse(call, rp_error_text(error));
+  at_ = solved_;
+  return run_contact(call, time_, options_.time_step);
 }
 
 fmi2Status Instance::hold_solution(const Call &call) {
   if (changed_ && follows()) return solve(call);
-  if (solution_ == Solution::lost && pending_.empty()) {
-    // what a restored state was made of is solved again; the next step starts from the state
-    pending_.resize(rp_state_size(contact_.get()));
-    const rp_error error = rp_save_state(contact_.get(), pending_.data(), pending_.size());
-    if (error != RP_OK) return refuse(call, rp_error_text(error));
-    at_ = solved_;
-    return run_contact(call, time_, options_.time_step);
-  }
+  // what a restored state was made of
+  if (solution_ == Solution::lost && pending_.empty()) return solve_again(call);
   if (solution_ == Solution::held) return fmi2OK;
   log_.say(
       fmi2Discard, Category::discard,
@@ -137,7 +149,9 @@ fmi2Status Instance::differentiate(const Call &call, const std::vector<double> &
 }
 
 fmi2Status Instance::find_largest_step(const Call &call) {
-  const fmi2Status status = hold_solution(call);
+  // after a step that failed it is that of the outputs, which stay
+  const bool failed = solution_ == Solution::none && !follows();
+  const fmi2Status status = failed ? solve_again(call) : hold_solution(call);
   if (status != fmi2OK) return status;
   rp_jacobian jacobian;
   rp_message message = {};
@@ -153,6 +167,7 @@ fmi2Status Instance::find_largest_step(const Call &call) {
   const bool good = jacobian.status != RP_NOT_CONVERGED;
   value(reference::largest_step) = good ? largest_step_of(jacobian, inertia, with_z_) : 0;
   largest_known_ = true;
+  if (failed) solution_ = Solution::none;
   return fmi2OK;
 }
 

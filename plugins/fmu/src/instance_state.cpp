@@ -134,8 +134,8 @@ fmi2Status Instance::serialize(fmi2FMUstate state, fmi2Byte *bytes, size_t size)
   if (snapshot == nullptr) return refuse(call, "FMUstate is not a state of this instance");
   if (bytes == nullptr) return refuse(call, "serializedState is NULL");
   if (size < snapshot->size())
-    return refuse(call, "size is " + std::to_string(size) + ", allowed from " +
-                            std::to_string(snapshot->size()));
+    return refuse(call, "size is " + text_of_whole(size) + ", allowed from " +
+                            text_of_whole(snapshot->size()));
   std::memcpy(bytes, snapshot->data(), snapshot->size());
   return fmi2OK;
 }

@@ -99,8 +99,8 @@ fmi2Status Instance::set_input_derivatives(const fmi2ValueReference *references,
   for (size_t i = 0; i < count; ++i) {
     if (find_input(call, references[i]) < 0) return fmi2Error;
     if (order[i] < 1 || order[i] > static_cast<fmi2Integer>(orders))
-      return refuse(call, "order is " + std::to_string(order[i]) + ", allowed 1 ... " +
-                              std::to_string(orders));
+      return refuse(
+          call, "order is " + text_of_whole(order[i]) + ", allowed 1 ... " + text_of_whole(orders));
     if (!std::isfinite(values[i]))
       return refuse(call, "value is " + text_of(values[i]) + ", allowed a finite number");
   }

@@ -1,6 +1,7 @@
 #include "log.hpp"
 
 #include <charconv>
+#include <cstdio>
 #include <cstring>
 
 namespace railpatch::fmu {
@@ -47,13 +48,21 @@ Log::Log(const char *instance_name, const fmi2CallbackFunctions *functions, bool
 }
 
 void Log::say(fmi2Status status, Category category, const std::string &text) {
-  if (logger_ == nullptr || (categories_ & static_cast<uint32_t>(category)) == 0) return;
+  // logging is for debugging: why a call failed is always said
+  const bool failed = status >= fmi2Discard && status != fmi2Pending;
+  if (logger_ == nullptr) return;
+  if (!failed && (categories_ & static_cast<uint32_t>(category)) == 0) return;
   repeats_ = text == last_ ? repeats_ + 1 : 0;
   if (repeats_ > kMostRepeats) return;
   last_ = text;
   std::string line = escaped(text);
   if (repeats_ == kMostRepeats) line += " (repeats of this message are left out from here)";
   logger_(environment_, instance_name_.c_str(), status, name_of(category), line.c_str());
+}
+
+void Log::error_without_memory(const char *text) const noexcept {
+  if (logger_ != nullptr)
+    logger_(environment_, instance_name_.c_str(), fmi2Error, name_of(Category::error), text);
 }
 
 bool Log::set(bool on, size_t count, const fmi2String categories[]) {
@@ -74,6 +83,12 @@ std::string text_of(double value) {
   char buffer[40];
   const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
   return std::string(buffer, end);
+}
+
+std::string whole_text(long long value) {
+  char buffer[24];
+  std::snprintf(buffer, sizeof buffer, "%lld", value);
+  return buffer;
 }
 
 }  // namespace railpatch::fmu

@@ -2,7 +2,7 @@
 // allows it, and without an exception on the way out.
 #pragma once
 
-#include <new>
+#include <cstdio>
 #include <string>
 
 #include "floating_point.hpp"
@@ -21,11 +21,10 @@ fmi2Status run(fmi2Component component, const Call &call, F &&function) noexcept
     if (!instance->allows(call)) return fmi2Error;
     return function(*instance);
   } catch (...) {
-    try {
-      return instance->refuse(call, "out of memory");
-    } catch (...) {
-      return fmi2Error;
-    }
+    char text[96];
+    std::snprintf(text, sizeof text, "%s: out of memory", call.name);
+    instance->log().error_without_memory(text);
+    return fmi2Error;
   }
 }
 

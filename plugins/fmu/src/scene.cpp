@@ -1,11 +1,15 @@
 #include "scene.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 #include <string_view>
 #include <type_traits>
 
 #include "checksum.hpp"
+#include "log.hpp"
 #include "railpatch_fields.h"
 
 namespace railpatch::fmu {
@@ -30,13 +34,15 @@ class Words {
     return word;
   }
 
+  // A whole number, as doubles hold it: see text_of_whole.
   template <class T>
   bool number(T &value) {
-    const std::string_view word = next();
-    const char *end = word.data() + word.size();
-    if (word.empty()) return false;
-    const auto read = std::from_chars(word.data(), end, value);
-    return read.ec == std::errc() && read.ptr == end;
+    double read = 0;
+    constexpr auto low = static_cast<double>(std::numeric_limits<T>::min());
+    const double high = std::min(static_cast<double>(std::numeric_limits<T>::max()), 0x1p53);
+    if (!number(read) || read != std::floor(read) || read < low || read > high) return false;
+    value = static_cast<T>(read);
+    return true;
   }
 
   bool number(double &value) {
@@ -233,9 +239,9 @@ bool connect(Scene &scene) {
 bool check_end(std::string_view text, size_t begin, std::string_view line) {
   Words words(line.substr(3));
   const std::string_view word = words.next();
-  uint32_t expected = 0;
-  const auto read = std::from_chars(word.data(), word.data() + word.size(), expected, 16);
-  return read.ec == std::errc() && expected == crc32(text.data(), begin);
+  char found[16];
+  std::snprintf(found, sizeof found, "%08x", static_cast<unsigned>(crc32(text.data(), begin)));
+  return word == found;
 }
 
 bool check_head(std::string_view line) {
@@ -268,7 +274,7 @@ bool parse_scene(const std::string &text, Scene &scene, std::string &problem) {
       return false;
     }
     if (!(number == 1 ? check_head(line) : read_line(line, scene))) {
-      problem = "line " + std::to_string(number) +
+      problem = "line " + text_of_whole(number) +
                 " is not understood: " + std::string(line.substr(0, 60));
       return false;
     }

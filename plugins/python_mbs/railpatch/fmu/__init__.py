@@ -1,5 +1,5 @@
 """Makes an FMU (FMI 2.0) of a scene from libraries that were built before."""
 
-from railpatch.fmu.pack import Backend, pack_fmu
+from railpatch.fmu.pack import Backend, PackedFmu, pack_fmu
 
-__all__ = ["Backend", "pack_fmu"]
+__all__ = ["Backend", "PackedFmu", "pack_fmu"]

@@ -108,6 +108,8 @@ def fmu(
         wheel_profiles=wheels,
         rail_profiles=rails,
     )
+    for text in written.warnings:
+        click.echo(f"warning: {text}", err=True)
     if not quiet:
         licence = ", under the GPL because of FFTW" if fft == "fftw" else ""
         click.echo(f"{written}: {name}{licence}")

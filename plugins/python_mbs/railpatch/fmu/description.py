@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
+from railpatch.fmu.step_size import StepSize
 from railpatch.fmu.table import Kind, Table, Variable, dependencies, first_item
 
 # base units of SI: exponents
@@ -60,7 +61,9 @@ class Labels:
     version: str
     date: str
     tolerance: float
+    step: StepSize  # that masters take
     derivatives: bool  # of the outputs, from the core's
+    warnings: tuple[str, ...] = ()  # what hardly can be meant
 
     def model(self) -> dict[str, str]:
         """Attributes of both interfaces."""
@@ -106,7 +109,7 @@ def description_xml(
             for k in CATEGORIES
         ),
         "  </LogCategories>",
-        f"  <DefaultExperiment{attributes({**experiment, 'stepSize': 1e-3})}/>",
+        f"  <DefaultExperiment{attributes({**experiment, 'stepSize': labels.step.seconds})}/>",
         "  <ModelVariables>",
         *(line for v in variables for line in variable_lines(table, v)),
         "  </ModelVariables>",

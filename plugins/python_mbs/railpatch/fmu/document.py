@@ -37,7 +37,7 @@ that does not converge, or in which contact leaves the profiles or needs more el
 than the FMU was made with, ends with fmi2Discard: the time stays at that of the last good step,
 outputs keep its values, and the message in the category logStatusDiscard says what to change. Go on
 from a saved state, or reset. Values outside the ranges below are refused with fmi2Error, and
-nothing is set.</p>
+nothing is set. Why a call failed is told to the logger whatever logging is set to.</p>
 """
 COUPLING = """
 <p>Co-simulation lags: the forces after a step belong to the motion that was set before it, so a
@@ -92,15 +92,17 @@ M<sup>-1/2</sup>CM<sup>-1/2</sup>. It is the least of 0.1/w, where the lag takes
 damping from the contact's stiffest oscillation, of 1/c, above which creep forces overshoot, and of
 1 s. The rest of the model, its damping and further elasticity, is not in it: one that damps the
 bounce by less, and integrates exactly under held forces, needs shorter steps. 0: a derivative is
-not known. It is found where it is read, and takes two to three steps' time.</p>
+not known. It is found where it is read, and takes two to three steps' time; after a step that
+failed it is that of the last good one.</p>
 """
 DERIVATIVES = """
-<p><b>Directional derivatives</b> of Real outputs by Real inputs are those of the outputs as they
+<p><b>Directional derivatives</b> of outputs by Real inputs are those of the outputs as they
 are, at the inputs they were solved with: inputs set since then do not count in co-simulation before
 the next step. They come from the contact's own derivatives, see the range of these there: elements
-that stick, slip or are apart stay so. Those of residual are 0: it is the solver's own. Beside the
-inputs friction.coefficient may be a known; other parameters are refused. After a failed step, or
-where the derivative does not converge, the answer is fmi2Discard. State and outputs stay as they
+that stick, slip or are apart stay so. Those of residual are 0: it is the solver's own; so are those
+of discrete outputs. Means and largest_step have none and are refused. Beside the inputs
+friction.coefficient may be a known; other parameters are refused. After a failed step, or where the
+derivative does not converge, the answer is fmi2Discard. State and outputs stay as they
 are; after a restored state the first derivative solves once more, and agrees with the one before to
 the solver's tolerance. One more entry for the same direction costs nothing.</p>
 <p><b>Output derivatives</b>, of order 1, are these along the inputs' own derivatives at the last
@@ -146,7 +148,7 @@ def index_html(
 <p>{escape(labels.description)} Made by Railpatch {escape(labels.version)}; licence:
 {escape(labels.licence)}; GUID <code>{escape(guid)}</code>.</p>
 <h2>Frames and signs</h2>{FRAMES}
-<h2>Inputs and parameters</h2>
+<h2>Inputs and parameters</h2>{apart(labels)}
 <p>Start values are those of the scene: the FMU runs without any being set. Geometry, material and
 method are fixed in the FMU; parameters may be changed between steps{fixed(known)}.</p>
 {variable_table(table, known, None, kind)}{MISSING}
@@ -156,9 +158,15 @@ method are fixed in the FMU; parameters may be changed between steps{fixed(known
 friction.</p>
 {variable_table(table, outputs, known, kind)}
 <h2>Range of validity</h2>{RANGE}
-<h2>Coupling</h2>{COUPLING}{interfaces(labels, kind)}
+<h2>Coupling</h2>{COUPLING}
+<p><b>Length of a step</b>: {labels.step.sentence()}</p>{interfaces(labels, kind)}
 </body></html>
 """
+
+
+def apart(labels: Labels) -> str:
+    """What touches nothing at the start."""
+    return "".join(f"<p><b>Warning</b>: {escape(text)}</p>" for text in labels.warnings)
 
 
 def fixed(known: list[Variable]) -> str:

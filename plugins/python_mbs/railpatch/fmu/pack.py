@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from importlib import resources
 from io import BytesIO
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from railpatch import _core
 from railpatch.case.load import Scene
@@ -28,6 +28,7 @@ from railpatch.fmu.profiles import TYPES, Choices, check_starts, choices_of
 from railpatch.fmu.reference import reference_csv
 from railpatch.fmu.scene import kind_of, scene_text, variables_of
 from railpatch.fmu.sources import build_description, with_source_files
+from railpatch.fmu.step_size import step_size_of
 from railpatch.fmu.table import Kind, Table, Variable
 from railpatch.result import SOLVED
 from railpatch.writing import write_whole
@@ -73,6 +74,12 @@ class Contents:
         return scene_text(self.scene, self.variables, guid, self.kind, provided, self.choices)
 
 
+class PackedFmu(type(Path())):  # type: ignore[misc]
+    """The path of an FMU, and what packing it was doubtful of."""
+
+    warnings: tuple[str, ...] = ()
+
+
 def pack_fmu(
     scene: Scene,
     output: str | Path,
@@ -85,8 +92,9 @@ def pack_fmu(
     libraries: Path | None = None,
     wheel_profiles: Sequence[str] = (),
     rail_profiles: Sequence[str] = (),
-) -> Path:
-    """Writes the FMU of a scene.
+) -> PackedFmu:
+    """Writes the FMU of a scene; gives its path, with `warnings` where a combination of profiles
+    has no contact at the start values.
 
     name: of the model. backend: "eigen" (permissive), or "fftw" (then the FMU is under the
     GPL). derivatives: of the outputs; "exact": where they come from the solved conditions;
@@ -110,9 +118,11 @@ def pack_fmu(
         for path, content in sorted(files.items()):
             archive.writestr(entry(path), content)
     try:
-        return write_whole(output, packed.getvalue())
+        written = PackedFmu(write_whole(output, packed.getvalue()))
     except OSError as error:
         raise CaseError(f"{output}: cannot be written: {error.strerror or error}") from None
+    written.warnings = contents.labels.warnings
+    return written
 
 
 def contents_of(
@@ -136,10 +146,10 @@ def contents_of(
     for body in choices.sources:
         table.fill(TYPES[body], choices.items(body))
     # solved once, so that an FMU is never made of a scene that the core refuses or cannot start
-    kinds = derivative_kind(
+    kinds, start = derivative_kind(
         scene, name, asked=options.derivatives != "none" and not kind.has_history
     )
-    check_starts(choices, name)
+    apart = check_starts(choices, name)
     provided = kinds == "exact" or (kinds == "differences" and options.derivatives == "always")
     if options.largest_step:
         if not provided:
@@ -153,7 +163,9 @@ def contents_of(
         version=_core.version(),
         date=time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(epoch())),
         tolerance=scene.case.method.tolerance,
+        step=step_size_of(scene.case, kind, table, start),
         derivatives=provided,
+        warnings=tuple(apart),
     )
     variables = variables_of(table, kind, scene.case)
     creep_table = config["creep_table"].tobytes() if "creep_table" in config else None
@@ -185,17 +197,17 @@ def check_regime(scene: Scene) -> None:
         raise CaseError(f"motion.steps: value is {steps}, allowed 1 in an FMU: each step is one")
 
 
-def derivative_kind(scene: Scene, name: str, *, asked: bool) -> str:
-    """How derivatives are found: "exact", "differences" or "none". Raises CaseError where the start
-    cannot be solved."""
+def derivative_kind(scene: Scene, name: str, *, asked: bool) -> tuple[str, dict[str, Any]]:
+    """How derivatives are found: "exact", "differences" or "none"; and the result at the start.
+    Raises CaseError where that cannot be solved."""
     curved = scene.case.method.reference_surface == "curved"
     asked = asked and not curved
     method = scene.case.method.model_copy(update={"derivatives": asked})
     contact = Contact(Scene(scene.case.model_copy(update={"method": method}), scene.folder))
-    status = contact.step().status
-    if status not in SOLVED:
-        raise CaseError(f"{name}: the start values cannot be solved: {status}")
-    return contact.differentiate()["kind"] if asked else "none"
+    start = contact.step()
+    if start.status not in SOLVED:
+        raise CaseError(f"{name}: the start values cannot be solved: {start.status}")
+    return contact.differentiate()["kind"] if asked else "none", start.data
 
 
 def describe(kind: Kind, backend: Backend) -> str:

@@ -108,8 +108,12 @@ def arrays_of(scene: Scene, body: Body) -> dict[str, Any]:
     return next(arrays for arrays in config_of(scene)[body] if arrays is not None)
 
 
-def check_starts(choices: Choices, name: str) -> None:
-    """Solves the start values with each combination. name: of the case. Raises CaseError."""
+def check_starts(choices: Choices, name: str) -> list[str]:
+    """Solves the start values with each combination; gives a warning for each that touches nothing.
+
+    name: of the case. Raises CaseError.
+    """
+    warnings = []
     for label, scene in choices.scenes():
         try:
             status = Contact(scene).step().status
@@ -117,3 +121,6 @@ def check_starts(choices: Choices, name: str) -> None:
             raise CaseError(f"{name} with {label}: {error}") from None
         if status not in SOLVED:
             raise CaseError(f"{name} with {label}: the start values cannot be solved: {status}")
+        if status == "no_contact":
+            warnings.append(f"{name} with {label}: no contact at the start values")
+    return warnings
