@@ -207,6 +207,9 @@ def main() -> None:
             compare(fmu, here, there, f"{other.platform} under {other.name}")
     if arguments.compile:
         own = compiled(path, folder / f"{path.stem}_compiled")
+        names = output("nm", "-DC", "--defined-only", own.binary("linux64"))
+        must("railpatch" not in names and " rp_" not in names, "compiled by fmpy: hides the core")
+        must(not re.search(r" u ", names), "compiled by fmpy: holds nothing unique in a process")
         compare(fmu, here, own.run("linux64", [folder / "steps"]), "compiled by fmpy")
 
 

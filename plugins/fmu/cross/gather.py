@@ -19,8 +19,9 @@ FMI = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
 FIRST = b'#include "before_cxx20.hpp"\n'
 README = """Sources of this FMU's library, for importers that compile them.
 
-A compiler with GCC's extensions is needed (GCC 12 or Clang 15, or later; not Visual C++), in C++20
-or in GCC's C++17; this folder is the only include folder. buildDescription.xml lists what to
+A compiler with GCC's extensions is needed (GCC 12 or Clang 15, or later; not Visual C++), in C++17
+or later, of which C++17 gives a library that can be unloaded everywhere; this folder is the only
+include folder. buildDescription.xml lists what to
 compile, and the options. With fmpy on Linux:
 
   fmpy compile NAME.fmu
