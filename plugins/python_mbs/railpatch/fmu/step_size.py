@@ -59,10 +59,11 @@ class StepSize:
                 f"c = f/V (1/m + r<sup>2</sup>/I) and I = {self.inertia:g} kg m<sup>2</sup>"
             )
         parts.append(f"{LONGEST:g} s")
+        least = ", of ".join(parts)
         return (
             f"DefaultExperiment's stepSize, {self.seconds:g} s, is what forces that are held bear "
-            f"with m = {self.mass:g} kg on a wheel: the least of {', of '.join(parts)}, "
-            "rounded down. Steps of 1 ms let a wheel of such a mass bounce off its rail where z is an input."
+            f"with m = {self.mass:g} kg on a wheel: the least of {least}, rounded down. "
+            "Steps of 1 ms let a wheel of such a mass bounce off its rail where z is an input."
         )
 
 
