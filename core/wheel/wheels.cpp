@@ -216,7 +216,9 @@ void wheels::rest_at(double touch, rp_result &out) {
     evaluate(out.z = touch - lift, out);
     apart = out.status == RP_NO_CONTACT;
   }
-  report_search(apart, RP_NOT_CONVERGED, 0.0, out);
+  verdict found;
+  if (!apart) found = {RP_NOT_CONVERGED, RP_REASON_FORCE_SEARCH};
+  report_search(found, 0.0, out);
   depth_ = 0;
 }
 
