@@ -134,7 +134,7 @@ def test_a_wheel_far_from_its_origin_is_asked_for(write: Write) -> None:
     y, z = points(*WHEEL)
     for moved in (100.0, -40.0):
         raw = read_profile(write("w.txt", columns(y + moved, z)), "wheel")
-        with pytest.raises(ProfileError, match=r"or of a file origin"):
+        with pytest.raises(ProfileError, match="or of a file origin"):
             check_placed("w.txt", raw.y, raw.z, -0.07)
         reading = Reading(origin=(1e-3 * moved, 0.0))
         back = read_profile(write("w.txt", columns(y + moved, z)), "wheel", reading)

@@ -180,8 +180,8 @@ def check_placed(name: object, y: Array, z: Array, flange_back: float) -> None:
             f"(wheelset.flange_back_position), and lies {1e3 * height:.4g} mm below the nominal "
             f"radius {1e3 * TAPING_LINE:g} mm from it, allowed {1e3 * TIP_RANGE[0]:g} to "
             f"{1e3 * TIP_RANGE[1]:g} mm and {-1e3 * TREAD_HEIGHT:g} to {1e3 * TREAD_HEIGHT:g} mm: "
-            "say wheelset.flange_back_position, which is -0.07 for S1002, or of a file origin = [y, z] "
-            "in m, the place in it where the nominal radius is measured",
+            "say wheelset.flange_back_position, which is -0.07 for S1002, or of a file "
+            "origin = [y, z] in m, the place in it where the nominal radius is measured",
         )
 
 
