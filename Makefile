@@ -98,11 +98,11 @@ viewer: demo ## the demo's logs in a viewer that others wrote, a picture of each
 	tests/viewer/run build/viewer $(BIN)/railpatch build/demo/run.mcap 90 build/demo/wheelset.mcap 1.5 \
 		build/viewer/vehicle.mcap 3
 
-PARTS := system tools setup lint test-cpp test-python test-asan pruning
+PARTS := system tools setup lint test-python test-cpp test-asan pruning
 test: ## set-up and every check; what each part and the slowest tests took
 	@rm -f build/junit/parts
 	@# what the sanitizers run on is compiled beside, where a processor would wait: first the core,
-	@# which needs nothing of the virtual environment
+	@# which needs nothing of the virtual environment; the objects of the C++ tests serve both builds
 	@core=; beside=; trap 'kill -- -$$core -$$beside 2>/dev/null || true' EXIT; \
 	for part in $(PARTS); do \
 		if [ $$part = tools ]; then \
@@ -118,10 +118,11 @@ test: ## set-up and every check; what each part and the slowest tests took
 				$(MAKE) --no-print-directory build-asan; } >>build/asan.log 2>&1 & beside=$$!; \
 			set +m; \
 		fi; \
-		if [ $$part = test-asan ]; then \
+		if [ $$part = test-cpp ]; then \
 			.ci/part build/junit/parts 'waiting for it' tail --pid=$$beside -f /dev/null; core=; beside=; \
 		fi; \
-		.ci/part build/junit/parts $$part $(MAKE) --no-print-directory $$part; \
+		.ci/part build/junit/parts $$part $(MAKE) --no-print-directory $$part \
+			OBJECTS=$(CURDIR)/build/asan; \
 	done
 	@printf '\nall checks passed:\n'
 	@$(BIN)/python .ci/summary.py build/junit/parts $(addprefix build/junit/,cpp.xml python.xml asan.xml)
@@ -151,8 +152,10 @@ format: $(VENV)/tools ## ruff and clang-format, files are changed
 	$(BIN)/ruff format .
 	$(BIN)/clang-format -i $(CXX_FILES)
 
-test-cpp: $(VENV)/tools ## C and C++ tests, release build
-	cmake --preset release $(RELEASE)
+# the build whose objects of the tests are linked, which `make test` has compiled for the sanitizers
+OBJECTS ?=
+test-cpp: $(VENV)/tools $(if $(OBJECTS),build-asan) ## C and C++ tests, release build
+	cmake --preset release $(RELEASE) -DRAILPATCH_TEST_OBJECTS=$(OBJECTS)
 	cmake --build --preset release
 	@mkdir -p build/junit
 	ctest --preset release --output-junit "$(CURDIR)/build/junit/cpp.xml"

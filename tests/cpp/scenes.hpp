@@ -13,24 +13,12 @@
 #include "profiles.hpp"
 #include "railpatch_fields.h"
 
-// sanitizers look at memory and undefined behaviour, eight times slower: there the smaller cases of
-// a test that goes through the same code with each are enough
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define RP_SANITIZED 1
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__)
-#define RP_SANITIZED 1
-#endif
-
 namespace scenes {
 
-#ifdef RP_SANITIZED
-inline constexpr bool sanitized = true;
-#else
-inline constexpr bool sanitized = false;
-#endif
+// Whether the core was built with sanitizers (core/sanitized.cpp). They look at memory and
+// undefined behaviour, eight times slower: there the smaller cases of a test that goes through the
+// same code with each are enough.
+extern const bool sanitized;
 
 class handle {
  public:
