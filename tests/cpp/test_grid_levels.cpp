@@ -180,7 +180,7 @@ TEST(GridLevels, OfWheelsHoldForEachPatch) {
   c.elements[0] = c.elements[1] = 12;
   c.element_size[0] = c.element_size[1] = 0;
   c.fitted[0] = c.fitted[1] = 6;
-  c.accuracy = 0.015;
+  c.accuracy = 0.006;
   c.finer_grids = 2;
   scenes::handle h(c);
   rp_input in = scenes::running(RP_RAIL);

@@ -86,19 +86,22 @@ def test_accuracy_is_kept_by_many(accuracy: float) -> None:
     assert promised >= 0.9
 
 
-def test_a_smooth_run_keeps_its_grid() -> None:
-    """Steps there and back, with the warm start of the last one: few changes of the grid."""
-    random = np.random.default_rng(20261203)
-    case = random_case(random)
-    spin = case["motion"]["spin_creepage"]
-    contact = railpatch.Contact({**case, "method": {"tangential": "full", "accuracy": 0.01}})
-    sizes = []
-    for i in range(21):
-        at = 1 - abs(i / 10 - 1) + 0.01 * (i % 2)
-        result = contact.step(spin_creepage=at * spin)
-        assert result.status in SOLVED
-        sizes.append(sum(result["elements"].values()))
-    assert sum(a != b for a, b in pairwise(sizes)) <= 6
+def test_smooth_runs_keep_their_grid() -> None:
+    """Steps there and back, with the warm start of the last one: the grid changes in less than one
+    step of five."""
+    changes = 0
+    for seed in range(20261203, 20261215):
+        case = random_case(np.random.default_rng(seed))
+        spin = case["motion"]["spin_creepage"]
+        contact = railpatch.Contact({**case, "method": {"tangential": "full", "accuracy": 0.01}})
+        sizes = []
+        for i in range(21):
+            at = 1 - abs(i / 10 - 1) + 0.01 * (i % 2)
+            result = contact.step(spin_creepage=at * spin)
+            assert result.status in SOLVED
+            sizes.append(sum(result["elements"].values()))
+        changes += sum(a != b for a, b in pairwise(sizes))
+    assert changes <= 12 * 20 / 5
 
 
 def test_what_no_grid_reaches_is_told() -> None:
