@@ -57,8 +57,10 @@ constexpr needed of_patches[] = {
     {"kik_piotrowski", {3.0, 0.0, 0.0, 0.0}},
 };
 
-// a twentieth more: other compilers and transforms round differently
+// a twentieth more: other compilers and transforms round differently; sanitizers look at fewer
+// states, which have other means
 void expect_within(const effort &mean, const effort &budget) {
+  if (scenes::sanitized) return;
   const auto expect = [](const char *what, double found, double most) {
     EXPECT_LE(found, 1.05 * most + 0.1) << what;
   };
@@ -192,7 +194,7 @@ TEST_P(Effort, OfAPatchIsWithinItsBudget) {
   std::mt19937_64 random(20261122);
   effort mean;
   // the more elements, the dearer a state and the less the states differ
-  const int count = f.config.elements[0] > 40 ? 8 : 24;
+  const int count = (f.config.elements[0] > 40 ? 8 : 24) / (scenes::sanitized ? 4 : 1);
   for (int k = 0; k < count; ++k) {
     const rp_input in = random_input(f.config, random);
     if (f.cold) rp_reset(h.get());
@@ -220,7 +222,7 @@ effort of_wheels(const rp_config &config, rp_track track, bool cold) {
   handle h(config);
   std::mt19937_64 random(20261123);
   effort mean;
-  constexpr int count = 10;
+  const int count = scenes::sanitized ? 3 : 10;
   for (int k = 0; k < count; ++k) {
     std::uniform_real_distribution<double> u(-1, 1);
     rp_input in = scenes::running(track);
