@@ -37,9 +37,9 @@ FMU := -DRAILPATCH_FMU=ON -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python
 FMU_FFTW := build/fmu_fftw
 # one build has the C++ tests, the program of `make pruning` and what the Python package is made of,
 # whose transforms may be others
-RELEASE := $(FMU) -DRAILPATCH_TESTS=ON -DRAILPATCH_PRUNING=ON -DRAILPATCH_PCH=ON
+RELEASE := $(FMU) -DRAILPATCH_TESTS=ON -DRAILPATCH_PRUNING=ON -DRAILPATCH_PCH=ON -DRAILPATCH_UNITY=ON
 PACKAGE := --config-settings=build-dir=build/release $(addprefix --config-settings=cmake.define., \
-	RAILPATCH_PYTHON=ON RAILPATCH_FMU=ON RAILPATCH_WERROR=ON RAILPATCH_PCH=ON)
+	RAILPATCH_PYTHON=ON RAILPATCH_FMU=ON RAILPATCH_WERROR=ON RAILPATCH_PCH=ON RAILPATCH_UNITY=ON)
 CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
 # what the installed package is made from
 SOURCES := $(shell find core plugins rig_model wheelset_demo -type f -not -name '*.pyc' 2>/dev/null) \
@@ -183,7 +183,7 @@ pruning: $(VENV)/tools ## what plain cases pay for physics that they leave out, 
 	cmake --preset release $(RELEASE)
 	cmake --build --preset release --target pruning_steps fmu_overhead
 	cmake -S . -B build/pruning -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAILPATCH_TESTS=OFF \
-		-DRAILPATCH_PRUNING=ON -DRAILPATCH_PHYSICS=OFF -DRAILPATCH_PCH=ON
+		-DRAILPATCH_PRUNING=ON -DRAILPATCH_PHYSICS=OFF -DRAILPATCH_PCH=ON -DRAILPATCH_UNITY=ON
 	cmake --build build/pruning --target pruning_steps
 	$(BIN)/python tests/pruning/compare.py build/{release,pruning}/tests/pruning/pruning_steps
 	$(BIN)/python tests/fmu/overhead.py build/release/tests/fmu_overhead
