@@ -145,12 +145,12 @@ setup: $(VENV)/installed ## system packages, virtual environment, package; FFT=f
 lint: $(VENV)/tools ## ruff and clang-format, nothing is changed
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/clang-format --dry-run --Werror $(CXX_FILES)
+	@echo clang-format; $(BIN)/clang-format --dry-run --Werror $(CXX_FILES)
 
 format: $(VENV)/tools ## ruff and clang-format, files are changed
 	$(BIN)/ruff check --fix-only .
 	$(BIN)/ruff format .
-	$(BIN)/clang-format -i $(CXX_FILES)
+	@echo clang-format; $(BIN)/clang-format -i $(CXX_FILES)
 
 # the build whose objects of the tests are linked, which `make test` has compiled for the sanitizers
 OBJECTS ?=
