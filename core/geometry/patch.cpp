@@ -12,6 +12,7 @@ namespace railpatch {
 namespace {
 
 constexpr double closeness = 2e-5;    // m, sampled gaps below this are looked at closely
+constexpr double closest = 1e-4;      // m, steps on the way from an appearing part to its neighbour
 constexpr double least_share = 1e-6;  // what counts less is below any tolerance and left out
 
 double gap_at(const side_geometry &side, double s) {
@@ -273,6 +274,25 @@ void keep_heaviest(part_interval *groups, double *angles, int &count, int limit)
   }
 }
 
+// How far from s, which touches where gaps are `lower` less, the nearest contact is then, m; 0:
+// none that it would be one patch with.
+double neighbour_of(const side_geometry &side, const blend_rules &rule, double s, double lower) {
+  double nearest = 0;
+  for (const int step : {-1, 1}) {
+    double bump = 0;
+    for (int k = 0; k * closest < rule.two; ++k) {
+      const double distance = (k + 1) * closest;
+      const double gap = gap_at(side, s + step * distance) - lower;
+      bump = std::max(bump, gap);
+      if (bump > rule.high) break;
+      if (gap >= 0) continue;
+      if (nearest == 0 || distance < nearest) nearest = distance;
+      break;
+    }
+  }
+  return nearest;
+}
+
 }  // namespace
 
 void find_parts(const side_geometry &side, part_set &found) {
@@ -312,6 +332,35 @@ search_result find_patches(const side_geometry &side, const patch_rules &rules, 
     lead += groups[k].leads;
   }
   return {too_many ? search_status::too_many_patches : search_status::contact, patches, lead};
+}
+
+int find_appearances(const side_geometry &side, const patch_rules &rules, double low, double high,
+                     appearance *out, int most) {
+  if (!rules.blended || side.no_overlap() || side.shaped()) return 0;
+  int count = 0;
+  const double z = side.motion().wheelset.z;
+  const auto gap = [&](int i) { return z + side.sample_gap(i); };
+  const auto exact = [&](int i) {
+    const double g = gap(i);
+    return g < low - closeness || g > high + closeness ? g : z + gap_at(side, side.sample_s(i));
+  };
+  double before = HUGE_VAL, last = HUGE_VAL;
+  for (int i = 1; i < side.sample_count() && count < most; ++i) {
+    const double g = exact(i);
+    if (last <= before && last < g && last > low - closeness && last < high + closeness) {
+      const double s = lowest(side, side.sample_s(i - 2), side.sample_s(i));
+      appearance found{z + gap_at(side, s), 0};
+      const bool within = found.z > low && found.z < high;
+      const double distance = within ? neighbour_of(side, rules.blend, s, found.z - z) : 0;
+      // as wide as it is then
+      const double half = 0.5 * rules.blend.grown * distance;
+      found.length = 0.5 * (gap_at(side, s - half) + gap_at(side, s + half)) - (found.z - z);
+      if (distance > 0 && found.length > 0 && found.length < closeness) out[count++] = found;
+    }
+    before = last;
+    last = g;
+  }
+  return count;
 }
 
 bool first_touch(const side_geometry &side, double &z) {

@@ -65,6 +65,16 @@ void find_parts(const side_geometry &side, part_set &found);
 search_result find_patches(const side_geometry &side, const patch_rules &rules, part_set &found,
                            patch_region *out, int max_patches);
 
+// A second part of contact that appears as the wheel goes down: beside another it soon belongs to
+// one patch with that one, so that what the wheel carries rises within less than a micrometre.
+struct appearance {
+  double z = 0;       // m, of the wheelset, at which it appears
+  double length = 0;  // m, of z, until it is one with its neighbour
+};
+// Those for which z lies between low and high: how many of `most` were written. Blended rule only.
+int find_appearances(const side_geometry &side, const patch_rules &rules, double low, double high,
+                     appearance *out, int most);
+
 // The wheelset's z at which this wheel first touches; false where the profiles do not overlap.
 bool first_touch(const side_geometry &side, double &z);
 

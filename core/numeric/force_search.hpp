@@ -18,8 +18,23 @@
 
 namespace railpatch {
 
+// From `depth` on the force rises steeply, within `length` in the measure of how much a part that
+// appears there is one patch with its neighbour (patch_parts.hpp), and beyond with that part's
+// width: both go with the root of how far it has sunk in.
+struct force_rise {
+  double depth = 0, length = 0;  // m
+
+  double share(double at) const {
+    const double t = (at - depth) / length;
+    if (!(t > 0)) return 0;
+    const double u = std::sqrt(t);
+    return u < 1 ? u * u * u * (10.0 - u * (15.0 - 6.0 * u)) : 1.0 + 0.1 * (u - 1.0);
+  }
+};
+
 class force_search {
  public:
+  static constexpr int most_rises = 4;
   // Steps that any search ends within: those of patience, doublings from a micrometre's thousandth
   // to the greatest depth, halvings from a depth to its rounding, and what is granted beyond.
   static constexpr int most_steps = 80;
@@ -37,6 +52,19 @@ class force_search {
   // No depth that could be evaluated carries the force.
   bool too_deep() const { return exhausted_ && limited_; }
 
+  // Found late, and between two depths whose forces are known: give_rises may help.
+  bool wants_rises() const {
+    return steps_ >= curious && !asked_ && bracketed() && upper_.known && lower_.depth > 0;
+  }
+  double low() const { return lower_.depth; }
+  double high() const { return upper_.depth; }
+  void give_rises(const force_rise *rises, int count) {
+    asked_ = true;
+    rises_ = std::min(count, most_rises);
+    std::copy_n(rises, rises_, rise_);
+    if (rises_between()) depth_ = risen();
+  }
+
   // Takes the force at depth() and moves on; `beyond` marks a depth too great to be evaluated.
   void report(double force, bool beyond) {
     ++steps_;
@@ -45,26 +73,32 @@ class force_search {
     const bool deeper = !beyond && force < target_;
     end &moved = deeper ? lower_ : upper_;
     const end before = moved;
-    moved = {depth_, beyond ? 0.0 : root(force) - root(target_), !beyond};
+    moved = {depth_, beyond ? 0.0 : root(force) - root(target_), !beyond, force};
     if (!deeper) limited_ = beyond;
+    held_ = deeper ? std::max(held_, 0) + 1 : std::min(held_, 0) - 1;
     const double next = inside(beyond ? middle() : secant(force));
     if (!beyond) {
       last_depth_ = depth_;
       last_root_ = root(force);
     }
     exhausted_ = width() < 1e-16 + 1e-12 * lower_.depth || lower_.depth >= max_depth;
+    if (steps_ < tired && rises_between()) {
+      depth_ = risen();
+      return;
+    }
     depth_ = steps_ < patience ? next : careful(next, moved, deeper ? upper_ : lower_, before);
   }
 
  private:
   static constexpr double max_depth = 0.02;  // m
-  static constexpr int patience = 8;
+  static constexpr int patience = 6, curious = 3, tired = 16;
   static constexpr double slack = 8.0;  // two to the power of the steps granted
 
   // Of the bracket: a depth and, where the force there is known, its root minus the target's.
   struct end {
     double depth = 0, value = 0;
     bool known = true;
+    double force = 0;  // N
   };
 
   static double root(double force) { return cbrt(force > 0 ? force * force : 0.0); }
@@ -84,6 +118,42 @@ class force_search {
     if (!bracketed()) return std::min(std::max(next, low + 1e-9), 4.0 * low + 1e-4);
     if (next <= low || next >= high) return middle();
     return std::clamp(next, low + std::min(margin, 1e-9), high - std::min(margin, 1e-9));
+  }
+
+  double risen_between(double low, double high) const {
+    double sum = 0;
+    for (int i = 0; i < rises_; ++i) sum += rise_[i].share(high) - rise_[i].share(low);
+    return sum;
+  }
+  bool rises_between() const {
+    return upper_.known && risen_between(lower_.depth, upper_.depth) > 1e-3;
+  }
+  // The depth by the model. An end that stays is brought to the foot or the top of the rise that
+  // the other one is on; else it counts half as much each time (Dowell and Jarratt 1971, BIT 11).
+  double risen() const {
+    for (int i = 0; i < rises_ && std::abs(held_) > 1; ++i) {
+      // not where the part has no extent at all
+      const double foot = rise_[i].depth - 1e-3 * rise_[i].length;
+      const double top = rise_[i].depth + rise_[i].length;
+      if (held_ < 0 && lower_.depth < foot && foot < upper_.depth && upper_.depth < top)
+        return foot;
+      if (held_ > 0 && foot < lower_.depth && lower_.depth < top && top < upper_.depth) return top;
+    }
+    const double kept = std::ldexp(1.0, -std::max(std::abs(held_) - 1, 0));
+    const double from = (held_ < 0 ? kept : 1) * (lower_.force - target_);
+    const double climb = (held_ > 0 ? kept : 1) * (upper_.force - target_) - from;
+    // beside the rises as a ball on a plane
+    const double slope = std::min(1.5 * target_ / lower_.depth, 0.5 * climb / width());
+    const double jump = (climb - slope * width()) / risen_between(lower_.depth, upper_.depth);
+    double low = lower_.depth, high = upper_.depth;
+    for (int k = 0; k < 60; ++k) {
+      const double at = 0.5 * (low + high);
+      const double excess =
+          from + slope * (at - lower_.depth) + jump * risen_between(lower_.depth, at);
+      (excess < 0 ? low : high) = at;
+    }
+    const double least = std::min(1e-13 * lower_.depth, 0.1 * width());
+    return std::clamp(0.5 * (low + high), lower_.depth + least, upper_.depth - least);
   }
 
   // The next depth of a search that takes long; now: the end that has moved, and from where.
@@ -113,7 +183,10 @@ class force_search {
   end lower_, upper_{max_depth, 0, false};
   double allowed_ = 0;  // m, of the bracket; 0: not yet bracketed after the patience
   double residual_ = HUGE_VAL;
-  int steps_ = 0;
+  force_rise rise_[most_rises];
+  int steps_ = 0, rises_ = 0;
+  int held_ = 0;  // steps that the upper end has stayed for, or less than 0: the lower one
+  bool asked_ = false;
   bool exhausted_ = false, limited_ = true;
 };
 

@@ -52,6 +52,10 @@ class wheel_contact {
   void move_to(double z) { geometry_->move_to(z); }
   // z at which wheel and rail first touch; false where they have no lateral position in common.
   bool first_touch(double &z) const;
+  // Heights of the wheelset between two at which parts of contact appear; how many were written.
+  int appearances(double low, double high, appearance *out, int most) const {
+    return find_appearances(*geometry_, rules_, low, high, out, most);
+  }
   // Solves the contact at the placed position. memory: of this side's patches, max_patches.
   void evaluate(patch_contact &solver, patch_memory *memory, rp_side_result &result);
   // Derivatives of that solution by rates of the inputs and of the friction coefficient: changes[k]

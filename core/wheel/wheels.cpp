@@ -198,6 +198,7 @@ void wheels::find_z(double target, rp_result &out) {
                                     [](const wheel_contact &wheel) { return wheel.beyond(); });
     search.report(force, beyond);
     if (search.converged() || search.exhausted()) break;
+    if (search.wants_rises()) tell_rises(touch, search);
   }
   out.z = touch + depth;
   verdict found;
@@ -207,6 +208,19 @@ void wheels::find_z(double target, rp_result &out) {
                 : verdict{RP_NOT_CONVERGED, RP_REASON_FORCE_SEARCH, search.residual()};
   report_search(found, search.residual(), out);
   depth_ = search.converged() ? depth : 0.0;
+}
+
+// Where parts of contact appear between the depths that the search has bracketed.
+void wheels::tell_rises(double touch, force_search &search) const {
+  std::array<appearance, force_search::most_rises> found;
+  std::array<force_rise, force_search::most_rises> rises;
+  int count = 0;
+  for (const wheel_contact &wheel : wheels_)
+    count += wheel.appearances(touch + search.low(), touch + search.high(), found.data() + count,
+                               force_search::most_rises - count);
+  for (size_t i = 0; i < static_cast<size_t>(count); ++i)
+    rises[i] = {found[i].z - touch, found[i].length};
+  search.give_rises(rises.data(), count);
 }
 
 // Without load the wheels just touch; what rounding leaves of a contact there they are lifted off.

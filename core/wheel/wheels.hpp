@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "numeric/force_search.hpp"
 #include "patch/driver.hpp"
 #include "tangential/friction_factor.hpp"
 #include "temperature/bulk.hpp"
@@ -86,6 +87,7 @@ class wheels final : public driver {
   void set_bulk(int side);
   void keep_heat(const rp_result &result);
   void find_z(double vertical_force, rp_result &result);
+  void tell_rises(double touch, force_search &search) const;
   void rest_at(double touch, rp_result &result);
   void solve_supported(const rp_input &input, rp_result &result);
   void report_search(const verdict &found, double residual, rp_result &result) const;

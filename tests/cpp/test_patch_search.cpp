@@ -206,6 +206,54 @@ TEST_P(PatchSearch, BumpIsTheGreatestGapBetweenTwoParts) {
   EXPECT_GT(several, 2);
 }
 
+// Just above an appearance there is one part less than just below, beside a neighbour; at its
+// length it is as wide as lets both be one patch, to a half (ForceSearch.AKnownRise). On a rail
+// with ripples of 4 um.
+TEST_P(PatchSearch, TellsWherePartsAppear) {
+  profiles::curve rippled = profiles::rail();
+  for (size_t i = 0; i < rippled.y.size(); ++i) {
+    constexpr double wave = 5e-3, height = 4e-6;
+    rippled.z[i] += height * std::cos(2 * M_PI * rippled.y[i] / wave);
+    rippled.dz[i] -= height * 2 * M_PI / wave * std::sin(2 * M_PI * rippled.y[i] / wave);
+  }
+  const profile rail(surfaces::view(rippled));
+  side_geometry on(scene.wheel_curve, rail, scene.sizes, scene.track);
+  const auto parts = [&](double z) {
+    part_set found;
+    on.move_to(z);
+    find_parts(on, found);
+    return found;
+  };
+  constexpr double sharp = 1e-9;
+  const patch_rules rules;
+  int told = 0;
+  for (int i = 0; i < 120; ++i) {
+    side_motion m;
+    m.wheelset.y = -6e-3 + 1e-4 * i;
+    on.place(m);
+    double touch = 0;
+    ASSERT_TRUE(first_touch(on, touch));
+    on.move_to(touch);
+    appearance list[4];
+    const int count = find_appearances(on, rules, touch + 1e-6, touch + 1.5e-4, list, 4);
+    for (int k = 0; k < count; ++k) {
+      ++told;
+      EXPECT_EQ(parts(list[k].z + sharp).count, parts(list[k].z - sharp).count + 1) << i;
+      const part_set whole = parts(list[k].z + list[k].length);
+      double nearest = HUGE_VAL;
+      for (int j = 0; j + 1 < whole.count; ++j) {
+        const part &a = whole.parts[j], &b = whole.parts[j + 1];
+        const double wide = std::min(lateral_width(a), lateral_width(b)) / distance(a, b);
+        nearest = std::min(nearest, std::fabs(wide / rules.blend.grown - 1));
+      }
+      EXPECT_LT(nearest, 0.5) << i;
+    }
+    on.move_to(touch);
+    EXPECT_EQ(find_appearances(on, rules, touch + 1e-6, touch + 1e-6, list, 4), 0);
+  }
+  EXPECT_GT(told, 10);
+}
+
 TEST_P(PatchSearch, FirstTouchLeavesNoGap) {
   for (const double y : {0.0, 1.3e-3, -2e-3, 4.4e-3}) {
     place(y, 0, 1e-3);
