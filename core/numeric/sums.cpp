@@ -19,20 +19,20 @@ RAILPATCH_INLINE double sum(size_t n, Term &&term) {
   return ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
 }
 
-}  // namespace
-
+// Dispatched functions have no name outside: the choice between them would be seen of a library
+// whose names are hidden otherwise.
 RAILPATCH_DISPATCH
-double dot(const double *a, const double *b, size_t n) {
+double dot_of(const double *a, const double *b, size_t n) {
   return sum(n, [=](size_t i) { return a[i] * b[i]; });
 }
 
 RAILPATCH_DISPATCH
-double total(const double *a, size_t n) {
+double total_of(const double *a, size_t n) {
   return sum(n, [=](size_t i) { return a[i]; });
 }
 
 RAILPATCH_DISPATCH
-void dots(const double *a, size_t stride, int count, const double *v, size_t n, double *out) {
+void dots_of(const double *a, size_t stride, int count, const double *v, size_t n, double *out) {
   for (int m = 0; m < count; ++m) {
     const double *own = a + static_cast<size_t>(m) * stride;
     out[m] = sum(n, [=](size_t i) { return own[i] * v[i]; });
@@ -43,8 +43,8 @@ void dots(const double *a, size_t stride, int count, const double *v, size_t n, 
 constexpr int together = 4;
 
 RAILPATCH_DISPATCH
-void subtract(const double *a, size_t stride, int count, const double *factor, double *__restrict v,
-              size_t n) {
+void subtract_from(const double *a, size_t stride, int count, const double *factor,
+                   double *__restrict v, size_t n) {
   int m = 0;
   for (; m + together <= count; m += together) {
     const double *__restrict b = a + static_cast<size_t>(m) * stride;
@@ -57,6 +57,21 @@ void subtract(const double *a, size_t stride, int count, const double *factor, d
     const double *__restrict b = a + static_cast<size_t>(m) * stride;
     for (size_t i = 0; i < n; ++i) v[i] -= factor[m] * b[i];
   }
+}
+
+}  // namespace
+
+double dot(const double *a, const double *b, size_t n) { return dot_of(a, b, n); }
+
+double total(const double *a, size_t n) { return total_of(a, n); }
+
+void dots(const double *a, size_t stride, int count, const double *v, size_t n, double *out) {
+  dots_of(a, stride, count, v, n, out);
+}
+
+void subtract(const double *a, size_t stride, int count, const double *factor, double *__restrict v,
+              size_t n) {
+  subtract_from(a, stride, count, factor, v, n);
 }
 
 }  // namespace railpatch
