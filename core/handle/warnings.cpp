@@ -15,6 +15,11 @@ constexpr double doubtful_friction = 1;           // -
 constexpr double load_range[2] = {100, 5e5};      // N
 constexpr double pressure_range[2] = {1e7, 5e9};  // Pa
 constexpr double doubtful_creepage = 0.1;         // -
+constexpr double doubtful_spin = 20;              // rad/m: a flange of 90 degrees at 50 mm radius
+constexpr double doubtful_size = 0.06;            // m, diameter of the circle of a contact's area
+constexpr double layer_range[2] = {1e6, 1e12};    // Pa
+constexpr double play_range[2] = {0.04, 0.12};    // m, gauge minus flange back distance
+constexpr double least_flange = 0.015;            // m, height of a profile that has one
 constexpr double least_way = 0.01;                // m/s, below which nothing is said of turning
 constexpr double radius_range[2] = {1, 8};        // of wheels, over the width of their profiles
 constexpr double flange_way = 0.025;              // m
@@ -55,10 +60,12 @@ uint32_t warnings_of_patch(const rp_config &config, const rp_patch_result &patch
                        hard && patch.max_pressure < pressure_range[0] && patch.max_pressure > 0);
   if (moves(config) && patch.direction != 0)
     found |= bit(RP_WARNING_CREEPAGE, std::fabs(patch.creepage[0]) > doubtful_creepage ||
-                                          std::fabs(patch.creepage[1]) > doubtful_creepage);
+                                          std::fabs(patch.creepage[1]) > doubtful_creepage) |
+             bit(RP_WARNING_SPIN, std::fabs(patch.spin_creepage) > doubtful_spin);
   const double width = 2 * std::sqrt(patch.contact_area / std::numbers::pi);
   const bool line = config.kind == RP_PATCH && config.geometry == RP_LINE_CONTACT;
-  found |= bit(RP_WARNING_LAYER, !line && config.layer_thickness > width && width > 0);
+  found |= bit(RP_WARNING_LAYER, !line && config.layer_thickness > width && width > 0) |
+           bit(RP_WARNING_SIZE, !line && width > doubtful_size);
   bool coarse = false;
   for (int k = 0; k < (line ? 1 : 2); ++k) {
     // a grid of the case's own number has a border around it
@@ -86,19 +93,28 @@ uint32_t warnings_of_side(const rp_config &config, const rp_input &input, double
          bit(RP_WARNING_FLANGE, std::fabs(input.y) > flange_way);
 }
 
+double extent(const double *values, int count) {
+  const auto [low, high] = std::minmax_element(values, values + count);
+  return *high - *low;
+}
+
 }  // namespace
 
 uint32_t warnings_of_case(const rp_config &config) {
-  bool soft = false, odd = false;
+  bool soft = false, odd = false, wide = false;
   for (double modulus : config.shear_modulus) soft = soft || outside(modulus, modulus_range);
+  const double play = config.gauge + config.gauge_widening - config.flange_back_distance;
   for (int side = 0; side < 2; ++side) {
     const rp_profile &profile = config.wheel[side];
     if (config.kind == RP_PATCH || !in_use(config, side) || !profile.y || profile.count < 2)
       continue;
-    const auto [low, high] = std::minmax_element(profile.y, profile.y + profile.count);
-    odd = odd || outside(config.nominal_radius / (*high - *low), radius_range);
+    odd = odd || outside(config.nominal_radius / extent(profile.y, profile.count), radius_range);
+    const bool flange = extent(profile.z, profile.count) > least_flange;
+    wide = wide || (flange && outside(play, play_range));
   }
+  const bool layer = config.layer_thickness > 0 && outside(config.layer_shear_modulus, layer_range);
   return bit(RP_WARNING_STIFFNESS, soft) | bit(RP_WARNING_RADIUS, odd) |
+         bit(RP_WARNING_LAYER_STIFFNESS, layer) | bit(RP_WARNING_GAUGE, wide) |
          bit(RP_WARNING_FRICTION, config.tangential != RP_TANGENTIAL_NONE &&
                                       config.friction_coefficient > doubtful_friction);
 }

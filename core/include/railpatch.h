@@ -153,7 +153,11 @@ enum {
   X(RP_WARNING_RADIUS, 8, "the wheel's radius is outside 1 to 8 times the width of its profile")   \
   X(RP_WARNING_FLANGE, 9, "y is beyond 25 mm: the flange would be on top of the rail, or past it") \
   X(RP_WARNING_LAYER, 10, "the layer is thicker than the contact is long or wide")                 \
-  X(RP_WARNING_COARSE, 11, "a grid has fewer than 8 elements across")
+  X(RP_WARNING_COARSE, 11, "a grid has fewer than 8 elements across")                              \
+  X(RP_WARNING_SPIN, 12, "a spin creepage is above 20 rad/m")                                      \
+  X(RP_WARNING_SIZE, 13, "a contact is wider than a circle of 60 mm")                              \
+  X(RP_WARNING_LAYER_STIFFNESS, 14, "layer.shear_modulus is outside 1e6 to 1e12 Pa")               \
+  X(RP_WARNING_GAUGE, 15, "gauge is not 40 to 120 mm wider than flange_back_distance")
 
 #define RP_ENUM_ENTRY(name, value, text) name = value,
 typedef enum rp_error { RP_ERRORS(RP_ENUM_ENTRY) } rp_error;
