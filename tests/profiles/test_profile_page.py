@@ -11,6 +11,7 @@ from railpatch.command.cli import cli
 from railpatch.profiles import load_profile
 from railpatch.profiles.formulas import S1002_JOINTS
 from railpatch.profiles.pairing.contact_points import contact_points, positions
+from railpatch.profiles.pairing.doctor import tables_of
 from railpatch.profiles.pairing.figures import conicity_figure, contact_figure, shape_figure
 from railpatch.profiles.shape import shape_of
 
@@ -32,7 +33,7 @@ def test_page(arguments: list[str], title: str, role: str, tmp_path: Path) -> No
     page = tmp_path / "plot.html"
     ran = invoke(*arguments, "-o", page)
     assert ran.exit_code == 0, ran.output
-    assert ran.stdout == f"{page}\n"
+    assert ran.stdout.splitlines() == [str(page), *map(str, tables_of(page))]
     text = page.read_text(encoding="utf-8")
     assert f"<h2>{title}</h2>" in text
     assert f"{role} profile" in text

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -57,10 +59,10 @@ def read_columns(path: Path, text: str, role: Role | None, reading: Reading) -> 
     """Columns y, z and an optional weight; mm or m, told by the width; one line of titles."""
     text, commas = with_points(path, text)
     if role is None:
-        raise ProfileError(path, "say whether this is a 'wheel' or a 'rail' profile")
+        raise ProfileError(path, "say whether this is a 'wheel' or a 'rail' profile: role, --role")
     points: list[list[float]] = []
     lines: list[int] = []
-    titled = False
+    titled, width = False, 0
     for number, row in enumerate(text.splitlines(), 1):
         if not row.strip() or row.lstrip().startswith(COMMENT):
             continue
@@ -68,10 +70,15 @@ def read_columns(path: Path, text: str, role: Role | None, reading: Reading) -> 
             titled = True
             continue
         values = parse_numbers(path, number, row)
+        width = len(values)
         points.append([values[0], values[1], values[2] if len(values) > 2 else 1.0])
         lines.append(number)
     if not points:
         raise ProfileError(path, "holds no points")
+    if len(points) > 2 and all(b[0] - a[0] == 1 for a, b in pairwise(points)) and width > 2:
+        raise ProfileError(
+            path, "counts its points in the first column: allowed y, z and a weight of each point"
+        )
     raw = from_points(path, points, lines, role, measured=False, reading=reading)
     if commas:
         raw.notes.insert(0, commas)
@@ -91,7 +98,8 @@ def from_points(
     """Builds a RawProfile of [y, z, weight] rows; unit: m per unit of length, None: detected."""
     array = np.array(points, dtype=float)
     notes: list[str] = []
-    if len(points) >= 5 and check_columns(path, array, reading.swap):
+    taken = replace(reading, swap=len(points) >= 5 and check_columns(path, array, reading.swap))
+    if taken.swap:
         array[:, :2] = array[:, 1::-1]
         notes.append("columns taken as z, y")
     if reading.unit is not None:
@@ -100,6 +108,7 @@ def from_points(
     if unit is None:
         in_mm = np.ptp(array[:, 0]) > METRE_WIDTH
         unit = 1e-3 if in_mm else 1.0
+        taken = replace(taken, unit="mm" if in_mm else "m")
         notes.append(f"unit of length taken as {'mm' if in_mm else 'm'}")
     weight = array[:, 2]
     if (weight < 0).any():
@@ -117,4 +126,5 @@ def from_points(
         line=np.array(lines)[keep],
         measured=measured,
         notes=notes,
+        taken=taken,
     )

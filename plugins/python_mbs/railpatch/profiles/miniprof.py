@@ -19,7 +19,7 @@ def read_miniprof(path: Path, text: str, role: Role | None, reading: Reading) ->
     """
     header, rows = split_header(path, text)
     if role is None:
-        raise ProfileError(path, "say whether this is a 'wheel' or a 'rail' profile")
+        raise ProfileError(path, "say whether this is a 'wheel' or a 'rail' profile: role, --role")
     columns = [name.strip().upper() for name in header.get("columndef", "X,Y").split(",")]
     if "X" not in columns or "Y" not in columns:
         raise ProfileError(path, f"ColumnDef={','.join(columns)} names no columns X and Y")

@@ -8,6 +8,8 @@ symmetric: then -y is taken, unless the head leans the other way.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -73,6 +75,7 @@ def orient(raw: RawProfile, reading: Reading) -> None:
         said = ""
     else:
         said = " as asked"
+    raw.taken = replace(raw.taken, mirror=mirror)
     for axis in ("y", "z"):
         if axis in mirror and mirror != "none":
             setattr(raw, axis, -getattr(raw, axis))

@@ -48,6 +48,7 @@ class RawProfile:
     line: NDArray[np.int64]  # [n], line number of each point in the file
     measured: bool  # a measurement with noise (True) or designed points (False)
     notes: list[str] = field(default_factory=list)  # what was assumed and changed
+    taken: Reading = field(default_factory=Reading)  # what was said or found; None: the file says
 
 
 def check_points(raw: RawProfile) -> None:

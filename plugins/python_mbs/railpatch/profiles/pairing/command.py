@@ -7,8 +7,9 @@ from pathlib import Path
 import click
 
 from railpatch.command.group import WrongCall, output_option, quiet_flag, wrong_call
-from railpatch.command.output import check_page
+from railpatch.command.output import check_page, refuse_same
 from railpatch.profiles.pairing.contact_points import Dimensions
+from railpatch.profiles.pairing.doctor import tables_of
 from railpatch.profiles.raw import Mirror, Reading, Role, Unit
 
 
@@ -66,13 +67,16 @@ def profile(
 ) -> None:
     """Make a page of plots of a wheel or rail profile.
 
-    Shape, slope, curvature and kinks; with the partner, for a wheelset with two such wheels on two
-    such rails: contact points, rolling radius difference and equivalent conicity. The page needs no
-    network.
+    What was assumed of a file, with the lines of a scene that say so; its points, how far they lie
+    off the curve, shape, slope, curvature and kinks; with the partner, for a wheelset with two such
+    wheels on two such rails: contact points, rolling radius difference and equivalent conicity,
+    which go into PLOT.contact.csv and PLOT.contact.json too. The page needs no network.
     """
     if rail is not None and wheel is not None:
         raise WrongCall("--rail, --wheel: both given, allowed one: the profile's partner")
     check_page(output, source, rail, wheel)
+    for path in tables_of(output):
+        refuse_same(path, source, rail, wheel)
     # plotly takes a while to import; other commands need not wait for it
     from railpatch.profiles.pairing.page import write_profile_page
 
@@ -88,8 +92,11 @@ def profile(
             partner=rail or wheel,
             dimensions=Dimensions(**lengths),
             smoothing=smoothing,
+            told=lambda note: click.echo(f"note: {note}", err=True),
         )
     except OSError as error:
         raise wrong_call(error) from None
     if not quiet:
         click.echo(written)
+        for path in tables_of(written):
+            click.echo(path)

@@ -6,7 +6,8 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from railpatch.page.figures import COLORS, styled
+from railpatch.page.figures import COLORS, GREY, styled
+from railpatch.profiles.curve import Profile
 from railpatch.profiles.pairing.contact_points import ContactPoints
 from railpatch.profiles.shape import Array, Shape
 
@@ -14,9 +15,14 @@ _LINE = COLORS["left"]
 _MARK = COLORS["right"]
 
 
-def shape_figure(shape: Shape) -> go.Figure:
-    """Depth, slope and curvature over y, with the kinks marked."""
+def shape_figure(shape: Shape, points: tuple[Array, Array] | None = None) -> go.Figure:
+    """Depth, slope and curvature over y, with the kinks marked. points: y, z of a file, m."""
     figure = make_subplots(3, 1, shared_xaxes=True, vertical_spacing=0.05)
+    if points is not None:
+        figure.add_scatter(
+            x=1e3 * points[0], y=1e3 * points[1], mode="markers", name="points of the file",
+            marker={"color": GREY, "size": 3}, row=1, col=1,
+        )  # fmt: skip
     rows = {
         "z, down [mm]": 1e3 * shape.z,
         "slope [deg]": np.degrees(shape.slope),
@@ -41,6 +47,56 @@ def shape_figure(shape: Shape) -> go.Figure:
     figure.update_yaxes(autorange="reversed", row=1, col=1)
     figure.update_xaxes(title_text="y on the profile [mm]", row=3, col=1)
     return styled(figure, 900)
+
+
+def residual_figure(y: Array, residual: Array) -> go.Figure:
+    """How far the points of the file lie below the curve, m, over y, m."""
+    figure = go.Figure(
+        go.Scatter(x=1e3 * y, y=1e6 * residual, mode="markers", marker={"color": _LINE, "size": 3})
+    )
+    figure.update_xaxes(title_text="y on the profile [mm]")
+    figure.update_yaxes(title_text="point below the curve [um]")
+    return styled(figure, 320)
+
+
+def pair_figure(points: ContactPoints, wheel: Profile, rail: Profile) -> go.Figure:
+    """The right wheel lifted off its rail, and where they touch as the wheelset moves: for each
+    lateral position a line from the place on the wheel to that on the rail."""
+    figure = go.Figure()
+    top = float(np.min(rail.z))
+    beside = (rail.y < rail.y[np.argmin(rail.z)]) & (rail.z - top <= points.dimensions.gauge_height)
+    # from the track's centre line to the rail profile's y = 0
+    rail_at = 0.5 * points.dimensions.gauge - float(rail.y[beside].min())
+    lift = float(np.max(wheel.z)) + 5e-3
+    curves = (
+        ("wheel", wheel.y + points.dimensions.marker, wheel.z - lift, "left"),
+        ("rail", rail.y + rail_at, rail.z - top, "right"),
+    )
+    for y in np.arange(-8e-3, 8.1e-3, 1e-3):
+        i = int(np.argmin(np.abs(points.y - y)))
+        if not np.isfinite(points.position[i]):
+            continue
+        on_wheel, on_rail = points.on_wheel[i], points.position[i] - rail_at
+        figure.add_scatter(
+            x=1e3 * np.array([on_wheel + points.dimensions.marker, points.position[i]]),
+            y=1e3 * np.array([height(wheel, on_wheel) - lift, height(rail, on_rail) - top]),
+            mode="lines", line={"color": GREY, "width": 1}, showlegend=False,
+            name=f"wheelset at {1e3 * points.y[i]:+.0f} mm",
+        )  # fmt: skip
+    for name, y, z, colour in curves:
+        figure.add_scatter(
+            x=1e3 * y, y=1e3 * z, mode="lines", line={"color": COLORS[colour]}, name=name
+        )
+    figure.update_xaxes(title_text="from the track's centre line [mm]")
+    figure.update_yaxes(title_text="down, the wheel lifted [mm]", autorange="reversed",
+                        scaleanchor="x")  # fmt: skip
+    return styled(figure, 520)
+
+
+def height(profile: Profile, y: float) -> float:
+    """m, z of the profile at y, the highest of a rail, the lowest of a wheel; linear."""
+    order = np.argsort(profile.y)
+    return float(np.interp(y, profile.y[order], profile.z[order]))
 
 
 def contact_figure(points: ContactPoints) -> go.Figure:

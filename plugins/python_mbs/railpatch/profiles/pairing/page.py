@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from html import escape
 from pathlib import Path
 
@@ -11,9 +12,10 @@ from railpatch.errors import ProfileError
 from railpatch.page.document import document
 from railpatch.page.figures import plot
 from railpatch.profiles import load_profile, read_profile
-from railpatch.profiles.pairing import figures
+from railpatch.profiles.curve import Profile
+from railpatch.profiles.pairing import doctor, figures
 from railpatch.profiles.pairing.contact_points import ContactPoints, Dimensions, contact_points
-from railpatch.profiles.raw import Reading, Role
+from railpatch.profiles.raw import RawProfile, Reading, Role
 from railpatch.profiles.shape import CORNER_RADIUS, CURVATURE_STEP, Shape, shape_of
 from railpatch.writing import write_whole
 
@@ -35,15 +37,19 @@ def write_profile_page(
     dimensions: Dimensions | None = None,
     smoothing: float | None = None,
     reading: Reading | None = None,
+    told: Callable[[str], object] = lambda _: None,
 ) -> Path:
-    """Writes the page on a profile by built-in name or file; returns ``output``.
+    """Writes the page on a profile by built-in name or file, and beside it the contact points as
+    tables (``doctor.tables_of``); returns ``output``.
 
     role: "wheel" or "rail"; may be left out where name, extension or header tell. partner: the
     other profile; by default UIC60@1:40 for a wheel and S1002 for a rail. smoothing: m, as in
     load_profile, for the files of both. reading: what the profile's file does not say of itself.
+    told: called with what was assumed of each file.
     Raises ProfileError, CaseError, OSError; nothing is written then.
     """
     role = role or role_of(source)
+    raw = read_profile(source, role, reading) if Path(source).is_file() else None
     profile = load_profile(source, role, smoothing=smoothing, reading=reading)
     shape = shape_of(profile)
     other = partner or PARTNERS[role]
@@ -51,15 +57,38 @@ def write_profile_page(
     points = contact_points(
         *pair, dimensions=dimensions, smoothing=smoothing, readings={role: reading}
     )
+    beside = load_profile(other, "rail" if role == "wheel" else "wheel", smoothing=smoothing)
+    lines = doctor.scene_lines(source, role, raw)
     body = "".join(
         [
             f"<h1>{escape(Path(source).name)}</h1><p class=sub>{role} profile</p>",
-            *(f"<p class=sub>{escape(note)}</p>" for note in profile.notes),
-            *shape_section(shape),
-            *pair_section(points, str(pair[0]), str(pair[1])),
+            *assumed_section(raw, profile.notes, lines),
+            *shape_section(shape, raw, profile),
+            *pair_section(
+                points, (profile, beside) if role == "wheel" else (beside, profile), pair
+            ),
         ]
     )
+    columns = doctor.table(points)
+    notes = {role: list(profile.notes), "partner": list(beside.notes)}
+    texts = (doctor.csv_table(columns), doctor.json_table(columns, notes, lines))
+    for path, text in zip(doctor.tables_of(output), texts, strict=True):
+        write_whole(path, text.encode())
+    for name, found in ((source, profile.notes), (other, beside.notes)):
+        for note in found:
+            told(f"{Path(name).name}: {note}")
     return write_whole(output, document(Path(source).name, body).encode())
+
+
+def assumed_section(raw: RawProfile | None, notes: Sequence[str], lines: list[str]) -> list[str]:
+    """What was assumed of a file, and how a scene says it."""
+    if raw is None:
+        return []
+    listed = "".join(f"<li>{escape(note)}</li>" for note in notes)
+    return [
+        f"<h2>What was assumed</h2><ul>{listed}</ul><p>A scene that reads it so, whatever rules "
+        f"would find:</p><pre>{escape(chr(10).join(lines))}</pre>",
+    ]
 
 
 def role_of(source: str | Path) -> Role:
@@ -70,19 +99,32 @@ def role_of(source: str | Path) -> Role:
     return ROLES[base] if base in ROLES else read_profile(source).role
 
 
-def shape_section(shape: Shape) -> list[str]:
+def shape_section(shape: Shape, raw: RawProfile | None, profile: Profile) -> list[str]:
     """Plots of the profile alone."""
-    return [
+    points = None if raw is None else (raw.y, raw.z)
+    parts = [
         "<h2>Shape</h2><p>From the flange or gauge side to the field side; z, slope and curvature "
         f"count downwards. Marked: {shape.steps.size} steps of the curvature by more than "
         f"{CURVATURE_STEP:g} 1/m, as at the joints of arcs, and {shape.corners.size} corners of "
         f"less than {1e3 * CORNER_RADIUS:g} mm radius.</p>",
-        plot(figures.shape_figure(shape), "shape"),
+        plot(figures.shape_figure(shape, points), "shape"),
     ]
+    if raw is not None:
+        residual = doctor.residuals(raw, profile)
+        parts += [
+            f"<h2>Points off the curve</h2><p>{raw.y.size} points, "
+            f"{1e6 * float(np.sqrt(np.mean(residual**2))):.2g} um root mean square, at most "
+            f"{1e6 * float(np.abs(residual).max()):.2g} um.</p>",
+            plot(figures.residual_figure(raw.y, residual), "residual"),
+        ]
+    return parts
 
 
-def pair_section(points: ContactPoints, wheel: str, rail: str) -> list[str]:
+def pair_section(
+    points: ContactPoints, curves: tuple[Profile, Profile], names: tuple[str | Path, str | Path]
+) -> list[str]:
     """Plots of wheel and rail together."""
+    wheel, rail = map(str, names)
     sizes = points.dimensions
     conicity = np.array([points.conicity(amplitude) for amplitude in AMPLITUDES])
     lost = int(np.isnan(points.position).sum())
@@ -99,6 +141,7 @@ def pair_section(points: ContactPoints, wheel: str, rail: str) -> list[str]:
         )
     return [
         *parts,
+        plot(figures.pair_figure(points, *curves), "pair"),
         plot(figures.contact_figure(points), "contact"),
         "<h2>Rolling radius difference</h2><p>Right wheel minus left wheel.</p>",
         plot(figures.difference_figure(points), "difference"),
