@@ -67,10 +67,13 @@ def refuse_others(content: Mapping[str, Any], command: str | None = None) -> Non
 
     command: the one that its scenes are for; None: contact cases. Raises CaseError.
     """
-    found = next((name for table, name in OTHERS.items() if table in content), command)
-    if found != command:
-        wanted = f"one of railpatch {command}" if command else "a contact case"
-        raise CaseError(f"this is a scene of railpatch {found}, allowed {wanted}")
+    found = next((name for table, name in OTHERS.items() if table in content), None)
+    if found == command or (found is None and content.get("kind") not in KINDS):
+        return
+    wanted = f"one of railpatch {command}" if command else "a contact case"
+    own = ", ".join(f"[{table}]" for table, name in OTHERS.items() if name == command)
+    shown = f"a scene of railpatch {found}" if found else f"a contact case, without {own}"
+    raise CaseError(f"this is {shown}, allowed {wanted}")
 
 
 def read_toml(path: Path) -> dict[str, Any]:

@@ -67,7 +67,11 @@ def problem(model: type[BaseModel], item: Any, prefix: str) -> str:
         return unknown_key(key, str(loc[-1]), item["input"], table)
     if item["type"] == "missing":
         description = table.model_fields[str(loc[-1])].description if table else "a value"
-        return f"{key}: value is missing, allowed {description}"
+        inner = f"a table [{key}]: " if table_at(model, loc) else ""
+        return f"{key}: value is missing, allowed {inner}{description}"
+    if item["type"] == "value_error":
+        said = str(context["error"])
+        return f"{key}: {said}" if key else said
     template = ALLOWED.get(item["type"])
     if item["loc"][-1:] == ("str",):
         template = "a path or rows of numbers"

@@ -149,6 +149,7 @@ def contents_of(
     kinds, start = derivative_kind(
         scene, name, asked=options.derivatives != "none" and not kind.has_history
     )
+    doubtful = [f"{name}: {text}, at the start values" for text in start["warnings"]]
     apart = check_starts(choices, name)
     provided = kinds == "exact" or (kinds == "differences" and options.derivatives == "always")
     if options.largest_step:
@@ -165,7 +166,7 @@ def contents_of(
         tolerance=scene.case.method.tolerance,
         step=step_size_of(scene.case, kind, table, start),
         derivatives=provided,
-        warnings=tuple(apart),
+        warnings=(*doubtful, *apart),
     )
     variables = variables_of(table, kind, scene.case)
     creep_table = config["creep_table"].tobytes() if "creep_table" in config else None
@@ -206,7 +207,8 @@ def derivative_kind(scene: Scene, name: str, *, asked: bool) -> tuple[str, dict[
     contact = Contact(Scene(scene.case.model_copy(update={"method": method}), scene.folder))
     start = contact.step()
     if start.status not in SOLVED:
-        raise CaseError(f"{name}: the start values cannot be solved: {start.status}")
+        why = f"{start.status}: {start.reason}" if start.reason else start.status
+        raise CaseError(f"{name}: the start values cannot be solved: {why}")
     return contact.differentiate()["kind"] if asked else "none", start.data
 
 
