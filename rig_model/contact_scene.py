@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from railpatch import Contact
+from railpatch import CaseError, Contact, Result
 from railpatch.case.load import Scene, check_case
 
 from rig_model.scene import RigScene, load_rig_scene
@@ -17,12 +17,24 @@ def contact_scene(path: Path | None) -> tuple[str, Scene]:
 
 
 def at_first_position(rig: RigScene) -> Scene:
-    """The rig's machine with z prescribed, where its run begins; the wheels roll without slip."""
+    """The rig's machine with z prescribed, where its run begins, in balance as in the run; where a
+    scene has what balances refuse, with the roll angle of the case and wheels without slip."""
     first = rig.positions()[0]
     wheelset, track = rig.case.wheelset, rig.case.track
     rolling = -track.roller_pitch_rate * track.roller_radius / wheelset.nominal_radius
-    start = {"y": first.y, "yaw": first.yaw, "pitch_rate": rolling}
-    content = rig.case.model_dump() | {"wheelset": wheelset.model_dump() | start}
-    z = Contact(Scene(check_case(content), Path())).step()["z"]
-    content["wheelset"] |= {"vertical_force": None, "z": z}
+    place = {"y": first.y, "yaw": first.yaw}
+    content = rig.case.model_dump()
+
+    def start(**values: object) -> Result:
+        content["wheelset"] = wheelset.model_dump() | place | values
+        return Contact(Scene(check_case(content), Path())).step()
+
+    try:
+        found = start(roll="balanced", pitch_rate="free")
+        numbers = {key: found[key] for key in ("z", "roll", "pitch_rate")} if found.solved else None
+    except CaseError:
+        numbers = None
+    if numbers is None:
+        numbers = {"z": start(pitch_rate=rolling)["z"]}
+    content["wheelset"] |= {"vertical_force": None, **numbers}
     return Scene(check_case(content), Path())
