@@ -1,3 +1,4 @@
+# ruff: noqa: E501 - lines of a table
 """Mistakes of each kind of user, made as a person would: files and command lines.
 
 ``python tests/case/mistakes.py > docs/mistakes.md`` writes the table of what Railpatch says of
@@ -27,6 +28,18 @@ HEAD = (
     "file was read by rules. The table is made by\n"
     "`python tests/case/mistakes.py > docs/mistakes.md`; the tests make each mistake again.\n"
 )
+FOOT = """
+## What a machine does wrong
+
+| what ends | what is tried | what is left |
+|---|---|---|
+| memory | each allocation of `rp_create` in turn, of five handles (some 1,400): `tests/cpp/test_out_of_memory.cpp` | `RP_ERROR_MEMORY`, nothing is lost; steps take none |
+| the disk | pages, FMUs, layouts and logs on disks of 0 to 2 MB: `tests/case/test_full_disk.py` | a line with the file's name, code 2; pages and FMUs as they were, logs up to there |
+| the process | killed while it computes, writes, before it begins: `tests/log/test_killed.py` | the log up to its last whole chunk, and the library of MCAP reads it |
+| a log | cut at any byte, damaged: `tests/log/test_killed.py` | what stands before it, and where it ends |
+| a saved state | any byte changed, other scenes, other sizes: `tests/cpp/test_state.cpp` | `RP_ERROR_STATE`, the handle as it was |
+| a step | Ctrl-C: `tests/cpp/test_interrupt.cpp` | ended within 0.2 s, the contact goes on as after `reset()` |
+"""
 RESEARCHER = "researcher: a contact patch"
 VEHICLE = "vehicle engineer: wheels, profiles"
 PROFILES = "vehicle engineer: own profile files"
@@ -307,3 +320,4 @@ PERSONS = list(dict.fromkeys(mistake.person for mistake in MISTAKES))
 if __name__ == "__main__":
     print(HEAD)
     print("\n\n".join("\n".join(section(person)) for person in PERSONS))
+    print(FOOT, end="")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from case.mistakes import HEAD, MISTAKES, PERSONS, section
+from case.mistakes import FOOT, HEAD, MISTAKES, PERSONS, section
 
 PAGE = Path(__file__).parents[2] / "docs" / "mistakes.md"
 
@@ -23,4 +23,5 @@ def test_the_page_has_them_all() -> None:
     page = PAGE.read_text(encoding="utf-8")
     assert page.startswith(HEAD)
     assert len(MISTAKES) >= 60
-    assert page.count("\n| ") == len(MISTAKES) + len(PERSONS)
+    assert page.endswith(FOOT)
+    assert page.removesuffix(FOOT).count("\n| ") == len(MISTAKES) + len(PERSONS)

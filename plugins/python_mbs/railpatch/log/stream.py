@@ -8,6 +8,7 @@ guards against the end of the process, not of the machine.
 
 from __future__ import annotations
 
+import io
 import math
 import mimetypes
 import numbers
@@ -40,6 +41,16 @@ _LAST_TIME = 2**63 - 1  # ns; beyond, some readers' signed times overflow
 _FOXGLOVE = {"foxglove.FrameTransforms": FrameTransforms, "foxglove.SceneUpdate": SceneUpdate}
 
 
+class _Named(io.FileIO):
+    """A file whose errors in writing name it."""
+
+    def write(self, data: Any) -> int:
+        try:
+            return super().write(data) or 0
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, str(self.name)) from None
+
+
 class LogStream:
     """An MCAP file that is being written; what was added is serialised when it is flushed.
 
@@ -65,7 +76,7 @@ class LogStream:
         self._flushed_at = time.monotonic()
         self._stop = threading.Event()
         with self.counted():
-            self._stream = open(self.path, "wb")  # noqa: SIM115 - closed by close()
+            self._stream = io.BufferedWriter(_Named(self.path, "wb"))
             self._writer = Writer(self._stream)
             self._writer.start(library=f"railpatch {railpatch_version()}")
             for name, media_type, data in attachments:
@@ -163,7 +174,10 @@ class LogStream:
             with self._lock:
                 if self._pending:
                     begin = time.perf_counter()
-                    self._flush()
+                    try:
+                        self._flush()
+                    except OSError:
+                        return  # as on a full disk: who adds the next step is told
                     self._beside += time.perf_counter() - begin
 
     def _describe(self, channels: tuple[Channel, ...], about: Mapping[str, str]) -> None:

@@ -72,12 +72,13 @@ def write_profile_page(
     columns = doctor.table(points)
     notes = {role: list(profile.notes), "partner": list(beside.notes)}
     texts = (doctor.csv_table(columns), doctor.json_table(columns, notes, lines))
+    write_whole(output, document(Path(source).name, body).encode())
     for path, text in zip(doctor.tables_of(output), texts, strict=True):
         write_whole(path, text.encode())
     for name, found in ((source, profile.notes), (other, beside.notes)):
         for note in found:
             told(f"{Path(name).name}: {note}")
-    return write_whole(output, document(Path(source).name, body).encode())
+    return Path(output)
 
 
 def assumed_section(raw: RawProfile | None, notes: Sequence[str], lines: list[str]) -> list[str]:
