@@ -4,25 +4,22 @@
 #include <cmath>
 #include <numbers>
 
+#include "railpatch_fields.h"
+
 namespace railpatch {
 
 namespace {
 
-// the texts of RP_WARNINGS name them
-constexpr double modulus_range[2] = {1e8, 1e12};  // Pa
+// the texts of RP_WARNINGS name them; NAME_range of RP_PLAUSIBLE_RANGES
+#define RAILPATCH_RANGE(name, low, high) constexpr double name##_range[2] = {low, high};
+RP_PLAUSIBLE_RANGES(RAILPATCH_RANGE)
 constexpr double steel_range[2] = {6e10, 1e11};   // Pa, shear moduli of steels are 7.5e10 to 8.5e10
-constexpr double doubtful_friction = 1;           // -
-constexpr double load_range[2] = {100, 5e5};      // N
 constexpr double pressure_range[2] = {1e7, 5e9};  // Pa
-constexpr double doubtful_creepage = 0.1;         // -
-constexpr double doubtful_spin = 20;              // rad/m: a flange of 90 degrees at 50 mm radius
 constexpr double doubtful_size = 0.06;            // m, diameter of the circle of a contact's area
-constexpr double layer_range[2] = {1e6, 1e12};    // Pa
 constexpr double play_range[2] = {0.04, 0.12};    // m, gauge minus flange back distance
 constexpr double least_flange = 0.015;            // m, height of a profile that has one
 constexpr double least_way = 0.01;                // m/s, below which nothing is said of turning
 constexpr double radius_range[2] = {1, 8};        // of wheels, over the width of their profiles
-constexpr double flange_way = 0.025;              // m
 constexpr int least_elements = 8;
 
 uint32_t bit(rp_warning warning, bool given) {
@@ -59,9 +56,9 @@ uint32_t warnings_of_patch(const rp_config &config, const rp_patch_result &patch
                    bit(RP_WARNING_LOW_PRESSURE,
                        hard && patch.max_pressure < pressure_range[0] && patch.max_pressure > 0);
   if (moves(config) && patch.direction != 0)
-    found |= bit(RP_WARNING_CREEPAGE, std::fabs(patch.creepage[0]) > doubtful_creepage ||
-                                          std::fabs(patch.creepage[1]) > doubtful_creepage) |
-             bit(RP_WARNING_SPIN, std::fabs(patch.spin_creepage) > doubtful_spin);
+    found |= bit(RP_WARNING_CREEPAGE, outside(patch.creepage[0], creepage_range) ||
+                                          outside(patch.creepage[1], creepage_range)) |
+             bit(RP_WARNING_SPIN, outside(patch.spin_creepage, spin_creepage_range));
   const double width = 2 * std::sqrt(patch.contact_area / std::numbers::pi);
   const bool line = config.kind == RP_PATCH && config.geometry == RP_LINE_CONTACT;
   found |= bit(RP_WARNING_LAYER, !line && config.layer_thickness > width && width > 0) |
@@ -86,11 +83,11 @@ uint32_t warnings_of_side(const rp_config &config, const rp_input &input, double
     load += patch.share * patch.normal_force;
     found |= warnings_of_patch(config, patch);
   }
-  found |= bit(RP_WARNING_LOAD, load != 0 && outside(load, load_range));
+  found |= bit(RP_WARNING_LOAD, load != 0 && outside(load, normal_force_range));
   if (config.kind == RP_PATCH) return found;
   return found |
          bit(RP_WARNING_TURNING, moves(config) && turns_wrongly(config, input, pitch_rate, side)) |
-         bit(RP_WARNING_FLANGE, std::fabs(input.y) > flange_way);
+         bit(RP_WARNING_FLANGE, outside(input.y, y_range));
 }
 
 double extent(const double *values, int count) {
@@ -102,7 +99,7 @@ double extent(const double *values, int count) {
 
 uint32_t warnings_of_case(const rp_config &config) {
   bool soft = false, odd = false, wide = false;
-  for (double modulus : config.shear_modulus) soft = soft || outside(modulus, modulus_range);
+  for (double modulus : config.shear_modulus) soft = soft || outside(modulus, shear_modulus_range);
   const double play = config.gauge + config.gauge_widening - config.flange_back_distance;
   for (int side = 0; side < 2; ++side) {
     const rp_profile &profile = config.wheel[side];
@@ -112,11 +109,12 @@ uint32_t warnings_of_case(const rp_config &config) {
     const bool flange = extent(profile.z, profile.count) > least_flange;
     wide = wide || (flange && outside(play, play_range));
   }
-  const bool layer = config.layer_thickness > 0 && outside(config.layer_shear_modulus, layer_range);
+  const bool layer =
+      config.layer_thickness > 0 && outside(config.layer_shear_modulus, layer_shear_modulus_range);
   return bit(RP_WARNING_STIFFNESS, soft) | bit(RP_WARNING_RADIUS, odd) |
          bit(RP_WARNING_LAYER_STIFFNESS, layer) | bit(RP_WARNING_GAUGE, wide) |
          bit(RP_WARNING_FRICTION, config.tangential != RP_TANGENTIAL_NONE &&
-                                      config.friction_coefficient > doubtful_friction);
+                                      config.friction_coefficient > friction_coefficient_range[1]);
 }
 
 void report_warnings(const rp_config &config, uint32_t of_case, const rp_input &input,

@@ -467,4 +467,15 @@
   Y(rp_field, RP_FIELDS)                               \
   Y(rp_derivative_kind, RP_DERIVATIVE_KINDS)
 
+/* X(name, low, high): numbers of the configuration or the input that can hardly be meant outside of
+ * this range, which warnings tell (RP_WARNINGS, whose texts name them). */
+#define RP_PLAUSIBLE_RANGES(X)      \
+  X(shear_modulus, 1e8, 1e12)       \
+  X(friction_coefficient, 0.0, 1.0) \
+  X(normal_force, 100.0, 5e5)       \
+  X(creepage, -0.1, 0.1)            \
+  X(spin_creepage, -20.0, 20.0)     \
+  X(layer_shear_modulus, 1e6, 1e12) \
+  X(y, -0.025, 0.025)
+
 #endif

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import railpatch
 from case_samples import PATCH, WHEELSET, with_values
 from railpatch import _core
 from railpatch.case import CaseError, json_schema, load_scene
@@ -135,3 +136,36 @@ def test_moving_keys_follow_what_is_prescribed() -> None:
     keys = moving_keys(load_scene(force).case)
     assert "vertical_force" in keys
     assert "z" not in keys
+
+
+def test_plausible_ranges_stand_in_the_schema() -> None:
+    """Those that warnings tell: one step outside of each end is warned of, the ends are not."""
+    patch = json_schema()["$defs"]
+    found = {
+        name: field["plausible"]
+        for model in patch.values()
+        for name, field in model.get("properties", {}).items()
+        if "plausible" in field
+    }
+    assert found["normal_force"] == [100.0, 5e5]
+    assert found["shear_modulus"] in ([1e8, 1e12], [1e6, 1e12])  # of bodies, or of the layer
+    assert {
+        "normal_force",
+        "shear_modulus",
+        "coefficient",
+        "creepage",
+        "spin_creepage",
+        "y",
+    } <= set(found)
+    for load, warned in ((100.0, False), (99.0, True), (5e5, False), (5.01e5, True)):
+        result = railpatch.solve(
+            {
+                "kind": "patch",
+                "geometry": {"curvatures": [1.0, 1.5]},
+                "load": {"normal_force": load},
+                "grid": {"elements": [8, 8]},
+                "friction": {"coefficient": 0.3},
+                "motion": {"creepage": [1e-3, 0.0]},
+            }
+        )
+        assert any("normal force" in text for text in result.warnings) == warned

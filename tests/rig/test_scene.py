@@ -93,7 +93,9 @@ def test_all_problems_are_told_at_once(scene_with):
 def test_scene_without_rig(scene_with, nominal_file):
     text = nominal_file.read_text()
     path = scene_with((text[text.index("[rig]") :], ""))
-    with pytest.raises(CaseError, match=r"contact case, without \[rig\], allowed one of railpatch rig"):
+    with pytest.raises(
+        CaseError, match=r"contact case, without \[rig\], allowed one of railpatch rig"
+    ):
         load_rig_scene(path)
 
 

@@ -115,6 +115,13 @@ nb::dict listed_config() {
   return to;
 }
 
+nb::dict listed_ranges() {
+  nb::dict to;
+#define RAILPATCH_RANGE(name, low, high) to[#name] = nb::make_tuple(low, high);
+  RP_PLAUSIBLE_RANGES(RAILPATCH_RANGE)
+  return to;
+}
+
 nb::dict listed_input() {
   using whole = rp_input;
   nb::dict to;

@@ -16,5 +16,7 @@ nb::dict listed_choices();
 // "text"
 nb::dict listed_config();
 nb::dict listed_input();
+// low and high of what is plausible, by field
+nb::dict listed_ranges();
 
 }  // namespace railpatch::python

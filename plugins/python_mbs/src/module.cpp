@@ -329,6 +329,7 @@ NB_MODULE(_core, m) {
   m.attr("QUANTITIES") = listed_quantities();
   m.attr("CONFIG_FIELDS") = listed_config();
   m.attr("INPUT_FIELDS") = listed_input();
+  m.attr("PLAUSIBLE") = listed_ranges();
 
   nb::class_<Steppable>(m, "Steppable", "A contact that a force element may step.");
   nb::class_<Contact, Steppable>(m, "Contact", "A handle of the library with its state and memory.")

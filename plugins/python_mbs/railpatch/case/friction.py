@@ -20,6 +20,7 @@ from railpatch.case.types import (
     Table,
     between,
     key,
+    likely,
     more_than,
     one_of,
     refuse,
@@ -49,7 +50,11 @@ class Friction(Table):
 
     law: one_of("friction_law") = Field(default="coulomb", description="friction law (no unit)")
     coefficient: Coefficient | None = Field(
-        default=None, description="-, coefficient of friction; with polach: at rest"
+        **likely(
+            "friction_coefficient",
+            default=None,
+            description="-, coefficient of friction; with polach: at rest",
+        )
     )
     shape: one_of("slip_law", besides=("polach",)) = Field(
         default="exponential",

@@ -40,6 +40,7 @@ from railpatch.case.types import (
     Table,
     exactly_one,
     key,
+    likely,
     refuse,
     relation,
 )
@@ -95,10 +96,13 @@ class Motion(Table):
         default="steady_rolling", description="kind of motion (no unit)"
     )
     creepage: Pair | Pairs = Field(
-        default=[0.0, 0.0],
-        description="-, [longitudinal, lateral], wheel minus rail over the rolling speed; with "
-        "shift m, the displacement of the wheel against the rail in a step. With steps also one "
-        "pair for each of them",
+        **likely(
+            "creepage",
+            default=[0.0, 0.0],
+            description="-, [longitudinal, lateral], wheel minus rail over the rolling speed; with "
+            "shift m, the displacement of the wheel against the rail in a step. With steps also "
+            "one pair for each of them",
+        )
     )
     tangential_force: ForcePair | None = Field(
         default=None,

@@ -91,6 +91,16 @@ def of_bodies(name: str) -> Any:
     ]
 
 
+def likely(name: str, **options: Any) -> dict[str, Any]:
+    """Arguments of Field, with the range outside of which a warning says that a field of the core
+    is hardly meant."""
+    if name in _core.PLAUSIBLE:
+        low, high = _core.PLAUSIBLE[name]
+        options["description"] += f"; hardly meant outside {low:g} to {high:g}"
+        options["json_schema_extra"] = {"plausible": [low, high]}
+    return options
+
+
 class Key:
     """A key that stands in the core's lists under its own name, or under ``of``."""
 
@@ -104,7 +114,7 @@ class Key:
         start = known["start"]
         options["default"] = [start] * known["shape"][0] if known["shape"] else start
         options["description"] = f"{known['unit']}, {known['text']}{self.more}"
-        return Field(**{**options, **self.options})
+        return Field(**{**likely(self.of or name, **options), **self.options})
 
 
 def key(more: str = "", *, of: str | None = None, bounded: bool = True, **options: Any) -> Any:
