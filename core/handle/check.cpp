@@ -382,6 +382,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   check_regime(c, check);
   check_accuracy(c, check);
   check_balance(c, check);
+  check_max_work(c, check);
   check_build(c, check);
   if (c.layer_thickness > 0)
     check.field("layer_shear_modulus", c.layer_shear_modulus, config_range::layer_shear_modulus);

@@ -3,6 +3,7 @@
 #include "half_space/coupling.hpp"
 #include "half_space/physics.hpp"
 #include "handle/checker.hpp"
+#include "handle/scene_of.hpp"
 
 namespace railpatch {
 
@@ -110,6 +111,16 @@ void check_balance(const rp_config &c, checker &check) {
   check.require(
       c.axle_free == 0 || has_tangential(c),
       "axle_free needs a tangential problem: without creep forces nothing turns the axle");
+}
+
+void check_max_work(const rp_config &c, checker &check) {
+  if (c.max_work == 0) return;
+  check.require(c.kind != RP_PATCH && c.load == RP_FORCE,
+                "max_work must be 0 but with wheels under a vertical force: no height is searched");
+  check.require(!has_support(c),
+                "max_work must be 0 with rail_stiffness: the rails' place is part of the search");
+  check.require(!is_balanced(c), "max_work must be 0 with roll_balanced and axle_free");
+  check.require(!(c.accuracy > 0), "max_work must be 0 with accuracy: finer grids cost more");
 }
 
 void check_wheels(const rp_config &c, checker &check) {

@@ -106,5 +106,6 @@ void check_reference(const rp_config &c, checker &check);
 // Of bodies that the contacts' heat warms.
 void check_stored_heat(const rp_config &c, checker &check);
 void check_balance(const rp_config &c, checker &check);
+void check_max_work(const rp_config &c, checker &check);
 
 }  // namespace railpatch

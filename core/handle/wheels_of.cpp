@@ -79,6 +79,7 @@ wheels_setup wheels_of(const rp_config &c, const patch_scene &scene) {
   setup.max_patches = c.max_patches;
   setup.force_given = c.load == RP_FORCE;
   setup.tolerance = c.tolerance;
+  setup.most_work = c.max_work;
   setup.nominal_radius = c.nominal_radius;
   setup.whole_forces = c.patch_rule != RP_PATCHES_CONTACT || c.contact_frame == RP_FRAME_INCLINED;
   if (is_balanced(c))

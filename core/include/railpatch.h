@@ -72,7 +72,9 @@ enum {
   X(RP_NOT_CONVERGED, 2, "not_converged")                                                       \
   X(RP_OUT_OF_RANGE, 3, "out_of_range")                                                         \
   /* solved, but the creep force's error estimate is above config.accuracy, or there is none */ \
-  X(RP_ACCURACY_NOT_MET, 4, "accuracy_not_met")
+  X(RP_ACCURACY_NOT_MET, 4, "accuracy_not_met")                                                 \
+  /* config.max_work was spent: the result of the height that came nearest to the force */      \
+  X(RP_WORK_SPENT, 5, "work_spent")
 
 /* --- why a result is not good, or has no contact though it was asked for; reason_value is of what
  * the text says, NaN where it says nothing ---------------------------------------------------- */
@@ -137,7 +139,10 @@ enum {
   X(RP_REASON_DERIVATIVE, 21, "the derivative's equations were not solved to their tolerance") \
   X(RP_REASON_BALANCE, 22,                                                                     \
     "no roll angle or pitch rate was found that balances the wheelset, by the relative "       \
-    "residual: another wheelset.y or load, or a number for wheelset.roll or pitch_rate")
+    "residual: another wheelset.y or load, or a number for wheelset.roll or pitch_rate")       \
+  X(RP_REASON_WORK, 23,                                                                        \
+    "method.max_work was spent before a height z was found that carries the vertical force, "  \
+    "by the relative residual: smaller steps, or greater method.max_work")
 
 /* --- warnings: bits of what can hardly be meant. X(name, value, text): the bit is 1 << value ---
  */
@@ -537,6 +542,12 @@ typedef struct rp_config {
    * rp_reset. rp_differentiate and rp_get_jacobian by differences leave the handle as it was */
   rp_interrupt interrupt;
   void *interrupt_user;
+
+  /* operator products of a step after which no further height is tried for the vertical force,
+   * load = RP_FORCE: each patch solved counts 1 and its normal and inner iterations. The result is
+   * that of the height that came nearest, solved once more where it was not the last, and ends as
+   * RP_WORK_SPENT; the next step begins where the search would have gone on. 0: no limit */
+  int32_t max_work;
 } rp_config;
 
 typedef struct rp_input {
@@ -693,6 +704,8 @@ typedef struct rp_result {
   rp_reason reason;   /* why the status is not good: that of the wheel, or of both together */
   double reason_value;
   uint32_t warnings; /* those of both wheels */
+  int32_t work;      /* operator products of all evaluations, as config.max_work counts them (wheel
+                        kinds) */
 } rp_result;
 
 #define RP_FIELDS(X)                                                                             \

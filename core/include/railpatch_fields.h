@@ -166,7 +166,8 @@
   X(double, reason_value, 1, estimate, even, kept, alone, NAN, "-",                              \
     "of what the reason says, in its units")                                                     \
   X(uint32_t, warnings, 1, status, even, kept, alone, 0, "",                                     \
-    "what can hardly be meant, though it was solved")
+    "what can hardly be meant, though it was solved")                                            \
+  X(int32_t, work, 1, count, even, kept, alone, 0, "-", "operator products of all evaluations")
 
 /* --- inputs: X(type, name, count, role, where, start, bounds, low, high, unit, text) ---------
  * role      choice: an enumeration; number; integer; side: RP_LEFT or RP_RIGHT; points: numbers of
@@ -371,7 +372,10 @@
   X(int32_t, axle_free, 1, integer, always, 0, "[]", 0, 1, "-",                                    \
     "whether the pitch rate is found at which the contact forces have no torque about the axle")   \
   O(rp_interrupt, interrupt, 1)                                                                    \
-  O(void *, interrupt_user, 1)
+  O(void *, interrupt_user, 1)                                                                     \
+  X(int32_t, max_work, 1, integer, always, 0, "[]", 0, 1000000000, "-",                            \
+    "operator products of a step after which no further height is tried for the vertical force; "  \
+    "each patch solved counts 1 and its iterations")
 
 /* X(type, name, count, role, where, start, bounds, low, high, scale, unit, text), as above and
  * role      place: a number whose size says nothing about how fast things change there

@@ -32,6 +32,7 @@ void degrade(Result &so_far, const Part &part) {
 inline rp_status combine_status(rp_status a, rp_status b) {
   if (a == RP_OUT_OF_RANGE || b == RP_OUT_OF_RANGE) return RP_OUT_OF_RANGE;
   if (a == RP_NOT_CONVERGED || b == RP_NOT_CONVERGED) return RP_NOT_CONVERGED;
+  if (a == RP_WORK_SPENT || b == RP_WORK_SPENT) return RP_WORK_SPENT;
   if (a == RP_ACCURACY_NOT_MET || b == RP_ACCURACY_NOT_MET) return RP_ACCURACY_NOT_MET;
   return a == RP_CONVERGED || b == RP_CONVERGED ? RP_CONVERGED : RP_NO_CONTACT;
 }
@@ -51,7 +52,7 @@ void combine(Result &so_far, const Part &part) {
 template <class Result>
 void fail_rates(Result &change) {
   if (change.status != RP_CONVERGED && change.status != RP_NO_CONTACT &&
-      change.status != RP_ACCURACY_NOT_MET)
+      change.status != RP_ACCURACY_NOT_MET && change.status != RP_WORK_SPENT)
     return;
   change.status = RP_NOT_CONVERGED;
   change.reason = RP_REASON_DERIVATIVE;

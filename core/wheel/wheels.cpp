@@ -19,6 +19,7 @@ wheels::wheels(const wheels_setup &setup, const patch_scene &scene, const fft_pl
       force_given_(setup.force_given),
       tolerance_(setup.tolerance),
       nominal_radius_(setup.nominal_radius),
+      most_work_(setup.most_work),
       whole_forces_(setup.whole_forces),
       friction_along_(setup.friction_along) {
   wheels_.reserve(setup.wheel.size());
@@ -82,6 +83,8 @@ double wheels::evaluate(double z, rp_result &out) {
     set_bulk(wheel.side());
     wheel.evaluate(solver_, memory_of(w), side);
     vertical -= side.force[2];
+    for (int i = 0; i < side.patch_count + side.alternative_count; ++i)
+      out.work += 1 + side.patch[i].normal_iterations + side.patch[i].inner_iterations;
     combine(found, side);
   }
   ++out.evaluations;
@@ -149,7 +152,8 @@ void wheels::set_bulk(int side) {
 
 // A step that is no solution leaves temperatures and heat as they were.
 void wheels::keep_heat(const rp_result &out) {
-  if (out.status != RP_CONVERGED && out.status != RP_NO_CONTACT) return;
+  const bool solved = out.status == RP_CONVERGED || out.status == RP_WORK_SPENT;
+  if (!solved && out.status != RP_NO_CONTACT) return;
   bulk_flow flow[2];
   for (size_t w = 0; w < wheels_.size(); ++w) {
     const rp_side_result &side = out.side[wheels_[w].side()];
@@ -190,15 +194,25 @@ void wheels::find_z(double target, rp_result &out) {
     depth = cbrt(9.0 * load * load / (16.0 * modulus * modulus * radius));
   }
   force_search search(target, depth, tolerance_);
+  double nearest = HUGE_VAL, residual = HUGE_VAL;  // m, depth that came nearest; its residual
+  bool spent = false;
   for (int i = 0; i < force_search::most_steps; ++i) {
     depth = search.depth();
     const double force = evaluate(touch + depth, out);
-    // a creep force outside its theory's range is a force all the same
-    const bool beyond = std::any_of(wheels_.begin(), wheels_.end(),
-                                    [](const wheel_contact &wheel) { return wheel.beyond(); });
-    search.report(force, beyond);
+    search.report(force, beyond());
+    if (search.residual() < residual) nearest = depth, residual = search.residual();
     if (search.converged() || search.exhausted()) break;
+    // where no force is known yet there is nothing to end with
+    spent = most_work_ > 0 && out.work >= most_work_ && std::isfinite(residual);
+    if (spent) break;
     if (search.wants_rises()) tell_rises(touch, search);
+  }
+  if (spent) {
+    if (depth != nearest) residual = std::fabs(evaluate(touch + nearest, out) - target) / target;
+    out.z = touch + nearest;
+    report_search({RP_WORK_SPENT, RP_REASON_WORK, residual}, residual, out);
+    depth_ = search.depth();  // where it would have gone on
+    return;
   }
   out.z = touch + depth;
   verdict found;
@@ -208,6 +222,12 @@ void wheels::find_z(double target, rp_result &out) {
                 : verdict{RP_NOT_CONVERGED, RP_REASON_FORCE_SEARCH, search.residual()};
   report_search(found, search.residual(), out);
   depth_ = search.converged() ? depth : 0.0;
+}
+
+// Whether a force is not known; a creep force outside its theory's range is one all the same.
+bool wheels::beyond() const {
+  return std::any_of(wheels_.begin(), wheels_.end(),
+                     [](const wheel_contact &wheel) { return wheel.beyond(); });
 }
 
 // Where parts of contact appear between the depths that the search has bracketed.

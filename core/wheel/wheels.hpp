@@ -32,6 +32,7 @@ struct wheels_setup {
   grid_size largest;
   bool force_given = true;
   double tolerance = 1e-5;         // of the force that is found
+  int most_work = 0;               // operator products of a step; 0: as many as it takes
   double nominal_radius = 0;       // m
   friction_factor friction_along;  // by x
   std::optional<support_setup> support;
@@ -87,6 +88,7 @@ class wheels final : public driver {
   void set_bulk(int side);
   void keep_heat(const rp_result &result);
   void find_z(double vertical_force, rp_result &result);
+  bool beyond() const;
   void tell_rises(double touch, force_search &search) const;
   void rest_at(double touch, rp_result &result);
   void solve_supported(const rp_input &input, rp_result &result);
@@ -97,6 +99,7 @@ class wheels final : public driver {
   size_t patches_;  // of each wheel
   bool force_given_;
   double tolerance_, nominal_radius_;
+  int most_work_;
   bool whole_forces_;
   double depth_ = 0;  // m, last z found minus first touch; 0: none
   friction_factor friction_along_;

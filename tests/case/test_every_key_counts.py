@@ -166,6 +166,7 @@ VALUES: dict[str, Any] = {
     "layer.hardening": 1e12,
     "layer.hardening_table": [[0.0, 5e7], [1e-5, 6e7]],
     "method.max_iterations": 50,
+    "method.max_work": 1,
     "method.accuracy": 0.03,
     "method.traction_bound": "elliptic",
     "method.percent_kalker": 80.0,

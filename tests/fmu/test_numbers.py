@@ -13,7 +13,14 @@ from fmu_scenes import MOTIONS, OWN, SCENES, STEP
 from slave import DISCARD, OK, Fmu, Slave
 
 TOLERANCE = 1e-5  # of the scenes' solvers
-STATUSES = ["converged", "no_contact", "not_converged", "out_of_range", "accuracy_not_met"]
+STATUSES = [
+    "converged",
+    "no_contact",
+    "not_converged",
+    "out_of_range",
+    "accuracy_not_met",
+    "work_spent",
+]
 
 
 def changes_of(contact: railpatch.Contact, values: dict[str, float]) -> dict[str, Any]:

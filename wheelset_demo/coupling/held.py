@@ -35,7 +35,7 @@ from wheelset_demo.system import (
     suspension_of,
 )
 
-STATUS_GOOD = (0, 1, 4)  # converged, no contact, accuracy not met
+STATUS_GOOD = (0, 1, 4, 5)  # converged, no contact, accuracy not met, work spent
 
 
 class HeldContact(Protocol):

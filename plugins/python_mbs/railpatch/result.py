@@ -83,9 +83,9 @@ LAW_FIELDS = ("friction", "plastic_displacement", "plastic_path", "yield_stress"
 ROW_FIELDS = ("row_position", "row_angle")  # of curved reference surfaces
 GOOD = ("converged", "no_contact")
 # whose numbers are a solution
-SOLVED = (*GOOD, "accuracy_not_met")
+SOLVED = (*GOOD, "accuracy_not_met", "work_spent")
 # and that have contact
-CARRIES = ("converged", "accuracy_not_met")
+CARRIES = ("converged", "accuracy_not_met", "work_spent")
 _INF = math.inf
 
 
@@ -119,7 +119,8 @@ class Result:
 
     @property
     def status(self) -> str:
-        """ "converged", "no_contact", "not_converged", "out_of_range" or "accuracy_not_met"."""
+        """One of "converged", "no_contact", "not_converged", "out_of_range", "accuracy_not_met"
+        and "work_spent"."""
         return str(self.data["status"])
 
     @property

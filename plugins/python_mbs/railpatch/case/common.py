@@ -244,6 +244,11 @@ class Method(Table):
         "finer ones follow while the error estimate is above it; else the status is "
         "accuracy_not_met",
     )
+    max_work: int | None = key(
+        ". The result is that of the height that came nearest, the status work_spent; left out or "
+        "0: no limit",
+        default=None,
+    )
     spin_offset: one_of("spin_offset") = Field(
         default="automatic",
         description="-, how far upstream of an element its spin term is read, of the way of a step "
@@ -413,6 +418,12 @@ def check_accuracy(
         theories = f"normal = '{method.normal}' and tangential = '{method.tangential}'"
         known = f">= {least:g}, what {theories} reach"
         yield relation(key, shown, known if least < 1 else f"{LEFT_OUT} with {theories}")
+
+
+def check_max_work(method: Method, why: str | None) -> Problems:
+    """Of steps that search no height by its own. why: what of the case makes it so; None: none."""
+    if method.max_work and why is not None:
+        yield relation("method.max_work", method.max_work, f"{LEFT_OUT} {why}")
 
 
 def check_fitted(grid: Grid | None, method: Method, *, line: bool = False) -> Problems:

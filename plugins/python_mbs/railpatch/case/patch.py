@@ -20,6 +20,7 @@ from railpatch.case.common import (
     check_accuracy,
     check_fitted,
     check_left_out,
+    check_max_work,
     check_physics,
     check_plane,
     check_spin_offset,
@@ -278,6 +279,7 @@ class PatchCase(Table):
             if value is not None:
                 yield relation(f"method.{name}", repr(value), "only with wheels")
         yield from check_plane(self.method)
+        yield from check_max_work(self.method, "with kind = 'patch': no height is searched")
 
     def _check_shape(self) -> Problems:
         """What the shape is not combined with, and what it needs."""

@@ -17,6 +17,7 @@ from railpatch.case.common import (
     check_accuracy,
     check_fitted,
     check_left_out,
+    check_max_work,
     check_physics,
     check_reference,
     check_tangential,
@@ -353,6 +354,19 @@ class _WheelCase(Table):
         yield from check_rolling(self)
         yield from self._check_frame()
         yield from self._check_balance()
+        yield from check_max_work(self.method, self._unlimited())
+
+    def _unlimited(self) -> str | None:
+        """Why no work of a search for the height can be limited; None: it can."""
+        if self.wheelset.vertical_force is None:
+            return "without wheelset.vertical_force: no height is searched"
+        if self.track.rail_support is not None:
+            return "with track.rail_support: the rails' place is part of the search"
+        if self.wheelset.found:
+            return f"with a balance: wheelset.{next(iter(self.wheelset.found))} is found too"
+        if self.method.accuracy is not None:
+            return "with method.accuracy: give 'grid'"
+        return None
 
     def _check_balance(self) -> Problems:
         for name in self.wheelset.found:

@@ -31,7 +31,14 @@ from railpatch.result import SOLVED, Result
 # names of the rows of `states`, in order
 STATE = POSE_AND_VELOCITY
 # of the core, by code; a test compares them
-STATUSES = ("converged", "no_contact", "not_converged", "out_of_range", "accuracy_not_met")
+STATUSES = (
+    "converged",
+    "no_contact",
+    "not_converged",
+    "out_of_range",
+    "accuracy_not_met",
+    "work_spent",
+)
 PATCHES = ("patches", "alternatives")
 LENGTH = struct.Struct("<I")
 
@@ -128,8 +135,8 @@ class ForceElement:
         data: with oMi and v of forwardKinematics(model, data, q, v) or anything that calls it.
         fext: pinocchio.StdVec_Force with one entry for each joint of the model, in the local joint
         frame, linear part first (N, N m). "no_contact" (all wheels of a wheelset in the air) is a
-        valid state, and so is "accuracy_not_met", less accurate than the case asks for; after
-        "not_converged" and "out_of_range" the forces are not to be trusted.
+        valid state, and so are "accuracy_not_met" and "work_spent", less accurate than the case
+        asks for; after "not_converged" and "out_of_range" the forces are not to be trusted.
         Raises TypeError and ValueError for an fext of another type or length, which would crash
         Pinocchio, CaseError for a state outside the library's range (a roll of 90 degrees).
         """
