@@ -39,7 +39,7 @@ def test_percentiles_and_bins_are_those_of_the_steps() -> None:
     row = one.row()
     assert [row[f"seconds_{share}"] for share in ("50", "99", "99.99", "100")] == [50, 99, 100, 100]
     assert row["evaluations_100"] == 200
-    assert row["iterations_50"] == 150
+    assert row["work_50"] == 150
     assert quantile(seconds, 98.0) == 98.0
     # a bin holds its lower end: from 50, 75 and 100
     assert one.histogram() == [24, 25, 25, 25, 1, *[0] * (len(BOUNDS) - 4)]
@@ -53,7 +53,7 @@ def test_work_is_the_same_each_time() -> None:
         assert (first.seconds > 0).all()
         assert first.bad == 0
         assert np.array_equal(first.evaluations, again.evaluations)
-        assert np.array_equal(first.iterations, again.iterations)
+        assert np.array_equal(first.work, again.work)
         if fixed:
             assert (first.evaluations == 1).all()
         else:

@@ -1,7 +1,8 @@
 """The slowest steps of a wheel that moves as in a simulation at 1 ms, from tread to lift-off.
 
 A user in real time waits for the slowest step. Run times of a shared machine have a tail of their
-own; what a step took in evaluations and iterations has none, and is the same on every machine.
+own; what a step took in evaluations and operator products has none, and is the same on every
+machine.
 """
 
 from __future__ import annotations
@@ -52,23 +53,23 @@ METHODS: tuple[tuple[str, dict[str, Any]], ...] = (
 @dataclass(frozen=True, eq=False)
 class Tail:
     """Steps of one method. prescribed: what is, "force" or "position". seconds: [n], of a step.
-    evaluations: [n], of the contact. iterations: [n], of all solvers in a step's last evaluation,
-    products of the operator included. bad: steps that are neither converged nor without contact.
+    evaluations: [n], of the contact. work: [n], operator products of all of these, as
+    method.max_work counts them. bad: steps that are neither converged nor without contact.
     lifted: steps without contact."""
 
     name: str
     prescribed: str
     seconds: Floats
     evaluations: Floats
-    iterations: Floats
+    work: Floats
     bad: int
     lifted: int
 
     def row(self) -> dict[str, Any]:
-        """Percentiles by SHARES of seconds, evaluations and iterations, as a line of a table."""
+        """Percentiles by SHARES of seconds, evaluations and work, as a line of a table."""
         found: dict[str, Any] = {"method": self.name, "prescribed": self.prescribed}
         found |= {"steps": len(self.seconds), "bad": self.bad, "lifted": self.lifted}
-        for name in ("seconds", "evaluations", "iterations"):
+        for name in ("seconds", "evaluations", "work"):
             values = getattr(self, name)
             for share in SHARES:
                 found[f"{name}_{share:g}"] = quantile(values, share)
@@ -147,12 +148,10 @@ def inputs_of(scene: Any, walk: Walk, fixed: bool) -> Iterator[dict[str, Any]]:
 
 
 def work_of(result: dict[str, Any]) -> tuple[float, float, bool, bool]:
-    """Evaluations, iterations, whether a step is bad, and whether there was no contact."""
-    side, status = result["right"], result["status"]
-    names = ("normal_iterations", "newton_iterations", "inner_iterations")
-    iterations = sum(patch[name] for patch in side["patches"] for name in names)
+    """Evaluations, operator products, whether a step is bad, and whether there was no contact."""
+    status = result["status"]
     lifted = status == "no_contact"
-    return result["evaluations"], iterations, status != "converged" and not lifted, lifted
+    return result["evaluations"], result["work"], status != "converged" and not lifted, lifted
 
 
 def tail(name: str, overrides: dict[str, Any], fixed: bool, steps: int) -> Tail:
@@ -160,20 +159,20 @@ def tail(name: str, overrides: dict[str, Any], fixed: bool, steps: int) -> Tail:
     scene = moving_wheel(overrides, fixed)
     contact = _core.Contact(config_of(scene), False)
     inputs = list(inputs_of(scene, random_walk(steps), fixed))
-    seconds, work = [], []
+    seconds, counted = [], []
     for begin in range(0, steps, AT_ONCE):
         part = inputs[begin : begin + AT_ONCE]
         times, results = contact.time_steps(part, [False] * len(part), 1)
         seconds.append(np.asarray(times)[0])
-        work += [work_of(result) for result in results]
-    evaluations, iterations, bad, lifted = np.array(work, dtype=float).T
+        counted += [work_of(result) for result in results]
+    evaluations, work, bad, lifted = np.array(counted, dtype=float).T
     prescribed = "position" if fixed else "force"
     return Tail(
         name,
         prescribed,
         np.concatenate(seconds),
         evaluations,
-        iterations,
+        work,
         int(bad.sum()),
         int(lifted.sum()),
     )
