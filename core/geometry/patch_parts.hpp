@@ -37,6 +37,7 @@
 
 #include "geometry/place_slope.hpp"
 #include "numeric/elementary.hpp"
+#include "numeric/fade.hpp"
 
 namespace railpatch {
 
@@ -45,7 +46,8 @@ constexpr int max_parts = 8;  // of one patch, and of one wheel
 // How parts become patches without jumps: the gaps up to which they are one, and from which on each
 // is a patch of its own.
 struct blend_rules {
-  double low = 2.5e-5, high = 7.5e-5;  // m, greatest gap between
+  double low = 2.5e-5, high = 7.5e-5;  // m, greatest gap between, across the surfaces
+  double steepest = 0.1;               // -, least cosine of the contact angle by which it is taken
   double grown = 0.15;                 // -, width of the smaller part over the distance
   double one = 10e-3, two = 16e-3;     // m, distance
   double full = 4e-3, none = 8e-3;     // m, of the interaction within a patch
@@ -139,14 +141,6 @@ T lateral_width(const basic_part<T> &p) {
   return hypot(p.last[1] - p.first[1], p.last[2] - p.first[2]);
 }
 
-// From 1 at t <= 0 to 0 at t >= 1, with two continuous derivatives.
-template <class T>
-T fade(const T &t) {
-  if (!(t > 0)) return T(1);
-  if (!(t < 1)) return T(0);
-  return 1.0 - t * t * t * (10.0 - t * (15.0 - 6.0 * t));
-}
-
 // With which factor the tractions of two neighbours in one patch act on each other.
 template <class T>
 T interaction(const blend_rules &rule, const basic_part<T> &a, const basic_part<T> &b) {
@@ -165,7 +159,10 @@ T joined(const blend_rules &rule, const basic_part<T> &a, const basic_part<T> &b
   const T d = facing_distance(a, b), w = min(lateral_width(a), lateral_width(b));
   const T apart = (fabs(b.angle - a.angle) - rule.angle_from) / (rule.angle_to - rule.angle_from);
   const T alike = rule.angle_fraction + (1.0 - rule.angle_fraction) * fade(apart);
-  const T low = alike * rule.low, high = alike * rule.high;
+  // gaps are vertical, and greater than across the surfaces where these are steep
+  const T cosine = cos(0.5 * (a.angle + b.angle));
+  const T upright = alike / (cosine > rule.steepest ? cosine : T(rule.steepest));
+  const T low = upright * rule.low, high = upright * rule.high;
   const T near = fade((a.bump - low) / (high - low)) * fade((d - rule.one) / (rule.two - rule.one));
   const T share = w / (rule.grown * d);
   return share < 1.0 ? near * (1.0 - fade(share)) : near;

@@ -78,8 +78,8 @@ class row_contact {
   row_contact_result solve(const grid &g, const double *undeformed_distance,
                            const row_contact_load &load, const contact_parts &parts,
                            double *pressure);
-  // Ends of the last contact's chords, x in m, [ny]; direction of rolling 1 or -1. Rows without
-  // contact hold their vertex.
+  // Ends of the last contact's chords, x in m, [ny]; direction of rolling 1 or -1. Rows whose
+  // middle is not in contact hold their vertex.
   double leading_edge(int row, int direction) const;
   // m, lateral, of all of the last contact.
   double width() const { return width_; }
@@ -88,6 +88,10 @@ class row_contact {
  private:
   struct totals;
   struct deepest_point;
+  struct row_parabola {
+    double vertex, lowest, curvature;
+  };
+  static row_parabola parabola_of(const grid &g, const double *row, int i, int reach);
   void measure_rows(const grid &g, const double *h, int reach);
   int find_reach(const grid &g, double approach) const;
   double guess_approach(const grid &g, double force) const;
@@ -98,15 +102,23 @@ class row_contact {
   void evaluate_group(const grid &g, double approach, int begin, int end, totals &way);
   double overlap_width(const grid &g, double level, int begin, int end) const;
   struct overlap;
-  hertz_ratios::values ellipse_of_overlap(const grid &g, const deepest_point &deep, int begin,
-                                          int end, double depth) const;
-  overlap overlap_of(const grid &g, const deepest_point &deep, int begin, int end) const;
+  struct deepest_places;
+  hertz_ratios::values ellipse_of_overlap(const grid &g, const deepest_point &deep,
+                                          double curvature, int begin, int end, double depth) const;
+  overlap overlap_of(const grid &g, const deepest_point &deep, double curvature, int begin,
+                     int end) const;
+  double lowest_in_strip(const grid &g, int j, double flattest) const;
+  deepest_places find_places(const grid &g, const deepest_point &deep, int begin, int end,
+                             double flattest);
+  double displacement_at(const grid &g, const quadratic *chords, double place, int of, int begin,
+                         int end) const;
   void kik_piotrowski(const grid &g, const deepest_point &deep, int begin, int end, totals &way);
   void analyn(const grid &g, const deepest_point &deep, int begin, int end, totals &way);
-  void add_row(int row, const strip &s, const quadratic &chord, const quadratic &f, double depth,
-               double factor, totals &way);
-  void set_point(const grid &g, int row, double load, double *pressure) const;
-  void sample(const grid &g, double force, double *pressure, row_contact_result &result) const;
+  void add_row(const grid &g, int row, const strip &s, const quadratic &chord, const quadratic &f,
+               double depth, double factor, totals &way);
+  void add_point(const grid &g, int row, double load, double *pressure) const;
+  void share_loads(const grid &g);
+  void sample(const grid &g, double force, double *pressure, row_contact_result &result);
 
   rp_normal_method method_;
   double modulus_;
@@ -115,6 +127,11 @@ class row_contact {
   // by row: the parabola in x, the stretched lowest distance, and of the last contact the squared
   // half chord and the load (N)
   aligned_buffer<double> vertex_, lowest_, curvature_, stretched_, chord_, load_;
+  aligned_buffer<double> mean_chord_, centre_;  // of the strip: mean square, load times distance
+  // of Kik-Piotrowski: the deepest places' weights, and chords along their strips; then what rows
+  // carry
+  aligned_buffer<double> weight_;
+  aligned_buffer<quadratic> chords_;
 };
 
 }  // namespace railpatch

@@ -1,6 +1,5 @@
-// Kik-Piotrowski and ANALYN told anew from their equations: integrals over strips by many
-// midpoints, rows of any curvature and place, a ridge on one side, contact areas apart and
-// together.
+// Kik-Piotrowski and ANALYN told anew from their equations: integrals over strips by midpoints,
+// rows of any curvature and place, a ridge on one side, contact areas apart and together.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +16,6 @@ namespace {
 
 using namespace railpatch;
 using std::numbers::pi;
-
 constexpr double modulus = 1.14e11;
 // Gauss's rules on strips of which some end within the row: root and logarithm, see
 // test_row_contact
@@ -31,7 +29,6 @@ const hertz_ratios &table() {
 }
 
 size_t at(int j) { return static_cast<size_t>(j); }
-
 struct surface {
   std::string name;
   grid g;
@@ -75,16 +72,15 @@ std::vector<surface> surfaces() {
 struct sums {
   double force = 0, area = 0, width = 0, energy = 0, peak = 0;
 };
-
 struct once_more {
   const surface &s;
   rp_normal_method method;
-  std::vector<double> vertex, lowest, curvature, chord, load;
+  std::vector<double> vertex, lowest, curvature, chord, load, mean_chord, moment;
   const hertz_ratios &ratios = table();
 
   once_more(const surface &of, rp_normal_method m, double approach) : s(of), method(m) {
     chord.resize(at(s.g.ny));
-    load = chord;
+    load = mean_chord = moment = chord;
     int reach = 1;
     measure(reach);
     for (int pass = 0; pass < 3; ++pass) {
@@ -105,15 +101,29 @@ struct once_more {
       int least = 0;
       for (int i = 0; i < s.g.nx; ++i)
         if (height(i, j) < height(least, j)) least = i;
-      const int i = std::min(std::max(least, reach), s.g.nx - 1 - reach);
-      // Newton's form of the parabola
-      const double w = reach * s.g.dx, l = height(i - reach, j), m = height(i, j),
-                   r = height(i + reach, j);
-      const double c = ((r - m) / w - (m - l) / w) / (2 * w), b = (r - l) / (2 * w);
-      curvature.push_back(c);
-      vertex.push_back(s.g.x(i) - b / (2 * c));
-      lowest.push_back(m - b * b / (4 * c));
+      const std::array<double, 3> one = about(least, j, reach);
+      const int beside = height(least - 1, j) < height(least + 1, j) ? least - 1 : least + 1;
+      const std::array<double, 3> other = about(beside, j, reach);
+      const double apart = height(beside, j) - height(least, j);
+      const double share = step(apart / (0.9 * one[0] * s.g.dx * s.g.dx)) / 2;
+      const auto mean = [&](size_t k) { return (1 - share) * one[k] + share * other[k]; };
+      curvature.push_back(mean(0));
+      vertex.push_back(mean(1));
+      lowest.push_back(mean(2));
     }
+  }
+  // Newton's form of the parabola about an element: curvature, vertex, lowest distance
+  std::array<double, 3> about(int element, int j, int reach) const {
+    const int i = std::min(std::max(element, reach), s.g.nx - 1 - reach);
+    const double w = reach * s.g.dx, l = height(i - reach, j), m = height(i, j),
+                 r = height(i + reach, j);
+    const double c = ((r - m) / w - (m - l) / w) / (2 * w), b = (r - l) / (2 * w);
+    return {c, s.g.x(i) - b / (2 * c), m - b * b / (4 * c)};
+  }
+  // 1 ... 0, level and without curvature at both ends
+  static double step(double t) {
+    const double u = 1 - std::clamp(t, 0.0, 1.0);
+    return u * u * u * (u * (6 * u - 15) + 10);
   }
   double height(int i, int j) const { return s.h[at(j * s.g.nx + i)]; }
 
@@ -124,27 +134,22 @@ struct once_more {
     return f[at(m - 1)] * t * (t - 1) / 2 + f[at(m)] * (1 - t * t) + f[at(m + 1)] * t * (t + 1) / 2;
   }
   double nearest(const std::vector<double> &f, double y) const {
-    const int j = static_cast<int>(std::lround((y - s.g.y0) / s.g.dy));
-    return of_row(f, std::clamp(j, 0, s.g.ny - 1), y);
+    const double t = (y - s.g.y0) / s.g.dy;
+    const int j = std::clamp(static_cast<int>(std::floor(t)), 0, s.g.ny - 2);
+    const double right = std::clamp(t - j, 0.0, 1.0);
+    return (1 - right) * of_row(f, j, y) + right * of_row(f, j + 1, y);
   }
   struct place {
     double y, low;
     int row;
   };
   place deepest(const std::vector<double> &f, int begin, int end) const {
-    int j = begin;
-    for (int k = begin; k < end; ++k)
-      if (f[at(k)] < f[at(j)]) j = k;
-    place best{s.g.y(j), f[at(j)], j};
-    // between the rows: the parabola's least value by halving
-    double a = -0.5, b = 0.5;
-    const auto rises = [&](double t) {
-      const double y = s.g.y(j) + t * s.g.dy, step = 1e-3 * s.g.dy;
-      return of_row(f, j, y + step) > of_row(f, j, y - step);
-    };
-    for (int k = 0; k < 40; ++k) (rises((a + b) / 2) ? b : a) = (a + b) / 2;
-    const double y = s.g.y(j) + a * s.g.dy;
-    if (of_row(f, j, y) < best.low) best = {y, of_row(f, j, y), j};
+    place best{s.g.y(begin), f[at(begin)], begin};
+    for (int j = begin; j < end; ++j)
+      for (int k = 0; k <= fine; ++k) {
+        const double y = s.g.y(j) + (static_cast<double>(k) / fine - 0.5) * s.g.dy;
+        if (nearest(f, y) < best.low) best = {y, nearest(f, y), j};
+      }
     return best;
   }
   // f(y, row) over the rows' strips
@@ -180,6 +185,10 @@ struct once_more {
       out.peak = std::max(out.peak, k(j) * std::sqrt(middle));
       if (force > 0) chord[at(j)] += weight * middle;
       load[at(j)] += weight * force;
+      mean_chord[at(j)] += weight * across(j, j + 1, half) / s.g.dy;
+      moment[at(j)] += weight * k(j) * pi / 2 * across(j, j + 1, [&](double y, int row) {
+                         return (y - s.g.y(row)) * half(y, row);
+                       });
     }
     return out;
   }
@@ -221,8 +230,8 @@ struct once_more {
     hertz_contact ellipse;
     double long_by_wide;
   };
-  overlapping overlap(double low, int row, double part, int begin, int end) const {
-    double half_length2 = part / curvature[at(row)];
+  overlapping overlap(double low, double a0, double part, int begin, int end) const {
+    double half_length2 = part / a0;
     for (int j = begin; j < end; ++j)
       half_length2 = std::max(half_length2, (part + low - lowest[at(j)]) / curvature[at(j)]);
     const double width = width_below(low + part, begin, end);
@@ -230,14 +239,40 @@ struct once_more {
     return {hertz_from_approach(ab, 1.0, 1.0), 2 * std::sqrt(half_length2) / width};
   }
 
-  sums kik(double y0, double low, int row, double d, int begin, int end, double weight) {
+  double low_in(int j, double d, double width) const {
+    const double y = s.g.y(j), e = s.g.dy / 4;
+    const double rise = (of_row(lowest, j, y + e) - of_row(lowest, j, y - e)) / (2 * e);
+    const double bend =
+        (of_row(lowest, j, y + e) - 2 * lowest[at(j)] + of_row(lowest, j, y - e)) / (2 * e * e);
+    const double least = 0.4 * d / (width * width);
+    return y + std::clamp(-rise / (2 * std::max(bend, least)), -s.g.dy / 2, s.g.dy / 2);
+  }
+  double counts(int j, double d, int begin, int end) const {
+    const auto least = [&](int from, int to) {
+      return *std::min_element(lowest.begin() + std::max(from, begin),
+                               lowest.begin() + std::min(to, end));
+    };
+    return step((lowest[at(j)] - least(begin, end)) / (0.1 * d)) *
+           step((lowest[at(j)] - least(j - 3, j + 4)) / (0.01 * d));
+  }
+
+  sums kik(double, double low, int, double d, int begin, int end, double weight) {
+    const double span = width_below(low + d, begin, end);
+    double counted = 0, y0 = 0, a0 = 0;
+    for (int j = begin; j < end; ++j) {
+      const double w = counts(j, d, begin, end);
+      counted += w;
+      y0 += w * low_in(j, d, span);
+      a0 += w * curvature[at(j)];
+    }
+    y0 /= counted, a0 /= counted;
     double share = method == RP_NORMAL_KIK_PIOTROWSKI ? 0.55 : 0.5;
-    overlapping o = overlap(low, row, share * d, begin, end);
+    overlapping o = overlap(low, a0, share * d, begin, end);
     // Hertz's area by an overlap: a b = share d/sqrt(A B), of what a circle's share shows
     for (int pass = 0; pass < 2 && method != RP_NORMAL_KIK_PIOTROWSKI; ++pass) {
       const hertz_contact &e = o.ellipse;
       share = e.semi_axes[0] * e.semi_axes[1] * std::sqrt(e.curvatures[0] * e.curvatures[1]);
-      if (pass == 0) o = overlap(low, row, share * d, begin, end);
+      if (pass == 0) o = overlap(low, a0, share * d, begin, end);
     }
     const double part = share * d, ratio = o.ellipse.semi_axes[0] / o.ellipse.semi_axes[1];
     // length and width by r and 1/r: r^2 L/W = a/b
@@ -251,20 +286,39 @@ struct once_more {
     const auto l2 = [&](double y, int j) {
       return (part - (of_row(f, j, y) - low)) * r2 / curvature[at(j)];
     };
-    const double u = across(begin, end, [&](double y, int j) {
-      if (l2(y, j) <= 0) return 0.0;
-      return row_potential(l2(y, j), std::hypot(y - y0, vertex[at(j)] - vertex[at(row)]));
-    });
-    const double k = pi * modulus * d / u;
+    double u = 0, wanted = 0;
+    for (int n = begin; n < end; ++n) {
+      const double w = counts(n, d, begin, end), at_y = low_in(n, d, span);
+      if (w > 0)
+        u += w * across(begin, end, [&](double y, int j) {
+               if (l2(y, j) <= 0) return 0.0;
+               return row_potential(l2(y, j), std::hypot(y - at_y, vertex[at(j)] - vertex[at(n)]));
+             });
+      wanted += w * std::min(d, d - (of_row(lowest, n, at_y) - low));
+    }
+    const double k = pi * modulus * wanted / u;
     sums out = add_up(begin, end, weight, d, low, l2, [&](int) { return k; });
-    out.peak = std::max(out.peak, k * std::sqrt(part * r2 / curvature[at(row)]));
+    out.peak = std::max(out.peak, k * std::sqrt(part * r2 / a0));
     return out;
+  }
+
+  // What the rows' elements carry: strips that end about their middle give to their neighbours.
+  std::vector<double> carried() const {
+    std::vector<double> sum(load.size(), 0.0);
+    for (int j = 1; j + 1 < s.g.ny; ++j) {
+      if (!(load[at(j)] > 0)) continue;
+      const double place = moment[at(j)] / load[at(j)] / s.g.dy;
+      const double given = std::min(std::fabs(place), 0.5) * step(chord[at(j)] / mean_chord[at(j)]);
+      sum[at(j)] += (1 - given) * load[at(j)];
+      sum[at(std::clamp(place > 0 ? j + 1 : j - 1, 1, s.g.ny - 2))] += given * load[at(j)];
+    }
+    return sum;
   }
 
   sums all(double approach, const contact_parts &parts) {
     sums out;
     std::fill(chord.begin(), chord.end(), 0.0);
-    std::fill(load.begin(), load.end(), 0.0);
+    load = mean_chord = moment = chord;
     const int cuts = parts.count - 1;
     for (int way = 0; way < 1 << cuts; ++way) {
       double weight = 1;
@@ -333,9 +387,7 @@ TEST_P(RowTheories, EquationsOnceMore) {
         EXPECT_NEAR(r.max_pressure, wanted.peak, strips * wanted.peak);
         // ends of contact to a midpoint
         EXPECT_NEAR(rows.width(), wanted.width, 8 * s.g.dy / fine);
-        double with_middle = 0;
-        for (int j = 0; j < s.g.ny; ++j)
-          with_middle += again.chord[at(j)] > 0 ? again.load[at(j)] : 0.0;
+        const std::vector<double> carried = again.carried();
         double sampled = 0;
         for (int j = 0; j < s.g.ny; ++j) {
           double sum = 0;
@@ -351,15 +403,12 @@ TEST_P(RowTheories, EquationsOnceMore) {
             }
           }
           sampled += sum;
-          const double half = std::sqrt(again.chord[at(j)]);
+          const double least = carried[at(j)] > 0 ? 0.75 * s.g.dx : 0.0;
+          const double half = std::max(least, std::sqrt(again.chord[at(j)]));
           const double room = strips * (half + 2e-3);
           EXPECT_NEAR(rows.leading_edge(j, 1), again.vertex[at(j)] + half, room) << j;
           EXPECT_NEAR(rows.leading_edge(j, -1), again.vertex[at(j)] - half, room) << j;
-          // strips whose middle is outside are shared by the others
-          if (again.chord[at(j)] > 0) {
-            EXPECT_NEAR(sum, again.load[at(j)] * wanted.force / with_middle, strips * wanted.force)
-                << j;
-          }
+          EXPECT_NEAR(sum, carried[at(j)], strips * wanted.force) << j;
         }
         EXPECT_NEAR(sampled, r.normal_force, 1e-12 * sampled);
       }

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from railpatch.profiles import Profile, ProfileError, builtin_profile, load_profile
 from railpatch.profiles.formulas import S1002_JOINTS, s1002_depth
+from railpatch.profiles.worn import RAIL, WAVE_HEIGHT, WAVES, WHEEL
 
 EVERY = [
     ("S1002", "wheel"),
@@ -19,6 +20,8 @@ EVERY = [
     ("cylinder", "rail"),
     ("arc@0.3", "rail"),
     ("arc@0.02", "wheel"),
+    ("worn@7", "wheel"),
+    ("worn@12", "rail"),
 ]
 
 
@@ -144,3 +147,24 @@ def test_wrong_names_are_refused(name: str, role: str, words: str) -> None:
 
 def test_a_path_is_no_built_in() -> None:
     assert builtin_profile("profiles/S1002.prw", "wheel") is None
+
+
+def test_worn_shapes_lose_what_is_stated() -> None:
+    # a shape's greatest distance from the new one is within the sum of the stated depths
+    for role, new, bumps in (("wheel", "S1002", WHEEL), ("rail", "UIC60@1:40", RAIL)):
+        base = load_profile(new, role)
+        limit = sum(bump.depth[1] for bump in bumps) + WAVES * WAVE_HEIGHT
+        depths = []
+        for number in range(20):
+            shape = load_profile(f"worn@{number}", role)
+            depths.append(np.hypot(shape.y - base.y, shape.z - base.z).max())
+            assert np.array_equal(shape.y, builtin_profile(f"worn@{number}", role).y)
+        assert max(depths) < limit
+        assert min(depths) > 1e-4
+        assert len(set(depths)) == 20
+
+
+@pytest.mark.parametrize("name", ["worn", "worn@", "worn@-1", "worn@1.5", "worn@1000000"])
+def test_worn_shapes_have_numbers(name: str) -> None:
+    with pytest.raises(ProfileError, match=r"number"):
+        load_profile(name, "wheel")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import math
 import re
@@ -21,6 +22,7 @@ from railpatch.profiles.formulas import (
     uic60_pieces,
 )
 from railpatch.profiles.raw import Role
+from railpatch.profiles.worn import NUMBERS, RAIL, WHEEL, worn
 
 # mm, longest distance of the knots: an arc of 12 mm is then met within 1e-8 mm
 SPACING = 0.25
@@ -30,10 +32,10 @@ HALF_WIDTH = 70.0
 ARC_END = 0.9
 NAMES = (
     '"S1002", "UIC60", "60E1", "54E1", "UIC60@1:40", "cone@1:20", "arc@0.3" (radius in m), '
-    '"cylinder"'
+    '"cylinder", "worn@7" (number of a worn shape)'
 )
 RAILS = ("UIC60", "60E1", "54E1")
-PATTERN = re.compile(r"(S1002|UIC60|60E1|54E1|cone|arc|cylinder)(?:@(.*))?")
+PATTERN = re.compile(r"(S1002|UIC60|60E1|54E1|cone|arc|cylinder|worn)(?:@(.*))?")
 
 
 @functools.lru_cache(maxsize=64)
@@ -45,6 +47,7 @@ def builtin_profile(name: str, role: Role) -> Profile | None:
     the track's centre by atan(1/40), ...; highest point at (0, 0).
     "cone@1:20": line z = -y/20, wheel or roller. "cylinder": z = 0. "arc@R": crown of radius R in m
     for a rail, the same convex shape for a wheel. The last three are 0.14 m wide at most.
+    "worn@7": the 7th worn shape of S1002 or UIC60@1:40, see worn.py.
     The same object each time, whose arrays cannot be written to.
     Raises ProfileError where the name is known, but not for this role or not with this number.
     """
@@ -63,6 +66,8 @@ def builtin_profile(name: str, role: Role) -> Profile | None:
         require(name, argument is None, "is written 'cylinder'")
         return from_pieces(name, [line(0.0)])
     require(name, argument is not None, f"needs a number, as in {NAMES}")
+    if kind == "worn":
+        return worn_profile(name, argument, role)
     if kind == "cone":
         return from_pieces(name, [line(-1 / ratio(name, argument))])
     return from_pieces(name, [crown(name, argument, role)])
@@ -80,6 +85,16 @@ def ratio(name: str, argument: str) -> float:
     value = float(match.group(1)) if match else math.nan
     require(name, 1 <= value <= 1e6, f"inclination is {argument!r}, allowed '1:n', n = 1 ... 1e6")
     return value
+
+
+def worn_profile(name: str, argument: str, role: Role) -> Profile:
+    """S1002 or UIC60@1:40 with the wear of that number."""
+    good = argument.isascii() and argument.isdecimal() and len(argument) <= 6
+    require(name, good, f"number is {argument!r}, allowed 0 ... {NUMBERS - 1}")
+    new = builtin_profile("S1002" if role == "wheel" else "UIC60@1:40", role)
+    assert new is not None
+    shape = worn(new, WHEEL if role == "wheel" else RAIL, int(argument))
+    return read_only(dataclasses.replace(shape, name=name))
 
 
 def line(slope: float) -> Piece:

@@ -93,12 +93,32 @@ def wheel_trials(quick: bool) -> Iterator[Trial]:
     yield from uneven_trials(quick)
     yield from moving_rail_trials(quick)
     yield from transient_trials(quick)
+    yield from worn_trials(quick)
     for theory in FAST:
         method = {"method": {"tangential": theory, "normal": "kik_piotrowski"}}
         yield Trial(
             "wheel", "flange contact", merged(WHEEL, {**method, "wheelset": {"y": 6e-3}}),
             moves({}, expects=SAYS_SO),
         )  # fmt: skip
+
+
+def worn_trials(quick: bool) -> Iterator[Trial]:
+    """Worn wheels on worn rails by every normal theory, from the tread onto the flange."""
+    for pair in range(2 if quick else 12):
+        for normal in (
+            "half_space", "hertz", "kik_piotrowski", "kik_piotrowski_corrected", "analyn",
+        ):  # fmt: skip
+            worn = {
+                "profiles": {"wheel": f"worn@{2 * pair}", "rail": f"worn@{2 * pair + 1}"},
+                "method": {"normal": normal},
+                "grid": {"element_size": None, "elements": [10, 10]},
+                "wheelset": {"vertical_force": 8e4},
+            }
+            yield Trial(
+                "worn", f"worn pair {pair}, {normal}", merged(WHEEL, worn),
+                moves(*({"y": 1e-3 * y} for y in range(-4, 13, 2)), expects=IN_THEORY),
+                "beyond where the flange climbs no height carries the load",
+            )  # fmt: skip
 
 
 def uneven_trials(quick: bool) -> Iterator[Trial]:
