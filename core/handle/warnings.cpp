@@ -123,7 +123,8 @@ void report_warnings(const rp_config &config, uint32_t of_case, const rp_input &
   for (int side = 0; side < 2; ++side) {
     if (!in_use(config, side)) continue;
     rp_side_result &wheel = result.side[side];
-    wheel.warnings = of_case | warnings_of_side(config, input, result.pitch_rate, side, wheel);
+    // those of the search for the height are there already
+    wheel.warnings |= of_case | warnings_of_side(config, input, result.pitch_rate, side, wheel);
     touching += wheel.patch_count > 0;
   }
   // said of the wheel in the air

@@ -162,7 +162,9 @@ enum {
   X(RP_WARNING_SPIN, 12, "a spin creepage is above 20 rad/m")                                      \
   X(RP_WARNING_SIZE, 13, "a contact is wider than a circle of 60 mm")                              \
   X(RP_WARNING_LAYER_STIFFNESS, 14, "layer.shear_modulus is outside 1e6 to 1e12 Pa")               \
-  X(RP_WARNING_GAUGE, 15, "gauge is not 40 to 120 mm wider than flange_back_distance")
+  X(RP_WARNING_GAUGE, 15, "gauge is not 40 to 120 mm wider than flange_back_distance")             \
+  X(RP_WARNING_HEIGHTS, 16,                                                                        \
+    "other heights nearly or quite carry the vertical force too: forces jump near this position")
 
 #define RP_ENUM_ENTRY(name, value, text) name = value,
 typedef enum rp_error { RP_ERRORS(RP_ENUM_ENTRY) } rp_error;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "normal/row_contact.hpp"
 #include "numeric/elementary.hpp"
 #include "numeric/force_search.hpp"
 #include "numeric/nan.hpp"
 #include "patch/result_sums.hpp"
+#include "wheel/force_samples.hpp"
 #include "wheel/wheelset_power.hpp"
 
 namespace railpatch {
@@ -168,6 +170,17 @@ void wheels::keep_heat(const rp_result &out) {
   bulk_->keep(flow);
 }
 
+// N, by all patches.
+double wheels::carried(const rp_result &out) const {
+  double sum = 0;
+  for (const auto &wheel : wheels_) {
+    const rp_side_result &side = out.side[wheel.side()];
+    for (int i = 0; i < side.patch_count + side.alternative_count; ++i)
+      sum += side.patch[i].share * side.patch[i].normal_force;
+  }
+  return sum;
+}
+
 // Finds z for a prescribed vertical force.
 void wheels::find_z(double target, rp_result &out) {
   double touch = HUGE_VAL;
@@ -194,12 +207,15 @@ void wheels::find_z(double target, rp_result &out) {
     depth = cbrt(9.0 * load * load / (16.0 * modulus * modulus * radius));
   }
   force_search search(target, depth, tolerance_);
+  force_samples samples(target);
   double nearest = HUGE_VAL, residual = HUGE_VAL;  // m, depth that came nearest; its residual
+  double force = 0;
   bool spent = false;
   for (int i = 0; i < force_search::most_steps; ++i) {
     depth = search.depth();
-    const double force = evaluate(touch + depth, out);
+    force = evaluate(touch + depth, out);
     search.report(force, beyond());
+    if (!beyond()) samples.add(depth, force);
     if (search.residual() < residual) nearest = depth, residual = search.residual();
     if (search.converged() || search.exhausted()) break;
     // where no force is known yet there is nothing to end with
@@ -214,6 +230,8 @@ void wheels::find_z(double target, rp_result &out) {
     depth_ = search.depth();  // where it would have gone on
     return;
   }
+  if (search.converged() && carried(out) > force_samples::steep * target)
+    force = look_deeper(touch, depth, samples, out);
   out.z = touch + depth;
   verdict found;
   if (!search.converged())
@@ -221,7 +239,29 @@ void wheels::find_z(double target, rp_result &out) {
                 ? verdict{RP_OUT_OF_RANGE, RP_REASON_TOO_DEEP, search.residual()}
                 : verdict{RP_NOT_CONVERGED, RP_REASON_FORCE_SEARCH, search.residual()};
   report_search(found, search.residual(), out);
+  if (search.converged() && samples.jump_near(depth, force))
+    for (const auto &wheel : wheels_)
+      out.side[wheel.side()].warnings |= uint32_t{1} << RP_WARNING_HEIGHTS;
   depth_ = search.converged() ? depth : 0.0;
+}
+
+// Forces of depths beyond the one that carries the load, for as much work as a step may take; returns
+// the force of that one, solved again.
+double wheels::look_deeper(double touch, double depth, force_samples &samples, rp_result &out) {
+  const auto divided = [&](const wheel_contact &wheel) {
+    const rp_side_result &side = out.side[wheel.side()];
+    return side.patch_count + side.alternative_count > 1;
+  };
+  // or one whose rows lose and find contact
+  const bool several =
+      takes_rows(solver_.scene().normal) || std::any_of(wheels_.begin(), wheels_.end(), divided);
+  for (size_t k = several ? 0 : force_samples::of_divisions; k < force_samples::beyond.size(); ++k) {
+    if (most_work_ > 0 && out.work >= most_work_) break;
+    const double deeper = depth * (1 + force_samples::beyond[k]);
+    const double force = evaluate(touch + deeper, out);
+    if (!beyond()) samples.add(deeper, force);
+  }
+  return evaluate(touch + depth, out);
 }
 
 // Whether a force is not known; a creep force outside its theory's range is one all the same.

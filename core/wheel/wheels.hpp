@@ -41,6 +41,8 @@ struct wheels_setup {
   bool whole_forces = true;  // forces hold the pressures' part along x
 };
 
+class force_samples;
+
 class wheels final : public driver {
  public:
   wheels(const wheels_setup &setup, const patch_scene &scene, const fft_plans &plans,
@@ -88,8 +90,10 @@ class wheels final : public driver {
   void set_bulk(int side);
   void keep_heat(const rp_result &result);
   void find_z(double vertical_force, rp_result &result);
+  double look_deeper(double touch, double depth, force_samples &samples, rp_result &result);
   bool beyond() const;
   void tell_rises(double touch, force_search &search) const;
+  double carried(const rp_result &result) const;
   void rest_at(double touch, rp_result &result);
   void solve_supported(const rp_input &input, rp_result &result);
   void report_search(const verdict &found, double residual, rp_result &result) const;

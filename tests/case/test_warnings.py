@@ -12,6 +12,7 @@ from case_samples import PATCH, WHEELSET, with_values
 from click.testing import CliRunner
 from railpatch.case.kinds import kinds
 from railpatch.command.cli import cli
+from railpatch.evidence.continuity.worn import LOAD, worn_case
 
 from wheelset_demo.vehicle.scene import doubtful_bodies, load_vehicle_scene
 
@@ -100,6 +101,18 @@ def test_a_mistake_is_warned_of(name: str) -> None:
     assert result.to_dict()["warnings"] == result.warnings
     with pytest.raises(railpatch.CaseError, match=words):
         railpatch.solve(case, strict=True)
+
+
+def test_other_heights_are_warned_of() -> None:
+    # a worn flange whose two contacts become one: more depth carries less
+    case = worn_case(41, "hertz")
+    free = with_values(case, wheelset__vertical_force=None, wheelset__z=0.0)
+    above, below = railpatch.Contact(case), railpatch.Contact(free)
+    for y, several in ((10.1022e-3, True), (0.0, False)):
+        found = above.step(y=y)
+        depths = [below.step(y=y, z=found["z"] + 1e-5 * i)["force"][2] for i in range(1, 16)]
+        assert (max(depths) > -LOAD) == several  # z down: less than the load
+        assert any("other heights" in text for text in found.warnings) == several
 
 
 def test_correct_patches_have_none() -> None:
