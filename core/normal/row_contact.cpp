@@ -19,6 +19,8 @@ constexpr double flattest_row = 0.1;     // of the mean curvature of the overlap
 // of the depth: up to which height above the deepest place another one counts beside it, and how
 // far above their neighbours rows still count as such places
 constexpr double other_wells = 0.1, still_lowest = 0.01;
+// of an ellipse's longest chord: the mean by the squared depth of the overlap
+constexpr double mean_chord_of_ellipse = 75 * pi / 256;
 // of an element squared: of half a chord that reaches an element's middle wherever it lies
 constexpr double shortest_chord = 0.75 * 0.75;
 constexpr double force_tolerance = 1e-12;
@@ -26,12 +28,6 @@ constexpr double least_depth = 1e-100;  // m
 constexpr int max_evaluations = 100;
 
 size_t at(int j) { return static_cast<size_t>(j); }
-
-// A rounded number within bounds; the lower one for what is no number.
-int index(double value, int low, int high) {
-  const double rounded = std::round(value);
-  return rounded > low ? static_cast<int>(std::min(rounded, static_cast<double>(high))) : low;
-}
 
 // A place among n > 1 elements: between `first` and the next one, to which its share is due. What
 // is put there in these parts has its centre there, so it moves evenly and has no side of its own.
@@ -98,38 +94,47 @@ row_contact::row_parabola row_contact::parabola_of(const grid &g, const double *
   return {g.x(i) + shift, row[i] + (rise + a * shift) * shift, a};
 }
 
-// About each row's lowest element, and about the lower one beside it, by half where both are as
-// low: so nothing depends on which of them is found first.
-void row_contact::measure_rows(const grid &g, const double *h, int reach) {
+// About a row's lowest element, and about the lower one beside it, by half where both are as low:
+// so nothing depends on which of them is found first.
+row_contact::row_parabola row_contact::measure_row(const grid &g, const double *row, int reach) {
+  const int least = static_cast<int>(std::min_element(row, row + g.nx) - row);
+  const int low = std::max(least - 1, 0), high = std::min(least + 1, g.nx - 1);
+  const int other = low < least && (high == least || row[low] < row[high]) ? low : high;
+  const auto about = [&](int i) {
+    return parabola_of(g, row, std::clamp(i, reach, g.nx - 1 - reach), reach);
+  };
+  const row_parabola p = about(least);
+  const double between = 0.9 * p.curvature * g.dx * g.dx;
+  const double share = 0.5 * fade((row[other] - row[least]) / between);
+  return share > 0 ? p.towards(about(other), share) : p;
+}
+
+// With parabolas of both whole numbers of elements beside the reach.
+void row_contact::measure_rows(const grid &g, const double *h, double reach) {
+  const int whole = static_cast<int>(reach);
+  const double share = 1 - fade(reach - whole);
   for (int j = 0; j < g.ny; ++j) {
     const double *row = h + j * g.nx;
-    const int least = static_cast<int>(std::min_element(row, row + g.nx) - row);
-    const int low = std::max(least - 1, 0), high = std::min(least + 1, g.nx - 1);
-    const int other = low < least && (high == least || row[low] < row[high]) ? low : high;
-    const auto about = [&](int i) {
-      return parabola_of(g, row, std::clamp(i, reach, g.nx - 1 - reach), reach);
-    };
-    row_parabola p = about(least);
-    const double between = 0.9 * p.curvature * g.dx * g.dx;
-    const double share = 0.5 * fade((row[other] - row[least]) / between);
-    if (share > 0) {
-      const row_parabola q = about(other);
-      p.vertex += share * (q.vertex - p.vertex);
-      p.lowest += share * (q.lowest - p.lowest);
-      p.curvature += share * (q.curvature - p.curvature);
-    }
+    row_parabola p = measure_row(g, row, whole);
+    if (share > 0) p = p.towards(measure_row(g, row, whole + 1), share);
     vertex_[at(j)] = p.vertex;
     lowest_[at(j)] = p.lowest;
     curvature_[at(j)] = p.curvature;
   }
 }
 
-// Elements from the vertex of the deepest row to about the edge of contact.
-int row_contact::find_reach(const grid &g, double approach) const {
-  const deepest_point deep = find_deepest(g, 0, g.ny);
-  const double depth = approach - deep.lowest;
-  const double chord = std::sqrt(std::max(0.0, 0.5 * depth / curvature_[at(deep.row)]));
-  return index(chord / g.dx, 1, (g.nx - 1) / 2);
+// Elements from the vertex to about the edge of contact: of all rows, weighted with their depth
+// squared, so that it does not jump where another place becomes the deepest.
+double row_contact::find_reach(const grid &g, double approach) const {
+  double sum = 0, chords = 0;
+  for (int j = 0; j < g.ny; ++j) {
+    const double depth = std::max(0.0, approach - lowest_[at(j)]), weight = depth * depth;
+    sum += weight;
+    chords += weight * std::sqrt(0.5 * depth / curvature_[at(j)]);
+  }
+  const double elements = sum > 0 ? chords / (mean_chord_of_ellipse * sum * g.dx) : 0.0;
+  const int most = (g.nx - 1) / 2;
+  return elements > 1 ? std::min(elements, 1.0 * most) : 1.0;
 }
 
 // Of rows [begin, end) with half a row beyond, on the curve of value_at: the depth does not jump
@@ -170,18 +175,21 @@ row_contact_result row_contact::solve(const grid &g, const double *h, const row_
                                       const contact_parts &parts, double *pressure) {
   row_contact_result result;
   double approach = load.approach;
-  // the parabolas reach as far as contact does, which for other shapes than parabolas matters
-  int reach = 1;
+  // the parabolas reach as far as contact does, which for other shapes than parabolas matters; not
+  // by where the search begins, so that an earlier step does not matter
+  double reach = 1;
   measure_rows(g, h, reach);
   for (int pass = 0; pass < 3; ++pass) {
-    if (load.force_given)
-      approach = load.first_approach > 0 ? load.first_approach : guess_approach(g, load.force);
-    const int next = find_reach(g, approach);
+    if (load.force_given) approach = guess_approach(g, load.force);
+    const double next = find_reach(g, approach);
     if (next == reach) break;
     measure_rows(g, h, reach = next);
   }
   result.converged = true;
-  if (load.force_given) approach = search(g, load, approach, parts, result);
+  if (load.force_given) {
+    const double first = load.first_approach > 0 ? load.first_approach : approach;
+    approach = search(g, load, first, parts, result);
+  }
   const totals sum = evaluate(g, approach, parts);
   result.converged = result.converged && std::isfinite(sum.force);
   result.approach = approach;

@@ -90,10 +90,15 @@ class row_contact {
   struct deepest_point;
   struct row_parabola {
     double vertex, lowest, curvature;
+    row_parabola towards(const row_parabola &other, double share) const {
+      return {vertex + share * (other.vertex - vertex), lowest + share * (other.lowest - lowest),
+              curvature + share * (other.curvature - curvature)};
+    }
   };
   static row_parabola parabola_of(const grid &g, const double *row, int i, int reach);
-  void measure_rows(const grid &g, const double *h, int reach);
-  int find_reach(const grid &g, double approach) const;
+  static row_parabola measure_row(const grid &g, const double *row, int reach);
+  void measure_rows(const grid &g, const double *h, double reach);
+  double find_reach(const grid &g, double approach) const;
   double guess_approach(const grid &g, double force) const;
   deepest_point find_deepest(const grid &g, int begin, int end) const;
   double search(const grid &g, const row_contact_load &load, double first,

@@ -245,8 +245,8 @@ void wheels::find_z(double target, rp_result &out) {
   depth_ = search.converged() ? depth : 0.0;
 }
 
-// Forces of depths beyond the one that carries the load, for as much work as a step may take; returns
-// the force of that one, solved again.
+// Forces of depths beyond the one that carries the load, for as much work as a step may take;
+// returns the force of that one, solved again.
 double wheels::look_deeper(double touch, double depth, force_samples &samples, rp_result &out) {
   const auto divided = [&](const wheel_contact &wheel) {
     const rp_side_result &side = out.side[wheel.side()];
@@ -255,7 +255,8 @@ double wheels::look_deeper(double touch, double depth, force_samples &samples, r
   // or one whose rows lose and find contact
   const bool several =
       takes_rows(solver_.scene().normal) || std::any_of(wheels_.begin(), wheels_.end(), divided);
-  for (size_t k = several ? 0 : force_samples::of_divisions; k < force_samples::beyond.size(); ++k) {
+  for (size_t k = several ? 0 : force_samples::of_divisions; k < force_samples::beyond.size();
+       ++k) {
     if (most_work_ > 0 && out.work >= most_work_) break;
     const double deeper = depth * (1 + force_samples::beyond[k]);
     const double force = evaluate(touch + deeper, out);

@@ -81,36 +81,52 @@ struct once_more {
   once_more(const surface &of, rp_normal_method m, double approach) : s(of), method(m) {
     chord.resize(at(s.g.ny));
     load = mean_chord = moment = chord;
-    int reach = 1;
-    measure(reach);
+    measure(1);
     for (int pass = 0; pass < 3; ++pass) {
-      // about the edge of the contact of the lowest row, half of the overlap deep
-      const auto [y, low, row] = deepest(lowest, 0, s.g.ny);
-      const double edge = std::sqrt((approach - low) / 2 / curvature[at(row)]);
-      const int next =
-          std::clamp(static_cast<int>(std::lround(edge / s.g.dx)), 1, (s.g.nx - 1) / 2);
-      if (next == reach) break;
-      measure(reach = next);
+      // about the edge of contact, where an overlap half as deep ends: the rows' mean by their
+      // squared depth, over that of an ellipse, int (1 - u^2)^(5/2) du / int (1 - u^2)^2 du on [0,
+      // 1]
+      double edges = 0, weights = 0;
+      for (int j = 0; j < s.g.ny; ++j) {
+        const double deep = approach - lowest[at(j)];
+        if (deep <= 0) continue;
+        weights += std::pow(deep, 2);
+        edges += std::pow(deep, 2.5) / std::sqrt(2 * curvature[at(j)]);
+      }
+      const double ellipse = (5 * pi / 32) / (8.0 / 15);
+      measure(std::clamp(edges / weights / ellipse / s.g.dx, 1.0, std::floor((s.g.nx - 1) / 2.0)));
     }
   }
-  void measure(int reach) {
+  void measure(double reach) {
     vertex.clear();
     lowest.clear();
     curvature.clear();
+    const int shorter = static_cast<int>(std::floor(reach));
+    const double by = 1 - step(reach - shorter);
     for (int j = 0; j < s.g.ny; ++j) {
-      int least = 0;
-      for (int i = 0; i < s.g.nx; ++i)
-        if (height(i, j) < height(least, j)) least = i;
-      const std::array<double, 3> one = about(least, j, reach);
-      const int beside = height(least - 1, j) < height(least + 1, j) ? least - 1 : least + 1;
-      const std::array<double, 3> other = about(beside, j, reach);
-      const double apart = height(beside, j) - height(least, j);
-      const double share = step(apart / (0.9 * one[0] * s.g.dx * s.g.dx)) / 2;
-      const auto mean = [&](size_t k) { return (1 - share) * one[k] + share * other[k]; };
-      curvature.push_back(mean(0));
-      vertex.push_back(mean(1));
-      lowest.push_back(mean(2));
+      std::array<double, 3> p = about_lowest(j, shorter);
+      // the longer one may end beyond the grid where it does not count
+      if (by > 0) {
+        const std::array<double, 3> longer = about_lowest(j, shorter + 1);
+        for (size_t k = 0; k < 3; ++k) p[k] = (1 - by) * p[k] + by * longer[k];
+      }
+      curvature.push_back(p[0]);
+      vertex.push_back(p[1]);
+      lowest.push_back(p[2]);
     }
+  }
+  std::array<double, 3> about_lowest(int j, int reach) const {
+    int least = 0;
+    for (int i = 0; i < s.g.nx; ++i)
+      if (height(i, j) < height(least, j)) least = i;
+    const std::array<double, 3> one = about(least, j, reach);
+    const int beside = height(least - 1, j) < height(least + 1, j) ? least - 1 : least + 1;
+    const std::array<double, 3> other = about(beside, j, reach);
+    const double apart = height(beside, j) - height(least, j);
+    const double share = step(apart / (0.9 * one[0] * s.g.dx * s.g.dx)) / 2;
+    std::array<double, 3> mean{};
+    for (size_t k = 0; k < 3; ++k) mean[k] = (1 - share) * one[k] + share * other[k];
+    return mean;
   }
   // Newton's form of the parabola about an element: curvature, vertex, lowest distance
   std::array<double, 3> about(int element, int j, int reach) const {
