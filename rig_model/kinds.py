@@ -2,20 +2,50 @@
 
 from __future__ import annotations
 
-from railpatch.case import WheelsetCase
-from railpatch.case.kinds import SceneKind, with_tables
+from pathlib import Path
 
-from rig_model.curve import DEFAULT, Curve
-from rig_model.scene import Rig, default_scene
+from railpatch.case import WheelsetCase
+from railpatch.case.kinds import Ending, SceneKind, with_tables
+
+from rig_model.curve import DEFAULT, Curve, load_curve_scene, steady_curves
+from rig_model.scene import Rig, default_scene, load_rig_scene
 
 
 def rig() -> SceneKind:
     """A run of the roller rig."""
     model = with_tables(WheelsetCase, {"rig": Rig})
-    return SceneKind("rig", model, default_scene(), "railpatch rig SCENE -o run.mcap")
+    return SceneKind("rig", model, default_scene(), "railpatch rig SCENE -o run.mcap", run_rig)
+
+
+def run_rig(scene: Path, log: Path) -> Ending:
+    """All positions."""
+    from rig_model.run import replay
+
+    summary = replay(load_rig_scene(scene), log)
+    missed = int((~summary.converged).sum())
+    reason = f"{missed} of {len(summary.converged)} positions are not balanced" if missed else None
+    values = {
+        "positions": len(summary.converged),
+        "balanced": int(summary.converged.sum()),
+        "evaluations": float(summary.evaluations.mean()),
+    }
+    status = "not_converged" if missed else "converged"
+    return Ending(status, reason, summary.warned.lines(), values)
 
 
 def curve() -> SceneKind:
     """Steady curving."""
     model = with_tables(WheelsetCase, {"curve": Curve})
-    return SceneKind("curve", model, DEFAULT, "railpatch curve SCENE")
+    return SceneKind("curve", model, DEFAULT, "railpatch curve SCENE", run_curve)
+
+
+def run_curve(scene: Path, _log: Path) -> Ending:
+    """The balance in each curve, as ``curves[0].y``, by the scene's method."""
+    found = steady_curves(load_curve_scene(scene))
+    missed = [curve for curve in found if not curve.converged]
+    reason = "; ".join(f"curve of {c.radius:g} m: {c.result.reason or c.status}" for c in missed)
+    warned = dict.fromkeys(text for curve in found for text in curve.result.warnings)
+    left_out = ("wall_time", "start_time")
+    curves = [{k: v for k, v in c.to_dict().items() if k not in left_out} for c in found]
+    status = missed[0].status if missed else "converged"
+    return Ending(status, reason or None, list(warned), {"curves": curves})

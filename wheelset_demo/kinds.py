@@ -2,23 +2,59 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Any
+
 from railpatch.case import WheelsetCase
-from railpatch.case.kinds import SceneKind, with_tables
+from railpatch.case.kinds import Ending, SceneKind, with_tables
 
 from wheelset_demo.scene import DEFAULT, MODELS, scene_file
 from wheelset_demo.vehicle.scene import DEFAULT as DEFAULT_VEHICLE
 from wheelset_demo.vehicle.scene import OPTIONAL, TABLES, ElementTable
+
+# of summaries: what is measured by the clock
+TIMES = {"solve_seconds", "wall_time", "logging_share", "seconds", "real_time"}
 
 
 def wheelset_run() -> SceneKind:
     """A wheelset on track, in time."""
     model = with_tables(WheelsetCase, MODELS)
     command = "railpatch wheelset SCENE -o run.mcap"
-    return SceneKind("wheelset_run", model, scene_file(DEFAULT), command)
+    return SceneKind("wheelset_run", model, scene_file(DEFAULT), command, run_wheelset)
+
+
+def run_wheelset(scene: Path, log: Path) -> Ending:
+    """The whole run."""
+    from wheelset_demo.scene import load_wheelset_scene
+    from wheelset_demo.simulation import run_scene
+
+    return ending_of(run_scene(load_wheelset_scene(scene), log))
+
+
+def ending_of(summary: Any) -> Ending:
+    """Of a run's summary, without the times it took."""
+    left_out = TIMES | {"good", "message", "warnings"}
+    values = {k: v for k, v in summary.to_dict().items() if k not in left_out}
+    if summary.good:
+        return Ending("converged", None, list(summary.warnings), values)
+    return Ending("not_converged", summary.message, list(summary.warnings), values)
 
 
 def vehicle() -> SceneKind:
     """A vehicle on track, in time."""
     model = with_tables(WheelsetCase, {**TABLES, "suspension": list[ElementTable]}, *OPTIONAL)
     command = "railpatch vehicle SCENE -o run.mcap"
-    return SceneKind("vehicle", model, scene_file(DEFAULT_VEHICLE), command)
+    return SceneKind("vehicle", model, scene_file(DEFAULT_VEHICLE), command, run_vehicle)
+
+
+def run_vehicle(scene: Path, log: Path) -> Ending:
+    """The whole run."""
+    from wheelset_demo.system import ContactFailure
+    from wheelset_demo.vehicle.compare import run_summary
+    from wheelset_demo.vehicle.scene import load_vehicle_scene
+
+    try:
+        return ending_of(run_summary(load_vehicle_scene(scene), None, log))
+    except ContactFailure as failure:
+        # before the first step; one in a run is in its summary
+        return Ending("not_converged", str(failure), [], {})

@@ -7,7 +7,7 @@ each the name of a function that gives a SceneKind.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -26,17 +26,29 @@ ENTRY_POINT_GROUP = "railpatch.kinds"
 
 
 @dataclass(frozen=True)
+class Ending:
+    """How a solve or a run ended: its status, why it is not good, warnings, and its numbers."""
+
+    status: str
+    reason: str | None
+    warnings: list[str]
+    values: dict[str, Any]
+
+
+@dataclass(frozen=True)
 class SceneKind:
     """One kind of scene file.
 
     model: its tables. scene: an example, with the files that it names beside it. command: what
-    takes such a file, with SCENE for its name.
+    takes such a file, with SCENE for its name. run: of a run, runs a scene's file and writes the
+    log to another; raises CaseError, ProfileError, OSError. None: one contact, which is solved.
     """
 
     name: str
     model: type[BaseModel]
     scene: Path
     command: str
+    run: Callable[[Path, Path], Ending] | None = None
 
     def schema(self) -> dict[str, Any]:
         """The JSON schema of such files."""

@@ -27,6 +27,7 @@ ROOMS = {
     "profile": "profiles.pairing",
     "report": "report",
     "stress": "evidence.stress",
+    "sweep": "sweep",
     "table": "evidence.table",
 }
 LAZY = {
@@ -135,7 +136,10 @@ def tell_warnings(texts: Iterable[str], *, strict: bool, quiet: bool) -> None:
             click.echo(f"warning: {line}", err=True)
 
 
-def show_scene_option(text: Callable[[], str]) -> Callable[..., Any]:
+def show_scene_option(
+    text: Callable[[], str],
+    told: str = "Print the scene that is run by default, as a start for one's own.",
+) -> Callable[..., Any]:
     """--show-scene: prints the scene that is run by default and ends."""
 
     def show(context: click.Context, _option: click.Parameter, value: bool) -> None:
@@ -150,7 +154,7 @@ def show_scene_option(text: Callable[[], str]) -> Callable[..., Any]:
         is_eager=True,
         expose_value=False,
         callback=show,
-        help="Print the scene that is run by default, as a start for one's own.",
+        help=told,
     )
 
 

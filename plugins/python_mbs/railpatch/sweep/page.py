@@ -1,0 +1,292 @@
+"""The page of a sweep: what came out, sensitivities, responses, all cases, those that failed."""
+
+from __future__ import annotations
+
+from collections import Counter
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import plotly.graph_objects as go
+from numpy.typing import NDArray
+from plotly.subplots import make_subplots
+
+from railpatch.case.load import KINDS
+from railpatch.page.document import document
+from railpatch.page.figures import COLORS, GREY, plot, styled
+from railpatch.page.tables import number, table
+from railpatch.sweep.plan import SENSITIVITY
+from railpatch.writing import write_whole
+
+if TYPE_CHECKING:
+    from railpatch.sweep.run import Sweep
+
+PAGE = "sweep.html"
+# of what a page can show at once
+MOST_LINES = 5000
+MOST_OUTPUTS = 6
+MOST_ROWS = 50
+MEANS = 20  # places along a key where the mean is drawn
+
+Array = NDArray[np.float64]
+
+
+def write_page(sweep: Sweep) -> Path:
+    """Writes the page into the sweep's folder. Raises OSError."""
+    body = "".join([_head(sweep), *_sections(sweep)])
+    return write_whole(sweep.folder / PAGE, document(sweep.plan.name, body).encode())
+
+
+def output_values(sweep: Sweep, name: str) -> Array:
+    """Of every case, NaN where it has none: texts too."""
+    place = sweep.outputs.index(name)
+    values = [row.outputs[place] for row in sweep.rows]
+    return np.array([v if isinstance(v, int | float) else np.nan for v in values], dtype=float)
+
+
+def key_values(sweep: Sweep, key: str) -> tuple[Array, list[str] | None]:
+    """Of every case; texts as numbers of their order, with the texts."""
+    place = sweep.plan.keys.index(key)
+    values = [point[place] for point in sweep.plan.points]
+    if all(isinstance(v, int | float) and not isinstance(v, bool) for v in values):
+        return np.array(values, dtype=float), None
+    texts = list(dict.fromkeys(map(str, values)))
+    return np.array([texts.index(str(v)) for v in values], dtype=float), texts
+
+
+def _head(sweep: Sweep) -> str:
+    plan, failed = sweep.plan, sweep.failed
+    kind = "one contact each" if plan.kind in KINDS else f"a run of the kind {plan.kind} each"
+    good = len(sweep.rows) - len(failed)
+    lines = [
+        ["scene", f"{plan.table.scene}, {kind}"],
+        ["cases", f"{len(sweep.rows)}, {good} good, {len(failed)} not"],
+        ["design", plan.table.design],
+        [
+            "time",
+            f"{sum(row.seconds for row in sweep.rows):.3g} s of all cases, "
+            f"{sweep.wall_time:.3g} s now; {sweep.reused} cases were there",
+        ],
+    ]
+    warning = ""
+    if failed:
+        counts = Counter(sweep.rows[i].status for i in failed)
+        shown = ", ".join(f"{count} {status}" for status, count in counts.items())
+        warning = f'<p class="warn">{escape(shown)}: see the end of this page.</p>'
+    return f"<h1>{escape(plan.name)}</h1>{warning}{table([], lines, 'summary')}"
+
+
+def _sections(sweep: Sweep) -> list[str]:
+    shown = [name for name in sweep.outputs if np.isfinite(output_values(sweep, name)).any()]
+    shown = [name for name in shown if np.nanstd(output_values(sweep, name)) > 0] or shown
+    parts = []
+    if shown:
+        parts += _extremes(sweep, shown)
+        parts += _sensitivities(sweep, shown)
+        parts += _responses(sweep, shown[:MOST_OUTPUTS])
+        parts += _parallel(sweep, shown[:MOST_OUTPUTS])
+    warned = Counter(text for row in sweep.rows for text in row.warnings)
+    if warned:
+        parts.append(
+            "<h2>Warnings</h2>"
+            + table(
+                ["cases", "text"], [[count, text] for text, count in warned.most_common(MOST_ROWS)]
+            )
+        )
+    return [*parts, *_failed(sweep)]
+
+
+def _extremes(sweep: Sweep, names: list[str]) -> list[str]:
+    """Least, mean and greatest of each output, and where."""
+    rows = []
+    for name in names:
+        values = output_values(sweep, name)
+        low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
+        rows.append(
+            [
+                name,
+                number(values[low]),
+                number(float(np.nanmean(values))),
+                number(values[high]),
+                _at(sweep, high),
+            ]
+        )
+    head = ["output", "least", "mean", "greatest", "greatest at"]
+    return ["<h2>Results</h2>" + table(head, rows)]
+
+
+def _at(sweep: Sweep, case: int) -> str:
+    pairs = zip(sweep.plan.keys, sweep.plan.points[case], strict=True)
+    return ", ".join(f"{key} {v:.5g}" if isinstance(v, float) else f"{key} {v}" for key, v in pairs)
+
+
+def _responses(sweep: Sweep, names: list[str]) -> list[str]:
+    """Each output over each key: cases, and their mean."""
+    keys = sweep.plan.keys
+    figure = make_subplots(
+        rows=len(names),
+        cols=len(keys),
+        shared_yaxes=True,
+        horizontal_spacing=0.03,
+        vertical_spacing=0.12 / len(names),
+    )
+    for column, key in enumerate(keys, 1):
+        at, texts = key_values(sweep, key)
+        for row, name in enumerate(names, 1):
+            values = output_values(sweep, name)
+            few = _few(len(at))
+            figure.add_scattergl(
+                x=at[few],
+                y=values[few],
+                mode="markers",
+                showlegend=False,
+                marker={"size": 4, "color": COLORS["left"], "opacity": 0.5},
+                row=row,
+                col=column,
+            )
+            x, mean = _means(at, values)
+            figure.add_scatter(
+                x=x,
+                y=mean,
+                mode="lines",
+                showlegend=False,
+                line={"color": COLORS["right"], "width": 2},
+                row=row,
+                col=column,
+            )
+            if row == len(names):
+                figure.update_xaxes(title_text=key, row=row, col=column)
+            if texts:
+                figure.update_xaxes(
+                    tickvals=list(range(len(texts))), ticktext=texts, row=row, col=column
+                )
+            if column == 1:
+                figure.update_yaxes(title_text=name, row=row, col=column)
+    styled(figure, 120 + 220 * len(names))
+    text = "<p class=sub>Dots are cases, the line is their mean along the key.</p>"
+    figure.update_xaxes(exponentformat="SI")
+    figure.update_yaxes(exponentformat="SI")
+    return ["<h2>Responses</h2>" + text + wide(plot(figure, "responses"), len(keys))]
+
+
+def _few(count: int) -> NDArray[np.int64]:
+    """Evenly spread places of what is drawn."""
+    return np.unique(np.linspace(0, count - 1, min(count, MOST_LINES)).astype(np.int64))
+
+
+def _means(at: Array, values: Array) -> tuple[Array, Array]:
+    """Mean of an output over a key, at its values or over parts of its range."""
+    known = np.isfinite(values)
+    at, values = at[known], values[known]
+    places = np.unique(at)
+    if len(places) > MEANS:
+        edges = np.linspace(at.min(), at.max(), MEANS + 1)
+        part = np.clip(np.searchsorted(edges, at, side="right") - 1, 0, MEANS - 1)
+        places = 0.5 * (edges[:-1] + edges[1:])
+    else:
+        part = np.searchsorted(places, at)
+    count = np.bincount(part, minlength=len(places))
+    sums = np.bincount(part, weights=values, minlength=len(places))
+    there = count > 0
+    return places[there], sums[there] / count[there]
+
+
+def _parallel(sweep: Sweep, names: list[str]) -> list[str]:
+    """All keys and outputs of each case as a line."""
+    few = _few(len(sweep.rows))
+    dimensions = []
+    for key in sweep.plan.keys:
+        at, texts = key_values(sweep, key)
+        ticks = {"tickvals": list(range(len(texts))), "ticktext": texts} if texts else {}
+        dimensions.append({"label": key, "values": at[few], **ticks})
+    dimensions += [{"label": name, "values": output_values(sweep, name)[few]} for name in names]
+    color = output_values(sweep, names[0])[few]
+    known = np.isfinite(color)
+    for dimension in dimensions:
+        dimension["values"] = dimension["values"][known]
+    figure = go.Figure(
+        go.Parcoords(
+            dimensions=dimensions,
+            line={
+                "color": color[known],
+                "colorscale": "Viridis",
+                "showscale": True,
+                "colorbar": {"title": names[0]},
+            },
+            labelfont={"color": GREY},
+            tickfont={"color": GREY},
+            rangefont={"color": "rgba(0,0,0,0)", "size": 1},
+            labelangle=-12,
+            labelside="top",
+        )
+    )
+    styled(figure, 480)
+    figure.update_layout(margin={"l": 90, "r": 60, "t": 110, "b": 40})
+    left = len(sweep.rows) - int(known.sum())
+    text = "<p class=sub>Drag along an axis to choose cases."
+    text += f" {left} cases are not drawn.</p>" if left else "</p>"
+    return ["<h2>All cases</h2>" + text + wide(plot(figure, "parallel"), len(dimensions) // 2)]
+
+
+def wide(figure: str, columns: int) -> str:
+    """A figure that is moved sideways where the page is too narrow for its columns."""
+    least = min(1100, 120 + 150 * columns)
+    return f'<div class="scroll"><div style="min-width: {least}px">{figure}</div></div>'
+
+
+def _sensitivities(sweep: Sweep, names: list[str]) -> list[str]:
+    if sweep.plan.table.design not in SENSITIVITY:
+        return []
+    from railpatch.sweep.sensitivity import indices_of
+
+    parts = ["<h2>Sensitivities</h2>"]
+    morris = sweep.plan.table.design == "morris"
+    if morris:
+        text = (
+            "Elementary effects (Morris 1991, Technometrics 33; Campolongo, Cariboni and "
+            "Saltelli 2007): mu* is the mean size of the output's change when the key goes "
+            "through its range, sigma how far that change depends on the place."
+        )
+        head = ["output", "key", "mu*", "\u00b1 95 %", "sigma"]
+    else:
+        text = (
+            "Sobol's indices (Sobol 2001, Mathematics and Computers in Simulation 55; Saltelli "
+            "et al. 2010): the part of the output's variance that goes with the key alone, and "
+            "with it and its interactions."
+        )
+        head = ["output", "key", "first", "\u00b1 95 %", "total", "\u00b1 95 %"]
+    parts.append(f"<p class=sub>{escape(text)}</p>")
+    rows, open_ones = [], []
+    for name in names:
+        values = output_values(sweep, name)
+        missing = int((~np.isfinite(values)).sum())
+        if missing:
+            open_ones.append(f"{name}: {missing} cases have no value")
+            continue
+        for key, *found in indices_of(sweep.plan, values):
+            rows.append([name, key, *map(number, found)])
+    if rows:
+        parts.append(table(head, rows))
+    if open_ones:
+        parts.append(
+            f'<p class="warn">Indices need every case: {escape("; ".join(open_ones))}.</p>'
+        )
+    return parts
+
+
+def _failed(sweep: Sweep) -> list[str]:
+    failed = sweep.failed
+    if not failed:
+        return []
+    rows = [
+        [i, sweep.rows[i].status, _at(sweep, i), sweep.rows[i].reason or ""]
+        for i in failed[:MOST_ROWS]
+    ]
+    more = len(failed) - len(rows)
+    text = f"<p>And {more} more: they are in results.parquet.</p>" if more > 0 else ""
+    return [
+        "<h2>Cases without a good result</h2>"
+        + table(["case", "status", "at", "reason"], rows)
+        + text
+    ]

@@ -1,0 +1,224 @@
+"""Sweeps on this machine: rows against single solves, going on, sharing, failures, the page."""
+
+from __future__ import annotations
+
+import json
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import railpatch
+from click.testing import CliRunner
+from railpatch.case.kinds import kind_of, write_example
+from railpatch.command.cli import cli
+from railpatch.sweep import Sweep, read_sweep, run_sweep
+from railpatch.sweep import run as runner
+from railpatch.sweep.plan import load_plan
+from railpatch.sweep.run import WORKER_DIED
+from railpatch.sweep.sensitivity import indices_of
+from railpatch.sweep.work import Chunk, Row, solve_chunk
+
+PATCH = """kind = "patch"
+[geometry]
+curvatures = [2.0, 1.5]
+[load]
+normal_force = 1e4
+[method]
+tangential = "polach"
+[friction]
+coefficient = 0.3
+[motion]
+creepage = [1e-3, 0.0]
+rolling_speed = 10.0
+"""
+SWEEP = """[sweep]
+scene = "scene.toml"
+outputs = ["creep_force[0]", "max_pressure", "spin_moment"]
+[[vary]]
+key = "friction.coefficient"
+values = [0.1, 0.3]
+[[vary]]
+key = "motion.creepage[0]"
+values = [-2e-3, 1e-3, 4e-3]
+"""
+
+
+def files(folder: Path, sweep: str = SWEEP, scene: str = PATCH) -> Path:
+    """A sweep beside its scene."""
+    (folder / "scene.toml").write_text(scene, encoding="utf-8")
+    path = folder / "sweep.toml"
+    path.write_text(sweep, encoding="utf-8")
+    return path
+
+
+def same(one: Sweep, other: Sweep) -> bool:
+    """But for the times."""
+    return [(r.id, r.status, r.reason, r.outputs) for r in one.rows] == [
+        (r.id, r.status, r.reason, r.outputs) for r in other.rows
+    ]
+
+
+def test_rows_are_single_solves(tmp_path: Path) -> None:
+    """To the bit, in the order of the points; the table has the keys beside the outputs."""
+    path = files(tmp_path)
+    sweep = run_sweep(path, tmp_path / "out")
+    assert len(sweep.rows) == 6
+    assert sweep.failed == []
+    for point, row in zip(sweep.plan.points, sweep.rows, strict=True):
+        alone = railpatch.solve(sweep.plan.case(point))
+        assert row.outputs == (alone["creep_force"][0], alone["max_pressure"], alone["spin_moment"])
+    table = read_sweep(tmp_path / "out").to_pydict()
+    assert table["friction.coefficient"] == [0.1] * 3 + [0.3] * 3
+    assert table["motion.creepage[0]"] == [-2e-3, 1e-3, 4e-3] * 2
+    assert table["creep_force[0]"] == [row.outputs[0] for row in sweep.rows]
+    assert set(table["status"]) == {"converged"}
+
+
+def test_two_workers_give_the_same_rows(tmp_path: Path) -> None:
+    """As one."""
+    path = files(tmp_path)
+    one = run_sweep(path, tmp_path / "one", page=False)
+    assert same(one, run_sweep(path, tmp_path / "two", workers=2, page=False))
+
+
+def test_sweeps_go_on_and_share(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a sweep that was ended has done is not solved again, nor what another one in the same
+    folder has; a damaged file is."""
+    solved: list[str] = []
+
+    def counted(chunk: Chunk) -> list[Row]:
+        if len(solved) >= 3:
+            raise KeyboardInterrupt
+        solved.extend(chunk.ids)
+        return solve_chunk(chunk)
+
+    path, folder = files(tmp_path), tmp_path / "out"
+    monkeypatch.setattr(runner, "solve_chunk", counted)
+    with pytest.raises(KeyboardInterrupt):
+        run_sweep(path, folder)
+    assert not (folder / "results.parquet").exists()
+    monkeypatch.setattr(runner, "solve_chunk", solve_chunk)
+    rest = run_sweep(path, folder)
+    assert (rest.reused, rest.solved) == (1 + len(solved), 5 - len(solved))
+    assert same(rest, run_sweep(path, tmp_path / "whole"))
+
+    larger = files(tmp_path, SWEEP.replace("values = [0.1, 0.3]", "values = [0.3, 0.4]"))
+    shared = run_sweep(larger, folder)
+    assert (shared.reused, shared.solved) == (3, 3)
+
+    for file in (folder / "chunks").iterdir():
+        file.write_bytes(file.read_bytes()[:-9])
+    again = run_sweep(larger, folder)
+    assert again.solved == 6
+    assert same(again, shared)
+
+
+def test_cases_that_fail_are_rows(tmp_path: Path) -> None:
+    """With status and reason; the others are as they are. The command ends with exit code 3."""
+    text = SWEEP.replace("[0.1, 0.3]", "[0.3, -1.0]")
+    path = files(tmp_path, text)
+    sweep = run_sweep(path, tmp_path / "out")
+    assert [row.status for row in sweep.rows] == ["converged"] * 3 + ["refused"] * 3
+    assert "friction.coefficient: value is -1.0" in str(sweep.rows[3].reason)
+    assert sweep.rows[3].outputs == (None, None, None)
+    page = (tmp_path / "out" / "sweep.html").read_text(encoding="utf-8")
+    assert "3 refused" in page
+    assert "friction.coefficient: value is -1.0" in page
+    ended = CliRunner().invoke(cli, ["sweep", str(path), "-o", str(tmp_path / "out")])
+    assert ended.exit_code == 3
+    assert "3 of 6 cases have no good result; the first, number 3: refused" in ended.output
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("friction.coefficient", "friction.coeficient", "friction.coeficient"),
+        ('"creep_force[0]"', '"creep_fore[0]"', "'creep_fore' is none of"),
+        ('"creep_force[0]"', '"status"', "value is 'status', which every row has"),
+        ('"creep_force[0]"', '"max_pressure"', "value is 'max_pressure' twice, allowed once"),
+        ('"scene.toml"', '"sene.toml"', "sene.toml: cannot be read"),
+    ],
+)
+def test_what_is_wrong_with_all_is_told_at_once(
+    tmp_path: Path, old: str, new: str, told: str
+) -> None:
+    """A wrong call, before anything is written."""
+    path = files(tmp_path, SWEEP.replace(old, new))
+    ended = CliRunner().invoke(cli, ["sweep", str(path), "-o", str(tmp_path / "out")])
+    assert ended.exit_code == 2
+    assert told in ended.output
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_case_that_ends_workers_is_a_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its neighbours are solved."""
+    path = files(tmp_path)
+    deadly = load_plan(path).ids()[4]
+    monkeypatch.setenv("DEADLY", deadly)
+    monkeypatch.syspath_prepend(str(Path(__file__).parent))
+    monkeypatch.setattr(runner, "solve_chunk", import_module("deadly").die)
+    sweep = run_sweep(path, tmp_path / "out", workers=2, page=False)
+    statuses = [row.status for row in sweep.rows]
+    assert statuses == ["converged"] * 4 + [WORKER_DIED] + ["converged"]
+    assert "ended 3 times" in str(sweep.rows[4].reason)
+
+
+def test_command_prints_a_summary(tmp_path: Path) -> None:
+    """As JSON, with what was there."""
+    path = files(tmp_path)
+    call = ["sweep", str(path), "-o", str(tmp_path / "out"), "--json"]
+    CliRunner().invoke(cli, call)
+    ended = CliRunner().invoke(cli, call)
+    assert ended.exit_code == 0, ended.output
+    found = json.loads(ended.stdout)
+    assert found["cases"] == found["reused"] == 6
+    assert found["solved"] == 0
+    assert found["statuses"] == {"converged": 6}
+
+
+def test_example_of_the_docs(tmp_path: Path) -> None:
+    """What the command prints is what docs/sweeps.md shows; with the scene that `railpatch init`
+    writes it is solved."""
+    text = CliRunner().invoke(cli, ["sweep", "--show-scene"]).output
+    page = Path(__file__).resolve().parents[2] / "docs" / "sweeps.md"
+    assert f"```toml\n{text}```" in page.read_text(encoding="utf-8")
+    write_example(kind_of("wheel_rail"), tmp_path)
+    path = tmp_path / "sweep.toml"
+    path.write_text(text.replace("count = 36", "count = 3"), encoding="utf-8")
+    sweep = run_sweep(path, tmp_path / "out", page=False)
+    assert len(sweep.rows) == 9
+    assert sweep.failed == []
+
+
+def linear(plan: Any, coefficients: list[float]) -> np.ndarray:
+    """An output that grows evenly with each key over its range."""
+    return plan.unit_points() @ np.array(coefficients)
+
+
+def test_sensitivities_of_a_linear_output(tmp_path: Path) -> None:
+    """Closed form: mu* is the coefficient and sigma 0 (Morris 1991); Sobol's indices are the parts
+    a_i^2 / sum a^2, first and total alike."""
+    keys = "".join(
+        f'[[vary]]\nkey = "{key}"\nlow = {low}\nhigh = {high}\n'
+        for key, low, high in (
+            ("friction.coefficient", 0.1, 0.5),
+            ("load.normal_force", 1e3, 1e5),
+            ("motion.rolling_speed", 1.0, 9.0),
+        )
+    )
+    head = '[sweep]\nscene = "scene.toml"\nsamples = {}\ndesign = "{}"\n'
+    a = [1.0, -2.0, 0.5]
+    plan = load_plan(files(tmp_path, head.format(8, "morris") + keys))
+    assert len(plan.points) == 8 * 4
+    for (key, mu, _, sigma), size in zip(indices_of(plan, linear(plan, a)), a, strict=True):
+        assert key in plan.keys
+        assert mu == pytest.approx(abs(size), rel=1e-12)
+        assert sigma == pytest.approx(0.0, abs=1e-12)
+    plan = load_plan(files(tmp_path, head.format(1024, "saltelli") + keys))
+    assert len(plan.points) == 1024 * 5
+    whole = sum(size**2 for size in a)
+    for (_, first, _, total, _), size in zip(indices_of(plan, linear(plan, a)), a, strict=True):
+        assert first == pytest.approx(size**2 / whole, abs=0.01)
+        assert total == pytest.approx(size**2 / whole, abs=0.01)
