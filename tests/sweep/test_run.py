@@ -216,7 +216,9 @@ def test_sensitivities_of_a_linear_output(tmp_path: Path) -> None:
         assert key in plan.keys
         assert mu == pytest.approx(abs(size), rel=1e-12)
         assert sigma == pytest.approx(0.0, abs=1e-12)
+    assert load_plan(files(tmp_path, head.format(8, "morris") + keys)).points == plan.points
     plan = load_plan(files(tmp_path, head.format(1024, "saltelli") + keys))
+    assert indices_of(plan, linear(plan, a)) == indices_of(plan, linear(plan, a))
     assert len(plan.points) == 1024 * 5
     whole = sum(size**2 for size in a)
     for (_, first, _, total, _), size in zip(indices_of(plan, linear(plan, a)), a, strict=True):

@@ -54,7 +54,7 @@ class SweepTable(Table):
         description="-, number of points of latin_hypercube and sobol, of trajectories of morris, "
         "of base points of saltelli",
     )
-    seed: Annotated[int, Field(ge=0, le=2**32 - 1)] = Field(
+    seed: Annotated[int, Field(ge=0, le=2**32 - 2)] = Field(
         default=0, description="-, of the sampled designs"
     )
     outputs: list[str] | None = Field(
@@ -282,9 +282,10 @@ def unit_points(table: SweepTable, keys: int) -> Array:
     }
     if keys < 2:
         raise CaseError(f"vary: has {keys} key, allowed 2 or more with the design {table.design}")
+    # SALib takes a seed of 0 for none
     if table.design == "morris":
-        return np.asarray(morris.sample(problem, count, num_levels=LEVELS, seed=seed))
-    return np.asarray(sobol.sample(problem, count, calc_second_order=False, seed=seed))
+        return np.asarray(morris.sample(problem, count, num_levels=LEVELS, seed=1 + seed))
+    return np.asarray(sobol.sample(problem, count, calc_second_order=False, seed=1 + seed))
 
 
 def salib() -> None:

@@ -21,7 +21,7 @@ def indices_of(plan: Plan, values: NDArray[np.float64]) -> list[tuple[Any, ...]]
         return [(key, *[0.0] * (3 if plan.table.design == "morris" else 4)) for key in plan.keys]
     if plan.table.design == "morris":
         found = morris.analyze(
-            plan.problem(), plan.unit_points(), values, num_levels=LEVELS, seed=plan.table.seed
+            plan.problem(), plan.unit_points(), values, num_levels=LEVELS, seed=1 + plan.table.seed
         )
         return list(
             zip(
@@ -30,7 +30,7 @@ def indices_of(plan: Plan, values: NDArray[np.float64]) -> list[tuple[Any, ...]]
                 strict=True,
             )
         )
-    found = sobol.analyze(plan.problem(), values, calc_second_order=False, seed=plan.table.seed)
+    found = sobol.analyze(plan.problem(), values, calc_second_order=False, seed=1 + plan.table.seed)
     return list(
         zip(
             plan.keys,
