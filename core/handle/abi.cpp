@@ -1,19 +1,14 @@
 #include <cstring>
 #include <new>
 
+#include "handle/abi.hpp"
 #include "handle/case_fields.hpp"
 #include "handle/check.hpp"
-#include "handle/contact.hpp"
 #include "numeric/interrupt.hpp"
 #include "patch/status.hpp"
 #include "railpatch.h"
 
 using namespace railpatch;
-
-struct rp_contact {
-  explicit rp_contact(const rp_config &config) : handle(config) {}
-  contact handle;
-};
 
 // No exception leaves this file: creation may run out of memory or meet a bad profile; a step
 // throws nothing of its own.

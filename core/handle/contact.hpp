@@ -38,6 +38,8 @@ class contact {
   void describe(rp_stage_info *info) const;
   // As the checks of inputs read it; its arrays are gone.
   const rp_config &config() const { return config_; }
+  // Whether it was made from the same config, with the same arrays.
+  bool is_like(const contact &other) const { return fingerprint_ == other.fingerprint_; }
 
  private:
   // A grid to solve on, with what is made for it.

@@ -1,9 +1,10 @@
 /* Railpatch: wheel-rail contact mechanics, C interface. Its structs as lists: railpatch_fields.h.
  *
  * Life cycle: rp_default_config -> rp_create -> (rp_default_input once) rp_step ... -> rp_destroy.
- * rp_create is the only call that allocates; rp_step allocates nothing, keeps no time of day,
- * prints nothing and touches no global. Different handles may be used on different threads at once;
- * one handle is used by one thread at a time. Equal inputs after equal histories give equal bits.
+ * rp_create is the only call that allocates, but for the threads of rp_step_many; rp_step allocates
+ * nothing, keeps no time of day, prints nothing and touches no global. Different handles may be
+ * used on different threads at once; one handle is used by one thread at a time. Equal inputs after
+ * equal histories give equal bits.
  *
  * Units: SI throughout (m, N, Pa, rad, s, W, J). Frames and signs (right-handed everywhere):
  *   track frame    x forward along the track centre line, y right, z down; origin in the plane on
@@ -764,6 +765,21 @@ RP_API void rp_destroy(rp_contact *contact); /* null is allowed */
  * handle are untouched; see rp_config.interrupt for the one exception. */
 RP_API rp_error rp_step(rp_contact *contact, const rp_input *input, rp_result *result,
                         rp_message *message);
+/* Many states: `count` sequences of `length` steps each; inputs and results are [count][length]. A
+ * sequence begins as after rp_reset and goes on as by rp_step; length 1: states of which none knows
+ * of another. So a result is the same to the bit whatever the number of threads and whatever else
+ * is solved. contacts: [threads], of one config and with one friction coefficient, none twice, each
+ * for a thread of which the caller's is the first; threads are made and joined here (those that the
+ * system has not are done without), else nothing is allocated. They end as after rp_reset.
+ *
+ * All inputs are checked before anything is solved: where one is wrong nothing is done and *wrong
+ * (may be null) is its place. RP_ERROR_INTERRUPTED: as soon as one contact's rp_config.interrupt
+ * asks for the end, the other threads end with the sequence they are at, and which results are
+ * there is not known. Not part of an FMU's library. */
+RP_API rp_error rp_step_many(rp_contact *const *contacts, int32_t threads, const rp_input *inputs,
+                             size_t count, size_t length, rp_result *results, size_t *wrong,
+                             rp_message *message);
+
 /* How a derivative was found. */
 #define RP_DERIVATIVE_KINDS(X)                                       \
   /* from the solved conditions, by the implicit function theorem */ \

@@ -30,7 +30,9 @@ approach = 1e-5
 tangential = "none"
 """
 # commands that write a folder, or have no input
-FOLDERS = ("bench", "continuity", "stress")
+FOLDERS = {name: (name,) for name in ("bench", "continuity", "stress")} | {
+    "sweep": ("sweep", "sweep.toml")
+}
 
 
 def invoke(*arguments: object) -> Result:
@@ -155,7 +157,7 @@ def test_folders_that_are_not_there(tmp_path: Path, command: str):
 def test_folders_that_cannot_be(tmp_path: Path, command: str):
     file = tmp_path / "file"
     file.write_text("kept")
-    refused = invoke(command, "-o", file / "below")
+    refused = invoke(*FOLDERS[command], "-o", file / "below")
     assert refused.exit_code == 2, refused.output
     assert f"--output: value is {str(file / 'below')!r}, allowed a folder" in refused.output
     assert file.read_text() == "kept"

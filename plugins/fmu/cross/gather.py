@@ -35,7 +35,7 @@ def sources(root: Path, generated: Path, headers: Path) -> dict[str, bytes]:
     core = [p for ending in ("cpp", "hpp", "inc") for p in (root / "core").glob(f"*/*.{ending}")]
     plugin = list((root / "plugins" / "fmu" / "src").glob("*.[ch]pp"))
     for path in core + plugin:
-        if path.name != "fft_fftw.cpp":  # the other backend
+        if path.name not in ("fft_fftw.cpp", "many.cpp"):  # the other backend; threads
             first = FIRST if path.suffix == ".cpp" else b""
             # rooms of the core at the top, where their includes begin
             name = path.relative_to(root).as_posix().removeprefix("core/")

@@ -77,6 +77,7 @@ class Contact:
         self, case: CaseSource, *, folder: str | Path | None = None, timing: bool = False
     ) -> None:
         scene = case if isinstance(case, Scene) else load_scene(case, folder)
+        self._scene, self._timing = scene, timing
         self._case, self._folder = scene.case, scene.folder
         self._irregularity = irregularity_of(scene)
         self._core = _core.Contact(config_of(scene), timing)
@@ -218,6 +219,12 @@ class Contact:
         self._last = None
         self._case = self._case.model_copy(update=changed)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copies and pickles have the state: their next step gives the same bits. Profiles are read
+        anew, by their absolute paths; last() begins with the next step."""
+        scene = Scene(self._scene.case, self._folder.resolve())
+        return _restored, (scene, self._timing, self.save())
+
     def stages(self) -> list[dict[str, Any]]:
         """name, present, reason, bytes (memory held) and seconds (0 without timing) per stage."""
         return self._core.describe()
@@ -253,6 +260,13 @@ class Contact:
                 continue
             found[name] = shaped_field(name, values, grid)
         return found
+
+
+def _restored(scene: Scene, timing: bool, state: bytes) -> Contact:
+    """A contact of a scene with a saved state."""
+    contact = Contact(scene, timing=timing)
+    contact.restore(state)
+    return contact
 
 
 def split_state(state: bytes) -> tuple[dict[str, Any], bytes]:

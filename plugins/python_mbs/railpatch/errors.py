@@ -17,6 +17,14 @@ class CaseError(ValueError):
         super().__init__("\n".join(self.problems))
 
 
+class StateError(CaseError):
+    """One of many states is not valid. ``state``: its number, from 0; ``problem``: of what."""
+
+    def __init__(self, state: int, problem: str) -> None:
+        self.state, self.problem = int(state), problem
+        super().__init__(f"state {self.state}: {problem}")
+
+
 class ProfileError(ValueError):
     """A profile cannot be used. Names the file (or built-in name), the line and what is wrong."""
 

@@ -173,14 +173,7 @@ nb::list numbers_of(const T &field) {
 // None where all is well
 template <typename Result>
 nb::object reason_of(const Result &from) {
-  if (from.reason == RP_REASON_NONE) return nb::none();
-  std::string text = rp_reason_text(from.reason);
-  if (!std::isnan(from.reason_value)) {
-    char number[32];
-    std::snprintf(number, sizeof number, " (%.4g)", from.reason_value);
-    text += number;
-  }
-  return nb::cast(text);
+  return reason_text(from.reason, from.reason_value);
 }
 
 template <typename T>
@@ -287,6 +280,17 @@ nb::dict result_dict(const rp_result &from) {
   to["right"] = side_dict(from.side[RP_RIGHT]);
   to["reason"] = reason_of(from);
   return to;
+}
+
+nb::object reason_text(rp_reason reason, double value) {
+  if (reason == RP_REASON_NONE) return nb::none();
+  std::string text = rp_reason_text(reason);
+  if (!std::isnan(value)) {
+    char number[32];
+    std::snprintf(number, sizeof number, " (%.4g)", value);
+    text += number;
+  }
+  return nb::cast(text);
 }
 
 nb::list warnings_of(uint32_t bits) {

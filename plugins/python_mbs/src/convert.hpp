@@ -37,6 +37,8 @@ nb::dict config_dict(const rp_config &config);
 nb::dict result_dict(const rp_result &result);
 // texts of bits 1 << RP_WARNING_...
 nb::list warnings_of(uint32_t bits);
+// None where all is well
+nb::object reason_text(rp_reason reason, double value);
 nb::dict jacobian_dict(const rp_jacobian &found);
 nb::list stage_list(const rp_stage_info *info, const double *seconds);
 

@@ -2,6 +2,7 @@
 
 #include <nanobind/stl/string.h>
 
+#include <cstddef>
 #include <string>
 #include <type_traits>
 
@@ -127,6 +128,46 @@ nb::dict listed_input() {
   nb::dict to;
   RP_INPUT_FIELDS(RAILPATCH_INPUT, RAILPATCH_SKIP)
   return to;
+}
+
+namespace {
+
+// as numpy writes it
+template <typename T>
+const char *format_of() {
+  using number = std::remove_all_extents_t<T>;
+  if constexpr (std::is_same_v<number, double>) {
+    return "<f8";
+  } else {
+    static_assert(sizeof(number) == 4);
+    return std::is_same_v<number, uint32_t> ? "<u4" : "<i4";
+  }
+}
+
+}  // namespace
+
+#define RAILPATCH_MEMBER(type, name, ...)                                               \
+  to[#name] = nb::make_tuple(offsetof(whole, name), format_of<decltype(whole::name)>(), \
+                             shape_of<decltype(whole::name)>());
+#define RAILPATCH_INNER(type, name, count) \
+  to[#name] = nb::make_tuple(offsetof(whole, name), nb::str(#name), nb::make_tuple(int{count}));
+#define RAILPATCH_LAYOUT(type, key, LIST, OTHER) \
+  {                                              \
+    using whole = type;                          \
+    nb::dict to, layout;                         \
+    LIST(RAILPATCH_MEMBER, OTHER)                \
+    layout["size"] = sizeof(whole);              \
+    layout["members"] = to;                      \
+    all[key] = layout;                           \
+  }
+
+nb::dict layouts() {
+  nb::dict all;
+  RAILPATCH_LAYOUT(rp_input, "input", RP_INPUT_FIELDS, RAILPATCH_SKIP)
+  RAILPATCH_LAYOUT(rp_patch_result, "patch", RP_PATCH_RESULT_FIELDS, RAILPATCH_SKIP)
+  RAILPATCH_LAYOUT(rp_side_result, "side", RP_SIDE_RESULT_FIELDS, RAILPATCH_INNER)
+  RAILPATCH_LAYOUT(rp_result, "result", RP_RESULT_FIELDS, RAILPATCH_INNER)
+  return all;
 }
 
 }  // namespace railpatch::python

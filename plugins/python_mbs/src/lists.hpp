@@ -16,6 +16,9 @@ nb::dict listed_choices();
 // "text"
 nb::dict listed_config();
 nb::dict listed_input();
+// of the structs "input", "result", "side" and "patch": "size" in bytes and "members", name ->
+// (offset in bytes, type of a number or name of a struct, shape)
+nb::dict layouts();
 // low and high of what is plausible, by field
 nb::dict listed_ranges();
 

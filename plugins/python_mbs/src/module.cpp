@@ -10,6 +10,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "convert.hpp"
 #include "elementary.hpp"
@@ -24,6 +25,8 @@ namespace railpatch::python {
 namespace {
 
 using FieldArray = nb::ndarray<nb::numpy, double, nb::ndim<1>>;
+// bytes of structs after each other
+using Records = nb::ndarray<nb::numpy, uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 // a call that the core refused
 struct CallError {
@@ -184,6 +187,58 @@ class Contact : public Steppable {
     check(rp_step(contact_.get(), &input, &result, &message), &message);
   }
 
+  // Records of rp_input and rp_result, as many; wrong: the place of an input that is.
+  static void step_many(const nb::list &all, const Records &inputs, size_t length,
+                        const Records &results) {
+    std::vector<Contact *> contacts;
+    for (const nb::handle one : all) contacts.push_back(nb::cast<Contact *>(one));
+    const size_t count = inputs.shape(0) / sizeof(rp_input);
+    if (contacts.empty() || length == 0 || count % length != 0 ||
+        inputs.shape(0) != count * sizeof(rp_input) ||
+        results.shape(0) != count * sizeof(rp_result))
+      throw nb::value_error("step_many: records of another size");
+    const auto *from = reinterpret_cast<const rp_input *>(inputs.data());
+    auto *to = reinterpret_cast<rp_result *>(results.data());
+    rp_message message = {};
+    rp_error code = RP_OK;
+    size_t wrong = count;
+    {
+      nb::gil_scoped_release unlocked;
+      std::vector<std::unique_lock<std::mutex>> guards;
+      std::vector<rp_contact *> handles;
+      for (Contact *one : contacts) {
+        guards.emplace_back(one->mutex_);
+        handles.push_back(one->contact_.get());
+      }
+      // the caller's thread asks for all
+      const Signals::Watch watch(contacts[0]->signals_);
+      code = rp_step_many(handles.data(), static_cast<int32_t>(handles.size()), from,
+                          count / length, length, to, &wrong, &message);
+    }
+    if (wrong < count) {
+      nb::object type = nb::module_::import_("railpatch.errors").attr("StateError");
+      PyErr_SetObject(type.ptr(), nb::make_tuple(wrong, nb::str(message.text)).ptr());
+      throw nb::python_error();
+    }
+    raise(code, message);
+  }
+
+  // One of each, as step(): its fields can be asked for.
+  void step_record(const Records &input, const Records &result) {
+    if (input.shape(0) != sizeof(rp_input) || result.shape(0) != sizeof(rp_result))
+      throw nb::value_error("step_record: a record of another size");
+    rp_message message = {};
+    rp_error code = RP_OK;
+    {
+      nb::gil_scoped_release unlocked;
+      std::lock_guard<std::mutex> guard(mutex_);
+      const Signals::Watch watch(signals_);
+      code = rp_step(contact_.get(), reinterpret_cast<const rp_input *>(input.data()),
+                     reinterpret_cast<rp_result *>(result.data()), &message);
+    }
+    raise(code, message);
+  }
+
   nb::tuple time_steps(const nb::list &inputs, const nb::list &reset, int repeat) {
     timed_steps steps(inputs, reset, repeat);
     {
@@ -316,6 +371,21 @@ NB_MODULE(_core, m) {
       },
       nb::arg("config"), "The plain fields of rp_config as lists of numbers, defaults filled in.");
 
+  m.def(
+      "reason_text",
+      [](int reason, double value) { return reason_text(static_cast<rp_reason>(reason), value); },
+      nb::arg("reason"), nb::arg("value"), "The text of an rp_reason with its number.");
+  m.def("warning_texts", &warnings_of, nb::arg("bits"), "The texts of a mask of warnings.");
+  m.def(
+      "input_record",
+      [](const nb::dict &values) {
+        rp_input input;
+        rp_default_input(&input);
+        fill_input(values, input);
+        return nb::bytes(reinterpret_cast<const char *>(&input), sizeof input);
+      },
+      nb::arg("input"), "The bytes of an rp_input, defaults where fields are left out.");
+
 #define RAILPATCH_ENTRY(name, value, text) texts[nb::int_(value)] = text;
   nb::dict texts;
   RP_STATUSES(RAILPATCH_ENTRY)
@@ -330,6 +400,7 @@ NB_MODULE(_core, m) {
   m.attr("CONFIG_FIELDS") = listed_config();
   m.attr("INPUT_FIELDS") = listed_input();
   m.attr("PLAUSIBLE") = listed_ranges();
+  m.attr("LAYOUTS") = layouts();
 
   nb::class_<Steppable>(m, "Steppable", "A contact that a force element may step.");
   nb::class_<Contact, Steppable>(m, "Contact", "A handle of the library with its state and memory.")
@@ -344,6 +415,13 @@ NB_MODULE(_core, m) {
       .def("jacobian", &Contact::jacobian,
            "rp_jacobian of the last step, rows after each other. The interpreter's lock is "
            "released.")
+      .def_static("step_many", &Contact::step_many, nb::arg("contacts"), nb::arg("inputs"),
+                  nb::arg("length"), nb::arg("results"),
+                  "rp_step_many: bytes of rp_input to bytes of rp_result, on as many threads as "
+                  "contacts. Raises StateError for a wrong input. The interpreter's lock is "
+                  "released.")
+      .def("step_record", &Contact::step_record, nb::arg("input"), nb::arg("result"),
+           "Bytes of one rp_input to those of one rp_result. The interpreter's lock is released.")
       .def("time_steps", &Contact::time_steps, nb::arg("inputs"), nb::arg("reset"),
            nb::arg("repeat") = 1,
            "Steps through a list of inputs `repeat` times, each time forgetting the last solution "

@@ -4,7 +4,8 @@
 gives the table of a finished one.
 """
 
-from railpatch.sweep.run import Sweep, run_sweep
+from railpatch.sweep.outcome import Sweep
+from railpatch.sweep.run import run_sweep
 from railpatch.sweep.store import read_sweep
 
 __all__ = ["Sweep", "read_sweep", "run_sweep"]

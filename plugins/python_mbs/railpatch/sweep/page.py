@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import plotly.graph_objects as go
@@ -16,11 +15,9 @@ from railpatch.case.load import KINDS
 from railpatch.page.document import document
 from railpatch.page.figures import COLORS, GREY, plot, styled
 from railpatch.page.tables import number, table
+from railpatch.sweep.outcome import Sweep
 from railpatch.sweep.plan import SENSITIVITY
 from railpatch.writing import write_whole
-
-if TYPE_CHECKING:
-    from railpatch.sweep.run import Sweep
 
 PAGE = "sweep.html"
 # of what a page can show at once

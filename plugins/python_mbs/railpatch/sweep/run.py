@@ -8,14 +8,13 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from multiprocessing import get_context
 from pathlib import Path
 
 from railpatch.case.load import KINDS, check_case
 from railpatch.case.moving import moving_keys
 from railpatch.errors import CaseError
-from railpatch.result import GOOD
+from railpatch.sweep.outcome import Sweep
 from railpatch.sweep.plan import Plan, load_plan, steps_of
 from railpatch.sweep.store import need_pyarrow, read_rows, write_chunk, write_results
 from railpatch.sweep.work import Chunk, Row, check_first, first_names, solve_chunk
@@ -26,29 +25,6 @@ MOST_IN_CHUNK = 5000
 TRIES = 3
 WORKER_DIED = "worker_died"
 Backend = Callable[[list[Chunk]], Iterable[tuple[Chunk, list[Row]]]]
-
-
-@dataclass
-class Sweep:
-    """A sweep in its folder. rows: by case, in the order of the points; outputs: their names.
-
-    reused: cases that were in the folder before; solved: cases that this run solved; written: the
-    files made at the end; wall_time: s.
-    """
-
-    plan: Plan
-    folder: Path
-    outputs: tuple[str, ...]
-    rows: list[Row]
-    reused: int
-    solved: int
-    wall_time: float
-    written: list[Path] = field(default_factory=list)
-
-    @property
-    def failed(self) -> list[int]:
-        """Numbers of the cases without a good result."""
-        return [i for i, row in enumerate(self.rows) if row.status not in GOOD]
 
 
 def run_sweep(
@@ -104,6 +80,7 @@ def run_sweep(
     sweep = Sweep(plan, folder, outputs, rows, reused, solved, time.perf_counter() - begin)
     sweep.written.append(write_results(folder, plan, rows, outputs))
     if page:
+        # plotly takes a while to import, and workers import this
         from railpatch.sweep.page import write_page
 
         sweep.written.append(write_page(sweep))
