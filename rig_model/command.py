@@ -58,6 +58,8 @@ def rig(
     measured. A log that was cut off can be read up to less than a second before its end.
     """
     # scipy and the log's libraries take a while to import; other commands need not wait for them
+    from railpatch.profiles.pairing.pressure_error import run_doubts
+
     from rig_model.run import replay
     from rig_model.scene import default_scene, load_rig_scene
 
@@ -72,7 +74,8 @@ def rig(
             summary = replay(loaded, output, advance)
     if not quiet:
         click.echo(summary.text())
-    tell_warnings(summary.warned.lines(), strict=strict, quiet=quiet)
+    doubts = run_doubts(loaded.case, Path())
+    tell_warnings([*doubts, *summary.warned.lines()], strict=strict, quiet=quiet)
     if not summary.good:
         if not quiet:
             missed = len(summary.converged) - int(summary.converged.sum())
@@ -121,6 +124,8 @@ def curve(
 
     Without a scene it has S1002 profiles on UIC60 rails inclined 1:40, in curves of 600 and 175 m.
     """
+    from railpatch.profiles.pairing.pressure_error import run_doubts
+
     from rig_model.curve import METHODS, load_curve_scene, steady_curves
 
     with wrong_calls():
@@ -132,7 +137,8 @@ def curve(
         click.echo(json.dumps(rows, allow_nan=False))
     elif not quiet:
         print_curves(found)
-    tell_warnings(warned_of(curves).lines(), strict=strict, quiet=quiet)
+    doubts = run_doubts(loaded.case, loaded.folder)
+    tell_warnings([*doubts, *warned_of(curves).lines()], strict=strict, quiet=quiet)
     if not all(item.converged for item in curves):
         context.exit(EXIT_NOT_CONVERGED)
 

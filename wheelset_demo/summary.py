@@ -5,11 +5,13 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from railpatch.case.types import SIDES
+from railpatch.profiles.pairing.pressure_error import run_doubts
 
 from wheelset_demo.system import WORKS
 from wheelset_demo.trace import Trace
@@ -131,7 +133,7 @@ def summarise(
         in_the_air={
             side: sum(status[side] == "no_contact" for status in trace.statuses) for side in SIDES
         },
-        warnings=trace.warned.lines(),
+        warnings=[*run_doubts(trace.scene.case, Path()), *trace.warned.lines()],
         evaluations=trace.evaluations,
         solve_seconds=trace.solve_seconds,
         wall_time=wall_time,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from railpatch.profiles.pairing.pressure_error import run_doubts
 from railpatch.result import Warned
 
 from wheelset_demo.scene import GRAVITY
@@ -243,6 +244,10 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
         lost=trace.lost(),
         seconds=seconds,
         real_time=wall / time if time > 0 else 0.0,
-        warnings=[*doubtful_bodies(simulation.scene), *trace.warned.lines()],
+        warnings=[
+            *doubtful_bodies(simulation.scene),
+            *run_doubts(simulation.scene.case, Path()),
+            *trace.warned.lines(),
+        ],
         logging_share=trace.logging_share,
     )

@@ -17,7 +17,7 @@ from railpatch.case.load import Case, Scene, check_table, load_scene
 from railpatch.case.messages import show
 from railpatch.case.moving import changed_case, moving_keys, with_numbers
 from railpatch.case.patch import Motion, PatchCase
-from railpatch.case.scene_profiles import profile_notes
+from railpatch.case.scene_profiles import Shelf, profile_notes
 from railpatch.case.to_core import (
     FORCE_AND_MOMENT,
     POSE_AND_VELOCITY,
@@ -28,6 +28,7 @@ from railpatch.case.to_core import (
 from railpatch.case.track import add_irregularity, irregularity_of
 from railpatch.case.types import SIDES
 from railpatch.errors import CaseError
+from railpatch.profiles.pairing.pressure_error import Replica, doubts, lines, replica_of
 from railpatch.result import (
     FIELDS,
     GOOD,
@@ -80,7 +81,10 @@ class Contact:
         self._scene, self._timing = scene, timing
         self._case, self._folder = scene.case, scene.folder
         self._irregularity = irregularity_of(scene)
-        self._core = _core.Contact(config_of(scene), timing)
+        self._shelf = None if scene.case.kind == "patch" else Shelf(scene.case, scene.folder)
+        self._core = _core.Contact(config_of(scene, self._shelf), timing)
+        self._replica: Replica | None = None
+        self._values: dict[str, Any] = {}
         self._last: tuple[dict[str, Any], float] | None = None
         self._stages = [stage["name"] for stage in self.stages() if stage["present"]]
 
@@ -89,14 +93,38 @@ class Contact:
         """The checked case with the moving inputs of the last step."""
         return self._case
 
-    def profile_notes(self) -> dict[str, list[str]]:
-        """What was assumed of each profile file and done to it: unit, axes, noise, smoothing.
+    @property
+    def folder(self) -> Path:
+        """Where the case's relative paths start."""
+        return self._folder
 
-        The files are read once more. Raises ProfileError.
+    def profile_notes(self) -> dict[str, list[str]]:
+        """What was assumed of each profile file and done to it: unit, axes, noise, smoothing."""
+        return {} if self._shelf is None else profile_notes(self._case, self._shelf)
+
+    def noisy_profiles(self) -> list[str]:
+        """Names of the profile files in whose points noise was found."""
+        noisy = {} if self._shelf is None else self._shelf.noisy()
+        return list(dict.fromkeys(Path(name).name for _, name in noisy))
+
+    def pressure_error(self) -> dict[str, float]:
+        """By wheel ("left", "right"), what 95 % of the errors of the last step's max_pressure stay
+        below, over it, for the noise found in profile files; empty without noise or contact.
+
+        16 contacts with other noise of the same size are solved for it, some 30 ms of the first
+        call and 15 ms of each (docs/profiles.md); NaN where half of them have no contact. What the
+        step begins from has no part in it: no memory, no stored heat. Raises CaseError before the
+        first step.
         """
-        if self._case.kind == "patch":
+        if self._last is None:
+            raise CaseError("pressure_error: there is no step, allowed after step()")
+        if self._shelf is None or not self._shelf.noisy():
             return {}
-        return profile_notes(self._case, self._folder)
+        if self._replica is None:
+            self._replica = replica_of(Scene(self._case, self._folder), self._shelf)
+        raw, _ = self._last
+        found = {name: raw[name] for name in self._shelf.case.wheelset.found}
+        return self._replica.errors({**self._values, **found}, raw)
 
     def step(self, *, fields: bool = False, **changes: Any) -> Result:
         """Solves with some moving inputs changed; the others keep their last value.
@@ -137,6 +165,7 @@ class Contact:
             raise
         wall_time = time.perf_counter() - begin
         self._case = case
+        self._values = values
         self._last = raw, wall_time
         return Result(self._data(raw, wall_time, fields))
 
@@ -303,13 +332,28 @@ def solve(
     """
     contact = Contact(case, folder=folder)
     result = _solved(contact, fields)
+    notes = [*notes_of_solve(contact.case), *_add_pressure_error(contact, result)]
     if strict and result.warnings:
         raise CaseError(result.warnings)
-    if notes := contact.profile_notes():
-        result.data["profiles"] = notes
-    if notes := notes_of_solve(contact.case):
+    if assumed := contact.profile_notes():
+        result.data["profiles"] = assumed
+    if notes:
         result.data["notes"] = notes
     return result
+
+
+def _add_pressure_error(contact: Contact, result: Result) -> list[str]:
+    """Puts max_pressure_error to each wheel of a result, and a warning of great ones; returns
+    lines on the others."""
+    errors = contact.pressure_error() if result.solved else {}
+    if not errors:
+        return []
+    files = contact.noisy_profiles()
+    for side, error in errors.items():
+        result.data.get(side, result.data)["max_pressure_error"] = error
+    warnings = doubts(errors, files)
+    result.data["warnings"] = [*result.warnings, *warnings]
+    return [] if warnings else lines(errors, files)
 
 
 def notes_of_solve(case: Case) -> list[str]:

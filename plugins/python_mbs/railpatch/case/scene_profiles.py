@@ -34,7 +34,39 @@ def named_profile(case: WheelCase, body: Body, name: str, folder: Path) -> Profi
     return load_profile(name, body, folder=folder, smoothing=profiles.smoothing, reading=reading)
 
 
-def scene_profiles(case: WheelCase, folder: Path) -> list[Placed]:
+class Shelf:
+    """The profiles of a case by body and name, each read once."""
+
+    def __init__(self, case: WheelCase, folder: Path) -> None:
+        self.case, self.folder = case, folder
+        self.found: dict[tuple[Body, str], Profile] = {}
+
+    def profile(self, body: Body, name: str) -> Profile:
+        """One by its name in the case. Raises ProfileError."""
+        key = body, name
+        if key not in self.found:
+            self.found[key] = named_profile(self.case, body, name, self.folder)
+        return self.found[key]
+
+    def fill(self) -> None:
+        """Reads all that the case names. Raises ProfileError."""
+        placed_profiles(self.case, self)
+        for side in self.case.sides:
+            for section in getattr(self.case.track, side).sections or ():
+                self.profile("rail", section.profile)
+
+    def noisy(self) -> dict[tuple[Body, str], Profile]:
+        """Those of files in whose points noise was found."""
+        return {key: found for key, found in self.found.items() if found.scatter is not None}
+
+    def with_profiles(self, profiles: dict[tuple[Body, str], Profile]) -> Shelf:
+        """A shelf with these in place of those of the files."""
+        other = Shelf(self.case, self.folder)
+        other.found = {**self.found, **profiles}
+        return other
+
+
+def placed_profiles(case: WheelCase, shelf: Shelf) -> list[Placed]:
     """Of each wheel and each rail of one profile. Raises ProfileError."""
     found = []
     for body in BODIES:
@@ -43,12 +75,21 @@ def scene_profiles(case: WheelCase, folder: Path) -> list[Placed]:
                 continue
             _, name = case.profiles.of(body, side)
             assert name is not None
-            profile = named_profile(case, body, name, folder)
-            if body == "wheel":
-                check_wheel(case, side, name, profile)
-            elif builtin_profile(name, body) is None:
-                check_gauge_side(name, profile.y, profile.z, case.track.gauge_height)
-            found.append(Placed(side, body, profile))
+            found.append(Placed(side, body, shelf.profile(body, name)))
+    return found
+
+
+def scene_profiles(case: WheelCase, shelf: Shelf) -> list[Placed]:
+    """The same, checked in their places. Raises ProfileError."""
+    found = placed_profiles(case, shelf)
+    for placed in found:
+        _, name = case.profiles.of(placed.body, placed.side)
+        assert name is not None
+        profile = placed.profile
+        if placed.body == "wheel":
+            check_wheel(case, placed.side, name, profile)
+        elif builtin_profile(name, placed.body) is None:
+            check_gauge_side(name, profile.y, profile.z, case.track.gauge_height)
     return found
 
 
@@ -61,12 +102,16 @@ def check_wheel(case: WheelCase, side: str, name: str, profile: Profile) -> None
     check_placed(name, moved.y, moved.z, case.wheelset.flange_back_position)
 
 
-def profile_notes(case: WheelCase, folder: Path) -> dict[str, list[str]]:
+def profile_notes(case: WheelCase, shelf: Shelf) -> dict[str, list[str]]:
     """What was assumed of each profile file and done to it, by file as the case names it."""
     notes: dict[str, list[str]] = {}
-    for placed in scene_profiles(case, folder):
-        if placed.profile.notes:
-            notes[Path(placed.profile.name).name] = list(placed.profile.notes)
+    profiles = [placed.profile for placed in placed_profiles(case, shelf)]
+    for side in case.sides:
+        sections = getattr(case.track, side).sections or ()
+        profiles += [shelf.profile("rail", section.profile) for section in sections]
+    for profile in profiles:
+        if profile.notes:
+            notes[Path(profile.name).name] = list(profile.notes)
     return notes
 
 

@@ -22,7 +22,7 @@ from railpatch.case.messages import show
 from railpatch.case.moving import BY_TABLE, moving_keys, refuse_unknown
 from railpatch.case.patch import SHAPES, STEPWISE, PatchCase
 from railpatch.case.resolve import choose, resolved
-from railpatch.case.scene_profiles import Placed, named_profile, scene_profiles
+from railpatch.case.scene_profiles import Placed, Shelf, scene_profiles
 from railpatch.case.types import BODIES, MOST_POINTS, SIDES, Table, listed
 from railpatch.case.wheel import Deviation, WheelRailCase, WheelsetCase
 from railpatch.errors import CaseError
@@ -65,8 +65,9 @@ def passed(name: str, table: Table | None, fields: Mapping[str, Any]) -> dict[st
     return found
 
 
-def config_of(scene: Scene) -> dict[str, Any]:
-    """Fields of rp_config. Raises CaseError, ProfileError."""
+def config_of(scene: Scene, shelf: Shelf | None = None) -> dict[str, Any]:
+    """Fields of rp_config. shelf: of its profiles, where others use them too. Raises CaseError,
+    ProfileError."""
     case, choice = resolved(scene.case), choose(scene.case)
     config: dict[str, Any] = {"kind": case.kind, **grid_config(case)}
     if choice is not None and case.has_tangential:
@@ -78,7 +79,7 @@ def config_of(scene: Scene) -> dict[str, Any]:
         config["creep_table"] = default_table()
     if isinstance(case, PatchCase):
         return config | patch_config(case, scene.folder)
-    return config | wheel_config(case, scene.folder)
+    return config | wheel_config(case, scene.folder, shelf or Shelf(case, scene.folder))
 
 
 def friction_config(case: Case) -> dict[str, Any]:
@@ -161,19 +162,23 @@ def patch_config(case: PatchCase, folder: Path) -> dict[str, Any]:
     return config
 
 
-def wheel_config(case: WheelCase, folder: Path) -> dict[str, Any]:
+def wheel_config(case: WheelCase, folder: Path, shelf: Shelf) -> dict[str, Any]:
     """Load, regime, profiles, rails and shapes of wheels."""
-    placed = scene_profiles(case, folder)
     found = case.wheelset.found
     config: dict[str, Any] = {
         "load": "position" if case.wheelset.z is not None else "force",
         "roll_balanced": int("roll" in found),
         "axle_free": int("pitch_rate" in found),
         "regime": case.motion.regime if case.has_tangential else "none",
-        **{body: profile_pair(placed, body) for body in BODIES},
         **passed("rail_support", case.track.rail_support, _core.CONFIG_FIELDS),
     }
-    return {**config, **sections_config(case, folder), **shape_config(case, folder)}
+    profiles = profiles_config(case, shelf, scene_profiles(case, shelf))
+    return {**config, **profiles, **shape_config(case, folder)}
+
+
+def profiles_config(case: WheelCase, shelf: Shelf, placed: list[Placed]) -> dict[str, Any]:
+    """Profiles of wheels and rails."""
+    return {**{body: profile_pair(placed, body) for body in BODIES}, **sections_config(case, shelf)}
 
 
 def profile_pair(placed: list[Placed], body: str) -> list[Any]:
@@ -187,7 +192,7 @@ def profile_arrays(profile: Profile) -> dict[str, Any]:
     return {key: getattr(profile, key) for key in ("arc_length", "y", "z", "dy", "dz")}
 
 
-def sections_config(case: WheelCase, folder: Path) -> dict[str, Any]:
+def sections_config(case: WheelCase, shelf: Shelf) -> dict[str, Any]:
     """Profiles of the rails along the track, where they vary; [left, right]."""
     rails = [getattr(case.track, side) for side in SIDES]
     found = [
@@ -198,7 +203,7 @@ def sections_config(case: WheelCase, folder: Path) -> dict[str, Any]:
         return {}
     profiles = []
     for sections in found:
-        loaded = [named_profile(case, "rail", s.profile, folder) for s in sections]
+        loaded = [shelf.profile("rail", s.profile) for s in sections]
         profiles.append([profile_arrays(p) for p in matching_sections(loaded)] if loaded else [])
     positions = [[section.position for section in sections] for sections in found]
     return {"rail_sections": profiles, "section_position": positions}

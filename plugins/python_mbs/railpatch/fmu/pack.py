@@ -17,6 +17,7 @@ from typing import Any, Literal
 
 from railpatch import _core
 from railpatch.case.load import Scene
+from railpatch.case.patch import PatchCase
 from railpatch.case.to_core import config_of
 from railpatch.contact import Contact, at_balance
 from railpatch.errors import CaseError
@@ -30,6 +31,7 @@ from railpatch.fmu.scene import kind_of, scene_text, variables_of
 from railpatch.fmu.sources import build_description, with_source_files
 from railpatch.fmu.step_size import step_size_of
 from railpatch.fmu.table import Kind, Table, Variable
+from railpatch.profiles.pairing.pressure_error import run_doubts
 from railpatch.result import SOLVED
 from railpatch.writing import write_whole
 
@@ -150,6 +152,8 @@ def contents_of(
         scene, name, asked=options.derivatives != "none" and not kind.has_history
     )
     doubtful = [f"{name}: {text}, at the start values" for text in start["warnings"]]
+    if not isinstance(scene.case, PatchCase):
+        doubtful += [f"{name}: {text}" for text in run_doubts(scene.case, scene.folder)]
     apart = check_starts(choices, name)
     provided = kinds == "exact" or (kinds == "differences" and options.derivatives == "always")
     if options.largest_step:

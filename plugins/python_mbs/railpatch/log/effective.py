@@ -15,8 +15,9 @@ from pydantic import BaseModel
 
 from railpatch.case.load import check_case, check_table, plain, tomllib
 from railpatch.case.resolve import resolved
-from railpatch.case.scene_profiles import note_lines, profile_notes
+from railpatch.case.scene_profiles import Shelf, note_lines, profile_notes
 from railpatch.errors import CaseError
+from railpatch.profiles.pairing.pressure_error import run_doubts
 
 # name of the attachment
 EFFECTIVE = "effective.json"
@@ -28,7 +29,7 @@ PROFILES = "profiles"
 class Effective:
     """data: JSON of all tables, complete, null where a key is left out. about: metadata of the log:
     theory, grid, step and duration (s), the keys that differ from the case file, and what was
-    assumed of its profile files."""
+    assumed of its profile files, and warnings of the error that their noise leaves."""
 
     data: bytes
     about: dict[str, str]
@@ -53,6 +54,7 @@ def effective(
         key: names.get(value, value) if isinstance(value, str) else value for key, value in given
     }
     read = as_read(text, tables)
+    shelf = Shelf(case, Path())
     return Effective(
         json.dumps(content, allow_nan=False, indent=1).encode(),
         {
@@ -61,7 +63,8 @@ def effective(
             "step": f"{step:.9g}",
             "duration": f"{duration:.9g}",
             "overrides": "; ".join(differences(read, content)),
-            "profiles": " | ".join(note_lines(profile_notes(case, Path()))),
+            "profiles": " | ".join(note_lines(profile_notes(case, shelf))),
+            "doubts": " | ".join(run_doubts(case, Path(), shelf)),
         },
     )
 

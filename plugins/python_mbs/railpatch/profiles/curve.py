@@ -14,6 +14,21 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
+class Scatter:
+    """What noise leaves to chance in the shape of a profile that was fitted to points.
+
+    noise: m, standard deviation of a point across the profile. spacing: m, of the points.
+    smoothing: m, wave length of which half the amplitude is kept; 0: interpolation. flattened: m,
+    [n], by which the same smoothing once more moves each knot across, z down.
+    """
+
+    noise: float
+    spacing: float
+    smoothing: float
+    flattened: Array
+
+
+@dataclass(frozen=True)
 class Profile:
     """A profile as a cubic Hermite curve in arc length (rp_profile of the C interface).
 
@@ -27,6 +42,7 @@ class Profile:
     dy: Array  # -, [n], derivative with respect to arc length
     dz: Array  # -, [n]
     notes: tuple[str, ...] = field(default=())  # what reading and clean-up changed
+    scatter: Scatter | None = None  # of noisy points
 
     def __post_init__(self) -> None:
         for key in ("arc_length", "y", "z", "dy", "dz"):
@@ -64,4 +80,5 @@ class Profile:
             c * self.dy - s * self.dz,
             s * self.dy + c * self.dz,
             self.notes,
+            self.scatter,
         )

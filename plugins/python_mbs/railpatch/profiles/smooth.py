@@ -8,11 +8,13 @@ length of which half the amplitude is kept: lambda = (L / 2 pi)^4.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from railpatch.errors import ProfileError
-from railpatch.profiles.curve import Profile
+from railpatch.profiles.curve import Profile, Scatter
 from railpatch.profiles.elementary import GAUSS_5, hypot, weighted_sum
 from railpatch.profiles.noise import noise_of, wavelength_for
 from railpatch.profiles.raw import RawProfile
@@ -81,7 +83,20 @@ def fit_profile(raw: RawProfile, smoothing: float | None = None) -> Profile:
         )
         if wavelength > MOST_SMOOTHED:
             notes.append("smoothed over more than the arcs of wheels and rails bear")
-    return spline_profile(raw.source, s, y, z, (*raw.notes, *notes))
+    profile = spline_profile(raw.source, s, y, z, (*raw.notes, *notes))
+    if noise <= QUIET:
+        return profile
+    flattened = flattening(profile, raw.weight[keep], wavelength)
+    return replace(profile, scatter=Scatter(noise, spacing, wavelength, flattened))
+
+
+def flattening(profile: Profile, weight: Array, wavelength: float) -> Array:
+    """m, [n], how far smoothing once more moves the knots across, z down."""
+    if wavelength == 0.0:
+        return np.zeros(profile.y.size)
+    y, z = smoothed(profile.arc_length, profile.y, profile.z, weight, wavelength)
+    across = (z - profile.z) * profile.dy - (y - profile.y) * profile.dz
+    return np.asarray(across / hypot(profile.dy, profile.dz))
 
 
 def chord_length(y: Array, z: Array) -> Array:

@@ -25,6 +25,8 @@ def cubic_spline(x: Array, values: Array, ends: Ends) -> scipy.interpolate.Cubic
 
 def slopes(x: Array, values: Array, ends: Ends) -> Array:
     """Of that spline at its knots, shaped as the values."""
+    if values.ndim > 1 and ends == "natural":
+        return _natural_slopes(x, values)
     columns = values.reshape(len(values), -1).T
     found = [_slopes(x, column, ends) for column in columns]
     return np.array(found).T.reshape(values.shape)
@@ -51,6 +53,22 @@ def _slopes(x: Array, y: Array, ends: Ends) -> list[float]:
     )
 
 
+def _natural_slopes(x: Array, y: Array) -> Array:
+    """Of many columns, a row at once."""
+    h = np.diff(x)
+    wide = h[:, None]
+    rise = np.diff(y, axis=0) / wide
+    right = 3 * (wide[1:] * rise[:-1] + wide[:-1] * rise[1:])
+    return np.array(
+        solve_tridiagonal(
+            [*h[1:].tolist(), 1.0],
+            [2.0, *(2 * (h[:-1] + h[1:])).tolist(), 2.0],
+            [1.0, *h[:-1].tolist()],
+            [3 * rise[0], *right, 3 * rise[-1]],
+        )
+    )
+
+
 def _periodic(h: Array, rise: Array) -> list[float]:
     """The last value is the first: the cyclic matrix is a tridiagonal one and a product of two
     vectors (Sherman and Morrison 1950)."""
@@ -72,9 +90,10 @@ def _periodic(h: Array, rise: Array) -> list[float]:
 
 
 def solve_tridiagonal(
-    lower: Sequence[float], middle: Sequence[float], upper: Sequence[float], right: Sequence[float]
-) -> list[float]:
-    """Elimination without exchange of rows, for matrices whose diagonal prevails."""
+    lower: Sequence[float], middle: Sequence[float], upper: Sequence[float], right: Sequence[Any]
+) -> list[Any]:
+    """Elimination without exchange of rows, for matrices whose diagonal prevails; right: numbers or
+    rows of them."""
     pivot, value = [middle[0]], [right[0]]
     for a, b, c, d in zip(lower, middle[1:], upper, right[1:], strict=True):
         factor = a / pivot[-1]
@@ -87,7 +106,8 @@ def solve_tridiagonal(
 
 
 def smoothed_values(x: Array, y: Array, weight: Array, stiffness: float) -> Array:
-    """At the knots, f with the least sum weight (y - f)^2 + stiffness integral f''^2.
+    """At the knots, f with the least sum weight (y - f)^2 + stiffness integral f''^2; y [n] or
+    [n, m].
 
     Second derivatives g of the natural spline solve (R + stiffness Q' W^-1 Q) g = Q' y, and
     f = y - stiffness W^-1 Q g (Reinsch 1967), with five diagonals, positive definite.
@@ -101,8 +121,11 @@ def smoothed_values(x: Array, y: Array, weight: Array, stiffness: float) -> Arra
     middle = middle + inverse[2:] * c * c
     beside = h[1:-1] / 6 + inverse[1:-2] * b[:-1] * a[1:] + inverse[2:-1] * c[:-1] * b[1:]
     after = inverse[2:-2] * c[:-2] * a[2:]
+    if y.ndim > 1:
+        a, b, c, inverse = a[:, None], b[:, None], c[:, None], inverse[:, None]
     right = a * y[:-2] + b * y[1:-1] + c * y[2:]
-    g = np.array(_solve_five(middle.tolist(), beside.tolist(), after.tolist(), right.tolist()))
+    rows = right.tolist() if y.ndim == 1 else list(right)
+    g = np.array(_solve_five(middle.tolist(), beside.tolist(), after.tolist(), rows))
     bent = np.zeros_like(y)
     bent[:-2] += a * g
     bent[1:-1] += b * g
@@ -111,19 +134,20 @@ def smoothed_values(x: Array, y: Array, weight: Array, stiffness: float) -> Arra
 
 
 def _solve_five(
-    middle: list[float], beside: list[float], after: list[float], right: list[float]
-) -> list[float]:
-    """A symmetric positive definite matrix of five diagonals as L D L'."""
+    middle: list[float], beside: list[float], after: list[float], right: list[Any]
+) -> list[Any]:
+    """A symmetric positive definite matrix of five diagonals as L D L'; right: numbers or rows."""
     count = len(middle)
-    pivot, one, two, value = [0.0] * count, [0.0] * count, [0.0] * count, [0.0] * count
+    pivot, one, two = [0.0] * count, [0.0] * count, [0.0] * count
+    value = list(right)
     for i in range(count):
-        pivot[i], value[i] = middle[i], right[i]
+        pivot[i] = middle[i]
         if i > 0:
             pivot[i] -= one[i - 1] * one[i - 1] * pivot[i - 1]
-            value[i] -= one[i - 1] * value[i - 1]
+            value[i] = value[i] - one[i - 1] * value[i - 1]
         if i > 1:
             pivot[i] -= two[i - 2] * two[i - 2] * pivot[i - 2]
-            value[i] -= two[i - 2] * value[i - 2]
+            value[i] = value[i] - two[i - 2] * value[i - 2]
         if i + 1 < count:
             crossed = one[i - 1] * two[i - 1] * pivot[i - 1] if i > 0 else 0.0
             one[i] = (beside[i] - crossed) / pivot[i]
@@ -131,7 +155,7 @@ def _solve_five(
             two[i] = after[i] / pivot[i]
     found: list[Any] = [v / p for v, p in zip(value, pivot, strict=True)]
     for i in range(count - 2, -1, -1):
-        found[i] -= one[i] * found[i + 1]
+        found[i] = found[i] - one[i] * found[i + 1]
         if i + 2 < count:
-            found[i] -= two[i] * found[i + 2]
+            found[i] = found[i] - two[i] * found[i + 2]
     return found

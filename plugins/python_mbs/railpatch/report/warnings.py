@@ -32,7 +32,8 @@ def warnings(run: Run, shown: str, bad: int, count: int, noun: str) -> list[str]
         parts.append(
             f"<p class=warn><b>This run stopped before its end</b> ({escape(run.stopped_by)}).</p>"
         )
-    lines = [escape(line) for line in warned(run).lines()]
+    doubts = run.metadata.get("railpatch", {}).get("doubts", "").split(" | ")
+    lines = [escape(line) for line in (*filter(None, doubts), *warned(run).lines())]
     if lines:
         parts.append(
             "<p class=warn><b>Can this be meant?</b> "

@@ -1,0 +1,146 @@
+"""What is said of the greatest pressure between noisy profiles, against the clean ones."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+import railpatch
+from click.testing import CliRunner
+from railpatch.case.kinds import kinds
+from railpatch.case.load import load_scene
+from railpatch.command.cli import cli
+from railpatch.evidence.measured_files import FILES, NAMES, SUFFIX, File, text_of, tried
+from railpatch.fmu import pack_fmu
+from railpatch.log.effective import effective
+from railpatch.profiles import load_profile
+from railpatch.profiles.pairing.pressure_error import LIMIT
+from railpatch.profiles.raw import Role
+from railpatch.report.warnings import warnings
+
+NOISY = File(5e-6, 2e-4, "blanks", "none")
+QUIET = File(3e-7, 5e-5, "semicolons", "none")
+
+
+def made(folder: Path, file: File) -> dict[str, str]:
+    """Both files in a folder, by role."""
+    names: dict[str, str] = {}
+    roles: tuple[Role, ...] = ("wheel", "rail")
+    for role in roles:
+        names[role] = f"{role}{SUFFIX[file.form, role]}"
+        text = text_of(file, role, load_profile(NAMES[role], role))
+        (folder / names[role]).write_text(text, encoding="utf-8")
+    return names
+
+
+def case(profiles: dict[str, str], kind: str = "wheel_rail", **wheelset: Any) -> dict[str, Any]:
+    return {
+        "kind": kind,
+        "grid": {"elements": [12, 16]},
+        "method": {"tangential": "none"},
+        "wheelset": {
+            "vertical_force": 8e4,
+            "nominal_radius": 0.46,
+            "flange_back_distance": 1.36,
+            "flange_back_position": -0.07,
+            **wheelset,
+        },
+        "track": {"gauge": 1.435, "gauge_height": 0.014},
+        "profiles": profiles,
+    }
+
+
+@pytest.mark.parametrize("number", [0, 13, 15, 17])
+def test_errors_are_told_or_small(number: int) -> None:
+    """Of the files of `python -m railpatch.evidence.measured_files`."""
+    found = tried(FILES[number], positions=(-3e-3, 0.0, 3e-3))
+    if found.refused:
+        assert "um of noise" in found.refused
+        return
+    error = np.abs(found.pressure)
+    # three standard errors in place of two: one in 400
+    assert (error <= 1.5 * found.said).all()
+    assert found.warned[error > LIMIT].all()
+    assert found.warned[found.force > 0.01].all()
+    assert (found.asked != "") == (FILES[number].change == "swapped")
+
+
+def test_a_solve_tells_it(tmp_path: Path) -> None:
+    noisy = made(tmp_path, NOISY)
+    result = railpatch.solve(case(noisy), folder=tmp_path)
+    [line] = result.warnings
+    error = result["max_pressure_error"]
+    assert error > LIMIT
+    assert f"max_pressure is known to within {100 * error:.2g} %" in line
+    assert "wheel.dat and rail.dat" in line
+    assert "profiles.smoothing" in line
+    assert result.to_dict()["max_pressure_error"] == error
+    with pytest.raises(railpatch.CaseError, match="max_pressure is known to within"):
+        railpatch.solve(case(noisy), folder=tmp_path, strict=True)
+    # of both wheels, once where they are alike
+    both = railpatch.solve(case(noisy, "wheelset", vertical_force=1.6e5), folder=tmp_path)
+    assert [both[side]["max_pressure_error"] for side in ("left", "right")] == [error] * 2
+    assert both.warnings == [line]
+    clean = railpatch.solve(case(dict(NAMES)), folder=tmp_path)
+    assert "max_pressure_error" not in clean.data
+
+
+def test_what_is_small_is_a_note(tmp_path: Path) -> None:
+    result = railpatch.solve(case(made(tmp_path, QUIET), y=3e-3), folder=tmp_path)
+    assert result.warnings == []
+    assert 0.0 < result["max_pressure_error"] <= LIMIT
+    assert any("max_pressure is known to within" in line for line in result["notes"])
+
+
+def test_steps_tell_it_when_asked(tmp_path: Path) -> None:
+    contact = railpatch.Contact(case(made(tmp_path, NOISY)), folder=tmp_path)
+    with pytest.raises(railpatch.CaseError, match="there is no step"):
+        contact.pressure_error()
+    contact.step(y=1e-3)
+    first = contact.pressure_error()
+    contact.step(y=-2e-3)
+    other = contact.pressure_error()
+    contact.step(y=1e-3)
+    assert contact.pressure_error() == first != other
+    contact.step(y=0.2)  # beyond the rail
+    assert contact.pressure_error() == {}
+
+
+def scene_of(kind: str, folder: Path) -> Path:
+    """The packaged scene of a kind with noisy profiles."""
+    made(folder, NOISY)
+    text = kinds()[kind].scene.read_text(encoding="utf-8")
+    for role, name in NAMES.items():
+        text = text.replace(f'"{name}"', f'"{role}.dat"')
+    path = folder / "scene.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_runs_tell_it(tmp_path: Path) -> None:
+    scene = scene_of("curve", tmp_path)
+    ran = CliRunner().invoke(cli, ["curve", str(scene), "--radius", "600", "--strict"])
+    assert ran.exit_code == 2
+    assert "max_pressure is known to within" in ran.stderr
+
+
+def test_logs_and_reports_tell_it(tmp_path: Path) -> None:
+    loaded = load_scene(scene_of("wheelset", tmp_path)).case
+    files = {role: str(tmp_path / name) for role, name in made(tmp_path, NOISY).items()}
+    case = loaded.model_copy(update={"profiles": loaded.profiles.model_copy(update=files)})
+    text = (tmp_path / "scene.toml").read_bytes()
+    about = effective(text, case, {}, step=1e-3, duration=1.0, names={}).about
+    assert about["doubts"].startswith("at y = ")
+    assert " | " not in about["doubts"]  # both sides are alike
+    run = SimpleNamespace(metadata={"railpatch": about}, channels={}, truncated=False)
+    run.stopped_by = ""
+    assert "max_pressure is known to within" in "".join(warnings(run, "", 0, 1, ""))
+
+
+def test_fmus_tell_it(tmp_path: Path) -> None:
+    scene = load_scene(scene_of("wheelset", tmp_path))
+    written = pack_fmu(scene, tmp_path / "a.fmu", name="a")
+    assert any("max_pressure is known to within" in line for line in written.warnings)
