@@ -10,11 +10,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import railpatch
 from click.testing import CliRunner, Result
 from railpatch.command.cli import cli
 from railpatch.profiles import load_profile, read_profile
 from railpatch.profiles.builtin import builtin_profile
-from railpatch.profiles.pairing.contact_points import contact_points
+from railpatch.profiles.pairing.contact_points import Dimensions, contact_points, pair_case
 from railpatch.profiles.pairing.doctor import residuals, tables_of
 from railpatch.profiles.raw import Reading
 
@@ -97,6 +98,31 @@ def test_tables_are_the_contact_points(file: Path, ran: Result) -> None:
     values = json.loads(other.read_text(encoding="utf-8"))["contact_points"]
     assert values["position"]["unit"] == "m"
     assert len(values["conicity"]["values"]) == len(rows) - 1
+
+
+def test_the_error_of_the_pressure_is_told(file: Path, ran: Result) -> None:
+    """Of the page, the table, its JSON and the terminal: that of a solve."""
+    page = file.with_name("page.html")
+    [line] = [one for one in ran.stderr.splitlines() if "max_pressure" in one]
+    assert line.startswith("note: max_pressure under 80 kN is known to within")
+    assert "for the noise of own.csv" in line
+    assert "ax_pressure under 80 kN is known to within" in page.read_text(encoding="utf-8")
+    path, other = tables_of(page)
+    rows = list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+    given = [row for row in rows if row["max_pressure [Pa]"]]
+    assert [round(1e6 * float(row["y [m]"])) for row in given] == list(range(-10000, 10001, 500))
+    sizes = Dimensions()
+    case = pair_case(file, "UIC60@1:40", sizes, None, {"wheel": Reading(swap=True)})
+    case["wheelset"] |= {"vertical_force": 80e3, "y": 1e-3}
+    case |= {"method": {"tangential": "none"}, "grid": {"elements": [24, 24]}}
+    result = railpatch.solve(case)
+    row = next(row for row in given if float(row["y [m]"]) == 1e-3)
+    assert float(row["max_pressure_error [-]"]) == pytest.approx(result["max_pressure_error"])
+    pressure = result["patches"][0]["max_pressure"]
+    assert float(row["max_pressure [Pa]"]) == pytest.approx(pressure, rel=1e-6)
+    said = json.loads(other.read_text(encoding="utf-8"))
+    assert said["load"] == 80e3
+    assert said["contact_points"]["max_pressure_error"]["unit"] == "-"
 
 
 def test_a_table_never_takes_the_place_of_a_profile(file: Path) -> None:

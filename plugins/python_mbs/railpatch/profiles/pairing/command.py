@@ -10,6 +10,7 @@ from railpatch.command.group import WrongCall, output_option, quiet_flag, wrong_
 from railpatch.command.output import check_page, refuse_same
 from railpatch.profiles.pairing.contact_points import Dimensions
 from railpatch.profiles.pairing.doctor import tables_of
+from railpatch.profiles.pairing.pressures import LOAD
 from railpatch.profiles.raw import Mirror, Reading, Role, Unit
 
 
@@ -44,6 +45,13 @@ def length_option(name: str, field: str, text: str) -> click.Option:
 @click.option(
     "--origin", type=float, nargs=2, metavar="Y Z", help="m, the profile's origin in the file."
 )
+@click.option(
+    "--load",
+    type=click.FloatRange(1e2, 5e5),
+    default=LOAD,
+    show_default=True,
+    help="N, on the wheel, of the pressures.",
+)
 @length_option("--gauge", "gauge", "m, track gauge.")
 @length_option("--radius", "nominal_radius", "m, wheel radius at the profile's z = 0.")
 @length_option("--flange-back-distance", "flange_back_distance", "m, between the flange backs.")
@@ -62,6 +70,7 @@ def profile(
     swap: bool | None,
     mirror: Mirror | None,
     origin: tuple[float, float] | None,
+    load: float,
     quiet: bool,
     **lengths: float,
 ) -> None:
@@ -69,8 +78,9 @@ def profile(
 
     What was assumed of a file, with the lines of a scene that say so; its points, how far they lie
     off the curve, shape, slope, curvature and kinks; with the partner, for a wheelset with two such
-    wheels on two such rails: contact points, rolling radius difference and equivalent conicity,
-    which go into PLOT.contact.csv and PLOT.contact.json too. The page needs no network.
+    wheels on two such rails: contact points, rolling radius difference, equivalent conicity and
+    greatest pressure, with the error that the points' noise leaves in it, which go into
+    PLOT.contact.csv and PLOT.contact.json too. The page needs no network.
     """
     if rail is not None and wheel is not None:
         raise WrongCall("--rail, --wheel: both given, allowed one: the profile's partner")
@@ -92,6 +102,7 @@ def profile(
             partner=rail or wheel,
             dimensions=Dimensions(**lengths),
             smoothing=smoothing,
+            load=load,
             told=lambda note: click.echo(f"note: {note}", err=True),
         )
     except OSError as error:

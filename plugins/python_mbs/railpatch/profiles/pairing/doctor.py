@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from railpatch.profiles.curve import Profile
 from railpatch.profiles.pairing.contact_points import ContactPoints
+from railpatch.profiles.pairing.pressures import Pressures
 from railpatch.profiles.raw import RawProfile, Role
 
 Array = NDArray[np.float64]
@@ -29,6 +30,8 @@ COLUMNS = (
     ("rolling_radius_difference", "m"),
     ("conicity", "-"),
     ("touches", "-"),
+    ("max_pressure", "Pa"),
+    ("max_pressure_error", "-"),
 )
 
 
@@ -65,11 +68,14 @@ def residuals(raw: RawProfile, profile: Profile) -> Array:
     return off_z * dy - off_y * dz - 0.5 * bend[nearest] * along * along
 
 
-def table(points: ContactPoints) -> dict[str, Array]:
-    """Columns of COLUMNS, [n] by lateral position; conicity for the amplitude |y|, NaN at 0."""
+def table(points: ContactPoints, found: Pressures) -> dict[str, Array]:
+    """Columns of COLUMNS, [n] by lateral position; conicity for the amplitude |y|, NaN at 0;
+    pressures where they were solved, NaN elsewhere."""
     conicity = np.array([points.conicity(abs(y)) if y else np.nan for y in points.y.tolist()])
+    pressure, error = found.at(points.y)
+    made = {"conicity": conicity, "max_pressure": pressure, "max_pressure_error": error}
     return {
-        name: conicity if name == "conicity" else np.asarray(getattr(points, name), dtype=float)
+        name: made[name] if name in made else np.asarray(getattr(points, name), dtype=float)
         for name, _ in COLUMNS
     }
 
@@ -84,10 +90,15 @@ def csv_table(columns: dict[str, Array]) -> str:
     return text.getvalue()
 
 
-def json_table(columns: dict[str, Array], notes: dict[str, list[str]], lines: list[str]) -> str:
-    """The same with units, what was assumed of each profile, and the lines of a scene."""
+def json_table(
+    columns: dict[str, Array], load: float, notes: dict[str, list[str]], lines: list[str]
+) -> str:
+    """The same with units, what was assumed of each profile, and the lines of a scene. load: N, of
+    the pressures."""
     values = {
         name: {"unit": unit, "values": [None if np.isnan(v) else v for v in columns[name].tolist()]}
         for name, unit in COLUMNS
     }
-    return json.dumps({"notes": notes, "toml": lines, "contact_points": values}) + "\n"
+    return (
+        json.dumps({"notes": notes, "toml": lines, "load": load, "contact_points": values}) + "\n"
+    )

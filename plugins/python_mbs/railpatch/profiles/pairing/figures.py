@@ -9,6 +9,7 @@ from plotly.subplots import make_subplots
 from railpatch.page.figures import COLORS, GREY, styled
 from railpatch.profiles.curve import Profile
 from railpatch.profiles.pairing.contact_points import ContactPoints
+from railpatch.profiles.pairing.pressures import Pressures
 from railpatch.profiles.shape import Array, Shape
 
 _LINE = COLORS["left"]
@@ -132,6 +133,22 @@ def difference_figure(points: ContactPoints) -> go.Figure:
 def conicity_figure(amplitude: Array, conicity: Array) -> go.Figure:
     """Equivalent conicity over amplitude."""
     return single(1e3 * amplitude, conicity, "amplitude [mm]", "equivalent conicity [-]")
+
+
+def pressure_figure(found: Pressures) -> go.Figure:
+    """Greatest pressure over lateral position, between what 95 % of its errors stay below."""
+    y, pressure, error = 1e3 * found.y, 1e-6 * found.pressure, np.nan_to_num(found.error)
+    figure = go.Figure()
+    if error.any():
+        for factor, fill in ((1 + error, None), (1 - error, "tonexty")):
+            figure.add_scatter(
+                x=y, y=pressure * factor, mode="lines", line={"color": GREY, "width": 0.5},
+                fill=fill, name="of 95 % of cases", showlegend=fill is not None,
+            )  # fmt: skip
+    figure.add_scatter(x=y, y=pressure, mode="lines", line={"color": _LINE}, name="pressure")
+    figure.update_xaxes(title_text="wheelset's lateral position [mm]")
+    figure.update_yaxes(title_text="greatest pressure [MPa]")
+    return styled(figure, 430)
 
 
 def single(x: Array, y: Array, x_title: str, y_title: str) -> go.Figure:

@@ -15,6 +15,7 @@ from railpatch.profiles import load_profile, read_profile
 from railpatch.profiles.curve import Profile
 from railpatch.profiles.pairing import doctor, figures
 from railpatch.profiles.pairing.contact_points import ContactPoints, Dimensions, contact_points
+from railpatch.profiles.pairing.pressures import LOAD, Pressures, pressures
 from railpatch.profiles.raw import RawProfile, Reading, Role
 from railpatch.profiles.shape import CORNER_RADIUS, CURVATURE_STEP, Shape, shape_of
 from railpatch.writing import write_whole
@@ -37,6 +38,7 @@ def write_profile_page(
     dimensions: Dimensions | None = None,
     smoothing: float | None = None,
     reading: Reading | None = None,
+    load: float = LOAD,
     told: Callable[[str], object] = lambda _: None,
 ) -> Path:
     """Writes the page on a profile by built-in name or file, and beside it the contact points as
@@ -45,7 +47,7 @@ def write_profile_page(
     role: "wheel" or "rail"; may be left out where name, extension or header tell. partner: the
     other profile; by default UIC60@1:40 for a wheel and S1002 for a rail. smoothing: m, as in
     load_profile, for the files of both. reading: what the profile's file does not say of itself.
-    told: called with what was assumed of each file.
+    load: N, on the wheel, of the pressures. told: called with what was assumed of each file.
     Raises ProfileError, CaseError, OSError; nothing is written then.
     """
     role = role or role_of(source)
@@ -57,6 +59,7 @@ def write_profile_page(
     points = contact_points(
         *pair, dimensions=dimensions, smoothing=smoothing, readings={role: reading}
     )
+    pressed = pressures(*pair, dimensions, load=load, smoothing=smoothing, readings={role: reading})
     beside = load_profile(other, "rail" if role == "wheel" else "wheel", smoothing=smoothing)
     lines = doctor.scene_lines(source, role, raw)
     body = "".join(
@@ -67,17 +70,20 @@ def write_profile_page(
             *pair_section(
                 points, (profile, beside) if role == "wheel" else (beside, profile), pair
             ),
+            *pressure_section(pressed),
         ]
     )
-    columns = doctor.table(points)
+    columns = doctor.table(points, pressed)
     notes = {role: list(profile.notes), "partner": list(beside.notes)}
-    texts = (doctor.csv_table(columns), doctor.json_table(columns, notes, lines))
+    texts = (doctor.csv_table(columns), doctor.json_table(columns, load, notes, lines))
     write_whole(output, document(Path(source).name, body).encode())
     for path, text in zip(doctor.tables_of(output), texts, strict=True):
         write_whole(path, text.encode())
     for name, found in ((source, profile.notes), (other, beside.notes)):
         for note in found:
             told(f"{Path(name).name}: {note}")
+    if line := pressed.line():
+        told(line)
     return Path(output)
 
 
@@ -150,6 +156,17 @@ def pair_section(
         "wave length, by integration of the kinematic motion (UIC 519, EN 15302).</p>",
         plot(figures.conicity_figure(AMPLITUDES, conicity), "conicity"),
         conicity_table(points),
+    ]
+
+
+def pressure_section(found: Pressures) -> list[str]:
+    """Plot of the greatest pressure, and how far noise leaves it open."""
+    line = found.line()
+    said = f"<p>{escape(line[0].upper() + line[1:])}: the band.</p>" if line else ""
+    return [
+        f"<h2>Greatest pressure</h2><p>Steel, {1e-3 * found.load:g} kN on the wheel, without "
+        f"friction.</p>{said}",
+        plot(figures.pressure_figure(found), "pressure"),
     ]
 
 
