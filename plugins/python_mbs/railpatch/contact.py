@@ -17,7 +17,7 @@ from railpatch.case.load import Case, Scene, check_table, load_scene
 from railpatch.case.messages import show
 from railpatch.case.moving import changed_case, moving_keys, with_numbers
 from railpatch.case.patch import Motion, PatchCase
-from railpatch.case.scene_profiles import Shelf, profile_notes
+from railpatch.case.scene_profiles import Shelf, placement_doubts, profile_notes
 from railpatch.case.to_core import (
     FORCE_AND_MOMENT,
     POSE_AND_VELOCITY,
@@ -101,6 +101,11 @@ class Contact:
     def profile_notes(self) -> dict[str, list[str]]:
         """What was assumed of each profile file and done to it: unit, axes, noise, smoothing."""
         return {} if self._shelf is None else profile_notes(self._case, self._shelf)
+
+    def placement_doubts(self) -> list[str]:
+        """Warnings of wheels whose flange is not where the case has it, or has a thickness that no
+        flange has there (docs/profiles.md)."""
+        return [] if self._shelf is None else placement_doubts(self._case, self._shelf)
 
     def noisy_profiles(self) -> list[str]:
         """Names of the profile files in whose points noise was found."""
@@ -332,6 +337,7 @@ def solve(
     """
     contact = Contact(case, folder=folder)
     result = _solved(contact, fields)
+    result.data["warnings"] = [*result.warnings, *contact.placement_doubts()]
     notes = [*notes_of_solve(contact.case), *_add_pressure_error(contact, result)]
     if strict and result.warnings:
         raise CaseError(result.warnings)

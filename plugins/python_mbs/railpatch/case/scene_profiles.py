@@ -10,6 +10,7 @@ from railpatch.case.wheel import WheelRailCase, WheelsetCase
 from railpatch.profiles import Profile, load_profile
 from railpatch.profiles.builtin import builtin_profile
 from railpatch.profiles.orientation import check_gauge_side, check_placed
+from railpatch.profiles.placement import Flange, flange_of, gauge_note
 
 Body = Literal["wheel", "rail"]
 WheelCase = WheelRailCase | WheelsetCase
@@ -95,23 +96,63 @@ def scene_profiles(case: WheelCase, shelf: Shelf) -> list[Placed]:
 
 def check_wheel(case: WheelCase, side: str, name: str, profile: Profile) -> None:
     """Refuses a wheel whose profile's origin is elsewhere than its wheelset says."""
+    moved = in_wheelset(case, side, profile)
+    check_placed(name, moved.y, moved.z, case.wheelset.flange_back_position)
+
+
+def in_wheelset(case: WheelCase, side: str, profile: Profile) -> Profile:
+    """A wheel's profile with its deviation, in the axes of a right wheel."""
     deviation = getattr(case.wheelset, side)
     mirror = -1.0 if side == "left" else 1.0
     _, y, z = deviation.offset
-    moved = profile.moved(mirror * y, z, mirror * deviation.rotation[0])
-    check_placed(name, moved.y, moved.z, case.wheelset.flange_back_position)
+    return profile.moved(mirror * y, z, mirror * deviation.rotation[0])
+
+
+def flange_in(case: WheelCase, placed: Placed) -> Flange | None:
+    """Of a wheel where its wheelset has it; None of a rail, and where there is none."""
+    if placed.body != "wheel":
+        return None
+    moved = in_wheelset(case, placed.side, placed.profile)
+    return flange_of(moved.y, moved.z, case.wheelset.flange_back_position)
+
+
+def placement_doubts(case: WheelCase, shelf: Shelf) -> list[str]:
+    """Warnings of wheels whose flange says that they lie elsewhere than the scene has them."""
+    found: dict[str, None] = {}
+    for placed in placed_profiles(case, shelf):
+        flange = flange_in(case, placed)
+        for text in flange.doubts(case.wheelset.flange_back_position) if flange else ():
+            found[f"{Path(placed.profile.name).name}: {text}"] = None
+    return list(found)
+
+
+def placement_note(case: WheelCase, placed: Placed) -> str:
+    """What is taken for its origin, of a profile from a file; empty where nothing is."""
+    wheelset, profile = case.wheelset, placed.profile
+    if placed.body == "rail":
+        return gauge_note(profile.y, profile.z, case.track.gauge_height)
+    flange = flange_in(case, placed)
+    if flange is None:
+        return ""
+    return flange.note(wheelset.flange_back_position, wheelset.flange_back_distance)
 
 
 def profile_notes(case: WheelCase, shelf: Shelf) -> dict[str, list[str]]:
     """What was assumed of each profile file and done to it, by file as the case names it."""
     notes: dict[str, list[str]] = {}
-    profiles = [placed.profile for placed in placed_profiles(case, shelf)]
+    every = placed_profiles(case, shelf)
+    profiles = [placed.profile for placed in every]
     for side in case.sides:
         sections = getattr(case.track, side).sections or ()
         profiles += [shelf.profile("rail", section.profile) for section in sections]
     for profile in profiles:
         if profile.notes:
             notes[Path(profile.name).name] = list(profile.notes)
+    for placed in every:
+        name = Path(placed.profile.name).name
+        note = placement_note(case, placed)
+        if name in notes and note and note not in notes[name]:
+            notes[name].append(note)
     return notes
 
 

@@ -62,10 +62,15 @@ def write_profile_page(
     pressed = pressures(*pair, dimensions, load=load, smoothing=smoothing, readings={role: reading})
     beside = load_profile(other, "rail" if role == "wheel" else "wheel", smoothing=smoothing)
     lines = doctor.scene_lines(source, role, raw)
+    notes = {
+        key: pressed.notes.get(Path(name).name, list(curve.notes))
+        for key, name, curve in ((role, source, profile), ("partner", other, beside))
+    }
     body = "".join(
         [
             f"<h1>{escape(Path(source).name)}</h1><p class=sub>{role} profile</p>",
-            *assumed_section(raw, profile.notes, lines),
+            *assumed_section(raw, notes[role], lines),
+            *(f"<p class=warn>{escape(text)}</p>" for text in pressed.doubts),
             *shape_section(shape, raw, profile),
             *pair_section(
                 points, (profile, beside) if role == "wheel" else (beside, profile), pair
@@ -74,14 +79,15 @@ def write_profile_page(
         ]
     )
     columns = doctor.table(points, pressed)
-    notes = {role: list(profile.notes), "partner": list(beside.notes)}
     texts = (doctor.csv_table(columns), doctor.json_table(columns, load, notes, lines))
     write_whole(output, document(Path(source).name, body).encode())
     for path, text in zip(doctor.tables_of(output), texts, strict=True):
         write_whole(path, text.encode())
-    for name, found in ((source, profile.notes), (other, beside.notes)):
+    for name, found in ((source, notes[role]), (other, notes["partner"])):
         for note in found:
             told(f"{Path(name).name}: {note}")
+    for text in pressed.doubts:
+        told(f"doubtful: {text}")
     if line := pressed.line():
         told(line)
     return Path(output)

@@ -19,7 +19,7 @@ from railpatch import _core
 from railpatch.case.common import Grid
 from railpatch.case.load import Scene
 from railpatch.case.resolve import resolved
-from railpatch.case.scene_profiles import BODIES, Shelf, placed_profiles
+from railpatch.case.scene_profiles import BODIES, Shelf, placed_profiles, placement_doubts
 from railpatch.case.to_core import config_of, input_of, profiles_config
 from railpatch.case.wheel import Wheel, WheelRailCase, WheelsetCase
 from railpatch.profiles.scatter import drawn
@@ -93,10 +93,11 @@ def doubts(errors: Mapping[str, float], files: Iterable[str]) -> list[str]:
 
 
 def run_doubts(case: WheelCase, folder: Path, shelf: Shelf | None = None) -> list[str]:
-    """Warnings for a run of a case: of each pair of profiles the greatest error within 6 mm of the
-    track's middle, where it is above LIMIT. Raises CaseError, ProfileError."""
+    """Warnings for a run of a case: of flanges that are not where the scene has them, and of each
+    pair of profiles the greatest error within 6 mm of the track's middle, where it is above LIMIT.
+    Raises CaseError, ProfileError."""
     shelf = shelf or Shelf(case, folder)
-    found: dict[str, None] = {}
+    found: dict[str, None] = dict.fromkeys(placement_doubts(case, shelf))
     pairs: set[tuple[str, ...]] = set()
     for side in case.sides:
         names = tuple(str(case.profiles.of(body, side)[1]) for body in BODIES)

@@ -21,10 +21,13 @@ REACH, STEP = 0.01, 5e-4  # m
 
 @dataclass(frozen=True)
 class Pressures:
-    """Of the right wheel on its rail, [n]. load: N. files: names of those with noise."""
+    """Of the right wheel on its rail, [n]. load: N. files: names of those with noise. notes: of
+    what was assumed, by file. doubts: why a wheel can hardly lie where it is put."""
 
     load: float
     files: tuple[str, ...]
+    notes: dict[str, list[str]]
+    doubts: list[str]
     y: Array  # m, lateral position of the wheelset
     pressure: Array  # Pa, greatest one; NaN: no contact
     error: Array  # -, what 95 % of its relative errors stay below; NaN: no noise, no contact
@@ -77,4 +80,5 @@ def pressures(
         if patches:
             found[0, index] = max(patch["max_pressure"] for patch in patches)
             found[1, index] = contact.pressure_error().get("right", np.nan)
-    return Pressures(load, tuple(contact.noisy_profiles()), at, *found)
+    said = contact.profile_notes(), contact.placement_doubts()
+    return Pressures(load, tuple(contact.noisy_profiles()), *said, at, *found)
