@@ -248,6 +248,19 @@ MISTAKES: tuple[Mistake, ...] = (
     Mistake(PROFILES, "a rail named as a wheel", "solve {}",
             lambda: (profile("wheel.whl", lambda y, z: (y, z), "UIC60")(),
                      wheel((r'"S1002"', '"wheel.whl"'))())[1]),
+    *(
+        Mistake(PROFILES, what, "solve {}",
+                lambda change=change, digits=digits: (
+                    profile("w.dat", change, digits=digits)(),
+                    loaded((r'"S1002"', '"w.dat"'))())[1])
+        for what, change, digits in (
+            ("points rounded to 10 um", lambda y, z: (y, z), 2),
+            ("an origin 4 mm aside", lambda y, z: (y + 4, z), 6),
+            ("an origin 6 mm too high", lambda y, z: (y, z + 6), 6),
+            ("points with 5 um of noise",
+             lambda y, z: (y, z + 5e-3 * np.random.default_rng(1).standard_normal(y.size)), 6),
+        )
+    ),
     Mistake(PROFILES, "a rail cut off above the gauge's height", "solve {}",
             lambda: (profile("r.dat", lambda y, z: (y[z < 8], z[z < 8]), "UIC60")(),
                      wheel((r'rail = .*', 'rail = "r.dat"'))())[1]),

@@ -3,14 +3,23 @@ transfer function."""
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
-from railpatch.profiles import ProfileError, RawProfile, builtin_profile, fit_profile
+from railpatch.profiles import (
+    ProfileError,
+    RawProfile,
+    builtin_profile,
+    fit_profile,
+    load_profile,
+)
 from railpatch.profiles.noise import (
     INTEGRAL,
     ROUGHNESS,
     five_point_weights,
     noise_of,
+    rounding_of,
     wavelength_for,
 )
 from railpatch.profiles.shape import shape_of
@@ -73,6 +82,37 @@ def test_the_wave_length_bounds_the_curvature() -> None:
 def test_the_integral() -> None:
     u = np.linspace(0, 200, 2_000_001)
     assert 2 * np.trapezoid(u**4 / (1 + u**4) ** 2, u) == pytest.approx(INTEGRAL, rel=1e-6)
+
+
+@pytest.mark.parametrize("step", [1e-3, 5e-3, 0.01, 0.02])
+@pytest.mark.parametrize("spacing", [5e-5, 2e-4, 5e-4])
+def test_rounding_is_found(step: float, spacing: float) -> None:
+    z = 1e3 * noisy("S1002", "wheel", spacing, 0.0, 0).z
+    rounded = step * np.round(z / step)
+    assert rounding_of(rounded) == pytest.approx(step, rel=1e-12)
+    rounded[::20] += 0.3 * step  # most, not all
+    assert rounding_of(rounded) == pytest.approx(step, rel=1e-12)
+    assert rounding_of(z) == 0.0
+
+
+def test_whole_heights_by_their_making_are_no_rounding() -> None:
+    y = np.arange(-60.0, 60.0)
+    assert rounding_of(y / 20) == 0.0
+    assert rounding_of(np.full(50, 3.0)) == 0.0
+    # a parabola at whole places: fourth differences vanish
+    assert rounding_of(0.01 * y * y) == 0.0
+
+
+def test_rounding_is_noise_of_its_step(tmp_path: Path) -> None:
+    """Uniform between half a step on either side: step / sqrt(12)."""
+    raw = noisy("UIC60@1:40", "rail", 2e-4, 0.0, 0)
+    path = tmp_path / "r.dat"
+    np.savetxt(path, 1e3 * np.column_stack([raw.y, raw.z]), fmt="%.2f")
+    profile = load_profile(path, "rail")
+    assert "heights rounded to 10 um, taken as noise of 2.9 um" in profile.notes
+    assert profile.scatter is not None
+    assert profile.scatter.noise >= 1e-5 / 12**0.5
+    assert profile.scatter.smoothing >= wavelength_for(1e-5 / 12**0.5, 1.9e-4)
 
 
 def test_noise_beyond_what_arcs_bear_is_refused() -> None:

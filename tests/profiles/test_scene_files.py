@@ -62,6 +62,8 @@ def test_files_give_what_the_formulas_give(folder: Path) -> None:
     assert own["profiles"]["r.csv"] == [
         "unit of length taken as mm",
         "the gauge side is taken to lie at -y",
+        "placed by its top, at y = -0.1 mm, and its gauge side, at y = -43.0 mm, whatever its "
+        "origin",
     ]
     assert "profiles" not in built_in.to_dict()
 

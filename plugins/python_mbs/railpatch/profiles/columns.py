@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from railpatch.errors import ProfileError
+from railpatch.profiles.noise import rounding_of
 from railpatch.profiles.orientation import check_columns
 from railpatch.profiles.raw import METRES, RawProfile, Reading, Role
 
@@ -110,6 +111,7 @@ def from_points(
         unit = 1e-3 if in_mm else 1.0
         taken = replace(taken, unit="mm" if in_mm else "m")
         notes.append(f"unit of length taken as {'mm' if in_mm else 'm'}")
+    rounding = rounding_of(array[:, 1]) * unit
     weight = array[:, 2]
     if (weight < 0).any():
         first = int(np.flatnonzero(weight < 0)[0])
@@ -127,4 +129,5 @@ def from_points(
         measured=measured,
         notes=notes,
         taken=taken,
+        rounding=rounding,
     )

@@ -23,6 +23,9 @@ Array = NDArray[np.float64]
 INTEGRAL = 0.5553603672697958
 # 1/m, standard deviation of the curvature that noise may leave: a head's crown has 3.3
 ROUGHNESS = 1.0
+# -, of the values, which are multiples of a step where they are rounded to it; of the step, that
+# their unevenness has at the least
+MOSTLY, UNEVEN = 0.9, 0.05
 # the standard deviation over the median of the deviations of normal noise
 NORMAL = 1.4826022185056018
 
@@ -39,6 +42,31 @@ def noise_of(y: Array, z: Array, s: Array) -> float:
     ty, tz = y[4:] - y[:-4], z[4:] - z[:-4]
     across = (parts[1] * ty - parts[0] * tz) / hypot(ty, tz)
     return float(NORMAL * np.median(np.abs(across) / gain))
+
+
+def rounding_of(values: Array) -> float:
+    """The step that most values are multiples of, one, two or five of a power of ten; 0 for none.
+
+    Where they are whole by their making, as a cone's heights at whole places, it is no rounding:
+    that leaves them beside the cubic through their neighbours.
+    """
+    if values.size < 9:
+        return 0.0
+    size = float(np.abs(values).max())
+    for power in range(int(np.floor(np.log10(size))) if size > 0 else -99, -7, -1):
+        for one in (5.0, 2.0, 1.0):
+            step = one * 10.0**power
+            share = values / step
+            whole = np.abs(share - np.round(share)) < 1e-6
+            if np.mean(whole) >= MOSTLY:
+                return step if uneven(values) > UNEVEN * step else 0.0
+    return 0.0
+
+
+def uneven(values: Array) -> float:
+    """Root mean square of the values' fourth differences, over what independent errors get."""
+    fourth = np.diff(values, 4)
+    return float(np.sqrt(np.mean(fourth * fourth) / 70.0))
 
 
 def five_point_weights(s: Array) -> tuple[Array, Array]:

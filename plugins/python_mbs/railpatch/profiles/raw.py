@@ -49,6 +49,7 @@ class RawProfile:
     measured: bool  # a measurement with noise (True) or designed points (False)
     notes: list[str] = field(default_factory=list)  # what was assumed and changed
     taken: Reading = field(default_factory=Reading)  # what was said or found; None: the file says
+    rounding: float = 0.0  # m, step that most heights are multiples of; 0: finer than matters
 
 
 def check_points(raw: RawProfile) -> None:

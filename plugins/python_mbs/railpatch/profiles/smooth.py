@@ -51,21 +51,34 @@ def fit_profile(raw: RawProfile, smoothing: float | None = None) -> Profile:
     keep, notes = clean(raw)
     y, z = raw.y[keep], raw.z[keep]
     s = chord_length(y, z)
-    noise, spacing = noise_of(y, z, s), float(np.median(np.diff(s)))
+    spacing = float(np.median(np.diff(s)))
+    rounded = raw.rounding / 12**0.5
+    found = noise_of(y, z, s)
+    noise = max(found, rounded)
+    if rounded > QUIET:
+        notes.append(
+            f"heights rounded to {1e6 * raw.rounding:.3g} um, taken as noise of "
+            f"{1e6 * rounded:.2g} um"
+        )
     needed = wavelength_for(noise, spacing) if noise > QUIET else 0.0
     wavelength = smoothing
     if wavelength is None:
         wavelength = max(needed, MEASURED_WAVELENGTH if raw.measured else 0.0)
         if needed > MOST_SMOOTHED:
+            what = f"has {1e6 * noise:.2g} um of noise"
+            if rounded > found:
+                what = f"has heights rounded to {1e6 * raw.rounding:.3g} um"
             raise ProfileError(
                 raw.source,
-                f"has {1e6 * noise:.2g} um of noise at points {1e3 * spacing:.2g} mm apart, which "
+                f"{what} at points {1e3 * spacing:.2g} mm apart, which "
                 f"asks for smoothing over {1e3 * needed:.2g} mm: allowed up to "
                 f"{1e3 * MOST_SMOOTHED:g} mm, more flattens the arcs of wheels and rails; measure "
                 "again or closer, or say smoothing",
             )
     if noise > QUIET:
-        notes.append(f"noise of {1e6 * noise:.2g} um found at points {1e3 * spacing:.2g} mm apart")
+        if found >= rounded:
+            points = f"points {1e3 * spacing:.2g} mm apart"
+            notes.append(f"noise of {1e6 * noise:.2g} um found at {points}")
         if wavelength < ENOUGH * needed:
             notes.append(
                 f"smoothing over {1e3 * wavelength:.3g} mm leaves noise in the curvature, and with "
