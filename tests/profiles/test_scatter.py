@@ -26,7 +26,7 @@ def test_drawn_noise_has_the_spectrum_of_smoothed_noise(spacing: float, smoothin
     profiles.noise, whatever the spacing."""
     noise = 4e-6
     s = 2e-4 * np.arange(1000)
-    scatter = Scatter(noise, spacing, smoothing, np.zeros(s.size))
+    scatter = Scatter(noise, spacing, np.full(s.size, smoothing), np.zeros(s.size))
     across = deviations(scatter, s, 12, (1,))
     curvature = np.gradient(np.gradient(across, s, axis=0), s, axis=0)[100:-100]
     expected = noise * (spacing * INTEGRAL / 2 / np.pi) ** 0.5 * (2 * np.pi / smoothing) ** 2.5
@@ -50,7 +50,7 @@ def test_draws_lie_about_the_curve_and_are_the_same_again() -> None:
     wheel = builtin_profile("S1002", "wheel")
     assert wheel is not None
     s = wheel.arc_length
-    given = replace(wheel, scatter=Scatter(5e-6, 2e-4, 5e-3, np.zeros(s.size)))
+    given = replace(wheel, scatter=Scatter(5e-6, 2e-4, np.full(s.size, 5e-3), np.zeros(s.size)))
     first, again, other = drawn(given, 3, (1,)), drawn(given, 3, (1,)), drawn(given, 3, (2,))
     assert np.array_equal(first[0].z, wheel.z)
     for one, two, three in zip(first[1:], again[1:], other[1:], strict=True):

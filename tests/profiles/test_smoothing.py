@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from railpatch.profiles import ProfileError, RawProfile, fit_profile
+from railpatch.profiles.noise import wavelength_for
 from railpatch.profiles.raw import Array
 
 
@@ -46,6 +47,31 @@ def test_default_smoothing_is_for_measurements_and_for_noise() -> None:
         told = " ".join(fit_profile(raw, 1e-3).notes)
         assert "smoothing over 1 mm leaves noise in the curvature" in told
     np.testing.assert_array_equal(fit_profile(rail(y, clean, measured=False)).z, clean)
+
+
+def test_smoothing_goes_with_the_curvature() -> None:
+    """Longer on an even crown, shorter about a corner of 13 mm radius and beside it."""
+    angle = np.linspace(0.0, 1.2, 79)
+    crown = np.linspace(-0.03, 0.0, 151)[:-1]
+    y = np.concatenate([crown, 0.013 * np.sin(angle)])
+    z = np.concatenate([np.zeros(crown.size), 0.013 * (1 - np.cos(angle))])
+    z = z + 2e-6 * np.random.default_rng(1).standard_normal(y.size)
+    raw = rail(y, z, measured=False)
+    profile = fit_profile(raw)
+    assert profile.scatter is not None
+    needed = wavelength_for(profile.scatter.noise, profile.scatter.spacing)
+    found = profile.scatter.smoothing
+    # noise leaves curvature by the length to the power -8/3: 0.3 1/m, and 7 % of 1 / 13 mm
+    np.testing.assert_allclose(found[20:100], needed * 0.3**-0.375, rtol=1e-12)
+    np.testing.assert_allclose(found[170:200], needed * (0.07 / 0.013) ** -0.375, rtol=0.05)
+    assert (np.diff(found[100:160]) <= 1e-12).all()
+    assert f"half amplitude at {1e3 * found.min():.3g} to {1e3 * found.max():.3g} mm" in str(
+        profile.notes
+    )
+    # as said, for all alike
+    said = fit_profile(raw, 3e-3)
+    assert said.scatter is not None
+    assert (said.scatter.smoothing == 3e-3).all()
 
 
 def test_interpolation_meets_a_circle() -> None:

@@ -18,13 +18,13 @@ class Scatter:
     """What noise leaves to chance in the shape of a profile that was fitted to points.
 
     noise: m, standard deviation of a point across the profile. spacing: m, of the points.
-    smoothing: m, wave length of which half the amplitude is kept; 0: interpolation. flattened: m,
-    [n], by which the same smoothing once more moves each knot across, z down.
+    smoothing: m, [n], wave length about each knot of which half the amplitude is kept; 0:
+    interpolation. flattened: m, [n], by which the same smoothing once more moves it across, z down.
     """
 
     noise: float
     spacing: float
-    smoothing: float
+    smoothing: Array
     flattened: Array
 
 

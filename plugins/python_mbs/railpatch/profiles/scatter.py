@@ -19,8 +19,8 @@ from railpatch.profiles.spline import cubic_spline, slopes, smoothed_values
 
 Array = NDArray[np.float64]
 
-# points a wave length of which half the amplitude is kept
-POINTS = 10
+# points a wave length of which half the amplitude is kept, at the least
+POINTS = 6
 
 
 def drawn(profile: Profile, count: int, seed: tuple[int, ...]) -> list[Profile]:
@@ -55,14 +55,14 @@ def drawn(profile: Profile, count: int, seed: tuple[int, ...]) -> list[Profile]:
 
 def deviations(scatter: Scatter, s: Array, count: int, seed: tuple[int, ...]) -> Array:
     """m, [n, count], of smoothed noise at the knots s, m, across the profile."""
-    step = scatter.smoothing / POINTS
+    step = float(scatter.smoothing.min()) / POINTS
     knots = s
     if step > scatter.spacing:
         knots = np.linspace(s[0], s[-1], int(np.ceil((s[-1] - s[0]) / step)) + 1)
     share = np.gradient(knots)
     size = scatter.noise * np.sqrt(scatter.spacing / share)[:, None]
     values = size * np.random.default_rng(seed).standard_normal((knots.size, count))
-    if scatter.smoothing > 0.0:
-        square = (scatter.smoothing / (2 * np.pi)) ** 2
-        values = smoothed_values(knots, values, share, square * square)
+    if step > 0.0:
+        square = (np.interp(knots, s, scatter.smoothing) / (2 * np.pi)) ** 2
+        values = smoothed_values(knots, values, share / (square * square), 1.0)
     return np.asarray(cubic_spline(knots, values, "natural")(s))
