@@ -342,3 +342,15 @@ def test_contacts_are_copied_with_their_state(make: Any) -> None:
     assert same(other.step(creepage=[1e-3, 0.0])["creep_force"], wanted)
     anew = Contact(case).step(creepage=[1e-3, 0.0], normal_force=6e4)
     assert not same(anew["creep_force"], wanted)
+
+
+def test_results_show_themselves_in_notebooks() -> None:
+    """Numbers with units, of wheel and patches; nothing of a file's text is markup."""
+    page = Contact(WHEEL).step(y=0.0)._repr_html_()
+    assert "<caption>converged</caption>" in page
+    assert "<caption>patch 1</caption>" in page
+    assert page.count("<td>normal_force</td>") == page.count("<caption>patch") == 2
+    assert "<td>max_pressure</td>" in page
+    assert "<td>Pa</td>" in page
+    result = railpatch.Result({"status": "converged", "reason": "<b>"})
+    assert "&lt;b&gt;" in result._repr_html_()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from html import escape
 from typing import Any
 
 import numpy as np
@@ -117,6 +118,18 @@ class Result:
     def __repr__(self) -> str:
         return f"Result(status={self.status!r}, keys={list(self.data)})"
 
+    def _repr_html_(self) -> str:
+        """A table for a notebook: numbers with units, of each wheel and patch."""
+        parts = [_html_table(str(self.data.get("status")), self.data)]
+        for side in ("left", "right"):
+            if isinstance(self.data.get(side), dict):
+                parts.append(_html_table(f"{side} wheel", self.data[side]))
+        wheels = [self.data, *(self.data.get(side) for side in ("left", "right"))]
+        for wheel in wheels:
+            patches = wheel.get("patches", ()) if isinstance(wheel, dict) else ()
+            parts += [_html_table(f"patch {i}", patch) for i, patch in enumerate(patches)]
+        return "".join(parts)
+
     @property
     def status(self) -> str:
         """One of "converged", "no_contact", "not_converged", "out_of_range", "accuracy_not_met"
@@ -146,6 +159,23 @@ class Result:
     def to_dict(self) -> dict[str, Any]:
         """The JSON result: plain numbers and lists, None for what is left out."""
         return plain_json(self.data)
+
+
+def _html_table(title: str, quantities: dict[str, Any]) -> str:
+    """What is a number, some numbers or a text."""
+    units = {**PATCH_UNITS, **PLACE_UNITS, **WHEEL_UNITS, **WHEELSET_UNITS}
+    rows = []
+    for name, value in quantities.items():
+        values = value if isinstance(value, list | tuple) else [value]
+        if name in FIELDS or value is None or not values:
+            continue
+        if not all(isinstance(v, str | int | float) for v in values):
+            continue
+        shown = ", ".join(f"{v:.6g}" if isinstance(v, float) else str(v) for v in values)
+        cells = (name, shown, units.get(name, ""))
+        rows.append("".join(f"<td>{escape(cell)}</td>" for cell in cells))
+    body = "".join(f"<tr>{row}</tr>" for row in rows)
+    return f"<table><caption>{escape(title)}</caption>{body}</table>"
 
 
 class Warned:
