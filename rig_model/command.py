@@ -58,7 +58,7 @@ def rig(
     measured. A log that was cut off can be read up to less than a second before its end.
     """
     # scipy and the log's libraries take a while to import; other commands need not wait for them
-    from railpatch.profiles.pairing.pressure_error import run_doubts
+    from railpatch.pressure_error import run_doubts
 
     from rig_model.run import replay
     from rig_model.scene import default_scene, load_rig_scene
@@ -124,7 +124,7 @@ def curve(
 
     Without a scene it has S1002 profiles on UIC60 rails inclined 1:40, in curves of 600 and 175 m.
     """
-    from railpatch.profiles.pairing.pressure_error import run_doubts
+    from railpatch.pressure_error import run_doubts
 
     from rig_model.curve import METHODS, load_curve_scene, steady_curves
 

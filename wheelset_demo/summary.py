@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from railpatch.case.types import SIDES
-from railpatch.profiles.pairing.pressure_error import run_doubts
+from railpatch.pressure_error import run_doubts
 
 from wheelset_demo.system import WORKS
 from wheelset_demo.trace import Trace

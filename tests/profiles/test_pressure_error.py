@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import railpatch
+from case.correct import accepted, combined
 from click.testing import CliRunner
 from railpatch.case.kinds import kinds
 from railpatch.case.load import load_scene
@@ -24,8 +25,8 @@ from railpatch.evidence.measured_files import (
 )
 from railpatch.fmu import pack_fmu
 from railpatch.log.effective import effective
+from railpatch.pressure_error import LIMIT
 from railpatch.profiles import load_profile
-from railpatch.profiles.pairing.pressure_error import LIMIT
 from railpatch.profiles.raw import Role
 from railpatch.report.warnings import warnings
 
@@ -127,6 +128,41 @@ def test_steps_tell_it_when_asked(tmp_path: Path) -> None:
     assert contact.pressure_error() == first != other
     contact.step(y=0.2)  # beyond the rail
     assert contact.pressure_error() == {}
+
+
+def with_features(names: tuple[str, ...], folder: Path) -> dict[str, Any]:
+    """A wheelset in balance, with noisy profiles, and features of other tests' combinations."""
+    found = next(one for name, one in combined() if name == f"wheelset: {' + '.join(names)}")
+    return {**found, "profiles": made(folder, NOISY)}
+
+
+@pytest.mark.parametrize(
+    "name", ["temperature law", "spin offset", "rail support", "flat", "roller", "curved reference"]
+)
+def test_it_goes_with_every_feature(name: str, tmp_path: Path) -> None:
+    result = railpatch.solve(with_features((name,), tmp_path), folder=tmp_path)
+    for side in ("left", "right"):
+        assert 0.0 < result[side]["max_pressure_error"] < 1.0
+
+
+def test_it_goes_with_profiles_along_the_track(tmp_path: Path) -> None:
+    names = made(tmp_path, NOISY)
+    sections = [{"position": -1.0, "profile": names["rail"]}, {"position": 1.0, "profile": "UIC60"}]
+    own = case({"wheel": names["wheel"]})
+    own["track"]["right"] = {"sections": sections}
+    result = railpatch.solve(own, folder=tmp_path)
+    assert 0.0 < result["max_pressure_error"] < 1.0
+    assert set(result["profiles"]) == {"wheel.dat", "rail.dat"}
+
+
+@pytest.mark.long
+def test_it_goes_with_all_pairs_of_features(tmp_path: Path) -> None:
+    profiles = made(tmp_path, NOISY)
+    for name, one in combined():
+        if one["kind"] != "patch" and accepted(one):
+            result = railpatch.solve({**one, "profiles": profiles}, folder=tmp_path)
+            for wheel in (result.data[s] for s in ("left", "right") if s in result.data):
+                assert 0.0 < wheel["max_pressure_error"] < 1.0, name
 
 
 def scene_of(kind: str, folder: Path) -> Path:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from railpatch.profiles.pairing.pressure_error import run_doubts
+from railpatch.pressure_error import run_doubts
 from railpatch.result import Warned
 
 from wheelset_demo.scene import GRAVITY

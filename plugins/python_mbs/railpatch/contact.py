@@ -28,7 +28,7 @@ from railpatch.case.to_core import (
 from railpatch.case.track import add_irregularity, irregularity_of
 from railpatch.case.types import SIDES
 from railpatch.errors import CaseError
-from railpatch.profiles.pairing.pressure_error import Replica, doubts, lines, replica_of
+from railpatch.pressure_error import Replica, doubts, lines, replica_of
 from railpatch.result import (
     FIELDS,
     GOOD,

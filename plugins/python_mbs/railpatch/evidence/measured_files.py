@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 
 from railpatch.contact import Contact
 from railpatch.errors import CaseError, ProfileError
+from railpatch.pressure_error import LIMIT
 from railpatch.profiles import load_profile
 from railpatch.profiles.curve import Profile
-from railpatch.profiles.pairing.pressure_error import LIMIT
 
 Array = NDArray[np.float64]
 Format = Literal["semicolons", "blanks", "miniprof", "simpack"]

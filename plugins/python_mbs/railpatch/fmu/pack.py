@@ -31,7 +31,7 @@ from railpatch.fmu.scene import kind_of, scene_text, variables_of
 from railpatch.fmu.sources import build_description, with_source_files
 from railpatch.fmu.step_size import step_size_of
 from railpatch.fmu.table import Kind, Table, Variable
-from railpatch.profiles.pairing.pressure_error import run_doubts
+from railpatch.pressure_error import run_doubts
 from railpatch.result import SOLVED
 from railpatch.writing import write_whole
 

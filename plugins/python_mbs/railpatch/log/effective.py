@@ -17,7 +17,7 @@ from railpatch.case.load import check_case, check_table, plain, tomllib
 from railpatch.case.resolve import resolved
 from railpatch.case.scene_profiles import Shelf, note_lines, profile_notes
 from railpatch.errors import CaseError
-from railpatch.profiles.pairing.pressure_error import run_doubts
+from railpatch.pressure_error import run_doubts
 
 # name of the attachment
 EFFECTIVE = "effective.json"

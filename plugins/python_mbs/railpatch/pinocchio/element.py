@@ -26,7 +26,7 @@ from railpatch.pinocchio.derivative import (
     WrenchDerivatives,
     angular_velocity,
 )
-from railpatch.profiles.pairing.pressure_error import run_doubts
+from railpatch.pressure_error import run_doubts
 from railpatch.result import SOLVED, Result
 
 # names of the rows of `states`, in order

@@ -56,6 +56,8 @@ class Replica:
 
         solved: the core's result for them, with all of the scene's theories.
         """
+        # without a tangential problem there are no temperatures
+        values = {name: value for name, value in values.items() if name != "bulk_temperature"}
         found: list[dict[str, float]] = []
         for contact in self.contacts:
             contact.reset()
@@ -165,7 +167,12 @@ def replica_of(scene: Scene, shelf: Shelf) -> Replica | None:
     if not noisy:
         return None
     method = case.method.model_copy(
-        update={"tangential": "none", "derivatives": False, "max_work": None}
+        update={
+            "tangential": "none",
+            "derivatives": False,
+            "max_work": None,
+            "spin_offset": "automatic",
+        }
     )
     bare = case.model_copy(update={"method": method, "grid": Grid(elements=ELEMENTS)})
     # what a step finds is given then
