@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 import railpatch
 from click.testing import CliRunner
@@ -74,6 +75,12 @@ def test_rows_are_single_solves(tmp_path: Path) -> None:
     assert table["motion.creepage[0]"] == [-2e-3, 1e-3, 4e-3] * 2
     assert table["creep_force[0]"] == [row.outputs[0] for row in sweep.rows]
     assert set(table["status"]) == {"converged"}
+    parts = [pq.read_table(file) for file in (tmp_path / "out" / "results").iterdir()]
+    rows = [row for part in parts for row in part.to_pylist()]
+    assert {row["id"]: row for row in rows} == {
+        row["id"]: row for row in read_sweep(tmp_path / "out").to_pylist()
+    }
+    assert len(rows) == 6
 
 
 def test_two_workers_give_the_same_rows(tmp_path: Path) -> None:
@@ -98,7 +105,7 @@ def test_sweeps_go_on_and_share(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(runner, "solve_chunk", counted)
     with pytest.raises(KeyboardInterrupt):
         run_sweep(path, folder)
-    assert not (folder / "results.parquet").exists()
+    assert not (folder / "sweep.parquet").exists()
     monkeypatch.setattr(runner, "solve_chunk", solve_chunk)
     rest = run_sweep(path, folder)
     assert (rest.reused, rest.solved) == (1 + len(solved), 5 - len(solved))
@@ -108,7 +115,7 @@ def test_sweeps_go_on_and_share(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     shared = run_sweep(larger, folder)
     assert (shared.reused, shared.solved) == (3, 3)
 
-    for file in (folder / "chunks").iterdir():
+    for file in (folder / "results").iterdir():
         file.write_bytes(file.read_bytes()[:-9])
     again = run_sweep(larger, folder)
     assert again.solved == 6
@@ -117,18 +124,18 @@ def test_sweeps_go_on_and_share(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 
 def test_cases_that_fail_are_rows(tmp_path: Path) -> None:
     """With status and reason; the others are as they are. The command ends with exit code 3."""
-    text = SWEEP.replace("[0.1, 0.3]", "[0.3, -1.0]")
+    text = SWEEP.replace("[0.1, 0.3]", "[-1.0, 0.3]")
     path = files(tmp_path, text)
     sweep = run_sweep(path, tmp_path / "out")
-    assert [row.status for row in sweep.rows] == ["converged"] * 3 + ["refused"] * 3
-    assert "friction.coefficient: value is -1.0" in str(sweep.rows[3].reason)
-    assert sweep.rows[3].outputs == (None, None, None)
+    assert [row.status for row in sweep.rows] == ["refused"] * 3 + ["converged"] * 3
+    assert "friction.coefficient: value is -1.0" in str(sweep.rows[0].reason)
+    assert sweep.rows[0].outputs == (None, None, None)
     page = (tmp_path / "out" / "sweep.html").read_text(encoding="utf-8")
     assert "3 refused" in page
     assert "friction.coefficient: value is -1.0" in page
     ended = CliRunner().invoke(cli, ["sweep", str(path), "-o", str(tmp_path / "out")])
     assert ended.exit_code == 3
-    assert "3 of 6 cases have no good result; the first, number 3: refused" in ended.output
+    assert "3 of 6 cases have no good result; the first, number 0: refused" in ended.output
 
 
 @pytest.mark.parametrize(

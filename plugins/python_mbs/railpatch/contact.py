@@ -116,10 +116,10 @@ class Contact:
         """By wheel ("left", "right"), what 95 % of the errors of the last step's max_pressure stay
         below, over it, for the noise found in profile files; empty without noise or contact.
 
-        16 contacts with other noise of the same size are solved for it, some 30 ms of the first
-        call and 15 ms of each (docs/profiles.md); NaN where half of them have no contact. What the
-        step begins from has no part in it: no memory, no stored heat. Raises CaseError before the
-        first step.
+        16 contacts with other noise of the same size are solved for it: of one wheel 23 to 47 ms of
+        the first call, 10 to 15 ms of each further one (docs/profiles.md); NaN where half of them
+        have no contact. What the step begins from has no part in it: no memory, no stored heat.
+        Raises CaseError before the first step.
         """
         if self._last is None:
             raise CaseError("pressure_error: there is no step, allowed after step()")

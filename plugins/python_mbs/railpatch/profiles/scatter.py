@@ -27,16 +27,17 @@ def drawn(profile: Profile, count: int, seed: tuple[int, ...]) -> list[Profile]:
     """The curve smoothed once more, and with it count others that noise of the same size might have
     left, the same for the same seed.
 
-    Without scatter the profile itself, each time.
+    Without scatter the profile itself, each time. Knots closer than twice POINTS a wave length
+    are left out: the curve is smooth between them.
     """
-    scatter = profile.scatter
-    if scatter is None:
+    if profile.scatter is None:
         return [profile] * (1 + count)
-    s = profile.arc_length
+    profile, bend_y, bend_z = thinned(profile)
+    scatter, s = profile.scatter, profile.arc_length
+    assert scatter is not None
     flattened = scatter.flattened[:, None]
     across = np.hstack([flattened, flattened + deviations(scatter, s, count, seed)])
     rate = slopes(s, across, "natural")
-    bend_y, bend_z = np.gradient(profile.dy, s), np.gradient(profile.dz, s)
     found = []
     for k in range(1 + count):
         d, slope = across[:, k], rate[:, k]
@@ -51,6 +52,18 @@ def drawn(profile: Profile, count: int, seed: tuple[int, ...]) -> list[Profile]:
             )
         )
     return found
+
+
+def thinned(profile: Profile) -> tuple[Profile, Array, Array]:
+    """With every so many of its knots, twice POINTS a wave length; rates of its slopes there."""
+    scatter, s = profile.scatter, profile.arc_length
+    assert scatter is not None
+    bend_y, bend_z = np.gradient(profile.dy, s), np.gradient(profile.dz, s)
+    every = max(1, int(0.5 * float(scatter.smoothing.min()) / POINTS / scatter.spacing))
+    keep = np.unique(np.append(np.arange(0, s.size, every), s.size - 1))
+    curve = {key: getattr(profile, key)[keep] for key in ("arc_length", "y", "z", "dy", "dz")}
+    left = replace(scatter, smoothing=scatter.smoothing[keep], flattened=scatter.flattened[keep])
+    return replace(profile, **curve, scatter=left), bend_y[keep], bend_z[keep]
 
 
 def deviations(scatter: Scatter, s: Array, count: int, seed: tuple[int, ...]) -> Array:

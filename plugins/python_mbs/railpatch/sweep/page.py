@@ -281,7 +281,7 @@ def _failed(sweep: Sweep) -> list[str]:
         for i in failed[:MOST_ROWS]
     ]
     more = len(failed) - len(rows)
-    text = f"<p>And {more} more: they are in results.parquet.</p>" if more > 0 else ""
+    text = f"<p>And {more} more: they are in sweep.parquet.</p>" if more > 0 else ""
     return [
         "<h2>Cases without a good result</h2>"
         + table(["case", "status", "at", "reason"], rows)

@@ -7,17 +7,17 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from multiprocessing import get_context
 from pathlib import Path
 
 from railpatch.case.load import KINDS, check_case
 from railpatch.case.moving import moving_keys
-from railpatch.errors import CaseError
+from railpatch.errors import CaseError, ProfileError
 from railpatch.sweep.outcome import Sweep
 from railpatch.sweep.plan import Plan, load_plan, steps_of
 from railpatch.sweep.store import need_pyarrow, read_rows, write_chunk, write_results
-from railpatch.sweep.work import Chunk, Row, check_first, first_names, solve_chunk
+from railpatch.sweep.work import Chunk, Row, solve_chunk, solve_first
 
 SECONDS = 1.0  # of a chunk, about
 MOST_IN_CHUNK = 5000
@@ -54,25 +54,29 @@ def run_sweep(
     if logs is not None:
         logs.mkdir(parents=True, exist_ok=True)
     ids = plan.ids()
-    first = chunk_of(plan, ids, [0], (), logs)
-    outputs = tuple(plan.table.outputs or first_names(first))
+    outputs = tuple(plan.table.outputs or ())
+    row = None
+    if not outputs:
+        outputs, row = first_of(plan, ids, list(range(len(ids))), outputs, logs)
     found = read_rows(folder, ids, outputs)
     reused = sum(name in found for name in ids)
     missing = in_order(plan, name_places(ids, found))
     solved = len(missing)
     seconds = [found[name].seconds for name in ids[:20] if name in found]
     if missing:
-        # the first one is solved here: what is wrong with all is told at once
-        row = check_first(chunk_of(plan, ids, missing[:1], outputs, logs))
-        write_chunk(folder, [row], outputs)
+        # one is solved here: what is wrong with all is told at once
+        if row is None or row.id in found:
+            _, row = first_of(plan, ids, missing, outputs, logs)
+        place = ids.index(row.id)
+        write_chunk(folder, chunk_of(plan, ids, [place], outputs, logs), [row])
         found[row.id] = row
         seconds.append(row.seconds)
-        missing = missing[1:]
+        missing.remove(place)
     progress(len(ids) - len(missing), len(ids))
     chunks = chunks_of(plan, ids, missing, outputs, logs, min(seconds, default=SECONDS), workers)
     done = len(ids) - len(missing)
-    for _chunk, rows in (backend or local_backend(workers))(chunks):
-        write_chunk(folder, rows, outputs)
+    for chunk, rows in (backend or local_backend(workers))(chunks):
+        write_chunk(folder, chunk, rows)
         found |= {row.id: row for row in rows}
         done += len(rows)
         progress(min(done, len(ids)), len(ids))
@@ -86,6 +90,20 @@ def run_sweep(
         sweep.written.append(write_page(sweep))
     sweep.wall_time = time.perf_counter() - begin
     return sweep
+
+
+def first_of(
+    plan: Plan, ids: list[str], places: list[int], outputs: tuple[str, ...], logs: Path | None
+) -> tuple[tuple[str, ...], Row]:
+    """The names of the outputs and one case: the first, the middle or the last one, whichever is
+    not refused. Raises CaseError, ProfileError of the first one where all are."""
+    errors: list[CaseError | ProfileError] = []
+    for place in dict.fromkeys((places[0], places[len(places) // 2], places[-1])):
+        try:
+            return solve_first(chunk_of(plan, ids, [place], outputs, logs))
+        except (CaseError, ProfileError) as error:
+            errors.append(error)
+    raise errors[0]
 
 
 def need_toml_writer() -> None:
@@ -113,8 +131,11 @@ def in_order(plan: Plan, places: dict[str, int]) -> list[int]:
     contact."""
     if plan.kind not in KINDS or not places:
         return sorted(places.values())
-    case = check_case(plan.case(plan.points[0]))
-    tables = moving_keys(case)
+    tables: dict[str, str] = {}
+    for point in (plan.points[0], plan.points[-1]):
+        # one of them may be refused
+        with suppress(CaseError):
+            tables = moving_keys(check_case(plan.case(point)))
     steps = [[*steps_of(key), ""] for key in plan.keys]
     fixed = [i for i, step in enumerate(steps) if tables.get(str(step[1])) != step[0]]
     ranks: list[dict[str, int]] = []

@@ -1,4 +1,4 @@
-"""What a sweep leaves in its folder: a Parquet file for each chunk, and all in one at its end.
+"""What a sweep leaves in its folder: Parquet files of its chunks, and all in one at its end.
 
 Rows are found by the ids of their cases: a sweep that was ended goes on where it was, and two
 sweeps in one folder share the cases that they have in common.
@@ -12,12 +12,12 @@ from pathlib import Path
 from typing import Any
 
 from railpatch.errors import CaseError
-from railpatch.sweep.plan import COLUMNS, Plan, digest
-from railpatch.sweep.work import Row
+from railpatch.sweep.plan import COLUMNS, Plan, Value, digest
+from railpatch.sweep.work import Chunk, Row
 from railpatch.writing import write_whole
 
-CHUNKS = "chunks"
-TABLE = "results.parquet"
+CHUNKS = "results"
+TABLE = "sweep.parquet"
 
 
 def need_pyarrow() -> Any:
@@ -46,10 +46,11 @@ def read_sweep(folder: str | Path) -> Any:
     return pyarrow.parquet.read_table(path)
 
 
-def write_chunk(folder: Path, rows: Sequence[Row], outputs: Sequence[str]) -> Path:
-    """One file, whole or not at all, named by its first and last case. Raises OSError."""
+def write_chunk(folder: Path, chunk: Chunk, rows: Sequence[Row]) -> Path:
+    """One file, whole or not at all, named by its cases. Raises OSError."""
     name = digest([row.id for row in rows])
-    return _write(folder / CHUNKS / f"{name}.parquet", _columns(rows, outputs))
+    columns = {**_keys(chunk.keys, chunk.points), **_columns(rows, chunk.outputs)}
+    return _write(folder / CHUNKS / f"{name}.parquet", columns)
 
 
 def read_rows(folder: Path, wanted: Iterable[str], outputs: Sequence[str]) -> dict[str, Row]:
@@ -81,9 +82,12 @@ def read_rows(folder: Path, wanted: Iterable[str], outputs: Sequence[str]) -> di
 
 def write_results(folder: Path, plan: Plan, rows: Sequence[Row], outputs: Sequence[str]) -> Path:
     """All cases in the order of their points. Raises OSError."""
-    keys = {key: [point[i] for point in plan.points] for i, key in enumerate(plan.keys)}
-    columns = _columns(rows, outputs)
-    return _write(folder / TABLE, {**{name: _one_type(v) for name, v in keys.items()}, **columns})
+    return _write(folder / TABLE, {**_keys(plan.keys, plan.points), **_columns(rows, outputs)})
+
+
+def _keys(keys: Sequence[str], points: Sequence[tuple[Value, ...]]) -> dict[str, list[Any]]:
+    """A column for each key that varies."""
+    return {key: _one_type([point[i] for point in points]) for i, key in enumerate(keys)}
 
 
 def _one_type(values: list[Any]) -> list[Any]:

@@ -78,19 +78,16 @@ def solve_case(chunk: Chunk, name: str, point: Sequence[Value]) -> Row:
     return Row(name, ending.status, ending.reason, tuple(ending.warnings), seconds, values)
 
 
-def first_names(chunk: Chunk) -> tuple[str, ...]:
-    """The outputs of a sweep that names none. Raises CaseError, ProfileError."""
-    ending, _ = ending_of(chunk, chunk.ids[0], chunk.points[0])
-    return tuple(default_names(ending.values))
-
-
-def check_first(chunk: Chunk) -> Row:
-    """The first case, solved; its errors are those of the sweep. Raises CaseError, ProfileError."""
+def solve_first(chunk: Chunk) -> tuple[tuple[str, ...], Row]:
+    """The first case, and the names of the outputs: the chunk's, or those of a sweep that names
+    none. Raises CaseError, ProfileError where the case or a name is wrong."""
     begin = time.perf_counter()
     ending, run = ending_of(chunk, chunk.ids[0], chunk.points[0])
-    values = tuple(value_of(output, ending.values, run) for output in chunk.outputs)
+    names = chunk.outputs or tuple(default_names(ending.values))
+    values = tuple(value_of(output, ending.values, run) for output in names)
     seconds = time.perf_counter() - begin
-    return Row(chunk.ids[0], ending.status, ending.reason, tuple(ending.warnings), seconds, values)
+    row = Row(chunk.ids[0], ending.status, ending.reason, tuple(ending.warnings), seconds, values)
+    return names, row
 
 
 def ending_of(chunk: Chunk, name: str, point: Sequence[Value]) -> tuple[Ending, Run | None]:
