@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import railpatch
+import tomli_w
 from case.correct import accepted, combined
 from click.testing import CliRunner
 from railpatch.case.kinds import kinds
@@ -29,6 +30,7 @@ from railpatch.pressure_error import LIMIT
 from railpatch.profiles import load_profile
 from railpatch.profiles.raw import Role
 from railpatch.report.warnings import warnings
+from railpatch.sweep import run_sweep
 
 NOISY = File(5e-6, 2e-4, "blanks", "none")
 QUIET = File(3e-7, 5e-5, "semicolons", "none")
@@ -200,3 +202,20 @@ def test_fmus_tell_it(tmp_path: Path) -> None:
     scene = load_scene(scene_of("wheelset", tmp_path))
     written = pack_fmu(scene, tmp_path / "a.fmu", name="a")
     assert any("max_pressure is known to within" in line for line in written.warnings)
+
+
+def test_many_states_and_sweeps_say_it_too(tmp_path: Path) -> None:
+    """Once for all states; in the row of each case."""
+    noisy = made(tmp_path, NOISY)
+    states = railpatch.solve_many(case(noisy), {"y": [0.0, 1e-3]}, folder=tmp_path)
+    (doubt,) = states.doubts
+    assert "max_pressure is known to within" in doubt
+    assert (
+        railpatch.solve_many(case({"wheel": "S1002", "rail": "UIC60"}), {"y": [0.0]}).doubts == []
+    )
+    (tmp_path / "scene.toml").write_text(tomli_w.dumps(case(noisy)), encoding="utf-8")
+    sweep = tmp_path / "sweep.toml"
+    text = '[sweep]\nscene = "scene.toml"\n[[vary]]\nkey = "wheelset.y"\nvalues = [0.0, 1e-3]\n'
+    sweep.write_text(text, encoding="utf-8")
+    rows = run_sweep(sweep, tmp_path / "out", page=False).rows
+    assert [row.warnings for row in rows] == [(doubt,)] * 2

@@ -20,6 +20,7 @@ from railpatch.case.track import irregularity_of
 from railpatch.case.types import BODIES, SIDES
 from railpatch.contact import CaseSource
 from railpatch.errors import CaseError, StateError
+from railpatch.pressure_error import run_doubts
 from railpatch.result import (
     DIVISION,
     FIELDS,
@@ -72,7 +73,8 @@ class States:
     Names are those of the JSON result, with dots between its parts: of a wheel ``force`` [n, 3],
     ``patches.normal_force`` [n, p] with NaN where a state has fewer than p patches; of a wheelset
     ``left.force``. ``status`` is an array of texts, ``reason`` and ``warnings`` are those of states
-    that have one, by their numbers: dicts of a text, and of texts. What the scene left out is NaN.
+    that have one, by their numbers: dicts of a text, and of texts. ``doubts``: warnings of the
+    profiles, for all states (docs/profiles.md). What the scene left out is NaN.
     """
 
     def __init__(
@@ -80,8 +82,9 @@ class States:
         arrays: dict[str, NDArray[Any]],
         reason: dict[int, str],
         warnings: dict[int, list[str]],
+        doubts: list[str],
     ) -> None:
-        self.arrays, self.reason, self.warnings = arrays, reason, warnings
+        self.arrays, self.reason, self.warnings, self.doubts = arrays, reason, warnings, doubts
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         if name not in self.arrays:
@@ -198,7 +201,8 @@ def solve_many(
         # threads are made for each block: quick states come in larger ones
         if time.perf_counter() - begin < QUICK and 2 * size <= MOST_IN_BLOCK:
             size *= 2
-    return found.states()
+    doubts = [] if isinstance(scene.case, PatchCase) else run_doubts(scene.case, scene.folder)
+    return found.states(doubts)
 
 
 def check_call(scene: Scene, threads: int, fields: bool, sequence: int) -> None:
@@ -380,14 +384,14 @@ class Collected:
                 rows.append({name: value for name, value in row.items() if value is not None})
         self.field_rows.append(rows)
 
-    def states(self) -> States:
-        """All that was taken."""
+    def states(self, doubts: list[str]) -> States:
+        """All that was taken. doubts: of the profiles."""
         arrays = {name: joined(parts) for name, parts in self.parts.items()}
         if self.fields:
             column = np.empty(len(self.field_rows), dtype=object)
             column[:] = self.field_rows
             arrays["fields"] = column
-        return States(arrays, self.reason, self.warnings)
+        return States(arrays, self.reason, self.warnings, doubts)
 
     def _part(self, results: NDArray[Any]) -> NDArray[Any]:
         """What status and reason are those of."""

@@ -17,11 +17,13 @@ from pathlib import Path
 from typing import Any
 
 from railpatch.case.kinds import Ending, kind_of
-from railpatch.case.load import KINDS, Scene, check_case
+from railpatch.case.load import KINDS, Case, Scene, check_case
 from railpatch.case.moving import moving_keys
+from railpatch.case.patch import PatchCase
 from railpatch.contact import Contact, solve
 from railpatch.errors import CaseError, ProfileError
 from railpatch.log import Run, read_run
+from railpatch.pressure_error import run_doubts
 from railpatch.sweep.outputs import Output, default_names, value_of
 from railpatch.sweep.plan import Value, put, steps_of
 
@@ -131,18 +133,31 @@ def contact_ending(chunk: Chunk, point: Sequence[Value]) -> Ending:
         contact.reset()
         # what does not move from step to step, as whether a number is found, needs a new one
         with suppress(CaseError):
-            return of_result(contact.step(**moves).to_dict())
+            return of_result(contact.step(**moves).to_dict(), doubts_of(case))
     _kept.state = None
     contact = Contact(Scene(case, Path()))
     result = contact.step().to_dict()
     _kept.contact, _kept.state = contact, state
-    return of_result(result)
+    return of_result(result, doubts_of(case))
 
 
-def of_result(data: Mapping[str, Any]) -> Ending:
-    """The ending of a solve."""
+def doubts_of(case: Case) -> list[str]:
+    """Warnings of the profiles of wheels, found once for each pair."""
+    if isinstance(case, PatchCase):
+        return []
+    known = getattr(_kept, "doubts", None)
+    if known is None:
+        known = _kept.doubts = {}
+    name = repr((case.profiles, case.track, case.wheelset.flange_back_position))
+    if name not in known:
+        known[name] = run_doubts(case, Path())
+    return known[name]
+
+
+def of_result(data: Mapping[str, Any], doubts: Sequence[str] = ()) -> Ending:
+    """The ending of a solve. doubts: further warnings."""
     return Ending(
-        str(data["status"]), data.get("reason"), list(data.get("warnings", ())), dict(data)
+        str(data["status"]), data.get("reason"), [*data.get("warnings", ()), *doubts], dict(data)
     )
 
 
