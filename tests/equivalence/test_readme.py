@@ -40,7 +40,8 @@ def test_command_and_python_examples_agree(
 ) -> None:
     exec(compile(block("python"), str(README), "exec"), {})
     printed = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
-    assert len(printed) == 4
+    assert len(printed) == 5
+    assert printed[4][2] == pytest.approx(printed[0], rel=1e-4)  # the last of three loads
     assert printed[0] == creep_force_of_command(tmp_path)
     assert printed[1] == pytest.approx(printed[0], rel=1e-4)  # a handle of its own, same case
     assert printed[0][0] < 0  # creepage > 0 gives creep force < 0

@@ -10,10 +10,10 @@ import pytest
 import synthetic
 from click.testing import CliRunner
 from railpatch.log import RunFileError, read_run
+from railpatch.page.patch_figure import most_loaded, patch_figure, regular
 from railpatch.report import ReportError, figures, reference, write_report
 from railpatch.report.command import report
 from railpatch.report.data import positions, snapshot
-from railpatch.report.patch_figure import most_loaded, patch_figure, regular
 
 
 @pytest.fixture(scope="module")

@@ -5,14 +5,15 @@ from __future__ import annotations
 import json
 import struct
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from zlib import crc32
 
 import numpy as np
 
 from railpatch import _core
+from railpatch.case.keys_of_step import signature
 from railpatch.case.load import Case, Scene, check_table, load_scene
 from railpatch.case.messages import show
 from railpatch.case.moving import changed_case, moving_keys, with_numbers
@@ -23,24 +24,20 @@ from railpatch.case.to_core import (
     POSE_AND_VELOCITY,
     config_of,
     input_of,
+    plain_moves,
     rates_of,
 )
 from railpatch.case.track import add_irregularity, irregularity_of
 from railpatch.case.types import SIDES
 from railpatch.errors import CaseError
+from railpatch.on_demand import OnDemand, Reader
 from railpatch.pressure_error import Replica, doubts, lines, replica_of
-from railpatch.result import (
-    FIELDS,
-    GOOD,
-    LAW_FIELDS,
-    ROW_FIELDS,
-    TOTAL_UNITS,
-    WHEELSET_UNITS,
-    Result,
-    patch_data,
-    shaped_field,
-    wheel_data,
-)
+from railpatch.result import FIELDS, GOOD, LAW_FIELDS, ROW_FIELDS, Result, shaped_field
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from railpatch.case.keys_of_step import Moving
 
 # saved state: mark, head of the moving tables as JSON, the JSON, the core's state
 MARK = b"railpatch2"
@@ -79,14 +76,37 @@ class Contact:
     ) -> None:
         scene = case if isinstance(case, Scene) else load_scene(case, folder)
         self._scene, self._timing = scene, timing
-        self._case, self._folder = scene.case, scene.folder
+        self._checked, self._folder = scene.case, scene.folder
+        self._moved: set[str] = set()  # keys that changed since, in the core alone
         self._irregularity = irregularity_of(scene)
         self._shelf = None if scene.case.kind == "patch" else Shelf(scene.case, scene.folder)
         self._core = _core.Contact(config_of(scene, self._shelf), timing)
         self._replica: Replica | None = None
-        self._values: dict[str, Any] = {}
-        self._last: tuple[dict[str, Any], float] | None = None
-        self._stages = [stage["name"] for stage in self.stages() if stage["present"]]
+        # of the last step, where it is not that of the case
+        self._own_values: dict[str, Any] | None = None
+        self._last: tuple[_core.Outcome, float] | None = None
+        present = [stage["name"] for stage in self.stages() if stage["present"]]
+        self._reader = Reader(scene.case, present)
+        # whether the core's last input is that of the case, and steps may change its numbers there
+        self._core.allow({} if self._irregularity is not None else plain_moves(scene.case))
+        self._goes_on = False
+
+    @property
+    def _case(self) -> Case:
+        if self._moved:
+            now = {key: self._core.moved(key) for key in self._moved}
+            self._checked = changed_case(self._checked, now)
+            self._moved = set()
+        return self._checked
+
+    @_case.setter
+    def _case(self, case: Case) -> None:
+        self._checked, self._moved = case, set()
+
+    @property
+    def _values(self) -> dict[str, Any]:
+        """Fields of rp_input of the last step."""
+        return input_of(self._case) if self._own_values is None else self._own_values
 
     @property
     def case(self) -> Case:
@@ -127,11 +147,11 @@ class Contact:
             return {}
         if self._replica is None:
             self._replica = replica_of(Scene(self._case, self._folder), self._shelf)
-        raw, _ = self._last
+        raw = self._last[0].whole()
         found = {name: raw[name] for name in self._shelf.case.wheelset.found}
         return self._replica.errors({**self._values, **found}, raw)
 
-    def step(self, *, fields: bool = False, **changes: Any) -> Result:
+    def step(self, *, fields: bool = False, **changes: Unpack[Moving]) -> Result:
         """Solves with some moving inputs changed; the others keep their last value.
 
         patch: creepage or tangential_force, spin_creepage, rolling_speed, direction, normal_force
@@ -145,7 +165,14 @@ class Contact:
         fields: add the fields of each patch. Other keys raise CaseError and nothing changes.
         Ctrl-C, or another signal whose handler raises, ends the step within 0.2 s: the moving
         inputs stay, and the next step starts as after reset().
+        The result's quantities are read as they are asked for.
         """
+        if self._goes_on:
+            outcome, wall_time = self._timed(self._core.step_moved, changes)
+            if outcome is not None:
+                self._moved.update(changes)
+                self._own_values = None
+                return self._result(outcome, wall_time, fields)
         case = changed_case(self._case, changes)
         if isinstance(case, PatchCase) and len(case.motion.creepages) > 1:
             shown = show(case.motion.creepage)
@@ -155,24 +182,36 @@ class Contact:
     def _solve(self, case: Case, creepage: list[float] | None, *, fields: bool) -> Result:
         """One step; creepage: of this step, where the case has one for each."""
         values = input_of(case)
+        own = self._irregularity is not None or creepage is not None
         if self._irregularity is not None:
             add_irregularity(values, self._irregularity)
         if creepage is not None:
             values["creepage"] = creepage
+        outcome, wall_time = self._timed(self._core.step_from, values)
+        self._case = case
+        self._own_values = values if own else None
+        self._goes_on = not own
+        return self._result(outcome, wall_time, fields)
+
+    def _timed(self, step: Callable[[Any], Any], argument: Any) -> tuple[Any, float]:
+        """What a step of the core gives, and its time in s."""
         begin = time.perf_counter()
         try:
-            raw = self._core.step(values)
+            outcome = step(argument)
         except CaseError:
             raise
         except BaseException:
             # interrupted: the core has forgotten its last solution
             self._last = None
             raise
-        wall_time = time.perf_counter() - begin
-        self._case = case
-        self._values = values
-        self._last = raw, wall_time
-        return Result(self._data(raw, wall_time, fields))
+        return outcome, time.perf_counter() - begin
+
+    def _result(self, outcome: _core.Outcome, wall_time: float, fields: bool) -> Result:
+        """Of a step, which is the last one now."""
+        self._last = outcome, wall_time
+        if fields:
+            return Result(self._data(outcome.whole(), wall_time, fields))
+        return Result(OnDemand(self._reader, outcome, wall_time))
 
     def last(self, *, fields: bool = False) -> Result:
         """The last step's result once more, also with fields; nothing is solved.
@@ -181,7 +220,7 @@ class Contact:
         """
         if self._last is None:
             raise CaseError("last: there is no step, allowed after step()")
-        return Result(self._data(*self._last, fields))
+        return self._result(*self._last, fields)
 
     def differentiate(self, **direction: Any) -> Result:
         """Rates of the last step's result, for rates of moving inputs: zero where left out.
@@ -251,6 +290,7 @@ class Contact:
             raise CaseError("state: value is no state of this case, allowed: save()") from None
         self._core.restore(core_state)
         self._last = None
+        self._goes_on = False
         self._case = self._case.model_copy(update=changed)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -264,26 +304,18 @@ class Contact:
         return self._core.describe()
 
     def _data(self, raw: dict[str, Any], wall_time: float, fields: bool) -> dict[str, Any]:
-        """The JSON result's content for the case's kind."""
-        common = {"wall_time": wall_time, "stages": list(self._stages)}
-        if self._case.kind == "patch":
-            patch = raw["right"]["patches"][0]
-            found = any(self._case.motion.prescribed)
-            data = patch_data(patch, of_wheel=False, creepage_found=found)
-            data["warnings"] = raw["warnings"]
-            if fields:
-                data.update(self._fields("right", 0, patch["grid"]))
-            return {**data, **common}
-        wheels = {side: wheel_data(raw[side], raw["z"]) for side in self._case.sides}
-        if fields:
-            for side, wheel in wheels.items():
-                solved = raw[side]["patches"] + raw[side]["alternatives"]
-                for index, patch in enumerate(wheel["patches"] + wheel["alternatives"]):
-                    patch.update(self._fields(side, index, solved[index]["grid"]))
-        if self._case.kind == "wheel_rail":
-            return {**wheels[self._case.wheel.side], "status": raw["status"], **common}
-        total = {key: raw[key] for key in (*TOTAL_UNITS, *WHEELSET_UNITS)}
-        return {**total, **wheels, **common}
+        """The JSON result's content for the case's kind; raw: rp_result."""
+        data = self._reader.whole(raw, wall_time)
+        if not fields:
+            return data
+        if self._checked.kind == "patch":
+            return {**data, **self._fields("right", 0, raw["right"]["patches"][0]["grid"])}
+        for side in self._checked.sides:
+            wheel = data if self._checked.kind == "wheel_rail" else data[side]
+            solved = raw[side]["patches"] + raw[side]["alternatives"]
+            for index, patch in enumerate(wheel["patches"] + wheel["alternatives"]):
+                patch.update(self._fields(side, index, solved[index]["grid"]))
+        return data
 
     def _fields(self, side: str, patch: int, grid: list[int]) -> dict[str, Any]:
         """The fields of one patch of the last step."""
@@ -294,6 +326,9 @@ class Contact:
                 continue
             found[name] = shaped_field(name, values, grid)
         return found
+
+
+Contact.step.__signature__ = signature(Contact.step)  # for those who complete keys
 
 
 def _restored(scene: Scene, timing: bool, state: bytes) -> Contact:

@@ -111,6 +111,39 @@ class States:
         """[n], whether a state's solve ended well; no contact is a valid result."""
         return np.isin(self.arrays["status"], GOOD)
 
+    def plot(self, name: str, over: str | Any | None = None) -> Any:
+        """A plotly.graph_objects.Figure of a quantity's numbers, by state.
+
+        over: the name of a quantity, or an array [n], along the abscissa; default the number of the
+        state. Raises KeyError, ValueError.
+        """
+        import plotly.graph_objects as go
+
+        from railpatch.page.figures import styled
+
+        values = self[name]
+        if values.dtype.kind not in "fiu":
+            raise ValueError(f"plot: {name} holds no numbers")
+        along = (
+            np.arange(len(self)) if over is None else self[over] if isinstance(over, str) else over
+        )
+        along = np.asarray(along)
+        if along.shape != (len(self),):
+            shown = f"{over!r}" if isinstance(over, str) else "over"
+            raise ValueError(f"plot: {shown} has the shape {along.shape}, allowed ({len(self)},)")
+        figure = go.Figure()
+        flat = values.reshape(len(values), -1)
+        for i, place in enumerate(np.ndindex(values.shape[1:])):
+            label = name + "".join(f"[{k}]" for k in place)
+            figure.add_trace(go.Scatter(x=along, y=flat[:, i], mode="markers", name=label))
+        figure.update_layout(showlegend=flat.shape[1] > 1)
+        figure.update_xaxes(
+            title_text=over if isinstance(over, str) else "state" if over is None else None
+        )
+        unit = unit_of_name(name)
+        figure.update_yaxes(title_text=f"{name} [{unit}]" if unit else name)
+        return styled(figure, 420)
+
     def to_pandas(self) -> Any:
         """A pandas.DataFrame with a column for each number: ``creep_force[0]``. Needs pandas."""
         pandas = _imported("pandas")
@@ -131,6 +164,16 @@ class States:
                 for name, values in self.arrays.items()
             }
         )
+
+
+def unit_of_name(name: str) -> str:
+    """Of a quantity by its name with dots; none for a number without one."""
+    units = {**PATCH_UNITS, **PLACE_UNITS, **WHEEL_UNITS, **WHEELSET_UNITS, **TOTAL_UNITS}
+    if name.startswith("error_estimate."):
+        return dict(zip(ESTIMATES, units["error_estimate"].split(", "), strict=True))[
+            name.split(".")[-1]
+        ]
+    return units.get(name.split(".")[-1], "")
 
 
 def _imported(name: str) -> Any:

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from contextlib import suppress
 from html import escape
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from railpatch import _core
+from railpatch.case.types import SIDES
+from railpatch.errors import CaseError
 
 # quantities that the core gives and the JSON result leaves out, and why; by struct
 LEFT_OUT = {
@@ -90,6 +93,16 @@ CARRIES = ("converged", "accuracy_not_met", "work_spent")
 _INF = math.inf
 
 
+class Source(Protocol):
+    """What a result is read from as it is asked for."""
+
+    def whole(self) -> dict[str, Any]:
+        """All quantities."""
+
+    def quantity(self, key: str) -> Any:
+        """One of them; KeyError where it takes all."""
+
+
 class Result:
     """What a solve gives. Signs: forces act on the wheel, creepages are wheel minus rail.
 
@@ -109,14 +122,58 @@ class Result:
     out is NaN or None.
     """
 
-    def __init__(self, data: dict[str, Any]) -> None:
-        self.data = data
+    def __init__(self, data: dict[str, Any] | Source) -> None:
+        self._data, self._source = (data, None) if isinstance(data, dict) else (None, data)
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """All quantities, by name."""
+        if self._data is None:
+            self._data, self._source = self._source.whole(), None
+        return self._data
 
     def __getitem__(self, key: str) -> Any:
+        if self._source is not None:
+            with suppress(KeyError):
+                return self._source.quantity(key)
         return self.data[key]
+
+    def __contains__(self, key: object) -> bool:
+        return key in self.data
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Result, (self.data,)
+
+    def keys(self) -> list[str]:
+        """Names of the quantities."""
+        return list(self.data)
 
     def __repr__(self) -> str:
         return f"Result(status={self.status!r}, keys={list(self.data)})"
+
+    def plot(self) -> Any:
+        """A plotly.graph_objects.Figure of all patches side by side: pressure, traction with its
+        arrows, stick and slip. Needs fields: ``step(fields=True)``. Raises CaseError."""
+        from railpatch.page.patch_figure import patches_figure  # plotly: half a second
+
+        patches = self._patches()
+        grids = {name: grid_of(patch) for name, patch in patches.items() if "pressure" in patch}
+        if not grids:
+            told = "has no contact" if not patches else f"is {self.status} and has no fields"
+            raise CaseError(f"plot: the result {told}, allowed a contact with fields=True")
+        return patches_figure(grids)
+
+    def _patches(self) -> dict[str, dict[str, Any]]:
+        """Those in contact, by a title."""
+        if "patches" not in self.data and not any(side in self.data for side in SIDES):
+            return {"": self.data} if self.status != "no_contact" else {}
+        found: dict[str, dict[str, Any]] = {}
+        for side in ("", *SIDES):
+            wheel = self.data if not side else self.data.get(side)
+            patches = wheel.get("patches", ()) if isinstance(wheel, dict) else ()
+            for i, patch in enumerate(patches, start=1):
+                found[f"{side} patch {i}".strip()] = patch
+        return found
 
     def _repr_html_(self) -> str:
         """A table for a notebook: numbers with units, of each wheel and patch."""
@@ -134,7 +191,7 @@ class Result:
     def status(self) -> str:
         """One of "converged", "no_contact", "not_converged", "out_of_range", "accuracy_not_met"
         and "work_spent"."""
-        return str(self.data["status"])
+        return str(self["status"])
 
     @property
     def reason(self) -> str | None:
@@ -144,7 +201,7 @@ class Result:
     @property
     def warnings(self) -> list[str]:
         """What can hardly be meant, though it was solved: a unit, a sign, a grid."""
-        return list(self.data.get("warnings", ()))
+        return list(self.data.get("warnings", ()) if self._source is None else self["warnings"])
 
     @property
     def good(self) -> bool:
@@ -159,6 +216,19 @@ class Result:
     def to_dict(self) -> dict[str, Any]:
         """The JSON result: plain numbers and lists, None for what is left out."""
         return plain_json(self.data)
+
+
+def grid_of(patch: dict[str, Any]) -> dict[str, Any]:
+    """The fields of a patch as a figure takes them: x and y of each element, vectors last."""
+    pressure = np.asarray(patch["pressure"])
+    traction = patch.get("traction")
+    return {
+        "x": np.broadcast_to(patch["x"], pressure.shape),
+        "y": np.broadcast_to(np.asarray(patch["y"])[:, None], pressure.shape),
+        "pressure": pressure,
+        "traction": None if traction is None else np.moveaxis(traction, 0, -1),
+        "element_division": patch.get("element_division"),
+    }
 
 
 def _html_table(title: str, quantities: dict[str, Any]) -> str:

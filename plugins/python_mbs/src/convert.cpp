@@ -206,6 +206,21 @@ nb::dict patch_dict(const rp_patch_result &from) {
   return to;
 }
 
+// estimates are named in the dictionary and stand after each other here
+#define RAILPATCH_FIND(type, field, ...) \
+  if (wanted == #field) return found_of(from, from.field);
+
+template <typename Result, typename T>
+nb::object found_of(const Result &from, const T &field) {
+  if constexpr (std::is_same_v<T, rp_reason>) {
+    return reason_of(from);
+  } else {
+    return value_of(field);
+  }
+}
+
+}  // namespace
+
 nb::dict side_dict(const rp_side_result &from) {
   nb::dict to;
   RP_SIDE_RESULT_FIELDS(RAILPATCH_VALUE, RAILPATCH_SKIP)
@@ -219,7 +234,23 @@ nb::dict side_dict(const rp_side_result &from) {
   return to;
 }
 
-}  // namespace
+nb::object quantity_of(const rp_result &from, const char *name) {
+  const std::string_view wanted(name);
+  RP_RESULT_FIELDS(RAILPATCH_FIND, RAILPATCH_SKIP)
+  throw nb::key_error(name);
+}
+
+nb::object quantity_of(const rp_side_result &from, const char *name) {
+  const std::string_view wanted(name);
+  RP_SIDE_RESULT_FIELDS(RAILPATCH_FIND, RAILPATCH_SKIP)
+  throw nb::key_error(name);
+}
+
+nb::object quantity_of(const rp_patch_result &from, const char *name) {
+  const std::string_view wanted(name);
+  RP_PATCH_RESULT_FIELDS(RAILPATCH_FIND, RAILPATCH_SKIP)
+  throw nb::key_error(name);
+}
 
 #define RAILPATCH_READ(type, field, count, role, ...) reader.read<Role::role>(#field, c.field);
 

@@ -35,6 +35,11 @@ void fill_input(const nb::dict &from, rp_input &to);
 // every plain field as a list of numbers, defaults filled in, enumerations as their values
 nb::dict config_dict(const rp_config &config);
 nb::dict result_dict(const rp_result &result);
+nb::dict side_dict(const rp_side_result &side);
+// one field of the same, as it is there; raises KeyError
+nb::object quantity_of(const rp_result &from, const char *name);
+nb::object quantity_of(const rp_side_result &from, const char *name);
+nb::object quantity_of(const rp_patch_result &from, const char *name);
 // texts of bits 1 << RP_WARNING_...
 nb::list warnings_of(uint32_t bits);
 // None where all is well

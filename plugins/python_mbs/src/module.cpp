@@ -4,6 +4,7 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/unique_ptr.h>
 
 #include <chrono>
 #include <memory>
@@ -17,6 +18,8 @@
 #include "fast/theories.hpp"
 #include "force_element.hpp"
 #include "lists.hpp"
+#include "moves.hpp"
+#include "outcome.hpp"
 #include "railpatch.h"
 #include "timing.hpp"
 
@@ -112,6 +115,19 @@ class Signals {
   Clock::time_point next_;
 };
 
+// A lock that is waited for without the interpreter's: who has it may be waiting for that one.
+class Turn {
+ public:
+  explicit Turn(std::mutex &mutex) : guard_(mutex, std::defer_lock) {
+    if (guard_.try_lock()) return;
+    nb::gil_scoped_release unlocked;
+    guard_.lock();
+  }
+
+ private:
+  std::unique_lock<std::mutex> guard_;
+};
+
 // the lock keeps one handle to one thread at a time, as railpatch.h asks for, while the
 // interpreter's lock is released
 class Contact : public Steppable {
@@ -137,17 +153,34 @@ class Contact : public Steppable {
     rp_default_input(&input);
     fill_input(values, input);
     rp_result result;
-    rp_message message = {};
-    rp_error code = RP_OK;
-    {
-      nb::gil_scoped_release unlocked;
-      std::lock_guard<std::mutex> guard(mutex_);
-      const Signals::Watch watch(signals_);
-      code = rp_step(contact_.get(), &input, &result, &message);
-    }
-    raise(code, message);
+    step_once(input, result);
     return result_dict(result);
   }
+
+  // step(), whose input step_moved() then goes on from
+  std::unique_ptr<Outcome> step_from(const nb::dict &values) {
+    rp_input input;
+    rp_default_input(&input);
+    fill_input(values, input);
+    auto outcome = std::make_unique<Outcome>();
+    step_once(input, outcome->values);
+    moves_.start(input);
+    return outcome;
+  }
+
+  // the last input of these with some numbers changed; null, and nothing is done, for a change
+  // that is not among those allowed
+  std::unique_ptr<Outcome> step_moved(const nb::dict &changes) {
+    rp_input input;
+    if (!moves_.moved(changes, input)) return nullptr;
+    auto outcome = std::make_unique<Outcome>();
+    step_once(input, outcome->values);
+    moves_.start(input);
+    return outcome;
+  }
+
+  void allow(const nb::dict &moves) { moves_.allow(moves); }
+  nb::object moved(const char *name) const { return moves_.now(name); }
 
   nb::tuple differentiate(const nb::dict &rates) {
     rp_input direction;
@@ -227,16 +260,8 @@ class Contact : public Steppable {
   void step_record(const Records &input, const Records &result) {
     if (input.shape(0) != sizeof(rp_input) || result.shape(0) != sizeof(rp_result))
       throw nb::value_error("step_record: a record of another size");
-    rp_message message = {};
-    rp_error code = RP_OK;
-    {
-      nb::gil_scoped_release unlocked;
-      std::lock_guard<std::mutex> guard(mutex_);
-      const Signals::Watch watch(signals_);
-      code = rp_step(contact_.get(), reinterpret_cast<const rp_input *>(input.data()),
-                     reinterpret_cast<rp_result *>(result.data()), &message);
-    }
-    raise(code, message);
+    step_once(*reinterpret_cast<const rp_input *>(input.data()),
+              *reinterpret_cast<rp_result *>(result.data()));
   }
 
   nb::tuple time_steps(const nb::list &inputs, const nb::list &reset, int repeat) {
@@ -252,7 +277,7 @@ class Contact : public Steppable {
 
   std::optional<FieldArray> field(int side, int patch, const char *name) {
     const rp_field wanted = field_of(name);
-    std::lock_guard<std::mutex> guard(mutex_);
+    const Turn turn(mutex_);
     double none = 0.0;
     size_t count = 0;
     const rp_error code = rp_get_field(contact_.get(), side, patch, wanted, &none, &count);
@@ -267,24 +292,24 @@ class Contact : public Steppable {
   }
 
   nb::bytes save() {
-    std::lock_guard<std::mutex> guard(mutex_);
+    const Turn turn(mutex_);
     std::string buffer(rp_state_size(contact_.get()), '\0');
     check(rp_save_state(contact_.get(), buffer.data(), buffer.size()));
     return nb::bytes(buffer.data(), buffer.size());
   }
 
   void restore(const nb::bytes &state) {
-    std::lock_guard<std::mutex> guard(mutex_);
+    const Turn turn(mutex_);
     check(rp_restore_state(contact_.get(), state.c_str(), state.size()));
   }
 
   void reset() {
-    std::lock_guard<std::mutex> guard(mutex_);
+    const Turn turn(mutex_);
     rp_reset(contact_.get());
   }
 
   nb::list describe() {
-    std::lock_guard<std::mutex> guard(mutex_);
+    const Turn turn(mutex_);
     rp_stage_info info[RP_STAGE_COUNT] = {};
     check(rp_describe(contact_.get(), info));
     return stage_list(info, clock_.seconds());
@@ -295,6 +320,18 @@ class Contact : public Steppable {
     void operator()(rp_contact *contact) const { rp_destroy(contact); }
   };
 
+  void step_once(const rp_input &input, rp_result &result) {
+    rp_message message = {};
+    rp_error code = RP_OK;
+    {
+      nb::gil_scoped_release unlocked;
+      std::lock_guard<std::mutex> guard(mutex_);
+      const Signals::Watch watch(signals_);
+      code = rp_step(contact_.get(), &input, &result, &message);
+    }
+    raise(code, message);
+  }
+
   // what a signal's handler raised, or what was wrong
   static void raise(rp_error code, const rp_message &message) {
     if (code == RP_ERROR_INTERRUPTED && PyErr_Occurred()) throw nb::python_error();
@@ -302,6 +339,7 @@ class Contact : public Steppable {
   }
 
   Signals signals_;
+  Moves moves_;
   Bytes table_;  // the contact uses it in place
   std::unique_ptr<rp_contact, Destroy> contact_;
   StageClock clock_;
@@ -402,6 +440,7 @@ NB_MODULE(_core, m) {
   m.attr("PLAUSIBLE") = listed_ranges();
   m.attr("LAYOUTS") = layouts();
 
+  bind_outcome(m);
   nb::class_<Steppable>(m, "Steppable", "A contact that a force element may step.");
   nb::class_<Contact, Steppable>(m, "Contact", "A handle of the library with its state and memory.")
       .def(nb::init<const nb::dict &, bool>(), nb::arg("config"), nb::arg("timing") = false,
@@ -409,6 +448,16 @@ NB_MODULE(_core, m) {
       .def("step", &Contact::step, nb::arg("input"),
            "Solves for the fields of rp_input, defaults where left out, and returns rp_result. "
            "The interpreter's lock is released.")
+      .def("step_from", &Contact::step_from, nb::arg("input"),
+           "step(), to be read on demand; step_moved() goes on from its input.")
+      .def("allow", &Contact::allow, nb::arg("moves"),
+           "What step_moved() takes: name -> (offset in bytes in rp_input, numbers, bounds, low, "
+           "high), as in LAYOUTS and INPUT_FIELDS.")
+      .def("step_moved", &Contact::step_moved, nb::arg("changes"),
+           "A step with some numbers of the last input changed; None, and nothing is done, where a "
+           "change is not allowed, not finite or out of its bounds. The interpreter's lock is "
+           "released.")
+      .def("moved", &Contact::moved, nb::arg("name"), "A number, or numbers, of the last input.")
       .def("differentiate", &Contact::differentiate, nb::arg("rates"),
            "The rates of the last step's rp_result for rates of the fields of rp_input, zero where "
            "left out, and whether they are exact. The interpreter's lock is released.")

@@ -233,6 +233,34 @@ def input_of(case: Case) -> dict[str, Any]:
     return values
 
 
+# keys of a step that are plain numbers in the core's input and, given by themselves, need no other
+# check than their range
+PLAIN = ("normal_force", "approach", "creepage", "spin_creepage", "rolling_speed")
+
+
+def plain_moves(case: Case) -> dict[str, tuple[int, int, str, float, float]]:
+    """Moving key -> where its numbers lie in rp_input, how many (0: no array), bounds, low, high.
+
+    Those that one number or list changes: no tables, words, or numbers that count with others.
+    """
+    keys = moving_keys(case)
+    if isinstance(case, PatchCase):
+        # which components of the force are prescribed, and steps, hang on each other
+        several = any(case.motion.prescribed) or len(case.motion.creepages) > 1
+        names = ("normal_force", "approach") if several else PLAIN
+    else:
+        names = tuple(keys)
+    members = _core.LAYOUTS["input"]["members"]
+    moves = {}
+    for name in names:
+        field = _core.INPUT_FIELDS.get(name)
+        if name not in keys or field is None or len(field["shape"]) > 1:
+            continue
+        bounds = (field["bounds"], field["low"], field["high"])
+        moves[name] = (members[name][0], *(field["shape"] or (0,)), *bounds)
+    return moves
+
+
 def bulk_of(case: Case) -> dict[str, Any]:
     """Bulk temperatures, in a scene that has them."""
     if not has_heat(case):

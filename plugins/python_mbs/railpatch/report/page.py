@@ -13,10 +13,10 @@ from railpatch.log.channels import ELEMENT_STATES, HUNTING
 from railpatch.log.reader import Run, read_run
 from railpatch.page.document import document
 from railpatch.page.figures import plot
+from railpatch.page.patch_figure import most_loaded, patch_figure, states_of
 from railpatch.page.tables import number, table, whole
 from railpatch.report import balance_figures, figures, reference, tables
 from railpatch.report.data import Positions, positions, snapshot
-from railpatch.report.patch_figure import most_loaded, patch_figure, states_of
 from railpatch.report.vehicle import page as vehicle_page
 from railpatch.report.vehicle.data import vehicle_run
 from railpatch.report.warnings import warnings
@@ -173,7 +173,8 @@ def _patch_section(data: Positions, at: float | None) -> list[str]:
     yaw = number(1e3 * data.state["yaw"][index])
     where = f"Position {index}, {data.along_label} {number(data.along[index])}, yaw {yaw} mrad"
     lines = [_patch_line(data, side, chosen) for side in SIDES]
-    states = ", ".join(ELEMENT_STATES[number] for number in states_of(chosen)[1:])
+    shown = [grid for side in SIDES if (grid := most_loaded(chosen[side]))]
+    states = ", ".join(ELEMENT_STATES[number] for number in states_of(shown)[1:])
     return [
         f"<h2>One patch of each wheel</h2><p>{escape(where)}. {escape(' '.join(lines))} Arrows: "
         f"traction on the wheel. Elements in contact are in one of the states {states}. Rolling is "

@@ -11,9 +11,9 @@ import numpy as np
 from railpatch.case.types import SIDES
 from railpatch.page import tables
 from railpatch.page.figures import plot
+from railpatch.page.patch_figure import patch_figure
 from railpatch.report import balance_figures
 from railpatch.report.data import has_bulk
-from railpatch.report.patch_figure import patch_figure
 from railpatch.report.tables import identity
 from railpatch.report.vehicle import figures as vehicle_figures
 from railpatch.report.vehicle.data import VehicleRun, snapshot

@@ -1,4 +1,4 @@
-"""Figure of one patch of each wheel: pressure, traction and element division."""
+"""Figure of patches: pressure, traction and element division."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from railpatch import _core
 from railpatch.case.types import SIDES
-from railpatch.log.channels import ELEMENT_STATES
 from railpatch.page.figures import styled
 
+ELEMENT_STATES: tuple[str, ...] = _core.CHOICES["element"]
 _STATE_COLORS = ("rgba(128,128,128,0.12)", "#3b7dc4", "#e0812b", "#b23a48")
 _ROWS = ("pressure", "traction", "division")
 _ARROWS = 16  # at most, along each direction
@@ -19,20 +20,26 @@ _ARROWS = 16  # at most, along each direction
 
 def patch_figure(chosen: dict[str, Any]) -> go.Figure:
     """The most loaded patch of each wheel; left and right side by side."""
-    grids = {side: most_loaded(chosen[side]) for side in SIDES}
-    titles = [f"{side}: {row}" for row in _ROWS for side in SIDES]
+    return patches_figure({side: most_loaded(chosen[side]) for side in SIDES})
+
+
+def patches_figure(grids: dict[str, dict[str, Any] | None]) -> go.Figure:
+    """Patches side by side, by their titles; None leaves a place empty."""
+    count = len(grids)
+    titles = [f"{name}: {row}" if name else row for row in _ROWS for name in grids]
     figure = make_subplots(
-        3, 2, subplot_titles=titles, horizontal_spacing=0.1, vertical_spacing=0.09
+        3, count, subplot_titles=titles, horizontal_spacing=0.2 / count, vertical_spacing=0.09
     )
-    top = max((grid["pressure"].max() for grid in grids.values() if grid), default=0.0)
-    for column, side in enumerate(SIDES, start=1):
-        if grids[side] is None:
+    shown = [grid for grid in grids.values() if grid]
+    top = max((grid["pressure"].max() for grid in shown), default=0.0)
+    for column, plain in enumerate(grids.values(), start=1):
+        if plain is None:
             continue
-        grid = regular(grids[side])
-        _pressure(figure, grid, column, 1e-6 * top)
+        grid = regular(plain)
+        _pressure(figure, grid, column, 1e-6 * top, scale=column == count)
         _traction(figure, grid, column)
         _division(figure, grid, column)
-    for number in states_of(chosen)[1:]:
+    for number in states_of(shown)[1:]:
         figure.add_trace(
             go.Scatter(
                 x=[None],
@@ -51,8 +58,8 @@ def patch_figure(chosen: dict[str, Any]) -> go.Figure:
         modebar={"orientation": "h"},
     )
     for row in range(1, 4):
-        for column in (1, 2):
-            number = 2 * (row - 1) + column
+        for column in range(1, count + 1):
+            number = count * (row - 1) + column
             figure.update_yaxes(
                 scaleanchor=f"x{number if number > 1 else ''}",
                 row=row,
@@ -63,12 +70,11 @@ def patch_figure(chosen: dict[str, Any]) -> go.Figure:
     return figure
 
 
-def states_of(chosen: dict[str, Any]) -> list[int]:
+def states_of(shown: list[dict[str, Any]]) -> list[int]:
     """Numbers of the elements' states that a figure of these patches tells apart.
 
     The third is that of a layer that yields, which few scenes have.
     """
-    shown = [grid for side in SIDES if (grid := most_loaded(chosen[side]))]
     yields = any(g["element_division"] is not None and 3 in g["element_division"] for g in shown)
     return [0, 1, 2, 3] if yields else [0, 1, 2]
 
@@ -116,7 +122,9 @@ def _onto(axis: np.ndarray, x: np.ndarray, values: np.ndarray) -> np.ndarray:
     return np.stack(rows)
 
 
-def _pressure(figure: go.Figure, grid: dict[str, Any], column: int, top: float) -> None:
+def _pressure(
+    figure: go.Figure, grid: dict[str, Any], column: int, top: float, *, scale: bool
+) -> None:
     shown = np.where(grid["pressure"] > 0, grid["pressure"], np.nan)
     figure.add_trace(
         go.Heatmap(
@@ -126,7 +134,7 @@ def _pressure(figure: go.Figure, grid: dict[str, Any], column: int, top: float) 
             colorscale="Viridis",
             zmin=0,
             zmax=top,
-            showscale=column == 2,
+            showscale=scale,
             colorbar=_bar("MPa", 0),
             hovertemplate="%{x:.2f}, %{y:.2f} mm: %{z:.0f} MPa<extra></extra>",
         ),
@@ -160,8 +168,6 @@ def _traction(figure: go.Figure, grid: dict[str, Any], column: int) -> None:
             y=grid["y"],
             z=np.where(size > 0, size, np.nan),
             colorscale="Cividis",
-            showscale=column == 2,
-            colorbar=_bar("MPa", 1),
             coloraxis="coloraxis",
             hovertemplate="%{x:.2f}, %{y:.2f} mm: %{z:.0f} MPa<extra></extra>",
         ),
