@@ -26,7 +26,7 @@ static_assert(sizeof(TrackState) == 12 * sizeof(double));
 enum { kMotion = 18, kWrench = 6, kState = 12, kContact = 6, kPower = 5, kPlacement = 12 };
 // rails: offset and velocity, both by side; wheels: force, moment, creep power, patches, power of
 // friction
-enum { kRails = 12, kWheel = 9, kWheels = 2 * kWheel };
+enum { kRails = 12, kWheel = 9, kWheels = 2 * kWheel, kLateral = 2 };
 
 Placement placement_at(const double *from) {
   Placement placement;
@@ -42,6 +42,16 @@ void check_placements(const Grid &rows, size_t count) {
 
 // NaN where the scene has no tangential problem: no friction
 double or_zero(double power) { return std::isnan(power) ? 0.0 : power; }
+
+// N, to the right on a wheel, of the tractions of all its patches, on planes
+double lateral_creep(const rp_side_result &side) {
+  double sum = 0;
+  for (int i = 0; i < side.patch_count + side.alternative_count; ++i) {
+    const rp_patch_result &patch = side.patch[i];
+    sum += patch.share * or_zero(patch.creep_force[1]) * std::cos(patch.contact_angle);
+  }
+  return sum;
+}
 
 struct Wheelset {
   Steppable *contact;
@@ -81,6 +91,7 @@ class ForceElement {
     positions_.resize(count_);
     rails_.resize(count_ * kRails);
     wheels_.resize(count_ * kWheels);
+    lateral_.resize(count_ * kLateral);
     motion_.resize(count_ * kMotion);
     wrench_.resize(count_ * kWrench);
     placed_.resize(count_ * kWrench);
@@ -138,6 +149,7 @@ class ForceElement {
   double *positions() { return positions_.data(); }
   double *rails() { return rails_.data(); }
   double *wheels() { return wheels_.data(); }
+  double *lateral() { return lateral_.data(); }
 
   double *motion() { return motion_.data(); }
   double *wrench() { return wrench_.data(); }
@@ -222,7 +234,9 @@ class ForceElement {
     power[3] = or_zero(result.friction_power);
     power[4] = result.pressure_energy;
     double *wheel = wheels_.data() + k * kWheels;
+    double *lateral = lateral_.data() + k * kLateral;
     for (const rp_side_result &side : result.side) {
+      *lateral++ = side.force[1] - lateral_creep(side);
       std::copy_n(side.force, 3, wheel);
       std::copy_n(side.moment, 3, wheel + 3);
       wheel[6] = or_zero(side.creep_power);
@@ -236,7 +250,7 @@ class ForceElement {
   double frame_speed_;
   size_t count_;
   std::vector<double> radii_, motion_, wrench_, contact_, power_, placed_;
-  std::vector<double> tracks_, positions_, rails_, wheels_;
+  std::vector<double> tracks_, positions_, rails_, wheels_, lateral_;
   std::vector<TrackState> state_;
   size_t solves_ = 0;
   std::unique_ptr<Workers> workers_;
@@ -297,6 +311,8 @@ void bind_force_element(nb::module_ &m) {
       .def_prop_ro(
           "wheels", &view<kWheels, &E::wheels>,
           "By side: force, moment about the centre, creep power, patches, power of friction.")
+      .def_prop_ro("lateral", &view<kLateral, &E::lateral>,
+                   "By side: lateral force without that of tractions, patches on planes.")
       .def_prop_ro("power", &view<kPower, &E::power>,
                    "Of the contacts: power of the forces (W), elastic energy (J), creep power (W), "
                    "frictional power (W), elastic energy of the pressure (J).");

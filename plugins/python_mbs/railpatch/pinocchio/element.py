@@ -102,6 +102,9 @@ class ForceElement:
                 raise CaseError("track.irregularity: given, allowed in a multibody model none")
         heats = [contact.case.temperature for contact in self.contacts]
         self._stores = [heat is not None and heat.bulk is not None for heat in heats]
+        self._curved = any(
+            contact.case.method.reference_surface == "curved" for contact in self.contacts
+        )
         self.frame_speed = float(frame_speed)
         self.wheelset = pin.SE3.Identity() if wheelset is None else wheelset
         self._core = _core.ForceElement(
@@ -293,8 +296,9 @@ class ForceElement:
         """N, [wheelsets, 2], of left and right wheel: the parts to the right of pressures in
         `wheels`, at the last step; the rest of the lateral force is of creep."""
         # the tractions' part is known row by row where each has an angle of its own
-        curved = self.contacts[0].case.method.reference_surface == "curved"
-        rows = [self.result(index, fields=curved) for index in range(len(self.joints))]
+        if not self._curved:
+            return self._core.lateral
+        rows = [self.result(index, fields=True) for index in range(len(self.joints))]
         return np.array([[lateral_normal(result[side]) for side in SIDES] for result in rows])
 
     def track_rotation(self, index: int) -> NDArray[np.float64]:
@@ -430,7 +434,7 @@ def lateral_normal(wheel: dict[str, Any]) -> float:
 
 
 def lateral_creep(patch: dict[str, Any]) -> float:
-    """N, to the right on a wheel, of a patch's tractions; on a curved reference surface, where the
+    """N, to the right on a wheel, of a patch's tractions. On a curved reference surface, where the
     lateral `creep_force` holds a part of pressure, by its rows."""
     angles = np.asarray(patch.get("row_angle", ()))
     if not angles.size:
