@@ -11,13 +11,14 @@ from railpatch.case import CaseError
 from railpatch.case.kinds import SceneKind, kind_of, kinds, write_example
 from railpatch.case.load import read_toml
 from railpatch.command.cli import cli
+from railpatch.sweep.plan import load_plan
 
 from rig_model.curve import load_curve_scene
 from rig_model.scene import load_rig_scene
 from wheelset_demo.scene import load_wheelset_scene
 from wheelset_demo.vehicle.scene import load_vehicle_scene
 
-KINDS = ("patch", "wheel_rail", "wheelset", "curve", "rig", "vehicle", "wheelset_run")
+KINDS = ("patch", "wheel_rail", "wheelset", "curve", "rig", "sweep", "vehicle", "wheelset_run")
 LOADERS = {
     "curve": load_curve_scene,
     "rig": load_rig_scene,
@@ -41,7 +42,10 @@ def test_an_example_is_written_with_its_files_and_runs(name: str, tmp_path: Path
     text = scene.read_text()
     assert text.startswith(f"#:schema {name}.schema.json\n")
     assert (folder / f"{name}.schema.json").is_file()
-    if name in LOADERS:
+    if name == "sweep":
+        assert len(load_plan(scene).points) == 108
+        assert (folder / "wheel_rail.schema.json").is_file()
+    elif name in LOADERS:
         loaded = LOADERS[name](scene)
         # its own files, not those of the package
         assert all(path.parent == folder for path in getattr(loaded, "files", {}).values())

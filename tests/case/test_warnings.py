@@ -10,7 +10,7 @@ import railpatch
 from bits.combinations import sample
 from case_samples import PATCH, WHEELSET, with_values
 from click.testing import CliRunner
-from railpatch.case.kinds import kinds
+from railpatch.case.kinds import kinds, write_example
 from railpatch.command.cli import cli
 from railpatch.evidence.continuity.worn import LOAD, worn_case
 
@@ -145,10 +145,12 @@ def test_packaged_scenes_have_none(kind: str, tmp_path: Path) -> None:
         "rig": ["--positions", "3", "-o", str(tmp_path / "a.mcap")],
         "wheelset_run": ["--distance", "0.2", "-o", str(tmp_path / "b.mcap")],
         "vehicle": ["--duration", "0.01", "--method", "fastsim"],
+        "sweep": ["-o", str(tmp_path / "result")],
     }
     scene = kinds()[kind]
     command = scene.command.split()
-    arguments = [str(scene.scene) if word == "SCENE" else word for word in command[1:]]
+    written = write_example(scene, tmp_path / "scene")
+    arguments = [str(written[0]) if word == "SCENE" else word for word in command[1:]]
     ran = CliRunner().invoke(cli, [arguments[0], arguments[1], *quick.get(kind, []), "--strict"])
     assert ran.exit_code == 0, ran.output
     assert "warning" not in ran.stderr

@@ -42,6 +42,7 @@ class SceneKind:
     model: its tables. scene: an example, with the files that it names beside it. command: what
     takes such a file, with SCENE for its name. run: of a run, runs a scene's file and writes the
     log to another; raises CaseError, ProfileError, OSError. None: one contact, which is solved.
+    base: the kind whose example this one's names, which is written beside.
     """
 
     name: str
@@ -49,6 +50,7 @@ class SceneKind:
     scene: Path
     command: str
     run: Callable[[Path, Path], Ending] | None = None
+    base: str | None = None
 
     def schema(self) -> dict[str, Any]:
         """The JSON schema of such files."""
@@ -97,17 +99,23 @@ def kind_of(name: str) -> SceneKind:
     return kinds()[name]
 
 
+def contents_of(kind: SceneKind) -> dict[str, bytes]:
+    """Of the files of the example by name: the scene, its schema, what the scene names."""
+    schema = f"{kind.name}.schema.json"
+    return {
+        f"{kind.name}.toml": f"#:schema {schema}\n".encode() + kind.scene.read_bytes(),
+        schema: (json.dumps(kind.schema(), indent=2) + "\n").encode(),
+        **{file.name: file.read_bytes() for file in kind.files()},
+        **(contents_of(kind_of(kind.base)) if kind.base else {}),
+    }
+
+
 def write_example(kind: SceneKind, folder: Path) -> list[Path]:
     """Writes the example into a folder; returns what was written, the scene first.
 
     Raises CaseError where one of the files is there already, then nothing is written; OSError.
     """
-    schema = f"{kind.name}.schema.json"
-    contents = {
-        f"{kind.name}.toml": f"#:schema {schema}\n".encode() + kind.scene.read_bytes(),
-        schema: (json.dumps(kind.schema(), indent=2) + "\n").encode(),
-        **{file.name: file.read_bytes() for file in kind.files()},
-    }
+    contents = contents_of(kind)
     there = [name for name in contents if (folder / name).exists()]
     if there:
         raise CaseError(f"{folder}: has {', '.join(there)}, allowed a folder without")

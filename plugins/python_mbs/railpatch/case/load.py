@@ -32,7 +32,13 @@ KINDS: dict[str, type[PatchCase] | type[WheelRailCase] | type[WheelsetCase]] = {
 LARGEST = 64_000_000
 DEEPEST = 32
 # tables that a contact case has not, by which files of other commands are known
-OTHERS = {"vehicle": "vehicle", "rig": "rig", "curve": "curve", "body": "wheelset"}
+OTHERS = {
+    "sweep": "sweep",
+    "vehicle": "vehicle",
+    "rig": "rig",
+    "curve": "curve",
+    "body": "wheelset",
+}
 
 
 @dataclass(frozen=True)

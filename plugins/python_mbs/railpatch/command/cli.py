@@ -109,7 +109,8 @@ def explain(context: click.Context, case: Path, quiet: bool) -> None:
 @click.option(
     "--kind",
     metavar="KIND",
-    help="Of such scenes only: patch, wheel_rail, wheelset, rig, curve, wheelset_run, vehicle.",
+    help="Of such scenes only: patch, wheel_rail, wheelset, rig, curve, wheelset_run, vehicle, "
+    "sweep.",
 )
 @QUIET
 def schema(kind: str | None, quiet: bool) -> None:
@@ -132,7 +133,7 @@ def schema(kind: str | None, quiet: bool) -> None:
 def init(kind: str, folder: Path, quiet: bool) -> None:
     """Write a scene to start from into a folder, with all its files.
 
-    KIND: patch, wheel_rail, wheelset, rig, curve, wheelset_run or vehicle. Beside the scene stand
+    KIND: patch, wheel_rail, wheelset, rig, curve, wheelset_run, vehicle or sweep. Beside the scene stand
     the profiles that it names and its JSON schema, by which editors check it. Files that are there
     are never replaced.
     """

@@ -127,6 +127,13 @@ class VaryTable(Table):
         return float((1 - share) * self.low + share * self.high)
 
 
+class SweepFile(Table):
+    """A sweep's file."""
+
+    sweep: SweepTable = Field(description="what is swept (no unit)")
+    vary: list[VaryTable] = Field(min_length=1, description="the keys that vary (no unit)")
+
+
 @dataclass(frozen=True)
 class Plan:
     """A checked sweep. content: of the scene; points: of every case, the values of the keys."""
@@ -212,6 +219,8 @@ def kind_of_content(content: Mapping[str, Any], path: Path) -> str:
     """The kind of scene by its tables. Raises CaseError."""
     for name, command in OTHERS.items():
         if name in content:
+            if command == "sweep":
+                raise CaseError(f"sweep.scene: {path} is a sweep itself, allowed a scene")
             return kind_of("wheelset_run" if command == "wheelset" else command).name
     kind = content.get("kind")
     if kind not in KINDS:
