@@ -484,6 +484,12 @@ IDLE = [
         Idle(key, still, "where nothing rolls there is no micro-slip and no traction", ())
         for key in ("friction", "layer", "motion", *OF_ROLLING)
     ),
+    Idle(
+        "wheelset.pitch_rate",
+        lambda c, k, v: v == "free" and without_spin(c, k, v),
+        "an axle at rest has no torque: that rate is found",
+        (),
+    ),
     Idle("method.spin_offset", without_spin, "wheels that do not turn have no spin", ()),
     Idle(
         "method.flexibility_blending",
