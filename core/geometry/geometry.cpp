@@ -12,7 +12,6 @@ namespace railpatch {
 namespace {
 
 constexpr double grazing = 0.03;     // least cosine between n and a surface's normal
-constexpr double aside = 0.02;       // m, what yaw may move the locus sideways
 constexpr double step_limit = 2e-3;  // m, of a newton step along a profile
 
 constexpr mat3 identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -101,17 +100,26 @@ double across(const surface &f, const hit &h) {
   return atan(-dot(normal, f.qs) / dot(normal, f.qn));
 }
 
-// the sample of the meridian nearest to the frame's origin starts the search
+// the sample of the meridian nearest to the frame's origin starts the search; samples are ordered
+// in y, so that those further aside than the nearest one need no look
 hit nearest(const surface &f) {
   const placed_profile &m = *f.meridian;
   const double u = f.q0[1];
   const double r = f.prismatic ? f.q0[2] : hypot(f.q0[0], f.q0[2]);
+  const int begin = m.first_not_before(u);
   double best = std::numeric_limits<double>::infinity();
   int at = m.first();
-  for (int i = m.first(); i <= m.last(); ++i) {
+  // of those equally near the first one
+  const auto closer = [&](int i, bool equal) {
     const double a = m.sample(i).y - u, b = f.radius + f.sign * m.sample(i).z - r;
-    if (a * a + b * b < best) best = a * a + b * b, at = i;
-  }
+    const double d = a * a + b * b;
+    if (d < best || (equal && d == best)) best = d, at = i;
+    return a * a <= best;
+  };
+  for (int i = begin; i <= m.last(); ++i)
+    if (!closer(i, false)) break;
+  for (int i = begin - 1; i >= m.first(); --i)
+    if (!closer(i, true)) break;
   hit h;
   h.p = m.sample_s(at);
   h.interval = m.curve().interval(h.p);
@@ -262,157 +270,8 @@ void side_geometry::move_to(double z) {
   place_centre();
 }
 
-// Sine of the angle along the circumference. With P = (r sin, u, r cos) and the normal
-// N = (sin du, -dr, cos du) in wheel axes, a rail asks for N_x = 0 in track axes; a roller for
-// equal slopes -N_x/N_z = (x - axle)/(axle_z - z), with z = wheel's z + gap the roller's.
-double side_geometry::locus_sine(const curve_point &p, double gap, double tolerance) const {
-  const mat3 &m = wheel_axes_;
-  double sine = m[0][1] * p.dz / (m[0][0] * p.dy);
-  if (track_.kind == track_kind::rail) return sine;
-  const double r = sizes_.nominal_radius + p.z;
-  double change = 1;
-  for (int i = 0; i < 8 && std::fabs(change) > tolerance; ++i) {
-    sine = std::clamp(sine, -0.9, 0.9);
-    const double cosine = std::sqrt(1 - sine * sine);
-    const vec3 n = turn(m, {sine * p.dy, -p.dz, cosine * p.dy});
-    const vec3 at = wheel_point(p, sine);
-    const double reach = axle_z_ - at[2] - gap;
-    const double f = -n[0] / n[2] - (at[0] - axle_x_) / reach;
-    const double dnx = m[0][0] * p.dy * cosine;
-    const double dnz = (m[2][0] * cosine - m[2][2] * sine) * p.dy;
-    const double slope = -(dnx * n[2] - n[0] * dnz) / (n[2] * n[2]) - m[0][0] * r * cosine / reach;
-    change = f / slope * cosine;
-    sine -= change;
-  }
-  return sine;
-}
-
-vec3 side_geometry::wheel_point(const curve_point &p, double sine) const {
-  const double r = sizes_.nominal_radius + p.z;
-  return axis_origin_ + turn(wheel_axes_, {r * sine, p.y, r * std::sqrt(1 - sine * sine)});
-}
-
-// all samples of the wheel against chords of the rail: both are ordered in y, so walk along both
-void side_geometry::scan() {
-  std::fill(gaps_.begin(), gaps_.end(), far_apart);
-  overlap_ = false;
-  const bool roller = track_.kind == track_kind::roller;
-  const double from = rail_.sample(rail_.first()).y - aside,
-               to = rail_.sample(rail_.last()).y + aside;
-  int k = rail_.first();
-  for (int i = wheel_.first(); i <= wheel_.last(); ++i) {
-    // where the profiles have no lateral position in common there is nothing to find
-    const double y = wheel_point(wheel_.sample(i), 0)[1];
-    if (y < from || y > to) continue;
-    // the gap is least there, so that its error is that of the sine squared
-    const double sine = locus_sine(wheel_.sample(i), 0, 3e-2);
-    if (!(std::fabs(sine) < 0.9)) continue;
-    const vec3 p = wheel_point(wheel_.sample(i), sine);
-    while (k + 2 <= rail_.last() && rail_.sample(k + 1).y < p[1]) ++k;
-    while (k > rail_.first() && rail_.sample(k).y > p[1]) --k;
-    const curve_point &a = rail_.sample(k), &b = rail_.sample(std::min(k + 1, rail_.last()));
-    if (!(p[1] >= a.y && p[1] <= b.y)) continue;
-    double z = a.z + (b.z - a.z) * (p[1] - a.y) / std::max(b.y - a.y, 1e-12);
-    const double x = p[0] - axle_x_, r = axle_z_ - z;
-    if (roller) z = axle_z_ - std::sqrt(std::max(r * r - x * x, 0.0));
-    gaps_[static_cast<size_t>(i)] = z - p[2];
-    if (shape_) {
-      double angle;
-      gaps_[static_cast<size_t>(i)] = row_of(wheel_.sample(i), sine, z - p[2]).least(angle);
-    }
-    overlap_ = true;
-  }
-}
-
-bool side_geometry::rail_surface(double x, double y, double &z, double &angle) const {
-  double s;
-  if (!rail_.find(y, s)) return false;
-  const curve_point p = rail_.evaluate(s);
-  z = p.z;
-  angle = inclination(p);
-  if (shape_) z -= shape_->height(x);
-  if (track_.kind == track_kind::rail) return true;
-  const double r = axle_z_ - p.z, dx = x - axle_x_;
-  if (!(r * r > dx * dx)) return false;
-  z = axle_z_ - std::sqrt(r * r - dx * dx);
-  return true;
-}
-
 double side_geometry::roller_inclination(const vec3 &at) const {
   return atan2(at[0] - axle_x_, axle_z_ - at[2]);
-}
-
-locus_point side_geometry::locus(double s) const {
-  locus_point l;
-  const curve_point p = wheel_.evaluate(s);
-  if (!wheel_.curve().covers(s) || !(p.dy > 0)) return l;
-  const double sine = locus_sine(p, sampled_gap(s), 1e-7);
-  if (!(std::fabs(sine) < 0.9)) return l;
-  l.sine = sine;
-  l.wheel = wheel_point(p, sine);
-  l.valid = rail_surface(l.wheel[0], l.wheel[1], l.rail_z, l.contact_angle);
-  if (!l.valid) return l;
-  l.gap = l.rail_z - l.wheel[2];
-  const double cosine = std::sqrt(1 - sine * sine);
-  const vec3 normal = turn(wheel_axes_, {sine * p.dy, -p.dz, cosine * p.dy});
-  l.normal = (1 / normal[2]) * normal;
-  // as the search asks for
-  if (track_.kind == track_kind::rail) l.normal[0] = 0;
-  // how the gap opens in x
-  l.curvature = 0.5 / (sizes_.nominal_radius + p.z);
-  if (track_.kind == track_kind::roller) l.curvature += 0.5 / (axle_z_ - l.rail_z);
-  if (shape_) find_closest(p, sine, l);
-  return l;
-}
-
-longitudinal_row side_geometry::row_of(const curve_point &p, double sine, double gap) const {
-  const double r = sizes_.nominal_radius + p.z;
-  longitudinal_row row;
-  row.shape = shape_;
-  row.angle = asin(sine);
-  row.radius = r;
-  row.gap = gap;
-  row.x0 = wheel_point(p, sine)[0];
-  row.advance = wheel_axes_[0][0] * r;
-  row.bend = track_.kind == track_kind::roller ? 0.5 / axle_z_ : 0.0;
-  return row;
-}
-
-// What a yawed wheel's meridian plane moves sideways on the way to x.
-double side_geometry::sideways(double x, double sine, const curve_point &p) const {
-  return wheel_axes_[1][0] / wheel_axes_[0][0] * (x - wheel_point(p, sine)[0]);
-}
-
-// From the round wheel on the level rail to the least gap of the row.
-void side_geometry::find_closest(const curve_point &p, double sine, locus_point &l) const {
-  const double level = l.gap + shape_->height(l.wheel[0]);
-  const longitudinal_row row = row_of(p, sine, level);
-  double angle;
-  l.gap = row.least(angle);
-  const double x = row.x(angle);
-  l.wheel[1] += sideways(x, sine, p);
-  l.wheel[0] = x;
-}
-
-row_overlap side_geometry::overlap(double s, double &y, double &dy) const {
-  const curve_point p = wheel_.evaluate(s);
-  dy = p.dy;
-  const double sine = locus_sine(p, sampled_gap(s), 1e-9);
-  const vec3 at = wheel_point(p, sine);
-  double z, angle;
-  if (!rail_surface(at[0], at[1], z, angle)) return {};
-  const longitudinal_row row = row_of(p, sine, z + shape_->height(at[0]) - at[2]);
-  const row_overlap sum = row.overlap();
-  y = at[1] + sideways(sum.x, sine, p);
-  return sum;
-}
-
-// by chords between the samples: near enough where only the roller's slope depends on it
-double side_geometry::sampled_gap(double s) const {
-  const double at = (s - wheel_.curve().begin()) / wheel_.step();
-  const int i = std::clamp(static_cast<int>(at), 0, sample_count() - 2);
-  const double a = sample_gap(i), b = sample_gap(i + 1), share = at - i;
-  return std::max(a, b) < 0.5 * far_apart ? a + share * (b - a) : 0;
 }
 
 surface side_geometry::wheel_seen_from(const contact_frame &frame) const {

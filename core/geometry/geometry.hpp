@@ -110,6 +110,8 @@ class side_geometry : private placement<double> {
   // Exact, at arc length s of the wheel's profile; with a shape the gap is the least one of the
   // row, see longitudinal_shape.hpp.
   locus_point locus(double s) const;
+  // Its gap alone; far_apart where it is not valid.
+  double gap(double s) const;
   // The rail surface at (x, y): z, and the angle of its profile; false beyond the profile.
   bool rail_surface(double x, double y, double &z, double &angle) const;
   // start: arc lengths of wheel and rail profile to search from, NaN where they are not known; out
@@ -147,6 +149,7 @@ class side_geometry : private placement<double> {
  private:
   void place_rail_marker();
   void scan();
+  bool rail_point(double x, double y, double &z, curve_point &p) const;
   surface wheel_seen_from(const contact_frame &frame) const;
   surface rail_seen_from(const contact_frame &frame) const;
   double locus_sine(const curve_point &p, double gap, double tolerance) const;

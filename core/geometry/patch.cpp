@@ -15,10 +15,7 @@ constexpr double closeness = 2e-5;    // m, sampled gaps below this are looked a
 constexpr double closest = 1e-4;      // m, steps on the way from an appearing part to its neighbour
 constexpr double least_share = 1e-6;  // what counts less is below any tolerance and left out
 
-double gap_at(const side_geometry &side, double s) {
-  const locus_point l = side.locus(s);
-  return l.valid ? l.gap : side_geometry::far_apart;
-}
+double gap_at(const side_geometry &side, double s) { return side.gap(s); }
 
 // where the gap changes sign between a and b: halving, sped up by the Illinois rule
 double edge(const side_geometry &side, double a, double b) {
@@ -85,6 +82,11 @@ class part_list {
   void search() {
     for (int i = 0; i < side_.sample_count(); ++i) {
       const double sampled = side_.sample_gap(i);
+      if (!open_ && sampled >= closeness && last_ >= closeness) {
+        before_ = last_;
+        last_ = sampled;
+        continue;
+      }
       const double g = std::fabs(sampled) < closeness ? gap_at(side_, side_.sample_s(i)) : sampled;
       advance(i, g);
       before_ = last_;

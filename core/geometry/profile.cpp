@@ -193,6 +193,12 @@ void placed_profile::find_branch() {
   last_ = static_cast<int>(b);
 }
 
+int placed_profile::first_not_before(double y) const {
+  const auto begin = samples_.begin() + first_, end = samples_.begin() + last_ + 1;
+  const auto before = [](const curve_point &p, double at) { return p.y < at; };
+  return static_cast<int>(std::lower_bound(begin, end, y, before) - samples_.begin());
+}
+
 bool placed_profile::find(double y, double &s) const {
   if (!(y >= sample(first_).y && y <= sample(last_).y)) return false;
   int a = first_, b = last_;

@@ -82,6 +82,8 @@ class placed_profile {
   // Samples of the running branch, equally spaced in s: first() to last(), both included.
   int first() const { return first_; }
   int last() const { return last_; }
+  // The first of them that is not before y; last() + 1 where all are.
+  int first_not_before(double y) const;
   double sample_s(int i) const { return curve_->begin() + i * step_; }
   const curve_point &sample(int i) const { return samples_[static_cast<std::size_t>(i)]; }
   double step() const { return step_; }

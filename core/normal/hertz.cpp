@@ -53,10 +53,10 @@ double carlson_rd(double x, double y, double z) {
 
 // d R_D(0, y, z)/dy, which is symmetric in y and z. From the integral, by partial fractions,
 // (R_D(0, y, z) - R_D(0, z, y))/(2 (z - y)); for nearly equal ones the integrand's series about
-// their mean.
-double carlson_rd_rate(double y, double z) {
+// their mean. here, there: R_D(0, y, z) and R_D(0, z, y).
+double carlson_rd_rate(double y, double z, double here, double there) {
   const double mean = 0.5 * (y + z), apart = 0.5 * (z - y), ratio = apart / mean;
-  if (std::abs(ratio) > 1e-3) return (carlson_rd(0, y, z) - carlson_rd(0, z, y)) / (4.0 * apart);
+  if (std::abs(ratio) > 1e-3) return (here - there) / (4.0 * apart);
   const double power = mean * mean * std::sqrt(mean);
   return -(9.0 * pi / 32.0) * (1.0 + 35.0 / 32.0 * ratio * ratio) / power;
 }
@@ -69,7 +69,7 @@ struct log_rates {
 log_rates rates_of(const double semi_axes[2]) {
   const double a2 = semi_axes[0] * semi_axes[0], b2 = semi_axes[1] * semi_axes[1];
   const double d0 = carlson_rd(0, b2, a2), d1 = carlson_rd(0, a2, b2), f = carlson_rf(0, a2, b2);
-  const double rate = carlson_rd_rate(a2, b2);
+  const double rate = carlson_rd_rate(a2, b2, d1, d0);
   const double m0 = 2.0 * b2 * rate / d0, m1 = 2.0 * a2 * rate / d1;
   return {{-3.0 - m0, m0}, {m1, -3.0 - m1}, {-a2 * d0 / (3.0 * f), -b2 * d1 / (3.0 * f)}};
 }
@@ -84,21 +84,34 @@ hertz_contact from_logs(const hertz_contact &c, const double curvatures[2], cons
           c.max_pressure * (force - axes[0] - axes[1])};
 }
 
-// ln(c0/c1) of an ellipse with ln(a/b) = t, falling from +inf to -inf.
-double log_curvature_ratio(double t) {
+// ln(c0/c1) of an ellipse with ln(a/b) = t, falling from +inf to -inf, and its rate by t.
+double log_curvature_ratio(double t, double &rate) {
   const double a2 = exp(t), b2 = exp(-t);
-  return log(carlson_rd(0, b2, a2) / carlson_rd(0, a2, b2));
+  const double d0 = carlson_rd(0, b2, a2), d1 = carlson_rd(0, a2, b2);
+  const double change = carlson_rd_rate(a2, b2, d1, d0);
+  rate = -3.0 - 2.0 * (b2 * change / d0 + a2 * change / d1);
+  return log(d0 / d1);
 }
 
-// ln(a/b) for given curvatures: bisection to the last bit is cheap and cannot fail.
+// ln(a/b) for given curvatures: Newton's method, kept between bounds. In logarithms the ratio is
+// nearly a straight line, and the next error the square of the last step.
 double log_axis_ratio(double c0, double c1) {
   const double target = log(c0 / c1);
   double lower = -25, upper = 25;
-  for (int i = 0; i < 100 && upper - lower > 1e-15 * std::max(1.0, std::abs(lower)); ++i) {
-    const double t = 0.5 * (lower + upper);
-    (log_curvature_ratio(t) > target ? lower : upper) = t;
+  // Hamrock and Brewe (1983): a/b = (c1/c0)^(2/pi), nearly
+  double t = std::clamp(-2.0 / pi * target, lower, upper);
+  for (int i = 0; i < 100; ++i) {
+    double rate = 0;
+    const double over = log_curvature_ratio(t, rate) - target;
+    (over > 0 ? lower : upper) = t;
+    double next = t - over / rate;
+    const bool inside = next >= lower && next <= upper;
+    if (!inside) next = 0.5 * (lower + upper);
+    const double step = std::abs(next - t);
+    t = next;
+    if (inside ? step < 1e-8 : step < 1e-15 * std::max(1.0, std::abs(t))) break;
   }
-  return 0.5 * (lower + upper);
+  return t;
 }
 
 hertz_contact complete(double a, double b, const double curvatures[2], double modulus,

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "convert.hpp"
+#include "numeric/elementary.hpp"
 #include "workers.hpp"
 
 namespace railpatch::python {
@@ -48,7 +49,7 @@ double lateral_creep(const rp_side_result &side) {
   double sum = 0;
   for (int i = 0; i < side.patch_count + side.alternative_count; ++i) {
     const rp_patch_result &patch = side.patch[i];
-    sum += patch.share * or_zero(patch.creep_force[1]) * std::cos(patch.contact_angle);
+    sum += patch.share * or_zero(patch.creep_force[1]) * railpatch::cos(patch.contact_angle);
   }
   return sum;
 }

@@ -1,0 +1,197 @@
+// Where wheel and rail are closest, along the wheel's profile: samples, and exact points.
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/geometry.hpp"
+#include "numeric/elementary.hpp"
+
+namespace railpatch {
+
+namespace {
+
+constexpr double aside = 0.02;  // m, what yaw may move the locus sideways
+
+}  // namespace
+
+// Sine of the angle along the circumference. With P = (r sin, u, r cos) and the normal
+// N = (sin du, -dr, cos du) in wheel axes, a rail asks for N_x = 0 in track axes; a roller for
+// equal slopes -N_x/N_z = (x - axle)/(axle_z - z), with z = wheel's z + gap the roller's.
+double side_geometry::locus_sine(const curve_point &p, double gap, double tolerance) const {
+  const mat3 &m = wheel_axes_;
+  double sine = m[0][1] * p.dz / (m[0][0] * p.dy);
+  if (track_.kind == track_kind::rail) return sine;
+  const double r = sizes_.nominal_radius + p.z;
+  double change = 1;
+  for (int i = 0; i < 8 && std::fabs(change) > tolerance; ++i) {
+    sine = std::clamp(sine, -0.9, 0.9);
+    const double cosine = std::sqrt(1 - sine * sine);
+    const vec3 n = turn(m, {sine * p.dy, -p.dz, cosine * p.dy});
+    const vec3 at = wheel_point(p, sine);
+    const double reach = axle_z_ - at[2] - gap;
+    const double f = -n[0] / n[2] - (at[0] - axle_x_) / reach;
+    const double dnx = m[0][0] * p.dy * cosine;
+    const double dnz = (m[2][0] * cosine - m[2][2] * sine) * p.dy;
+    const double slope = -(dnx * n[2] - n[0] * dnz) / (n[2] * n[2]) - m[0][0] * r * cosine / reach;
+    change = f / slope * cosine;
+    sine -= change;
+  }
+  return sine;
+}
+
+vec3 side_geometry::wheel_point(const curve_point &p, double sine) const {
+  const double r = sizes_.nominal_radius + p.z;
+  return axis_origin_ + turn(wheel_axes_, {r * sine, p.y, r * std::sqrt(1 - sine * sine)});
+}
+
+// all samples of the wheel against chords of the rail: both are ordered in y, so walk along both
+void side_geometry::scan() {
+  std::fill(gaps_.begin(), gaps_.end(), far_apart);
+  overlap_ = false;
+  const bool roller = track_.kind == track_kind::roller;
+  const double from = rail_.sample(rail_.first()).y - aside,
+               to = rail_.sample(rail_.last()).y + aside;
+  const vec3 origin = axis_origin_;
+  const mat3 axes = wheel_axes_;
+  int k = rail_.first();
+  for (int i = wheel_.first(); i <= wheel_.last(); ++i) {
+    const curve_point &m = wheel_.sample(i);
+    const double radius = sizes_.nominal_radius + m.z;
+    // where the profiles have no lateral position in common there is nothing to find
+    const double y = origin[1] + (axes[1][1] * m.y + axes[1][2] * radius);
+    if (y < from || y > to) continue;
+    // the gap is least there, so that its error is that of the sine squared
+    const double sine = roller ? locus_sine(m, 0, 3e-2) : axes[0][1] * m.dz / (axes[0][0] * m.dy);
+    if (!(std::fabs(sine) < 0.9)) continue;
+    // wheel_point(), written out as it is asked for at every sample
+    const vec3 own = {radius * sine, m.y, radius * std::sqrt(1 - sine * sine)};
+    const auto along = [&](size_t j) {
+      return origin[j] + (axes[j][0] * own[0] + axes[j][1] * own[1] + axes[j][2] * own[2]);
+    };
+    const vec3 p = {along(0), along(1), along(2)};
+    while (k + 2 <= rail_.last() && rail_.sample(k + 1).y < p[1]) ++k;
+    while (k > rail_.first() && rail_.sample(k).y > p[1]) --k;
+    const curve_point &a = rail_.sample(k), &b = rail_.sample(std::min(k + 1, rail_.last()));
+    if (!(p[1] >= a.y && p[1] <= b.y)) continue;
+    double z = a.z + (b.z - a.z) * (p[1] - a.y) / std::max(b.y - a.y, 1e-12);
+    if (roller) {
+      const double x = p[0] - axle_x_, r = axle_z_ - z;
+      z = axle_z_ - std::sqrt(std::max(r * r - x * x, 0.0));
+    }
+    gaps_[static_cast<size_t>(i)] = z - p[2];
+    if (shape_) {
+      double angle;
+      gaps_[static_cast<size_t>(i)] = row_of(m, sine, z - p[2]).least(angle);
+    }
+    overlap_ = true;
+  }
+}
+
+bool side_geometry::rail_point(double x, double y, double &z, curve_point &p) const {
+  double s;
+  if (!rail_.find(y, s)) return false;
+  p = rail_.evaluate(s);
+  z = p.z;
+  if (shape_) z -= shape_->height(x);
+  if (track_.kind == track_kind::rail) return true;
+  const double r = axle_z_ - p.z, dx = x - axle_x_;
+  if (!(r * r > dx * dx)) return false;
+  z = axle_z_ - std::sqrt(r * r - dx * dx);
+  return true;
+}
+
+bool side_geometry::rail_surface(double x, double y, double &z, double &angle) const {
+  curve_point p;
+  const bool there = rail_point(x, y, z, p);
+  if (there) angle = inclination(p);
+  return there;
+}
+
+double side_geometry::gap(double s) const {
+  if (shape_) {
+    const locus_point l = locus(s);
+    return l.valid ? l.gap : far_apart;
+  }
+  const curve_point p = wheel_.evaluate(s);
+  if (!wheel_.curve().covers(s) || !(p.dy > 0)) return far_apart;
+  const double sine = locus_sine(p, sampled_gap(s), 1e-7);
+  if (!(std::fabs(sine) < 0.9)) return far_apart;
+  const vec3 at = wheel_point(p, sine);
+  double z;
+  curve_point rail;
+  return rail_point(at[0], at[1], z, rail) ? z - at[2] : far_apart;
+}
+
+locus_point side_geometry::locus(double s) const {
+  locus_point l;
+  const curve_point p = wheel_.evaluate(s);
+  if (!wheel_.curve().covers(s) || !(p.dy > 0)) return l;
+  const double sine = locus_sine(p, sampled_gap(s), 1e-7);
+  if (!(std::fabs(sine) < 0.9)) return l;
+  l.sine = sine;
+  l.wheel = wheel_point(p, sine);
+  l.valid = rail_surface(l.wheel[0], l.wheel[1], l.rail_z, l.contact_angle);
+  if (!l.valid) return l;
+  l.gap = l.rail_z - l.wheel[2];
+  const double cosine = std::sqrt(1 - sine * sine);
+  const vec3 normal = turn(wheel_axes_, {sine * p.dy, -p.dz, cosine * p.dy});
+  l.normal = (1 / normal[2]) * normal;
+  // as the search asks for
+  if (track_.kind == track_kind::rail) l.normal[0] = 0;
+  // how the gap opens in x
+  l.curvature = 0.5 / (sizes_.nominal_radius + p.z);
+  if (track_.kind == track_kind::roller) l.curvature += 0.5 / (axle_z_ - l.rail_z);
+  if (shape_) find_closest(p, sine, l);
+  return l;
+}
+
+longitudinal_row side_geometry::row_of(const curve_point &p, double sine, double gap) const {
+  const double r = sizes_.nominal_radius + p.z;
+  longitudinal_row row;
+  row.shape = shape_;
+  row.angle = asin(sine);
+  row.radius = r;
+  row.gap = gap;
+  row.x0 = wheel_point(p, sine)[0];
+  row.advance = wheel_axes_[0][0] * r;
+  row.bend = track_.kind == track_kind::roller ? 0.5 / axle_z_ : 0.0;
+  return row;
+}
+
+// What a yawed wheel's meridian plane moves sideways on the way to x.
+double side_geometry::sideways(double x, double sine, const curve_point &p) const {
+  return wheel_axes_[1][0] / wheel_axes_[0][0] * (x - wheel_point(p, sine)[0]);
+}
+
+// From the round wheel on the level rail to the least gap of the row.
+void side_geometry::find_closest(const curve_point &p, double sine, locus_point &l) const {
+  const double level = l.gap + shape_->height(l.wheel[0]);
+  const longitudinal_row row = row_of(p, sine, level);
+  double angle;
+  l.gap = row.least(angle);
+  const double x = row.x(angle);
+  l.wheel[1] += sideways(x, sine, p);
+  l.wheel[0] = x;
+}
+
+row_overlap side_geometry::overlap(double s, double &y, double &dy) const {
+  const curve_point p = wheel_.evaluate(s);
+  dy = p.dy;
+  const double sine = locus_sine(p, sampled_gap(s), 1e-9);
+  const vec3 at = wheel_point(p, sine);
+  double z, angle;
+  if (!rail_surface(at[0], at[1], z, angle)) return {};
+  const longitudinal_row row = row_of(p, sine, z + shape_->height(at[0]) - at[2]);
+  const row_overlap sum = row.overlap();
+  y = at[1] + sideways(sum.x, sine, p);
+  return sum;
+}
+
+// by chords between the samples: near enough where only the roller's slope depends on it
+double side_geometry::sampled_gap(double s) const {
+  const double at = (s - wheel_.curve().begin()) / wheel_.step();
+  const int i = std::clamp(static_cast<int>(at), 0, sample_count() - 2);
+  const double a = sample_gap(i), b = sample_gap(i + 1), share = at - i;
+  return std::max(a, b) < 0.5 * far_apart ? a + share * (b - a) : 0;
+}
+
+}  // namespace railpatch
