@@ -32,15 +32,14 @@ influence::influence(const medium &of, const fft_plans &plans)
     : medium_(of),
       plans_(plans),
       full_(plans.max_nx(), plans.max_ny(), of.tangential),
-      single_(plans.max_nx(), plans.max_ny(), of.tangential) {
+      single_(plans.max_nx(), plans.max_ny(), of.tangential),
+      transform_(plans.max_nx(), plans.max_ny()) {
   const auto nx = static_cast<size_t>(plans.max_nx()), ny = static_cast<size_t>(plans.max_ny());
   const size_t table = (nx / 2 + 1) * (ny / 2 + 1), half = (nx / 2 + 1) * ny;
   stride_ = static_cast<int>(nx / 2 + 1);
   for (int k = 0; k < (of.tangential ? 4 : 1); ++k) table_[k] = aligned_buffer<double>(table);
   for (auto &corner : corner_) corner = aligned_buffer<double>((nx / 2 + 2) * (ny / 2 + 2));
-  padded_ = aligned_buffer<double>(nx * ny);
   spectrum_ = aligned_buffer<double>(half);
-  transform_ = aligned_buffer<std::complex<double>>(half);
   if (of.curved)
     curved_ = std::make_unique<conformal_influence>(plans, of.tangential, of.layer_flexibility);
 }
@@ -58,6 +57,7 @@ bool influence::set_grid(const grid &g) {
   if (same_elements && plan == plan_) return true;
   if (!same_elements || half_x > half_x_ || half_y > half_y_) make_kernels(half_x, half_y);
   plan_ = plan;
+  transform_.set_size(plans_.nx(plan), plans_.ny(plan));
   make_spectra();
   return true;
 }
@@ -175,25 +175,12 @@ double influence::coefficient(kernel k, int i, int j) const {
   return i == 0 || j == 0 ? 0.0 : ((i < 0) == (j < 0) ? value : -value);
 }
 
-void influence::transform_kernel(kernel k) {
-  const int nx = plans_.nx(plan_), ny = plans_.ny(plan_);
-  for (int j = 0; j < ny; ++j)
-    for (int i = 0; i < nx; ++i) {
-      const int oi = 2 * i <= nx ? i : i - nx, oj = 2 * j <= ny ? j : j - ny;
-      // an odd kernel has no value at the wrap-around, where both signs meet
-      const bool wrap = k == kernel::xy && (2 * i == nx || 2 * j == ny);
-      padded_[static_cast<size_t>(j * nx + i)] = wrap ? 0.0 : coefficient(k, oi, oj);
-    }
-  plans_.forward(plan_, padded_.data(), transform_.data());
-  const auto half = static_cast<size_t>((nx / 2 + 1) * ny);
-  for (size_t i = 0; i < half; ++i) spectrum_[i] = transform_[i].real();
-}
-
 void influence::make_spectra() {
   using name = convolution<double>::kernel_name;
   constexpr name names[] = {name::zz, name::xx, name::yy, name::xy};
   for (int k = medium_.tangential ? 3 : 0; k >= 0; --k) {
-    transform_kernel(static_cast<kernel>(k));
+    const bool odd = static_cast<kernel>(k) == kernel::xy;
+    transform_.make(odd, table_[k].data(), stride_, spectrum_.data());
     full_.set_spectrum(names[k], spectrum_.data());
     single_.set_spectrum(static_cast<convolution<float>::kernel_name>(names[k]), spectrum_.data());
     if (is_curved()) give_spectrum(static_cast<kernel>(k));
@@ -268,8 +255,8 @@ void influence::rolling_product_single(const double *px, const double *py, int d
 }
 
 size_t influence::bytes() const {
-  size_t sum = plans_.bytes() + padded_.bytes() + spectrum_.bytes() + transform_.bytes() +
-               full_.bytes() + single_.bytes() + (is_curved() ? curved_->bytes() : 0);
+  size_t sum = plans_.bytes() + spectrum_.bytes() + transform_.bytes() + full_.bytes() +
+               single_.bytes() + (is_curved() ? curved_->bytes() : 0);
   for (const auto &b : table_) sum += b.bytes();
   for (const auto &b : corner_) sum += b.bytes();
   return sum;

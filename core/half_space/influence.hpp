@@ -16,13 +16,13 @@
 // coordinates, so their spectra are real.
 #pragma once
 
-#include <complex>
 #include <memory>
 
 #include "half_space/conformal_influence.hpp"
 #include "half_space/physics.hpp"
 #include "numeric/convolution.hpp"
 #include "numeric/fft.hpp"
+#include "numeric/kernel_transform.hpp"
 #include "numeric/memory.hpp"
 
 namespace railpatch {
@@ -101,7 +101,6 @@ class influence {
   void make_line_kernels();
   void make_rates(double x, double y, double moves, size_t at);
   void make_spectra();
-  void transform_kernel(kernel k);
   void give_spectrum(kernel k);
   bool is_curved() const { return has_physics && curved_; }
 
@@ -113,11 +112,10 @@ class influence {
   int stride_ = 0;
   aligned_buffer<double> table_[4];
   aligned_buffer<double> corner_[3];
-  // a kernel on the transform's grid, its transform and the real spectrum
-  aligned_buffer<double> padded_, spectrum_;
-  aligned_buffer<std::complex<double>> transform_;
+  aligned_buffer<double> spectrum_;  // of a kernel, real
   convolution<double> full_;
   convolution<float> single_;
+  kernel_transform transform_;
   std::unique_ptr<conformal_influence> curved_;
 };
 
