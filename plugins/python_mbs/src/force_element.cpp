@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "convert.hpp"
-#include "numeric/elementary.hpp"
 #include "workers.hpp"
 
 namespace railpatch::python {
@@ -43,16 +42,6 @@ void check_placements(const Grid &rows, size_t count) {
 
 // NaN where the scene has no tangential problem: no friction
 double or_zero(double power) { return std::isnan(power) ? 0.0 : power; }
-
-// N, to the right on a wheel, of the tractions of all its patches, on planes
-double lateral_creep(const rp_side_result &side) {
-  double sum = 0;
-  for (int i = 0; i < side.patch_count + side.alternative_count; ++i) {
-    const rp_patch_result &patch = side.patch[i];
-    sum += patch.share * or_zero(patch.creep_force[1]) * railpatch::cos(patch.contact_angle);
-  }
-  return sum;
-}
 
 struct Wheelset {
   Steppable *contact;

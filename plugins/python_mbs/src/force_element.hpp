@@ -50,6 +50,9 @@ TrackState track_state(const Placement &joint, const double velocity[6], const P
 void joint_wrench(const double force[3], const double moment[3], const Placement &joint,
                   const Placement &wheelset, const Placement &track, double wrench[6]);
 
+// N, to the right on a wheel, of the tractions of all its patches, on planes
+double lateral_creep(const rp_side_result &side);
+
 void bind_force_element(nanobind::module_ &m);
 
 }  // namespace railpatch::python

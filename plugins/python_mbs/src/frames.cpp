@@ -78,4 +78,15 @@ void joint_wrench(const double force[3], const double moment[3], const Placement
   for (int i = 0; i < 6; ++i) wrench[i] = values[i];
 }
 
+double lateral_creep(const rp_side_result &side) {
+  double sum = 0;
+  for (int i = 0; i < side.patch_count + side.alternative_count; ++i) {
+    const rp_patch_result &patch = side.patch[i];
+    const double force = patch.creep_force[1];
+    // none without a tangential problem
+    if (!std::isnan(force)) sum += patch.share * force * cos(patch.contact_angle);
+  }
+  return sum;
+}
+
 }  // namespace railpatch::python
