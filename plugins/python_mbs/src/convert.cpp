@@ -206,7 +206,20 @@ nb::dict patch_dict(const rp_patch_result &from) {
   return to;
 }
 
-// estimates are named in the dictionary and stand after each other here
+nb::dict side_dict(const rp_side_result &from) {
+  nb::dict to;
+  RP_SIDE_RESULT_FIELDS(RAILPATCH_VALUE, RAILPATCH_SKIP)
+  nb::list patches, alternatives;
+  for (int i = 0; i < from.patch_count; ++i) patches.append(patch_dict(from.patch[i]));
+  for (int i = 0; i < from.alternative_count; ++i)
+    alternatives.append(patch_dict(from.patch[from.patch_count + i]));
+  to["patches"] = patches;
+  to["alternatives"] = alternatives;
+  to["reason"] = reason_of(from);
+  return to;
+}
+
+// as the field is: estimates are no dictionary here
 #define RAILPATCH_FIND(type, field, ...) \
   if (wanted == #field) return found_of(from, from.field);
 
@@ -220,19 +233,6 @@ nb::object found_of(const Result &from, const T &field) {
 }
 
 }  // namespace
-
-nb::dict side_dict(const rp_side_result &from) {
-  nb::dict to;
-  RP_SIDE_RESULT_FIELDS(RAILPATCH_VALUE, RAILPATCH_SKIP)
-  nb::list patches, alternatives;
-  for (int i = 0; i < from.patch_count; ++i) patches.append(patch_dict(from.patch[i]));
-  for (int i = 0; i < from.alternative_count; ++i)
-    alternatives.append(patch_dict(from.patch[from.patch_count + i]));
-  to["patches"] = patches;
-  to["alternatives"] = alternatives;
-  to["reason"] = reason_of(from);
-  return to;
-}
 
 nb::object quantity_of(const rp_result &from, const char *name) {
   const std::string_view wanted(name);

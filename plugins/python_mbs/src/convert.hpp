@@ -35,7 +35,6 @@ void fill_input(const nb::dict &from, rp_input &to);
 // every plain field as a list of numbers, defaults filled in, enumerations as their values
 nb::dict config_dict(const rp_config &config);
 nb::dict result_dict(const rp_result &result);
-nb::dict side_dict(const rp_side_result &side);
 // one field of the same, as it is there; raises KeyError
 nb::object quantity_of(const rp_result &from, const char *name);
 nb::object quantity_of(const rp_side_result &from, const char *name);

@@ -19,9 +19,6 @@ void bind_outcome(nb::module_ &m) {
           "whole", [](const Outcome &from) { return result_dict(from.values); },
           "All of it, as Contact.step() gives it.")
       .def(
-          "side", [](const Outcome &from, int side) { return side_dict(side_of(from, side)); },
-          nb::arg("side"), "All of one wheel.")
-      .def(
           "quantity",
           [](const Outcome &from, const char *name) { return quantity_of(from.values, name); },
           nb::arg("name"), "One field of rp_result. Raises KeyError.")
