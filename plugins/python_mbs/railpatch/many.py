@@ -35,7 +35,7 @@ from railpatch.result import (
 
 # states for each thread that are solved before their results are taken out, and how it grows where
 # that takes less than QUICK, s
-BLOCK, MOST_IN_BLOCK, QUICK = 256, 2048, 0.02
+BLOCK, MOST_IN_BLOCK, QUICK = 256, 16384, 0.02
 MOST_STATES = 100_000_000
 LONGEST = 100_000  # steps of a sequence
 STATUSES = np.array(list(_core.STATUSES.values()))
@@ -65,6 +65,20 @@ def record_type(name: str) -> np.dtype:
 
 
 INPUT, RESULT = record_type("input"), record_type("result")
+PATCH = record_type("patch")
+# what is read of a result that is one patch
+ONE_PATCH = np.dtype([("patch", PATCH), ("warnings", "<u4"), ("room", "V4")])
+Slices = list[tuple[int, int, int]]
+
+
+def slices_of(case: Case) -> tuple[np.dtype, Slices]:
+    """What is kept of a result, and where it lies there: (from, bytes, to)."""
+    if not isinstance(case, PatchCase):
+        return RESULT, [(0, RESULT.itemsize, 0)]
+    side = record_type("side")
+    place = RESULT.fields["side"][1] + RIGHT * side.itemsize + side.fields["patch"][1]
+    warnings = RESULT.fields["warnings"][1]
+    return ONE_PATCH, [(place, PATCH.itemsize, 0), (warnings, 4, ONE_PATCH.fields["warnings"][1])]
 
 
 class States:
@@ -220,21 +234,21 @@ def solve_many(
     contacts = [_core.Contact(config_of(scene)) for _ in range(threads)]
     found = Collected(scene.case, outputs, fields)
     size = max(1, BLOCK * threads // sequence) * sequence
-    results = np.zeros(0, dtype=RESULT)
+    kept, slices = (RESULT, []) if fields else slices_of(scene.case)
+    results = np.zeros(0, dtype=kept)
     first = 0
     while first < count:
         begin = time.perf_counter()
         records = records_of(base, columns, first, min(size, count - first))
         if len(results) < len(records):
-            results = np.zeros(len(records), dtype=RESULT)
+            results = np.zeros(len(records), dtype=kept)
         taken = results[: len(records)]
         try:
             if fields:
                 solve_with_fields(contacts[0], records, taken, sequence, found)
             else:
-                _core.Contact.step_many(
-                    contacts, records.view(np.uint8), sequence, taken.view(np.uint8)
-                )
+                places = records.view(np.uint8), sequence, taken.view(np.uint8)
+                _core.Contact.step_many(contacts, *places, slices, kept.itemsize)
         except StateError as error:
             raise StateError(first + error.state, error.problem) from None
         found.take(first, taken)
@@ -438,6 +452,8 @@ class Collected:
 
     def _part(self, results: NDArray[Any]) -> NDArray[Any]:
         """What status and reason are those of."""
+        if results.dtype == ONE_PATCH:
+            return results["patch"]
         if isinstance(self.case, PatchCase):
             return results["side"][:, RIGHT]["patch"][:, 0]
         return results

@@ -6,7 +6,9 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/unique_ptr.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -220,18 +222,21 @@ class Contact : public Steppable {
     check(rp_step(contact_.get(), &input, &result, &message), &message);
   }
 
-  // Records of rp_input and rp_result, as many; wrong: the place of an input that is.
+  // Records of rp_input to as many of what `slices` take of an rp_result: (from, bytes, to), in
+  // bytes of both records. Raises StateError with the place of a wrong input.
   static void step_many(const nb::list &all, const Records &inputs, size_t length,
-                        const Records &results) {
-    std::vector<Contact *> contacts;
-    for (const nb::handle one : all) contacts.push_back(nb::cast<Contact *>(one));
+                        const Records &outputs, const nb::list &slices, size_t width) {
+    const std::vector<Contact *> contacts = contacts_of(all);
     const size_t count = inputs.shape(0) / sizeof(rp_input);
     if (contacts.empty() || length == 0 || count % length != 0 ||
-        inputs.shape(0) != count * sizeof(rp_input) ||
-        results.shape(0) != count * sizeof(rp_result))
+        inputs.shape(0) != count * sizeof(rp_input) || outputs.shape(0) != count * width)
       throw nb::value_error("step_many: records of another size");
+    const std::vector<Slice> parts = slices_of(slices, width);
     const auto *from = reinterpret_cast<const rp_input *>(inputs.data());
-    auto *to = reinterpret_cast<rp_result *>(results.data());
+    // few at once stay where the processor has them at hand; threads want more to begin with
+    const size_t few = contacts.size() > 1 ? 512 * contacts.size() : 64;
+    const size_t at_once = std::max<size_t>(1, few / length) * length;
+    std::vector<rp_result> results(std::min(at_once, count));
     rp_message message = {};
     rp_error code = RP_OK;
     size_t wrong = count;
@@ -245,8 +250,19 @@ class Contact : public Steppable {
       }
       // the caller's thread asks for all
       const Signals::Watch watch(contacts[0]->signals_);
-      code = rp_step_many(handles.data(), static_cast<int32_t>(handles.size()), from,
-                          count / length, length, to, &wrong, &message);
+      for (size_t first = 0; first < count && code == RP_OK; first += at_once) {
+        const size_t here = std::min(at_once, count - first);
+        size_t place = here;
+        code = rp_step_many(handles.data(), static_cast<int32_t>(handles.size()), from + first,
+                            here / length, length, results.data(), &place, &message);
+        if (place < here) wrong = first + place;
+        if (code != RP_OK) break;
+        uint8_t *to = outputs.data() + first * width;
+        for (size_t k = 0; k < here; ++k, to += width)
+          for (const Slice &part : parts)
+            std::memcpy(to + part.to, reinterpret_cast<const uint8_t *>(&results[k]) + part.from,
+                        part.bytes);
+      }
     }
     if (wrong < count) {
       nb::object type = nb::module_::import_("railpatch.errors").attr("StateError");
@@ -319,6 +335,29 @@ class Contact : public Steppable {
   struct Destroy {
     void operator()(rp_contact *contact) const { rp_destroy(contact); }
   };
+
+  struct Slice {
+    size_t from, bytes, to;
+  };
+
+  static std::vector<Contact *> contacts_of(const nb::list &all) {
+    std::vector<Contact *> contacts;
+    for (const nb::handle one : all) contacts.push_back(nb::cast<Contact *>(one));
+    return contacts;
+  }
+
+  static std::vector<Slice> slices_of(const nb::list &all, size_t width) {
+    std::vector<Slice> slices;
+    for (const nb::handle one : all) {
+      const auto part = nb::cast<nb::tuple>(one);
+      const Slice slice{nb::cast<size_t>(part[0]), nb::cast<size_t>(part[1]),
+                        nb::cast<size_t>(part[2])};
+      if (slice.from + slice.bytes > sizeof(rp_result) || slice.to + slice.bytes > width)
+        throw nb::value_error("step_many: a slice outside the records");
+      slices.push_back(slice);
+    }
+    return slices;
+  }
 
   void step_once(const rp_input &input, rp_result &result) {
     rp_message message = {};
@@ -465,9 +504,10 @@ NB_MODULE(_core, m) {
            "rp_jacobian of the last step, rows after each other. The interpreter's lock is "
            "released.")
       .def_static("step_many", &Contact::step_many, nb::arg("contacts"), nb::arg("inputs"),
-                  nb::arg("length"), nb::arg("results"),
-                  "rp_step_many: bytes of rp_input to bytes of rp_result, on as many threads as "
-                  "contacts. Raises StateError for a wrong input. The interpreter's lock is "
+                  nb::arg("length"), nb::arg("outputs"), nb::arg("slices"), nb::arg("width"),
+                  "rp_step_many: bytes of rp_input to records of `width` bytes, which hold what "
+                  "`slices`, a list of (from, bytes, to), take of an rp_result; on as many threads "
+                  "as contacts. Raises StateError for a wrong input. The interpreter's lock is "
                   "released.")
       .def("step_record", &Contact::step_record, nb::arg("input"), nb::arg("result"),
            "Bytes of one rp_input to those of one rp_result. The interpreter's lock is released.")
