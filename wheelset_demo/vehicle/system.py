@@ -193,7 +193,7 @@ class VehicleSystem:
         wheelset, side, lateral and vertical."""
         if self.irregularity is None:
             return np.zeros((WHEELSETS, 2, 2)), np.zeros((WHEELSETS, 2, 2))
-        return self.irregularity.at(positions), self.irregularity.slope(positions)
+        return self.irregularity.both(positions)
 
     def _add_slope_wrenches(self) -> float:
         """Of rails that are not level, on the wheelsets, see slope; their power (W)."""

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PPoly
 
 from railpatch.case.gap import read_rows
 from railpatch.case.load import Scene
@@ -45,7 +46,10 @@ class Irregularity:
             first = positions[1:][np.diff(positions) <= 0][0]
             raise CaseError(f"{KEY}: x is {first:g} after a greater one, allowed increasing values")
         self._spline = cubic_spline(positions, values, (0.0, 0.0))
-        self._slope = self._spline.derivative()
+        # deviations and slopes side by side: one evaluation gives both
+        slope = self._spline.derivative().c
+        slope = np.concatenate([np.zeros_like(slope[:1]), slope])
+        self._both = PPoly(np.concatenate([self._spline.c, slope], axis=-1), self._spline.x)
 
     def at(self, x: ArrayLike) -> NDArray[np.float64]:
         """m, [..., 2, 2]: of the left and right rail, lateral and vertical, for each x."""
@@ -53,9 +57,14 @@ class Irregularity:
 
     def slope(self, x: ArrayLike) -> NDArray[np.float64]:
         """-, [..., 2, 2]: the same by x; 0 beyond the record."""
-        inside = self._inside(x)
-        found = self._slope(inside) * np.equal(inside, x)[..., None]
-        return found.reshape(*np.shape(x), 2, 2)
+        return self.both(x)[1]
+
+    def both(self, x: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """at() and slope()."""
+        inside, shape = self._inside(x), (*np.shape(x), 2, 2)
+        found = self._both(inside)
+        slopes = found[..., 4:] * np.equal(inside, x)[..., None]
+        return found[..., :4].reshape(shape), slopes.reshape(shape)
 
     def _inside(self, x: ArrayLike) -> NDArray[np.float64]:
         return np.clip(np.asarray(x, dtype=float), self._spline.x[0], self._spline.x[-1])
@@ -86,7 +95,7 @@ def irregularity_of(scene: Scene) -> Irregularity | None:
 
 def add_irregularity(values: dict[str, Any], irregularity: Irregularity) -> None:
     """Into the rails' offsets and vertical velocities of rp_input."""
-    moved, slopes = irregularity.at(values["x"]), irregularity.slope(values["x"])
+    moved, slopes = irregularity.both(values["x"])
     rates = values["speed"] * slopes[:, 1]
     values["rail_offset"] = [
         [x, y + lateral, z + vertical]
