@@ -35,7 +35,7 @@ from railpatch.result import (
 
 # states for each thread that are solved before their results are taken out, and how it grows where
 # that takes less than QUICK, s
-BLOCK, MOST_IN_BLOCK, QUICK = 256, 16384, 0.02
+BLOCK, MOST_IN_BLOCK, QUICK = 256, 4096, 0.02
 MOST_STATES = 100_000_000
 LONGEST = 100_000  # steps of a sequence
 STATUSES = np.array(list(_core.STATUSES.values()))
