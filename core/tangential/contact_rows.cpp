@@ -21,6 +21,9 @@ constexpr double density_base = 0.1, density_power = 0.2;
 constexpr int least_rows = 4;
 // Load of an outermost row over that of the next one, below which its own place counts less.
 constexpr double barely_loaded = 0.1;
+// An outermost row counts less within this part of a grid row from the end (one over it, of rows
+// with equal loads; of an ellipse none does), and its bend within that part.
+constexpr double near_end = 3.0, bend_near_end = 8.0;
 
 // Peak of the elliptic pressure that carries the load of a strip.
 double peak_of(double load, double half_length, double height) {
@@ -134,33 +137,30 @@ void contact_rows::collect(const grid &g, const double *pressure) {
 // An area of contact from the points between its ends; nothing is transferred at those.
 void contact_rows::close_area(const grid &g, int first, int last) {
   profile_point *p = points_.data();
-  const int count = last - first - 1;
-  double sum = 0, moment = 0, second = 0;
-  for (int i = first + 1; i < last; ++i) {
-    const double y = p[i].y - p[first + 1].y;
-    sum += p[i].load;
-    moment += p[i].load * y;
-    second += p[i].load * y * y;
-  }
-  double low, high;
-  if (count < least_rows) {
-    // too few rows for their shape: the ends of the ellipse with their moments, which may lie
-    // beyond the outermost elements, but not near the next ones
-    const double middle = moment / sum, variance = second / sum - middle * middle;
-    const double half = std::sqrt(std::max(5.0 * variance, 0.25 * g.dy * g.dy));
-    low = std::max(p[first + 1].y + middle - half, p[first + 1].y - 0.75 * g.dy);
-    high = std::min(p[first + 1].y + middle + half, p[last - 1].y + 0.75 * g.dy);
-  } else {
-    low = edge(p + first + 1, 1, count, g.dy);
-    high = edge(p + last - 1, -1, count, g.dy);
-  }
+  double sum = 0;
+  for (int i = first + 1; i < last; ++i) sum += p[i].load;
+  const area_ends end = ends_of(p + first + 1, p + last - 1, g.dy);
   // rows whose middle lies beyond the end give way to it
-  while (first + 2 < last && !(p[first + 1].y > low)) ++first;
-  while (first + 2 < last && !(p[last - 1].y < high)) --last;
-  const int inner = std::min(first + 1, last - 1);
-  p[first] = {low, 0.0, p[inner].x, 0.0};
-  p[last] = {high, 0.0, p[last - 1].x, 0.0};
+  while (first + 2 < last && !(p[first + 1].y > end.low)) ++first;
+  while (first + 2 < last && !(p[last - 1].y < end.high)) --last;
+  lessen(p + first + 1, 1, last - first - 1, end.low, g.dy);
+  lessen(p + last - 1, -1, last - first - 1, end.high, g.dy);
+  p[first] = {end.low, 0.0, p[first + 1].x, 0.0};
+  p[last] = {end.high, 0.0, p[last - 1].x, 0.0};
   areas_[static_cast<size_t>(area_count_++)] = {first, last, sum * g.dy, 0.0, 0.0};
+}
+
+// An outermost row near the end loses what it has as the end passes its middle, so that nothing
+// jumps when it gives way.
+void contact_rows::lessen(profile_point *outermost, int step, int rows, double end, double dy) {
+  if (rows < 2) return;
+  const profile_point &next = outermost[step];
+  const double near = near_end * std::abs(outermost->y - end) / dy;
+  const double part = near * std::max(1.0, next.load / outermost->load);
+  if (!(part < 1)) return;
+  outermost->load *= part;
+  outermost->half_length_squared *= part;
+  outermost->x = part * outermost->x + (1.0 - part) * next.x;
 }
 
 // Density of strips from the load, and its integral, linear and quadratic between the points;
@@ -189,26 +189,61 @@ double contact_rows::place(const contact_area &p, double weight) const {
   return points_[at].y + std::clamp(t, 0.0, 1.0) * length;
 }
 
-// y where the load vanishes. As the outermost row loses its load, the edge goes over to that of the
-// rows without it: so it does not jump when that row is gone.
-double contact_rows::edge(const profile_point *first, int step, int rows, double dy) const {
-  const double share = first->load / (barely_loaded * first[step].load);
-  const double with = edge_beyond(first, step, dy);
-  if (share >= 1 || rows <= least_rows) return with;
-  const double part = share * share * (3.0 - 2.0 * share);
-  return part * with + (1.0 - part) * edge(first + step, step, rows - 1, dy);
+// y where the load vanishes. As an outermost row loses its load, both ends go over to those of the
+// rows without it: so they do not jump when that row is gone.
+contact_rows::area_ends contact_rows::ends_of(const profile_point *first, const profile_point *last,
+                                              double dy) {
+  const auto counting = [](const profile_point *row, int step) {
+    const double share = row->load / (barely_loaded * row[step].load);
+    return share < 1 ? share * share * (3.0 - 2.0 * share) : 1.0;
+  };
+  // both sums end at the row with the greatest load or before
+  area_ends mean{0, 0};
+  double low_left = 1;
+  for (const profile_point *low = first; low_left > 0; ++low) {
+    const double low_part = low < last ? low_left * counting(low, 1) : low_left;
+    low_left -= low_part;
+    double high_left = low_part;
+    for (const profile_point *high = last; high_left > 0; --high) {
+      const double part = high > low ? high_left * counting(high, -1) : high_left;
+      high_left -= part;
+      if (!(part > 0)) continue;
+      const area_ends own = high - low + 1 < least_rows
+                                ? ends_by_moments(low, high, dy)
+                                : area_ends{edge_beyond(low, 1, dy), edge_beyond(high, -1, dy)};
+      mean.low += part * own.low;
+      mean.high += part * own.high;
+    }
+  }
+  return mean;
+}
+
+// Of too few rows for their shape: the ends of the ellipse with their moments, which may lie beyond
+// the outermost elements, but not near the next ones.
+contact_rows::area_ends contact_rows::ends_by_moments(const profile_point *first,
+                                                      const profile_point *last, double dy) {
+  double sum = 0, moment = 0, second = 0;
+  for (const profile_point *row = first; row <= last; ++row) {
+    const double y = row->y - first->y;
+    sum += row->load;
+    moment += row->load * y;
+    second += row->load * y * y;
+  }
+  const double middle = moment / sum, variance = second / sum - middle * middle;
+  const double half = std::sqrt(std::max(5.0 * variance, 0.25 * dy * dy));
+  return {std::max(first->y + middle - half, first->y - 0.75 * dy),
+          std::min(first->y + middle + half, last->y + 0.75 * dy)};
 }
 
 // The parabola through the three rows next to the outermost one, whose own element is only partly
 // in contact; never beyond that element.
-double contact_rows::edge_beyond(const profile_point *first, int step, double dy) const {
+double contact_rows::edge_beyond(const profile_point *first, int step, double dy) {
   const double l1 = first[step].load, l2 = first[2 * step].load, l3 = first[3 * step].load;
   // load = l1 + t (l2 - l1) + t (t - 1)/2 bend, t in rows from the first of the three inwards
   const double bend = std::min(0.0, l3 - 2.0 * l2 + l1), slope = l2 - l1 - 0.5 * bend;
-  if (!(slope > 0)) return first->y - step * 0.5 * dy;
-  const double root = std::sqrt(slope * slope - 2.0 * bend * l1);
-  const double t = -2.0 * l1 / (slope + root);
-  return first->y + step * dy * std::clamp(1.0 + t, -0.5, 0.5);
+  const double rise = slope + std::sqrt(slope * slope - 2.0 * bend * l1);
+  if (!(rise > 0)) return first->y - step * 0.5 * dy;
+  return first->y + step * dy * std::clamp(1.0 - 2.0 * l1 / rise, -0.5, 0.5);
 }
 
 // Of load and squared half-length between the points i and i + 1 of an area: k in the parabola
@@ -226,8 +261,17 @@ contact_rows::bends contact_rows::bend(const contact_area &area, int i) const {
     const bool inner[2] = {i > area.first, i + 1 < area.last};
     double k = inner[0] ? at(i) : inner[1] ? at(i + 1) : 0.0;
     if (inner[0] && inner[1]) {
-      const double other = at(i + 1);
-      k = k * other > 0 ? (std::abs(other) < std::abs(k) ? other : k) : 0.0;
+      // beside an end that is about to pass it, a point has no bend of its own
+      const double own[2] = {k, at(i + 1)};
+      const double apart[2] = {i - 1 == area.first ? p[i].y - p[i - 1].y : length,
+                               i + 2 == area.last ? p[i + 2].y - p[i + 1].y : length};
+      double other[2];
+      for (int n = 0; n < 2; ++n) {
+        const double part = std::min(1.0, bend_near_end * apart[n] / length);
+        other[n] = part * own[n] + (1.0 - part) * own[1 - n];
+      }
+      k = other[0] * other[1] > 0 ? (std::abs(other[1]) < std::abs(other[0]) ? other[1] : other[0])
+                                  : 0.0;
     }
     return std::clamp(k * length * length, -limit, limit);
   };

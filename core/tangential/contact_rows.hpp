@@ -61,13 +61,20 @@ class contact_rows {
     double weight;  // integral of the strips' density
     double share;   // of the strips
   };
+  // m, y where an area begins and ends
+  struct area_ends {
+    double low, high;
+  };
   struct bends {
     double load, squared;
   };
   void collect(const grid &g, const double *pressure);
   void close_area(const grid &g, int first, int last);
-  double edge(const profile_point *first, int step, int rows, double dy) const;
-  double edge_beyond(const profile_point *first, int step, double dy) const;
+  static area_ends ends_of(const profile_point *first, const profile_point *last, double dy);
+  static area_ends ends_by_moments(const profile_point *first, const profile_point *last,
+                                   double dy);
+  static double edge_beyond(const profile_point *first, int step, double dy);
+  static void lessen(profile_point *outermost, int step, int rows, double end, double dy);
   bends bend(const contact_area &area, int i) const;
   void share_strips();
   double weigh(contact_area &p, double peak_load);

@@ -22,12 +22,17 @@ class force_samples {
   // -, of the depth: how far beyond; the first ones where a wheel has several patches
   static constexpr std::array<double, 5> beyond = {0.2, 0.1, 0.05, 2e-3, 1e-3};
   static constexpr size_t of_divisions = 3;
+  // -, of the depth: how far above the root a part that is being joined may have appeared
+  static constexpr double joins_within = 0.05;
 
   explicit force_samples(double target) : target_(target) {}
 
   void add(double depth, double force) {
     if (count_ < samples_.size()) samples_[count_++] = {depth, force};
   }
+
+  // Whether a force at a lesser depth is above one at a greater depth.
+  static bool crosses(double before, double after) { return before > after * (1 + noise); }
 
   // root: the depth that carries the target, and its force
   bool jump_near(double depth, double force) const {

@@ -239,7 +239,8 @@ void wheels::find_z(double target, rp_result &out) {
                 ? verdict{RP_OUT_OF_RANGE, RP_REASON_TOO_DEEP, search.residual()}
                 : verdict{RP_NOT_CONVERGED, RP_REASON_FORCE_SEARCH, search.residual()};
   report_search(found, search.residual(), out);
-  if (search.converged() && samples.jump_near(depth, force))
+  if (search.converged() &&
+      (samples.jump_near(depth, force) || falls_while_joining(depth, force, out)))
     for (const auto &wheel : wheels_)
       out.side[wheel.side()].warnings |= uint32_t{1} << RP_WARNING_HEIGHTS;
   depth_ = search.converged() ? depth : 0.0;
@@ -263,6 +264,32 @@ double wheels::look_deeper(double touch, double depth, force_samples &samples, r
     if (!beyond()) samples.add(deeper, force);
   }
   return evaluate(touch + depth, out);
+}
+
+// Whether the force falls where a part that has appeared becomes one patch with its neighbour, so
+// far that it is the target's at another height too: by the forces of both divisions at this one.
+bool wheels::falls_while_joining(double depth, double force, const rp_result &out) const {
+  const double slope = 1.5 * force / depth;  // of a Hertzian contact
+  const double whole = carried(out);
+  for (const wheel_contact &wheel : wheels_) {
+    const rp_side_result &side = out.side[wheel.side()];
+    if (side.alternative_count == 0) continue;
+    double normal[2] = {0, 0}, mean = 0;  // of both divisions
+    for (int i = 0; i < side.patch_count + side.alternative_count; ++i) {
+      normal[i < side.patch_count ? 0 : 1] += side.patch[i].normal_force;
+      mean += side.patch[i].share * side.patch[i].normal_force;
+    }
+    const bool joined_first = side.patch_count < side.alternative_count;
+    const double apart = force * (1.0 + (normal[joined_first ? 1 : 0] - mean) / whole);
+    const double joined = force * (1.0 + (normal[joined_first ? 0 : 1] - mean) / whole);
+    appearance found;
+    if (wheel.appearances(out.z - force_samples::joins_within * depth, out.z, &found, 1) == 0)
+      continue;
+    const double top = found.z + found.length;
+    if (force_samples::crosses(apart - slope * (out.z - found.z), force)) return true;
+    if (top > out.z && force_samples::crosses(force, joined + slope * (top - out.z))) return true;
+  }
+  return false;
 }
 
 // Whether a force is not known; a creep force outside its theory's range is one all the same.

@@ -92,6 +92,7 @@ class wheels final : public driver {
   void find_z(double vertical_force, rp_result &result);
   double look_deeper(double touch, double depth, force_samples &samples, rp_result &result);
   bool beyond() const;
+  bool falls_while_joining(double depth, double force, const rp_result &out) const;
   void tell_rises(double touch, force_search &search) const;
   double carried(const rp_result &result) const;
   void rest_at(double touch, rp_result &result);

@@ -115,6 +115,19 @@ def test_other_heights_are_warned_of() -> None:
         assert any("other heights" in text for text in found.warnings) == several
 
 
+def test_a_fall_while_two_contacts_join_is_warned_of() -> None:
+    """70 nm above the height found another one carries the load, where a contact is about to appear
+    whose joint patch with the first one carries less."""
+    case = worn_case(12, "kik_piotrowski_corrected")
+    free = with_values(case, wheelset__vertical_force=None, wheelset__z=0.0)
+    above, below = railpatch.Contact(case), railpatch.Contact(free)
+    for y, several in ((3.20604e-3, True), (3.0e-3, False)):
+        found = above.step(y=y)
+        depths = [below.step(y=y, z=found["z"] - 5e-9 * i)["force"][2] for i in range(1, 16)]
+        assert (min(depths) < -LOAD) == several
+        assert any("other heights" in text for text in found.warnings) == several
+
+
 def test_correct_patches_have_none() -> None:
     """Of every method, regime and law, on grids that are as fine as a user's."""
     solved = 0

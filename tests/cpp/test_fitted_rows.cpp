@@ -183,4 +183,76 @@ TEST(ContactRows, AreEmptyWithoutPressure) {
   EXPECT_EQ(rows.count(), 0);
 }
 
+// What rows are: lower edge, height, middle and half length of the chord, peak; of grids with unit
+// elements and pressures about 1.
+std::vector<double> described(const contact_rows &rows) {
+  std::vector<double> all;
+  for (int j = 0; j < rows.count(); ++j) {
+    const contact_row &row = rows[j];
+    for (double value :
+         {row.y - 0.5 * row.height, row.height, row.x, row.half_length, row.peak * row.height})
+      all.push_back(value);
+  }
+  return all;
+}
+
+double apart(const std::vector<double> &a, const std::vector<double> &b) {
+  double most = a.size() == b.size() ? 0.0 : 1e9;
+  for (size_t k = 0; k < std::min(a.size(), b.size()); ++k)
+    most = std::max(most, std::abs(a[k] - b[k]));
+  return most;
+}
+
+// Grid rows that lie side by side, of which outer ones lose their load and others get one: rows
+// change as evenly as pressure does. Intervals are halved towards the greater change.
+TEST(ContactRows, DoNotJumpAsGridRowsComeAndGo) {
+  const int nx = 6, ny = 9, strips = 6;
+  const grid g{nx, ny, 1.0, 1.0, -2.5, -4.0};
+  std::mt19937 random(20261123);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  contact_rows rows(5, strips, ny);
+  // all rows between the first and the last one have load, of a bulge and at random
+  const auto drawn = [&](int first, int last) {
+    std::vector<double> p(static_cast<size_t>(g.count()), 0.0);
+    for (int j = first; j <= last; ++j) {
+      const double t = (j - 0.5 * (first + last)) / (0.5 * (last - first) + 0.5);
+      const double most = (0.2 + uniform(random)) * (1.0 - t * t);
+      for (int i = 0; i < nx; ++i)
+        p[static_cast<size_t>(j * nx + i)] = most * (0.05 + uniform(random));
+    }
+    return p;
+  };
+  double worst = 0, change = 0;
+  for (int pair = 0; pair < 60; ++pair) {
+    const int first = pair % 4, last = ny - 1 - (pair / 4) % 4;
+    const std::vector<double> from = drawn(first, last);
+    // the other one has a row less or more at either end
+    const std::vector<double> to = drawn(std::max(0, first + (pair % 2 ? 1 : -1)),
+                                         std::min(ny - 1, last - (pair % 3 ? 1 : 0)));
+    const auto at = [&](double s) {
+      std::vector<double> p(from.size());
+      for (size_t k = 0; k < p.size(); ++k) p[k] = (1.0 - s) * from[k] + s * to[k];
+      rows.set_pressure(g, p.data());
+      return described(rows);
+    };
+    const int steps = 64;
+    for (int n = 0; n < steps; ++n) {
+      double low = n / double(steps), high = (n + 1) / double(steps);
+      std::vector<double> a = at(low), b = at(high);
+      change = std::max(change, apart(a, b));
+      while (high - low > 1e-12 && apart(a, b) > 1e-6) {
+        const double middle = 0.5 * (low + high);
+        const std::vector<double> m = at(middle);
+        if (apart(a, m) > apart(m, b))
+          high = middle, b = m;
+        else
+          low = middle, a = m;
+      }
+      worst = std::max(worst, apart(a, b));
+    }
+  }
+  EXPECT_GT(change, 0.01);  // rows did change
+  EXPECT_LT(worst, 1e-6);
+}
+
 }  // namespace

@@ -8,8 +8,8 @@ The model (core/patch/error_estimate.hpp) is a network of one hidden layer for t
 of the error. It is fitted so that the estimate lies between the error and 4 times the error: beyond
 either end the loss grows linearly with the logarithm, steeper where the estimate is too small. Then
 it is moved by a constant for each theory of the normal problem until it covers the share wanted of
-the cases of other contacts. What is printed is of contacts that had no part in either, by
-their axis ratios, and of the benchmark's.
+the cases of other contacts: by the mean of what two ranges of axis ratios need. What is printed is
+of contacts that had no part in either, by their axis ratios, and of the benchmark's.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ FEW = 60  # cases of a theory of the normal problem, below which it is moved wit
 # the seeds of contacts to move networks by and of those to test them on, after that of the contacts
 # they are fitted to; how many of both, of the numbers of random problems, and motions of each
 MOVED_BY, TESTED_ON = 3, 7
-PART, MOTIONS = 1.5, 5
+PART, MOTIONS = 3.0, 5
 RATIOS = ((0.1, 10.0), (0.2, 5.0))  # a/b of what is told
 TOO_SMALL, MARGIN = 8.0, 0.15  # steepness of the loss below, and distance from both its ends
 PRESSURE_UNITS = 14
@@ -183,17 +183,23 @@ def network_of(
     features, error, unit, least = targets(own, which, stated)
     target = np.log(np.maximum(error, 0.7 * least) / unit)
     network = fitted_network(features, target, units, which)
-    features, error, unit, least = targets(other, which, stated)
-    missing = np.log(np.maximum(error, 1e-300) / unit) - network.at(features)
-    # the floor covers what is below it
-    missing = np.where(error <= least, -np.inf, missing)
-    normal = normal_of(features)
-    offsets = []
-    for index in range(len(NORMALS)):
-        group = normal == index
-        chosen = group if group.sum() >= FEW else np.ones_like(group)
-        offsets.append(float(np.quantile(missing[chosen], COVERED, method="higher")))
-    return Network(network.values, network.inputs, tuple(offsets))
+    moves = []
+    for low, high in RATIOS:
+        within = (other.ratio >= low * 0.999) & (other.ratio <= high * 1.001)
+        features, error, unit, least = targets(other.part(within), which, stated)
+        missing = np.log(np.maximum(error, 1e-300) / unit) - network.at(features)
+        # the floor covers what is below it
+        missing = np.where(error <= least, -np.inf, missing)
+        normal = normal_of(features)
+        move = []
+        for index in range(len(NORMALS)):
+            group = normal == index
+            chosen = group if group.sum() >= FEW else np.ones_like(group)
+            move.append(float(np.quantile(missing[chosen], COVERED, method="higher")))
+        moves.append(move)
+    # between what the ranges of axis ratios ask for
+    offsets = tuple(float(each) for each in np.mean(moves, axis=0))
+    return Network(network.values, network.inputs, offsets)
 
 
 def coverage(estimate: Floats, error: Floats) -> str:
