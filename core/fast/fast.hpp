@@ -1,7 +1,8 @@
 // The fast theories of rolling contact behind one call: what they share is the ellipse (or the one
 // that stands for a contact area of any shape), the creepage coefficients, the traction bound and
 // the ends of the rows. Of an area of any shape the resultant theories see the creepages at its
-// centre of pressure, the others at the middle of each row.
+// centre of pressure, the others at the middle of each row. The table of creep forces, which is as
+// good as the full theory on an ellipse, takes the ellipses of pressed_ellipses.hpp in its place.
 //
 // Theories that give resultants only need no grid and no fields.
 //
@@ -15,6 +16,7 @@
 
 #include "fast/coefficients.hpp"
 #include "fast/creep_table.hpp"
+#include "fast/pressed_ellipses.hpp"
 #include "fast/theories.hpp"
 #include "normal/hertz.hpp"
 #include "normal/row_contact.hpp"
@@ -45,7 +47,9 @@ class fast_solver {
                           tangential_fields fields, creep_resultants &sums);
   // The table of creep forces, where the theory is that.
   const creep_table *table() const { return creep_table_ ? &*creep_table_ : nullptr; }
-  size_t bytes() const { return bound_.bytes() + leading_.bytes() + trailing_.bytes(); }
+  size_t bytes() const {
+    return bound_.bytes() + leading_.bytes() + trailing_.bytes() + ellipses_.bytes();
+  }
 
  private:
   struct ellipse {
@@ -53,6 +57,8 @@ class fast_solver {
     double centre[2];  // m
   };
   ellipse ellipse_of(const fast_patch &patch) const;
+  tangential_result solve_by_ellipses(const fast_patch &patch, const rolling_input &rolling,
+                                      creep_resultants &sums);
   flexibilities flexibilities_of(const fast_problem &problem) const;
   creepage_coefficients coefficients(double axis_ratio) const;
   void set_bound(const fast_patch &patch);
@@ -65,6 +71,7 @@ class fast_solver {
   const fast_theory &theory_;
   coefficient_table table_;
   std::optional<creep_table> creep_table_;
+  pressed_ellipses ellipses_;  // of the table
   aligned_buffer<double> bound_, leading_, trailing_;
 };
 
