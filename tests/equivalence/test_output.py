@@ -102,6 +102,7 @@ CASES: dict[tuple[str, str], Callable[[Path], list[object]]] = {
     ("fmu", "gap.csv"): lambda f: ["fmu", patch(f)],
     ("fmu", ROLLER): lambda f: ["fmu", rig_scene(f)],
     ("report", "run.mcap"): lambda f: ["report", log(f)],
+    ("export", "run.mcap"): lambda f: ["export", log(f)],
     ("layout", "run.mcap"): lambda f: ["layout", log(f)],
     ("profile", WHEEL): lambda f: [
         "profile",

@@ -22,6 +22,7 @@ ENTRY_POINT_GROUP = "railpatch.commands"
 ROOMS = {
     "bench": "evidence.bench",
     "continuity": "evidence.continuity",
+    "export": "export",
     "fmu": "fmu",
     "layout": "layout",
     "profile": "profiles.pairing",

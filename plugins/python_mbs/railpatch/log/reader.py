@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import struct
 from collections import Counter
-from collections.abc import Iterator, MutableSequence
+from collections.abc import Iterator, MutableSequence, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
@@ -24,6 +24,7 @@ from zstandard import ZstdError
 
 from railpatch.log.channels import WELL_KNOWN
 from railpatch.log.channels import channel as known_channel
+from railpatch.log.table import TIME, LogTable, log_table
 
 # what a file that ends within a record can make the mcap library raise
 _CUT_OFF = (
@@ -116,6 +117,35 @@ class Run:
                 wrote = ", ".join(sorted(self.channels)) or "none"
                 raise KeyError(f"no channel {topic!r}; this log has {wrote}") from None
         return self.channels.get(topic) or Series()
+
+    def table(self, channels: Sequence[str] = (), signals: Sequence[str] = ()) -> LogTable:
+        """The log as one table: a row for each moment, a column for each number or text.
+
+        channels: topics, signals: names of columns or fields; * and ? stand for any characters.
+        Without them all that have a value; fields of the patches only where their channel is named.
+        Raises CaseError where one of them matches nothing.
+        """
+        return log_table(self.channels, channels, signals)
+
+    def to_pandas(self, channels: Sequence[str] = (), signals: Sequence[str] = ()) -> Any:
+        """The table as a pandas.DataFrame over the time (s), with NaN for what is absent.
+
+        ``frame.attrs["units"]`` and ``frame.attrs["meanings"]`` hold both by column. Channels and
+        signals as for ``table``. Raises CaseError where one of them matches nothing, ImportError
+        that says what to install without pandas.
+        """
+        try:
+            import pandas
+        except ImportError:
+            raise ImportError(
+                "to_pandas needs pandas, which is not installed; pip install 'railpatch[export]'"
+            ) from None
+        table = self.table(channels, signals)
+        columns = {column.name: column.values for column in table.columns[1:]}
+        frame = pandas.DataFrame(columns, index=pandas.Index(table.time, name=TIME))
+        frame.attrs["units"] = {column.name: column.unit for column in table.columns}
+        frame.attrs["meanings"] = {column.name: column.text for column in table.columns}
+        return frame
 
     def __repr__(self) -> str:
         messages = sum(map(len, self.channels.values()))
