@@ -97,7 +97,7 @@ class Balancer:
         self._exact = scene.rig.balance.method == "newton"
         self._contact = Contact(scene.at_height(derivatives=self._exact))
         self._frictionless = Frictionless(scene)
-        first = self._frictionless.estimate(positions[0].y, positions[0].yaw)
+        first = self._estimate(positions[0])
         settings = settings_of(scene, first)
         self._latest: Result | None = None
         # of bodies that store heat: s, of the last position, and not yet gone by in the contact
@@ -115,8 +115,7 @@ class Balancer:
         root = self._search(position, self._start(position))
         if not root.converged:
             # what was known misled the search: afresh
-            estimate = self._frictionless.estimate(position.y, position.yaw)
-            root = best_of(root, self._search(position, estimate.unknowns))
+            root = best_of(root, self._search(position, self._estimate(position).unknowns))
         if root.converged:
             jacobian = self._broyden.jacobian if self._broyden else None
             self._predictor.remember(position, root.x, jacobian)
@@ -131,6 +130,12 @@ class Balancer:
         unknowns = np.array([balance.z, balance.roll, balance.pitch_rate])
         # no further time goes by
         return self._contact.step(**moved(balance.position, unknowns), time_step=0.0, fields=True)
+
+    def _estimate(self, position: Position) -> Estimate:
+        """Without friction, by the load of the scene, at the position's speed."""
+        found = self._frictionless.estimate(position.y, position.yaw)
+        speeds = np.array([1.0, 1.0, self._scene.speed_at(position) / self._scene.roller_rate])
+        return replace(found, unknowns=found.unknowns * speeds)
 
     def _start(self, position: Position) -> Vector:
         """Where the search starts; sets Broyden's Jacobian where that is known."""
@@ -152,7 +157,7 @@ class Balancer:
             return Evaluation(None, False, result)
         solved = all(result[side]["status"] in CARRIES for side in SIDES)
         return Evaluation(
-            residuals(self._scene, result),
+            residuals(self._scene, result, self._scene.load_at(position)),
             solved,
             result,
             lambda: self._slope(result),
@@ -200,6 +205,8 @@ def balance_of(position: Position, root: Root) -> Balance:
 def moved(position: Position, unknowns: Vector) -> dict[str, float]:
     """The moving inputs of the contact."""
     found = dict(zip(UNKNOWNS, map(float, unknowns), strict=True))
+    if position.roller_pitch_rate is not None:
+        found["roller_pitch_rate"] = position.roller_pitch_rate
     return {"y": position.y, "yaw": position.yaw, **found}
 
 
@@ -227,15 +234,15 @@ def best_of(first: Root, second: Root) -> Root:
     )
 
 
-def residuals(scene: RigScene, result: Result) -> Vector:
-    """f1, f2, f3 in N m, N, N m, [3]; see the head of this file."""
+def residuals(scene: RigScene, result: Result, load: float) -> Vector:
+    """f1, f2, f3 in N m, N, N m, [3], under a load (N); see the head of this file."""
     if scene.rig.balance.axle_torque == "wheelset":
         torque = result["axle_torque"]
     else:
         torque = math.fsum(
             track_force(scene, result[side]) * result[side]["rolling_radius"] for side in SIDES
         )
-    return np.array([torque, -result["force"][2] - scene.vertical_force, result["moment"][0]])
+    return np.array([torque, -result["force"][2] - load, result["moment"][0]])
 
 
 def is_whole(scene: RigScene) -> bool:

@@ -66,15 +66,17 @@ def rig(
     overrides["balance.method"] = overrides.pop("method")
     with wrong_calls():
         loaded = load_rig_scene(scene, overrides)
-        check_output(output, scene or default_scene(), *loaded.files.values())
+        check_output(output, scene or default_scene(), *loaded.all_files())
         if not quiet:
             click.echo(f"scene         {loaded.name}")
             click.echo(f"profiles      {profiles_used(loaded)}")
-        with progress_bar("balancing", loaded.rig.count, quiet) as advance:
+            if loaded.measured is not None:
+                click.echo(loaded.measured.text())
+        with progress_bar("balancing", loaded.count, quiet) as advance:
             summary = replay(loaded, output, advance)
     if not quiet:
         click.echo(summary.text())
-    doubts = run_doubts(loaded.case, Path())
+    doubts = [*run_doubts(loaded.case, Path()), *loaded.doubts]
     tell_warnings([*doubts, *summary.warned.lines()], strict=strict, quiet=quiet)
     if not summary.good:
         if not quiet:

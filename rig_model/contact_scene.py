@@ -21,9 +21,12 @@ def at_first_position(rig: RigScene) -> Scene:
     scene has what balances refuse, with the roll angle of the case and wheels without slip."""
     first = rig.positions()[0]
     wheelset, track = rig.case.wheelset, rig.case.track
-    rolling = -track.roller_pitch_rate * track.roller_radius / wheelset.nominal_radius
+    rolling = -rig.speed_at(first) * track.roller_radius / wheelset.nominal_radius
     place = {"y": first.y, "yaw": first.yaw}
     content = rig.case.model_dump()
+    content["wheelset"]["vertical_force"] = rig.load_at(first)
+    content["track"]["roller_pitch_rate"] = rig.speed_at(first)
+    wheelset = wheelset.model_copy(update={"vertical_force": rig.load_at(first)})
 
     def start(**values: object) -> Result:
         content["wheelset"] = wheelset.model_dump() | place | values

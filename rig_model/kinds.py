@@ -8,7 +8,8 @@ from railpatch.case import WheelsetCase
 from railpatch.case.kinds import Ending, SceneKind, with_tables
 
 from rig_model.curve import DEFAULT, Curve, load_curve_scene, steady_curves
-from rig_model.scene import Rig, default_scene, load_rig_scene
+from rig_model.scene import default_scene, load_rig_scene
+from rig_model.tables import Rig
 
 
 def rig() -> SceneKind:
@@ -21,7 +22,8 @@ def run_rig(scene: Path, log: Path) -> Ending:
     """All positions."""
     from rig_model.run import replay
 
-    summary = replay(load_rig_scene(scene), log)
+    loaded = load_rig_scene(scene)
+    summary = replay(loaded, log)
     missed = int((~summary.converged).sum())
     reason = f"{missed} of {len(summary.converged)} positions are not balanced" if missed else None
     values = {
@@ -30,7 +32,7 @@ def run_rig(scene: Path, log: Path) -> Ending:
         "evaluations": float(summary.evaluations.mean()),
     }
     status = "not_converged" if missed else "converged"
-    return Ending(status, reason, summary.warned.lines(), values)
+    return Ending(status, reason, [*loaded.doubts, *summary.warned.lines()], values)
 
 
 def curve() -> SceneKind:

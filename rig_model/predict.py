@@ -93,5 +93,7 @@ class Predictor:
 
 
 def place_of(position: Position) -> Vector:
-    """Lateral position in mm and yaw angle in mrad: numbers that compare in such a machine."""
-    return np.array([1e3 * position.y, 1e3 * position.yaw])
+    """Lateral position in mm, yaw angle in mrad, load in kN and speed of the rollers in 0.1 rad/s
+    where they vary: numbers that compare in such a machine."""
+    load, rate = position.vertical_force or 0.0, position.roller_pitch_rate or 0.0
+    return np.array([1e3 * position.y, 1e3 * position.yaw, 1e-3 * load, 10 * rate])

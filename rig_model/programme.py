@@ -15,7 +15,8 @@ class Position:
     """One position of the run.
 
     progress: 0 to 1. time: s from the start. y: m, lateral position of the wheelset's centre.
-    yaw: rad.
+    yaw: rad. vertical_force: N, on both wheels together, and roller_pitch_rate: rad/s, where they
+    vary over the run; None: those of the scene.
     """
 
     index: int
@@ -23,6 +24,8 @@ class Position:
     time: float
     y: float
     yaw: float
+    vertical_force: float | None = None
+    roller_pitch_rate: float | None = None
 
 
 def positions(

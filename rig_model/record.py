@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,8 @@ class Recorder:
     def messages(self, balance: Balance, wall_time: float) -> dict[str, Any]:
         """Arguments of RunLog.write. wall_time: s, of finding the balance."""
         result = balance.result.to_dict()
-        return {
+        measured = self._scene.measured_at(balance.position)
+        return ({"measured": measured} if measured else {}) | {
             "state": self._state(balance, result),
             "left": result["left"],
             "right": result["right"],
@@ -49,7 +51,7 @@ class Recorder:
 
     def _state(self, balance: Balance, result: dict[str, Any]) -> dict[str, Any]:
         position, case = balance.position, self._scene.case
-        roller_rate = case.track.roller_pitch_rate
+        roller_rate = self._scene.speed_at(position)
         step = position.time - self._time
         self._time = position.time
         self._pitch = math.remainder(self._pitch + step * balance.pitch_rate, math.tau)
@@ -64,7 +66,7 @@ class Recorder:
             "pitch_rate": balance.pitch_rate,
             "roller_pitch": self._roller_pitch,
             "roller_pitch_rate": roller_rate,
-            "vertical_force": self._scene.vertical_force,
+            "vertical_force": self._scene.load_at(position),
             "force": result["force"],
             "moment": result["moment"],
         } | {key: getattr(case.wheelset, key) for key in STEADY}
@@ -74,11 +76,20 @@ def ran_with(scene: RigScene) -> Effective:
     """The tables of a scene as they run."""
     rig = scene.rig
     names = {str(file): name for name, file in scene.files.items()}
-    step = rig.duration / (rig.count - 1) if rig.count > 1 else 0.0
+    step = scene.duration / (scene.count - 1) if scene.count > 1 else 0.0
     tables = {"rig": rig}
-    return effective(scene.text, scene.case, tables, step=step, duration=rig.duration, names=names)
+    made = effective(
+        scene.text, scene.case, tables, step=step, duration=scene.duration, names=names
+    )
+    doubts = [made.about["doubts"], *scene.doubts]
+    return replace(made, about=made.about | {"doubts": " | ".join(filter(None, doubts))})
 
 
 def attachments(scene: RigScene) -> dict[str, bytes]:
-    """The profile files' content by their name in the case file."""
-    return {name: file.read_bytes() for name, file in scene.files.items()}
+    """The profile files' content by their name in the case file, and the record as measured."""
+    found = {name: file.read_bytes() for name, file in scene.files.items()}
+    if scene.measured is not None:
+        file = scene.measured.record.path
+        name = file.name if file.name not in {*found, scene.name} else f"record_{file.name}"
+        found[name] = file.read_bytes()
+    return found

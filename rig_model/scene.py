@@ -5,117 +5,26 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
-from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any
 
-from pydantic import Field, model_validator
 from railpatch.case import WheelsetCase
 from railpatch.case.common import without_friction
 from railpatch.case.load import Scene, check_case, check_table, plain, read_toml, refuse_others
-from railpatch.case.types import Number, Pair, Positive, Table, relation
+from railpatch.case.types import Table
 from railpatch.case.wheel import PROFILE_KEYS
 from railpatch.errors import CaseError
 
+from rig_model.measured import Measured, measured_run
 from rig_model.programme import Position, positions
+from rig_model.tables import SNAPSHOTS, Rig
 
 MEASURED = "nrc_dry_10mph_13750lb.toml"
 NOMINAL = "nominal_dry_10mph_13750lb.toml"
-# snapshots of the fields in a run whose scene does not say
-SNAPSHOTS = 12
 # found at each position, so not to be given
 FOUND = {"y": "lateral_position", "yaw": "yaw"} | dict.fromkeys(
     ("roll", "pitch_rate"), "start, or leave it out"
 )
-
-Rows = Annotated[list[Pair], Field(min_length=2)]
-
-
-class Start(Table):
-    """Where the search for the first balance starts, in place of the frictionless estimate."""
-
-    z: Number = Field(description="m, vertical position of the wheelset's centre, down")
-    roll: Number = Field(description="rad, about x")
-    pitch_rate: Number = Field(description="rad/s, about the axle; below 0 for rolling forward")
-
-
-class BalanceTable(Table):
-    """How the balance is searched."""
-
-    method: Literal["broyden", "newton"] = Field(
-        default="broyden",
-        description="(no unit): broyden, as in the set-up of NRC's machine; newton, with exact "
-        "derivatives of the contact forces",
-    )
-    axle_torque: Literal["track", "wheelset"] = Field(
-        default="wheelset",
-        description="what balances about the axle (no unit): the moment of all contact forces (a "
-        "free axle, the report's Eq. 51; with patch_rule = contact the longitudinal forces in "
-        "wheelset axes), or the longitudinal forces in track axes with the part of the normal "
-        "force along x, as in the published positions of the NRC run",
-    )
-    tolerance: Annotated[float, Field(ge=1e-8, le=1e-2)] = Field(
-        default=5e-5,
-        description="-, largest residual over the vertical load (moments: N m over N times 1 m); "
-        "at least twice method.tolerance",
-    )
-    max_evaluations: Annotated[int, Field(ge=4, le=1000)] = Field(
-        default=40, description="-, most evaluations of both wheels at one position"
-    )
-
-
-class Rig(Table):
-    """What the rig does with the wheelset."""
-
-    yaw: Rows = Field(
-        description="-, rad: rows of progress (0 to 1) and yaw angle, straight lines between"
-    )
-    lateral_position: Rows = Field(
-        description="-, m: rows of progress (0 to 1) and lateral position, monotone between"
-    )
-    duration: Positive = Field(description="s, of the run")
-    positions: Annotated[int, Field(ge=2, le=10_000_000)] | None = Field(
-        default=None, description="-, number of positions, evenly spaced in time; or rate"
-    )
-    rate: Positive | None = Field(default=None, description="Hz, positions per second")
-    snapshot_every: Annotated[int, Field(ge=0)] | None = Field(
-        default=None,
-        description="-, the fields of every n-th position are logged, 0: none; left out: of some "
-        f"{SNAPSHOTS} positions",
-    )
-    start: Start | None = Field(
-        default=None, description="first estimate (m, rad, rad/s); left out: without friction"
-    )
-    balance: BalanceTable = Field(default=BalanceTable(), description="search for the balance (-)")
-
-    @property
-    def count(self) -> int:
-        """Number of positions."""
-        if self.positions is not None:
-            return self.positions
-        assert self.rate is not None
-        return max(2, round(self.duration * self.rate) + 1)
-
-    @model_validator(mode="after")
-    def _relations(self) -> Rig:
-        for key in ("yaw", "lateral_position"):
-            check_progress(key, [row[0] for row in getattr(self, key)])
-        if (self.positions is None) == (self.rate is None):
-            both = "missing" if self.rate is None else "given with 'rate'"
-            raise relation("positions", both, "exactly one of 'positions', 'rate'")
-        if self.rate is not None and not 1 <= self.duration * self.rate <= 1e7:
-            raise relation("rate", self.rate, "1 to 1e7 positions in the duration")
-        for progress, angle in self.yaw:
-            if abs(angle) > 0.1:
-                raise relation("yaw", f"{angle} at {progress}", "-0.1 to 0.1 rad")
-        return self
-
-
-def check_progress(key: str, progress: list[float]) -> None:
-    """Refuses a table whose first column does not rise from 0 to 1."""
-    rises = all(a < b for a, b in pairwise(progress))
-    if not rises or progress[0] != 0 or progress[-1] != 1:
-        raise relation(key, f"a first column of {progress}", "progress rising from 0 to 1")
 
 
 @dataclass(frozen=True)
@@ -123,7 +32,7 @@ class RigScene:
     """A checked scene.
 
     name: of the file. text: as it was read. case: with the profiles that were found. files: the
-    profile files by their name in the text.
+    profile files by their name in the text. measured: the run of a record, where it has one.
     """
 
     name: str
@@ -131,6 +40,48 @@ class RigScene:
     case: WheelsetCase
     rig: Rig
     files: dict[str, Path]
+    measured: Measured | None = None
+
+    @property
+    def duration(self) -> float:
+        """s, of the run."""
+        return self.measured.duration if self.measured else float(self.rig.duration or 0.0)
+
+    @property
+    def count(self) -> int:
+        """Number of positions."""
+        return len(self.measured.positions) if self.measured else self.rig.count
+
+    @property
+    def doubts(self) -> list[str]:
+        """What in the record is hardly meant."""
+        return self.measured.warnings if self.measured else []
+
+    @property
+    def roller_rate(self) -> float:
+        """rad/s, of the rollers, where no record says."""
+        rate = self.case.track.roller_pitch_rate
+        assert rate is not None
+        return rate
+
+    def load_at(self, position: Position) -> float:
+        """N, on both wheels together."""
+        load = position.vertical_force
+        return self.vertical_force if load is None else load
+
+    def speed_at(self, position: Position) -> float:
+        """rad/s, of the rollers."""
+        rate = position.roller_pitch_rate
+        return self.roller_rate if rate is None else rate
+
+    def measured_at(self, position: Position) -> dict[str, float]:
+        """What the record has for a position."""
+        return self.measured.values[position.index] if self.measured else {}
+
+    def all_files(self) -> list[Path]:
+        """Of profiles, and the record."""
+        record = [self.measured.record.path] if self.measured else []
+        return [*self.files.values(), *record]
 
     @property
     def vertical_force(self) -> float:
@@ -142,6 +93,11 @@ class RigScene:
     def positions(self) -> list[Position]:
         """The positions of the run."""
         rig = self.rig
+        if self.measured is not None:
+            return self.measured.positions
+        assert rig.duration is not None
+        assert rig.yaw is not None
+        assert rig.lateral_position is not None
         return positions(rig.count, rig.duration, rig.yaw, rig.lateral_position)
 
     def snapshot_every(self) -> int:
@@ -149,7 +105,7 @@ class RigScene:
         if self.rig.snapshot_every is not None:
             return self.rig.snapshot_every
         # the first, the last, and the greatest yaw of a programme that goes to and fro
-        return max(1, (self.rig.count - 1) // SNAPSHOTS)
+        return max(1, (self.count - 1) // SNAPSHOTS)
 
     def at_height(self, *, derivatives: bool = False) -> Scene:
         """The case with z prescribed in place of the vertical force."""
@@ -198,7 +154,10 @@ def load_rig_scene(
         if (name := getattr(case.profiles, key)) in files
     }
     case = case.model_copy(update={"profiles": case.profiles.model_copy(update=found)})
-    return RigScene(path.name, path.read_bytes(), case, table, files)
+    measured = None
+    if table.record is not None:
+        measured = measured_run(table, case, path.parent / table.record)
+    return RigScene(path.name, path.read_bytes(), case, table, files, measured)
 
 
 def checked_parts(content: Any, model: type[Table], table: Any, name: str) -> list[Any]:

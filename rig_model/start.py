@@ -86,6 +86,7 @@ class Baseline:
         radii = scene.case.track.roller_radius + scene.case.wheelset.nominal_radius
         width = float(np.mean([e.width for _, e in found])) if found else 0.0
         self._sinking = width**2 / (8 * radii)
+        self._rate = scene.case.track.roller_pitch_rate
         self._low, self._high = (found[0][0], found[-1][0]) if found else (0.0, 0.0)
         self._values = np.array([e.unknowns for _, e in found]) if found else np.zeros((1, 3))
         at = [y for y, _ in found]
@@ -96,6 +97,8 @@ class Baseline:
         y = min(max(position.y, self._low), self._high)
         values = self._values[0].copy() if self._over_y is None else self._over_y(y)
         values[0] += self._sinking * position.yaw**2
+        if position.roller_pitch_rate is not None:
+            values[2] *= position.roller_pitch_rate / self._rate
         return values
 
 

@@ -25,8 +25,8 @@ class StateError(CaseError):
         super().__init__(f"state {self.state}: {problem}")
 
 
-class ProfileError(ValueError):
-    """A profile cannot be used. Names the file (or built-in name), the line and what is wrong."""
+class FileError(ValueError):
+    """A file cannot be used. Names it, the line and what is wrong."""
 
     def __init__(self, source: str | Path, problem: str, line: int | None = None) -> None:
         self.source = str(source)
@@ -34,3 +34,11 @@ class ProfileError(ValueError):
         self.problem = problem
         where = self.source if line is None else f"{self.source}:{line}"
         super().__init__(f"{where}: {problem}")
+
+
+class ProfileError(FileError):
+    """A profile cannot be used. Names the file (or built-in name), the line and what is wrong."""
+
+
+class RecordError(FileError, CaseError):
+    """A record of a measured run cannot be used. Names the file, the line and what is wrong."""

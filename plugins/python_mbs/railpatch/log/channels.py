@@ -17,6 +17,8 @@ from dataclasses import dataclass
 from functools import cache
 
 from railpatch import _core
+from railpatch.record.quantities import ABOUT_SIGNS, ABSCISSA, QUANTITIES
+from railpatch.record.units import UNITS
 
 STATUSES: tuple[str, ...] = _core.CHOICES["status"]
 # m, over which wheel forces are averaged before their ratio is judged (EN 14363)
@@ -324,6 +326,21 @@ RIG_BALANCE = Message(
     ),
 )
 
+RIG_MEASURED = Message(
+    "RigMeasured",
+    f"What a measured run's record has for one position: {ABOUT_SIGNS}.",
+    tuple(
+        _number(
+            quantity.name,
+            next(iter(UNITS[quantity.dimension])),
+            quantity.text,
+            "" if quantity.dimension in ("number", "temperature") else "track",
+        )
+        for quantity in QUANTITIES
+        if quantity.role != ABSCISSA
+    ),
+)
+
 ENERGY = Message(
     "Energy",
     "Energies of a wheelset or a vehicle on track, and work done since the start.",
@@ -407,6 +424,7 @@ CHANNELS = (
     Channel("/left/contact", WHEEL_CONTACT, "result of the left wheel"),
     Channel("/right/contact", WHEEL_CONTACT, "result of the right wheel"),
     Channel("/rig/balance", RIG_BALANCE, "force balance; only in runs of the roller rig"),
+    Channel("/rig/measured", RIG_MEASURED, "measured beside it; only in replays of a record"),
     Channel("/wheelset/energy", ENERGY, "balance of energies; only in runs on track"),
     Channel("/wheelset/momentum", MOMENTUM, "balance of momenta; only in runs on track"),
     Channel("/solver/stats", SOLVER_STATS, "iterations and times"),

@@ -15,7 +15,13 @@ from railpatch.log.geometry import SceneGeometry
 from railpatch.log.stream import SCENE_RATE, Log, LogStream, Pace, checked_attachments
 
 # what a run may leave out
-OPTIONAL = ("/rig/balance", "/wheelset/energy", "/wheelset/momentum", "/solver/stats")
+OPTIONAL = (
+    "/rig/balance",
+    "/rig/measured",
+    "/wheelset/energy",
+    "/wheelset/momentum",
+    "/solver/stats",
+)
 
 
 class RunLog(Log):
@@ -63,6 +69,7 @@ class RunLog(Log):
         left: Mapping[str, Any],
         right: Mapping[str, Any],
         balance: Mapping[str, Any] | None = None,
+        measured: Mapping[str, Any] | None = None,
         stats: Mapping[str, Any] | None = None,
         energy: Mapping[str, Any] | None = None,
         momentum: Mapping[str, Any] | None = None,
@@ -81,6 +88,7 @@ class RunLog(Log):
             "/left/contact": left,
             "/right/contact": right,
             "/rig/balance": balance,
+            "/rig/measured": measured,
             "/wheelset/energy": energy,
             "/wheelset/momentum": momentum,
             "/solver/stats": stats,

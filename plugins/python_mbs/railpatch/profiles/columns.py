@@ -9,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
+from railpatch.delimited import COMMENT, DECIMAL_COMMA, decimal_points, number
 from railpatch.errors import ProfileError
 from railpatch.profiles.noise import rounding_of
 from railpatch.profiles.orientation import check_columns
 from railpatch.profiles.raw import METRES, RawProfile, Reading, Role
 
-COMMENT = ("!", "#", "%", "//")
 # a profile is some 0.1 m wide: a larger spread than this of the first column means mm
 METRE_WIDTH = 1.0
 
@@ -23,8 +23,7 @@ def parse_numbers(path: Path, line: int, text: str, least: int = 2) -> list[floa
     """The numbers of one line, separated by blanks, commas, semicolons or tabs."""
     words = [word for word in re.split(r"[\s,;]+", text.strip()) if word]
     try:
-        # Fortran writes 1.0D+00
-        values = [float(re.sub("[dD]", "e", word)) for word in words]
+        values = [number(word) for word in words]
     except ValueError:
         raise ProfileError(path, f"expected numbers, found {text.strip()[:60]!r}", line) from None
     if len(values) < least:
@@ -41,12 +40,12 @@ def with_points(path: Path, text: str) -> tuple[str, str]:
     A comma between digits is a decimal one where something else separates the numbers. Raises
     ProfileError where commas may be either.
     """
-    if not re.search(r"\d,\d", text):
+    if not DECIMAL_COMMA.search(text):
         return text, ""
-    rows = [row for row in text.splitlines() if re.search(r"\d,\d", row)]
+    rows = [row for row in text.splitlines() if DECIMAL_COMMA.search(row)]
     apart = [len(re.split(r"[;\t]|(?<=\d) +(?=[-+\d])", row.strip().rstrip(";"))) for row in rows]
     if min(apart) >= 2:
-        return re.sub(r"(?<=\d),(?=\d)", ".", text), "decimal commas"
+        return decimal_points(text), "decimal commas"
     if any(row.count(",") > 2 and "." not in row for row in rows):
         raise ProfileError(
             path,
@@ -64,16 +63,16 @@ def read_columns(path: Path, text: str, role: Role | None, reading: Reading) -> 
     points: list[list[float]] = []
     lines: list[int] = []
     titled, width = False, 0
-    for number, row in enumerate(text.splitlines(), 1):
+    for at, row in enumerate(text.splitlines(), 1):
         if not row.strip() or row.lstrip().startswith(COMMENT):
             continue
         if not points and not titled and re.fullmatch(r"[A-Za-z][^\d]*", row.strip()):
             titled = True
             continue
-        values = parse_numbers(path, number, row)
+        values = parse_numbers(path, at, row)
         width = len(values)
         points.append([values[0], values[1], values[2] if len(values) > 2 else 1.0])
-        lines.append(number)
+        lines.append(at)
     if not points:
         raise ProfileError(path, "holds no points")
     if len(points) > 2 and all(b[0] - a[0] == 1 for a, b in pairwise(points)) and width > 2:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from railpatch.delimited import read_text
 from railpatch.errors import ProfileError
 from railpatch.profiles.columns import read_columns
 from railpatch.profiles.miniprof import read_miniprof
@@ -28,7 +29,8 @@ def read_profile(
     Returns points in metres, right-hand orientation, z down. Raises ProfileError.
     """
     path, reading = Path(path), reading or Reading()
-    text = read_text(path)
+    absent = "file not found, and not the name of a built-in profile"
+    text = read_text(path, ProfileError, absent, MAX_BYTES)
     role = agreed_role(path, role)
     if re.search(r"^\s*(header|spline|point)\.begin", text, re.MULTILINE):
         raw = read_simpack(path, text, role, reading)
@@ -41,23 +43,6 @@ def read_profile(
     check_points(raw)
     orient(raw, reading)
     return raw
-
-
-def read_text(path: Path) -> str:
-    """The file's text; refuses what is absent, empty, too large or no text."""
-    if not path.is_file():
-        raise ProfileError(path, "file not found, and not the name of a built-in profile")
-    if path.stat().st_size > MAX_BYTES:
-        raise ProfileError(path, f"is larger than {MAX_BYTES} bytes")
-    data = path.read_bytes()
-    if not data.strip():
-        raise ProfileError(path, "is empty")
-    if b"\0" in data:
-        raise ProfileError(path, "is not a text file")
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return data.decode("latin-1")
 
 
 def agreed_role(path: Path, role: Role | None) -> Role | None:

@@ -1,0 +1,141 @@
+"""The table [rig] of a scene: what the rig does with the wheelset."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+from railpatch.case.types import Number, Pair, Positive, Problems, Table, refuse, relation
+from railpatch.record.columns import Columns
+
+# snapshots of the fields in a run whose scene does not say
+SNAPSHOTS = 12
+# rad, either way
+MOST_YAW = 0.1
+
+Rows = Annotated[list[Pair], Field(min_length=2)]
+
+
+class Start(Table):
+    """Where the search for the first balance starts, in place of the frictionless estimate."""
+
+    z: Number = Field(description="m, vertical position of the wheelset's centre, down")
+    roll: Number = Field(description="rad, about x")
+    pitch_rate: Number = Field(description="rad/s, about the axle; below 0 for rolling forward")
+
+
+class BalanceTable(Table):
+    """How the balance is searched."""
+
+    method: Literal["broyden", "newton"] = Field(
+        default="broyden",
+        description="(no unit): broyden, as in the set-up of NRC's machine; newton, with exact "
+        "derivatives of the contact forces",
+    )
+    axle_torque: Literal["track", "wheelset"] = Field(
+        default="wheelset",
+        description="what balances about the axle (no unit): the moment of all contact forces (a "
+        "free axle, the report's Eq. 51; with patch_rule = contact the longitudinal forces in "
+        "wheelset axes), or the longitudinal forces in track axes with the part of the normal "
+        "force along x, as in the published positions of the NRC run",
+    )
+    tolerance: Annotated[float, Field(ge=1e-8, le=1e-2)] = Field(
+        default=5e-5,
+        description="-, largest residual over the vertical load (moments: N m over N times 1 m); "
+        "at least twice method.tolerance",
+    )
+    max_evaluations: Annotated[int, Field(ge=4, le=1000)] = Field(
+        default=40, description="-, most evaluations of both wheels at one position"
+    )
+
+
+class Rig(Table):
+    """What the rig does with the wheelset."""
+
+    yaw: Rows | None = Field(
+        default=None,
+        description="-, rad: rows of progress (0 to 1) and yaw angle, straight lines between; "
+        "needed where no record has it",
+    )
+    lateral_position: Rows | None = Field(
+        default=None,
+        description="-, m: rows of progress (0 to 1) and lateral position, monotone between; "
+        "needed where no record has it",
+    )
+    duration: Positive | None = Field(
+        default=None, description="s, of the run; needed where no record has a time"
+    )
+    positions: Annotated[int, Field(ge=2, le=10_000_000)] | None = Field(
+        default=None,
+        description="-, number of positions, evenly spaced in time; or rate; with a "
+        "record left out: its rows",
+    )
+    rate: Positive | None = Field(default=None, description="Hz, positions per second")
+    snapshot_every: Annotated[int, Field(ge=0)] | None = Field(
+        default=None,
+        description="-, the fields of every n-th position are logged, 0: none; left out: of some "
+        f"{SNAPSHOTS} positions",
+    )
+    start: Start | None = Field(
+        default=None, description="first estimate (m, rad, rad/s); left out: without friction"
+    )
+    balance: BalanceTable = Field(default=BalanceTable(), description="search for the balance (-)")
+    record: str | None = Field(
+        default=None,
+        description="(no unit), file of a measured run, which drives the replay and is kept beside "
+        "it: columns with commas, semicolons, tabs or blanks between",
+    )
+    columns: Columns | None = Field(  # type: ignore[valid-type]
+        default=None, description="which column of the record is what, with its unit"
+    )
+    low_pass: Positive | None = Field(
+        default=None,
+        description="Hz, cut-off of a filter without delay for all of the record; left out: none",
+    )
+    actuator_distance: Positive | None = Field(
+        default=None, description="m, between the ends of actuator_left and actuator_right"
+    )
+
+    @property
+    def count(self) -> int:
+        """Number of positions, of a run without a record."""
+        if self.positions is not None:
+            return self.positions
+        assert self.rate is not None
+        assert self.duration is not None
+        return max(2, round(self.duration * self.rate) + 1)
+
+    @model_validator(mode="after")
+    def _relations(self) -> Rig:
+        for key in ("yaw", "lateral_position"):
+            if getattr(self, key) is not None:
+                check_progress(key, [row[0] for row in getattr(self, key)])
+        both = self.positions is not None and self.rate is not None
+        if both or (self.record is None and self.positions is None and self.rate is None):
+            shown = "given with 'rate'" if both else "missing"
+            raise relation("positions", shown, "exactly one of 'positions', 'rate'")
+        if self.rate is not None and not 1 <= (self.duration or 1 / self.rate) * self.rate <= 1e7:
+            raise relation("rate", self.rate, "1 to 1e7 positions in the duration")
+        for progress, angle in self.yaw or ():
+            if abs(angle) > MOST_YAW:
+                raise relation("yaw", f"{angle} at {progress}", f"-{MOST_YAW} to {MOST_YAW} rad")
+        if self.record is None:
+            refuse(self._without_record())
+        return self
+
+    def _without_record(self) -> Problems:
+        for key in ("yaw", "lateral_position", "duration"):
+            if getattr(self, key) is None:
+                text = str(type(self).model_fields[key].description)
+                yield relation(key, "missing", text.partition(";")[0])
+        for key in ("columns", "low_pass", "actuator_distance"):
+            if getattr(self, key) is not None:
+                yield relation(key, "given", "none without 'record'")
+
+
+def check_progress(key: str, progress: list[float]) -> None:
+    """Refuses a table whose first column does not rise from 0 to 1."""
+    rises = all(a < b for a, b in pairwise(progress))
+    if not rises or progress[0] != 0 or progress[-1] != 1:
+        raise relation(key, f"a first column of {progress}", "progress rising from 0 to 1")
