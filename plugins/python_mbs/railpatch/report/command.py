@@ -30,23 +30,45 @@ from railpatch.command.output import check_page
 )
 @click.option(
     "--reference",
-    type=click.Path(file_okay=False, exists=True),
-    metavar="DIR",
-    help="Folder of another reference of the roller rig, in a file named as the package's own: "
-    "nrc_dry_10mph_13750lb.csv.",
+    type=click.Path(exists=True),
+    metavar="FILE",
+    help="Lay a file of measurements over the run: a table whose columns are called as quantities "
+    "are, or are told by --columns. Or the folder of another reference of the roller rig, in a "
+    "file named as the package's own: nrc_dry_10mph_13750lb.csv.",
+)
+@click.option(
+    "--columns",
+    type=click.Path(dir_okay=False, exists=True),
+    metavar="COLUMNS.toml",
+    help="What the columns of that file are: a table [columns], or a rig's scene with "
+    "[rig.columns].",
+)
+@click.option(
+    "--beside",
+    type=click.Path(dir_okay=False, exists=True),
+    metavar="OTHER.mcap",
+    help="Lay another log over the run.",
 )
 @quiet_flag()
-def report(run: str, output: str, at: float | None, reference: str | None, quiet: bool) -> None:
+def report(
+    run: str,
+    output: str,
+    at: float | None,
+    reference: str | None,
+    columns: str | None,
+    beside: str | None,
+    quiet: bool,
+) -> None:
     """Make a page of plots and tables from the log of a run.
 
     The page needs no network. A log that was cut off is reported up to its end.
     """
-    check_page(Path(output), run)
+    check_page(Path(output), run, reference, columns, beside)
     # plotly takes a while to import; other commands need not wait for it
     from railpatch.report import write_report
 
     try:
-        written = write_report(run, output, reference, at)
+        written = write_report(run, output, reference, at, columns=columns, beside=beside)
     except (ValueError, OSError) as error:
         raise wrong_call(error) from None
     if not quiet:

@@ -13,7 +13,7 @@ from railpatch.log.reader import Run, Series
 from railpatch.result import SOLVED
 
 # how units of the log are shown: factor and unit
-_SHOWN = {"N": (1e-3, "kN"), "m": (1e3, "mm"), "rad": (1e3, "mrad"), "Pa": (1e-6, "MPa")}
+SHOWN = {"N": (1e-3, "kN"), "m": (1e3, "mm"), "rad": (1e3, "mrad"), "Pa": (1e-6, "MPa")}
 
 
 class ReportError(ValueError):
@@ -128,7 +128,7 @@ def positions(run: Run) -> Positions:
 
 def scaled(topic: str, path: str, name: str) -> tuple[float, str]:
     """Factor from the log's unit to the one shown, and an axis label with it."""
-    factor, shown = _SHOWN.get(unit(topic, path), (1.0, unit(topic, path)))
+    factor, shown = SHOWN.get(unit(topic, path), (1.0, unit(topic, path)))
     return factor, f"{name} [{shown}]" if shown != "-" else name
 
 

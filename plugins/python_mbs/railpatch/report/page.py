@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from railpatch.case.types import SIDES
+from railpatch.errors import CaseError
 from railpatch.log.channels import ELEMENT_STATES, HUNTING
 from railpatch.log.reader import Run, read_run
 from railpatch.page.document import document
@@ -16,6 +17,8 @@ from railpatch.page.figures import plot
 from railpatch.page.patch_figure import most_loaded, patch_figure, states_of
 from railpatch.page.tables import number, table, whole
 from railpatch.report import balance_figures, figures, reference, tables
+from railpatch.report.beside import beside_log, beside_measured, beside_record
+from railpatch.report.beside_page import section
 from railpatch.report.data import Positions, positions, snapshot
 from railpatch.report.vehicle import page as vehicle_page
 from railpatch.report.vehicle.data import vehicle_run
@@ -28,10 +31,15 @@ def write_report(
     output: str | PathLike[str],
     reference_dir: str | PathLike[str] | None = None,
     at: float | None = None,
+    *,
+    columns: str | PathLike[str] | None = None,
+    beside: str | PathLike[str] | None = None,
 ) -> Path:
     """Writes the report of a run log, also of one that was cut off; returns ``output``.
 
-    ``reference_dir``: of another reference of the roller rig; see ``reference.find``. ``at``: the
+    ``reference_dir``: folder of another reference of the roller rig, see ``reference.find``; or any
+    file of measurements, laid over the run. ``columns``: TOML file with a table [columns] that says
+    what this file's columns are. ``beside``: another log, laid over the run. ``at``: the
     progress (without progress: the time in s; of a vehicle: the distance in m) whose patches are
     shown; by default those at the largest yaw angle, or guiding force.
 
@@ -40,13 +48,37 @@ def write_report(
     Nothing is written then.
     """
     run = read_run(run_path)
+    file = Path(reference_dir) if reference_dir is not None else None
+    if file is not None and not file.is_dir():
+        reference_dir = None
+    else:
+        file = None
+    if columns is not None and file is None:
+        raise CaseError("--columns: value is given, allowed with a file as --reference")
+    laid = _laid_over(run, file, Path(columns) if columns is not None else None, beside)
     if "wheelsets" in run.metadata["railpatch"]:
-        body = vehicle_page.body(vehicle_run(run), at)
+        body = vehicle_page.body(vehicle_run(run), at) + "".join(laid)
     else:
         data = positions(run)
-        body = "".join([_head(data), *_sections(data, reference_dir, at)])
+        matched = _reference(data, reference_dir) if reference_dir or not laid else ([], "")
+        body = "".join([_head(data), *laid, *_sections(data, matched, at)])
     page = document(run.metadata["railpatch"].get("scene", "run"), body + _ending(run))
     return write_whole(output, page.encode())
+
+
+def _laid_over(
+    run: Run, file: Path | None, columns: Path | None, beside: str | PathLike[str] | None
+) -> list[str]:
+    """What the run's record has, another file, another log."""
+    parts = []
+    measured = beside_measured(run)
+    if measured is not None:
+        parts += section(measured, "measured", "the record holds what drives the run alone.")
+    if file is not None:
+        parts += section(beside_record(run, file, columns), "beside-file")
+    if beside is not None:
+        parts += section(beside_log(run, beside), "beside-log")
+    return parts
 
 
 def _head(data: Positions) -> str:
@@ -59,9 +91,9 @@ def _head(data: Positions) -> str:
 
 
 def _sections(
-    data: Positions, reference_dir: str | PathLike[str] | None, at: float | None
+    data: Positions, matched: tuple[list[reference.Match], str], at: float | None
 ) -> list[str]:
-    matches, remark = _reference(data, reference_dir)
+    matches, remark = matched
     body = data.counterpart
     parts = [
         f"<h2>Traction curves</h2><p>Lateral over vertical force, in track axes: the same ratio "
