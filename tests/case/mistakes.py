@@ -85,6 +85,23 @@ def scene(kind: str, *changes: tuple[str, str]) -> Callable[[], str]:
     return make
 
 
+def recorded(head: str, *rows: str, yaw: str = 'name = "yaw"') -> Callable[[], str]:
+    """The rig's scene with a record in place of its programme."""
+
+    def make() -> str:
+        text = kinds()["rig"].scene.read_text(encoding="utf-8")
+        keys = f'[rig]\nrecord = "run.csv"\n[rig.columns]\ntime = {{ name = "t" }}\nyaw = {{ {yaw} }}\n'
+        keys += 'lateral_position = { name = "y" }\nvertical_load = { name = "load" }\n'
+        Path("rig.toml").write_text(text[: text.index("[rig]")] + keys, encoding="utf-8")
+        Path("run.csv").write_text("\n".join([head, *rows]), encoding="utf-8")
+        return "rig.toml"
+
+    return make
+
+
+RECORD = "t [s],yaw [mrad],y [mm],load [kN]", "0,0,0.3,134", "1,2,0.6,134"
+
+
 def patch(*changes: tuple[str, str], more: str = "") -> Callable[[], str]:
     """The patch scene changed; more: lines at its end."""
     return scene("patch", *changes, *([(r"\Z", "\n" + more)] if more else []))
@@ -283,8 +300,17 @@ MISTAKES: tuple[Mistake, ...] = (
     Mistake(RIG, "the scene of a vehicle", "rig {} -o a.mcap", scene("vehicle")),
     Mistake(RIG, "a folder that is not there", "rig {} --positions 2 -o no/such/a.mcap",
             scene("rig")),
+    Mistake(RIG, "a record's yaw in mrad, called rad", "rig {} -o a.mcap",
+            recorded(*RECORD, yaw='name = "yaw", unit = "rad"')),
+    Mistake(RIG, "a record's load in lbf, called N", "rig {} -o a.mcap",
+            recorded(RECORD[0].replace("kN", "N"), "0,0,0.3,30120", "1,2,0.6,30120")),
+    Mistake(RIG, "a record's column by another name", "rig {} -o a.mcap",
+            recorded(*RECORD, yaw='name = "jaw"')),
+    Mistake(RIG, "a record whose clock falls", "rig {} -o a.mcap",
+            recorded(*RECORD, "0.5,3,0.7,134")),
     Mistake(RIG, "no number of positions", "rig {} --positions 0 -o a.mcap", scene("rig")),
     # --- logs -------------------------------------------------------------------------------------
+    Mistake(ANALYST, "a table of an ending that is none", "export {} -o a.txt", file("run.mcap", b"")),
     Mistake(ANALYST, "a report of a table", "report {} -o a.html", file("run.csv", "t,y\n0,1\n")),
     Mistake(ANALYST, "a log that is cut off", "report {} -o a.html",
             file("run.mcap", b"\x89MCAP0\r\n" + bytes(40))),

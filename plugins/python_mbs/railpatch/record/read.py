@@ -277,6 +277,6 @@ def off_by(record: Record, name: str, value: float, expected: float, what: str) 
     ]
     hint = f"; is its unit {' or '.join(fitting)}?" if fitting else ""
     return [
-        f"{name}: {value:.4g} N in its median is {factor:.3g} of {what}, {expected:.4g} N"
-        f" (unit {record.units[name]!r}){hint}"
+        f"{name}: its median of {value:.6g} N (unit {record.units[name]!r}) is {factor:.3g} of "
+        f"{what}, {expected:.6g} N{hint}"
     ]
