@@ -97,7 +97,7 @@ class Balancer:
         self._exact = scene.rig.balance.method == "newton"
         self._contact = Contact(scene.at_height(derivatives=self._exact))
         self._frictionless = Frictionless(scene)
-        first = self._estimate(positions[0])
+        first = self._frictionless.estimate(positions[0].y, positions[0].yaw)
         settings = settings_of(scene, first)
         self._latest: Result | None = None
         # of bodies that store heat: s, of the last position, and not yet gone by in the contact

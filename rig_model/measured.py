@@ -17,10 +17,12 @@ from railpatch.record.read import Record, force_doubts, read_record
 from railpatch.record.resample import resampled
 
 from rig_model.programme import Position, monotone, polygon
-from rig_model.tables import MOST_YAW, Rig
+from rig_model.tables import MOST_POSITIONS, MOST_YAW, Rig
 
 Array = NDArray[np.float64]
 PREFIX = "rig.columns"
+# s, between positions: the log counts in ns
+LEAST_STEP = 1e-8
 ENDS = ("actuator_left", "actuator_right")
 
 
@@ -82,6 +84,11 @@ def measured_run(rig: Rig, case: Any, path: Path) -> Measured:
     driven = [name for name in rows.signals if BY_NAME[name].role == INPUT]
     start, end = span_of(rows, driven)
     at = times_of(rig, rows, start, end)
+    least = float(np.diff(at).min())
+    if least < LEAST_STEP:
+        raise CaseError(
+            f"{path}: positions come {least:.3g} s apart, allowed {LEAST_STEP:g} s or more"
+        )
     warnings = [*record.warnings, *force_doubts(record, case.wheelset.vertical_force)]
     warnings += gaps_in(rows, driven, start, end)
     signals = {name: resampled(rows.time, values, at) for name, values in rows.signals.items()}
@@ -159,6 +166,9 @@ def times_of(rig: Rig, rows: Rows, start: float, end: float) -> Array:
     count = rig.positions
     if rig.rate is not None:
         count = max(2, round((end - start) * rig.rate) + 1)
+        if count > MOST_POSITIONS:
+            allowed = f"at most {MOST_POSITIONS / (end - start):.4g} over {end - start:.4g} s"
+            raise CaseError(f"rig.rate: value is {rig.rate:g}, allowed {allowed}")
     if count is None:
         return rows.time[(rows.time >= start) & (rows.time <= end)]
     return np.linspace(start, end, count)

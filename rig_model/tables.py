@@ -11,6 +11,7 @@ from railpatch.record.columns import Columns
 
 # snapshots of the fields in a run whose scene does not say
 SNAPSHOTS = 12
+MOST_POSITIONS = 10_000_000
 # rad, either way
 MOST_YAW = 0.1
 
@@ -66,7 +67,7 @@ class Rig(Table):
     duration: Positive | None = Field(
         default=None, description="s, of the run; needed where no record has a time"
     )
-    positions: Annotated[int, Field(ge=2, le=10_000_000)] | None = Field(
+    positions: Annotated[int, Field(ge=2, le=MOST_POSITIONS)] | None = Field(
         default=None,
         description="-, number of positions, evenly spaced in time; or rate; with a "
         "record left out: its rows",

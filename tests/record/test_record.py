@@ -175,6 +175,9 @@ def test_forces_that_do_not_fit_the_load(tmp_path: Path):
         ("AoA [mrad],b\n,2\n,3\n", YAW, ["'AoA'", "no number"]),
         ("a,b\n1,2\n2,3\n", None, ["'a', 'b'", "[columns]", "yaw"]),
         (b"\0\1", YAW, ["not a text file"]),
+        ('AoA [mrad];b\n1;"2\n2;3\n', YAW, ['allowed one whose " is closed']),
+        ("AoA [mrad];b\n1;" + 200_000 * "x" + "\n2;3\n", YAW, ["cannot be split"]),
+        ("AoA [mrad]\n12:00:01\n12:00:02\n", YAW, [":2:", "'12:00:01'"]),
     ],
 )
 def test_wrong_files(tmp_path: Path, text, columns, words):
@@ -193,6 +196,15 @@ def test_times(tmp_path: Path):
     assert "1 rows have the time of the row before" in record.warnings[0]
     with pytest.raises(RecordError, match=r":4: time falls to 0\.5"):
         read_record(written(tmp_path, "t,AoA [mrad]\n0,1\n1,2\n0.5,3\n"), columns)
+
+
+def test_times_of_day_and_dates(tmp_path: Path):
+    """As s; a comma is a decimal one where something else stands between columns."""
+    columns = {"time": MeasuredColumn(name="t", unit="s"), **YAW}
+    path = written(tmp_path, "t;AoA [mrad]\n23:59:58,5;1\n23:59:59;2\n")
+    assert read_record(path, columns).at.tolist() == [86398.5, 86399.0]
+    path = written(tmp_path, "t,AoA [mrad]\n1970-01-02 00:00:01.25,1\n1970-01-03T01:00:00Z,2\n")
+    assert read_record(path, columns).at.tolist() == [86401.25, 2 * 86400.0 + 3600.0]
 
 
 def test_the_head_is_contradicted(tmp_path: Path):

@@ -206,6 +206,7 @@ def test_the_filter_of_the_scene(rig):
         ),
         (GIVEN.replace('"AoA"', '"AoA", unit = "rad"'), ["'AoA'", "rad", "'deg'"]),
         ("positions = 3\nrate = 2.0\n" + GIVEN, ["'positions', 'rate'", "given with"]),
+        ("rate = 1e9\n" + GIVEN, ["rig.rate", "1e+09", "at most"]),
         ("low_pass = 1e3\n" + GIVEN, ["low_pass is 1000 Hz", "at most"]),
     ],
 )
@@ -214,6 +215,11 @@ def test_wrong_tables(rig, table, words):
         load_rig_scene(rig(table, stranger(t=TIME / 60)))
     for word in words:
         assert word in str(caught.value)
+
+
+def test_rows_too_close_for_the_log(rig):
+    with pytest.raises(CaseError, match=r"positions come 5e-10 s apart, allowed 1e-08 s or more"):
+        load_rig_scene(rig(GIVEN.replace('"t"', '"t", unit = "s"'), stranger(t=1e-9 * TIME)))
 
 
 def test_keys_that_need_a_record(scene_with):

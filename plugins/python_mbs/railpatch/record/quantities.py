@@ -73,7 +73,8 @@ def _of_wheel(side: str) -> tuple[Quantity, ...]:
 
 
 QUANTITIES: tuple[Quantity, ...] = (
-    Quantity("time", "time", "time", ABSCISSA, -1e12, 1e12),
+    # seconds since 1970 too; the log's times end after 9.2e9 s
+    Quantity("time", "time", "time", ABSCISSA, -4e9, 4e9),
     Quantity("progress", "number", "part of the run that is done, 0 to 1", ABSCISSA, 0.0, 1.0),
     Quantity("distance", "length", "distance along the track, of runs on it", ABSCISSA, -1e9, 1e9),
     Quantity(

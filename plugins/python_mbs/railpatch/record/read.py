@@ -156,7 +156,8 @@ def in_si(
     raw: RawTable, place: int, column: MeasuredColumn, unit: str, quantity: Quantity
 ) -> Array:
     """[n], sign * (factor * number + offset) in the unit, then in SI units."""
-    values = column.sign * (column.factor * raw.numbers(place) + column.offset)
+    numbers = raw.numbers(place, clock=quantity.dimension == "time")
+    values = column.sign * (column.factor * numbers + column.offset)
     known = UNITS.get(quantity.dimension)
     return known[unit].factor * values + known[unit].offset if known else values
 

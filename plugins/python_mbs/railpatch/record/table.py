@@ -6,6 +6,7 @@ import csv
 import difflib
 import re
 from dataclasses import dataclass
+from datetime import date
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,8 @@ MAX_BYTES = 1_000_000_000
 GAPS = {"", "-", "--", "---", "nan", "na", "n/a", "#n/a", "null", "none"}
 # what stands between columns, in the order in which it is looked for in the head
 SEPARATORS = ("\t", ";", ",")
+# a time of day, perhaps with its date
+CLOCK = re.compile(r"(?:(\d{4}-\d\d-\d\d)[T ])?(\d{1,2}):(\d\d):(\d\d(?:\.\d*)?)Z?")
 # between blanks, with the unit that follows
 WORD = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?")
 
@@ -55,8 +58,9 @@ class RawTable:
         problem = f"{key}.name: value is {name!r}, allowed {there}{hint}"
         raise RecordError(self.path, problem)
 
-    def numbers(self, column: int) -> NDArray[np.float64]:
-        """[n], NaN where a cell is empty. Raises RecordError with the line."""
+    def numbers(self, column: int, *, clock: bool = False) -> NDArray[np.float64]:
+        """[n], NaN where a cell is empty. clock: times of day and dates are read too, as s. Raises
+        RecordError with the line."""
         words = [row[column].strip() for row in self.rows]
         if self.separator != ",":
             words = [decimal_points(word) for word in words]
@@ -64,8 +68,9 @@ class RawTable:
         for place, word in enumerate(words):
             if word.lower() in GAPS:
                 continue
+            seconds = seconds_of(word) if clock else None
             try:
-                values[place] = number(word)
+                values[place] = number(word) if seconds is None else seconds
             except ValueError:
                 raise RecordError(
                     self.path,
@@ -95,19 +100,37 @@ def read_table(path: Path) -> RawTable:
     if not kept:
         raise RecordError(path, "holds no rows")
     separator = next((mark for mark in SEPARATORS if mark in kept[0][1]), "")
-    cells = split([row for _, row in kept], separator)
     lines = [line for line, _ in kept]
+    try:
+        cells = split([row for _, row in kept], separator)
+    except csv.Error as error:
+        raise RecordError(path, f"cannot be split into cells: {error}") from None
+    if len(cells) != len(lines):
+        raise RecordError(path, 'has a cell over several lines, allowed one whose " is closed')
     heads = head_of(cells, told, separator)
     if heads is cells[0]:
         cells, lines = cells[1:], lines[1:]
     names, units = map(list, zip(*map(split_head, heads), strict=True))
-    if cells and not any(is_number(cell) for cell in cells[0]) and any(map(str.strip, cells[0])):
+    if cells and any(map(str.strip, cells[0])) and not any(map(is_value, cells[0])):
         below = [cell.strip().strip("[]()") for cell in cells[0]] + [""] * len(names)
         units = [unit or other for unit, other in zip(units, below, strict=False)]
         cells, lines = cells[1:], lines[1:]
     if len(cells) < 2:
         raise RecordError(path, f"holds {len(cells)} rows of numbers, allowed 2 or more")
     return RawTable(path, names, units, even(path, cells, lines, len(names)), lines, separator)
+
+
+def seconds_of(word: str) -> float | None:
+    """s, of "14:03:07.25" since midnight, of "2024-05-31 14:03:07.25" since some day; else None."""
+    found = CLOCK.fullmatch(word)
+    if found is None:
+        return None
+    day, hours, minutes, seconds = found.groups()
+    try:
+        days = date.fromisoformat(day).toordinal() - date(1970, 1, 1).toordinal() if day else 0
+    except ValueError:
+        return None
+    return 86400.0 * days + 3600.0 * int(hours) + 60.0 * int(minutes) + float(seconds)
 
 
 def split(rows: list[str], separator: str) -> list[list[str]]:
@@ -122,20 +145,21 @@ def split(rows: list[str], separator: str) -> list[list[str]]:
 def head_of(cells: list[list[str]], told: list[str], separator: str) -> list[str]:
     """The line of names, which may be a comment; else numbers from 1."""
     first = cells[0]
-    if not any(is_number(cell) for cell in first):
+    if not any(map(is_value, first)):
         return first
     if told and len(found := split([told[-1]], separator)[0]) == len(first) > 1:
         return found
     return [str(place + 1) for place in range(len(first))]
 
 
-def is_number(cell: str) -> bool:
-    """Whether a cell holds one."""
+def is_value(cell: str) -> bool:
+    """Whether a cell holds a number or a time, and no name or unit."""
+    word = decimal_points(cell.strip())
     try:
-        number(decimal_points(cell.strip()))
+        number(word)
     except ValueError:
-        return False
-    return re.search(r"\d", cell) is not None
+        return seconds_of(word) is not None
+    return re.search(r"\d", word) is not None
 
 
 def even(path: Path, cells: list[list[str]], lines: list[int], width: int) -> list[list[str]]:
