@@ -223,6 +223,26 @@ def test_wrong_columns(rig_file: Path, files, tmp_path: Path, columns, words):
         assert word in str(caught.value)
 
 
+def test_an_exported_table_is_a_reference(rig_file: Path, tmp_path: Path):
+    """Without a table of columns: they are called as those of the log."""
+    table = tmp_path / "run.csv"
+    chosen = ["--signal", "force.?", "--signal", "patches[0].max_pressure"]
+    done = CliRunner().invoke(cli, ["export", str(rig_file), "-o", str(table), *chosen])
+    assert done.exit_code == 0, done.output
+    run = read_run(rig_file)
+    pairs = beside_record(run, table, None).pairs
+    assert {pair.name for pair in pairs} == {
+        *(f"/{side}/contact.force.{axis}" for side in ("left", "right") for axis in "xyz"),
+        *(f"/{side}/contact.patches[0].max_pressure" for side in ("left", "right")),
+    }
+    assert [pair.unit for pair in pairs if "max" in pair.name] == ["MPa", "MPa"]
+    for pair in pairs:
+        assert np.abs(pair.difference).max() < 1e-9, pair.name
+    done = CliRunner().invoke(cli, ["export", str(rig_file), "-o", str(table)])
+    with pytest.raises(RecordError, match="columns of the log, allowed at most 40"):
+        beside_record(run, table, None)
+
+
 def test_columns_without_a_file(rig_file: Path, files, tmp_path: Path):
     done = invoke(rig_file, "-o", tmp_path / "page.html", "--columns", files[1])
     assert done.exit_code == 2

@@ -21,6 +21,8 @@ Array = NDArray[np.float64]
 # beyond this factor of what is to be expected a force is hardly meant in its unit, and within this
 # one another unit would fit
 HARDLY, FITS = 2.0, 1.4
+# columns of an exported log that are taken without being asked for
+MOST_EXPORTED = 40
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,7 @@ def read_record(
     """
     path = Path(path)
     raw = read_table(path)
-    columns = dict(columns) if columns else own_columns(raw)
+    columns = dict(columns) if columns else own_columns(raw, logged or {})
     warnings: list[str] = []
     signals: dict[str, Array] = {}
     units: dict[str, str] = {}
@@ -94,14 +96,23 @@ def read_record(
     return Record(path, kind, at, signals, units, {k: v for k, v in cutoffs.items() if v}, warnings)
 
 
-def own_columns(raw: RawTable) -> dict[str, MeasuredColumn]:
-    """Columns that are called as a quantity is: "yaw [mrad]", "left_lateral [kN]"."""
+def own_columns(raw: RawTable, logged: Mapping[str, str]) -> dict[str, MeasuredColumn]:
+    """Columns that are called as a quantity is, "yaw [mrad]", "left lateral [kN]", or as a column
+    of the log that the record is laid over. Raises RecordError."""
     plain = [name.strip().lower().replace(" ", "_") for name in raw.names]
     found = {
-        name: MeasuredColumn(name=raw.names[place])
-        for place, name in enumerate(plain)
-        if name in BY_NAME
+        known: MeasuredColumn(name=name)
+        for known, name in zip(plain, raw.names, strict=True)
+        if known in BY_NAME
     }
+    exported = {name: MeasuredColumn(name=name) for name in raw.names if name in logged}
+    if len(exported) > MOST_EXPORTED:
+        raise RecordError(
+            raw.path,
+            f"has {len(exported)} columns of the log, allowed at most {MOST_EXPORTED}: choose some "
+            "by a table [columns], or where they are exported",
+        )
+    found |= {name: column for name, column in exported.items() if name not in found}
     if not found:
         raise RecordError(
             raw.path,
