@@ -249,6 +249,13 @@ def test_a_cutoff_above_the_rate(tmp_path: Path):
         record.filtered(np.array([0.0, 0.1, 0.2]))
 
 
+def test_a_filter_of_bursts(tmp_path: Path):
+    """It would need a row each microsecond of an hour."""
+    record = read_record(written(tmp_path, "AoA [mrad]\n1\n2\n3\n4\n"), YAW, low_pass=6.0)
+    with pytest.raises(RecordError, match="allowed rows that are more even"):
+        record.filtered(np.array([0.0, 1e-6, 2e-6, 3600.0]))
+
+
 def test_a_file_of_columns(tmp_path: Path):
     path = tmp_path / "columns.toml"
     path.write_text(

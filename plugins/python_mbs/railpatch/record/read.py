@@ -21,6 +21,8 @@ Array = NDArray[np.float64]
 # beyond this factor of what is to be expected a force is hardly meant in its unit, and within this
 # one another unit would fit
 HARDLY, FITS = 2.0, 1.4
+# of rows that a filter would need at their usual rate, over those there are
+MOST_UNEVEN = 20
 # columns of an exported log that are taken without being asked for
 MOST_EXPORTED = 40
 
@@ -49,6 +51,12 @@ class Record:
         Raises RecordError for a cut-off that the record is too slow for."""
         found = dict(self.signals)
         rate = 1 / step_of(time)
+        if self.cutoffs and (time[-1] - time[0]) * rate > MOST_UNEVEN * len(time):
+            raise RecordError(
+                self.path,
+                f"low_pass: rows come at {rate:.4g} Hz in their median and {len(time)} of them in "
+                f"{time[-1] - time[0]:.4g} s, allowed rows that are more even, or no filter",
+            )
         for name, cutoff in self.cutoffs.items():
             if cutoff > HIGHEST * rate:
                 raise RecordError(
