@@ -25,6 +25,7 @@ ROOMS = {
     "export": "export",
     "fmu": "fmu",
     "layout": "layout",
+    "match": "match",
     "profile": "profiles.pairing",
     "report": "report",
     "stress": "evidence.stress",

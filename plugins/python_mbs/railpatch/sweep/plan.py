@@ -308,39 +308,40 @@ def salib() -> None:
         ) from None
 
 
-def put(content: dict[str, Any], key: str, value: Value) -> None:
-    """Sets the value at a dotted key; tables that are absent are made. Raises CaseError."""
+def put(content: dict[str, Any], key: str, value: Any, *, named: str = "vary.key") -> None:
+    """Sets the value at a dotted key; tables that are absent are made. named: of the key in
+    messages. Raises CaseError."""
     place: Any = content
-    steps = steps_of(key)
+    steps = steps_of(key, named)
     for step, following in zip(steps, [*steps[1:], None], strict=True):
         if isinstance(step, int):
             if not isinstance(place, list) or not 0 <= step < len(place):
                 raise CaseError(
-                    f"vary.key: value is {key!r}, but the scene has no list with a "
+                    f"{named}: value is {key!r}, but the scene has no list with a "
                     f"number {step} there"
                 )
         elif not isinstance(place, dict):
             raise CaseError(
-                f"vary.key: value is {key!r}, but {step!r} would lie in what is no table"
+                f"{named}: value is {key!r}, but {step!r} would lie in what is no table"
             )
         elif isinstance(following, str):
             place.setdefault(step, {})
         if following is None:
             place[step] = value
         elif isinstance(step, str) and step not in place:
-            raise CaseError(f"vary.key: value is {key!r}, but the scene has no list {step!r}")
+            raise CaseError(f"{named}: value is {key!r}, but the scene has no list {step!r}")
         else:
             place = place[step]
 
 
-def steps_of(key: str) -> list[str | int]:
+def steps_of(key: str, named: str = "vary.key") -> list[str | int]:
     """ "motion.creepage[0]" as names and numbers. Raises CaseError."""
     steps: list[str | int] = []
     for part in key.split("."):
         name, *indices = part.replace("]", "").split("[")
         if not name or not all(index.isdecimal() for index in indices):
             raise CaseError(
-                f"vary.key: value is {key!r}, allowed names with dots, and [0] of lists"
+                f"{named}: value is {key!r}, allowed names with dots, and [0] of lists"
             )
         steps += [name, *map(int, indices)]
     return steps

@@ -1,0 +1,179 @@
+"""The page of a match: what was found, measured and computed with bands, and how sure it is."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import TYPE_CHECKING
+
+import numpy as np
+import plotly.graph_objects as go
+
+from railpatch.match.judge import NORMAL_95, correlations
+from railpatch.page.document import document
+from railpatch.page.figures import COLORS, GREY, plot, styled
+from railpatch.page.tables import number, table
+
+if TYPE_CHECKING:
+    from railpatch.match.run import Judged, Match
+
+DASHES = ("solid", "dash", "dot", "dashdot")
+BAND = "rgba(59,125,196,0.18)"
+
+
+def page_of(match: Match) -> str:
+    """The whole page."""
+    own = match.explanations[0]
+    parts = [head_of(match), parameters_of(own)]
+    if own.not_told:
+        items = "".join(f"<li>{escape(text)}</li>" for text in own.not_told)
+        parts.append(f"<h2>What these points cannot tell</h2><ul>{items}</ul>")
+    if len(match.explanations) > 1:
+        parts.append(explanations_of(match))
+    for place, key in enumerate(match.plan.table.observed):
+        parts.append(f"<h2>{escape(key)}</h2>" + plot(curves_of(match, place), f"curves-{place}"))
+        parts.append(plot(residual_figure(match, place), f"left-{place}"))
+    if len(own.parameters) > 1:
+        parts.append(correlations_of(own))
+    parts.append(details_of(match))
+    return document(match.plan.name, "".join(parts))
+
+
+def head_of(match: Match) -> str:
+    """The verdict and the key numbers."""
+    own, lines = match.explanations[0], []
+    for key, rms in zip(match.plan.table.observed, own.fit.rms, strict=True):
+        lines.append([f"rms of {key}", number(float(rms))])
+    if own.predicted is not None:
+        lines.append(["points left out, within their band of 95 %", f"{100 * own.predicted.within:.0f} %"])
+    lines.append(["points", str(int(own.search.there.sum()))])
+    names = ", ".join(
+        f"{p.key} {p.value:.4g} ({p.low:.4g} to {p.high:.4g})" for p in own.parameters
+    )
+    return (
+        f"<h1>{escape(match.plan.name)}</h1><p>Found, with intervals of 95 %: {escape(names)}.</p>"
+        + table([], lines, "summary")
+    )
+
+
+def parameters_of(own: Judged) -> str:
+    """Each with its interval and range."""
+    rows = [
+        [p.key, number(p.value), number(p.low), number(p.high), *(number(e) for e in p.of_range)]
+        for p in own.parameters
+    ]
+    head = ["parameter", "value", "from", "to", "sought from", "to"]
+    return "<h2>Parameters</h2>" + table(head, rows)
+
+
+def explanations_of(match: Match) -> str:
+    """All beside each other, the one that predicts best first."""
+
+    def rank(judged: Judged) -> float:
+        return -judged.predicted.density if judged.predicted else judged.criterion
+
+    rows = []
+    for judged in sorted(match.explanations, key=rank):
+        held = judged.predicted
+        values = ", ".join(f"{p.key} {p.value:.4g} ({p.low:.4g}, {p.high:.4g})" for p in judged.parameters)
+        rows.append(
+            [
+                judged.explanation.name,
+                number(float(judged.fit.rms[0])),
+                number(float(held.rms[0])) if held else "-",
+                number(held.density) if held else "-",
+                f"{100 * held.within:.0f} %" if held else "-",
+                number(judged.criterion),
+                values,
+            ]
+        )
+    head = [
+        "explanation", "rms", "rms of points left out", "logarithm of their likelihood",
+        "within 95 %", "Akaike's criterion", "parameters",
+    ]  # fmt: skip
+    return "<h2>Explanations</h2>" + table(head, rows)
+
+
+def curves_of(match: Match, place: int) -> go.Figure:
+    """Measured points and computed curves over the first input, with the band of 95 %."""
+    own = match.explanations[0]
+    name, at = next(iter(own.search.model.inputs.items()))
+    order = np.argsort(at, kind="stable")
+    figure = go.Figure()
+    spread = NORMAL_95 * own.fit.spread[place][order]
+    computed = own.fit.computed[place][order]
+    figure.add_scatter(
+        x=np.concatenate([at[order], at[order][::-1]]),
+        y=np.concatenate([computed + spread, (computed - spread)[::-1]]),
+        fill="toself",
+        fillcolor=BAND,
+        line={"width": 0},
+        hoverinfo="skip",
+        name="95 % of points",
+    )
+    for number_, judged in enumerate(match.explanations):
+        figure.add_scatter(
+            x=judged.search.model.inputs[name][order],
+            y=judged.fit.computed[place][order],
+            mode="lines",
+            name=judged.explanation.name,
+            line={
+                "dash": DASHES[number_ % len(DASHES)],
+                "color": COLORS["left"] if number_ == 0 else GREY,
+            },
+        )
+    figure.add_scatter(
+        x=at,
+        y=own.search.measured[place],
+        mode="markers",
+        name="measured",
+        marker={"color": COLORS["right"], "size": 6},
+    )
+    figure.update_xaxes(title=name)
+    figure.update_yaxes(title=list(match.plan.table.observed)[place])
+    return styled(figure, 440)
+
+
+def residual_figure(match: Match, place: int) -> go.Figure:
+    """Measured minus computed."""
+    own = match.explanations[0]
+    name, at = next(iter(own.search.model.inputs.items()))
+    figure = go.Figure()
+    figure.add_scatter(
+        x=at,
+        y=own.fit.left[place],
+        mode="markers",
+        marker={"color": COLORS["right"], "size": 6},
+        name="measured minus computed",
+    )
+    figure.update_xaxes(title=name)
+    figure.update_yaxes(title="measured minus computed")
+    figure.update_layout(showlegend=False)
+    return styled(figure, 260)
+
+
+def correlations_of(own: Judged) -> str:
+    """Of the parameters."""
+    keys = [p.key for p in own.parameters]
+    rows = [
+        [key, *(number(float(v)) for v in row)]
+        for key, row in zip(keys, correlations(own.fit), strict=True)
+    ]
+    return "<h2>Correlations</h2>" + table(["", *keys], rows)
+
+
+def details_of(match: Match) -> str:
+    """What was done, folded."""
+    own, options = match.explanations[0], match.plan.table
+    noise = own.fit.noise
+    lines = [
+        ["record", match.plan.record.path.name],
+        ["loss", options.loss],
+        ["starts", str(options.starts)],
+        ["intervals", options.intervals],
+        ["noise of a point", ", ".join(number(float(e)) for e in noise.error)],
+        ["of the model, over that", number(noise.size)],
+        ["over, in standard deviations of the inputs", number(noise.length) if noise.size else "-"],
+        ["evaluations of all points", str(sum(j.evaluations for j in match.explanations))],
+        ["time", f"{match.seconds:.3g} s"],
+    ]
+    return f"<details><summary>How it was found</summary>{table([], lines, 'summary')}</details>"

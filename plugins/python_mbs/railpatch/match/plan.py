@@ -1,0 +1,288 @@
+"""What is matched: the scene, what is sought in it, what was given and what was measured."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from copy import deepcopy
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from railpatch.case.load import KINDS, check_table, plain, read_toml
+from railpatch.case.types import Number, Positive, Table, relation
+from railpatch.errors import CaseError
+from railpatch.record import MeasuredColumn, Record, read_record
+from railpatch.record.units import UNITS, dimension_of, spelt
+from railpatch.sweep.plan import Value, put
+
+Array = NDArray[np.float64]
+Key = str
+# what is made of a match without explanations
+OWN = "the scene"
+
+
+class SoughtTable(Table):
+    """One parameter: a key of the scene that is sought between two ends."""
+
+    low: Number = Field(description="as of the key: the least value it may have")
+    high: Number = Field(description="as of the key: the greatest value it may have")
+    start: Number | None = Field(
+        default=None, description="as of the key: a first guess; left out: the middle"
+    )
+    logarithmic: bool = Field(
+        default=False,
+        description="(no unit): whether the logarithm is sought, of what is known by its order of "
+        "magnitude only",
+    )
+    prior: Number | None = Field(
+        default=None, description="as of the key: what is known of it beforehand, with prior_error"
+    )
+    prior_error: Positive | None = Field(
+        default=None, description="as of the key: standard deviation of what is known beforehand"
+    )
+
+    @model_validator(mode="after")
+    def _ends(self) -> SoughtTable:
+        if not self.low < self.high:
+            raise relation("low", self.low, f"below high, {self.high:g}")
+        if self.logarithmic and not self.low > 0:
+            raise relation("low", self.low, "> 0 where the logarithm is sought")
+        for name in ("start", "prior"):
+            value = getattr(self, name)
+            if value is not None and not self.low <= value <= self.high:
+                raise relation(name, value, f"{self.low:g} to {self.high:g}")
+        if (self.prior is None) != (self.prior_error is None):
+            raise relation("prior", self.prior, "with prior_error, and only with it")
+        return self
+
+    def at(self, share: float) -> float:
+        """The value at a share from 0 to 1 of the range."""
+        if self.logarithmic:
+            return math.exp((1 - share) * math.log(self.low) + share * math.log(self.high))
+        return (1 - share) * self.low + share * self.high
+
+    def share(self, value: float) -> float:
+        """The share of the range at which a value lies."""
+        if self.logarithmic:
+            return math.log(value / self.low) / math.log(self.high / self.low)
+        return (value - self.low) / (self.high - self.low)
+
+
+class ObservedColumn(MeasuredColumn):
+    """One measured column, of what the scene's result has for it."""
+
+    over: str | None = Field(
+        default=None,
+        description="(no unit): another number of the result, that this one is divided by: "
+        "normal_force",
+    )
+    error: Positive | None = Field(
+        default=None,
+        description="(the column's SI unit): standard deviation of what was measured; left out: "
+        "estimated from what is left",
+    )
+
+
+class ExplanationTable(Table):
+    """Another way to explain the same points."""
+
+    change: dict[str, Any] = Field(
+        default_factory=dict,
+        description="(no unit): key of the scene -> what it is in this explanation",
+    )
+    leave_out: list[str] = Field(
+        default_factory=list,
+        description="(no unit): tables and keys of the scene that this explanation has not",
+    )
+    seek: dict[str, SoughtTable] | None = Field(
+        default=None, description="(no unit): what is sought; left out: what the match seeks"
+    )
+
+
+class MatchTable(Table):
+    """What is matched."""
+
+    scene: str | None = Field(
+        default=None,
+        description="(no unit): the scene file; left out: the tables beside this one. Paths start "
+        "beside the file",
+    )
+    record: str | None = Field(
+        default=None, description="(no unit): the file of points; --record names another one"
+    )
+    inputs: dict[str, MeasuredColumn] = Field(
+        min_length=1,
+        description="(no unit): moving key of the scene, 'creepage[0]' -> the column that drives it",
+    )
+    observed: dict[str, ObservedColumn] = Field(
+        min_length=1,
+        description="(no unit): number of the result, 'creep_force[0]' -> the column that it was "
+        "measured in",
+    )
+    seek: dict[str, SoughtTable] = Field(
+        min_length=1, description="(no unit): key of the scene, 'friction.coefficient' -> its range"
+    )
+    explanations: dict[str, ExplanationTable] = Field(
+        default_factory=dict, description="(no unit): name -> another way to explain the points"
+    )
+    loss: Literal["linear", "soft_l1", "huber", "cauchy"] = Field(
+        default="soft_l1",
+        description="(no unit): how far points that lie apart count: linear: by their square; the "
+        "others less (scipy.optimize.least_squares)",
+    )
+    starts: Annotated[int, Field(ge=1, le=100)] = Field(
+        default=4, description="-, searches, each from another start"
+    )
+    discrepancy: bool = Field(
+        default=True,
+        description="(no unit): whether part of what is left may belong together from point to "
+        "point, as the scene's own error does (Kennedy and O'Hagan 2001)",
+    )
+    intervals: Literal["profile", "covariance"] = Field(
+        default="profile",
+        description="(no unit): intervals by profile likelihood, or by curvature at the optimum",
+    )
+    folds: Annotated[int, Field(ge=0, le=100)] = Field(
+        default=10, description="-, parts of which each is left out once, to predict it; 0: none"
+    )
+    seed: Annotated[int, Field(ge=0, le=2**32 - 2)] = Field(
+        default=0, description="-, of the starts and of the parts"
+    )
+
+    @model_validator(mode="after")
+    def _folds(self) -> MatchTable:
+        if self.folds == 1:
+            raise relation("folds", self.folds, "0, or 2 and more")
+        return self
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A scene's content and what is sought in it."""
+
+    name: str
+    content: dict[str, Any]
+    seek: dict[str, SoughtTable]
+
+    def case(self, values: Mapping[str, float]) -> dict[str, Any]:
+        """The content with values of what is sought. Raises CaseError."""
+        content = deepcopy(self.content)
+        for key, value in values.items():
+            put(content, key, value, named="match.seek")
+        return content
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A checked match. folder: where the scene's paths start. explanations: of which the first is
+    the match's own; its values go into the scene that is written. record: n rows."""
+
+    name: str
+    table: MatchTable
+    kind: str
+    folder: Path
+    explanations: tuple[Explanation, ...]
+    record: Record
+
+    def measured(self) -> Array:
+        """SI units, [observed, n], NaN where a cell is empty."""
+        return np.array([self.record.signals[observed_name(key)] for key in self.table.observed])
+
+    def inputs(self) -> dict[str, Array]:
+        """Input -> SI units, [n]."""
+        return {key: self.record.signals[input_name(key)] for key in self.table.inputs}
+
+
+def input_name(key: str) -> str:
+    """Of a signal in the record; an input and a result may have the same name."""
+    return f"inputs.{key}"
+
+
+def observed_name(key: str) -> str:
+    """Of a signal in the record."""
+    return f"observed.{key}"
+
+
+def load_match(path: str | Path, record: str | Path | None = None) -> Plan:
+    """Checks a match's file, the scene and the record, but not the values of what is sought.
+
+    record: in place of the one that the file names. Raises CaseError, RecordError.
+    """
+    path = Path(path)
+    content = plain(read_toml(path))
+    own = content.pop("match", None)
+    if not isinstance(own, dict):
+        raise CaseError(f"match: value is missing, allowed a table [match] in {path.name}")
+    table = check_table(MatchTable, own, "match")
+    if (table.scene is None) == (not content):
+        shown = repr(table.scene) if table.scene else "missing"
+        raise CaseError(
+            f"match.scene: value is {shown}, allowed the name of a scene, or the scene's tables "
+            "beside [match]"
+        )
+    folder = path.parent
+    if table.scene is not None:
+        place = folder / table.scene
+        content, folder = plain(read_toml(place)), place.parent
+    kind = content.get("kind")
+    if kind not in KINDS:
+        raise CaseError(f"kind: value is {kind!r}, allowed {', '.join(KINDS)} in a match")
+    file = Path(record) if record is not None else None
+    if file is None and table.record is not None:
+        file = path.parent / table.record
+    if file is None:
+        raise CaseError("match.record: value is missing, allowed a file of points, or --record")
+    return Plan(path.stem, table, kind, folder, explanations_of(table, content), points(table, file))
+
+
+def explanations_of(table: MatchTable, content: dict[str, Any]) -> tuple[Explanation, ...]:
+    """The match's own and those beside it. Raises CaseError."""
+    found = [Explanation(OWN, content, dict(table.seek))]
+    for name, other in table.explanations.items():
+        own = deepcopy(content)
+        for key in other.leave_out:
+            leave_out(own, key, name)
+        for key, value in other.change.items():
+            put(own, key, value, named=f"match.explanations.{name}.change")
+        found.append(Explanation(name, own, dict(other.seek or table.seek)))
+    return tuple(found)
+
+
+def leave_out(content: dict[str, Any], key: str, name: str) -> None:
+    """Takes a table or a key out of a scene's content. Raises CaseError."""
+    *above, last = key.split(".")
+    place: Any = content
+    for step in above:
+        place = place.get(step) if isinstance(place, dict) else None
+    if not isinstance(place, dict) or last not in place:
+        raise CaseError(
+            f"match.explanations.{name}.leave_out: value is {key!r}, allowed a table or key that "
+            "the scene has"
+        )
+    del place[last]
+
+
+def points(table: MatchTable, file: Path) -> Record:
+    """The record, in SI units by the names of inputs and results. Raises RecordError."""
+    columns = {input_name(key): column for key, column in table.inputs.items()}
+    columns |= {observed_name(key): column for key, column in table.observed.items()}
+    logged = {name: si_unit(column) for name, column in columns.items()}
+    return read_record(file, columns, logged=logged, prefix="match")
+
+
+def si_unit(column: MeasuredColumn) -> str:
+    """Of the dimension that a column's unit has; a number's where it has none."""
+    dimension = dimension_of(spelt(column.unit)) if column.unit else "number"
+    return next(iter(UNITS[dimension])) if dimension else str(column.unit)
+
+
+def values_of(seek: Mapping[str, SoughtTable], shares: Array) -> dict[str, Value]:
+    """What is sought at shares of their ranges."""
+    return {
+        key: sought.at(float(share)) for (key, sought), share in zip(seek.items(), shares, strict=True)
+    }
