@@ -31,7 +31,8 @@ tangential = "none"
 """
 # commands that write a folder, or have no input
 FOLDERS = {name: (name,) for name in ("bench", "continuity", "stress")} | {
-    "sweep": ("sweep", "sweep.toml")
+    "match": ("match", "match.toml"),
+    "sweep": ("sweep", "sweep.toml"),
 }
 
 

@@ -33,6 +33,7 @@ LARGEST = 64_000_000
 DEEPEST = 32
 # tables that a contact case has not, by which files of other commands are known
 OTHERS = {
+    "match": "match",
     "sweep": "sweep",
     "vehicle": "vehicle",
     "rig": "rig",

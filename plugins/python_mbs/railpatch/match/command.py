@@ -55,8 +55,10 @@ def match(
     The table [match] of the scene says what is sought, between which ends, and which columns of the
     record are what.
     """
+    from railpatch.match.found import Match
+    from railpatch.match.model import need_writer
     from railpatch.match.plan import load_match
-    from railpatch.match.run import Match, need_writer, run_match
+    from railpatch.match.run import run_match, write_match
 
     check_folder(output)
     silent = quiet or as_json
@@ -78,9 +80,10 @@ def match(
     with wrong_calls():
         need_writer()
         plan = load_match(scene, record)
-        tell_warnings(plan.record.warnings, strict=strict, quiet=silent)
+        warnings = plan.record.warnings if plan.record else []
+        tell_warnings(warnings, strict=strict, quiet=silent)
         found = run_match(plan, threads=threads, tell=tell)
-        written = found.write(output)
+        written = write_match(found, output)
     if as_json:
         click.echo(json.dumps(found.to_dict(), allow_nan=False))
     elif not quiet:

@@ -1,12 +1,12 @@
 """The search for the parameters, and how well the points know them.
 
-Nonlinear least squares in the shares of the ranges (trust region, scipy.optimize.least_squares) from
-several starts, with a loss that points far off do not rule. Then what is left is taken as noise of each
-point and, with ``discrepancy``, as an error of the model that belongs together from point to point: a
-Gaussian process over the inputs (Kennedy and O'Hagan 2001, J. R. Stat. Soc. B 63, 425-464, their delta;
-one for each quantity with the same numbers), whose size, length and noise are those of the greatest
-likelihood. The parameters are sought again with the points weighted so, twice. Derivatives are central
-differences over a thousandth of each range.
+Nonlinear least squares in the shares of the ranges (trust region, scipy.optimize.least_squares)
+from several starts, with a loss that points far off do not rule. Then what is left is taken as
+noise of each point and, with ``discrepancy``, as an error of the model that belongs together from
+point to point: a Gaussian process over the inputs (Kennedy and O'Hagan 2001, J. R. Stat. Soc. B 63,
+425-464, their delta; one for each quantity with the same numbers), whose size, length and noise are
+those of the greatest likelihood. The parameters are sought again with the points weighted so,
+twice. Derivatives are differences over a thousandth of each range, away from its nearer end.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ ROUNDS = 2
 
 @dataclass(frozen=True)
 class Noise:
-    """Of what is left. error: [observed], SI units, of each point. size: of the same, how much of it
-    belongs together (-, over error). length: over which, in standard deviations of the inputs."""
+    """Of what is left. error: [observed], SI units, of each point. size: -, over that, how much
+    belongs together. length: over which, in standard deviations of the inputs."""
 
     error: Array
     size: float = 0.0
@@ -57,9 +57,9 @@ class Fit:
     """Parameters that were found.
 
     shares: [p], of the ranges. noise: of what is left. covariance: [p, p], of the shares. left:
-    [observed, m], measured minus computed, SI units, NaN where nothing was measured. likelihood:
-    logarithm, of the points. spread: [observed, m], standard deviation of a point that was not
-    there.
+    [observed, m], measured minus computed, SI units, NaN where nothing was measured. slopes:
+    [observed, m, p], of what is computed by the shares. likelihood: logarithm, of the points.
+    spread: [observed, m], standard deviation of a point that was not there.
     """
 
     shares: Array
@@ -67,6 +67,7 @@ class Fit:
     covariance: Array
     left: Array
     computed: Array
+    slopes: Array
     likelihood: float
     spread: Array
     intervals: list[tuple[float, float]] = field(default_factory=list)
@@ -95,27 +96,30 @@ class Search:
         inputs = inputs / np.where(spread > 0, spread, 1.0)
         self.apart = ((inputs[:, :, None] - inputs[:, None, :]) ** 2).sum(axis=0)
         self.kept = np.ones(self.measured.shape[1], dtype=bool)
+        self._last: tuple[Array, Array] | None = None
 
-    # --- what is computed ---------------------------------------------------------------------------
+    # --- what is computed ------------------------------------------------------------------------
 
     def computed(self, shares: Array) -> Array:
-        """[observed, m]; what has no result is far off."""
-        found = self.model.at(np.clip(shares, 0.0, 1.0))
-        far = self.measured + FAR * self.scale[:, None]
-        return np.where(np.isfinite(found), found, np.where(self.there, far, 0.0))
+        """[observed, m]; what has no result is far off. The last one is kept."""
+        if self._last is None or not np.array_equal(self._last[0], shares):
+            found = self.model.at(np.clip(shares, 0.0, 1.0))
+            far = self.measured + FAR * self.scale[:, None]
+            found = np.where(np.isfinite(found), found, np.where(self.there, far, 0.0))
+            self._last = (shares.copy(), found)
+        return self._last[1]
 
     def slopes(self, shares: Array) -> Array:
         """[observed, m, p], by the shares."""
-        found = []
+        here, found = self.computed(shares), []
         for k in range(len(shares)):
-            ends = [shares.copy(), shares.copy()]
-            ends[0][k] = max(shares[k] - DIFFERENCE, 0.0)
-            ends[1][k] = min(shares[k] + DIFFERENCE, 1.0)
-            low, high = (self.computed(end) for end in ends)
-            found.append((high - low) / (ends[1][k] - ends[0][k]))
+            step = -DIFFERENCE if shares[k] > 0.5 else DIFFERENCE
+            moved = shares.copy()
+            moved[k] += step
+            found.append((self.computed(moved) - here) / step)
         return np.stack(found, axis=-1)
 
-    # --- weighted -----------------------------------------------------------------------------------
+    # --- weighted --------------------------------------------------------------------------------
 
     def weights(self, noise: Noise) -> list[tuple[NDArray[np.intp], Array]]:
         """Of each quantity the points that count and the Cholesky factor of their covariance."""
@@ -156,7 +160,9 @@ class Search:
             rows.append(row)
         return np.array(rows).reshape(-1, len(shares))
 
-    def solve(self, start: Array, noise: Noise, loss: str, free: NDArray[np.bool_], most: int) -> Array:
+    def solve(
+        self, start: Array, noise: Noise, loss: str, free: NDArray[np.bool_], most: int
+    ) -> Array:
         """Shares with the least sum, of those that are free. Raises CaseError."""
         weights = self.weights(noise)
 
@@ -177,12 +183,12 @@ class Search:
 
         begin = np.clip(start[free], 1e-6, 1 - 1e-6)
         found = least_squares(
-            left, begin, slope, bounds=(0.0, 1.0), loss=loss, x_scale=0.1, max_nfev=most, xtol=1e-6,
-            ftol=1e-8,
+            left, begin, slope, bounds=(0.0, 1.0), loss=loss, x_scale=0.1, max_nfev=most, xtol=1e-5,
+            ftol=1e-6,
         )  # fmt: skip
         return whole(found.x)
 
-    # --- the whole search -----------------------------------------------------------------------------
+    # --- the whole search ------------------------------------------------------------------------
 
     def run(self) -> Fit:
         """The best of all starts. Raises CaseError."""
@@ -205,8 +211,8 @@ class Search:
 
     def fit_at(self, shares: Array, noise: Noise) -> Fit:
         """What is known at an optimum."""
-        computed = self.computed(shares)
         slopes = self.slopes(shares)
+        computed = self.computed(shares)
         whole = np.concatenate(
             [self.whitened(slopes, self.weights(noise)), self.prior_slopes(shares)]
         )
@@ -217,7 +223,7 @@ class Search:
         spread = np.sqrt(of_parameters + noise.error[:, None] ** 2 * (1 + noise.size**2))
         left = np.where(self.there, self.measured - computed, np.nan)
         likelihood = self.likelihood(computed, noise)
-        return Fit(shares, noise, covariance, left, computed, likelihood, spread)
+        return Fit(shares, noise, covariance, left, computed, slopes, likelihood, spread)
 
     def _starts(self, noise: Noise, count: int, seed: int) -> list[Array]:
         """The best of evenly spread first guesses, that of the file first."""
@@ -237,7 +243,7 @@ class Search:
         left = (self.computed(shares) - self.measured) / self.scale[:, None]
         return float(np.sqrt(np.nanmean(np.where(self.there, left, np.nan) ** 2)))
 
-    # --- noise ----------------------------------------------------------------------------------------
+    # --- noise -----------------------------------------------------------------------------------
 
     def noise_of(self, computed: Array, discrepancy: bool) -> Noise:
         """Of the greatest likelihood. Points far off count as they do in the loss."""
@@ -283,7 +289,7 @@ class Search:
             total -= 0.5 * len(rows) * np.log(2 * np.pi)
         return float(total)
 
-    # --- intervals ------------------------------------------------------------------------------------
+    # --- intervals -------------------------------------------------------------------------------
 
     def intervals(self, fit: Fit, kind: str) -> list[tuple[float, float]]:
         """Shares, 95 % of each parameter, within its range."""
@@ -314,17 +320,17 @@ class Search:
         least = squares(fit.shares)
         inner, outer = (fit.shares[k], 0.0), None  # share, root of the rise
         guess = end
-        for _ in range(5):
+        for _ in range(4):
             at = float(np.clip(guess, 0.0, 1.0))
             shares = fit.shares + fit.covariance[:, k] / fit.covariance[k, k] * (at - fit.shares[k])
             shares = np.clip(shares, 0.0, 1.0)
             shares[k] = at
             if free.any():
-                shares = self.solve(shares, fit.noise, "linear", free, 6)
+                shares = self.solve(shares, fit.noise, "linear", free, 3)
             rise = float(np.sqrt(max(squares(shares) - least, 0.0)))
             if rise < far and at in (0.0, 1.0):
                 return at
-            if abs(rise - far) < 0.03 * far:
+            if abs(rise - far) < 0.05 * far:
                 return at
             if rise < far:
                 inner = (at, rise)
@@ -343,6 +349,6 @@ def refuse_unsolved(model: Model, computed: Array) -> None:
     bad = ~np.isfinite(computed).all(axis=0)
     if bad.mean() > 0.5:
         raise CaseError(
-            f"match.scene: value is a scene without a good result at {int(bad.sum())} of {len(bad)} "
-            "points, allowed one that is solved at most of them: try `railpatch solve`"
+            f"match.scene: value is a scene without a good result at {int(bad.sum())} of "
+            f"{len(bad)} points, allowed one that is solved at most of them"
         )

@@ -32,26 +32,31 @@ class LeftOut:
 
 
 def left_out(search: Search, fit: Fit) -> LeftOut | None:
-    """Each part of the points predicted by a fit to all others; None where nothing is left out."""
+    """Each part of the points predicted by a fit to all others; None where nothing is left out.
+
+    The others' fit is one step of Gauss and Newton from the fit to all.
+    """
     table = search.model.plan.table
     if table.folds == 0:
         return None
     count = search.measured.shape[1]
-    folds = min(table.folds, count)
     order = np.random.default_rng(table.seed).permutation(count)
-    every = np.ones(len(fit.shares), dtype=bool)
     errors = np.full(search.measured.shape, np.nan)
     spread = np.full(search.measured.shape, np.nan)
-    for part in np.array_split(order, folds):
+    # where all points leave the search to rest, by its loss; what is at an end stays there
+    from_all, _ = step_from(search, fit)
+    for part in np.array_split(order, min(table.folds, count)):
         search.kept = np.ones(count, dtype=bool)
         search.kept[part] = False
-        try:
-            shares = search.solve(fit.shares, fit.noise, table.loss, every, 6)
-            found = search.fit_at(shares, fit.noise)
-        finally:
-            search.kept = np.ones(count, dtype=bool)
-        errors[:, part] = found.left[:, part]
-        spread[:, part] = found.spread[:, part]
+        step, covariance = step_from(search, fit)
+        search.kept = np.ones(count, dtype=bool)
+        moved = np.clip(fit.shares + step - from_all, 0.0, 1.0) - fit.shares
+        errors[:, part] = fit.left[:, part] - fit.slopes[:, part] @ moved
+        of_parameters = np.einsum(
+            "kmp,pq,kmq->km", fit.slopes[:, part], covariance, fit.slopes[:, part]
+        )
+        own = fit.noise.error[:, None] ** 2 * (1 + fit.noise.size**2)
+        spread[:, part] = np.sqrt(of_parameters + own)
     z = errors / spread
     density = -0.5 * z**2 - np.log(spread * np.sqrt(2 * np.pi))
     there = np.isfinite(z)
@@ -60,6 +65,36 @@ def left_out(search: Search, fit: Fit) -> LeftOut | None:
         float(np.mean(np.abs(z[there]) < NORMAL_95)),
         float(np.mean(density[there])),
     )
+
+
+def step_from(search: Search, fit: Fit) -> tuple[Array, Array]:
+    """One step of Gauss and Newton by the points that are kept, [p], and the covariance [p, p]."""
+    weights = search.weights(fit.noise)
+    left = search.whitened(np.nan_to_num(fit.left), weights)
+    slopes = search.whitened(fit.slopes, weights)
+    counted = np.sqrt(counting(left, search.model.plan.table.loss))
+    left, slopes = counted * left, counted[:, None] * slopes
+    left = np.concatenate([left, -search.prior(fit.shares)])
+    slopes = np.concatenate([slopes, search.prior_slopes(fit.shares)])
+    free = (fit.shares > NEAR_END) & (fit.shares < 1 - NEAR_END)
+    normal = slopes[:, free].T @ slopes[:, free]
+    step, covariance = np.zeros(len(fit.shares)), np.zeros((len(fit.shares),) * 2)
+    if free.any():
+        own = np.linalg.inv(normal + 1e-8 * np.trace(normal) * np.eye(len(normal)))
+        covariance[np.ix_(free, free)] = own
+        step[free] = own @ slopes[:, free].T @ left
+    return step, covariance
+
+
+def counting(z: Array, loss: str) -> Array:
+    """How much points count: the slope of scipy's losses by the square."""
+    square = z**2
+    return {
+        "linear": np.ones_like(z),
+        "soft_l1": 1 / np.sqrt(1 + square),
+        "huber": np.where(square <= 1, 1.0, 1 / np.sqrt(np.maximum(square, 1.0))),
+        "cauchy": 1 / (1 + square),
+    }[loss]
 
 
 def correlations(fit: Fit) -> Array:
@@ -87,13 +122,13 @@ def not_told(search: Search, fit: Fit) -> list[str]:
         for j in range(i):
             if abs(table[i, j]) < ONE or {i, j} & alone:
                 continue
-            together = "quotient" if table[i, j] > 0 else "product"
-            if min(sought[i].low, sought[j].low) <= 0:
-                together = "difference" if table[i, j] > 0 else "sum"
-            found.append(
-                f"{keys[j]} and {keys[i]}: nearly only their {together} (correlation "
-                f"{table[i, j]:.3f})"
-            )
+            if sought[i].logarithmic and sought[j].logarithmic:
+                together = "quotient" if table[i, j] > 0 else "product"
+                text = f"nearly only their {together}"
+            else:
+                text = f"nearly only together: one {'rises' if table[i, j] > 0 else 'falls'} as the"
+                text += " other rises"
+            found.append(f"{keys[j]} and {keys[i]}: {text} (correlation {table[i, j]:.3f})")
     return found
 
 

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from html import escape
-from typing import TYPE_CHECKING
 
 import numpy as np
 import plotly.graph_objects as go
 
+from railpatch.match.found import Judged, Match
 from railpatch.match.judge import NORMAL_95, correlations
 from railpatch.page.document import document
 from railpatch.page.figures import COLORS, GREY, plot, styled
 from railpatch.page.tables import number, table
-
-if TYPE_CHECKING:
-    from railpatch.match.run import Judged, Match
 
 DASHES = ("solid", "dash", "dot", "dashdot")
 BAND = "rgba(59,125,196,0.18)"
@@ -29,8 +26,11 @@ def page_of(match: Match) -> str:
         parts.append(f"<h2>What these points cannot tell</h2><ul>{items}</ul>")
     if len(match.explanations) > 1:
         parts.append(explanations_of(match))
-    for place, key in enumerate(match.plan.table.observed):
-        parts.append(f"<h2>{escape(key)}</h2>" + plot(curves_of(match, place), f"curves-{place}"))
+    for place in range(len(match.plan.table.observed)):
+        parts.append(
+            f"<h2>{escape(label_of(match, place))}</h2>"
+            + plot(curves_of(match, place), f"curves-{place}")
+        )
         parts.append(plot(residual_figure(match, place), f"left-{place}"))
     if len(own.parameters) > 1:
         parts.append(correlations_of(own))
@@ -41,10 +41,12 @@ def page_of(match: Match) -> str:
 def head_of(match: Match) -> str:
     """The verdict and the key numbers."""
     own, lines = match.explanations[0], []
-    for key, rms in zip(match.plan.table.observed, own.fit.rms, strict=True):
-        lines.append([f"rms of {key}", number(float(rms))])
+    for place, rms in enumerate(own.fit.rms):
+        lines.append([f"rms of {label_of(match, place)}", number(float(rms))])
     if own.predicted is not None:
-        lines.append(["points left out, within their band of 95 %", f"{100 * own.predicted.within:.0f} %"])
+        lines.append(
+            ["points left out, within their band of 95 %", f"{100 * own.predicted.within:.0f} %"]
+        )
     lines.append(["points", str(int(own.search.there.sum()))])
     names = ", ".join(
         f"{p.key} {p.value:.4g} ({p.low:.4g} to {p.high:.4g})" for p in own.parameters
@@ -71,26 +73,36 @@ def explanations_of(match: Match) -> str:
     def rank(judged: Judged) -> float:
         return -judged.predicted.density if judged.predicted else judged.criterion
 
-    rows = []
+    rows, values = [], []
     for judged in sorted(match.explanations, key=rank):
-        held = judged.predicted
-        values = ", ".join(f"{p.key} {p.value:.4g} ({p.low:.4g}, {p.high:.4g})" for p in judged.parameters)
+        held, name = judged.predicted, judged.explanation.name
         rows.append(
             [
-                judged.explanation.name,
+                name,
                 number(float(judged.fit.rms[0])),
                 number(float(held.rms[0])) if held else "-",
-                number(held.density) if held else "-",
                 f"{100 * held.within:.0f} %" if held else "-",
+                number(held.density) if held else "-",
                 number(judged.criterion),
-                values,
             ]
         )
-    head = [
-        "explanation", "rms", "rms of points left out", "logarithm of their likelihood",
-        "within 95 %", "Akaike's criterion", "parameters",
-    ]  # fmt: skip
-    return "<h2>Explanations</h2>" + table(head, rows)
+        values += [
+            [name, p.key, number(p.value), number(p.low), number(p.high)] for p in judged.parameters
+        ]
+    head = ["explanation", "rms", "rms, left out", "within 95 %", "log likelihood", "Akaike"]
+    text = (
+        "<p>Points left out in turn and predicted by the rest: their rms, the part of them inside "
+        "the band of 95 % and the mean logarithm of their likelihood, by which explanations are "
+        "ordered; Akaike's criterion, of all points, is the less the better.</p>"
+    )
+    found = ["explanation", "parameter", "value", "from", "to"]
+    return f"<h2>Explanations</h2>{text}{table(head, rows)}{table(found, values)}"
+
+
+def label_of(match: Match, place: int) -> str:
+    """Of what was observed."""
+    key, column = list(match.plan.table.observed.items())[place]
+    return f"{key} / {column.over}" if column.over else key
 
 
 def curves_of(match: Match, place: int) -> go.Figure:
@@ -129,12 +141,12 @@ def curves_of(match: Match, place: int) -> go.Figure:
         marker={"color": COLORS["right"], "size": 6},
     )
     figure.update_xaxes(title=name)
-    figure.update_yaxes(title=list(match.plan.table.observed)[place])
+    figure.update_yaxes(title=label_of(match, place))
     return styled(figure, 440)
 
 
 def residual_figure(match: Match, place: int) -> go.Figure:
-    """Measured minus computed."""
+    """Measured minus computed, over the same."""
     own = match.explanations[0]
     name, at = next(iter(own.search.model.inputs.items()))
     figure = go.Figure()
@@ -146,7 +158,7 @@ def residual_figure(match: Match, place: int) -> go.Figure:
         name="measured minus computed",
     )
     figure.update_xaxes(title=name)
-    figure.update_yaxes(title="measured minus computed")
+    figure.update_yaxes(title="difference")
     figure.update_layout(showlegend=False)
     return styled(figure, 260)
 
@@ -166,7 +178,7 @@ def details_of(match: Match) -> str:
     own, options = match.explanations[0], match.plan.table
     noise = own.fit.noise
     lines = [
-        ["record", match.plan.record.path.name],
+        ["record", match.plan.source],
         ["loss", options.loss],
         ["starts", str(options.starts)],
         ["intervals", options.intervals],

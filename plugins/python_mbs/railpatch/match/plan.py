@@ -17,6 +17,7 @@ from railpatch.case.load import KINDS, check_table, plain, read_toml
 from railpatch.case.types import Number, Positive, Table, relation
 from railpatch.errors import CaseError
 from railpatch.record import MeasuredColumn, Record, read_record
+from railpatch.record.quantities import BY_NAME, OUTPUT
 from railpatch.record.units import UNITS, dimension_of, spelt
 from railpatch.sweep.plan import Value, put
 
@@ -76,6 +77,10 @@ class SoughtTable(Table):
 class ObservedColumn(MeasuredColumn):
     """One measured column, of what the scene's result has for it."""
 
+    name: str | None = Field(  # type: ignore[assignment]
+        default=None,
+        description="(no unit), of the column; left out in a run, whose scene names its record",
+    )
     over: str | None = Field(
         default=None,
         description="(no unit): another number of the result, that this one is divided by: "
@@ -116,13 +121,14 @@ class MatchTable(Table):
         default=None, description="(no unit): the file of points; --record names another one"
     )
     inputs: dict[str, MeasuredColumn] = Field(
-        min_length=1,
-        description="(no unit): moving key of the scene, 'creepage[0]' -> the column that drives it",
+        default_factory=dict,
+        description="(no unit): moving key of the scene, 'creepage[0]' -> the column that drives "
+        "it; none of a run, which its own record drives",
     )
     observed: dict[str, ObservedColumn] = Field(
         min_length=1,
         description="(no unit): number of the result, 'creep_force[0]' -> the column that it was "
-        "measured in",
+        "measured in; of a run a quantity of its record, 'left_lateral'",
     )
     seek: dict[str, SoughtTable] = Field(
         min_length=1, description="(no unit): key of the scene, 'friction.coefficient' -> its range"
@@ -169,6 +175,10 @@ class Explanation:
     content: dict[str, Any]
     seek: dict[str, SoughtTable]
 
+    def record_name(self) -> Any:
+        """Of the record that a run's scene names."""
+        return self.content.get("rig", {}).get("record")
+
     def case(self, values: Mapping[str, float]) -> dict[str, Any]:
         """The content with values of what is sought. Raises CaseError."""
         content = deepcopy(self.content)
@@ -180,21 +190,28 @@ class Explanation:
 @dataclass(frozen=True)
 class Plan:
     """A checked match. folder: where the scene's paths start. explanations: of which the first is
-    the match's own; its values go into the scene that is written. record: n rows."""
+    the match's own; its values go into the scene that is written. record: n rows; None of a run."""
 
     name: str
     table: MatchTable
     kind: str
     folder: Path
     explanations: tuple[Explanation, ...]
-    record: Record
+    record: Record | None
+
+    @property
+    def source(self) -> str:
+        """Name of the file of points."""
+        return self.record.path.name if self.record else str(self.explanations[0].record_name())
 
     def measured(self) -> Array:
         """SI units, [observed, n], NaN where a cell is empty."""
+        assert self.record is not None
         return np.array([self.record.signals[observed_name(key)] for key in self.table.observed])
 
     def inputs(self) -> dict[str, Array]:
         """Input -> SI units, [n]."""
+        assert self.record is not None
         return {key: self.record.signals[input_name(key)] for key in self.table.inputs}
 
 
@@ -229,15 +246,40 @@ def load_match(path: str | Path, record: str | Path | None = None) -> Plan:
     if table.scene is not None:
         place = folder / table.scene
         content, folder = plain(read_toml(place)), place.parent
-    kind = content.get("kind")
+    kind = "rig" if "rig" in content else content.get("kind")
+    made = explanations_of(table, content)
+    if kind == "rig":
+        return Plan(path.stem, check_run(table, made, record), kind, folder, made, None)
     if kind not in KINDS:
-        raise CaseError(f"kind: value is {kind!r}, allowed {', '.join(KINDS)} in a match")
+        raise CaseError(f"kind: value is {kind!r}, allowed {', '.join(KINDS)} or a rig in a match")
     file = Path(record) if record is not None else None
     if file is None and table.record is not None:
         file = path.parent / table.record
     if file is None:
         raise CaseError("match.record: value is missing, allowed a file of points, or --record")
-    return Plan(path.stem, table, kind, folder, explanations_of(table, content), points(table, file))
+    return Plan(path.stem, table, kind, folder, made, points(table, file))
+
+
+def check_run(
+    table: MatchTable, made: tuple[Explanation, ...], record: str | Path | None
+) -> MatchTable:
+    """Of a rig, whose scene has the record. record: in its place. Raises CaseError."""
+    for given, name in ((table.inputs, "inputs"), (table.record, "record")):
+        if given:
+            raise CaseError(f"match.{name}: value is given, allowed none of a rig: [rig] has them")
+    for key, column in table.observed.items():
+        if key not in BY_NAME or BY_NAME[key].role != OUTPUT or column.name or column.over:
+            allowed = ", ".join(name for name, q in BY_NAME.items() if q.role == OUTPUT)
+            raise CaseError(
+                f"match.observed: value is {key!r}, allowed {allowed}, with no more than an error: "
+                "[rig.columns] says where they are"
+            )
+    for explanation in made:
+        if record is not None:
+            explanation.content["rig"]["record"] = str(Path(record).resolve())
+        if explanation.record_name() is None:
+            raise CaseError("rig.record: value is missing, allowed a measured run, or --record")
+    return table
 
 
 def explanations_of(table: MatchTable, content: dict[str, Any]) -> tuple[Explanation, ...]:
@@ -269,8 +311,13 @@ def leave_out(content: dict[str, Any], key: str, name: str) -> None:
 
 def points(table: MatchTable, file: Path) -> Record:
     """The record, in SI units by the names of inputs and results. Raises RecordError."""
+    if not table.inputs:
+        raise CaseError("match.inputs: value is missing, allowed what drives the scene")
     columns = {input_name(key): column for key, column in table.inputs.items()}
     columns |= {observed_name(key): column for key, column in table.observed.items()}
+    for key, column in table.observed.items():
+        if column.name is None:
+            raise CaseError(f"match.observed.{key}.name: value is missing, allowed a column")
     logged = {name: si_unit(column) for name, column in columns.items()}
     return read_record(file, columns, logged=logged, prefix="match")
 
@@ -284,5 +331,6 @@ def si_unit(column: MeasuredColumn) -> str:
 def values_of(seek: Mapping[str, SoughtTable], shares: Array) -> dict[str, Value]:
     """What is sought at shares of their ranges."""
     return {
-        key: sought.at(float(share)) for (key, sought), share in zip(seek.items(), shares, strict=True)
+        key: sought.at(float(share))
+        for (key, sought), share in zip(seek.items(), shares, strict=True)
     }

@@ -219,8 +219,8 @@ def kind_of_content(content: Mapping[str, Any], path: Path) -> str:
     """The kind of scene by its tables. Raises CaseError."""
     for name, command in OTHERS.items():
         if name in content:
-            if command == "sweep":
-                raise CaseError(f"sweep.scene: {path} is a sweep itself, allowed a scene")
+            if command in ("sweep", "match"):
+                raise CaseError(f"sweep.scene: {path} is a {command} itself, allowed a scene")
             return kind_of("wheelset_run" if command == "wheelset" else command).name
     kind = content.get("kind")
     if kind not in KINDS:
@@ -340,9 +340,7 @@ def steps_of(key: str, named: str = "vary.key") -> list[str | int]:
     for part in key.split("."):
         name, *indices = part.replace("]", "").split("[")
         if not name or not all(index.isdecimal() for index in indices):
-            raise CaseError(
-                f"{named}: value is {key!r}, allowed names with dots, and [0] of lists"
-            )
+            raise CaseError(f"{named}: value is {key!r}, allowed names with dots, and [0] of lists")
         steps += [name, *map(int, indices)]
     return steps
 

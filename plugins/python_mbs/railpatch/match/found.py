@@ -1,0 +1,121 @@
+"""What a match finds: parameters, explanations, and what is told of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from railpatch._core import version
+from railpatch.match.fit import Fit, Search
+from railpatch.match.judge import LeftOut, correlations
+from railpatch.match.plan import Explanation, Plan
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """What was found of one key: its value, and the interval that holds it with 95 %."""
+
+    key: str
+    value: float
+    low: float
+    high: float
+    of_range: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Judged:
+    """One explanation with its fit. search: what it was found with."""
+
+    explanation: Explanation
+    search: Search
+    fit: Fit
+    parameters: tuple[Parameter, ...]
+    predicted: LeftOut | None
+    not_told: tuple[str, ...]
+
+    @property
+    def criterion(self) -> float:
+        """-, Akaike's: twice the number of parameters minus twice the logarithm of likelihood."""
+        return 2 * len(self.parameters) - 2 * self.fit.likelihood
+
+    @property
+    def evaluations(self) -> int:
+        """Of the scene at all points."""
+        return self.search.model.evaluations
+
+
+@dataclass(frozen=True)
+class Match:
+    """What was found. explanations: the match's own first. seconds: by the clock."""
+
+    plan: Plan
+    explanations: tuple[Judged, ...]
+    seconds: float
+
+    @property
+    def parameters(self) -> dict[str, Parameter]:
+        """Of the match's own explanation, by key."""
+        return {found.key: found for found in self.explanations[0].parameters}
+
+    def scene(self) -> dict[str, Any]:
+        """The content of the scene with the values found."""
+        own = self.explanations[0]
+        return own.explanation.case({found.key: found.value for found in own.parameters})
+
+    def to_dict(self) -> dict[str, Any]:
+        """What match.json holds."""
+        own = self.explanations[0]
+        table = correlations(own.fit)
+        keys = [found.key for found in own.parameters]
+        return {
+            "version": version(),
+            "points": int(own.search.there.sum()),
+            "parameters": {
+                found.key: {
+                    "value": found.value,
+                    "low": found.low,
+                    "high": found.high,
+                    "range": list(found.of_range),
+                }
+                for found in own.parameters
+            },
+            "residuals": residuals_of(own, self.plan),
+            "correlations": {
+                key: dict(zip(keys, row.tolist(), strict=True))
+                for key, row in zip(keys, table, strict=True)
+            },
+            "not_told": list(own.not_told),
+            "explanations": {
+                judged.explanation.name: {
+                    "parameters": {
+                        found.key: [found.value, found.low, found.high]
+                        for found in judged.parameters
+                    },
+                    "log_likelihood": judged.fit.likelihood,
+                    "akaike": judged.criterion,
+                    "residuals": residuals_of(judged, self.plan),
+                    "left_out": left_out_of(judged, self.plan),
+                }
+                for judged in self.explanations
+            },
+            "evaluations": sum(judged.evaluations for judged in self.explanations),
+            "seconds": self.seconds,
+        }
+
+
+def residuals_of(judged: Judged, plan: Plan) -> dict[str, Any]:
+    """By what was observed."""
+    noise = judged.fit.noise
+    return {
+        key: {"rms": float(rms), "error": float(error), "discrepancy": float(error * noise.size)}
+        for key, rms, error in zip(plan.table.observed, judged.fit.rms, noise.error, strict=True)
+    }
+
+
+def left_out_of(judged: Judged, plan: Plan) -> dict[str, Any] | None:
+    """Of points that were predicted."""
+    found = judged.predicted
+    if found is None:
+        return None
+    rms = dict(zip(plan.table.observed, found.rms.tolist(), strict=True))
+    return {"rms": rms, "within_95": found.within, "log_density": found.density}
