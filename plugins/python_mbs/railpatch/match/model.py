@@ -56,7 +56,7 @@ class ContactModel(Model):
         inputs, measured = plan.inputs(), plan.measured()
         known = np.all([np.isfinite(values) for values in inputs.values()], axis=0)
         self.rows = np.flatnonzero(known & np.isfinite(measured).any(axis=0))
-        check_count(len(self.rows), self.keys)
+        check_count(int(np.isfinite(measured[:, self.rows]).sum()), self.keys)
         self.inputs = {key: values[self.rows] for key, values in inputs.items()}
         self.measured = measured[:, self.rows]
         self.evaluations = 0
@@ -125,7 +125,7 @@ class RunModel(Model):
         table, _ = self._run(np.array(start))
         self.measured = np.array([self._column(table, name) for name in plan.table.observed])
         self.rows = np.arange(self.measured.shape[1])
-        check_count(int(np.isfinite(self.measured).any(axis=0).sum()), self.keys)
+        check_count(int(np.isfinite(self.measured).sum()), self.keys)
         # the yaw angle first: what the figures of a rig are over
         named = {"yaw": "/wheelset/state.yaw", "progress": "/wheelset/state.progress"}
         self.inputs = {name: np.asarray(table[column].values) for name, column in named.items()}
@@ -169,8 +169,8 @@ def check_count(count: int, keys: tuple[str, ...]) -> None:
     """Raises CaseError where parameters are more than points."""
     if count <= len(keys):
         raise CaseError(
-            f"match.record: value is {count} rows with all that is needed, allowed more than the "
-            f"{len(keys)} parameters that are sought"
+            f"match.record: value is {count} measured numbers with all inputs, allowed more than "
+            f"the {len(keys)} parameters that are sought"
         )
 
 
