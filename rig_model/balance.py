@@ -8,7 +8,13 @@ lengths in metres so that their sizes compare:
     f2 = -(F_z,left + F_z,right) - vertical load      N, track axes
     f3 = roll moment about the wheelset's centre      N m, track axes
 
-with r the rolling radii. Which terms are used was decided by the published positions of the NRC
+with r the rolling radii. With a frame that yields the lateral position y (m) is a fourth unknown:
+
+    f4 = F_y,left + F_y,right - R(y - y_actuators)    N, track axes
+
+with the frame's resistance R (rig_model/frame.py).
+
+Which terms are used was decided by the published positions of the NRC
 run; those with yaw angles from -2 to 18 mrad have one patch a wheel and were looked at.
 
 f3: the lateral actuators act at the height of the axle, so the contact forces alone have no roll
@@ -41,6 +47,7 @@ from railpatch.case.types import SIDES
 from railpatch.result import CARRIES
 
 from rig_model.broyden import Broyden
+from rig_model.frame import Frame, FrameState
 from rig_model.newton import Newton
 from rig_model.predict import Predictor
 from rig_model.programme import Position
@@ -49,6 +56,7 @@ from rig_model.search import Evaluation, Root, Settings, Vector
 from rig_model.start import Baseline, Estimate, Frictionless
 
 UNKNOWNS = ("z", "roll", "pitch_rate")
+FRAME_UNKNOWNS = (*UNKNOWNS, "y")
 
 # differences for a Jacobian, in parts of the approach and of the pitch rate
 APPROACH_SHARE = 0.02
@@ -56,6 +64,12 @@ PITCH_SHARE = 5e-5
 # longest step of the search likewise: it stays in contact, and within reach of the creepages
 APPROACH_LIMIT = 1.0
 PITCH_LIMIT = 2e-3
+# m, of a lateral position that is unknown: a flange rises by as much
+LATERAL_DIFFERENCE = 1e-6
+LATERAL_LIMIT = 5e-4
+# m, most that the estimates reach beyond the actuators' way, and most lateral force over the load
+LATERAL_REACH = 0.01
+LATERAL_SHARE = 0.5
 
 
 @dataclass(frozen=True)
@@ -65,7 +79,9 @@ class Balance:
     status: "converged" only if the residuals are small and both wheels' contact was solved,
     "accuracy_not_met" where that is not as accurate as the scene asks for; else
     "not_converged", or "out_of_range" where no state with both wheels in contact was found; the
-    values are then those of the best try. residuals: [3], N m, N, N m; None without contact.
+    values are then those of the best try. residuals: [3], N m, N, N m, with a frame that yields
+    [4], the last in N; None without contact. y: m, of the wheelset. frame: its frame's, where that
+    yields and the position is balanced.
     evaluations: of both wheels; iterations: steps of the search; restarts: Jacobians by
     differences beyond the first one, of Broyden's method. result: of the contact.
     """
@@ -80,6 +96,8 @@ class Balance:
     iterations: int
     restarts: int
     result: Result
+    y: float
+    frame: FrameState | None = None
 
     @property
     def converged(self) -> bool:
@@ -97,6 +115,8 @@ class Balancer:
         self._exact = scene.rig.balance.method == "newton"
         self._contact = Contact(scene.at_height(derivatives=self._exact))
         self._frictionless = Frictionless(scene)
+        self._frame = Frame(scene.rig.frame) if scene.rig.frame else None
+        self._unknowns = FRAME_UNKNOWNS if self._frame else UNKNOWNS
         first = self._frictionless.estimate(positions[0].y, positions[0].yaw)
         settings = settings_of(scene, first)
         self._latest: Result | None = None
@@ -105,7 +125,12 @@ class Balancer:
         self._pending = 0.0
         self._broyden = None if self._exact else Broyden(settings)
         self._solver = self._broyden or Newton(settings)
-        baseline = Baseline(scene, self._frictionless, [position.y for position in positions])
+        lateral = [position.y for position in positions]
+        if self._frame:
+            reach = LATERAL_SHARE * scene.vertical_force / self._frame.softest
+            reach = min(reach, LATERAL_REACH)
+            lateral = [min(lateral) - reach, max(lateral) + reach]
+        baseline = Baseline(scene, self._frictionless, lateral)
         self._predictor = Predictor(baseline, settings.difference)
 
     def solve(self, position: Position) -> Balance:
@@ -121,13 +146,17 @@ class Balancer:
             self._predictor.remember(position, root.x, jacobian)
         if root.payload is None:
             root = replace(root, payload=self._step(position, root.x))
-        return balance_of(position, root)
+        balance = balance_of(position, root)
+        if self._frame and balance.converged:
+            force = float(balance.result["force"][1])
+            balance = replace(balance, frame=self._frame.moved(position.y, balance.y, force))
+        return balance
 
     def fields(self, balance: Balance) -> Result:
         """The balance's contact with the fields of each patch; solved once more if need be."""
         if balance.result is self._latest:
             return self._contact.last(fields=True)
-        unknowns = np.array([balance.z, balance.roll, balance.pitch_rate])
+        unknowns = np.array([balance.z, balance.roll, balance.pitch_rate, balance.y])
         # no further time goes by
         return self._contact.step(**moved(balance.position, unknowns), time_step=0.0, fields=True)
 
@@ -135,13 +164,17 @@ class Balancer:
         """Without friction, by the load of the scene, at the position's speed."""
         found = self._frictionless.estimate(position.y, position.yaw)
         speeds = np.array([1.0, 1.0, self._scene.speed_at(position) / self._scene.roller_rate])
-        return replace(found, unknowns=found.unknowns * speeds)
+        unknowns = found.unknowns * speeds
+        if self._frame:
+            unknowns = np.append(unknowns, position.y)
+        return replace(found, unknowns=unknowns)
 
     def _start(self, position: Position) -> Vector:
         """Where the search starts; sets Broyden's Jacobian where that is known."""
         given = self._scene.rig.start
         if given is not None and position.index == 0:
-            return np.array([given.z, given.roll, given.pitch_rate])
+            known = [given.z, given.roll, given.pitch_rate]
+            return np.array([*known, position.y] if self._frame else known)
         prediction = self._predictor.predict(position)
         if self._broyden and prediction.jacobian is not None:
             self._broyden.jacobian = prediction.jacobian
@@ -156,12 +189,12 @@ class Balancer:
         if not all(result[side]["patches"] for side in SIDES) or result.status == "out_of_range":
             return Evaluation(None, False, result)
         solved = all(result[side]["status"] in CARRIES for side in SIDES)
-        return Evaluation(
-            residuals(self._scene, result, self._scene.load_at(position)),
-            solved,
-            result,
-            lambda: self._slope(result),
-        )
+        found = residuals(self._scene, result, self._scene.load_at(position))
+        if self._frame is None:
+            return Evaluation(found, solved, result, lambda: self._slope(result, 0.0))
+        resistance = self._frame.resistance(float(unknowns[3]) - position.y)
+        found = np.append(found, result["force"][1] - resistance.force)
+        return Evaluation(found, solved, result, lambda: self._slope(result, resistance.stiffness))
 
     def _step(self, position: Position, unknowns: Vector) -> Result:
         heat = self._scene.case.temperature
@@ -175,18 +208,23 @@ class Balancer:
             self._pending = 0.0
         return self._latest
 
-    def _slope(self, result: Result) -> Vector:
-        """[3, 3], of the residuals at the last state solved, with respect to the unknowns."""
+    def _slope(self, result: Result, stiffness: float) -> Vector:
+        """[n, n], of the residuals at the last state solved, with respect to the unknowns, with the
+        frame's stiffness (N/m)."""
         columns = []
-        for name in UNKNOWNS:
+        for name in self._unknowns:
             rates = self._contact.differentiate(**{name: 1.0})
-            columns.append(residual_rates(self._scene, result, rates))
+            column = residual_rates(self._scene, result, rates)
+            if self._frame:
+                resisted = stiffness if name == "y" else 0.0
+                column = np.append(column, rates["force"][1] - resisted)
+            columns.append(column)
         return np.column_stack(columns)
 
 
 def balance_of(position: Position, root: Root) -> Balance:
     """What the search at a position ended with."""
-    z, roll, pitch_rate = (float(value) for value in root.x)
+    z, roll, pitch_rate = (float(value) for value in root.x[:3])
     missed = "out_of_range" if root.residual is None else "not_converged"
     return Balance(
         position,
@@ -199,25 +237,31 @@ def balance_of(position: Position, root: Root) -> Balance:
         root.iterations,
         root.restarts,
         root.payload,
+        float(root.x[3]) if len(root.x) > 3 else position.y,
     )
 
 
 def moved(position: Position, unknowns: Vector) -> dict[str, float]:
-    """The moving inputs of the contact."""
-    found = dict(zip(UNKNOWNS, map(float, unknowns), strict=True))
+    """The moving inputs of the contact; unknowns: [3], or [4] with the lateral position."""
+    found = {"y": position.y} | dict(zip(FRAME_UNKNOWNS, map(float, unknowns), strict=False))
     if position.roller_pitch_rate is not None:
         found["roller_pitch_rate"] = position.roller_pitch_rate
-    return {"y": position.y, "yaw": position.yaw, **found}
+    return {"yaw": position.yaw, **found}
 
 
 def settings_of(scene: RigScene, estimate: Estimate) -> Settings:
     """How the balance is searched: lengths in parts of the approach, moments as force times 1 m."""
     lengths = np.array([1.0, 2.0 / estimate.width]) * estimate.approach
     rate = abs(estimate.unknowns[2])
+    difference = np.append(APPROACH_SHARE * lengths, PITCH_SHARE * rate)
+    step_limit = np.append(APPROACH_LIMIT * lengths, PITCH_LIMIT * rate)
+    if scene.rig.frame:
+        difference = np.append(difference, LATERAL_DIFFERENCE)
+        step_limit = np.append(step_limit, LATERAL_LIMIT)
     return Settings(
-        residual_scale=np.full(3, scene.vertical_force),
-        difference=np.append(APPROACH_SHARE * lengths, PITCH_SHARE * rate),
-        step_limit=np.append(APPROACH_LIMIT * lengths, PITCH_LIMIT * rate),
+        residual_scale=np.full(len(difference), scene.vertical_force),
+        difference=difference,
+        step_limit=step_limit,
         tolerance=scene.rig.balance.tolerance,
         max_evaluations=scene.rig.balance.max_evaluations,
     )

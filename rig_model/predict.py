@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,22 +47,30 @@ class Predictor:
         """Adds a balance that was found, and the Jacobian there."""
         self._places.append(place_of(position))
         self._progress.append(position.progress)
-        self._differences.append(unknowns - self._baseline(position))
+        self._differences.append(unknowns - self._at(position, unknowns[3:] - position.y))
         self._jacobians.append(jacobian)
         for kept in (self._places, self._progress, self._differences, self._jacobians):
             del kept[:-MEMORY]
 
     def predict(self, position: Position) -> Prediction:
         """What is to be expected at the position."""
-        baseline = self._baseline(position)
         if not self._differences:
-            return Prediction(baseline)
+            return Prediction(self._at(position, np.zeros(len(self._scale) - 3)))
         seen = self._seen(place_of(position))
         if seen is not None:
-            return Prediction(baseline + self._differences[seen], self._jacobians[seen])
+            ahead = self._differences[seen]
+            return Prediction(self._at(position, ahead[3:]) + ahead, self._jacobians[seen])
         count = len(self._differences)
         ahead = self._extrapolated(self._best_order(), count, position.progress)
-        return Prediction(baseline + ahead)
+        return Prediction(self._at(position, ahead[3:]) + ahead)
+
+    def _at(self, position: Position, deflection: Vector) -> Vector:
+        """The baseline where the wheelset is: a frame, if it yields ([1], m; else [0]), lets it be
+        beside its actuators. The baseline of the lateral position itself is theirs."""
+        if not len(deflection):
+            return self._baseline(position)
+        beside = replace(position, y=position.y + float(deflection[0]))
+        return np.append(self._baseline(beside), position.y)
 
     def _seen(self, place: Vector) -> int | None:
         """Index of the balance found at this place before."""

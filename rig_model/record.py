@@ -6,7 +6,6 @@ import math
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
 from railpatch.case.types import SIDES
 from railpatch.log.effective import Effective, effective
 
@@ -30,24 +29,31 @@ class Recorder:
         """Arguments of RunLog.write. wall_time: s, of finding the balance."""
         result = balance.result.to_dict()
         measured = self._scene.measured_at(balance.position)
-        return ({"measured": measured} if measured else {}) | {
-            "state": self._state(balance, result),
-            "left": result["left"],
-            "right": result["right"],
-            "balance": {
-                "status": balance.status,
-                "evaluations": balance.evaluations,
-                "iterations": balance.iterations,
-                "residuals": np.asarray(balance.residuals).tolist(),
-                "z": balance.z,
-                "roll": balance.roll,
-                "pitch_rate": balance.pitch_rate,
-            },
-            "stats": {
-                "wall_time": wall_time,
-                "contact_evaluations": len(SIDES) * balance.evaluations,
-            },
-        }
+        frame = {"frame": vars(balance.frame)} if balance.frame else {}
+        return (
+            ({"measured": measured} if measured else {})
+            | frame
+            | {
+                "state": self._state(balance, result),
+                "left": result["left"],
+                "right": result["right"],
+                "balance": {
+                    "status": balance.status,
+                    "evaluations": balance.evaluations,
+                    "iterations": balance.iterations,
+                    "residuals": None
+                    if balance.residuals is None
+                    else balance.residuals[:3].tolist(),
+                    "z": balance.z,
+                    "roll": balance.roll,
+                    "pitch_rate": balance.pitch_rate,
+                },
+                "stats": {
+                    "wall_time": wall_time,
+                    "contact_evaluations": len(SIDES) * balance.evaluations,
+                },
+            }
+        )
 
     def _state(self, balance: Balance, result: dict[str, Any]) -> dict[str, Any]:
         position, case = balance.position, self._scene.case
@@ -58,7 +64,7 @@ class Recorder:
         self._roller_pitch = math.remainder(self._roller_pitch + step * roller_rate, math.tau)
         return {
             "progress": position.progress,
-            "y": position.y,
+            "y": balance.y,
             "z": balance.z,
             "roll": balance.roll,
             "yaw": position.yaw,

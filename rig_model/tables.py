@@ -51,6 +51,37 @@ class BalanceTable(Table):
     )
 
 
+class FrameTable(Table):
+    """What yields between the lateral actuators and the wheelset."""
+
+    stiffness: Positive | None = Field(
+        default=None, description="N/m, of actuators and arms; or stiffness_table"
+    )
+    stiffness_table: Rows | None = Field(
+        default=None,
+        description="m, N: rows of deflection and resisting force, both rising, straight lines "
+        "between, the first and the last go on beyond",
+    )
+    friction: list[Pair] | None = Field(
+        default=None,
+        description="N/m, N: rows of stiffness and limit, of springs with a dry slider each "
+        "(Jenkins elements), parallel to the spring",
+    )
+
+    @model_validator(mode="after")
+    def _relations(self) -> FrameTable:
+        if (self.stiffness is None) == (self.stiffness_table is None):
+            shown = "missing" if self.stiffness is None else "given with 'stiffness_table'"
+            raise relation("stiffness", shown, "exactly one of 'stiffness', 'stiffness_table'")
+        for first, second in pairwise(self.stiffness_table or ()):
+            if first[0] >= second[0] or first[1] >= second[1]:
+                raise relation("stiffness_table", [first, second], "deflections and forces rising")
+        for row in self.friction or ():
+            if min(row) <= 0:
+                raise relation("friction", row, "a stiffness and a limit above 0")
+        return self
+
+
 class Rig(Table):
     """What the rig does with the wheelset."""
 
@@ -82,6 +113,11 @@ class Rig(Table):
         default=None, description="first estimate (m, rad, rad/s); left out: without friction"
     )
     balance: BalanceTable = Field(default=BalanceTable(), description="search for the balance (-)")
+    frame: FrameTable | None = Field(
+        default=None,
+        description="springs and dry friction between the lateral actuators and the wheelset (N/m, "
+        "N): lateral_position is that of the actuators then; left out: rigid",
+    )
     record: str | None = Field(
         default=None,
         description="(no unit), file of a measured run, which drives the replay and is kept beside "

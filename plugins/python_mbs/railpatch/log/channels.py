@@ -341,6 +341,22 @@ RIG_MEASURED = Message(
     ),
 )
 
+RIG_FRAME = Message(
+    "RigFrame",
+    "The roller rig's frame between lateral actuators and wheelset, at one balanced position.",
+    (
+        _number("actuator", "m", "lateral position of the actuators", "track"),
+        _number("deflection", "m", "of the wheelset from the actuators", "track"),
+        _number("force", "N", "lateral, of the frame on the wheelset", "track"),
+        _number("residual", "N", "open in the lateral balance", "track"),
+        _number("energy", "J", "stored in the frame's springs"),
+        _number("heat", "J", "of the frame's dry friction since the start"),
+        _number("actuator_work", "J", "put in by the actuators since the first position"),
+        _number("contact_work", "J", "put in by the lateral contact forces since then"),
+        _count("sliding", "elements with dry friction that slid on the way to this position"),
+    ),
+)
+
 ENERGY = Message(
     "Energy",
     "Energies of a wheelset or a vehicle on track, and work done since the start.",
@@ -425,6 +441,7 @@ CHANNELS = (
     Channel("/right/contact", WHEEL_CONTACT, "result of the right wheel"),
     Channel("/rig/balance", RIG_BALANCE, "force balance; only in runs of the roller rig"),
     Channel("/rig/measured", RIG_MEASURED, "measured beside it; only in replays of a record"),
+    Channel("/rig/frame", RIG_FRAME, "frame that yields; only in rigs that have one"),
     Channel("/wheelset/energy", ENERGY, "balance of energies; only in runs on track"),
     Channel("/wheelset/momentum", MOMENTUM, "balance of momenta; only in runs on track"),
     Channel("/solver/stats", SOLVER_STATS, "iterations and times"),

@@ -18,6 +18,7 @@ from railpatch.log.stream import SCENE_RATE, Log, LogStream, Pace, checked_attac
 OPTIONAL = (
     "/rig/balance",
     "/rig/measured",
+    "/rig/frame",
     "/wheelset/energy",
     "/wheelset/momentum",
     "/solver/stats",
@@ -70,6 +71,7 @@ class RunLog(Log):
         right: Mapping[str, Any],
         balance: Mapping[str, Any] | None = None,
         measured: Mapping[str, Any] | None = None,
+        frame: Mapping[str, Any] | None = None,
         stats: Mapping[str, Any] | None = None,
         energy: Mapping[str, Any] | None = None,
         momentum: Mapping[str, Any] | None = None,
@@ -89,6 +91,7 @@ class RunLog(Log):
             "/right/contact": right,
             "/rig/balance": balance,
             "/rig/measured": measured,
+            "/rig/frame": frame,
             "/wheelset/energy": energy,
             "/wheelset/momentum": momentum,
             "/solver/stats": stats,
