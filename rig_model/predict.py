@@ -55,7 +55,7 @@ class Predictor:
     def predict(self, position: Position) -> Prediction:
         """What is to be expected at the position."""
         if not self._differences:
-            return Prediction(self._at(position, np.zeros(len(self._scale) - 3)))
+            return Prediction(self._at(position, np.zeros(max(len(self._scale) - 3, 0))))
         seen = self._seen(place_of(position))
         if seen is not None:
             ahead = self._differences[seen]
