@@ -16,6 +16,8 @@ LOOKS_INSIDE = {
     # functions that are the same on every computer: for Python, for the angles of bodies
     "elementary.cpp": {"numeric/elementary.hpp"},
     "frames.cpp": {"numeric/elementary.hpp"},
+    "vehicle_course.cpp": {"numeric/elementary.hpp"},
+    "vehicle_suspension.cpp": {"numeric/elementary.hpp"},
 }
 
 # what the standard headers give that a build with RAILPATCH_PCH reads before each file

@@ -148,8 +148,11 @@ def test_slope_of_a_transition():
     alignment = {"straight": 25.0, "transition": 80.0, "radius": 1500.0, "cant": 0.15}
     system = Simulation(scenes.scene(speed=45.0, alignment=alignment)).system
     places = np.full(4, 25.0 + 40.0)
-    *_, system._bends = system.alignment.frames_and_bends(places)
-    system.move_rails(places, np.full(4, 45.0))
+    system.positions[:] = places
+    q, v = np.zeros(system.count), np.zeros(system.count)
+    q[system.vehicle.carriers[:, :3]] = system.alignment.frames(places)[1]
+    v[system.vehicle.carriers[:, 0]] = 45.0
+    system.place_track(q, v)
     slope = 1.5 * math.asin(0.15 / 1.5) * 0.75 / 80.0
     rates = system.element.rails[:, 1]
     np.testing.assert_allclose(rates[:, 0], np.tile([0, 0, -45.0 * slope], (4, 1)), rtol=1e-3)

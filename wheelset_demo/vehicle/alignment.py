@@ -76,6 +76,12 @@ class Alignment:
         # the start is at the origin: one node lies before it
         self._spline = CubicSpline(nodes, np.hstack([places - places[1], self._angles(nodes)]))
 
+    @property
+    def pieces(self) -> tuple[Vector, Vector]:
+        """Arc lengths [n] (m) and coefficients [4, n - 1, 7], as scipy's, of x, y (m), heading,
+        cant angle, curvature, first and second derivative of the cant angle."""
+        return self._spline.x, np.ascontiguousarray(self._spline.c)
+
     def _angles(self, s: Vector) -> Vector:
         """[n, 5]: heading, cant angle, curvature, cant angle's derivatives, first and second."""
         heading, cant, curvature = self.heading(s), self.cant_angle(s), self.curvature(s)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from railpatch import _core
 
 from wheelset_demo.scene import GRAVITY
 from wheelset_demo.vehicle.model import CAR_BODY, bogie_name, places_along
@@ -41,7 +42,7 @@ class Stop:
         points = np.array(rows, dtype=float)
         if points[0, 0] > 0:
             points = np.vstack([[0.0, 0.0], points])
-        self._d, self._f = points.T
+        self._d, self._f = points.T.copy()
         self._slopes = np.diff(self._f) / np.diff(self._d)
         areas = 0.5 * (self._f[1:] + self._f[:-1]) * np.diff(self._d)
         self._areas = np.concatenate([[0.0], np.cumsum(areas)])
@@ -50,13 +51,14 @@ class Stop:
         last = len(self._slopes) - 1
         return min(int(np.searchsorted(self._d, size, side="right")) - 1, last)
 
+    @property
+    def points(self) -> tuple[Vector, Vector]:
+        """Displacements (m), >= 0 and increasing, and forces (N) there."""
+        return self._d, self._f
+
     def force(self, d: float) -> float:
         """N, against the displacement (m)."""
-        size = abs(d)
-        if size <= self._d[0]:
-            return 0.0
-        k = self._part(size)
-        return float(np.sign(d) * (self._f[k] + self._slopes[k] * (size - self._d[k])))
+        return _core.stop_force(self._d, self._f, d)
 
     def slope(self, d: float) -> float:
         """N/m."""

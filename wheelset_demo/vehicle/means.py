@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections import deque
-
 import numpy as np
 from numpy.typing import NDArray
+from railpatch import _core
 from railpatch.log.channels import LEAST_LOAD, SLIDING
 
 from wheelset_demo.vehicle.scene import WHEELSETS
@@ -32,42 +31,34 @@ class SlidingMeans:
 
     def __init__(self, wheels: Vector) -> None:
         """wheels: of the state at the start, as ForceElement.wheels."""
-        self._forces = np.concatenate(rail_forces(wheels))
-        # way (m) and integral of the forces over it (J)
-        self._rows = deque([(0.0, np.zeros_like(self._forces))])
-        self._whole = False
-        self._forget()
-        self._found(self._forces)
-
-    def _forget(self) -> None:
-        self.ratio, self.sum, self.load_range = -np.inf, 0.0, (np.inf, -np.inf)
+        self._core = _core.SlidingMeans(wheels, SLIDING, LEAST_LOAD)
+        self._means = self._core.means
 
     def add(self, way: float, wheels: Vector) -> None:
         """The state after a time step. way: m, run in it."""
-        before, self._forces = self._forces, np.concatenate(rail_forces(wheels))
-        if not way > 0:
-            return
-        last, integral = self._rows[-1]
-        now = last + way, integral + 0.5 * way * (before + self._forces)
-        self._rows.append(now)
-        begin = now[0] - SLIDING
-        while self._rows[1][0] <= begin:
-            self._rows.popleft()
-        (first, low), (second, high) = self._rows[0], self._rows[1]
-        # the way's begin lies between the first two
-        share = max(0.0, (begin - first) / (second - first))
-        if begin >= 0 and not self._whole:
-            self._whole = True
-            self._forget()
-        from_there = now[1] - low - share * (high - low)
-        self._found(from_there / (now[0] - max(begin, first)))
+        self._core.add(way, wheels)
 
-    def _found(self, means: Vector) -> None:
-        self.guiding, self.loads = means[: 2 * WHEELSETS], means[2 * WHEELSETS :]
-        carrying = self.loads > LEAST_LOAD
-        ratios = self.guiding[carrying] / self.loads[carrying]
-        self.ratio = max(self.ratio, float(ratios.max(initial=-np.inf)))
-        low, high = self.load_range
-        self.load_range = min(low, float(self.loads.min())), max(high, float(self.loads.max()))
-        across = (OUTWARD * self.guiding).reshape(WHEELSETS, 2).sum(axis=1)
-        self.sum = max(self.sum, float(np.abs(across).max()))
+    @property
+    def guiding(self) -> Vector:
+        """N, [8]."""
+        return self._means[: 2 * WHEELSETS].copy()
+
+    @property
+    def loads(self) -> Vector:
+        """N, [8]."""
+        return self._means[2 * WHEELSETS :].copy()
+
+    @property
+    def ratio(self) -> float:
+        """-, so far; none: -inf."""
+        return self._core.ratio
+
+    @property
+    def sum(self) -> float:
+        """N, so far."""
+        return self._core.sum
+
+    @property
+    def load_range(self) -> tuple[float, float]:
+        """N, so far."""
+        return self._core.load_range

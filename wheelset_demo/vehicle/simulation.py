@@ -56,10 +56,10 @@ class Simulation:
             yield self.state
 
     def _step(self) -> None:
-        before = self.system.positions.mean()
+        before = self.system.course.middle
         self.element.pass_time(self.scene.run.step)
         self.state, self.rates = self._stepper.step(self.state, self.rates)
-        self.means.add(float(self.system.positions.mean() - before), self.element.wheels)
+        self.means.add(self.system.course.middle - before, self.element.wheels)
 
     def solve_again(self) -> None:
         """Brings the force element's arrays and body_poses() back to the present state, after a

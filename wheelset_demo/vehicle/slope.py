@@ -23,11 +23,9 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from railpatch import _core
 
 Vector = NDArray[np.float64]
-LATERAL, VERTICAL = 0, 1
-# columns of ForceElement.wheels
-FY, FZ, MX = 1, 2, 3
 
 
 def slope_wrenches(
@@ -39,11 +37,6 @@ def slope_wrenches(
     2, 2], of left and right rail, lateral and vertical. radius, arm: m, of the wheels, and half the
     distance of the contacts, near enough for the lateral force's share.
     """
-    across, down, roll = wheels[:, :, FY], wheels[:, :, FZ], wheels[:, :, MX]
-    lateral, vertical = slopes[:, :, LATERAL], slopes[:, :, VERTICAL]
-    found = np.empty((*across.shape, 3))
-    found[:, :, 0] = -(across * lateral + down * vertical)
-    found[:, :, 1] = -radius * (across - normals) * lateral
-    places = np.array([-arm, arm])
-    found[:, :, 2] = roll * vertical + places * across * lateral
+    found = np.empty((*wheels.shape[:2], 3))
+    _core.slope_wrenches(wheels, normals, slopes, radius, arm, found)
     return found

@@ -105,9 +105,8 @@ class Bdf2(Implicit):
         h = self._step
         self._keep_fresh(state.values)
         last, older = self._before
-        ahead = self._system.inputs_ahead(state.values, h)
-        bent = ahead - 2 * rates.inputs + older.inputs
-        bend = self._inputs @ (bent + self._system.track_bend(state.values, h))
+        ahead, off = self._system.look_ahead(state.values, h)
+        bend = self._inputs @ (ahead - 2 * rates.inputs + older.inputs + off)
         known = 2 * rates.values - older.values + bend
         change = last + (2 / 3) * (self._inverse @ (h * known - last))
         self._before = (change, rates)
@@ -129,7 +128,7 @@ class Ros2(Implicit):
         """The state a step later with its rates. Raises ContactFailure."""
         h, system = self._step, self._system
         self._keep_fresh(state.values)
-        ahead = system.inputs_ahead(state.values, h)
+        ahead, _ = system.look_ahead(state.values, h)
         moving = GAMMA * (self._inputs @ (ahead - rates.inputs))
         first = self._inverse @ (rates.values + moving)
         moved = system.rates(state.time + h, state.values + h * first)

@@ -21,10 +21,9 @@ it by their stiffness.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
+from railpatch import _core
 
 from wheelset_demo.vehicle.elements import Place, Stop, centres_at_rest, places_of, preloads
 from wheelset_demo.vehicle.model import VehicleModel
@@ -34,20 +33,13 @@ Vector = NDArray[np.float64]
 Y, Z = 1, 2
 
 
-@dataclass
-class Poses:
-    """Of the bodies that elements act on. origins, centres: m, [n, 3], of the first five
-    coordinates and of the body. axes: [n, 3, 3], rows are the body's axes in the world's.
-    roll_axis: [n, 3]."""
-
-    origins: Vector
-    centres: Vector
-    axes: Vector
-    roll_axis: Vector
-
-
 class Suspension:
-    """The elements of a scene. step() finds their forces, jacobian() how they change."""
+    """The elements of a scene. step() finds their forces, jacobian() how they change.
+
+    Of the last step(), overwritten by the next: displacement, rate (m, m/s or rad, rad/s), force (N
+    or N m), of the rows; matrix: [rows, nv]; series_rates: N/s. damping_power: W, >= 0, turned into
+    heat by the dampers.
+    """
 
     def __init__(self, scene: VehicleScene, model: VehicleModel) -> None:
         self._columns, self._arms = model.columns, model.arms
@@ -62,11 +54,30 @@ class Suspension:
             points - np.array([centres[place.ends[end]] for place in places]) for end in (0, 1)
         )
         self._size = len(places)
+        self.damping_power = 0.0
         self._rows(places, scene.vehicle)
-        self._places_of_rows(model.model.nv)
-        self.displacement, self.rate, self.force = (np.zeros(self._count) for _ in range(3))
-        self.matrix = np.zeros((self._count, model.model.nv))
-        self.series_rates = np.zeros(self.series_count)
+        self._core = self._compiled(model.model.nv)
+        self.matrix, self.series_rates = self._core.matrix, self._core.series_rates
+        self.displacement, self.rate = self._core.displacement, self._core.rate
+        self.force, self._generalised = self._core.force, self._core.generalised
+
+    def _compiled(self, width: int) -> _core.Suspension:
+        """The elements' forces, ready to be asked for at every step."""
+        columns = self._columns.astype(np.int64)
+        rows = np.stack([self._element, self._axis, self._about], axis=1)
+        return _core.Suspension(
+            width,
+            columns,
+            self._arms,
+            np.stack([self._a, self._b], axis=1).astype(np.int64),
+            self._at_a,
+            self._at_b,
+            rows.astype(np.int64),
+            np.stack([self._stiffness, self._damping, self._preload], axis=1),
+            self._series.astype(np.int64),
+            np.stack([self._series_stiffness, self._series_damping], axis=1),
+            [(row, *stop.points) for row, stop in self._stops],
+        )
 
     def _rows(self, places: list[Place], vehicle: VehicleTable) -> None:
         """Picks the components with a coefficient."""
@@ -80,7 +91,7 @@ class Suspension:
         stopped[0, :, Y] = [table.bump_stop is not None for table in tables]
         used = (stiffness > 0) | (damping > 0) | stopped
         kind, self._element, self._axis = np.nonzero(used)
-        self._about = np.flatnonzero(kind == 1)
+        self._about = kind
         self._count = len(kind)
         self._stiffness = stiffness[used]
         in_series = series[used] > 0
@@ -100,81 +111,15 @@ class Suspension:
             for row, owner in zip(numbers, owners, strict=True)
         ]
 
-    def _places_of_rows(self, width: int) -> None:
-        """Where in the matrix the six numbers of each row's two bodies stand."""
-        start = width * np.arange(self._count)[:, None]
-        self._body_a, self._body_b = self._a[self._element], self._b[self._element]
-        about = self._about
-        # of all rows for body A, then for body B
-        self._body_both = np.concatenate([self._body_a, self._body_b])
-        self._element_both = np.tile(self._element, 2)
-        self._about_both = np.concatenate([about, about + self._count])
-        self._flat_both = np.tile(start, (2, 1)) + self._columns[self._body_both]
-        self._turned = (self._body_a[about], self._body_b[about])
-        self._next = (self._axis[about] + 1) % 3, (self._axis[about] + 2) % 3
-
     @property
     def series_count(self) -> int:
         """Number of dampers with a spring in series, each of which has a force as its state."""
         return len(self._series)
 
-    def poses(self, q: Vector) -> Poses:
-        """Of the bodies, from the coordinates."""
-        place = q[self._columns]
-        (cy, cr, cp), (sy, sr, sp) = np.cos(place[:, 3:].T), np.sin(place[:, 3:].T)
-        axes = np.empty((len(cy), 3, 3))
-        ahead = np.zeros((len(cy), 3))
-        ahead[:, 0], ahead[:, 1] = cy, sy
-        across = axes[:, 1]
-        across[:, 0], across[:, 1], across[:, 2] = -sy * cr, cy * cr, sr
-        down = np.empty_like(ahead)
-        down[:, 0], down[:, 1], down[:, 2] = sy * sr, -cy * sr, cr
-        axes[:, 0] = cp[:, None] * ahead - sp[:, None] * down
-        axes[:, 2] = sp[:, None] * ahead + cp[:, None] * down
-        origins = place[:, :3]
-        return Poses(origins, origins + self._arms[:, None] * across, axes, ahead)
-
     def step(self, q: Vector, v: Vector, series: Vector) -> Vector:
         """[nv], generalised forces. series: N, forces of dampers with springs in series."""
-        found = self.poses(q)
-        axes = found.axes
-        point_a, point_b = (
-            found.centres[body] + (at[:, None, :] @ axes[body])[:, 0]
-            for body, at in ((self._a, self._at_a), (self._b, self._at_b))
-        )
-        direction = axes[self._body_a, self._axis]
-        self._fill(found, point_b, direction)
-        d = np.einsum("ij,ij->i", direction, (point_b - point_a)[self._element])
-        (a, b), (j, k) = self._turned, self._next
-        d[self._about] = 0.5 * (axes[a, k] * axes[b, j] - axes[a, j] * axes[b, k]).sum(axis=1)
-        rate = self.matrix @ v
-        force = -(self._stiffness * d + self._damping * rate + self._preload)
-        force[self._series] -= series
-        for row, stop in self._stops:
-            force[row] -= stop.force(float(d[row]))
-        self.series_rates = self._series_stiffness * (
-            rate[self._series] - series / self._series_damping
-        )
-        self.displacement, self.rate, self.force = d, rate, force
-        return force @ self.matrix
-
-    def _fill(self, found: Poses, points: Vector, direction: Vector) -> None:
-        """Rates of displacements and turns by the velocities, a row each.
-
-        With u the row's direction, a body that moves with v at its origin and turns with w adds
-        v.u + w.((P_B - origin) x u) to a displacement, w.u to a turn.
-        """
-        body = self._body_both
-        u = np.concatenate([-direction, direction])
-        lever = cross(points[self._element_both] - found.origins[body], u)
-        lever[self._about_both] = u[self._about_both]
-        part = np.empty((len(u), 6))
-        part[:, :3] = u
-        part[self._about_both, :3] = 0.0
-        part[:, 3] = lever[:, 2]
-        part[:, 4] = np.einsum("ij,ij->i", found.roll_axis[body], lever)
-        part[:, 5] = np.einsum("ij,ij->i", found.axes[body, 1], lever)
-        self.matrix.reshape(-1)[self._flat_both] = part
+        self.damping_power = self._core.step(q, v, series)
+        return self._generalised.copy()
 
     def jacobian(self) -> tuple[Vector, Vector, Vector]:
         """Of the generalised force of the last step by q, v and series forces, nearly.
@@ -199,15 +144,6 @@ class Suspension:
         springs = 0.5 * float(self._stiffness @ d**2) + float(self._preload @ d)
         stops = sum(stop.energy(float(d[row])) for row, stop in self._stops)
         return springs + stops + 0.5 * float(np.sum(series**2 / self._series_stiffness))
-
-    def damping_power(self, series: Vector) -> float:
-        """W, turned into heat by the dampers, >= 0, at the last step."""
-        return float(self._damping @ self.rate**2) + float(np.sum(series**2 / self._series_damping))
-
-
-def cross(a: Vector, b: Vector) -> Vector:
-    """Of rows; numpy's is slow for few."""
-    return a[:, [1, 2, 0]] * b[:, [2, 0, 1]] - a[:, [2, 0, 1]] * b[:, [1, 2, 0]]
 
 
 def table_of(tables: list[ElementTable], along: str, about: str) -> Vector:

@@ -8,6 +8,7 @@ follow from where the wheelsets are: they are known ahead, and the time steppers
 
 from __future__ import annotations
 
+import math
 import time as clock
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
-from railpatch import CaseError
+from railpatch import CaseError, _core
 from railpatch.case.types import SIDES
 from railpatch.pinocchio import ForceElement, StateChain, acceleration_derivatives
 from railpatch.pinocchio.derivative import WrenchDerivatives
@@ -34,6 +35,8 @@ WHEELS = 2 * WHEELSETS
 # move against
 LATERAL, VERTICAL, RATE = 1, 2, 8
 INPUTS = 3 * WHEELS
+# of a wrench, what rails that are not level add: along the track, about y and z
+FORCE_AND_TURNS = [0, 4, 5]
 
 
 @dataclass(frozen=True)
@@ -122,16 +125,21 @@ class VehicleSystem:
         self.suspension = Suspension(scene, self.vehicle)
         self.count = self.model.nv
         self.size = 2 * self.count + self.suspension.series_count
-        self.positions = np.zeros(WHEELSETS)
+        self.course = self._course()
+        self.positions = self.course.positions
         self.evaluations = self.renewals = 0
         self.contact_seconds = self.derivative_seconds = 0.0
         self._fext = no_forces(self.model)
         self._zero = np.zeros(self.count)
         self._joints = [self.vehicle.joints[name] for name in names]
         self._car = self.vehicle.columns[0]
-        self._bends = np.zeros((WHEELSETS, 4))
+        self._control = np.zeros(self.count)
         self.slope_wrenches = np.zeros((WHEELSETS, 2, 3))
-        self._slopes = np.zeros((WHEELSETS, 2, 2))
+        self._slopes = self.course.slopes.reshape(WHEELSETS, 2, 2)
+        self._sloped = np.zeros((WHEELSETS, 6))
+        rails = self.element.rails.reshape(WHEELSETS, -1)
+        self._known = self.course.inputs, self.course.ahead, self.course.bend
+        self._placed = self.element.tracks, rails
         self._held = HeldDerivatives(self.element)
 
     def rates(self, time: float, values: Vector) -> Rates:
@@ -139,7 +147,7 @@ class VehicleSystem:
         n = self.count
         q, v, series = values[:n], values[n : 2 * n], values[2 * n :]
         pin.forwardKinematics(self.model, self.data, q, v)
-        inputs = self.place_track(q, self.speeds_along(values))
+        inputs = self.place_track(q, v)
         for joint in self._joints:
             self._fext[joint].setZero()
         self.evaluations += 1
@@ -158,46 +166,26 @@ class VehicleSystem:
         acceleration = pin.aba(self.model, self.data, q, v, tau, self._fext)
         found = np.concatenate([v, acceleration, self.suspension.series_rates])
         friction = self.element.wheels[:, :, 6].ravel()
-        damping = self.suspension.damping_power(series)
+        damping = self.suspension.damping_power
         powers = np.array([contact, friction.sum(), damping, drive, *friction])
         return Rates(found, powers, inputs, status)
 
-    def place_track(self, q: Vector, speeds: Vector) -> Vector:
-        """Puts track frames under the wheelsets, rails into them; [24], the inputs.
+    def _course(self) -> _core.Course:
+        """The track and its rails, ready to be asked for at every step."""
+        straight = np.zeros(0), np.zeros((4, 0, INPUTS // 3))
+        rails = straight if self.irregularity is None else self.irregularity.pieces
+        columns = self.vehicle.carriers[:, :2].astype(np.int64)
+        return _core.Course(*self.alignment.pieces, *rails, columns, ARM, self.count)
 
-        speeds: m/s, [4], along the track.
-        """
-        centres = q[self.vehicle.carriers[:, :3]]
-        self.positions = self.alignment.foot(centres, self.positions)
-        rotations, origins, self._bends = self.alignment.frames_and_bends(self.positions)
-        tracks = self.element.tracks
-        tracks[:, :9], tracks[:, 9:] = rotations.reshape(-1, 9), origins
+    def place_track(self, q: Vector, v: Vector) -> Vector:
+        """Puts track frames under the wheelsets, rails into them; [24], the inputs."""
+        self.course.place(q, v, *self._placed)
         self.element.positions[:] = self.positions
-        return self.move_rails(self.positions, speeds)
-
-    def move_rails(self, positions: Vector, speeds: Vector) -> Vector:
-        """[24], the inputs at arc lengths [4] (m) and speeds [4] (m/s) along the track."""
-        deviations, slopes = self.rails_at(positions)
-        self.element.rails[:, 0, :, 1:] = deviations
-        inputs = inputs_of(deviations, slopes, speeds)
-        # a change of cant lifts the one rail and lowers the other
-        twist = ARM * self._bends[:, 2]
-        slopes[:, 0, 1] -= twist
-        slopes[:, 1, 1] += twist
-        self._slopes = slopes
-        self.element.rails[:, 1, :, 2] = speeds[:, None] * slopes[:, :, 1]
-        return inputs
-
-    def rails_at(self, positions: Vector) -> tuple[Vector, Vector]:
-        """m and -, [4, 2, 2], of the irregularities at arc lengths [4] (m): deviations, slopes, by
-        wheelset, side, lateral and vertical."""
-        if self.irregularity is None:
-            return np.zeros((WHEELSETS, 2, 2)), np.zeros((WHEELSETS, 2, 2))
-        return self.irregularity.both(positions)
+        return self._known[0].copy()
 
     def _add_slope_wrenches(self) -> float:
         """Of rails that are not level, on the wheelsets, see slope; their power (W)."""
-        if not self._slopes.any():
+        if self.course.level:
             self.slope_wrenches = np.zeros((WHEELSETS, 2, 3))
             return 0.0
         element = self.element
@@ -205,40 +193,18 @@ class VehicleSystem:
         self.slope_wrenches = slope_wrenches(
             element.wheels, element.lateral_normals, self._slopes, radius, ARM
         )
-        power = 0.0
-        for k, joint in enumerate(self._joints):
-            ahead, spinning, turning = self.slope_wrenches[k].sum(axis=0).tolist()
-            wrench = element.place(k, [ahead, 0.0, 0.0], [0.0, spinning, turning])
-            vector = self._fext[joint].vector
-            vector += wrench
-            power += float(wrench @ self.data.v[joint].vector)
-        return power
+        self._sloped[:, FORCE_AND_TURNS] = self.slope_wrenches.sum(axis=1)
+        return element.place_all(self._sloped, self._fext)
 
-    def speeds_along(self, values: Vector) -> Vector:
-        """m/s, [4], of the wheelsets."""
-        n = self.count
-        velocity = values[n : 2 * n][self.vehicle.carriers[:, :2]]
-        return np.hypot(velocity[:, 0], velocity[:, 1])
+    def look_ahead(self, values: Vector, step: float) -> tuple[Vector, Vector]:
+        """[24] each, of what is known ahead: the inputs where the wheelsets will be in ``step`` s,
+        and second differences of the rails' places under them over as long.
 
-    def inputs_ahead(self, values: Vector, step: float) -> Vector:
-        """[24], where the wheelsets will be in ``step`` s."""
-        speeds = self.speeds_along(values)
-        return inputs_of(*self.rails_at(self.positions + step * speeds), speeds)
-
-    def track_bend(self, values: Vector, step: float) -> Vector:
-        """[24], second differences of the rails' places under the wheelsets over ``step`` s.
-
-        By the track's own way in the world: the curve's turning off, the change of cant. In track
-        axes, as the inputs; that of rates is none.
+        These are by the track's own way in the world: the curve's turning off, the change of cant.
+        In track axes, as the inputs; that of rates is none. values: whose rates were the last ones.
         """
-        cant, curvature, _, twist = self._bends.T
-        squared = (step * self.speeds_along(values)) ** 2
-        off, turned = curvature * squared, ARM * twist * squared
-        found = np.empty((WHEELSETS, 2, 2))
-        found[:, :, 0] = (off * np.cos(cant))[:, None]
-        down = -off * np.sin(cant)
-        found[:, 0, 1], found[:, 1, 1] = down - turned, down + turned
-        return np.concatenate([found.ravel(), np.zeros(WHEELS)])
+        self.course.look_ahead(values[self.count : 2 * self.count], step)
+        return self._known[1].copy(), self._known[2]
 
     def derivatives(self, values: Vector, wheelsets: Iterable[int]) -> tuple[Vector, Vector]:
         """Of the rates at values whose rates were the last ones asked for, nearly.
@@ -291,11 +257,10 @@ class VehicleSystem:
         return np.array(deviations + rates).T
 
     def _ahead(self, q: Vector) -> Vector:
-        """[nv], the direction in which the car body points."""
-        yaw = q[self._car[3]]
-        found = np.zeros(self.count)
-        found[self._car[:2]] = np.cos(yaw), np.sin(yaw)
-        return found
+        """[nv], the direction in which the car body points; overwritten by the next."""
+        yaw = float(q[self._car[3]])
+        self._control[self._car[:2]] = math.cos(yaw), math.sin(yaw)
+        return self._control
 
     def _drive(self, q: Vector, v: Vector, tau: Vector) -> float:
         """Adds the force that holds the speed to the generalised force; its power (W)."""
@@ -342,8 +307,3 @@ class VehicleSystem:
     def car_body(self) -> int:
         """Index of the car body's joint."""
         return self.vehicle.joints[CAR_BODY]
-
-
-def inputs_of(deviations: Vector, slopes: Vector, speeds: Vector) -> Vector:
-    """[24], of irregularities: deviations (m), then vertical rates (m/s), by wheelset and side."""
-    return np.concatenate([deviations.ravel(), (speeds[:, None] * slopes[:, :, 1]).ravel()])

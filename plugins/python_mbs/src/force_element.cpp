@@ -116,6 +116,21 @@ class ForceElement {
                  placed_.data() + k * kWrench);
   }
 
+  // the same for all wheelsets at once, [wheelsets, 6], then the power of these wrenches (W)
+  double place_all(const Grid &wrenches) {
+    if (wrenches.shape(0) != count_ || wrenches.shape(1) != kWrench)
+      throw nb::value_error("one wrench of 6 a wheelset");
+    double power = 0;
+    for (size_t k = 0; k < count_; ++k) {
+      const double *given = wrenches.data() + k * kWrench;
+      double *placed = placed_.data() + k * kWrench;
+      joint_wrench(given, given + 3, joint(k), wheelsets_[k].placement, track(k), placed);
+      const double *velocity = motion_.data() + k * kMotion + 12;
+      for (int i = 0; i < kWrench; ++i) power += placed[i] * velocity[i];
+    }
+    return power;
+  }
+
   nb::dict result(size_t k) const {
     if (k >= count_) throw nb::index_error();
     return result_dict(wheelsets_[k].result);
@@ -276,6 +291,8 @@ void bind_force_element(nb::module_ &m) {
       .def("place", &E::place, nb::arg("index"), nb::arg("fx"), nb::arg("fy"), nb::arg("fz"),
            nb::arg("mx"), nb::arg("my"), nb::arg("mz"),
            "Another wrench at a wheelset's centre, track axes, into its row of 'placed'.")
+      .def("place_all", &E::place_all, nb::arg("wrenches"),
+           "The same for all wheelsets, [wheelsets, 6]; their power (W) at the last step's motion.")
       .def("result", &E::result, nb::arg("index"), "The last step's rp_result.")
       .def("warnings", &E::warnings, "Texts, of all wheelsets at the last step.")
       .def_prop_ro("seconds", &E::seconds,

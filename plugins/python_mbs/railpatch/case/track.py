@@ -66,6 +66,11 @@ class Irregularity:
         slopes = found[..., 4:] * np.equal(inside, x)[..., None]
         return found[..., :4].reshape(shape), slopes.reshape(shape)
 
+    @property
+    def pieces(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """x [n] (m) and coefficients [4, n - 1, 8], as scipy's, of at() and slope() within it."""
+        return self._both.x, np.ascontiguousarray(self._both.c)
+
     def _inside(self, x: ArrayLike) -> NDArray[np.float64]:
         return np.clip(np.asarray(x, dtype=float), self._spline.x[0], self._spline.x[-1])
 

@@ -121,6 +121,9 @@ class ForceElement:
         self._derivatives = [(-1, np.zeros((2, 6, len(STATE)))) for _ in self.joints]
         self._joint_count = model.njoints
         self._states, self._power = self._core.state, self._core.power
+        self._wheels = self._core.wheels.reshape(-1, 2, 9)
+        self._contact_wrench, self._lateral = self._core.contact, self._core.lateral
+        self._placed = self._core.placed
         motion, wrench = self._core.motion, self._core.wrench
         self._rows = [
             (
@@ -182,7 +185,20 @@ class ForceElement:
         force: [3], N; moment: [3], N m, about the wheelset's centre, both in track axes.
         """
         self._core.place(index, *force, *moment)
-        return self._core.placed[index]
+        return self._placed[index]
+
+    def place_all(self, wrenches: NDArray[np.float64], fext: pin.StdVec_Force) -> float:
+        """Adds another wrench on each wheelset to ``fext``, at the last step's positions; their
+        power (W) at its velocities.
+
+        wrenches: [wheelsets, 6], force (N) and moment (N m) about the wheelset's centre, track
+        axes. fext: as for step().
+        """
+        power = self._core.place_all(wrenches)
+        for joint, wrench in zip(self.joints, self._placed, strict=True):
+            vector = fext[joint].vector
+            vector += wrench
+        return power
 
     def derivatives(self, index: int = 0) -> Matrix:
         """[6, 12], of a wheelset's contact_wrench at the last step by its state.
@@ -289,7 +305,7 @@ class ForceElement:
         Force (N) and moment (N m) about the wheelset's centre, track axes, creep power (W), number
         of patches, power of friction (W).
         """
-        return self._core.wheels.reshape(-1, 2, 9)
+        return self._wheels
 
     @property
     def lateral_normals(self) -> NDArray[np.float64]:
@@ -297,7 +313,7 @@ class ForceElement:
         `wheels`, at the last step; the rest of the lateral force is of creep."""
         # the tractions' part is known row by row where each has an angle of its own
         if not self._curved:
-            return self._core.lateral
+            return self._lateral
         rows = [self.result(index, fields=True) for index in range(len(self.joints))]
         return np.array([[lateral_normal(result[side]) for side in SIDES] for result in rows])
 
@@ -313,7 +329,7 @@ class ForceElement:
     @property
     def contact_wrench(self) -> NDArray[np.float64]:
         """[wheelsets, 6], N, N m: force and moment at the centre, track axes, of the last step."""
-        return self._core.contact
+        return self._contact_wrench
 
     @property
     def contact_power(self) -> float:

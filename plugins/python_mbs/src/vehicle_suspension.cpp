@@ -1,0 +1,279 @@
+// The class railpatch._core.Suspension: see wheelset_demo/vehicle/suspension.py.
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "convert.hpp"
+#include "numeric/elementary.hpp"
+#include "vehicle.hpp"
+
+namespace railpatch::python {
+
+namespace {
+
+enum { kPlaces = 6 };  // of a body: x, y, z, yaw, roll, pitch
+
+struct Point {
+  double x, y, z;
+};
+
+Point operator+(Point a, Point b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Point operator*(double s, Point a) { return {s * a.x, s * a.y, s * a.z}; }
+double dot(Point a, Point b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Point cross(Point a, Point b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+struct Body {
+  size_t columns[kPlaces];
+  double arm;  // m, of the centre, to the right of the joint
+  Point origin, centre, ahead, axes[3];
+};
+
+struct Element {
+  size_t a, b;
+  Point at_a, at_b;  // m, in the bodies
+  Point point_b, apart;
+};
+
+// points of a bump stop's table, displacements >= 0
+struct Stop {
+  std::vector<double> d, force;
+
+  Stop() = default;
+  Stop(const Values &at, const Values &forces)
+      : d(at.data(), at.data() + at.shape(0)),
+        force(forces.data(), forces.data() + forces.shape(0)) {
+    if (d.size() < 2 || d.size() != force.size()) throw nb::value_error("two points or more");
+  }
+};
+
+struct Row {
+  size_t element, axis;
+  bool about;
+  double stiffness, damping, preload;
+  Stop stop;  // empty: none
+};
+
+struct Series {
+  size_t row;
+  double stiffness, damping;
+};
+
+Point point_of(const Grid &rows, size_t k) {
+  const double *from = rows.data() + 3 * k;
+  return {from[0], from[1], from[2]};
+}
+
+double stop_force(const Stop &stop, double d) {
+  const double size = std::abs(d);
+  if (stop.d.empty() || size <= stop.d[0]) return 0.0;
+  const auto next = std::upper_bound(stop.d.begin(), stop.d.end(), size);
+  const size_t last = stop.d.size() - 2;
+  const size_t k = std::min<size_t>(static_cast<size_t>(next - stop.d.begin()) - 1, last);
+  const double slope = (stop.force[k + 1] - stop.force[k]) / (stop.d[k + 1] - stop.d[k]);
+  return std::copysign(stop.force[k] + slope * (size - stop.d[k]), d);
+}
+
+class Suspension {
+ public:
+  Suspension(size_t width, const IndexGrid &columns, const Values &arms, const IndexGrid &ends,
+             const Grid &at_a, const Grid &at_b, const IndexGrid &rows, const Grid &coefficients,
+             const Indices &series_rows, const Grid &series, const nb::list &stops)
+      : width_(width) {
+    const size_t elements = ends.shape(0), count = rows.shape(0);
+    const bool fits = columns.shape(1) == kPlaces && arms.shape(0) == columns.shape(0) &&
+                      ends.shape(1) == 2 && at_a.shape(1) == 3 && at_b.shape(1) == 3 &&
+                      at_a.shape(0) == elements && at_b.shape(0) == elements &&
+                      rows.shape(1) == 3 && coefficients.shape(0) == count &&
+                      coefficients.shape(1) == 3 && series.shape(0) == series_rows.shape(0) &&
+                      series.shape(1) == 2;
+    if (!fits) throw nb::value_error("arrays of a suspension do not fit together");
+    bodies_.resize(columns.shape(0));
+    for (size_t k = 0; k < bodies_.size(); ++k) {
+      for (size_t i = 0; i < kPlaces; ++i) bodies_[k].columns[i] = below(columns(k, i), width);
+      bodies_[k].arm = arms(k);
+    }
+    for (size_t k = 0; k < elements; ++k)
+      elements_.push_back({below(ends(k, 0), bodies_.size()),
+                           below(ends(k, 1), bodies_.size()),
+                           point_of(at_a, k),
+                           point_of(at_b, k),
+                           {},
+                           {}});
+    for (size_t k = 0; k < count; ++k)
+      rows_.push_back({below(rows(k, 0), elements),
+                       below(rows(k, 1), 3),
+                       rows(k, 2) != 0,
+                       coefficients(k, 0),
+                       coefficients(k, 1),
+                       coefficients(k, 2),
+                       {}});
+    for (size_t k = 0; k < series_rows.shape(0); ++k)
+      series_.push_back({below(series_rows(k), count), series(k, 0), series(k, 1)});
+    for (const nb::handle one : stops) add_stop(nb::cast<nb::tuple>(one));
+    matrix_.resize(count * width);
+    for (auto *of_rows : {&displacement_, &rate_, &force_}) of_rows->resize(count);
+    series_rates_.resize(series_.size());
+    generalised_.resize(width);
+  }
+
+  // the power of the dampers, W
+  double step(const Values &q, const Values &v, const Values &series) {
+    if (q.shape(0) != width_ || v.shape(0) != width_ || series.shape(0) != series_.size())
+      throw nb::value_error("a state of another size");
+    for (Body &body : bodies_) place(body, q.data());
+    for (Element &e : elements_) {
+      e.point_b = material(bodies_[e.b], e.at_b);
+      e.apart = e.point_b - material(bodies_[e.a], e.at_a);
+    }
+    std::fill(generalised_.begin(), generalised_.end(), 0.0);
+    double power = 0;
+    for (size_t k = 0; k < rows_.size(); ++k) power += load(k, v.data());
+    for (size_t k = 0; k < series_.size(); ++k) {
+      const Series &s = series_[k];
+      const double f = series(k);
+      force_[s.row] -= f;
+      series_rates_[k] = s.stiffness * (rate_[s.row] - f / s.damping);
+      power += f * f / s.damping;
+    }
+    for (size_t k = 0; k < rows_.size(); ++k) collect(k);
+    return power;
+  }
+
+  double *matrix() { return matrix_.data(); }
+  double *displacement() { return displacement_.data(); }
+  double *rate() { return rate_.data(); }
+  double *force() { return force_.data(); }
+  double *series_rates() { return series_rates_.data(); }
+  double *generalised() { return generalised_.data(); }
+  size_t rows() const { return rows_.size(); }
+  size_t series() const { return series_.size(); }
+  size_t width() const { return width_; }
+
+ private:
+  static size_t below(int64_t index, size_t count) {
+    if (index < 0 || static_cast<size_t>(index) >= count) throw nb::index_error();
+    return static_cast<size_t>(index);
+  }
+
+  void add_stop(const nb::tuple &given) {
+    rows_[below(nb::cast<int64_t>(given[0]), rows_.size())].stop =
+        Stop(nb::cast<Values>(given[1]), nb::cast<Values>(given[2]));
+  }
+
+  static void place(Body &body, const double *q) {
+    double c[3], s[3];  // yaw, roll, pitch
+    for (int i = 0; i < 3; ++i) {
+      c[i] = cos(q[body.columns[3 + i]]);
+      s[i] = sin(q[body.columns[3 + i]]);
+    }
+    body.origin = {q[body.columns[0]], q[body.columns[1]], q[body.columns[2]]};
+    body.ahead = {c[0], s[0], 0.0};
+    const Point down = {s[0] * s[1], -c[0] * s[1], c[1]};
+    body.axes[0] = c[2] * body.ahead - s[2] * down;
+    body.axes[1] = {-s[0] * c[1], c[0] * c[1], s[1]};
+    body.axes[2] = s[2] * body.ahead + c[2] * down;
+    body.centre = body.origin + body.arm * body.axes[1];
+  }
+
+  static Point material(const Body &body, Point at) {
+    return body.centre + (at.x * body.axes[0] + at.y * body.axes[1] + at.z * body.axes[2]);
+  }
+
+  // displacement, rate and force of a row without that in series; the power of its damper
+  double load(size_t k, const double *v) {
+    const Row &row = rows_[k];
+    const Element &e = elements_[row.element];
+    const Body &a = bodies_[e.a], &b = bodies_[e.b];
+    const Point direction = a.axes[row.axis];
+    double d = dot(direction, e.apart);
+    if (row.about) {
+      const size_t i = (row.axis + 1) % 3, j = (row.axis + 2) % 3;
+      d = 0.5 * (dot(a.axes[j], b.axes[i]) - dot(a.axes[i], b.axes[j]));
+    }
+    const double rate =
+        fill(k, a, e.point_b, -1.0 * direction, v) + fill(k, b, e.point_b, direction, v);
+    displacement_[k] = d;
+    rate_[k] = rate;
+    force_[k] = -(row.stiffness * d + row.damping * rate + row.preload) - stop_force(row.stop, d);
+    return row.damping * rate * rate;
+  }
+
+  // a body's six numbers of the row; what its velocities add to the rate
+  double fill(size_t k, const Body &body, Point at, Point u, const double *v) {
+    const bool about = rows_[k].about;
+    const Point lever = about ? u : cross(at - body.origin, u), moved = about ? Point{} : u;
+    const double parts[kPlaces] = {
+        moved.x, moved.y, moved.z, lever.z, dot(body.ahead, lever), dot(body.axes[1], lever)};
+    double rate = 0;
+    for (size_t i = 0; i < kPlaces; ++i) {
+      matrix_[k * width_ + body.columns[i]] = parts[i];
+      rate += parts[i] * v[body.columns[i]];
+    }
+    return rate;
+  }
+
+  void collect(size_t k) {
+    const Element &e = elements_[rows_[k].element];
+    for (const size_t body : {e.a, e.b})
+      for (const size_t column : bodies_[body].columns)
+        generalised_[column] += force_[k] * matrix_[k * width_ + column];
+  }
+
+  size_t width_;
+  std::vector<Body> bodies_;
+  std::vector<Element> elements_;
+  std::vector<Row> rows_;
+  std::vector<Series> series_;
+  std::vector<double> matrix_, displacement_, rate_, force_, series_rates_, generalised_;
+};
+
+using Array = nb::ndarray<nb::numpy, double, nb::ndim<1>>;
+
+// views of the object's own memory that keep it alive
+template <double *(Suspension::*Data)(), size_t (Suspension::*Count)() const>
+Array view(nb::handle_t<Suspension> self) {
+  Suspension &found = nb::cast<Suspension &>(self);
+  return Array((found.*Data)(), {(found.*Count)()}, self);
+}
+
+nb::ndarray<nb::numpy, double, nb::ndim<2>> matrix_of(nb::handle_t<Suspension> self) {
+  Suspension &found = nb::cast<Suspension &>(self);
+  return {found.matrix(), {found.rows(), found.width()}, self};
+}
+
+}  // namespace
+
+void bind_suspension(nb::module_ &m) {
+  m.def(
+      "stop_force",
+      [](const Values &at, const Values &forces, double d) { return stop_force({at, forces}, d); },
+      nb::arg("at"), nb::arg("forces"), nb::arg("d"),
+      "N, of a bump stop whose table has these points, at a displacement (m).");
+  using S = Suspension;
+  nb::class_<S>(m, "Suspension", "Forces of a vehicle's springs, dampers, rods and bump stops.")
+      .def(nb::init<size_t, const IndexGrid &, const Values &, const IndexGrid &, const Grid &,
+                    const Grid &, const IndexGrid &, const Grid &, const Indices &, const Grid &,
+                    const nb::list &>(),
+           nb::arg("width"), nb::arg("columns"), nb::arg("arms"), nb::arg("ends"), nb::arg("at_a"),
+           nb::arg("at_b"), nb::arg("rows"), nb::arg("coefficients"), nb::arg("series_rows"),
+           nb::arg("series"), nb::arg("stops"),
+           "width: number of coordinates; columns: of each body's x, y, z, yaw, roll, pitch; arms: "
+           "m, of its centre, to the right; ends: bodies A and B of each element; at_a, at_b: m, "
+           "in them; rows: element, axis, whether about it; coefficients: of the rows, stiffness, "
+           "damping, preload; series_rows, series: rows with a spring and a damper in series, "
+           "stiffness and damping; stops: (row, displacements, forces).")
+      .def("step", &S::step, nb::arg("q"), nb::arg("v"), nb::arg("series"),
+           "Fills the arrays; W, what the dampers turn into heat.")
+      .def_prop_ro("matrix", &matrix_of, "[rows, width], rates of the rows by the velocities.")
+      .def_prop_ro("displacement", &view<&S::displacement, &S::rows>, "m, rad, of the rows.")
+      .def_prop_ro("rate", &view<&S::rate, &S::rows>, "m/s, rad/s, of the rows.")
+      .def_prop_ro("force", &view<&S::force, &S::rows>, "N, N m, of the rows on body B.")
+      .def_prop_ro("series_rates", &view<&S::series_rates, &S::series>, "N/s.")
+      .def_prop_ro("generalised", &view<&S::generalised, &S::width>, "Generalised force.");
+}
+
+}  // namespace railpatch::python
