@@ -8,6 +8,7 @@
 // there parts that press sideways and creep forces outweigh the rise with depth.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -44,13 +45,21 @@ class force_samples {
       if (std::fabs(rise) > noise * target_ && (rise > 0) != (way > 0)) return true;
       if (std::fabs(way) < nearest) nearest = std::fabs(way), slope = rise / way;
     }
-    return slope < flat * 1.5 * force / depth;
+    return std::min(slope, first_slope(depth, force)) < flat * 1.5 * force / depth;
   }
 
  private:
   struct sample {
     double depth = 0, force = 0;
   };
+  // From the depth that the last step ended at, where its force is nearly the target still: a
+  // height that lies farther off than the missing force explains was reached by a jump.
+  double first_slope(double depth, double force) const {
+    if (count_ == 0) return HUGE_VAL;
+    const double way = depth - samples_[0].depth;
+    return std::fabs(way) < noise * depth ? HUGE_VAL : (force - samples_[0].force) / way;
+  }
+
   // -, of the target and the depth: less is that of solvers' tolerances
   static constexpr double noise = 1e-5;
   // -, of the slope of a Hertzian contact of this depth and force

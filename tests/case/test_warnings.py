@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import railpatch
 from bits.combinations import sample
@@ -12,7 +13,15 @@ from case_samples import PATCH, WHEELSET, with_values
 from click.testing import CliRunner
 from railpatch.case.kinds import kinds, write_example
 from railpatch.command.cli import cli
-from railpatch.evidence.continuity.worn import LOAD, worn_case
+from railpatch.evidence.continuity.worn import (
+    CLOSE,
+    LIMIT,
+    LOAD,
+    SPAN,
+    Found,
+    Walk,
+    worn_case,
+)
 
 from wheelset_demo.vehicle.scene import doubtful_bodies, load_vehicle_scene
 
@@ -113,6 +122,18 @@ def test_other_heights_are_warned_of() -> None:
         depths = [below.step(y=y, z=found["z"] + 1e-5 * i)["force"][2] for i in range(1, 16)]
         assert (max(depths) > -LOAD) == several  # z down: less than the load
         assert any("other heights" in text for text in found.warnings) == several
+
+
+def test_a_step_across_a_jump_is_warned_of() -> None:
+    walk, found = Walk(worn_case(47, "hertz")), Found("hertz")
+    steps = [y for y in np.linspace(*SPAN, 500).tolist() if 9.2e-3 < y < 9.5e-3]
+    ((before, after),) = walk.jumps(steps, found)
+    assert walk.change(before, after) > LIMIT
+    assert after.y - before.y < CLOSE
+    assert before.warned or after.warned
+    # beside it steps are none
+    for y in (before.y - 1e-6, after.y + 1e-6):
+        assert walk.change(walk.sample(y), walk.sample(y + CLOSE)) < LIMIT
 
 
 def test_a_fall_while_two_contacts_join_is_warned_of() -> None:
