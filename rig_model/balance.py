@@ -40,6 +40,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from railpatch import Contact, Result
@@ -47,6 +48,7 @@ from railpatch.case.types import SIDES
 from railpatch.result import CARRIES
 
 from rig_model.broyden import Broyden
+from rig_model.conditioning import Conditioning, ConditioningState, Load, Pose
 from rig_model.frame import Frame, FrameState
 from rig_model.newton import Newton
 from rig_model.predict import Predictor
@@ -54,6 +56,7 @@ from rig_model.programme import Position
 from rig_model.scene import RigScene
 from rig_model.search import Evaluation, Root, Settings, Vector
 from rig_model.start import Baseline, Estimate, Frictionless
+from rig_model.wheels import WheelPair
 
 UNKNOWNS = ("z", "roll", "pitch_rate")
 FRAME_UNKNOWNS = (*UNKNOWNS, "y")
@@ -70,6 +73,8 @@ LATERAL_LIMIT = 5e-4
 # m, most that the estimates reach beyond the actuators' way, and most lateral force over the load
 LATERAL_REACH = 0.01
 LATERAL_SHARE = 0.5
+# of friction that conditions, most balances with friction by the one before
+MOST_ROUNDS = 20
 
 
 @dataclass(frozen=True)
@@ -81,7 +86,7 @@ class Balance:
     "not_converged", or "out_of_range" where no state with both wheels in contact was found; the
     values are then those of the best try. residuals: [3], N m, N, N m, with a frame that yields
     [4], the last in N; None without contact. y: m, of the wheelset. frame: its frame's, where that
-    yields and the position is balanced.
+    yields and the position is balanced. conditioning: by side, of friction that conditions.
     evaluations: of both wheels; iterations: steps of the search; restarts: Jacobians by
     differences beyond the first one, of Broyden's method. result: of the contact.
     """
@@ -98,6 +103,7 @@ class Balance:
     result: Result
     y: float
     frame: FrameState | None = None
+    conditioning: dict[str, ConditioningState] | None = None
 
     @property
     def converged(self) -> bool:
@@ -113,7 +119,14 @@ class Balancer:
         positions = scene.positions()
         self._scene = scene
         self._exact = scene.rig.balance.method == "newton"
-        self._contact = Contact(scene.at_height(derivatives=self._exact))
+        table = scene.rig.conditioning
+        self._conditioning = Conditioning(table) if table else None
+        self._contact: Contact | WheelPair
+        if self._conditioning:
+            most = self._conditioning.most
+            self._contact = WheelPair(scene, most, derivatives=self._exact)
+        else:
+            self._contact = Contact(scene.at_height(derivatives=self._exact))
         self._frictionless = Frictionless(scene)
         self._frame = Frame(scene.rig.frame) if scene.rig.frame else None
         self._unknowns = FRAME_UNKNOWNS if self._frame else UNKNOWNS
@@ -137,10 +150,7 @@ class Balancer:
         """Searches the balance at a position, starting from those before."""
         self._pending += max(position.time - self._time, 0.0)
         self._time = position.time
-        root = self._search(position, self._start(position))
-        if not root.converged:
-            # what was known misled the search: afresh
-            root = best_of(root, self._search(position, self._estimate(position).unknowns))
+        root, loads = self._conditioned(position)
         if root.converged:
             jacobian = self._broyden.jacobian if self._broyden else None
             self._predictor.remember(position, root.x, jacobian)
@@ -150,15 +160,69 @@ class Balancer:
         if self._frame and balance.converged:
             force = float(balance.result["force"][1])
             balance = replace(balance, frame=self._frame.moved(position.y, balance.y, force))
+        if self._conditioning and loads:
+            states = self._conditioning.moved(loads, position.time)
+            balance = replace(balance, conditioning=states)
         return balance
 
     def fields(self, balance: Balance) -> Result:
         """The balance's contact with the fields of each patch; solved once more if need be."""
-        if balance.result is self._latest:
-            return self._contact.last(fields=True)
         unknowns = np.array([balance.z, balance.roll, balance.pitch_rate, balance.y])
+        return self._with_fields(balance.position, unknowns, balance.result)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Copies and pickles go on with the same bits; what has fields is solved once more."""
+        return {**vars(self), "_latest": None}
+
+    def _with_fields(self, position: Position, unknowns: Vector, result: Result) -> Result:
+        if result is self._latest:
+            return self._contact.last(fields=True)
         # no further time goes by
-        return self._contact.step(**moved(balance.position, unknowns), time_step=0.0, fields=True)
+        return self._contact.step(**moved(position, unknowns), time_step=0.0, fields=True)
+
+    def _balanced(self, position: Position) -> Root:
+        root = self._search(position, self._start(position))
+        if not root.converged:
+            # what was known misled the search: afresh
+            root = best_of(root, self._search(position, self._estimate(position).unknowns))
+        return root
+
+    def _conditioned(self, position: Position) -> tuple[Root, dict[str, Load] | None]:
+        """The balance, and of friction that conditions the loads by side that go with it.
+
+        Friction's error is below that of the balance: of the load, not of friction's own.
+        """
+        if self._conditioning is None:
+            return self._balanced(position), None
+        assert isinstance(self._contact, WheelPair)
+        self._contact.factors = self._conditioning.started()
+        root = self._balanced(position)
+        for _ in range(MOST_ROUNDS):
+            if not root.converged:
+                return root, None
+            loads = self._loads(position, root)
+            found = self._conditioning.factors(loads, position.time)
+            error = max(abs(found[side] - self._contact.factors[side]) for side in SIDES)
+            if error <= self._scene.rig.balance.tolerance:
+                return root, loads
+            self._contact.factors = found
+            root = with_work(self._search(position, root.x), root)
+        return replace(root, converged=False), None
+
+    def _loads(self, position: Position, root: Root) -> dict[str, Load]:
+        """Of both wheels, over the bands."""
+        assert self._conditioning is not None
+        result = self._with_fields(position, root.x, root.payload)
+        track, wheelset = self._scene.case.track, self._scene.case.wheelset
+        at = moved(position, root.x)
+        centre = (0.0, at["y"], at["z"] - wheelset.nominal_radius)
+        return {
+            side: self._conditioning.load(
+                result[side],
+                Pose(centre, at["roll"], at["yaw"], getattr(track, side).offset[1]),
+            )
+            for side in SIDES
+        }
 
     def _estimate(self, position: Position) -> Estimate:
         """Without friction, by the load of the scene, at the position's speed."""
@@ -270,11 +334,17 @@ def settings_of(scene: RigScene, estimate: Estimate) -> Settings:
 def best_of(first: Root, second: Root) -> Root:
     """The second root if it is one or the first had no residual; with the work of both."""
     chosen = second if second.converged or first.residual is None else first
+    other = first if chosen is second else second
+    return with_work(chosen, other)
+
+
+def with_work(root: Root, other: Root) -> Root:
+    """A root with the work of another search too."""
     return replace(
-        chosen,
-        evaluations=first.evaluations + second.evaluations,
-        iterations=first.iterations + second.iterations,
-        restarts=first.restarts + second.restarts,
+        root,
+        evaluations=root.evaluations + other.evaluations,
+        iterations=root.iterations + other.iterations,
+        restarts=root.restarts + other.restarts,
     )
 
 
@@ -287,12 +357,6 @@ def residuals(scene: RigScene, result: Result, load: float) -> Vector:
             track_force(scene, result[side]) * result[side]["rolling_radius"] for side in SIDES
         )
     return np.array([torque, -result["force"][2] - load, result["moment"][0]])
-
-
-def is_whole(scene: RigScene) -> bool:
-    """Whether the forces hold the pressures' part along x."""
-    method = scene.case.method
-    return method.patch_rule != "contact" or method.contact_frame == "inclined"
 
 
 def residual_rates(scene: RigScene, result: Result, rates: Result) -> Vector:
@@ -315,7 +379,7 @@ def track_force(scene: RigScene, wheel: dict) -> float:
     the track's. On a roller of radius R the normal through a point at x, z of the track is inclined
     by x/(R - z) along x.
     """
-    if is_whole(scene):
+    if scene.is_whole:
         return wheel["force"][0]
     return wheel["force"][0] + math.fsum(
         patch["share"]
@@ -329,7 +393,7 @@ def track_force(scene: RigScene, wheel: dict) -> float:
 def track_force_rate(scene: RigScene, wheel: dict, rate: dict) -> float:
     """Of the same."""
     total = rate["force"][0]
-    if is_whole(scene):
+    if scene.is_whole:
         return total
     for patch, change in zip(solutions(wheel), solutions(rate), strict=True):
         height = scene.case.track.roller_radius - patch["position"][2]

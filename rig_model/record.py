@@ -25,14 +25,18 @@ class Recorder:
         self._pitch = 0.0
         self._roller_pitch = 0.0
 
-    def messages(self, balance: Balance, wall_time: float) -> dict[str, Any]:
-        """Arguments of RunLog.write. wall_time: s, of finding the balance."""
+    def messages(
+        self, balance: Balance, wall_time: float, *, snapshot: bool = False
+    ) -> dict[str, Any]:
+        """Arguments of RunLog.write. wall_time: s, of finding the balance. snapshot: with the
+        strips of friction that conditions."""
         result = balance.result.to_dict()
         measured = self._scene.measured_at(balance.position)
         frame = {"frame": vars(balance.frame)} if balance.frame else {}
         return (
             ({"measured": measured} if measured else {})
             | frame
+            | conditioning_of(balance, snapshot)
             | {
                 "state": self._state(balance, result),
                 "left": result["left"],
@@ -76,6 +80,19 @@ class Recorder:
             "force": result["force"],
             "moment": result["moment"],
         } | {key: getattr(case.wheelset, key) for key in STEADY}
+
+
+def conditioning_of(balance: Balance, snapshot: bool) -> dict[str, Any]:
+    """Of friction that conditions, by side."""
+    if balance.conditioning is None:
+        return {}
+    dropped = () if snapshot else ("position", "conditioned")
+    return {
+        "conditioning": {
+            side: {key: value for key, value in vars(state).items() if key not in dropped}
+            for side, state in balance.conditioning.items()
+        }
+    }
 
 
 def ran_with(scene: RigScene) -> Effective:

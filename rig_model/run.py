@@ -82,8 +82,9 @@ def replay(
             balance = balancer.solve(position)
             wall_time = time.perf_counter() - begin
             with log.stream.counted():
-                messages = recorder.messages(balance, wall_time)
-                if snapshots and position.index % snapshots == 0:
+                chosen = bool(snapshots) and position.index % snapshots == 0
+                messages = recorder.messages(balance, wall_time, snapshot=chosen)
+                if chosen:
                     fields = balancer.fields(balance)
                     messages["fields"] = {side: fields[side]["patches"] for side in SIDES}
                 log.write(position.time, **messages)

@@ -11,7 +11,7 @@ from typing import Any
 from railpatch.case import WheelsetCase
 from railpatch.case.common import without_friction
 from railpatch.case.load import Scene, check_case, check_table, plain, read_toml, refuse_others
-from railpatch.case.types import Table
+from railpatch.case.types import SIDES, Table
 from railpatch.case.wheel import PROFILE_KEYS
 from railpatch.errors import CaseError
 
@@ -25,6 +25,8 @@ NOMINAL = "nominal_dry_10mph_13750lb.toml"
 FOUND = {"y": "lateral_position", "yaw": "yaw"} | dict.fromkeys(
     ("roll", "pitch_rate"), "start, or leave it out"
 )
+# theories that have no elements where Hertz's pressure has none
+WITHOUT_FIELDS = ("linear", "polach", "table")
 
 
 @dataclass(frozen=True)
@@ -113,6 +115,20 @@ class RigScene:
         content = self.case.model_dump() | {"wheelset": wheelset.model_dump()}
         if derivatives:
             content["method"]["derivatives"] = True
+        return self._scene(content)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the forces hold the pressures' part along x."""
+        method = self.case.method
+        return method.patch_rule != "contact" or method.contact_frame == "inclined"
+
+    def one_wheel(self, side: str, most: float, *, derivatives: bool) -> Scene:
+        """One wheel at its height, with a factor of its friction that is the place x up to
+        ``most``: see rig_model/wheels.py."""
+        content = self.at_height(derivatives=derivatives).case.model_dump()
+        content |= {"kind": "wheel_rail", "wheel": {"side": side}}
+        content["friction"]["along_track"] = [[0.0, 0.0], [most, most]]
         return self._scene(content)
 
     def frictionless(self, side: str) -> Scene:
@@ -214,12 +230,42 @@ def check_machine(case: Any, rig: Rig) -> None:
             f"rig.balance.tolerance: value is {rig.balance.tolerance}, allowed >= "
             f"{2 * case.method.tolerance:g}, twice method.tolerance: forces are no more exact"
         )
+    if rig.conditioning is not None:
+        problems += conditioning_refused(case)
     for key, other in FOUND.items():
         value = getattr(case.wheelset, key)
         if value != 0.0:
             problems.append(f"wheelset.{key}: value is {value!r}, allowed in [rig] as {other}")
     if problems:
         raise CaseError(problems)
+
+
+def conditioning_refused(case: WheelsetCase) -> list[str]:
+    """What friction that conditions cannot go with: rig_model/wheels.py, conditioning.py."""
+    found = {"friction.along_track": case.friction.along_track if case.friction else None}
+    found["track.irregularity"] = case.track.irregularity
+    for side in SIDES:
+        for key in ("sections", "running_surface", "joint"):
+            found[f"track.{side}.{key}"] = getattr(getattr(case.track, side), key)
+    refused = [
+        f"{key}: value is given, allowed none with rig.conditioning: friction is set by the place "
+        "along the track"
+        for key, value in found.items()
+        if value is not None
+    ]
+    if case.motion.regime != "steady_rolling":
+        refused.append(
+            f"motion.regime: value is {case.motion.regime!r}, allowed 'steady_rolling' with "
+            "rig.conditioning: a position is solved several times"
+        )
+    method = case.method
+    if method.normal == "hertz" and method.tangential in WITHOUT_FIELDS:
+        refused.append(
+            f"method.tangential: value is {method.tangential!r}, allowed with rig.conditioning a "
+            "theory with fields, or method.normal = 'half_space': work lies over the bands as the "
+            "pressure does"
+        )
+    return refused
 
 
 def default_scene() -> Path:

@@ -82,6 +82,35 @@ class FrameTable(Table):
         return self
 
 
+class ConditioningTable(Table):
+    """Friction that the work done on a running band changes."""
+
+    plateau: Annotated[float, Field(ge=0, le=10)] = Field(
+        description="-, friction of a band on which much work was done, over that of the scene, "
+        "which a band has as it is found"
+    )
+    work: Positive = Field(
+        description="J/m, friction work over the band's width after which 1 - 1/e of the change is "
+        "done",
+    )
+    recovery_time: Positive | None = Field(
+        default=None,
+        description="s, after which a band without contact has lost 1 - 1/e of its change; left "
+        "out: time takes none",
+    )
+    recovery_work: Positive | None = Field(
+        default=None,
+        description="J, friction work of the wheel beside a band after which that has lost 1 - 1/e "
+        "of its change; left out: none",
+    )
+    body: Literal["wheel", "roller"] = Field(
+        default="wheel", description="(no unit): whose profile the bands lie on"
+    )
+    bin: Annotated[float, Field(ge=1e-5, le=0.05)] = Field(
+        default=5e-4, description="m, width of the strips that a profile is divided into"
+    )
+
+
 class Rig(Table):
     """What the rig does with the wheelset."""
 
@@ -117,6 +146,11 @@ class Rig(Table):
         default=None,
         description="springs and dry friction between the lateral actuators and the wheelset (N/m, "
         "N): lateral_position is that of the actuators then; left out: rigid",
+    )
+    conditioning: ConditioningTable | None = Field(
+        default=None,
+        description="friction of each wheel that changes with the work done where it runs (-, J/m, "
+        "J, s, m); left out: none",
     )
     record: str | None = Field(
         default=None,

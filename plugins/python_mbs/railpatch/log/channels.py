@@ -357,6 +357,25 @@ RIG_FRAME = Message(
     ),
 )
 
+RIG_CONDITIONING = Message(
+    "RigConditioning",
+    "Friction of one wheel that changes with the work done on its running band, at one position.",
+    (
+        _number("factor", "-", "of the scene's friction law"),
+        _number("conditioning", "-", "mean over the contact: 0 as found, 1 at the plateau"),
+        _number("power", "W", "of friction, that of a layer which yields included"),
+        _number("work", "J", "of friction since the first position"),
+        _number(
+            "position",
+            "m",
+            "at chosen moments: middles of the strips, from the wheelset's middle along its axle, "
+            "or of rollers from the track's middle",
+            size=0,
+        ),
+        _number("conditioned", "-", "of each of them, from 0 to 1", size=0),
+    ),
+)
+
 ENERGY = Message(
     "Energy",
     "Energies of a wheelset or a vehicle on track, and work done since the start.",
@@ -442,6 +461,8 @@ CHANNELS = (
     Channel("/rig/balance", RIG_BALANCE, "force balance; only in runs of the roller rig"),
     Channel("/rig/measured", RIG_MEASURED, "measured beside it; only in replays of a record"),
     Channel("/rig/frame", RIG_FRAME, "frame that yields; only in rigs that have one"),
+    Channel("/left/conditioning", RIG_CONDITIONING, "left friction; only in rigs where it changes"),
+    Channel("/right/conditioning", RIG_CONDITIONING, "right friction; only in such rigs"),
     Channel("/wheelset/energy", ENERGY, "balance of energies; only in runs on track"),
     Channel("/wheelset/momentum", MOMENTUM, "balance of momenta; only in runs on track"),
     Channel("/solver/stats", SOLVER_STATS, "iterations and times"),

@@ -19,6 +19,8 @@ OPTIONAL = (
     "/rig/balance",
     "/rig/measured",
     "/rig/frame",
+    "/left/conditioning",
+    "/right/conditioning",
     "/wheelset/energy",
     "/wheelset/momentum",
     "/solver/stats",
@@ -72,6 +74,7 @@ class RunLog(Log):
         balance: Mapping[str, Any] | None = None,
         measured: Mapping[str, Any] | None = None,
         frame: Mapping[str, Any] | None = None,
+        conditioning: Mapping[str, Mapping[str, Any]] | None = None,
         stats: Mapping[str, Any] | None = None,
         energy: Mapping[str, Any] | None = None,
         momentum: Mapping[str, Any] | None = None,
@@ -81,7 +84,7 @@ class RunLog(Log):
 
         ``time_s``: s of simulation time, later than the last. ``left``, ``right``: these parts of a
         wheelset result's ``to_dict()``. ``fields``: by side, patches with their fields (those of
-        the same ``to_dict()`` will do), to log a snapshot.
+        the same ``to_dict()`` will do), to log a snapshot. ``conditioning``: by side.
 
         Raises ValueError for a bad value, and logs nothing of this step then.
         """
@@ -92,6 +95,7 @@ class RunLog(Log):
             "/rig/balance": balance,
             "/rig/measured": measured,
             "/rig/frame": frame,
+            **{f"/{side}/conditioning": (conditioning or {}).get(side) for side in SIDES},
             "/wheelset/energy": energy,
             "/wheelset/momentum": momentum,
             "/solver/stats": stats,
