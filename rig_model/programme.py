@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from railpatch.profiles.spline import cubic_spline
 from scipy.interpolate import PchipInterpolator
 
 
@@ -46,6 +47,27 @@ def positions(
         Position(i, float(progress[i]), float(progress[i] * duration), lateral[i], angles[i])
         for i in range(count)
     ]
+
+
+def drifted(
+    positions: list[Position], yaw: Sequence[float] | None, lateral: Sequence[float] | None
+) -> list[Position]:
+    """The positions with offsets of yaw angle (rad) and lateral position (m) over the progress."""
+    progress = np.array([position.progress for position in positions])
+    turned, shifted = drift(yaw or [0.0], progress), drift(lateral or [0.0], progress)
+    return [
+        replace(position, yaw=position.yaw + turned[i], y=position.y + shifted[i])
+        for i, position in enumerate(positions)
+    ]
+
+
+def drift(values: Sequence[float], at: NDArray[np.float64]) -> list[float]:
+    """Natural cubic spline through values at evenly spaced progress from 0 to 1: it is linear in
+    each of them. Two: a straight line; one: a constant."""
+    if len(values) == 1:
+        return [values[0]] * len(at)
+    knots = np.linspace(0.0, 1.0, len(values))
+    return cubic_spline(knots, np.array(values, dtype=float), "natural")(at).tolist()
 
 
 def polygon(table: Sequence[Sequence[float]], at: NDArray[np.float64]) -> list[float]:

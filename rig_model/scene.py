@@ -16,7 +16,7 @@ from railpatch.case.wheel import PROFILE_KEYS
 from railpatch.errors import CaseError
 
 from rig_model.measured import Measured, measured_run
-from rig_model.programme import Position, positions
+from rig_model.programme import Position, drifted, positions
 from rig_model.tables import SNAPSHOTS, Rig
 
 MEASURED = "nrc_dry_10mph_13750lb.toml"
@@ -94,6 +94,12 @@ class RigScene:
 
     def positions(self) -> list[Position]:
         """The positions of the run."""
+        driven = self._driven()
+        drift = self.rig.drift
+        return drifted(driven, drift.yaw, drift.lateral_position) if drift else driven
+
+    def _driven(self) -> list[Position]:
+        """Without drift."""
         rig = self.rig
         if self.measured is not None:
             return self.measured.positions

@@ -111,6 +111,34 @@ class ConditioningTable(Table):
     )
 
 
+# of a drift, at knots
+Values = Annotated[list[Number], Field(min_length=1, max_length=20)]
+MOST_DRIFT = 0.1  # m, rad, either way
+
+
+class DriftTable(Table):
+    """Offsets of what drives the rig that change slowly over the run."""
+
+    yaw: Values | None = Field(
+        default=None,
+        description="rad, added to the yaw angle: at evenly spaced moments of the progress, from "
+        "begin to end, a natural cubic spline between; one: all the time; left out: none",
+    )
+    lateral_position: Values | None = Field(
+        default=None, description="m, added to the lateral position: likewise"
+    )
+
+    @model_validator(mode="after")
+    def _sizes(self) -> DriftTable:
+        if self.yaw is None and self.lateral_position is None:
+            raise relation("yaw", "missing", "'yaw', 'lateral_position' or both")
+        for key in ("yaw", "lateral_position"):
+            for value in getattr(self, key) or ():
+                if abs(value) > MOST_DRIFT:
+                    raise relation(key, value, f"-{MOST_DRIFT} to {MOST_DRIFT}")
+        return self
+
+
 class Rig(Table):
     """What the rig does with the wheelset."""
 
@@ -151,6 +179,11 @@ class Rig(Table):
         default=None,
         description="friction of each wheel that changes with the work done where it runs (-, J/m, "
         "J, s, m); left out: none",
+    )
+    drift: DriftTable | None = Field(
+        default=None,
+        description="offsets of yaw angle and lateral position over the run (rad, m); left out: "
+        "none",
     )
     record: str | None = Field(
         default=None,

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from railpatch.errors import CaseError
 
 from rig_model.predict import MEMORY, Predictor
-from rig_model.programme import Position, monotone, polygon
+from rig_model.programme import Position, drift, monotone, polygon
 from rig_model.scene import load_rig_scene
 
 # yaw in mrad, y in mm: the positions published for the NRC run, dry, 10 mph, 13,750 lb a side
@@ -121,3 +122,25 @@ def test_memory_is_bounded():
     assert predictor.predict(along(MEMORY + 10, MEMORY + 10, 0)).unknowns == [2 * (MEMORY + 10)]
     # the first ones are forgotten: of those that are left this is the nearest
     assert predictor.predict(along(MEMORY + 11, 3.0, 0)).unknowns == [2 * 10.0]
+
+
+def test_drift_is_a_natural_spline():
+    """Through 0, 1, 0 at 0, h, 2h: 1/2 + 3/16 half way (de Boor 1978, chapter 4); a line of two."""
+    assert drift([0.0, 1.0, 0.0], np.array([0.25, 0.5, 0.75])) == pytest.approx(
+        [11 / 16, 1.0, 11 / 16], rel=1e-12
+    )
+    assert drift([1.0, 3.0], np.array([0.25, 1.0])) == pytest.approx([1.5, 3.0], rel=1e-12)
+
+
+def test_drift_is_added(scene_with, nominal_file):
+    end = "\n[rig.drift]\nyaw = [0.0, 2e-4]\nlateral_position = [1e-3]\n"
+    plain = load_rig_scene(nominal_file).positions()
+    for a, b in zip(plain, load_rig_scene(scene_with(end=end)).positions(), strict=True):
+        assert b.yaw - a.yaw == pytest.approx(2e-4 * a.progress, abs=1e-15)
+        assert b.y - a.y == pytest.approx(1e-3, abs=1e-15)
+
+
+@pytest.mark.parametrize("keys", ["", "yaw = []", "yaw = [0.2]", "lateral_position = [-0.2]"])
+def test_drift_out_of_range(scene_with, keys):
+    with pytest.raises(CaseError, match=r"rig\.drift\.(yaw|lateral_position): value is"):
+        load_rig_scene(scene_with(end=f"\n[rig.drift]\n{keys}\n"))
