@@ -12,7 +12,9 @@ with r the rolling radii. With a frame that yields the lateral position y (m) is
 
     f4 = F_y,left + F_y,right - R(y - y_actuators)    N, track axes
 
-with the frame's resistance R (rig_model/frame.py).
+with the frame's resistance R (rig_model/frame.py). With a gauge that opens so is its opening g (m):
+
+    f5 = (F_y,left - F_y,right)/2 - k g               N, track axes
 
 Which terms are used was decided by the published positions of the NRC
 run; those with yaw angles from -2 to 18 mrad have one patch a wheel and were looked at.
@@ -39,6 +41,7 @@ Eq. 55 to the letter: pressures on a body of revolution have no moment about its
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -59,7 +62,6 @@ from rig_model.start import Baseline, Estimate, Frictionless
 from rig_model.wheels import WheelPair
 
 UNKNOWNS = ("z", "roll", "pitch_rate")
-FRAME_UNKNOWNS = (*UNKNOWNS, "y")
 
 # differences for a Jacobian, in parts of the approach and of the pitch rate
 APPROACH_SHARE = 0.02
@@ -67,12 +69,14 @@ PITCH_SHARE = 5e-5
 # longest step of the search likewise: it stays in contact, and within reach of the creepages
 APPROACH_LIMIT = 1.0
 PITCH_LIMIT = 2e-3
-# m, of a lateral position that is unknown: a flange rises by as much
+# m, of a lateral position or gauge that is unknown: a flange rises by as much
 LATERAL_DIFFERENCE = 1e-6
 LATERAL_LIMIT = 5e-4
 # m, most that the estimates reach beyond the actuators' way, and most lateral force over the load
 LATERAL_REACH = 0.01
 LATERAL_SHARE = 0.5
+# of the gauge's opening, by which the left and the right roller give way
+APART = (-0.5, 0.5)
 # of friction that conditions, most balances with friction by the one before
 MOST_ROUNDS = 20
 
@@ -85,7 +89,8 @@ class Balance:
     "accuracy_not_met" where that is not as accurate as the scene asks for; else
     "not_converged", or "out_of_range" where no state with both wheels in contact was found; the
     values are then those of the best try. residuals: [3], N m, N, N m, with a frame that yields
-    [4], the last in N; None without contact. y: m, of the wheelset. frame: its frame's, where that
+    up to [5], the last in N; None without contact. y: m, of the wheelset; gauge: m, by which it is
+    open. frame: its frame's, where that
     yields and the position is balanced. conditioning: by side, of friction that conditions.
     evaluations: of both wheels; iterations: steps of the search; restarts: Jacobians by
     differences beyond the first one, of Broyden's method. result: of the contact.
@@ -102,6 +107,7 @@ class Balance:
     restarts: int
     result: Result
     y: float
+    gauge: float = 0.0
     frame: FrameState | None = None
     conditioning: dict[str, ConditioningState] | None = None
 
@@ -129,9 +135,10 @@ class Balancer:
             self._contact = Contact(scene.at_height(derivatives=self._exact))
         self._frictionless = Frictionless(scene)
         self._frame = Frame(scene.rig.frame) if scene.rig.frame else None
-        self._unknowns = FRAME_UNKNOWNS if self._frame else UNKNOWNS
+        extra = self._frame.unknowns if self._frame else ()
+        self._unknowns = (*UNKNOWNS, *extra)
         first = self._frictionless.estimate(positions[0].y, positions[0].yaw)
-        settings = settings_of(scene, first)
+        settings = settings_of(scene, first, len(extra))
         self._latest: Result | None = None
         # of bodies that store heat: s, of the last position, and not yet gone by in the contact
         self._time = positions[0].time
@@ -139,12 +146,12 @@ class Balancer:
         self._broyden = None if self._exact else Broyden(settings)
         self._solver = self._broyden or Newton(settings)
         lateral = [position.y for position in positions]
-        if self._frame:
+        if self._frame and "y" in extra:
             reach = LATERAL_SHARE * scene.vertical_force / self._frame.softest
             reach = min(reach, LATERAL_REACH)
             lateral = [min(lateral) - reach, max(lateral) + reach]
         baseline = Baseline(scene, self._frictionless, lateral)
-        self._predictor = Predictor(baseline, settings.difference)
+        self._predictor = Predictor(baseline, settings.difference, extra)
 
     def solve(self, position: Position) -> Balance:
         """Searches the balance at a position, starting from those before."""
@@ -156,10 +163,11 @@ class Balancer:
             self._predictor.remember(position, root.x, jacobian)
         if root.payload is None:
             root = replace(root, payload=self._step(position, root.x))
-        balance = balance_of(position, root)
+        balance = balance_of(position, root, self._unknowns)
         if self._frame and balance.converged:
-            force = float(balance.result["force"][1])
-            balance = replace(balance, frame=self._frame.moved(position.y, balance.y, force))
+            forces = lateral_forces(balance.result)
+            state = self._frame.moved(position.y, balance.y, balance.gauge, forces)
+            balance = replace(balance, frame=state)
         if self._conditioning and loads:
             states = self._conditioning.moved(loads, position.time)
             balance = replace(balance, conditioning=states)
@@ -167,7 +175,7 @@ class Balancer:
 
     def fields(self, balance: Balance) -> Result:
         """The balance's contact with the fields of each patch; solved once more if need be."""
-        unknowns = np.array([balance.z, balance.roll, balance.pitch_rate, balance.y])
+        unknowns = np.array([getattr(balance, name) for name in self._unknowns])
         return self._with_fields(balance.position, unknowns, balance.result)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -178,7 +186,7 @@ class Balancer:
         if result is self._latest:
             return self._contact.last(fields=True)
         # no further time goes by
-        return self._contact.step(**moved(position, unknowns), time_step=0.0, fields=True)
+        return self._contact.step(**self._moved(position, unknowns), time_step=0.0, fields=True)
 
     def _balanced(self, position: Position) -> Root:
         root = self._search(position, self._start(position))
@@ -214,31 +222,49 @@ class Balancer:
         assert self._conditioning is not None
         result = self._with_fields(position, root.x, root.payload)
         track, wheelset = self._scene.case.track, self._scene.case.wheelset
-        at = moved(position, root.x)
+        at = self._place(position, root.x)
         centre = (0.0, at["y"], at["z"] - wheelset.nominal_radius)
-        return {
-            side: self._conditioning.load(
-                result[side],
-                Pose(centre, at["roll"], at["yaw"], getattr(track, side).offset[1]),
-            )
-            for side in SIDES
-        }
+        loads = {}
+        for side, way in zip(SIDES, APART, strict=True):
+            roller = getattr(track, side).offset[1] + way * at["gauge"]
+            pose = Pose(centre, at["roll"], at["yaw"], roller)
+            loads[side] = self._conditioning.load(result[side], pose)
+        return loads
+
+    def _place(self, position: Position, unknowns: Vector) -> dict[str, float]:
+        """Of the wheelset, and the gauge's opening."""
+        usual = {"y": position.y, "yaw": position.yaw, "gauge": 0.0}
+        return usual | dict(zip(self._unknowns, map(float, unknowns), strict=True))
+
+    def _moved(self, position: Position, unknowns: Vector) -> dict[str, Any]:
+        """The moving inputs of the contact."""
+        found: dict[str, Any] = self._place(position, unknowns)
+        opening = found.pop("gauge")
+        if "gauge" in self._unknowns:
+            track = self._scene.case.track
+            offsets = [getattr(track, side).offset for side in SIDES]
+            found["track"] = apart(opening, offsets)
+        if position.roller_pitch_rate is not None:
+            found["roller_pitch_rate"] = position.roller_pitch_rate
+        return found
 
     def _estimate(self, position: Position) -> Estimate:
         """Without friction, by the load of the scene, at the position's speed."""
         found = self._frictionless.estimate(position.y, position.yaw)
         speeds = np.array([1.0, 1.0, self._scene.speed_at(position) / self._scene.roller_rate])
-        unknowns = found.unknowns * speeds
-        if self._frame:
-            unknowns = np.append(unknowns, position.y)
-        return replace(found, unknowns=unknowns)
+        return replace(found, unknowns=self._with_extra(position, found.unknowns * speeds))
+
+    def _with_extra(self, position: Position, unknowns: Vector) -> Vector:
+        """With the further unknowns, of a frame at rest."""
+        at_rest = {"y": position.y, "gauge": 0.0}
+        return np.append(unknowns, [at_rest[name] for name in self._unknowns[len(unknowns) :]])
 
     def _start(self, position: Position) -> Vector:
         """Where the search starts; sets Broyden's Jacobian where that is known."""
         given = self._scene.rig.start
         if given is not None and position.index == 0:
-            known = [given.z, given.roll, given.pitch_rate]
-            return np.array([*known, position.y] if self._frame else known)
+            known = np.array([given.z, given.roll, given.pitch_rate])
+            return self._with_extra(position, known)
         prediction = self._predictor.predict(position)
         if self._broyden and prediction.jacobian is not None:
             self._broyden.jacobian = prediction.jacobian
@@ -254,74 +280,83 @@ class Balancer:
             return Evaluation(None, False, result)
         solved = all(result[side]["status"] in CARRIES for side in SIDES)
         found = residuals(self._scene, result, self._scene.load_at(position))
-        if self._frame is None:
-            return Evaluation(found, solved, result, lambda: self._slope(result, 0.0))
-        resistance = self._frame.resistance(float(unknowns[3]) - position.y)
-        found = np.append(found, result["force"][1] - resistance.force)
-        return Evaluation(found, solved, result, lambda: self._slope(result, resistance.stiffness))
+        deflection = opening = 0.0
+        if self._frame:
+            place = self._place(position, unknowns)
+            deflection, opening = place["y"] - position.y, place["gauge"]
+            more = self._frame.residuals(deflection, opening, lateral_forces(result))
+            found = np.append(found, more)
+        return Evaluation(found, solved, result, lambda: self._slope(result, deflection))
 
     def _step(self, position: Position, unknowns: Vector) -> Result:
         heat = self._scene.case.temperature
         if heat is None or heat.bulk is None:
-            self._latest = self._contact.step(**moved(position, unknowns))
+            self._latest = self._contact.step(**self._moved(position, unknowns))
             return self._latest
         # the time since the last position goes by once, before the first state that is solved
-        changes = moved(position, unknowns)
+        changes = self._moved(position, unknowns)
         self._latest = self._contact.step(**changes, time_step=self._pending)
         if self._latest.status in ("converged", "no_contact"):
             self._pending = 0.0
         return self._latest
 
-    def _slope(self, result: Result, stiffness: float) -> Vector:
-        """[n, n], of the residuals at the last state solved, with respect to the unknowns, with the
-        frame's stiffness (N/m)."""
+    def _slope(self, result: Result, deflection: float) -> Vector:
+        """[n, n], of the residuals at the last state solved, with respect to the unknowns, where
+        the frame is deflected (m)."""
         columns = []
         for name in self._unknowns:
-            rates = self._contact.differentiate(**{name: 1.0})
+            direction = {"track": apart(1.0)} if name == "gauge" else {name: 1.0}
+            rates = self._contact.differentiate(**direction)
             column = residual_rates(self._scene, result, rates)
             if self._frame:
-                resisted = stiffness if name == "y" else 0.0
-                column = np.append(column, rates["force"][1] - resisted)
+                more = self._frame.slopes(name, deflection, lateral_forces(rates))
+                column = np.append(column, more)
             columns.append(column)
         return np.column_stack(columns)
 
 
-def balance_of(position: Position, root: Root) -> Balance:
-    """What the search at a position ended with."""
-    z, roll, pitch_rate = (float(value) for value in root.x[:3])
+def balance_of(position: Position, root: Root, names: tuple[str, ...]) -> Balance:
+    """What the search at a position ended with. names: of the unknowns."""
+    at = {"y": position.y} | dict(zip(names, map(float, root.x), strict=True))
     missed = "out_of_range" if root.residual is None else "not_converged"
     return Balance(
         position,
         str(root.payload.status) if root.converged else missed,
-        z,
-        roll,
-        pitch_rate,
+        at["z"],
+        at["roll"],
+        at["pitch_rate"],
         root.residual,
         root.evaluations,
         root.iterations,
         root.restarts,
         root.payload,
-        float(root.x[3]) if len(root.x) > 3 else position.y,
+        at["y"],
+        at.get("gauge", 0.0),
     )
 
 
-def moved(position: Position, unknowns: Vector) -> dict[str, float]:
-    """The moving inputs of the contact; unknowns: [3], or [4] with the lateral position."""
-    found = {"y": position.y} | dict(zip(FRAME_UNKNOWNS, map(float, unknowns), strict=False))
-    if position.roller_pitch_rate is not None:
-        found["roller_pitch_rate"] = position.roller_pitch_rate
-    return {"yaw": position.yaw, **found}
+def apart(opening: float, offsets: Sequence[Sequence[float]] = ((0.0,) * 3,) * 2) -> dict[str, Any]:
+    """[track] of rollers that are apart by more than their offsets (m, [3], left and right)."""
+    return {
+        side: {"offset": [x, y + way * opening, z]}
+        for side, way, (x, y, z) in zip(SIDES, APART, offsets, strict=True)
+    }
 
 
-def settings_of(scene: RigScene, estimate: Estimate) -> Settings:
-    """How the balance is searched: lengths in parts of the approach, moments as force times 1 m."""
+def lateral_forces(result: Result) -> Vector:
+    """N, [2], on the wheels; of rates theirs."""
+    return np.array([result[side]["force"][1] for side in SIDES])
+
+
+def settings_of(scene: RigScene, estimate: Estimate, extra: int) -> Settings:
+    """How the balance is searched: lengths in parts of the approach, moments as force times 1 m.
+    extra: number of the frame's unknowns."""
     lengths = np.array([1.0, 2.0 / estimate.width]) * estimate.approach
     rate = abs(estimate.unknowns[2])
     difference = np.append(APPROACH_SHARE * lengths, PITCH_SHARE * rate)
     step_limit = np.append(APPROACH_LIMIT * lengths, PITCH_LIMIT * rate)
-    if scene.rig.frame:
-        difference = np.append(difference, LATERAL_DIFFERENCE)
-        step_limit = np.append(step_limit, LATERAL_LIMIT)
+    difference = np.append(difference, [LATERAL_DIFFERENCE] * extra)
+    step_limit = np.append(step_limit, [LATERAL_LIMIT] * extra)
     return Settings(
         residual_scale=np.full(len(difference), scene.vertical_force),
         difference=difference,

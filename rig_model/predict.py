@@ -35,8 +35,12 @@ class Predictor:
     balance best, measured with ``scale``, [n].
     """
 
-    def __init__(self, baseline: Callable[[Position], Vector], scale: Vector) -> None:
+    def __init__(
+        self, baseline: Callable[[Position], Vector], scale: Vector, extra: tuple[str, ...] = ()
+    ) -> None:
+        """extra: names of the unknowns after the baseline's; "y" counts from the position's."""
         self._baseline = baseline
+        self._extra = np.array([float(name == "y") for name in extra])
         self._scale = scale
         self._places: list[Vector] = []
         self._progress: list[float] = []
@@ -47,7 +51,8 @@ class Predictor:
         """Adds a balance that was found, and the Jacobian there."""
         self._places.append(place_of(position))
         self._progress.append(position.progress)
-        self._differences.append(unknowns - self._at(position, unknowns[3:] - position.y))
+        beyond = unknowns[self._count :] - self._extra * position.y
+        self._differences.append(unknowns - self._at(position, beyond))
         self._jacobians.append(jacobian)
         for kept in (self._places, self._progress, self._differences, self._jacobians):
             del kept[:-MEMORY]
@@ -55,22 +60,26 @@ class Predictor:
     def predict(self, position: Position) -> Prediction:
         """What is to be expected at the position."""
         if not self._differences:
-            return Prediction(self._at(position, np.zeros(max(len(self._scale) - 3, 0))))
+            return Prediction(self._at(position, np.zeros_like(self._extra)))
         seen = self._seen(place_of(position))
         if seen is not None:
-            ahead = self._differences[seen]
-            return Prediction(self._at(position, ahead[3:]) + ahead, self._jacobians[seen])
-        count = len(self._differences)
-        ahead = self._extrapolated(self._best_order(), count, position.progress)
-        return Prediction(self._at(position, ahead[3:]) + ahead)
+            ahead, jacobian = self._differences[seen], self._jacobians[seen]
+        else:
+            count = len(self._differences)
+            ahead = self._extrapolated(self._best_order(), count, position.progress)
+            jacobian = None
+        return Prediction(self._at(position, ahead[self._count :]) + ahead, jacobian)
 
-    def _at(self, position: Position, deflection: Vector) -> Vector:
-        """The baseline where the wheelset is: a frame, if it yields ([1], m; else [0]), lets it be
-        beside its actuators. The baseline of the lateral position itself is theirs."""
-        if not len(deflection):
-            return self._baseline(position)
-        beside = replace(position, y=position.y + float(deflection[0]))
-        return np.append(self._baseline(beside), position.y)
+    @property
+    def _count(self) -> int:
+        """Of the baseline's unknowns."""
+        return len(self._scale) - len(self._extra)
+
+    def _at(self, position: Position, beyond: Vector) -> Vector:
+        """The baseline where the wheelset is: a frame, if it yields, lets it be beside its
+        actuators. beyond: the further unknowns, of which the baseline has the actuators' place."""
+        beside = replace(position, y=position.y + float((self._extra * beyond).sum()))
+        return np.append(self._baseline(beside), self._extra * position.y)
 
     def _seen(self, place: Vector) -> int | None:
         """Index of the balance found at this place before."""

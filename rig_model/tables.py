@@ -52,7 +52,7 @@ class BalanceTable(Table):
 
 
 class FrameTable(Table):
-    """What yields between the lateral actuators and the wheelset."""
+    """What yields between the lateral actuators and the wheelset, and between the rollers."""
 
     stiffness: Positive | None = Field(
         default=None, description="N/m, of actuators and arms; or stiffness_table"
@@ -67,12 +67,25 @@ class FrameTable(Table):
         description="N/m, N: rows of stiffness and limit, of springs with a dry slider each "
         "(Jenkins elements), parallel to the spring",
     )
+    gauge_stiffness: Positive | None = Field(
+        default=None,
+        description="N/m, of a spring between the rollers, which the wheels spread: each gives way "
+        "by half of what the gauge opens; left out: rigid",
+    )
+
+    @property
+    def is_lateral(self) -> bool:
+        """Whether the wheelset moves against its actuators."""
+        return self.stiffness is not None or self.stiffness_table is not None
 
     @model_validator(mode="after")
     def _relations(self) -> FrameTable:
-        if (self.stiffness is None) == (self.stiffness_table is None):
-            shown = "missing" if self.stiffness is None else "given with 'stiffness_table'"
+        if self.stiffness is not None and self.stiffness_table is not None:
+            shown = "given with 'stiffness_table'"
             raise relation("stiffness", shown, "exactly one of 'stiffness', 'stiffness_table'")
+        if not self.is_lateral and (self.gauge_stiffness is None or self.friction):
+            allowed = "exactly one of 'stiffness', 'stiffness_table', or 'gauge_stiffness' alone"
+            raise relation("stiffness", "missing", allowed)
         for first, second in pairwise(self.stiffness_table or ()):
             if first[0] >= second[0] or first[1] >= second[1]:
                 raise relation("stiffness_table", [first, second], "deflections and forces rising")
@@ -172,8 +185,9 @@ class Rig(Table):
     balance: BalanceTable = Field(default=BalanceTable(), description="search for the balance (-)")
     frame: FrameTable | None = Field(
         default=None,
-        description="springs and dry friction between the lateral actuators and the wheelset (N/m, "
-        "N): lateral_position is that of the actuators then; left out: rigid",
+        description="springs and dry friction between the lateral actuators and the wheelset, "
+        "between the rollers (N/m, N): lateral_position is that of the actuators then; left out: "
+        "rigid",
     )
     conditioning: ConditioningTable | None = Field(
         default=None,

@@ -349,11 +349,14 @@ RIG_FRAME = Message(
         _number("deflection", "m", "of the wheelset from the actuators", "track"),
         _number("force", "N", "lateral, of the frame on the wheelset", "track"),
         _number("residual", "N", "open in the lateral balance", "track"),
-        _number("energy", "J", "stored in the frame's springs"),
+        _number("energy", "J", "stored in the frame's springs, between the rollers too"),
         _number("heat", "J", "of the frame's dry friction since the start"),
         _number("actuator_work", "J", "put in by the actuators since the first position"),
         _number("contact_work", "J", "put in by the lateral contact forces since then"),
         _count("sliding", "elements with dry friction that slid on the way to this position"),
+        _number("gauge_opening", "m", "by which the rollers are further apart", "track"),
+        _number("gauge_force", "N", "that spreads the rollers: the mean of both outward forces"),
+        _number("gauge_residual", "N", "open in the balance of the gauge"),
     ),
 )
 
