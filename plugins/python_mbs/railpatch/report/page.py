@@ -16,7 +16,7 @@ from railpatch.page.document import document
 from railpatch.page.figures import plot
 from railpatch.page.patch_figure import most_loaded, patch_figure, states_of
 from railpatch.page.tables import number, table, whole
-from railpatch.report import balance_figures, figures, reference, tables
+from railpatch.report import balance_figures, figures, reference, rig_page, tables
 from railpatch.report.beside import beside_log, beside_measured, beside_record
 from railpatch.report.beside_page import section
 from railpatch.report.data import Positions, positions, snapshot
@@ -107,6 +107,7 @@ def _sections(
         "<h2>Load transfer and position of the wheelset</h2>",
         plot(figures.wheelset_position(data, matches), "position"),
         *_along_the_track(data),
+        *rig_page.sections(data),
         "<h2>Contact patches</h2><p>Each point is one patch. Distances count outwards from the "
         "track's centre line; a contact angle is positive at a left wheel's flange.</p>",
         plot(figures.patches(data), "patches"),
