@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from railpatch.case.kinds import kind_of, write_example
 from railpatch.match import load_match
 from railpatch.match.model import model_of
+
+from rig_model.scene import NOMINAL, scenes
 
 TABLES = """
 [rig]
@@ -57,8 +58,8 @@ ROWS = ("0,6,1,1", "0.3,10,1,1", "0.5,12,1,1", "0.8,8,1,1", "1,6,1,1")
 
 @pytest.fixture
 def plan(tmp_path: Path):
-    path = write_example(kind_of("rig"), tmp_path / "rig")[0]
-    text = path.read_text()
+    path = tmp_path / "scene.toml"
+    text = (scenes() / NOMINAL).read_text()
     text = text[: text.index("[rig]")].replace("[0.4e-3, 0.4e-3]", "[1e-3, 1e-3]") + TABLES
     assert LAYER in text
     text = text.replace(LAYER, FASTSIM)
@@ -74,7 +75,6 @@ def test_every_key_moves_the_forces(plan) -> None:
     middle = np.full(len(KEYS), 0.5)
     base = model.at(middle)
     assert np.isfinite(base).all()
-    np.testing.assert_array_equal(model.at(middle), base)
     for k, key in enumerate(KEYS):
         moved = model.at(middle - 0.4 * (np.arange(len(KEYS)) == k))
         assert np.abs(moved - base).max() > 3 * RESIDUAL, key
