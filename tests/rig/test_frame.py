@@ -113,3 +113,17 @@ def test_energy_of_frame_and_gauge(scene_with):
 def test_gauge_needs_no_other_spring_and_friction_does(scene_with):
     with pytest.raises(CaseError, match=r"rig\.frame\.stiffness: value is missing"):
         load_rig_scene(scene_with(end=f"{GAUGE}friction = [[1e6, 1e3]]\n"))
+
+
+def test_dry_friction_lags(scene_with):
+    """The way back lies further out, by less than 2 h/k, and by 2 h where the force is alike."""
+    end = "\n[rig.frame]\nstiffness = 20e6\nfriction = [[400e6, 2e3]]\n"
+    overrides = {"yaw": [[0, 0.010], [0.5, 0.018], [1, 0.010]]}
+    overrides |= {"lateral_position": [[0, 0], [1, 0]]}
+    up, _, back = solved(scene_with(end=end), 3, **overrides)
+    lag = back.frame.deflection - up.frame.deflection
+    assert up.frame.force < 0
+    assert 0 < lag < 2 * 2e3 / 20e6
+    # spring and slider by hand: -F = k d + h on the way out, k d - h on the way back
+    for state, way in ((up.frame, 1), (back.frame, -1)):
+        assert -state.force == pytest.approx(20e6 * state.deflection + way * 2e3, rel=1e-9)
