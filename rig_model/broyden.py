@@ -136,7 +136,8 @@ class Broyden:
         return True
 
     def _step(self, function: Function, best: _Point, count: _Count) -> _Point | None:
-        """One step from the best point, shortened until f has a value; J is corrected by it."""
+        """One step from the best point, shortened until f has a value, and after a restart until it
+        is better; J is corrected by each."""
         assert self._jacobian is not None
         assert self._unknown_scale is not None
         try:
@@ -153,7 +154,9 @@ class Broyden:
             point = self._evaluate(function, best.x + step, count)
             if point is not None:
                 self._correct(step / self._unknown_scale, point.f - best.f)
-                return point
+                # across a kink J would swing between both slopes: there the step has to be shorter
+                if point.merit < best.merit or count.restarts == 0:
+                    return point
             step = 0.5 * step
         return None
 

@@ -127,3 +127,12 @@ def test_dry_friction_lags(scene_with):
     # spring and slider by hand: -F = k d + h on the way out, k d - h on the way back
     for state, way in ((up.frame, 1), (back.frame, -1)):
         assert -state.force == pytest.approx(20e6 * state.deflection + way * 2e3, rel=1e-9)
+
+
+def test_where_a_second_patch_takes_over(measured_file, tmp_path):
+    """Near -18 mrad the left wheel's second patch bends the lateral force's slope to ten times."""
+    path = tmp_path / "scene.toml"
+    path.write_text(measured_file.read_text() + "\n[rig.frame]\nstiffness = 20e6\n")
+    overrides = {"yaw": [[0, -0.014], [1, -0.018]]}
+    overrides |= {"lateral_position": [[0, -6.563816e-3], [0.5, -6.588622e-3], [1, -6.6e-3]]}
+    assert all(balance.converged for balance in solved(path, 3, **overrides))
