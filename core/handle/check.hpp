@@ -6,8 +6,9 @@
 
 namespace railpatch {
 
-inline constexpr uint32_t config_cookie = 0x52504331;  // "RPC1"
-inline constexpr uint32_t input_cookie = 0x52504931;   // "RPI1"
+inline constexpr uint32_t config_cookie = 0x52504331;      // "RPC1"
+inline constexpr uint32_t input_cookie = 0x52504931;       // "RPI1"
+inline constexpr uint32_t subsurface_cookie = 0x52505331;  // "RPS1"
 
 // Influence coefficients of fitted rows are four numbers for every pair of nodes, here 170 MB.
 inline constexpr int max_fitted_nodes = 48 * 48;

@@ -36,6 +36,7 @@ contact::contact(const rp_config &config)
     const scene made = scene_of(c);
     levels_.push_back(std::make_unique<grid_level>(made));
     tolerance_ = made.tolerance;
+    largest_ = {std::max(largest_.nx, made.largest.nx), std::max(largest_.ny, made.largest.ny)};
     std::copy_n(made.bulk_temperature, 2, bulk_temperature_);
   }
   select(0);
@@ -53,6 +54,11 @@ contact::contact(const rp_config &config)
 }
 
 contact::~contact() = default;
+
+const patch_memory *contact::solution(int side, int patch) const {
+  const patch_memory *found = driver_->find(side, patch);
+  return found && found->solved ? found : nullptr;
+}
 
 void contact::step(const rp_input &input, rp_result &result) {
   if (derivative_) begin_record();

@@ -36,6 +36,10 @@ class contact {
 
   rp_error field(int side, int patch, rp_field field, double *values, size_t *count) const;
   void describe(rp_stage_info *info) const;
+  // What a patch's solution left, null where there is none of the last step.
+  const patch_memory *solution(int side, int patch) const;
+  bool mirrors(int side) const { return driver_->mirrors(side); }
+  grid_size largest_grid() const { return largest_; }
   // As the checks of inputs read it; its arrays are gone.
   const rp_config &config() const { return config_; }
   // Whether it was made from the same config, with the same arrays.
@@ -77,6 +81,7 @@ class contact {
   driver *driver_ = nullptr;  // of that level
   double excess_ = 0;         // of the last step's estimate over what is allowed
   std::vector<unsigned char> noted_;
+  grid_size largest_;
   double tolerance_ = 0;
   double bulk_temperature_[2] = {0, 0};            // degrees C, where a step says nothing else
   std::unique_ptr<derivative_record> derivative_;  // null: no derivatives

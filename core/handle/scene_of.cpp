@@ -268,6 +268,7 @@ scene scene_of(const rp_config &c) {
     for (auto &wheel : wheels.wheel) wheel.keeps_solutions = made.patch.exact;
     wheels.largest = largest = largest_of_wheels(c, rules);
   }
+  made.largest = largest;
   set_transforms(c, largest, made);
   return made;
 }

@@ -15,6 +15,7 @@ namespace railpatch {
 struct scene {
   patch_scene patch;
   std::vector<int> transforms[2];  // sizes along rolling and lateral, ascending
+  grid_size largest;               // of a patch
   stage_marks marks;
   double tolerance = 0;                 // as asked for
   double bulk_temperature[2] = {0, 0};  // degrees C, where a step says nothing else

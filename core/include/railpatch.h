@@ -839,6 +839,64 @@ RP_API void rp_reset(rp_contact *contact);
 RP_API rp_error rp_get_field(const rp_contact *contact, int side, int patch, rp_field field,
                              double *values, size_t *count);
 
+/* --- below the surface: stresses and displacements in one of the bodies under a patch of the last
+ * step, a half-space under the patch's pressure and tractions (elements of uniform load: Love 1929;
+ * Johnson 1985, chapter 3). Components along x, s, n of the contact frame, n into the rail; tension
+ * > 0. Of a curved reference surface s is its arc length. ---------------------------------------
+ */
+typedef struct rp_subsurface rp_subsurface;
+
+#define RP_BODIES(X)           \
+  X(RP_BODY_WHEEL, 0, "wheel") \
+  X(RP_BODY_RAIL, 1, "rail")
+typedef enum rp_body { RP_BODIES(RP_ENUM_ENTRY) } rp_body;
+
+typedef struct rp_subsurface_config {
+  uint32_t cookie;       /* set by rp_default_subsurface */
+  int32_t depth_count;   /* 1 ... 1000 */
+  const double *depth;   /* m, 0 ... 1, below the body's own surface */
+  int32_t displacements; /* 1: beside the stresses; a line contact has none */
+  int32_t
+      max_elements[2]; /* >= 0; 0: all that the contact may have; fitted rows: twice the nodes */
+  double dang_van;     /* -, 0 ... 3, weight of the hydrostatic stress in Dang Van's criterion:
+                          3 t/s - 3/2 by the fatigue limits t in torsion, s in bending */
+} rp_subsurface_config;
+
+#define RP_SUBSURFACE_FIELDS(X)                                                         \
+  X(RP_SUBSURFACE_X, 0, "x") /* m, [nx] */                                              \
+  X(RP_SUBSURFACE_Y, 1, "y") /* m, [ny] */                                              \
+  /* Pa, [6][depths][ny][nx]: xx, ss, nn, xs, sn, nx */                                 \
+  X(RP_SUBSURFACE_STRESS, 2, "stress")                                                  \
+  /* m, [3][depths][ny][nx], against the body far away */                               \
+  X(RP_SUBSURFACE_DISPLACEMENT, 3, "displacement")                                      \
+  /* Pa, [3][depths][ny][nx], from the greatest */                                      \
+  X(RP_SUBSURFACE_PRINCIPAL_STRESS, 4, "principal_stress")                              \
+  X(RP_SUBSURFACE_VON_MISES, 5, "von_mises")           /* Pa, [depths][ny][nx] */       \
+  X(RP_SUBSURFACE_GREATEST_SHEAR, 6, "greatest_shear") /* Pa, [depths][ny][nx] */       \
+  /* Pa, [depths][ny]: greatest shear about the shakedown state plus dang_van times the \
+   * hydrostatic stress, the most as a point passes below the contact along x */        \
+  X(RP_SUBSURFACE_DANG_VAN, 7, "dang_van")
+typedef enum rp_subsurface_field { RP_SUBSURFACE_FIELDS(RP_ENUM_ENTRY) } rp_subsurface_field;
+
+RP_API void rp_default_subsurface(rp_subsurface_config *config);
+/* Memory for the patches of a contact, or of others with the same grids and materials. */
+RP_API rp_error rp_create_subsurface(const rp_contact *contact, const rp_subsurface_config *config,
+                                     rp_subsurface **subsurface, rp_message *message);
+RP_API void rp_destroy_subsurface(rp_subsurface *subsurface); /* null is allowed */
+/* Of the contact's last step; body: an rp_body. Allocates nothing. RP_ERROR_NO_FIELD: no
+ * such patch, or its theories give no pressure element by element. */
+RP_API rp_error rp_solve_subsurface(rp_subsurface *subsurface, const rp_contact *contact, int side,
+                                    int patch, int body, rp_message *message);
+/* Copies a field of the last solution, as rp_get_field does. */
+RP_API rp_error rp_get_subsurface_field(rp_subsurface *subsurface, rp_subsurface_field field,
+                                        double *values, size_t *count);
+/* At any points, [count][3]: m, x and y of the contact frame, depth below the body's surface;
+ * values: [count][9]: stresses and displacements, as the fields have them. Costs as much as points
+ * times elements. Not of a line contact. */
+RP_API rp_error rp_stress_at(const rp_contact *contact, int side, int patch, int body,
+                             const double *points, size_t count, double *values,
+                             rp_message *message);
+
 /* The state that later steps depend on, as plain bytes with version and checksum. A restored
  * handle (same config) steps to the same bits. */
 RP_API size_t rp_state_size(const rp_contact *contact);

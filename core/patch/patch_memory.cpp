@@ -29,12 +29,13 @@ patch_memory::patch_memory(int max_count, int max_rows, const patch_scene &scene
   if (!scene.is_fitted()) return;
   node_x = aligned_buffer<double>(count);
   node_y = aligned_buffer<double>(static_cast<size_t>(scene.fitted[1]));
+  node_height = aligned_buffer<double>(node_y.size());
   node_pressure = aligned_buffer<double>(count);
 }
 
 size_t patch_memory::bytes() const {
   return undeformed_distance.bytes() + pressure.bytes() + 4 * px.bytes() + division.bytes() +
-         2 * node_x.bytes() + node_y.bytes() + row_friction.bytes() + creepage.bytes() +
+         2 * node_x.bytes() + 2 * node_y.bytes() + row_friction.bytes() + creepage.bytes() +
          slope_fields.bytes() + history.bytes() + (curved ? curved->bytes() : 0);
 }
 

@@ -66,13 +66,13 @@ struct patch_memory {
   std::array<double, 3> reference{};  // m, contact reference, track axes of a right wheel
   aligned_buffer<double> undeformed_distance, pressure, px, py, sx, sy;
   aligned_buffer<unsigned char> division;
-  aligned_buffer<double> node_x, node_y, node_pressure;  // fitted rows only
-  aligned_buffer<double> row_friction;                   // factor of each grid row, where it varies
-  aligned_buffer<double> slope_fields;                   // of slopes
-  surface_slopes slopes;                                 // where pressure acts along local normals
-  turning_energy turning;                                // of the last solution, where it has one
-  aligned_buffer<double> creepage;                       // [2], of a prescribed creep force only
-  bool estimated = false;  // the last step's errors, from the features
+  aligned_buffer<double> node_x, node_y, node_height, node_pressure;  // fitted rows only
+  aligned_buffer<double> row_friction;  // factor of each grid row, where it varies
+  aligned_buffer<double> slope_fields;  // of slopes
+  surface_slopes slopes;                // where pressure acts along local normals
+  turning_energy turning;               // of the last solution, where it has one
+  aligned_buffer<double> creepage;      // [2], of a prescribed creep force only
+  bool estimated = false;               // the last step's errors, from the features
   std::array<double, error_feature_count> error_features{};
   patch_history history;
   physics_part<heat_memory> heat;
@@ -84,7 +84,9 @@ struct patch_memory {
   tangential_fields fields() {
     return {px.data(), py.data(), sx.data(), sy.data(), division.data()};
   }
-  fitted_fields nodes() { return {node_x.data(), node_y.data(), node_pressure.data(), fields()}; }
+  fitted_fields nodes() {
+    return {node_x.data(), node_y.data(), node_height.data(), node_pressure.data(), fields()};
+  }
   // No contact: nothing is transferred, and every element of the grid is exterior.
   void unload(const grid &on, const bound_law *law);
   size_t bytes() const;

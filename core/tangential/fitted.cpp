@@ -87,11 +87,13 @@ void fitted_solver::release(const contact_rows &rows, int direction, fitted_fiel
   for (double *field : {fields.x, fields.pressure, t.px, t.py, t.sx, t.sy})
     std::fill_n(field, count, 0.0);
   std::fill_n(fields.y, rows.strips(), 0.0);
+  std::fill_n(fields.height, rows.strips(), 0.0);
   std::fill_n(t.division, count, static_cast<unsigned char>(RP_EXTERIOR));
   for_each_node(rows, direction,
                 [&](int row, int k, size_t element, size_t ix, size_t iy, size_t at) {
                   fields.x[at] = rows[row].x + direction * rows[row].half_length * rows.cosine(k);
                   fields.y[rows[row].strip] = rows[row].y;
+                  fields.height[rows[row].strip] = rows[row].height;
                   fields.pressure[at] = rows.pressure(row, k);
                   t.px[at] = p_[ix];
                   t.py[at] = p_[iy];

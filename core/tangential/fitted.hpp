@@ -12,6 +12,7 @@ namespace railpatch {
 struct fitted_fields {
   double *x;         // m
   double *y;         // m, [strip]
+  double *height;    // m, [strip]
   double *pressure;  // Pa; start in (of the traction's start), solution out
   tangential_fields traction;
 };

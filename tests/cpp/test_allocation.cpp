@@ -527,6 +527,42 @@ TEST(Derivatives, OfAPatchAllocateNothing) {
         }
 }
 
+TEST(Subsurface, AllocatesNothing) {
+  for (const int fitted : {0, 12}) {
+    rp_config c = scenes::patch(RP_NORMAL_HERTZ, RP_TANGENTIAL_FULL, 14);
+    if (fitted) c.fitted[0] = c.fitted[1] = fitted;
+    scenes::handle contact(c);
+    const double depth[] = {0.5e-3, 1e-3, 2e-3};
+    rp_subsurface_config config;
+    rp_default_subsurface(&config);
+    config.depth = depth;
+    config.depth_count = 3;
+    rp_subsurface *below = nullptr;
+    ASSERT_EQ(rp_create_subsurface(contact.get(), &config, &below, nullptr), RP_OK);
+    std::vector<double> values(100000);
+    auto result = std::make_unique<rp_result>();
+    const std::vector<rp_input> inputs = patch_inputs();
+    int wrong = 0;
+    const int allocated = allocations([&] {
+      for (const rp_input &in : inputs) {
+        rp_step(contact.get(), &in, result.get(), nullptr);
+        if (result->status != RP_CONVERGED) continue;
+        for (const int body : {RP_BODY_WHEEL, RP_BODY_RAIL}) {
+          wrong += rp_solve_subsurface(below, contact.get(), RP_RIGHT, 0, body, nullptr) != RP_OK;
+          for (const rp_subsurface_field field :
+               {RP_SUBSURFACE_STRESS, RP_SUBSURFACE_VON_MISES, RP_SUBSURFACE_DANG_VAN}) {
+            size_t count = values.size();
+            wrong += rp_get_subsurface_field(below, field, values.data(), &count) != RP_OK;
+          }
+        }
+      }
+    });
+    EXPECT_EQ(allocated, 0) << "fitted " << fitted;
+    EXPECT_EQ(wrong, 0);
+    rp_destroy_subsurface(below);
+  }
+}
+
 TEST(Derivatives, ByDifferencesAllocateNothing) {
   rp_config fast = scenes::patch(RP_NORMAL_HERTZ, RP_TANGENTIAL_FASTSIM, 12);
   EXPECT_EQ(allocated_by_derivatives(fast, patch_inputs(), RP_DERIVATIVE_BY_DIFFERENCES), 0);

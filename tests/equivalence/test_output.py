@@ -102,6 +102,8 @@ CASES: dict[tuple[str, str], Callable[[Path], list[object]]] = {
     ("fmu", "patch.toml"): lambda f: ["fmu", patch(f)],
     ("fmu", "gap.csv"): lambda f: ["fmu", patch(f)],
     ("fmu", ROLLER): lambda f: ["fmu", rig_scene(f)],
+    ("subsurface", "patch.toml"): lambda f: ["subsurface", patch(f)],
+    ("subsurface", "gap.csv"): lambda f: ["subsurface", patch(f)],
     ("report", "run.mcap"): lambda f: ["report", log(f)],
     ("export", "run.mcap"): lambda f: ["export", log(f)],
     ("layout", "run.mcap"): lambda f: ["layout", log(f)],

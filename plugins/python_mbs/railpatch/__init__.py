@@ -15,6 +15,7 @@ from railpatch.contact import Contact, solve
 from railpatch.errors import CaseError, ProfileError, StateError
 from railpatch.many import States, solve_many
 from railpatch.result import Result
+from railpatch.subsurface import Subsurface
 
 __version__ = _version()
 
@@ -25,6 +26,7 @@ __all__ = [
     "Result",
     "StateError",
     "States",
+    "Subsurface",
     "__version__",
     "solve",
     "solve_many",

@@ -5,6 +5,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
 
 #include <algorithm>
 #include <cstring>
@@ -14,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "below.hpp"
 #include "convert.hpp"
 #include "elementary.hpp"
 #include "fast/theories.hpp"
@@ -211,6 +213,12 @@ class Contact : public Steppable {
     return FieldArray(data, {count}, owner);
   }
 
+  std::unique_ptr<Below> below(std::vector<double> depths, bool displacements, double dang_van) {
+    const Turn turn(mutex_);
+    return std::make_unique<Below>(contact_.get(), mutex_, std::move(depths), displacements,
+                                   dang_van);
+  }
+
   nb::bytes save() {
     const Turn turn(mutex_);
     std::string buffer(rp_state_size(contact_.get()), '\0');
@@ -384,6 +392,7 @@ NB_MODULE(_core, m) {
   m.attr("LAYOUTS") = layouts();
 
   bind_outcome(m);
+  bind_below(m);
   nb::class_<Steppable>(m, "Steppable", "A contact that a force element may step.");
   nb::class_<Contact, Steppable>(m, "Contact", "A handle of the library with its state and memory.")
       .def(nb::init<const nb::dict &, bool>(), nb::arg("config"), nb::arg("timing") = false,
@@ -422,6 +431,9 @@ NB_MODULE(_core, m) {
            "without Python's own, and the results of the last pass.")
       .def("field", &Contact::field, nb::arg("side"), nb::arg("patch"), nb::arg("name"),
            "A field of the last step as a flat array, x fastest; None where it does not exist.")
+      .def("below", &Contact::below, nb::keep_alive<0, 1>(), nb::arg("depths"),
+           nb::arg("displacements"), nb::arg("dang_van"),
+           "Stresses below the surface at depths (m); displacements: these too.")
       .def("save", &Contact::save, "The state that later steps depend on, as bytes.")
       .def("restore", &Contact::restore, nb::arg("state"), "Brings back a saved state.")
       .def("reset", &Contact::reset, "Forgets the warm start.")

@@ -29,6 +29,7 @@ ROOMS = {
     "profile": "profiles.pairing",
     "report": "report",
     "stress": "evidence.stress",
+    "subsurface": "below",
     "sweep": "sweep",
     "table": "evidence.table",
 }
