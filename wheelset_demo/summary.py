@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,32 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from railpatch.case.types import SIDES
+from railpatch.log.waves import Waves, waves
 from railpatch.pressure_error import run_doubts
 
 from wheelset_demo.system import WORKS
 from wheelset_demo.trace import Trace
 
 Vector = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Waves:
-    """The wheelset's waves along the track.
-
-    length: m, mean of those found. count: half waves between zero crossings of y. first, last: m,
-    amplitudes. conicity: -, half the difference of the rolling radii over y, by least squares over
-    the run. half_distance: m, of the contacts, mean. klingel: m, 2 pi sqrt(r0 e0 / conicity) of
-    these. NaN where the run is too short.
-    """
-
-    length: float
-    count: int
-    first: float
-    last: float
-    conicity: float
-    radius: float
-    half_distance: float
-    klingel: float
 
 
 @dataclass(frozen=True)
@@ -153,61 +133,12 @@ def largest(values: Vector) -> float:
 
 def waves_of(trace: Trace) -> Waves:
     """Waves of the lateral position over the distance run."""
-    x, y = trace.coordinate(0), trace.coordinate(1)
-    crossings, peaks = half_waves(x, y)
-    length = 2 * float(np.mean(np.diff(crossings))) if len(crossings) > 1 else math.nan
-    conicity, distance = conicity_of(trace), half_distance_of(trace)
-    radius = mean(np.array(trace.radii))
-    curvature = conicity / (radius * distance) if distance > 0 else math.nan
-    return Waves(
-        length,
-        max(0, len(crossings) - 1),
-        float(abs(y[0])) if len(y) else math.nan,
-        float(peaks[-1]) if len(peaks) else math.nan,
-        conicity,
-        radius,
-        distance,
-        2 * math.pi / math.sqrt(curvature) if curvature > 0 else math.nan,
+    count = len(trace.times)
+    return waves(
+        trace.coordinate(0),
+        trace.coordinate(1),
+        trace.coordinate(3),
+        np.array(trace.radii).reshape(count, 2),
+        np.array(trace.contacts).reshape(count, 2),
+        trace.scene.case.wheelset.nominal_radius,
     )
-
-
-def half_waves(x: Vector, y: Vector) -> tuple[Vector, Vector]:
-    """Zero crossings of y over x, [k], and the largest |y| between them, [k - 1].
-
-    Crossings by a straight line between neighbours.
-    """
-    at = np.flatnonzero(y[1:] * y[:-1] < 0) if len(y) > 1 else np.zeros(0, dtype=int)
-    crossings = x[at] - y[at] * (x[at + 1] - x[at]) / (y[at + 1] - y[at])
-    pairs = itertools.pairwise(at)
-    peaks = [float(np.abs(y[i + 1 : j + 1]).max()) for i, j in pairs]
-    return crossings, np.array(peaks)
-
-
-def conicity_of(trace: Trace) -> float:
-    """Slope of half the radii's difference over y at the height of the rails, through the origin.
-
-    The wheelset rolls about its axle, one radius above the rails, so that its tread moves by
-    y - r0 roll; pure rolling makes that coordinate the one whose waves are Klingel's.
-    """
-    if len(trace.times) < 2:
-        return math.nan
-    radius = trace.scene.case.wheelset.nominal_radius
-    y = trace.coordinate(1) - radius * trace.coordinate(3)
-    radii = np.array(trace.radii)
-    known = np.isfinite(radii).all(axis=1)
-    if not (y[known] ** 2).sum() > 0:
-        return math.nan
-    half = 0.5 * (radii[known, 1] - radii[known, 0])
-    return float((half @ y[known]) / (y[known] @ y[known]))
-
-
-def half_distance_of(trace: Trace) -> float:
-    """m, mean half distance of the contacts."""
-    contacts = np.array(trace.contacts)
-    return 0.5 * mean(contacts[:, 1] - contacts[:, 0]) if len(contacts) else math.nan
-
-
-def mean(values: Vector) -> float:
-    """Of those that are known."""
-    known = values[np.isfinite(values)]
-    return float(known.mean()) if known.size else math.nan
