@@ -13,7 +13,7 @@ from railpatch.case.types import SIDES
 from railpatch.page.figures import styled
 
 ELEMENT_STATES: tuple[str, ...] = _core.CHOICES["element"]
-_STATE_COLORS = ("rgba(128,128,128,0.12)", "#3b7dc4", "#e0812b", "#b23a48")
+STATE_COLORS = ("rgba(128,128,128,0.12)", "#3b7dc4", "#cf6f17", "#b23a48")
 _ROWS = ("pressure", "traction", "division")
 _ARROWS = 16  # at most, along each direction
 
@@ -46,7 +46,7 @@ def patches_figure(grids: dict[str, dict[str, Any] | None]) -> go.Figure:
                 y=[None],
                 mode="markers",
                 name=ELEMENT_STATES[number],
-                marker={"color": _STATE_COLORS[number], "symbol": "square", "size": 12},
+                marker={"color": STATE_COLORS[number], "symbol": "square", "size": 12},
             ),
             row=3,
             col=1,
@@ -81,13 +81,14 @@ def states_of(shown: list[dict[str, Any]]) -> list[int]:
 
 def most_loaded(patches: list[dict[str, Any]]) -> dict[str, Any] | None:
     """The patch with the largest sum of pressure times element area, or None."""
+    return max(patches, key=load_of, default=None)
 
-    def load(grid: dict[str, Any]) -> float:
-        x, y = grid["x"], grid["y"]
-        area = (np.ptp(x) / max(1, x.shape[1] - 1)) * (np.ptp(y) / max(1, x.shape[0] - 1))
-        return float(grid["pressure"].sum() * area)
 
-    return max(patches, key=load, default=None)
+def load_of(grid: dict[str, Any]) -> float:
+    """N, sum of pressure times element area."""
+    x, y = grid["x"], grid["y"]
+    area = (np.ptp(x) / max(1, x.shape[1] - 1)) * (np.ptp(y) / max(1, x.shape[0] - 1))
+    return float(grid["pressure"].sum() * area)
 
 
 def regular(grid: dict[str, Any]) -> dict[str, Any]:
@@ -98,6 +99,7 @@ def regular(grid: dict[str, Any]) -> dict[str, Any]:
     x, y = 1e3 * grid["x"], 1e3 * grid["y"]
     pressure, division = 1e-6 * grid["pressure"], grid["element_division"]
     traction = None if grid["traction"] is None else 1e-6 * grid["traction"]
+    temperature = grid.get("temperature")
     axis = x[0]
     if not np.allclose(x, axis):
         axis = np.linspace(x.min(), x.max(), 2 * x.shape[1])
@@ -108,12 +110,15 @@ def regular(grid: dict[str, Any]) -> dict[str, Any]:
             nearest = [abs(axis[:, None] - row).argmin(axis=1) for row in x]
             division = np.stack([row[n] for row, n in zip(division, nearest, strict=True)])
             division[pressure <= 0] = 0
+        if temperature is not None:
+            temperature = _onto(axis, x, temperature)
     return {
         "x": axis,
         "y": y.mean(axis=1),
         "pressure": pressure,
         "traction": traction,
         "division": division,
+        "temperature": temperature,
     }
 
 
@@ -136,7 +141,8 @@ def _pressure(
             zmax=top,
             showscale=scale,
             colorbar=_bar("MPa", 0),
-            hovertemplate="%{x:.2f}, %{y:.2f} mm: %{z:.0f} MPa<extra></extra>",
+            hoverongaps=False,
+            hovertemplate="x %{x:.2f}, y %{y:.2f} mm<br>pressure %{z:.0f} MPa<extra></extra>",
         ),
         row=1,
         col=column,
@@ -169,7 +175,8 @@ def _traction(figure: go.Figure, grid: dict[str, Any], column: int) -> None:
             z=np.where(size > 0, size, np.nan),
             colorscale="Cividis",
             coloraxis="coloraxis",
-            hovertemplate="%{x:.2f}, %{y:.2f} mm: %{z:.0f} MPa<extra></extra>",
+            hoverongaps=False,
+            hovertemplate="x %{x:.2f}, y %{y:.2f} mm<br>traction %{z:.0f} MPa<extra></extra>",
         ),
         row=2,
         col=column,
@@ -225,7 +232,7 @@ def _division(figure: go.Figure, grid: dict[str, Any], column: int) -> None:
     count = len(ELEMENT_STATES)
     steps = [
         [edge, color]
-        for code, color in enumerate(_STATE_COLORS)
+        for code, color in enumerate(STATE_COLORS)
         for edge in (code / count, (code + 1) / count)
     ]
     names = np.array(ELEMENT_STATES)[grid["division"]]
@@ -241,7 +248,7 @@ def _division(figure: go.Figure, grid: dict[str, Any], column: int) -> None:
             text=names,
             xgap=0.5,
             ygap=0.5,
-            hovertemplate="%{x:.2f}, %{y:.2f} mm: %{text}<extra></extra>",
+            hovertemplate="x %{x:.2f}, y %{y:.2f} mm<br>%{text}<extra></extra>",
         ),
         row=3,
         col=column,

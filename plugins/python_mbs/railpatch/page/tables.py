@@ -26,6 +26,22 @@ def number(value: float) -> str:
     return f"{value:.4g}".replace("-", "\u2212") if abs(value) < 9999.5 else whole(value)
 
 
+def short(value: float) -> str:
+    """Three digits, for what is read at a glance; very large and small ones with a power of ten."""
+    if not np.isfinite(value):
+        return "-"
+    digits, _, power = f"{value:.2e}".partition("e")
+    if value == 0 or -4 < int(power) < 6:
+        return number(float(f"{value:.3g}"))
+    return f"{float(digits):g}\u00d710{power_text(int(power))}".replace("-", "\u2212")
+
+
+def power_text(power: int) -> str:
+    """In superscript digits."""
+    return str(power).translate(str.maketrans("-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3"
+        "\u2074\u2075\u2076\u2077\u2078\u2079"))  # fmt: skip
+
+
 def whole(value: float) -> str:
     """Whole number with thin spaces between thousands; a dash where there is no number."""
     if not np.isfinite(value):
