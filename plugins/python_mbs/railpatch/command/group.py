@@ -23,6 +23,7 @@ ROOMS = {
     "bench": "evidence.bench",
     "continuity": "evidence.continuity",
     "export": "export",
+    "figure": "report",
     "fmu": "fmu",
     "layout": "layout",
     "match": "match",

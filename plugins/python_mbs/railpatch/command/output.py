@@ -9,9 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from railpatch.command.group import WrongCall
+from railpatch.page.browser import BrowserError, find_browser
+from railpatch.page.printing import PDF
 
 Name = str | os.PathLike[str] | None
-PAGE = (".html", ".htm", "")
+PAGE = (".html", ".htm", ".pdf", "")
 READ = {".toml": "the scene", ".mcap": "the log"}
 
 
@@ -35,6 +37,11 @@ def check_page(output: Path, *inputs: Name) -> None:
     check_output(output, *inputs)
     if output.suffix.lower() not in PAGE and not output.is_char_device():
         raise refusal(output, f"a name that ends in {' or '.join(filter(None, PAGE))}")
+    if output.suffix.lower() == PDF:
+        try:
+            find_browser()
+        except BrowserError as error:
+            raise WrongCall(str(error)) from None
 
 
 def refuse_same(output: Path | None, *inputs: Name) -> None:

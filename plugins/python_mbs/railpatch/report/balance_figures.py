@@ -9,17 +9,17 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from railpatch.log.reader import Series
-from railpatch.page.figures import GREY, styled
+from railpatch.page.figures import BAD, COLORS, GREY, styled
 from railpatch.report.data import Positions, scaled
 from railpatch.report.figures import Adder
 
 if TYPE_CHECKING:
     from railpatch.report.vehicle.data import VehicleRun
 
-_AXES = {"x": "#3b7dc4", "y": "#e0812b", "z": "#5f9e6e"}
+_AXES = {"x": "#3b7dc4", "y": "#cf6f17", "z": "#4f9163"}
 _WORKS = {
     "friction": ("friction_work", "#c2528b"),
-    "dampers": ("damping_work", "#5f9e6e"),
+    "dampers": ("damping_work", "#4f9163"),
     "drive": ("drive_work", "#17879c"),
 }
 _OPEN = {
@@ -76,6 +76,45 @@ def momentum_errors(series: Series) -> tuple[float, float]:
     return found[0], found[1]
 
 
+def root_locus(found: dict[str, Any]) -> go.Figure:
+    """Frequency over growth of the slowest wave, a point for each speed; right of zero it grows."""
+    modes = sorted(found["modes"], key=lambda mode: mode["speed"])
+    known = [mode for mode in modes if mode.get("frequency")]
+    figure = go.Figure()
+    figure.add_trace(
+        go.Scatter(
+            x=[mode["growth"] for mode in known],
+            y=[mode["frequency"] for mode in known],
+            text=[f"{mode['speed']:.4g} m/s" for mode in known],
+            name="eigenvalue",
+            mode="lines+markers",
+            marker={
+                "size": 9,
+                "color": [COLORS["right" if m["growth"] > 0 else "left"] for m in known],
+            },
+            line={"color": GREY},
+            showlegend=False,
+        )
+    )
+    critical = found["critical_speed"]
+    if critical is not None:
+        figure.add_trace(
+            go.Scatter(
+                x=[0.0],
+                y=[found["frequency"]],
+                text=[f"{critical:.4g} m/s"],
+                name="critical speed",
+                mode="markers+text",
+                textposition="top left",
+                marker={"size": 14, "symbol": "diamond-open", "color": BAD, "line": {"width": 2}},
+                showlegend=False,
+            )
+        )
+    figure.update_xaxes(title_text="growth [1/s]")
+    figure.update_yaxes(title_text="frequency [Hz]")
+    return styled(figure, 440)
+
+
 def hunting(found: dict[str, Any]) -> go.Figure:
     """Growth and frequency of the slowest wave over the speed, from eigenvalues and from runs."""
     figure = make_subplots(1, 2, horizontal_spacing=0.12)
@@ -99,7 +138,7 @@ def hunting(found: dict[str, Any]) -> go.Figure:
                     legendgroup=name,
                     showlegend=column == 1,
                     mode=mode,
-                    marker={**marker, "color": GREY if mode != "markers" else "#d62839"},
+                    marker={**marker, "color": GREY if mode != "markers" else BAD},
                 ),
                 row=1,
                 col=column,

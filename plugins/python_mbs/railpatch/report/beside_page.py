@@ -8,11 +8,11 @@ import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from railpatch.page.figures import GREY, plot, styled
+from railpatch.page.figures import COLORS, GREY, OTHER, plot, styled
 from railpatch.page.tables import number, table
 from railpatch.report.beside import Beside, Pair
 
-_OWN, _OTHER = "#3b7dc4", "#c2528b"
+_OWN, _OTHER = COLORS["left"], OTHER
 _MANY = 2000  # points of a curve; longer ones are thinned for the page
 _FEW = 300  # points that are shown one by one
 

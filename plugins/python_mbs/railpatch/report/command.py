@@ -8,6 +8,10 @@ import click
 
 from railpatch.command.group import quiet_flag, wrong_call
 from railpatch.command.output import check_page
+from railpatch.page.browser import BrowserError
+from railpatch.report.figure_command import figure
+
+__all__ = ["figure", "report"]
 
 
 @click.command("report")
@@ -17,8 +21,8 @@ from railpatch.command.output import check_page
     "--output",
     required=True,
     type=click.Path(dir_okay=False, writable=True),
-    metavar="REPORT.html",
-    help="The page to write.",
+    metavar="REPORT.html|.pdf",
+    help="The page to write; a PDF is made by Chromium, Chrome or Edge.",
 )
 @click.option(
     "--at",
@@ -69,7 +73,7 @@ def report(
 
     try:
         written = write_report(run, output, reference, at, columns=columns, beside=beside)
-    except (ValueError, OSError) as error:
+    except (BrowserError, ValueError, OSError) as error:
         raise wrong_call(error) from None
     if not quiet:
         click.echo(written)

@@ -192,4 +192,7 @@ def grid_of(patch: dict[str, Any]) -> dict[str, Any]:
     grid["traction"] = (
         np.moveaxis(np.reshape(traction, (2, rows, columns)), 0, -1) if traction else None
     )
+    # of the wheel, whose values stand before those of the rail
+    warm = patch.get("temperature")
+    grid["temperature"] = np.reshape(warm, (2, rows, columns))[0] if warm else None
     return grid

@@ -10,20 +10,23 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from railpatch.case.types import SIDES
-from railpatch.page.figures import COLORS, GREY, styled
+from railpatch.page.figures import BAD, COLORS, GREY, OTHER, styled
+from railpatch.report.beside import Beside
 from railpatch.report.data import Positions, scaled
 from railpatch.report.reference import Match
 
 if TYPE_CHECKING:
     from railpatch.report.vehicle.data import VehicleRun
 
-_BAD = "#d62839"
 _REFERENCE = {"left": "triangle-left-open", "right": "triangle-right-open"}
 _MANY = 2000  # points of a line; longer runs are thinned for the page
 
 
-def traction_curves(data: Positions, matches: list[Match]) -> go.Figure:
-    """Lateral over vertical force against yaw, one panel for each wheel."""
+def traction_curves(
+    data: Positions, matches: list[Match], measured: Beside | None = None
+) -> go.Figure:
+    """Lateral over vertical force against yaw, one panel for each wheel. measured: points beside
+    them."""
     figure = make_subplots(
         1,
         2,
@@ -35,13 +38,15 @@ def traction_curves(data: Positions, matches: list[Match]) -> go.Figure:
     yaw = factor * data.state["yaw"]
     for column, side in enumerate(SIDES, start=1):
         add = Adder(figure, data, 1, column)
+        if measured is not None:
+            add.measured(side, measured, factor)
         add.line(yaw, data.ratio[side], side, COLORS[side])
         add.reference(
             side, matches, lambda m: factor * m.row.yaw, lambda m: m.row.force[1] / m.row.force[2]
         )
         figure.update_xaxes(title_text=label, row=1, col=column)
     figure.update_yaxes(title_text="L/V = F<sub>y</sub>/F<sub>z</sub>", row=1, col=1)
-    return styled(figure, 430)
+    return styled(figure, 490)
 
 
 def forces(data: Positions, matches: list[Match]) -> go.Figure:
@@ -90,7 +95,7 @@ def wheelset_position(data: Positions, matches: list[Match]) -> go.Figure:
                 matches,
                 lambda m: data.along[m.index],
                 lambda m, n=name, f=factor: f * getattr(m.row, n),
-                "#6b7280",
+                GREY,
             )
         figure.update_yaxes(title_text=label, row=row, col=column)
     figure.update_xaxes(title_text=data.along_label, row=3)
@@ -155,7 +160,7 @@ def contact_work(data: Positions) -> go.Figure:
 def balance_work(data: Positions) -> go.Figure:
     """Evaluations, iterations and residuals of the force balance over the run."""
     figure = make_subplots(1, 2, horizontal_spacing=0.12)
-    for name, color in (("evaluations", "#5f9e6e"), ("iterations", "#9467bd")):
+    for name, color in (("evaluations", "#4f9163"), ("iterations", "#9467bd")):
         Adder(figure, data, 1, 1).line(data.along, data.balance[name], name, color)
     residuals = data.balance["residuals"]
     if residuals.ndim == 2:
@@ -168,10 +173,17 @@ def balance_work(data: Positions) -> go.Figure:
             Adder(figure, data, 1, 2).line(data.along, abs(residuals[:, column]), name, color)
     figure.update_yaxes(title_text="Broyden's method", rangemode="tozero", col=1)
     figure.update_yaxes(
-        title_text="|residual|", type="log", exponentformat="power", nticks=6, col=2
+        title_text="|residual|", type="log", exponentformat="power", dtick=_ticks(residuals), col=2
     )
     figure.update_xaxes(title_text=data.along_label)
     return styled(figure, 360)
+
+
+def _ticks(values: np.ndarray) -> str | int:
+    """Of a logarithmic axis: 1, 2 and 5, or powers of ten as far apart as they need."""
+    sizes = np.abs(values[np.isfinite(values) & (values != 0)])
+    decades = float(np.ptp(np.log10(sizes))) if sizes.size else 0.0
+    return "D2" if decades < 2 else int(np.ceil(decades / 6))
 
 
 def bulk_temperatures(data: Positions) -> go.Figure:
@@ -247,9 +259,28 @@ class Adder:
                 "bad",
                 True,
                 mode="markers",
-                marker={"color": _BAD, "size": 11, "symbol": "x"},
+                marker={"color": BAD, "size": 11, "symbol": "x"},
                 text=[f"position {i}" for i in np.flatnonzero(bad)],
             )
+
+    def measured(self, side: str, beside: Beside, factor: float) -> None:
+        """L/V as it was measured, over the run's yaw angle."""
+        pair = beside.ratios().get(side)
+        if pair is None or beside.at is None or beside.yaw is None:
+            return
+        known = np.isfinite(beside.at) & np.isfinite(beside.yaw)
+        yaw = factor * np.interp(pair.other_at, beside.at[known], beside.yaw[known])
+        step = -(-len(yaw) // _MANY)
+        self._trace(
+            yaw[::step],
+            pair.other[::step],
+            beside.what,
+            beside.what,
+            True,
+            mode="markers",
+            marker={"color": OTHER, "size": 5, "symbol": "circle-open"},
+            text=None,
+        )
 
     def dots(self, x: np.ndarray, y: np.ndarray, name: str, color: str) -> None:
         """Single values."""

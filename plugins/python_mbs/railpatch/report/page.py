@@ -14,16 +14,18 @@ from railpatch.log.channels import ELEMENT_STATES, HUNTING
 from railpatch.log.reader import Run, read_run
 from railpatch.page.document import document
 from railpatch.page.figures import plot
-from railpatch.page.patch_figure import most_loaded, patch_figure, states_of
+from railpatch.page.parts import folded
+from railpatch.page.patch_figure import most_loaded, states_of
+from railpatch.page.printing import write_page
 from railpatch.page.tables import number, table, whole
-from railpatch.report import balance_figures, figures, reference, rig_page, tables
-from railpatch.report.beside import beside_log, beside_measured, beside_record
+from railpatch.report import answers, balance_figures, figures, reference, rig_page, tables
+from railpatch.report.beside import Beside, beside_log, beside_measured, beside_record
 from railpatch.report.beside_page import section
 from railpatch.report.data import Positions, positions, snapshot
+from railpatch.report.patch_views import viewer_of
 from railpatch.report.vehicle import page as vehicle_page
 from railpatch.report.vehicle.data import vehicle_run
 from railpatch.report.warnings import warnings
-from railpatch.writing import write_whole
 
 
 def write_report(
@@ -43,8 +45,11 @@ def write_report(
     progress (without progress: the time in s; of a vehicle: the distance in m) whose patches are
     shown; by default those at the largest yaw angle, or guiding force.
 
+    A name that ends in .pdf makes a PDF, by a browser.
+
     Raises RunFileError where ``run_path`` is not a run log, ReportError where it holds no position,
     ValueError where the reference cannot be read, OSError where a file cannot be read or written.
+    BrowserError where a PDF cannot be made.
     Nothing is written then.
     """
     run = read_run(run_path)
@@ -55,58 +60,115 @@ def write_report(
         file = None
     if columns is not None and file is None:
         raise CaseError("--columns: value is given, allowed with a file as --reference")
-    laid = _laid_over(run, file, Path(columns) if columns is not None else None, beside)
+    besides = _besides(run, file, Path(columns) if columns is not None else None, beside)
+    laid = _laid_over(besides)
     if "wheelsets" in run.metadata["railpatch"]:
-        body = vehicle_page.body(vehicle_run(run), at) + "".join(laid)
+        near = vehicle_run(read_run(beside)) if beside is not None else None
+        body = vehicle_page.body(vehicle_run(run), at, "".join(laid), near)
     else:
         data = positions(run)
         matched = _reference(data, reference_dir) if reference_dir or not laid else ([], "")
-        body = "".join([_head(data), *laid, *_sections(data, matched, at)])
+        other = positions(read_run(beside)) if beside is not None else None
+        # what L/V is compared with first
+        measured = next((found for found in besides.values() if found.ratios()), None)
+        body = "".join(
+            [
+                _opening(data, matched[0], measured),
+                *_first_figure(data, *matched, measured),
+                *laid,
+                *_sections(data, matched, at, other, measured),
+                *_administration(data),
+            ]
+        )
     page = document(run.metadata["railpatch"].get("scene", "run"), body + _ending(run))
-    return write_whole(output, page.encode())
+    return write_page(output, page)
 
 
-def _laid_over(
+def _besides(
     run: Run, file: Path | None, columns: Path | None, beside: str | PathLike[str] | None
-) -> list[str]:
-    """What the run's record has, another file, another log."""
-    parts = []
+) -> dict[str, Beside]:
+    """What the run's record has, another file, another log; by the name of its figure."""
+    found = {}
     measured = beside_measured(run)
     if measured is not None:
-        parts += section(measured, "measured", "the record holds what drives the run alone.")
+        found["measured"] = measured
     if file is not None:
-        parts += section(beside_record(run, file, columns), "beside-file")
+        found["beside-file"] = beside_record(run, file, columns)
     if beside is not None:
-        parts += section(beside_log(run, beside), "beside-log")
-    return parts
+        found["beside-log"] = beside_log(run, beside)
+    return found
 
 
-def _head(data: Positions) -> str:
-    kind = "roller rig" if data.has_balance else "wheelset"
-    scene = escape(data.run.metadata["railpatch"].get("scene", ""))
-    parts = [f"<h1>Run of the {kind}</h1><p class=sub>{scene}</p>"]
+def _laid_over(besides: dict[str, Beside]) -> list[str]:
+    """The sections of these."""
+    remark = "the record holds what drives the run alone."
+    return [part for name, found in besides.items() for part in section(found, name, remark)]
+
+
+def _opening(data: Positions, matches: list[reference.Match], measured: Beside | None) -> str:
+    """Verdict and key numbers, what went wrong, and the figure that the run is about."""
+    hunted = _hunted(data)
+    if data.has_balance:
+        parts = [answers.rig(data, matches, measured)]
+    elif hunted is not None:
+        parts = [answers.hunting(data, hunted)]
+    else:
+        parts = [answers.wheelset(data)]
     bad = int((~data.solved).sum())
     parts += warnings(data.run, f"{data.count} positions", bad, data.count, "positions")
-    return "".join([*parts, tables.summary(data), tables.unsolved(data)])
+    parts.append(tables.unsolved(data))
+    return "".join(parts)
+
+
+def _first_figure(
+    data: Positions, matches: list[reference.Match], remark: str, measured: Beside | None
+) -> list[str]:
+    """What this kind of run is about."""
+    hunted = _hunted(data)
+    parts = []
+    if hunted is not None:
+        parts += hunting_section(hunted)
+    if data.has_distance:
+        parts += ["<h2>Along the track</h2>", plot(balance_figures.waves(data), "waves")]
+    return [*parts, *([] if parts else _traction(data, matches, remark, measured))]
+
+
+def _traction(
+    data: Positions, matches: list[reference.Match], remark: str, measured: Beside | None
+) -> list[str]:
+    return [
+        f"<h2>Traction curves</h2><p>Lateral over vertical force, in track axes: the same ratio "
+        f"for wheel and {data.counterpart}. Negative where the {data.counterpart} pushes the wheel "
+        "to the right. Yaw is the angle of attack.</p>",
+        plot(figures.traction_curves(data, matches, measured), "traction"),
+        remark,
+    ]
+
+
+def _hunted(data: Positions) -> dict[str, Any] | None:
+    """What a search for the critical speed has found."""
+    attached = data.run.attachments.get(HUNTING)
+    return None if attached is None else json.loads(attached.data)
 
 
 def _sections(
-    data: Positions, matched: tuple[list[reference.Match], str], at: float | None
+    data: Positions,
+    matched: tuple[list[reference.Match], str],
+    at: float | None,
+    other: Positions | None,
+    measured: Beside | None,
 ) -> list[str]:
     matches, remark = matched
     body = data.counterpart
-    parts = [
-        f"<h2>Traction curves</h2><p>Lateral over vertical force, in track axes: the same ratio "
-        f"for wheel and {body}. Negative where the {body} pushes the wheel to the right. "
-        f"Yaw is the angle of attack.</p>"
-        f"{remark}",
-        plot(figures.traction_curves(data, matches), "traction"),
+    parts = _patch_section(data, at, other)
+    if data.has_distance:
+        parts += _traction(data, matches, remark, measured)
+    parts += [
         f"<h2>Forces on the {body}</h2><p>In track axes: x forward, y right, z down. The log holds "
         f"forces on the wheel; these are their opposites.</p>",
         plot(figures.forces(data, matches), "forces"),
         "<h2>Load transfer and position of the wheelset</h2>",
         plot(figures.wheelset_position(data, matches), "position"),
-        *_along_the_track(data),
         *rig_page.sections(data),
         "<h2>Contact patches</h2><p>Each point is one patch. Distances count outwards from the "
         "track's centre line; a contact angle is positive at a left wheel's flange.</p>",
@@ -118,12 +180,6 @@ def _sections(
             "the contact warms them.</p>",
             plot(figures.bulk_temperatures(data), "bulk-temperatures"),
         ]
-    parts += _patch_section(data, at)
-    if data.has_stats:
-        parts += [
-            "<h2>Work of the contact solver</h2>",
-            plot(figures.contact_work(data), "contact-work"),
-        ]
     if data.has_energy:
         parts += [
             "<h2>Energies</h2><p>Work since the start. Friction's is that of the creep forces on "
@@ -132,32 +188,29 @@ def _sections(
         ]
     if data.has_momentum:
         parts.append(_momentum(data))
-    if data.has_balance:
-        parts += [
-            "<h2>Work of the force balance</h2>",
-            plot(figures.balance_work(data), "balance-work"),
-        ]
     if matches:
         parts += [
             "<h2>Differences from the reference</h2><p>Run minus reference, forces on the "
             "roller, at the positions with the same yaw and lateral position.</p>",
             tables.reference_summary(matches, data),
-            "<details><summary>every matched position</summary>",
-            tables.reference_rows(matches, data),
-            "</details>",
+            folded("Every matched position", tables.reference_rows(matches, data)),
         ]
     return parts
 
 
-def _along_the_track(data: Positions) -> list[str]:
-    """Waves and hunting of a wheelset that travels."""
-    if not data.has_distance:
-        return []
-    parts = ["<h2>Along the track</h2>", plot(balance_figures.waves(data), "waves")]
-    found = data.run.attachments.get(HUNTING)
-    if found is not None:
-        parts += hunting_section(json.loads(found.data))
-    return parts
+def _administration(data: Positions) -> list[str]:
+    """Of files and solver, folded."""
+    work = []
+    if data.has_stats:
+        work += ["<h2>Work of the contact solver</h2>"]
+        work += [plot(figures.contact_work(data), "contact-work")]
+    if data.has_balance:
+        work += ["<h2>Work of the force balance</h2>"]
+        work += [plot(figures.balance_work(data), "balance-work")]
+    return [
+        folded("The run: scene, theory, profiles, files", tables.summary(data)),
+        folded("Work of the solver" if work else "", "".join(work)),
+    ]
 
 
 def hunting_section(found: dict[str, Any]) -> list[str]:
@@ -178,10 +231,11 @@ def hunting_section(found: dict[str, Any]) -> list[str]:
         ]
     rows.append(("this run", _speed(found["logged_speed"])))
     return [
-        "<h2>Hunting</h2><p>The slowest wave of the equations of motion, linearised straight on: "
-        "where its growth is above zero, the wheelset hunts.</p>",
-        table((), rows, "summary"),
+        "<h2>Root locus</h2><p>The slowest wave of the equations of motion, linearised straight "
+        "on: where its growth is above zero, the wheelset hunts.</p>",
+        plot(balance_figures.root_locus(found), "locus"),
         plot(balance_figures.hunting(found), "hunting"),
+        table((), rows, "summary"),
     ]
 
 
@@ -198,21 +252,23 @@ def _momentum(data: Positions) -> str:
     )
 
 
-def _patch_section(data: Positions, at: float | None) -> list[str]:
+def _patch_section(data: Positions, at: float | None, other: Positions | None) -> list[str]:
     chosen = snapshot(data, at)
     if chosen is None:
-        return ["<h2>One patch</h2><p>This log holds no fields of patches.</p>"]
+        return ["<h2>Contact patches, element by element</h2>"
+                "<p>This log holds no fields of patches.</p>"]  # fmt: skip
     index = chosen["index"]
     yaw = number(1e3 * data.state["yaw"][index])
     where = f"Position {index}, {data.along_label} {number(data.along[index])}, yaw {yaw} mrad"
     lines = [_patch_line(data, side, chosen) for side in SIDES]
     shown = [grid for side in SIDES if (grid := most_loaded(chosen[side]))]
     states = ", ".join(ELEMENT_STATES[number] for number in states_of(shown)[1:])
+    over = f" Red outlines: {other.run.path.name}, nearest position." if other is not None else ""
     return [
-        f"<h2>One patch of each wheel</h2><p>{escape(where)}. {escape(' '.join(lines))} Arrows: "
-        f"traction on the wheel. Elements in contact are in one of the states {states}. Rolling is "
-        "towards +x.</p>",
-        plot(patch_figure(chosen), "patch"),
+        f"<h2>Contact patches, element by element</h2><p>First: {escape(where)}. "
+        f"{escape(' '.join(lines))} Arrows: traction on the wheel. Elements in contact are in one "
+        f"of the states {states}. Rolling is towards +x.{escape(over)}</p>",
+        viewer_of(data, index, other),
     ]
 
 
@@ -249,14 +305,10 @@ def _reference(
 
 
 def _ending(run: Run) -> str:
+    """What the log holds."""
     scene = run.metadata["railpatch"].get("scene", "")
     case = run.attachments.get(scene)
     text = case.data.decode("utf-8", errors="replace") if case else ""
-    parts = ["<h2>The log</h2>"]
-    if text:
-        parts.append(f"<details><summary>case file</summary><pre>{escape(text)}</pre></details>")
-    parts.append(
-        f"<details><summary>channels, fields, units, signs</summary>"
-        f"{tables.channels(run)}</details>"
-    )
+    parts = [folded("Case file", f"<pre>{escape(text)}</pre>")] if text else []
+    parts.append(folded("The log: channels, fields, units, signs", tables.channels(run)))
     return "".join(parts)

@@ -8,6 +8,7 @@ import click
 
 from railpatch.command.group import WrongCall, output_option, quiet_flag, wrong_call
 from railpatch.command.output import check_page, refuse_same
+from railpatch.page.browser import BrowserError
 from railpatch.profiles.pairing.contact_points import Dimensions
 from railpatch.profiles.pairing.doctor import tables_of
 from railpatch.profiles.pairing.pressures import LOAD
@@ -23,7 +24,7 @@ def length_option(name: str, field: str, text: str) -> click.Option:
 
 @click.command("profile")
 @click.argument("source", metavar="NAME|FILE")
-@output_option("PLOT.html", "The page to write.")
+@output_option("PLOT.html|.pdf", "The page to write; a PDF is made by Chromium, Chrome or Edge.")
 @click.option("--rail", metavar="NAME|FILE", help="Partner of a wheel.  [default: UIC60@1:40]")
 @click.option("--wheel", metavar="NAME|FILE", help="Partner of a rail.  [default: S1002]")
 @click.option(
@@ -105,7 +106,7 @@ def profile(
             load=load,
             told=lambda note: click.echo(f"note: {note}", err=True),
         )
-    except OSError as error:
+    except (BrowserError, OSError) as error:
         raise wrong_call(error) from None
     if not quiet:
         click.echo(written)

@@ -11,6 +11,9 @@ import numpy as np
 from railpatch.errors import ProfileError
 from railpatch.page.document import document
 from railpatch.page.figures import plot
+from railpatch.page.parts import DOUBT, GOOD, Key, folded, opening
+from railpatch.page.printing import write_page
+from railpatch.page.tables import short
 from railpatch.profiles import load_profile, read_profile
 from railpatch.profiles.curve import Profile
 from railpatch.profiles.pairing import doctor, figures
@@ -25,6 +28,7 @@ PARTNERS: dict[Role, str] = {"wheel": "UIC60@1:40", "rail": "S1002"}
 ROLES: dict[str, Role] = {"S1002": "wheel", "UIC60": "rail"}
 EITHER = ("cone", "arc", "cylinder")
 # m, amplitudes of the plot and of the table
+AMPLITUDE = 3e-3  # m, of the conicity by which pairs are compared (EN 15302)
 AMPLITUDES = 1e-4 * np.arange(5, 81)
 TABLE = 1e-3 * np.arange(1, 9)
 
@@ -66,21 +70,20 @@ def write_profile_page(
         key: pressed.notes.get(Path(name).name, list(curve.notes))
         for key, name, curve in ((role, source, profile), ("partner", other, beside))
     }
+    curves = (profile, beside) if role == "wheel" else (beside, profile)
     body = "".join(
         [
-            f"<h1>{escape(Path(source).name)}</h1><p class=sub>{role} profile</p>",
-            *assumed_section(raw, notes[role], lines),
+            opening_of(source, role, pair, shape, points, pressed),
             *(f"<p class=warn>{escape(text)}</p>" for text in pressed.doubts),
-            *shape_section(shape, raw, profile),
-            *pair_section(
-                points, (profile, beside) if role == "wheel" else (beside, profile), pair
-            ),
+            *pair_section(points, curves, pair),
             *pressure_section(pressed),
+            *shape_section(shape, raw, profile),
+            *assumed_section(raw, notes[role], lines),
         ]
     )
     columns = doctor.table(points, pressed)
     texts = (doctor.csv_table(columns), doctor.json_table(columns, load, notes, lines))
-    write_whole(output, document(Path(source).name, body).encode())
+    write_page(output, document(Path(source).name, body))
     for path, text in zip(doctor.tables_of(output), texts, strict=True):
         write_whole(path, text.encode())
     for name, found in ((source, notes[role]), (other, notes["partner"])):
@@ -93,15 +96,68 @@ def write_profile_page(
     return Path(output)
 
 
+def opening_of(
+    source: str | Path,
+    role: Role,
+    pair: tuple[str | Path, str | Path],
+    shape: Shape,
+    points: ContactPoints,
+    pressed: Pressures,
+) -> str:
+    """Conicity, pressure and flank of a profile on its partner."""
+    wheel, rail = (Path(name).name for name in pair)
+    conicity = points.conicity(AMPLITUDE)
+    radius, half = points.dimensions.nominal_radius, points.position[points.y.size // 2]
+    keys = []
+    if np.isfinite(conicity):
+        # Klingel's, with the cone of this conicity
+        wave = 2 * np.pi * np.sqrt(radius * half / conicity) if conicity > 0 else np.nan
+        note = f"waves of {short(wave)} m" if np.isfinite(wave) else "at an amplitude of 3 mm"
+        keys.append(Key("equivalent conicity at 3 mm", f"{conicity:.3f}", note))
+    middle = int(np.argmin(np.abs(pressed.y)))
+    if np.isfinite(pressed.pressure[middle]):
+        error = float(pressed.error[middle])
+        note = f"± {100 * error:.2g} % by noise" if error > 0 else f"{1e-3 * pressed.load:g} kN"
+        value = f"{short(1e-6 * pressed.pressure[middle])} MPa"
+        keys.append(Key("greatest pressure in the middle", value, note))
+    if np.isfinite(pressed.pressure).any():
+        most = int(np.nanargmax(pressed.pressure))
+        value = f"{short(1e-6 * pressed.pressure[most])} MPa"
+        keys.append(Key("greatest pressure", value, f"at {short(1e3 * pressed.y[most])} mm"))
+    # behind the flange's tip, or on the rail's field side, the slope has the other sign
+    slope = -shape.slope if role == "wheel" else np.abs(shape.slope)
+    keys.append(Key("steepest flank", f"{np.degrees(slope.max()):.1f}°", f"of the {role}"))
+    lost = int(np.isnan(points.position).sum())
+    keys.append(
+        Key(
+            "positions without regular contact",
+            f"{lost} of {points.y.size}",
+            "lateral positions of the wheelset",
+            DOUBT if lost else GOOD,
+        )
+    )
+    verdict = f"{wheel} on {rail}: "
+    verdict += (
+        f"equivalent conicity {conicity:.3f} at 3 mm"
+        if np.isfinite(conicity)
+        else "no equivalent conicity at 3 mm"
+    )
+    if pressed.doubts:
+        verdict += "; what the file is taken for is doubtful"
+    state = DOUBT if pressed.doubts or lost else GOOD
+    return opening(Path(source).name, f"{role} profile", verdict + ".", keys, state)
+
+
 def assumed_section(raw: RawProfile | None, notes: Sequence[str], lines: list[str]) -> list[str]:
     """What was assumed of a file, and how a scene says it."""
     if raw is None:
         return []
     listed = "".join(f"<li>{escape(note)}</li>" for note in notes)
-    return [
-        f"<h2>What was assumed</h2><ul>{listed}</ul><p>A scene that reads it so, whatever rules "
-        f"would find:</p><pre>{escape(chr(10).join(lines))}</pre>",
-    ]
+    text = (
+        f"<ul>{listed}</ul><p>A scene that reads it so, whatever rules would find:</p>"
+        f"<pre>{escape(chr(10).join(lines))}</pre>"
+    )
+    return [folded("What was assumed of the file", text)]
 
 
 def role_of(source: str | Path) -> Role:
@@ -155,13 +211,14 @@ def pair_section(
     return [
         *parts,
         plot(figures.pair_figure(points, *curves), "pair"),
-        plot(figures.contact_figure(points), "contact"),
-        "<h2>Rolling radius difference</h2><p>Right wheel minus left wheel.</p>",
-        plot(figures.difference_figure(points), "difference"),
         "<h2>Equivalent conicity</h2><p>tan of the inclination of the cone with the same kinematic "
         "wave length, by integration of the kinematic motion (UIC 519, EN 15302).</p>",
         plot(figures.conicity_figure(AMPLITUDES, conicity), "conicity"),
         conicity_table(points),
+        "<h2>Where they touch</h2>",
+        plot(figures.contact_figure(points), "contact"),
+        "<h2>Rolling radius difference</h2><p>Right wheel minus left wheel.</p>",
+        plot(figures.difference_figure(points), "difference"),
     ]
 
 

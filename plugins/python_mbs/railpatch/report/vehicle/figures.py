@@ -9,16 +9,93 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from railpatch.case.types import SIDES
-from railpatch.page.figures import GREY, styled
+from railpatch.page.figures import BAD, COLORS, GREY, LINES, styled
 from railpatch.report.data import scaled
 from railpatch.report.figures import Adder
+from railpatch.report.vehicle import limits
 from railpatch.report.vehicle.data import VehicleRun, Wheel
-
-_COLORS = ("#3b7dc4", "#e0812b", "#5f9e6e", "#c2528b", "#9467bd", "#17879c", "#b5651d", "#8a919c")
 
 
 def _color(number: int) -> str:
-    return _COLORS[(number - 1) % len(_COLORS)]
+    return LINES[(number - 1) % len(LINES)]
+
+
+def beside_limits(data: VehicleRun) -> go.Figure:
+    """Percentiles and greatest values of every wheel beside their limits, before any course."""
+    figure = make_subplots(2, 2, horizontal_spacing=0.12, vertical_spacing=0.14)
+    wheels, numbers = list(data.contact), list(data.wheelsets)
+    # short: eight of them stand below a narrow panel
+    names = [f"{number}{side[0].upper()}" for number, side in wheels]
+    panels = (
+        ("Y/Q", names, [limits.spread(data.ratio(w)) for w in wheels], 1.0, [limits.RATIO]),
+        (
+            "sum of Y [kN]",
+            [str(n) for n in numbers],
+            [limits.spread(limits.sum_of_guiding(data, n)) for n in numbers],
+            1e-3,
+            [limits.sum_limit(data, n) for n in numbers],
+        ),
+        (
+            "Q [kN]",
+            names,
+            [limits.spread(data.mean_loads[w]) for w in wheels],
+            1e-3,
+            [limits.load_limit(data, w[0]) for w in wheels],
+        ),
+        ("Y [kN]", names, [limits.spread(data.mean_guiding[w]) for w in wheels], 1e-3, []),
+    )
+    for place, (title, at, found, factor, most) in enumerate(panels):
+        row, column = divmod(place, 2)
+        _percentiles(figure, at, found, factor, most, (row + 1, column + 1))
+        figure.update_yaxes(title_text=title, rangemode="tozero", row=row + 1, col=column + 1)
+        title = "wheelset" if found is panels[1][2] else "wheelset, left or right wheel"
+        figure.update_xaxes(title_text=title, type="category", row=row + 1, col=column + 1)
+    return styled(figure, 680)
+
+
+def _percentiles(
+    figure: go.Figure,
+    at: list[str],
+    found: list[limits.Spread],
+    factor: float,
+    most: list[float],
+    place: tuple[int, int],
+) -> None:
+    """One panel: greatest values, percentiles, and their limit where there is one."""
+    first = place == (1, 1)
+    for name, values, symbol, color in (
+        ("greatest", [s.most for s in found], "line-ew-open", GREY),
+        ("99.85 %", [s.percentile for s in found], "circle", COLORS["left"]),
+    ):
+        figure.add_trace(
+            go.Scatter(
+                x=at,
+                y=[factor * v for v in values],
+                name=name,
+                legendgroup=name,
+                showlegend=first,
+                mode="markers",
+                marker={"symbol": symbol, "size": 11, "color": color}
+                | ({"line": {"width": 2, "color": color}} if "line" in symbol else {}),
+            ),
+            row=place[0],
+            col=place[1],
+        )
+    if most:
+        line = most * len(at) if len(most) == 1 else most
+        figure.add_trace(
+            go.Scatter(
+                x=at,
+                y=[factor * v for v in line],
+                name="limit of EN 14363",
+                legendgroup="limit",
+                showlegend=first,
+                mode="lines",
+                line={"color": BAD, "dash": "dash", "width": 2},
+            ),
+            row=place[0],
+            col=place[1],
+        )
 
 
 def track(data: VehicleRun) -> go.Figure:

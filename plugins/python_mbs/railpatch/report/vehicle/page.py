@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from html import escape
 from typing import Any
 
@@ -11,33 +12,80 @@ import numpy as np
 from railpatch.case.types import SIDES
 from railpatch.page import tables
 from railpatch.page.figures import plot
-from railpatch.page.patch_figure import patch_figure
+from railpatch.page.parts import BAD, folded, opening
 from railpatch.report import balance_figures
 from railpatch.report.data import has_bulk
+from railpatch.report.patch_views import over_distance
+from railpatch.report.scene import friction_of
 from railpatch.report.tables import identity
 from railpatch.report.vehicle import figures as vehicle_figures
+from railpatch.report.vehicle import limits
 from railpatch.report.vehicle.data import VehicleRun, snapshot
 from railpatch.report.warnings import warnings
 
 
-def body(data: VehicleRun, at: float | None) -> str:
-    """Head and sections. at: m, the distance whose patches are shown."""
-    scene = escape(data.run.metadata["railpatch"].get("scene", ""))
+def body(
+    data: VehicleRun, at: float | None, laid: str = "", other: VehicleRun | None = None
+) -> str:
+    """All sections. at: m, the distance whose patches are shown first; laid: HTML of what is laid
+    over the run; other: the run whose patches are laid over its own."""
     bad = int((~data.solved).sum())
+    keys = limits.key_numbers(data)
+    verdict, state = limits.verdict(keys)
+    if bad:
+        verdict, state = f"{bad} of {data.count} steps did not converge. {verdict}", BAD
     head = [
-        f"<h1>Run of the vehicle</h1><p class=sub>{scene}</p>",
+        opening("Vehicle on track", about(data), verdict, keys, state),
         *warnings(data.run, f"{data.count} steps", bad, data.count, "steps"),
-        tables.table((), summary(data), "summary"),
         unsolved(data),
-        f"<h2>Wheels</h2><p>Y and Q on the rail, Y outward, {data.averaging}.</p>",
-        tables.table(*wheels(data)),
+        f"<h2>Forces and accelerations beside their limits</h2><p>On the rail, Y outward, "
+        f"{data.averaging}. {escape(nadal_line(data))}</p>",
+        plot(vehicle_figures.beside_limits(data), "limits"),
+        tables.table(limits.HEAD, limits.rows(data)),
+        folded("What is held against the standard", f"<p>{escape(STANDARD)}</p>"),
+        f"<h2>Wheels</h2>{tables.table(*wheels(data))}",
     ]
-    return "".join([*head, *_sections(data), *_patches(data, at)])
+    return "".join(
+        [*head, laid, *_sections(data), *_patches(data, at, other), *_administration(data)]
+    )
+
+
+STANDARD = (
+    "Limits are those of EN 14363:2016: Y/Q 0.8; sum of Y by Prud'homme, 10 kN and a third of the "
+    "static axle load; Q 90 kN above the static wheel load and at most 160 to 200 kN by speed; "
+    "unloading 60 % of the static load; root mean squares of passenger vehicles' accelerations, "
+    "0.5 m/s² lateral and 0.75 m/s² vertical. The static load is the mean of the run. The standard "
+    "takes percentiles of 99.85 % in many sections of track and estimates from these; here the "
+    "whole run is one section. It measures accelerations on the floor and filters them; here they "
+    "are those of a body's centre, about their mean, as logged."
+)
+
+
+def about(data: VehicleRun) -> str:
+    """Scene, speed, curve, theory."""
+    parts = [str(data.run.metadata["railpatch"].get("scene", ""))]
+    parts += [text if name == "speed" else f"{name} {text}" for name, text in course(data)]
+    friction, _ = friction_of(data.run)
+    if np.isfinite(friction):
+        parts.append(f"friction coefficient {tables.short(friction)}")
+    parts.append(str(data.run.metadata["railpatch"].get("theory", "")))
+    return ", ".join(filter(None, parts))
+
+
+def nadal_line(data: VehicleRun) -> str:
+    """Nadal's limit beside that of the standard."""
+    limit, angle, friction = limits.nadal(data)
+    if not np.isfinite(limit):
+        return ""
+    return (
+        f"Nadal's limit of Y/Q is {tables.short(limit)} with the steepest flank of this wheel, "
+        f"{np.degrees(angle):.0f} degrees, and friction {tables.short(friction)}."
+    )
 
 
 def summary(data: VehicleRun) -> list[tuple[str, str]]:
     """What the run was, and how it went."""
-    n, state = tables.number, data.state
+    n = tables.number
     rows = [(str(a), str(b)) for a, b in identity(data.run)]
     good = int(data.solved.sum())
     rows += [
@@ -45,14 +93,7 @@ def summary(data: VehicleRun) -> list[tuple[str, str]]:
         ("time", f"{n(data.times[0])} to {n(data.times[-1])} s"),
         ("distance", f"{n(data.along[0])} to {n(data.along[-1])} m"),
     ]
-    speed = state["speed"][np.isfinite(state["speed"])]
-    if speed.size:
-        low, high = speed.min(), speed.max()
-        rows.append(("speed", f"{n(low)} to {n(high)} m/s ({n(3.6 * high)} km/h)"))
-    curved = np.abs(state["curvature"])
-    if np.isfinite(curved).any() and np.nanmax(curved) > 0:
-        rows.append(("least radius", f"{n(1 / np.nanmax(curved))} m"))
-    rows += _comfort(data)
+    rows += [*course(data), *_comfort(data)]
     if len(data.run["/solver/stats"]) and data.times[-1] > data.times[0]:
         total = float(np.nansum(data.stats["wall_time"]))
         share = total / (data.times[-1] - data.times[0])
@@ -60,13 +101,25 @@ def summary(data: VehicleRun) -> list[tuple[str, str]]:
     return rows
 
 
+def course(data: VehicleRun) -> list[tuple[str, str]]:
+    """Speed and sharpest curve."""
+    n, state, rows = tables.number, data.state, []
+    speed = state["speed"][np.isfinite(state["speed"])]
+    if speed.size:
+        low, high = n(speed.min()), n(speed.max())
+        both = high if low == high else f"{low} to {high}"
+        rows.append(("speed", f"{both} m/s ({n(3.6 * speed.max())} km/h)"))
+    curved = np.abs(state["curvature"])
+    if np.isfinite(curved).any() and np.nanmax(curved) > 0:
+        rows.append(("least radius", f"{n(1 / np.nanmax(curved))} m"))
+    return rows
+
+
 def _comfort(data: VehicleRun) -> list[tuple[str, str]]:
     """Of the first body."""
-    values = data.bodies["bodies[0].acceleration"] if data.body_names() else np.empty(0)
-    if values.ndim != 2:
+    name, (lateral, vertical) = limits.ride(data)
+    if not name:
         return []
-    name = data.body_names()[0].replace("_", " ")
-    lateral, vertical = (float(np.nanstd(values[:, axis])) for axis in (1, 2))
     text = f"{tables.number(lateral)} lateral, {tables.number(vertical)} vertical"
     return [(f"{name}, m/s² (standard deviation)", text)]
 
@@ -137,8 +190,18 @@ def _sections(data: VehicleRun) -> list[str]:
         ]
     if len(data.run["/vehicle/energy"]):
         parts += ["<h2>Energies</h2>", plot(balance_figures.energy(data), "energy")]
+    return parts
+
+
+def _administration(data: VehicleRun) -> list[str]:
+    """Of files and solver, folded."""
+    parts = [
+        folded(
+            "The run: scene, theory, profiles, files", tables.table((), summary(data), "summary")
+        )
+    ]
     if len(data.run["/solver/stats"]) and data.count > 1:
-        parts += ["<h2>Time</h2>", plot(figures.work(data), "work")]
+        parts.append(folded("Work of the solver", plot(vehicle_figures.work(data), "work")))
     return parts
 
 
@@ -146,16 +209,20 @@ def _first_bodies(data: VehicleRun) -> list[dict[str, Any]]:
     return next((m["bodies"] for m in data.bodies.messages if m), [])
 
 
-def _patches(data: VehicleRun, at: float | None) -> list[str]:
-    """One patch of each wheel of the wheelsets whose fields were logged."""
-    parts = []
+def _patches(data: VehicleRun, at: float | None, other: VehicleRun | None) -> list[str]:
+    """Of the wheels of the wheelsets whose fields were logged."""
+    parts: list[str] = []
     for number in data.wheelsets:
         chosen = snapshot(data, number, at)
         if chosen is None:
             continue
-        where = tables.number(data.along[chosen["index"]])
-        parts.append(
-            f"<details{' open' if not parts else ''}><summary>wheelset {number}, patches at "
-            f"{where} m</summary>{plot(patch_figure(chosen), f'patch-{number}')}</details>"
-        )
-    return ["<h2>Patches</h2>", *parts] if parts else []
+        index = chosen["index"]
+        viewer = over_distance(data, number, index, partial(where, data), other)
+        title = f"Wheelset {number}, patches, first at {tables.number(data.along[index])} m"
+        parts.append(folded(title, viewer, open_=not parts))
+    return ["<h2>Contact patches, element by element</h2>", *parts] if parts else []
+
+
+def where(data: VehicleRun, index: int) -> str:
+    """A step, in words."""
+    return f"Distance {tables.number(data.along[index])} m, {tables.number(data.times[index])} s"

@@ -1,0 +1,185 @@
+"""Forces and accelerations of a vehicle beside the limits of EN 14363:2016.
+
+Forces are means over 2 m of way. The standard takes percentiles of 99.85 % in sections of track
+and estimates from many of them; here the whole run is one section, and its percentile is taken as
+it is. The standard measures accelerations on the floor and filters them; here they are those of a
+body's centre, as logged.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from railpatch.case.types import SIDES
+from railpatch.errors import ProfileError
+from railpatch.page.parts import BAD, GOOD, PLAIN, Key, against
+from railpatch.page.tables import short
+from railpatch.profiles import load_profile
+from railpatch.profiles.shape import shape_of
+from railpatch.report.scene import friction_of, scene_of
+from railpatch.report.vehicle.data import VehicleRun
+
+Array = np.ndarray
+
+SHARE = 99.85  # %, of the percentile
+RATIO = 0.8  # Y/Q
+# N: Prud'homme's limit of the sum of Y is 10 kN and a third of the static axle load
+PRUDHOMME, AXLE_PART = 10e3, 3.0
+# N: Q may be 90 kN above the static load, and by speed in km/h at most
+ABOVE_STATIC = 90e3
+MOST = ((160.0, 200e3), (200.0, 190e3), (250.0, 180e3), (300.0, 170e3), (np.inf, 160e3))
+UNLOADING = 0.6  # of the static load
+# m/s^2, root mean squares of ride characteristics of passenger vehicles: lateral, vertical
+RIDE = (0.5, 0.75)
+AXES = ("lateral", "vertical")
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Percentile of 99.85 % and the greatest one by size; NaN where nothing is known."""
+
+    percentile: float
+    most: float
+
+
+def spread(values: Array) -> Spread:
+    """Of what is known."""
+    known = np.abs(values[np.isfinite(values)])
+    if not known.size:
+        return Spread(float("nan"), float("nan"))
+    return Spread(float(np.percentile(known, SHARE)), float(known.max()))
+
+
+def static_load(data: VehicleRun, number: int) -> float:
+    """N, of an axle: mean over the run of both wheels' loads."""
+    return float(np.nanmean(sum(data.loads[number, side] for side in SIDES)))
+
+
+def sum_of_guiding(data: VehicleRun, number: int) -> Array:
+    """N, [n]: sum of Y of a wheelset; both are outward."""
+    return data.mean_guiding[number, "left"] - data.mean_guiding[number, "right"]
+
+
+def sum_limit(data: VehicleRun, number: int) -> float:
+    """N, Prud'homme's."""
+    return PRUDHOMME + static_load(data, number) / AXLE_PART
+
+
+def load_limit(data: VehicleRun, number: int) -> float:
+    """N, of Q."""
+    speed = 3.6 * float(np.nanmax(data.state["speed"]))
+    if not np.isfinite(speed):
+        speed = 0.0
+    most = next(load for upto, load in MOST if speed <= upto + 0.5)
+    return min(ABOVE_STATIC + static_load(data, number) / 2, most)
+
+
+def nadal(data: VehicleRun) -> tuple[float, float, float]:
+    """Nadal's (tan g - f)/(1 + f tan g), the flange angle g in rad, and friction f; NaN where the
+    wheel's profile or the friction is not known."""
+    friction, _ = friction_of(data.run)
+    name = (scene_of(data.run).get("profiles") or {}).get("wheel")
+    try:
+        shape = shape_of(load_profile(name, "wheel")) if isinstance(name, str) else None
+    except (ProfileError, OSError):
+        shape = None
+    if shape is None or not np.isfinite(friction):
+        return float("nan"), float("nan"), friction
+    # from the flange's tip to the tread the wheel rises; behind the tip it falls
+    angle = float((-shape.slope).max())
+    tangent = np.tan(angle)
+    return float((tangent - friction) / (1 + friction * tangent)), angle, friction
+
+
+def ride(data: VehicleRun) -> tuple[str, tuple[float, float]]:
+    """Name of the first body, and root mean squares of its lateral and vertical acceleration about
+    their means, m/s^2."""
+    values = data.bodies["bodies[0].acceleration"] if data.body_names() else np.empty(0)
+    if values.ndim != 2:
+        return "", (float("nan"), float("nan"))
+    name = data.body_names()[0].replace("_", " ")
+    lateral, vertical = (float(np.nanstd(values[:, axis])) for axis in (1, 2))
+    return name, (lateral, vertical)
+
+
+def key_numbers(data: VehicleRun) -> list[Key]:
+    """Of all wheels, each beside its limit."""
+    keys = []
+    ratios = {wheel: spread(data.ratio(wheel)).percentile for wheel in data.contact}
+    keys.append(_key("Y/Q", ratios, dict.fromkeys(ratios, RATIO), 1.0, ""))
+    sums = {(n, ""): spread(sum_of_guiding(data, n)).percentile for n in data.wheelsets}
+    limits = {(n, ""): sum_limit(data, n) for n in data.wheelsets}
+    keys.append(_key("sum of Y, a wheelset", sums, limits, 1e-3, " kN"))
+    loads = {wheel: spread(data.mean_loads[wheel]).percentile for wheel in data.contact}
+    most = {wheel: load_limit(data, wheel[0]) for wheel in loads}
+    keys.append(_key("wheel load Q", loads, most, 1e-3, " kN"))
+    lifted = {
+        wheel: 1 - 2 * float(np.nanmin(values)) / static_load(data, wheel[0])
+        for wheel, values in data.mean_loads.items()
+    }
+    keys.append(_key("wheel unloading", lifted, dict.fromkeys(lifted, UNLOADING), 100.0, " %"))
+    name, found = ride(data)
+    for axis, value, limit in zip(AXES, found, RIDE, strict=True):
+        if np.isfinite(value):
+            note, state = against(value, limit, f"{limit:g} m/s², {name}")
+            keys.append(Key(f"{axis} acceleration, rms", f"{short(value)} m/s²", note, state))
+    return keys
+
+
+def _key(
+    name: str,
+    values: dict[tuple[int, str], float],
+    limits: dict[tuple[int, str], float],
+    factor: float,
+    unit: str,
+) -> Key:
+    """The one that is nearest to its limit, or above it."""
+    shares = {wheel: value / limits[wheel] for wheel, value in values.items()}
+    known = {wheel: share for wheel, share in shares.items() if np.isfinite(share)}
+    if not known:
+        return Key(name, "-", "not known")
+    worst = max(known, key=lambda wheel: known[wheel])
+    where = f"wheelset {worst[0]} {worst[1]}".strip()
+    text = f"{short(factor * limits[worst])}{unit}, {where}"
+    note, state = against(values[worst], limits[worst], text)
+    return Key(name, f"{short(factor * values[worst])}{unit}", note, state)
+
+
+def verdict(keys: list[Key]) -> tuple[str, str]:
+    """In a sentence, and its state."""
+    above = [key.name for key in keys if key.state == BAD]
+    judged = [key for key in keys if key.state != PLAIN]
+    if above:
+        return f"Above the limits of EN 14363: {'; '.join(above)}.", BAD
+    if not judged:
+        return "Nothing in this log can be held against a limit.", PLAIN
+    return "All that this page holds against EN 14363 stays within its limits.", GOOD
+
+
+def rows(data: VehicleRun) -> list[list[object]]:
+    """Y, Q, Y/Q of each wheel and the sum of Y of its wheelset: percentile and greatest."""
+    found = []
+    for number in data.wheelsets:
+        total = spread(sum_of_guiding(data, number))
+        for side in SIDES:
+            wheel = number, side
+            columns = (
+                (data.mean_guiding[wheel], 1e-3),
+                (data.mean_loads[wheel], 1e-3),
+                (data.ratio(wheel), 1.0),
+            )
+            cells: list[object] = []
+            for values, factor in columns:
+                one = spread(values)
+                cells += [short(factor * one.percentile), short(factor * one.most)]
+            sums = [short(1e-3 * total.percentile), short(1e-3 * total.most)]
+            found.append([f"{number} {side}", *cells, *sums])
+    return found
+
+
+HEAD = (
+    *("wheel", "Y 99.85 % [kN]", "most", "Q 99.85 % [kN]", "most", "Y/Q 99.85 %", "most"),
+    *("sum of Y 99.85 % [kN]", "most"),
+)
