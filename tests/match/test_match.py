@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import railpatch
 from click.testing import CliRunner
+from page_checks import check_page
 from railpatch.command.cli import cli
 from railpatch.match import load_match, run_match
 from railpatch.match.command import example_text
@@ -180,6 +181,7 @@ def test_command_writes_a_scene_that_runs(points: Path) -> None:
     assert result.status == "converged"
     rows = (points / "out" / "match.csv").read_text().splitlines()
     assert len(rows) == 61
+    check_page(points / "out" / "match.html")
     page = (points / "out" / "match.html").read_text()
     assert "friction.coefficient" in page
 

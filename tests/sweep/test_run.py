@@ -12,6 +12,7 @@ import pyarrow.parquet as pq
 import pytest
 import railpatch
 from click.testing import CliRunner
+from page_checks import check_page
 from railpatch.case.kinds import kind_of, write_example
 from railpatch.command.cli import cli
 from railpatch.sweep import Sweep, read_sweep, run_sweep
@@ -126,6 +127,7 @@ def test_cases_that_fail_are_rows(tmp_path: Path) -> None:
     page = (tmp_path / "out" / "sweep.html").read_text(encoding="utf-8")
     assert "3 refused" in page
     assert "friction.coefficient: value is -1.0" in page
+    check_page(tmp_path / "out" / "sweep.html", keys=(2, 5))
     ended = CliRunner().invoke(cli, ["sweep", str(path), "-o", str(tmp_path / "out")])
     assert ended.exit_code == 3
     assert "3 of 6 cases have no good result; the first, number 0: refused" in ended.output

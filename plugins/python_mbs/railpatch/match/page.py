@@ -11,50 +11,76 @@ from railpatch.match.found import Judged, Match
 from railpatch.match.judge import NORMAL_95, correlations
 from railpatch.page.document import document
 from railpatch.page.figures import COLORS, GREY, plot, styled
-from railpatch.page.tables import number, table
+from railpatch.page.parts import DOUBT, GOOD, PLAIN, Key, folded, opening
+from railpatch.page.tables import number, short, table
 
 DASHES = ("solid", "dash", "dot", "dashdot")
+# of points left out, %: with fewer in their band of 95 % the band is in doubt
+LEAST_WITHIN = 85.0
+MOST_KEYS = 4  # parameters among the key numbers
 BAND = "rgba(59,125,196,0.18)"
 
 
 def page_of(match: Match) -> str:
     """The whole page."""
     own = match.explanations[0]
-    parts = [head_of(match), parameters_of(own)]
+    parts = [opening_of(match)]
     if own.not_told:
         items = "".join(f"<li>{escape(text)}</li>" for text in own.not_told)
-        parts.append(f"<h2>What these points cannot tell</h2><ul>{items}</ul>")
-    if len(match.explanations) > 1:
-        parts.append(explanations_of(match))
+        parts.append(f"<div class=warn><b>What these points cannot tell</b><ul>{items}</ul></div>")
     for place in range(len(match.plan.table.observed)):
         parts.append(
             f"<h2>{escape(label_of(match, place))}</h2>"
             + plot(curves_of(match, place), f"curves-{place}")
         )
         parts.append(plot(residual_figure(match, place), f"left-{place}"))
+    parts.append(parameters_of(own))
+    if len(match.explanations) > 1:
+        parts.append(explanations_of(match))
     if len(own.parameters) > 1:
         parts.append(correlations_of(own))
     parts.append(details_of(match))
     return document(match.plan.name, "".join(parts))
 
 
-def head_of(match: Match) -> str:
+def opening_of(match: Match) -> str:
     """The verdict and the key numbers."""
-    own, lines = match.explanations[0], []
+    own = match.explanations[0]
+    keys = [
+        Key(p.key, short(p.value), f"{short(p.low)} to {short(p.high)} (95 %)")
+        for p in own.parameters[:MOST_KEYS]
+    ]
     for place, rms in enumerate(own.fit.rms):
-        lines.append([f"rms of {label_of(match, place)}", number(float(rms))])
+        keys.append(Key(f"off {label_of(match, place)}", short(float(rms)), "root mean square"))
+    state = PLAIN
     if own.predicted is not None:
-        lines.append(
-            ["points left out, within their band of 95 %", f"{100 * own.predicted.within:.0f} %"]
+        share = 100 * own.predicted.within
+        state = GOOD if share >= LEAST_WITHIN else DOUBT
+        keys.append(
+            Key("points left out, in their band", f"{share:.0f} %", "95 % are expected", state)
         )
-    lines.append(["points", str(int(own.search.there.sum()))])
-    names = ", ".join(
-        f"{p.key} {p.value:.4g} ({p.low:.4g} to {p.high:.4g})" for p in own.parameters
-    )
-    return (
-        f"<h1>{escape(match.plan.name)}</h1><p>Found, with intervals of 95 %: {escape(names)}.</p>"
-        + table([], lines, "summary")
-    )
+    points = int(own.search.there.sum())
+    names = ", ".join(f"{p.key} {short(p.value)}" for p in own.parameters)
+    best = best_of(match)
+    verdict = f"{names}, from {points} points."
+    if len(match.explanations) > 1:
+        name = best.explanation.name
+        verdict += f" Of {len(match.explanations)} explanations, {name} predicts best."
+    if own.not_told:
+        verdict += " Not all of it is told by these points."
+        state = DOUBT
+    about = f"{match.plan.source}: parameters, with intervals of 95 %"
+    return opening(match.plan.name, about, verdict, keys, state)
+
+
+def best_of(match: Match) -> Judged:
+    """The explanation that predicts best."""
+    return min(match.explanations, key=rank)
+
+
+def rank(judged: Judged) -> float:
+    """Less is better: by points left out, else by Akaike's criterion."""
+    return -judged.predicted.density if judged.predicted else judged.criterion
 
 
 def parameters_of(own: Judged) -> str:
@@ -69,10 +95,6 @@ def parameters_of(own: Judged) -> str:
 
 def explanations_of(match: Match) -> str:
     """All beside each other, the one that predicts best first."""
-
-    def rank(judged: Judged) -> float:
-        return -judged.predicted.density if judged.predicted else judged.criterion
-
     rows, values = [], []
     for judged in sorted(match.explanations, key=rank):
         held, name = judged.predicted, judged.explanation.name
@@ -188,4 +210,4 @@ def details_of(match: Match) -> str:
         ["evaluations of all points", str(sum(j.evaluations for j in match.explanations))],
         ["time", f"{match.seconds:.3g} s"],
     ]
-    return f"<details><summary>How it was found</summary>{table([], lines, 'summary')}</details>"
+    return folded("How it was found", table([], lines, "summary"))

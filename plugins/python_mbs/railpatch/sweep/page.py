@@ -7,14 +7,15 @@ from html import escape
 from pathlib import Path
 
 import numpy as np
-import plotly.graph_objects as go
 from numpy.typing import NDArray
 from plotly.subplots import make_subplots
 
 from railpatch.case.load import KINDS
 from railpatch.page.document import document
-from railpatch.page.figures import COLORS, GREY, plot, styled
-from railpatch.page.tables import number, table
+from railpatch.page.figures import COLORS, plot, styled
+from railpatch.page.parts import BAD, DOUBT, GOOD, Key, folded, opening
+from railpatch.page.tables import number, short, table
+from railpatch.page.viewer import parallel_axes
 from railpatch.sweep.outcome import Sweep
 from railpatch.sweep.plan import SENSITIVITY
 from railpatch.writing import write_whole
@@ -24,6 +25,7 @@ PAGE = "sweep.html"
 MOST_LINES = 5000
 MOST_OUTPUTS = 6
 MOST_ROWS = 50
+MOST_KEYS = 4  # outputs among the key numbers
 MEANS = 20  # places along a key where the mean is drawn
 
 Array = NDArray[np.float64]
@@ -31,7 +33,7 @@ Array = NDArray[np.float64]
 
 def write_page(sweep: Sweep) -> Path:
     """Writes the page into the sweep's folder. Raises OSError."""
-    body = "".join([_head(sweep), *_sections(sweep)])
+    body = "".join([*_opening(sweep), *_sections(sweep)])
     return write_whole(sweep.folder / PAGE, document(sweep.plan.name, body).encode())
 
 
@@ -52,36 +54,68 @@ def key_values(sweep: Sweep, key: str) -> tuple[Array, list[str] | None]:
     return np.array([texts.index(str(v)) for v in values], dtype=float), texts
 
 
-def _head(sweep: Sweep) -> str:
+def _opening(sweep: Sweep) -> list[str]:
+    """What came out, and what did not."""
     plan, failed = sweep.plan, sweep.failed
     kind = "one contact each" if plan.kind in KINDS else f"a run of the kind {plan.kind} each"
-    good = len(sweep.rows) - len(failed)
-    lines = [
-        ["scene", f"{plan.table.scene}, {kind}"],
-        ["cases", f"{len(sweep.rows)}, {good} good, {len(failed)} not"],
-        ["design", plan.table.design],
-        [
-            "time",
-            f"{sum(row.seconds for row in sweep.rows):.3g} s of all cases, "
-            f"{sweep.wall_time:.3g} s now; {sweep.reused} cases were there",
-        ],
-    ]
-    warning = ""
+    count, good = len(sweep.rows), len(sweep.rows) - len(failed)
+    shown = shown_outputs(sweep)
+    keys = [_range(sweep, name) for name in shown[:MOST_KEYS]]
+    state = GOOD if good == count else DOUBT if good else BAD
+    keys.append(Key("cases with a result", f"{good} of {count}", "", state))
+    verdict = f"All {count} cases have a result."
+    if failed:
+        verdict = f"{good} of {count} cases have a result; {len(failed)} have none."
+    if shown:
+        name = shown[0]
+        values = output_values(sweep, name)
+        at = int(np.nanargmax(np.abs(values)))
+        verdict += f" {name} is farthest from zero, {short(values[at])}, at {_at(sweep, at)}."
+    verdict += _strongest(sweep, shown)
+    about = f"{plan.table.scene}, {kind}; design {plan.table.design}"
+    parts = [opening(plan.name, about, verdict, keys, state)]
     if failed:
         counts = Counter(sweep.rows[i].status for i in failed)
-        shown = ", ".join(f"{count} {status}" for status, count in counts.items())
-        warning = f'<p class="warn">{escape(shown)}: see the end of this page.</p>'
-    return f"<h1>{escape(plan.name)}</h1>{warning}{table([], lines, 'summary')}"
+        told = ", ".join(f"{count} {status}" for status, count in counts.items())
+        parts.append(f'<p class="warn">{escape(told)}: see the end of this page.</p>')
+    return parts
+
+
+def _range(sweep: Sweep, name: str) -> Key:
+    """Least and greatest of an output."""
+    values = output_values(sweep, name)
+    low, high = short(float(np.nanmin(values))), short(float(np.nanmax(values)))
+    note = f"mean {short(float(np.nanmean(values)))}"
+    return Key(name, low if low == high else f"{low} to {high}", note)
+
+
+def _strongest(sweep: Sweep, shown: list[str]) -> str:
+    """The key that most of the first output's variance goes with, where the design tells."""
+    if sweep.plan.table.design not in SENSITIVITY or not shown:
+        return ""
+    values = output_values(sweep, shown[0])
+    if not np.isfinite(values).all():
+        return ""
+    from railpatch.sweep.sensitivity import indices_of
+
+    # mu* of Morris stands second, the total index of Sobol fourth
+    place = 1 if sweep.plan.table.design == "morris" else 3
+    found = max(indices_of(sweep.plan, values), key=lambda row: float(row[place]))
+    return f" It depends most on {found[0]}."
+
+
+def shown_outputs(sweep: Sweep) -> list[str]:
+    """Those that are numbers, and vary where any does."""
+    known = [name for name in sweep.outputs if np.isfinite(output_values(sweep, name)).any()]
+    return [name for name in known if np.nanstd(output_values(sweep, name)) > 0] or known
 
 
 def _sections(sweep: Sweep) -> list[str]:
-    shown = [name for name in sweep.outputs if np.isfinite(output_values(sweep, name)).any()]
-    shown = [name for name in shown if np.nanstd(output_values(sweep, name)) > 0] or shown
-    parts = []
+    shown, parts = shown_outputs(sweep), []
     if shown:
-        parts += _extremes(sweep, shown)
         parts += _sensitivities(sweep, shown)
         parts += _responses(sweep, shown[:MOST_OUTPUTS])
+        parts += _extremes(sweep, shown)
         parts += _parallel(sweep, shown[:MOST_OUTPUTS])
     warned = Counter(text for row in sweep.rows for text in row.warnings)
     if warned:
@@ -91,7 +125,15 @@ def _sections(sweep: Sweep) -> list[str]:
                 ["cases", "text"], [[count, text] for text, count in warned.most_common(MOST_ROWS)]
             )
         )
-    return [*parts, *_failed(sweep)]
+    parts += _failed(sweep)
+    took = sum(row.seconds for row in sweep.rows)
+    lines = [
+        ["scene", sweep.plan.table.scene],
+        ["design", sweep.plan.table.design],
+        ["time", f"{took:.3g} s of all cases, {sweep.wall_time:.3g} s now"],
+        ["cases that were there", str(sweep.reused)],
+    ]
+    return [*parts, folded("How it was computed", table([], lines, "summary"))]
 
 
 def _extremes(sweep: Sweep, names: list[str]) -> list[str]:
@@ -133,10 +175,11 @@ def _responses(sweep: Sweep, names: list[str]) -> list[str]:
         for row, name in enumerate(names, 1):
             values = output_values(sweep, name)
             few = _few(len(at))
-            figure.add_scattergl(
+            figure.add_scatter(
                 x=at[few],
                 y=values[few],
                 mode="markers",
+                name="case",
                 showlegend=False,
                 marker={"size": 4, "color": COLORS["left"], "opacity": 0.5},
                 row=row,
@@ -147,6 +190,7 @@ def _responses(sweep: Sweep, names: list[str]) -> list[str]:
                 x=x,
                 y=mean,
                 mode="lines",
+                name="mean",
                 showlegend=False,
                 line={"color": COLORS["right"], "width": 2},
                 row=row,
@@ -164,7 +208,7 @@ def _responses(sweep: Sweep, names: list[str]) -> list[str]:
     text = "<p class=sub>Dots are cases, the line is their mean along the key.</p>"
     figure.update_xaxes(exponentformat="SI")
     figure.update_yaxes(exponentformat="SI")
-    return ["<h2>Responses</h2>" + text + wide(plot(figure, "responses"), len(keys))]
+    return ["<h2>Responses</h2>" + text + plot(figure, "responses")]
 
 
 def _few(count: int) -> NDArray[np.int64]:
@@ -192,38 +236,15 @@ def _means(at: Array, values: Array) -> tuple[Array, Array]:
 def _parallel(sweep: Sweep, names: list[str]) -> list[str]:
     """All keys and outputs of each case as a line."""
     few = _few(len(sweep.rows))
-    dimensions = []
-    for key in sweep.plan.keys:
-        at, texts = key_values(sweep, key)
-        ticks = {"tickvals": list(range(len(texts))), "ticktext": texts} if texts else {}
-        dimensions.append({"label": key, "values": at[few], **ticks})
-    dimensions += [{"label": name, "values": output_values(sweep, name)[few]} for name in names]
     color = output_values(sweep, names[0])[few]
     known = np.isfinite(color)
-    for dimension in dimensions:
-        dimension["values"] = dimension["values"][known]
-    figure = go.Figure(
-        go.Parcoords(
-            dimensions=dimensions,
-            line={
-                "color": color[known],
-                "colorscale": "Viridis",
-                "showscale": True,
-                "colorbar": {"title": names[0]},
-            },
-            labelfont={"color": GREY},
-            tickfont={"color": GREY},
-            rangefont={"color": "rgba(0,0,0,0)", "size": 1},
-            labelangle=-12,
-            labelside="top",
-        )
-    )
-    styled(figure, 480)
-    figure.update_layout(margin={"l": 90, "r": 60, "t": 110, "b": 40})
+    axes = [(key, at[few][known], texts) for key in sweep.plan.keys
+            for at, texts in (key_values(sweep, key),)]  # fmt: skip
+    axes += [(name, output_values(sweep, name)[few][known], None) for name in names]
     left = len(sweep.rows) - int(known.sum())
-    text = "<p class=sub>Drag along an axis to choose cases."
-    text += f" {left} cases are not drawn.</p>" if left else "</p>"
-    return ["<h2>All cases</h2>" + text + wide(plot(figure, "parallel"), len(dimensions) // 2)]
+    text = f"<p class=sub>{left} cases are not drawn.</p>" if left else ""
+    shown = parallel_axes("parallel", axes, len(sweep.plan.keys))
+    return ["<h2>All cases</h2>" + text + wide(shown, len(axes) // 2)]
 
 
 def wide(figure: str, columns: int) -> str:
