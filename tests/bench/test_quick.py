@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
+from page_checks import check_page
 from railpatch.command.cli import cli
 from railpatch.evidence.bench import cost, evaluations, features, methods, run, tail
 from railpatch.evidence.bench.measure import COLUMNS
@@ -119,6 +120,7 @@ def test_cases(folder: Path, summary: list[dict[str, str]]) -> None:
 
 
 def test_page(folder: Path, summary: list[dict[str, str]]) -> None:
+    check_page(folder / "report.html")
     page = (folder / "report.html").read_text(encoding="utf-8")
     body = re.sub(r"<(script|style).*?</\1>", "", page, flags=re.S)
     assert "src=" not in body

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import wheelset_scenes as scenes
 from click.testing import CliRunner
+from page_checks import check_page
 from railpatch.command.cli import cli
 
 from wheelset_demo.coupling.energy import balance, release
@@ -200,6 +201,7 @@ def test_command(tmp_path: Path):
     assert second["by_runs"] > 1e-2
     assert second["at_1_ms"]["share"] < 1e-4
     assert first["at_1_ms"] is None
+    check_page(page, keys=(2, 2))
     text = page.read_text()
     assert "<svg" in text
     assert "leapfrog" in text

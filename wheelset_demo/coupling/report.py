@@ -10,14 +10,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from railpatch.page.document import document
+from railpatch.page.parts import Key, opening
+from railpatch.page.tables import table
+
 from wheelset_demo.coupling.energy import Balance
 from wheelset_demo.coupling.stability import LARGEST
 from wheelset_demo.coupling.study import Row, Study
 
-STYLE = """body{font:15px/1.5 sans-serif;max-width:70em;margin:2em auto;padding:0 1em}
-table{border-collapse:collapse}
-td,th{padding:.2em .7em;text-align:right;border-bottom:1px solid #ccc}
-td:first-child,th:first-child{text-align:left}svg{max-width:100%;height:auto}"""
 HEADS = (
     "Largest stable communication step by runs of the FMU",
     "The same by the eigenvalues of one step",
@@ -68,9 +68,9 @@ def cells_of(cell: Callable[[Row], str], rows: list[Row | None]) -> list[str]:
 def text_of(study: Study) -> str:
     """For the terminal."""
     blocks = [f"scene: {study.scene}"]
-    for text, table in tables_of(study):
-        widths = [max(len(row[k]) for row in table) for k in range(len(table[0]))]
-        lines = ["  ".join(c.rjust(w) for c, w in zip(row, widths, strict=True)) for row in table]
+    for text, shown in tables_of(study):
+        widths = [max(len(row[k]) for row in shown) for k in range(len(shown[0]))]
+        lines = ["  ".join(c.rjust(w) for c, w in zip(row, widths, strict=True)) for row in shown]
         blocks.append("\n".join([text, *lines]))
     return "\n\n".join(blocks)
 
@@ -150,20 +150,37 @@ def svg_of(study: Study) -> str:
 def page_of(study: Study) -> str:
     """Self-contained HTML."""
     svg = svg_of(study)
-    tables = []
-    for text, table in tables_of(study):
-        rows = []
-        for k, cells in enumerate(table):
-            tag = "td" if k else "th"
-            rows.append("".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in cells))
-        content = "".join(f"<tr>{row}</tr>" for row in rows)
-        tables.append(f"<h2>{html.escape(text)}</h2><table>{content}</table>")
-    return (
-        '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>Co-simulation'
-        f"</title><style>{STYLE}</style></head><body><h1>Co-simulation: stable steps</h1>"
-        f"<p>Scene {html.escape(study.scene)}. Points are runs, lines eigenvalues.</p>"
-        f"{svg[svg.index('<svg') :]}{''.join(tables)}</body></html>\n"
+    rest = []
+    for text, (head, *rows) in tables_of(study):
+        rest.append(f"<h2>{html.escape(text)}</h2>{table(head, rows)}")
+    body = (
+        opening_of(study)
+        + "<h2>Largest stable step, and what the coupling does to the energy</h2><p>Points are "
+        "runs, lines eigenvalues.</p>"
+        + f'<figure class="scroll">{svg[svg.index("<svg") :]}</figure>{"".join(rest)}'
     )
+    return document("co-simulation", body)
+
+
+def opening_of(study: Study) -> str:
+    """The largest stable step of each master at the speed where it is shortest."""
+    rows = {name: [row for row in study.of(name) if row is not None] for name in study.masters}
+    least = {
+        name: min(found, key=lambda row: row.bound.by_runs) for name, found in rows.items() if found
+    }
+    keys = [
+        Key(name, step_text(row.bound.by_runs), f"by eigenvalues {step_text(row.bound.by_matrix)}")
+        for name, row in least.items()
+    ]
+    verdict = "No master ran."
+    if least:
+        best = max(least, key=lambda name: least[name].bound.by_runs)
+        verdict = (
+            f"{best} bears the longest communication steps: "
+            f"{step_text(least[best].bound.by_runs)} at the worst speed."
+        )
+    about = f"{study.scene}, at {', '.join(f'{s.speed:g}' for s in study.speeds)} m/s"
+    return opening("Co-simulation: longest stable steps", about, verdict, keys)
 
 
 def write(study: Study, path: Path) -> None:

@@ -15,6 +15,7 @@ from railpatch.evidence.bench.curves import (
 )
 from railpatch.evidence.bench.targets import PEER, PEER_COST
 from railpatch.page.figures import GRID
+from railpatch.page.figures import styled as look
 
 HOVER = "%{text}<br>%{x:.4g} ms, %{y:.3g} %<extra></extra>"
 COST_HOVER = "%{x:.0f} elements, %{y:.4g} ms<extra></extra>"
@@ -90,14 +91,7 @@ def cost_over_elements(found: list[CostCurve]) -> go.Figure:
 
 def styled(figure: go.Figure, x: str, y: str) -> go.Figure:
     """Logarithmic axes and the page's look."""
-    figure.update_layout(
-        height=560,
-        margin={"l": 70, "r": 20, "t": 20, "b": 60},
-        paper_bgcolor="rgba(0,0,0,0)",
-        plot_bgcolor="rgba(0,0,0,0)",
-        font={"color": "#808892"},
-        legend={"orientation": "h", "y": -0.16},
-    )
+    look(figure, 600)
     for update, title in ((figure.update_xaxes, x), (figure.update_yaxes, y)):
         update(type="log", title_text=title, gridcolor=GRID, zeroline=False, dtick=1,
                minor={"showgrid": True, "gridcolor": "rgba(128,128,128,0.1)"})  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rich.console import Console
 from rich.table import Table
 
-from railpatch.evidence.bench.page import milliseconds, percent
+from railpatch.evidence.bench.page import REACHED, milliseconds, percent
 from railpatch.evidence.bench.run import Report
 from railpatch.evidence.bench.targets import rows
 
@@ -15,9 +15,11 @@ def print_report(report: Report) -> None:
     console = Console()
     for name, text in report.machine.rows():
         console.print(f"{name}: {text}", highlight=False)
-    targets = Table("target", "measured", "must", "aim", "reaches", box=None, pad_edge=False)
+    targets = Table(
+        "time", "measured", "wanted, at most", "hoped for", "", box=None, pad_edge=False
+    )
     for row in rows(report.outcome):
-        targets.add_row(row.title, row.measured, row.must, row.aim, row.verdict)
+        targets.add_row(row.title, row.measured, row.must, row.aim, REACHED[row.verdict])
     console.print(targets)
     table = Table(
         "method", "set", "cases", "force error 95 % [%]", "cold [ms]", "warm [ms]", "lost",
