@@ -45,14 +45,14 @@ CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
 SOURCES := $(shell find core plugins rig_model wheelset_demo -type f -not -name '*.pyc' 2>/dev/null) \
 	CMakeLists.txt README.md
 
-.PHONY: help tools asan-core build-asan demo viewer fmu fmu-clients fmu-fftw test test-long lint format clean setup \
+.PHONY: help tools asan-core build-asan demo pages viewer fmu fmu-clients fmu-fftw test test-long lint format clean setup \
 	system test-cpp test-python test-asan pruning mutants bits-steps
 
 help: ## this list
 	@echo "make targets:"
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
 
-demo: setup ## set-up, roller-rig replay, wheelset on track, an FMU; logs and reports
+demo: setup ## set-up, roller-rig replay, wheelset on track, an FMU; a page with links to all
 	@mkdir -p build/demo
 	$(BIN)/railpatch rig -o build/demo/run.mcap
 	$(BIN)/railpatch report build/demo/run.mcap -o build/demo/report.html
@@ -60,12 +60,9 @@ demo: setup ## set-up, roller-rig replay, wheelset on track, an FMU; logs and re
 	$(BIN)/railpatch report build/demo/wheelset.mcap -o build/demo/wheelset.html
 	$(BIN)/railpatch fmu -o build/demo/railpatch.fmu
 	$(BIN)/python -m railpatch.fmu.try_out build/demo/railpatch.fmu
-	@printf '\nroller rig\n  log:     %s\nwheelset on track\n  log:     %s\n  report:  %s\nFMU:       %s\n' \
-		"$(CURDIR)/build/demo/run.mcap" \
-		"$(CURDIR)/build/demo/wheelset.mcap" "$(CURDIR)/build/demo/wheelset.html" \
-		"$(CURDIR)/build/demo/railpatch.fmu"
-	@printf '\nOpen this page first, the replay of the roller rig beside forces that CONTACT computed for it:\n  %s\n' \
-		"file://$(CURDIR)/build/demo/report.html"
+	@$(BIN)/python -m railpatch.fmu.demo_page build/demo docs/frontier.svg >/dev/null
+	@printf '\nOpen this page: pictures of all of it, with links to the reports:\n  %s\n' \
+		"file://$(CURDIR)/build/demo/index.html"
 
 fmu: setup fmu-fftw ## FMUs of the default scene and of each kind for Linux, ARM, Windows; one with FFTW (GPL)
 	@mkdir -p build/fmu
@@ -90,6 +87,13 @@ fmu-fftw: setup ## the FMU's library with FFTW, for `railpatch fmu --fft fftw --
 
 fmu-clients: fmu ## the same in clients that others wrote: fmpy, libcosimpy, ecospy, FMI4j, VDMCheck2
 	plugins/fmu/clients/run build/fmu/clients $$(ls build/fmu/*.fmu | grep -v gpl)
+
+# every kind of page in a browser: no error, no text over text, light, dark, phone, print
+pages: setup ## pages in Chromium: layout, colours, errors, pictures, PDF; some minutes
+	@.ci/system-packages chromium
+	@mkdir -p build/pages build/junit
+	$(BIN)/python tests/pages/make.py build/pages
+	$(PYTEST) tests/pages -m browser --junit-xml=build/junit/pages.xml
 
 viewer: demo ## the demo's logs in a viewer that others wrote, a picture of each; 250 MB of npm packages
 	@.ci/system-packages npm chromium
