@@ -105,6 +105,7 @@ CASES: dict[tuple[str, str], Callable[[Path], list[object]]] = {
     ("subsurface", "patch.toml"): lambda f: ["subsurface", patch(f)],
     ("subsurface", "gap.csv"): lambda f: ["subsurface", patch(f)],
     ("report", "run.mcap"): lambda f: ["report", log(f)],
+    ("figure", "run.mcap"): lambda f: ["figure", log(f), "traction"],
     ("export", "run.mcap"): lambda f: ["export", log(f)],
     ("layout", "run.mcap"): lambda f: ["layout", log(f)],
     ("profile", WHEEL): lambda f: [

@@ -113,7 +113,7 @@ def test_report(ran, tmp_path):
         assert page.count(f'id="{name}"') == 1, name
     assert 'id="momentum"' not in page
     text = re.sub(r"<(script|style).*?</\1>|<[^>]+>", " ", page, flags=re.S)
-    assert "Run of the vehicle" in text
+    assert "Vehicle on track" in text
     assert f"{len(run['/vehicle/state'])} logged, of which 21 converged" in text
 
 
