@@ -5,7 +5,7 @@
   const root = document.documentElement;
   if (root.scrollWidth > root.clientWidth + 1) {
     const wide = [...document.body.querySelectorAll("*")].find((e) =>
-      e.getBoundingClientRect().right > root.clientWidth + 1 && !e.closest(".scroll, pre"));
+      e.getBoundingClientRect().right > root.clientWidth + 1 && !e.closest("svg"));
     found.push(`wider than the page: ${root.scrollWidth} px of ${root.clientWidth}, ` +
       `${wide ? `${wide.tagName} ${wide.className}` : ""}`);
   }

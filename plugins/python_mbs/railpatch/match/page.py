@@ -138,6 +138,7 @@ def curves_of(match: Match, place: int) -> go.Figure:
     figure.add_scatter(
         x=np.concatenate([at[order], at[order][::-1]]),
         y=np.concatenate([computed + spread, (computed - spread)[::-1]]),
+        mode="lines",
         fill="toself",
         fillcolor=BAND,
         line={"width": 0},
