@@ -39,17 +39,6 @@ layout layout_of(const creep_table_header &h) {
   return at;
 }
 
-// FNV-1a (Fowler, Noll, Vo 1991) by words of 8 bytes
-uint64_t checksum(const unsigned char *data, size_t size) {
-  uint64_t hash = 14695981039346656037ull;
-  for (size_t i = 0; i + 8 <= size; i += 8) {
-    uint64_t word;
-    std::memcpy(&word, data + i, 8);
-    hash = (hash ^ word) * 1099511628211ull;
-  }
-  return hash;
-}
-
 bool increasing(const double *values, int count) {
   for (int i = 0; i + 1 < count; ++i)
     if (!(values[i] < values[i + 1])) return false;
@@ -99,6 +88,16 @@ double limit(double s) {
 
 }  // namespace
 
+uint64_t table_checksum(const unsigned char *data, size_t size) {
+  uint64_t hash = 14695981039346656037ull;
+  for (size_t i = 0; i + 8 <= size; i += 8) {
+    uint64_t word;
+    std::memcpy(&word, data + i, 8);
+    hash = (hash ^ word) * 1099511628211ull;
+  }
+  return hash;
+}
+
 const char *creep_table::defect(const void *data, size_t size) {
   if (!data) return "is null: tangential = table needs one";
   const auto *bytes = static_cast<const unsigned char *>(data);
@@ -113,7 +112,7 @@ const char *creep_table::defect(const void *data, size_t size) {
       return "has an axis of fewer than 4 or more than 256 coefficients";
   if (h.recipe_bytes < 0 || layout_of(h).end != size)
     return "has not the length that its axes ask for";
-  if (checksum(bytes + checked_from, size - checked_from) != h.checksum)
+  if (table_checksum(bytes + checked_from, size - checked_from) != h.checksum)
     return "has a wrong checksum: it was altered";
   const bool axes = increasing(h.poisson_ratio, 3) && increasing(h.log_ratio, 2) &&
                     std::abs(h.log_ratio[0]) < 20 && std::abs(h.log_ratio[1]) < 20 &&
@@ -208,6 +207,12 @@ void creep_table::interpolate_remainder(const axis &ratio, const axis &psi, cons
     for (int j = 0; j < 4; ++j) h[k] += t.weight[j] * sum[3 * j + k];
     h[k] *= d.remainder_scale[k];
   }
+}
+
+double creep_table::nearest_ratio(double ratio) const {
+  const double t = log(ratio), *range = header().log_ratio;
+  if (t >= range[0] && t <= range[1]) return ratio;
+  return exp(std::clamp(t, range[0], range[1]));
 }
 
 creep_forces creep_table::evaluate(const creep_problem &p) const {

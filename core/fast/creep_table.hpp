@@ -45,6 +45,9 @@ struct creep_table_header {
   double error[2];            // of force over B and of moment over c B, 95th percentile
 };
 
+// FNV-1a (Fowler, Noll, Vo 1991) by words of 8 bytes.
+uint64_t table_checksum(const unsigned char *data, size_t size);
+
 struct creep_problem {
   double semi_axes[2];   // m
   double shear_modulus;  // Pa
@@ -70,6 +73,8 @@ class creep_table {
   creep_table(const void *data, double poisson_ratio);
 
   creep_forces evaluate(const creep_problem &problem) const;
+  // a/b itself within the table, else the one that stands for it.
+  double nearest_ratio(double ratio) const;
   // 95th percentiles: of force over B and of moment over c B.
   double force_error() const { return header().error[0]; }
   double moment_error() const { return header().error[1]; }

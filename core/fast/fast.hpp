@@ -2,7 +2,8 @@
 // that stands for a contact area of any shape), the creepage coefficients, the traction bound and
 // the ends of the rows. Of an area of any shape the resultant theories see the creepages at its
 // centre of pressure, the others at the middle of each row. The table of creep forces, which is as
-// good as the full theory on an ellipse, takes the ellipses of pressed_ellipses.hpp in its place.
+// good as the full theory on an ellipse, takes the ellipses of pressed_ellipses.hpp in its place,
+// and what a table of shapes adds to them.
 //
 // Theories that give resultants only need no grid and no fields.
 //
@@ -17,6 +18,7 @@
 #include "fast/coefficients.hpp"
 #include "fast/creep_table.hpp"
 #include "fast/pressed_ellipses.hpp"
+#include "fast/shape_table.hpp"
 #include "fast/theories.hpp"
 #include "normal/hertz.hpp"
 #include "normal/row_contact.hpp"
@@ -45,8 +47,9 @@ class fast_solver {
   // range, the result is there all the same.
   tangential_result solve(const fast_patch &patch, const rolling_input &rolling,
                           tangential_fields fields, creep_resultants &sums);
-  // The table of creep forces, where the theory is that.
+  // The table of creep forces, where the theory is that, and of shapes, where there is one.
   const creep_table *table() const { return creep_table_ ? &*creep_table_ : nullptr; }
+  const shape_table *shapes() const { return shape_table_ ? &*shape_table_ : nullptr; }
   size_t bytes() const {
     return bound_.bytes() + leading_.bytes() + trailing_.bytes() + ellipses_.bytes();
   }
@@ -59,6 +62,9 @@ class fast_solver {
   ellipse ellipse_of(const fast_patch &patch) const;
   tangential_result solve_by_ellipses(const fast_patch &patch, const rolling_input &rolling,
                                       creep_resultants &sums);
+  bool soften_beyond_table(const double axes[2], rolling_input &rolling) const;
+  void correct(const fast_patch &patch, const rolling_input &rolling, creep_resultants &sums,
+               tangential_result &result);
   flexibilities flexibilities_of(const fast_problem &problem) const;
   creepage_coefficients coefficients(double axis_ratio) const;
   void set_bound(const fast_patch &patch);
@@ -71,6 +77,7 @@ class fast_solver {
   const fast_theory &theory_;
   coefficient_table table_;
   std::optional<creep_table> creep_table_;
+  std::optional<shape_table> shape_table_;
   pressed_ellipses ellipses_;  // of the table
   aligned_buffer<double> bound_, leading_, trailing_;
 };

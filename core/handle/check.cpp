@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <cstring>
 
-#include "fast/creep_table.hpp"
 #include "fast/fast.hpp"
+#include "fast/shape_table.hpp"
 #include "half_space/coupling.hpp"
 #include "half_space/physics.hpp"
 #include "handle/case_fields.hpp"
@@ -206,7 +206,7 @@ void check_table(const rp_config &c, checker &check) {
   check.require(!(c.layer_thickness > 0),
                 "a creep table has no third-body layer: use tangential = full");
   if (check.error() != RP_OK) return;
-  const char *defect = creep_table::defect(c.creep_table, c.creep_table_size);
+  const char *defect = creep_table_defect(c.creep_table, c.creep_table_size);
   if (!defect) return;
   char text[RP_MESSAGE_SIZE];
   std::snprintf(text, sizeof text, "creep_table %s", defect);

@@ -201,6 +201,7 @@ error_bounds error_model::estimate(const estimated_patch &patch, const rp_patch_
       m.sum() / (1.0 + m.sum()) * shrinkage(patch, features + pressure_feature_count + 8);
   const double least = force_floor * std::min(1.0, m.sum());
   const auto relative = [&](int k) {
+    if (patch.states_all) return std::max(least, std::min(1.0, m.sum()) * patch.stated[k]);
     return std::max(least, share * patch.stated[k] * exp(model[k].at(features, patch.normal)));
   };
   bounds.creep_force = force * relative(0);

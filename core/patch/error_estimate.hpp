@@ -50,6 +50,7 @@ struct estimated_patch {
   double stated[2];  // -, errors of force and moment that a table states; else 1
   double friction_coefficient;
   rolling_input rolling;
+  bool states_all = false;  // those are of this kind of contact, no factor of the model's
 };
 
 // Each stays below it with 95 % or more of cases; NaN: not known.

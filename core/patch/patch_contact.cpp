@@ -287,6 +287,13 @@ void patch_contact::estimate_error(const patch_problem &problem, const pressure_
     patch.stated[0] = table->force_error();
     patch.stated[1] = table->moment_error();
   }
+  // the table of shapes counts where no ellipse is given
+  const bool ellipse = problem.hertz.semi_axes[0] > 0 && !n.rows;
+  if (const shape_table *shapes = ellipse ? nullptr : tangential_.shapes()) {
+    patch.stated[0] = shapes->force_error();
+    patch.stated[1] = shapes->moment_error();
+    patch.states_all = true;
+  }
   if (!scene.estimates_force()) patch.tangential = RP_TANGENTIAL_NONE;
   if (!(problem.rolling_speed > 0)) patch.rolling = rolling_input{};
   if (memory.pressure.size()) patch.extent = extent_of(problem.g, memory.pressure.data());

@@ -16,8 +16,9 @@ bool patch_scene::estimates_force() const {
     return false;
   if (!is_fast(tangential)) return true;
   if (fast.law) return false;
-  // what an ellipse in place of another shape does was not measured
-  if (tangential == RP_TANGENTIAL_TABLE && normal != RP_NORMAL_HERTZ) return false;
+  // what an ellipse in place of another shape does is known of a table of shapes alone
+  if (tangential == RP_TANGENTIAL_TABLE && normal != RP_NORMAL_HERTZ)
+    return shape_table::is_one(fast.creep_table, sizeof(shape_table_header));
   const polach_factors &p = fast.polach;
   const stiffness_reduction &r = fast.reduction;
   const bool reduced = p.adhesion != 1 || p.slip != 1 || r.k0 != 1 || (r.alpha != 1 && r.beta != 0);

@@ -27,6 +27,7 @@ class tangential_stage {
                       patch_wrench &wrench) const;
   bool on_grid() const { return !fitted_; }
   const creep_table *table() const { return fast_ ? fast_->table() : nullptr; }
+  const shape_table *shapes() const { return fast_ ? fast_->shapes() : nullptr; }
   row_blocks *blocks() { return tangential_ ? tangential_->blocks() : nullptr; }
   size_t history_bytes() const { return tangential_ ? tangential_->history_bytes() : 0; }
   size_t plastic_bytes() const { return tangential_ ? tangential_->plastic_bytes() : 0; }

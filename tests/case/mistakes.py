@@ -315,7 +315,7 @@ MISTAKES: tuple[Mistake, ...] = (
     Mistake(ANALYST, "a log that is cut off", "report {} -o a.html",
             file("run.mcap", b"\x89MCAP0\r\n" + bytes(40))),
     Mistake(ANALYST, "a log that is not there", "report {} -o a.html", lambda: "absent.mcap"),
-    Mistake(ANALYST, "a report as PDF", "report {} -o a.pdf",
+    Mistake(ANALYST, "a report as a text document", "report {} -o a.docx",
             file("run.mcap", b"\x89MCAP0\r\n" + bytes(40))),
     # --- FMU --------------------------------------------------------------------------------------
     Mistake(PROFILES, "a wheel's file without its role", "profile {} -o page.html",

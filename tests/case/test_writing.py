@@ -71,7 +71,7 @@ def test_an_fmu_goes_through_a_pipe(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("command", ["report run.mcap", "profile S1002"])
 def test_a_page_is_written_under_a_page_s_name_only(tmp_path: Path, command: str) -> None:
-    for name in ("x.pdf", "x.png"):
+    for name in ("x.docx", "x.png"):
         done = CliRunner().invoke(cli, [*command.split(), "-o", str(tmp_path / name)])
         assert done.exit_code == 2
         assert "allowed a name that ends in .html or .htm" in done.output

@@ -234,6 +234,11 @@ class Method(Table):
     tangential: Literal[("none", *FAST, "full")] = Field(
         default="full", description="theory of the tangential problem (no unit)"
     )
+    table_file: str | None = Field(
+        default=None,
+        description="of table: a file that 'railpatch table' wrote, of ellipses or of a pair of "
+        "profiles (path, from the case's folder); left out: the package's, of ellipses",
+    )
     tolerance: float = key()
     max_iterations: int | None = key("; left out: the core's choice", default=None)
     accuracy: Annotated[float, between(0.001, 0.2)] | None = Field(
@@ -313,6 +318,8 @@ class Method(Table):
                 yield relation(name, repr(value), f"only with tangential = {allowed}")
             elif value == "contact" and not blends_as_contact(self.tangential):
                 yield relation(name, repr(value), f"'sliding' or 'none' {where}")
+        if self.table_file is not None and self.tangential != "table":
+            yield relation("table_file", repr(self.table_file), "only with tangential = 'table'")
         if self.tangential == "none" or not has_tractions(self.tangential):
             yield from check_spin_offset(self, where, table="")
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from railpatch import _core
-from railpatch.case.creep_table import default_table
+from railpatch.case.creep_table import default_table, table_from
 from railpatch.case.gap import read_gap
 from railpatch.case.load import Case, Scene, plain
 from railpatch.case.longitudinal import shape_config
@@ -76,7 +76,9 @@ def config_of(scene: Scene, shelf: Shelf | None = None) -> dict[str, Any]:
         config |= passed(name, getattr(case, name, None), _core.CONFIG_FIELDS)
     config |= friction_config(case) | layer_config(case) | temperature_config(case)
     if case.has_tangential and case.method.tangential == "table":
-        config["creep_table"] = default_table()
+        file = case.method.table_file
+        own = scene.folder / file if file is not None else None
+        config["creep_table"] = default_table() if own is None else table_from(own.resolve())
     if isinstance(case, PatchCase):
         return config | patch_config(case, scene.folder)
     return config | wheel_config(case, scene.folder, shelf or Shelf(case, scene.folder))

@@ -1,0 +1,155 @@
+"""Tables of shapes for a pair of profiles: made small, read on every surface, and refused."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import railpatch
+from click.testing import CliRunner
+from railpatch import CaseError, Contact
+from railpatch.case.creep_table import describe_table
+from railpatch.command.cli import cli
+from railpatch.evidence.table import shapes
+from railpatch.evidence.table.pair import CHECK, COARSE, FULL, Pair, Ranges
+from railpatch.evidence.table.pair_command import pair_case
+
+PROFILES = ("S1002", "UIC60@1:40")
+# on the tread about the middle
+NARROW = Ranges(y=(-1e-3, 1e-3), yaw=5e-3, roll=1e-4, load=(6e4, 1e5), curvature=1 / 1000)
+
+
+def pair(seed: int) -> Pair:
+    return Pair(pair_case(*PROFILES), ".", NARROW, seed, "tread")
+
+
+@pytest.fixture(scope="module")
+def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Of a dozen shapes, told by 100 states."""
+    file = tmp_path_factory.mktemp("shapes") / "tread.bin"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(shapes, "FIRST", 10)
+        patch.setattr(shapes, "MOST", 12)
+        patch.setattr(shapes, "ROUND", 4)
+        file.write_bytes(shapes.make_shapes(pair(1), 0.01, 100, 1, lambda _text: None))
+    return file
+
+
+def method(table: Path | None) -> dict[str, str]:
+    return {"tangential": "table"} | ({} if table is None else {"table_file": str(table)})
+
+
+def wheel(table: Path | None, **changes: object) -> dict:
+    case = pair_case(*PROFILES)
+    case["wheelset"] |= {"vertical_force": 8e4, "speed": 20.0, "pitch_rate": -20.05 / 0.46}
+    return {**case, "grid": COARSE, "method": method(table), **changes}
+
+
+def test_it_is_nearer_to_the_full_theory_than_ellipses_are(table: Path) -> None:
+    """At places and creepages that made no node, against the full theory on finer rows."""
+    other = pair(2)
+    errors: dict[str, list[float]] = {"shapes": [], "ellipses": []}
+    for _ in range(8):
+        place = other.place()
+        creepages = other.natural(place, 6)
+        full, solved = other.solve(place, creepages, FULL, CHECK, 1)
+        for name, file in (("shapes", table), ("ellipses", None)):
+            fast, _ = other.solve(place, creepages, method(file), COARSE, 1)
+            errors[name] += np.hypot(*(full - fast)[solved, :2].T).tolist()
+    median = {name: float(np.median(found)) for name, found in errors.items()}
+    worst = {name: float(np.percentile(found, 90)) for name, found in errors.items()}
+    print(f"\nmedian {median}, 90 % {worst}")
+    assert len(errors["shapes"]) > 40
+    assert worst["shapes"] < 0.5 * worst["ellipses"]
+    # what the table states of 100 states bounds the median of these
+    assert median["shapes"] < describe_table(table.read_bytes())["error"]["force"][1]
+
+
+def test_it_states_its_error(table: Path) -> None:
+    stated = describe_table(table.read_bytes())["error"]["force"][1]
+    result = railpatch.solve(wheel(table))
+    assert result.status == "converged"
+    patch = result["patches"][0]
+    bound = 0.3 * patch["normal_force"]
+    assert 0 < patch["error_estimate"]["creep_force"] <= stated * bound * (1 + 1e-6)
+    # of ellipses nobody measured it
+    assert np.isnan(railpatch.solve(wheel(None))["patches"][0]["error_estimate"]["creep_force"])
+
+
+def test_what_it_has_not_seen_is_out_of_range(table: Path) -> None:
+    case = wheel(table)
+    case["wheelset"] |= {"y": 6.5e-3, "vertical_force": 1e5}
+    result = railpatch.solve(case)
+    assert result.status == "out_of_range"
+    assert result.reason
+
+
+def test_wheelsets_copies_and_many_states_have_it(table: Path, tmp_path: Path) -> None:
+    case = wheel(table)
+    whole = {key: value for key, value in case.items() if key != "wheel"} | {"kind": "wheelset"}
+    whole["wheelset"] = case["wheelset"] | {"vertical_force": 1.6e5}
+    contact = Contact(whole)
+    assert contact.step().status == "converged"
+    # by a path from the case's folder, as from any other
+    (tmp_path / "near.bin").write_bytes(table.read_bytes())
+    near = {**whole, "method": {"tangential": "table", "table_file": "near.bin"}}
+    force = railpatch.solve(near, folder=tmp_path)["force"]
+    assert list(force) == list(contact.last()["force"])
+    states = railpatch.solve_many(case, {"pitch_rate": np.linspace(-43.7, -43.4, 5)})
+    for k, rate in enumerate(np.linspace(-43.7, -43.4, 5)):
+        alone = Contact(case).step(pitch_rate=rate)["patches"][0]["creep_force"]
+        assert list(states["patches.creep_force"][k, 0]) == list(alone)
+
+
+def test_slopes_are_those_of_what_it_gives(table: Path) -> None:
+    """Derivatives by differences of its interpolation: against wider differences."""
+    contact = Contact(wheel(table) | {"method": method(table) | {"derivatives": True}})
+    contact.step()
+    slope = contact.differentiate(pitch_rate=1.0)["force"][0]
+    rate, step = -20.05 / 0.46, 1e-4
+    ends = [Contact(wheel(table)).step(pitch_rate=rate + s)["force"][0] for s in (-step, step)]
+    assert slope == pytest.approx((ends[1] - ends[0]) / (2 * step), rel=1e-2)
+
+
+def test_other_files_are_refused(table: Path, tmp_path: Path) -> None:
+    wrong = tmp_path / "wrong.bin"
+    for content, words in (
+        (b"profile", "is no creep table"),
+        (table.read_bytes()[:-8], "length"),
+        (table.read_bytes()[:4000] + b"\1" * 8 + table.read_bytes()[4008:], "altered"),
+    ):
+        wrong.write_bytes(content)
+        with pytest.raises(CaseError, match=words):
+            Contact(wheel(wrong))
+    with pytest.raises(CaseError, match=r"method.table_file: .* cannot be read"):
+        Contact(wheel(tmp_path / "none.bin"))
+    case = wheel(table)
+    case["method"] = {"tangential": "fastsim", "table_file": str(table)}
+    with pytest.raises(CaseError, match=r"table_file.*only with tangential = 'table'"):
+        Contact(case)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--wheel", "S1002"), "--rail: value is none"),
+        (("--wheel", "S1002", "--rail", "nothing.csv"), "nothing.csv"),
+        (("--wheel", "S1002", "--rail", "UIC60", "--y", "3", "1"), "--y: value is 3 1"),
+        (("--wheel", "S1002", "--rail", "UIC60", "--load", "0", "10"), "--load: value is 0 10"),
+    ],
+)
+def test_wrong_calls(tmp_path: Path, arguments: tuple[str, ...], words: str) -> None:
+    done = CliRunner().invoke(cli, ["table", *arguments, "-o", str(tmp_path / "out.bin")])
+    assert done.exit_code == 2, done.output
+    assert words in done.output
+    assert not (tmp_path / "out.bin").exists()
+
+
+def test_the_recipe_is_in_it(table: Path) -> None:
+    about = describe_table(table.read_bytes())
+    assert about["pair"] == "tread"
+    assert about["error"]["cases"] >= 90
+    assert 10 <= about["shapes"] <= 14
+    json.dumps(about)
