@@ -42,6 +42,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -54,7 +55,7 @@ from rig_model.broyden import Broyden
 from rig_model.conditioning import Conditioning, ConditioningState, Load, Pose
 from rig_model.frame import Frame, FrameState
 from rig_model.newton import Newton
-from rig_model.predict import Predictor
+from rig_model.predict import Prediction, Predictor
 from rig_model.programme import Position
 from rig_model.scene import RigScene
 from rig_model.search import Evaluation, Root, Settings, Vector
@@ -120,19 +121,19 @@ class Balance:
 class Balancer:
     """Finds the balances of a run, one position after the other."""
 
-    def __init__(self, scene: RigScene) -> None:
-        """Raises CaseError, ProfileError."""
+    def __init__(
+        self, scene: RigScene, *, derivatives: bool = False, reach: Sequence[float] = ()
+    ) -> None:
+        """derivatives: the contact holds memory for its derivatives, whatever the method. reach: m,
+        lateral positions that are asked for besides those of the run.
+
+        Raises CaseError, ProfileError."""
         positions = scene.positions()
         self._scene = scene
         self._exact = scene.rig.balance.method == "newton"
-        table = scene.rig.conditioning
-        self._conditioning = Conditioning(table) if table else None
-        self._contact: Contact | WheelPair
-        if self._conditioning:
-            most = self._conditioning.most
-            self._contact = WheelPair(scene, most, derivatives=self._exact)
-        else:
-            self._contact = Contact(scene.at_height(derivatives=self._exact))
+        self._derivatives = self._exact or derivatives
+        self._conditioning: Conditioning | None = None
+        self._contact = self._contact_of(scene)
         self._frictionless = Frictionless(scene)
         self._frame = Frame(scene.rig.frame) if scene.rig.frame else None
         extra = self._frame.unknowns if self._frame else ()
@@ -145,24 +146,63 @@ class Balancer:
         self._pending = 0.0
         self._broyden = None if self._exact else Broyden(settings)
         self._solver = self._broyden or Newton(settings)
-        lateral = [position.y for position in positions]
+        lateral = [*(position.y for position in positions), *reach]
         if self._frame and "y" in extra:
-            reach = LATERAL_SHARE * scene.vertical_force / self._frame.softest
-            reach = min(reach, LATERAL_REACH)
-            lateral = [min(lateral) - reach, max(lateral) + reach]
+            far = LATERAL_SHARE * scene.vertical_force / self._frame.softest
+            far = min(far, LATERAL_REACH)
+            lateral = [min(lateral) - far, max(lateral) + far]
         baseline = Baseline(scene, self._frictionless, lateral)
         self._predictor = Predictor(baseline, settings.difference, extra)
 
-    def solve(self, position: Position) -> Balance:
-        """Searches the balance at a position, starting from those before."""
+    def changed(self, scene: RigScene) -> Balancer:
+        """The same for another scene of the same machine, from its first position on: estimates
+        and settings of the search stay. Raises CaseError, ProfileError."""
+        other = copy(self)
+        other._scene = scene
+        other._contact = other._contact_of(scene)
+        other._frame = Frame(scene.rig.frame) if scene.rig.frame else None
+        other._latest = None
+        other._predictor = self._predictor.anew()
+        other._time, other._pending = scene.positions()[0].time, 0.0
+        return other
+
+    def beside(self, known: Prediction, before: Position, after: Position) -> Prediction:
+        """What is known at one position, for another one near it."""
+        return self._predictor.moved(known, before, after)
+
+    @property
+    def contact(self) -> Contact | WheelPair:
+        """Of both wheels at the last state."""
+        return self._contact
+
+    @property
+    def unknowns(self) -> tuple[str, ...]:
+        """Names of what is searched."""
+        return self._unknowns
+
+    @property
+    def settings(self) -> Settings:
+        """Of the search."""
+        return self._solver.settings
+
+    @property
+    def jacobian(self) -> Vector | None:
+        """Of Broyden's method, after the last position; None of Newton's."""
+        return self._broyden.jacobian if self._broyden else None
+
+    def alone(self, position: Position, known: Prediction | None) -> Balance:
+        """Searches a balance beside the run, of which nothing is remembered."""
+        root = self._balanced(position, known or self._predictor.begin(position))
+        return balance_of(position, root, self._unknowns)
+
+    def solve(self, position: Position, known: Prediction | None = None) -> Balance:
+        """Searches the balance at a position, starting from those before, or from what is known."""
         self._pending += max(position.time - self._time, 0.0)
         self._time = position.time
-        root, loads = self._conditioned(position)
+        root, loads = self._conditioned(position, known)
         if root.converged:
             jacobian = self._broyden.jacobian if self._broyden else None
             self._predictor.remember(position, root.x, jacobian)
-        if root.payload is None:
-            root = replace(root, payload=self._step(position, root.x))
         balance = balance_of(position, root, self._unknowns)
         if self._frame and balance.converged:
             forces = lateral_forces(balance.result)
@@ -172,6 +212,14 @@ class Balancer:
             states = self._conditioning.moved(loads, position.time)
             balance = replace(balance, conditioning=states)
         return balance
+
+    def _anew_unless_found(self, position: Position, root: Root) -> Root:
+        """What was known may have misled the search: afresh then."""
+        if not root.converged:
+            root = best_of(root, self._search(position, self._estimate(position).unknowns))
+        if root.payload is None:
+            root = replace(root, payload=self._step(position, root.x))
+        return root
 
     def fields(self, balance: Balance) -> Result:
         """The balance's contact with the fields of each patch; solved once more if need be."""
@@ -188,23 +236,30 @@ class Balancer:
         # no further time goes by
         return self._contact.step(**self._moved(position, unknowns), time_step=0.0, fields=True)
 
-    def _balanced(self, position: Position) -> Root:
-        root = self._search(position, self._start(position))
-        if not root.converged:
-            # what was known misled the search: afresh
-            root = best_of(root, self._search(position, self._estimate(position).unknowns))
-        return root
+    def _contact_of(self, scene: RigScene) -> Contact | WheelPair:
+        """Of both wheels; with friction that conditions anew."""
+        table = scene.rig.conditioning
+        self._conditioning = Conditioning(table) if table else None
+        if self._conditioning:
+            return WheelPair(scene, self._conditioning.most, derivatives=self._derivatives)
+        return Contact(scene.at_height(derivatives=self._derivatives))
 
-    def _conditioned(self, position: Position) -> tuple[Root, dict[str, Load] | None]:
+    def _balanced(self, position: Position, known: Prediction | None) -> Root:
+        root = self._search(position, self._start(position, known))
+        return self._anew_unless_found(position, root)
+
+    def _conditioned(
+        self, position: Position, known: Prediction | None
+    ) -> tuple[Root, dict[str, Load] | None]:
         """The balance, and of friction that conditions the loads by side that go with it.
 
         Friction's error is below that of the balance: of the load, not of friction's own.
         """
         if self._conditioning is None:
-            return self._balanced(position), None
+            return self._balanced(position, known), None
         assert isinstance(self._contact, WheelPair)
         self._contact.factors = self._conditioning.started()
-        root = self._balanced(position)
+        root = self._balanced(position, known)
         for _ in range(MOST_ROUNDS):
             if not root.converged:
                 return root, None
@@ -259,13 +314,12 @@ class Balancer:
         at_rest = {"y": position.y, "gauge": 0.0}
         return np.append(unknowns, [at_rest[name] for name in self._unknowns[len(unknowns) :]])
 
-    def _start(self, position: Position) -> Vector:
+    def _start(self, position: Position, known: Prediction | None) -> Vector:
         """Where the search starts; sets Broyden's Jacobian where that is known."""
         given = self._scene.rig.start
-        if given is not None and position.index == 0:
-            known = np.array([given.z, given.roll, given.pitch_rate])
-            return self._with_extra(position, known)
-        prediction = self._predictor.predict(position)
+        if given is not None and position.index == 0 and known is None:
+            return self._with_extra(position, np.array([given.z, given.roll, given.pitch_rate]))
+        prediction = known or self._predictor.predict(position)
         if self._broyden and prediction.jacobian is not None:
             self._broyden.jacobian = prediction.jacobian
         return prediction.unknowns

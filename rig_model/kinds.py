@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from railpatch.case import WheelsetCase
 from railpatch.case.kinds import Ending, SceneKind, with_tables
@@ -15,7 +17,8 @@ from rig_model.tables import Rig
 def rig() -> SceneKind:
     """A run of the roller rig."""
     model = with_tables(WheelsetCase, {"rig": Rig})
-    return SceneKind("rig", model, default_scene(), "railpatch rig SCENE -o run.mcap", run_rig)
+    command = "railpatch rig SCENE -o run.mcap"
+    return SceneKind("rig", model, default_scene(), command, run_rig, follow=follow_rig)
 
 
 def run_rig(scene: Path, log: Path) -> Ending:
@@ -33,6 +36,17 @@ def run_rig(scene: Path, log: Path) -> Ending:
     }
     status = "not_converged" if missed else "converged"
     return Ending(status, reason, [*loaded.doubts, *summary.warned.lines()], values)
+
+
+def follow_rig(content: dict[str, Any], folder: Path, names: Sequence[str], rows: Any) -> Any:
+    """The run of a scene's content, followed; rows: of railpatch.match.plan.RowsTable by name."""
+    from rig_model.follow import Follower
+    from rig_model.rows import Rows
+
+    sought = None
+    for name, table in rows.items():
+        sought = Rows(name, table.low, table.high, table.starts)
+    return Follower(content, folder, names, sought)
 
 
 def curve() -> SceneKind:

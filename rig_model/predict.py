@@ -39,13 +39,17 @@ class Predictor:
         self, baseline: Callable[[Position], Vector], scale: Vector, extra: tuple[str, ...] = ()
     ) -> None:
         """extra: names of the unknowns after the baseline's; "y" counts from the position's."""
-        self._baseline = baseline
+        self._baseline, self._names = baseline, extra
         self._extra = np.array([float(name == "y") for name in extra])
         self._scale = scale
         self._places: list[Vector] = []
         self._progress: list[float] = []
         self._differences: list[Vector] = []
         self._jacobians: list[Vector | None] = []
+
+    def anew(self) -> Predictor:
+        """Without the balances found before."""
+        return Predictor(self._baseline, self._scale, self._names)
 
     def remember(self, position: Position, unknowns: Vector, jacobian: Vector | None) -> None:
         """Adds a balance that was found, and the Jacobian there."""
@@ -57,10 +61,20 @@ class Predictor:
         for kept in (self._places, self._progress, self._differences, self._jacobians):
             del kept[:-MEMORY]
 
+    def moved(self, known: Prediction, before: Position, after: Position) -> Prediction:
+        """What is known at one position, for another one near it, by the baseline."""
+        beyond = known.unknowns[self._count :] - self._extra * before.y
+        change = self._at(after, beyond) - self._at(before, beyond)
+        return replace(known, unknowns=known.unknowns + change)
+
+    def begin(self, position: Position) -> Prediction:
+        """By the baseline alone."""
+        return Prediction(self._at(position, np.zeros_like(self._extra)))
+
     def predict(self, position: Position) -> Prediction:
         """What is to be expected at the position."""
         if not self._differences:
-            return Prediction(self._at(position, np.zeros_like(self._extra)))
+            return self.begin(position)
         seen = self._seen(place_of(position))
         if seen is not None:
             ahead, jacobian = self._differences[seen], self._jacobians[seen]

@@ -161,25 +161,37 @@ def load_rig_scene(
     path = default_scene() if path is None else Path(path)
     given = {key: value for key, value in (overrides or {}).items() if value is not None}
     content = plain(read_toml(path))
+    return rig_scene_of(content, path.parent, given, path.name, path.read_bytes())
+
+
+def rig_scene_of(
+    content: dict[str, Any],
+    folder: Path,
+    given: Mapping[str, Any] | None = None,
+    name: str = "",
+    text: bytes = b"",
+) -> RigScene:
+    """Checks the tables of a scene whose files are in a folder. Raises CaseError."""
+    content = dict(content)
     refuse_others(content, "rig")
     rig = content.pop("rig", None)
     if rig is None:
         raise CaseError("rig: value is missing, allowed a table with the run's programme")
     if isinstance(rig, dict):
-        rig = merged(rig, given)
+        rig = merged(rig, given or {})
     case, table = checked_parts(content, Rig, rig, "rig")
     check_machine(case, table)
-    files = found_profiles(case, path.parent)
+    files = found_profiles(case, folder)
     found = {
-        key: str(files[name])
+        key: str(files[named])
         for key in PROFILE_KEYS
-        if (name := getattr(case.profiles, key)) in files
+        if (named := getattr(case.profiles, key)) in files
     }
     case = case.model_copy(update={"profiles": case.profiles.model_copy(update=found)})
     measured = None
     if table.record is not None:
-        measured = measured_run(table, case, path.parent / table.record)
-    return RigScene(path.name, path.read_bytes(), case, table, files, measured)
+        measured = measured_run(table, case, folder / table.record)
+    return RigScene(name, text, case, table, files, measured)
 
 
 def checked_parts(content: Any, model: type[Table], table: Any, name: str) -> list[Any]:

@@ -23,6 +23,9 @@ from railpatch.errors import CaseError
 from railpatch.writing import write_whole
 
 ENTRY_POINT_GROUP = "railpatch.kinds"
+# tables that may stand in scenes of other packages' kinds, for commands that take such: the name of
+# a function that gives the table's model and whether a kind may have it
+TABLE_GROUP = "railpatch.tables"
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,9 @@ class SceneKind:
     model: its tables. scene: an example, with the files that it names beside it. command: what
     takes such a file, with SCENE for its name. run: of a run, runs a scene's file and writes the
     log to another; raises CaseError, ProfileError, OSError. None: one contact, which is solved.
-    base: the kind whose example this one's names, which is written beside.
+    follow: of a run that can be matched, takes a scene's content, the folder of its files, names of
+    what is measured and what is unknown in each row, and gives what railpatch.match.model asks of
+    a ``Followed``. base: the kind whose example this one's names, which is written beside.
     """
 
     name: str
@@ -51,13 +56,19 @@ class SceneKind:
     command: str
     run: Callable[[Path, Path], Ending] | None = None
     base: str | None = None
+    follow: Callable[..., Any] | None = None
 
     def schema(self) -> dict[str, Any]:
-        """The JSON schema of such files."""
+        """The JSON schema of such files, with tables that other commands read of them."""
+        model = self.model
+        for entry in sorted(entry_points(group=TABLE_GROUP), key=lambda entry: entry.name):
+            table, may_have = entry.load()()
+            if may_have(self):
+                model = with_tables(model, {entry.name: table}, entry.name)
         return {
             "$schema": "https://json-schema.org/draft/2020-12/schema",
             "$id": f"urn:railpatch:{version()}:{self.name}",
-            **self.model.model_json_schema(),
+            **model.model_json_schema(),
             "title": f"Railpatch scene: {self.name}",
         }
 

@@ -6,7 +6,18 @@ noise of each point and, with ``discrepancy``, as an error of the model that bel
 point to point: a Gaussian process over the inputs (Kennedy and O'Hagan 2001, J. R. Stat. Soc. B 63,
 425-464, their delta; one for each quantity with the same numbers), whose size, length and noise are
 those of the greatest likelihood. The parameters are sought again with the points weighted so,
-twice. Derivatives are differences over a thousandth of each range, away from its nearer end.
+twice. Derivatives are the model's, or differences over a thousandth of each range, away from its
+nearer end.
+
+Factor and offset of a measuring chain enter linearly. With f = 1 + u, both of known standard
+deviation, they are taken out of the search: measured - computed = u computed + offset + noise is
+normal with u's and the offset's part in its covariance (u times what was measured, in place of what
+is computed), which is the variable projection of Golub and Pereyra (1973, SIAM J. Numer. Anal. 10,
+413-432) with their priors; what they are follows from what is left.
+
+What rows find for themselves (a run's lateral position) is the model's affair: it takes as many
+numbers from those that tell of the parameters and the noise. All quantities of one dimension then
+have one error where none is given: a row could meet one of them, and make its error vanish.
 """
 
 from __future__ import annotations
@@ -21,13 +32,14 @@ from scipy.optimize import least_squares, minimize
 from scipy.stats import chi2, qmc
 
 from railpatch.errors import CaseError
-from railpatch.match.model import Model
+from railpatch.match.model import DIFFERENCE, Model
+from railpatch.record.quantities import BY_NAME
 
 Array = NDArray[np.float64]
 Told = Callable[[str], None]
 
-DIFFERENCE = 1e-3  # of a range, either way
-TRIED = 16  # first guesses for each start
+# first guesses for all starts, and where rows look at their whole range for each
+TRIED, FEW = 16, 4
 LEVEL = 0.95
 NEAR_END = 1e-3  # of a range
 # of what was observed: what a state without a result is off by, and the noise begun with
@@ -89,6 +101,14 @@ class Search:
         table = model.plan.table
         given = [column.error for column in table.observed.values()]
         self.given = np.array([np.nan if error is None else error for error in given])
+        # [observed, m, 2], what factor and offset change by one standard deviation of theirs
+        self.linear = np.stack(
+            [
+                np.nan_to_num(self.measured[k])[:, None] * [column.factor_error or 0.0, 0.0]
+                + [0.0, column.offset_error or 0.0]
+                for k, column in enumerate(table.observed.values())
+            ]
+        )
         scale = np.nanmax(np.abs(self.measured), axis=1)
         self.scale = np.where(scale > 0, scale, 1.0)
         inputs = np.array(list(model.inputs.values()))
@@ -97,12 +117,15 @@ class Search:
         self.apart = ((inputs[:, :, None] - inputs[:, None, :]) ** 2).sum(axis=0)
         self.kept = np.ones(self.measured.shape[1], dtype=bool)
         self._last: tuple[Array, Array] | None = None
+        # what a search begins with
+        self.first = Noise(np.where(np.isfinite(self.given), self.given, FIRST * self.scale))
+        model.weigh(self.first.error)
 
     # --- what is computed ------------------------------------------------------------------------
 
     def computed(self, shares: Array) -> Array:
         """[observed, m]; what has no result is far off. The last one is kept."""
-        if self._last is None or not np.array_equal(self._last[0], shares):
+        if self.model.free or self._last is None or not np.array_equal(self._last[0], shares):
             found = self.model.at(np.clip(shares, 0.0, 1.0))
             far = self.measured + FAR * self.scale[:, None]
             found = np.where(np.isfinite(found), found, np.where(self.there, far, 0.0))
@@ -111,6 +134,9 @@ class Search:
 
     def slopes(self, shares: Array) -> Array:
         """[observed, m, p], by the shares."""
+        exact = self.model.slopes(np.clip(shares, 0.0, 1.0))
+        if exact is not None:
+            return exact
         here, found = self.computed(shares), []
         for k in range(len(shares)):
             step = -DIFFERENCE if shares[k] > 0.5 else DIFFERENCE
@@ -123,12 +149,18 @@ class Search:
 
     def weights(self, noise: Noise) -> list[tuple[NDArray[np.intp], Array]]:
         """Of each quantity the points that count and the Cholesky factor of their covariance."""
+        self.model.weigh(noise.error)
         whole = noise.covariance(self.apart)
         found = []
-        for there, error in zip(self.there, noise.error, strict=True):
-            rows = np.flatnonzero(there & self.kept)
-            found.append((rows, error * np.linalg.cholesky(whole[np.ix_(rows, rows)])))
+        for k in range(len(self.there)):
+            rows = np.flatnonzero(self.there[k] & self.kept)
+            found.append((rows, np.linalg.cholesky(self.covariance_of(k, rows, noise, whole))))
         return found
+
+    def covariance_of(self, k: int, rows: NDArray[np.intp], noise: Noise, whole: Array) -> Array:
+        """[rows, rows], SI units, of one quantity's points; whole: noise.covariance of all."""
+        linear = self.linear[k][rows]
+        return noise.error[k] ** 2 * whole[np.ix_(rows, rows)] + linear @ linear.T
 
     def whitened(self, values: Array, weights: list[tuple[NDArray[np.intp], Array]]) -> Array:
         """[points, ...] of [observed, m, ...]: with unit covariance."""
@@ -193,10 +225,12 @@ class Search:
     def run(self) -> Fit:
         """The best of all starts. Raises CaseError."""
         table = self.model.plan.table
-        noise = Noise(np.where(np.isfinite(self.given), self.given, FIRST * self.scale))
+        noise = self.first
         every = np.ones(len(self.sought), dtype=bool)
         best, least = None, np.inf
+        self.model.weigh(noise.error)
         for number, start in enumerate(self._starts(noise, table.starts, table.seed), start=1):
+            self.anew()
             shares = self.solve(start, noise, table.loss, every, 30)
             cost = self._cost(shares, noise, table.loss)
             self._tell(f"start {number} of {table.starts}: misfit {self._misfit(shares):.4g}")
@@ -204,13 +238,28 @@ class Search:
                 best, least = shares, cost
         assert best is not None
         for _ in range(ROUNDS):
-            noise = self.noise_of(self.computed(best), table.discrepancy)
+            self.anew()
+            noise = self.noise_of(self.computed(best), table.correlated)
             best = self.solve(best, noise, table.loss, every, 15)
         self._tell(f"weighted: misfit {self._misfit(best):.4g}")
-        return self.fit_at(best, self.noise_of(self.computed(best), table.discrepancy))
+        self.anew()
+        return self.fit_at(best, self.noise_of(self.computed(best), table.correlated))
+
+    def anew(self) -> None:
+        """What rows found for themselves is sought over its whole range again."""
+        if self.model.free:
+            self.model.forget()
+            self._last = None
+
+    def at_optimum(self, fit: Fit) -> None:
+        """Brings the model back to an optimum, with its derivatives."""
+        self.model.weigh(fit.noise.error)
+        self.anew()
+        self.slopes(fit.shares)
 
     def fit_at(self, shares: Array, noise: Noise) -> Fit:
         """What is known at an optimum."""
+        self.model.weigh(noise.error)
         slopes = self.slopes(shares)
         computed = self.computed(shares)
         whole = np.concatenate(
@@ -220,7 +269,8 @@ class Search:
         normal = whole.T @ whole + np.eye(len(shares)) * 1e-8 * np.trace(whole.T @ whole)
         covariance = np.linalg.inv(normal)
         of_parameters = np.einsum("kmp,pq,kmq->km", slopes, covariance, slopes)
-        spread = np.sqrt(of_parameters + noise.error[:, None] ** 2 * (1 + noise.size**2))
+        own = noise.error[:, None] ** 2 * (1 + noise.size**2) + (self.linear**2).sum(axis=-1)
+        spread = np.sqrt(of_parameters + own)
         left = np.where(self.there, self.measured - computed, np.nan)
         likelihood = self.likelihood(computed, noise)
         return Fit(shares, noise, covariance, left, computed, slopes, likelihood, spread)
@@ -228,9 +278,15 @@ class Search:
     def _starts(self, noise: Noise, count: int, seed: int) -> list[Array]:
         """The best of evenly spread first guesses, that of the file first."""
         given = np.array([0.5 if s.start is None else s.share(s.start) for s in self.sought])
-        tried = qmc.Sobol(len(given), seed=seed).random(TRIED) if count > 1 else np.zeros((0, 0))
+        many = FEW if self.model.free else TRIED
+        tried = qmc.Sobol(len(given), seed=seed).random(many) if count > 1 else np.zeros((0, 0))
         loss = self.model.plan.table.loss
-        rest = sorted(tried, key=lambda shares: self._cost(shares, noise, loss))
+
+        def cost(shares: Array) -> float:
+            self.anew()
+            return self._cost(shares, noise, loss)
+
+        rest = sorted(tried, key=cost)
         return [given, *rest[: count - 1]]
 
     def _cost(self, shares: Array, noise: Noise, loss: str) -> float:
@@ -250,8 +306,13 @@ class Search:
         left = np.where(self.there & self.kept, self.measured - computed, np.nan)
         # parameters that were sought have taken their part
         count = np.isfinite(left).sum(axis=1)
-        degrees = np.maximum(count - len(self.sought) * count / max(count.sum(), 1), 1)
-        own = np.sqrt(np.nansum(left**2, axis=1) / degrees)
+        taken = len(self.sought) + self.model.free
+        degrees = np.maximum(count * (1 - taken / max(count.sum(), 1)), 1)
+        squares = np.nansum(left**2, axis=1)
+        if self.model.free:
+            for group in self.alike():
+                squares[group], degrees[group] = squares[group].sum(), degrees[group].sum()
+        own = np.sqrt(squares / degrees)
         error = np.where(np.isfinite(self.given), self.given, np.maximum(own, 1e-9 * self.scale))
         if not discrepancy:
             return Noise(error)
@@ -277,17 +338,45 @@ class Search:
                 best, least = Noise(used, float(size), float(length)), float(found.fun + 2)
         return best
 
+    def alike(self) -> list[NDArray[np.intp]]:
+        """Quantities of one dimension without a given error, which have one with rows."""
+        keys = list(self.model.plan.table.observed)
+        named: dict[str, list[int]] = {}
+        for k in np.flatnonzero(~np.isfinite(self.given)):
+            named.setdefault(BY_NAME[keys[k]].dimension, []).append(int(k))
+        return [np.array(group) for group in named.values()]
+
     def likelihood(self, computed: Array, noise: Noise) -> float:
         """Logarithm, of the points that count, normally distributed."""
         whole, total = noise.covariance(self.apart), 0.0
         for k, there in enumerate(self.there):
             rows = np.flatnonzero(there & self.kept)
-            z = (self.measured[k, rows] - computed[k, rows]) / noise.error[k]
-            factor = cho_factor(whole[np.ix_(rows, rows)], lower=True)
-            logarithm = np.log(np.diag(factor[0])).sum() + len(rows) * np.log(noise.error[k])
-            total -= 0.5 * float(z @ cho_solve(factor, z)) + logarithm
+            left = self.measured[k, rows] - computed[k, rows]
+            factor = cho_factor(self.covariance_of(k, rows, noise, whole), lower=True)
+            logarithm = np.log(np.diag(factor[0])).sum()
+            total -= 0.5 * float(left @ cho_solve(factor, left)) + logarithm
             total -= 0.5 * len(rows) * np.log(2 * np.pi)
         return float(total)
+
+    def chains(self, fit: Fit) -> dict[str, dict[str, tuple[float, float]]]:
+        """Factor and offset of each measuring chain that has them: value and standard deviation, by
+        their means under what is left."""
+        whole, found = fit.noise.covariance(self.apart), {}
+        for k, (key, column) in enumerate(self.model.plan.table.observed.items()):
+            given = {"factor": column.factor_error, "offset": column.offset_error}
+            rows = np.flatnonzero(self.there[k])
+            solved = np.linalg.solve(
+                self.covariance_of(k, rows, fit.noise, whole),
+                np.column_stack([fit.left[k, rows], self.linear[k][rows]]),
+            )
+            parts = self.linear[k][rows].T @ solved
+            for place, (name, error) in enumerate(given.items()):
+                if error is None:
+                    continue
+                spread = error * float(np.sqrt(max(1 - parts[place, 1 + place], 0.0)))
+                value = float(name == "factor") + error * float(parts[place, 0])
+                found.setdefault(key, {})[name] = (value, spread)
+        return found
 
     # --- intervals -------------------------------------------------------------------------------
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from railpatch._core import version
 from railpatch.match.fit import Fit, Search
+from railpatch.match.found_parts import RowsFound, Sampled, Screened
 from railpatch.match.judge import LeftOut, correlations
 from railpatch.match.plan import Explanation, Plan
 
@@ -24,7 +25,9 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Judged:
-    """One explanation with its fit. search: what it was found with."""
+    """One explanation with its fit. search: what it was found with. rows: what each has for itself.
+    chains: factor and offset of measuring chains, by what was observed: value and standard
+    deviation. screening, samples: by key, empty without."""
 
     explanation: Explanation
     search: Search
@@ -32,11 +35,17 @@ class Judged:
     parameters: tuple[Parameter, ...]
     predicted: LeftOut | None
     not_told: tuple[str, ...]
+    rows: RowsFound | None = None
+    chains: dict[str, dict[str, tuple[float, float]]] = field(default_factory=dict)
+    screening: dict[str, Screened] = field(default_factory=dict)
+    samples: dict[str, Sampled] = field(default_factory=dict)
 
     @property
     def criterion(self) -> float:
-        """-, Akaike's: twice the number of parameters minus twice the logarithm of likelihood."""
-        return 2 * len(self.parameters) - 2 * self.fit.likelihood
+        """-, Akaike's: twice the number of parameters, those of rows too, minus twice the logarithm
+        of likelihood."""
+        count = len(self.parameters) + self.search.model.free
+        return 2 * count - 2 * self.fit.likelihood
 
     @property
     def evaluations(self) -> int:
@@ -60,7 +69,10 @@ class Match:
     def scene(self) -> dict[str, Any]:
         """The content of the scene with the values found."""
         own = self.explanations[0]
-        return own.explanation.case({found.key: found.value for found in own.parameters})
+        content = own.explanation.case({found.key: found.value for found in own.parameters})
+        if own.rows is not None:
+            content["rig"][own.rows.name] = own.rows.table()
+        return content
 
     def to_dict(self) -> dict[str, Any]:
         """What match.json holds."""
@@ -85,6 +97,13 @@ class Match:
                 for key, row in zip(keys, table, strict=True)
             },
             "not_told": list(own.not_told),
+            "rows": {own.rows.name: own.rows.to_dict()} if own.rows else {},
+            "chains": {
+                key: {name: {"value": v, "error": e} for name, (v, e) in parts.items()}
+                for key, parts in own.chains.items()
+            },
+            "screening": {key: vars(one) for key, one in own.screening.items()},
+            "samples": {key: vars(one) for key, one in own.samples.items()},
             "explanations": {
                 judged.explanation.name: {
                     "parameters": {

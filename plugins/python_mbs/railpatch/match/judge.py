@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from railpatch.match.fit import LEVEL, NEAR_END, Fit, Search
+from railpatch.match.found_parts import RowsFound, Screened
 
 Array = NDArray[np.float64]
 
@@ -37,7 +39,8 @@ def left_out(search: Search, fit: Fit) -> LeftOut | None:
     The others' fit is one step of Gauss and Newton from the fit to all.
     """
     table = search.model.plan.table
-    if table.folds == 0:
+    if table.folds == 0 or search.model.free:
+        # a row that is left out has nothing that tells where it was
         return None
     count = search.measured.shape[1]
     order = np.random.default_rng(table.seed).permutation(count)
@@ -56,6 +59,7 @@ def left_out(search: Search, fit: Fit) -> LeftOut | None:
             "kmp,pq,kmq->km", fit.slopes[:, part], covariance, fit.slopes[:, part]
         )
         own = fit.noise.error[:, None] ** 2 * (1 + fit.noise.size**2)
+        own = own + (search.linear[:, part] ** 2).sum(axis=-1)
         spread[:, part] = np.sqrt(of_parameters + own)
     z = errors / spread
     density = -0.5 * z**2 - np.log(spread * np.sqrt(2 * np.pi))
@@ -103,9 +107,23 @@ def correlations(fit: Fit) -> Array:
     return fit.covariance / np.outer(errors, errors)
 
 
-def not_told(search: Search, fit: Fit) -> list[str]:
-    """What the points cannot tell, a sentence each."""
-    found, keys, sought = [], search.model.keys, search.sought
+def not_told(
+    search: Search,
+    fit: Fit,
+    felt: Mapping[str, Screened] | None = None,
+    rows: RowsFound | None = None,
+) -> list[str]:
+    """What the points cannot tell, a sentence each. felt: of the screening."""
+    keys, sought = search.model.keys, search.sought
+    found = [
+        f"{key}: the points do not feel it: from end to end of its range a measured number moves "
+        f"by {one.effect:.2g} of its error"
+        for key, one in (felt or {}).items()
+        if not one.felt
+    ]
+    if rows is not None and rows.several.any():
+        named = ", ".join(str(i + 1) for i in np.flatnonzero(rows.several))
+        found.append(f"{rows.name} of rows {named}: more than one place meets the row as well")
     alone = set()
     for k, (low, high) in enumerate(fit.intervals):
         if high - low > WIDE:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Protocol
@@ -14,15 +13,14 @@ from railpatch.case.kinds import kind_of
 from railpatch.case.load import Scene, load_scene
 from railpatch.case.moving import moving_keys
 from railpatch.errors import CaseError
-from railpatch.log.reader import read_run
-from railpatch.log.table import LogTable
 from railpatch.many import States, solve_many
 from railpatch.match.plan import Explanation, ObservedColumn, Plan, values_of
-from railpatch.record.quantities import BY_NAME
-from railpatch.report.beside import MEASURED, Computed
 from railpatch.sweep.plan import steps_of
 
 Array = NDArray[np.float64]
+
+# of a range, of derivatives by differences; of what is uneven on its grid
+DIFFERENCE, COARSE = 1e-3, 5e-3
 
 
 class Model(Protocol):
@@ -30,7 +28,7 @@ class Model(Protocol):
 
     keys: [p], of what is sought. rows: [m], of the record. inputs: name -> [m], what points are
     told apart by. measured: [observed, m], SI units, NaN where there is nothing. evaluations: of
-    all rows, so far.
+    all rows, so far. free: numbers that rows find for themselves.
     """
 
     plan: Plan
@@ -41,9 +39,48 @@ class Model(Protocol):
     measured: Array
     evaluations: int
 
+    free: int
+
     def at(self, shares: Array) -> Array:
         """[observed, m], SI units, NaN where a state has no good result. Raises CaseError."""
         ...
+
+    def slopes(self, shares: Array) -> Array | None:
+        """[observed, m, p], of the same by the shares; None: differences of it. Raises
+        CaseError."""
+        return None
+
+    def weigh(self, error: Array) -> None:
+        """Errors of what is measured, [observed], by which rows find what is their own."""
+
+    def forget(self) -> None:
+        """What rows found for themselves is sought anew, over its whole range."""
+
+
+class Followed(Protocol):
+    """A run that is replayed for one content of its scene after another (SceneKind.follow).
+
+    yaw: rad, progress: -, [m]. measured: [names, m], SI units. exact: whether its derivatives are
+    exact for most numbers. row_values: of what is unknown in each row, [m], with ends of 95 % and
+    whether other values would do, [m]; None without rows.
+    """
+
+    yaw: Array
+    progress: Array
+    measured: Array
+    exact: bool
+
+    def computed(self, content: dict[str, Any]) -> Array: ...
+
+    def slopes(
+        self, content: dict[str, Any], changed: list[dict[str, Any]], steps: list[float]
+    ) -> Array: ...
+
+    def weigh(self, error: Array) -> None: ...
+
+    def forget(self) -> None: ...
+
+    def row_values(self, covariance: Array) -> tuple[Array, Array, Array, Array]: ...
 
 
 class ContactModel(Model):
@@ -59,7 +96,7 @@ class ContactModel(Model):
         check_count(int(np.isfinite(measured[:, self.rows]).sum()), self.keys)
         self.inputs = {key: values[self.rows] for key, values in inputs.items()}
         self.measured = measured[:, self.rows]
-        self.evaluations = 0
+        self.evaluations, self.free = 0, 0
 
     def at(self, shares: Array) -> Array:
         """[observed, m], SI units, NaN where a state has no good result. Raises CaseError."""
@@ -112,50 +149,61 @@ class ContactModel(Model):
 
 
 class RunModel(Model):
-    """The positions of a run whose scene names its record: what the log has of both."""
+    """The positions of a run whose scene names its record."""
 
     def __init__(self, plan: Plan, explanation: Explanation) -> None:
-        """Runs the scene once. Raises CaseError."""
+        """Raises CaseError, ProfileError."""
         self.plan, self.explanation = plan, explanation
         self.keys = tuple(explanation.seek)
         self.evaluations = 0
-        self._kind = kind_of(plan.kind)
         start = [0.5 if s.start is None else s.share(s.start) for s in explanation.seek.values()]
-        self.inputs, self.measured = {}, np.zeros((len(plan.table.observed), 0))
-        table, _ = self._run(np.array(start))
-        self.measured = np.array([self._column(table, name) for name in plan.table.observed])
+        follow = kind_of(plan.kind).follow
+        assert follow is not None
+        content = self._content(np.array(start))
+        self.followed: Followed = follow(
+            content, plan.folder, tuple(plan.table.observed), plan.table.rows
+        )
+        self.measured = self.followed.measured
         self.rows = np.arange(self.measured.shape[1])
-        check_count(int(np.isfinite(self.measured).sum()), self.keys)
+        self.free = len(self.rows) if plan.table.rows else 0
+        check_count(int(np.isfinite(self.measured).sum()) - self.free, self.keys)
         # the yaw angle first: what the figures of a rig are over
-        named = {"yaw": "/wheelset/state.yaw", "progress": "/wheelset/state.progress"}
-        self.inputs = {name: np.asarray(table[column].values) for name, column in named.items()}
+        self.inputs = {"yaw": self.followed.yaw, "progress": self.followed.progress}
 
     def at(self, shares: Array) -> Array:
         """[observed, m]: as in Model."""
-        return self._run(shares)[1]
-
-    def _column(self, table: LogTable, name: str) -> Array:
-        try:
-            return np.asarray(table[f"{MEASURED}.{name}"].values, dtype=float)
-        except KeyError:
-            raise CaseError(
-                f"match.observed: value is {name!r}, allowed what the record has by [rig.columns]"
-            ) from None
-
-    def _run(self, shares: Array) -> tuple[LogTable, Array]:
-        """The log's table, and what was computed of what is observed."""
-        values = values_of(self.explanation.seek, np.clip(shares, 0.0, 1.0))
-        content = placed(self.explanation.case(values), self.plan.folder)
-        with tempfile.TemporaryDirectory() as folder:
-            scene, log = Path(folder) / "scene.toml", Path(folder) / "run.mcap"
-            scene.write_text(toml_of(content), encoding="utf-8")
-            assert self._kind.run is not None
-            self._kind.run(scene, log)
-            computed = Computed(read_run(log))
         self.evaluations += 1
-        balanced = np.asarray(computed.table["/rig/balance.status"].values) == "converged"
-        found = [computed.values(BY_NAME[name]) for name in self.plan.table.observed]
-        return computed.table, np.array([np.where(balanced, v, np.nan) for v in found])
+        return self.followed.computed(self._content(shares))
+
+    def slopes(self, shares: Array) -> Array:
+        """[observed, m, p]: as in Model."""
+        width = DIFFERENCE if self.followed.exact else COARSE
+        steps = [-width if share > 0.5 else width for share in shares]
+        changed = []
+        for k, step in enumerate(steps):
+            moved = shares.copy()
+            moved[k] += step
+            changed.append(self._content(moved))
+        # by the share: a step of what enters linearly is taken over the numbers themselves
+        found = self.followed.slopes(self._content(shares), changed, steps)
+        return np.nan_to_num(found)
+
+    def weigh(self, error: Array) -> None:
+        """As in Model."""
+        self.followed.weigh(error)
+
+    def forget(self) -> None:
+        """As in Model."""
+        self.followed.forget()
+
+    def _content(self, shares: Array) -> dict[str, Any]:
+        values = values_of(self.explanation.seek, np.clip(shares, 0.0, 1.0))
+        content = self.explanation.case(values)
+        for name, table in self.plan.table.rows.items():
+            # each row has its own; what a run needs is there
+            middle = 0.5 * (table.low + table.high)
+            content["rig"][name] = [[0.0, middle], [1.0, middle]]
+        return content
 
 
 def model_of(plan: Plan, explanation: Explanation, threads: int) -> Model:

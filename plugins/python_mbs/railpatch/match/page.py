@@ -13,6 +13,9 @@ from railpatch.page.document import document
 from railpatch.page.figures import COLORS, GREY, plot, styled
 from railpatch.page.parts import DOUBT, GOOD, PLAIN, Key, folded, opening
 from railpatch.page.tables import number, short, table
+from railpatch.record.quantities import BY_NAME
+from railpatch.record.units import UNITS
+from railpatch.report.data import SHOWN
 
 DASHES = ("solid", "dash", "dot", "dashdot")
 # of points left out, %: with fewer in their band of 95 % the band is in doubt
@@ -34,7 +37,9 @@ def page_of(match: Match) -> str:
             + plot(curves_of(match, place), f"curves-{place}")
         )
         parts.append(plot(residual_figure(match, place), f"left-{place}"))
-    parts.append(parameters_of(own))
+    parts += [parameters_of(own), chains_of(own), screening_of(own), samples_of(own)]
+    if own.rows is not None:
+        parts.append(rows_of(own))
     if len(match.explanations) > 1:
         parts.append(explanations_of(match))
     if len(own.parameters) > 1:
@@ -93,6 +98,79 @@ def parameters_of(own: Judged) -> str:
     return "<h2>Parameters</h2>" + table(head, rows)
 
 
+def chains_of(own: Judged) -> str:
+    """Factors and offsets of measuring chains; nothing without."""
+    lines = [
+        [
+            key,
+            name,
+            number(value),
+            number(value - NORMAL_95 * error),
+            number(value + NORMAL_95 * error),
+        ]
+        for key, parts in own.chains.items()
+        for name, (value, error) in parts.items()
+    ]
+    head = ["measured", "of its chain", "value", "from", "to"]
+    return "<h2>Measuring chains</h2>" + table(head, lines) if lines else ""
+
+
+def screening_of(own: Judged) -> str:
+    """What the points feel; nothing without."""
+    if not own.screening:
+        return ""
+    lines = [
+        [key, number(one.effect), number(one.spread), "yes" if one.felt else "no"]
+        for key, one in own.screening.items()
+    ]
+    text = (
+        "<p>How far a measured number moves from end to end of a parameter's range (rms, in its "
+        "error; Morris's elementary effects), and the spread of that over the trajectories.</p>"
+    )
+    return (
+        "<h2>What the points feel</h2>"
+        + text
+        + table(["parameter", "effect", "spread", "felt"], lines)
+    )
+
+
+def samples_of(own: Judged) -> str:
+    """Of the posterior; nothing without."""
+    lines = [
+        [key, number(one.median), number(one.low), number(one.high)]
+        for key, one in own.samples.items()
+    ]
+    head = ["parameter", "median", "from", "to"]
+    return "<h2>Samples of the posterior</h2>" + table(head, lines) if lines else ""
+
+
+def rows_of(own: Judged) -> str:
+    """What each row has for itself, with ends of 95 %."""
+    rows = own.rows
+    assert rows is not None
+    quantity = BY_NAME[rows.name]
+    unit = next(iter(UNITS[quantity.dimension]))
+    factor, shown = SHOWN.get(unit, (1.0, unit))
+    figure = go.Figure()
+    figure.add_scatter(
+        x=rows.progress,
+        y=factor * rows.values,
+        error_y={
+            "type": "data",
+            "symmetric": False,
+            "array": factor * (rows.high - rows.values),
+            "arrayminus": factor * (rows.values - rows.low),
+        },
+        mode="markers",
+        marker={"color": COLORS["left"], "size": 6},
+        name="found, with ends of 95 %",
+    )
+    name = rows.name.replace("_", " ")
+    figure.update_xaxes(title="progress of the run")
+    figure.update_yaxes(title=f"{name} [{shown}]")
+    return f"<h2>{escape(name.capitalize())} of each row</h2>" + plot(styled(figure, 360), "rows")
+
+
 def explanations_of(match: Match) -> str:
     """All beside each other, the one that predicts best first."""
     rows, values = [], []
@@ -124,7 +202,18 @@ def explanations_of(match: Match) -> str:
 def label_of(match: Match, place: int) -> str:
     """Of what was observed."""
     key, column = list(match.plan.table.observed.items())[place]
+    if match.plan.record is None:
+        unit = next(iter(UNITS[BY_NAME[key].dimension]), "")
+        return f"{key.replace('_', ' ')} [{unit}]" if unit not in ("", "-") else key
     return f"{key} / {column.over}" if column.over else key
+
+
+def input_label(match: Match, name: str) -> str:
+    """Of an input, with its unit where it is known: a run's yaw angle in rad."""
+    if match.plan.record is None and name in BY_NAME:
+        unit = next(iter(UNITS[BY_NAME[name].dimension]), "")
+        return f"{name} [{unit}]" if unit not in ("", "-") else name
+    return name
 
 
 def curves_of(match: Match, place: int) -> go.Figure:
@@ -163,7 +252,7 @@ def curves_of(match: Match, place: int) -> go.Figure:
         name="measured",
         marker={"color": COLORS["right"], "size": 6},
     )
-    figure.update_xaxes(title=name)
+    figure.update_xaxes(title=input_label(match, name))
     figure.update_yaxes(title=label_of(match, place))
     return styled(figure, 440)
 
@@ -180,7 +269,7 @@ def residual_figure(match: Match, place: int) -> go.Figure:
         marker={"color": COLORS["right"], "size": 6},
         name="measured minus computed",
     )
-    figure.update_xaxes(title=name)
+    figure.update_xaxes(title=input_label(match, name))
     figure.update_yaxes(title="difference")
     figure.update_layout(showlegend=False)
     return styled(figure, 260)

@@ -91,6 +91,32 @@ class ObservedColumn(MeasuredColumn):
         description="(the column's SI unit): standard deviation of what was measured; left out: "
         "estimated from what is left",
     )
+    factor_error: Positive | None = Field(
+        default=None,
+        description="-, standard deviation of the measuring chain's factor about 1, which is found "
+        "too: measured = factor * true + offset; left out: 1",
+    )
+    offset_error: Positive | None = Field(
+        default=None,
+        description="(the column's SI unit): standard deviation of the measuring chain's offset "
+        "about 0, which is found too; left out: 0",
+    )
+
+
+class RowsTable(Table):
+    """One input of a run that each row of its record has for itself, and that nobody measured."""
+
+    low: Number = Field(description="SI unit of the quantity: the least value it may have")
+    high: Number = Field(description="SI unit of the quantity: the greatest value it may have")
+    starts: Annotated[int, Field(ge=3, le=1000)] = Field(
+        default=33, description="-, values that are looked at first, evenly spread"
+    )
+
+    @model_validator(mode="after")
+    def _ends(self) -> RowsTable:
+        if not self.low < self.high:
+            raise relation("low", self.low, f"below high, {self.high:g}")
+        return self
 
 
 class ExplanationTable(Table):
@@ -144,10 +170,29 @@ class MatchTable(Table):
     starts: Annotated[int, Field(ge=1, le=100)] = Field(
         default=4, description="-, searches, each from another start"
     )
-    discrepancy: bool = Field(
-        default=True,
+    rows: Annotated[dict[str, RowsTable], Field(max_length=1)] = Field(
+        default_factory=dict,
+        description="(no unit): of a run, 'lateral_position' or 'yaw' that its record has not -> "
+        "the range it is sought in for each row",
+    )
+    discrepancy: bool | None = Field(
+        default=None,
         description="(no unit): whether part of what is left may belong together from point to "
-        "point, as the scene's own error does (Kennedy and O'Hagan 2001)",
+        "point, as the scene's own error does (Kennedy and O'Hagan 2001); left out: true, but with "
+        "rows",
+    )
+    screening: bool = Field(
+        default=False,
+        description="(no unit): whether what the points do not feel is looked for beforehand "
+        "(Morris 1991)",
+    )
+    sampling: Literal["none", "emcee"] = Field(
+        default="none",
+        description="(no unit): whether the posterior is sampled beside the intervals (emcee, "
+        "Foreman-Mackey et al. 2013)",
+    )
+    samples: Annotated[int, Field(ge=20, le=1_000_000)] = Field(
+        default=400, description="-, steps of each walker, the first fifth left out"
     )
     intervals: Literal["profile", "covariance"] = Field(
         default="profile",
@@ -164,7 +209,19 @@ class MatchTable(Table):
     def _folds(self) -> MatchTable:
         if self.folds == 1:
             raise relation("folds", self.folds, "0, or 2 and more")
+        if self.rows and self.discrepancy:
+            raise relation("discrepancy", True, "false with rows, which are solved each by itself")
+        if self.rows:
+            for key, column in self.observed.items():
+                if column.factor_error or column.offset_error:
+                    shown = f"factor_error or offset_error in observed.{key}"
+                    raise relation("rows", shown, "none of them with rows")
         return self
+
+    @property
+    def correlated(self) -> bool:
+        """Whether an error of the model is looked for."""
+        return not self.rows if self.discrepancy is None else self.discrepancy
 
 
 @dataclass(frozen=True)
@@ -250,6 +307,8 @@ def load_match(path: str | Path, record: str | Path | None = None) -> Plan:
     made = explanations_of(table, content)
     if kind == "rig":
         return Plan(path.stem, check_run(table, made, record), kind, folder, made, None)
+    if table.rows:
+        raise CaseError("match.rows: value is given, allowed of a rig only")
     if kind not in KINDS:
         raise CaseError(f"kind: value is {kind!r}, allowed {', '.join(KINDS)} or a rig in a match")
     file = Path(record) if record is not None else None
@@ -271,7 +330,7 @@ def check_run(
         if key not in BY_NAME or BY_NAME[key].role != OUTPUT or column.name or column.over:
             allowed = ", ".join(name for name, q in BY_NAME.items() if q.role == OUTPUT)
             raise CaseError(
-                f"match.observed: value is {key!r}, allowed {allowed}, with no more than an error: "
+                f"match.observed: value is {key!r}, allowed {allowed}, with no more than errors: "
                 "[rig.columns] says where they are"
             )
     for explanation in made:

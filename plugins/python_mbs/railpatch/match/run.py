@@ -9,12 +9,15 @@ from pathlib import Path
 
 import numpy as np
 
-from railpatch.match.fit import Search, refuse_unsolved
+from railpatch.match.fit import Fit, Search, refuse_unsolved
 from railpatch.match.found import Judged, Match, Parameter
+from railpatch.match.found_parts import RowsFound
 from railpatch.match.judge import left_out, not_told
-from railpatch.match.model import model_of, need_writer, placed, toml_of
+from railpatch.match.model import RunModel, model_of, need_writer, placed, toml_of
 from railpatch.match.page import page_of
 from railpatch.match.plan import Explanation, Plan
+from railpatch.match.sample import need_samplers, sampled
+from railpatch.match.screen import screened
 from railpatch.writing import write_whole
 
 Told = Callable[[str], None]
@@ -42,6 +45,9 @@ def rows_of(match: Match) -> str:
     for k, key in enumerate(observed):
         heads += [f"{key} measured", f"{key} computed", f"{key} spread"]
         columns += [model.measured[k], own.fit.computed[k], own.fit.spread[k]]
+    if own.rows is not None:
+        heads += [own.rows.name, f"{own.rows.name} low", f"{own.rows.name} high"]
+        columns += [own.rows.values, own.rows.low, own.rows.high]
     lines = [",".join(f'"{head}"' for head in ["row", *heads])]
     for place, values in zip(model.rows, np.array(columns).T, strict=True):
         cells = ["" if np.isnan(v) else repr(float(v)) for v in values]
@@ -55,6 +61,7 @@ def run_match(plan: Plan, *, threads: int = 1, tell: Told = lambda _: None) -> M
     Raises CaseError, ProfileError.
     """
     need_writer()
+    need_samplers(plan.table)
     begin = time.perf_counter()
     judged = []
     for explanation in plan.explanations:
@@ -72,6 +79,7 @@ def judge(plan: Plan, explanation: Explanation, threads: int, tell: Told) -> Jud
     model = model_of(plan, explanation, threads)
     search = Search(model, tell)
     refuse_unsolved(model, model.at(np.full(len(model.keys), 0.5)))
+    felt = screened(search) if plan.table.screening else {}
     fit = search.run()
     fit.intervals = search.intervals(fit, plan.table.intervals)
     predicted = left_out(search, fit)
@@ -81,4 +89,27 @@ def judge(plan: Plan, explanation: Explanation, threads: int, tell: Told) -> Jud
             explanation.seek.items(), fit.shares, fit.intervals, strict=True
         )
     )
-    return Judged(explanation, search, fit, parameters, predicted, tuple(not_told(search, fit)))
+    rows = rows_found(search, fit)
+    return Judged(
+        explanation,
+        search,
+        fit,
+        parameters,
+        predicted,
+        tuple(not_told(search, fit, felt, rows)),
+        rows,
+        search.chains(fit),
+        felt,
+        sampled(search, fit) if plan.table.sampling == "emcee" else {},
+    )
+
+
+def rows_found(search: Search, fit: Fit) -> RowsFound | None:
+    """What each row has for itself, at the optimum; None without rows."""
+    model = search.model
+    if not isinstance(model, RunModel) or not model.free:
+        return None
+    (name,) = model.plan.table.rows
+    search.at_optimum(fit)
+    found = model.followed.row_values(fit.covariance)
+    return RowsFound(name, model.followed.progress, *found)

@@ -1,0 +1,222 @@
+"""A run of the rig followed through changes of its scene: what is measured, and its derivatives.
+
+Each position's balance starts where it was before the change, with its Jacobian; derivatives are
+those of rig_model/partial.py. A frame's sliders go on with the changed run, so that what a position
+owes to those before it is in its derivative. What else a run remembers (bodies that store heat) is
+differenced by whole runs.
+
+One input may be unknown in each row (``Rows``): it then is where the row's measured numbers are met
+best, and derivatives are those along it (variable projection, Golub and Pereyra 1973, in the form
+of Kaufman 1975: the row's own part of each derivative is taken out).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from railpatch.errors import CaseError
+from railpatch.record.quantities import BY_NAME, OUTPUT
+from railpatch.report.beside import with_ratios
+
+from rig_model.balance import Balance, Balancer
+from rig_model.partial import Partial, computed, way_of
+from rig_model.predict import Prediction
+from rig_model.programme import Position
+from rig_model.rows import RowProblem, Rows
+from rig_model.scene import RigScene, rig_scene_of
+from rig_model.search import Vector
+
+Array = NDArray[np.float64]
+Content = dict[str, Any]
+
+
+class Follower:
+    """A run, replayed for one content of its scene after another.
+
+    names: of what is measured. yaw: rad, progress: -, time: s, [m], of the positions. measured:
+    [names, m], SI units, NaN in gaps. exact: whether the contact has exact derivatives. rows: what
+    is unknown in each row, None without.
+    """
+
+    def __init__(
+        self, content: Content, folder: Path, names: Sequence[str], rows: Rows | None = None
+    ) -> None:
+        """Raises CaseError, ProfileError."""
+        self._folder, self.names, self.rows = folder, tuple(names), rows
+        scene = self._scene(content)
+        if rows is not None:
+            rows.check(scene)
+        positions = scene.positions()
+        self.yaw = np.array([p.yaw for p in positions])
+        self.progress = np.array([p.progress for p in positions])
+        self.time = np.array([p.time for p in positions])
+        self.measured = measured_of(scene, self.names)
+        reach = rows.ends("lateral_position") if rows is not None else ()
+        self._balancer = Balancer(scene, derivatives=True, reach=reach)
+        self.exact = self._has_exact(positions[0])
+        self._known: list[Prediction | None] = [None] * len(positions)
+        self._last: tuple[Content, RigScene, list[Balance]] | None = None
+        self.forget()
+
+    def computed(self, content: Content) -> Array:
+        """[names, m], SI units, NaN where a position is not balanced. Raises CaseError."""
+        _, balances = self._replayed(content)
+        return np.array([self._observed(balance) for balance in balances]).T
+
+    def slopes(self, content: Content, changed: Sequence[Content], steps: Sequence[float]) -> Array:
+        """[names, m, parameters]: derivatives by parameters, each of which is a step on in one of
+        the changed contents. NaN where a position is not balanced. Raises CaseError."""
+        scene, balances = self._replayed(content)
+        if remembers(scene):
+            return self._by_runs(content, changed, steps)
+        ways = [
+            way_of(scene, self._scene(other), step, exact=self.exact)
+            for other, step in zip(changed, steps, strict=True)
+        ]
+        partial = self._partial(scene)
+        found = np.full((len(self.names), len(balances), len(ways)), np.nan)
+        for i, balance in enumerate(balances):
+            if not balance.converged:
+                continue
+            partial.go_to(balance.position, self._unknowns(balance))
+            pairs = [partial.total(partial.by_way(way)) for way in ways]
+            slopes = np.column_stack([pair[0] for pair in pairs])
+            if self.rows is not None:
+                slopes = self.rows.projected(i, slopes)
+            found[:, i, :] = slopes
+            if partial.frame is None:
+                continue
+            partial.frame.moved(balance.position.y, balance.y, 0.0)
+            for way, (_, dx) in zip(ways, pairs, strict=True):
+                if way.frame is not None:
+                    y = balance.y + way.step * float(np.nan_to_num(dx[3]))
+                    way.frame.moved(way.positions[i].y, y, 0.0)
+        return found
+
+    def weigh(self, error: Array) -> None:
+        """[names], SI units: errors by which rows find what is their own."""
+        if self.rows is not None and not np.array_equal(self.rows.errors, error):
+            self.rows.errors = np.array(error)
+            self._last = None
+
+    def row_values(self, covariance: Array) -> tuple[Array, Array, Array, Array]:
+        """Of the last slopes: values of the rows, both ends of 95 %, whether other places meet the
+        row as well, [m] each. covariance: [p, p], of the parameters."""
+        assert self.rows is not None
+        found = [self.rows.told(i, covariance) for i in range(len(self.rows.fits))]
+        value, low, high, several = (np.array(column) for column in zip(*found, strict=True))
+        return value, low, high, several
+
+    def forget(self) -> None:
+        """The next replay solves again, and looks at rows' whole ranges if there are rows."""
+        self._last = None
+        if self.rows is not None:
+            self.rows.forget(len(self.progress))
+
+    # --- what is kept ----------------------------------------------------------------------------
+
+    def _scene(self, content: Content) -> RigScene:
+        """As exact as the contact's forces are, so that small changes are seen."""
+        scene = rig_scene_of(content, self._folder, {"balance.method": "broyden"})
+        tolerance = min(scene.rig.balance.tolerance, 2 * scene.case.method.tolerance)
+        balance = scene.rig.balance.model_copy(update={"tolerance": tolerance})
+        return replace(scene, rig=scene.rig.model_copy(update={"balance": balance}))
+
+    def _partial(self, scene: RigScene) -> Partial:
+        return Partial(
+            scene,
+            self._balancer.contact,
+            self._balancer.settings.difference,
+            self.names,
+            exact=self.exact,
+            held=self.rows.field if self.rows is not None else None,
+        )
+
+    def _has_exact(self, position: Position) -> bool:
+        """Whether the contact has exact derivatives."""
+        self._balancer.solve(position)
+        return bool(self._balancer.contact.differentiate(z=1.0)["kind"] == "exact")
+
+    def _replayed(self, content: Content) -> tuple[RigScene, list[Balance]]:
+        """All positions, started from those of the last content."""
+        if self._last is not None and self._last[0] == content:
+            return self._last[1:]
+        scene = self._scene(content)
+        self._balancer = self._balancer.changed(scene)
+        balances = [self._balanced(scene, position) for position in scene.positions()]
+        self._last = (content, scene, balances)
+        return scene, balances
+
+    def _solved(self, position: Position, known: Prediction | None) -> tuple[Balance, Prediction]:
+        if self.rows is None:
+            balance = self._balancer.solve(position, known)
+        else:
+            balance = self._balancer.alone(position, known)
+        return balance, Prediction(self._unknowns(balance), self._balancer.jacobian)
+
+    def _unknowns(self, balance: Balance) -> Vector:
+        values = [balance.z, balance.roll, balance.pitch_rate, balance.y]
+        return np.array(values[: len(self._balancer.settings.difference)])
+
+    def _balanced(self, scene: RigScene, position: Position) -> Balance:
+        i = position.index
+        if self.rows is None:
+            balance, known = self._solved(position, self._known[i])
+            if balance.converged:
+                self._known[i] = known
+            return balance
+        partial = self._partial(scene)
+
+        def slope(balance: Balance) -> Array:
+            partial.go_to(balance.position, self._unknowns(balance))
+            return partial.total(partial.by_row(self.rows.field))[0]
+
+        problem = RowProblem(
+            self._solved,
+            self._balancer.beside,
+            self._observed,
+            slope,
+        )
+        return self.rows.fit(i, position, self.measured[:, i], problem).best.balance
+
+    def _observed(self, balance: Balance) -> Array:
+        """[names], NaN where a position is not balanced."""
+        if not balance.converged:
+            return np.full(len(self.names), np.nan)
+        x = np.array([balance.z, balance.roll, balance.pitch_rate])
+        return np.array([computed(balance.result, x, name) for name in self.names])
+
+    def _by_runs(
+        self, content: Content, changed: Sequence[Content], steps: Sequence[float]
+    ) -> Array:
+        here = self.computed(content)
+        found = [
+            (self.computed(other) - here) / step for other, step in zip(changed, steps, strict=True)
+        ]
+        return np.stack(found, axis=-1)
+
+
+def remembers(scene: RigScene) -> bool:
+    """Whether a position depends on those before it by more than a frame's sliders."""
+    heat = scene.case.temperature
+    return heat is not None and heat.bulk is not None
+
+
+def measured_of(scene: RigScene, names: Sequence[str]) -> Array:
+    """[names, m], SI units, NaN in gaps; L/V of sides whose forces were measured too. Raises
+    CaseError."""
+    assert scene.measured is not None
+    signals = {n: v for n, v in scene.measured.signals.items() if BY_NAME[n].role == OUTPUT}
+    known = with_ratios(signals)
+    for name in names:
+        if name not in known:
+            raise CaseError(
+                f"match.observed: value is {name!r}, allowed what the record has by [rig.columns]: "
+                f"{', '.join(known)}"
+            )
+    return np.array([known[name] for name in names])
