@@ -70,17 +70,17 @@ def match(
     def show(found: Match) -> None:
         for parameter in found.parameters.values():
             interval = f"{parameter.low:.6g} to {parameter.high:.6g}"
-            click.echo(f"{parameter.key:<30}{parameter.value:<12.6g}{interval}")
+            click.echo(f"{parameter.key:<38}{parameter.value:<12.6g}{interval}")
         own = found.explanations[0]
         for key, rms in zip(plan.table.observed, own.fit.rms, strict=True):
-            click.echo(f"{'rms of ' + key:<30}{rms:.4g}")
+            click.echo(f"{'rms of ' + key:<38}{rms:.4g}")
         for key, parts in own.chains.items():
             for name, (value, error) in parts.items():
-                click.echo(f"{f'{name} of {key}':<30}{value:<12.6g}+- {error:.3g}")
+                click.echo(f"{f'{name} of {key}':<38}{value:<12.6g}+- {error:.3g}")
         for key, one in own.screening.items():
-            click.echo(f"{'effect of ' + key:<30}{one.effect:<12.4g}+- {one.spread:.3g}")
+            click.echo(f"{'effect of ' + key:<38}{one.effect:<12.4g}+- {one.spread:.3g}")
         for key, one in own.samples.items():
-            click.echo(f"{'sampled ' + key:<30}{one.median:<12.6g}{one.low:.6g} to {one.high:.6g}")
+            click.echo(f"{'sampled ' + key:<38}{one.median:<12.6g}{one.low:.6g} to {one.high:.6g}")
         for text in own.not_told:
             click.echo(text)
 
