@@ -2,8 +2,8 @@
 
 Each position's balance starts where it was before the change, with its Jacobian; derivatives are
 those of rig_model/partial.py. A frame's sliders go on with the changed run, so that what a position
-owes to those before it is in its derivative. What else a run remembers (bodies that store heat) is
-differenced by whole runs.
+owes to those before it is in its derivative. What else a run remembers (bodies that store heat,
+friction that conditions), and a gauge that opens, is differenced by whole runs.
 
 One input may be unknown in each row (``Rows``): it then is where the row's measured numbers are met
 best, and derivatives are those along it (variable projection, Golub and Pereyra 1973, in the form
@@ -23,7 +23,7 @@ from railpatch.errors import CaseError
 from railpatch.record.quantities import BY_NAME, OUTPUT
 from railpatch.report.beside import with_ratios
 
-from rig_model.balance import Balance, Balancer
+from rig_model.balance import Balance, Balancer, lateral_forces
 from rig_model.partial import Partial, computed, way_of
 from rig_model.predict import Prediction
 from rig_model.programme import Position
@@ -57,8 +57,9 @@ class Follower:
         self.time = np.array([p.time for p in positions])
         self.measured = measured_of(scene, self.names)
         reach = rows.ends("lateral_position") if rows is not None else ()
-        self._balancer = Balancer(scene, derivatives=True, reach=reach)
-        self.exact = self._has_exact(positions[0])
+        by_runs = remembers(scene)
+        self._balancer = Balancer(scene, derivatives=not by_runs, reach=reach)
+        self.exact = not by_runs and self._has_exact(positions[0])
         self._known: list[Prediction | None] = [None] * len(positions)
         self._last: tuple[Content, RigScene, list[Balance]] | None = None
         self.forget()
@@ -91,11 +92,12 @@ class Follower:
             found[:, i, :] = slopes
             if partial.frame is None:
                 continue
-            partial.frame.moved(balance.position.y, balance.y, 0.0)
+            forces = lateral_forces(balance.result)
+            partial.frame.moved(balance.position.y, balance.y, 0.0, forces)
             for way, (_, dx) in zip(ways, pairs, strict=True):
                 if way.frame is not None:
                     y = balance.y + way.step * float(np.nan_to_num(dx[3]))
-                    way.frame.moved(way.positions[i].y, y, 0.0)
+                    way.frame.moved(way.positions[i].y, y, 0.0, forces)
         return found
 
     def weigh(self, error: Array) -> None:
@@ -160,8 +162,7 @@ class Follower:
         return balance, Prediction(self._unknowns(balance), self._balancer.jacobian)
 
     def _unknowns(self, balance: Balance) -> Vector:
-        values = [balance.z, balance.roll, balance.pitch_rate, balance.y]
-        return np.array(values[: len(self._balancer.settings.difference)])
+        return np.array([getattr(balance, name) for name in self._balancer.unknowns])
 
     def _balanced(self, scene: RigScene, position: Position) -> Balance:
         i = position.index
@@ -202,9 +203,13 @@ class Follower:
 
 
 def remembers(scene: RigScene) -> bool:
-    """Whether a position depends on those before it by more than a frame's sliders."""
-    heat = scene.case.temperature
-    return heat is not None and heat.bulk is not None
+    """Whether a position depends on those before it by more than a frame's sliders, or has unknowns
+    whose derivatives rig_model/partial.py has not: a gauge that opens."""
+    heat, frame = scene.case.temperature, scene.rig.frame
+    if heat is not None and heat.bulk is not None:
+        return True
+    opens = frame is not None and frame.gauge_stiffness is not None
+    return opens or scene.rig.conditioning is not None
 
 
 def measured_of(scene: RigScene, names: Sequence[str]) -> Array:

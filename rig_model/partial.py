@@ -23,14 +23,15 @@ from railpatch.case.moving import BY_TABLE, FIXED, moving_keys
 from railpatch.case.types import SIDES
 from railpatch.record.quantities import ratio_side
 
-from rig_model.balance import FRAME_UNKNOWNS, moved, residual_rates, residuals
 from rig_model.frame import Frame
 from rig_model.programme import Position
+from rig_model.residuals import residual_rates, residuals
 from rig_model.scene import RigScene
 from rig_model.search import Vector
 
 # component of a force by what is measured of it, on the roller
 COMPONENTS = {"longitudinal": 0, "lateral": 1, "vertical": 2}
+FRAME_UNKNOWNS = ("z", "roll", "pitch_rate", "y")
 UNKNOWN_OF = {"vertical_position": 0, "roll": 1, "pitch_rate": 2}
 # of central differences by the yaw angle (rad) and the lateral position (m): forces on a grid that
 # stays where it is are uneven over less
@@ -179,6 +180,14 @@ class Partial:
             resistance = frame.resistance(float(x[3]) - position.y)
             found = np.append(found, result["force"][1] - resistance.force)
         return np.append(found, [computed(result, x, name) for name in self._names])
+
+
+def moved(position: Position, unknowns: Vector) -> dict[str, float]:
+    """The moving inputs of the contact; unknowns: [3], or [4] with the lateral position."""
+    found = {"y": position.y} | dict(zip(FRAME_UNKNOWNS, map(float, unknowns), strict=False))
+    if position.roller_pitch_rate is not None:
+        found["roller_pitch_rate"] = position.roller_pitch_rate
+    return {"yaw": position.yaw, **found}
 
 
 def computed(result: Result, unknowns: Vector, name: str) -> float:

@@ -96,6 +96,15 @@ class Rows:
                 "match.rows: value is given with rig.frame.friction, allowed without: a row's "
                 "sliders depend on the rows before it"
             )
+        if scene.rig.conditioning is not None:
+            raise CaseError(
+                "match.rows: value is given with rig.conditioning, allowed without: a row's "
+                "friction depends on the rows before it"
+            )
+        if frame is not None and frame.gauge_stiffness is not None:
+            raise CaseError(
+                "match.rows: value is given with rig.frame.gauge_stiffness, allowed without"
+            )
         if scene.measured is not None and self.quantity in scene.measured.driven:
             raise CaseError(
                 f"match.rows: value is {self.quantity!r}, allowed what the record does not drive"
