@@ -237,7 +237,7 @@ class Method(Table):
     table_file: str | None = Field(
         default=None,
         description="of table: a file that 'railpatch table' wrote, of ellipses or of a pair of "
-        "profiles (path, from the case's folder); left out: the package's, of ellipses",
+        "profiles (file, from the case's folder); left out: the package's, of ellipses",
     )
     tolerance: float = key()
     max_iterations: int | None = key("; left out: the core's choice", default=None)
