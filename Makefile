@@ -45,7 +45,7 @@ CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
 SOURCES := $(shell find core plugins rig_model wheelset_demo -type f -not -name '*.pyc' 2>/dev/null) \
 	CMakeLists.txt README.md
 
-.PHONY: help tools asan-core build-asan demo pages viewer fmu fmu-clients fmu-fftw test test-long lint format clean setup \
+.PHONY: help tools asan-core build-asan demo docs book pages viewer fmu fmu-clients fmu-fftw test test-long lint format clean setup \
 	system test-cpp test-python test-asan pruning mutants bits-steps
 
 help: ## this list
@@ -87,6 +87,16 @@ fmu-fftw: setup ## the FMU's library with FFTW, for `railpatch fmu --fft fftw --
 
 fmu-clients: fmu ## the same in clients that others wrote: fmpy, libcosimpy, ecospy, FMI4j, VDMCheck2
 	plugins/fmu/clients/run build/fmu/clients $$(ls build/fmu/*.fmu | grep -v gpl)
+
+docs: setup ## the documentation's site in build/site: tutorials, guides, reference, book; readable without a network
+	$(BIN)/python -m pip install --quiet --group docs
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
+	@echo "build/site/index.html"
+
+book: setup ## runs the claims of the book that are quick and shows them in build/site/book.html
+	@mkdir -p build
+	cd docs && ../$(BIN)/python -m making.book ../build/book.json
+	@$(MAKE) --no-print-directory docs
 
 # every kind of page in a browser: no error, no text over text, light, dark, phone, print
 pages: setup ## pages in Chromium: layout, colours, errors, pictures, PDF; some minutes

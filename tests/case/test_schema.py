@@ -46,9 +46,9 @@ def test_kinds_and_choices() -> None:
     assert method["tangential"]["enum"] == ["none", *_core.THEORIES, "full"]
 
 
-def test_the_readme_case_is_accepted(tmp_path: Path) -> None:
-    readme = (Path(__file__).parents[2] / "README.md").read_text()
-    text = re.search(r"^```toml\n(.*?)^```", readme, re.DOTALL | re.MULTILINE)
+def test_the_first_case_is_accepted(tmp_path: Path) -> None:
+    page = (Path(__file__).parents[2] / "docs/command_line.md").read_text(encoding="utf-8")
+    text = re.search(r"^```toml\n(.*?)^```", page, re.DOTALL | re.MULTILINE)
     assert text
     (tmp_path / "case.toml").write_text(text[1])
     assert load_scene(tmp_path / "case.toml").case.kind == "patch"

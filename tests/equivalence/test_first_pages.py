@@ -1,4 +1,4 @@
-"""The README's examples run as printed, and command line and Python give the same numbers.
+"""The examples of docs/command_line.md and docs/python.md run as printed and give the same numbers.
 
 The C example is compiled as C11 and as C++ and run by ctest.
 """
@@ -13,18 +13,20 @@ from pathlib import Path
 
 import pytest
 
-README = Path(__file__).parents[2] / "README.md"
+DOCS = Path(__file__).parents[2] / "docs"
+PAGES = {"toml": DOCS / "command_line.md", "python": DOCS / "python.md"}
 
 
 def block(language: str) -> str:
-    """The README's first code block of this language."""
-    found = re.search(rf"^```{language}\n(.*?)^```", README.read_text(), re.DOTALL | re.MULTILINE)
-    assert found, f"README.md holds no block of {language}"
+    """The first code block of this language on its page."""
+    page = PAGES[language].read_text(encoding="utf-8")
+    found = re.search(rf"^```{language}\n(.*?)^```", page, re.DOTALL | re.MULTILINE)
+    assert found, f"{PAGES[language]} holds no block of {language}"
     return found[1]
 
 
 def creep_force_of_command(tmp_path: Path) -> list[float]:
-    """Solves the README's case file with the command."""
+    """Solves the page's case file with the command."""
     case = tmp_path / "case.toml"
     case.write_text(block("toml"))
     command = Path(sys.executable).with_name("railpatch")
@@ -38,7 +40,7 @@ def creep_force_of_command(tmp_path: Path) -> list[float]:
 def test_command_and_python_examples_agree(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    exec(compile(block("python"), str(README), "exec"), {})
+    exec(compile(block("python"), str(PAGES["python"]), "exec"), {})
     printed = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert len(printed) == 5
     assert printed[4][2] == pytest.approx(printed[0], rel=1e-4)  # the last of three loads

@@ -1,0 +1,168 @@
+"""The book of validation: every claim, what shows it, the command that makes it again.
+
+    python -m making.book OUT.json            # from docs/: runs the quick ones
+    python -m making.book OUT.json --all      # the long ones too: hours
+
+The claims stand in claims.toml. What was run is written to OUT.json with date, commit and time, and
+the page shows it; a claim that was not run here shows the date and commit of its last evidence.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+import subprocess
+import sys
+import time
+from datetime import datetime, timezone
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from making import ROOT, Pages, cell, table
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+CLAIMS = Path(__file__).with_name("claims.toml")
+RESULTS = ROOT / "build/book.json"
+# s, beyond which a command is ended
+LONGEST = 36000.0
+# what commands print that is no result
+NOISE = re.compile(r"^(\.+ *\[ *\d+%\]|rootdir|configfile|plugins|platform|collected|created|=+.*)")
+
+
+def claims() -> list[dict[str, Any]]:
+    """All claims, by chapter in order."""
+    content = tomllib.loads(CLAIMS.read_text(encoding="utf-8"))
+    return [{"chapter": c["title"], **claim} for c in content["chapter"] for claim in c["claim"]]
+
+
+def argv(command: str) -> list[str]:
+    """The command as it is run: by this interpreter and its railpatch."""
+    words = shlex.split(command)
+    known = {
+        "python": sys.executable,
+        "railpatch": str(Path(sys.executable).with_name("railpatch")),
+    }
+    return [known.get(words[0], words[0]), *words[1:]]
+
+
+@cache
+def commit(place: str = "") -> tuple[str, str]:
+    """Date and commit that last changed a file of the checkout; of "" the checkout's own."""
+    words = ["git", "-C", str(ROOT), "log", "-1", "--format=%cs %h", "--", *filter(None, [place])]
+    found = subprocess.run(words, capture_output=True, text=True, check=False).stdout.split()
+    return (found[0], found[1]) if len(found) == 2 else ("", "")
+
+
+def run(claim: dict[str, Any]) -> dict[str, Any]:
+    """Runs a claim's command in the checkout."""
+    begin = time.perf_counter()
+    done = subprocess.run(
+        argv(claim["command"]),
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=LONGEST,
+        stdin=subprocess.DEVNULL,
+    )
+    lines = [line for line in done.stdout.splitlines() if not NOISE.match(line)]
+    now = datetime.now(timezone.utc)
+    return {
+        "command": claim["command"],
+        "good": done.returncode == 0,
+        "seconds": round(time.perf_counter() - begin, 1),
+        "date": now.strftime("%Y-%m-%d"),
+        "commit": commit()[1],
+        "printed": "\n".join(lines[-60:]),
+        "error": "" if done.returncode == 0 else (done.stderr or done.stdout)[-2000:],
+    }
+
+
+def results() -> dict[str, dict[str, Any]]:
+    """What was run in this checkout, by command."""
+    if not RESULTS.is_file():
+        return {}
+    return {one["command"]: one for one in json.loads(RESULTS.read_text(encoding="utf-8"))}
+
+
+def entry(claim: dict[str, Any], known: dict[str, dict[str, Any]]) -> list[str]:
+    """Lines of one claim."""
+    lines = [f"### {claim['title']}", "", claim["text"], ""]
+    if "source" in claim:
+        lines += [f"Source: {claim['source']}", ""]
+    lines += [f"![{claim['title']}]({claim['figure']})", ""] if "figure" in claim else []
+    lines += [f"Numbers: [{claim['page']}]({claim['page']}).", ""] if "page" in claim else []
+    lines += [f"    {claim['command']}", ""]
+    done = known.get(claim["command"])
+    if done is None:
+        date, which = commit(claim["evidence"])
+        how = f"takes {claim['long']}" if "long" in claim else "`make book` runs it"
+        lines += [f"Not run for this page ({how}); evidence of {date}, commit `{which}`.", ""]
+    else:
+        word = "Holds" if done["good"] else "**Does not hold**"
+        when = f"{done['date']}, commit `{done['commit']}`, {done['seconds']:g} s"
+        lines += [f"{word}: {when}.", ""]
+        shown = done["printed"].strip() or done["error"].strip()
+        if claim.get("show") == "table" and done["good"]:
+            lines += [shown, ""]
+        elif shown and ("show" in claim or not done["good"]):
+            lines += [f"```text\n{shown}\n```", ""]
+    return lines
+
+
+def pages() -> Pages:
+    """The book."""
+    known = results()
+    lines = [
+        "# Validation: the book",
+        "",
+        "Every claim with what shows it and the command that makes it again, from a checkout with"
+        " `make setup`. `make book` runs all that are quick and builds this page anew; those that"
+        " take long say so. Tests are named where the numbers with their sources stand in them.",
+        "",
+    ]
+    rows = []
+    for claim in claims():
+        done = known.get(claim["command"])
+        state = "not run for this page"
+        if done is not None:
+            state = ("holds, " if done["good"] else "**does not hold**, ") + done["date"]
+        name = claim["title"].lower()
+        anchor = re.sub(r"[^\w\- ]", "", name).replace(" ", "-")
+        anchor = re.sub(r"-+", "-", anchor)
+        rows.append([f"[{cell(claim['title'])}](#{anchor})", cell(claim["against"]), state])
+    lines += [table(["claim", "against", "state"], rows), ""]
+    chapter = None
+    for claim in claims():
+        if claim["chapter"] != chapter:
+            chapter = claim["chapter"]
+            lines += [f"## {chapter}", ""]
+        lines += entry(claim, known)
+    return {"book.md": "\n".join(lines)}
+
+
+def main() -> int:
+    """Runs the claims; 1 where one does not hold."""
+    wanted = [claim for claim in claims() if "--all" in sys.argv or "long" not in claim]
+    found = []
+    for claim in wanted:
+        done = run(claim)
+        found.append(done)
+        print(
+            f"{'holds' if done['good'] else 'FAILS':6} {done['seconds']:7.1f} s  {claim['title']}"
+        )
+        print(done["error"], end="")
+    RESULTS.parent.mkdir(exist_ok=True)
+    place = Path(next((word for word in sys.argv[1:] if not word.startswith("-")), RESULTS))
+    place.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    return 0 if all(done["good"] for done in found) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
