@@ -45,7 +45,7 @@ CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
 SOURCES := $(shell find core plugins rig_model wheelset_demo -type f -not -name '*.pyc' 2>/dev/null) \
 	CMakeLists.txt README.md
 
-.PHONY: help tools asan-core build-asan demo docs book pages viewer fmu fmu-clients fmu-fftw test test-long lint format clean setup \
+.PHONY: help tools asan-core build-asan demo docs book pages viewer fmu fmu-clients fmu-fftw wheels release test test-long lint format clean setup \
 	system test-cpp test-python test-asan pruning mutants bits-steps
 
 help: ## this list
@@ -87,6 +87,21 @@ fmu-fftw: setup ## the FMU's library with FFTW, for `railpatch fmu --fft fftw --
 
 fmu-clients: fmu ## the same in clients that others wrote: fmpy, libcosimpy, ecospy, FMI4j, VDMCheck2
 	plugins/fmu/clients/run build/fmu/clients $$(ls build/fmu/*.fmu | grep -v gpl)
+
+wheels: fmu ## wheels for Linux and Windows, their checks, and a first hour's work in a clean environment
+	@.ci/system-packages mvn:maven readelf:binutils
+	$(BIN)/python -m pip install --quiet --group wheels
+	$(BIN)/python plugins/python_mbs/wheels/make_wheels.py build/fmu build/wheels
+	$(BIN)/python plugins/python_mbs/wheels/check_wheels.py build/wheels
+	$(BIN)/python plugins/python_mbs/wheels/smoke.py build/wheels build/wheels/tried
+
+release: wheels ## build/release-files: wheels, source archive, FMUs, checksums, bill of materials
+	rm -rf build/release-files && mkdir -p build/release-files
+	$(BIN)/python -m build --sdist --outdir build/release-files .
+	cp build/wheels/*.whl build/release-files
+	cp $$(ls build/fmu/*.fmu | grep -v gpl) build/release-files
+	$(BIN)/python plugins/python_mbs/wheels/bill.py build/release-files
+	cd build/release-files && sha256sum $$(ls | grep -v SHA256SUMS) > SHA256SUMS
 
 docs: setup ## the documentation's site in build/site: tutorials, guides, reference, book; readable without a network
 	$(BIN)/python -m pip install --quiet --group docs

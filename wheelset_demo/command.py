@@ -9,8 +9,9 @@ from typing import Any
 import click
 from railpatch.command.group import (
     EXIT_NOT_CONVERGED,
+    NeedingCommand,
     json_option,
-    need,
+    need_pinocchio,
     output_option,
     progress_bar,
     quiet_flag,
@@ -30,7 +31,7 @@ def default_scene_text() -> str:
     return scene_file(DEFAULT).read_text(encoding="utf-8")
 
 
-@click.command("wheelset")
+@click.command("wheelset", cls=NeedingCommand, needs=need_pinocchio)
 @scene_argument()
 @output_option("RUN.mcap", "The log to write.")
 @click.option("--distance", type=float, metavar="METRES", help="Replaces run.distance.")
@@ -59,7 +60,6 @@ def wheelset(
     Without a scene it has S1002 profiles on UIC60 rails inclined 1:40. A contact that cannot be
     solved ends the run with exit code 3; the log up to there is kept.
     """
-    need("railpatch.pinocchio")
     from wheelset_demo.scene import DEFAULT, load_wheelset_scene, scene_file
     from wheelset_demo.simulation import run_scene
 

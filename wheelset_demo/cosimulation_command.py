@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import json
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import click
 from railpatch.command.group import (
     EXIT_NOT_CONVERGED,
+    NeedingCommand,
     WrongCall,
     json_option,
+    need_pinocchio,
     output_option,
     progress_bar,
     quiet_flag,
@@ -93,7 +96,16 @@ def check_kind(output: Path | None) -> None:
         ) from None
 
 
-@click.command("cosimulation")
+def need_both() -> None:
+    """Raises WrongCall where fmpy or Pinocchio is missing."""
+    if find_spec("fmpy") is None:
+        raise WrongCall(
+            "railpatch cosimulation needs fmpy: pip install fmpy 'railpatch[pinocchio]'"
+        )
+    need_pinocchio()
+
+
+@click.command("cosimulation", cls=NeedingCommand, needs=need_both)
 @scene_argument()
 @output_option("PAGE.html|PLOT.svg", "Page with plot and tables, or the plot.", required=False)
 @click.option("--speeds", metavar="M/S,...", help="Speeds.  [default: 0.2 to 80]")
@@ -133,11 +145,6 @@ def cosimulation(
     """
     chosen_speeds, chosen = speeds_of(speeds, quick), masters_of(masters, quick)
     check_kind(output)
-    try:
-        import fmpy  # noqa: F401
-        import railpatch.pinocchio  # noqa: F401
-    except ImportError as error:
-        raise WrongCall(f"{error}; allowed after pip install fmpy 'railpatch[pinocchio]'") from None
     from wheelset_demo.coupling.report import dict_of, text_of
     from wheelset_demo.coupling.slave import CouplingFailure
     from wheelset_demo.coupling.study import study, with_elements

@@ -9,9 +9,10 @@ from typing import Any
 import click
 from railpatch.command.group import (
     EXIT_NOT_CONVERGED,
+    NeedingCommand,
     WrongCall,
     json_option,
-    need,
+    need_pinocchio,
     output_option,
     quiet_flag,
     scene_argument,
@@ -38,7 +39,7 @@ def default_scene_text() -> str:
     return scene_file(SCENE).read_text(encoding="utf-8")
 
 
-@click.command("hunting")
+@click.command("hunting", cls=NeedingCommand, needs=need_pinocchio)
 @scene_argument()
 @click.option("--lowest", type=float, default=10.0, metavar="M/S", help="Lowest speed tried.")
 @click.option("--highest", type=float, default=150.0, metavar="M/S", help="Highest speed tried.")
@@ -84,7 +85,6 @@ def hunting(
         raise WrongCall(f"--lowest: value is {lowest}, allowed below --highest ({highest})")
     if speed is not None and (output is None or not 0 < speed <= FASTEST):
         raise WrongCall(f"--speed: value is {speed}, allowed > 0, at most {FASTEST:g}, with -o")
-    need("railpatch.pinocchio")
     from wheelset_demo.scene import load_wheelset_scene, scene_file
     from wheelset_demo.system import ContactFailure
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from railpatch.case import WheelsetCase
 from railpatch.case.kinds import Ending, SceneKind, with_tables
+from railpatch.errors import CaseError
 
 from wheelset_demo.scene import DEFAULT, MODELS, scene_file
 from wheelset_demo.vehicle.scene import DEFAULT as DEFAULT_VEHICLE
@@ -25,10 +26,19 @@ def wheelset_run() -> SceneKind:
 
 def run_wheelset(scene: Path, log: Path) -> Ending:
     """The whole run."""
+    check_pinocchio()
     from wheelset_demo.scene import load_wheelset_scene
     from wheelset_demo.simulation import run_scene
 
     return ending_of(run_scene(load_wheelset_scene(scene), log))
+
+
+def check_pinocchio() -> None:
+    """Raises CaseError that says what to install."""
+    try:
+        import railpatch.pinocchio  # noqa: F401
+    except ImportError as error:
+        raise CaseError(str(error)) from None
 
 
 def ending_of(summary: Any) -> Ending:
@@ -49,6 +59,7 @@ def vehicle() -> SceneKind:
 
 def run_vehicle(scene: Path, log: Path) -> Ending:
     """The whole run."""
+    check_pinocchio()
     from wheelset_demo.system import ContactFailure
     from wheelset_demo.vehicle.compare import run_summary
     from wheelset_demo.vehicle.scene import load_vehicle_scene

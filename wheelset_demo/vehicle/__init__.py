@@ -17,8 +17,26 @@ state.time in s, state.q and state.v [50] as in wheelset_demo.vehicle.model; ele
 of bodies: car_body, bogie_1, bogie_2, wheelset_1 ... 4, axle_box_1_left ... axle_box_4_right.
 """
 
-from wheelset_demo.vehicle.scene import VehicleScene, load_vehicle_scene
-from wheelset_demo.vehicle.simulation import Simulation
-from wheelset_demo.vehicle.system import VehicleState
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from wheelset_demo.vehicle.scene import VehicleScene, load_vehicle_scene
+    from wheelset_demo.vehicle.simulation import Simulation
+    from wheelset_demo.vehicle.system import VehicleState
 
 __all__ = ["Simulation", "VehicleScene", "VehicleState", "load_vehicle_scene"]
+
+# what runs needs Pinocchio, what reads a scene does not: each is imported when it is asked for
+PLACES = {
+    "Simulation": "simulation",
+    "VehicleScene": "scene",
+    "VehicleState": "system",
+    "load_vehicle_scene": "scene",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in PLACES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{PLACES[name]}"), name)

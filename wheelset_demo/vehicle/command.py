@@ -9,9 +9,10 @@ from typing import Any
 import click
 from railpatch.command.group import (
     EXIT_NOT_CONVERGED,
+    NeedingCommand,
     WrongCall,
     json_option,
-    need,
+    need_pinocchio,
     output_option,
     progress_bar,
     quiet_flag,
@@ -34,7 +35,7 @@ def default_scene_text() -> str:
     return scene_file("vehicle_curve.toml").read_text(encoding="utf-8")
 
 
-@click.command("vehicle")
+@click.command("vehicle", cls=NeedingCommand, needs=need_pinocchio)
 @scene_argument()
 @click.option(
     "--method",
@@ -73,7 +74,6 @@ def vehicle(
         raise WrongCall(f"--compare: given with --method {methods[0]}, allowed one of them")
     if output is not None and (compare or len(methods) > 1):
         raise WrongCall(f"--output: value is {str(output)!r}, allowed with one run only")
-    need("railpatch.pinocchio")
     from wheelset_demo.scene import scene_file
     from wheelset_demo.system import ContactFailure
     from wheelset_demo.vehicle.compare import COMPARED

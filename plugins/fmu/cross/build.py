@@ -13,6 +13,7 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import gather
@@ -52,23 +53,30 @@ def package(name: str) -> Path:
     return Path(found.origin).parent
 
 
-def build(name: str, folder: Path, zig: Path) -> None:
-    """One platform's library, into FOLDER/lib."""
+def compile_for(name: str, folder: Path, targets: Sequence[str], **more: str | Path) -> Path:
+    """What CMake makes for a platform; gives its tree, FOLDER/NAME. more: options of CMake."""
     target, system, processor = PLATFORMS[name]
     options = {
         **OPTIONS,
         "CMAKE_TOOLCHAIN_FILE": Path(__file__).with_name("toolchain.cmake"),
         "CMAKE_SYSTEM_NAME": system,
         "CMAKE_SYSTEM_PROCESSOR": processor,
-        "RAILPATCH_ZIG": zig,
+        "RAILPATCH_ZIG": package("ziglang") / "zig",
         "RAILPATCH_TARGET": target,
         "Python_EXECUTABLE": sys.executable,
+        **more,
     }
     tree = folder / name
     settings = [f"-D{key}={value}" for key, value in options.items()]
     run("cmake", "-S", ROOT, "-B", tree, "-G", "Ninja", *settings)
-    run("cmake", "--build", tree, "--target", "railpatch_fmu", "bits_steps")
-    made = tree / "plugins" / "fmu" / f"railpatch_fmu_eigen{ENDINGS[system]}"
+    run("cmake", "--build", tree, "--target", *targets)
+    return tree
+
+
+def build(name: str, folder: Path) -> None:
+    """One platform's library, into FOLDER/lib."""
+    tree = compile_for(name, folder, ["railpatch_fmu", "bits_steps"])
+    made = tree / "plugins" / "fmu" / f"railpatch_fmu_eigen{ENDINGS[PLATFORMS[name][1]]}"
     place = folder / "lib" / name
     place.mkdir(parents=True, exist_ok=True)
     shutil.copy(made, place)
@@ -89,6 +97,12 @@ def add_licences(folder: Path, zig: Path) -> None:
     (folder.parent / "runtime.txt").write_text(RUNTIME, encoding="utf-8")
 
 
+def use_cache(folder: Path) -> None:
+    """What the compiler keeps is below FOLDER, where nothing else is said."""
+    for cache in ("ZIG_GLOBAL_CACHE_DIR", "ZIG_LOCAL_CACHE_DIR"):
+        os.environ.setdefault(cache, str(folder / "cache"))
+
+
 def main() -> None:
     """All platforms, sources, licences."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -96,17 +110,15 @@ def main() -> None:
     parser.add_argument("--platforms", nargs="+", choices=PLATFORMS, default=list(DEFAULT))
     arguments = parser.parse_args()
     folder = arguments.folder.resolve()
-    for cache in ("ZIG_GLOBAL_CACHE_DIR", "ZIG_LOCAL_CACHE_DIR"):
-        os.environ.setdefault(cache, str(folder / "cache"))
-    compiler = package("ziglang")
+    use_cache(folder)
     # nothing of an earlier run is packed
     shutil.rmtree(folder / "lib", ignore_errors=True)
     for name in arguments.platforms:
-        build(name, folder, compiler / "zig")
+        build(name, folder)
     generated = folder / arguments.platforms[0] / "plugins" / "fmu" / "generated"
     headers = package("fmpy") / "c-code"
     gather.write(gather.sources(ROOT, generated, headers), folder / "lib" / "sources.zip")
-    add_licences(folder / "lib" / "licenses", compiler)
+    add_licences(folder / "lib" / "licenses", package("ziglang"))
     (folder / "lib" / "stamp.txt").write_text(stamp() + "\n")
 
 

@@ -11,6 +11,7 @@ from railpatch.command.group import (
     EXIT_NOT_CONVERGED,
     Commands,
     WrongCall,
+    completed,
     json_option,
     quiet_flag,
     strict_flag,
@@ -22,6 +23,13 @@ from railpatch.command.group import (
 CASE = click.Path(path_type=Path)
 QUIET_TEXT = "Print no table and no progress."
 QUIET = quiet_flag(QUIET_TEXT)
+
+
+def kind_names() -> list[str]:
+    """Of scene files."""
+    from railpatch.case.kinds import kinds
+
+    return list(kinds())
 
 
 def quiet_everywhere(context: click.Context, _option: click.Parameter, value: bool) -> None:
@@ -109,6 +117,7 @@ def explain(context: click.Context, case: Path, quiet: bool) -> None:
 @click.option(
     "--kind",
     metavar="KIND",
+    shell_complete=completed(kind_names),
     help="Of such scenes only: patch, wheel_rail, wheelset, rig, curve, wheelset_run, vehicle, "
     "sweep.",
 )
@@ -127,7 +136,7 @@ def schema(kind: str | None, quiet: bool) -> None:
 
 
 @cli.command()
-@click.argument("kind", metavar="KIND")
+@click.argument("kind", metavar="KIND", shell_complete=completed(kind_names))
 @click.argument("folder", metavar="DIR", type=click.Path(file_okay=False, path_type=Path))
 @QUIET
 def init(kind: str, folder: Path, quiet: bool) -> None:

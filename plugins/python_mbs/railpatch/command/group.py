@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+from click.shell_completion import CompletionItem
 
 from railpatch.errors import CaseError, ProfileError
 
@@ -80,6 +81,24 @@ def version_option() -> click.Option:
 def quiet_option() -> click.Option:
     """--quiet for a command that has none."""
     return click.Option(["--quiet"], is_flag=True, expose_value=False, help="Print nothing.")
+
+
+def completed(
+    names: Callable[[], Iterable[str]],
+) -> Callable[[click.Context, click.Parameter, str], list[str]]:
+    """What a shell offers for a value: for ``shell_complete`` of an argument or option."""
+
+    def complete(_context: click.Context, _of: click.Parameter, begun: str) -> list[str]:
+        return [name for name in names() if name.startswith(begun)]
+
+    return complete
+
+
+def complete_file(
+    _context: click.Context, _of: click.Parameter, begun: str
+) -> list[CompletionItem]:
+    """A shell's own completion of files: for ``shell_complete`` of a value NAME|FILE."""
+    return [CompletionItem(begun, type="file")]
 
 
 def scene_argument() -> Callable[..., Any]:
@@ -168,6 +187,32 @@ def need(module: str) -> None:
         import_module(module)
     except ImportError as error:
         raise WrongCall(str(error)) from None
+
+
+class NeedingCommand(click.Command):
+    """A command that needs an optional part, and says so before it reads its options.
+
+    needs: raises WrongCall where the part is missing, as need() does. Options that only tell
+    something, --help or --version, and completion go without it.
+    """
+
+    def __init__(self, *arguments: Any, needs: Callable[[], None], **keywords: Any) -> None:
+        super().__init__(*arguments, **keywords)
+        self.needs = needs
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """The options, where the part is there."""
+        telling = {
+            name for option in self.get_params(ctx) if option.is_eager for name in option.opts
+        }
+        if not ctx.resilient_parsing and telling.isdisjoint(args):
+            self.needs()
+        return super().parse_args(ctx, args)
+
+
+def need_pinocchio() -> None:
+    """Raises WrongCall where Pinocchio is missing."""
+    need("railpatch.pinocchio")
 
 
 @contextmanager

@@ -7,9 +7,22 @@ from typing import Any
 
 import click
 
-from railpatch.command.group import output_option, quiet_flag, scene_argument
+from railpatch.command.group import (
+    complete_file,
+    completed,
+    output_option,
+    quiet_flag,
+    scene_argument,
+)
 from railpatch.command.output import check_output, files_of
 from railpatch.errors import CaseError
+
+
+def scene_names() -> list[str]:
+    """Of the scenes that come with the package."""
+    from railpatch.fmu.scenes import kinds
+
+    return kinds()
 
 
 @click.command("fmu")
@@ -19,6 +32,7 @@ from railpatch.errors import CaseError
     "--scene",
     "kind",
     metavar="NAME",
+    shell_complete=completed(scene_names),
     help="One of the scenes that come with the package, in place of a file: patch, wheel, "
     "wheelset_rail, ...; an unknown name gives the list.",
 )
@@ -48,6 +62,7 @@ from railpatch.errors import CaseError
     "wheel_profiles",
     multiple=True,
     metavar="NAME|FILE",
+    shell_complete=complete_file,
     help="A further profile of both wheels beside the scene's own, to choose by the parameter "
     "profiles.wheel; may be given several times.",
 )
@@ -56,6 +71,7 @@ from railpatch.errors import CaseError
     "rail_profiles",
     multiple=True,
     metavar="NAME|FILE",
+    shell_complete=complete_file,
     help="The same of both rails or rollers: profiles.rail.",
 )
 @click.option(

@@ -6,7 +6,13 @@ from pathlib import Path
 
 import click
 
-from railpatch.command.group import WrongCall, output_option, quiet_flag, wrong_call
+from railpatch.command.group import (
+    WrongCall,
+    complete_file,
+    output_option,
+    quiet_flag,
+    wrong_call,
+)
 from railpatch.command.output import check_page, refuse_same
 from railpatch.page.browser import BrowserError
 from railpatch.profiles.pairing.contact_points import Dimensions
@@ -23,10 +29,20 @@ def length_option(name: str, field: str, text: str) -> click.Option:
 
 
 @click.command("profile")
-@click.argument("source", metavar="NAME|FILE")
+@click.argument("source", metavar="NAME|FILE", shell_complete=complete_file)
 @output_option("PLOT.html|.pdf", "The page to write; a PDF is made by Chromium, Chrome or Edge.")
-@click.option("--rail", metavar="NAME|FILE", help="Partner of a wheel.  [default: UIC60@1:40]")
-@click.option("--wheel", metavar="NAME|FILE", help="Partner of a rail.  [default: S1002]")
+@click.option(
+    "--rail",
+    metavar="NAME|FILE",
+    shell_complete=complete_file,
+    help="Partner of a wheel.  [default: UIC60@1:40]",
+)
+@click.option(
+    "--wheel",
+    metavar="NAME|FILE",
+    shell_complete=complete_file,
+    help="Partner of a rail.  [default: S1002]",
+)
 @click.option(
     "--smoothing",
     type=click.FloatRange(0, 0.1),
