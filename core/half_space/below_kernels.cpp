@@ -108,11 +108,11 @@ below_coefficients below_corner(const body_constants &body, double x, double y, 
   p[below::ux] = -scale[1] * (part * in_x.f_a + z * in_x.v_a);
   p[below::uy] = -scale[1] * (part * in_y.f_a + z * in_y.v_a);
   p[below::uz] = scale[1] * (2.0 * (1.0 - nu) * s.v - z * s.v_z);
-  using enum below::component;
-  of_traction(in_x, in_y, s, nu, z, scale, {xx, yy, xy, zx, yz, ux, uy},
-              k.data() + below::at(below::qx, 0));
-  of_traction(in_y, in_x, s, nu, z, scale, {yy, xx, xy, yz, zx, uy, ux},
-              k.data() + below::at(below::qy, 0));
+  using b = below;
+  of_traction(in_x, in_y, s, nu, z, scale, {b::xx, b::yy, b::xy, b::zx, b::yz, b::ux, b::uy},
+              k.data() + b::at(b::qx, 0));
+  of_traction(in_y, in_x, s, nu, z, scale, {b::yy, b::xx, b::xy, b::yz, b::zx, b::uy, b::ux},
+              k.data() + b::at(b::qy, 0));
   return k;
 }
 

@@ -11,7 +11,7 @@ namespace railpatch {
 namespace {
 
 using std::numbers::pi;
-using std::numbers::sqrt2;
+constexpr double sqrt2 = 1.41421356237309504880;
 
 double mean_of(const stress_tensor &s) { return (s[0] + s[1] + s[2]) / 3.0; }
 

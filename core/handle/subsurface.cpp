@@ -47,11 +47,11 @@ double traction_sign(int body) { return body == RP_BODY_WHEEL ? 1.0 : -1.0; }
 // Components along x, s, n of the contact frame, where n leads into the rail: the wheel's depth
 // has the other sense. A left wheel is solved as its mirror image.
 void component_signs(int body, bool mirrored, double *sign) {
-  using enum below::component;
-  std::fill_n(sign, static_cast<int>(components), 1.0);
-  if (body == RP_BODY_WHEEL) sign[yz] = sign[zx] = sign[uz] = -1.0;
+  using b = below;
+  std::fill_n(sign, static_cast<int>(b::components), 1.0);
+  if (body == RP_BODY_WHEEL) sign[b::yz] = sign[b::zx] = sign[b::uz] = -1.0;
   if (mirrored)
-    for (const int c : {xy, yz, uy}) sign[c] = -sign[c];
+    for (const int c : {b::xy, b::yz, b::uy}) sign[c] = -sign[c];
 }
 
 }  // namespace
