@@ -244,11 +244,12 @@ TEST(Buffers, AreNotOverrun) {
       fitted_solver solver(unlike, 1e-14, false, false, rows);
       const double axes[2] = {5e-3, 4e-3};
       rows.set_ellipse(axes, 8e4);
-      field x(n), y(n), p(n);
-      solver.solve(rows, 0.3, f.input, {1e-6, 50}, {x.data(), y.data(), p.data(), f.fields()});
+      field x(n), y(n), h(n), p(n);
+      const fitted_fields fitted = {x.data(), y.data(), h.data(), p.data(), f.fields()};
+      solver.solve(rows, 0.3, f.input, {1e-6, 50}, fitted);
       field grid_pressure(14 * 14, 1e8);
       rows.set_pressure({14, 14, 1e-3, 1e-3, 0, 0}, grid_pressure.data());
-      solver.solve(rows, 0.3, f.input, {1e-6, 50}, {x.data(), y.data(), p.data(), f.fields()});
+      solver.solve(rows, 0.3, f.input, {1e-6, 50}, fitted);
       // areas beside each other, as many as there can be
       for (size_t k = 0; k < grid_pressure.size(); ++k) grid_pressure[k] = k / 14 % 2 ? 0 : 1e8;
       rows.set_pressure({14, 14, 1e-3, 1e-3, 0, 0}, grid_pressure.data());
