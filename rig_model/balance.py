@@ -258,7 +258,8 @@ class Balancer:
         if self._conditioning is None:
             return self._balanced(position, known), None
         assert isinstance(self._contact, WheelPair)
-        self._contact.factors = self._conditioning.started()
+        given = known.factors if known else None
+        self._contact.factors = given or self._conditioning.started()
         root = self._balanced(position, known)
         for _ in range(MOST_ROUNDS):
             if not root.converged:

@@ -1,9 +1,10 @@
 """A run of the rig followed through changes of its scene: what is measured, and its derivatives.
 
-Each position's balance starts where it was before the change, with its Jacobian; derivatives are
-those of rig_model/partial.py. A frame's sliders go on with the changed run, so that what a position
-owes to those before it is in its derivative. What else a run remembers (bodies that store heat,
-friction that conditions), and a gauge that opens, is differenced by whole runs.
+Each position's balance starts where it was before the change, with its Jacobian, moved along the
+derivatives of the balance where these are known; derivatives are those of rig_model/partial.py. A
+frame's sliders go on with the changed run, so that what a position owes to those before it is in
+its derivative. What else a run remembers (bodies that store heat, friction that conditions), and a
+gauge that opens, is differenced by whole runs.
 
 One input may be unknown in each row (``Rows``): it then is where the row's measured numbers are met
 best, and derivatives are those along it (variable projection, Golub and Pereyra 1973, in the form
@@ -19,6 +20,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from railpatch.case.types import SIDES
 from railpatch.errors import CaseError
 from railpatch.record.quantities import BY_NAME, OUTPUT
 from railpatch.report.beside import with_ratios
@@ -33,6 +35,9 @@ from rig_model.search import Vector
 
 Array = NDArray[np.float64]
 Content = dict[str, Any]
+
+# of parameters (parts of their ranges), up to which a balance starts along its derivatives
+NEAR = 0.1
 
 
 class Follower:
@@ -60,27 +65,41 @@ class Follower:
         by_runs = remembers(scene)
         self._balancer = Balancer(scene, derivatives=not by_runs, reach=reach)
         self.exact = not by_runs and self._has_exact(positions[0])
+        conditions = scene.rig.conditioning is not None
+        self._size = len(self._balancer.unknowns) + len(SIDES) * conditions
         self._known: list[Prediction | None] = [None] * len(positions)
+        # parameters of what is known; [m, p, n], of unknowns and factors of friction by them
+        self._place: Array | None = None
+        self._moves: Array | None = None
         self._last: tuple[Content, RigScene, list[Balance]] | None = None
         self.forget()
 
-    def computed(self, content: Content) -> Array:
-        """[names, m], SI units, NaN where a position is not balanced. Raises CaseError."""
-        _, balances = self._replayed(content)
-        return np.array([self._observed(balance) for balance in balances]).T
+    def computed(self, content: Content, place: Array | None = None) -> Array:
+        """[names, m], SI units, NaN where a position is not balanced. place: [p], parameters of the
+        content, by which a balance near the last slopes starts closer. Raises CaseError."""
+        _, balances = self._replayed(content, place)
+        return self._table(balances)
 
-    def slopes(self, content: Content, changed: Sequence[Content], steps: Sequence[float]) -> Array:
-        """[names, m, parameters]: derivatives by parameters, each of which is a step on in one of
-        the changed contents. NaN where a position is not balanced. Raises CaseError."""
-        scene, balances = self._replayed(content)
+    def slopes(
+        self,
+        content: Content,
+        changed: Sequence[Content],
+        steps: Sequence[float],
+        place: Array | None = None,
+    ) -> Array:
+        """[names, m, p]: derivatives by parameters, each of which is a step on in one of the
+        changed contents. NaN where a position is not balanced. place: as of computed. Raises
+        CaseError."""
+        scene, balances = self._replayed(content, place)
         if remembers(scene):
-            return self._by_runs(content, changed, steps)
+            return self._by_runs(balances, changed, steps, place)
         ways = [
             way_of(scene, self._scene(other), step, exact=self.exact)
             for other, step in zip(changed, steps, strict=True)
         ]
         partial = self._partial(scene)
         found = np.full((len(self.names), len(balances), len(ways)), np.nan)
+        moves = np.full((len(balances), len(ways), len(self._balancer.unknowns)), np.nan)
         for i, balance in enumerate(balances):
             if not balance.converged:
                 continue
@@ -90,6 +109,7 @@ class Follower:
             if self.rows is not None:
                 slopes = self.rows.projected(i, slopes)
             found[:, i, :] = slopes
+            moves[i] = [pair[1] for pair in pairs]
             if partial.frame is None:
                 continue
             forces = lateral_forces(balance.result)
@@ -98,6 +118,7 @@ class Follower:
                 if way.frame is not None:
                     y = balance.y + way.step * float(np.nan_to_num(dx[3]))
                     way.frame.moved(way.positions[i].y, y, 0.0, forces)
+        self._moves = moves
         return found
 
     def weigh(self, error: Array) -> None:
@@ -144,33 +165,64 @@ class Follower:
         self._balancer.solve(position)
         return bool(self._balancer.contact.differentiate(z=1.0)["kind"] == "exact")
 
-    def _replayed(self, content: Content) -> tuple[RigScene, list[Balance]]:
+    def _replayed(
+        self, content: Content, place: Array | None = None
+    ) -> tuple[RigScene, list[Balance]]:
         """All positions, started from those of the last content."""
         if self._last is not None and self._last[0] == content:
             return self._last[1:]
-        scene = self._scene(content)
-        self._balancer = self._balancer.changed(scene)
-        balances = [self._balanced(scene, position) for position in scene.positions()]
+        scene, balances, known = self._run(content, place)
+        for i, found in enumerate(known):
+            self._known[i] = found or self._known[i]
+        if self._place is None or place is None or not all(known):
+            self._moves = None
+        self._place = place
         self._last = (content, scene, balances)
         return scene, balances
+
+    def _run(
+        self, content: Content, place: Array | None
+    ) -> tuple[RigScene, list[Balance], list[Prediction | None]]:
+        """Each position's balance, and what is known then; None where it is not balanced."""
+        scene = self._scene(content)
+        self._balancer = self._balancer.changed(scene)
+        ahead = self._ahead(place)
+        balances, known = [], []
+        for position in scene.positions():
+            start = self._known[position.index]
+            if start is not None and ahead is not None:
+                start = beyond(start, ahead[position.index])
+            balance, found = self._balanced(scene, position, start)
+            balances.append(balance)
+            known.append(found)
+        return scene, balances, known
+
+    def _ahead(self, place: Array | None) -> Array | None:
+        """[m, n], how far unknowns are from where they are known, if that is near."""
+        if self.rows is not None or self._moves is None or self._place is None or place is None:
+            return None
+        step = place - self._place
+        return np.nan_to_num(step @ self._moves) if np.abs(step).max() <= NEAR else None
 
     def _solved(self, position: Position, known: Prediction | None) -> tuple[Balance, Prediction]:
         if self.rows is None:
             balance = self._balancer.solve(position, known)
         else:
             balance = self._balancer.alone(position, known)
-        return balance, Prediction(self._unknowns(balance), self._balancer.jacobian)
+        states = balance.conditioning
+        factors = {side: state.factor for side, state in states.items()} if states else None
+        return balance, Prediction(self._unknowns(balance), self._balancer.jacobian, factors)
 
     def _unknowns(self, balance: Balance) -> Vector:
         return np.array([getattr(balance, name) for name in self._balancer.unknowns])
 
-    def _balanced(self, scene: RigScene, position: Position) -> Balance:
+    def _balanced(
+        self, scene: RigScene, position: Position, start: Prediction | None
+    ) -> tuple[Balance, Prediction | None]:
         i = position.index
         if self.rows is None:
-            balance, known = self._solved(position, self._known[i])
-            if balance.converged:
-                self._known[i] = known
-            return balance
+            balance, known = self._solved(position, start)
+            return balance, known if balance.converged else None
         partial = self._partial(scene)
 
         def slope(balance: Balance) -> Array:
@@ -183,7 +235,10 @@ class Follower:
             self._observed,
             slope,
         )
-        return self.rows.fit(i, position, self.measured[:, i], problem).best.balance
+        return self.rows.fit(i, position, self.measured[:, i], problem).best.balance, None
+
+    def _table(self, balances: Sequence[Balance]) -> Array:
+        return np.array([self._observed(balance) for balance in balances]).T
 
     def _observed(self, balance: Balance) -> Array:
         """[names], NaN where a position is not balanced."""
@@ -193,13 +248,41 @@ class Follower:
         return np.array([computed(balance.result, x, name) for name in self.names])
 
     def _by_runs(
-        self, content: Content, changed: Sequence[Content], steps: Sequence[float]
+        self,
+        balances: Sequence[Balance],
+        changed: Sequence[Content],
+        steps: Sequence[float],
+        place: Array | None,
     ) -> Array:
-        here = self.computed(content)
-        found = [
-            (self.computed(other) - here) / step for other, step in zip(changed, steps, strict=True)
-        ]
+        here, found, moves = self._table(balances), [], []
+        before = [self._all_of(known) for known in self._known]
+        for k, (other, step) in enumerate(zip(changed, steps, strict=True)):
+            moved = None if place is None else place + step * (np.arange(len(steps)) == k)
+            _, there, known = self._run(other, moved)
+            found.append((self._table(there) - here) / step)
+            moves.append([(self._all_of(b) - a) / step for a, b in zip(before, known, strict=True)])
+        self._moves = np.stack(moves, axis=1)
         return np.stack(found, axis=-1)
+
+    def _all_of(self, known: Prediction | None) -> Array:
+        """Unknowns and factors of friction, NaN where they are not known."""
+        if known is None:
+            return np.full(self._size, np.nan)
+        return np.append(known.unknowns, list((known.factors or {}).values()))
+
+
+def beyond(known: Prediction, step: Array) -> Prediction:
+    """What is known, a step on in its unknowns and factors of friction."""
+    size, names = len(known.unknowns), list(known.factors or {})
+    factors = (
+        {
+            name: max(known.factors[name] + float(step[size + k]), 0.0)
+            for k, name in enumerate(names)
+        }
+        if known.factors
+        else None
+    )
+    return replace(known, unknowns=known.unknowns + step[:size], factors=factors)
 
 
 def remembers(scene: RigScene) -> bool:

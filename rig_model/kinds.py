@@ -7,9 +7,14 @@ from pathlib import Path
 from typing import Any
 
 from railpatch.case import WheelsetCase
-from railpatch.case.kinds import Ending, SceneKind, with_tables
+from railpatch.case.kinds import Ending, Prepared, SceneKind, with_tables
+from railpatch.case.load import check_table
+from railpatch.record.columns import Columns, given
+from railpatch.record.forces import PARTS
+from railpatch.record.read import read_record
 
 from rig_model.curve import DEFAULT, Curve, load_curve_scene, steady_curves
+from rig_model.measured import PREFIX
 from rig_model.scene import default_scene, load_rig_scene
 from rig_model.tables import Rig
 
@@ -18,7 +23,7 @@ def rig() -> SceneKind:
     """A run of the roller rig."""
     model = with_tables(WheelsetCase, {"rig": Rig})
     command = "railpatch rig SCENE -o run.mcap"
-    return SceneKind("rig", model, default_scene(), command, run_rig, follow=follow_rig)
+    return SceneKind("rig", model, default_scene(), command, run_rig, None, follow_rig, prepare_rig)
 
 
 def run_rig(scene: Path, log: Path) -> Ending:
@@ -47,6 +52,26 @@ def follow_rig(content: dict[str, Any], folder: Path, names: Sequence[str], rows
     for name, table in rows.items():
         sought = Rows(name, table.low, table.high, table.starts)
     return Follower(content, folder, names, sought)
+
+
+def prepare_rig(content: dict[str, Any], folder: Path, rows: Sequence[str]) -> Prepared:
+    """A run's content for a match: where neither record nor scene say them, the lateral position
+    is 0 and rows come every second. Raises CaseError."""
+    rig = dict(content["rig"])
+    table = check_table(Columns, rig["columns"], "rig.columns") if "columns" in rig else None
+    record = read_record(folder / rig["record"], given(table) if table else None, prefix=PREFIX)
+    told = []
+    if "lateral_position" not in {*record.signals, *rig, *rows}:
+        rig["lateral_position"] = [[0.0, 0.0], [1.0, 0.0]]
+        told.append(
+            "rig.lateral_position: nobody says it, taken as 0 but for rig.offset.y; "
+            "[match.rows.lateral_position] finds one for each row"
+        )
+    if record.kind != "time" and "duration" not in rig:
+        rig["duration"] = float(len(record.at) - 1)
+        told.append("rig.duration: nobody says it, taken as 1 s from row to row")
+    forces = tuple(name for name in record.signals if name.rpartition("_")[2] in PARTS)
+    return Prepared(content | {"rig": rig}, forces, record.units, [*record.warnings, *told])
 
 
 def curve() -> SceneKind:

@@ -21,10 +21,12 @@ MEMORY = 500
 
 @dataclass(frozen=True)
 class Prediction:
-    """unknowns: [n]. jacobian: the solver's, found at this place before; None for a new place."""
+    """unknowns: [n]. jacobian: the solver's, found at this place before; None for a new place.
+    factors: by side, of friction that conditions, where they are known."""
 
     unknowns: Vector
     jacobian: Vector | None = None
+    factors: dict[str, float] | None = None
 
 
 class Predictor:

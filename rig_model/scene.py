@@ -95,7 +95,9 @@ class RigScene:
     def positions(self) -> list[Position]:
         """The positions of the run."""
         driven = self._driven()
-        drift = self.rig.drift
+        offset, drift = self.rig.offset, self.rig.drift
+        if offset is not None:
+            driven = drifted(driven, [offset.yaw], [offset.y])
         return drifted(driven, drift.yaw, drift.lateral_position) if drift else driven
 
     def _driven(self) -> list[Position]:

@@ -52,6 +52,7 @@ YAW, LATERAL = 0.012, 2.5e-3
 FORCES = {
     f"{side}_{what}": k for side in SIDES for k, what in enumerate(("longitudinal", "lateral"))
 }
+VERTICAL = {f"{side}_vertical": 2 for side in SIDES}
 UNITS = {"time": ("ms", 1e3), "yaw": ("mrad", 1e3), "lateral_position": ("mm", 1e3)}
 
 
@@ -63,27 +64,34 @@ def write_synthetic(
     noise: float = 0.01,
     random: np.random.Generator | None = None,
     elements: float = 1e-3,
+    seek: Mapping[str, Mapping[str, Any]] = SEEK,
+    tables: Mapping[str, Mapping[str, Any]] | None = None,
+    forces: Mapping[str, int] = FORCES,
 ) -> Path:
     """Writes record.csv, match.toml and truth.toml; returns the path of the match.
 
-    count: positions. noise: -, of half the load. elements: m, of the grid. Raises CaseError.
+    truth: key of the scene -> its value. count: positions. noise: -, of half the load. elements: m,
+    of the grid. seek: as in [match]. tables: further ones of [rig]. forces: measured ones, with
+    their components. Raises CaseError.
     """
     folder.mkdir(parents=True, exist_ok=True)
     random = random or np.random.default_rng(1)
-    columns = programme(count)
+    columns = programme(count, forces)
     content = rig_content(columns, elements)
+    content["rig"] |= tables or {}
     write_record(folder, columns)
     scene = rig_scene_of(with_values(content, truth), folder, {"balance.tolerance": 2e-5})
     balancer = Balancer(scene)
     balances = [balancer.solve(position) for position in scene.positions()]
     size = noise * 0.5 * scene.vertical_force
-    for name, k in FORCES.items():
+    for name, k in forces.items():
         side = name.partition("_")[0]
         force = np.array([-balance.result[side]["force"][k] for balance in balances])
         columns[name] = force + size * random.standard_normal(count)
     write_record(folder, columns)
-    match = with_values(content, GUESS) | {
-        "match": {"observed": {name: {} for name in FORCES}, "seek": SEEK, "starts": 2}
+    guess = {key: value for key, value in GUESS.items() if key in seek}
+    match = with_values(content, guess) | {
+        "match": {"observed": {name: {} for name in forces}, "seek": seek, "starts": 2}
     }
     place = folder / "match.toml"
     place.write_text(toml_of(match), encoding="utf-8")
@@ -91,7 +99,7 @@ def write_synthetic(
     return place
 
 
-def programme(count: int) -> dict[str, NDArray[np.float64]]:
+def programme(count: int, forces: Mapping[str, int]) -> dict[str, NDArray[np.float64]]:
     """s, rad, m, [count]: to and fro in yaw, the actuators beside it; forces are not there yet."""
     turn = np.interp(np.linspace(0, 1, count), [0, 0.25, 0.75, 1], [0, 1, -1, 0])
     columns = {
@@ -99,7 +107,7 @@ def programme(count: int) -> dict[str, NDArray[np.float64]]:
         "yaw": YAW * turn,
         "lateral_position": LATERAL * turn + 0.5e-3 * np.sin(7 * turn),
     }
-    return columns | {name: np.full(count, 4e4) for name in FORCES}
+    return columns | {name: np.full(count, 4e4) for name in forces}
 
 
 def rig_content(columns: Mapping[str, Any], elements: float) -> dict[str, Any]:

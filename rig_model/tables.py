@@ -152,6 +152,17 @@ class DriftTable(Table):
         return self
 
 
+class OffsetTable(Table):
+    """What is added to what drives the rig, all the time."""
+
+    y: Annotated[float, Field(ge=-MOST_DRIFT, le=MOST_DRIFT)] = Field(
+        default=0.0, description="m, added to the lateral position"
+    )
+    yaw: Annotated[float, Field(ge=-MOST_DRIFT, le=MOST_DRIFT)] = Field(
+        default=0.0, description="rad, added to the yaw angle"
+    )
+
+
 class Rig(Table):
     """What the rig does with the wheelset."""
 
@@ -193,6 +204,11 @@ class Rig(Table):
         default=None,
         description="friction of each wheel that changes with the work done where it runs (-, J/m, "
         "J, s, m); left out: none",
+    )
+    offset: OffsetTable | None = Field(
+        default=None,
+        description="added to lateral position and yaw angle, recorded or not (m, rad); left out: "
+        "nothing",
     )
     drift: DriftTable | None = Field(
         default=None,

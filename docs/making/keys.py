@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from railpatch.case.key_units import ALONE, BEFORE, BRACKET, tables_of, unit_of_text
+
 from making import ROOT, Pages, cell, code, table
 
 if sys.version_info >= (3, 11):
@@ -16,37 +18,22 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
-# what stands before the comma or colon of a description, or in brackets at its end
-UNIT = (
-    r"-|%|s|m|m/s|m/s\^2|mm|rad|rad/s|rad/m|1/m|1/s|Hz|N|N/m|N s/m|N m|N m/rad|N m s/rad|kg|"
-    r"kg m\^2|Pa|Pa/m|K|degrees C|s/m|m\^2|W/K|W/\(m K\)|J/\(kg K\)|kg/m\^3"
-)
-BEFORE = re.compile(
-    rf"^\(?((?:{UNIT})(?:(?: or |, )(?:{UNIT}))*|no unit|a unit|as of the key)\)?[,:] ?"
-)
-WITHIN = re.compile(rf"\(((?:(?:{UNIT})(?:, )?)+|no unit|the column's unit|file|file or \w+)\)")
-ALONE = re.compile(rf"^(?:{UNIT})$")
-BRACKET = re.compile(r"^\[([^\]]*)\], ")
-
 
 @dataclass(frozen=True)
 class Key:
-    """One key of a scene: its dotted path, with [] in lists of tables and * for any name."""
+    """One key of a scene: its own name, and the dotted path of the table that it stands in, with []
+    in lists of tables and * for any name."""
 
-    path: str
+    name: str
+    holder: str
     schema: dict[str, Any]
     required: bool
     is_table: bool
 
     @property
-    def name(self) -> str:
-        """Its own name."""
-        return self.path.rsplit(".", 1)[-1]
-
-    @property
-    def holder(self) -> str:
-        """The table that it stands in."""
-        return self.path.rpartition(".")[0]
+    def path(self) -> str:
+        """Dotted."""
+        return f"{self.holder}.{self.name}" if self.holder else self.name
 
     @property
     def text(self) -> str:
@@ -56,10 +43,7 @@ class Key:
     @property
     def unit(self) -> str:
         """Its unit: "-" of plain numbers, "" of what is no number."""
-        if ALONE.match(self.text):
-            return self.text
-        found = BEFORE.match(self.text) or BRACKET.match(self.text) or WITHIN.search(self.text)
-        return "" if found is None or found[1] in ("no unit", "a unit") else found[1]
+        return unit_of_text(self.text)
 
     @property
     def meaning(self) -> str:
@@ -69,17 +53,6 @@ class Key:
         return BRACKET.sub("", BEFORE.sub("", self.text)).strip()
 
 
-def tables_of(schema: dict[str, Any], names: dict[str, Any]) -> Iterator[tuple[str, Any]]:
-    """What a key's schema has below it: what follows the key's path, and the table."""
-    for option in (schema, *schema.get("anyOf", ()), *schema.get("oneOf", ())):
-        more = option.get("additionalProperties")
-        places = [("", option), ("[]", option.get("items"))]
-        places += [(".*", more)] if isinstance(more, dict) else []
-        for suffix, place in places:
-            if isinstance(place, dict) and "$ref" in place:
-                yield suffix, names[place["$ref"].rsplit("/", 1)[-1]]
-
-
 def keys_of(schema: dict[str, Any]) -> list[Key]:
     """All keys of a kind of scene, each once, tables before what stands in them."""
     names, found = schema.get("$defs", {}), {}
@@ -87,7 +60,8 @@ def keys_of(schema: dict[str, Any]) -> list[Key]:
     def walk(here: dict[str, Any], prefix: str) -> None:
         for name, content in here.get("properties", {}).items():
             inner = [(s, t) for s, t in tables_of(content, names) if "properties" in t]
-            key = Key(prefix + name, content, name in here.get("required", ()), bool(inner))
+            needed = name in here.get("required", ())
+            key = Key(name, prefix.removesuffix("."), content, needed, bool(inner))
             found.setdefault(key.path, key)
             for suffix, content_of_table in inner:
                 walk(content_of_table, f"{prefix}{name}{suffix}.")
@@ -291,7 +265,7 @@ def page(name: str, command: str, schema: dict[str, Any], seen: dict[str, list[A
         lines += [cell(text) + ".", ""] if text else []
         rows = [
             [
-                code(key.name),
+                code(spelt(key.name) if "[" in key.name else key.name),
                 cell(key.unit),
                 "a table" if key.is_table else cell(range_of(key.schema)),
                 "" if key.is_table else default_of(key),

@@ -39,6 +39,17 @@ class Ending:
 
 
 @dataclass(frozen=True)
+class Prepared:
+    """A run's scene with its record, for a match: content with what nobody said, forces: names of
+    all that were measured, units: of the record's columns, and warnings."""
+
+    content: dict[str, Any]
+    forces: tuple[str, ...]
+    units: dict[str, str]
+    warnings: list[str]
+
+
+@dataclass(frozen=True)
 class SceneKind:
     """One kind of scene file.
 
@@ -47,7 +58,9 @@ class SceneKind:
     log to another; raises CaseError, ProfileError, OSError. None: one contact, which is solved.
     follow: of a run that can be matched, takes a scene's content, the folder of its files, names of
     what is measured and what is unknown in each row, and gives what railpatch.match.model asks of
-    a ``Followed``. base: the kind whose example this one's names, which is written beside.
+    a ``Followed``. prepare: of the same, takes the content, the folder and what is unknown in each
+    row, and gives it ``Prepared`` for a match. base: the kind whose example this one's names, which
+    is written beside.
     """
 
     name: str
@@ -57,6 +70,7 @@ class SceneKind:
     run: Callable[[Path, Path], Ending] | None = None
     base: str | None = None
     follow: Callable[..., Any] | None = None
+    prepare: Callable[..., Prepared] | None = None
 
     def schema(self) -> dict[str, Any]:
         """The JSON schema of such files, with tables that other commands read of them."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Literal
 
 from railpatch.case.wheel import WheelRailCase, WheelsetCase
-from railpatch.profiles import Profile, load_profile
+from railpatch.profiles import Profile, Reading, load_profile
 from railpatch.profiles.builtin import builtin_profile
 from railpatch.profiles.orientation import check_gauge_side, check_placed
 from railpatch.profiles.placement import Flange, flange_of, gauge_note
@@ -32,7 +33,24 @@ def named_profile(case: WheelCase, body: Body, name: str, folder: Path) -> Profi
     # a built-in one says all of itself
     built_in = builtin_profile(name, body) is not None
     reading = None if built_in else profiles.reading(body)
-    return load_profile(name, body, folder=folder, smoothing=profiles.smoothing, reading=reading)
+    if built_in:
+        return load_profile(name, body)
+    path = folder / name
+    try:
+        told = path.stat()
+    except OSError:
+        return load_profile(name, body, folder=folder, reading=reading)
+    state = told.st_mtime_ns, told.st_size
+    return file_profile(path.resolve(), state, body, profiles.smoothing, reading)
+
+
+@lru_cache(maxsize=32)
+def file_profile(
+    path: Path, _state: tuple[int, int], body: Body, smoothing: float | None, reading: Reading
+) -> Profile:
+    """A file's profile, kept for the next contact as long as the file stays. Raises
+    ProfileError."""
+    return load_profile(path, body, smoothing=smoothing, reading=reading)
 
 
 class Shelf:

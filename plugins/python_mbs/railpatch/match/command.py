@@ -87,8 +87,7 @@ def match(
     with wrong_calls():
         need_writer()
         plan = load_match(scene, record)
-        warnings = plan.record.warnings if plan.record else []
-        tell_warnings(warnings, strict=strict, quiet=silent)
+        tell_warnings(list(plan.warnings), strict=strict, quiet=silent)
         found = run_match(plan, threads=threads, tell=tell)
         written = write_match(found, output)
     if as_json:

@@ -15,9 +15,14 @@ normal with u's and the offset's part in its covariance (u times what was measur
 is computed), which is the variable projection of Golub and Pereyra (1973, SIAM J. Numer. Anal. 10,
 413-432) with their priors; what they are follows from what is left.
 
+Quantities of one dimension have one error where none is given, unless what is left says otherwise
+(Schwarz 1978, Ann. Stat. 6, 461-464): a search that weighs few points of each by errors of their
+own favours the quantity that it happened to meet. As the errors are estimated, intervals are those
+of Student's distribution.
+
 What rows find for themselves (a run's lateral position) is the model's affair: it takes as many
 numbers from those that tell of the parameters and the noise. All quantities of one dimension then
-have one error where none is given: a row could meet one of them, and make its error vanish.
+have one error: a row could meet one of them, and make its error vanish.
 """
 
 from __future__ import annotations
@@ -29,10 +34,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 from scipy.optimize import least_squares, minimize
-from scipy.stats import chi2, qmc
+from scipy.stats import qmc
 
 from railpatch.errors import CaseError
 from railpatch.match.model import DIFFERENCE, Model
+from railpatch.match.noise import Near, Noise
+from railpatch.match.plan import si_unit
 from railpatch.record.quantities import BY_NAME
 
 Array = NDArray[np.float64]
@@ -45,23 +52,8 @@ NEAR_END = 1e-3  # of a range
 # of what was observed: what a state without a result is off by, and the noise begun with
 FAR, FIRST = 10.0, 0.05
 ROUNDS = 2
-
-
-@dataclass(frozen=True)
-class Noise:
-    """Of what is left. error: [observed], SI units, of each point. size: -, over that, how much
-    belongs together. length: over which, in standard deviations of the inputs."""
-
-    error: Array
-    size: float = 0.0
-    length: float = 1.0
-
-    def covariance(self, apart: Array) -> Array:
-        """[m, m], over the squared error. apart: [m, m], squared distances of the inputs."""
-        own = np.eye(len(apart))
-        if self.size == 0:
-            return own
-        return own + self.size**2 * np.exp(-0.5 * apart / self.length**2)
+# of a range: derivatives serve as far as this in a search, corrected by what is computed there
+SERVE = 0.02
 
 
 @dataclass
@@ -94,7 +86,7 @@ class Search:
     """The search for what one explanation seeks."""
 
     def __init__(self, model: Model, tell: Told = lambda _: None) -> None:
-        self.model, self._tell = model, tell
+        self.model, self.tell = model, tell
         self.sought = list(model.explanation.seek.values())
         self.measured = model.measured
         self.there = np.isfinite(self.measured)
@@ -117,8 +109,12 @@ class Search:
         self.apart = ((inputs[:, :, None] - inputs[:, None, :]) ** 2).sum(axis=0)
         self.kept = np.ones(self.measured.shape[1], dtype=bool)
         self._last: tuple[Array, Array] | None = None
+        self._near: Near | None = None
         # what a search begins with
-        self.first = Noise(np.where(np.isfinite(self.given), self.given, FIRST * self.scale))
+        first = self.scale.copy()
+        for group in self.alike():
+            first[group] = first[group].max()
+        self.first = Noise(np.where(np.isfinite(self.given), self.given, FIRST * first))
         model.weigh(self.first.error)
 
     # --- what is computed ------------------------------------------------------------------------
@@ -144,6 +140,19 @@ class Search:
             moved[k] += step
             found.append((self.computed(moved) - here) / step)
         return np.stack(found, axis=-1)
+
+    def near_slopes(self, shares: Array) -> Array:
+        """[observed, m, p], by the shares, as a search needs them: the last ones where they are
+        near, corrected by every point computed since (Broyden 1965)."""
+        known = self._near
+        if known is None or np.abs(shares - known.start).max() > SERVE:
+            self._near = Near(shares.copy(), shares.copy(), self.computed(shares), None)
+            self._near.slopes = self.slopes(shares)
+        else:
+            known.go_to(shares, self.computed(shares))
+        assert self._near is not None
+        assert self._near.slopes is not None
+        return self._near.slopes
 
     # --- weighted --------------------------------------------------------------------------------
 
@@ -210,13 +219,13 @@ class Search:
 
         def slope(some: Array) -> Array:
             shares = whole(some)
-            own = self.whitened(self.slopes(shares), weights)
+            own = self.whitened(self.near_slopes(shares), weights)
             return np.concatenate([own, self.prior_slopes(shares)])[:, free]
 
         begin = np.clip(start[free], 1e-6, 1 - 1e-6)
         found = least_squares(
             left, begin, slope, bounds=(0.0, 1.0), loss=loss, x_scale=0.1, max_nfev=most, xtol=1e-5,
-            ftol=1e-6,
+            ftol=1e-5,
         )  # fmt: skip
         return whole(found.x)
 
@@ -233,7 +242,7 @@ class Search:
             self.anew()
             shares = self.solve(start, noise, table.loss, every, 30)
             cost = self._cost(shares, noise, table.loss)
-            self._tell(f"start {number} of {table.starts}: misfit {self._misfit(shares):.4g}")
+            self.tell(f"start {number} of {table.starts}: misfit {self._misfit(shares):.4g}")
             if cost < least:
                 best, least = shares, cost
         assert best is not None
@@ -241,7 +250,7 @@ class Search:
             self.anew()
             noise = self.noise_of(self.computed(best), table.correlated)
             best = self.solve(best, noise, table.loss, every, 15)
-        self._tell(f"weighted: misfit {self._misfit(best):.4g}")
+        self.tell(f"weighted: misfit {self._misfit(best):.4g}")
         self.anew()
         return self.fit_at(best, self.noise_of(self.computed(best), table.correlated))
 
@@ -249,7 +258,7 @@ class Search:
         """What rows found for themselves is sought over its whole range again."""
         if self.model.free:
             self.model.forget()
-            self._last = None
+            self._last = self._near = None
 
     def at_optimum(self, fit: Fit) -> None:
         """Brings the model back to an optimum, with its derivatives."""
@@ -309,20 +318,27 @@ class Search:
         taken = len(self.sought) + self.model.free
         degrees = np.maximum(count * (1 - taken / max(count.sum(), 1)), 1)
         squares = np.nansum(left**2, axis=1)
-        if self.model.free:
-            for group in self.alike():
+        for group in self.alike():
+            whole = squares[group].sum() / degrees[group].sum()
+            # errors of their own gain half of this by likelihood, for one number more each
+            several = np.maximum(squares[group] / degrees[group], 1e-18 * self.scale[group] ** 2)
+            gain = float(count[group] @ np.log(max(whole, 1e-300) / several))
+            price = (len(group) - 1) * np.log(max(count[group].sum(), 2))
+            if self.model.free or gain < price:
                 squares[group], degrees[group] = squares[group].sum(), degrees[group].sum()
         own = np.sqrt(squares / degrees)
         error = np.where(np.isfinite(self.given), self.given, np.maximum(own, 1e-9 * self.scale))
+        estimated = degrees[~np.isfinite(self.given)]
+        known = float(estimated.min()) if len(estimated) else np.inf
         if not discrepancy:
-            return Noise(error)
+            return Noise(error, degrees=known)
 
         def loss(logarithms: Array) -> float:
             factor, size, length = np.exp(logarithms)
             used = np.where(np.isfinite(self.given), error, error * factor)
             return -self.likelihood(computed, Noise(used, float(size), float(length)))
 
-        best, least = Noise(error), -self.likelihood(computed, Noise(error))
+        best, least = Noise(error, degrees=known), -self.likelihood(computed, Noise(error))
         for length in (0.1, 0.5):
             found = minimize(
                 loss,
@@ -335,15 +351,18 @@ class Search:
             # three numbers more than without are worth it (Akaike 1974)
             if found.fun + 2 < least:
                 used = np.where(np.isfinite(self.given), error, error * factor)
-                best, least = Noise(used, float(size), float(length)), float(found.fun + 2)
+                best = Noise(used, float(size), float(length), known)
+                least = float(found.fun + 2)
         return best
 
     def alike(self) -> list[NDArray[np.intp]]:
-        """Quantities of one dimension without a given error, which have one with rows."""
-        keys = list(self.model.plan.table.observed)
+        """Quantities of one dimension without a given error."""
+        columns = list(self.model.plan.table.observed.items())
         named: dict[str, list[int]] = {}
         for k in np.flatnonzero(~np.isfinite(self.given)):
-            named.setdefault(BY_NAME[keys[k]].dimension, []).append(int(k))
+            key, column = columns[k]
+            own = f"{si_unit(column)} {column.over}" if column.name else BY_NAME[key].dimension
+            named.setdefault(own, []).append(int(k))
         return [np.array(group) for group in named.values()]
 
     def likelihood(self, computed: Array, noise: Noise) -> float:
@@ -377,60 +396,6 @@ class Search:
                 value = float(name == "factor") + error * float(parts[place, 0])
                 found.setdefault(key, {})[name] = (value, spread)
         return found
-
-    # --- intervals -------------------------------------------------------------------------------
-
-    def intervals(self, fit: Fit, kind: str) -> list[tuple[float, float]]:
-        """Shares, 95 % of each parameter, within its range."""
-        far = float(np.sqrt(chi2.ppf(LEVEL, 1)))
-        found = []
-        for k, share in enumerate(fit.shares):
-            width = far * float(np.sqrt(fit.covariance[k, k]))
-            ends = [share - width, share + width]
-            if kind == "profile":
-                ends = [self._profile_end(fit, k, end, far) for end in ends]
-                self._tell(f"interval of {self.model.keys[k]}")
-            found.append((float(max(ends[0], 0.0)), float(min(ends[1], 1.0))))
-        return found
-
-    def _profile_end(self, fit: Fit, k: int, end: float, far: float) -> float:
-        """Where the profile likelihood has fallen by what 95 % are, by secants from the guess.
-
-        All other parameters are sought anew at each value (Venzon and Moolgavkar 1988).
-        """
-        free = np.arange(len(fit.shares)) != k
-        weights = self.weights(fit.noise)
-
-        def squares(shares: Array) -> float:
-            difference = self.computed(shares) - np.nan_to_num(self.measured)
-            z = np.concatenate([self.whitened(difference, weights), self.prior(shares)])
-            return float(z @ z)
-
-        least = squares(fit.shares)
-        inner, outer = (fit.shares[k], 0.0), None  # share, root of the rise
-        guess = end
-        for _ in range(4):
-            at = float(np.clip(guess, 0.0, 1.0))
-            shares = fit.shares + fit.covariance[:, k] / fit.covariance[k, k] * (at - fit.shares[k])
-            shares = np.clip(shares, 0.0, 1.0)
-            shares[k] = at
-            if free.any():
-                shares = self.solve(shares, fit.noise, "linear", free, 3)
-            rise = float(np.sqrt(max(squares(shares) - least, 0.0)))
-            if rise < far and at in (0.0, 1.0):
-                return at
-            if abs(rise - far) < 0.05 * far:
-                return at
-            if rise < far:
-                inner = (at, rise)
-            else:
-                outer = (at, rise)
-            if outer is None:
-                guess = at + (at - fit.shares[k]) * (far / max(rise, 0.3 * far) - 1)
-            else:
-                part = (far - inner[1]) / (outer[1] - inner[1])
-                guess = inner[0] + part * (outer[0] - inner[0])
-        return float(np.clip(guess, 0.0, 1.0))
 
 
 def refuse_unsolved(model: Model, computed: Array) -> None:

@@ -5,22 +5,28 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from railpatch._core import version
 from railpatch.match.fit import Fit, Search
 from railpatch.match.found_parts import RowsFound, Sampled, Screened
 from railpatch.match.judge import LeftOut, correlations
-from railpatch.match.plan import Explanation, Plan
+from railpatch.match.plan import Explanation, ObservedColumn, Plan, si_unit
+from railpatch.record.quantities import BY_NAME
+from railpatch.record.units import UNITS
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """What was found of one key: its value, and the interval that holds it with 95 %."""
+    """What was found of one key: its value, the interval that holds it with 95 %, and its unit, ""
+    where none is known."""
 
     key: str
     value: float
     low: float
     high: float
     of_range: tuple[float, float]
+    unit: str = ""
 
 
 @dataclass(frozen=True)
@@ -87,11 +93,16 @@ class Match:
                     "value": found.value,
                     "low": found.low,
                     "high": found.high,
-                    "range": list(found.of_range),
+                    "unit": found.unit,
                 }
                 for found in own.parameters
             },
-            "residuals": residuals_of(own, self.plan),
+            "ranges": {found.key: list(found.of_range) for found in own.parameters},
+            "residuals": overall(own, self.plan) | residuals_of(own, self.plan),
+            "comparison": [
+                {"model": judged.explanation.name, "log_likelihood_held_out": held_out(judged)}
+                for judged in sorted(self.explanations, key=lambda one: -(held_out(one) or 0.0))
+            ],
             "correlations": {
                 key: dict(zip(keys, row.tolist(), strict=True))
                 for key, row in zip(keys, table, strict=True)
@@ -120,6 +131,31 @@ class Match:
             "evaluations": sum(judged.evaluations for judged in self.explanations),
             "seconds": self.seconds,
         }
+
+
+def overall(judged: Judged, plan: Plan) -> dict[str, Any]:
+    """Of all that was observed: rms in its unit, where quantities differ in units over the greatest
+    measured value of each."""
+    model = judged.search.model
+    units = {unit_of(key, column, plan) for key, column in plan.table.observed.items()}
+    alone = len(units) == 1
+    scale = np.ones(len(plan.table.observed)) if alone else judged.search.scale
+    left = judged.fit.left / scale[:, None]
+    used = left[np.isfinite(model.measured)]
+    return {"rms": float(np.sqrt(np.mean(used**2))), "unit": units.pop() if alone else "-"}
+
+
+def unit_of(key: str, column: ObservedColumn, plan: Plan) -> str:
+    """SI unit of what was observed."""
+    if plan.record is not None:
+        return si_unit(column)
+    return next(iter(UNITS[BY_NAME[key].dimension]))
+
+
+def held_out(judged: Judged) -> float | None:
+    """Logarithm of the likelihood of all points, each predicted while it was left out."""
+    found = judged.predicted
+    return None if found is None else found.density * int(judged.search.there.sum())
 
 
 def residuals_of(judged: Judged, plan: Plan) -> dict[str, Any]:

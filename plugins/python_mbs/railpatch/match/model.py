@@ -60,9 +60,10 @@ class Model(Protocol):
 class Followed(Protocol):
     """A run that is replayed for one content of its scene after another (SceneKind.follow).
 
-    yaw: rad, progress: -, [m]. measured: [names, m], SI units. exact: whether its derivatives are
-    exact for most numbers. row_values: of what is unknown in each row, [m], with ends of 95 % and
-    whether other values would do, [m]; None without rows.
+    yaw: rad, progress: -, [m]. measured: [names, m], SI units. place: [p], shares of the content,
+    by which balances start closer. exact: whether its derivatives are exact for most numbers.
+    row_values: of what is unknown in each row, [m], with ends of 95 % and whether other values
+    would do, [m]; None without rows.
     """
 
     yaw: Array
@@ -70,10 +71,14 @@ class Followed(Protocol):
     measured: Array
     exact: bool
 
-    def computed(self, content: dict[str, Any]) -> Array: ...
+    def computed(self, content: dict[str, Any], place: Array) -> Array: ...
 
     def slopes(
-        self, content: dict[str, Any], changed: list[dict[str, Any]], steps: list[float]
+        self,
+        content: dict[str, Any],
+        changed: list[dict[str, Any]],
+        steps: list[float],
+        place: Array,
     ) -> Array: ...
 
     def weigh(self, error: Array) -> None: ...
@@ -173,7 +178,7 @@ class RunModel(Model):
     def at(self, shares: Array) -> Array:
         """[observed, m]: as in Model."""
         self.evaluations += 1
-        return self.followed.computed(self._content(shares))
+        return self.followed.computed(self._content(shares), shares)
 
     def slopes(self, shares: Array) -> Array:
         """[observed, m, p]: as in Model."""
@@ -185,7 +190,7 @@ class RunModel(Model):
             moved[k] += step
             changed.append(self._content(moved))
         # by the share: a step of what enters linearly is taken over the numbers themselves
-        found = self.followed.slopes(self._content(shares), changed, steps)
+        found = self.followed.slopes(self._content(shares), changed, steps, shares)
         return np.nan_to_num(found)
 
     def weigh(self, error: Array) -> None:

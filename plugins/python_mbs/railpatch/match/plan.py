@@ -5,17 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
+from railpatch.case.kinds import kind_of
 from railpatch.case.load import KINDS, check_table, plain, read_toml
-from railpatch.case.types import Number, Positive, Table, relation
+from railpatch.case.types import Number, Pair, Positive, Table, relation
 from railpatch.errors import CaseError
+from railpatch.match.heads import heads_of
 from railpatch.record import MeasuredColumn, Record, read_record
 from railpatch.record.quantities import BY_NAME, OUTPUT
 from railpatch.record.units import UNITS, dimension_of, spelt
@@ -72,6 +74,29 @@ class SoughtTable(Table):
         if self.logarithmic:
             return math.log(value / self.low) / math.log(self.high / self.low)
         return (value - self.low) / (self.high - self.low)
+
+
+# from this ratio of its ends on a range by itself is one of orders of magnitude
+ORDERS = 100.0
+
+
+def ends_as_table(given: Any) -> Any:
+    """[low, high] as a table; logarithmic where the ends lie orders of magnitude apart."""
+    numbers = isinstance(given, list) and len(given) == 2
+    if not numbers or any(isinstance(v, bool) or not isinstance(v, int | float) for v in given):
+        return given
+    low, high = map(float, given)
+    return {"low": low, "high": high, "logarithmic": 0 < low * ORDERS <= high}
+
+
+Sought = Annotated[
+    SoughtTable,
+    BeforeValidator(ends_as_table, json_schema_input_type=SoughtTable | Pair),
+]
+SOUGHT = (
+    "(no unit): key of the scene, 'friction.coefficient' -> [low, high], as of the key, by orders "
+    "of magnitude where high is 100 times low; or a table as in seek"
+)
 
 
 class ObservedColumn(MeasuredColumn):
@@ -133,6 +158,13 @@ class ExplanationTable(Table):
     seek: dict[str, SoughtTable] | None = Field(
         default=None, description="(no unit): what is sought; left out: what the match seeks"
     )
+    sought: dict[str, Sought] | None = Field(default=None, description=SOUGHT)
+
+    @model_validator(mode="after")
+    def _one(self) -> ExplanationTable:
+        if self.seek and self.sought:
+            raise relation("sought", "given with 'seek'", "one of them")
+        return self
 
 
 class MatchTable(Table):
@@ -152,13 +184,16 @@ class MatchTable(Table):
         "it; none of a run, which its own record drives",
     )
     observed: dict[str, ObservedColumn] = Field(
-        min_length=1,
+        default_factory=dict,
         description="(no unit): number of the result, 'creep_force[0]' -> the column that it was "
-        "measured in; of a run a quantity of its record, 'left_lateral'",
+        "measured in, left out: columns that are called so; of a run a quantity of its record, "
+        "'left_lateral', left out: all measured forces",
     )
     seek: dict[str, SoughtTable] = Field(
-        min_length=1, description="(no unit): key of the scene, 'friction.coefficient' -> its range"
+        default_factory=dict,
+        description="(no unit): key of the scene, 'friction.coefficient' -> its range; or sought",
     )
+    sought: dict[str, Sought] | None = Field(default=None, description=SOUGHT)
     explanations: dict[str, ExplanationTable] = Field(
         default_factory=dict, description="(no unit): name -> another way to explain the points"
     )
@@ -205,6 +240,20 @@ class MatchTable(Table):
         default=0, description="-, of the starts and of the parts"
     )
 
+    @property
+    def wanted(self) -> dict[str, SoughtTable]:
+        """What is sought."""
+        return self.sought or self.seek
+
+    @model_validator(mode="after")
+    def _one(self) -> MatchTable:
+        if bool(self.sought) == bool(self.seek):
+            shown = "given with 'seek'" if self.seek else "missing"
+            raise relation(
+                "sought", shown, "keys of the scene with their ends, in 'sought' or 'seek'"
+            )
+        return self
+
     @model_validator(mode="after")
     def _folds(self) -> MatchTable:
         if self.folds == 1:
@@ -240,14 +289,15 @@ class Explanation:
         """The content with values of what is sought. Raises CaseError."""
         content = deepcopy(self.content)
         for key, value in values.items():
-            put(content, key, value, named="match.seek")
+            put(content, key, value, named="match.sought")
         return content
 
 
 @dataclass(frozen=True)
 class Plan:
     """A checked match. folder: where the scene's paths start. explanations: of which the first is
-    the match's own; its values go into the scene that is written. record: n rows; None of a run."""
+    the match's own; its values go into the scene that is written. record: n rows; None of a run.
+    units: of a run's columns. warnings: of what is hardly meant, or was not said."""
 
     name: str
     table: MatchTable
@@ -255,6 +305,8 @@ class Plan:
     folder: Path
     explanations: tuple[Explanation, ...]
     record: Record | None
+    units: Mapping[str, str] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
 
     @property
     def source(self) -> str:
@@ -306,7 +358,7 @@ def load_match(path: str | Path, record: str | Path | None = None) -> Plan:
     kind = "rig" if "rig" in content else content.get("kind")
     made = explanations_of(table, content)
     if kind == "rig":
-        return Plan(path.stem, check_run(table, made, record), kind, folder, made, None)
+        return run_plan(path.stem, table, folder, made, record)
     if table.rows:
         raise CaseError("match.rows: value is given, allowed of a rig only")
     if kind not in KINDS:
@@ -316,12 +368,37 @@ def load_match(path: str | Path, record: str | Path | None = None) -> Plan:
         file = path.parent / table.record
     if file is None:
         raise CaseError("match.record: value is missing, allowed a file of points, or --record")
-    return Plan(path.stem, table, kind, folder, made, points(table, file))
+    table, told = by_heads(table, file)
+    read = points(table, file)
+    return Plan(path.stem, table, kind, folder, made, read, {}, (*read.warnings, *told))
 
 
-def check_run(
-    table: MatchTable, made: tuple[Explanation, ...], record: str | Path | None
-) -> MatchTable:
+def run_plan(
+    name: str,
+    table: MatchTable,
+    folder: Path,
+    made: tuple[Explanation, ...],
+    record: str | Path | None,
+) -> Plan:
+    """Of a rig. Raises CaseError, RecordError."""
+    check_run(table, made, record)
+    prepare = kind_of("rig").prepare
+    assert prepare is not None
+    found = [prepare(one.content, folder, tuple(table.rows)) for one in made]
+    made = tuple(
+        replace(one, content=ready.content) for one, ready in zip(made, found, strict=True)
+    )
+    if not table.observed:
+        forces = {key: ObservedColumn() for key in found[0].forces}
+        if not forces:
+            raise CaseError(
+                "match.observed: value is missing, allowed what the record has by [rig.columns]"
+            )
+        table = table.model_copy(update={"observed": forces})
+    return Plan(name, table, "rig", folder, made, None, found[0].units, tuple(found[0].warnings))
+
+
+def check_run(table: MatchTable, made: tuple[Explanation, ...], record: str | Path | None) -> None:
     """Of a rig, whose scene has the record. record: in its place. Raises CaseError."""
     for given, name in ((table.inputs, "inputs"), (table.record, "record")):
         if given:
@@ -338,19 +415,18 @@ def check_run(
             explanation.content["rig"]["record"] = str(Path(record).resolve())
         if explanation.record_name() is None:
             raise CaseError("rig.record: value is missing, allowed a measured run, or --record")
-    return table
 
 
 def explanations_of(table: MatchTable, content: dict[str, Any]) -> tuple[Explanation, ...]:
     """The match's own and those beside it. Raises CaseError."""
-    found = [Explanation(OWN, content, dict(table.seek))]
+    found = [Explanation(OWN, content, table.wanted)]
     for name, other in table.explanations.items():
         own = deepcopy(content)
         for key in other.leave_out:
             leave_out(own, key, name)
         for key, value in other.change.items():
             put(own, key, value, named=f"match.explanations.{name}.change")
-        found.append(Explanation(name, own, dict(other.seek or table.seek)))
+        found.append(Explanation(name, own, other.sought or other.seek or table.wanted))
     return tuple(found)
 
 
@@ -370,8 +446,6 @@ def leave_out(content: dict[str, Any], key: str, name: str) -> None:
 
 def points(table: MatchTable, file: Path) -> Record:
     """The record, in SI units by the names of inputs and results. Raises RecordError."""
-    if not table.inputs:
-        raise CaseError("match.inputs: value is missing, allowed what drives the scene")
     columns = {input_name(key): column for key, column in table.inputs.items()}
     columns |= {observed_name(key): column for key, column in table.observed.items()}
     for key, column in table.observed.items():
@@ -379,6 +453,25 @@ def points(table: MatchTable, file: Path) -> Record:
             raise CaseError(f"match.observed.{key}.name: value is missing, allowed a column")
     logged = {name: si_unit(column) for name, column in columns.items()}
     return read_record(file, columns, logged=logged, prefix="match")
+
+
+def by_heads(table: MatchTable, file: Path) -> tuple[MatchTable, list[str]]:
+    """With columns by their names where the match does not say which are what, and what to tell.
+
+    Raises CaseError, RecordError."""
+    if table.inputs and table.observed:
+        return table, []
+    found = heads_of(file)
+    inputs = table.inputs or {key: MeasuredColumn(**column) for key, column in found.inputs.items()}
+    own = {key: ObservedColumn(**column) for key, column in found.observed.items()}
+    observed, told = table.observed or own, found.warnings if not table.observed else []
+    for name, columns in (("inputs", inputs), ("observed", observed)):
+        if not columns:
+            raise CaseError(
+                f"match.{name}: value is missing, allowed columns of {file.name}, or such that are "
+                f"called {found.allowed(name)}"
+            )
+    return table.model_copy(update={"inputs": inputs, "observed": observed}), told
 
 
 def si_unit(column: MeasuredColumn) -> str:

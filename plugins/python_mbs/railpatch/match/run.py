@@ -9,15 +9,19 @@ from pathlib import Path
 
 import numpy as np
 
+from railpatch.case.key_units import unit_of_key
+from railpatch.case.kinds import kind_of
 from railpatch.match.fit import Fit, Search, refuse_unsolved
 from railpatch.match.found import Judged, Match, Parameter
 from railpatch.match.found_parts import RowsFound
+from railpatch.match.interval import intervals_of
 from railpatch.match.judge import left_out, not_told
 from railpatch.match.model import RunModel, model_of, need_writer, placed, toml_of
 from railpatch.match.page import page_of
 from railpatch.match.plan import Explanation, Plan
 from railpatch.match.sample import need_samplers, sampled
 from railpatch.match.screen import screened
+from railpatch.sweep.plan import steps_of
 from railpatch.writing import write_whole
 
 Told = Callable[[str], None]
@@ -81,10 +85,17 @@ def judge(plan: Plan, explanation: Explanation, threads: int, tell: Told) -> Jud
     refuse_unsolved(model, model.at(np.full(len(model.keys), 0.5)))
     felt = screened(search) if plan.table.screening else {}
     fit = search.run()
-    fit.intervals = search.intervals(fit, plan.table.intervals)
+    fit.intervals = intervals_of(search, fit, plan.table.intervals)
     predicted = left_out(search, fit)
     parameters = tuple(
-        Parameter(key, one.at(float(share)), one.at(low), one.at(high), (one.low, one.high))
+        Parameter(
+            key,
+            one.at(float(share)),
+            one.at(low),
+            one.at(high),
+            (one.low, one.high),
+            unit_of_parameter(plan, explanation, key),
+        )
         for (key, one), share, (low, high) in zip(
             explanation.seek.items(), fit.shares, fit.intervals, strict=True
         )
@@ -102,6 +113,16 @@ def judge(plan: Plan, explanation: Explanation, threads: int, tell: Told) -> Jud
         felt,
         sampled(search, fit) if plan.table.sampling == "emcee" else {},
     )
+
+
+def unit_of_parameter(plan: Plan, explanation: Explanation, key: str) -> str:
+    """Of a key of the scene; of a column's offset that column's own."""
+    steps = steps_of(key, "match.sought")
+    if steps[:2] == ["rig", "columns"] and steps[-1] == "offset":
+        name = str(steps[2])
+        given = explanation.content["rig"].get("columns", {}).get(name, {}).get("unit")
+        return str(given or plan.units.get(name, ""))
+    return unit_of_key(kind_of(plan.kind).schema(), steps)
 
 
 def rows_found(search: Search, fit: Fit) -> RowsFound | None:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import Field, create_model
+from pydantic import Field, create_model, model_validator
 
 from railpatch.case.load import check_table, plain, read_toml
-from railpatch.case.types import Number, Positive, Table
+from railpatch.case.types import Number, Positive, Table, relation
 from railpatch.errors import CaseError
+from railpatch.record.forces import COUNTED
 from railpatch.record.quantities import QUANTITIES
 from railpatch.record.units import UNITS
 
@@ -18,9 +19,11 @@ class MeasuredColumn(Table):
     """One column: sign * (factor * number + offset), in the unit."""
 
     name: str = Field(
+        default="",
         description="(no unit), of the column in the file's head, with or without its unit; in a "
-        "file without a head its number from 1, as a text"
+        "file without a head its number from 1, as a text; needed",
     )
+    column: str | None = Field(default=None, description="(no unit), the same as name")
     unit: str | None = Field(
         default=None,
         description="(a unit), of the numbers; left out: as the head has it, 'yaw [mrad]' or in a "
@@ -34,6 +37,20 @@ class MeasuredColumn(Table):
     low_pass: Positive | None = Field(
         default=None, description="Hz, cut-off of this column, in place of the record's low_pass"
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _named(cls, given: Any) -> Any:
+        """The column's name by either key."""
+        if not isinstance(given, dict):
+            return given
+        if "column" in given and "name" in given:
+            raise relation("column", given["column"], "'name' or 'column', one of them")
+        if "column" in given:
+            return {**given, "name": given["column"]}
+        if "name" not in given and cls.model_fields["name"].default is not None:
+            raise relation("name", "missing", "the name of a column")
+        return given
 
 
 def described(text: str, dimension: str) -> str:
@@ -54,12 +71,20 @@ Columns: Any = create_model(
         )
         for quantity in QUANTITIES
     },
+    **{
+        key.replace(".", "_").replace("[", "_").replace("]", ""): (
+            MeasuredColumn | None,
+            Field(default=None, alias=key, description=described(text, "force")),
+        )
+        for key, text in COUNTED.items()
+    },
 )
 
 
 def given(columns: Any) -> dict[str, MeasuredColumn]:
     """Those of a checked table that are there."""
-    found = {name: getattr(columns, name) for name in type(columns).model_fields}
+    fields = type(columns).model_fields
+    found = {field.alias or name: getattr(columns, name) for name, field in fields.items()}
     return {name: column for name, column in found.items() if column is not None}
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from railpatch.errors import RecordError
 from railpatch.record.columns import MeasuredColumn
+from railpatch.record.forces import on_rollers
 from railpatch.record.quantities import ABSCISSA, BY_NAME, OUTPUT, Quantity
 from railpatch.record.resample import HIGHEST, low_passed, step_of
 from railpatch.record.table import RawTable, read_table
@@ -85,6 +86,12 @@ def read_record(
     raw = read_table(path)
     columns = dict(columns) if columns else own_columns(raw, logged or {})
     warnings: list[str] = []
+    try:
+        columns = on_rollers(columns, lambda c: raw.numbers(raw.find(c.name, prefix)), warnings)
+    except RecordError:
+        raise
+    except ValueError as error:
+        raise RecordError(path, f"{prefix}.{error}") from None
     signals: dict[str, Array] = {}
     units: dict[str, str] = {}
     for key, column in columns.items():

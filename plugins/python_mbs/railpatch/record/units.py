@@ -94,6 +94,9 @@ def spelt(unit: str) -> str:
 
 
 def split_head(head: str) -> tuple[str, str]:
-    """Name and unit of a column's title, "yaw [mrad]" or "yaw (mrad)"; "" where it has none."""
+    """Name and unit of a column's title, "yaw [mrad]" or "yaw (mrad)"; "" where it has none. A
+    number in brackets is a component's, "creepage[0]"."""
     found = re.fullmatch(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*", head)
+    if found and found[2].strip().isdecimal() and head.rstrip().endswith("]"):
+        return head.strip(), ""
     return (found[1].strip(), found[2].strip()) if found else (head.strip(), "")
