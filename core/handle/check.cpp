@@ -149,6 +149,7 @@ void check_build(const rp_config &c, checker &check) {
   without(c.layer_yield_stress > 0,
           "layer_yield_stress must be 0: this build has no plastic layers");
   without(c.temperature != 0, "temperature must be 0: this build has no surface temperature");
+  without(c.fluid_model != RP_FLUID_NONE, "fluid_model must be none: this build has no liquids");
   without(is_coupled(combine(c.shear_modulus, c.poisson_ratio)),
           "shear_modulus and poisson_ratio: (1-2nu)/G must be equal, this build has no coupling of "
           "normal and tangential directions");
@@ -381,6 +382,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   check_stored_heat(c, check);
   check_regime(c, check);
   check_accuracy(c, check);
+  check_fluid(c, check);
   check_balance(c, check);
   check_max_work(c, check);
   check_build(c, check);
@@ -408,6 +410,10 @@ double most_friction(const rp_config &c, double coefficient) {
     most = c.friction_kinetic;
     for (double amplitude : c.friction_amplitude) most += std::max(amplitude, 0.0);
   }
+  if (c.fluid_model != RP_FLUID_NONE) {
+    if (!std::isnan(c.fluid_boundary_friction)) most = std::max(most, c.fluid_boundary_friction);
+    if (c.fluid_eyring_stress > 0) most = std::max(most, c.fluid_limiting_friction);
+  }
   const auto greatest = [](const double *factor, int points) {
     return points == 0 ? 1.0 : *std::max_element(factor, factor + points);
   };
@@ -429,6 +435,7 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
   }
   checker check(message);
   check_bulk(c, in, check);
+  check_fluid(c, in, check);
   check.require(in.friction_coefficient == 0,
                 "friction_coefficient must be 0 in a step: rp_set_friction_coefficient sets it");
   if (c.kind == RP_PATCH) {

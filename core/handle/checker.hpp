@@ -105,6 +105,9 @@ void check_wheels(const rp_config &c, checker &check);
 void check_reference(const rp_config &c, checker &check);
 // Of bodies that the contacts' heat warms.
 void check_stored_heat(const rp_config &c, checker &check);
+// Of a liquid between wheel and rail.
+void check_fluid(const rp_config &c, checker &check);
+void check_fluid(const rp_config &c, const rp_input &in, checker &check);
 void check_balance(const rp_config &c, checker &check);
 void check_max_work(const rp_config &c, checker &check);
 

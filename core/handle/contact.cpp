@@ -76,6 +76,12 @@ rp_result contact::solve(const rp_input &input) {
     const double given = input.bulk_temperature[k];
     driver_->solver().set_bulk_temperature(k, std::isnan(given) ? bulk_temperature_[k] : given);
   }
+  if (config_.fluid_model != RP_FLUID_NONE) {
+    const auto now = [](double given, double usual) { return std::isnan(given) ? usual : given; };
+    driver_->solver().set_fluid_supply({now(input.water_rate, config_.fluid_water_rate),
+                                        now(input.water_temperature, config_.fluid_temperature),
+                                        now(input.oil_film, config_.fluid_oil_film)});
+  }
   driver_->step(input, out);
   return out;
 }

@@ -106,9 +106,15 @@ double reach_of(const rp_config &c, const rp_input &input, const rp_input &rates
 }
 
 // The input at a place along a direction from another.
-rp_input moved(const double bulk_temperature[2], const rp_input &input, const rp_input &rates,
-               double place) {
+rp_input moved(const rp_config &config, const double bulk_temperature[2], const rp_input &input,
+               const rp_input &rates, double place) {
   rp_input in = input;
+  const auto given = [](double &value, double usual) {
+    if (std::isnan(value)) value = usual;
+  };
+  given(in.water_rate, config.fluid_water_rate);
+  given(in.water_temperature, config.fluid_temperature);
+  given(in.oil_film, config.fluid_oil_film);
   const double *rate[input_numbers];
   int count = 0, next = 0;
   for_each_number(rates, [&](const char *, const double &v, double) { rate[count++] = &v; });
@@ -152,7 +158,7 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
   double places[2] = {-length, length};
   bool failed = false;
   for (int k = 0; k < 2; ++k) {
-    rp_input in = moved(bulk_temperature_, record.input, rates, places[k]);
+    rp_input in = moved(config_, bulk_temperature_, record.input, rates, places[k]);
     double friction = friction_coefficient() + std::exchange(in.friction_coefficient, 0.0);
     if (check_input(config_, friction, in, nullptr) != RP_OK ||
         check_friction_coefficient(friction, nullptr) != RP_OK) {

@@ -64,6 +64,35 @@ std::optional<heat_scene> make_heat(const rp_config &c) {
   return heat;
 }
 
+// Where a liquid is between the bodies.
+fluid_scene fluid_of(const rp_config &c) {
+  fluid_scene fluid;
+  fluid.model = c.fluid_model;
+  fluid.share = c.fluid_share;
+  fluid.roughness = c.fluid_roughness;
+  fluid.own_boundary = !std::isnan(c.fluid_boundary_friction);
+  if (fluid.own_boundary) fluid.boundary_friction = c.fluid_boundary_friction;
+  fluid.hardness = c.fluid_hardness;
+  fluid.mean_pressure = c.fluid_mean_pressure;
+  viscosity_law &liquid = fluid.liquid;
+  liquid.liquid = c.fluid_liquid;
+  liquid.value = c.fluid_viscosity;
+  liquid.reference = c.fluid_reference_temperature;
+  liquid.slope = c.fluid_roelands_slope;
+  liquid.points = c.fluid_viscosity_points;
+  for (int i = 0; i < liquid.points; ++i) {
+    liquid.temperature[i] = c.fluid_viscosity_temperature[i];
+    liquid.logarithm[i] = log(c.fluid_viscosity_value[i]);
+  }
+  liquid.solids = c.fluid_oxide_content * c.fluid_oxide_exponent;
+  fluid.pressure_coefficient = c.fluid_pressure_coefficient;
+  fluid.inlet_conductivity = c.fluid_inlet_conductivity;
+  fluid.starvation = c.fluid_starvation;
+  fluid.eyring_stress = c.fluid_eyring_stress;
+  fluid.limiting_friction = c.fluid_limiting_friction;
+  return fluid;
+}
+
 fast_options fast_of(const rp_config &c, rp_tangential_method theory) {
   fast_options fast;
   fast.theory = theory;
@@ -124,6 +153,8 @@ patch_scene patch_scene_of(const rp_config &c) {
     scene.moves = c.kind != RP_PATCH;
   }
   scene.heat = make_heat(c);
+  if (c.fluid_model != RP_FLUID_NONE && scene.tangential != RP_TANGENTIAL_NONE)
+    scene.fluid.emplace(fluid_of(c));
   for (int k = 0; k < 2; ++k) scene.fitted[k] = c.fitted[k];
   for (int k = 0; k < 2; ++k) scene.prescribed[k] = c.force_prescribed[k] != 0;
   scene.spin_offset = spin_offset_of(c, scene);

@@ -85,6 +85,13 @@ const char *plasticity_reason(const patch_scene &scene) {
                                      : "no third-body layer";
 }
 
+const char *fluid_reason(const patch_scene &scene) {
+  if (!scene.fluid) return "no liquid in the scene";
+  return scene.fluid->share == RP_SHARE_LOAD_SHARING
+             ? "fluid_model = film: elliptic contact, load shared with asperities"
+             : "fluid_model = film: elliptic contact, asperities by film over roughness";
+}
+
 const char *derivative_reason(const patch_scene &scene) {
   if (!scene.derivatives && scene.exact) return "the wheelset's balance is found by them";
   if (!scene.derivatives) return "derivatives are not asked for";
@@ -134,6 +141,7 @@ void describe_driver(const driver &of, rp_stage_info *info) {
                   : "the rails are rigid",
       support);
   set(RP_STAGE_PLASTICITY, scene.yields(), plasticity_reason(scene), plastic);
+  set(RP_STAGE_FLUID, static_cast<bool>(scene.fluid), fluid_reason(scene), 0);
   set(RP_STAGE_DERIVATIVES, scene.derivatives || scene.exact, derivative_reason(scene),
       of.derivative_bytes());
 }

@@ -69,6 +69,9 @@ uint64_t fingerprint_of_arrays(const rp_config &c) {
   const auto along = static_cast<size_t>(c.friction_along_points);
   add(c.friction_along_position, along);
   add(c.friction_along_factor, along);
+  const auto viscosities = static_cast<size_t>(c.fluid_viscosity_points);
+  add(c.fluid_viscosity_temperature, viscosities);
+  add(c.fluid_viscosity_value, viscosities);
   const auto hardening = static_cast<size_t>(c.hardening_points);
   add(c.hardening_displacement, hardening);
   add(c.hardening_stress, hardening);

@@ -316,6 +316,30 @@ typedef enum rp_contact_frame { RP_CONTACT_FRAMES(RP_ENUM_ENTRY) } rp_contact_fr
   X(RP_REFERENCE_CURVED, 1, "curved")
 typedef enum rp_reference_surface { RP_REFERENCE_SURFACES(RP_ENUM_ENTRY) } rp_reference_surface;
 
+/* liquid between wheel and rail (docs/fluids.md) */
+#define RP_FLUID_MODELS(X)                                                                    \
+  X(RP_FLUID_NONE, 0, "none")                                                                 \
+  /* film of an elliptic contact, share of the load that asperities carry, one coefficient */ \
+  X(RP_FLUID_FILM, 1, "film")
+typedef enum rp_fluid_model { RP_FLUID_MODELS(RP_ENUM_ENTRY) } rp_fluid_model;
+
+/* share of the load that asperities carry */
+#define RP_FLUID_SHARES(X)                                               \
+  /* by film over roughness, Aihara 1987 */                              \
+  X(RP_SHARE_FILM_RATIO, 0, "film_ratio")                                \
+  /* liquid and asperities bear the load together, plastic truncation */ \
+  X(RP_SHARE_LOAD_SHARING, 1, "load_sharing")
+typedef enum rp_fluid_share { RP_FLUID_SHARES(RP_ENUM_ENTRY) } rp_fluid_share;
+
+/* viscosity over temperature: fluid_viscosity everywhere; Vogel's equation; that of Roelands from
+ * fluid_viscosity at fluid_reference_temperature; a table */
+#define RP_LIQUIDS(X)            \
+  X(RP_LIQUID_GIVEN, 0, "given") \
+  X(RP_LIQUID_WATER, 1, "water") \
+  X(RP_LIQUID_OIL, 2, "oil")     \
+  X(RP_LIQUID_TABLE, 3, "table")
+typedef enum rp_liquid { RP_LIQUIDS(RP_ENUM_ENTRY) } rp_liquid;
+
 #define RP_TRACKS(X)    \
   X(RP_RAIL, 0, "rail") \
   X(RP_ROLLER, 1, "roller")
@@ -359,7 +383,8 @@ typedef struct rp_message {
   X(RP_STAGE_PLASTICITY, 8, "plasticity")                                   \
   X(RP_STAGE_DERIVATIVES, 9, "derivatives") /* rp_differentiate */          \
   /* rails on springs and dampers; its time is that of the contacts */      \
-  X(RP_STAGE_SUPPORT, 10, "rail_support")
+  X(RP_STAGE_SUPPORT, 10, "rail_support")                                   \
+  X(RP_STAGE_FLUID, 11, "fluid") /* liquid between the bodies */
 typedef enum rp_stage { RP_STAGES(RP_ENUM_ENTRY) RP_STAGE_COUNT } rp_stage;
 
 /* Called when a stage begins (entering = 1) and ends (0); for time shares. The core has no clock.
@@ -551,6 +576,37 @@ typedef struct rp_config {
    * that of the height that came nearest, solved once more where it was not the last, and ends as
    * RP_WORK_SPENT; the next step begins where the search would have gone on. 0: no limit */
   int32_t max_work;
+
+  /* liquid between wheel and rail: where there is a tangential problem, with friction_law =
+   * RP_COULOMB. The coefficient of each patch follows from speed, load and liquid; friction_factor
+   * and friction_along_factor multiply it. docs/fluids.md */
+  rp_fluid_model fluid_model;
+  rp_fluid_share fluid_share;
+  double fluid_roughness;         /* m, combined standard deviation of both surfaces */
+  double fluid_boundary_friction; /* -, of asperities that the liquid wets; NaN: as dry ones, whose
+                                     is friction_coefficient */
+  double fluid_hardness;          /* Pa, of the softer body; with RP_SHARE_LOAD_SHARING */
+  double fluid_mean_pressure;     /* Pa, nominal, of RP_SHARE_LOAD_SHARING; 0: the contact's */
+  rp_liquid fluid_liquid;
+  double fluid_viscosity;                            /* Pa s */
+  double fluid_reference_temperature;                /* degrees C, of fluid_viscosity of oil */
+  double fluid_roelands_slope;                       /* -, S_0 of oil */
+  int32_t fluid_viscosity_points;                    /* of the table: 2 ... RP_MAX_POINTS, else 0 */
+  double fluid_viscosity_temperature[RP_MAX_POINTS]; /* degrees C, increasing */
+  double fluid_viscosity_value[RP_MAX_POINTS];       /* Pa s */
+  double fluid_pressure_coefficient;                 /* 1/Pa, alpha of exp(alpha p) */
+  double fluid_inlet_conductivity; /* W/(m K), of the liquid: its shear in the inlet heats it and
+                                      makes the film thinner; 0: it does not */
+  double fluid_starvation;         /* -, 0 < ... 1: factor of the film */
+  double fluid_eyring_stress;      /* Pa, of the liquid's own friction; 0: none */
+  double fluid_limiting_friction;  /* -, which that does not exceed */
+  double fluid_oxide_content;      /* -, share of solids in the liquid's volume */
+  double fluid_oxide_exponent;     /* -, k: viscosity times exp(k content) */
+  /* where an input says nothing else; NaN: the temperature is the mean of the bulk temperatures, or
+   * 20, and the contact is flooded */
+  double fluid_temperature; /* degrees C, of the liquid before the contact */
+  double fluid_water_rate;  /* m^3/s, spread over the width of each patch */
+  double fluid_oil_film;    /* m, layer of the liquid on the surfaces before the contact */
 } rp_config;
 
 typedef struct rp_input {
@@ -591,6 +647,11 @@ typedef struct rp_input {
 
   double friction_coefficient; /* -, of a direction (rp_differentiate) only: rate of the coefficient
                                   of Coulomb's law; 0 in a step, see rp_set_friction_coefficient */
+
+  /* of a scene with fluid_model; NaN: the config's */
+  double water_rate;        /* m^3/s */
+  double water_temperature; /* degrees C, of the liquid */
+  double oil_film;          /* m */
 } rp_input;
 
 /* One patch. Values of stages that the scene leaves out are NaN (element counts 0). Linear theory
@@ -659,6 +720,9 @@ typedef struct rp_patch_result {
                                    those of an endless rolling. NaN as elastic_energy */
   rp_reason reason;             /* why the status is not good */
   double reason_value;          /* of what the reason's text says; NaN: of nothing */
+  /* with a liquid, else NaN: its central film, the share of the load that asperities carry, its
+   * temperature, and the friction coefficient that follows, factors of the law included */
+  double film_thickness, asperity_share, fluid_temperature, effective_friction;
 } rp_patch_result;
 
 /* One wheel; on a roller see rp_contact_frame. NaN where a patch could not be solved. */

@@ -81,7 +81,14 @@
   X(rp_reason, reason, 1, status, even, kept, alone, RP_REASON_NONE, "",                          \
     "why the status is not good")                                                                 \
   X(double, reason_value, 1, estimate, even, kept, alone, NAN, "-",                               \
-    "of what the reason says, in its units")
+    "of what the reason says, in its units")                                                      \
+  X(double, film_thickness, 1, number, even, kept, alone, NAN, "m", "central film of the liquid") \
+  X(double, asperity_share, 1, number, even, kept, alone, NAN, "-",                               \
+    "share of the load that asperities carry")                                                    \
+  X(double, fluid_temperature, 1, number, even, kept, alone, NAN, "degrees C",                    \
+    "temperature of the liquid")                                                                  \
+  X(double, effective_friction, 1, number, even, kept, alone, NAN, "-",                           \
+    "friction coefficient with the liquid")
 
 #define RP_SIDE_RESULT_FIELDS(X, O)                                                      \
   X(rp_status, status, 1, status, even, kept, alone, RP_NO_CONTACT, "",                  \
@@ -375,7 +382,53 @@
   O(void *, interrupt_user, 1)                                                                     \
   X(int32_t, max_work, 1, integer, always, 0, "[]", 0, 1000000000, "-",                            \
     "operator products of a step after which no further height is tried for the vertical force; "  \
-    "each patch solved counts 1 and its iterations")
+    "each patch solved counts 1 and its iterations")                                               \
+  X(rp_fluid_model, fluid_model, 1, choice, always, RP_FLUID_NONE, "", 0, 0, "",                   \
+    "liquid between wheel and rail")                                                               \
+  X(rp_fluid_share, fluid_share, 1, choice, always, RP_SHARE_FILM_RATIO, "", 0, 0, "",             \
+    "how the share of the load that asperities carry is found")                                    \
+  X(double, fluid_roughness, 1, number, always, 1e-6, "[]", 1e-9, 1e-3, "m",                       \
+    "combined standard deviation of both surfaces' heights")                                       \
+  X(double, fluid_boundary_friction, 1, number, own, NAN, "[]", 0, 10, "-",                        \
+    "of asperities that the liquid wets; left out: that of dry ones")                              \
+  X(double, fluid_hardness, 1, number, always, 2.8e9, "[]", 1e6, 1e12, "Pa",                       \
+    "hardness of the softer body")                                                                 \
+  X(double, fluid_mean_pressure, 1, number, always, 6e8, "[]", 0, 1e12, "Pa",                      \
+    "nominal pressure that load_sharing finds shares with; 0: that of the contact")                \
+  X(rp_liquid, fluid_liquid, 1, choice, always, RP_LIQUID_GIVEN, "", 0, 0, "",                     \
+    "which liquid, for its viscosity over temperature")                                            \
+  X(double, fluid_viscosity, 1, number, always, 1e-3, "[]", 1e-7, 1e6, "Pa s",                     \
+    "viscosity of the liquid")                                                                     \
+  X(double, fluid_reference_temperature, 1, number, always, 40, "[]", -100, 400, "degrees C",      \
+    "at which an oil has its viscosity")                                                           \
+  X(double, fluid_roelands_slope, 1, number, always, 1.1, "[]", 0, 10, "-",                        \
+    "S_0 of Roelands' equation; assumed where left out")                                           \
+  X(int32_t, fluid_viscosity_points, 1, integer, own, 0, "[]", 2, RP_MAX_POINTS, "-",              \
+    "points of the viscosity over temperature")                                                    \
+  X(double, fluid_viscosity_temperature, RP_MAX_POINTS, points, own, 0, "()", -HUGE_VAL, HUGE_VAL, \
+    "degrees C", "their temperatures")                                                             \
+  X(double, fluid_viscosity_value, RP_MAX_POINTS, points, own, 0, "[]", 1e-7, 1e6, "Pa s",         \
+    "viscosity there")                                                                             \
+  X(double, fluid_pressure_coefficient, 1, number, always, 5e-10, "[]", 0, 1e-6, "1/Pa",           \
+    "alpha of the viscosity's growth by exp(alpha p)")                                             \
+  X(double, fluid_inlet_conductivity, 1, number, always, 0, "[]", 0, 1e3, "W/(m K)",               \
+    "thermal conductivity of the liquid, whose shear in the inlet heats it; 0: it does not")       \
+  X(double, fluid_starvation, 1, number, always, 1, "(]", 0, 1, "-",                               \
+    "factor of the film by starvation; 1: flooded")                                                \
+  X(double, fluid_eyring_stress, 1, number, always, 0, "[]", 0, 1e12, "Pa",                        \
+    "Eyring stress of the liquid's own friction; 0: it has none")                                  \
+  X(double, fluid_limiting_friction, 1, number, always, 0.07, "[]", 0, 10, "-",                    \
+    "coefficient that the liquid's own friction does not exceed; assumed where left out")          \
+  X(double, fluid_oxide_content, 1, number, always, 0, "[]", 0, 1, "-",                            \
+    "share of solids in the liquid's volume")                                                      \
+  X(double, fluid_oxide_exponent, 1, number, always, 10, "[]", 0, 100, "-",                        \
+    "of the viscosity's growth by exp(exponent content); assumed where left out")                  \
+  X(double, fluid_temperature, 1, number, own, NAN, "[]", -50, 350, "degrees C",                   \
+    "of the liquid before the contact")                                                            \
+  X(double, fluid_water_rate, 1, number, own, NAN, "[]", 0, 1, "m^3/s",                            \
+    "of the liquid, spread over the width of the contact; left out: flooded")                      \
+  X(double, fluid_oil_film, 1, number, own, NAN, "[]", 0, 1, "m",                                  \
+    "layer of the liquid on the surfaces before the contact; left out: flooded")
 
 /* X(type, name, count, role, where, start, bounds, low, high, scale, unit, text), as above and
  * role      place: a number whose size says nothing about how fast things change there
@@ -444,7 +497,13 @@
   X(double, roller_pitch_rate, 1, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, 1, "rad/s",        \
     "about the roller's axle, above 0 forward (roller)")                                           \
   X(double, friction_coefficient, 1, number, own, 0, "", 0, 0, 0.1, "-",                           \
-    "rate of the coefficient of Coulomb's law, of a direction only")
+    "rate of the coefficient of Coulomb's law, of a direction only")                               \
+  X(double, water_rate, 1, number, own, NAN, "[]", 0, 1, 1e-8, "m^3/s",                            \
+    "of the liquid between wheel and rail")                                                        \
+  X(double, water_temperature, 1, number, own, NAN, "[]", -50, 350, 10, "degrees C",               \
+    "of the liquid between wheel and rail")                                                        \
+  X(double, oil_film, 1, number, own, NAN, "[]", 0, 1, 1e-6, "m",                                  \
+    "layer of the liquid on the surfaces before the contact")
 
 /* --- choices: Y(type, list of the type's enumerators) -------------------------------------- */
 #define RP_CHOICES(Y)                                  \
@@ -466,6 +525,9 @@
   Y(rp_contact_frame, RP_CONTACT_FRAMES)               \
   Y(rp_reference_surface, RP_REFERENCE_SURFACES)       \
   Y(rp_track, RP_TRACKS)                               \
+  Y(rp_fluid_model, RP_FLUID_MODELS)                   \
+  Y(rp_fluid_share, RP_FLUID_SHARES)                   \
+  Y(rp_liquid, RP_LIQUIDS)                             \
   Y(rp_element, RP_ELEMENTS)                           \
   Y(rp_stage, RP_STAGES)                               \
   Y(rp_field, RP_FIELDS)                               \

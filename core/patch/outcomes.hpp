@@ -37,4 +37,11 @@ struct heat_outcome {
   double heat[2] = {0, 0};     // W, into wheel and rail
 };
 
+struct fluid_outcome {
+  bool found = false;
+  double film_thickness = 0, asperity_share = 1;  // m, -
+  double temperature = 0;                         // degrees C
+  double friction = 0;                            // -, without factors of the law
+};
+
 }  // namespace railpatch

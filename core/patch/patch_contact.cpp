@@ -34,6 +34,7 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
       normal_(shared_, max_nx, max_ny),
       tangential_(shared_, plans, max_nx, max_ny),
       heat_(shared_, max_nx, max_ny),
+      fluid_(shared_),
       errors_(scene.elastic, scene.layer_flexibility) {
   if (scene.exact) derivative_.emplace(scene, plans, max_nx, max_ny, scene.stretches);
 }
@@ -120,12 +121,14 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   }
   const bool late = heat_.begins_late();
   if (!late) heat_.begin(problem, memory);
+  const fluid_outcome f = fluid_.solve(problem, n, memory);
   const traction_outcome t = find_tractions(problem, n, memory);
   if (late) heat_.begin(problem, memory);
   const heat_outcome h = heat_.finish(problem, memory);
   const stage_mark mark = shared_.marks.enter(RP_STAGE_FORCES);
   wrench = sum_forces(problem, n, t, memory);
   report(scene, problem, n, t, h, wrench, result);
+  if (f.found) describe_fluid(f, scene.friction_scale, result);
   complete(problem, memory, wrench);
   estimate_error(problem, n, memory, result);
 }
@@ -277,7 +280,7 @@ void patch_contact::estimate_error(const patch_problem &problem, const pressure_
   // linear theory beyond its bound is what it is; other results are no solutions
   const bool linear = scene.tangential == RP_TANGENTIAL_LINEAR;
   if (result.status != RP_CONVERGED && !(linear && result.status == RP_OUT_OF_RANGE)) return;
-  if (scene.line_width > 0 || shared_.coupled || scene.curved) return;
+  if (scene.line_width > 0 || shared_.coupled || scene.curved || scene.fluid) return;
   // no model is fitted to it
   if (scene.normal == RP_NORMAL_KIK_PIOTROWSKI_CORRECTED) return;
   estimated_patch patch{scene.normal, scene.tangential, problem.hertz,

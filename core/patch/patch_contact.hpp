@@ -5,6 +5,7 @@
 
 #include "half_space/forces.hpp"
 #include "patch/error_estimate.hpp"
+#include "patch/fluid_stage.hpp"
 #include "patch/heat_stage.hpp"
 #include "patch/normal_stage.hpp"
 #include "patch/outcomes.hpp"
@@ -46,6 +47,7 @@ class patch_contact {
   void set_friction_coefficient(double value) { shared_.scene.friction_coefficient = value; }
   void set_friction_scale(double value) { shared_.scene.friction_scale = value; }
   void set_bulk_temperature(int k, double value) { heat_.set_bulk(k, value); }
+  void set_fluid_supply(const fluid_supply &supply) { shared_.scene.supply = supply; }
   size_t influence_bytes() const { return shared_.influence ? shared_.influence->bytes() : 0; }
   size_t coupling_bytes() const { return shared_.coupled ? shared_.coupled->bytes() : 0; }
   size_t history_bytes() const {
@@ -81,6 +83,7 @@ class patch_contact {
   normal_stage normal_;
   tangential_stage tangential_;
   heat_stage heat_;
+  fluid_stage fluid_;
   std::optional<patch_derivative> derivative_;
   error_model errors_;
 };

@@ -11,7 +11,7 @@ influence::medium patch_scene::medium() const {
 bool patch_scene::estimates_force() const {
   // of a prescribed force the creepage errs
   const bool by_temperature = heat && heat->by_temperature;
-  if (!usual_spin || is_forced() || law || keeps_steps() || by_temperature ||
+  if (fluid || !usual_spin || is_forced() || law || keeps_steps() || by_temperature ||
       friction_variation.varies())
     return false;
   if (!is_fast(tangential)) return true;
@@ -30,7 +30,7 @@ bool patch_scene::differentiates() const {
   if (curved || (normal != RP_NORMAL_HALF_SPACE && normal != RP_NORMAL_HERTZ)) return false;
   if (tangential == RP_TANGENTIAL_NONE) return true;
   return tangential == RP_TANGENTIAL_FULL && !is_fitted() && !law && !keeps_steps() && !heat &&
-         !is_forced() && !couples();
+         !fluid && !is_forced() && !couples();
 }
 
 }  // namespace railpatch

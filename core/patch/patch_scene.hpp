@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "fast/fast.hpp"
+#include "fluid/mixed.hpp"
 #include "half_space/coupling.hpp"
 #include "half_space/physics.hpp"
 #include "numeric/interrupt.hpp"
@@ -17,7 +18,7 @@ namespace railpatch {
 // Constant over the life of a handle, but for the friction coefficient and its scale.
 struct patch_scene {
   elastic_constants elastic;
-  double friction_coefficient = 0;
+  double friction_coefficient = 0;  // of Coulomb's law, or of dry surfaces
   friction_factor friction_variation;
   double friction_scale = 1.0;   // of the law, in this step
   double layer_flexibility = 0;  // m/Pa
@@ -47,8 +48,12 @@ struct patch_scene {
   int fitted[2] = {0, 0};  // nodes and strips of the tangential problem; 0: on the uniform grid
   fast_options fast;       // where the tangential theory is a fast one
   std::optional<heat_scene> heat;       // where temperatures are asked for
+  physics_part<fluid_scene> fluid;      // where a liquid is between the bodies
+  fluid_supply supply;                  // of it, in this step
+  double wet_friction = 0;              // the coefficient with it, of the patch being solved
   bool prescribed[2] = {false, false};  // components of the creep force: their creepage is found
-  double friction() const { return friction_coefficient * friction_scale; }
+  double coefficient() const { return fluid ? wet_friction : friction_coefficient; }
+  double friction() const { return coefficient() * friction_scale; }
   bool is_forced() const { return prescribed[0] || prescribed[1]; }
   // false: beside the exact theory, by choice
   bool estimates_force() const;

@@ -93,6 +93,13 @@ void report(const patch_scene &scene, const patch_problem &problem, const pressu
   describe_heat(h, result);
 }
 
+void describe_fluid(const fluid_outcome &f, double scale, rp_patch_result &result) {
+  result.film_thickness = f.film_thickness;
+  result.asperity_share = f.asperity_share;
+  result.fluid_temperature = f.temperature;
+  result.effective_friction = f.friction * scale;
+}
+
 void report_unloaded(const patch_scene &scene, const patch_problem &problem,
                      const pressure_outcome &n, const heat_outcome &h, rp_patch_result &result) {
   describe(scene, problem, n, result);

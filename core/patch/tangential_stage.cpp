@@ -247,7 +247,7 @@ void tangential_stage::set_bound(const grid &g, const patch_memory &memory, cons
   const bool varies = shared_.scene.friction_variation.varies();
   // where the law says mu, what it is multiplied by
   const bool by_velocity = shared_.scene.law && shared_.scene.law->by_velocity;
-  const double friction = by_velocity ? 1.0 : shared_.scene.friction_coefficient;
+  const double friction = by_velocity ? 1.0 : shared_.scene.coefficient();
   for (int j = 0; j < g.ny; ++j) {
     const double factor =
         (varies ? memory.row_friction[static_cast<size_t>(j)] : 1.0) * shared_.scene.friction_scale;

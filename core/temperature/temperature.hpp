@@ -31,6 +31,7 @@ struct thermal_pair {
   double effusivity() const { return body[0].effusivity() + body[1].effusivity(); }
   // of the friction's heat; what the exchange changes is the other body's share
   double share(int k) const { return body[k].effusivity() / effusivity(); }
+  double mean_bulk() const { return 0.5 * (body[0].bulk + body[1].bulk); }
   bool exchanges() const { return body[0].bulk != body[1].bulk; }
   // Surface temperature of body k (degrees C) from the field E and the rise in K.
   double surface(int k, double exchanged, double rise) const {

@@ -95,6 +95,20 @@ COMMON: dict[str, Feature] = {
         "method__polach_k_s": 0.4,
         "method__percent_kalker": 60.0,
     },
+    "water": {
+        "fluid": {"model": "film", "roughness": 1e-6, "boundary_friction": 0.2, "liquid": "water"}
+    },
+    "starved oil": {
+        "fluid": {
+            "model": "film",
+            "share": "load_sharing",
+            "roughness": 2e-6,
+            "liquid": "oil",
+            "viscosity": 0.1,
+            "oil_film": 5e-6,
+            "inlet_heating": True,
+        }
+    },
     "derivatives": {"method__derivatives": True},
 }
 OF_PATCHES: dict[str, Feature] = {

@@ -18,6 +18,11 @@ KEYS: dict[str, tuple[str, set[str]]] = {
     "Friction.law": ("friction_law", set()),
     # Polach's law is an exponential one with numbers of its own
     "Friction.shape": ("slip_law", {"polach"}),
+    # the table is left out for none
+    "Fluid.model": ("fluid_model", {"none"}),
+    "Fluid.share": ("fluid_share", set()),
+    # said by the keys of the viscosity
+    "Fluid.liquid": ("liquid", {"given", "table"}),
     "Layer.plastic_rule": ("plastic_rule", set()),
     "Method.normal": ("normal_method", set()),
     "Method.tangential": ("tangential_method", set()),

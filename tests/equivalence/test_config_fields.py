@@ -26,7 +26,8 @@ def test_the_default_config_is_the_listed_one() -> None:
         start = field["start"]
         if field["role"] == "choice":
             start = _core.CHOICES[field["type"].removeprefix("rp_")].index(start)
-        assert numbers[name] == [start] * math.prod(field["shape"]), name
+        # as texts: NaN, what is left out, is no number equal to itself
+        assert str(numbers[name]) == str([start] * math.prod(field["shape"])), name
 
 
 @pytest.mark.parametrize(

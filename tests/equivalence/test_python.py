@@ -310,6 +310,7 @@ def test_stages_tell_reason_memory_and_time() -> None:
         "plasticity",
         "derivatives",
         "rail_support",
+        "fluid",
     ]
     assert stages["normal"]["seconds"] > 0
     assert stages["normal"]["bytes"] > 0

@@ -23,7 +23,7 @@ else:
 LOADED = with_values(WHEELSET, wheelset__z=None, wheelset__vertical_force=2e4)
 VARIABLES = Path(__file__).parents[2] / "plugins/fmu/variables.toml"
 # units as FMI spells them
-FMI_UNITS = {"-": "1", "m^2": "m2", "N m": "N.m", "degrees C": "degC"}
+FMI_UNITS = {"-": "1", "m^2": "m2", "N m": "N.m", "degrees C": "degC", "m^3/s": "m3/s"}
 # field numbers of logs that are out there
 PATCH_FIELDS = (
     *("status", "position", "contact_angle", "creepage", "spin_creepage", "rolling_speed"),
@@ -37,6 +37,7 @@ PATCH_FIELDS = (
 # of stages that the scenes have not
 NOT_THERE = {"max_temperature", "plastic_power", "wheel_heat", "rail_heat"}
 NOT_THERE |= {"wheel_temperature", "rail_temperature"}
+NOT_THERE |= {"film_thickness", "asperity_share", "fluid_temperature", "effective_friction"}
 
 
 def shown(result: Result) -> str:

@@ -35,6 +35,15 @@ CASES = {
     ),
     "shift": with_values(PATCH, motion={"regime": "shift", "creepage": [1e-5, 0.0]}),
     "wheel": ON_RAIL,
+    "liquid": with_values(
+        PATCH,
+        **FAST,
+        fluid={"model": "film", "roughness": 1e-6, "liquid": "water", "water_rate": 1e-7},
+    ),
+    "oil on wheels": with_values(
+        ON_RAIL,
+        fluid={"model": "film", "roughness": 1e-6, "liquid": "oil", "viscosity": 0.1},
+    ),
     "wheelset": LOADED,
     "height": with_values(WHEELSET, **FAST, wheelset__z=3e-4),
     "rollers": ON_ROLLER,

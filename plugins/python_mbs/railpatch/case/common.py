@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from railpatch.case.choice import least_error
+from railpatch.case.fluid import Fluid, without_dry_friction
 from railpatch.case.friction import Friction, increasing
 from railpatch.case.theories import (
     BY_ROWS,
@@ -391,7 +392,7 @@ def without_friction(content: dict[str, Any]) -> dict[str, Any]:
 
 
 # tables, and keys of [method], that belong to the tangential problem alone
-PHYSICS = ("friction", "layer", "temperature")
+PHYSICS = ("friction", "layer", "temperature", "fluid")
 OF_TANGENTIAL = ("spin_offset", *READERS)
 
 
@@ -502,9 +503,10 @@ def check_tangential(
     grid: Grid | None,
     method: Method,
     regime: str,
+    fluid: Fluid | None,
 ) -> Problems:
     """What a tangential problem needs, and what this version cannot combine."""
-    if friction is None:
+    if friction is None and not without_dry_friction(fluid):
         asking = f"method.tangential = {method.tangential!r} and motion.regime = {regime!r}"
         allowed = f"the table [friction] with 'coefficient' with {asking}"
         yield relation("friction", "missing", allowed)

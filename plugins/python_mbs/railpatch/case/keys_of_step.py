@@ -42,6 +42,10 @@ class Moving(TypedDict, total=False):
     left: Mapping[str, Numbers]
     right: Mapping[str, Numbers]
     track: Mapping[str, Any]
+    # with a liquid
+    water_rate: float
+    water_temperature: float
+    oil_film: float
     # with temperatures
     temperature: Mapping[str, float]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from railpatch.case.fluid import MOVED
 from railpatch.case.load import Case, check_table, plain
 from railpatch.case.messages import show
 from railpatch.case.patch import PatchCase
@@ -42,7 +43,7 @@ def changed_case(case: Case, changes: Mapping[str, Any]) -> Case:
     for key, value in plain(changes).items():
         values = tables.setdefault(keys[key], {})
         if key not in BY_TABLE:
-            values[key] = value
+            values[MOVED[key] if keys[key] == "fluid" else key] = value
             continue
         if not isinstance(value, dict):
             raise CaseError(f"{key}: value is {show(value)}, allowed a table")

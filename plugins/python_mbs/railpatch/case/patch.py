@@ -27,6 +27,7 @@ from railpatch.case.common import (
     check_tangential,
     couples,
 )
+from railpatch.case.fluid import Fluid, check_fluid
 from railpatch.case.theories import BY_ROWS
 from railpatch.case.types import (
     LEFT_OUT,
@@ -221,12 +222,15 @@ class PatchCase(Table):
     temperature: Temperature | None = Field(
         default=None, description="surface temperature (degrees C, W/(m K), J/(kg K), kg/m^3)"
     )
+    fluid: Fluid | None = Field(
+        default=None, description="liquid between wheel and rail (m, Pa s, degrees C, m^3/s)"
+    )
     method: Method = Field(default=Method(), description="theories and tolerances (-)")
 
     @property
     def moving(self) -> tuple[str, ...]:
         """The tables that hold keys which move."""
-        return ("load", "motion")
+        return ("load", "motion", *(("fluid",) if self.fluid is not None else ()))
 
     @property
     def has_tangential(self) -> bool:
@@ -253,6 +257,11 @@ class PatchCase(Table):
                 self.grid,
                 self.method,
                 self.motion.regime,
+                self.fluid,
+            )
+            prescribed = any(self.motion.prescribed)
+            yield from check_fluid(
+                self.fluid, self.friction, self.method.accuracy, prescribed=prescribed
             )
             yield from check_physics(
                 self.friction, self.layer, self.temperature, self.grid, self.method
@@ -326,6 +335,7 @@ class PatchCase(Table):
         regime = self.motion.regime
         if regime == "shift":
             for key, asked in (
+                ("fluid", self.fluid is not None),
                 ("friction.law", self.friction is not None and self.friction.law != "coulomb"),
                 ("temperature", self.temperature is not None),
             ):
@@ -360,7 +370,7 @@ class PatchCase(Table):
         if self.method.tangential != "full":
             shown = repr(self.method.tangential)
             yield relation("method.tangential", shown, "'full' with motion.tangential_force")
-        if self.load.normal_force is None or self.friction is None:
+        if self.load.normal_force is None or self.friction is None or self.fluid is not None:
             return
         most = self.friction.greatest_anywhere * self.load.normal_force
         if math.hypot(*self.motion.forces) > most * (1 + 1e-12):
@@ -372,6 +382,9 @@ class PatchCase(Table):
 
     def _check_line(self) -> Problems:
         """What a line contact is not combined with."""
+        if self.fluid is not None:
+            allowed = f"{LEFT_OUT} with a line contact: the film is that of an elliptic one"
+            yield relation("fluid", "given", allowed)
         if self.load.approach is not None:
             yield relation("load.approach", self.load.approach, "normal_force with a line contact")
         if self.method.normal in BY_ROWS:

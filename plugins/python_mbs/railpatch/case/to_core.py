@@ -15,6 +15,7 @@ from typing import Any
 
 from railpatch import _core
 from railpatch.case.creep_table import default_table, table_from
+from railpatch.case.fluid import MOVED
 from railpatch.case.gap import read_gap
 from railpatch.case.load import Case, Scene, plain
 from railpatch.case.longitudinal import shape_config
@@ -31,12 +32,20 @@ from railpatch.profiles.sections import matching_sections
 
 WheelCase = WheelRailCase | WheelsetCase
 # first word of a field that holds a key of the table
-WORDS = {"friction": "friction_", "layer": "layer_", "rail_support": "rail_", "bulk": "bulk_"}
+WORDS = {
+    "friction": "friction_",
+    "layer": "layer_",
+    "rail_support": "rail_",
+    "bulk": "bulk_",
+    "fluid": "fluid_",
+}
 # keys whose field has another name
 NAMES = {
     "temperature.depth": "temperature_depth",
     "temperature.exchange": "heat_exchange",
     "track.kind": "track",
+    # of an input
+    "fluid.temperature": "water_temperature",
 }
 # the wheels deviate from the wheelset's table, the rails from the track's
 DEVIATION = tuple(Deviation.model_fields)
@@ -75,6 +84,7 @@ def config_of(scene: Scene, shelf: Shelf | None = None) -> dict[str, Any]:
     for name in ("material", "method", "motion", "geometry", "wheelset", "track", "wheel"):
         config |= passed(name, getattr(case, name, None), _core.CONFIG_FIELDS)
     config |= friction_config(case) | layer_config(case) | temperature_config(case)
+    config |= fluid_config(case)
     if case.has_tangential and case.method.tangential == "table":
         file = case.method.table_file
         own = scene.folder / file if file is not None else None
@@ -123,6 +133,21 @@ def temperature_config(case: Case) -> dict[str, Any]:
     found = passed("temperature", case.temperature, _core.CONFIG_FIELDS)
     found |= passed("bulk", case.temperature.bulk, _core.CONFIG_FIELDS)
     return {"temperature": 1, **found, **bulk_of(case)}
+
+
+def fluid_config(case: Case) -> dict[str, Any]:
+    """Liquid between wheel and rail."""
+    fluid = case.fluid
+    if fluid is None or not case.has_tangential:
+        return {}
+    config = passed("fluid", fluid, _core.CONFIG_FIELDS)
+    config |= {f"fluid_{name}": value for name, value in fluid.core.items()}
+    if case.friction is None:
+        config["friction_coefficient"] = config["fluid_boundary_friction"]
+    if fluid.viscosity_table is not None:
+        names = ("temperature", "value")
+        config |= points_config("fluid_viscosity", names, fluid.viscosity_table)
+    return config
 
 
 def points_config(prefix: str, names: tuple[str, str], points: list[list[float]]) -> dict[str, Any]:
@@ -237,7 +262,7 @@ def input_of(case: Case) -> dict[str, Any]:
 
 # keys of a step that are plain numbers in the core's input and, given by themselves, need no other
 # check than their range
-PLAIN = ("normal_force", "approach", "creepage", "spin_creepage", "rolling_speed")
+PLAIN = ("normal_force", "approach", "creepage", "spin_creepage", "rolling_speed", *MOVED)
 
 
 def plain_moves(case: Case) -> dict[str, tuple[int, int, str, float, float]]:

@@ -22,6 +22,7 @@ from railpatch.case.common import (
     check_reference,
     check_tangential,
 )
+from railpatch.case.fluid import Fluid, check_fluid
 from railpatch.case.rails import RailSupport, Sections, check_sections
 from railpatch.case.rolling import RailShape, WheelMotion, WheelShape, check_rolling
 from railpatch.case.types import (
@@ -295,6 +296,9 @@ class _WheelCase(Table):
     temperature: Temperature | None = Field(
         default=None, description="surface temperature (degrees C, W/(m K), J/(kg K), kg/m^3)"
     )
+    fluid: Fluid | None = Field(
+        default=None, description="liquid between wheel and rail (m, Pa s, degrees C, m^3/s)"
+    )
     method: Method = Field(default=Method(), description="theories and tolerances (-)")
     motion: WheelMotion = Field(default=WheelMotion(), description="how wheels roll (no unit)")
     wheelset: Wheelset = Field(description="position, velocity, dimensions (m, rad, m/s, rad/s)")
@@ -304,7 +308,7 @@ class _WheelCase(Table):
     @property
     def moving(self) -> tuple[str, ...]:
         """The tables that hold keys which move."""
-        return ("wheelset", "track")
+        return ("wheelset", "track", *(("fluid",) if self.fluid is not None else ()))
 
     @property
     def sides(self) -> tuple[str, ...]:
@@ -340,7 +344,9 @@ class _WheelCase(Table):
                 self.grid,
                 self.method,
                 self.motion.regime,
+                self.fluid,
             )
+            yield from check_fluid(self.fluid, self.friction, self.method.accuracy)
             yield from check_physics(
                 self.friction, self.layer, self.temperature, self.grid, self.method
             )

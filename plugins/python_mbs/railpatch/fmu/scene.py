@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from railpatch import _core
+from railpatch.case.fluid import MOVED
 from railpatch.case.load import Case, Scene
 from railpatch.case.patch import PatchCase
 from railpatch.case.to_core import config_of, input_of
@@ -59,6 +60,11 @@ def physics_conditions(case: Case) -> set[str]:
         found.add("fast")
     if case.layer is not None and case.layer.is_plastic:
         found.add("yields")
+    if case.fluid is not None:
+        found.add("fluid")
+        found |= {name for name, key in MOVED.items() if getattr(case.fluid, key) is not None}
+        if case.fluid.liquid is not None or case.fluid.viscosity_table is not None:
+            found.add("fluid temperature")
     if heat is not None:
         found.add("temperature")
         if heat.exchange or heat.wheel != heat.rail:
@@ -134,7 +140,9 @@ def start_of(variable: Variable, case: Case) -> float | int:
         return variable.start
     name, index = split_name(variable.name)
     path = name.split(".")
-    if isinstance(case, PatchCase) and len(path) == 1:
+    if name in MOVED:
+        path = ["fluid", MOVED[name]]
+    elif isinstance(case, PatchCase) and len(path) == 1:
         path.insert(0, "load" if name in ("normal_force", "approach") else "motion")
     value: Any = case
     for part in path:
@@ -194,7 +202,9 @@ def lines_of(
     yield "railpatch-fmu-scene 1"
     yield f"guid {guid}"
     for name, numbers in _core.config_numbers(config).items():
-        yield f"set {name} {spell(numbers)}"
+        # NaN stands for what is left out, which the core does by itself
+        if not np.isnan(np.asarray(numbers, float)).any():
+            yield f"set {name} {spell(numbers)}"
     for body in ("wheel", "rail"):
         for side, profile in enumerate(config.get(body, ())):
             for array in PROFILE_ARRAYS if profile is not None else ():

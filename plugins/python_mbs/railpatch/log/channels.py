@@ -169,6 +169,7 @@ _IN_CONTACT_FRAME = (
     *("creepage", "spin_creepage", "rolling_speed"),
     *("normal_force", "approach", "creep_force", "spin_moment"),
 )
+_OF_FLUID = ("film_thickness", "asperity_share", "fluid_temperature", "effective_friction")
 PATCH = Message(
     "Patch",
     "One contact patch.",
@@ -202,6 +203,7 @@ PATCH = Message(
         _listed("patch", "rail_heat"),
         _listed("patch", "pressure_energy"),
         _text("patch", "reason"),
+        *(_listed("patch", name) for name in _OF_FLUID),
     ),
 )
 
