@@ -33,24 +33,28 @@ def named_profile(case: WheelCase, body: Body, name: str, folder: Path) -> Profi
     # a built-in one says all of itself
     built_in = builtin_profile(name, body) is not None
     reading = None if built_in else profiles.reading(body)
-    if built_in:
-        return load_profile(name, body)
-    path = folder / name
+    smoothing = profiles.smoothing
     try:
-        told = path.stat()
+        told = None if built_in else (folder / name).stat()
     except OSError:
-        return load_profile(name, body, folder=folder, reading=reading)
-    state = told.st_mtime_ns, told.st_size
-    return file_profile(path.resolve(), state, body, profiles.smoothing, reading)
+        told = None
+    if told is None:
+        return load_profile(name, body, folder=folder, smoothing=smoothing, reading=reading)
+    state = told.st_dev, told.st_ino, told.st_mtime_ns, told.st_size
+    return file_profile(folder / name, state, body, smoothing, reading)
 
 
 @lru_cache(maxsize=32)
 def file_profile(
-    path: Path, _state: tuple[int, int], body: Body, smoothing: float | None, reading: Reading
+    path: Path,
+    _state: tuple[int, ...],
+    body: Body,
+    smoothing: float | None,
+    reading: Reading | None,
 ) -> Profile:
     """A file's profile, kept for the next contact as long as the file stays. Raises
     ProfileError."""
-    return load_profile(path, body, smoothing=smoothing, reading=reading)
+    return load_profile(str(path), body, folder=Path(), smoothing=smoothing, reading=reading)
 
 
 class Shelf:
