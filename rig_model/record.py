@@ -8,6 +8,7 @@ from typing import Any
 
 from railpatch.case.types import SIDES
 from railpatch.log.effective import Effective, effective
+from railpatch.result import logged
 
 from rig_model.balance import Balance
 from rig_model.scene import RigScene
@@ -79,6 +80,7 @@ class Recorder:
             "vertical_force": self._scene.load_at(position),
             "force": result["force"],
             "moment": result["moment"],
+            **logged(result),
         } | {key: getattr(case.wheelset, key) for key in STEADY}
 
 

@@ -87,6 +87,8 @@ class WheelPair:
             dict.fromkeys(w for wheel in found.values() for w in wheel.warnings)
         )
         data["axle_torque"] = math.fsum(self._torque(w) for w in found.values())
+        left, right = (found[side]["rolling_radius"] for side in SIDES)
+        data["rolling_radius_difference"] = right - left
         data["wall_time"] = math.fsum(wheel["wall_time"] for wheel in found.values())
         data["stages"] = found[SIDES[0]]["stages"]
         return Result(data)

@@ -10,7 +10,7 @@ from typing import Any
 
 from railpatch.case.types import SIDES
 from railpatch.log.effective import Effective, effective
-from railpatch.result import wheel_json
+from railpatch.result import logged, wheel_json
 
 from wheelset_demo.scene import WheelsetScene
 from wheelset_demo.system import WORKS, State, System
@@ -33,7 +33,7 @@ class Recorder:
         assert trace.result is not None
         data = trace.result.data
         result = {key: wheel_json(data[key]) for key in SIDES}
-        result |= {key: data[key] for key in ("force", "moment")}
+        result |= {key: data[key] for key in ("force", "moment")} | logged(data)
         snapshot = any("pressure" in patch for patch in data["left"]["patches"])
         fields = {side: data[side]["patches"] for side in SIDES} if snapshot else None
         return {
@@ -65,6 +65,7 @@ class Recorder:
             "vertical_force": self._scene.case.wheelset.vertical_force,
             "force": result["force"],
             "moment": result["moment"],
+            **logged(result),
         }
 
     def _stats(self) -> dict[str, Any]:

@@ -182,6 +182,7 @@ tangential_result fast_solver::solve_by_ellipses(const fast_patch &patch,
   tangential_result result;
   result.converged = true;
   sums = {};
+  sums.capacity = patch.friction_coefficient * patch.normal_force;
   for (int k = 0; k < ellipses_.count(); ++k) {
     const pressed_ellipse &e = ellipses_[k];
     fast_problem problem{elastic_, options_, table(), e.axes,  e.centre, 0.0, {},
@@ -255,6 +256,7 @@ tangential_result fast_solver::solve(const fast_patch &patch, const rolling_inpu
     problem.l = flexibilities_of(problem);
   }
   tangential_result result = theory_.solve(problem, fields, sums);
+  sums.capacity = problem.capacity;
   // beyond what floating-point numbers hold there is no result
   result.converged =
       result.converged && problem.coefficients.in_range && std::isfinite(result.friction);

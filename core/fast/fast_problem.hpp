@@ -52,6 +52,7 @@ struct creep_resultants {
   double force[2] = {0, 0};  // N on the wheel
   double moment = 0;         // N m on the wheel, about the reference
   double friction = 0;       // N, frictional power over the rolling speed
+  double capacity = 0;       // N, that friction could carry
 };
 
 struct fast_problem {

@@ -141,6 +141,9 @@ class side_geometry : private placement<double> {
   using placement<double>::lever;
   // Distance of the wheel's contact point from the wheelset's axis.
   using placement<double>::rolling_radius;
+  // The contact reference in the axes of the profiles: y, z.
+  using placement<double>::on_wheel_profile;
+  using placement<double>::on_rail_profile;
 
   double rail_marker_y() const { return marker_y_; }
   double rail_marker_z() const { return marker_z_; }

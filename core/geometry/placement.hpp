@@ -238,11 +238,44 @@ struct placement {
   vec<T> lever(const basic_contact_frame<T> &frame) const { return frame.origin - centre_; }
 
   T rolling_radius(const basic_contact_frame<T> &frame, const T &approach) const {
+    return on_axle(frame, approach)[1];
+  }
+
+  // The contact reference in the axes of the wheel's profile, y and z, as it was given.
+  std::array<T, 2> on_wheel_profile(const basic_contact_frame<T> &frame, const T &approach) const {
+    const std::array<T, 2> at = on_axle(frame, approach);
+    const basic_deviation<T> &d = motion_.wheel;
+    return turned_back(d.rotation[0], at[0] - d.offset[1],
+                       at[1] - sizes_.nominal_radius - d.offset[2]);
+  }
+  // The same of the rail's.
+  std::array<T, 2> on_rail_profile(const basic_contact_frame<T> &frame) const {
+    using std::sqrt;
+    const basic_deviation<T> &d = motion_.rail;
+    T angle = d.rotation[0], z = frame.origin[2];
+    if (track_.kind == track_kind::roller) {
+      const T ahead = frame.origin[0] - axle_x_, below = axle_z_ - z;
+      z = axle_z_ - sqrt(ahead * ahead + below * below);
+    } else {
+      angle -= track_.cant;
+    }
+    return turned_back(angle, frame.origin[1] - marker_y_ - d.offset[1],
+                       z - marker_z_ - d.offset[2]);
+  }
+
+ private:
+  // m, along the axle from the profile's plane, and from the axle.
+  std::array<T, 2> on_axle(const basic_contact_frame<T> &frame, const T &approach) const {
     using std::sqrt;
     const vec<T> at = frame.origin + approach * axes_of(frame).n - axis_origin_;
     const vec<T> axis = column(wheel_axes_, 1);
-    const vec<T> off_axis = at - dot(at, axis) * axis;
-    return sqrt(dot(off_axis, off_axis));
+    const T along = dot(at, axis);
+    const vec<T> off_axis = at - along * axis;
+    return {along, sqrt(dot(off_axis, off_axis))};
+  }
+  static std::array<T, 2> turned_back(const T &angle, const T &y, const T &z) {
+    const T c = cos(angle), s = sin(angle);
+    return {c * y + s * z, c * z - s * y};
   }
 };
 

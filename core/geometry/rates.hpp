@@ -61,6 +61,8 @@ class moving_geometry : private placement<rated> {
   using placement<rated>::contact_depth;
   using placement<rated>::lever;
   using placement<rated>::rolling_radius;
+  using placement<rated>::on_wheel_profile;
+  using placement<rated>::on_rail_profile;
 
   // A part found there.
   basic_part<rated> part_of(const part &found) const;

@@ -723,6 +723,20 @@ typedef struct rp_patch_result {
   /* with a liquid, else NaN: its central film, the share of the load that asperities carry, its
    * temperature, and the friction coefficient that follows, factors of the law included */
   double film_thickness, asperity_share, fluid_temperature, effective_friction;
+  double wear_number;          /* N, T gamma: |Fx xi| + |Fy eta| + |M phi| of creep_force, creepage,
+                                  spin_moment and spin_creepage above; RP_SHIFT: J */
+  double traction_coefficient; /* -, length of creep_force over normal_force; NaN without contact */
+  double utilised_friction; /* -, length of creep_force over what friction could carry: the sum of
+                               the elements' friction coefficients times pressure, as solved;
+                               NaN where that is 0 */
+  double max_traction;      /* Pa, greatest length of an element's traction; NaN: of a theory
+                               without tractions. Has no derivative */
+  double contact_size[2];   /* m, extent of the area in contact along x and s; of an ellipse twice
+                               its semi-axes */
+  /* m, y and z of the contact reference in the axes of each profile as it was given (wheel kinds):
+   * of the rail's surface, and of the wheel's the approach below it. Shapes along rolling are no
+   * part of a profile: z has them */
+  double wheel_profile_position[2], rail_profile_position[2];
 } rp_patch_result;
 
 /* One wheel; on a roller see rp_contact_frame. NaN where a patch could not be solved. */
@@ -750,6 +764,11 @@ typedef struct rp_side_result {
   double reason_value;
   uint32_t
       warnings; /* bits 1 << RP_WARNING_... of what can hardly be meant, though it was solved */
+  double wear_number;   /* N, sum of share times each */
+  double guiding_force; /* N, Y of EN 14363: lateral force on the rail, track axes, > 0 outward,
+                           as a flange presses; force[1] on the left, -force[1] on the right */
+  double wheel_load;    /* N, Q of EN 14363: vertical force on the rail, track axes: -force[2] */
+  double derailment_quotient; /* -, Y/Q; NaN where Q is not above 0 */
 } rp_side_result;
 
 typedef struct rp_result {
@@ -770,9 +789,16 @@ typedef struct rp_result {
                          the forces along the wheelset's x times the rolling radii */
   rp_reason reason;   /* why the status is not good: that of the wheel, or of both together */
   double reason_value;
-  uint32_t warnings; /* those of both wheels */
-  int32_t work;      /* operator products of all evaluations, as config.max_work counts them (wheel
-                        kinds) */
+  uint32_t warnings;  /* those of both wheels */
+  int32_t work;       /* operator products of all evaluations, as config.max_work counts them (wheel
+                         kinds) */
+  double wear_number; /* N, sum of the wheels */
+  double rolling_radius_difference; /* m, of the right wheel minus the left one's (kind RP_WHEELSET,
+                                       both in contact) */
+  double conicity;                  /* -, rolling_radius_difference over twice the lateral position
+                                       y: of cones the tangent of their angle. NaN for |y| below
+                                       1e-5 m. The equivalent conicity of EN 15302 is that of a whole
+                                       wave, see docs/profiles.md */
 } rp_result;
 
 #define RP_FIELDS(X)                                                                             \

@@ -88,7 +88,21 @@
   X(double, fluid_temperature, 1, number, even, kept, alone, NAN, "degrees C",                    \
     "temperature of the liquid")                                                                  \
   X(double, effective_friction, 1, number, even, kept, alone, NAN, "-",                           \
-    "friction coefficient with the liquid")
+    "friction coefficient with the liquid") \
+  X(double, wear_number, 1, number, even, zero_rolling, by_share, NAN, "N",                       \
+    "wear number T gamma: sizes of Fx xi, Fy eta, M phi, added")                                          \
+  X(double, traction_coefficient, 1, number, even, kept, alone, NAN, "-",                         \
+    "creep force over normal force")                                                              \
+  X(double, utilised_friction, 1, number, even, kept, alone, NAN, "-",                            \
+    "creep force over what friction could carry")                                                 \
+  X(double, max_traction, 1, estimate, even, zero_rolling, alone, NAN, "Pa",                      \
+    "greatest traction of an element")                                                            \
+  X(double, contact_size, 2, number, even, zero, alone, NAN, "m",                                 \
+    "extent of the contact along rolling, lateral")                                               \
+  X(double, wheel_profile_position, 2, number, even, kept, alone, NAN, "m",                       \
+    "contact reference in the axes of the wheel's profile: y, z")                                 \
+  X(double, rail_profile_position, 2, number, even, kept, alone, NAN, "m",                        \
+    "contact reference in the axes of the rail's profile: y, z")
 
 #define RP_SIDE_RESULT_FIELDS(X, O)                                                      \
   X(rp_status, status, 1, status, even, kept, alone, RP_NO_CONTACT, "",                  \
@@ -135,7 +149,14 @@
   X(double, reason_value, 1, estimate, even, kept, alone, NAN, "-",                      \
     "of what the reason says, in its units")                                             \
   X(uint32_t, warnings, 1, status, even, kept, alone, 0, "",                             \
-    "what can hardly be meant, though it was solved")
+    "what can hardly be meant, though it was solved")                                    \
+  X(double, wear_number, 1, number, even, kept, added, NAN, "N",                         \
+    "wear number T gamma, of all patches by share")                                      \
+  X(double, guiding_force, 1, number, even, kept, alone, NAN, "N",                       \
+    "Y: lateral force on the rail, track axes, > 0 outward")                             \
+  X(double, wheel_load, 1, number, even, kept, alone, NAN, "N",                          \
+    "Q: vertical force on the rail, track axes")                                         \
+  X(double, derailment_quotient, 1, number, even, kept, alone, NAN, "-", "Y/Q")
 
 #define RP_RESULT_FIELDS(X, O)                                                                   \
   X(rp_status, status, 1, status, even, kept, alone, RP_CONVERGED, "", "how the solution ended") \
@@ -174,7 +195,13 @@
     "of what the reason says, in its units")                                                     \
   X(uint32_t, warnings, 1, status, even, kept, alone, 0, "",                                     \
     "what can hardly be meant, though it was solved")                                            \
-  X(int32_t, work, 1, count, even, kept, alone, 0, "-", "operator products of all evaluations")
+  X(int32_t, work, 1, count, even, kept, alone, 0, "-", "operator products of all evaluations")  \
+  X(double, wear_number, 1, number, even, kept, alone, NAN, "N",                                 \
+    "wear number T gamma, of all patches by share")                                              \
+  X(double, rolling_radius_difference, 1, number, odd, kept, alone, NAN, "m",                    \
+    "of the right wheel minus the left one's")                                                   \
+  X(double, conicity, 1, number, even, kept, alone, NAN, "-",                                    \
+    "rolling radius difference over twice the lateral position")
 
 /* --- inputs: X(type, name, count, role, where, start, bounds, low, high, unit, text) ---------
  * role      choice: an enumeration; number; integer; side: RP_LEFT or RP_RIGHT; points: numbers of

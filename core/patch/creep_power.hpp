@@ -1,5 +1,8 @@
-// The power that creepages and spin supply, by the result's own numbers, and its rate.
+// The power that creepages and spin supply, by the result's own numbers, the wear number, and their
+// rates.
 #pragma once
+
+#include <cmath>
 
 #include "railpatch.h"
 
@@ -23,6 +26,24 @@ inline double creep_power_rate(const rp_patch_result &r, const rp_patch_result &
   for (int k = 0; k < 2; ++k)
     rate += d.creep_force[k] * r.creepage[k] + r.creep_force[k] * d.creepage[k];
   return creep_work(r) * d.rolling_speed - rate * r.rolling_speed;
+}
+
+// N, T gamma with each product by its size (Pearce and Sherratt 1991).
+inline double wear_number(const rp_patch_result &r) {
+  return std::fabs(r.creep_force[0] * r.creepage[0]) + std::fabs(r.creep_force[1] * r.creepage[1]) +
+         std::fabs(r.spin_moment * r.spin_creepage);
+}
+
+// A product that is zero has a kink there: the mean of both sides, which is none.
+inline double wear_number_rate(const rp_patch_result &r, const rp_patch_result &d) {
+  const auto rate = [](double f, double c, double df, double dc) {
+    const double change = df * c + f * dc;
+    return f * c < 0 ? -change : f * c > 0 ? change : 0.0;
+  };
+  double sum = rate(r.spin_moment, r.spin_creepage, d.spin_moment, d.spin_creepage);
+  for (int k = 0; k < 2; ++k)
+    sum += rate(r.creep_force[k], r.creepage[k], d.creep_force[k], d.creepage[k]);
+  return sum;
 }
 
 }  // namespace railpatch

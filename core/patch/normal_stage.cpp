@@ -10,6 +10,45 @@ namespace railpatch {
 
 using std::numbers::pi;
 
+namespace {
+
+// m, along x and y, of the elements in contact.
+void find_size(const grid &g, const double *pressure, double *size) {
+  int first = g.nx, last = -1, low = g.ny, high = -1;
+  for (int j = 0; j < g.ny; ++j) {
+    const double *p = pressure + j * g.nx;
+    int begin = 0, end = g.nx - 1;
+    while (begin < g.nx && !(p[begin] > 0)) ++begin;
+    if (begin == g.nx) continue;
+    while (!(p[end] > 0)) --end;
+    first = std::min(first, begin);
+    last = std::max(last, end);
+    low = std::min(low, j);
+    high = j;
+  }
+  size[0] = std::max(0, last - first + 1) * g.dx;
+  size[1] = std::max(0, high - low + 1) * g.dy;
+}
+
+// m, of the ends of the rows, with the gaps between areas.
+void find_size(const grid &g, const row_contact &rows, const double *pressure, double *size) {
+  double begin = HUGE_VAL, end = -HUGE_VAL;
+  int low = g.ny, high = -1, touching = 0;
+  for (int j = 0; j < g.ny; ++j) {
+    const double *p = pressure + j * g.nx;
+    if (!std::any_of(p, p + g.nx, [](double v) { return v > 0; })) continue;
+    begin = std::min(begin, rows.leading_edge(j, -1));
+    end = std::max(end, rows.leading_edge(j, 1));
+    low = std::min(low, j);
+    high = j;
+    ++touching;
+  }
+  size[0] = std::max(0.0, end - begin);
+  size[1] = rows.width() + std::max(0, high - low + 1 - touching) * g.dy;
+}
+
+}  // namespace
+
 normal_stage::normal_stage(patch_workspace &shared, int max_nx, int max_ny) : shared_(shared) {
   const patch_scene &scene = shared.scene;
   if (scene.normal == RP_NORMAL_HALF_SPACE) normal_.emplace(max_nx * max_ny);
@@ -59,6 +98,7 @@ pressure_outcome normal_stage::solve_half_space(const patch_problem &problem,
   found.residual = n.residual;
   found.max_pressure = *std::max_element(p, p + g.count());
   found.contact_area = n.contact_count * g.dx * g.dy;
+  find_size(g, p, found.size);
   // at the solution the elastic displacement is approach minus distance wherever p > 0
   double energy = 0;
   for (int i = 0; i < g.count(); ++i) energy += p[i] * (n.approach - h[i]);
@@ -81,6 +121,7 @@ pressure_outcome normal_stage::solve_rows(const patch_problem &problem, patch_me
   found.residual = n.residual;
   found.max_pressure = n.max_pressure;
   found.contact_area = n.contact_area;
+  find_size(problem.g, *rows_, memory.pressure.data(), found.size);
   found.elastic_energy = n.elastic_energy;
   return found;
 }
@@ -107,6 +148,8 @@ pressure_outcome normal_stage::solve_hertz(const patch_problem &problem,
   const bool line = shared_.scene.line_width > 0;
   found.contact_area = line ? 2.0 * hertz.semi_axes[0] * shared_.scene.line_width
                             : pi * hertz.semi_axes[0] * hertz.semi_axes[1];
+  found.size[0] = 2.0 * hertz.semi_axes[0];
+  found.size[1] = line ? shared_.scene.line_width : 2.0 * hertz.semi_axes[1];
   // 1/2 int p u dA of the elliptic pressure (Johnson 1985, section 3.3)
   found.elastic_energy = 0.4 * hertz.normal_force * hertz.approach;
   if (line) found.approach = found.elastic_energy = nan;

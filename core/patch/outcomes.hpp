@@ -12,6 +12,7 @@ struct pressure_outcome : verdict {
   bool loaded = false;  // the bodies touch
   double normal_force = 0, approach = 0, max_pressure = 0, contact_area = 0;
   double elastic_energy = 0, residual = 0;
+  double size[2] = {0, 0};  // m, of the area in contact
   int iterations = 0;
   int exterior = 0;                   // elements
   const row_contact *rows = nullptr;  // where the theory knows the ends of the rows
@@ -29,6 +30,8 @@ struct traction_outcome : verdict {
   double plastic_power = nan;
   double elastic_energy = 0, coupling_energy = 0;
   double moment = 0, force[2] = {0, 0};  // of theories without tractions
+  double capacity = 0;                   // N, that friction could carry
+  double max_traction = nan;             // Pa
 };
 
 struct heat_outcome {

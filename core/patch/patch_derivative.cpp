@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/elementary.hpp"
 #include "numeric/nan.hpp"
 #include "numeric/sums.hpp"
 #include "patch/patch_contact.hpp"
@@ -127,7 +128,10 @@ void patch_derivative::differentiate_tractions(const solution &s, const patch_va
       outcome.residual = std::max(outcome.residual, residual);
     }
   }
-  for (int k = 0; k < count; ++k) add_tractions(s, in[k], t[k], o.energy, out[k]);
+  for (int k = 0; k < count; ++k) {
+    add_tractions(s, in[k], t[k], o.energy, out[k]);
+    out[k].capacity = capacity_rate(s, in[k], rate_of(s, k));
+  }
 }
 
 void patch_derivative::differentiate_half_space(const solution &s, const patch_variation *in,
@@ -169,6 +173,7 @@ void patch_derivative::differentiate_half_space(const solution &s, const patch_v
         growth * g.dx * g.dy *
         static_cast<double>(std::count_if(p, p + n, [](double v) { return v > 0; }));
     out[k].normal_force = (total(rate, n) + growth * total(p, n)) * g.dx * g.dy;
+    for (int c = 0; c < 2; ++c) out[k].growth[c] = in[k].size[c] / (c == 0 ? g.dx : g.dy);
   }
 }
 
@@ -202,6 +207,8 @@ void patch_derivative::differentiate_hertz(const solution &s, const patch_variat
   out.approach = line ? nan : d.approach;
   out.contact_area = line ? 2.0 * d.semi_axes[0] * s.scene.line_width
                           : std::numbers::pi * a * b * (along + across);
+  out.growth[0] = along;
+  out.growth[1] = line ? 0.0 : across;
   out.elastic_energy = out.pressure_energy =
       line ? nan : 0.4 * (d.normal_force * c.approach + c.normal_force * d.approach);
 }
@@ -254,6 +261,28 @@ void patch_derivative::complete(const solution &s, const patch_variation &v, con
   }
 }
 
+// Of the sum of friction coefficient times pressure, Coulomb's law. rate: of the pressure.
+double patch_derivative::capacity_rate(const solution &s, const patch_variation &v,
+                                       const double *rate) {
+  const grid &g = s.problem.g;
+  const double *p = s.memory.pressure.data();
+  const double growth = v.size[0] / g.dx + v.size[1] / g.dy, mu = s.scene.friction();
+  double sum = 0;
+  for (int j = 0; j < g.ny; ++j) {
+    double load = 0, change = 0;
+    for (int i = j * g.nx; i < (j + 1) * g.nx; ++i) {
+      load += p[i];
+      change += rate[i];
+    }
+    const auto row = static_cast<size_t>(j);
+    const double factor = s.memory.row_friction.size() ? s.memory.row_friction[row] : 1.0;
+    const double turned = v.row_friction ? v.row_friction[row] : 0.0;
+    sum += mu * (factor * (change + growth * load) + turned * load) +
+           v.friction_coefficient * factor * load;
+  }
+  return sum * g.dx * g.dy;
+}
+
 // The tractions' wrench. In steady rolling friction takes the power -V sum p . w dA.
 void patch_derivative::add_tractions(const solution &s, const patch_variation &v,
                                      const tangential_change &t, bool energy,
@@ -265,6 +294,8 @@ void patch_derivative::add_tractions(const solution &s, const patch_variation &v
   const double speed = s.problem.rolling_speed;
   if (!(speed > 0)) return;
   const patch_wrench w = sum_tractions(s.problem.g, m.pressure.data(), m.px.data(), m.py.data());
+  const double size = hypot(w.force[0], w.force[1]);
+  if (size > 0) out.creep_size = (w.force[0] * t.force[0] + w.force[1] * t.force[1]) / size;
   const double work = rolling_.creepage[0] * w.force[0] + rolling_.creepage[1] * w.force[1] +
                       rolling_.spin_creepage * w.moment[2];
   const double rate = v.creepage[0] * w.force[0] + v.creepage[1] * w.force[1] +

@@ -40,7 +40,10 @@ struct patch_change {
   patch_wrench wrench{};
   double normal_force = 0, approach = 0;
   double creep_force[2] = {0, 0}, spin_moment = 0;
+  double creep_size = 0;  // N, of the creep force's length
   double max_pressure = 0, contact_area = 0;
+  double growth[2] = {0, 0};  // -, of the contact's extent along x and s, relative
+  double capacity = 0;        // N, that friction could carry
   double friction_power = 0, elastic_energy = 0, pressure_energy = 0;
   turning_energy turning;  // where the scene has it
 };
@@ -94,6 +97,7 @@ class patch_derivative {
                 patch_change &out) const;
   void add_tractions(const solution &s, const patch_variation &v, const tangential_change &t,
                      bool energy, patch_change &out) const;
+  static double capacity_rate(const solution &s, const patch_variation &v, const double *rate);
   tangential_point point_of(const solution &s) const;
   double *rate_of(const solution &s, int k);
 

@@ -22,6 +22,7 @@ namespace railpatch {
 struct patch_place {
   bool on_wheel = false;  // else only the motion is known
   double position[3] = {nan, nan, nan}, contact_angle = nan;
+  double on_wheel_profile[2] = {nan, nan}, on_rail_profile[2] = {nan, nan};  // m, in their axes
   double depth = 0;          // m, greatest interpenetration
   double contact_depth = 0;  // m, along n from the position: where creep forces act
   double share = 1;          // in the wheel's force

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/elementary.hpp"
 #include "patch/creep_power.hpp"
 #include "patch/result_fields.hpp"
 
@@ -31,6 +32,8 @@ void describe_grid(const patch_scene &scene, const grid &g, rp_patch_result &res
 void describe_place(const patch_place &place, rp_patch_result &result) {
   std::copy_n(place.position, 3, result.position);
   result.contact_angle = place.contact_angle;
+  std::copy_n(place.on_wheel_profile, 2, result.wheel_profile_position);
+  std::copy_n(place.on_rail_profile, 2, result.rail_profile_position);
   result.share = place.share;
   result.rolling_speed = place.rolling_speed;
   result.direction = place.direction;
@@ -61,6 +64,11 @@ void describe_tractions(const patch_scene &scene, const traction_outcome &t,
   result.creep_force[1] = wrench.force[1];
   result.spin_moment = wrench.moment[2];
   result.creep_power = scene.keeps_steps() ? t.supplied : creep_power(result, result.rolling_speed);
+  result.wear_number = wear_number(result);
+  const double size = hypot(result.creep_force[0], result.creep_force[1]);
+  if (result.normal_force > 0) result.traction_coefficient = size / result.normal_force;
+  if (t.capacity > 0) result.utilised_friction = size / t.capacity;
+  result.max_traction = t.max_traction;
   result.friction_power = t.friction_power;
   result.plastic_power = t.plastic_power;
   result.elastic_energy += t.elastic_energy;
@@ -88,6 +96,7 @@ void report(const patch_scene &scene, const patch_problem &problem, const pressu
   result.normal_force = scene.curved ? -wrench.force[2] : n.normal_force;
   result.max_pressure = n.max_pressure;
   result.contact_area = n.contact_area;
+  std::copy_n(n.size, 2, result.contact_size);
   result.elastic_energy = result.pressure_energy = n.elastic_energy;
   if (scene.tangential != RP_TANGENTIAL_NONE) describe_tractions(scene, t, wrench, result);
   describe_heat(h, result);
@@ -138,6 +147,15 @@ void report_rates(const rp_patch_result &value, const patch_change &change, rp_p
   for (int c = 0; c < 2; ++c) set(value.creep_force[c], rate.creep_force[c], change.creep_force[c]);
   set(value.spin_moment, rate.spin_moment, change.spin_moment);
   set(value.friction_power, rate.friction_power, change.friction_power);
+  for (int c = 0; c < 2; ++c)
+    set(value.contact_size[c], rate.contact_size[c], value.contact_size[c] * change.growth[c]);
+  const double size = hypot(value.creep_force[0], value.creep_force[1]);
+  const double traction = value.traction_coefficient, used = value.utilised_friction;
+  set(traction, rate.traction_coefficient,
+      (change.creep_size - traction * change.normal_force) / value.normal_force);
+  // what friction could carry is the force over the part of it that is used
+  set(used, rate.utilised_friction,
+      used > 0 ? used * (change.creep_size - used * change.capacity) / size : 0.0);
 }
 
 void report_errors(const error_bounds &bounds, rp_patch_result &result) {

@@ -103,6 +103,7 @@ void single_patch::differentiate(const rp_input &d, const rp_input &, const rp_r
     set(value.grid_origin[k], change.grid_origin[k], v.origin[k]);
   }
   set(value.creep_power, change.creep_power, creep_power_rate(value, change));
+  set(value.wear_number, change.wear_number, wear_number_rate(value, change));
   sum_patch_rates(result.side[RP_RIGHT], side);
   sum_up(result, out);
 }

@@ -83,12 +83,37 @@ traction_outcome tangential_stage::solve(const patch_problem &problem,
   found.supplied *= rate;
   if (scene.yields()) found.plastic_power *= rate;
   found.converged = t.converged;
+  found.max_traction = greatest_traction(memory);
+  if (!fast_) found.capacity = capacity(problem, pressure, memory, heat);
   if (!t.converged) explain(problem, pressure, t, found);
   // what shift and transient rolling know already
   if (scene.tangential == RP_TANGENTIAL_FULL && !scene.keeps_steps())
     found.elastic_energy =
         fitted_ ? fitted_->elastic_energy(*fitted_rows_) : elastic_energy(problem, memory);
   return found;
+}
+
+// Pa; nan: the theory has no tractions.
+double tangential_stage::greatest_traction(const patch_memory &memory) const {
+  if (fast_ && !has_tractions(shared_.scene.tangential)) return nan;
+  double square = 0;
+  const auto count = static_cast<size_t>(memory.columns() * memory.rows());
+  for (size_t i = 0; i < count; ++i)
+    square = std::max(square, memory.px[i] * memory.px[i] + memory.py[i] * memory.py[i]);
+  return std::sqrt(square);
+}
+
+// N, by each element's friction coefficient, of the full theory.
+double tangential_stage::capacity(const patch_problem &problem, const pressure_outcome &pressure,
+                                  const patch_memory &memory, const heat_stage &heat) const {
+  const patch_scene &scene = shared_.scene;
+  const bool by_velocity = scene.law && scene.law->by_velocity;
+  if (fitted_ || !(by_velocity || scene.friction_variation.varies() || heat.feeds_back()))
+    return scene.friction() * pressure.normal_force;
+  double sum = 0;
+  for (size_t i = 0; i < static_cast<size_t>(problem.g.count()); ++i)
+    sum += by_velocity ? memory.history.friction[i] * memory.pressure[i] : bound_[i];
+  return sum * problem.g.dx * problem.g.dy;
 }
 
 // Why there is no solution. A fast theory that gives none is outside its range.
@@ -184,6 +209,7 @@ tangential_result tangential_stage::solve_by_theory(const patch_problem &problem
   const tangential_result t = fast_->solve(patch, rolling, memory.fields(), sums);
   std::copy_n(sums.force, 2, found.force);
   found.moment = sums.moment;
+  found.capacity = sums.capacity;
   return t;
 }
 

@@ -61,6 +61,9 @@ class tangential_stage {
                                  traction_outcome &found);
   void set_bound(const grid &g, const patch_memory &memory, const double *mu);
   double elastic_energy(const patch_problem &problem, patch_memory &memory);
+  double greatest_traction(const patch_memory &memory) const;
+  double capacity(const patch_problem &problem, const pressure_outcome &pressure,
+                  const patch_memory &memory, const heat_stage &heat) const;
   // of friction_work.cpp
   void close_step(const patch_problem &problem, const rolling_input &rolling, patch_memory &memory,
                   tangential_result &t, traction_outcome &found);

@@ -271,6 +271,8 @@ void wheel_contact::place_patch(const patch_contact &solver, patch_region &regio
   place.contact_angle = region.frame.contact_angle;
   place.depth = depth;
   place.contact_depth = geometry_->contact_depth(region.frame, depth);
+  std::ranges::copy(geometry_->on_wheel_profile(region.frame, depth), place.on_wheel_profile);
+  std::ranges::copy(geometry_->on_rail_profile(region.frame), place.on_rail_profile);
   place.rolling_speed = rolling.rolling_speed;
   place.direction = rolling.direction;
 }
@@ -428,8 +430,11 @@ derivative_outcome wheel_contact::differentiate(patch_contact &solver, const pat
       work.solve(solution, solver, motions, friction, count, options, result, changes);
   for (int k = 0; k < count; ++k) {
     if (side_ == RP_LEFT) mirror(changes[k]);
-    for (int i = 0; i < patches_; ++i)
-      changes[k].patch[i].creep_power = creep_power_rate(result.patch[i], changes[k].patch[i]);
+    for (int i = 0; i < patches_; ++i) {
+      rp_patch_result &change = changes[k].patch[i];
+      change.creep_power = creep_power_rate(result.patch[i], change);
+      change.wear_number = wear_number_rate(result.patch[i], change);
+    }
   }
   return outcome;
 }

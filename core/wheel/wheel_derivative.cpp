@@ -340,6 +340,13 @@ void wheel_derivative::report(step &s, int index, int b, int k, const patch_chan
   to.approach = s.depth_in(b, s.wheel.patches[index]).rate[slot];
   to.share = s.share_in(b, region).rate[slot];
   for (size_t c = 0; c < 3; ++c) to.position[c] = frame.origin[c].rate[slot];
+  const auto on_wheel =
+                 s.geometry[b]->on_wheel_profile(frame, s.depth_in(b, s.wheel.patches[index])),
+             on_rail = s.geometry[b]->on_rail_profile(frame);
+  for (size_t c = 0; c < 2; ++c) {
+    to.wheel_profile_position[c] = on_wheel[c].rate[slot];
+    to.rail_profile_position[c] = on_rail[c].rate[slot];
+  }
   to.contact_angle = frame.contact_angle.rate[slot];
   to.rolling_speed = s.rolling[b].rolling_speed.rate[slot];
   for (int c = 0; c < 2; ++c) {

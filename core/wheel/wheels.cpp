@@ -9,6 +9,7 @@
 #include "numeric/nan.hpp"
 #include "patch/result_sums.hpp"
 #include "wheel/force_samples.hpp"
+#include "wheel/wheel_loads.hpp"
 #include "wheel/wheelset_power.hpp"
 
 namespace railpatch {
@@ -135,11 +136,13 @@ void wheels::finish(const rp_input &in, rp_result &out) {
     set_bulk(wheel.side());
     sum_patches(solver_.scene(), side);
     side.contact_power = wheelset_power(in, {side.force, side.moment});
+    set_loads(wheel.side(), side);
   }
   sum_sides(there, out, out);
   out.roll = in.roll;
   out.pitch_rate = in.pitch_rate;
   out.axle_torque = torque(in, out);
+  if (there[RP_LEFT] && there[RP_RIGHT]) set_conicity(in.y, out);
   // more heat than the air takes
   if (bulk_ && !bulk_->within_range())
     report_search({RP_OUT_OF_RANGE, RP_REASON_BULK_TEMPERATURE}, out.residual, out);

@@ -8,6 +8,7 @@
 #include "patch/result_sums.hpp"
 #include "patch/status.hpp"
 #include "wheel/jacobian_columns.hpp"
+#include "wheel/wheel_loads.hpp"
 #include "wheel/wheels.hpp"
 #include "wheel/wheelset_power.hpp"
 
@@ -147,9 +148,11 @@ void wheels::differentiate(const rp_input &direction, const rp_input &input,
     sum_patch_rates(side, change);
     change.contact_power =
         wheelset_power_rate(at, total, {side.force, side.moment}, {change.force, change.moment});
+    set_load_rates(wheel.side(), side, change);
   }
   sum_sides(there, result, out);
   set(out.axle_torque, torque_rate(at, total, result, {&out.side[0], &out.side[1]}));
+  if (there[RP_LEFT] && there[RP_RIGHT]) set_conicity_rates(at.y, total.y, result, out);
 }
 
 // Exact slopes of the balance's conditions by what it finds; where the vertical force is prescribed

@@ -28,6 +28,9 @@ TIMES = ("wall_time",)
 # what follows from other numbers of the result, and has tests of its own: of patches and wheels
 FOLLOW = ("creep_power", "contact_power", "wheel_heat", "rail_heat")
 FOLLOW += ("wheel_temperature", "rail_temperature")
+FOLLOW += ("wear_number", "traction_coefficient", "utilised_friction", "max_traction")
+FOLLOW += ("contact_size", "wheel_profile_position", "rail_profile_position", "guiding_force")
+FOLLOW += ("wheel_load", "derailment_quotient", "rolling_radius_difference", "conicity")
 SUMS = ("friction_power", "plastic_power", "elastic_energy", "max_temperature", "residual")
 
 

@@ -133,6 +133,9 @@ def compare(rng: np.random.Generator, number: int) -> float | None:
         assert np.array_equal(np.isnan(value), np.isnan(rate)), (number, name, case)
         if np.isnan(value).any():
             continue
+        if name == "wear_number" and case["motion"].get("spin_creepage") == 0:
+            # a kink: the difference of both sides is off by the step
+            continue
         row = sum(np.linalg.norm(numbers(part, name)) for part in single)
         # what the steps themselves are good for: their tolerance, and rounding
         noise = 5 * TOLERANCE * np.linalg.norm(value) / STEP

@@ -12,7 +12,7 @@ import pinocchio as pin
 from railpatch.case.types import SIDES
 from railpatch.log import VehicleGeometry, VehicleLog, scene_geometry
 from railpatch.log.stream import Pace
-from railpatch.result import wheel_json
+from railpatch.result import logged, wheel_json
 
 from wheelset_demo.record import attachments, ran_with
 from wheelset_demo.scene import GRAVITY, SNAPSHOTS
@@ -112,6 +112,7 @@ class Recorder:
             "moment": wrench[3:],
             "left_rail": rails[0],
             "right_rail": rails[1],
+            **logged(result),
         }
         wheels = slice(2 * index, 2 * index + 2)
         lost = simulation.state.work[len(WORKS) :][wheels].tolist()

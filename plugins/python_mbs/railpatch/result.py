@@ -34,7 +34,10 @@ LEFT_OUT = {
     },
 }
 # what a patch given by itself has from its case
-GIVEN = ("share", "position", "contact_angle", "creepage", "spin_creepage", "rolling_speed")
+GIVEN = (
+    *("share", "position", "contact_angle", "creepage", "spin_creepage", "rolling_speed"),
+    *("wheel_profile_position", "rail_profile_position"),
+)
 
 
 def unit_of(struct: str, name: str) -> str:
@@ -64,7 +67,10 @@ TOTAL_UNITS = {
     name: unit for name, unit in WHEEL_UNITS.items() if name in _core.QUANTITIES["result"]
 }
 # of a wheelset besides, given or found
-WHEELSET_UNITS = {name: unit_of("result", name) for name in ("roll", "pitch_rate", "axle_torque")}
+WHEELSET_UNITS = {
+    name: unit_of("result", name)
+    for name in ("roll", "pitch_rate", "axle_torque", "rolling_radius_difference", "conicity")
+}
 DIVISION: tuple[str, ...] = _core.CHOICES["element"]
 # fields with their number of components
 FIELDS = {
@@ -91,6 +97,15 @@ SOLVED = (*GOOD, "accuracy_not_met", "work_spent")
 # and that have contact
 CARRIES = ("converged", "accuracy_not_met", "work_spent")
 _INF = math.inf
+
+
+# of a wheelset, that runs log beside its state
+LOGGED = ("rolling_radius_difference", "conicity", "wear_number")
+
+
+def logged(result: Any) -> dict[str, Any]:
+    """Of a wheelset's result, what it has of these; None for what is left out."""
+    return plain_json({name: result[name] for name in LOGGED if name in result})
 
 
 class Source(Protocol):

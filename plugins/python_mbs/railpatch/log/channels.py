@@ -19,6 +19,7 @@ from functools import cache
 from railpatch import _core
 from railpatch.record.quantities import ABOUT_SIGNS, ABSCISSA, QUANTITIES
 from railpatch.record.units import UNITS
+from railpatch.result import LOGGED
 
 STATUSES: tuple[str, ...] = _core.CHOICES["status"]
 # m, over which wheel forces are averaged before their ratio is judged (EN 14363)
@@ -43,6 +44,7 @@ CONVENTIONS = {
     "contact_axes": "of a patch: origin at its position, x along rolling, y lateral along the "
     "surface, normal pointing down into the rail or roller; contact_angle turns about x from "
     "track z to the normal",
+    "profile_axes": "y and z of a profile as it was given, flange or gauge side at negative y",
     "forces": "on the wheel; on the rail or roller they are the opposite",
     "creepages": "wheel minus rail, divided by the rolling speed",
     "missing": "a value that the scene left out, or that was not found, is absent, never zero",
@@ -145,6 +147,7 @@ WHEELSET_STATE = Message(
         _number("cant", "rad", "cant of the track", "track"),
         _number("left_rail", "m", "lateral, vertical deviation of the left rail", "track", size=2),
         _number("right_rail", "m", "the same of the right rail", "track", size=2),
+        *(_listed("result", name) for name in LOGGED),
     ),
 )
 
@@ -204,6 +207,13 @@ PATCH = Message(
         _listed("patch", "pressure_energy"),
         _text("patch", "reason"),
         *(_listed("patch", name) for name in _OF_FLUID),
+        _listed("patch", "wear_number"),
+        _listed("patch", "traction_coefficient"),
+        _listed("patch", "utilised_friction"),
+        _listed("patch", "max_traction"),
+        _listed("patch", "contact_size", "contact"),
+        _listed("patch", "wheel_profile_position", "profile"),
+        _listed("patch", "rail_profile_position", "profile"),
     ),
 )
 
@@ -246,6 +256,10 @@ WHEEL_CONTACT = Message(
         *(_listed("side", name) for name in _SUMS),
         _text("side", "reason"),
         _text("side", "warnings", size=0),
+        _listed("side", "wear_number"),
+        _listed("side", "guiding_force", "track"),
+        _listed("side", "wheel_load", "track"),
+        _listed("side", "derailment_quotient"),
     ),
 )
 
