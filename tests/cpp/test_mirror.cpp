@@ -60,6 +60,7 @@ rp_result mirrored(rp_result r) {
   r.moment[0] = -r.moment[0];
   r.moment[2] = -r.moment[2];
   r.roll = -r.roll;
+  r.rolling_radius_difference = -r.rolling_radius_difference;
   for (rp_side_result &s : r.side) s = mirrored(s);
   std::swap(r.side[0], r.side[1]);
   return r;

@@ -82,7 +82,9 @@ def test_equal_central_differences(name: str, exact: Callable[..., Fmu]) -> None
     """Rows scaled by their greatest entry for usual changes; differences over events left out."""
     fmu = exact(name)
     assert fmu.root.find("CoSimulation").attrib["providesDirectionalDerivative"] == "true"
-    outputs = [n for n in fmu.names("output", "Real") if not n.endswith("residual")]
+    # of a patch without lateral creepage the wear number has a kink, and differences err by the step
+    left_out = ("residual", "wear_number") if name == "patch" else ("residual",)
+    outputs = [n for n in fmu.names("output", "Real") if not n.endswith(left_out)]
     inputs = fmu.names("input", "Real")
     inputs += [n for n in fmu.names("parameter") if n == "friction.coefficient"]
     start = {n: float(fmu.variables[n][0].attrib["start"]) for n in inputs}
