@@ -82,7 +82,7 @@ def test_equal_central_differences(name: str, exact: Callable[..., Fmu]) -> None
     """Rows scaled by their greatest entry for usual changes; differences over events left out."""
     fmu = exact(name)
     assert fmu.root.find("CoSimulation").attrib["providesDirectionalDerivative"] == "true"
-    # of a patch without lateral creepage the wear number has a kink, and differences err by the step
+    # without lateral creepage the wear number has a kink, where differences err by the step
     left_out = ("residual", "wear_number") if name == "patch" else ("residual",)
     outputs = [n for n in fmu.names("output", "Real") if not n.endswith(left_out)]
     inputs = fmu.names("input", "Real")
