@@ -88,9 +88,9 @@
   X(double, fluid_temperature, 1, number, even, kept, alone, NAN, "degrees C",                    \
     "temperature of the liquid")                                                                  \
   X(double, effective_friction, 1, number, even, kept, alone, NAN, "-",                           \
-    "friction coefficient with the liquid") \
+    "friction coefficient with the liquid")                                                       \
   X(double, wear_number, 1, number, even, zero_rolling, by_share, NAN, "N",                       \
-    "wear number T gamma: sizes of Fx xi, Fy eta, M phi, added")                                          \
+    "wear number T gamma: sizes of Fx xi, Fy eta, M phi, added")                                  \
   X(double, traction_coefficient, 1, number, even, kept, alone, NAN, "-",                         \
     "creep force over normal force")                                                              \
   X(double, utilised_friction, 1, number, even, kept, alone, NAN, "-",                            \
