@@ -45,7 +45,7 @@ CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
 SOURCES := $(shell find core plugins rig_model wheelset_demo -type f -not -name '*.pyc' 2>/dev/null) \
 	CMakeLists.txt README.md
 
-.PHONY: help tools asan-core build-asan demo docs book pages viewer fmu fmu-clients fmu-fftw wheels release test test-long lint format clean setup \
+.PHONY: help tools asan-core build-asan demo docs book pages viewer fmu fmu-clients fmu-fftw contact-addon wheels release test test-long lint format clean setup \
 	system test-cpp test-python test-asan pruning mutants bits-steps
 
 help: ## this list
@@ -87,6 +87,11 @@ fmu-fftw: setup ## the FMU's library with FFTW, for `railpatch fmu --fft fftw --
 
 fmu-clients: fmu ## the same in clients that others wrote: fmpy, libcosimpy, ecospy, FMI4j, VDMCheck2
 	plugins/fmu/clients/run build/fmu/clients $$(ls build/fmu/*.fmu | grep -v gpl)
+
+contact-addon: setup ## the library with the calls of the program CONTACT, for Linux and Windows, in build/contact_addon
+	@mkdir -p build/contact_addon
+	$(BIN)/python -m pip install --quiet --group cross
+	$(BIN)/python plugins/contact_addon/build.py build/contact_addon
 
 wheels: fmu ## wheels for Linux and Windows, their checks, and a first hour's work in a clean environment
 	@.ci/system-packages mvn:maven readelf:binutils
@@ -156,13 +161,13 @@ test: ## set-up and every check; what each part and the slowest tests took
 	@printf '\nall checks passed:\n'
 	@$(BIN)/python .ci/summary.py build/junit/parts $(addprefix build/junit/,cpp.xml python.xml asan.xml)
 
-# solves cases by the C interface: tests/bits
+# solves cases by the C interface: tests/bits; the library that tests/contact_addon links with
 bits-steps: $(VENV)/tools
 	cmake --preset release $(RELEASE)
-	cmake --build --preset release --target bits_steps
+	cmake --build --preset release --target bits_steps contact_addon
 
 test-long: setup bits-steps ## what is slow by nature, before a release: hours
-	@.ci/system-packages qemu-x86_64:qemu-user
+	@.ci/system-packages qemu-x86_64:qemu-user gfortran
 	@mkdir -p build/junit
 	$(PYTEST) -m long --junit-xml=build/junit/long.xml
 	@$(MAKE) --no-print-directory mutants
@@ -204,18 +209,20 @@ test-asan: build-asan ## the same with Eigen's transforms, address and undefined
 # each process has a half of the tests, in their order; the first at its end takes from the other
 PYTEST := $(BIN)/python -m pytest --numprocesses=$(JOBS) --dist=worksteal
 test-python: setup fmu-fftw bits-steps ## pytest, against the installed package
+	@.ci/system-packages gfortran readelf:binutils
 	@mkdir -p build/junit
 	$(PYTEST) --junit-xml=build/junit/python.xml
 
 pruning: $(VENV)/tools ## what plain cases pay for physics that they leave out, and for the FMU
 	@.ci/system-packages valgrind
 	cmake --preset release $(RELEASE)
-	cmake --build --preset release --target pruning_steps fmu_overhead
+	cmake --build --preset release --target pruning_steps fmu_overhead contact_addon_cost
 	cmake -S . -B build/pruning -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAILPATCH_TESTS=OFF \
 		-DRAILPATCH_PRUNING=ON -DRAILPATCH_PHYSICS=OFF -DRAILPATCH_PCH=ON -DRAILPATCH_UNITY=ON
 	cmake --build build/pruning --target pruning_steps
 	$(BIN)/python tests/pruning/compare.py build/{release,pruning}/tests/pruning/pruning_steps
 	$(BIN)/python tests/fmu/overhead.py build/release/tests/fmu_overhead
+	$(BIN)/python tests/contact_addon/cost.py build/release/tests/contact_addon_cost
 
 SEEDS ?= 1 2
 COUNT ?= 300
