@@ -37,7 +37,7 @@ FMU := -DRAILPATCH_FMU=ON -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python
 FMU_FFTW := build/fmu_fftw
 # one build has the C++ tests, the program of `make pruning` and what the Python package is made of,
 # whose transforms may be others
-RELEASE := $(FMU) -DRAILPATCH_TESTS=ON -DRAILPATCH_PRUNING=ON -DRAILPATCH_PCH=ON -DRAILPATCH_UNITY=ON
+RELEASE := $(FMU) -DRAILPATCH_CONTACT_ADDON=ON -DRAILPATCH_TESTS=ON -DRAILPATCH_PRUNING=ON -DRAILPATCH_PCH=ON -DRAILPATCH_UNITY=ON
 PACKAGE := --config-settings=build-dir=build/release $(addprefix --config-settings=cmake.define., \
 	RAILPATCH_PYTHON=ON RAILPATCH_FMU=ON RAILPATCH_WERROR=ON RAILPATCH_PCH=ON RAILPATCH_UNITY=ON)
 CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
