@@ -11,7 +11,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-STRUCTS = {"input": "rp_input", "output": "rp_result", "parameter": ""}
+TYPES = {"Real": "real", "Integer": "integer", "Enumeration": "enumeration", "String": "text"}
+STRUCTS = {"input": "rp_input", "output": "rp_result", "parameter": "", "independent": ""}
 
 
 def load(path: Path) -> Any:
@@ -36,9 +37,8 @@ def line(variable: Any) -> str:
     low, high = (float(limit) for limit in variable.range)
     side = 0 if variable.side is None else variable.side + 1
     patch = 0 if variable.patch is None else variable.patch + 1
-    kind = "real" if variable.base == "Real" else "integer"
     return (
-        f"{{{variable.reference}, Type::{kind}, Role::{variable.causality}, "
+        f"{{{variable.reference}, Type::{TYPES[variable.base]}, Role::{variable.causality}, "
         f"{place(variable, variable.field)}, {place(variable, variable.plus)}, {low!r}, {high!r}, "
         f"{side}, {patch}, {variable.mean_of}, Absent::{absent(variable)}, "
         f"{str(variable.fixed).lower()}}},"

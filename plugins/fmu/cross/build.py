@@ -74,12 +74,12 @@ def compile_for(name: str, folder: Path, targets: Sequence[str], **more: str | P
 
 
 def build(name: str, folder: Path) -> None:
-    """One platform's library, into FOLDER/lib."""
+    """One platform's libraries, for both versions of FMI, into FOLDER/lib."""
     tree = compile_for(name, folder, ["railpatch_fmu", "bits_steps"])
-    made = tree / "plugins" / "fmu" / f"railpatch_fmu_eigen{ENDINGS[PLATFORMS[name][1]]}"
     place = folder / "lib" / name
     place.mkdir(parents=True, exist_ok=True)
-    shutil.copy(made, place)
+    for library in ("railpatch_fmu_eigen", "railpatch_fmu3_eigen"):
+        shutil.copy(tree / "plugins/fmu" / f"{library}{ENDINGS[PLATFORMS[name][1]]}", place)
 
 
 def run(*command: str | Path) -> None:

@@ -15,7 +15,9 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
 # Eigen's code for processors on which no FMU runs
 OTHER_PROCESSORS = {"AltiVec", "ZVector", "MSA", "SYCL", "GPU", "HIP", "SVE"}
 EIGEN = ("/usr/include/eigen3", "/usr/local/include/eigen3", "/opt/homebrew/include/eigen3")
+# an FMU takes those of its version: railpatch/fmu/sources.py
 FMI = ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h")
+FMI += ("fmi3Functions.h", "fmi3FunctionTypes.h", "fmi3PlatformTypes.h")
 FIRST = b'#include "before_cxx20.hpp"\n'
 README = """Sources of this FMU's library, for importers that compile them.
 

@@ -24,15 +24,16 @@ uint64_t hash_of(const std::string &text) {
 }
 
 // Reads, parses and compares resources/scene.txt; else says in the log what is wrong.
-bool load_scene(const char *guid, const char *location, Log &log, Scene &scene) {
-  const std::string call = "fmi2Instantiate: ";
+bool load_scene(const Making &making, const char *token, const char *location, Log &log,
+                Scene &scene) {
+  const std::string call = std::string(making.call) + ": ";
   if (location == nullptr) {
-    log.error(call + "fmuResourceLocation is NULL, but the scene is in the resources folder");
+    log.error(call + making.location + " is NULL, but the scene is in the resources folder");
     return false;
   }
   std::string content, tried, problem;
   if (!read_resource(location, kSceneFile, content, tried)) {
-    log.error(call + "the scene cannot be read; fmuResourceLocation is " + quoted(location) +
+    log.error(call + "the scene cannot be read; " + making.location + " is " + quoted(location) +
               ", tried: " + tried);
     return false;
   }
@@ -40,8 +41,8 @@ bool load_scene(const char *guid, const char *location, Log &log, Scene &scene) 
     log.error(call + kSceneFile + " of the resources cannot be used: " + problem);
     return false;
   }
-  if (guid == nullptr || scene.guid != guid) {
-    log.error(call + "fmuGUID is " + quoted(guid != nullptr ? guid : "NULL") +
+  if (token == nullptr || scene.guid != token) {
+    log.error(call + making.token + " is " + quoted(token != nullptr ? token : "NULL") +
               ", but that of the resources is " + quoted(scene.guid));
     return false;
   }
@@ -49,11 +50,13 @@ bool load_scene(const char *guid, const char *location, Log &log, Scene &scene) 
 }
 
 // Reads the table of creep forces of a scene that uses one; what is wrong with it the core tells.
-bool load_table(const char *location, Log &log, Scene &scene, std::string &table) {
+bool load_table(const Making &making, const char *location, Log &log, Scene &scene,
+                std::string &table) {
   if (scene.config.tangential != RP_TANGENTIAL_TABLE) return true;
   std::string tried;
   if (!read_resource(location, kTableFile, table, tried)) {
-    log.error("fmi2Instantiate: the table of creep forces cannot be read, tried: " + tried);
+    log.error(std::string(making.call) +
+              ": the table of creep forces cannot be read, tried: " + tried);
     return false;
   }
   scene.config.creep_table = table.data();
@@ -63,18 +66,20 @@ bool load_table(const char *location, Log &log, Scene &scene, std::string &table
 
 }  // namespace
 
-std::unique_ptr<Instance> Instance::create(Interface interface, const char *guid,
-                                           const char *location, Log log) {
+std::unique_ptr<Instance> Instance::create(const Making &making, Interface interface,
+                                           const char *token, const char *location, Log log) {
   std::unique_ptr<Instance> instance(new Instance(std::move(log)));
+  instance->version_ = making.version;
+  const std::string call = std::string(making.call) + ": ";
   const DefaultFloatingPoint environment;  // numbers in text are rounded, too
   auto content = std::make_unique<Scene>();
   Scene &scene = *content;
-  if (!load_scene(guid, location, instance->log_, scene)) return nullptr;
-  if (!load_table(location, instance->log_, scene, instance->table_)) return nullptr;
+  if (!load_scene(making, token, location, instance->log_, scene)) return nullptr;
+  if (!load_table(making, location, instance->log_, scene, instance->table_)) return nullptr;
   if (interface == Interface::model_exchange && scene.options.history != 0) {
-    instance->log_.error(
-        "fmi2Instantiate: fmuType is fmi2ModelExchange, but this scene has a history: take "
-        "fmi2CoSimulation");
+    instance->log_.error(call +
+                         "model exchange is asked for, but this scene has a history: take "
+                         "co-simulation");
     return nullptr;
   }
   rp_contact *contact = nullptr;
@@ -82,7 +87,7 @@ std::unique_ptr<Instance> Instance::create(Interface interface, const char *guid
   const rp_error error = rp_create(&scene.config, &contact, &message);
   if (error != RP_OK) {
     instance->log_.error(
-        "fmi2Instantiate: the scene is refused: " +
+        call + "the scene is refused: " +
         std::string(message.text[0] != '\0' ? message.text : rp_error_text(error)));
     return nullptr;
   }
@@ -95,9 +100,10 @@ std::unique_ptr<Instance> Instance::create(Interface interface, const char *guid
   instance->options_ = scene.options;
   instance->content_ = hash_of(scene.guid);
   instance->variables_ = std::move(scene.variables);
+  const std::vector<SceneArray> arrays = std::move(scene.variable_arrays);
   if (!scene.choices[0].empty() || !scene.choices[1].empty()) instance->scene_ = std::move(content);
-  if (!instance->index_variables()) {
-    instance->log_.error("fmi2Instantiate: the variables of scene.txt do not belong together");
+  if (!instance->index_variables() || !instance->index_arrays(arrays)) {
+    instance->log_.error(call + "the variables of scene.txt do not belong together");
     return nullptr;
   }
   instance->start_values();
@@ -109,7 +115,7 @@ bool Instance::index_variables() {
     const Variable &variable = *variables_[i].variable;
     if (variable.reference >= index_.size()) index_.resize(variable.reference + 1, -1);
     index_[variable.reference] = static_cast<int16_t>(i);
-    if (variable.role == Role::output) continue;
+    if (variable.role == Role::output || variable.role == Role::independent) continue;
     if (known_ != i) return false;
     ++known_;
   }
@@ -147,20 +153,19 @@ bool Instance::allows(const Call &call) {
     return false;
   }
   if ((call.allowed & static_cast<uint32_t>(mode_)) != 0) return true;
-  refuse(call, std::string("is not allowed in the state ") + mode_text(mode_));
+  refuse(call, std::string("is not allowed in the state ") + mode_text(mode_, version_));
   return false;
 }
 
-fmi2Status Instance::refuse(const Call &call, const std::string &why) {
+Status Instance::refuse(const Call &call, const std::string &why) {
   log_.error(std::string(call.name) + ": " + why);
-  return fmi2Error;
+  return Status::error;
 }
 
 // --- modes -------------------------------------------------------------------------------------
 
-fmi2Status Instance::setup(bool tolerance_defined, double tolerance, double start,
-                           bool stop_defined, double stop) {
-  const Call &call = call::setup_experiment;
+Status Instance::setup(const Call &call, bool tolerance_defined, double tolerance, double start,
+                       bool stop_defined, double stop) {
   if (tolerance_defined && !(tolerance > 0 && std::isfinite(tolerance)))
     return refuse(call, "tolerance is " + text_of(tolerance) + ", allowed > 0");
   if (!std::isfinite(start))
@@ -170,68 +175,67 @@ fmi2Status Instance::setup(bool tolerance_defined, double tolerance, double star
   time_ = start_ = start;
   stop_defined_ = stop_defined;
   stop_ = stop_defined ? stop : 0;
-  return fmi2OK;
+  return Status::ok;
 }
 
-fmi2Status Instance::enter_initialization() {
+Status Instance::enter_initialization() {
   mode_ = Mode::initialization;
-  return fmi2OK;
+  return Status::ok;
 }
 
-fmi2Status Instance::exit_initialization() {
-  const Call &call = call::exit_initialization;
-  const fmi2Status status = changed_ ? solve(call) : fmi2OK;
+Status Instance::exit_initialization(const Call &call) {
+  const Status status = changed_ ? solve(call) : Status::ok;
   // FMI knows no discard here, so a start that cannot be solved is an error, and said as one
-  if (status == fmi2Discard)
+  if (status == Status::discard)
     log_.error(std::string(call.name) + ": the start values cannot be solved");
   const Mode next = interface_ == Interface::co_simulation ? Mode::step_complete : Mode::event;
-  mode_ = status == fmi2OK ? next : Mode::error;
-  return status == fmi2OK ? fmi2OK : fmi2Error;
+  mode_ = status == Status::ok ? next : Mode::error;
+  return status == Status::ok ? Status::ok : Status::error;
 }
 
-fmi2Status Instance::terminate() {
+Status Instance::terminate(const Call &call) {
   // outputs go on following what was set: they can still be read
   if (changed_ && follows()) {
-    const fmi2Status status = solve(call::terminate);
-    if (status == fmi2Error) return status;
+    const Status status = solve(call);
+    if (status == Status::error) return status;
   }
   mode_ = Mode::terminated;
-  return fmi2OK;
+  return Status::ok;
 }
 
-fmi2Status Instance::reset() {
+Status Instance::reset() {
   rp_reset(contact_.get());
   start_values();
   time_ = start_ = stop_ = 0;
   stop_defined_ = false;
   mode_ = Mode::instantiated;
-  return fmi2OK;
+  return Status::ok;
 }
 
-fmi2Status Instance::go_to(Mode mode) {
+Status Instance::go_to(Mode mode) {
   mode_ = mode;
-  return fmi2OK;
+  return Status::ok;
 }
 
-fmi2Status Instance::set_time(double time) {
+Status Instance::set_time(const Call &call, double time) {
   if (!std::isfinite(time))
-    return refuse(call::set_time, "time is " + text_of(time) + ", allowed a finite number");
+    return refuse(call, "time is " + text_of(time) + ", allowed a finite number");
   time_ = time;
-  return fmi2OK;
+  return Status::ok;
 }
 
 // --- solving -----------------------------------------------------------------------------------
 
-fmi2Status Instance::solve(const Call &call) {
+Status Instance::solve(const Call &call) {
   std::copy_n(values_.begin(), known_, at_.begin());
-  const fmi2Status status = advance(call, time_, options_.time_step);
-  if (status == fmi2OK) publish();
+  const Status status = advance(call, time_, options_.time_step);
+  if (status == Status::ok) publish();
   return status;
 }
 
-fmi2Status Instance::advance(const Call &call, double time, double time_step) {
-  const fmi2Status status = take_profiles(call);
-  if (status != fmi2OK) return status;
+Status Instance::advance(const Call &call, double time, double time_step) {
+  const Status status = take_profiles(call);
+  if (status != Status::ok) return status;
   if (!pending_.empty()) {
     const rp_error error = rp_restore_state(contact_.get(), pending_.data(), pending_.size());
     if (error != RP_OK) return refuse(call, rp_error_text(error));
@@ -242,7 +246,7 @@ fmi2Status Instance::advance(const Call &call, double time, double time_step) {
   return run_contact(call, time, time_step);
 }
 
-fmi2Status Instance::run_contact(const Call &call, double time, double time_step) {
+Status Instance::run_contact(const Call &call, double time, double time_step) {
   solution_ = Solution::none;
   direction_.clear();
   rp_message message = {};
@@ -263,24 +267,24 @@ fmi2Status Instance::run_contact(const Call &call, double time, double time_step
     // each input is in its range: what does not fit together, a creep force beyond friction, may
     // fit after a smaller step
     if (error == RP_ERROR_VALUE) {
-      log_.say(fmi2Discard, Category::discard,
+      log_.say(Status::discard, Category::discard,
                std::string(call.name) + ": at time " + text_of(time) + " " + message.text +
                    ": take a smaller step or other inputs");
-      return fmi2Discard;
+      return Status::discard;
     }
   }
   if (error != RP_OK)
     return refuse(call, message.text[0] != '\0' ? message.text : rp_error_text(error));
   const rp_status status = outputs_.result.status;
   if (status == RP_NOT_CONVERGED || status == RP_OUT_OF_RANGE) {
-    log_.say(fmi2Discard, Category::discard,
+    log_.say(Status::discard, Category::discard,
              std::string(call.name) + ": " + failure(time, outputs_.result));
-    return fmi2Discard;
+    return Status::discard;
   }
   warn(time);
   set_rest_temperature(outputs_, input_);
   solution_ = Solution::held;
-  return fmi2OK;
+  return Status::ok;
 }
 
 bool Instance::absent(const Variable &variable) const {
@@ -291,6 +295,7 @@ bool Instance::absent(const Variable &variable) const {
 void Instance::publish() {
   for (size_t i = known_; i < values_.size(); ++i) {
     const Variable &variable = *variables_[i].variable;
+    if (variable.role != Role::output) continue;
     values_[i] = absent(variable) ? rest_of(outputs_, variable) : output_of(outputs_, variable);
   }
   solved_ = at_;
@@ -319,57 +324,62 @@ void Instance::warn(double time) {
   warned_ |= fresh;
 #define RP_WARN(name, value, text)      \
   if (fresh & (uint32_t{1} << (value))) \
-    log_.say(fmi2Warning, Category::warning, "at time " + text_of(time) + " " text);
+    log_.say(Status::warning, Category::warning, "at time " + text_of(time) + " " text);
   RP_WARNINGS(RP_WARN)
 #undef RP_WARN
 }
 
 // --- values ------------------------------------------------------------------------------------
 
-int Instance::index_of(fmi2ValueReference reference) const {
+int Instance::index_of(Reference reference) const {
   return reference < index_.size() ? index_[reference] : -1;
 }
 
-int Instance::find(const Call &call, Type type, fmi2ValueReference reference) {
+int Instance::find(const Call &call, Type type, Reference reference) {
   const int index = index_of(reference);
   const auto at = static_cast<size_t>(index);
-  if (index >= 0 && variables_[at].variable->type == type) return index;
+  if (index >= 0 && among(variables_[at].variable->type, type)) return index;
   refuse(call, index < 0 ? "there is no variable with value reference " + text_of_whole(reference)
                          : variables_[at].name + " is not of this type");
   return -1;
 }
 
 template <class T>
-fmi2Status Instance::get(const Call &call, Type type, const fmi2ValueReference *references,
-                         size_t count, T *values) {
+Status Instance::get(const Call &call, Type type, const Reference *references, size_t count,
+                     T *values) {
   if (count > 0 && (references == nullptr || values == nullptr))
     return refuse(call, references == nullptr ? "vr is NULL" : "value is NULL");
   bool of_output = false, of_largest = false;
   for (size_t i = 0; i < count; ++i) {
     const int index = find(call, type, references[i]);
-    if (index < 0) return fmi2Error;
-    of_output |= variables_[static_cast<size_t>(index)].variable->role == Role::output;
+    if (index < 0) return Status::error;
+    const SceneVariable &item = variables_[static_cast<size_t>(index)];
+    if (item.variable->role == Role::independent) values_[static_cast<size_t>(index)] = time_;
+    if (item.variable->role == Role::output && mode_ == Mode::instantiated)
+      return refuse(call, item.name + " is an output, which there is from initialization mode on");
+    of_output |= item.variable->role == Role::output;
     of_largest |= references[i] == reference::largest_step;
   }
   if (of_output && changed_ && follows()) {
-    const fmi2Status status = solve(call);
-    if (status != fmi2OK) return status;
+    const Status status = solve(call);
+    if (status != Status::ok) return status;
   }
   const bool of_failed = mode_ == Mode::step_failed || mode_ == Mode::terminated;
   if (of_largest && !largest_known_ && (solution_ != Solution::none || of_failed)) {
-    const fmi2Status status = find_largest_step(call);
-    if (status != fmi2OK) return status;
+    const Status status = find_largest_step(call);
+    if (status != Status::ok) return status;
   }
   for (size_t i = 0; i < count; ++i)
     values[i] = static_cast<T>(values_[static_cast<size_t>(index_of(references[i]))]);
-  return fmi2OK;
+  return Status::ok;
 }
 
 bool Instance::settable(const Call &call, int index, double value) {
   const SceneVariable &item = variables_[static_cast<size_t>(index)];
   const Variable &variable = *item.variable;
-  if (variable.role == Role::output) {
-    refuse(call, item.name + " is an output");
+  if (variable.role == Role::output || variable.role == Role::independent) {
+    const bool output = variable.role == Role::output;
+    refuse(call, item.name + (output ? " is an output" : " is the independent variable"));
     return false;
   }
   if (mode_ == Mode::continuous && variable.role == Role::parameter) {
@@ -390,6 +400,10 @@ bool Instance::in_range(const Call &call, int index, double value) {
     refuse(call, item.name + " is 0, allowed -1 and 1");
     return false;
   }
+  if (item.held && value != 0) {
+    refuse(call, item.name + " is " + text_of(value) + ", allowed 0: it is without effect");
+    return false;
+  }
   // a profile must be one of those that are there
   const double high = variable.fixed ? profile_count(variable) : variable.high;
   if (value >= variable.low && value <= high) return true;
@@ -399,29 +413,27 @@ bool Instance::in_range(const Call &call, int index, double value) {
 }
 
 template <class T>
-fmi2Status Instance::set(const Call &call, Type type, const fmi2ValueReference *references,
-                         size_t count, const T *values) {
+Status Instance::set(const Call &call, Type type, const Reference *references, size_t count,
+                     const T *values) {
   if (count > 0 && (references == nullptr || values == nullptr))
     return refuse(call, references == nullptr ? "vr is NULL" : "value is NULL");
   for (size_t i = 0; i < count; ++i) {
     const int index = find(call, type, references[i]);
-    if (index < 0 || !settable(call, index, static_cast<double>(values[i]))) return fmi2Error;
+    if (index < 0 || !settable(call, index, static_cast<double>(values[i]))) return Status::error;
   }
   for (size_t i = 0; i < count; ++i)
     values_[static_cast<size_t>(index_of(references[i]))] = static_cast<double>(values[i]);
   changed_ = changed_ || count > 0;
   // its mass and inertia may be among them
   if (count > 0) largest_known_ = false;
-  return fmi2OK;
+  return Status::ok;
 }
 
-template fmi2Status Instance::get(const Call &, Type, const fmi2ValueReference *, size_t,
-                                  fmi2Real *);
-template fmi2Status Instance::get(const Call &, Type, const fmi2ValueReference *, size_t,
-                                  fmi2Integer *);
-template fmi2Status Instance::set(const Call &, Type, const fmi2ValueReference *, size_t,
-                                  const fmi2Real *);
-template fmi2Status Instance::set(const Call &, Type, const fmi2ValueReference *, size_t,
-                                  const fmi2Integer *);
+template Status Instance::get(const Call &, Type, const Reference *, size_t, double *);
+template Status Instance::get(const Call &, Type, const Reference *, size_t, int32_t *);
+template Status Instance::get(const Call &, Type, const Reference *, size_t, int64_t *);
+template Status Instance::set(const Call &, Type, const Reference *, size_t, const double *);
+template Status Instance::set(const Call &, Type, const Reference *, size_t, const int32_t *);
+template Status Instance::set(const Call &, Type, const Reference *, size_t, const int64_t *);
 
 }  // namespace railpatch::fmu

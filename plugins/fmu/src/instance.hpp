@@ -9,60 +9,72 @@
 #include <vector>
 
 #include "calls.hpp"
-#include "fmi2FunctionTypes.h"
 #include "log.hpp"
 #include "outputs.hpp"
 #include "railpatch.h"
 #include "scene.hpp"
 #include "snapshot.hpp"
+#include "types.hpp"
 
 namespace railpatch::fmu {
 
 class Instance {
  public:
   // Null where it cannot be made; the log then says why.
-  static std::unique_ptr<Instance> create(Interface interface, const char *guid,
-                                          const char *location, Log log);
+  static std::unique_ptr<Instance> create(const Making &making, Interface interface,
+                                          const char *token, const char *location, Log log);
 
   Log &log() { return log_; }
   // False, with a message, where the state does not allow the call.
   bool allows(const Call &call);
-  fmi2Status refuse(const Call &call, const std::string &why);
+  Status refuse(const Call &call, const std::string &why);
 
-  fmi2Status setup(bool tolerance_defined, double tolerance, double start, bool stop_defined,
-                   double stop);
-  fmi2Status enter_initialization();
-  fmi2Status exit_initialization();
-  fmi2Status terminate();
-  fmi2Status reset();
-  fmi2Status step(double time, double step);
-  fmi2Status go_to(Mode mode);  // event and continuous-time mode
-  fmi2Status set_time(double time);
+  Status setup(const Call &call, bool tolerance_defined, double tolerance, double start,
+               bool stop_defined, double stop);
+  Status enter_initialization();
+  Status exit_initialization(const Call &call);
+  Status terminate(const Call &call);
+  Status reset();
+  Status step(const Call &call, double time, double step);
+  Status go_to(Mode mode);  // event and continuous-time mode
+  Status set_time(const Call &call, double time);
 
   template <class T>
-  fmi2Status get(const Call &call, Type type, const fmi2ValueReference *references, size_t count,
-                 T *values);
+  Status get(const Call &call, Type type, const Reference *references, size_t count, T *values);
   template <class T>
-  fmi2Status set(const Call &call, Type type, const fmi2ValueReference *references, size_t count,
-                 const T *values);
+  Status set(const Call &call, Type type, const Reference *references, size_t count,
+             const T *values);
 
-  fmi2Status directional_derivative(const fmi2ValueReference *unknown, size_t unknown_count,
-                                    const fmi2ValueReference *known, size_t known_count,
-                                    const double *seed, double *change);
-  fmi2Status set_input_derivatives(const fmi2ValueReference *references, size_t count,
-                                   const fmi2Integer *orders, const double *values);
-  fmi2Status output_derivatives(const fmi2ValueReference *references, size_t count,
-                                const fmi2Integer *orders, double *values);
+  // FMI 3.0: the components of arrays, into flat()
+  Status flatten(const Call &call, Type type, const Reference *references, size_t count,
+                 size_t value_count);
+  // of unknowns and knowns
+  Status flatten_both(const Call &call, const Reference *const (&lists)[2],
+                      const size_t (&counts)[2], const size_t (&values)[2],
+                      std::vector<Reference> (&flat)[2]);
+  const std::vector<Reference> &flat() const { return flat_; }
 
-  fmi2Status get_state(fmi2FMUstate *state);
-  fmi2Status set_state(fmi2FMUstate state);
-  fmi2Status free_state(fmi2FMUstate *state);
-  fmi2Status state_size(fmi2FMUstate state, size_t *size);
-  fmi2Status serialize(fmi2FMUstate state, fmi2Byte *bytes, size_t size);
-  fmi2Status deserialize(const fmi2Byte *bytes, size_t size, fmi2FMUstate *state);
+  Status directional_derivative(const Call &call, const Reference *unknown, size_t unknown_count,
+                                const Reference *known, size_t known_count, const double *seed,
+                                double *change);
+  // seed: of the unknowns; sensitivity: of the knowns, one solve for each of these
+  Status adjoint_derivative(const Call &call, const std::vector<Reference> &unknown,
+                            const std::vector<Reference> &known, const double *seed,
+                            double *sensitivity);
+  Status set_input_derivatives(const Call &call, const Reference *references, size_t count,
+                               const int32_t *orders, const double *values);
+  Status output_derivatives(const Call &call, const Reference *references, size_t count,
+                            const int32_t *orders, double *values);
+
+  Status get_state(const Call &call, StateHandle *state);
+  Status set_state(const Call &call, StateHandle state);
+  Status free_state(const Call &call, StateHandle *state);
+  Status state_size(const Call &call, StateHandle state, size_t *size);
+  Status serialize(const Call &call, StateHandle state, unsigned char *bytes, size_t size);
+  Status deserialize(const Call &call, const unsigned char *bytes, size_t size, StateHandle *state);
 
   double time() const { return time_; }
-  fmi2Status last_step() const { return mode_ == Mode::step_failed ? fmi2Discard : fmi2OK; }
+  Status last_step() const { return mode_ == Mode::step_failed ? Status::discard : Status::ok; }
 
  private:
   struct Destroy {
@@ -78,15 +90,18 @@ class Instance {
   static constexpr size_t orders = 3;  // of input derivatives
 
   // index in values_, or -1
-  int index_of(fmi2ValueReference reference) const;
-  int find(const Call &call, Type type, fmi2ValueReference reference);
+  int index_of(Reference reference) const;
+  int find(const Call &call, Type type, Reference reference);
   // finds a Real input, one that derivatives are taken by, or a Real output that has derivatives
-  int find_input(const Call &call, fmi2ValueReference reference);
-  int find_known(const Call &call, fmi2ValueReference reference);
-  int find_output(const Call &call, fmi2ValueReference reference);
-  int find_unknown(const Call &call, fmi2ValueReference reference);
+  int find_input(const Call &call, Reference reference);
+  int find_known(const Call &call, Reference reference);
+  int find_output(const Call &call, Reference reference);
+  int find_unknown(const Call &call, Reference reference);
   bool settable(const Call &call, int index, double value);
   bool in_range(const Call &call, int index, double value);
+  bool index_arrays(const std::vector<SceneArray> &arrays);
+  Status append(const Call &call, Type type, const Reference *references, size_t count,
+                size_t value_count, std::vector<Reference> &flat);
   bool index_variables();  // false: they do not belong together
   void start_values();
   // outputs follow the inputs at once
@@ -94,41 +109,46 @@ class Instance {
     return mode_ == Mode::initialization || mode_ == Mode::event || mode_ == Mode::continuous;
   }
   // Solves at the values set and publishes the outputs.
-  fmi2Status solve(const Call &call);
+  Status solve(const Call &call);
   // Solves at at_; the outputs stay.
-  fmi2Status advance(const Call &call, double time, double time_step);
-  fmi2Status run_contact(const Call &call, double time, double time_step);
+  Status advance(const Call &call, double time, double time_step);
+  Status run_contact(const Call &call, double time, double time_step);
   std::string failure(double time, const rp_result &result) const;
   void warn(double time);
   // of a patch that the last solve did not have
   bool absent(const Variable &variable) const;
   void publish();
-  fmi2Status extrapolate(const Call &call, double time, double past);
+  Status extrapolate(const Call &call, double time, double past);
   void end_inputs(bool moving, double step);
   int step_count(bool moving) const;
-  fmi2Status march(double time, double step);
+  Status march(const Call &call, double time, double step);
   // Solves what the outputs belong to; the next step starts from the state as it was.
-  fmi2Status solve_again(const Call &call);
+  Status keep_state(const Call &call);
+  Status take_back(const Call &call, Solution solution);
+  Status solve_again(const Call &call);
   // Sees to it that the contact holds the outputs' solution.
-  fmi2Status hold_solution(const Call &call);
-  fmi2Status differentiate(const Call &call, const std::vector<double> &rates);
-  double rate_of(fmi2ValueReference reference) const;
-  fmi2Status find_largest_step(const Call &call);
+  Status hold_solution(const Call &call);
+  Status differentiate(const Call &call, const std::vector<double> &rates);
+  double rate_of(Reference reference) const;
+  Status find_largest_step(const Call &call);
   double profile_count(const Variable &variable) const;
   // Numbers of the profiles among values of all inputs and parameters.
   Profiles profiles_of(const std::vector<double> &values) const;
-  fmi2Status make_contact(const Call &call, const Profiles &profiles, Contact &made);
+  Status make_contact(const Call &call, const Profiles &profiles, Contact &made);
   // Makes the contact anew where other profiles were chosen.
-  fmi2Status take_profiles(const Call &call);
+  Status take_profiles(const Call &call);
   std::vector<double> saved_numbers() const;
   size_t number_count() const { return values_.size() + (2 + orders) * known_; }
-  fmi2Status give_handle(const Call &call, std::unique_ptr<Snapshot> snapshot, fmi2FMUstate *state);
-  Snapshot *known(fmi2FMUstate state) const;
+  Status give_handle(const Call &call, std::unique_ptr<Snapshot> snapshot, StateHandle *state);
+  Snapshot *known(StateHandle state) const;
 
   Log log_;
   std::vector<SceneVariable> variables_;
-  std::vector<int16_t> index_;  // by value reference, -1: not in this scene
-  uint64_t content_ = 0;        // tells this FMU's states from those of another
+  std::vector<int16_t> index_;    // by value reference, -1: not in this scene
+  std::vector<uint32_t> extent_;  // of variables: components of an array, 0: in the array before
+  std::vector<Reference> flat_;   // components of a call's arrays
+  uint64_t content_ = 0;          // tells this FMU's states from those of another
+  int version_ = 2;               // of FMI
   Interface interface_ = Interface::co_simulation;
   Options options_;
   bool wheels_ = false, derivatives_ = false, with_z_ = false;
@@ -146,6 +166,8 @@ class Instance {
   std::vector<double> at_;  // inputs and parameters of the solve to come
   // the state to come back to, where the contact was brought to another one for derivatives
   std::vector<unsigned char> pending_;
+  // of the contact, before the step that is made (FMI 3.0)
+  std::vector<unsigned char> before_;
   // the last direction, and what it gave
   std::vector<double> direction_;
   Outputs change_ = {};

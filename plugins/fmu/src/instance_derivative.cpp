@@ -8,7 +8,7 @@
 
 namespace railpatch::fmu {
 
-int Instance::find_input(const Call &call, fmi2ValueReference reference) {
+int Instance::find_input(const Call &call, Reference reference) {
   const int index = find(call, Type::real, reference);
   if (index < 0 || variables_[static_cast<size_t>(index)].variable->role == Role::input)
     return index;
@@ -17,13 +17,13 @@ int Instance::find_input(const Call &call, fmi2ValueReference reference) {
 }
 
 // The coefficient of friction counts, too: the core has derivatives by it.
-int Instance::find_known(const Call &call, fmi2ValueReference reference) {
+int Instance::find_known(const Call &call, Reference reference) {
   return reference == reference::friction_coefficient && index_of(reference) >= 0
              ? index_of(reference)
              : find_input(call, reference);
 }
 
-int Instance::find_output(const Call &call, fmi2ValueReference reference) {
+int Instance::find_output(const Call &call, Reference reference) {
   const int index = find(call, Type::real, reference);
   if (index < 0) return index;
   const SceneVariable &item = variables_[static_cast<size_t>(index)];
@@ -36,7 +36,7 @@ int Instance::find_output(const Call &call, fmi2ValueReference reference) {
 }
 
 // Beside those the discrete outputs, which have steps and no slopes.
-int Instance::find_unknown(const Call &call, fmi2ValueReference reference) {
+int Instance::find_unknown(const Call &call, Reference reference) {
   const int index = index_of(reference);
   if (index < 0) return find_output(call, reference);
   const Variable &variable = *variables_[static_cast<size_t>(index)].variable;
@@ -44,11 +44,10 @@ int Instance::find_unknown(const Call &call, fmi2ValueReference reference) {
   return discrete ? index : find_output(call, reference);
 }
 
-fmi2Status Instance::directional_derivative(const fmi2ValueReference *unknown, size_t unknown_count,
-                                            const fmi2ValueReference *known, size_t known_count,
-                                            const double *seed, double *change) {
-  const Call &call = call::derivative;
-  if (unknown_count == 0) return fmi2OK;
+Status Instance::directional_derivative(const Call &call, const Reference *unknown,
+                                        size_t unknown_count, const Reference *known,
+                                        size_t known_count, const double *seed, double *change) {
+  if (unknown_count == 0) return Status::ok;
   if (!derivatives_)
     return refuse(call,
                   "is not provided: see providesDirectionalDerivative in "
@@ -58,24 +57,24 @@ fmi2Status Instance::directional_derivative(const fmi2ValueReference *unknown, s
   if (known_count > 0 && (known == nullptr || seed == nullptr))
     return refuse(call, known == nullptr ? "vKnown_ref is NULL" : "dvKnown is NULL");
   for (size_t i = 0; i < unknown_count; ++i)
-    if (find_unknown(call, unknown[i]) < 0) return fmi2Error;
+    if (find_unknown(call, unknown[i]) < 0) return Status::error;
   std::vector<double> rates(known_);
   for (size_t i = 0; i < known_count; ++i) {
     const int index = find_known(call, known[i]);
-    if (index < 0) return fmi2Error;
+    if (index < 0) return Status::error;
     if (!std::isfinite(seed[i]))
       return refuse(call, "dvKnown is " + text_of(seed[i]) + ", allowed a finite number");
     rates[static_cast<size_t>(index)] += seed[i];
   }
-  const fmi2Status status = differentiate(call, rates);
-  for (size_t i = 0; i < unknown_count && status == fmi2OK; ++i) change[i] = rate_of(unknown[i]);
+  const Status status = differentiate(call, rates);
+  for (size_t i = 0; i < unknown_count && status == Status::ok; ++i)
+    change[i] = rate_of(unknown[i]);
   return status;
 }
 
-fmi2Status Instance::output_derivatives(const fmi2ValueReference *references, size_t count,
-                                        const fmi2Integer *order, double *values) {
-  const Call &call = call::output_derivatives;
-  if (count == 0) return fmi2OK;
+Status Instance::output_derivatives(const Call &call, const Reference *references, size_t count,
+                                    const int32_t *order, double *values) {
+  if (count == 0) return Status::ok;
   if (!derivatives_)
     return refuse(call, "is not provided: see maxOutputDerivativeOrder in modelDescription.xml");
   if (references == nullptr || order == nullptr || values == nullptr)
@@ -83,21 +82,21 @@ fmi2Status Instance::output_derivatives(const fmi2ValueReference *references, si
                             ? "vr is NULL"
                             : (order == nullptr ? "order is NULL" : "value is NULL"));
   for (size_t i = 0; i < count; ++i) {
-    if (find_output(call, references[i]) < 0) return fmi2Error;
+    if (find_output(call, references[i]) < 0) return Status::error;
     if (order[i] != 1) return refuse(call, "order is " + text_of_whole(order[i]) + ", allowed 1");
   }
-  const fmi2Status status = differentiate(call, rates_);
-  for (size_t i = 0; i < count && status == fmi2OK; ++i) values[i] = rate_of(references[i]);
+  const Status status = differentiate(call, rates_);
+  for (size_t i = 0; i < count && status == Status::ok; ++i) values[i] = rate_of(references[i]);
   return status;
 }
 
-double Instance::rate_of(fmi2ValueReference reference) const {
+double Instance::rate_of(Reference reference) const {
   const Variable &variable = *variables_[static_cast<size_t>(index_of(reference))].variable;
   if (variable.type != Type::real) return 0;
   return absent(variable) ? rest_of(change_, variable) : output_of(change_, variable);
 }
 
-fmi2Status Instance::solve_again(const Call &call) {
+Status Instance::solve_again(const Call &call) {
   pending_.resize(rp_state_size(contact_.get()));
   const rp_error error = rp_save_state(contact_.get(), pending_.data(), pending_.size());
   if (error != RP_OK) return refuse(call, rp_error_text(error));
@@ -105,28 +104,28 @@ fmi2Status Instance::solve_again(const Call &call) {
   return run_contact(call, time_, options_.time_step);
 }
 
-fmi2Status Instance::hold_solution(const Call &call) {
+Status Instance::hold_solution(const Call &call) {
   if (changed_ && follows()) return solve(call);
   // what a restored state was made of
   if (solution_ == Solution::lost && pending_.empty()) return solve_again(call);
-  if (solution_ == Solution::held) return fmi2OK;
+  if (solution_ == Solution::held) return Status::ok;
   log_.say(
-      fmi2Discard, Category::discard,
+      Status::discard, Category::discard,
       std::string(call.name) + ": the last solve failed: restore a state or reset, then ask again");
-  return fmi2Discard;
+  return Status::discard;
 }
 
-fmi2Status Instance::differentiate(const Call &call, const std::vector<double> &rates) {
-  const fmi2Status status = hold_solution(call);
-  if (status != fmi2OK) return status;
+Status Instance::differentiate(const Call &call, const std::vector<double> &rates) {
+  const Status status = hold_solution(call);
+  if (status != Status::ok) return status;
   // importers ask for the columns' entries one by one
-  if (direction_ == rates && !rates.empty()) return fmi2OK;
+  if (direction_ == rates && !rates.empty()) return Status::ok;
   direction_.clear();
   rp_input direction;
   rp_default_direction(&direction);
   for (size_t i = 0; i < known_; ++i) {
     const Variable &variable = *variables_[i].variable;
-    if (variable.type != Type::real || rates[i] == 0) continue;
+    if (variable.type != Type::real || rates[i] == 0 || variables_[i].held) continue;
     if (variable.role == Role::input) put_input(direction, variable, rates[i]);
     if (variable.reference == reference::friction_coefficient)
       direction.friction_coefficient = rates[i];
@@ -137,22 +136,22 @@ fmi2Status Instance::differentiate(const Call &call, const std::vector<double> &
   if (error != RP_OK)
     return refuse(call, message.text[0] != '\0' ? message.text : rp_error_text(error));
   if (change_.result.status == RP_NOT_CONVERGED) {
-    log_.say(fmi2Discard, Category::discard,
+    log_.say(Status::discard, Category::discard,
              std::string(call.name) +
                  ": the derivative did not converge here: go on without it, or make the FMU of a "
                  "scene with a larger method.max_iterations");
-    return fmi2Discard;
+    return Status::discard;
   }
   set_rest_temperature_rate(input_, direction, change_);
   direction_ = rates;
-  return fmi2OK;
+  return Status::ok;
 }
 
-fmi2Status Instance::find_largest_step(const Call &call) {
+Status Instance::find_largest_step(const Call &call) {
   // after a step that failed it is that of the outputs, which stay
   const bool failed = solution_ == Solution::none && !follows();
-  const fmi2Status status = failed ? solve_again(call) : hold_solution(call);
-  if (status != fmi2OK) return status;
+  const Status status = failed ? solve_again(call) : hold_solution(call);
+  if (status != Status::ok) return status;
   rp_jacobian jacobian;
   rp_message message = {};
   const rp_error error = rp_get_jacobian(contact_.get(), &jacobian, &message);
@@ -168,7 +167,7 @@ fmi2Status Instance::find_largest_step(const Call &call) {
   value(reference::largest_step) = good ? largest_step_of(jacobian, inertia, with_z_) : 0;
   largest_known_ = true;
   if (failed) solution_ = Solution::none;
-  return fmi2OK;
+  return Status::ok;
 }
 
 }  // namespace railpatch::fmu

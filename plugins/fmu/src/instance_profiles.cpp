@@ -25,7 +25,7 @@ Instance::Profiles Instance::profiles_of(const std::vector<double> &values) cons
   return found;
 }
 
-fmi2Status Instance::make_contact(const Call &call, const Profiles &profiles, Contact &made) {
+Status Instance::make_contact(const Call &call, const Profiles &profiles, Contact &made) {
   rp_config config = scene_->config;
   for (size_t body = 0; body < 2; ++body) {
     if (profiles[body] == 1) continue;
@@ -39,23 +39,23 @@ fmi2Status Instance::make_contact(const Call &call, const Profiles &profiles, Co
   rp_message message = {};
   const rp_error error = rp_create(&config, &contact, &message);
   made.reset(contact);
-  if (error == RP_OK) return fmi2OK;
+  if (error == RP_OK) return Status::ok;
   return refuse(call, std::string("the contact with these profiles cannot be made: ") +
                           (message.text[0] != '\0' ? message.text : rp_error_text(error)));
 }
 
-fmi2Status Instance::take_profiles(const Call &call) {
+Status Instance::take_profiles(const Call &call) {
   const Profiles wanted = profiles_of(values_);
-  if (wanted == made_) return fmi2OK;
+  if (wanted == made_) return Status::ok;
   Contact made;
-  const fmi2Status status = make_contact(call, wanted, made);
-  if (status != fmi2OK) return status;
+  const Status status = make_contact(call, wanted, made);
+  if (status != Status::ok) return status;
   contact_ = std::move(made);
   made_ = wanted;
   pending_.clear();
   direction_.clear();
   solution_ = Solution::none;
-  return fmi2OK;
+  return Status::ok;
 }
 
 }  // namespace railpatch::fmu

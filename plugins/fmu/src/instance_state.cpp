@@ -6,24 +6,24 @@
 
 namespace railpatch::fmu {
 
-Snapshot *Instance::known(fmi2FMUstate state) const {
+Snapshot *Instance::known(StateHandle state) const {
   for (const auto &snapshot : snapshots_)
     if (snapshot.get() == state) return snapshot.get();
   return nullptr;
 }
 
-fmi2Status Instance::give_handle(const Call &call, std::unique_ptr<Snapshot> snapshot,
-                                 fmi2FMUstate *state) {
+Status Instance::give_handle(const Call &call, std::unique_ptr<Snapshot> snapshot,
+                             StateHandle *state) {
   if (*state == nullptr) {
     snapshots_.push_back(std::move(snapshot));
     *state = snapshots_.back().get();
-    return fmi2OK;
+    return Status::ok;
   }
   // a handle given before is used again
   Snapshot *old = known(*state);
   if (old == nullptr) return refuse(call, "*FMUstate is neither NULL nor a state of this instance");
   old->swap(*snapshot);
-  return fmi2OK;
+  return Status::ok;
 }
 
 std::vector<double> Instance::saved_numbers() const {
@@ -33,15 +33,15 @@ std::vector<double> Instance::saved_numbers() const {
   return numbers;
 }
 
-fmi2Status Instance::get_state(fmi2FMUstate *state) {
-  if (state == nullptr) return refuse(call::get_state, "FMUstate is NULL");
-  const fmi2Status status = take_profiles(call::get_state);
-  if (status != fmi2OK) return status;
+Status Instance::get_state(const Call &call, StateHandle *state) {
+  if (state == nullptr) return refuse(call, "FMUstate is NULL");
+  const Status status = take_profiles(call);
+  if (status != Status::ok) return status;
   std::vector<unsigned char> core = pending_;
   if (core.empty()) {
     core.resize(rp_state_size(contact_.get()));
     const rp_error error = rp_save_state(contact_.get(), core.data(), core.size());
-    if (error != RP_OK) return refuse(call::get_state, rp_error_text(error));
+    if (error != RP_OK) return refuse(call, rp_error_text(error));
   }
   SnapshotHeader header = {};
   header.content = content_;
@@ -54,12 +54,10 @@ fmi2Status Instance::get_state(fmi2FMUstate *state) {
   header.interface = static_cast<uint16_t>(interface_);
   header.solved = solution_ != Solution::none ? 1 : 0;
   header.largest_known = largest_known_ ? 1 : 0;
-  return give_handle(call::get_state,
-                     std::make_unique<Snapshot>(pack(header, saved_numbers(), core)), state);
+  return give_handle(call, std::make_unique<Snapshot>(pack(header, saved_numbers(), core)), state);
 }
 
-fmi2Status Instance::set_state(fmi2FMUstate state) {
-  const Call &call = call::set_state;
+Status Instance::set_state(const Call &call, StateHandle state) {
   const Snapshot *snapshot = known(state);
   if (snapshot == nullptr) return refuse(call, "FMUstate is not a state of this instance");
   const unsigned char *bytes = snapshot->data();
@@ -74,12 +72,12 @@ fmi2Status Instance::set_state(fmi2FMUstate state) {
   if (!numbers.empty())
     std::memcpy(numbers.data(), values_of(bytes), numbers.size() * sizeof(double));
   for (size_t i = 0; i < known_; ++i)
-    if (!in_range(call, static_cast<int>(i), numbers[i])) return fmi2Error;
+    if (!in_range(call, static_cast<int>(i), numbers[i])) return Status::error;
   const Profiles profiles = profiles_of(numbers);
   Contact other;
   if (profiles != made_) {
-    const fmi2Status status = make_contact(call, profiles, other);
-    if (status != fmi2OK) return status;
+    const Status status = make_contact(call, profiles, other);
+    if (status != Status::ok) return status;
   }
   rp_contact *contact = other != nullptr ? other.get() : contact_.get();
   const rp_error error = rp_restore_state(contact, core_of(bytes), header.core);
@@ -101,35 +99,32 @@ fmi2Status Instance::set_state(fmi2FMUstate state) {
   changed_ = header.changed != 0;
   largest_known_ = header.largest_known != 0;
   mode_ = static_cast<Mode>(header.mode);
-  return fmi2OK;
+  return Status::ok;
 }
 
-fmi2Status Instance::free_state(fmi2FMUstate *state) {
-  if (state == nullptr) return fmi2OK;
+Status Instance::free_state(const Call &call, StateHandle *state) {
+  if (state == nullptr) return Status::ok;
   // some importers give the handle itself instead of its address
   const bool by_value = known(state) != nullptr;
-  fmi2FMUstate handle = by_value ? state : *state;
-  if (handle == nullptr) return fmi2OK;
+  StateHandle handle = by_value ? state : *state;
+  if (handle == nullptr) return Status::ok;
   const auto found = std::find_if(snapshots_.begin(), snapshots_.end(),
                                   [&](const auto &own) { return own.get() == handle; });
-  if (found == snapshots_.end())
-    return refuse(call::free_state, "*FMUstate is not a state of this instance");
+  if (found == snapshots_.end()) return refuse(call, "*FMUstate is not a state of this instance");
   snapshots_.erase(found);
   if (!by_value) *state = nullptr;
-  return fmi2OK;
+  return Status::ok;
 }
 
-fmi2Status Instance::state_size(fmi2FMUstate state, size_t *size) {
-  const Call &call = call::state_size;
+Status Instance::state_size(const Call &call, StateHandle state, size_t *size) {
   const Snapshot *snapshot = known(state);
   if (snapshot == nullptr) return refuse(call, "FMUstate is not a state of this instance");
   if (size == nullptr) return refuse(call, "size is NULL");
   *size = snapshot->size();
-  return fmi2OK;
+  return Status::ok;
 }
 
-fmi2Status Instance::serialize(fmi2FMUstate state, fmi2Byte *bytes, size_t size) {
-  const Call &call = call::serialize;
+Status Instance::serialize(const Call &call, StateHandle state, unsigned char *bytes, size_t size) {
   const Snapshot *snapshot = known(state);
   if (snapshot == nullptr) return refuse(call, "FMUstate is not a state of this instance");
   if (bytes == nullptr) return refuse(call, "serializedState is NULL");
@@ -137,17 +132,16 @@ fmi2Status Instance::serialize(fmi2FMUstate state, fmi2Byte *bytes, size_t size)
     return refuse(call, "size is " + text_of_whole(size) + ", allowed from " +
                             text_of_whole(snapshot->size()));
   std::memcpy(bytes, snapshot->data(), snapshot->size());
-  return fmi2OK;
+  return Status::ok;
 }
 
-fmi2Status Instance::deserialize(const fmi2Byte *bytes, size_t size, fmi2FMUstate *state) {
-  const Call &call = call::deserialize;
+Status Instance::deserialize(const Call &call, const unsigned char *bytes, size_t size,
+                             StateHandle *state) {
   if (bytes == nullptr) return refuse(call, "serializedState is NULL");
   if (state == nullptr) return refuse(call, "FMUstate is NULL");
-  const auto *from = reinterpret_cast<const unsigned char *>(bytes);
-  const char *problem = check(from, size, content_, number_count());
+  const char *problem = check(bytes, size, content_, number_count());
   if (problem != nullptr) return refuse(call, problem);
-  return give_handle(call, std::make_unique<Snapshot>(from, from + size), state);
+  return give_handle(call, std::make_unique<Snapshot>(bytes, bytes + size), state);
 }
 
 }  // namespace railpatch::fmu

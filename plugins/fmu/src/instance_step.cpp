@@ -6,8 +6,7 @@
 
 namespace railpatch::fmu {
 
-fmi2Status Instance::step(double time, double step) {
-  const Call &call = call::do_step;
+Status Instance::step(const Call &call, double time, double step) {
   if (!(step > 0) || !std::isfinite(step))
     return refuse(call, "communicationStepSize is " + text_of(step) + ", allowed > 0");
   // masters add up time in their own way
@@ -18,11 +17,35 @@ fmi2Status Instance::step(double time, double step) {
   const double end = time + step;
   if (stop_defined_ && end > stop_ + slack)
     return refuse(call, "the step ends at " + text_of(end) + ", after stopTime " + text_of(stop_));
-  const fmi2Status status = march(time, step);
-  if (status == fmi2OK) time_ = end;
-  if (status == fmi2Discard) mode_ = Mode::step_failed;
-  if (status == fmi2Error) mode_ = Mode::error;
+  // what FMI 3.0 discards never was
+  const bool kept = version_ == 3;
+  const Solution solution = solution_;
+  Status status = kept ? keep_state(call) : Status::ok;
+  if (status == Status::ok) status = march(call, time, step);
+  if (status == Status::ok) time_ = end;
+  if (status == Status::discard && kept)
+    status = take_back(call, solution);
+  else if (status == Status::discard)
+    mode_ = Mode::step_failed;
+  if (status == Status::error) mode_ = Mode::error;
   return status;
+}
+
+Status Instance::keep_state(const Call &call) {
+  before_ = pending_;
+  if (!before_.empty()) return Status::ok;
+  before_.resize(rp_state_size(contact_.get()));
+  const rp_error error = rp_save_state(contact_.get(), before_.data(), before_.size());
+  return error == RP_OK ? Status::ok : refuse(call, rp_error_text(error));
+}
+
+// The contact as before the step; its solution is found again where derivatives ask for it.
+Status Instance::take_back(const Call &call, Solution solution) {
+  pending_.clear();
+  const rp_error error = rp_restore_state(contact_.get(), before_.data(), before_.size());
+  if (error != RP_OK) return refuse(call, rp_error_text(error));
+  solution_ = solution == Solution::none ? Solution::none : Solution::lost;
+  return Status::discard;
 }
 
 int Instance::step_count(bool moving) const {
@@ -34,8 +57,7 @@ int Instance::step_count(bool moving) const {
 
 // Means are those of the trapezoidal rule where inputs move, which then do not jump; of inputs that
 // are held from the step's start on, means of the sub-steps' ends.
-fmi2Status Instance::march(double time, double step) {
-  const Call &call = call::do_step;
+Status Instance::march(const Call &call, double time, double step) {
   const bool moving = std::any_of(input_derivatives_.begin(), input_derivatives_.end(),
                                   [](double d) { return d != 0; });
   const int count = step_count(moving);
@@ -43,9 +65,9 @@ fmi2Status Instance::march(double time, double step) {
   for (size_t i = 0; moving && i < means.size(); ++i) means[i] = 0.5 * values_[means_[i].second];
   for (int k = 1; k <= count; ++k) {
     const double past = k == count ? step : step * k / count;
-    fmi2Status status = extrapolate(call, time + past, past);
-    if (status == fmi2OK) status = advance(call, time + past, step / count);
-    if (status != fmi2OK) return status;
+    Status status = extrapolate(call, time + past, past);
+    if (status == Status::ok) status = advance(call, time + past, step / count);
+    if (status != Status::ok) return status;
     const double weight = moving && k == count ? 0.5 : 1.0;
     for (size_t i = 0; i < means.size(); ++i)
       means[i] += weight * output_of(outputs_, *variables_[means_[i].second].variable);
@@ -53,11 +75,11 @@ fmi2Status Instance::march(double time, double step) {
   publish();
   for (size_t i = 0; i < means.size(); ++i) values_[means_[i].first] = means[i] / count;
   end_inputs(moving, step);
-  return fmi2OK;
+  return Status::ok;
 }
 
 // Fills at_ with the values a time after the step's start.
-fmi2Status Instance::extrapolate(const Call &call, double time, double past) {
+Status Instance::extrapolate(const Call &call, double time, double past) {
   for (size_t i = 0; i < known_; ++i) {
     const double *d = input_derivatives_.data() + orders * i;
     const double value = values_[i] + past * (d[0] + past * (d[1] / 2 + past * d[2] / 6));
@@ -66,14 +88,14 @@ fmi2Status Instance::extrapolate(const Call &call, double time, double past) {
     const Variable &variable = *variables_[i].variable;
     if (at_[i] >= variable.low && at_[i] <= variable.high) continue;
     solution_ = Solution::none;
-    log_.say(fmi2Discard, Category::discard,
+    log_.say(Status::discard, Category::discard,
              std::string(call.name) + ": " + variables_[i].name + " by its derivatives is " +
                  text_of(value) + " at time " + text_of(time) + ", allowed " +
                  text_of(variable.low) + " ... " + text_of(variable.high) +
                  ": take a smaller step or smaller derivatives");
-    return fmi2Discard;
+    return Status::discard;
   }
-  return fmi2OK;
+  return Status::ok;
 }
 
 // Inputs go on from where they came to, and are held unless new derivatives are set.
@@ -88,17 +110,16 @@ void Instance::end_inputs(bool moving, double step) {
   std::fill(input_derivatives_.begin(), input_derivatives_.end(), 0.0);
 }
 
-fmi2Status Instance::set_input_derivatives(const fmi2ValueReference *references, size_t count,
-                                           const fmi2Integer *order, const double *values) {
-  const Call &call = call::input_derivatives;
-  if (count == 0) return fmi2OK;
+Status Instance::set_input_derivatives(const Call &call, const Reference *references, size_t count,
+                                       const int32_t *order, const double *values) {
+  if (count == 0) return Status::ok;
   if (references == nullptr || order == nullptr || values == nullptr)
     return refuse(call, references == nullptr
                             ? "vr is NULL"
                             : (order == nullptr ? "order is NULL" : "value is NULL"));
   for (size_t i = 0; i < count; ++i) {
-    if (find_input(call, references[i]) < 0) return fmi2Error;
-    if (order[i] < 1 || order[i] > static_cast<fmi2Integer>(orders))
+    if (find_input(call, references[i]) < 0) return Status::error;
+    if (order[i] < 1 || order[i] > static_cast<int32_t>(orders))
       return refuse(
           call, "order is " + text_of_whole(order[i]) + ", allowed 1 ... " + text_of_whole(orders));
     if (!std::isfinite(values[i]))
@@ -107,7 +128,7 @@ fmi2Status Instance::set_input_derivatives(const fmi2ValueReference *references,
   for (size_t i = 0; i < count; ++i)
     input_derivatives_[orders * static_cast<size_t>(index_of(references[i])) +
                        static_cast<size_t>(order[i] - 1)] = values[i];
-  return fmi2OK;
+  return Status::ok;
 }
 
 }  // namespace railpatch::fmu

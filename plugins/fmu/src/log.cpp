@@ -28,7 +28,6 @@ const char *name_of(Category category) {
   return kCategories[0].name;
 }
 
-// The logger takes a printf format in which "#" opens a value reference.
 std::string escaped(const std::string &text) {
   std::string out;
   for (const char c : text) {
@@ -40,32 +39,31 @@ std::string escaped(const std::string &text) {
 
 }  // namespace
 
-Log::Log(const char *instance_name, const fmi2CallbackFunctions *functions, bool on)
-    : instance_name_(instance_name != nullptr ? instance_name : ""), categories_(on ? kAll : 0) {
-  if (functions == nullptr) return;
-  logger_ = functions->logger;
-  environment_ = functions->componentEnvironment;
-}
+Log::Log(const char *instance_name, const Listener &listener, bool on)
+    : instance_name_(instance_name != nullptr ? instance_name : ""),
+      listener_(listener),
+      categories_(on ? kAll : 0) {}
 
-void Log::say(fmi2Status status, Category category, const std::string &text) {
-  // logging is for debugging: why a call failed is always said
-  const bool failed = status >= fmi2Discard && status != fmi2Pending;
-  if (logger_ == nullptr) return;
+void Log::say(Status status, Category category, const std::string &text) {
+  // logging is for debugging: why a call failed is said
+  const bool failed = status == Status::error || (status == Status::discard && listener_.discards);
+  if (listener_.tell == nullptr) return;
   if (!failed && (categories_ & static_cast<uint32_t>(category)) == 0) return;
   repeats_ = text == last_ ? repeats_ + 1 : 0;
   if (repeats_ > kMostRepeats) return;
   last_ = text;
-  std::string line = escaped(text);
+  std::string line = listener_.format ? escaped(text) : text;
   if (repeats_ == kMostRepeats) line += " (repeats of this message are left out from here)";
-  logger_(environment_, instance_name_.c_str(), status, name_of(category), line.c_str());
+  listener_.tell(listener_, instance_name_.c_str(), status, name_of(category), line.c_str());
 }
 
 void Log::error_without_memory(const char *text) const noexcept {
-  if (logger_ != nullptr)
-    logger_(environment_, instance_name_.c_str(), fmi2Error, name_of(Category::error), text);
+  if (listener_.tell != nullptr)
+    listener_.tell(listener_, instance_name_.c_str(), Status::error, name_of(Category::error),
+                   text);
 }
 
-bool Log::set(bool on, size_t count, const fmi2String categories[]) {
+bool Log::set(bool on, size_t count, const char *const categories[]) {
   uint32_t mask = count == 0 ? kAll : 0;
   for (size_t i = 0; i < count; ++i) {
     uint32_t found = 0;

@@ -161,6 +161,24 @@ bool read_variable(Words &words, Scene &scene) {
   return true;
 }
 
+bool read_held(Words &words, Scene &scene) {
+  uint32_t reference = 0;
+  if (!words.number(reference)) return false;
+  for (SceneVariable &item : scene.variables) {
+    if (item.variable->reference != reference) continue;
+    item.held = item.variable->role == Role::input;
+    return item.held && item.start == 0;
+  }
+  return false;
+}
+
+bool read_array(Words &words, Scene &scene) {
+  SceneArray array{};
+  if (!words.number(array.reference) || !words.number(array.size)) return false;
+  scene.variable_arrays.push_back(array);
+  return array.size > 1 && array.size <= 3;
+}
+
 bool read_line(std::string_view line, Scene &scene) {
   Words words(line);
   const std::string_view key = words.next();
@@ -186,6 +204,10 @@ bool read_line(std::string_view line, Scene &scene) {
     good = read_option(words, scene);
   } else if (key == "variable") {
     good = read_variable(words, scene);
+  } else if (key == "held") {
+    good = read_held(words, scene);
+  } else if (key == "array") {
+    good = read_array(words, scene);
   }
   return good && words.done();
 }

@@ -15,6 +15,10 @@
 //   option NAME VALUE                           one of Options
 //   variable REFERENCE NAME START               in the order of modelDescription.xml: what is not
 //                                               an output first
+//   held REFERENCE                              an input before that is always 0: a component of a
+//                                               vector that is without effect
+//   array REFERENCE SIZE                        FMI 3.0: this variable and those that follow it in
+//                                               number are one array
 //   end CRC                                     CRC-32 of all bytes before this line, hexadecimal
 #pragma once
 
@@ -30,6 +34,11 @@ struct SceneVariable {
   const Variable *variable;
   std::string name;
   double start;
+  bool held = false;
+};
+
+struct SceneArray {
+  uint32_t reference, size;
 };
 
 struct Options {
@@ -53,6 +62,7 @@ struct Scene {
   rp_config config;
   Options options;
   std::vector<SceneVariable> variables;
+  std::vector<SceneArray> variable_arrays;
   std::vector<double> arrays[2][2][5];  // wheel or rail, side, arc_length y z dy dz
   std::vector<double> distance;
   std::vector<Section> sections[2];

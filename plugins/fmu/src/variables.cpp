@@ -16,7 +16,7 @@ constexpr Variable kVariables[] = {
 
 double read_field(const Outputs &outputs, Type type, size_t field) {
   const unsigned char *from = reinterpret_cast<const unsigned char *>(&outputs) + field;
-  if (type == Type::integer) {
+  if (type != Type::real) {
     int32_t value;
     std::memcpy(&value, from, sizeof value);
     return value;
@@ -50,8 +50,9 @@ double output_of(const Outputs &outputs, const Variable &variable) {
 }
 
 void put_input(rp_input &input, const Variable &variable, double value) {
+  if (variable.field == no_field) return;
   unsigned char *to = reinterpret_cast<unsigned char *>(&input) + variable.field;
-  if (variable.type == Type::integer) {
+  if (variable.type != Type::real) {
     const auto whole = static_cast<int32_t>(value);
     std::memcpy(to, &whole, sizeof whole);
   } else {

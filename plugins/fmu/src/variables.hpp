@@ -9,8 +9,21 @@
 
 namespace railpatch::fmu {
 
-enum class Type : uint8_t { real, integer };
-enum class Role : uint8_t { input, output, parameter };
+// bits, so that several may be asked for: FMI 2.0 reads enumerations as integers
+enum class Type : uint8_t {
+  real = 1,
+  integer = 2,
+  enumeration = 4,
+  text = 8,
+  whole = 2 | 4,
+  number = 1 | 2 | 4
+};
+
+constexpr bool among(Type type, Type asked) {
+  return (static_cast<unsigned>(type) & static_cast<unsigned>(asked)) != 0;
+}
+
+enum class Role : uint8_t { input, output, parameter, independent };
 
 inline constexpr size_t no_field = SIZE_MAX;
 

@@ -37,6 +37,13 @@ def scene_names() -> list[str]:
     "wheelset_rail, ...; an unknown name gives the list.",
 )
 @click.option(
+    "--fmi",
+    type=click.Choice(["2", "3"]),
+    default="2",
+    show_default=True,
+    help="Version of the standard: FMI 2.0, or FMI 3.0, in which vectors are arrays.",
+)
+@click.option(
     "--fft",
     type=click.Choice(["eigen", "fftw"]),
     default="eigen",
@@ -85,6 +92,7 @@ def fmu(
     scene: Path | None,
     kind: str | None,
     output: Path,
+    fmi: Any,
     fft: Any,
     derivatives: Any,
     averages: bool,
@@ -94,7 +102,7 @@ def fmu(
     libraries: Path | None,
     quiet: bool,
 ) -> None:
-    """Pack a scene as an FMU: FMI 2.0, Linux on x86-64 unless --libraries has more.
+    """Pack a scene as an FMU: FMI 2.0 or 3.0, Linux on x86-64 unless --libraries has more.
 
     Position and velocity come in, forces and the patches' quantities go out; the FMU holds its own
     description in documentation/index.html. A scene is a case file, or that of a rig. Without one
@@ -123,6 +131,7 @@ def fmu(
         libraries=libraries,
         wheel_profiles=wheels,
         rail_profiles=rails,
+        fmi=int(fmi),
     )
     for text in written.warnings:
         click.echo(f"warning: {text}", err=True)

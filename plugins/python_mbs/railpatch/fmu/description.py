@@ -96,7 +96,6 @@ def description_xml(
     }
     # states and events there are none, and what has a history cannot be asked twice
     exchange = [] if kind.has_history else [f"  <ModelExchange{attributes(labels.model())}/>"]
-    experiment = {"startTime": 0.0, "stopTime": 1.0, "tolerance": labels.tolerance}
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',
         f"<fmiModelDescription{attributes(head)}>",
@@ -104,13 +103,8 @@ def description_xml(
         f"  <CoSimulation{attributes(labels.slave())}/>",
         *unit_lines(table, variables),
         *type_lines(table, variables),
-        "  <LogCategories>",
-        *(
-            f"    <Category{attributes({'name': k, 'description': CATEGORIES[k]})}/>"
-            for k in CATEGORIES
-        ),
-        "  </LogCategories>",
-        f"  <DefaultExperiment{attributes({**experiment, 'stepSize': labels.step.seconds})}/>",
+        *log_category_lines(),
+        experiment_line(labels),
         "  <ModelVariables>",
         *(line for v in variables for line in variable_lines(table, v)),
         "  </ModelVariables>",
@@ -119,6 +113,24 @@ def description_xml(
         "",
     ]
     return "\n".join(lines)
+
+
+def log_category_lines() -> list[str]:
+    """LogCategories."""
+    return [
+        "  <LogCategories>",
+        *(
+            f"    <Category{attributes({'name': k, 'description': CATEGORIES[k]})}/>"
+            for k in CATEGORIES
+        ),
+        "  </LogCategories>",
+    ]
+
+
+def experiment_line(labels: Labels) -> str:
+    """DefaultExperiment."""
+    listed = {"startTime": 0.0, "stopTime": 1.0, "tolerance": labels.tolerance}
+    return f"  <DefaultExperiment{attributes({**listed, 'stepSize': labels.step.seconds})}/>"
 
 
 def attributes(values: dict[str, Any]) -> str:
@@ -159,6 +171,8 @@ def type_attributes(table: Table, name: str) -> dict[str, Any]:
     declared = table.types[name]
     if "items" in declared:
         return {"quantity": name}
+    if table.base(name) == "String":
+        return {}
     low, high = declared["range"]
     if "unit" not in declared:
         return {"quantity": name, "min": low, "max": high}
@@ -177,6 +191,8 @@ def type_lines(table: Table, variables: list[Variable]) -> list[str]:
     lines = ["  <TypeDefinitions>"]
     for name, declared in used_types(table, variables).items():
         base = table.base(name)
+        if base == "String":
+            continue
         lines.append(f"    <SimpleType{attributes({'name': name})}>")
         element = f"      <{base}{attributes(type_attributes(table, name))}"
         if base == "Enumeration":
@@ -198,11 +214,13 @@ def variable_lines(table: Table, variable: Variable) -> list[str]:
         "description": variable.description,
         "causality": variable.causality,
         "variability": variability(variable),
-        "initial": {"output": "calculated", "parameter": "exact"}.get(variable.causality),
+        "initial": {"output": "calculated", "input": None}.get(variable.causality, "exact"),
     }
     value = {"declaredType": variable.type, **type_attributes(table, variable.type)}
     if variable.base == "Enumeration":
         value |= {"min": int(variable.range[0]), "max": int(variable.range[1])}
+    if variable.base == "String":
+        value = {}
     value["start"] = variable.start
     return [
         f"    <ScalarVariable{attributes(role)}>",
@@ -213,6 +231,8 @@ def variable_lines(table: Table, variable: Variable) -> list[str]:
 
 def variability(variable: Variable) -> str:
     """FMI's variability."""
+    if variable.causality == "local":
+        return "constant"
     if variable.causality == "parameter":
         return "fixed" if variable.fixed else "tunable"
     return "continuous" if variable.base == "Real" else "discrete"
@@ -221,7 +241,7 @@ def variability(variable: Variable) -> str:
 def structure_lines(kind: Kind, variables: list[Variable]) -> list[str]:
     """ModelStructure: outputs depend on inputs, at the start on parameters too."""
     number = {v.reference: i for i, v in enumerate(variables, 1)}
-    known = [v for v in variables if v.causality != "output"]
+    known = [v for v in variables if v.causality in ("input", "parameter")]
     inputs = [v for v in known if v.causality == "input"]
     lines = ["  <ModelStructure>"]
     for tag, candidates in (("Outputs", inputs), ("InitialUnknowns", known)):

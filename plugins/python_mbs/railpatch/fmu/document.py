@@ -138,7 +138,7 @@ def index_html(
     labels: Labels, table: Table, kind: Kind, variables: list[Variable], guid: str
 ) -> str:
     """The page: needs no network."""
-    known = [v for v in variables if v.causality != "output"]
+    known = [v for v in variables if v.causality in ("input", "parameter")]
     outputs = [v for v in variables if v.causality == "output"]
     title = escape(labels.name)
     return f"""<!DOCTYPE html>

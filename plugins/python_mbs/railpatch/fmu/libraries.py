@@ -1,7 +1,8 @@
 """What was built beforehand: the libraries of all platforms, the sources, and their licences.
 
-A folder holds PLATFORM/railpatch_fmu_BACKEND.ENDING for every platform, by FMI's name; where it was
-made by `make fmu` also sources.zip, licenses/, runtime.txt and stamp.txt.
+A folder holds PLATFORM/railpatch_fmu_BACKEND.ENDING (FMI 2.0) and railpatch_fmu3_BACKEND.ENDING
+(FMI 3.0) for every platform, by FMI 2.0's name; where it was made by `make fmu` also sources.zip,
+licenses/, runtime.txt and stamp.txt.
 """
 
 from __future__ import annotations
@@ -16,10 +17,17 @@ from typing import TYPE_CHECKING
 from railpatch._core import version
 from railpatch.errors import CaseError
 from railpatch.fmu.document import notice
+from railpatch.fmu.sources import of_version
 
 if TYPE_CHECKING:
     from importlib.resources.abc import Traversable
 
+# FMI 3.0's names of the platforms that FMI 2.0 has
+PLATFORMS3 = {
+    "linux64": "x86_64-linux",
+    "win64": "x86_64-windows",
+    "darwin64": "x86_64-darwin",
+}
 ENDINGS = {"win": ".dll", "lin": ".so", "dar": ".dylib"}
 
 
@@ -55,8 +63,9 @@ def stamp() -> str:
     return f"{version()} {hashlib.sha256(table).hexdigest()[:16]}"
 
 
-def libraries_of(backend: str, folder: Path | None = None) -> Libraries:
-    """Those of a folder; without one those that were built with the package. Raises CaseError."""
+def libraries_of(backend: str, folder: Path | None = None, version: int = 2) -> Libraries:
+    """Those of a folder; without one those that were built with the package. version: of FMI.
+    Raises CaseError."""
     own = resources.files("railpatch.fmu")
     root: Traversable = own / "lib" if folder is None else folder
     made = root / "stamp.txt"
@@ -73,16 +82,22 @@ def libraries_of(backend: str, folder: Path | None = None) -> Libraries:
     binaries = {}
     for place in sorted(root.iterdir(), key=lambda p: p.name) if root.is_dir() else ():
         if place.name[:3] in ENDINGS or "-" in place.name:
-            path = place / f"railpatch_fmu_{backend}{ending(place.name)}"
+            name = "railpatch_fmu3" if version == 3 else "railpatch_fmu"
+            path = place / f"{name}_{backend}{ending(place.name)}"
+            platform = PLATFORMS3.get(place.name, place.name) if version == 3 else place.name
             if path.is_file():
-                binaries[place.name] = path.read_bytes()
+                binaries[platform] = path.read_bytes()
     if not binaries:
         where = "this package was built without it" if folder is None else f"{folder} has none"
         raise CaseError(f"--fft: value is {backend!r}, but {where}")
     runtime = root / "runtime.txt"
     return Libraries(
         binaries=binaries,
-        sources=sources_of(root / "sources.zip"),
+        sources={
+            path: content
+            for path, content in sources_of(root / "sources.zip").items()
+            if of_version(path, version)
+        },
         licences={**texts_of(own / "licenses"), **texts_of(root / "licenses")},
         runtime=runtime.read_text(encoding="utf-8") if runtime.is_file() else None,
     )

@@ -22,6 +22,7 @@ from railpatch.case.to_core import config_of
 from railpatch.contact import Contact, at_balance
 from railpatch.errors import CaseError
 from railpatch.fmu.description import Labels, description_xml
+from railpatch.fmu.description3 import description3_xml
 from railpatch.fmu.document import index_html
 from railpatch.fmu.libraries import Libraries, libraries_of
 from railpatch.fmu.picture import model_png
@@ -54,6 +55,7 @@ class Options:
     largest_step: bool
     wheel_profiles: Sequence[str] = ()
     rail_profiles: Sequence[str] = ()
+    version: Literal[2, 3] = 2  # of FMI
 
 
 @dataclass(frozen=True)
@@ -69,6 +71,12 @@ class Contents:
     libraries: Libraries
     creep_table: bytes | None
     choices: Choices
+    version: int = 2
+
+    def description(self, token: str) -> str:
+        """modelDescription.xml."""
+        write = description3_xml if self.version == 3 else description_xml
+        return write(self.labels, self.table, self.kind, self.variables, token)
 
     def scene_text(self, guid: str) -> str:
         """resources/scene.txt."""
@@ -94,6 +102,7 @@ def pack_fmu(
     libraries: Path | None = None,
     wheel_profiles: Sequence[str] = (),
     rail_profiles: Sequence[str] = (),
+    fmi: Literal[2, 3] = 2,
 ) -> PackedFmu:
     """Writes the FMU of a scene; gives its path, with `warnings` where a combination of profiles
     has no contact at the start values.
@@ -107,11 +116,12 @@ def pack_fmu(
     folder that `make fmu` made, with all platforms and sources; None: this one's library.
     wheel_profiles, rail_profiles: built-in names or files (relative ones start at the scene's
     folder), to choose from beside the case's own, for both sides; each combination's start must be
-    solved. The same scene, libraries and SOURCE_DATE_EPOCH give the same bytes. Raises CaseError.
+    solved. fmi: 2 (FMI 2.0) or 3 (FMI 3.0, vectors are arrays). The same scene, libraries and
+    SOURCE_DATE_EPOCH give the same bytes. Raises CaseError.
     """
     output = Path(output)
     profiles = {"wheel_profiles": wheel_profiles, "rail_profiles": rail_profiles}
-    options = Options(derivatives, averages, largest_step, **profiles)
+    options = Options(derivatives, averages, largest_step, **profiles, version=fmi)
     contents = contents_of(scene, output.stem, name, backend, options, libraries)
     guid = guid_of(contents)
     files = files_of(contents, guid)
@@ -137,14 +147,15 @@ def contents_of(
 ) -> Contents:
     """Everything that is known before the GUID."""
     scene = at_balance(scene, name)
-    libraries = libraries_of(backend, folder)
+    libraries = libraries_of(backend, folder, options.version)
     table = Table(Path(str(resources.files("railpatch.fmu") / "variables.toml")))
     check_regime(scene)
     config = config_of(scene)
     kind = kind_of(scene.case, _core.config_numbers(config), averages=options.averages)
     check_options(options, kind)
     choices = choices_of(scene, {"wheel": options.wheel_profiles, "rail": options.rail_profiles})
-    kind = replace(kind, conditions=kind.conditions | choices.conditions())
+    also = {"version 3"} if options.version == 3 else set()
+    kind = replace(kind, conditions=kind.conditions | choices.conditions() | also)
     for body in choices.sources:
         table.fill(TYPES[body], choices.items(body))
     # solved once, so that an FMU is never made of a scene that the core refuses or cannot start
@@ -174,7 +185,18 @@ def contents_of(
     )
     variables = variables_of(table, kind, scene.case)
     creep_table = config["creep_table"].tobytes() if "creep_table" in config else None
-    return Contents(labels, table, kind, variables, scene, backend, libraries, creep_table, choices)
+    return Contents(
+        labels=labels,
+        table=table,
+        kind=kind,
+        variables=variables,
+        scene=scene,
+        backend=backend,
+        libraries=libraries,
+        creep_table=creep_table,
+        choices=choices,
+        version=options.version,
+    )
 
 
 def check_options(options: Options, kind: Kind) -> None:
@@ -237,7 +259,7 @@ def identifier_of(stem: str) -> str:
 def guid_of(contents: Contents) -> str:
     """A hash of everything but the date."""
     labels = replace(contents.labels, date="")
-    text = description_xml(labels, contents.table, contents.kind, contents.variables, "")
+    text = replace(contents, labels=labels).description("")
     text += contents.scene_text("{}")
     digest = hashlib.sha256(text.encode() + (contents.creep_table or b""))
     built = contents.libraries.files(labels.identifier, contents.backend)
@@ -250,9 +272,12 @@ def files_of(contents: Contents, guid: str) -> dict[str, bytes]:
     """Path in the archive -> content."""
     c = contents
     sources = c.libraries.sources
-    description = description_xml(c.labels, c.table, c.kind, c.variables, guid)
+    description = c.description(guid)
     texts = {
-        "modelDescription.xml": with_source_files(description, sources),
+        # FMI 3.0 has buildDescription.xml alone
+        "modelDescription.xml": description
+        if c.version == 3
+        else with_source_files(description, sources),
         "resources/scene.txt": c.scene_text(guid),
         "documentation/reference.csv": reference_csv(c.scene, c.variables),
         "documentation/index.html": index_html(c.labels, c.table, c.kind, c.variables, guid),

@@ -18,7 +18,7 @@ from railpatch.case.types import SIDES
 from railpatch.case.wheel import WheelRailCase, WheelsetCase
 from railpatch.errors import CaseError
 from railpatch.fmu.profiles import Choices
-from railpatch.fmu.table import Kind, Table, Variable, with_start
+from railpatch.fmu.table import Kind, Table, Variable, items_of, with_start
 
 PROFILE_ARRAYS = ("arc_length", "y", "z", "dy", "dz")
 
@@ -115,10 +115,10 @@ def along_conditions(case: WheelRailCase | WheelsetCase) -> set[str]:
 def variables_of(table: Table, kind: Kind, case: Case) -> list[Variable]:
     """The scene's variables; inputs and parameters with the case's values as start."""
     found = [
-        v if v.causality == "output" else with_start(v, start_of(v, case))
+        with_start(v, start_of(v, case)) if v.causality in ("input", "parameter") else v
         for v in table.variables(kind)
     ]
-    wrong = [v for v in found if v.start is not None and not within(v)]
+    wrong = [v for v in found if isinstance(v.start, (int, float)) and not within(v)]
     if wrong:
         raise CaseError(
             f"{v.name}: value is {v.start}, allowed in an FMU {v.range[0]:g} ... {v.range[1]:g}"
@@ -130,11 +130,11 @@ def variables_of(table: Table, kind: Kind, case: Case) -> list[Variable]:
 def within(variable: Variable) -> bool:
     """Whether the start lies in the variable's own range."""
     low, high = variable.range
-    assert variable.start is not None
+    assert isinstance(variable.start, (int, float))
     return low <= variable.start <= high
 
 
-def start_of(variable: Variable, case: Case) -> float | int:
+def start_of(variable: Variable, case: Case) -> float | int | str:
     """The case's value of an input or parameter."""
     if variable.start is not None:
         return variable.start
@@ -176,7 +176,8 @@ def scene_text(
         raise CaseError("temperature.bulk: given, allowed in an FMU none: temperatures are inputs")
     config = {**config_of(scene), "derivatives": int(derivatives)}
     options = options_of(scene.case, kind)
-    body = "\n".join([*lines_of(config, options, variables, guid, choices), ""])
+    version = 3 if "version 3" in kind.conditions else 2
+    body = "\n".join([*lines_of(config, options, variables, guid, choices, version), ""])
     return f"{body}end {zlib.crc32(body.encode('ascii')):08x}\n"
 
 
@@ -197,6 +198,7 @@ def lines_of(
     variables: list[Variable],
     guid: str,
     choices: Choices,
+    version: int,
 ) -> Iterator[str]:
     """All lines but the last."""
     yield "railpatch-fmu-scene 1"
@@ -229,6 +231,11 @@ def lines_of(
             yield f"option {name} {spell([value])}"
     for v in variables:
         yield f"variable {v.reference} {v.name} {spell([v.start or 0])}"
+        if v.held:
+            yield f"held {v.reference}"
+    for item in items_of(variables, version):
+        if item.is_array:
+            yield f"array {item.first.reference} {len(item.variables)}"
 
 
 def spell_array(values: Any) -> str:

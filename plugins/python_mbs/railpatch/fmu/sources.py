@@ -14,6 +14,11 @@ LANGUAGE, COMPILER = "C++17", "gcc"
 OPTIONS = "-std=c++17 -ffp-contract=off -O3 -fno-gnu-unique"
 
 
+def of_version(path: str, version: int) -> bool:
+    """Whether a file below sources/ is none of the other version's."""
+    return re.search(rf"(^|/)fmi{5 - version}[^/]*$", path) is None
+
+
 def compiled(paths: Iterable[str]) -> list[str]:
     """The translation units among files below sources/."""
     return sorted(path for path in paths if path.endswith(".cpp"))

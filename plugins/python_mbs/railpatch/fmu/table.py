@@ -60,11 +60,58 @@ class Variable:
     side: int | None
     range: tuple[float, float]
     description: str
-    start: float | int | None = None
+    start: float | int | str | None = None
     fixed: bool = False  # a parameter that keeps its value after initialization
     patch: int | None = None
     mean_of: int = 0  # of a mean over a step: the value reference of what it is the mean of
     absent: str = ""  # what it is where its patch is not: 0, or the warmer bulk temperature
+    component: int = 0  # of a vector, from 1; 0: a number of its own
+    size: int = 1  # components of that vector, whether the scene has them or not
+    held: bool = False  # always 0: a component without effect, of an array
+
+
+@dataclass(frozen=True)
+class Item:
+    """What modelDescription.xml lists: a number, or in FMI 3.0 the array of a vector."""
+
+    name: str
+    variables: tuple[Variable, ...]
+
+    @property
+    def first(self) -> Variable:
+        """The component whose value reference is the array's."""
+        return self.variables[0]
+
+    @property
+    def is_array(self) -> bool:
+        """Whether it is one."""
+        return len(self.variables) > 1
+
+    @property
+    def description(self) -> str:
+        """Of the whole; of the components where these differ."""
+        texts = [v.description for v in self.variables if not v.held]
+        if len(set(texts)) == 1:
+            return texts[0]
+        return "; ".join(f"[{v.component}] {v.description}" for v in self.variables if not v.held)
+
+
+def items_of(variables: list[Variable], version: int) -> list[Item]:
+    """In their order; in FMI 3.0 the components of a vector are together where all are there."""
+    if version == 2:
+        return [Item(v.name, (v,)) for v in variables]
+    vectors: dict[int, list[Variable]] = {}
+    for v in variables:
+        if v.component:
+            vectors.setdefault(v.reference - v.component + 1, []).append(v)
+    found = []
+    for v in variables:
+        parts = vectors.get(v.reference - v.component + 1, [v]) if v.component else [v]
+        if len(parts) < max(v.size, 2):
+            found.append(Item(v.name, (v,)))
+        elif v is parts[0]:
+            found.append(Item(v.name.rpartition("[")[0], tuple(parts)))
+    return found
 
 
 class Table:
@@ -78,6 +125,10 @@ class Table:
             for group in content["group"]
             for row in group["variables"]
         ]
+        self._sizes: dict[tuple[str, str, int], int] = {}
+        for row in self._rows:
+            key = vector_of(row)
+            self._sizes[key] = max(self._sizes.get(key, 1), *row.get("components", [1]))
 
     def fill(self, name: str, items: list[str]) -> None:
         """Gives an enumeration the scene's items."""
@@ -86,7 +137,8 @@ class Table:
     def variables(self, kind: Kind) -> list[Variable]:
         """The variables of a scene, inputs and parameters first."""
         found = [v for row in self._rows if exists(row, kind) for v in self._expand(row, kind)]
-        return sorted(found, key=lambda v: (v.causality == "output", v.reference))
+        last = ("output", "independent", "local")
+        return sorted(found, key=lambda v: (v.causality in last, v.reference))
 
     def everything(self) -> list[Variable]:
         """All variables of all scenes, by value reference; for the C++ table."""
@@ -105,6 +157,8 @@ class Table:
         declared = self.types[name]
         if "unit" in declared:
             return "Real"
+        if "text" in declared:
+            return "String"
         return "Enumeration" if "items" in declared else "Integer"
 
     def range(self, name: str) -> tuple[float, float]:
@@ -114,6 +168,8 @@ class Table:
             first = first_item(declared)
             # of an empty list the scene has the items: as many as it likes
             return first, first + (len(declared["items"]) or MOST_ITEMS) - 1
+        if "text" in declared:
+            return 0, 0
         return tuple(declared["range"])
 
     def _expand(self, row: dict[str, Any], kind: Kind) -> Iterator[Variable]:
@@ -141,7 +197,15 @@ class Table:
                     patch=patch,
                     mean_of=mean_of(row, side, patch, names["k"]),
                     absent=row.get("absent", ""),
+                    component=number or 0,
+                    size=self._sizes[vector_of(row)],
+                    held=row.get("held", False),
                 )
+
+
+def vector_of(row: dict[str, Any]) -> tuple[str, str, int]:
+    """What the components of a vector have in common."""
+    return row["name"], row["causality"], row["reference"]
 
 
 def first_item(declared: dict[str, Any]) -> int:
@@ -189,7 +253,7 @@ def level_of(row: dict[str, Any], kind: Kind) -> str:
         return row["depends_frictionless"]
     if "depends_fast" in row and "fast" in kind.conditions:
         return row["depends_fast"]
-    return row.get("affects") or row["depends"]
+    return row.get("affects") or row.get("depends", "none")
 
 
 def prefix_of(row: dict[str, Any], kind: Kind, side: int | None, patch: int | None) -> str:
@@ -232,6 +296,6 @@ def has_shape(known: Variable, side: int | None, kind: Kind) -> bool:
     return f"{known.field} {SIDES[side]}" in kind.conditions
 
 
-def with_start(variable: Variable, start: float | int) -> Variable:
+def with_start(variable: Variable, start: float | int | str) -> Variable:
     """The variable with a start value."""
     return replace(variable, start=start)
