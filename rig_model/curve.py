@@ -32,6 +32,7 @@ import numpy as np
 from pydantic import Field
 from railpatch import Contact, Result
 from railpatch.case import WheelsetCase
+from railpatch.case.asked import refuse_asked
 from railpatch.case.common import without_friction
 from railpatch.case.load import Scene, check_case, plain, read_toml, refuse_others
 from railpatch.case.types import SIDES, NotNegative, Number, Table
@@ -233,6 +234,7 @@ def check_wheelset(case: Any) -> None:
         )
     if problems:
         raise CaseError(problems)
+    refuse_asked(case, "in a steady curve: solve its positions as cases")
 
 
 def steady_curves(scene: CurveScene, method: str | None = None) -> list[SteadyCurve]:

@@ -9,7 +9,9 @@ import pytest
 from case_samples import PATCH
 from pydantic import BaseModel
 from railpatch import Contact, _core, result
+from railpatch.case.asked import Damage, Subsurface
 from railpatch.case.load import KINDS
+from railpatch.case.types import BODIES
 from railpatch.case.wheel import ProfileFile
 from railpatch.log import channels
 
@@ -65,12 +67,19 @@ def test_the_words_of_case_tables() -> None:
     found = {}
     for table in {table for kind in KINDS.values() for table in tables(kind)}:
         for name, field in table.model_fields.items():
-            # how files are read is no matter of the core
-            if table is not ProfileFile and (words := literals(field.annotation)):
+            # how files are read, and laws of damage, are no matter of the core
+            if table not in (ProfileFile, Damage, Subsurface) and (
+                words := literals(field.annotation)
+            ):
                 found[f"{table.__name__}.{name}"] = words
     assert set(found) == set(KEYS)
     for key, (choice, apart) in KEYS.items():
         assert found[key] ^ set(_core.CHOICES[choice]) == apart, key
+
+
+def test_the_words_of_bodies() -> None:
+    """Of [subsurface], whose bodies the core takes by number (RP_BODIES)."""
+    assert get_args(Subsurface.model_fields["body"].annotation) == BODIES
 
 
 def test_the_words_of_results_and_logs() -> None:

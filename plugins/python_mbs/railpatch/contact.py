@@ -13,6 +13,7 @@ from zlib import crc32
 import numpy as np
 
 from railpatch import _core
+from railpatch.asked import Asked
 from railpatch.case.keys_of_step import signature
 from railpatch.case.load import Case, Scene, check_table, load_scene
 from railpatch.case.messages import show
@@ -90,6 +91,8 @@ class Contact:
         # whether the core's last input is that of the case, and steps may change its numbers there
         self._core.allow({} if self._irregularity is not None else plain_moves(scene.case))
         self._goes_on = False
+        wanted = scene.case.subsurface is not None or scene.case.damage is not None
+        self._asked = Asked(self, scene.case) if wanted else None
 
     @property
     def _case(self) -> Case:
@@ -209,9 +212,25 @@ class Contact:
     def _result(self, outcome: _core.Outcome, wall_time: float, fields: bool) -> Result:
         """Of a step, which is the last one now."""
         self._last = outcome, wall_time
+        if self._asked is not None:
+            raw = outcome.whole()
+            data = self._data(raw, wall_time, fields or self._asked.needs_fields)
+            return Result(self._asked.add(data, raw, fields))
         if fields:
             return Result(self._data(outcome.whole(), wall_time, fields))
         return Result(OnDemand(self._reader, outcome, wall_time))
+
+    def wear_rows(self) -> dict[str, list[tuple[float, dict[str, Any]]]]:
+        """Of the last step of a case with [damage], by side: share and rows of each patch, as
+        railpatch.damage.distribution.Distribution takes them. Empty without contact.
+
+        A row has s, wheel, rail (m: lateral in the contact frame, y in the axes of both profiles),
+        height (m, across it) and wear (kg/m^2, mass by metre rolled and by width).
+        Raises CaseError.
+        """
+        if self._asked is None or self._checked.damage is None:
+            raise CaseError("damage: left out, allowed a table for wear_rows()")
+        return self._asked.rows
 
     def last(self, *, fields: bool = False) -> Result:
         """The last step's result once more, also with fields; nothing is solved.

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from railpatch import _core
+from railpatch.case.asked import refuse_asked
 from railpatch.case.load import Case, Scene, load_scene
 from railpatch.case.messages import show
 from railpatch.case.moving import moving_keys, refuse_unknown
@@ -227,6 +228,7 @@ def solve_many(
     """
     scene = case if isinstance(case, Scene) else load_scene(case, folder)
     check_call(scene, threads, fields, sequence)
+    refuse_asked(scene.case, "in solve_many: steps of a Contact or a sweep have it")
     columns, count = columns_of(scene.case, inputs)
     if count % sequence:
         raise CaseError(f"sequence: value is {sequence}, allowed what divides {count} states")

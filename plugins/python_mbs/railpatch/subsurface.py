@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from railpatch import _core
 from railpatch.case.types import BODIES, SIDES
-from railpatch.contact import Contact
 from railpatch.errors import CaseError
 
 # components of stress and of displacement along x, s, n of the contact frame, n into the rail
@@ -18,6 +17,12 @@ STRESSES = ("xx", "ss", "nn", "xs", "sn", "nx")
 DIRECTIONS = ("x", "s", "n")
 DEEPEST = 1.0  # m
 DANG_VAN = 1 / 3
+
+
+class Stepped(Protocol):
+    """A railpatch.Contact."""
+
+    _core: Any
 
 
 class Subsurface:
@@ -35,7 +40,7 @@ class Subsurface:
 
     def __init__(
         self,
-        contact: Contact,
+        contact: Stepped,
         depth: ArrayLike,
         *,
         displacements: bool = False,

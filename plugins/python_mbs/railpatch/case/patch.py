@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from railpatch.case.asked import Damage, Subsurface, check_asked
 from railpatch.case.choice import RATIOS, axis_ratio
 from railpatch.case.common import (
     WHEEL_METHOD,
@@ -226,6 +227,12 @@ class PatchCase(Table):
         default=None, description="liquid between wheel and rail (m, Pa s, degrees C, m^3/s)"
     )
     method: Method = Field(default=Method(), description="theories and tolerances (-)")
+    subsurface: Subsurface | None = Field(
+        default=None, description="stresses below the surface at these depths (m)"
+    )
+    damage: Damage | None = Field(
+        default=None, description="wear and rolling contact fatigue by these laws (-)"
+    )
 
     @property
     def moving(self) -> tuple[str, ...]:
@@ -244,6 +251,7 @@ class PatchCase(Table):
                 self._check_physics(),
                 self._check_of_wheels(),
                 self._check_shape(),
+                check_asked(self, self.geometry.line_contact_radius is not None),
             )
         )
         return self

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from railpatch.case.asked import Damage, Subsurface, check_asked
 from railpatch.case.common import (
     Friction,
     Grid,
@@ -300,6 +301,12 @@ class _WheelCase(Table):
         default=None, description="liquid between wheel and rail (m, Pa s, degrees C, m^3/s)"
     )
     method: Method = Field(default=Method(), description="theories and tolerances (-)")
+    subsurface: Subsurface | None = Field(
+        default=None, description="stresses below the surface at these depths (m)"
+    )
+    damage: Damage | None = Field(
+        default=None, description="wear and rolling contact fatigue by these laws (-)"
+    )
     motion: WheelMotion = Field(default=WheelMotion(), description="how wheels roll (no unit)")
     wheelset: Wheelset = Field(description="position, velocity, dimensions (m, rad, m/s, rad/s)")
     track: Track = Field(description="rails or rollers (m, rad, rad/s)")
@@ -332,7 +339,9 @@ class _WheelCase(Table):
 
     @model_validator(mode="after")
     def _relations(self) -> _WheelCase:
-        refuse(itertools.chain(self._check_physics(), self._check_profiles()))
+        refuse(
+            itertools.chain(self._check_physics(), self._check_profiles(), check_asked(self, False))
+        )
         return self
 
     def _check_physics(self) -> Problems:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from railpatch import _core
+from railpatch.case.asked import refuse_asked
 from railpatch.case.fluid import MOVED
 from railpatch.case.load import Case, Scene
 from railpatch.case.patch import PatchCase
@@ -171,6 +172,7 @@ def scene_text(
     """resources/scene.txt; plugins/fmu/src/scene.hpp tells its form."""
     if getattr(getattr(scene.case, "track", None), "irregularity", None) is not None:
         raise CaseError("track.irregularity: given, allowed in an FMU none")
+    refuse_asked(scene.case, "in an FMU: take them from a sweep or a rig")
     heat = scene.case.temperature
     if heat is not None and heat.bulk is not None:
         raise CaseError("temperature.bulk: given, allowed in an FMU none: temperatures are inputs")

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from railpatch import _core
+from railpatch.case.types import BODIES
 from railpatch.record.quantities import ABOUT_SIGNS, ABSCISSA, QUANTITIES
 from railpatch.record.units import UNITS
 from railpatch.result import LOGGED
@@ -168,6 +169,33 @@ ERROR_ESTIMATE = Message(
     ),
 )
 
+SUBSURFACE = Message(
+    "Subsurface",
+    "Greatest stresses at depths below a patch, or below all patches of a wheel.",
+    (
+        Field("body", "string", "", "body that is looked at", choices=BODIES),
+        _number("depth", "m", "below the body's own surface", size=0),
+        _number("max_shear", "Pa", "greatest shear of each depth", size=0),
+        _number("von_mises", "Pa", "greatest von Mises stress of each depth", size=0),
+        _number("dang_van", "Pa", "greatest Dang Van stress of each depth", size=0),
+    ),
+)
+
+DAMAGE = Message(
+    "Damage",
+    "Wear and rolling contact fatigue of a patch; of a wheel sums of its patches by share for the "
+    "wear rate and the whole-life damage, else the greatest.",
+    (
+        _number("wear_rate", "kg/m", "mass that each body loses by metre rolled"),
+        _number("wheel_depth_rate", "-", "greatest wear depth by metre rolled, round the wheel"),
+        _number("rail_depth", "m", "greatest wear depth of one passage"),
+        _number("fatigue_index", "-", "FI_surf: above 0 beyond the surface's shakedown limit"),
+        _number("stress_index", "Pa", "greatest traction less the yield stress in shear"),
+        _number("whole_life_damage", "-", "of one passage, by the whole-life function of T gamma"),
+        _number("work_scale", "-", "of the elements' work, so that its sum is the friction power"),
+    ),
+)
+
 _IN_CONTACT_FRAME = (
     *("creepage", "spin_creepage", "rolling_speed"),
     *("normal_force", "approach", "creep_force", "spin_moment"),
@@ -214,6 +242,8 @@ PATCH = Message(
         _listed("patch", "contact_size", "contact"),
         _listed("patch", "wheel_profile_position", "profile"),
         _listed("patch", "rail_profile_position", "profile"),
+        Field("subsurface", SUBSURFACE, "", "stresses below it; only where the scene asks"),
+        Field("damage", DAMAGE, "", "of both bodies; only where the scene asks"),
     ),
 )
 
@@ -260,12 +290,16 @@ WHEEL_CONTACT = Message(
         _listed("side", "guiding_force", "track"),
         _listed("side", "wheel_load", "track"),
         _listed("side", "derailment_quotient"),
+        Field("subsurface", SUBSURFACE, "", "greatest of all patches; only where the scene asks"),
+        Field("damage", DAMAGE, "", "of all patches; only where the scene asks"),
     ),
 )
 
 # keys of a result that the contact channels leave out, and why; by message
 _IN_FIELDS = "in the fields channel"
 LEFT_OUT = {
+    "Subsurface": {"points": "of a single solve", "fields": "of a single solve"},
+    "Damage": {"fields": "of a single solve"},
     "WheelContact": {"stages": "the case file is attached; `railpatch explain` tells its stages"},
     "Patch": {"stages": "as for the wheel"}
     | dict.fromkeys(

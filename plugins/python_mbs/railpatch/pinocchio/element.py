@@ -491,6 +491,11 @@ def check_case(case: Any) -> None:
             f"wheelset.time_step: value is {case.wheelset.time_step}, allowed 0: {several}"
         )
     problems += problems_of_bulk(case)
+    problems += [
+        f"{name}: given, allowed none in a force element: take it from a sweep or a rig"
+        for name in ("subsurface", "damage")
+        if getattr(case, name) is not None
+    ]
     if problems:
         raise CaseError(problems)
 

@@ -1,0 +1,165 @@
+"""Tables that ask for more of a result than forces: [subsurface] and [damage]."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from railpatch.case.theories import has_tractions
+from railpatch.case.types import (
+    NotNegative,
+    Number,
+    Positive,
+    Problems,
+    Table,
+    between,
+    exactly,
+    refuse,
+    relation,
+)
+from railpatch.errors import CaseError
+
+Depths = Annotated[list[Annotated[float, between(0, 1)]], Field(min_length=1, max_length=1000)]
+Point = Annotated[list[Number], exactly(3)]
+Places = Annotated[list[Point], Field(min_length=1, max_length=10000)]
+Steps = Annotated[
+    list[Annotated[list[NotNegative], exactly(2)]], Field(min_length=1, max_length=32)
+]
+Life = Annotated[list[Annotated[list[Number], exactly(2)]], Field(min_length=2, max_length=32)]
+ASSUMED = "assumed"
+
+
+class Subsurface(Table):
+    """Stresses below each patch: docs/subsurface.md."""
+
+    depths: Depths = Field(description="m, below the body's own surface")
+    body: Literal["wheel", "rail"] = Field(
+        default="rail", description="body that is looked at (no unit)"
+    )
+    points: Places | None = Field(
+        default=None,
+        description="m, [[x, y, depth], ...] in the contact frame, for stresses and displacements",
+    )
+    dang_van: Annotated[float, between(0, 3)] = Field(
+        default=1 / 3,
+        description="-, weight of the hydrostatic stress in Dang Van's criterion "
+        f"({ASSUMED}, of no particular steel)",
+    )
+
+    @model_validator(mode="after")
+    def _deep(self) -> Subsurface:
+        for point in self.points or ():
+            if not 0 <= point[2] <= 1:
+                raise relation("points", f"depth {point[2]:g}", "depths of 0 to 1 m")
+        return self
+
+
+class Damage(Table):
+    """Wear and rolling contact fatigue of each patch: docs/damage.md."""
+
+    wear: Literal["usfd", "archard"] = Field(
+        default="usfd",
+        description="law of wear (no unit): by the work of friction over the area, or by pressure "
+        "and way of slip",
+    )
+    basis: Literal["elements", "patch"] = Field(
+        default="elements",
+        description="what the law is asked for (no unit): each element by its own traction and "
+        "slip, or the patch by its wear number over its area; Archard: by its greatest pressure",
+    )
+    worn_density: Annotated[float, between(100, 1e5)] = Field(
+        default=7850.0, description=f"kg/m^3, of what wears off ({ASSUMED}: steel)"
+    )
+    usfd_rate: Positive = Field(
+        default=5.3e-9,
+        description="kg/J, mild wear: mass over work (Lewis and Dwyer-Joyce 2004: 5.3 ug/(m mm^2) "
+        "by N/mm^2)",
+    )
+    usfd_plateau: Positive = Field(
+        default=55.0e-3,
+        description="kg/m^3, severe wear: mass by metre rolled and m^2 (Lewis and Dwyer-Joyce "
+        "2004: 55.0 ug/(m mm^2))",
+    )
+    usfd_slope: Positive = Field(
+        default=61.9e-9,
+        description="kg/J, catastrophic wear: mass over what work is above the last limit (Lewis "
+        "and Dwyer-Joyce 2004: 61.9 ug/(m mm^2) by N/mm^2)",
+    )
+    usfd_limits: Annotated[list[NotNegative], exactly(2)] = Field(
+        default=[10.4e6, 77.2e6],
+        description="Pa, work by metre rolled and area where severe and catastrophic wear begin "
+        "(Lewis and Dwyer-Joyce 2004)",
+    )
+    hardness: Positive = Field(
+        default=2.6e9, description=f"Pa, of the softer body, for Archard's law ({ASSUMED})"
+    )
+    archard_map: Steps = Field(
+        default=[[0.0, 5.5e-4], [0.2, 3.5e-3], [0.7, 5.5e-4]],
+        description="m/s and -, [[slip speed from which on, coefficient], ...] from 0 on (regions "
+        f"of Jendel 2002; the middle of each region's range, {ASSUMED})",
+    )
+    seizure_pressure: Positive = Field(
+        default=0.8, description="-, of the hardness, where seizure begins (Jendel 2002)"
+    )
+    seizure_coefficient: NotNegative = Field(
+        default=3.5e-2,
+        description=f"-, of seizure (Jendel 2002; middle of its range, {ASSUMED})",
+    )
+    shear_yield: Positive = Field(
+        default=300e6, description=f"Pa, yield stress in pure shear, cyclic ({ASSUMED}: rail steel)"
+    )
+    whole_life: Life = Field(
+        default=[[15.0, 0.0], [65.0, 1e-5], [175.0, 0.0]],
+        description="N and -, [[wear number, damage of one passage], ...], straight between and "
+        "on beyond the last, where wear takes cracks away (after Burstow 2003, whose text was not "
+        f"at hand: {ASSUMED})",
+    )
+
+    @model_validator(mode="after")
+    def _increasing(self) -> Damage:
+        refuse(self._orders())
+        return self
+
+    def _orders(self) -> Problems:
+        if not self.usfd_limits[0] <= self.usfd_limits[1]:
+            yield relation("usfd_limits", str(self.usfd_limits), "the lower limit first")
+        for name, at in (("archard_map", "slip speeds"), ("whole_life", "wear numbers")):
+            points = getattr(self, name)
+            if not all(a[0] < b[0] for a, b in pairwise(points)):
+                yield relation(name, str(points), f"{at} that increase")
+        if self.archard_map[0][0] != 0:
+            yield relation("archard_map", str(self.archard_map), "a first slip speed of 0")
+
+
+def check_asked(case: Any, line: bool) -> Problems:
+    """What a case cannot give: theories without tractions, line contacts, grids of nodes."""
+    method = case.method
+    without = case.has_tangential and not has_tractions(method.tangential)
+    fitted = case.grid is not None and case.grid.fitted is not None
+    if case.subsurface is not None:
+        if without:
+            yield relation(
+                "subsurface",
+                "given",
+                f"none with method.tangential = {method.tangential!r}, which has no tractions",
+            )
+        if line and case.subsurface.points:
+            yield relation("subsurface.points", "given", "none in a line contact")
+    if case.damage is None:
+        return
+    if not case.has_tangential:
+        yield relation("damage", "given", "none without a tangential problem")
+    elif case.motion.regime == "shift":
+        yield relation("damage", "given", "none with motion.regime = 'shift', which rolls no way")
+    elif case.damage.basis == "elements" and (without or fitted):
+        why = "fitted rows" if fitted else f"method.tangential = {method.tangential!r}"
+        yield relation("damage.basis", "'elements'", f"'patch' with {why}")
+
+
+def refuse_asked(case: Any, where: str) -> None:
+    """Of commands whose contacts have no results of their own. Raises CaseError."""
+    given = [name for name in ("subsurface", "damage") if getattr(case, name, None) is not None]
+    if given:
+        raise CaseError([f"{name}: given, allowed none {where}" for name in given])

@@ -1,0 +1,1 @@
+"""Wear and rolling contact fatigue from the tractions and slips of a contact."""

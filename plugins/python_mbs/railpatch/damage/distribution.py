@@ -1,0 +1,65 @@
+"""Wear over the profiles of wheel and rail along a run."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+LOW, HIGH, BINS = -0.08, 0.08, 640  # m, of a profile's y
+
+
+class Distribution:
+    """Mass that wears off, by y of each profile: sums of rows times the way rolled.
+
+    wheel, rail: kg/m, [BINS], mass by width of the wheel's profile; of the rail the mass is that
+    of the whole way. outside: kg, beyond the bins. y: m, [BINS], middles.
+    """
+
+    def __init__(self) -> None:
+        self.edges = np.linspace(LOW, HIGH, BINS + 1)
+        self.y = 0.5 * (self.edges[1:] + self.edges[:-1])
+        self.wheel, self.rail = np.zeros(BINS), np.zeros(BINS)
+        self.outside = {"wheel": 0.0, "rail": 0.0}
+        self.way = 0.0
+
+    def add(self, rows: dict[str, Array], way: float, share: float = 1.0) -> None:
+        """Rows of a patch (railpatch.damage.patch) over a way (m), with its share in the wheel."""
+        for body in ("wheel", "rail"):
+            place = rows[body]
+            if not np.isfinite(place).all() or not place.size:
+                continue
+            order = np.argsort(place)
+            place, mass = place[order], (rows["wear"] * rows["height"])[order] * way * share
+            half = 0.5 * abs(place[-1] - place[0]) / max(len(place) - 1, 1)
+            edges = np.append(place - half, place[-1] + half)
+            whole = np.concatenate([[0.0], np.cumsum(mass)])
+            inside = np.diff(np.interp(self.edges, edges, whole))
+            target = self.wheel if body == "wheel" else self.rail
+            target += inside / (self.edges[1] - self.edges[0])
+            self.outside[body] += float(mass.sum() - inside.sum())
+
+    def depth(self, body: str, density: float, length: float) -> Array:
+        """m, [BINS], that has worn off, measured across y. length: m, over which the mass is
+        spread: round the wheel, or along the rail."""
+        mass = self.wheel if body == "wheel" else self.rail
+        return mass / (density * length)
+
+    def mass(self, body: str) -> float:
+        """kg, all of it."""
+        mass = self.wheel if body == "wheel" else self.rail
+        return float(mass.sum() * (self.edges[1] - self.edges[0])) + self.outside[body]
+
+
+def summed(numbers: list[tuple[float, dict[str, Any]]]) -> dict[str, float]:
+    """Of a wheel's patches by share: sums of rates, the greatest of indices."""
+    found: dict[str, float] = {}
+    for name in ("wear_rate", "whole_life_damage"):
+        found[name] = math.fsum(share * values[name] for share, values in numbers)
+    for name in ("wheel_depth_rate", "rail_depth", "fatigue_index", "stress_index"):
+        known = [values[name] for _, values in numbers if not math.isnan(values[name])]
+        found[name] = max(known, default=math.nan)
+    return found

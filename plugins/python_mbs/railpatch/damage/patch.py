@@ -1,0 +1,132 @@
+"""Damage of one patch: element by element, or by its wear number."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from railpatch.case.asked import Damage
+from railpatch.damage.laws import archard, fatigue_index, usfd, whole_life
+
+Array = NDArray[np.float64]
+ROWS = 40  # of a patch without elements
+# names and units of what a patch's damage holds; kg/m is per metre rolled
+UNITS = {
+    "wear_rate": "kg/m",
+    "wheel_depth_rate": "",
+    "rail_depth": "m",
+    "fatigue_index": "",
+    "stress_index": "Pa",
+    "whole_life_damage": "",
+    "work_scale": "",
+}
+
+
+def work_of(fields: dict[str, Any], direction: int) -> Array:
+    """N/m^2, [ny, nx]: work of friction by metre rolled and area, >= 0.
+
+    An element's traction works over the slips at both of its ends: that of its own way from
+    upstream, and that of the way on, which is its neighbour's; behind the trailing edge, where
+    fields hold none, it goes on straight.
+    """
+    traction, slip = fields["traction"], fields["micro_slip"]
+    touching = fields["pressure"] > 0
+    downstream = -1 if direction > 0 else 1
+    after = np.roll(slip, -downstream, axis=2)
+    upstream = np.roll(slip, downstream, axis=2)
+    inside = np.roll(touching, -downstream, axis=1)
+    behind = np.where(np.roll(touching, downstream, axis=1), 2 * slip - upstream, slip)
+    after = np.where(inside, after, behind)
+    return np.where(touching, np.maximum(-(traction * (slip + after)).sum(axis=0) / 2, 0.0), 0.0)
+
+
+def damage_of(
+    patch: dict[str, Any], law: Damage, radius: float, *, left: bool, direction: int, speed: float
+) -> tuple[dict[str, Any], dict[str, Array]]:
+    """Numbers of a patch, and by row what wears.
+
+    patch: a result with fields where the law asks for elements. radius: m, on which the wheel
+    rolls, NaN: unknown, and no depth of the wheel. direction: of rolling. speed: m/s, of rolling.
+    Rows: wheel, rail: m, y in the axes of each profile (NaN of a patch given by itself); height:
+    m, across each row; wear: kg/m^2, mass by metre rolled and by width of the row.
+
+    wear_rate: kg/m, mass that each body loses by metre rolled. wheel_depth_rate: -, greatest depth
+    by metre rolled, round the wheel. rail_depth: m, greatest depth of one passage. work_scale: -,
+    by which the elements' work was multiplied so that its sum is friction_power over the speed.
+    """
+    elements = law.basis == "elements"
+    rows = _rows_of_elements if elements else _rows_of_patch
+    found, table = rows(patch, law, direction, speed)
+    depth = table["wear"] / law.worn_density  # m, of one passage
+    greatest = float(depth.max()) if depth.size else 0.0
+    numbers = {
+        "wear_rate": float((table["wear"] * table["height"]).sum()),
+        "wheel_depth_rate": greatest / (math.tau * radius) if radius > 0 else math.nan,
+        "rail_depth": greatest,
+        "fatigue_index": fatigue_index(patch["traction_coefficient"], patch["max_pressure"], law),
+        "whole_life_damage": whole_life(patch["wear_number"], law),
+        **found,
+    }
+    # the profiles' y axes go from the flange outward: on the left against the contact frame's s
+    across = (-1 if left else 1) * math.cos(patch.get("contact_angle", 0.0))
+    for body in ("wheel", "rail"):
+        at = patch.get(f"{body}_profile_position", (math.nan, math.nan))[0]
+        table[body] = at + across * table["s"]
+    return numbers, table
+
+
+def _rows_of_elements(
+    patch: dict[str, Any], law: Damage, direction: int, speed: float
+) -> tuple[dict[str, Any], dict[str, Array]]:
+    x, y = np.asarray(patch["x"]), np.asarray(patch["y"])
+    dx = abs(x[1] - x[0])
+    dy = abs(y[1] - y[0]) if len(y) > 1 else patch["contact_size"][1]
+    work = work_of(patch, direction)
+    given = patch["friction_power"] / speed if speed > 0 else 0.0
+    summed = float(work.sum()) * dx * dy
+    scale = given / summed if summed > 0 else math.nan
+    if math.isfinite(scale):
+        work = scale * work
+    pressure = np.asarray(patch["pressure"])
+    if law.wear == "usfd":
+        wear = usfd(work, law)
+    else:
+        slip = np.hypot(*np.asarray(patch["micro_slip"]))
+        wear = archard(pressure, slip, speed, law)
+    size = np.hypot(*np.asarray(patch["traction"]))
+    found = {
+        "stress_index": float((size - law.shear_yield).max()),
+        "work_scale": float(scale),
+        "fields": {"work": work, "wear": wear, "stress_index": size - law.shear_yield},
+    }
+    table = {"s": y, "height": np.full(len(y), dy), "wear": wear.sum(axis=1) * dx}
+    return found, table
+
+
+def _rows_of_patch(
+    patch: dict[str, Any], law: Damage, direction: int, speed: float
+) -> tuple[dict[str, Any], dict[str, Array]]:
+    """The patch's mean over its width as half an ellipse, by the work or pressure of all of it."""
+    del direction
+    area, width = patch["contact_area"], patch["contact_size"][1]
+    s = (np.arange(ROWS) + 0.5) / ROWS - 0.5
+    chord = np.sqrt(1.0 - (2 * s) ** 2)
+    if not area > 0:
+        zeros = np.zeros(ROWS)
+        return {"stress_index": math.nan, "work_scale": math.nan}, {
+            "s": zeros, "height": zeros, "wear": zeros,
+        }  # fmt: skip
+    creepage = math.hypot(*patch["creepage"])
+    if law.wear == "usfd":
+        wear = float(usfd(patch["wear_number"] / area, law))
+    else:
+        mean = patch["normal_force"] / area
+        rate = archard(patch["max_pressure"], creepage, speed, law)
+        wear = float(rate) * mean / patch["max_pressure"]
+    height = np.full(ROWS, width / ROWS)
+    shape = chord / (chord * height).sum()
+    table = {"s": s * width, "height": height, "wear": wear * area * shape}
+    return {"stress_index": math.nan, "work_scale": math.nan}, table
