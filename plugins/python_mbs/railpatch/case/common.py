@@ -386,6 +386,7 @@ def without_friction(content: dict[str, Any]) -> dict[str, Any]:
     return {
         **content,
         **dict.fromkeys(PHYSICS),
+        **dict.fromkeys(("subsurface", "damage")),
         "grid": grid if counted else None,
         "method": {**method, "tangential": "none"},
     }
