@@ -58,7 +58,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--rigs", type=int, default=100)
     parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--elements", type=float, default=1e-3, help="m, of the grid")
+    parser.add_argument("--elements", type=float, default=1.5e-3, help="m, of the grid")
     parser.add_argument("--intervals", choices=("profile", "covariance"), default="profile")
     parser.add_argument("--rows", type=Path, help="a CSV file that gets a line for each rig")
     options = parser.parse_args()

@@ -11,8 +11,9 @@ wheels have normal noise of a part of half the load.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,9 +21,12 @@ import numpy as np
 from numpy.typing import NDArray
 from railpatch.case.load import read_toml
 from railpatch.case.types import SIDES
+from railpatch.errors import CaseError
 from railpatch.sweep.plan import put
 
-from rig_model.balance import Balancer
+from rig_model.balance import Balance, Balancer
+from rig_model.predict import Prediction
+from rig_model.programme import Position
 from rig_model.scene import NOMINAL, rig_scene_of, scenes
 
 OFFSET = "rig.columns.lateral_position.offset"
@@ -53,6 +57,8 @@ FORCES = {
     f"{side}_{what}": k for side in SIDES for k, what in enumerate(("longitudinal", "lateral"))
 }
 VERTICAL = {f"{side}_vertical": 2 for side in SIDES}
+# between two positions where the way is taken in small ones
+STEPS = 16
 UNITS = {"time": ("ms", 1e3), "yaw": ("mrad", 1e3), "lateral_position": ("mm", 1e3)}
 
 
@@ -81,8 +87,7 @@ def write_synthetic(
     content["rig"] |= tables or {}
     write_record(folder, columns)
     scene = rig_scene_of(with_values(content, truth), folder, {"balance.tolerance": 2e-5})
-    balancer = Balancer(scene)
-    balances = [balancer.solve(position) for position in scene.positions()]
+    balances = balanced(Balancer(scene), scene.positions())
     size = noise * 0.5 * scene.vertical_force
     for name, k in forces.items():
         side = name.partition("_")[0]
@@ -97,6 +102,39 @@ def write_synthetic(
     place.write_text(toml_of(match), encoding="utf-8")
     (folder / "truth.toml").write_text(toml_of(dict(truth)), encoding="utf-8")
     return place
+
+
+def balanced(balancer: Balancer, positions: Sequence[Position]) -> list[Balance]:
+    """Of a run; where a position is not balanced from the last one, on smaller steps from there.
+
+    Raises CaseError where that fails too."""
+    found: list[Balance] = []
+    for position in positions:
+        balance = balancer.solve(position)
+        if not balance.converged and found:
+            balance = balancer.solve(position, stepped(balancer, found[-1], position))
+        if not balance.converged:
+            raise CaseError(f"position {position.index}: is {balance.status}, allowed a balance")
+        found.append(balance)
+    return found
+
+
+def stepped(balancer: Balancer, last: Balance, position: Position) -> Prediction:
+    """What is known a small step before a position, of balances on the way there."""
+    before = last.position
+    unknowns = np.array([getattr(last, name) for name in balancer.unknowns])
+    known = Prediction(unknowns, balancer.jacobian)
+    for part in np.linspace(0.0, 1.0, STEPS + 1)[1:]:
+        values = {
+            key: (1 - part) * getattr(last.position, key) + part * getattr(position, key)
+            for key in ("y", "yaw")
+        }
+        here = replace(position, **values)
+        balance = balancer.alone(here, balancer.beside(known, before, here))
+        if balance.converged:
+            unknowns = np.array([getattr(balance, name) for name in balancer.unknowns])
+            known, before = Prediction(unknowns, balancer.jacobian), here
+    return balancer.beside(known, before, position)
 
 
 def programme(count: int, forces: Mapping[str, int]) -> dict[str, NDArray[np.float64]]:

@@ -53,7 +53,7 @@ NEAR_END = 1e-3  # of a range
 FAR, FIRST = 10.0, 0.05
 ROUNDS = 2
 # of a range: derivatives serve as far as this in a search, corrected by what is computed there
-SERVE = 0.02
+SERVE = 0.05
 
 
 @dataclass

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from railpatch.match.fit import LEVEL, NEAR_END, Fit, Search
 from railpatch.match.found_parts import RowsFound, Screened
+from railpatch.match.interval import ONE
 
 Array = NDArray[np.float64]
 
-# standard deviations of 95 %, and correlation from which on two parameters are one
+# standard deviations of 95 %
 NORMAL_95 = 1.959963984540054
-ONE = 0.98
 # part of its range from which on a parameter is not known at all
 WIDE = 0.95
 

@@ -66,8 +66,10 @@ class SoughtTable(Table):
     def at(self, share: float) -> float:
         """The value at a share from 0 to 1 of the range."""
         if self.logarithmic:
-            return math.exp((1 - share) * math.log(self.low) + share * math.log(self.high))
-        return (1 - share) * self.low + share * self.high
+            value = math.exp((1 - share) * math.log(self.low) + share * math.log(self.high))
+        else:
+            value = (1 - share) * self.low + share * self.high
+        return min(max(value, self.low), self.high) if 0 <= share <= 1 else value
 
     def share(self, value: float) -> float:
         """The share of the range at which a value lies."""
