@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
+import resource
 import sys
 import zipfile
 from collections.abc import Callable, Iterator
@@ -191,3 +193,25 @@ def test_a_kind_is_a_case_like_any_other() -> None:
     assert name == "patch_transient"
     assert isinstance(scene, Scene)
     assert scene.case.motion.regime == "transient_rolling"
+
+
+def resident() -> float:
+    """MB of this process."""
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * resource.getpagesize() / 1e6
+
+
+@pytest.mark.parametrize("name", ["wheelset_rail", "wheelset_rollers"])
+def test_an_instance_takes_less_than_12_MB(name: str, made: Callable[[str], Fmu]) -> None:
+    """With derivatives, after two steps; the first instance pays for what all share."""
+    count, fmu = 6, made(name)
+    with contextlib.ExitStack() as stack:
+        stack.enter_context(Slave(fmu)).initialize().step(0.0, STEP)
+        before = resident()
+        for _ in range(count):
+            slave = stack.enter_context(Slave(fmu)).initialize()
+            for k in range(2):
+                assert slave.step(k * STEP, STEP) == OK, slave.log
+            assert slave.derivative(["force[3]"], {"wheelset.y": 1.0})[0] == OK
+        taken = (resident() - before) / count
+    assert 1 < taken < 12
