@@ -31,6 +31,7 @@ tangential = "none"
 """
 # commands that write a folder, or have no input
 FOLDERS = {name: (name,) for name in ("bench", "continuity", "stress")} | {
+    "convert": ("convert", "case.inp"),
     "match": ("match", "match.toml"),
     "sweep": ("sweep", "sweep.toml"),
 }

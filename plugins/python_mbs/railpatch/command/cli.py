@@ -59,19 +59,44 @@ def cli() -> None:
 @click.argument("case", metavar="CASE.toml", type=CASE)
 @json_option()
 @click.option("--fields", is_flag=True, help="With --json: add pressure, traction, ... as arrays.")
+@click.option(
+    "--signs",
+    type=click.Choice(["contact"]),
+    help="Print JSON in the units and signs of the program CONTACT: mm, N, of the rail.",
+)
+@click.option(
+    "--mat",
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="OUT.mat",
+    help="Write the same with all fields for MATLAB.",
+)
 @strict_flag()
 @QUIET
 @click.pass_context
 def solve(
-    context: click.Context, case: Path, as_json: bool, fields: bool, strict: bool, quiet: bool
+    context: click.Context,
+    case: Path,
+    as_json: bool,
+    fields: bool,
+    signs: str | None,
+    mat: Path | None,
+    strict: bool,
+    quiet: bool,
 ) -> None:
-    """Solve one contact case.
+    """Solve one contact case, or all cases of an input file (.inp) of the program CONTACT.
 
     What can hardly be meant, a load of 50 N or a wheel that is locked, is solved all the same, with
     a warning.
     """
-    if fields and not as_json:
+    if fields and not (as_json or signs):
         raise WrongCall("--fields: value is True, allowed only with --json")
+    if case.suffix.lower() == ".inp" or signs or mat:
+        from railpatch.command.contact_units import solve_in_contact_units
+
+        solve_in_contact_units(
+            context, case, as_json, fields, signs=signs, mat=mat, strict=strict, quiet=quiet
+        )
+        return
     from railpatch.contact import solve as solve_case
 
     result = solve_case(case, fields=fields)

@@ -23,6 +23,7 @@ ENTRY_POINT_GROUP = "railpatch.commands"
 ROOMS = {
     "bench": "evidence.bench",
     "continuity": "evidence.continuity",
+    "convert": "convert",
     "export": "export",
     "figure": "report",
     "fmu": "fmu",

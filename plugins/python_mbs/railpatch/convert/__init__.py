@@ -1,0 +1,1 @@
+"""The sub-command that makes cases of CONTACT's input files."""

@@ -1,0 +1,77 @@
+"""The sub-command ``railpatch convert``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from railpatch.command.group import WrongCall, quiet_flag, wrong_calls
+from railpatch.command.output import check_folder
+from railpatch.errors import CaseError
+from railpatch.inp.files import convert as cases_of_file
+from railpatch.inp.written import plan, write_cases
+
+
+@click.command("convert")
+@click.argument("source", metavar="CASE.inp", type=click.Path(path_type=Path))
+@click.option(
+    "-o",
+    "--output",
+    metavar="DIR",
+    type=click.Path(file_okay=False, path_type=Path),
+    help="Folder for the cases, their profiles and undeformed distances.",
+)
+@click.option(
+    "--list",
+    "listed",
+    is_flag=True,
+    help="Of a file, or all .inp files of a folder: what each case would be, or why it has no "
+    "counterpart; nothing is written.",
+)
+@quiet_flag("Print nothing.")
+@click.pass_context
+def convert(
+    context: click.Context, source: Path, output: Path | None, listed: bool, quiet: bool
+) -> None:
+    """Make TOML files of the cases in an input file of the program CONTACT.
+
+    What has no counterpart is refused by line and name, and nothing is written. Steps of a shift
+    or of transient rolling that go on from each other are one file.
+    """
+    if listed == (output is not None):
+        raise WrongCall("say either -o DIR or --list")
+    if listed:
+        bad = show_list(source, quiet=quiet)
+        if bad:
+            context.exit(2)
+        return
+    assert output is not None
+    check_folder(output)
+    with wrong_calls():
+        written = write_cases(plan(cases_of_file(source), source), source, output)
+    if not quiet:
+        for path in written:
+            click.echo(str(path))
+
+
+def show_list(source: Path, *, quiet: bool) -> bool:
+    """Whether a case, or a file, cannot be converted."""
+    files = sorted(source.glob("*.inp")) if source.is_dir() else [source]
+    if not files:
+        raise WrongCall(f"{source}: has no .inp files")
+    bad = False
+    for path in files:
+        lines = []
+        try:
+            for one in cases_of_file(path):
+                state = one.refused if one.tables is None else one.tables["kind"]
+                lines.append(f"{path.name}: case {one.case.number}: {state}")
+                bad = bad or one.refused is not None
+        except CaseError as error:
+            bad = True
+            lines.append(f"cannot be read: {error}")
+        if not quiet:
+            for line in lines:
+                click.echo(line)
+    return bad
