@@ -14,6 +14,7 @@ from railpatch.case.load import Scene, load_scene
 from railpatch.case.moving import moving_keys
 from railpatch.errors import CaseError
 from railpatch.many import States, solve_many
+from railpatch.match.exact import ExactRates, direction_of
 from railpatch.match.plan import Explanation, ObservedColumn, Plan, values_of
 from railpatch.sweep.plan import steps_of
 
@@ -102,6 +103,7 @@ class ContactModel(Model):
         self.inputs = {key: values[self.rows] for key, values in inputs.items()}
         self.measured = measured[:, self.rows]
         self.evaluations, self.free = 0, 0
+        self._exact = True
 
     def at(self, shares: Array) -> Array:
         """[observed, m], SI units, NaN where a state has no good result. Raises CaseError."""
@@ -119,6 +121,45 @@ class ContactModel(Model):
         )
         found[:, ~states.good] = np.nan
         return found
+
+    def slopes(self, shares: Array) -> Array | None:
+        """[observed, m, p]: exact where the contact has them; None where it has none at all."""
+        if not self._exact:
+            return None
+        sought = self.explanation.seek
+        values = values_of(sought, shares)
+        scene = load_scene(self.explanation.case(values), self.plan.folder)
+        ways = [direction_of(scene.case, key, tuple(self.inputs)) for key in self.keys]
+        exact = [k for k, way in enumerate(ways) if way is not None]
+        rates = self._rates(scene, [ways[k] for k in exact]) if exact else None
+        if rates is None:
+            self._exact = False
+            return None
+        found = np.empty((*self.measured.shape, len(shares)))
+        here = self.at(shares) if len(exact) < len(ways) else None
+        for k, (key, one) in enumerate(sought.items()):
+            if k in exact:
+                found[..., k] = rates[..., exact.index(k)] * one.rate(values[key])
+                continue
+            assert here is not None
+            step = -DIFFERENCE if shares[k] > 0.5 else DIFFERENCE
+            moved = shares.copy()
+            moved[k] += step
+            found[..., k] = (self.at(moved) - here) / step
+        return np.nan_to_num(found)
+
+    def _rates(self, scene: Scene, ways: list[dict[str, Any] | None]) -> Array | None:
+        """[observed, m, ways], by the keys; None where the contact has no exact ones."""
+        columns = self._columns(scene)
+        observed = [(key, column.over) for key, column in self.plan.table.observed.items()]
+        contact, rows = ExactRates(scene), []
+        for row in range(self.measured.shape[1]):
+            changes = {key: values[row].tolist() for key, values in columns.items()}
+            rates = contact.at(changes, [way for way in ways if way is not None], observed)
+            if rates is None:
+                return None
+            rows.append(rates)
+        return np.stack(rows, axis=1)
 
     def _outputs(self) -> list[str]:
         named = [*self.plan.table.observed]

@@ -71,6 +71,10 @@ class SoughtTable(Table):
             value = (1 - share) * self.low + share * self.high
         return min(max(value, self.low), self.high) if 0 <= share <= 1 else value
 
+    def rate(self, value: float) -> float:
+        """Of the value, by the share."""
+        return value * math.log(self.high / self.low) if self.logarithmic else self.high - self.low
+
     def share(self, value: float) -> float:
         """The share of the range at which a value lies."""
         if self.logarithmic:
