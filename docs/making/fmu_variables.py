@@ -35,7 +35,8 @@ def pages() -> Pages:
     groups: dict[str, list[list[str]]] = {"input": [], "parameter": [], "output": []}
     for variable in found.everything():
         name = generic(variable)
-        if (name, variable.causality) in seen:
+        # the independent one is the time, which every FMU has
+        if (name, variable.causality) in seen or variable.causality not in groups:
             continue
         seen.add((name, variable.causality))
         declared = found.types[variable.type]
