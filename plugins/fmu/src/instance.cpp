@@ -382,7 +382,7 @@ bool Instance::settable(const Call &call, int index, double value) {
     refuse(call, item.name + (output ? " is an output" : " is the independent variable"));
     return false;
   }
-  if (mode_ == Mode::continuous && variable.role == Role::parameter) {
+  if (mode_ == Mode::continuous && !is_input(variable)) {
     refuse(call, item.name + " is a parameter, which may be set in event mode");
     return false;
   }

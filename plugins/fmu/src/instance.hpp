@@ -97,6 +97,11 @@ class Instance {
   int find_known(const Call &call, Reference reference);
   int find_output(const Call &call, Reference reference);
   int find_unknown(const Call &call, Reference reference);
+  // friction may be one: options_.friction_input
+  bool is_input(const Variable &variable) const {
+    return variable.role == Role::input ||
+           (options_.friction_input != 0 && variable.reference == reference::friction_coefficient);
+  }
   bool settable(const Call &call, int index, double value);
   bool in_range(const Call &call, int index, double value);
   bool index_arrays(const std::vector<SceneArray> &arrays);

@@ -10,8 +10,7 @@ namespace railpatch::fmu {
 
 int Instance::find_input(const Call &call, Reference reference) {
   const int index = find(call, Type::real, reference);
-  if (index < 0 || variables_[static_cast<size_t>(index)].variable->role == Role::input)
-    return index;
+  if (index < 0 || is_input(*variables_[static_cast<size_t>(index)].variable)) return index;
   refuse(call, variables_[static_cast<size_t>(index)].name + " is not an input");
   return -1;
 }

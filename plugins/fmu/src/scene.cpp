@@ -146,6 +146,7 @@ bool read_option(Words &words, Scene &scene) {
   Options &o = scene.options;
   if (name == "history") return words.number(o.history);
   if (name == "averaged") return words.number(o.averaged);
+  if (name == "friction_input") return words.number(o.friction_input);
   if (name == "time_step") return words.number(o.time_step);
   return name == "distance" && words.number(o.distance);
 }

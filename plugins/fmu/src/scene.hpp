@@ -44,9 +44,10 @@ struct SceneArray {
 struct Options {
   int32_t history =
       0;  // 1: later steps depend on earlier ones, not only through the solver's start
-  int32_t averaged = 0;  // 1: means over a step are asked for
-  double time_step = 0;  // s, of the solve at the start, where there is no step yet
-  double distance = 0;   // m, of that solve: distance rolled of a patch in transient rolling
+  int32_t averaged = 0;        // 1: means over a step are asked for
+  int32_t friction_input = 0;  // 1: the coefficient of friction is an input
+  double time_step = 0;        // s, of the solve at the start, where there is no step yet
+  double distance = 0;         // m, of that solve: distance rolled of a patch in transient rolling
 };
 
 struct ProfileArrays {

@@ -65,6 +65,25 @@ def scene_names() -> list[str]:
     help="Also give the largest step that forces may be held for; takes two to three steps' time.",
 )
 @click.option(
+    "--inputs",
+    "inputs",
+    metavar="friction",
+    help="Further inputs, separated by commas: friction, the coefficient of Coulomb's law.",
+)
+@click.option(
+    "--outputs",
+    "outputs",
+    metavar="LIST",
+    help="Outputs to keep, separated by commas: names, patterns (left.*), or the groups forces, "
+    "wheels, patches, power; without it all. The status is always there.",
+)
+@click.option(
+    "--patches",
+    type=int,
+    metavar="N",
+    help="Greatest number of patches of a wheel, in place of the scene's max_patches.",
+)
+@click.option(
     "--wheel-profile",
     "wheel_profiles",
     multiple=True,
@@ -97,6 +116,9 @@ def fmu(
     derivatives: Any,
     averages: bool,
     largest_step: bool,
+    inputs: str | None,
+    outputs: str | None,
+    patches: int | None,
     wheel_profiles: tuple[str, ...],
     rail_profiles: tuple[str, ...],
     libraries: Path | None,
@@ -132,12 +154,20 @@ def fmu(
         wheel_profiles=wheels,
         rail_profiles=rails,
         fmi=int(fmi),
+        inputs=listed(inputs),
+        outputs=listed(outputs),
+        patches=patches,
     )
     for text in written.warnings:
         click.echo(f"warning: {text}", err=True)
     if not quiet:
         licence = ", under the GPL because of FFTW" if fft == "fftw" else ""
         click.echo(f"{written}: {name}{licence}")
+
+
+def listed(text: str | None) -> list[str]:
+    """The words of a list with commas."""
+    return [word.strip() for word in (text or "").split(",") if word.strip()]
 
 
 def from_here(profiles: tuple[str, ...]) -> list[str]:

@@ -21,6 +21,7 @@ from railpatch.case.patch import PatchCase
 from railpatch.case.to_core import config_of
 from railpatch.contact import Contact, at_balance
 from railpatch.errors import CaseError
+from railpatch.fmu.choice import chosen, input_conditions, with_patches
 from railpatch.fmu.description import Labels, description_xml
 from railpatch.fmu.description3 import description3_xml
 from railpatch.fmu.document import index_html
@@ -56,6 +57,9 @@ class Options:
     wheel_profiles: Sequence[str] = ()
     rail_profiles: Sequence[str] = ()
     version: Literal[2, 3] = 2  # of FMI
+    inputs: Sequence[str] = ()
+    outputs: Sequence[str] = ()
+    patches: int | None = None
 
 
 @dataclass(frozen=True)
@@ -103,6 +107,9 @@ def pack_fmu(
     wheel_profiles: Sequence[str] = (),
     rail_profiles: Sequence[str] = (),
     fmi: Literal[2, 3] = 2,
+    inputs: Sequence[str] = (),
+    outputs: Sequence[str] = (),
+    patches: int | None = None,
 ) -> PackedFmu:
     """Writes the FMU of a scene; gives its path, with `warnings` where a combination of profiles
     has no contact at the start values.
@@ -116,12 +123,15 @@ def pack_fmu(
     folder that `make fmu` made, with all platforms and sources; None: this one's library.
     wheel_profiles, rail_profiles: built-in names or files (relative ones start at the scene's
     folder), to choose from beside the case's own, for both sides; each combination's start must be
-    solved. fmi: 2 (FMI 2.0) or 3 (FMI 3.0, vectors are arrays). The same scene, libraries and
-    SOURCE_DATE_EPOCH give the same bytes. Raises CaseError.
+    solved. fmi: 2 (FMI 2.0) or 3 (FMI 3.0, vectors are arrays). inputs: "friction", the coefficient
+    of Coulomb's law as an input. outputs: which to keep, by name, by patterns ("left.*", "force*") or
+    groups (OUTPUT_GROUPS); none: all. patches: of each wheel, in place of the case's max_patches. The
+    same scene, libraries and SOURCE_DATE_EPOCH give the same bytes. Raises CaseError.
     """
     output = Path(output)
     profiles = {"wheel_profiles": wheel_profiles, "rail_profiles": rail_profiles}
-    options = Options(derivatives, averages, largest_step, **profiles, version=fmi)
+    asked = {"inputs": inputs, "outputs": outputs, "patches": patches}
+    options = Options(derivatives, averages, largest_step, **profiles, version=fmi, **asked)
     contents = contents_of(scene, output.stem, name, backend, options, libraries)
     guid = guid_of(contents)
     files = files_of(contents, guid)
@@ -146,7 +156,7 @@ def contents_of(
     folder: Path | None,
 ) -> Contents:
     """Everything that is known before the GUID."""
-    scene = at_balance(scene, name)
+    scene = at_balance(with_patches(scene, options.patches), name)
     libraries = libraries_of(backend, folder, options.version)
     table = Table(Path(str(resources.files("railpatch.fmu") / "variables.toml")))
     check_regime(scene)
@@ -155,6 +165,7 @@ def contents_of(
     check_options(options, kind)
     choices = choices_of(scene, {"wheel": options.wheel_profiles, "rail": options.rail_profiles})
     also = {"version 3"} if options.version == 3 else set()
+    also |= input_conditions(options.inputs, kind)
     kind = replace(kind, conditions=kind.conditions | choices.conditions() | also)
     for body in choices.sources:
         table.fill(TYPES[body], choices.items(body))
@@ -183,7 +194,7 @@ def contents_of(
         derivatives=provided,
         warnings=(*doubtful, *apart),
     )
-    variables = variables_of(table, kind, scene.case)
+    variables = chosen(variables_of(table, kind, scene.case), options.outputs)
     creep_table = config["creep_table"].tobytes() if "creep_table" in config else None
     return Contents(
         labels=labels,

@@ -189,6 +189,7 @@ def options_of(case: Case, kind: Kind) -> dict[str, float]:
     return {
         "history": int("history" in kind.conditions),
         "averaged": int("averaged" in kind.conditions),
+        "friction_input": int("friction input" in kind.conditions),
         "time_step": start.get("time_step", 0.0),
         "distance": start.get("distance", 0.0),
     }

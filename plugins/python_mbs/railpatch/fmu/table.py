@@ -145,6 +145,9 @@ class Table:
         most = Kind("wheelset", (0, 1), MAX_PATCHES, frozenset())
         found: dict[int, Variable] = {}
         for row in self._rows:
+            # C++ knows it as a parameter; scene.txt tells that it is an input
+            if "friction input" in row.get("when", ()):
+                continue
             for v in self._expand(row, most):
                 # rows of one variable differ in when they hold only
                 same = found.setdefault(v.reference, v)
