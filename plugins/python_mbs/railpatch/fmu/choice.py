@@ -40,7 +40,7 @@ def input_conditions(inputs: Sequence[str], kind: Kind) -> set[str]:
             raise CaseError(f"--inputs: value is {name!r}, allowed {', '.join(INPUTS)}")
     if "friction" in inputs and not {"tangential", "coulomb"} <= kind.conditions:
         raise CaseError(
-            "--inputs: value is 'friction', allowed where friction is Coulomb's with one coefficient"
+            "--inputs: value is 'friction', allowed where friction is Coulomb's, one coefficient"
         )
     return {f"{name} input" for name in inputs}
 

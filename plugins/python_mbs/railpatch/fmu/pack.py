@@ -124,9 +124,9 @@ def pack_fmu(
     wheel_profiles, rail_profiles: built-in names or files (relative ones start at the scene's
     folder), to choose from beside the case's own, for both sides; each combination's start must be
     solved. fmi: 2 (FMI 2.0) or 3 (FMI 3.0, vectors are arrays). inputs: "friction", the coefficient
-    of Coulomb's law as an input. outputs: which to keep, by name, by patterns ("left.*", "force*") or
-    groups (OUTPUT_GROUPS); none: all. patches: of each wheel, in place of the case's max_patches. The
-    same scene, libraries and SOURCE_DATE_EPOCH give the same bytes. Raises CaseError.
+    of Coulomb's law as an input. outputs: which to keep, by name, by patterns ("left.*") or
+    groups (OUTPUT_GROUPS); none: all. patches: of each wheel, in place of the case's max_patches.
+    The same scene, libraries and SOURCE_DATE_EPOCH give the same bytes. Raises CaseError.
     """
     output = Path(output)
     profiles = {"wheel_profiles": wheel_profiles, "rail_profiles": rail_profiles}
