@@ -49,6 +49,11 @@ def default_scene_text() -> str:
 @click.option("--duration", type=float, metavar="SECONDS", help="Replaces run.duration.")
 @click.option("--step", type=float, metavar="SECONDS", help="Replaces run.step.")
 @click.option("--threads", type=int, metavar="NUMBER", help="Replaces run.threads.")
+@click.option(
+    "--step-times",
+    is_flag=True,
+    help="How long each step took: histogram, 99.99 %, worst, steps longer than they simulate.",
+)
 @json_option("Print the summaries as one JSON object.")
 @show_scene_option(default_scene_text)
 @strict_flag()
@@ -60,6 +65,7 @@ def vehicle(
     methods: tuple[str, ...],
     compare: bool,
     output: Path | None,
+    step_times: bool,
     as_json: bool,
     strict: bool,
     quiet: bool,
@@ -84,7 +90,8 @@ def vehicle(
         with wrong_calls():
             loaded = load_vehicle_scene(scene, overrides)
             check_output(output, file, *files_of(loaded.case, file.parent))
-            found = run_all(loaded, COMPARED if compare else methods, quiet, output)
+            chosen = COMPARED if compare else methods
+            found = run_all(loaded, chosen, quiet, output, step_times=step_times)
     except ContactFailure as failure:
         # one in a run is in its summary
         if not quiet:
@@ -107,7 +114,12 @@ def vehicle(
 
 
 def run_all(
-    scene: Any, methods: tuple[str, ...], quiet: bool, output: Path | None = None
+    scene: Any,
+    methods: tuple[str, ...],
+    quiet: bool,
+    output: Path | None = None,
+    *,
+    step_times: bool = False,
 ) -> dict[str, Any]:
     """Name of the theory, or "scene" for the scene's own -> summary. output: the log of one."""
     from wheelset_demo.vehicle.compare import run_summary, with_theory
@@ -117,7 +129,7 @@ def run_all(
     found = {}
     for name, one in chosen.items():
         with progress_bar(f"rolling, {name}", kept, quiet) as advance:
-            found[name] = run_summary(one, advance, output)
+            found[name] = run_summary(one, advance, output, step_times=step_times)
     return found
 
 

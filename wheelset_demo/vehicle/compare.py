@@ -81,9 +81,12 @@ def run_summary(
     scene: VehicleScene,
     advance: Callable[[VehicleState], Any] | None = None,
     output: Path | None = None,
+    *,
+    step_times: bool = False,
 ) -> VehicleSummary:
-    """One run. output: its log. Raises CaseError, ProfileError, OSError."""
-    simulation = Simulation(scene)
+    """One run. output: its log. step_times: of each step. Raises CaseError, ProfileError,
+    OSError."""
+    simulation = Simulation(scene, step_times=step_times)
     return summarise(run_vehicle(simulation, advance, output), simulation)
 
 

@@ -14,6 +14,7 @@ from wheelset_demo.system import BAD, WORKS
 from wheelset_demo.vehicle.means import SlidingMeans
 from wheelset_demo.vehicle.model import CAR_BODY, bogie_name, places_along
 from wheelset_demo.vehicle.scene import WHEELSETS, VehicleScene
+from wheelset_demo.vehicle.step_times import StepTimes
 from wheelset_demo.vehicle.steppers import Bdf2
 from wheelset_demo.vehicle.system import WHEELS, Rates, Vector, VehicleState, VehicleSystem
 
@@ -24,10 +25,10 @@ class Simulation:
     scene: VehicleScene. system: the equations of motion; element: its force element. state, rates:
     the present ones. means: Y and Q over the last 2 m, of every time step. wall_seconds,
     cpu_seconds: s, spent in steps() so far, by the clock and of all threads, without what its
-    caller does in between.
+    caller does in between. step_times: of each step, where they were asked for.
     """
 
-    def __init__(self, scene: VehicleScene) -> None:
+    def __init__(self, scene: VehicleScene, *, step_times: bool = False) -> None:
         """Raises CaseError, also where the wheels cannot carry the load, and ProfileError."""
         self.scene = scene
         self.system = VehicleSystem(scene)
@@ -38,6 +39,9 @@ class Simulation:
         self._stepper = Bdf2(self.system, scene.run.step, scene.run.derivatives_every)
         self.means = SlidingMeans(self.element.wheels)
         self._solved_before = self._contact_cpu()
+        self.step_times = (
+            StepTimes(scene.steps, scene.run.step, scene.run.threads) if step_times else None
+        )
 
     def steps(self) -> Iterator[VehicleState]:
         """The state at the start and after each n-th step, n = run.log_every.
@@ -50,7 +54,10 @@ class Simulation:
         for done in range(0, count, every):
             begin = clock.perf_counter(), self._cpu()
             for _ in range(min(every, count - done)):
-                self._step()
+                if self.step_times is None:
+                    self._step()
+                else:
+                    self._timed_step(self.step_times)
             self.wall_seconds += clock.perf_counter() - begin[0]
             self.cpu_seconds += self._cpu() - begin[1]
             yield self.state
@@ -60,6 +67,11 @@ class Simulation:
         self.element.pass_time(self.scene.run.step)
         self.state, self.rates = self._stepper.step(self.state, self.rates)
         self.means.add(self.system.course.middle - before, self.element.wheels)
+
+    def _timed_step(self, times: StepTimes) -> None:
+        wall, cpu = clock.perf_counter(), self._cpu()
+        self._step()
+        times.add(clock.perf_counter() - wall, self._cpu() - cpu)
 
     def solve_again(self) -> None:
         """Brings the force element's arrays and body_poses() back to the present state, after a

@@ -17,6 +17,7 @@ from wheelset_demo.system import WORKS, ContactFailure
 from wheelset_demo.vehicle.means import rail_forces
 from wheelset_demo.vehicle.scene import VehicleScene, doubtful_bodies
 from wheelset_demo.vehicle.simulation import Simulation
+from wheelset_demo.vehicle.step_times import text_of
 from wheelset_demo.vehicle.system import VehicleState
 
 if TYPE_CHECKING:
@@ -145,7 +146,8 @@ class VehicleSummary:
     open_balance: J, most that was missing in the energy of bodies and springs; lost: J, in friction
     and dampers. seconds: of the time steps: total, by the clock; cpu, of all
     threads, and of it contact (force element) and derivatives. real_time: -, total over the time
-    simulated. warnings: of the scene's bodies and of all logged steps.
+    simulated. warnings: of the scene's bodies and of all logged steps. step_times: as
+    StepTimes.to_dict(), where they were asked for.
     """
 
     good: bool
@@ -165,6 +167,7 @@ class VehicleSummary:
     real_time: float
     warnings: list[str]
     logging_share: float | None = None
+    step_times: dict[str, Any] | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Plain numbers."""
@@ -207,7 +210,8 @@ class VehicleSummary:
         ]
         if self.logging_share is not None:
             lines.append(("logging", f"{100 * self.logging_share:.2g} % of the run's wall time"))
-        return "\n".join(f"{name:<16}{value}" for name, value in lines)
+        found = "\n".join(f"{name:<16}{value}" for name, value in lines)
+        return found if self.step_times is None else f"{found}\n{text_of(self.step_times)}"
 
 
 def fixed(value: float, places: int) -> str:
@@ -250,4 +254,5 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
             *trace.warned.lines(),
         ],
         logging_share=trace.logging_share,
+        step_times=None if simulation.step_times is None else simulation.step_times.to_dict(),
     )
