@@ -47,6 +47,7 @@ from typing import Any
 
 import numpy as np
 from railpatch import Contact, Result
+from railpatch.case.fluid import changes_with_time
 from railpatch.case.types import SIDES
 from railpatch.result import CARRIES
 
@@ -344,8 +345,7 @@ class Balancer:
         return Evaluation(found, solved, result, lambda: self._slope(result, deflection))
 
     def _step(self, position: Position, unknowns: Vector) -> Result:
-        heat = self._scene.case.temperature
-        if heat is None or heat.bulk is None:
+        if not changes_with_time(self._scene.case):
             self._latest = self._contact.step(**self._moved(position, unknowns))
             return self._latest
         # the time since the last position goes by once, before the first state that is solved

@@ -232,6 +232,10 @@ def check_wheelset(case: Any) -> None:
         problems.append(
             "temperature.bulk: value is given, allowed to be left out: a steady curve has no time"
         )
+    if case.fluid is not None and case.fluid.recovery is not None:
+        problems.append(
+            "fluid.recovery: value is given, allowed to be left out: a steady curve has no time"
+        )
     if problems:
         raise CaseError(problems)
     refuse_asked(case, "in a steady curve: solve its positions as cases")

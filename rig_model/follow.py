@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from railpatch.case.fluid import changes_with_time
 from railpatch.case.types import SIDES
 from railpatch.errors import CaseError
 from railpatch.record.quantities import BY_NAME, OUTPUT
@@ -288,8 +289,8 @@ def beyond(known: Prediction, step: Array) -> Prediction:
 def remembers(scene: RigScene) -> bool:
     """Whether a position depends on those before it by more than a frame's sliders, or has unknowns
     whose derivatives rig_model/partial.py has not: a gauge that opens."""
-    heat, frame = scene.case.temperature, scene.rig.frame
-    if heat is not None and heat.bulk is not None:
+    frame = scene.rig.frame
+    if changes_with_time(scene.case):
         return True
     opens = frame is not None and frame.gauge_stiffness is not None
     return opens or scene.rig.conditioning is not None

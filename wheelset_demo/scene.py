@@ -267,7 +267,13 @@ def track_problems(case: Any, instead: str = "") -> list[str]:
 
 
 def refuse_bulk(case: Any, run: str) -> None:
-    """Refuses bodies that store heat where no time passes for them. run: what has none."""
+    """Refuses bodies that store heat, or the work that cleans them, where no time passes for them.
+    run: what has none."""
+    if case.fluid is not None and case.fluid.recovery is not None:
+        raise CaseError(
+            f"fluid.recovery: value is given, allowed to be left out: {run} has no time in which "
+            "wheels become clean"
+        )
     if case.temperature is not None and case.temperature.bulk is not None:
         raise CaseError(
             f"temperature.bulk: value is given, allowed to be left out: {run} has no time in which "

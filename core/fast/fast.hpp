@@ -47,6 +47,12 @@ class fast_solver {
   // range, the result is there all the same.
   tangential_result solve(const fast_patch &patch, const rolling_input &rolling,
                           tangential_fields fields, creep_resultants &sums);
+  // Of Polach's theory, for the solutions that follow: its factors, and friction by the slip's
+  // speed.
+  void set_polach(const polach_factors &factors, const slip_velocity_law &law) {
+    options_.polach = factors;
+    options_.law.emplace(law);
+  }
   // The table of creep forces, where the theory is that, and of shapes, where there is one.
   const creep_table *table() const { return creep_table_ ? &*creep_table_ : nullptr; }
   const shape_table *shapes() const { return shape_table_ ? &*shape_table_ : nullptr; }

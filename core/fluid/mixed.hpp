@@ -17,6 +17,7 @@
 #pragma once
 
 #include "fluid/film.hpp"
+#include "fluid/regimes.hpp"
 #include "fluid/viscosity.hpp"
 #include "numeric/nan.hpp"
 #include "railpatch.h"
@@ -37,6 +38,7 @@ struct fluid_scene {
   double starvation = 1;                // -
   double eyring_stress = 0;             // Pa, 0: the liquid has no friction
   double limiting_friction = 0.07;      // -
+  water_regimes regimes;
 };
 
 // Of a step; NaN: not given.
@@ -44,6 +46,7 @@ struct fluid_supply {
   double water_rate = nan;   // m^3/s; not given: flooded
   double temperature = nan;  // degrees C
   double layer = nan;        // m, on the surfaces before the contact; not given: flooded
+  double work = 0;           // J/m, of friction, that has cleaned wheel and rail
 };
 
 struct wet_contact {

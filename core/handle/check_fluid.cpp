@@ -11,13 +11,64 @@ void check_given(const char *name, double value, const range &r, checker &check)
   if (!std::isnan(value)) check.number(name, value, r);
 }
 
+// What the strips do not read.
+const char *unread_by_strip(const rp_config &c) {
+  const bool supply = !std::isnan(c.fluid_water_rate) || !std::isnan(c.fluid_oil_film);
+  if (supply || c.fluid_starvation != 1)
+    return "fluid_water_rate, fluid_oil_film and fluid_starvation must be NaN, NaN and 1 with "
+           "fluid_model = strip: it is flooded";
+  if (c.fluid_inlet_conductivity > 0)
+    return "fluid_inlet_conductivity must be 0 with fluid_model = strip: its inlet is as warm as "
+           "it "
+           "says";
+  if (c.fluid_eyring_stress > 0)
+    return "fluid_eyring_stress must be 0 with fluid_model = strip: its liquid has no friction";
+  return nullptr;
+}
+
+void check_knots(const rp_config &c, checker &check) {
+  const int knots = c.fluid_knots;
+  if (knots == 0) return;
+  check.require(c.fluid_model == RP_FLUID_REGIMES,
+                "fluid_knots must be 0 but with fluid_model = regimes");
+  check.field("fluid_knots", knots, config_range::fluid_knots);
+  if (check.error() != RP_OK) return;
+  const auto numbers = [&](const char *name, const double *values, const range &r) {
+    check.numbers(name, values, knots, r);
+  };
+  numbers("fluid_knot_rate", c.fluid_knot_rate, config_range::fluid_knot_rate);
+  numbers("fluid_knot_k_a", c.fluid_knot_k_a, config_range::fluid_knot_k_a);
+  numbers("fluid_knot_k_s", c.fluid_knot_k_s, config_range::fluid_knot_k_s);
+  numbers("fluid_knot_coefficient", c.fluid_knot_coefficient, config_range::fluid_knot_coefficient);
+  numbers("fluid_knot_a", c.fluid_knot_a, config_range::fluid_knot_a);
+  numbers("fluid_knot_b", c.fluid_knot_b, config_range::fluid_knot_b);
+  for (int i = 1; i < knots; ++i)
+    check.require(c.fluid_knot_rate[i] > c.fluid_knot_rate[i - 1], "fluid_knot_rate must increase");
+}
+
 const char *not_combined(const rp_config &c) {
   if (!has_tangential(c)) return "fluid_model must be none without a tangential problem";
   if (c.regime == RP_SHIFT)
     return "fluid_model must be none with regime = shift: nothing rolls, and no film forms";
-  if (c.friction_law != RP_COULOMB)
-    return "fluid_model must be none but with friction_law = coulomb: the coefficient follows from "
-           "the liquid";
+  const bool regimes = c.fluid_model == RP_FLUID_REGIMES;
+  if (regimes && c.tangential != RP_TANGENTIAL_POLACH)
+    return "fluid_model = regimes needs tangential = polach, whose parameters it has";
+  if (regimes && std::isnan(c.fluid_water_rate))
+    return "fluid_water_rate must be a number with fluid_model = regimes";
+  if (regimes && (c.polach_k_a != 1 || c.polach_k_s != 1))
+    return "polach_k_a and polach_k_s must be 1 with fluid_model = regimes, which has its own";
+  if (!regimes && c.fluid_recovery > 0)
+    return "fluid_recovery must be 0 but with fluid_model = regimes";
+  const bool strip = c.fluid_model == RP_FLUID_STRIP;
+  const bool by_heat = c.friction_law == RP_TEMPERATURE && strip;
+  if (c.friction_law != RP_COULOMB && !by_heat)
+    return "fluid_model needs friction_law = coulomb, strip also temperature: the coefficient "
+           "follows from the liquid";
+  if (by_heat && !std::isnan(c.fluid_boundary_friction))
+    return "fluid_boundary_friction must be NaN with friction_law = temperature, which gives it";
+  if (strip) {
+    if (const char *unread = unread_by_strip(c)) return unread;
+  }
   if (c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT)
     return "fluid_model must be none with a line contact: the film is that of an elliptic one";
   if (c.accuracy > 0)
@@ -52,17 +103,28 @@ void check_fluid(const rp_config &c, checker &check) {
       check.require(c.fluid_viscosity_temperature[i] > c.fluid_viscosity_temperature[i - 1],
                     "fluid_viscosity_temperature must increase");
   }
+  check_knots(c, check);
+  if (check.error() != RP_OK) return;
   const char *wrong = not_combined(c);
   check.require(wrong == nullptr, wrong ? wrong : "");
 }
 
 void check_fluid(const rp_config &c, const rp_input &in, checker &check) {
+  for (double work : in.rail_work) {
+    if (!(work != 0)) continue;
+    check.number("rail_work", work, input_range::rail_work);
+    check.require(c.fluid_model != RP_FLUID_NONE && c.fluid_recovery > 0,
+                  "rail_work must be 0 without fluid_recovery: nothing is cleaned");
+  }
   const bool given =
       !std::isnan(in.water_rate) || !std::isnan(in.water_temperature) || !std::isnan(in.oil_film);
   if (!given) return;
   check.require(c.fluid_model != RP_FLUID_NONE,
                 "water_rate, water_temperature and oil_film must be left NaN in a scene without "
                 "fluid_model");
+  check.require(
+      c.fluid_model != RP_FLUID_STRIP || (std::isnan(in.water_rate) && std::isnan(in.oil_film)),
+      "water_rate and oil_film must be left NaN with fluid_model = strip: it is flooded");
   check_given("water_rate", in.water_rate, input_range::water_rate, check);
   check_given("water_temperature", in.water_temperature, input_range::water_temperature, check);
   check_given("oil_film", in.oil_film, input_range::oil_film, check);

@@ -80,7 +80,8 @@ rp_result contact::solve(const rp_input &input) {
     const auto now = [](double given, double usual) { return std::isnan(given) ? usual : given; };
     driver_->solver().set_fluid_supply({now(input.water_rate, config_.fluid_water_rate),
                                         now(input.water_temperature, config_.fluid_temperature),
-                                        now(input.oil_film, config_.fluid_oil_film)});
+                                        now(input.oil_film, config_.fluid_oil_film),
+                                        input.rail_work[RP_RIGHT]});
   }
   driver_->step(input, out);
   return out;

@@ -37,6 +37,23 @@ struct friction_of_heat {
   }
 };
 
+// Of each element in contact, else 0.
+struct share_of_asperities {
+  const patch_memory &m;
+  double operator[](size_t i) const {
+    return m.pressure[i] > 0 ? 1.0 - m.fluid_pressure[i] / m.pressure[i] : 0.0;
+  }
+};
+struct film_between {
+  const patch_memory &m;
+  const patch_scene &scene;
+  double operator[](size_t i) const {
+    if (!(m.pressure[i] > 0)) return 0.0;
+    const strip_liquid liquid{0, 0, scene.fluid->roughness, scene.fluid->hardness};
+    return liquid.film(m.pressure[i] - m.fluid_pressure[i]);
+  }
+};
+
 // Whether a field belongs to laws beyond Coulomb's, and this patch has none such.
 bool lacks_law(const patch_memory &m, rp_field name) {
   if (name == RP_FIELD_FRICTION)
@@ -58,6 +75,10 @@ bool has_field(const patch_memory &m, rp_field name) {
       return m.pressure.size() + m.node_pressure.size() > 0;
     case RP_FIELD_TEMPERATURE:
       return static_cast<bool>(m.heat);
+    case RP_FIELD_FLUID_PRESSURE:
+    case RP_FIELD_FILM_THICKNESS:
+    case RP_FIELD_ASPERITY_SHARE:
+      return m.fluid_pressure.size() > 0 && !m.fitted();
     case RP_FIELD_ROW_POSITION:
     case RP_FIELD_ROW_ANGLE:
       return static_cast<bool>(m.curved);
@@ -176,6 +197,15 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
       break;
     case RP_FIELD_YIELD_STRESS:
       copy.scalar(m.history.yield_stress);
+      break;
+    case RP_FIELD_FLUID_PRESSURE:
+      copy.scalar(m.fluid_pressure);
+      break;
+    case RP_FIELD_FILM_THICKNESS:
+      copy.scalar(film_between{m, this->patch()});
+      break;
+    case RP_FIELD_ASPERITY_SHARE:
+      copy.scalar(share_of_asperities{m});
       break;
     case RP_FIELD_ROW_POSITION:
       copy.of_rows([&](int j) { return m.curved->y(j); }, values, copy.lateral());

@@ -90,6 +90,13 @@ fluid_scene fluid_of(const rp_config &c) {
   fluid.starvation = c.fluid_starvation;
   fluid.eyring_stress = c.fluid_eyring_stress;
   fluid.limiting_friction = c.fluid_limiting_friction;
+  fluid.regimes = water_regimes::shipped();
+  if (c.fluid_knots > 0) fluid.regimes.count = c.fluid_knots;
+  for (int i = 0; i < c.fluid_knots; ++i)
+    fluid.regimes.knot[i] = {c.fluid_knot_rate[i],        c.fluid_knot_k_a[i], c.fluid_knot_k_s[i],
+                             c.fluid_knot_coefficient[i], c.fluid_knot_a[i],   c.fluid_knot_b[i]};
+  fluid.regimes.reference_rate = c.fluid_reference_rate;
+  fluid.regimes.recovery = c.fluid_recovery;
   return fluid;
 }
 

@@ -87,6 +87,10 @@ const char *plasticity_reason(const patch_scene &scene) {
 
 const char *fluid_reason(const patch_scene &scene) {
   if (!scene.fluid) return "no liquid in the scene";
+  if (scene.fluid->model == RP_FLUID_REGIMES)
+    return "fluid_model = regimes: Polach's theory at knots of the water rate";
+  if (scene.fluid->model == RP_FLUID_STRIP)
+    return "fluid_model = strip: pressure of the liquid along each row";
   return scene.fluid->share == RP_SHARE_LOAD_SHARING
              ? "fluid_model = film: elliptic contact, load shared with asperities"
              : "fluid_model = film: elliptic contact, asperities by film over roughness";
@@ -121,6 +125,11 @@ void describe_driver(const driver &of, rp_stage_info *info) {
   }
   if (tangential)
     traction += solver.tangential_bytes() - solver.history_bytes() - solver.plastic_bytes();
+  size_t fluid = solver.fluid_bytes();
+  for (const auto &m : of.memories()) {
+    fluid += m.fluid_pressure.bytes();
+    traction -= m.fluid_pressure.bytes();
+  }
   const size_t support = of.support_bytes();
   const size_t influence = solver.influence_bytes();
   const auto set = [&](rp_stage stage, bool present, const char *reason, size_t bytes) {
@@ -141,7 +150,7 @@ void describe_driver(const driver &of, rp_stage_info *info) {
                   : "the rails are rigid",
       support);
   set(RP_STAGE_PLASTICITY, scene.yields(), plasticity_reason(scene), plastic);
-  set(RP_STAGE_FLUID, static_cast<bool>(scene.fluid), fluid_reason(scene), 0);
+  set(RP_STAGE_FLUID, static_cast<bool>(scene.fluid), fluid_reason(scene), fluid);
   set(RP_STAGE_DERIVATIVES, scene.derivatives || scene.exact, derivative_reason(scene),
       of.derivative_bytes());
 }

@@ -72,6 +72,10 @@ uint64_t fingerprint_of_arrays(const rp_config &c) {
   const auto viscosities = static_cast<size_t>(c.fluid_viscosity_points);
   add(c.fluid_viscosity_temperature, viscosities);
   add(c.fluid_viscosity_value, viscosities);
+  const auto knots = static_cast<size_t>(c.fluid_knots);
+  for (const double *values : {c.fluid_knot_rate, c.fluid_knot_k_a, c.fluid_knot_k_s,
+                               c.fluid_knot_coefficient, c.fluid_knot_a, c.fluid_knot_b})
+    add(values, knots);
   const auto hardening = static_cast<size_t>(c.hardening_points);
   add(c.hardening_displacement, hardening);
   add(c.hardening_stress, hardening);

@@ -49,6 +49,7 @@ enum {
   RP_MAX_PATCHES = 6,
   RP_MESSAGE_SIZE = 320,
   RP_MAX_POINTS = 32,
+  RP_MAX_KNOTS = 8,      /* of RP_FLUID_REGIMES */
   RP_ERROR_FEATURES = 23 /* of RP_FIELD_ERROR_FEATURES */
 };
 
@@ -143,7 +144,9 @@ enum {
     "residual: another wheelset.y or load, or a number for wheelset.roll or pitch_rate")       \
   X(RP_REASON_WORK, 23,                                                                        \
     "method.max_work was spent before a height z was found that carries the vertical force, "  \
-    "by the relative residual: smaller steps, or greater method.max_work")
+    "by the relative residual: smaller steps, or greater method.max_work")                     \
+  X(RP_REASON_FLUID, 24,                                                                       \
+    "the liquid's pressure was not found in each row of the contact: finer elements")
 
 /* --- warnings: bits of what can hardly be meant. X(name, value, text): the bit is 1 << value ---
  */
@@ -317,10 +320,14 @@ typedef enum rp_contact_frame { RP_CONTACT_FRAMES(RP_ENUM_ENTRY) } rp_contact_fr
 typedef enum rp_reference_surface { RP_REFERENCE_SURFACES(RP_ENUM_ENTRY) } rp_reference_surface;
 
 /* liquid between wheel and rail (docs/fluids.md) */
-#define RP_FLUID_MODELS(X)                                                                    \
-  X(RP_FLUID_NONE, 0, "none")                                                                 \
-  /* film of an elliptic contact, share of the load that asperities carry, one coefficient */ \
-  X(RP_FLUID_FILM, 1, "film")
+#define RP_FLUID_MODELS(X)                                                                       \
+  X(RP_FLUID_NONE, 0, "none")                                                                    \
+  /* film of an elliptic contact, share of the load that asperities carry, one coefficient */    \
+  X(RP_FLUID_FILM, 1, "film")                                                                    \
+  /* pressure of the liquid along each row, the rest on asperities; a bound of their own each */ \
+  X(RP_FLUID_STRIP, 2, "strip")                                                                  \
+  /* Polach's theory with parameters by water rate, tangential = polach */                       \
+  X(RP_FLUID_REGIMES, 3, "regimes")
 typedef enum rp_fluid_model { RP_FLUID_MODELS(RP_ENUM_ENTRY) } rp_fluid_model;
 
 /* share of the load that asperities carry */
@@ -607,6 +614,18 @@ typedef struct rp_config {
   double fluid_temperature; /* degrees C, of the liquid before the contact */
   double fluid_water_rate;  /* m^3/s, spread over the width of each patch */
   double fluid_oil_film;    /* m, layer of the liquid on the surfaces before the contact */
+  /* RP_FLUID_REGIMES, of which fluid_water_rate says where it is: knots of Polach's parameters at
+   * increasing water rates; 0: dry, damp and flooded ones, see docs/fluids.md */
+  int32_t fluid_knots;                  /* 0, else 2 ... RP_MAX_KNOTS */
+  double fluid_knot_rate[RP_MAX_KNOTS]; /* m^3/s, increasing from 0 */
+  double fluid_knot_k_a[RP_MAX_KNOTS], fluid_knot_k_s[RP_MAX_KNOTS]; /* - */
+  double fluid_knot_coefficient[RP_MAX_KNOTS];                       /* -, mu_0 */
+  double fluid_knot_a[RP_MAX_KNOTS], fluid_knot_b[RP_MAX_KNOTS];     /* -, s/m */
+  double fluid_reference_rate; /* m^3/s, q_0: forces are interpolated over ln(rate + q_0) */
+  double fluid_recovery; /* 1/N, tau: work of friction cleans wheel and rail, the forces go over to
+                            those of the first knot by 1 - exp(-tau W), W of rail_work and of what
+                            the wheel has had on each metre of its circumference, part of the state
+                            of wheels, which goes on by time_step; 0: nothing recovers */
 } rp_config;
 
 typedef struct rp_input {
@@ -652,6 +671,8 @@ typedef struct rp_input {
   double water_rate;        /* m^3/s */
   double water_temperature; /* degrees C, of the liquid */
   double oil_film;          /* m */
+  double rail_work[2]; /* J/m, >= 0, friction work that wheels before have spent on each metre of
+                          the rail, with fluid_recovery; by side, of a patch RP_RIGHT */
 } rp_input;
 
 /* One patch. Values of stages that the scene leaves out are NaN (element counts 0). Linear theory
@@ -722,7 +743,7 @@ typedef struct rp_patch_result {
   double reason_value;          /* of what the reason's text says; NaN: of nothing */
   /* with a liquid, else NaN: its central film, the share of the load that asperities carry, its
    * temperature, and the friction coefficient that follows, factors of the law included */
-  double film_thickness, asperity_share, fluid_temperature, effective_friction;
+  double central_film_thickness, mean_asperity_share, fluid_temperature, effective_friction;
   double wear_number;          /* N, T gamma: |Fx xi| + |Fy eta| + |M phi| of creep_force, creepage,
                                   spin_moment and spin_creepage above; RP_SHIFT: J */
   double traction_coefficient; /* -, length of creep_force over normal_force; NaN without contact */
@@ -830,7 +851,11 @@ typedef struct rp_result {
   /* m, [2][ny], y and z of each row in track axes */                                            \
   X(RP_FIELD_ROW_POSITION, 13, "row_position")                                                   \
   /* rad, [ny], contact angle of each row */                                                     \
-  X(RP_FIELD_ROW_ANGLE, 14, "row_angle")
+  X(RP_FIELD_ROW_ANGLE, 14, "row_angle")                                                         \
+  /* of a liquid by strips: Pa, m, -, [ny][nx] */                                                \
+  X(RP_FIELD_FLUID_PRESSURE, 15, "fluid_pressure")                                               \
+  X(RP_FIELD_FILM_THICKNESS, 16, "film_thickness")                                               \
+  X(RP_FIELD_ASPERITY_SHARE, 17, "asperity_share")
 typedef enum rp_field { RP_FIELDS(RP_ENUM_ENTRY) } rp_field;
 
 typedef struct rp_stage_info {

@@ -82,8 +82,9 @@
     "why the status is not good")                                                                 \
   X(double, reason_value, 1, estimate, even, kept, alone, NAN, "-",                               \
     "of what the reason says, in its units")                                                      \
-  X(double, film_thickness, 1, number, even, kept, alone, NAN, "m", "central film of the liquid") \
-  X(double, asperity_share, 1, number, even, kept, alone, NAN, "-",                               \
+  X(double, central_film_thickness, 1, number, even, kept, alone, NAN, "m",                       \
+    "central film of the liquid")                                                                 \
+  X(double, mean_asperity_share, 1, number, even, kept, alone, NAN, "-",                          \
     "share of the load that asperities carry")                                                    \
   X(double, fluid_temperature, 1, number, even, kept, alone, NAN, "degrees C",                    \
     "temperature of the liquid")                                                                  \
@@ -455,7 +456,22 @@
   X(double, fluid_water_rate, 1, number, own, NAN, "[]", 0, 1, "m^3/s",                            \
     "of the liquid, spread over the width of the contact; left out: flooded")                      \
   X(double, fluid_oil_film, 1, number, own, NAN, "[]", 0, 1, "m",                                  \
-    "layer of the liquid on the surfaces before the contact; left out: flooded")
+    "layer of the liquid on the surfaces before the contact; left out: flooded")                   \
+  X(int32_t, fluid_knots, 1, integer, own, 0, "[]", 2, RP_MAX_KNOTS, "-",                          \
+    "knots of Polach's parameters over the water rate")                                            \
+  X(double, fluid_knot_rate, RP_MAX_KNOTS, points, own, 0, "[]", 0, 1, "m^3/s", "their rates")     \
+  X(double, fluid_knot_k_a, RP_MAX_KNOTS, points, own, 0, "(]", 0, 10, "-", "k_A there")           \
+  X(double, fluid_knot_k_s, RP_MAX_KNOTS, points, own, 0, "(]", 0, 10, "-", "k_S there")           \
+  X(double, fluid_knot_coefficient, RP_MAX_KNOTS, points, own, 0, "[]", 0, 10, "-",                \
+    "coefficient of friction at rest there")                                                       \
+  X(double, fluid_knot_a, RP_MAX_KNOTS, points, own, 0, "[]", 0, 1, "-",                           \
+    "A of Polach's law there, friction at high slip over at rest")                                 \
+  X(double, fluid_knot_b, RP_MAX_KNOTS, points, own, 0, "[]", 0, 1e6, "s/m",                       \
+    "B of Polach's law there")                                                                     \
+  X(double, fluid_reference_rate, 1, number, always, 1e-9, "(]", 0, 1, "m^3/s",                    \
+    "q0: forces are interpolated over ln(rate + q0); assumed where left out")                      \
+  X(double, fluid_recovery, 1, number, always, 0, "[]", 0, 1e6, "1/N",                             \
+    "tau: work W of friction on each metre cleans by 1 - exp(-tau W); 0: nothing recovers")
 
 /* X(type, name, count, role, where, start, bounds, low, high, scale, unit, text), as above and
  * role      place: a number whose size says nothing about how fast things change there
@@ -530,7 +546,9 @@
   X(double, water_temperature, 1, number, own, NAN, "[]", -50, 350, 10, "degrees C",               \
     "of the liquid between wheel and rail")                                                        \
   X(double, oil_film, 1, number, own, NAN, "[]", 0, 1, 1e-6, "m",                                  \
-    "layer of the liquid on the surfaces before the contact")
+    "layer of the liquid on the surfaces before the contact")                                      \
+  X(double, rail_work, 2, number, own, 0, "[)", 0, HUGE_VAL, 100, "J/m",                           \
+    "friction work that wheels before have spent on each metre of the rail")
 
 /* --- choices: Y(type, list of the type's enumerators) -------------------------------------- */
 #define RP_CHOICES(Y)                                  \

@@ -43,32 +43,103 @@ double mean_creepage(const rolling_input &rolling, const double axes[2]) {
 
 }  // namespace
 
+fluid_stage::fluid_stage(patch_workspace &shared) : shared_(shared) {
+  if (shared.scene.has_strips()) strips_.emplace(shared.scene.normal == RP_NORMAL_HERTZ);
+}
+
 fluid_outcome fluid_stage::solve(const patch_problem &problem, const pressure_outcome &pressure,
-                                 const patch_memory &memory) {
+                                 patch_memory &memory) {
   patch_scene &scene = shared_.scene;
   if (!scene.fluid) return {};
   const stage_mark mark = shared_.marks.enter(RP_STAGE_FLUID);
-  wet_contact contact{};
+  // the tangential problem has them
+  if (scene.fluid->model == RP_FLUID_REGIMES) return {true, nan, nan, nan, nan};
   hertz_contact hertz = problem.hertz;
-  if (!(hertz.semi_axes[0] > 0)) {
+  hertz.normal_force = pressure.normal_force;
+  const bool strips = scene.fluid->model == RP_FLUID_STRIP;
+  if (!strips && !(hertz.semi_axes[0] > 0)) {
     double axes[2];
     ellipse_of(problem.g, memory.pressure.data(), axes);
     hertz = hertz_from_ellipse(axes, scene.modulus(), pressure.normal_force);
   }
+  double temperature = scene.supply.temperature;
+  if (std::isnan(temperature))
+    temperature = scene.heat ? scene.heat->bodies.mean_bulk() : usual_temperature;
+  return strips ? solve_strips(hertz, temperature, problem, memory)
+                : solve_film(hertz, temperature, problem);
+}
+
+fluid_outcome fluid_stage::solve_film(const hertz_contact &hertz, double temperature,
+                                      const patch_problem &problem) {
+  patch_scene &scene = shared_.scene;
+  wet_contact contact{};
   for (int k = 0; k < 2; ++k) contact.film.radius[k] = 0.5 / hertz.curvatures[k];
   contact.film.modulus = 2.0 * scene.modulus();
-  contact.film.force = pressure.normal_force;
+  contact.film.force = hertz.normal_force;
   contact.film.speed = problem.rolling_speed;
   contact.half_width = hertz.semi_axes[1];
-  contact.mean_pressure = pressure.normal_force / (pi * hertz.semi_axes[0] * hertz.semi_axes[1]);
+  contact.mean_pressure = hertz.normal_force / (pi * hertz.semi_axes[0] * hertz.semi_axes[1]);
   contact.slip_speed = problem.rolling_speed * mean_creepage(problem.rolling, hertz.semi_axes);
   contact.dry_friction = scene.friction_coefficient;
   fluid_supply supply = scene.supply;
-  if (std::isnan(supply.temperature))
-    supply.temperature = scene.heat ? scene.heat->bodies.mean_bulk() : usual_temperature;
-  const film_outcome film = solve_film(*scene.fluid, supply, contact);
+  supply.temperature = temperature;
+  const film_outcome film = railpatch::solve_film(*scene.fluid, supply, contact);
   scene.wet_friction = film.friction;
   return {true, film.film_thickness, film.share, film.temperature, film.friction};
 }
+
+// Where the tractions are found element by element the bound is that of the asperities' pressure;
+// other theories have the mean.
+fluid_outcome fluid_stage::solve_strips(const hertz_contact &hertz, double temperature,
+                                        const patch_problem &problem, patch_memory &memory) {
+  patch_scene &scene = shared_.scene;
+  const fluid_scene &fluid = *scene.fluid;
+  if (follows_heat() && !std::isnan(now_)) temperature = now_;
+  const strip_liquid liquid{fluid.liquid.at(temperature).value, problem.rolling_speed,
+                            fluid.roughness, fluid.hardness};
+  const strip_outcome found =
+      strips_ ? strips_->solve(problem.g, memory.pressure.data(), hertz, problem.rolling.direction,
+                               liquid, memory.fluid_pressure.data())
+              : fluid_strips::of_ellipse(hertz, liquid);
+  const double boundary = fluid.own_boundary ? fluid.boundary_friction : scene.friction_coefficient;
+  scene.wet_friction = scene.full_on_grid() ? boundary : boundary * found.share;
+  const bool known = fluid.liquid.liquid != RP_LIQUID_GIVEN;
+  fluid_outcome out{true, found.film, found.share, known ? temperature : nan,
+                    boundary * found.share};
+  out.converged = found.converged;
+  return out;
+}
+
+bool fluid_stage::follows_heat() const {
+  const patch_scene &scene = shared_.scene;
+  return scene.fluid && scene.heat && scene.fluid->model == RP_FLUID_STRIP &&
+         scene.fluid->liquid.liquid != RP_LIQUID_GIVEN && !scene.heat->transient &&
+         std::isnan(scene.supply.temperature);
+}
+
+// The mean of both surfaces, by the pressure. Secants after the first round.
+double fluid_stage::follow(const grid &g, const patch_memory &memory) {
+  double sum = 0, weighted = 0;
+  for (size_t at = 0; at < static_cast<size_t>(g.count()); ++at) {
+    const double p = memory.pressure[at];
+    if (!(p > 0)) continue;
+    sum += p;
+    weighted += p * 0.5 * (memory.heat->temperature[0][at] + memory.heat->temperature[1][at]);
+  }
+  const double used = std::isnan(now_) ? shared_.scene.heat->bodies.mean_bulk() : now_;
+  const double found = weighted / sum, change = found - used;
+  double next = found;
+  if (!std::isnan(before_) && change != change_before_) {
+    const double secant = used - change * (used - before_) / (change - change_before_);
+    // not farther than the surfaces are hot
+    next = std::clamp(secant, std::min(used, found) - 50.0, std::max(used, found) + 50.0);
+  }
+  before_ = used;
+  change_before_ = change;
+  now_ = std::clamp(next, -50.0, 350.0);
+  return std::fabs(change);
+}
+
+void fluid_stage::begin() { now_ = before_ = change_before_ = nan; }
 
 }  // namespace railpatch

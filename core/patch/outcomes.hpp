@@ -45,6 +45,7 @@ struct fluid_outcome {
   double film_thickness = 0, asperity_share = 1;  // m, -
   double temperature = 0;                         // degrees C
   double friction = 0;                            // -, without factors of the law
+  bool converged = true;
 };
 
 }  // namespace railpatch

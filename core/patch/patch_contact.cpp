@@ -9,6 +9,8 @@ namespace {
 
 // of unlike bodies' tangential problem, after which it is given up
 constexpr int most_failures = 5;
+// of the liquid's temperature and that of the surfaces
+constexpr int most_rounds = 40;
 
 // Of an elliptic pressure that is not on the grid, by rows with the slopes of their middle.
 void add_inclined_ellipse(const hertz_contact &hertz, const grid &g, const surface_slopes &slopes,
@@ -22,6 +24,16 @@ void add_inclined_ellipse(const hertz_contact &hertz, const grid &g, const surfa
     const double force = hertz.normal_force * (share(y + half) - share(y - half));
     add_inclined(force, 0, y, slopes.height[j], slopes.across[j], slopes.along[j], wrench);
   }
+}
+
+// Mean of a law of temperature on the asperities, over the whole load.
+double friction_by_heat(const grid &g, const patch_memory &memory) {
+  double all = 0, sum = 0;
+  for (size_t at = 0; at < static_cast<size_t>(g.count()); ++at) {
+    all += memory.pressure[at];
+    sum += memory.heat->friction[at] * (memory.pressure[at] - memory.fluid_pressure[at]);
+  }
+  return all > 0 ? sum / all : 0.0;
 }
 
 }  // namespace
@@ -121,16 +133,52 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   }
   const bool late = heat_.begins_late();
   if (!late) heat_.begin(problem, memory);
-  const fluid_outcome f = fluid_.solve(problem, n, memory);
-  const traction_outcome t = find_tractions(problem, n, memory);
+  fluid_.begin();
+  fluid_outcome f = fluid_.solve(problem, n, memory);
+  traction_outcome t = find_tractions(problem, n, memory);
   if (late) heat_.begin(problem, memory);
-  const heat_outcome h = heat_.finish(problem, memory);
+  heat_outcome h = heat_.finish(problem, memory);
+  if (fluid_.follows_heat()) warm_liquid(problem, memory, n, f, t, h);
   const stage_mark mark = shared_.marks.enter(RP_STAGE_FORCES);
   wrench = sum_forces(problem, n, t, memory);
   report(scene, problem, n, t, h, wrench, result);
   if (f.found) describe_fluid(f, scene.friction_scale, result);
+  if (f.found && scene.fluid->model == RP_FLUID_REGIMES)
+    result.effective_friction = scene.wet_friction * scene.friction_scale;
+  if (f.found && scene.has_strips() && scene.heat && scene.heat->by_temperature)
+    result.effective_friction = friction_by_heat(problem.g, memory) * scene.friction_scale;
+  if (!f.converged) degrade(result, RP_NOT_CONVERGED, RP_REASON_FLUID);
   complete(problem, memory, wrench);
   estimate_error(problem, n, memory, result);
+}
+
+// The liquid as warm as the surfaces, which rub the more the thinner it is: rounds until both
+// agree.
+void patch_contact::warm_liquid(const patch_problem &problem, patch_memory &memory,
+                                pressure_outcome &n, fluid_outcome &f, traction_outcome &t,
+                                heat_outcome &h) {
+  // K: of the liquid's temperature, which is some tenths of a per cent of its viscosity
+  const double allowed = 100.0 * std::max(shared_.scene.tolerance, 1e-10);
+  int newton = t.newton_iterations, products = t.inner_iterations, outer = t.outer_iterations;
+  for (int round = 1; t.converged; ++round) {
+    const double change = fluid_.follow(problem.g, memory);
+    ++outer;
+    if (!(change > allowed)) break;
+    if (round > most_rounds) {
+      degrade(t, RP_NOT_CONVERGED, RP_REASON_HEAT_LOOP, change);
+      break;
+    }
+    f = fluid_.solve(problem, n, memory);
+    heat_.begin(problem, memory);
+    t = find_tractions(problem, n, memory);
+    newton += t.newton_iterations;
+    products += t.inner_iterations;
+    outer += t.outer_iterations;
+    h = heat_.finish(problem, memory);
+  }
+  t.newton_iterations = newton;
+  t.inner_iterations = products;
+  t.outer_iterations = outer;
 }
 
 // What depends on the grid and on the last step.

@@ -48,12 +48,14 @@ class patch_contact {
   void set_friction_scale(double value) { shared_.scene.friction_scale = value; }
   void set_bulk_temperature(int k, double value) { heat_.set_bulk(k, value); }
   void set_fluid_supply(const fluid_supply &supply) { shared_.scene.supply = supply; }
+  void set_cleaning_work(double value) { shared_.scene.supply.work = value; }
   size_t influence_bytes() const { return shared_.influence ? shared_.influence->bytes() : 0; }
   size_t coupling_bytes() const { return shared_.coupled ? shared_.coupled->bytes() : 0; }
   size_t history_bytes() const {
     return tangential_.history_bytes() + (shared_.scene.heat ? 0 : shared_.friction_bytes());
   }
   size_t plastic_bytes() const { return tangential_.plastic_bytes(); }
+  size_t fluid_bytes() const { return fluid_.bytes(); }
   size_t normal_bytes() const { return normal_.bytes(); }
   // with those of history and plasticity
   size_t tangential_bytes() const { return tangential_.bytes(); }
@@ -65,6 +67,8 @@ class patch_contact {
   size_t scratch_bytes() const { return 2 * shared_.scratch[0].bytes(); }
 
  private:
+  void warm_liquid(const patch_problem &problem, patch_memory &memory, pressure_outcome &n,
+                   fluid_outcome &f, traction_outcome &t, heat_outcome &h);
   void begin_solve(const patch_problem &problem, patch_memory &memory);
   pressure_outcome find_pressure(const patch_problem &problem, patch_memory &memory);
   traction_outcome find_tractions(const patch_problem &problem, pressure_outcome &n,

@@ -68,6 +68,7 @@ struct patch_memory {
   aligned_buffer<double> undeformed_distance, pressure, px, py, sx, sy;
   aligned_buffer<unsigned char> division;
   aligned_buffer<double> node_x, node_y, node_height, node_pressure;  // fitted rows only
+  aligned_buffer<double> fluid_pressure;                              // Pa, of a liquid by strips
   aligned_buffer<double> row_friction;  // factor of each grid row, where it varies
   aligned_buffer<double> slope_fields;  // of slopes
   surface_slopes slopes;                // where pressure acts along local normals

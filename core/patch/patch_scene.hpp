@@ -54,6 +54,8 @@ struct patch_scene {
   bool prescribed[2] = {false, false};  // components of the creep force: their creepage is found
   double coefficient() const { return fluid ? wet_friction : friction_coefficient; }
   double friction() const { return coefficient() * friction_scale; }
+  // The liquid's pressure is found element by element.
+  bool has_strips() const { return fluid && fluid->model == RP_FLUID_STRIP && !closed_form(); }
   bool is_forced() const { return prescribed[0] || prescribed[1]; }
   // false: beside the exact theory, by choice
   bool estimates_force() const;

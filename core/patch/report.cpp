@@ -103,8 +103,8 @@ void report(const patch_scene &scene, const patch_problem &problem, const pressu
 }
 
 void describe_fluid(const fluid_outcome &f, double scale, rp_patch_result &result) {
-  result.film_thickness = f.film_thickness;
-  result.asperity_share = f.asperity_share;
+  result.central_film_thickness = f.film_thickness;
+  result.mean_asperity_share = f.asperity_share;
   result.fluid_temperature = f.temperature;
   result.effective_friction = f.friction * scale;
 }

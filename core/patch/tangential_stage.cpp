@@ -108,8 +108,9 @@ double tangential_stage::capacity(const patch_problem &problem, const pressure_o
                                   const patch_memory &memory, const heat_stage &heat) const {
   const patch_scene &scene = shared_.scene;
   const bool by_velocity = scene.law && scene.law->by_velocity;
-  if (fitted_ || !(by_velocity || scene.friction_variation.varies() || heat.feeds_back()))
-    return scene.friction() * pressure.normal_force;
+  const bool uneven =
+      by_velocity || scene.friction_variation.varies() || heat.feeds_back() || scene.has_strips();
+  if (fitted_ || !uneven) return scene.friction() * pressure.normal_force;
   double sum = 0;
   for (size_t i = 0; i < static_cast<size_t>(problem.g.count()); ++i)
     sum += by_velocity ? memory.history.friction[i] * memory.pressure[i] : bound_[i];
@@ -206,7 +207,10 @@ tangential_result tangential_stage::solve_by_theory(const patch_problem &problem
                          shared_.scene.friction(),
                          shared_.scene.friction_scale};
   creep_resultants sums;
-  const tangential_result t = fast_->solve(patch, rolling, memory.fields(), sums);
+  const bool regimes =
+      has_physics && shared_.scene.fluid && shared_.scene.fluid->model == RP_FLUID_REGIMES;
+  const tangential_result t = regimes ? solve_regimes(patch, rolling, sums)
+                                      : fast_->solve(patch, rolling, memory.fields(), sums);
   std::copy_n(sums.force, 2, found.force);
   found.moment = sums.moment;
   found.capacity = sums.capacity;
@@ -279,6 +283,10 @@ void tangential_stage::set_bound(const grid &g, const patch_memory &memory, cons
         (varies ? memory.row_friction[static_cast<size_t>(j)] : 1.0) * shared_.scene.friction_scale;
     for (auto i = static_cast<size_t>(j * g.nx); i < static_cast<size_t>((j + 1) * g.nx); ++i)
       bound_[i] = (mu ? mu[i] : friction) * factor * memory.pressure[i];
+    if (!has_physics || memory.fluid_pressure.size() == 0) continue;
+    // what the liquid bears has no friction
+    for (auto i = static_cast<size_t>(j * g.nx); i < static_cast<size_t>((j + 1) * g.nx); ++i)
+      if (memory.pressure[i] > 0) bound_[i] *= 1.0 - memory.fluid_pressure[i] / memory.pressure[i];
   }
 }
 

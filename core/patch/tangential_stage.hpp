@@ -48,6 +48,8 @@ class tangential_stage {
   tangential_result solve_by_theory(const patch_problem &problem, const pressure_outcome &pressure,
                                     const rolling_input &rolling, patch_memory &memory,
                                     heat_stage &heat, traction_outcome &found);
+  tangential_result solve_regimes(const fast_patch &patch, const rolling_input &rolling,
+                                  creep_resultants &sums);
   tangential_result solve_with_heat(const patch_problem &problem, const rolling_input &rolling,
                                     patch_memory &memory, heat_stage &heat,
                                     traction_outcome &found);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "normal/row_contact.hpp"
 #include "numeric/elementary.hpp"
@@ -29,6 +30,7 @@ wheels::wheels(const wheels_setup &setup, const patch_scene &scene, const fft_pl
   for (const auto &wheel : setup.wheel) wheels_.emplace_back(wheel);
   if (setup.support) support_.emplace(*setup.support);
   if (setup.bulk) bulk_.emplace(*setup.bulk);
+  if (has_physics && scene.fluid && scene.fluid->regimes.recovery > 0) cleaning_.emplace();
   balance_ = setup.balance;
   if (!scene.exact) return;
   rates_ = std::make_unique<rates>(
@@ -55,6 +57,11 @@ driver::kept_numbers wheels::kept() {
     kept.heat = bulk_->kept();
     kept.heat_bytes = sizeof(bulk_temperatures::numbers);
   }
+  // not beside bodies that store heat: one needs the full theory, the other Polach's
+  if (cleaning_) {
+    kept.heat = &*cleaning_;
+    kept.heat_bytes = sizeof(cleaning);
+  }
   return kept;
 }
 
@@ -62,6 +69,7 @@ void wheels::reset() {
   depth_ = 0;
   if (support_) support_->reset();
   if (bulk_) bulk_->reset();
+  if (cleaning_) *cleaning_ = {};
 }
 
 const char *wheels::geometry_reason() const {
@@ -84,6 +92,7 @@ double wheels::evaluate(double z, rp_result &out) {
     rp_side_result &side = out.side[wheel.side()];
     wheel.move_to(z);
     set_bulk(wheel.side());
+    if (cleaning_) solver_.set_cleaning_work(cleaned_[wheel.side()]);
     wheel.evaluate(solver_, memory_of(w), side);
     vertical -= side.force[2];
     for (int i = 0; i < side.patch_count + side.alternative_count; ++i)
@@ -100,6 +109,9 @@ double wheels::evaluate(double z, rp_result &out) {
 void wheels::step(const rp_input &in, rp_result &out) {
   if (friction_along_.varies()) solver_.set_friction_scale(friction_along_.at(in.x));
   if (bulk_) bulk_->begin(in.time_step);
+  for (size_t side = 0; cleaning_ && side < 2; ++side)
+    cleaned_[side] =
+        in.rail_work[side] + cleaning_->work[side] + cleaning_->rate[side] * in.time_step;
   if (solver_.scene().keeps_steps())
     for (auto &m : memory_) solver_.remember(m);
   if (!balance_) {
@@ -147,6 +159,20 @@ void wheels::finish(const rp_input &in, rp_result &out) {
   if (bulk_ && !bulk_->within_range())
     report_search({RP_OUT_OF_RANGE, RP_REASON_BULK_TEMPERATURE}, out.residual, out);
   if (bulk_) keep_heat(out);
+  if (cleaning_) keep_cleaning(in, out);
+}
+
+// Each metre of the circumference is in contact once a turn, for its length over the speed.
+void wheels::keep_cleaning(const rp_input &in, const rp_result &out) {
+  const bool solved = out.status == RP_CONVERGED || out.status == RP_WORK_SPENT;
+  if (!solved && out.status != RP_NO_CONTACT) return;
+  for (const auto &wheel : wheels_) {
+    const auto s = static_cast<size_t>(wheel.side());
+    const rp_side_result &side = out.side[s];
+    cleaning_->work[s] = cleaned_[s] - in.rail_work[s];
+    const double around = 2.0 * std::numbers::pi * side.rolling_radius;
+    cleaning_->rate[s] = around > 0 ? side.friction_power / around : 0.0;
+  }
 }
 
 // Of bodies that store heat: what the step begins with.

@@ -89,6 +89,7 @@ class wheels final : public driver {
   void finish(const rp_input &input, rp_result &result);
   void set_bulk(int side);
   void keep_heat(const rp_result &result);
+  void keep_cleaning(const rp_input &input, const rp_result &result);
   void find_z(double vertical_force, rp_result &result);
   double look_deeper(double touch, double depth, force_samples &samples, rp_result &result);
   bool beyond() const;
@@ -110,7 +111,14 @@ class wheels final : public driver {
   friction_factor friction_along_;
   std::optional<rail_support> support_;    // where rails are on springs
   std::optional<bulk_temperatures> bulk_;  // where bodies store heat
-  std::optional<balance_setup> balance_;   // where roll angle or pitch rate are found
+  // Friction work on each metre of the wheels' circumference, and how fast it grows; by side.
+  struct cleaning {
+    double work[2] = {0, 0};  // J/m
+    double rate[2] = {0, 0};  // J/(m s)
+  };
+  std::optional<cleaning> cleaning_;      // where friction's work cleans wheels
+  double cleaned_[2] = {0, 0};            // J/m, of this step, with the rail's
+  std::optional<balance_setup> balance_;  // where roll angle or pitch rate are found
   std::unique_ptr<rates> rates_;
 };
 

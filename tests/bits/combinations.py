@@ -98,6 +98,18 @@ COMMON: dict[str, Feature] = {
     "water": {
         "fluid": {"model": "film", "roughness": 1e-6, "boundary_friction": 0.2, "liquid": "water"}
     },
+    "regimes of water": {
+        "method__tangential": "polach",
+        "fluid": {
+            "model": "regimes",
+            "water_rate": 1e-7,
+            "recovery": {"coefficient": 1e-3},
+            "rail_work": [300.0, 200.0],
+        },
+    },
+    "water by strips": {
+        "fluid": {"model": "strip", "roughness": 1e-6, "boundary_friction": 0.2, "liquid": "water"}
+    },
     "starved oil": {
         "fluid": {
             "model": "film",
@@ -105,7 +117,7 @@ COMMON: dict[str, Feature] = {
             "roughness": 2e-6,
             "liquid": "oil",
             "viscosity": 0.1,
-            "oil_film": 5e-6,
+            "oil_film": 2.5e-6,
             "inlet_heating": True,
         }
     },

@@ -204,6 +204,11 @@ VALUES: dict[str, Any] = {
     "fluid.liquid_conductivity": 0.3,
     "fluid.eyring_stress": 4e6,
     "fluid.oxide": {"solid_content": 0.3},
+    "fluid.roughness": 1.3e-6,
+    "fluid.knots": [[0.0, 1.0, 0.4, 0.5, 0.4, 0.6], [1e-6, 0.3, 0.1, 0.2, 0.5, 0.2]],
+    "fluid.reference_rate": 2e-9,
+    "fluid.recovery": {"coefficient": 2e-3},
+    "fluid.rail_work": [500.0, 700.0],
     "track.rail_support": {"stiffness": [3e7, 9e7]},
     "profiles.smoothing": 1e-3,
     "profiles.wheel": "cone@1:20",
@@ -496,7 +501,7 @@ IDLE = [
     Idle("motion", without_tangential, "how bodies move, even where nothing sticks to them", ()),
     *(
         Idle(key, still, "where nothing rolls there is no micro-slip and no traction", ())
-        for key in ("friction", "layer", "motion", *OF_ROLLING)
+        for key in ("friction", "layer", "motion", "fluid", *OF_ROLLING)
     ),
     Idle(
         "wheelset.pitch_rate",
@@ -608,7 +613,10 @@ IDLE = [
     Idle("wheelset.x", needs_no_length, "nothing varies along the track", ("joint",)),
     Idle(
         "friction.coefficient",
-        lambda c, k, v: get(c, "fluid.boundary_friction") and not get(c, "fluid.water_rate"),
+        lambda c, k, v: (
+            (get(c, "fluid.boundary_friction") and not get(c, "fluid.water_rate"))
+            or get(c, "fluid.model") == "regimes"
+        ),
         "of dry surfaces, as soon as a step limits the supply of liquid",
     ),
     Idle("fluid.limiting_friction", nowhere, "a limit that the oil of these cases does not reach"),

@@ -40,6 +40,10 @@ MADE = {
     "fluid_viscosity_temperature": "fluid.viscosity_table",
     "fluid_viscosity_value": "fluid.viscosity_table",
     "fluid_inlet_conductivity": "fluid.inlet_heating, liquid_conductivity",
+    **{
+        f"fluid_knot_{name}": "fluid.knots"
+        for name in ("rate", "k_a", "k_s", "coefficient", "a", "b")
+    },
     "fluid_oxide_content": "fluid.oxide.solid_content",
     "fluid_oxide_exponent": "fluid.oxide.exponent",
     "section_count": "track.left.sections",

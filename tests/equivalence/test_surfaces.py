@@ -37,7 +37,12 @@ PATCH_FIELDS = (
 # of stages that the scenes have not
 NOT_THERE = {"max_temperature", "plastic_power", "wheel_heat", "rail_heat"}
 NOT_THERE |= {"wheel_temperature", "rail_temperature"}
-NOT_THERE |= {"film_thickness", "asperity_share", "fluid_temperature", "effective_friction"}
+NOT_THERE |= {
+    "central_film_thickness",
+    "mean_asperity_share",
+    "fluid_temperature",
+    "effective_friction",
+}
 
 
 def shown(result: Result) -> str:

@@ -40,6 +40,12 @@ CASES = {
         **FAST,
         fluid={"model": "film", "roughness": 1e-6, "liquid": "water", "water_rate": 1e-7},
     ),
+    "regimes": with_values(
+        PATCH,
+        friction=None,
+        method={"normal": "hertz", "tangential": "polach"},
+        fluid={"model": "regimes", "water_rate": 1e-7, "recovery": {"coefficient": 1e-3}},
+    ),
     "oil on wheels": with_values(
         ON_RAIL,
         fluid={"model": "film", "roughness": 1e-6, "liquid": "oil", "viscosity": 0.1},

@@ -33,7 +33,15 @@ from railpatch.case.types import SIDES
 from railpatch.errors import CaseError
 from railpatch.on_demand import OnDemand, Reader
 from railpatch.pressure_error import Replica, doubts, lines, replica_of
-from railpatch.result import FIELDS, GOOD, LAW_FIELDS, ROW_FIELDS, Result, shaped_field
+from railpatch.result import (
+    FIELDS,
+    FLUID_FIELDS,
+    GOOD,
+    LAW_FIELDS,
+    ROW_FIELDS,
+    Result,
+    shaped_field,
+)
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -341,7 +349,7 @@ class Contact:
         found: dict[str, Any] = {}
         for name in FIELDS:
             values = self._core.field(SIDES.index(side), patch, name)
-            if values is None and name in (*LAW_FIELDS, *ROW_FIELDS):
+            if values is None and name in (*LAW_FIELDS, *ROW_FIELDS, *FLUID_FIELDS):
                 continue
             found[name] = shaped_field(name, values, grid)
         return found

@@ -85,12 +85,16 @@ FIELDS = {
     "plastic_displacement": 2,
     "plastic_path": 1,
     "yield_stress": 1,
+    "fluid_pressure": 1,
+    "film_thickness": 1,
+    "asperity_share": 1,
     "row_position": 2,
     "row_angle": 1,
 }
 # only where the scene has such a law
 LAW_FIELDS = ("friction", "plastic_displacement", "plastic_path", "yield_stress")
 ROW_FIELDS = ("row_position", "row_angle")  # of curved reference surfaces
+FLUID_FIELDS = ("fluid_pressure", "film_thickness", "asperity_share")  # of a liquid by strips
 GOOD = ("converged", "no_contact")
 # whose numbers are a solution
 SOLVED = (*GOOD, "accuracy_not_met", "work_spent")
@@ -126,8 +130,9 @@ class Result:
     [2, ny, nx] in Pa, micro_slip [2, ny, nx] relative to the rolling speed, element_division
     [ny, nx] as 0 exterior, 1 stick, 2 slip, 3 plastic, temperature [2, ny, nx] of wheel and rail in
     degrees C. Curved reference surfaces have row_position [2, ny], y and z of each row of elements
-    in track axes (m), and row_angle [ny], its contact angle (rad). ``iterations`` is the sum of
-    conjugate-gradient steps of the normal and Newton steps of the tangential problem.
+    in track axes (m), and row_angle [ny], its contact angle (rad). A liquid by strips has
+    fluid_pressure (Pa), film_thickness (m) and asperity_share (-), [ny, nx]. ``iterations`` is the
+    sum of conjugate-gradient steps of the normal and Newton steps of the tangential problem.
     ``error_estimate`` holds what 95 % of the errors of creep_force (N, length of the vector),
     spin_moment (N m) and max_pressure (Pa) stay below. A wheel's ``alternatives`` are solutions of
     its contact areas divided into other patches than ``patches``: where patches join or part, both

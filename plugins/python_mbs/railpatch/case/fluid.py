@@ -14,6 +14,7 @@ from railpatch.case.types import (
     Problems,
     Table,
     between,
+    exactly,
     key,
     listed,
     more_than,
@@ -26,6 +27,13 @@ from railpatch.case.types import (
 if TYPE_CHECKING:
     from railpatch.case.friction import Friction
 
+NOT_NEGATIVE = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+RailWork = Annotated[list[NOT_NEGATIVE], exactly(2)]
+Knots = Annotated[
+    list[Annotated[list[NOT_NEGATIVE], exactly(6)]],
+    Field(min_length=2, max_length=listed("fluid_knot_rate")["shape"][0]),
+]
+OF_KNOT = ("rate", "k_a", "k_s", "coefficient", "a", "b")
 Coefficient = Annotated[float, between(0, 10)]
 ViscosityTable = Annotated[list[Pair], Field(min_length=2, max_length=MOST_POINTS)]
 # of the liquids, where the case says nothing else: 1/Pa, W/(m K), Pa; those of oil are assumed
@@ -33,7 +41,39 @@ PRESSURE_COEFFICIENT = {None: 0.5e-9, "water": 0.5e-9, "oil": 20e-9}
 CONDUCTIVITY = {"water": 0.6, "oil": 0.14}
 EYRING_STRESS = {"oil": 5e6}
 # keys of a step and the key of the table that each moves
-MOVED = {"water_rate": "water_rate", "water_temperature": "temperature", "oil_film": "oil_film"}
+MOVED = {
+    "water_rate": "water_rate",
+    "water_temperature": "temperature",
+    "oil_film": "oil_film",
+    "rail_work": "rail_work",
+}
+
+
+OF_REGIMES = ("knots", "reference_rate", "recovery", "rail_work")
+# keys that a model does not read
+UNREAD = {
+    "strip": (
+        *("share", "mean_pressure", "pressure_coefficient", "water_rate", "oil_film", "starvation"),
+        *("inlet_heating", "liquid_conductivity", "eyring_stress", "limiting_friction"),
+        *OF_REGIMES,
+    ),
+    "film": OF_REGIMES,
+    "regimes": (
+        *("share", "mean_pressure", "pressure_coefficient", "oil_film", "starvation"),
+        *("inlet_heating", "liquid_conductivity", "eyring_stress", "limiting_friction"),
+        *("roughness", "boundary_friction", "hardness", "viscosity", "liquid", "viscosity_table"),
+        *("reference_temperature", "roelands_slope", "temperature", "oxide"),
+    ),
+}
+
+
+class Recovery(Table):
+    """Friction's work cleans wheel and rail (model regimes)."""
+
+    coefficient: Annotated[float, more_than(0, 1e6)] = Field(
+        description="1/N, tau: the forces go over to those of the first knot by 1 - exp(-tau W), W "
+        "(J/m) the work spent on each metre of rail and wheel"
+    )
 
 
 class Oxide(Table):
@@ -52,20 +92,22 @@ class Fluid(Table):
 
     model: one_of("fluid_model", without=("none",)) = Field(
         description="(no unit) film: central film of an elliptic contact, the share of the load "
-        "that asperities carry, one friction coefficient for every theory"
+        "that asperities carry, one friction coefficient for every theory; strip: the pressure of "
+        "the liquid along each row of the contact, friction where asperities carry; regimes: "
+        "Polach's theory with parameters by water_rate"
     )
     share: one_of("fluid_share") = Field(
         default="film_ratio",
         description="of the load on asperities (no unit): film_ratio, exp(-1.8 (film/roughness)^1.2"
         "); load_sharing, asperities and liquid in balance",
     )
-    roughness: float = key(of="fluid_roughness", default=...)
+    roughness: float | None = key("; of film and strip", of="fluid_roughness", default=None)
     boundary_friction: Coefficient | None = Field(
         default=None,
         description="-, of asperities that the liquid wets; left out: friction.coefficient, which "
         "is that of dry surfaces",
     )
-    hardness: float = key("; with load_sharing", of="fluid_hardness")
+    hardness: float = key("; with share = 'load_sharing' and model = 'strip'", of="fluid_hardness")
     mean_pressure: Annotated[float, more_than(0, 1e12)] | Literal["contact"] = Field(
         default=listed("fluid_mean_pressure")["start"],
         description="Pa, nominal pressure that load_sharing compares with hardness, by default "
@@ -125,6 +167,20 @@ class Fluid(Table):
         "(assumed)",
     )
     limiting_friction: float = key("; with eyring_stress", of="fluid_limiting_friction")
+    knots: Knots | None = Field(
+        default=None,
+        description="m^3/s, -, -, -, -, s/m, [[water rate, k_A, k_S, mu_0, A, B], ...] of Polach's "
+        "theory at increasing water rates, of regimes; left out: dry, damp and flooded ones",
+    )
+    reference_rate: float = key("; of regimes", of="fluid_reference_rate")
+    recovery: Recovery | None = Field(
+        default=None, description="cleaning by friction's work, of regimes (1/N); left out: none"
+    )
+    rail_work: RailWork = Field(
+        default=[0.0, 0.0],
+        description="J/m, friction work that wheels before have spent on each metre of the left "
+        "and right rail, with recovery; of a patch the second counts. Moves",
+    )
     oxide: Oxide | None = Field(
         default=None, description="solids in the liquid, a paste (-); left out: none"
     )
@@ -135,9 +191,20 @@ class Fluid(Table):
         return self
 
     def _problems(self) -> Problems:
-        yield from self._viscosity()
+        if self.model == "regimes":
+            yield from self._regimes()
+        else:
+            yield from self._viscosity()
+            if self.roughness is None:
+                shown = f"a number in m with model = {self.model!r}"
+                yield relation("roughness", "missing", shown)
+        for name in UNREAD.get(self.model, ()):
+            if self._changed(name):
+                shown = getattr(self, name)
+                yield relation(name, repr(shown), f"{LEFT_OUT} with model = {self.model!r}")
         for name in ("hardness", "mean_pressure"):
-            if self.share != "load_sharing" and self._changed(name):
+            read = self.share == "load_sharing" or (name == "hardness" and self.model == "strip")
+            if not read and self._changed(name):
                 yield relation(name, getattr(self, name), "only with share = 'load_sharing'")
         if self.liquid_conductivity is not None and not self.inlet_heating:
             yield relation(
@@ -145,6 +212,23 @@ class Fluid(Table):
             )
         if self._changed("limiting_friction") and not self.core["eyring_stress"] > 0:
             yield relation("limiting_friction", self.limiting_friction, "only with eyring_stress")
+
+    def _regimes(self) -> Problems:
+        if self.water_rate is None:
+            yield relation("water_rate", "missing", "a number in m^3/s with model = 'regimes'")
+        if self.recovery is None and self._changed("rail_work"):
+            yield relation("rail_work", str(self.rail_work), "only with recovery")
+        if self.knots is None:
+            return
+        columns = dict(zip(OF_KNOT, zip(*self.knots, strict=True), strict=True))
+        if any(b <= a for a, b in itertools.pairwise(columns["rate"])):
+            yield relation("knots", str(self.knots), "water rates that increase")
+        for name, values in columns.items():
+            field = listed(f"fluid_knot_{name}")
+            low, high, open_low = field["low"], field["high"], field["bounds"][0] == "("
+            if not all(low <= v <= high and not (open_low and v == low) for v in values):
+                allowed = f"{name} within {field['bounds'][0]}{low:g}, {high:g}]"
+                yield relation("knots", str(self.knots), allowed)
 
     def _viscosity(self) -> Problems:
         by_temperature = self.liquid is not None or self.viscosity_table is not None
@@ -195,11 +279,14 @@ class Fluid(Table):
             "pressure_coefficient": self.pressure_coefficient,
             "eyring_stress": self.eyring_stress,
         }
+        if self.recovery is not None:
+            found["recovery"] = self.recovery.coefficient
         if self.pressure_coefficient is None:
             usual = PRESSURE_COEFFICIENT.get(self.liquid, PRESSURE_COEFFICIENT[None])
             found["pressure_coefficient"] = usual
         if self.eyring_stress is None:
-            found["eyring_stress"] = EYRING_STRESS.get(self.liquid or "", 0.0)
+            usual = EYRING_STRESS.get(self.liquid or "", 0.0)
+            found["eyring_stress"] = usual if self.model == "film" else 0.0
         if self.inlet_heating:
             usual = CONDUCTIVITY.get(self.liquid or "", 0.0)
             found["inlet_conductivity"] = self.liquid_conductivity or usual
@@ -213,23 +300,39 @@ class Fluid(Table):
     @property
     def moving(self) -> tuple[str, ...]:
         """Supply and temperature of the liquid, by the names of a step's keys."""
-        if self.liquid is None and self.viscosity_table is None:
-            return tuple(name for name in MOVED if name != "water_temperature")
-        return tuple(MOVED)
+        if self.model == "regimes":
+            return ("water_rate", *(("rail_work",) if self.recovery is not None else ()))
+        known = self.liquid is not None or self.viscosity_table is not None
+        unread = UNREAD.get(self.model, ())
+        return tuple(
+            name
+            for name, key in MOVED.items()
+            if key not in unread and (known or key != "temperature")
+        )
 
 
 def check_fluid(
     fluid: Fluid | None,
     friction: Friction | None,
     accuracy: float | None,
+    tangential: str,
     *,
     prescribed: bool = False,
 ) -> Problems:
     """What a liquid is not combined with. accuracy: method's; prescribed: a creep force is."""
     if fluid is None:
         return
-    if friction is not None and friction.law != "coulomb":
-        yield relation("friction.law", repr(friction.law), "'coulomb' with [fluid]")
+    if fluid.model == "regimes" and tangential != "polach":
+        yield relation("method.tangential", repr(tangential), "'polach' with model = 'regimes'")
+    by_heat = fluid.model == "strip" and friction is not None and friction.law == "temperature"
+    if friction is not None and friction.law != "coulomb" and not by_heat:
+        others = " or 'temperature'" if fluid.model == "strip" else ""
+        allowed = f"'coulomb'{others} with fluid.model = {fluid.model!r}"
+        yield relation("friction.law", repr(friction.law), allowed)
+    boundary = fluid.core.get("boundary_friction", fluid.boundary_friction)
+    if by_heat and boundary is not None:
+        allowed = f"{LEFT_OUT} with friction.law = 'temperature', which gives it"
+        yield relation("fluid.boundary_friction", boundary, allowed)
     if accuracy is not None:
         allowed = f"{LEFT_OUT} with [fluid], whose error is not known: give 'grid'"
         yield relation("method.accuracy", accuracy, allowed)
@@ -239,8 +342,17 @@ def check_fluid(
         yield relation("fluid.eyring_stress", shown, allowed)
 
 
+def changes_with_time(case: Any) -> bool:
+    """Whether wheels store heat, or are cleaned, from step to step by the time between."""
+    heat, fluid = case.temperature, case.fluid
+    stores = heat is not None and heat.bulk is not None
+    return stores or (fluid is not None and fluid.recovery is not None)
+
+
 def without_dry_friction(fluid: Fluid | None) -> bool:
     """Whether no surface is dry, so that [friction] may be left out."""
+    if fluid is not None and fluid.model == "regimes":
+        return True
     if fluid is None or fluid.water_rate is not None or fluid.oil_film is not None:
         return False
     return fluid.core.get("boundary_friction", fluid.boundary_friction) is not None

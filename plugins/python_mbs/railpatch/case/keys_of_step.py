@@ -46,6 +46,7 @@ class Moving(TypedDict, total=False):
     water_rate: float
     water_temperature: float
     oil_film: float
+    rail_work: Numbers
     # with temperatures
     temperature: Mapping[str, float]
 

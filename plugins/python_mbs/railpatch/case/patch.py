@@ -269,7 +269,11 @@ class PatchCase(Table):
             )
             prescribed = any(self.motion.prescribed)
             yield from check_fluid(
-                self.fluid, self.friction, self.method.accuracy, prescribed=prescribed
+                self.fluid,
+                self.friction,
+                self.method.accuracy,
+                self.method.tangential,
+                prescribed=prescribed,
             )
             yield from check_physics(
                 self.friction, self.layer, self.temperature, self.grid, self.method

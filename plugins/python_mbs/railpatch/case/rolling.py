@@ -152,10 +152,12 @@ def check_rolling(case: Any) -> Problems:
         yield relation(heights[0], "given", "only with track.kind = 'rail'")
     if case.motion.regime == "steady_rolling":
         heated = case.temperature is not None and case.temperature.bulk is not None
-        if case.wheelset.time_step > 0 and case.track.rail_support is None and not heated:
+        cleans = case.fluid is not None and case.fluid.recovery is not None
+        timed = heated or cleans or case.track.rail_support is not None
+        if case.wheelset.time_step > 0 and not timed:
             allowed = (
-                "0 but with motion.regime = 'transient_rolling', track.rail_support or "
-                "temperature.bulk"
+                "0 but with motion.regime = 'transient_rolling', track.rail_support, "
+                "temperature.bulk or fluid.recovery"
             )
             yield relation("wheelset.time_step", case.wheelset.time_step, allowed)
         return

@@ -15,7 +15,7 @@ from typing import Any
 
 from railpatch import _core
 from railpatch.case.creep_table import default_table, table_from
-from railpatch.case.fluid import MOVED
+from railpatch.case.fluid import MOVED, OF_KNOT
 from railpatch.case.gap import read_gap
 from railpatch.case.load import Case, Scene, plain
 from railpatch.case.longitudinal import shape_config
@@ -142,8 +142,13 @@ def fluid_config(case: Case) -> dict[str, Any]:
         return {}
     config = passed("fluid", fluid, _core.CONFIG_FIELDS)
     config |= {f"fluid_{name}": value for name, value in fluid.core.items()}
-    if case.friction is None:
+    if case.friction is None and "fluid_boundary_friction" in config:
         config["friction_coefficient"] = config["fluid_boundary_friction"]
+    if fluid.knots is not None:
+        width = _core.CONFIG_FIELDS["fluid_knot_rate"]["shape"][0]
+        config["fluid_knots"] = len(fluid.knots)
+        for name, column in zip(OF_KNOT, zip(*fluid.knots, strict=True), strict=True):
+            config[f"fluid_knot_{name}"] = [*column, *[0.0] * (width - len(column))]
     if fluid.viscosity_table is not None:
         names = ("temperature", "value")
         config |= points_config("fluid_viscosity", names, fluid.viscosity_table)

@@ -355,7 +355,9 @@ class _WheelCase(Table):
                 self.motion.regime,
                 self.fluid,
             )
-            yield from check_fluid(self.fluid, self.friction, self.method.accuracy)
+            yield from check_fluid(
+                self.fluid, self.friction, self.method.accuracy, self.method.tangential
+            )
             yield from check_physics(
                 self.friction, self.layer, self.temperature, self.grid, self.method
             )

@@ -176,6 +176,8 @@ def scene_text(
     heat = scene.case.temperature
     if heat is not None and heat.bulk is not None:
         raise CaseError("temperature.bulk: given, allowed in an FMU none: temperatures are inputs")
+    if scene.case.fluid is not None and scene.case.fluid.recovery is not None:
+        raise CaseError("fluid.recovery: given, allowed in an FMU none: wheels are not cleaned")
     config = {**config_of(scene), "derivatives": int(derivatives)}
     options = options_of(scene.case, kind)
     version = 3 if "version 3" in kind.conditions else 2

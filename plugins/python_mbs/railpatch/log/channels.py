@@ -200,7 +200,9 @@ _IN_CONTACT_FRAME = (
     *("creepage", "spin_creepage", "rolling_speed"),
     *("normal_force", "approach", "creep_force", "spin_moment"),
 )
-_OF_FLUID = ("film_thickness", "asperity_share", "fluid_temperature", "effective_friction")
+_OF_FLUID = (
+    *("central_film_thickness", "mean_asperity_share", "fluid_temperature", "effective_friction"),
+)
 PATCH = Message(
     "Patch",
     "One contact patch.",
@@ -303,7 +305,10 @@ LEFT_OUT = {
     "WheelContact": {"stages": "the case file is attached; `railpatch explain` tells its stages"},
     "Patch": {"stages": "as for the wheel"}
     | dict.fromkeys(
-        ("x", "y", "pressure", "traction", "micro_slip", "element_division", "temperature"),
+        (
+            *("x", "y", "pressure", "traction", "micro_slip", "element_division", "temperature"),
+            *("fluid_pressure", "film_thickness", "asperity_share"),
+        ),
         _IN_FIELDS,
     )
     | dict.fromkeys(("row_position", "row_angle"), "of a curved reference surface, not logged"),
@@ -348,6 +353,9 @@ PATCH_FIELDS = Message(
             "surface temperature of the wheel, then of the rail; 2 * rows * columns values",
             size=0,
         ),
+        _number("fluid_pressure", "Pa", "of the liquid, rows * columns values", "contact", size=0),
+        _number("film_thickness", "m", "of the liquid, rows * columns values", "contact", size=0),
+        _number("asperity_share", "-", "of the load, rows * columns values", "contact", size=0),
     ),
 )
 

@@ -13,6 +13,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from railpatch import _core
+from railpatch.case.fluid import changes_with_time
 from railpatch.case.load import Scene
 from railpatch.case.messages import show
 from railpatch.case.to_core import POSE_AND_VELOCITY, input_of
@@ -100,8 +101,7 @@ class ForceElement:
             check_case(contact.case)
             if contact.case.track.irregularity is not None:
                 raise CaseError("track.irregularity: given, allowed in a multibody model none")
-        heats = [contact.case.temperature for contact in self.contacts]
-        self._stores = [heat is not None and heat.bulk is not None for heat in heats]
+        self._stores = [changes_with_time(contact.case) for contact in self.contacts]
         self._curved = any(
             contact.case.method.reference_surface == "curved" for contact in self.contacts
         )
@@ -166,7 +166,8 @@ class ForceElement:
         return STATUSES[status]
 
     def pass_time(self, seconds: float) -> None:
-        """Lets time (s) go by before the next step, for the wheels' bulk temperatures.
+        """Lets time (s) go by before the next step, for the wheels' bulk temperatures and what
+        cleans them.
 
         To be called once a time step of the run: forces may be asked for several times a step, and
         those after the first find the same temperatures. Wheels are warmed by the heat of the last

@@ -1,0 +1,71 @@
+// Liquid along one strip of a rough contact that rolls: which part of the nominal pressure it bears
+// and where (the balance of Tomberger, Dietmaier, Sextro and Six 2011, Wear 271; equations of
+// docs/fluids.md).
+//
+// The nominal pressure p_n(x) of the dry contact stays. With X = x/a along rolling from the leading
+// edge (-1), p_0 a unit of pressure, P = p_f/p_0 the liquid's, S = 12 eta V a/(sigma^2 p_0),
+// r = p_0/H, d, t(d) = h_T/sigma of fluid/asperities.hpp:
+//   p_n/p_0 = P + (1 - Phi(d))/r,   t - K(t)/S dP/dX = C,   P(-1) = 0,
+//   P = dP/dX = 0 at X_c, where the liquid cavitates, P = 0 beyond.
+// K is the flow factor of Wilson and Marsault 1998 for isotropic roughness: 0.37739 (t - t_c)^2 +
+// 1.00190 (t - t_c)^3 above t_c = 0.27774, else 0, where flow is barred and C is t of the strip.
+//
+// Solved from X_c against rolling: that way errors die out, along rolling they grow. X =
+// -cos(theta) takes the root of the pressure's ends away. Each step is the trapezoidal rule in
+// theta, of which d at its end is the unknown; X_c is found so that P vanishes at the leading edge:
+// where it is too far ahead, P falls below zero before, where too far behind it meets the nominal
+// pressure.
+#pragma once
+
+#include "numeric/memory.hpp"
+
+namespace railpatch {
+
+// Nominal pressure over p_0 at X = -cos(theta), and theta where it is greatest.
+struct strip_pressure {
+  virtual double at(double theta) const = 0;
+  virtual double peak() const = 0;
+
+ protected:
+  ~strip_pressure() = default;
+};
+
+struct elliptic_strip final : strip_pressure {
+  double at(double theta) const override;
+  double peak() const override;
+};
+
+struct strip_solution {
+  bool converged = false;
+  double cavitation = -1;  // X_c
+  double flow = 0;         // C
+  double residual = 0;     // P at the leading edge
+  int marches = 0;
+};
+
+class strip_solver {
+ public:
+  explicit strip_solver(int steps);  // from X_c to the leading edge
+
+  // start: X_c to begin with, or any other number; precision: of P and X_c.
+  strip_solution solve(const strip_pressure &pressure, double s, double r, double start = -2,
+                       double precision = 1e-14);
+  int nodes() const { return steps_ + 1; }
+  // Of the last solution, from the leading edge to X_c: theta, P, t.
+  const double *theta() const { return theta_.data(); }
+  const double *liquid() const { return liquid_.data(); }
+  const double *film() const { return film_.data(); }
+  size_t bytes() const { return 3 * theta_.bytes(); }
+
+ private:
+  // P at the leading edge, or more than it could be where P meets the nominal pressure before.
+  double march(const strip_pressure &pressure, double s, double r, double end);
+
+  int steps_;
+  double flow_ = 0;
+  aligned_buffer<double> theta_, liquid_, film_;
+};
+
+double flow_factor(double t);
+
+}  // namespace railpatch

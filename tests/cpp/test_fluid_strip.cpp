@@ -1,0 +1,170 @@
+// Strips of liquid: the values of docs/fluids.md, the flow that is the same all along, the table
+// against the solver, rows of elements against the ellipse that they are taken from.
+#include "fluid/wet_strip.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "fluid/strip_table.hpp"
+#include "patch/fluid_strips.hpp"
+
+namespace {
+
+using namespace railpatch;
+using std::numbers::pi;
+
+// Of asperities, by the trapezoidal rule in theta.
+double share_of(const strip_solver &s) {
+  double sum = 0;
+  for (int k = 1; k < s.nodes(); ++k)
+    sum +=
+        0.5 * (s.theta()[k] - s.theta()[k - 1]) *
+        (s.liquid()[k] * std::sin(s.theta()[k]) + s.liquid()[k - 1] * std::sin(s.theta()[k - 1]));
+  return 1 - sum / (0.5 * pi);
+}
+
+TEST(FluidStrip, ReferenceCase) {
+  strip_solver s(4096);
+  const strip_solution found = s.solve(elliptic_strip{}, 0.36, 1 / 2.8);
+  ASSERT_TRUE(found.converged);
+  EXPECT_NEAR(share_of(s), 0.94937800, 1e-6);
+  EXPECT_NEAR(found.cavitation, 0.5016423, 1e-6);
+  int most = 0;
+  for (int k = 1; k < s.nodes(); ++k)
+    if (s.liquid()[k] > s.liquid()[most]) most = k;
+  EXPECT_NEAR(s.liquid()[most], 0.09315118, 1e-6);
+  EXPECT_NEAR(-std::cos(s.theta()[most]), -0.286016, 1e-3);  // steps are 5e-4
+}
+
+TEST(FluidStrip, SharesOfEllipticStrips) {
+  const double numbers[7] = {0.0225, 0.1, 0.3, 1, 3, 10, 30};
+  const double shares[3][7] = {{.99917, .99629, .98862, .95975, .87301, .66393, .43711},
+                               {.99702, .98640, .95788, .86975, .71994, .51273, .33391},
+                               {.98826, .95117, .88486, .76284, .61222, .43076, .28180}};
+  const double pressures[3] = {0.2, 1 / 2.8, 0.5};
+  strip_solver s(2048);
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 7; ++i) {
+      s.solve(elliptic_strip{}, numbers[i], pressures[j]);
+      EXPECT_NEAR(share_of(s), shares[j][i], 5.5e-6) << numbers[i] << " " << pressures[j];
+      EXPECT_NEAR(strip_table::share(numbers[i], pressures[j]), shares[j][i], 1e-3);
+    }
+}
+
+// What a solution without the condition of cavitation gets wrong: t - K(t)/S dP/dX is one number.
+TEST(FluidStrip, FlowIsTheSameAllAlong) {
+  for (double number : {0.01, 0.36, 3.0, 100.0}) {
+    strip_solver s(4096);
+    const double r = 1 / 2.8;
+    const strip_solution found = s.solve(elliptic_strip{}, number, r);
+    EXPECT_NEAR(found.residual, 0, 1e-12);
+    double worst = 0;
+    for (int k = s.nodes() / 50; k + 1 < s.nodes(); ++k) {
+      const double x = -std::cos(s.theta()[k + 1]), before = -std::cos(s.theta()[k - 1]);
+      const double rise = (s.liquid()[k + 1] - s.liquid()[k - 1]) / (x - before);
+      const double flow = s.film()[k] - flow_factor(s.film()[k]) / number * rise;
+      worst = std::max(worst, std::fabs(flow - found.flow));
+      // and the film is that of what asperities bear
+      const double asperities = std::sin(s.theta()[k]) - s.liquid()[k];
+      EXPECT_GT(asperities, 0);
+      EXPECT_GE(s.liquid()[k], -1e-12);
+    }
+    EXPECT_LT(worst, 2e-4 * found.flow) << number;
+    EXPECT_NEAR(s.liquid()[s.nodes() - 1], 0, 1e-15);
+  }
+}
+
+TEST(FluidStrip, SecondOrder) {
+  double last = 0;
+  for (int steps : {64, 128, 256}) {
+    strip_solver s(steps);
+    s.solve(elliptic_strip{}, 0.36, 1 / 2.8);
+    const double error = share_of(s) - 0.949377997;
+    if (last != 0) {
+      EXPECT_NEAR(last / error, 4, 0.2);
+    }
+    last = error;
+  }
+}
+
+TEST(FluidStrip, SlowLiquidBearsNothing) {
+  strip_solver s(256);
+  for (double r : {0.05, 0.3, 0.5}) {
+    s.solve(elliptic_strip{}, 1e-7, r);
+    EXPECT_NEAR(share_of(s), 1, 1e-6);
+    EXPECT_NEAR(strip_table::share_of_ellipse(0, r), 1, 1e-5);
+  }
+}
+
+TEST(FluidStrip, TableAgainstSolver) {
+  std::mt19937 draw(5);
+  std::uniform_real_distribution<double> flat(0, 1);
+  strip_solver s(1024);
+  for (int i = 0; i < 60; ++i) {
+    const double number = std::pow(10.0, -5 + 8 * flat(draw)), r = 0.02 + 0.5 * flat(draw);
+    s.solve(elliptic_strip{}, number, r, -2, 1e-9);
+    const strip_table::strip row = strip_table::at(number, r);
+    EXPECT_NEAR(row.share, share_of(s), 1e-3) << number << " " << r;
+    for (int k = 0; k < s.nodes(); k += 16)
+      EXPECT_NEAR(row.pressure(s.theta()[k]), s.liquid()[k], 5e-3) << number << " " << r;
+  }
+}
+
+// Rows of elements cut out of an ellipse, each solved by itself, and the table.
+TEST(FluidStrip, RowsOfElements) {
+  hertz_contact hertz;
+  hertz.semi_axes[0] = 6e-3;
+  hertz.semi_axes[1] = 5e-3;
+  hertz.max_pressure = 1e9;
+  grid g;
+  g.nx = 50;
+  g.ny = 41;
+  g.dx = g.dy = 2.5e-4;
+  g.x0 = -0.5 * (g.nx - 1) * g.dx;
+  g.y0 = -0.5 * (g.ny - 1) * g.dy;
+  std::vector<double> p(static_cast<size_t>(g.count())), table(p), direct(p), back(p);
+  for (int j = 0; j < g.ny; ++j)
+    for (int i = 0; i < g.nx; ++i)
+      p[static_cast<size_t>(j * g.nx + i)] =
+          hertz.max_pressure *
+          std::sqrt(std::max(inside_ellipse(hertz.semi_axes, g.x(i), g.y(j)), 0.0));
+  for (double speed : {2.0, 20.0, 72.0}) {
+    const strip_liquid liquid{1e-3, speed, 0.5e-6, 2.8e9};
+    fluid_strips strips(false);
+    const strip_outcome a = strips.solve(g, p.data(), hertz, 1, liquid, table.data());
+    const strip_outcome b = strips.solve(g, p.data(), hertz_contact{}, 1, liquid, direct.data());
+    EXPECT_TRUE(b.converged);
+    EXPECT_NEAR(a.share, b.share, 4e-3) << speed;
+    EXPECT_NEAR(a.film / b.film, 1, 5e-3) << speed;
+    EXPECT_NEAR(a.share, fluid_strips::of_ellipse(hertz, liquid).share, 2e-3) << speed;
+    double off = 0;
+    for (size_t k = 0; k < p.size(); ++k) {
+      off = std::max(off, std::fabs(table[k] - direct[k]));
+      EXPECT_TRUE(direct[k] >= 0 && direct[k] <= p[k]);
+    }
+    EXPECT_LT(off, 0.02 * hertz.max_pressure) << speed;
+    // the other way round it is the mirror image
+    strips.solve(g, p.data(), hertz_contact{}, -1, liquid, back.data());
+    for (int j = 0; j < g.ny; ++j)
+      for (int i = 0; i < g.nx; ++i)
+        EXPECT_NEAR(back[static_cast<size_t>(j * g.nx + g.nx - 1 - i)],
+                    direct[static_cast<size_t>(j * g.nx + i)], 2e-5 * hertz.max_pressure);
+  }
+}
+
+TEST(FluidStrip, Extremes) {
+  strip_solver s(64);
+  for (double number : {0.0, 1e-12, 1e-3, 1.0, 1e3, 1e6, 1e9})
+    for (double r : {1e-6, 0.01, 0.3, 0.55}) {
+      const strip_solution found = s.solve(elliptic_strip{}, number, r, -2, 1e-8);
+      EXPECT_TRUE(found.converged && std::isfinite(found.cavitation)) << number << " " << r;
+      for (int k = 0; k < s.nodes(); ++k)
+        EXPECT_TRUE(std::isfinite(s.liquid()[k]) && s.liquid()[k] < 1.01) << number << " " << r;
+    }
+}
+
+}  // namespace
