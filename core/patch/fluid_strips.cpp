@@ -90,7 +90,7 @@ strip_outcome fluid_strips::solve(const grid &g, const double *pressure, const h
   const bool ellipse = hertz.semi_axes[0] > 0;
   strip_outcome found;
   if (ellipse) found = of_ellipse(hertz, liquid);
-  double all = 0, borne = 0, greatest = 0, beside = 0;
+  double all = 0, left = 0, greatest = 0, beside = 0;
   start_ = -2;
   for (int j = 0; j < g.ny; ++j) {
     std::fill_n(fluid + j * g.nx, g.nx, 0.0);
@@ -108,11 +108,11 @@ strip_outcome fluid_strips::solve(const grid &g, const double *pressure, const h
     }
     for (int at = j * g.nx; at < (j + 1) * g.nx; ++at) {
       all += pressure[at];
-      borne += fluid[at];
+      left += pressure[at] - fluid[at];
       if (pressure[at] > greatest) greatest = pressure[at], beside = fluid[at];
     }
   }
-  if (all > 0) found.share = 1.0 - borne / all;
+  if (all > 0) found.share = left / all;
   if (!ellipse) found.film = liquid.film(greatest - beside);
   return found;
 }

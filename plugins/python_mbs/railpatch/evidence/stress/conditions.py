@@ -20,6 +20,7 @@ from railpatch.evidence.stress.inelastic import (
     friction_of,
     inelastic_findings,
 )
+from railpatch.evidence.stress.liquids import greatest_of, liquid_findings
 from railpatch.evidence.stress.step import Finding, Step, curvatures_of
 
 # a solver measures its residual in its own way: over all elements together, by its own scale
@@ -34,7 +35,7 @@ STICK, SLIP, PLASTIC = 1, 2, 3
 
 def findings(step: Step, thorough: bool = True) -> list[Finding]:
     """What can be said of a converged step. thorough: also what takes much longer than a solve."""
-    found = [*result_findings(step)]
+    found = [*result_findings(step), *liquid_findings(step)]
     absent = absent_fields(step)
     if absent:
         return [*found, *(Finding(f"field {name} is absent", np.inf, 0.0) for name in absent)]
@@ -73,6 +74,8 @@ def greatest_friction(step: Step) -> float:
     """N, the most that friction carries."""
     if step.case.friction is None:
         return 0.0
+    if step.case.fluid is not None:
+        return greatest_of(step) * step.patch["normal_force"]
     factor = max((value for _, value in step.case.friction.factor or ()), default=1.0)
     return step.case.friction.greatest * factor * step.patch["normal_force"]
 

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from railpatch.evidence.stress.half_space import Array, corners, x2_over_r3, xy_over_r3, y2_over_r3
+from railpatch.evidence.stress.liquids import greatest_of
 from railpatch.evidence.stress.step import Finding, Step
 
 STICK, SLIP = 1, 2
@@ -116,19 +117,18 @@ def fitted_findings(step: Step) -> Iterator[Finding]:
     """Pressure, bound, sums, and stick and slip by the given micro-slip."""
     rows = Rows(step["x"], step["y"], step["traction"])
     areas, (px, py) = rows.areas, rows.traction
-    pressure, friction = step["pressure"], step.case.friction
-    assert friction is not None
+    pressure, friction = step["pressure"], greatest_of(step)
     yield Finding("negative pressure", -float(pressure.min() / pressure.max()), 0.0)
     normal = abs(float((pressure * areas).sum()) / step.patch["normal_force"] - 1)
     yield Finding("sum of pressure", normal, 1e-6)
-    most = friction.greatest * step.patch["normal_force"]
+    most = friction * step.patch["normal_force"]
     force = np.array([float((p * areas).sum()) for p in (px, py)])
     moment = float(((rows.x * py - rows.y[:, None] * px) * areas).sum())
     reach = float(np.abs(rows.x).max() + np.abs(rows.y).max())
     limit = max(1e-9 * most, 1e-300)
     yield Finding("sum of tractions", float(np.hypot(*(force - step.patch["creep_force"]))), limit)
     yield Finding("moment of tractions", abs(moment - step.patch["spin_moment"]), limit * reach)
-    bound = friction.greatest * pressure
+    bound = friction * pressure
     size, most_bound = np.hypot(px, py), max(float(bound.max()), 1e-300)
     over = float((size - bound * (1 + 1e-9)).max()) / most_bound
     yield Finding("traction over its bound", over, 1e-12)
@@ -163,8 +163,7 @@ def rectangle_findings(step: Step) -> Iterator[Finding]:
     motion = {"creepage": [xi, eta], "spin_creepage": phi}
     slope = rows.slope(direction, modulus, ratio, step.layer)
     points = rigid_slip(motion, rows.points(direction), rows.y[:, None]) - direction * slope
-    assert step.case.friction is not None
-    bound = step.case.friction.greatest * float(step["pressure"].max())
+    bound = greatest_of(step) * float(step["pressure"].max())
     # slope of the bound's own displacement at the edge of a long strip (Johnson 1985, section 8.3),
     # and of the layer's below it
     elastic = 2 * (1 - ratio) * bound / modulus + step.layer * bound / min(sides)

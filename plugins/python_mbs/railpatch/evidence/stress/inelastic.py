@@ -8,6 +8,7 @@ import numpy as np
 
 from railpatch.evidence.stress import laws
 from railpatch.evidence.stress.half_space import Array, shifted
+from railpatch.evidence.stress.liquids import boundary_of, greatest_of
 from railpatch.evidence.stress.step import Finding, Step
 
 # of values that follow from others by a formula
@@ -19,6 +20,17 @@ def friction_of(step: Step) -> Array:
     friction = step.case.friction
     assert friction is not None
     factor = laws.factors(friction, step["y"])[:, None] if friction.factor else 1.0
+    fluid = step.case.fluid
+    if fluid is not None and step.has("fluid_pressure") and step.case.method.tangential == "full":
+        # what the liquid bears has none
+        mu = (
+            step["friction"] if friction.law != "coulomb" else boundary_of(fluid, friction.greatest)
+        )
+        pressure = step["pressure"]
+        part = (pressure - step["fluid_pressure"]) / np.where(pressure > 0, pressure, 1.0)
+        return mu * part * factor
+    if fluid is not None:
+        return np.full_like(step["pressure"], greatest_of(step)) * factor
     if friction.law == "coulomb":
         return np.full_like(step["pressure"], friction.greatest) * factor
     return step["friction"]

@@ -10,6 +10,9 @@ from functools import cached_property
 
 from railpatch.evidence.stress.elastic_trials import steady_trials
 from railpatch.evidence.stress.inelastic_trials import inelastic_trials
+from railpatch.evidence.stress.liquids import COUNT as WET
+from railpatch.evidence.stress.liquids import QUICK_COUNT as QUICK_WET
+from railpatch.evidence.stress.liquids import wet_mixture
 from railpatch.evidence.stress.mixtures import COUNT, QUICK_COUNT, mixture
 from railpatch.evidence.stress.trial import Trial
 from railpatch.evidence.stress.wheel_trials import wheel_trials
@@ -37,6 +40,14 @@ class Plan:
         return [trial for trial in trials if self.takes(trial)]
 
     @cached_property
+    def wet(self) -> list[int]:
+        """Numbers of the wet mixtures."""
+        numbers = range(QUICK_WET if self.quick else WET)
+        if self.only is None:
+            return list(numbers)
+        return [number for number in numbers if self.takes(wet_mixture(self.seed, number))]
+
+    @cached_property
     def mixtures(self) -> list[int]:
         """Numbers of the mixtures."""
         numbers = range(QUICK_COUNT if self.quick else COUNT)
@@ -52,12 +63,15 @@ class Plan:
         return fnmatch.fnmatchcase(text.lower(), f"*{self.only.lower()}*")
 
     def __len__(self) -> int:
-        return len(self.listed) + len(self.mixtures)
+        return len(self.listed) + len(self.mixtures) + len(self.wet)
 
     def __getitem__(self, index: int) -> Trial:
         if index < len(self.listed):
             return self.listed[index]
-        return mixture(self.seed, self.mixtures[index - len(self.listed)])
+        index -= len(self.listed)
+        if index < len(self.mixtures):
+            return mixture(self.seed, self.mixtures[index])
+        return wet_mixture(self.seed, self.wet[index - len(self.mixtures)])
 
     def __iter__(self) -> Iterator[Trial]:
         return (self[index] for index in range(len(self)))

@@ -27,6 +27,7 @@ FIELDS = (
     "plastic_displacement",
     "plastic_path",
     "yield_stress",
+    "fluid_pressure",
 )
 VECTORS = ("traction", "micro_slip", "temperature", "plastic_displacement")
 
