@@ -286,7 +286,8 @@ void tangential_stage::set_bound(const grid &g, const patch_memory &memory, cons
     if (!has_physics || memory.fluid_pressure.size() == 0) continue;
     // what the liquid bears has no friction
     for (auto i = static_cast<size_t>(j * g.nx); i < static_cast<size_t>((j + 1) * g.nx); ++i)
-      bound_[i] = (mu ? mu[i] : friction) * factor * (memory.pressure[i] - memory.fluid_pressure[i]);
+      bound_[i] =
+          (mu ? mu[i] : friction) * factor * (memory.pressure[i] - memory.fluid_pressure[i]);
   }
 }
 
