@@ -20,6 +20,8 @@ from rig_model.scene import RigScene
 
 # of a wheelset's result, what is no sum of the wheels'
 GREATEST, ALIKE = ("max_temperature",), ("z",)
+# m, below which the core gives no conicity
+LEAST_LATERAL = 1e-5
 # of a wheel's result given by itself, what a wheelset's has once
 COMMON = ("wall_time", "stages")
 
@@ -34,7 +36,7 @@ class WheelPair:
         self._wheels = {
             side: Contact(scene.one_wheel(side, most, derivatives=derivatives)) for side in SIDES
         }
-        self._roll = self._yaw = 0.0
+        self._roll = self._yaw = self._y = 0.0
 
     def step(self, *, fields: bool = False, **changes: Any) -> Result:
         """As of Contact. Bodies that store heat go on where both wheels are solved only."""
@@ -44,7 +46,7 @@ class WheelPair:
             side: wheel.step(fields=fields, x=self.factors[side], **changes)
             for side, wheel in self._wheels.items()
         }
-        self._roll, self._yaw = changes["roll"], changes["yaw"]
+        self._roll, self._yaw, self._y = changes["roll"], changes["yaw"], changes["y"]
         result = self._result(found)
         if result.status not in ("converged", "no_contact"):
             for side, state in before.items():
@@ -89,6 +91,8 @@ class WheelPair:
         data["axle_torque"] = math.fsum(self._torque(w) for w in found.values())
         left, right = (found[side]["rolling_radius"] for side in SIDES)
         data["rolling_radius_difference"] = right - left
+        near = abs(self._y) < LEAST_LATERAL
+        data["conicity"] = math.nan if near else 0.5 * (right - left) / self._y
         data["wall_time"] = math.fsum(wheel["wall_time"] for wheel in found.values())
         data["stages"] = found[SIDES[0]]["stages"]
         return Result(data)
