@@ -12,6 +12,7 @@ from click.testing import CliRunner
 from railpatch.command.cli import cli
 from railpatch.log import read_run
 from railpatch.record.columns import Columns, load_columns
+from railpatch.record.forces import COUNTED
 from railpatch.record.quantities import QUANTITIES
 from railpatch.record.units import UNITS
 
@@ -74,7 +75,10 @@ def test_the_error_of_the_page(folder: Path):
 
 def test_the_table_names_all_keys_and_units():
     names = {quantity.name for quantity in QUANTITIES}
-    assert names == set(Columns.model_fields)
+    counted = {field.alias for field in Columns.model_fields.values() if field.alias}
+    assert names | counted == {f.alias or name for name, f in Columns.model_fields.items()}
+    assert counted == set(COUNTED)
+    assert '`"left.force[0]"`, `[1]`, `[2]`, and of `right`' in PAGE
     named = set(re.findall(r"`(\w+)`", PAGE))
     # those of the right are said by "and of `right`"
     assert {name for name in names if not name.startswith("right")} <= named
@@ -86,5 +90,6 @@ def test_the_table_names_all_keys_and_units():
 
 def test_the_columns_of_another_file(tmp_path: Path):
     path = tmp_path / "columns.toml"
-    path.write_text(blocks("toml")[1])
+    (table,) = [block for block in blocks("toml") if block.startswith("[columns]")]
+    path.write_text(table)
     assert set(load_columns(path)) == {"distance", "/wheelset/1/left/contact.force.y"}
