@@ -15,6 +15,7 @@ LOOKS_INSIDE = {
     "module.cpp": {"fast/theories.hpp"},  # hands the table of theories on to Python
     # functions that are the same on every computer: for Python, for the angles of bodies
     "elementary.cpp": {"numeric/elementary.hpp"},
+    "angles.hpp": {"numeric/elementary.hpp"},
     "frames.cpp": {"numeric/elementary.hpp"},
     "vehicle_course.cpp": {"numeric/elementary.hpp"},
     "vehicle_suspension.cpp": {"numeric/elementary.hpp"},

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "angles.hpp"
 #include "calls.hpp"
 #include "solve.hpp"
 
@@ -113,9 +114,9 @@ void principal(const double *s, double out[3]) {
   const double radius = std::sqrt(j2 / 3);
   const double cosine =
       radius > 0 ? std::clamp(0.5 * j3 / (radius * radius * radius), -1.0, 1.0) : 1.0;
-  const double angle = std::acos(cosine) / 3;
+  const double angle = contact_addon::acos(cosine) / 3;
   constexpr double third = 2.0943951023931953;
-  for (int k = 0; k < 3; ++k) out[k] = mean + 2 * radius * std::cos(angle - k * third);
+  for (int k = 0; k < 3; ++k) out[k] = mean + 2 * radius * contact_addon::cos(angle - k * third);
   std::sort(out, out + 3, [](double p, double q) { return p > q; });
 }
 

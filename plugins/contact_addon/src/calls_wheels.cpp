@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "angles.hpp"
 #include "calls.hpp"
 #include "frames.hpp"
 #include "solve.hpp"
@@ -26,7 +27,7 @@ void pressure_centre(const problem &p, int icp, const rp_patch_result &r, double
   }
   if (sum > 0) x /= sum, y /= sum;
   out[0] = r.position[0] + x;
-  out[1] = r.position[1] + y * std::cos(r.contact_angle);
+  out[1] = r.position[1] + y * contact_addon::cos(r.contact_angle);
 }
 
 // Arc length along a profile, counted as in task 4 of the profile's values; of the left side away

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "angles.hpp"
+
 namespace contact_addon {
 
 namespace {
@@ -16,12 +18,12 @@ matrix3 times(const matrix3 &a, const matrix3 &b) {
 }
 
 matrix3 about_x(double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
+  const double c = contact_addon::cos(angle), s = contact_addon::sin(angle);
   return {{{1, 0, 0}, {0, c, -s}, {0, s, c}}};
 }
 
 matrix3 about_z(double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
+  const double c = contact_addon::cos(angle), s = contact_addon::sin(angle);
   return {{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}};
 }
 
@@ -57,7 +59,7 @@ vector3 marker::point_inside(const vector3 &track) const { return inside(minus(t
 // half the gauge from the track's centre.
 std::array<double, 2> design_place(const profile_curve &rail, bool roller, double gauge,
                                    double gauge_height, double cant) {
-  const double c = std::cos(-cant), s = std::sin(-cant);
+  const double c = contact_addon::cos(-cant), s = contact_addon::sin(-cant);
   const auto at = [&](double arc, double &y, double &z) {
     double y0, z0, slope;
     rail.at(arc, y0, z0, slope);
@@ -138,7 +140,7 @@ frames frames_of(const problem &p) {
 }
 
 wrench wrench_of(const problem &p, const rp_patch_result &r) {
-  const double c = std::cos(r.contact_angle), s = std::sin(r.contact_angle);
+  const double c = contact_addon::cos(r.contact_angle), s = contact_addon::sin(r.contact_angle);
   const vector3 across{0, c, s}, normal{0, -s, c};
   const vector3 centre{0, p.wheel.position[1], p.result.z - p.wheel.nominal_radius};
   wrench out;

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "angles.hpp"
 #include "railpatch_fields.h"
 #include "registry.hpp"
 
@@ -182,8 +183,8 @@ double distance_at(const distance_data &d, double x, double y) {
   const double *b = d.values.data();
   if (d.ibase == 1) return b[0] * x * x + b[1] * x * y + b[2] * y * y + b[3] * x + b[4] * y + b[5];
   if (d.ibase == 3)
-    return b[0] * std::sin(b[1] * (x - b[2])) - b[3] * std::sin(b[4] * (x - b[5])) + x * x / b[6] +
-           y * y / b[7];
+    return b[0] * contact_addon::sin(b[1] * (x - b[2])) -
+           b[3] * contact_addon::sin(b[4] * (x - b[5])) + x * x / b[6] + y * y / b[7];
   const auto count = static_cast<int>(d.values.size()) - 5;
   const double at = (y - b[3]) / b[4];
   if (count < 2 || at < -1e-9 || at > count - 1 + 1e-9)

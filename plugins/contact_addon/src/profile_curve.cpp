@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "angles.hpp"
 #include "profile.hpp"
 
 // Equal to railpatch/profiles/smooth.py, spline.py and orientation.py, where the reasons stand.
@@ -267,8 +268,8 @@ void profile_curve::at(double s, double &y_at, double &z_at, double &slope) cons
   };
   y_at = cubic(y, dy);
   z_at = cubic(z, dz);
-  slope = std::atan2(rate(h, z[k], z[k + 1], dz[k], dz[k + 1], t),
-                     rate(h, y[k], y[k + 1], dy[k], dy[k + 1], t));
+  slope = contact_addon::atan2(rate(h, z[k], z[k + 1], dz[k], dz[k + 1], t),
+                               rate(h, y[k], y[k + 1], dy[k], dy[k + 1], t));
 }
 
 double profile_curve::nearest(double y_at, double z_at) const {

@@ -6,6 +6,7 @@
 #include <map>
 #include <sstream>
 
+#include "angles.hpp"
 #include "profile.hpp"
 
 namespace contact_addon {
@@ -149,7 +150,7 @@ profile_points read_simpack(const std::string &path, const std::vector<std::stri
   const double shift_z = file.number(path, "spline.shift.z", 0.0);
   const double angle =
       file.number(path, "spline.rotate", 0.0) / file.number(path, "spline.units.ang.f", 1.0, true);
-  const double c = std::cos(angle), s = std::sin(angle);
+  const double c = contact_addon::cos(angle), s = contact_addon::sin(angle);
   const double apart = file.number(path, "spline.point.dist.min", 0.0);
   const double side_y = file.number(path, "spline.mirror.y", 0.0) != 0 ? -1.0 : 1.0;
   const double side_z = file.number(path, "spline.mirror.z", 0.0) != 0 ? -1.0 : 1.0;
