@@ -8,6 +8,7 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
@@ -476,6 +477,77 @@ TEST_F(Addon, NothingIsWrittenUnlessAFileIsNamed) {
   EXPECT_EQ(contact.solve(), -99);
   std::filesystem::current_path(before);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 0);
+}
+
+// Settings by chance, good and bad ones, a case and all its results: no crash, no sanitizer's word,
+// and every case answered.
+TEST_F(Addon, AnySettingsEndWithAnAnswer) {
+  std::mt19937 random(20);
+  const auto whole = [&](int low, int high) {
+    return std::uniform_int_distribution<int>(low, high)(random);
+  };
+  const auto real = [&] {
+    constexpr double odd[] = {0, 1, -1, 1e-3, 82e9, 1e30, -1e30, NAN, INFINITY, 1e-300, 24, 0.3};
+    return odd[whole(0, 11)];
+  };
+  const int codes[] = {1933, 1967, 1970, 1971, 1972, 1973, 1974, 1977, 1978, 1980, 1983, 1988};
+  int answered = 0, good = 0;
+  for (int trial = 0; trial < 150; ++trial) {
+    basic_contact contact(100 + trial % 20);
+    for (int k = whole(0, 4); k > 0; --k) {
+      int method = whole(-7, 12), count = whole(0, 9);
+      double values[16];
+      for (double &value : values) value = whole(0, 2) > 0 ? real() : whole(1, 30);
+      switch (whole(0, 8)) {
+        case 0:
+          contact.flag(codes[whole(0, 11)], whole(-1, 6));
+          break;
+        case 1:
+          cntc_setmaterialparameters(&contact.ire, &contact.icp, &method, &count, values);
+          break;
+        case 2:
+          cntc_setfrictionmethod(&contact.ire, &contact.icp, &method, &count, values);
+          break;
+        case 3:
+          count = 5;
+          cntc_sethertzcontact(&contact.ire, &contact.icp, &method, &count, values);
+          break;
+        case 4:
+          count = 6;
+          cntc_setpotcontact(&contact.ire, &contact.icp, &method, &count, values);
+          break;
+        case 5:
+          cntc_setundeformeddistc(&contact.ire, &contact.icp, &method, &count, values);
+          break;
+        case 6:
+          contact.creep(values[0], values[1], values[2]);
+          break;
+        case 7:
+          cntc_settemperaturedata(&contact.ire, &contact.icp, &method, &count, values);
+          break;
+        default:
+          cntc_setpenetration(&contact.ire, &contact.icp, values);
+      }
+    }
+    const int error = contact.solve();
+    answered += error != -1 ? 1 : 0;
+    good += error == 0 ? 1 : 0;
+    int n = 150, field = whole(0, 25), block = 1, kind = whole(0, 10), nx = whole(0, 3), ny = 1,
+        nz = 2;
+    std::vector<double> a(150), b(150), c(150);
+    std::vector<int> elements(150);
+    cntc_getfielddata(&contact.ire, &contact.icp, &field, &n, a.data());
+    cntc_gettractions(&contact.ire, &contact.icp, &n, a.data(), b.data(), c.data());
+    cntc_getelementdivision(&contact.ire, &contact.icp, &n, elements.data());
+    double places[3] = {real(), 2, 3};
+    subs_addblock(&contact.ire, &contact.icp, &block, &kind, &nx, &ny, &nz, places, places, places);
+    int answer;
+    subs_calculate(&contact.ire, &contact.icp, &answer);
+    cntc_finalize(&contact.ire);
+    start();
+  }
+  EXPECT_EQ(answered, 150);
+  EXPECT_GT(good, 15);
 }
 
 }  // namespace

@@ -9,6 +9,11 @@ namespace contact_addon {
 
 namespace {
 
+// A number of an element, 0 where it is none.
+int element_of(double value) {
+  return value >= 1 && value <= 1e6 ? static_cast<int>(std::lround(value)) : 0;
+}
+
 // Places along one axis of the grid: all, first step last, or a list, counted from 1.
 std::vector<double> along(int kind, const std::vector<double> &v, int count, double first,
                           double size) {
@@ -19,10 +24,11 @@ std::vector<double> along(int kind, const std::vector<double> &v, int count, dou
   if (kind == 1 || kind == 5) {
     for (int i = 1; i <= count; ++i) place(i);
   } else if ((kind == 2 || kind == 6) && v.size() >= 3) {
-    const int step = std::max(static_cast<int>(std::lround(v[1])), 1);
-    for (int i = static_cast<int>(std::lround(v[0])); i <= std::lround(v[2]); i += step) place(i);
+    const int step = std::max(element_of(v[1]), 1);
+    for (int i = std::max(element_of(v[0]), 1); i <= std::min(element_of(v[2]), count); i += step)
+      place(i);
   } else if (kind == 3 || kind == 7) {
-    for (const double element : v) place(static_cast<int>(std::lround(element)));
+    for (const double element : v) place(element_of(element));
   } else {
     out = v;
   }
@@ -56,7 +62,14 @@ int solve_block(problem &p, int icp, block &b, std::string &why) {
   std::vector<double> z = b.z;
   if (b.kind <= 3 && b.z.size() >= 2) {
     z.clear();
-    for (int k = 0; k < b.count[2]; ++k) z.push_back(b.z[0] + k * b.z[1]);
+    for (int k = 0; k < std::min(b.count[2], 100000); ++k) z.push_back(b.z[0] + k * b.z[1]);
+  }
+  constexpr double most = 1e7;
+  if (static_cast<double>(x.size()) * static_cast<double>(y.size()) *
+          static_cast<double>(z.size()) >
+      most) {
+    why = "a block of more than 10 million points";
+    return error_other;
   }
   // the rail is below z = 0, the wheel above
   std::vector<double> inside[2];

@@ -57,6 +57,11 @@ inline bool finite(const char *call, const double *values, int count) {
   return true;
 }
 
+// A count that is given as a real number.
+inline int count_of(double value) {
+  return value >= 1 && value <= 100000 ? static_cast<int>(value + 0.5) : 0;
+}
+
 // Sets a member of the configuration; notes where that is a change.
 template <class T>
 void put(problem &p, T &member, const T &value) {

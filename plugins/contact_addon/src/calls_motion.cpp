@@ -146,7 +146,8 @@ void cntc_setextrarigidslip(int *ire, int *icp, int *count, double *wx, double *
   const char *call = "cntc_setextrarigidslip";
   CONTACT_ADDON_NEEDS(call, ire, icp, count, wx, wy)
   set_basic(call, ire, icp, [&](problem &p) {
-    if (!counted(call, *count, p.grid.mx * p.grid.my)) return;
+    const bool large = p.grid.mx > 1000 || p.grid.my > 1000;
+    if (!counted(call, *count, large ? 0 : p.grid.mx * p.grid.my)) return;
     std::string said;
     if (p.flags.set(flag_extra_slip, 1, said)) p.changed = true;
   });

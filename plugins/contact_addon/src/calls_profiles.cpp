@@ -111,7 +111,7 @@ void cntc_setprofileinputvalues(int *ire, int *npoint, double *values, int *nint
     return tried(p, call, request, [&] {
       profile_points points;
       const double unit = 1e-3 * request.options.scale;
-      for (int i = 0; i < *npoint; ++i) {
+      for (int i = 0; i < std::min(*npoint, 1000000); ++i) {
         points.y.push_back(values[2 * i] * unit);
         points.z.push_back(values[2 * i + 1] * unit);
         points.weight.push_back(1.0);

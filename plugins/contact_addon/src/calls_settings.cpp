@@ -8,6 +8,9 @@ using namespace contact_addon;
 
 namespace {
 
+// of lists that are given: a grid of 1000 by 1000 elements
+constexpr int most_points = 1000000;
+
 // Of settings: module 1 with icp = -1, module 3 with a patch.
 template <class Task>
 void set(const char *call, int *ire, int *icp, modules which, Task task) {
@@ -222,8 +225,8 @@ void cntc_sethertzcontact(int *ire, int *icp, int *ipotcn, int *count, double *p
     if (!counted(call, *count, kind == -6 ? 6 : 5) || !finite(call, params, *count)) return;
     grid_data g;
     g.ipotcn = kind;
-    g.mx = static_cast<int>(std::lround(params[0]));
-    g.my = static_cast<int>(std::lround(params[1]));
+    g.mx = count_of(params[0]);
+    g.my = count_of(params[1]);
     const units u = p.unit();
     const double L = u.length, k = u.per_length();
     const double unit[6][3] = {{k, k, 1}, {k, 1, 1}, {L, L, 1}, {k, L, 1}, {L, L, 1}, {L, L, L}};
@@ -249,8 +252,8 @@ void set_basic_grid(const char *call, problem &p, int kind, int count, const dou
   if (!counted(call, count, 6) || !finite(call, params, 6)) return;
   grid_data g;
   g.ipotcn = kind;
-  g.mx = static_cast<int>(std::lround(params[0]));
-  g.my = static_cast<int>(std::lround(params[1]));
+  g.mx = count_of(params[0]);
+  g.my = count_of(params[1]);
   const double L = p.unit().length;
   const double low[2] = {params[2] * L, params[3] * L}, other[2] = {params[4] * L, params[5] * L};
   const double counts[2] = {static_cast<double>(g.mx), static_cast<double>(g.my)};
@@ -312,14 +315,13 @@ void cntc_setundeformeddistc(int *ire, int *icp, int *ibase, int *count, double 
   CONTACT_ADDON_NEEDS(call, ire, icp, ibase, count, params)
   set(call, ire, icp, modules::basic, [&](problem &p) {
     const double L = p.unit().length, k = p.unit().per_length();
-    std::vector<double> v(params, params + std::max(*count, 0));
-    const int n = *count, kind = *ibase;
+    const int n = std::clamp(*count, 0, most_points), kind = *ibase;
+    std::vector<double> v(params, params + n);
     int wanted = n;
     if (kind == 1) wanted = 6;
-    if (kind == 2)
-      wanted = n >= 1 ? 5 + static_cast<int>(std::lround(std::clamp(v[0], 0.0, 1e6))) : 6;
+    if (kind == 2) wanted = n >= 1 ? 5 + count_of(v[0]) : 6;
     if (kind == 3) wanted = 8;
-    if (kind == 9) wanted = p.grid.mx * p.grid.my;
+    if (kind == 9) wanted = p.grid.mx > 1000 || p.grid.my > 1000 ? 0 : p.grid.mx * p.grid.my;
     if (kind != 1 && kind != 2 && kind != 3 && kind != 9) {
       say(call, "IBASE " + std::to_string(kind) + " is not 1, 2, 3 or 9: nothing is changed");
       return;

@@ -129,7 +129,7 @@ std::vector<double> sampled(const profile_curve &curve, int sampling, double ste
     const auto pieces = static_cast<size_t>(std::clamp(std::floor(length / step + 1e-9), 1.0, 1e6));
     for (size_t k = 0; k <= pieces; ++k) out.push_back(s.front() + static_cast<double>(k) * step);
     if (out.back() < s.back() - 1e-12) out.push_back(s.back());
-  } else if (sampling >= 2) {
+  } else if (sampling >= 2 && sampling <= 1000) {
     for (size_t i = 0; i + 1 < s.size(); ++i)
       for (int k = 0; k < sampling; ++k) out.push_back(s[i] + (s[i + 1] - s[i]) * k / sampling);
     out.push_back(s.back());
