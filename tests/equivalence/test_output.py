@@ -34,6 +34,7 @@ FOLDERS = {name: (name,) for name in ("bench", "continuity", "stress")} | {
     "convert": ("convert", "case.inp"),
     "match": ("match", "match.toml"),
     "sweep": ("sweep", "sweep.toml"),
+    "wear": ("wear", "sweep.toml"),
 }
 
 

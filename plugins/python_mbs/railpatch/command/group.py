@@ -35,6 +35,7 @@ ROOMS = {
     "subsurface": "below",
     "sweep": "sweep",
     "table": "evidence.table",
+    "wear": "wear",
 }
 LAZY = {
     name: EntryPoint(name, f"railpatch.{room}.command:{name}", ENTRY_POINT_GROUP)

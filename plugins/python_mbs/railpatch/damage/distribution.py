@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-LOW, HIGH, BINS = -0.08, 0.08, 640  # m, of a profile's y
+LOW, HIGH, BINS = -0.2, 0.2, 1600  # m, of a profile's y
 
 
 class Distribution:

@@ -183,11 +183,12 @@ class Plan:
         return unit_points(self.table, len(self.vary))
 
 
-def load_plan(path: str | Path) -> Plan:
-    """Checks a sweep's file and the scene it names, but not its cases. Raises CaseError."""
+def load_plan(path: str | Path, besides: tuple[str, ...] = ()) -> Plan:
+    """Checks a sweep's file and the scene it names, but not its cases. besides: tables that are
+    another reader's. Raises CaseError."""
     path = Path(path)
     content = plain(read_toml(path))
-    unknown = set(content) - {"sweep", "vary"}
+    unknown = set(content) - {"sweep", "vary", *besides}
     if unknown:
         raise CaseError(
             f"{name}: is no table of a sweep, allowed sweep, vary" for name in sorted(unknown)
