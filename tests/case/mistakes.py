@@ -113,7 +113,7 @@ def wheel(*changes: tuple[str, str]) -> Callable[[], str]:
 
 def loaded(*changes: tuple[str, str]) -> Callable[[], str]:
     """A wheelset that carries its load."""
-    return scene("wheelset", (r"^z = 2e-4 .*$", "vertical_force = 120e3"), *changes)
+    return scene("wheelset", (r"^z = 2.343e-4 .*$", "vertical_force = 120e3"), *changes)
 
 
 def file(name: str, content: bytes | str) -> Callable[[], str]:
@@ -235,7 +235,7 @@ MISTAKES: tuple[Mistake, ...] = (
             ("a pitch rate of the other sign",
              loaded((f"pitch_rate = {NUMBER}", "pitch_rate = 43.478"))),
             ("a locked wheel", loaded((f"pitch_rate = {NUMBER}", "pitch_rate = 0.0"))),
-            ("z in mm", wheel((r"^z = 2e-4", "z = 0.2"))),
+            ("z in mm", wheel((r"^z = 2.343e-4", "z = 0.2"))),
             ("an inclination of 40 for 1:40", wheel((r"UIC60@1:40", "UIC60@40"))),
             ("a profile that is not there", wheel((r'"S1002"', '"s1003"'))),
             ("wheel and rail exchanged",
