@@ -26,6 +26,25 @@ const char *unread_by_strip(const rp_config &c) {
   return nullptr;
 }
 
+// What elastohydrodynamic lubrication on the grid needs, and what it does not read.
+const char *not_with_ehl(const rp_config &c) {
+  if (c.kind != RP_PATCH)
+    return "fluid_model = ehl needs kind = patch: liquid comes from beyond the grids of wheels";
+  if (c.normal != RP_NORMAL_HALF_SPACE)
+    return "fluid_model = ehl needs normal = half_space, whose pressure it finds anew";
+  if (c.regime != RP_STEADY_ROLLING) return "fluid_model = ehl needs regime = steady_rolling";
+  if (c.fitted[0] > 0)
+    return "fitted must be 0 with fluid_model = ehl: its pressure is on the grid";
+  if (c.tangential == RP_TANGENTIAL_FULL && combine(c.shear_modulus, c.poisson_ratio).mismatch != 0)
+    return "fluid_model = ehl needs bodies of the same material";
+  if (c.fluid_starvation != 1)
+    return "fluid_starvation must be 1 with fluid_model = ehl: fluid_oil_film says what arrives";
+  if (c.fluid_inlet_conductivity > 0)
+    return "fluid_inlet_conductivity must be 0 with fluid_model = ehl: its inlet is as warm as it "
+           "says";
+  return nullptr;
+}
+
 void check_knots(const rp_config &c, checker &check) {
   const int knots = c.fluid_knots;
   if (knots == 0) return;
@@ -69,7 +88,11 @@ const char *not_combined(const rp_config &c) {
   if (strip) {
     if (const char *unread = unread_by_strip(c)) return unread;
   }
-  if (c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT)
+  const bool ehl = c.fluid_model == RP_FLUID_EHL;
+  if (ehl) {
+    if (const char *wrong = not_with_ehl(c)) return wrong;
+  }
+  if (c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT && !ehl)
     return "fluid_model must be none with a line contact: the film is that of an elliptic one";
   if (c.accuracy > 0)
     return "accuracy must be 0 with fluid_model: what the liquid's model errs by is not known";

@@ -48,6 +48,7 @@ struct film_between {
   const patch_memory &m;
   const patch_scene &scene;
   double operator[](size_t i) const {
+    if (scene.has_ehl()) return m.fluid_film[i];
     if (!(m.pressure[i] > 0)) return 0.0;
     const strip_liquid liquid{0, 0, scene.fluid->roughness, scene.fluid->hardness};
     return liquid.film(m.pressure[i] - m.fluid_pressure[i]);

@@ -14,6 +14,7 @@ namespace {
 
 // of grids of unlike bodies, over Hertz's contact
 constexpr double most_reach = 2.5;
+constexpr double wet_reach = 1.6;
 
 slip_velocity_law slip_law_of(const rp_config &c) {
   slip_velocity_law law;
@@ -182,6 +183,8 @@ patch_scene patch_scene_of(const rp_config &c) {
 // is farthest, in plane strain to 1 + 2 e and by (1 - 4 e^2)^-1/2 with tan(pi e) = mu K/(1 - nu)
 // (Hills, Nowell and Sackfield 1993, chapter 7).
 double reach_of(const rp_config &c, const patch_scene &scene) {
+  // the liquid's inlet, sides and outlet
+  if (scene.has_ehl()) return wet_reach;
   const elastic_constants &e = scene.elastic;
   if (scene.tangential != RP_TANGENTIAL_FULL || !is_coupled(e)) return 1.0;
   const double share = atan(most_friction(c, c.friction_coefficient) * std::abs(e.mismatch) /

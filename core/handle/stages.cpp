@@ -91,6 +91,7 @@ const char *fluid_reason(const patch_scene &scene) {
     return "fluid_model = regimes: Polach's theory at knots of the water rate";
   if (scene.fluid->model == RP_FLUID_STRIP)
     return "fluid_model = strip: pressure of the liquid along each row";
+  if (scene.has_ehl()) return "fluid_model = ehl: liquid, asperities and deformation on the grid";
   return scene.fluid->share == RP_SHARE_LOAD_SHARING
              ? "fluid_model = film: elliptic contact, load shared with asperities"
              : "fluid_model = film: elliptic contact, asperities by film over roughness";
@@ -127,8 +128,8 @@ void describe_driver(const driver &of, rp_stage_info *info) {
     traction += solver.tangential_bytes() - solver.history_bytes() - solver.plastic_bytes();
   size_t fluid = solver.fluid_bytes();
   for (const auto &m : of.memories()) {
-    fluid += m.fluid_pressure.bytes();
-    traction -= m.fluid_pressure.bytes();
+    fluid += m.fluid_pressure.bytes() + m.fluid_film.bytes() + m.fluid_shear.bytes();
+    traction -= m.fluid_pressure.bytes() + m.fluid_film.bytes() + m.fluid_shear.bytes();
   }
   const size_t support = of.support_bytes();
   const size_t influence = solver.influence_bytes();

@@ -320,14 +320,17 @@ typedef enum rp_contact_frame { RP_CONTACT_FRAMES(RP_ENUM_ENTRY) } rp_contact_fr
 typedef enum rp_reference_surface { RP_REFERENCE_SURFACES(RP_ENUM_ENTRY) } rp_reference_surface;
 
 /* liquid between wheel and rail (docs/fluids.md) */
-#define RP_FLUID_MODELS(X)                                                                       \
-  X(RP_FLUID_NONE, 0, "none")                                                                    \
-  /* film of an elliptic contact, share of the load that asperities carry, one coefficient */    \
-  X(RP_FLUID_FILM, 1, "film")                                                                    \
-  /* pressure of the liquid along each row, the rest on asperities; a bound of their own each */ \
-  X(RP_FLUID_STRIP, 2, "strip")                                                                  \
-  /* Polach's theory with parameters by water rate, tangential = polach */                       \
-  X(RP_FLUID_REGIMES, 3, "regimes")
+#define RP_FLUID_MODELS(X)                                                                        \
+  X(RP_FLUID_NONE, 0, "none")                                                                     \
+  /* film of an elliptic contact, share of the load that asperities carry, one coefficient */     \
+  X(RP_FLUID_FILM, 1, "film")                                                                     \
+  /* pressure of the liquid along each row, the rest on asperities; a bound of their own each */  \
+  X(RP_FLUID_STRIP, 2, "strip")                                                                   \
+  /* Polach's theory with parameters by water rate, tangential = polach */                        \
+  X(RP_FLUID_REGIMES, 3, "regimes")                                                               \
+  /* elastohydrodynamic lubrication on the grid: liquid, asperities, deformation and load at once \
+   */                                                                                             \
+  X(RP_FLUID_EHL, 4, "ehl")
 typedef enum rp_fluid_model { RP_FLUID_MODELS(RP_ENUM_ENTRY) } rp_fluid_model;
 
 /* share of the load that asperities carry */

@@ -43,11 +43,12 @@ double mean_creepage(const rolling_input &rolling, const double axes[2]) {
 
 }  // namespace
 
-fluid_stage::fluid_stage(patch_workspace &shared) : shared_(shared) {
+fluid_stage::fluid_stage(patch_workspace &shared, int max_nx, int max_ny) : shared_(shared) {
+  if (shared.scene.has_ehl()) ehl_.emplace(max_nx, max_ny);
   if (shared.scene.has_strips()) strips_.emplace(shared.scene.normal == RP_NORMAL_HERTZ);
 }
 
-fluid_outcome fluid_stage::solve(const patch_problem &problem, const pressure_outcome &pressure,
+fluid_outcome fluid_stage::solve(const patch_problem &problem, pressure_outcome &pressure,
                                  patch_memory &memory) {
   patch_scene &scene = shared_.scene;
   if (!scene.fluid) return {};
@@ -57,7 +58,7 @@ fluid_outcome fluid_stage::solve(const patch_problem &problem, const pressure_ou
   hertz_contact hertz = problem.hertz;
   hertz.normal_force = pressure.normal_force;
   const bool strips = scene.fluid->model == RP_FLUID_STRIP;
-  if (!strips && !(hertz.semi_axes[0] > 0)) {
+  if (!strips && !ehl_ && !(hertz.semi_axes[0] > 0)) {
     double axes[2];
     ellipse_of(problem.g, memory.pressure.data(), axes);
     hertz = hertz_from_ellipse(axes, scene.modulus(), pressure.normal_force);
@@ -65,6 +66,7 @@ fluid_outcome fluid_stage::solve(const patch_problem &problem, const pressure_ou
   double temperature = scene.supply.temperature;
   if (std::isnan(temperature))
     temperature = scene.heat ? scene.heat->bodies.mean_bulk() : usual_temperature;
+  if (ehl_) return solve_ehl(temperature, problem, memory, pressure);
   return strips ? solve_strips(hertz, temperature, problem, memory)
                 : solve_film(hertz, temperature, problem);
 }
@@ -110,9 +112,21 @@ fluid_outcome fluid_stage::solve_strips(const hertz_contact &hertz, double tempe
   return out;
 }
 
+fluid_outcome fluid_stage::solve_ehl(double temperature, const patch_problem &problem,
+                                     patch_memory &memory, pressure_outcome &pressure) {
+  patch_scene &scene = shared_.scene;
+  if (follows_heat() && !std::isnan(now_)) temperature = now_;
+  const fluid_outcome found =
+      ehl_->solve(problem, scene, temperature, *shared_.influence, memory, pressure);
+  const double boundary =
+      scene.fluid->own_boundary ? scene.fluid->boundary_friction : scene.friction_coefficient;
+  scene.wet_friction = scene.full_on_grid() ? boundary : found.friction;
+  return found;
+}
+
 bool fluid_stage::follows_heat() const {
   const patch_scene &scene = shared_.scene;
-  return scene.fluid && scene.heat && scene.fluid->model == RP_FLUID_STRIP &&
+  return scene.fluid && scene.heat && (scene.fluid->model == RP_FLUID_STRIP || scene.has_ehl()) &&
          scene.fluid->liquid.liquid != RP_LIQUID_GIVEN && !scene.heat->transient &&
          std::isnan(scene.supply.temperature);
 }

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "patch/fluid_ehl.hpp"
 #include "patch/fluid_strips.hpp"
 #include "patch/outcomes.hpp"
 #include "patch/patch_memory.hpp"
@@ -13,10 +14,11 @@ namespace railpatch {
 
 class fluid_stage {
  public:
-  explicit fluid_stage(patch_workspace &shared);
+  fluid_stage(patch_workspace &shared, int max_nx, int max_ny);
 
-  // Sets the scene's friction coefficient of this patch and step.
-  fluid_outcome solve(const patch_problem &problem, const pressure_outcome &pressure,
+  // Sets the scene's friction coefficient of this patch and step; elastohydrodynamic lubrication
+  // changes the pressure too.
+  fluid_outcome solve(const patch_problem &problem, pressure_outcome &pressure,
                       patch_memory &memory);
   void begin();  // a step: the liquid is as warm as before the contact
   // Whether the liquid's viscosity follows the surfaces' temperature in the contact, which the
@@ -25,16 +27,21 @@ class fluid_stage {
   // Takes the temperature of the surfaces that the last round left, for the next one. Returns the
   // change (K), of a scale of 1 K.
   double follow(const grid &g, const patch_memory &memory);
-  size_t bytes() const { return strips_ ? sizeof(fluid_strips) + strips_->bytes() : 0; }
+  size_t bytes() const {
+    return (strips_ ? sizeof(fluid_strips) + strips_->bytes() : 0) + (ehl_ ? ehl_->bytes() : 0);
+  }
 
  private:
   fluid_outcome solve_film(const hertz_contact &hertz, double temperature,
                            const patch_problem &problem);
+  fluid_outcome solve_ehl(double temperature, const patch_problem &problem, patch_memory &memory,
+                          pressure_outcome &pressure);
   fluid_outcome solve_strips(const hertz_contact &hertz, double temperature,
                              const patch_problem &problem, patch_memory &memory);
 
   patch_workspace &shared_;
   std::optional<fluid_strips> strips_;
+  std::optional<fluid_ehl> ehl_;
   double now_ = nan, before_ = nan, change_before_ = nan;  // degrees C, K: of follow
 };
 

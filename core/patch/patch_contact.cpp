@@ -46,7 +46,7 @@ patch_contact::patch_contact(const patch_scene &scene, const fft_plans &plans, i
       normal_(shared_, max_nx, max_ny),
       tangential_(shared_, plans, max_nx, max_ny),
       heat_(shared_, max_nx, max_ny),
-      fluid_(shared_),
+      fluid_(shared_, max_nx, max_ny),
       errors_(scene.elastic, scene.layer_flexibility) {
   if (scene.exact) derivative_.emplace(scene, plans, max_nx, max_ny, scene.stretches);
 }

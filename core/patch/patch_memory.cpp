@@ -8,7 +8,11 @@ patch_memory::patch_memory(int max_count, int max_rows, const patch_scene &scene
   const auto n = static_cast<size_t>(max_count);
   undeformed_distance = aligned_buffer<double>(n);
   if (!scene.closed_form()) pressure = aligned_buffer<double>(n);
-  if (scene.has_strips()) fluid_pressure = aligned_buffer<double>(n);
+  if (scene.has_strips() || scene.has_ehl()) fluid_pressure = aligned_buffer<double>(n);
+  if (scene.has_ehl()) {
+    fluid_film = aligned_buffer<double>(n);
+    if (scene.fluid->eyring_stress > 0) fluid_shear = aligned_buffer<double>(n);
+  }
   if (scene.curved) curved.emplace(max_rows);
   if (scene.local_normals) {
     const int each = scene.slopes_along_rows && !scene.closed_form() ? max_count : max_rows;
@@ -37,12 +41,12 @@ patch_memory::patch_memory(int max_count, int max_rows, const patch_scene &scene
 size_t patch_memory::bytes() const {
   return undeformed_distance.bytes() + pressure.bytes() + 4 * px.bytes() + division.bytes() +
          2 * node_x.bytes() + 2 * node_y.bytes() + row_friction.bytes() + creepage.bytes() +
-         fluid_pressure.bytes() + slope_fields.bytes() + history.bytes() +
-         (curved ? curved->bytes() : 0);
+         fluid_pressure.bytes() + fluid_film.bytes() + fluid_shear.bytes() + slope_fields.bytes() +
+         history.bytes() + (curved ? curved->bytes() : 0);
 }
 
 void patch_memory::unload(const grid &on, const bound_law *law) {
-  for (auto *field : {&pressure, &fluid_pressure})
+  for (auto *field : {&pressure, &fluid_pressure, &fluid_film, &fluid_shear})
     if (field->size()) std::fill_n(field->data(), on.count(), 0.0);
   const int n = columns() * rows();
   for (auto *field : {&px, &py, &sx, &sy, &node_pressure})

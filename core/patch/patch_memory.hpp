@@ -69,12 +69,13 @@ struct patch_memory {
   aligned_buffer<unsigned char> division;
   aligned_buffer<double> node_x, node_y, node_height, node_pressure;  // fitted rows only
   aligned_buffer<double> fluid_pressure;                              // Pa, of a liquid by strips
-  aligned_buffer<double> row_friction;  // factor of each grid row, where it varies
-  aligned_buffer<double> slope_fields;  // of slopes
-  surface_slopes slopes;                // where pressure acts along local normals
-  turning_energy turning;               // of the last solution, where it has one
-  aligned_buffer<double> creepage;      // [2], of a prescribed creep force only
-  bool estimated = false;               // the last step's errors, from the features
+  aligned_buffer<double> fluid_film, fluid_shear;  // m, Pa: of elastohydrodynamic lubrication
+  aligned_buffer<double> row_friction;             // factor of each grid row, where it varies
+  aligned_buffer<double> slope_fields;             // of slopes
+  surface_slopes slopes;                           // where pressure acts along local normals
+  turning_energy turning;                          // of the last solution, where it has one
+  aligned_buffer<double> creepage;                 // [2], of a prescribed creep force only
+  bool estimated = false;                          // the last step's errors, from the features
   std::array<double, error_feature_count> error_features{};
   patch_history history;
   physics_part<heat_memory> heat;

@@ -55,6 +55,7 @@ struct patch_scene {
   double coefficient() const { return fluid ? wet_friction : friction_coefficient; }
   double friction() const { return coefficient() * friction_scale; }
   // The liquid's pressure is found element by element.
+  bool has_ehl() const { return fluid && fluid->model == RP_FLUID_EHL; }
   bool has_strips() const { return fluid && fluid->model == RP_FLUID_STRIP && !closed_form(); }
   bool is_forced() const { return prescribed[0] || prescribed[1]; }
   // false: beside the exact theory, by choice

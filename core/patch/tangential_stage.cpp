@@ -288,6 +288,10 @@ void tangential_stage::set_bound(const grid &g, const patch_memory &memory, cons
     for (auto i = static_cast<size_t>(j * g.nx); i < static_cast<size_t>((j + 1) * g.nx); ++i)
       bound_[i] =
           (mu ? mu[i] : friction) * factor * (memory.pressure[i] - memory.fluid_pressure[i]);
+    if (memory.fluid_shear.size() == 0) continue;
+    // but its shear
+    for (auto i = static_cast<size_t>(j * g.nx); i < static_cast<size_t>((j + 1) * g.nx); ++i)
+      bound_[i] += factor * memory.fluid_shear[i];
   }
 }
 

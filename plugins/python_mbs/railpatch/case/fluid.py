@@ -58,6 +58,10 @@ UNREAD = {
         *OF_REGIMES,
     ),
     "film": OF_REGIMES,
+    "ehl": (
+        *("share", "mean_pressure", "starvation", "inlet_heating", "liquid_conductivity"),
+        *OF_REGIMES,
+    ),
     "regimes": (
         *("share", "mean_pressure", "pressure_coefficient", "oil_film", "starvation"),
         *("inlet_heating", "liquid_conductivity", "eyring_stress", "limiting_friction"),
@@ -203,7 +207,9 @@ class Fluid(Table):
                 shown = getattr(self, name)
                 yield relation(name, repr(shown), f"{LEFT_OUT} with model = {self.model!r}")
         for name in ("hardness", "mean_pressure"):
-            read = self.share == "load_sharing" or (name == "hardness" and self.model == "strip")
+            read = self.share == "load_sharing" or (
+                name == "hardness" and self.model in {"strip", "ehl"}
+            )
             if not read and self._changed(name):
                 yield relation(name, getattr(self, name), "only with share = 'load_sharing'")
         if self.liquid_conductivity is not None and not self.inlet_heating:
@@ -286,7 +292,7 @@ class Fluid(Table):
             found["pressure_coefficient"] = usual
         if self.eyring_stress is None:
             usual = EYRING_STRESS.get(self.liquid or "", 0.0)
-            found["eyring_stress"] = usual if self.model == "film" else 0.0
+            found["eyring_stress"] = usual if self.model in {"film", "ehl"} else 0.0
         if self.inlet_heating:
             usual = CONDUCTIVITY.get(self.liquid or "", 0.0)
             found["inlet_conductivity"] = self.liquid_conductivity or usual
@@ -347,6 +353,18 @@ def changes_with_time(case: Any) -> bool:
     heat, fluid = case.temperature, case.fluid
     stores = heat is not None and heat.bulk is not None
     return stores or (fluid is not None and fluid.recovery is not None)
+
+
+def check_ehl(fluid: Fluid | None, normal: str, regime: str, *, fitted: bool) -> Problems:
+    """What model = "ehl" is not combined with."""
+    if fluid is None or fluid.model != "ehl":
+        return
+    if normal != "half_space":
+        yield relation("method.normal", repr(normal), "'half_space' with model = 'ehl'")
+    if regime != "steady_rolling":
+        yield relation("motion.regime", repr(regime), "'steady_rolling' with model = 'ehl'")
+    if fitted:
+        yield relation("grid.fitted", "given", f"{LEFT_OUT} with model = 'ehl'")
 
 
 def without_dry_friction(fluid: Fluid | None) -> bool:

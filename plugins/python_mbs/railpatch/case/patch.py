@@ -28,7 +28,7 @@ from railpatch.case.common import (
     check_tangential,
     couples,
 )
-from railpatch.case.fluid import Fluid, check_fluid
+from railpatch.case.fluid import Fluid, check_ehl, check_fluid
 from railpatch.case.theories import BY_ROWS
 from railpatch.case.types import (
     LEFT_OUT,
@@ -275,6 +275,12 @@ class PatchCase(Table):
                 self.method.tangential,
                 prescribed=prescribed,
             )
+            yield from check_ehl(
+                self.fluid,
+                self.method.normal,
+                self.motion.regime,
+                fitted=self.grid is not None and self.grid.fitted is not None,
+            )
             yield from check_physics(
                 self.friction, self.layer, self.temperature, self.grid, self.method
             )
@@ -394,7 +400,7 @@ class PatchCase(Table):
 
     def _check_line(self) -> Problems:
         """What a line contact is not combined with."""
-        if self.fluid is not None:
+        if self.fluid is not None and self.fluid.model != "ehl":
             allowed = f"{LEFT_OUT} with a line contact: the film is that of an elliptic one"
             yield relation("fluid", "given", allowed)
         if self.load.approach is not None:

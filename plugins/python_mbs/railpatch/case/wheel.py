@@ -358,6 +358,8 @@ class _WheelCase(Table):
             yield from check_fluid(
                 self.fluid, self.friction, self.method.accuracy, self.method.tangential
             )
+            if self.fluid is not None and self.fluid.model == "ehl":
+                yield relation("fluid.model", "'ehl'", "another model but with kind = 'patch'")
             yield from check_physics(
                 self.friction, self.layer, self.temperature, self.grid, self.method
             )

@@ -1,0 +1,95 @@
+"""Elastohydrodynamic lubrication of a wheel on a rail, beside film and strips: draws docs/ehl.svg.
+
+The contact of docs/fluids.md: R_x 0.46 m, R_y 0.30 m, 80 kN, water of 20 degrees C, roughness
+0.5 um.
+
+    python docs/ehl.py docs/ehl.svg
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+
+mpl.use("svg")
+import matplotlib.pyplot as plt
+import numpy as np
+import railpatch
+
+ELEMENTS = [64, 24]
+SPEEDS = (5.0, 20.0, 72.2)
+CASE: dict[str, Any] = {
+    "kind": "patch",
+    "material": {"shear_modulus": 80.77e9, "poisson_ratio": 0.3},
+    "geometry": {"curvatures": [0.5 / 0.46, 0.5 / 0.30]},
+    "load": {"normal_force": 8e4},
+    "grid": {"elements": ELEMENTS},
+    "motion": {"creepage": [5e-3, 0.0], "rolling_speed": 20.0},
+}
+WATER = {
+    "roughness": 5e-7,
+    "boundary_friction": 0.15,
+    "viscosity": 1.0035e-3,
+}
+OIL = {
+    "model": "ehl",
+    "roughness": 1e-8,
+    "boundary_friction": 0.15,
+    "viscosity": 0.1,
+    "pressure_coefficient": 20e-9,
+}
+MODELS = {
+    "ehl": {"model": "ehl"},
+    "film, load_sharing": {"model": "film", "share": "load_sharing", "mean_pressure": "contact"},
+    "strip": {"model": "strip"},
+}
+
+
+def along(fluid: dict[str, Any], speed: float) -> dict[str, Any]:
+    """Fields in the middle row."""
+    contact = railpatch.Contact({**CASE, "fluid": fluid})
+    r = contact.step(rolling_speed=speed, fields=True)
+    middle = len(r["y"]) // 2
+    return {
+        "x": 1e3 * np.array(r["x"]),
+        "pressure": 1e-9 * np.array(r["pressure"])[middle],
+        "fluid": 1e-9 * np.array(r["fluid_pressure"])[middle],
+        "film": 1e6 * np.array(r["film_thickness"])[middle],
+    }
+
+
+def shares(model: dict[str, Any], speeds: np.ndarray) -> list[float]:
+    contact = railpatch.Contact({**CASE, "fluid": {**WATER, **model}})
+    return [contact.step(rolling_speed=v)["mean_asperity_share"] for v in speeds]
+
+
+def draw(path: Path) -> None:
+    plt.rcParams.update({"svg.hashsalt": "ehl", "font.size": 9})
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(11, 3.6), layout="constrained")
+    for k, speed in enumerate(SPEEDS):
+        row = along({**WATER, "model": "ehl"}, speed)
+        left.plot(row["x"], row["pressure"], color=f"C{k}", label=f"{speed:g} m/s")
+        left.plot(row["x"], row["fluid"], color=f"C{k}", linestyle="--")
+    left.set(
+        xlabel="x, mm (rolling to the right)", ylabel="GPa", title="pressure, dashed: the water's"
+    )
+    left.legend()
+    speeds = np.geomspace(1, 100, 9)
+    for name, model in MODELS.items():
+        middle.plot(speeds, shares(model, speeds), marker=".", label=name)
+    middle.set(xscale="log", xlabel="speed, m/s", ylim=(0, 1.05), title="share of the asperities")
+    middle.legend()
+    row = along(OIL, 10.0)
+    right.plot(row["x"], row["pressure"], color="C0")
+    right.set(xlabel="x, mm", title="oil, 10 m/s: pressure, GPa, and film, um")
+    film = right.twinx()
+    film.plot(row["x"], row["film"], color="C1")
+    film.set_ylim(0, 20)
+    figure.savefig(path, metadata={"Date": None})
+
+
+if __name__ == "__main__":
+    draw(Path(sys.argv[1]))
