@@ -307,6 +307,8 @@ void map_wheel(const problem &p, mapped_case &out) {
   if (w.gauge_height > 0) {
     c.gauge = w.gauge;
     c.gauge_height = w.gauge_height;
+  } else {
+    no("GAUGHT <= 0, rails placed by RAILY0 and RAILZ0, has no counterpart");
   }
   if (p.roller()) {
     if (w.cant != 0) no("CANT of rollers has no counterpart: incline the profile");
