@@ -470,9 +470,14 @@ rp_error check_direction(const rp_input &d, rp_message *message) {
     return RP_ERROR_NOT_DEFAULTED;
   }
   checker check(message);
+  rp_input usual;
+  rp_default_input(&usual);
+  bool without[input_numbers];  // a number in the config instead
+  int count = 0, next = 0;
+  for_each_number(usual,
+                  [&](const char *, const double &v, double) { without[count++] = std::isnan(v); });
   for_each_number(d, [&](const char *name, const double &value, double) {
-    const bool bulk = std::strcmp(name, "bulk_temperature") == 0;
-    if (!(bulk && std::isnan(value))) check.number(name, value, finite);
+    if (!(without[next++] && std::isnan(value))) check.number(name, value, finite);
   });
   return check.error();
 }

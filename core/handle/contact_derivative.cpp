@@ -149,8 +149,9 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
   contact &beside = *record.beside;
   const contact &start = record.before ? *record.before : *this;
   rp_input rates = d;
-  for (double &rate : rates.bulk_temperature)
+  for_each_number(rates, [](const char *, double &rate, double) {
     if (std::isnan(rate)) rate = 0;
+  });
   const double reach = reach_of(config_, record.input, rates);
   if (!(reach > 0)) return;
   const double length = cbrt(beside.tolerance_) / reach;

@@ -907,13 +907,14 @@ RP_API rp_error rp_step_many(rp_contact *const *contacts, int32_t threads, const
 typedef enum rp_derivative_kind { RP_DERIVATIVE_KINDS(RP_ENUM_ENTRY) } rp_derivative_kind;
 
 /* Derivative of the last step's result in one direction (rp_default_direction): each double of
- * `direction` holds the rate of that input, its integers are ignored and so is a bulk_temperature
- * that is NaN. Each double of `change` is the rate of that number of the result: NaN where the
- * number itself is NaN, and of residual and error_estimate; counts of elements and iterations are
- * 0, other counts and statuses those of the result, or RP_NOT_CONVERGED where the rates did not
- * converge. kind (may be null) says how they were found. Needs config.derivatives = 1 and a step
- * since rp_create, rp_reset, rp_restore_state or an rp_set_friction_coefficient that changed it;
- * the state, the last solution and its fields stay as they are.
+ * `direction` holds the rate of that input, its integers are ignored and so is what is NaN of the
+ * numbers that rp_default_input leaves NaN. Each double of `change` is the rate of that number of
+ * the result: NaN where the number itself is NaN, and of residual and error_estimate; counts of
+ * elements and iterations are 0, other counts and statuses those of the result, or
+ * RP_NOT_CONVERGED where the rates did not converge. kind (may be null) says how they were found.
+ * Needs config.derivatives = 1 and a step since rp_create, rp_reset, rp_restore_state or an
+ * rp_set_friction_coefficient that changed it; the state, the last solution and its fields stay as
+ * they are.
  *
  * Exact ones are those of the returned solution's active sets: elements in contact, in stick and in
  * slip stay what they are. Where an element is just about to change, that is the one-sided

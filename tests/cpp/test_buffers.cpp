@@ -53,6 +53,14 @@ void *operator new[](size_t size, std::align_val_t) { return take(size); }
 void operator delete[](void *p, std::align_val_t) noexcept { give(p); }
 void operator delete[](void *p, size_t, std::align_val_t) noexcept { give(p); }
 
+// The core's large buffers are pages of the system's; here they are watched as the others are.
+void *railpatch::take_pages(size_t bytes) {
+  void *pages = take(bytes);
+  std::memset(pages, 0, bytes);
+  return pages;
+}
+void railpatch::give_pages(void *pages, size_t) { give(pages); }
+
 namespace {
 
 using namespace railpatch;
