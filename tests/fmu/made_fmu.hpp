@@ -88,10 +88,13 @@ inline const std::filesystem::path &own_folder() {
 inline std::filesystem::path write(const scene &s) {
   std::string text = std::string("railpatch-fmu-scene 1\nguid ") + guid + "\n";
   const rp_config &c = s.config;
-#define RAILPATCH_WRITE(type, field, ...) \
-  text += "set " #field;                  \
-  spell(c.field, text);                   \
-  text += "\n";
+  // what is not given keeps its default
+  const auto set = [&](const char *name, const auto &field) {
+    std::string values;
+    spell(field, values);
+    if (values.find("nan") == std::string::npos) text.append("set ").append(name) += values + "\n";
+  };
+#define RAILPATCH_WRITE(type, field, ...) set(#field, c.field);
 #define RAILPATCH_SKIP(type, field, count)
   RP_CONFIG_FIELDS(RAILPATCH_WRITE, RAILPATCH_SKIP)
 #undef RAILPATCH_WRITE
