@@ -10,11 +10,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import fmpy
 import pytest
 from case_samples import PATCH, with_values
 from fmpy import read_model_description, simulate_fmu
 from fmpy.validation import validate_fmu
-from fmu_scenes import RAIL, SCENES
+from fmu_scenes import OWN, RAIL, SCENES
+from lxml import etree
 from railpatch.case import load_scene
 from railpatch.errors import CaseError
 from railpatch.fmu import pack_fmu
@@ -218,3 +220,49 @@ def test_a_start_outside_the_range_is_not_packed(tmp_path: Path) -> None:
 def test_irregularities_of_a_run_are_not_packed(tmp_path: Path) -> None:
     case = with_values(RAIL, track__irregularity="record.csv")
     assert "track.irregularity" in refused(case, tmp_path)
+
+
+def test_the_page_names_the_scene(unpacked: Callable[..., Fmu]) -> None:
+    """Profiles, gauge, material, grid, method, friction, as keys of the case."""
+    fmu = unpacked("rail")
+    page = (fmu.folder / "documentation" / "index.html").read_text()
+    scene = page[page.index("<h2>This scene</h2>") : page.index("<h2>Frames and signs</h2>")]
+    for key, value in (
+        ("profiles.wheel", "S1002"),
+        ("track.gauge", "1.435"),
+        ("wheelset.nominal_radius", "0.46"),
+        ("method.normal", "half_space"),
+        ("friction.law", "coulomb"),
+    ):
+        assert re.search(rf"<code>{key}</code></td><td>{value}</td>", scene), key
+    assert "material.shear_modulus" in scene
+    assert "grid.element_size" in scene
+    # what is an input is not fixed
+    assert "<code>wheelset.y</code>" not in scene
+
+
+def test_a_patch_has_no_text_of_wheelsets(unpacked: Callable[..., Fmu]) -> None:
+    page = (unpacked("patch").folder / "documentation" / "index.html").read_text()
+    frames = page[page.index("<h2>Frames and signs</h2>") : page.index("<h2>Outputs</h2>")]
+    assert "wheelset" not in frames.lower()
+
+
+def test_terminals_hold_variables_that_are_there(tmp_path: Path) -> None:
+    schema = Path(fmpy.__file__).with_name("schema") / "fmi3" / "fmi3TerminalsAndIcons.xsd"
+    for name, terminals in (
+        ("rail", ["wheelset", "left_wheel", "left_rail", "right_wheel", "right_rail"]),
+        ("left_wheel", ["wheelset", "left_wheel", "left_rail"]),
+        ("patch", ["contact"]),
+    ):
+        path = tmp_path / f"{name}.fmu"
+        pack_fmu(load_scene(SCENES[name]), path, backend=OWN, fmi=3)
+        with zipfile.ZipFile(path) as archive:
+            root = etree.fromstring(archive.read("terminalsAndIcons/terminalsAndIcons.xml"))
+            assert archive.read("terminalsAndIcons/icon.png")[1:4] == b"PNG"
+            assert etree.fromstring(archive.read("terminalsAndIcons/icon.svg")).tag.endswith("svg")
+        assert etree.XMLSchema(etree.parse(str(schema))).validate(root)
+        assert [terminal.get("name") for terminal in root.iter("Terminal")] == terminals
+        names = {v.name for v in read_model_description(str(path)).modelVariables}
+        members = [m.get("variableName") for m in root.iter("TerminalMemberVariable")]
+        assert set(members) <= names
+        assert len(set(members)) == len(members)

@@ -16,9 +16,11 @@ def main() -> None:
     with zipfile.ZipFile(path) as archive:
         root = ET.fromstring(archive.read("modelDescription.xml"))
     variables = [v for v in root.iter("ScalarVariable") if v[0].tag == "Real"]
+    # FMI 3.0: Ecos reads numbers, no arrays
+    variables += [v for v in root.iter("Float64") if v.find("Dimension") is None]
     outputs = [v.attrib["name"] for v in variables if v.attrib["causality"] == "output"]
     moved = next(v for v in variables if v.attrib["causality"] == "input")
-    start = float(moved[0].attrib["start"])
+    start = float((moved if moved.tag == "Float64" else moved[0]).attrib["start"])
     with EcosSimulationStructure() as structure:
         structure.add_model("contact", path)
         with EcosSimulation(structure=structure, step_size=STEP) as simulation:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from html import escape
 
+from railpatch.case.load import Case
 from railpatch.fmu.description import Labels
 from railpatch.fmu.table import Kind, Table, Variable, dependencies, first_item
+from railpatch.fmu.this_scene import scene_table
 
 STYLE = """
 body { font: 15px/1.5 sans-serif; max-width: 75em; margin: 2em auto; padding: 0 1em; }
@@ -23,6 +25,21 @@ reference, x along rolling, s lateral along the surface, n down into the rail.</
 <p><b>Signs</b>: forces and moments act on the wheel; moments are about the wheelset's centre.
 Creepages are wheel minus rail over the rolling speed, so a positive creepage gives a negative
 creep force. Vectors are counted from 1.</p>
+"""
+PATCH_FRAME = """
+<p>Units are SI. <b>Contact frame</b>, right-handed: origin at the contact reference, x along
+rolling, y lateral along the surface, n into the rail. <b>Signs</b>: forces and moments act on the
+wheel. Creepages are wheel minus rail over the rolling speed, so a positive creepage gives a
+negative creep force; the moment is that about the normal through the contact reference. Vectors
+are counted from 1.</p>
+"""
+REFERENCE_POINTS = """
+<p><b>Reference points</b>: position, force and moment are those at the wheelset's centre. The
+offset of a wheel along y and z and its rotation about x move its profile in its meridian plane, the
+rotation about the profile's origin; it still turns about the wheelset's axis. Its offset along x
+and its rotation about z move that axis for this wheel, about the point of the axis in the plane of the
+profile's origin. The same of a rail moves the rail; a roller's offset moves its axle, its rotation
+about x turns its profile about the profile's origin.</p>
 """
 MISSING = """
 <p>Inputs without effect do not exist: the position along the track and the pitch angle are there
@@ -135,7 +152,7 @@ def notice(backend: str, runtime: str | None = None) -> str:
 
 
 def index_html(
-    labels: Labels, table: Table, kind: Kind, variables: list[Variable], guid: str
+    labels: Labels, table: Table, kind: Kind, variables: list[Variable], guid: str, case: Case
 ) -> str:
     """The page: needs no network."""
     known = [v for v in variables if v.causality in ("input", "parameter")]
@@ -147,11 +164,15 @@ def index_html(
 <h1>{title}</h1>
 <p>{escape(labels.description)} Made by Railpatch {escape(labels.version)}; licence:
 {escape(labels.licence)}; GUID <code>{escape(guid)}</code>.</p>
-<h2>Frames and signs</h2>{FRAMES}
+<h2>This scene</h2>
+<p>What the FMU was made of, as the keys of its case; inputs and parameters are not among them, they
+are listed below with their start values.</p>
+{scene_table(case, names_of(known))}
+<h2>Frames and signs</h2>{FRAMES + REFERENCE_POINTS if kind.kind != "patch" else PATCH_FRAME}
 <h2>Inputs and parameters</h2>{apart(labels)}
 <p>Start values are those of the scene: the FMU runs without any being set. Geometry, material and
 method are fixed in the FMU; parameters may be changed between steps{fixed(known)}.</p>
-{variable_table(table, known, None, kind)}{MISSING}
+{variable_table(table, known, None, kind)}{MISSING if kind.kind != "patch" else ""}
 <h2>Outputs</h2>
 <p>"Acts on it" names the inputs that an output depends on: all, or those of the geometry
 (pose), also of the speeds along the track (rolling), also of other speeds (sliding), also
@@ -162,6 +183,11 @@ friction.</p>
 <p><b>Length of a step</b>: {labels.step.sentence()}</p>{interfaces(labels, kind)}
 </body></html>
 """
+
+
+def names_of(variables: list[Variable]) -> set[str]:
+    """Of vectors without the component."""
+    return {v.name.partition("[")[0] for v in variables}
 
 
 def apart(labels: Labels) -> str:

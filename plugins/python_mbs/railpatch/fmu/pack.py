@@ -33,6 +33,7 @@ from railpatch.fmu.scene import kind_of, scene_text, variables_of
 from railpatch.fmu.sources import build_description, with_source_files
 from railpatch.fmu.step_size import step_size_of
 from railpatch.fmu.table import Kind, Table, Variable
+from railpatch.fmu.terminals import FOLDER, ICON, terminals_xml
 from railpatch.pressure_error import run_doubts
 from railpatch.result import SOLVED
 from railpatch.writing import write_whole
@@ -291,13 +292,19 @@ def files_of(contents: Contents, guid: str) -> dict[str, bytes]:
         else with_source_files(description, sources),
         "resources/scene.txt": c.scene_text(guid),
         "documentation/reference.csv": reference_csv(c.scene, c.variables),
-        "documentation/index.html": index_html(c.labels, c.table, c.kind, c.variables, guid),
+        "documentation/index.html": index_html(
+            c.labels, c.table, c.kind, c.variables, guid, c.scene.case
+        ),
     }
     if sources:
         name = c.labels.identifier
         texts["sources/buildDescription.xml"] = build_description(name, sources)
     files = {path: text.encode() for path, text in texts.items()}
     files |= {"model.png": model_png(), **c.libraries.files(c.labels.identifier, c.backend)}
+    if c.version == 3:
+        icons = {"icon.png": model_png(), "icon.svg": ICON.encode()}
+        icons["terminalsAndIcons.xml"] = terminals_xml(c.variables).encode()
+        files |= {f"{FOLDER}/{name}": content for name, content in icons.items()}
     if c.creep_table is not None:
         files["resources/creep_table.bin"] = c.creep_table
     return files
