@@ -14,6 +14,7 @@ from railpatch.result import Warned
 
 from wheelset_demo.scene import GRAVITY
 from wheelset_demo.system import WORKS, ContactFailure
+from wheelset_demo.vehicle.assessment import RATIO_LIMIT, assess, shift_limit
 from wheelset_demo.vehicle.means import rail_forces
 from wheelset_demo.vehicle.scene import VehicleScene, doubtful_bodies
 from wheelset_demo.vehicle.simulation import Simulation
@@ -148,6 +149,8 @@ class VehicleSummary:
     threads, and of it contact (force element) and derivatives. real_time: -, total over the time
     simulated. warnings: of the scene's bodies and of all logged steps. step_times: as
     StepTimes.to_dict(), where they were asked for.
+    *_percentile, load_median, shift_limit: as wheelset_demo.vehicle.assessment has them (EN 14363):
+    -, N, N, N, N, m/s^2 (lateral, vertical); None where the run is too short for them.
     """
 
     good: bool
@@ -166,6 +169,12 @@ class VehicleSummary:
     seconds: dict[str, float]
     real_time: float
     warnings: list[str]
+    derailment_percentile: float | None = None
+    shift_percentile: float | None = None
+    shift_limit: float | None = None
+    load_percentile: float | None = None
+    load_median: float | None = None
+    acceleration_percentile: tuple[float, float] | None = None
     logging_share: float | None = None
     step_times: dict[str, Any] | None = None
 
@@ -208,10 +217,34 @@ class VehicleSummary:
             ),
             ("real time", f"{self.real_time:.2f} s for a second simulated"),
         ]
+        lines[5:5] = self._assessed()
         if self.logging_share is not None:
             lines.append(("logging", f"{100 * self.logging_share:.2g} % of the run's wall time"))
         found = "\n".join(f"{name:<16}{value}" for name, value in lines)
         return found if self.step_times is None else f"{found}\n{text_of(self.step_times)}"
+
+    def _assessed(self) -> list[tuple[str, str]]:
+        """Lines of percentiles beside their limits."""
+        if self.shift_percentile is None:
+            text = "none: they need 52 m and steps kept at 100 Hz or more"
+            return [("percentiles", text)]
+        ratio, load, median = self.derailment_percentile, self.load_percentile, self.load_median
+        # they are there together
+        assert ratio is not None
+        assert load is not None
+        assert median is not None
+        assert self.shift_limit is not None
+        assert self.acceleration_percentile is not None
+        lateral, vertical = self.acceleration_percentile
+        return [
+            (
+                "percentiles",
+                f"Y/Q {ratio:.3f} (limit {RATIO_LIMIT:g}), a wheelset's Y "
+                f"{self.shift_percentile / 1e3:.2f} kN (limit {self.shift_limit / 1e3:.2f}), Q "
+                f"{fixed(load / 1e3, 1)} kN, median {fixed(median / 1e3, 1)} kN; car body "
+                f"{lateral:.3f}, {vertical:.3f} m/s^2; 99.85 %, 20 Hz, 2 m, EN 14363",
+            )
+        ]
 
 
 def fixed(value: float, places: int) -> str:
@@ -232,6 +265,18 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
         "contact": simulation.contact_seconds,
         "derivatives": system.derivative_seconds,
     }
+    run = simulation.scene.run
+    found = assess(trace, run.step * run.log_every)
+    assessed: dict[str, Any] = {}
+    if found is not None:
+        assessed = {
+            "derailment_percentile": found.ratio,
+            "shift_percentile": found.shift,
+            "shift_limit": shift_limit(simulation.scene.axle_load, run.shift_factor),
+            "load_percentile": found.load,
+            "load_median": found.median_load,
+            "acceleration_percentile": found.acceleration,
+        }
     return VehicleSummary(
         good=trace.failure is None,
         message=str(trace.failure or "converged"),
@@ -253,6 +298,7 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
             *run_doubts(simulation.scene.case, Path()),
             *trace.warned.lines(),
         ],
+        **assessed,
         logging_share=trace.logging_share,
         step_times=None if simulation.step_times is None else simulation.step_times.to_dict(),
     )

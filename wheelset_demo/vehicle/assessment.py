@@ -1,0 +1,104 @@
+"""A run's forces and accelerations as EN 14363 counts them.
+
+Filters, percentiles and limits are those of EN 14363:2016, stated from memory, without its text at
+hand: wheel forces and accelerations with a low pass of 20 Hz (Butterworth, order 4), forces as
+means over 2 m at every 0.5 m, percentiles 0.15, 50 and 99.85 %; Y/Q at most 0.8 (Nadal 1896 gives
+the form), a wheelset's sum of Y at most k (10 kN + P0/3) with P0 its load at rest (Prud'homme
+1967). Y/Q is that of the means. The whole run is one section: the standard's sorting by radius and
+its statistics over many sections are left to who runs several.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from railpatch.log.channels import LEAST_LOAD, SLIDING
+from scipy.signal import butter, sosfilt, sosfilt_zi
+
+from wheelset_demo.scene import GRAVITY
+
+Vector = NDArray[np.float64]
+CORNER = 20.0  # Hz
+ORDER = 4
+# Hz, of kept steps, that a low pass at CORNER needs
+LEAST_RATE = 5 * CORNER
+SPACING = 0.5  # m, of the means
+LEAST_WAY = 50.0  # m, of means
+PERCENTILES = (0.15, 50.0, 99.85)
+RATIO_LIMIT = 0.8
+BASE_SHIFT = 10e3  # N
+
+
+class Kept(Protocol):
+    """Kept steps of a run, as wheelset_demo.vehicle.trace.VehicleTrace has them."""
+
+    def array(self, name: str) -> Vector:
+        """[n, ...], by name."""
+        ...
+
+
+@dataclass(frozen=True)
+class Assessment:
+    """SI. ratio: greatest 99.85 % of a wheel's Y/Q, Y outward. shift: N, greatest of a wheelset's
+    sum of Y by 0.15 and 99.85 %, either way. load, median_load: N, greatest 99.85 % and 50 % of a
+    wheel's Q. acceleration: m/s^2, lateral, vertical, the greater of 0.15 and 99.85 %,
+    without gravity's."""
+
+    ratio: float
+    shift: float
+    load: float
+    median_load: float
+    acceleration: tuple[float, float]
+
+
+def shift_limit(axle_load: float, factor: float) -> float:
+    """N, of a wheelset's sum of Y. axle_load: N."""
+    return factor * (BASE_SHIFT + axle_load / 3)
+
+
+def assess(trace: Kept, interval: float) -> Assessment | None:
+    """Of the kept steps, ``interval`` s apart; None where they are too few or too far apart."""
+    if interval * LEAST_RATE > 1 + 1e-9:
+        return None
+    times, positions = trace.array("times"), trace.array("positions")
+    way = positions.mean(axis=1)
+    way = way - way[0]
+    # the last step that is kept may come sooner; the first metres have no whole mean
+    used = np.flatnonzero((way >= SLIDING) & (np.abs(times / interval % 1 - 0.5) > 0.499))
+    if len(used) < 2 or way[used[-1]] - way[used[0]] < LEAST_WAY:
+        return None
+    places = np.arange(way[used[0]], way[used[-1]], SPACING)
+
+    def filtered(name: str) -> Vector:
+        values = low_passed(trace.array(name)[used], interval)
+        return np.stack([np.interp(places, way[used], column) for column in values.T], axis=1)
+
+    guiding, loads, felt = (filtered(n) for n in ("mean_guiding", "mean_loads", "felt"))
+    ratios = np.full_like(guiding, -np.inf)
+    np.divide(guiding, loads, out=ratios, where=loads > LEAST_LOAD)
+    low, _, high = np.percentile(guiding[:, ::2] - guiding[:, 1::2], PERCENTILES, axis=0)
+    _, median, most = np.percentile(loads, PERCENTILES, axis=0)
+    # what is felt at rest is gravity alone
+    moved = felt[:, 1:] + np.array([0.0, GRAVITY])
+    least, _, greatest = np.percentile(moved, PERCENTILES, axis=0)
+    lateral, vertical = np.maximum(np.abs(least), np.abs(greatest)).tolist()
+    # a wheel in the air has no ratio; interpolation between ranks must not meet infinities
+    ratio = np.percentile(ratios, PERCENTILES[-1], axis=0, method="lower").max()
+    return Assessment(
+        ratio=float(ratio) if np.isfinite(ratio) else 0.0,
+        shift=float(max(np.abs(low).max(), np.abs(high).max())),
+        load=float(most.max()),
+        median_load=float(median.max()),
+        acceleration=(lateral, vertical),
+    )
+
+
+def low_passed(values: Vector, interval: float) -> Vector:
+    """[n, columns], by 20 Hz; as if the first values had always been there. interval: s."""
+    sections = butter(ORDER, CORNER, fs=1 / interval, output="sos")
+    rest = sosfilt_zi(sections)[:, :, None] * values[0]
+    found, _ = sosfilt(sections, values, axis=0, zi=rest)
+    return np.asarray(found)
