@@ -37,9 +37,9 @@ REFERENCE_POINTS = """
 <p><b>Reference points</b>: position, force and moment are those at the wheelset's centre. The
 offset of a wheel along y and z and its rotation about x move its profile in its meridian plane, the
 rotation about the profile's origin; it still turns about the wheelset's axis. Its offset along x
-and its rotation about z move that axis for this wheel, about the point of the axis in the plane of the
-profile's origin. The same of a rail moves the rail; a roller's offset moves its axle, its rotation
-about x turns its profile about the profile's origin.</p>
+and its rotation about z move that axis for this wheel, about the point of the axis in the plane of
+the profile's origin. The same of a rail moves the rail; a roller's offset moves its axle, its
+rotation about x turns its profile about the profile's origin.</p>
 """
 MISSING = """
 <p>Inputs without effect do not exist: the position along the track and the pitch angle are there
