@@ -79,6 +79,23 @@ def test_the_terminal_shows_every_quantity_of_a_wheel() -> None:
     assert "0.25" in text
 
 
+@pytest.mark.parametrize("case", [PATCH, LOADED], ids=["patch", "wheelset"])
+def test_the_terminal_shows_what_tables_of_a_case_ask_for(case: dict[str, Any]) -> None:
+    asked = {"subsurface": {"depths": [1e-3, 2e-3]}, "damage": {"wear": "usfd"}}
+    result = solve({**case, **asked})
+    data = result.data if case is PATCH else result.data["right"]
+    found = {
+        f"{name}.{key}": value
+        for name in asked
+        for key, value in data[name].items()
+        if value is not None and value == value  # not NaN: a patch has no wheel to spread wear on
+    }
+    lines = {line.split()[0]: line for line in shown(result).splitlines() if line}
+    assert set(found) <= set(lines)
+    assert "Pa" in lines["subsurface.von_mises"]
+    assert all(f"{depth:g}" in lines["subsurface.depth"] for depth in (1e-3, 2e-3))
+
+
 def test_the_log_keeps_its_field_numbers() -> None:
     names = tuple(field.name for field in channels.PATCH.fields)
     assert names[: len(PATCH_FIELDS)] == PATCH_FIELDS

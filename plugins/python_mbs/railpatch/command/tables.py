@@ -55,7 +55,23 @@ def patch_table(columns: list[tuple[str, dict[str, Any]]], units: dict[str, str]
         cells = [spell(patch[key]) for _, patch in columns]
         if any(cells):
             table.add_row(key, unit, *cells)
+    add_asked(table, [patch for _, patch in columns])
     return table
+
+
+def add_asked(table: Table, columns: list[dict[str, Any]]) -> None:
+    """What the case's tables [subsurface] and [damage] ask for."""
+    asked = [name for name in ("subsurface", "damage") if any(c.get(name) for c in columns)]
+    if not asked:
+        return
+    from railpatch.log import channels
+
+    fields = {"subsurface": channels.SUBSURFACE.fields, "damage": channels.DAMAGE.fields}
+    for name in asked:
+        for field in fields[name]:
+            cells = [spell((values.get(name) or {}).get(field.name)) for values in columns]
+            if any(cells):
+                table.add_row(f"{name}.{field.name}", field.unit, *cells)
 
 
 def wheel_table(data: dict[str, Any], wheels: dict[str, dict[str, Any]]) -> Table:
@@ -71,6 +87,7 @@ def wheel_table(data: dict[str, Any], wheels: dict[str, dict[str, Any]]) -> Tabl
         cells = [spell(values.get(key)) for values in columns.values()]
         if any(cells):
             table.add_row(key, unit, *cells)
+    add_asked(table, list(columns.values()))
     return table
 
 
