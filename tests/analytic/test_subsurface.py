@@ -98,6 +98,11 @@ def test_a_patch_that_is_not_there_is_named() -> None:
     fast.step()
     with pytest.raises(LookupError, match="no pressure"):
         Subsurface(fast, [1e-3]).solve()
+    # a pressure without tractions is not what lies below either
+    grid = Contact(with_values(CASE, method={"normal": "half_space", "tangential": "polach"}))
+    grid.step()
+    with pytest.raises(LookupError, match="'polach' gives no pressure"):
+        Subsurface(grid, [1e-3]).solve()
 
 
 def test_wheels_have_it_on_both_sides() -> None:

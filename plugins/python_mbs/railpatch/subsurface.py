@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from railpatch import _core
+from railpatch.case.theories import has_tractions
 from railpatch.case.types import BODIES, SIDES
 from railpatch.errors import CaseError
 
@@ -23,6 +24,7 @@ class Stepped(Protocol):
     """A railpatch.Contact."""
 
     _core: Any
+    _case: Any
 
 
 class Subsurface:
@@ -69,8 +71,14 @@ class Subsurface:
         greatest_shear [depths, ny, nx]; dang_van [depths, ny]: greatest over the passage of the
         material along x; with displacements displacement [3, depths, ny, nx], m, against the body
         far away. Of a line contact ny is 1. Raises CaseError, LookupError where the last step has
-        no such patch or its theories give no pressure element by element.
+        no such patch or its theories give no pressure or no tractions element by element.
         """
+        case = self._contact._case
+        if case.has_tangential and not has_tractions(case.method.tangential):
+            raise LookupError(
+                f"method.tangential = {case.method.tangential!r} gives no pressure with tractions "
+                "element by element"
+            )
         self._core.solve(*place(side, patch, body))
         x, y = self._core.field("x"), self._core.field("y")
         grid = (len(self._depth), len(y), len(x))
