@@ -13,7 +13,7 @@ from railpatch.record.columns import Columns, given
 from railpatch.record.forces import PARTS
 from railpatch.record.read import read_record
 
-from rig_model.curve import DEFAULT, Curve, load_curve_scene, steady_curves
+from rig_model.curve import DEFAULT, Curve, SteadyCurve, load_curve_scene, steady_curves
 from rig_model.measured import PREFIX
 from rig_model.scene import default_scene, load_rig_scene
 from rig_model.tables import Rig
@@ -23,7 +23,11 @@ def rig() -> SceneKind:
     """A run of the roller rig."""
     model = with_tables(WheelsetCase, {"rig": Rig})
     command = "railpatch rig SCENE -o run.mcap"
-    return SceneKind("rig", model, default_scene(), command, run_rig, None, follow_rig, prepare_rig)
+    units = dict.fromkeys(("positions", "balanced", "evaluations"), "")
+    return SceneKind(
+        *("rig", model, default_scene(), command, run_rig, None, follow_rig, prepare_rig),
+        units=units,
+    )
 
 
 def run_rig(scene: Path, log: Path) -> Ending:
@@ -77,7 +81,9 @@ def prepare_rig(content: dict[str, Any], folder: Path, rows: Sequence[str]) -> P
 def curve() -> SceneKind:
     """Steady curving."""
     model = with_tables(WheelsetCase, {"curve": Curve})
-    return SceneKind("curve", model, DEFAULT, "railpatch curve SCENE", run_curve)
+    known = {"radius": "m", **SteadyCurve.UNITS, "residuals": ""}
+    units = {f"curves.{name}": unit for name, unit in known.items()}
+    return SceneKind("curve", model, DEFAULT, "railpatch curve SCENE", run_curve, units=units)
 
 
 def run_curve(scene: Path, _log: Path) -> Ending:

@@ -15,13 +15,34 @@ from wheelset_demo.vehicle.scene import OPTIONAL, TABLES, ElementTable
 
 # of summaries: what is measured by the clock
 TIMES = {"solve_seconds", "wall_time", "logging_share", "seconds", "real_time"}
+# of a wheelset's summary and of a vehicle's: what its numbers are in, by name or by the table's
+WHEELSET_UNITS = {
+    **dict.fromkeys(("steps", "in_the_air", "evaluations"), ""),
+    **dict.fromkeys(("mechanical_error", "contact_error", "momentum_error", "turning_error"), ""),
+    **dict.fromkeys(("distance", "waves"), "m"),
+    **dict.fromkeys(("waves.count", "waves.conicity"), ""),
+    "duration": "s",
+    "energies": "J",
+}
+VEHICLE_UNITS = {
+    **dict.fromkeys(("steps", "derailment", "derailment_percentile"), ""),
+    **dict.fromkeys(("distance", "offset"), "m"),
+    "duration": "s",
+    **dict.fromkeys(("load_range", "load_percentile", "load_median"), "N"),
+    **dict.fromkeys(("guiding", "shift_percentile", "shift_limit"), "N"),
+    **dict.fromkeys(("comfort", "acceleration_percentile"), "m/s^2"),
+    **dict.fromkeys(("friction", "open_balance", "lost"), "J"),
+    "step_times": "",
+}
 
 
 def wheelset_run() -> SceneKind:
     """A wheelset on track, in time."""
     model = with_tables(WheelsetCase, MODELS)
     command = "railpatch wheelset SCENE -o run.mcap"
-    return SceneKind("wheelset_run", model, scene_file(DEFAULT), command, run_wheelset)
+    return SceneKind(
+        *("wheelset_run", model, scene_file(DEFAULT), command, run_wheelset), units=WHEELSET_UNITS
+    )
 
 
 def run_wheelset(scene: Path, log: Path) -> Ending:
@@ -54,7 +75,8 @@ def vehicle() -> SceneKind:
     """A vehicle on track, in time."""
     model = with_tables(WheelsetCase, {**TABLES, "suspension": list[ElementTable]}, *OPTIONAL)
     command = "railpatch vehicle SCENE -o run.mcap"
-    return SceneKind("vehicle", model, scene_file(DEFAULT_VEHICLE), command, run_vehicle)
+    scene = scene_file(DEFAULT_VEHICLE)
+    return SceneKind("vehicle", model, scene, command, run_vehicle, units=VEHICLE_UNITS)
 
 
 def run_vehicle(scene: Path, log: Path) -> Ending:

@@ -26,6 +26,11 @@ VIEWS = {
     "narrow": (500, True, False),
     "print": (688, False, True),
 }
+LARGEST = 2e6  # bytes
+# made by tests/pages/make.py: what needs a solver, or minutes
+MADE = {
+    *("bench", "damage", "hunting", "match", "profile", "stress", "subsurface", "sweep", "wear"),
+}
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +51,13 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     found = {name: write_report(run, folder / f"{name}.html") for name, run in runs.items()}
     found["beside"] = write_report(rig, folder / "beside.html", beside=rig)
     found |= {page.stem: page for page in sorted(Path("build/pages").glob("*.html"))}
+    assert found.keys() >= MADE, "python tests/pages/make.py build/pages makes the others"
     return found
+
+
+def test_every_page_is_small(pages: dict[str, Path]) -> None:
+    large = {name: page.stat().st_size for name, page in pages.items()}
+    assert {name: size for name, size in large.items() if size >= LARGEST} == {}
 
 
 def seen(browser: Browser, view: str) -> list[str]:

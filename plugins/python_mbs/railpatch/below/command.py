@@ -36,7 +36,7 @@ FORMATS = (".html", ".csv", ".npz")
     multiple=True,
     metavar="LENGTH",
     help="m, below the body's surface; may be given several times.  [default: 24 depths from 0 to "
-    "1.5 times the patch's length or width, whichever is greater]",
+    "1.5 times the patch's length or width, whichever is greater, closer near the surface]",
 )
 @click.option("--body", type=click.Choice(BODIES), default="rail", show_default=True)
 @click.option(

@@ -19,7 +19,8 @@ COLUMNS = {"depth": "m", "von_mises": "Pa", "von_mises_x": "m", "von_mises_y": "
 
 
 def usual_depths(result: Result, side: str, patch: int) -> Vector:
-    """m, [DEPTHS], by the size of the patch. Raises LookupError where there is none."""
+    """m, [DEPTHS], by the size of the patch, closer near the surface, where stresses change most.
+    Raises LookupError where there is none."""
     data = result.data
     found = data.get(side, data)
     patches = found.get("patches", [found])
@@ -34,7 +35,7 @@ def usual_depths(result: Result, side: str, patch: int) -> Vector:
     size = max(np.ptp(x), np.ptp(y)) if loaded.any() else 0.0
     # one column or row of elements
     size = size or 1e-3
-    return DEEPEST * size * np.arange(DEPTHS) / (DEPTHS - 1)
+    return DEEPEST * size * (np.arange(DEPTHS) / (DEPTHS - 1)) ** 2
 
 
 def greatest(found: Mapping[str, Any]) -> dict[str, Vector]:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from railpatch.below.greatest import COLUMNS
 from railpatch.subsurface import STRESSES
 from railpatch.writing import write_whole
 
@@ -52,19 +53,41 @@ def page(name: str, found: Mapping[str, Any], table: Mapping[str, Vector], place
     from railpatch.below.figures import over_depth, sections
     from railpatch.page.document import document
     from railpatch.page.figures import plot
+    from railpatch.page.parts import Key, folded, opening
+    from railpatch.page.tables import table as html_table
 
-    body = [f"<h1>{escape(name)}: below the surface</h1><p class=sub>{escape(place)}</p><p>"]
+    keys, open_ends, told = [], [], {}
     for key, words in MEASURES.items():
         k = int(np.argmax(table[key]))
-        value, depth = 1e-6 * table[key][k], 1e3 * table["depth"][k]
-        body.append(f"Greatest {words.removeprefix('greatest ')} {value:.1f} MPa at a depth of "
-                    f"{depth:.2f} mm. ")  # fmt: skip
+        value = f"{1e-6 * table[key][k]:.1f} MPa"
+        told[key] = f"{value}, {1e3 * table['depth'][k]:.2f} mm deep"
+        keys.append(Key(words, value, f"{1e3 * table['depth'][k]:.2f} mm below the surface"))
         if k == len(table["depth"]) - 1 and k > 0:
-            body.append("That is the deepest one asked for: more may lie below. ")
-    body.append(
-        "</p><p>The body is a half-space under the patch's pressure and tractions. Residual and "
-        "thermal stresses are not in it. x points along rolling, y across, depth into the body."
-        "</p>"
+            open_ends.append(words)
+    verdict = f"The greatest von Mises stress is {told['von_mises']}."
+    body = [opening(f"{name}: below the surface", place, verdict, keys)]
+    if open_ends:
+        text = (
+            f"{', '.join(open_ends)}: greatest at the deepest place asked for, more may lie below."
+        )
+        body.append(f'<p class="warn">{escape(text[0].upper() + text[1:])}</p>')
+    rows = [
+        [*(f"{(1e3 if unit == 'm' else 1e-6) * table[column][k] + 0.0:.2f}"
+           for column, unit in COLUMNS.items())]
+        for k in range(len(table["depth"]))
+    ]  # fmt: skip
+    head = [f"{column.replace('_', ' ')} [{'mm' if unit == 'm' else 'MPa'}]"
+            for column, unit in COLUMNS.items()]  # fmt: skip
+    text = (
+        "<p>The body is a half-space under the patch's pressure and tractions. Residual and "
+        "thermal stresses are not in it. x points along rolling, y across, depth into the body.</p>"
     )
-    body.append(plot(sections(found), "sections") + plot(over_depth(table, MEASURES), "depths"))
+    body += [
+        "<h2>Where it is greatest</h2>",
+        plot(sections(found), "sections"),
+        "<h2>Over the depth</h2>",
+        plot(over_depth(table, MEASURES), "depths"),
+        folded("All depths", html_table(head, rows)),
+        folded("How it was computed", text),
+    ]
     return document(f"{name}: below the surface", "".join(body)).encode()

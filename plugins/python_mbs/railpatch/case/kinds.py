@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from importlib import resources
 from importlib.metadata import entry_points
@@ -60,7 +60,8 @@ class SceneKind:
     what is measured and what is unknown in each row, and gives what railpatch.match.model asks of
     a ``Followed``. prepare: of the same, takes the content, the folder and what is unknown in each
     row, and gives it ``Prepared`` for a match. base: the kind whose example this one's names, which
-    is written beside.
+    is written beside. units: of a run's own numbers by their dotted names, or by the name of the
+    table that they stand in.
     """
 
     name: str
@@ -71,6 +72,7 @@ class SceneKind:
     base: str | None = None
     follow: Callable[..., Any] | None = None
     prepare: Callable[..., Prepared] | None = None
+    units: Mapping[str, str] = field(default_factory=dict)
 
     def schema(self) -> dict[str, Any]:
         """The JSON schema of such files, with tables that other commands read of them."""

@@ -18,6 +18,7 @@ from railpatch.page.tables import number, short, table
 from railpatch.page.viewer import parallel_axes
 from railpatch.sweep.outcome import Sweep
 from railpatch.sweep.plan import SENSITIVITY
+from railpatch.sweep.units import labelled, unit_of_output, unit_of_varied
 from railpatch.writing import write_whole
 
 PAGE = "sweep.html"
@@ -26,6 +27,9 @@ MOST_LINES = 5000
 MOST_OUTPUTS = 6
 MOST_ROWS = 50
 MOST_KEYS = 4  # outputs among the key numbers
+LARGE = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
+SMALL = ((0.1, ""), (1e-3, "m"), (1e-6, "\u00b5"), (1e-9, "n"))
+PREFIXES = {**dict.fromkeys(("N", "N m", "Pa", "W", "J"), LARGE), "m": SMALL}
 MEANS = 20  # places along a key where the mean is drawn
 
 Array = NDArray[np.float64]
@@ -54,6 +58,36 @@ def key_values(sweep: Sweep, key: str) -> tuple[Array, list[str] | None]:
     return np.array([texts.index(str(v)) for v in values], dtype=float), texts
 
 
+def unit_of(sweep: Sweep, name: str) -> str:
+    """Of an output."""
+    return unit_of_output(sweep.plan.kind, name)
+
+
+def output_label(sweep: Sweep, name: str) -> str:
+    """With its unit."""
+    return labelled(name, unit_of(sweep, name))
+
+
+def key_label(sweep: Sweep, key: str) -> str:
+    """With its unit."""
+    return labelled(key, unit_of_varied(sweep.plan.kind, key))
+
+
+def with_unit(text: str, unit: str) -> str:
+    """A number's text."""
+    return f"{text} {unit}" if unit else text
+
+
+def glance(values: Array, unit: str) -> str:
+    """Numbers that are read at a glance, with one prefix: 762 to 798 MPa."""
+    size = float(np.nanmax(np.abs(values)))
+    found = (p for p in PREFIXES.get(unit, ()) if size >= p[0])
+    least, prefix = next(found, (1.0, ""))
+    factor = least if prefix else 1.0
+    texts = dict.fromkeys(short(float(value) / factor) for value in values)
+    return with_unit(" to ".join(texts), prefix + unit)
+
+
 def _opening(sweep: Sweep) -> list[str]:
     """What came out, and what did not."""
     plan, failed = sweep.plan, sweep.failed
@@ -70,7 +104,8 @@ def _opening(sweep: Sweep) -> list[str]:
         name = shown[0]
         values = output_values(sweep, name)
         at = int(np.nanargmax(np.abs(values)))
-        verdict += f" {name} is farthest from zero, {short(values[at])}, at {_at(sweep, at)}."
+        far = glance(values[at : at + 1], unit_of(sweep, name))
+        verdict += f" {name} is farthest from zero, {far}, at {_at(sweep, at)}."
     verdict += _strongest(sweep, shown)
     about = f"{plan.table.scene}, {kind}; design {plan.table.design}"
     parts = [opening(plan.name, about, verdict, keys, state)]
@@ -84,9 +119,9 @@ def _opening(sweep: Sweep) -> list[str]:
 def _range(sweep: Sweep, name: str) -> Key:
     """Least and greatest of an output."""
     values = output_values(sweep, name)
-    low, high = short(float(np.nanmin(values))), short(float(np.nanmax(values)))
-    note = f"mean {short(float(np.nanmean(values)))}"
-    return Key(name, low if low == high else f"{low} to {high}", note)
+    unit, ends = unit_of(sweep, name), np.array([np.nanmin(values), np.nanmax(values)])
+    mean = np.array([np.nanmean(values)])
+    return Key(name, glance(ends, unit), f"mean {glance(mean, unit)}")
 
 
 def _strongest(sweep: Sweep, shown: list[str]) -> str:
@@ -145,19 +180,22 @@ def _extremes(sweep: Sweep, names: list[str]) -> list[str]:
         rows.append(
             [
                 name,
+                unit_of(sweep, name) or "-",
                 number(values[low]),
                 number(float(np.nanmean(values))),
                 number(values[high]),
                 _at(sweep, high),
             ]
         )
-    head = ["output", "least", "mean", "greatest", "greatest at"]
+    head = ["output", "unit", "least", "mean", "greatest", "greatest at"]
     return ["<h2>Results</h2>" + table(head, rows)]
 
 
 def _at(sweep: Sweep, case: int) -> str:
     pairs = zip(sweep.plan.keys, sweep.plan.points[case], strict=True)
-    return ", ".join(f"{key} {v:.5g}" if isinstance(v, float) else f"{key} {v}" for key, v in pairs)
+    texts = ((key, f"{v:.5g}" if isinstance(v, float) else str(v)) for key, v in pairs)
+    kind = sweep.plan.kind
+    return ", ".join(f"{key} {with_unit(v, unit_of_varied(kind, key))}" for key, v in texts)
 
 
 def _responses(sweep: Sweep, names: list[str]) -> list[str]:
@@ -197,13 +235,13 @@ def _responses(sweep: Sweep, names: list[str]) -> list[str]:
                 col=column,
             )
             if row == len(names):
-                figure.update_xaxes(title_text=key, row=row, col=column)
+                figure.update_xaxes(title_text=key_label(sweep, key), row=row, col=column)
             if texts:
                 figure.update_xaxes(
                     tickvals=list(range(len(texts))), ticktext=texts, row=row, col=column
                 )
             if column == 1:
-                figure.update_yaxes(title_text=name, row=row, col=column)
+                figure.update_yaxes(title_text=output_label(sweep, name), row=row, col=column)
     styled(figure, 120 + 220 * len(names))
     text = "<p class=sub>Dots are cases, the line is their mean along the key.</p>"
     figure.update_xaxes(exponentformat="SI")
@@ -238,9 +276,11 @@ def _parallel(sweep: Sweep, names: list[str]) -> list[str]:
     few = _few(len(sweep.rows))
     color = output_values(sweep, names[0])[few]
     known = np.isfinite(color)
-    axes = [(key, at[few][known], texts) for key in sweep.plan.keys
+    axes = [(key_label(sweep, key), at[few][known], texts) for key in sweep.plan.keys
             for at, texts in (key_values(sweep, key),)]  # fmt: skip
-    axes += [(name, output_values(sweep, name)[few][known], None) for name in names]
+    axes += [
+        (output_label(sweep, name), output_values(sweep, name)[few][known], None) for name in names
+    ]
     left = len(sweep.rows) - int(known.sum())
     text = f"<p class=sub>{left} cases are not drawn.</p>" if left else ""
     shown = parallel_axes("parallel", axes, len(sweep.plan.keys))
@@ -266,7 +306,7 @@ def _sensitivities(sweep: Sweep, names: list[str]) -> list[str]:
             "Saltelli 2007): mu* is the mean size of the output's change when the key goes "
             "through its range, sigma how far that change depends on the place."
         )
-        head = ["output", "key", "mu*", "\u00b1 95 %", "sigma"]
+        head = ["output", "key", "unit", "mu*", "\u00b1 95 %", "sigma"]
     else:
         text = (
             "Sobol's indices (Sobol 2001, Mathematics and Computers in Simulation 55; Saltelli "
@@ -283,7 +323,8 @@ def _sensitivities(sweep: Sweep, names: list[str]) -> list[str]:
             open_ones.append(f"{name}: {missing} cases have no value")
             continue
         for key, *found in indices_of(sweep.plan, values):
-            rows.append([name, key, *map(number, found)])
+            unit = [unit_of(sweep, name) or "-"] if morris else []  # Sobol's are shares
+            rows.append([name, key, *unit, *map(number, found)])
     if rows:
         parts.append(table(head, rows))
     if open_ones:
