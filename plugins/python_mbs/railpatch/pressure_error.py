@@ -17,6 +17,7 @@ from typing import Any
 
 from railpatch import _core
 from railpatch.case.common import Grid
+from railpatch.case.fluid import MOVED
 from railpatch.case.load import Scene
 from railpatch.case.resolve import resolved
 from railpatch.case.scene_profiles import BODIES, Shelf, placed_profiles, placement_doubts
@@ -31,6 +32,8 @@ DRAWS = 16
 BOUND = 2.0
 # elements across a contact, [along rolling, lateral]: noise changes the shape across
 ELEMENTS = [8, 20]
+# inputs of heat and liquids: without a tangential problem there is neither
+OF_TRACTIONS = {"bulk_temperature", *MOVED}
 # m, lateral positions that stand for those of a run; N, of a wheel where the scene has no load
 POSITIONS = (-6e-3, -4e-3, -2e-3, 0.0, 2e-3, 4e-3, 6e-3)
 USUAL_LOAD = 80e3
@@ -56,8 +59,7 @@ class Replica:
 
         solved: the core's result for them, with all of the scene's theories.
         """
-        # without a tangential problem there are no temperatures
-        values = {name: value for name, value in values.items() if name != "bulk_temperature"}
+        values = {name: value for name, value in values.items() if name not in OF_TRACTIONS}
         found: list[dict[str, float]] = []
         for contact in self.contacts:
             contact.reset()
