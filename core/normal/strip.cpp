@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "numeric/elementary.hpp"
+#include "numeric/fade.hpp"
 
 namespace railpatch {
 
@@ -17,6 +18,11 @@ constexpr double gauss5[] = {-0.90617984593866399, -0.53846931010568309, 0.0, 0.
                              0.90617984593866399};
 constexpr double weight5[] = {0.23692688505618909, 0.47862867049936647, 0.56888888888888889,
                               0.47862867049936647, 0.23692688505618909};
+
+// of the chord squared in the middle of an interval: where it ends with less the rule for ends of
+// contact counts, and beyond the second alone the one for smooth chords; both in between, so that
+// no rule's error comes or goes at once
+constexpr double ends_below = 0.5, smooth_above = 0.6;
 
 double log_primitive(double y) { return y == 0 ? 0.0 : y * (log(std::abs(y)) - 1); }
 
@@ -40,6 +46,9 @@ strip::strip(const quadratic &q, double dy) {
   int n = 1;
   for (int k = 0, count = roots(q, r); k < count; ++k)
     if (r[k] > -half && r[k] < half) cut[n++] = r[k];
+  // where a chord becomes least, which two ends of contact begin at
+  const double waist = q.c2 > 0 && n == 1 ? -0.5 * q.c1 / q.c2 : half;
+  if (waist > -half && waist < half) cut[n++] = waist;
   cut[n] = half;
   for (int k = 0; k < n; ++k)
     if (q.at(0.5 * (cut[k] + cut[k + 1])) > 0) add_interval(q, cut[k], cut[k + 1]);
@@ -54,15 +63,15 @@ void strip::add_interval(const quadratic &q, double from, double to) {
     weight_[nodes_] = weight;
     squared_[nodes_++] = std::max(0.0, q.at(t));
   };
+  const double least = std::min(q.at(from), q.at(to)) / q.at(middle);
+  const double ends = fade((least - ends_below) / (smooth_above - ends_below));
   // far from the ends of contact the chord is smooth
-  if (std::min(q.at(from), q.at(to)) > 0.5 * q.at(middle)) {
-    for (double s : {-gauss2, gauss2}) add(middle + half * s, half);
-    return;
-  }
+  if (ends < 1)
+    for (double s : {-gauss2, gauss2}) add(middle + half * s, (1 - ends) * half);
   // t as a cubic of the Gauss variable: its slope vanishes where the chord ends like a root
-  for (int k = 0; k < 5; ++k) {
+  for (int k = 0; k < 5 && ends > 0; ++k) {
     const double s = gauss5[k];
-    add(middle + half * s * (1.5 - 0.5 * s * s), half * weight5[k] * 1.5 * (1 - s * s));
+    add(middle + half * s * (1.5 - 0.5 * s * s), ends * half * weight5[k] * 1.5 * (1 - s * s));
   }
 }
 

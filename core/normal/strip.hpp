@@ -33,7 +33,7 @@ class strip {
 
   int intervals_ = 0, nodes_ = 0;
   double from_[2], to_[2];
-  double t_[10], weight_[10], squared_[10];
+  double t_[14], weight_[14], squared_[14];
 };
 
 // int sqrt(l^2 - x^2)/sqrt(x^2 + y^2) dx over the chord: pi E* times the displacement at distance y

@@ -260,7 +260,7 @@ void wheels::find_z(double target, rp_result &out) {
     return;
   }
   if (search.converged() && carried(out) > force_samples::steep * target)
-    force = look_deeper(touch, depth, samples, out);
+    force = look_deeper(touch, depth, force, samples, out);
   out.z = touch + depth;
   verdict found;
   if (!search.converged())
@@ -275,9 +275,10 @@ void wheels::find_z(double target, rp_result &out) {
   depth_ = search.converged() ? depth : 0.0;
 }
 
-// Forces of depths beyond the one that carries the load, for as much work as a step may take;
-// returns the force of that one, solved again.
-double wheels::look_deeper(double touch, double depth, force_samples &samples, rp_result &out) {
+// Forces of depths beyond the one that carries the load, and of one on the way to it, for as much
+// work as a step may take; returns the force of that one, solved again.
+double wheels::look_deeper(double touch, double depth, double carries, force_samples &samples,
+                           rp_result &out) {
   const auto divided = [&](const wheel_contact &wheel) {
     const rp_side_result &side = out.side[wheel.side()];
     return side.patch_count + side.alternative_count > 1;
@@ -291,6 +292,11 @@ double wheels::look_deeper(double touch, double depth, force_samples &samples, r
     const double deeper = depth * (1 + force_samples::beyond[k]);
     const double force = evaluate(touch + deeper, out);
     if (!beyond()) samples.add(deeper, force);
+  }
+  const double between = samples.in_between(depth, carries);
+  if (between > 0) {
+    const double force = evaluate(touch + between, out);
+    if (!beyond()) samples.add_between(between, force, carries);
   }
   return evaluate(touch + depth, out);
 }

@@ -91,7 +91,8 @@ class wheels final : public driver {
   void keep_heat(const rp_result &result);
   void keep_cleaning(const rp_input &input, const rp_result &result);
   void find_z(double vertical_force, rp_result &result);
-  double look_deeper(double touch, double depth, force_samples &samples, rp_result &result);
+  double look_deeper(double touch, double depth, double carries, force_samples &samples,
+                     rp_result &result);
   bool beyond() const;
   bool falls_while_joining(double depth, double force, const rp_result &out) const;
   void tell_rises(double touch, force_search &search) const;

@@ -136,6 +136,27 @@ def test_a_step_across_a_jump_is_warned_of() -> None:
         assert walk.change(walk.sample(y), walk.sample(y + CLOSE)) < LIMIT
 
 
+def test_a_step_across_a_short_fall_is_warned_of() -> None:
+    """From a second contact's first touch on the force falls over some 15 nm: a step ends 30 nm
+    deeper than the one before it, where each position's own search sees a rise only."""
+    walk, found = Walk(worn_case(227, "kik_piotrowski_corrected")), Found("")
+    steps = [y for y in np.linspace(*SPAN, 500).tolist() if 10.1e-3 < y < 10.4e-3]
+    ((before, after),) = walk.jumps(steps, found)
+    assert walk.change(before, after) > LIMIT
+    assert before.warned or after.warned
+    # steps before it have none
+    assert not any(walk.sample(y).warned for y in steps[:3])
+
+
+def test_two_new_ends_of_a_row_move_no_force() -> None:
+    """Where a row of contact parts in two its integrals take other rules, which all but agree."""
+    walk, found = Walk(worn_case(11, "kik_piotrowski")), Found("")
+    steps = [y for y in np.linspace(*SPAN, 500).tolist() if 9.9e-3 < y < 10.2e-3]
+    assert list(walk.jumps(steps, found)) == []
+    assert found.positions == len(steps)
+    assert found.unsolved == 0
+
+
 def test_a_fall_while_two_contacts_join_is_warned_of() -> None:
     """70 nm above the height found another one carries the load, where a contact is about to appear
     whose joint patch with the first one carries less."""

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -48,6 +49,31 @@ TEST(Strip, IntegratesWhereTheChordIsReal) {
   }
   EXPECT_TRUE(strip({-1, 0, -1}, 1.0).empty());
   EXPECT_TRUE(strip({NAN, 0, 0}, 1.0).empty());
+}
+
+// As a chord gains two ends in its middle or at its side, or loses them, no rule's error comes or
+// goes at once: steps are halved towards the greater change until nothing is left of it.
+TEST(Strip, IntegralsDoNotJump) {
+  const std::function<quadratic(double)> families[] = {
+      [](double u) { return quadratic{u, 0.02, 0.9}; },        // two ends in its middle
+      [](double u) { return quadratic{0.4 + u, 0.3, -0.2}; },  // of all ratios of its ends
+      [](double u) { return quadratic{0.1 + u, 0.5 + u, 0.8}; }};
+  for (const auto &q : families) {
+    const auto area = [&](double u) {
+      return strip(q(u), 1.0).integral([](double, double l2) { return std::sqrt(l2); });
+    };
+    double least = HUGE_VAL, greatest = 0;
+    for (int i = -400; i < 400; ++i) {
+      double low = 1e-3 * i, high = 1e-3 * (i + 1);
+      while (high - low > 1e-12) {
+        const double middle = 0.5 * (low + high), change = area(middle) - area(low);
+        (std::fabs(change) > std::fabs(area(high) - area(middle)) ? high : low) = middle;
+      }
+      EXPECT_NEAR(area(high), area(low), 1e-9) << low;
+      least = std::min(least, area(low)), greatest = std::max(greatest, area(low));
+    }
+    EXPECT_GT(greatest - least, 0.3);
+  }
 }
 
 TEST(Strip, ParabolaIsExact) {
