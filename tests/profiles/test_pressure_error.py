@@ -139,7 +139,16 @@ def with_features(names: tuple[str, ...], folder: Path) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(
-    "name", ["temperature law", "spin offset", "rail support", "flat", "roller", "curved reference"]
+    "name",
+    [
+        "temperature law",
+        "spin offset",
+        "rail support",
+        "flat",
+        "roller",
+        "curved reference",
+        "regimes of water",
+    ],
 )
 def test_it_goes_with_every_feature(name: str, tmp_path: Path) -> None:
     result = railpatch.solve(with_features((name,), tmp_path), folder=tmp_path)
