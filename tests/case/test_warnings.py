@@ -23,7 +23,8 @@ from railpatch.evidence.continuity.worn import (
     worn_case,
 )
 
-from wheelset_demo.vehicle.scene import doubtful_bodies, load_vehicle_scene
+from wheelset_demo.vehicle.bodies import doubtful_bodies
+from wheelset_demo.vehicle.scene import load_vehicle_scene
 
 LOADED = with_values(WHEELSET, wheelset__z=None, wheelset__vertical_force=1.2e5)
 STILL = {"grid__element_size": [1e-3, 1e-3]}
@@ -227,11 +228,11 @@ def test_a_command_warns_and_strict_refuses(tmp_path: Path) -> None:
 
 
 def test_bodies_of_a_vehicle() -> None:
-    scene = load_vehicle_scene(None, {})
-    assert doubtful_bodies(scene) == []
-    light = scene.vehicle.car_body.model_copy(update={"mass": 32.0})
-    object.__setattr__(scene, "vehicle", scene.vehicle.model_copy(update={"car_body": light}))
-    [text] = doubtful_bodies(scene)
+    vehicle = load_vehicle_scene(None, {}).vehicle
+    assert doubtful_bodies(vehicle) == []
+    light = vehicle.body[0].model_copy(update={"mass": 32.0})
+    changed = vehicle.model_copy(update={"body": [light, *vehicle.body[1:]]})
+    [text] = doubtful_bodies(changed)
     assert "vehicle.car_body.mass is 32 kg" in text
 
 

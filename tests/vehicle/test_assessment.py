@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import vehicle_scenes as scenes
 
+from wheelset_demo.scene import GRAVITY
 from wheelset_demo.vehicle import Simulation
 from wheelset_demo.vehicle.assessment import assess, low_passed, shift_limit
 from wheelset_demo.vehicle.trace import run_vehicle, summarise
@@ -95,7 +96,8 @@ def test_summary_of_a_run():
         scenes.scene(speed=80.0, irregular=True, duration=0.9, step=2e-3, shift_factor=0.85)
     )
     found = summarise(run_vehicle(simulation), simulation)
-    assert found.shift_limit == pytest.approx(0.85 * (1e4 + simulation.scene.axle_load / 3))
+    load = simulation.scene.vehicle.mass * GRAVITY / 4
+    assert found.shift_limit == pytest.approx(0.85 * (1e4 + load / 3))
     assert 0 < found.shift_percentile <= 1.01 * found.guiding
     low, high = found.load_range
     assert low < found.load_median < found.load_percentile < 1.01 * high

@@ -133,7 +133,7 @@ def moments(simulation: Simulation) -> list[float]:
         centre = system.data.oMi[joint].translation
         carried += axis @ (moment + np.cross(centre - origins[0], force))
     spin = np.abs(simulation.state.v[system.vehicle.spins]).sum()
-    inertia = simulation.scene.vehicle.wheelset.inertia[1]
+    inertia = simulation.scene.vehicle.wheelset[0].inertia[1]
     return [carried, bodies, inertia * spin * speed / radius]
 
 

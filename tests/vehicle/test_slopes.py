@@ -100,7 +100,7 @@ def test_force_along_a_slope(y):
     turned, rising = Stepped(y, turned=True), Stepped(y, climbing=True, rate=True)
     slopes = np.zeros((1, 2, 2))
     slopes[:, :, 1] = SLOPE
-    wrenches = slope_wrenches(rising.wheels, rising.normals, slopes, RADIUS, 0.75)
+    wrenches = slope_wrenches(rising.wheels, rising.normals, slopes, np.array([RADIUS]), 0.75)
     ahead, spinning, turning = wrenches.sum(axis=(0, 1))
     assert ahead == pytest.approx(-SLOPE * rising.wrench[2], rel=1e-12)
     wanted = turned.wrench - rising.wrench

@@ -98,12 +98,12 @@ def test_derivatives_are_those_of_the_forces(simulation):
 def test_bounce_of_car_body_and_bogies(simulation):
     """On wheelsets held still, in closed form: bounce, pitch with the bogies at half the distance
     of their centres and springs and rods along the track below, and a bogie that yaws."""
-    system, vehicle = simulation.system, simulation.scene.vehicle
+    system = simulation.system
     q, v, series = parts(simulation, simulation.state.values)
     system.suspension.step(q, v, series)
     stiffness = -system.suspension.jacobian()[0]
     k1, k2 = 8 * 1.22e6, 4 * 430e3
-    half, base = 0.5 * vehicle.bogie_distance, 0.5 * vehicle.wheelbase
+    half, base = 0.5 * 19.0, 0.5 * 2.56
     car, bogies = system.vehicle.columns[0], system.vehicle.columns[1:3]
     bounce, pitch = np.zeros((2, len(q)))
     bounce[bogies[:, 2]] = 1.0
@@ -132,3 +132,15 @@ def test_stop():
     area = np.trapezoid([stop.force(x) for x in d], d)
     assert stop.energy(-0.05) == pytest.approx(area, rel=1e-6)
     assert stop.slope(0.035) == pytest.approx(9e4)
+
+
+def test_stop_of_one_side():
+    """A table from displacements below 0 on is the whole curve, and goes on at both ends."""
+    stop = Stop([[-0.01, -50.0], [0.0, 0.0], [0.02, 0.0], [0.03, 1000.0]])
+    assert [stop.force(d) for d in (-0.02, -0.005, 0.01, 0.04)] == pytest.approx(
+        [-100.0, -25.0, 0.0, 2000.0]
+    )
+    assert stop.energy(0.0) == 0.0
+    assert stop.energy(-0.02) == pytest.approx(0.5 * 0.02 * 100.0)
+    assert stop.energy(0.03) == pytest.approx(0.5 * 0.01 * 1000.0)
+    assert stop.slope(-0.5) == pytest.approx(5e3)

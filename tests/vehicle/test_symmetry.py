@@ -17,8 +17,10 @@ def curving(hand: float) -> Simulation:
     alignment = {"straight": 25.0, "transition": 60.0, "arc": 500.0, "radius": hand * 1000.0}
     given = scenes.scene(speed=40.0, alignment={**alignment, "cant": 0.05}, duration=1.2)
     # dampers ahead on the right and behind on the left have no mirror image
-    elements = tuple(e.model_copy(update={"longitudinal": 0.0}) for e in given.suspension)
-    return scenes.finished(replace(given, suspension=elements))
+    lateral = next(e for e in given.vehicle.element if e.name == "secondary lateral dampers")
+    for place in lateral.places:
+        place.at[0] = math.copysign(9.5, place.at[0])
+    return scenes.finished(given)
 
 
 def test_a_left_curve_is_the_mirror_image_of_a_right_one():
@@ -47,8 +49,9 @@ def test_bounce_is_that_of_two_masses():
     """
     given = scenes.scene(duration=0.01)
     none = {"damping": [0.0] * 3, "turning_damping": [0.0] * 3, "series_stiffness": [0.0] * 3}
-    elements = [e.model_copy(update=none) for e in given.suspension]
-    simulation = scenes.finished(replace(given, suspension=tuple(elements)))
+    elements = [e.model_copy(update=none) for e in given.vehicle.element]
+    vehicle = given.vehicle.model_copy(update={"element": elements})
+    simulation = scenes.finished(replace(given, vehicle=vehicle))
     system, n = simulation.system, simulation.system.count
     matrix, _ = system.derivatives(simulation.state.values, range(4))
     eigenvalues, shapes = np.linalg.eig(matrix)

@@ -7,32 +7,31 @@ from numpy.typing import NDArray
 from railpatch import _core
 from railpatch.log.channels import LEAST_LOAD, SLIDING
 
-from wheelset_demo.vehicle.scene import WHEELSETS
-
 Vector = NDArray[np.float64]
 # of the force to the right on a wheel: Y is on the rail, outward > 0
-OUTWARD = np.tile([1.0, -1.0], WHEELSETS)
+OUTWARD = np.array([1.0, -1.0])
 
 
 def rail_forces(wheels: Vector) -> tuple[Vector, Vector]:
-    """N, [8] each, on the rails: Y, outward > 0, and Q, down, of left and right wheel of each
+    """N, [wheels] each, on the rails: Y, outward > 0, and Q, down, of left and right wheel of each
     wheelset. wheels: as ForceElement.wheels."""
-    return OUTWARD * wheels[:, :, 1].ravel(), -wheels[:, :, 2].ravel()
+    return (OUTWARD * wheels[:, :, 1]).ravel(), -wheels[:, :, 2].ravel()
 
 
 class SlidingMeans:
     """Of Y and Q over the last 2 m (EN 14363), and their extremes so far.
 
-    guiding, loads: N, [8] each. Before 2 m are run they are means over the way there is, and so are
-    the extremes; these begin anew with the first whole mean. ratio: -, greatest Y/Q of a wheel that
-    carries something. load_range: N, least and greatest Q. sum: N, greatest force across the track
-    on a wheelset, either way.
+    guiding, loads: N, [wheels] each. Before 2 m are run they are means over the way there is, and
+    so are the extremes; these begin anew with the first whole mean. ratio: -, greatest Y/Q of a
+    wheel that carries something. load_range: N, least and greatest Q. sum: N, greatest force across
+    the track on a wheelset, either way.
     """
 
     def __init__(self, wheels: Vector) -> None:
         """wheels: of the state at the start, as ForceElement.wheels."""
         self._core = _core.SlidingMeans(wheels, SLIDING, LEAST_LOAD)
         self._means = self._core.means
+        self._count = len(self._means) // 2
 
     def add(self, way: float, wheels: Vector) -> None:
         """The state after a time step. way: m, run in it."""
@@ -40,13 +39,13 @@ class SlidingMeans:
 
     @property
     def guiding(self) -> Vector:
-        """N, [8]."""
-        return self._means[: 2 * WHEELSETS].copy()
+        """N, [wheels]."""
+        return self._means[: self._count].copy()
 
     @property
     def loads(self) -> Vector:
-        """N, [8]."""
-        return self._means[2 * WHEELSETS :].copy()
+        """N, [wheels]."""
+        return self._means[self._count :].copy()
 
     @property
     def ratio(self) -> float:

@@ -18,13 +18,13 @@ from wheelset_demo.record import attachments, ran_with
 from wheelset_demo.scene import GRAVITY, SNAPSHOTS
 from wheelset_demo.system import WORKS, ContactFailure
 from wheelset_demo.trace import STORES
-from wheelset_demo.vehicle.model import CAR_BODY, bogie_name
-from wheelset_demo.vehicle.scene import WHEELSETS
+from wheelset_demo.vehicle.bodies import FreeBodyTable, VehicleTable
 from wheelset_demo.vehicle.simulation import Simulation
 
-FREE = (CAR_BODY, bogie_name(0), bogie_name(1))
-# m, drawn: length beyond the wheelsets, width and height of the car body; width and height of beams
-OVERHANG, WIDTH, HEIGHT, BEAM = 2.5, 2.8, 2.7, 0.22
+# m, drawn: length beyond the wheelsets, width and height of the body of reference; length beyond
+# its wheelsets and width and height of beams, and their distance from the middle, of others
+OVERHANG, WIDTH, HEIGHT = 2.5, 2.8, 2.7
+BEYOND, BEAM, ARM = 0.4, 0.22, 1.0
 LINE_STEP = 2.0  # m, of the centre line that is drawn
 
 
@@ -80,7 +80,7 @@ class Recorder:
         return {
             "state": self._state(simulation) | places[-1],
             "wheelsets": [
-                self._wheelset(simulation, k, places[k], fields) for k in range(WHEELSETS)
+                self._wheelset(simulation, k, place, fields) for k, place in enumerate(places[:-1])
             ],
             "bodies": bodies(simulation),
             "tracks": [(origin.tolist(), quaternion(turn)) for turn, origin in frames],
@@ -160,11 +160,12 @@ class Recorder:
 
 
 def bodies(simulation: Simulation) -> list[dict[str, Any]]:
-    """Car body, bogie frames and wheelsets; these without their spin."""
+    """Free bodies and wheelsets; these without their spin."""
     system, state = simulation.system, simulation.state
     placed, model = system.data.oMi, system.model
     found = []
-    for name, columns in zip(FREE, system.vehicle.columns, strict=False):
+    free = len(simulation.scene.vehicle.bodies)
+    for name, columns in zip(system.vehicle.bodies[:free], system.vehicle.columns, strict=False):
         place = placed[system.vehicle.joints[name]]
         acceleration = simulation.rates.values[system.count + columns[:3]].copy()
         acceleration[2] -= GRAVITY
@@ -173,11 +174,10 @@ def bodies(simulation: Simulation) -> list[dict[str, Any]]:
             "acceleration": (place.rotation.T @ acceleration).tolist(),
         }
         found.append(body(name, place) | moved)
-    for k in range(WHEELSETS):
-        name = f"wheelset_{k + 1}"
-        velocity = state.v[system.vehicle.carriers[k, :3]].tolist()
-        carrier = placed[model.parents[system.vehicle.joints[name]]]
-        found.append(body(name, carrier) | {"velocity": velocity})
+    for axle, columns in zip(simulation.scene.vehicle.axles, system.vehicle.carriers, strict=True):
+        velocity = state.v[columns[:3]].tolist()
+        carrier = placed[model.parents[system.vehicle.joints[axle.name]]]
+        found.append(body(axle.name, carrier) | {"velocity": velocity})
     return found
 
 
@@ -200,7 +200,7 @@ def open_log(path: Path, simulation: Simulation) -> VehicleLog:
     scene = simulation.scene
     return VehicleLog(
         path,
-        wheelsets=WHEELSETS,
+        wheelsets=simulation.system.wheelsets,
         case_text=scene.text,
         case_name=scene.name,
         profiles=attachments(scene),
@@ -211,19 +211,45 @@ def open_log(path: Path, simulation: Simulation) -> VehicleLog:
 
 
 def geometry(simulation: Simulation) -> VehicleGeometry:
-    """What is drawn: boxes as large as the scene's dimensions let one guess."""
+    """What is drawn: boxes as large as the scene says or its dimensions let one guess."""
     scene = simulation.scene
-    vehicle = scene.vehicle
-    floor = vehicle.bogie_frame.height + 0.5
-    # in the car body's axes, z down from its centre
-    middle = vehicle.car_body.height - floor - 0.5 * HEIGHT
-    length = vehicle.length + 2 * OVERHANG
-    arm = vehicle.axle_box.lateral
-    beam = [vehicle.wheelbase + 0.8, BEAM, BEAM]
-    frame = [([0.0, side * arm, 0.0], beam) for side in (-1.0, 1.0)]
-    frame.append(([0.0, 0.0, 0.0], [2 * BEAM, 2 * arm, BEAM]))
-    boxes = {CAR_BODY: [([0.0, 0.0, middle], [length, WIDTH, HEIGHT])]}
-    boxes |= {bogie_name(k): frame for k in range(2)}
     along = np.linspace(0.0, scene.length - 1.0, max(2, math.ceil(scene.length / LINE_STEP)))
     _, line = simulation.system.alignment.frames(along)
-    return VehicleGeometry(scene_geometry(scene.case), boxes, line)
+    own = {
+        axle.number: scene_geometry(scene.case_of(axle))
+        for axle in scene.vehicle.axles
+        if scene.case_of(axle) is not scene.case
+    }
+    return VehicleGeometry(scene_geometry(scene.case), boxes_of(scene.vehicle), line, own)
+
+
+def boxes_of(vehicle: VehicleTable) -> dict[str, list[tuple[list[float], list[float]]]]:
+    """Of the free bodies by name: centres and sizes, m, in their axes."""
+    reference, *others = vehicle.bodies
+    found = {}
+    for table in (reference, *others):
+        if table.size is not None:
+            found[table.name] = [([0.0, 0.0, 0.0], table.size)]
+        elif table is reference:
+            floor = max((body.position[2] for body in others), default=0.5) + 0.5
+            # in its axes, z down from its centre, and x from it to the middle of the wheelsets
+            middle = 0.5 * (vehicle.axles[0].x + vehicle.axles[-1].x) - table.position[0]
+            down = table.position[2] - floor - 0.5 * HEIGHT
+            size = [vehicle.length + 2 * OVERHANG, WIDTH, HEIGHT]
+            found[table.name] = [([middle, 0.0, down], size)]
+        else:
+            found[table.name] = frame_of(table, vehicle)
+    return found
+
+
+def frame_of(body: FreeBodyTable, vehicle: VehicleTable) -> list[tuple[list[float], list[float]]]:
+    """Two beams along and one across, over the wheelsets that elements join the body to."""
+    pairs = [place.between for element in vehicle.element for place in element.places]
+    joined = {name for pair in pairs if body.name in pair for name in pair}
+    axles = [axle for axle in vehicle.axles if joined & {axle.name, *axle.boxes}]
+    arm = max((y for axle in axles for y in axle.boxes.values()), default=ARM)
+    ends = [axle.x for axle in axles] or [body.position[0]]
+    middle, length = 0.5 * (max(ends) + min(ends)) - body.position[0], max(ends) - min(ends)
+    beam = [length + 2 * BEYOND, BEAM, BEAM]
+    beams = [([middle, side * arm, 0.0], beam) for side in (-1.0, 1.0)]
+    return [*beams, ([middle, 0.0, 0.0], [2 * BEAM, 2 * arm, BEAM])]

@@ -1,17 +1,17 @@
-"""The scene of a vehicle run: a case file of kind "wheelset" with vehicle, suspension and track."""
+"""The scene of a vehicle run: a case file of kind "wheelset" with vehicle and track."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
-from pydantic import Field, model_validator
-from railpatch.case.load import check_table
-from railpatch.case.types import NotNegative, Number, Positive, Table, exactly, relation
+from pydantic import Field
+from railpatch.case.load import Scene, check_case, check_table
+from railpatch.case.types import NotNegative, Table
+from railpatch.case.wheel import WheelsetCase
 from railpatch.errors import CaseError
 from railpatch.log.stream import SCENE_RATE
 
@@ -21,140 +21,21 @@ from wheelset_demo.scene import (
     RunScene,
     check_kind,
     check_present,
+    found_profiles,
     load_checked,
     scene_file,
     start_problems,
     track_problems,
 )
 from wheelset_demo.vehicle.alignment import AlignmentTable
+from wheelset_demo.vehicle.bodies import Axle, VehicleTable
 from wheelset_demo.vehicle.irregularity import IrregularityTable
 
 DEFAULT = "vehicle_curve.toml"
 # found at the start, or no part of a scene that runs on its own track
 FOUND = ("y", "yaw", "roll", "vy", "vz", "roll_rate", "yaw_rate", "pitch_rate")
-WHEELSETS = 4
-BOXES = 2 * WHEELSETS
 # m, of track: its record takes some 0.2 GB
 LONGEST = 1e5
-Triple = Annotated[list[NotNegative], exactly(3)]
-NONE = [0.0, 0.0, 0.0]
-# kg: railway vehicles from a narrow-gauge tram to a loaded freight wagon
-PLAUSIBLE = {
-    "car_body": (3e3, 1.2e5),
-    "bogie_frame": (300.0, 2e4),
-    "wheelset": (300.0, 5e3),
-    "axle_box": (10.0, 1e3),
-}
-
-
-class BodyTable(Table):
-    """A rigid body."""
-
-    mass: Positive = Field(description="kg")
-    inertia: Annotated[list[Positive], exactly(3)] = Field(
-        description="kg m^2, about x, y, z through its centre"
-    )
-
-
-class HighBodyTable(BodyTable):
-    """A rigid body above the rails."""
-
-    height: Positive = Field(description="m, of its centre above the rails' tops")
-
-
-class AxleBoxTable(BodyTable):
-    """A body that pitches about the end of an axle."""
-
-    lateral: Positive = Field(description="m, of its centre from the vehicle's middle")
-
-
-def doubtful_bodies(scene: VehicleScene) -> list[str]:
-    """Warnings of bodies whose mass no railway vehicle has."""
-    found = []
-    for name, (low, high) in PLAUSIBLE.items():
-        mass = getattr(scene.vehicle, name).mass
-        if not low <= mass <= high:
-            found.append(f"vehicle.{name}.mass is {mass:g} kg, outside {low:g} to {high:g} kg")
-    return found
-
-
-class VehicleTable(Table):
-    """Bodies of a vehicle with two bogies of two wheelsets; it is symmetric."""
-
-    bogie_distance: Positive = Field(description="m, between the bogies' centres")
-    wheelbase: Positive = Field(description="m, between the wheelsets of a bogie")
-    car_body: HighBodyTable = Field(description="the car body")
-    bogie_frame: HighBodyTable = Field(description="each bogie frame")
-    wheelset: BodyTable = Field(description="each wheelset, spinning about y")
-    axle_box: AxleBoxTable = Field(description="each of two axle boxes of a wheelset")
-
-    @model_validator(mode="after")
-    def _round(self) -> VehicleTable:
-        roll, _, yaw = self.wheelset.inertia
-        if roll != yaw:
-            raise relation("wheelset.inertia", self.wheelset.inertia, "equal ones about x and z")
-        return self
-
-    @property
-    def length(self) -> float:
-        """m, between the first and the last wheelset."""
-        return self.bogie_distance + self.wheelbase
-
-    @property
-    def mass(self) -> float:
-        """kg, of all."""
-        boxes = BOXES * self.axle_box.mass
-        return (
-            self.car_body.mass + 2 * self.bogie_frame.mass + WHEELSETS * self.wheelset.mass + boxes
-        )
-
-
-class ElementTable(Table):
-    """Springs and dampers at one kind of place; axes are those of the bogie frame."""
-
-    name: str = Field(description="(no unit): for messages")
-    level: Literal["primary", "secondary", "centre"] = Field(
-        description="(no unit): at each axle box to the bogie frame, at each side of a bogie to "
-        "the car body, in the middle of a bogie to the car body"
-    )
-    height: Positive = Field(description="m, above the rails' tops")
-    lateral: NotNegative = Field(default=0.0, description="m, from the vehicle's middle")
-    longitudinal: Number = Field(
-        default=0.0,
-        description="m, of primary elements from the wheelset away from the bogie's middle; of "
-        "secondary ones from the bogie's middle, > 0 ahead on the right side and behind on the "
-        "left one; of those in the centre ahead",
-    )
-    stiffness: Triple = Field(default=NONE, description="N/m, along x, y, z")
-    damping: Triple = Field(default=NONE, description="N s/m, along x, y, z")
-    series_stiffness: Triple = Field(
-        default=NONE, description="N/m, in series with each damper; 0: none"
-    )
-    turning_stiffness: Triple = Field(default=NONE, description="N m/rad, about x, y, z")
-    turning_damping: Triple = Field(default=NONE, description="N m s/rad, about x, y, z")
-    bump_stop: Annotated[list[Annotated[list[Number], exactly(2)]], Field(min_length=2)] | None = (
-        Field(default=None, description="[m, N], lateral force over displacement, point symmetric")
-    )
-
-    @model_validator(mode="after")
-    def _possible(self) -> ElementTable:
-        if self.level == "centre" and self.lateral != 0:
-            raise relation("lateral", self.lateral, "0 in the middle of a bogie")
-        if self.level != "centre" and self.lateral == 0:
-            wanted = f"> 0 for a {self.level} element: there is one at each side"
-            raise relation("lateral", self.lateral, wanted)
-        if any(s > 0 and c == 0 for s, c in zip(self.series_stiffness, self.damping, strict=True)):
-            raise relation("series_stiffness", self.series_stiffness, "0 where damping is 0")
-        if self.bump_stop is not None:
-            places = [row[0] for row in self.bump_stop]
-            if places[0] < 0 or any(b <= a for a, b in pairwise(places)):
-                raise relation("bump_stop", places, "displacements >= 0 that increase")
-            forces = [row[1] for row in self.bump_stop]
-            if forces[0] != 0 or any(b < a for a, b in pairwise(forces)) or not forces[-1] > 0:
-                raise relation(
-                    "bump_stop", forces, "forces from 0 on that do not fall, at last > 0"
-                )
-        return self
 
 
 class RunTable(Table):
@@ -189,7 +70,7 @@ class RunTable(Table):
         "summary states; EN 14363 has 0.85 for freight wagons (from memory)",
     )
     speed_control: NotNegative = Field(
-        default=1e4, description="N s/m, of the force that holds the car body at the speed"
+        default=1e4, description="N s/m, of the force that holds the body of reference at the speed"
     )
 
 
@@ -207,7 +88,6 @@ class VehicleScene(RunScene):
     """A vehicle's scene. irregularity: None for straight rails."""
 
     vehicle: VehicleTable
-    suspension: tuple[ElementTable, ...]
     alignment: AlignmentTable
     irregularity: IrregularityTable | None
     run: RunTable
@@ -224,8 +104,21 @@ class VehicleScene(RunScene):
 
     @property
     def axle_load(self) -> float:
-        """N, of each wheelset at rest."""
-        return self.vehicle.mass * GRAVITY / WHEELSETS
+        """N, of a wheelset at rest, the mean of all."""
+        return self.vehicle.mass * GRAVITY / len(self.vehicle.axles)
+
+    def case_of(self, axle: Axle) -> WheelsetCase:
+        """The contact of a wheelset."""
+        return axle.table.case_of(self.case)
+
+    def cases(self, derivatives: bool = False) -> list[Scene]:
+        """Of all wheelsets, from the front, with z prescribed; those that are alike share one."""
+        made: dict[int, Scene] = {}
+        for axle in self.vehicle.axles:
+            if id(axle.table) not in made:
+                one = replace(self, case=self.case_of(axle))
+                made[id(axle.table)] = one.at_height(derivatives)
+        return [made[id(axle.table)] for axle in self.vehicle.axles]
 
     def with_method(self, **method: Any) -> VehicleScene:
         """With some keys of [method] changed; None takes [grid] away for grid."""
@@ -256,8 +149,30 @@ def load_vehicle_scene(
     """
     path = scene_file(DEFAULT) if path is None else Path(path)
     checks = {name: partial(checked_table, name) for name in TABLES}
-    checks["suspension"] = checked_elements
-    return load_checked(path, "vehicle", checks, check_run, VehicleScene, overrides)
+    scene = load_checked(path, "vehicle", checks, check_run, VehicleScene, overrides)
+    return with_own_profiles(scene, path.parent)
+
+
+def with_own_profiles(scene: VehicleScene, folder: Path) -> VehicleScene:
+    """With the files of wheelsets' own profiles found. Raises CaseError."""
+    tables, profiles, problems = [], dict(scene.profiles), []
+    for k, table in enumerate(scene.vehicle.wheelset):
+        if table.profiles is None:
+            tables.append(table)
+            continue
+        found = found_profiles(table.case_of(scene.case), folder)
+        own = {key: found[key] for key in table.profiles.model_dump(exclude_none=True)}
+        profiles |= {f"wheelset_{k}.{key}": name for key, name in own.items()}
+        named = table.profiles.model_copy(update=own)
+        tables.append(table.model_copy(update={"profiles": named}))
+        try:
+            check_case(tables[-1].case_of(scene.case).model_dump())
+        except CaseError as error:
+            problems += [f"vehicle.wheelset[{k}]: {text}" for text in error.problems]
+    if problems:
+        raise CaseError(problems)
+    vehicle = scene.vehicle.model_copy(update={"wheelset": tables})
+    return replace(scene, vehicle=vehicle, profiles=profiles)
 
 
 def checked_table(name: str, table: Any) -> Any:
@@ -265,23 +180,6 @@ def checked_table(name: str, table: Any) -> Any:
     if table is None and name in OPTIONAL:
         return AlignmentTable() if name == "alignment" else None
     return check_present(name, TABLES[name], table)
-
-
-def checked_elements(elements: Any) -> tuple[ElementTable, ...]:
-    """The list [[suspension]]. Raises CaseError."""
-    if not isinstance(elements, list) or not elements:
-        raise CaseError("suspension: value is missing, allowed a list of [[suspension]] tables")
-    found = tuple(
-        check_table(ElementTable, element, f"suspension[{index}]")
-        for index, element in enumerate(elements)
-    )
-    for level in ("primary", "secondary"):
-        if not any(e.level == level and e.stiffness[2] > 0 for e in found):
-            raise CaseError(
-                f"suspension: no element of level {level!r} has a vertical stiffness, allowed one "
-                "or more: they carry the weight"
-            )
-    return found
 
 
 def check_run(

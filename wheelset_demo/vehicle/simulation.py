@@ -9,14 +9,14 @@ import numpy as np
 from railpatch import CaseError, Contact
 from railpatch.case.common import without_friction
 from railpatch.case.types import SIDES
+from railpatch.case.wheel import WheelsetCase
 
 from wheelset_demo.system import BAD, WORKS
 from wheelset_demo.vehicle.means import SlidingMeans
-from wheelset_demo.vehicle.model import CAR_BODY, bogie_name, places_along
-from wheelset_demo.vehicle.scene import WHEELSETS, VehicleScene
+from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.step_times import StepTimes
 from wheelset_demo.vehicle.steppers import Bdf2
-from wheelset_demo.vehicle.system import WHEELS, Rates, Vector, VehicleState, VehicleSystem
+from wheelset_demo.vehicle.system import Rates, Vector, VehicleState, VehicleSystem
 
 
 class Simulation:
@@ -36,6 +36,7 @@ class Simulation:
         self.state = at_start(scene, self.system)
         self.wall_seconds = self.cpu_seconds = 0.0
         self.rates: Rates = self.system.rates(self.state.time, self.state.values)
+        self.system.suspension.release()
         self._stepper = Bdf2(self.system, scene.run.step, scene.run.derivatives_every)
         self.means = SlidingMeans(self.element.wheels)
         self._solved_before = self._contact_cpu()
@@ -66,6 +67,7 @@ class Simulation:
         before = self.system.course.middle
         self.element.pass_time(self.scene.run.step)
         self.state, self.rates = self._stepper.step(self.state, self.rates)
+        self.system.suspension.settle()
         self.means.add(self.system.course.middle - before, self.element.wheels)
 
     def _timed_step(self, times: StepTimes) -> None:
@@ -101,37 +103,33 @@ class Simulation:
 
 
 def at_start(scene: VehicleScene, system: VehicleSystem) -> VehicleState:
-    """All bodies in the middle at their height, wheels pressed down by the axle load, rolling."""
-    vehicle, n = scene.vehicle, system.count
+    """All bodies in the middle at their height, wheels pressed down by their loads, rolling."""
+    vehicle, n = system.vehicle, system.count
     values = np.zeros(system.size)
     q, v = values[:n], values[n : 2 * n]
-    down, radius = wheels_under_load(scene)
-    along = places_along(vehicle)
-    heights = {CAR_BODY: vehicle.car_body.height}
-    heights |= {bogie_name(k): vehicle.bogie_frame.height for k in range(2)}
-    for name, columns in zip(system.vehicle.bodies, system.vehicle.columns, strict=True):
-        if name in heights:
-            q[columns[0]], q[columns[2]] = along[name], down - heights[name]
-            v[columns[0]] = scene.speed
-    nominal = scene.case.wheelset.nominal_radius
-    for k in range(WHEELSETS):
-        columns = system.vehicle.carriers[k]
-        q[columns[0]], q[columns[2]] = along[f"wheelset_{k + 1}"], down - nominal
-        v[columns[0]] = scene.speed
-        v[system.vehicle.spins[k]] = -scene.speed / radius
-        system.positions[k] = q[columns[0]]
-    return VehicleState(0.0, values, np.zeros(len(WORKS) + WHEELS), n)
+    loads = system.suspension.statics.loads
+    found: dict[tuple[int, float], tuple[float, float]] = {}
+    for axle, load in zip(scene.vehicle.axles, loads.tolist(), strict=True):
+        alike = id(axle.table), round(load, 3)
+        if alike not in found:
+            found[alike] = wheels_under_load(scene.case_of(axle), load)
+        q[vehicle.carriers[axle.number - 1, 2]], radius = found[alike]
+        v[vehicle.spins[axle.number - 1]] = -scene.speed / radius
+    q[:] = vehicle.rest + system.suspension.statics.sunk(q[vehicle.carriers[:, 2]])
+    v[vehicle.ahead] = scene.speed
+    system.positions[:] = q[vehicle.carriers[:, 0]]
+    return VehicleState(0.0, values, np.zeros(len(WORKS) + 2 * system.wheelsets), n)
 
 
-def wheels_under_load(scene: VehicleScene) -> tuple[float, float]:
-    """m: how far a wheelset in the middle is pressed down by the axle load, its rolling radius."""
-    content = without_friction(scene.case.model_dump())
-    content["wheelset"] |= {"vertical_force": scene.axle_load, "z": None}
+def wheels_under_load(case: WheelsetCase, load: float) -> tuple[float, float]:
+    """m: how far a wheelset in the middle is pressed down by a load (N), its rolling radius."""
+    content = without_friction(case.model_dump())
+    content["wheelset"] |= {"vertical_force": load, "z": None}
     content["method"]["derivatives"] = False
     result = Contact(content).step()
     if result.status in BAD or result.status == "no_contact":
         raise CaseError(
-            f"vehicle: the axle load is {scene.axle_load:.6g} N, allowed one that the wheels can "
+            f"vehicle: an axle load is {load:.6g} N, allowed one that the wheels can "
             f"carry: {result.status}: {result.reason}"
         )
     radii = [result[side]["rolling_radius"] for side in SIDES]

@@ -29,14 +29,14 @@ Vector = NDArray[np.float64]
 
 
 def slope_wrenches(
-    wheels: Vector, normals: Vector, slopes: Vector, radius: float, arm: float
+    wheels: Vector, normals: Vector, slopes: Vector, radii: Vector, arm: float
 ) -> Vector:
     """[n, 2, 3], of left and right wheel: Fx (N), My, Mz (N m) about the wheelset's centre.
 
     wheels: [n, 2, 8], normals: N, [n, 2], as ForceElement.wheels, .lateral_normals. slopes: -, [n,
-    2, 2], of left and right rail, lateral and vertical. radius, arm: m, of the wheels, and half the
-    distance of the contacts, near enough for the lateral force's share.
+    2, 2], of left and right rail, lateral and vertical. radii: m, [n], of the wheels; arm: m, half
+    the distance of the contacts, near enough for the lateral force's share.
     """
     found = np.empty((*wheels.shape[:2], 3))
-    _core.slope_wrenches(wheels, normals, slopes, radius, arm, found)
+    _core.slope_wrenches(wheels, normals, slopes, radii, arm, found)
     return found

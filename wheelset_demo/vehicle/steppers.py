@@ -28,7 +28,6 @@ from __future__ import annotations
 import numpy as np
 
 from wheelset_demo.steppers import GAMMA
-from wheelset_demo.vehicle.scene import WHEELSETS
 from wheelset_demo.vehicle.system import Rates, Vector, VehicleState, VehicleSystem
 
 # m/s^2, of a wheelset: some tenth of its load over its mass
@@ -42,13 +41,13 @@ class Implicit:
         self._system, self._step, self._every, self._weight = system, step, every, weight
         self._age = 0
         # wheelsets whose contacts' derivatives are known to be wrong
-        self._wrong: list[int] = list(range(WHEELSETS))
+        self._wrong: list[int] = list(range(system.wheelsets))
         self._matrix = self._inverse = self._inputs = np.zeros((0, 0))
 
     def _keep_fresh(self, values: Vector) -> None:
         """New derivatives where they are old; values: whose rates were the last ones."""
         if self._age >= self._every:
-            self._age, self._wrong = 0, list(range(WHEELSETS))
+            self._age, self._wrong = 0, list(range(self._system.wheelsets))
         if self._wrong:
             self._matrix, self._inputs = self._system.derivatives(values, self._wrong)
             weight = self._weight * self._step
@@ -113,7 +112,7 @@ class Bdf2(Implicit):
         found = self._arrived(state, rates, change)
         rows = self._watched
         assumed = known[rows] + self._matrix[rows] @ (change - last)
-        away = np.abs(found[1].values[rows] - assumed).reshape(WHEELSETS, 2).max(axis=1)
+        away = np.abs(found[1].values[rows] - assumed).reshape(-1, 2).max(axis=1)
         self._wrong = np.flatnonzero(away > SURPRISE).tolist()
         return found
 

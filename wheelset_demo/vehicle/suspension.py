@@ -1,8 +1,7 @@
-"""All springs, dampers, rods and bump stops of a vehicle, in arrays.
+"""All elements of a vehicle, in arrays: springs, dampers, rods, bump stops, sliders.
 
-An element joins a point of body A (a bogie frame) to a point of body B (axle box or car body), one
-and the same place in the vehicle at rest. Its displacement is that of B's point seen from A, in A's
-axes,
+An element joins a point of body A to a point of body B, one and the same place in the vehicle at
+rest. Its displacement is that of B's point seen from A, in A's axes,
 
     d = R_A^T (P_B - P_A),    d' = R_A^T (v_B - v_A(P_B)),
 
@@ -10,13 +9,15 @@ v_A(P_B) of A's material that is at P_B; turns are half the skew part of R_A^T R
 their rates those of the relative angular velocity. Each component of an element that has a
 coefficient is a row:
 
-    force on B = -(k d + c d' + preload + f + table(d)),
-    f' = s (d' - f/c)           damper c in series with a spring s,
+    force on B = -(k d + c d' + preload + f + table(d) + j),
+    f' = s (d' - f/c)                          damper c in series with a spring s,
+    j = t (d - a) within -F ... F              slider with a spring t before it (Jenkins 1962),
 
 and acts on A with the opposite force at the same point P_B, so that elements neither give nor take
-momentum or moment of momentum. With B [rows, nv] from velocities to rates of the rows, the
-generalised force is B^T force. Preloads carry the weight: vertical springs of a level share
-it by their stiffness.
+momentum or moment of momentum. A slider moves on, a = d - j/t, once a time step, to where its force
+left it; its limit F is a force and a share of what the element's vertical spring carries. With B
+[rows, nv] from velocities to rates of the rows, the generalised force is B^T force. Preloads carry
+the weight: see statics.
 """
 
 from __future__ import annotations
@@ -25,91 +26,116 @@ import numpy as np
 from numpy.typing import NDArray
 from railpatch import _core
 
-from wheelset_demo.vehicle.elements import Place, Stop, centres_at_rest, places_of, preloads
+from wheelset_demo.vehicle.elements import ElementTable, Stop
 from wheelset_demo.vehicle.model import VehicleModel
-from wheelset_demo.vehicle.scene import ElementTable, VehicleScene, VehicleTable
+from wheelset_demo.vehicle.scene import VehicleScene
+from wheelset_demo.vehicle.statics import Statics
 
 Vector = NDArray[np.float64]
-Y, Z = 1, 2
+Z = 2
 
 
 class Suspension:
     """The elements of a scene. step() finds their forces, jacobian() how they change.
 
     Of the last step(), overwritten by the next: displacement, rate (m, m/s or rad, rad/s), force (N
-    or N m), of the rows; matrix: [rows, nv]; series_rates: N/s. damping_power: W, >= 0, turned into
-    heat by the dampers.
+    or N m), of the rows; matrix: [rows, nv]; series_rates: N/s; friction_force: N or N m, of the
+    sliders. damping_power: W, >= 0, turned into heat by dampers and sliders. owners: [rows], index
+    of a row's table in vehicle.element. statics: what the elements carry at rest.
     """
 
     def __init__(self, scene: VehicleScene, model: VehicleModel) -> None:
-        self._columns, self._arms = model.columns, model.arms
-        places = [place for element in scene.suspension for place in places_of(element, scene)]
+        """Raises CaseError where the elements do not hold or carry the bodies."""
+        vehicle = scene.vehicle
+        places = [
+            (owner, place)
+            for owner, element in enumerate(vehicle.element)
+            for place in element.places
+        ]
         index = {name: k for k, name in enumerate(model.bodies)}
-        centres = centres_at_rest(scene)
-        self._a, self._b = (
-            np.array([index[place.ends[end]] for place in places]) for end in (0, 1)
-        )
-        points = np.array([place.point for place in places])
-        self._at_a, self._at_b = (
-            points - np.array([centres[place.ends[end]] for place in places]) for end in (0, 1)
-        )
-        self._size = len(places)
+        self._ends = np.array([[index[name] for name in place.between] for _, place in places])
+        points = np.array([vehicle.place(*place.at) for _, place in places])
+        self._at = [points - model.centres[self._ends[:, end]] for end in (0, 1)]
+        self._model, self._width = model, model.model.nv
         self.damping_power = 0.0
-        self._rows(places, scene.vehicle)
-        self._core = self._compiled(model.model.nv)
+        self._rows(vehicle.element, np.array([owner for owner, _ in places]))
+        self.statics = self._at_rest()
+        self._preload = self.statics.preload
+        self._core = self._compiled(self._preload)
         self.matrix, self.series_rates = self._core.matrix, self._core.series_rates
         self.displacement, self.rate = self._core.displacement, self._core.rate
         self.force, self._generalised = self._core.force, self._core.generalised
+        self.friction_force, self._anchor = self._core.friction_force, self._core.anchor
 
-    def _compiled(self, width: int) -> _core.Suspension:
+    def _compiled(self, preload: Vector) -> _core.Suspension:
         """The elements' forces, ready to be asked for at every step."""
-        columns = self._columns.astype(np.int64)
         rows = np.stack([self._element, self._axis, self._about], axis=1)
         return _core.Suspension(
-            width,
-            columns,
-            self._arms,
-            np.stack([self._a, self._b], axis=1).astype(np.int64),
-            self._at_a,
-            self._at_b,
+            self._width,
+            self._model.columns.astype(np.int64),
+            self._model.arms,
+            self._ends.astype(np.int64),
+            *self._at,
             rows.astype(np.int64),
-            np.stack([self._stiffness, self._damping, self._preload], axis=1),
+            np.stack([self._stiffness, self._damping, preload], axis=1),
             self._series.astype(np.int64),
             np.stack([self._series_stiffness, self._series_damping], axis=1),
             [(row, *stop.points) for row, stop in self._stops],
+            self._friction_rows.astype(np.int64),
+            self._friction,
         )
 
-    def _rows(self, places: list[Place], vehicle: VehicleTable) -> None:
-        """Picks the components with a coefficient."""
-        tables = [place.element for place in places]
-        count = self._size
-        stiffness = table_of(tables, "stiffness", "turning_stiffness")
-        damping = table_of(tables, "damping", "turning_damping")
-        series = np.zeros((2, count, 3))
+    def _at_rest(self) -> Statics:
+        """Preloads and what wheelsets carry."""
+        core = self._compiled(np.zeros(len(self._stiffness)))
+        core.step(self._model.rest, np.zeros(self._width), np.zeros(len(self._series)))
+        return Statics(self._model, core.matrix.copy(), self._stiffness, self._with_sliders())
+
+    def _with_sliders(self) -> Vector:
+        """N/m, N m/rad, [rows], of springs and of sliders that stick."""
+        found = self._stiffness.copy()
+        np.add.at(found, self._friction_rows[:, 0], self._friction[:, 0])
+        return found
+
+    def _rows(self, elements: list[ElementTable], owners: NDArray[np.int64]) -> None:
+        """Picks the components with a coefficient. owners: [elements], of each its table."""
+        tables = [elements[owner] for owner in owners]
+
+        def both(along: str, about: str) -> Vector:
+            return np.array([[getattr(t, name) for t in tables] for name in (along, about)])
+
+        stiffness = both("stiffness", "turning_stiffness")
+        damping = both("damping", "turning_damping")
+        sliders = both("friction_stiffness", "turning_friction_stiffness")
+        limits = both("friction_force", "turning_friction_moment")
+        series, shares = np.zeros_like(stiffness), np.zeros_like(stiffness)
         series[0] = [table.series_stiffness for table in tables]
-        stopped = np.zeros((2, count, 3), dtype=bool)
-        stopped[0, :, Y] = [table.bump_stop is not None for table in tables]
-        used = (stiffness > 0) | (damping > 0) | stopped
-        kind, self._element, self._axis = np.nonzero(used)
-        self._about = kind
-        self._count = len(kind)
+        shares[0] = [table.friction_coefficient for table in tables]
+        stopped = np.zeros(stiffness.shape, dtype=bool)
+        for axis in range(3):
+            stopped[0, :, axis] = [table.curve(axis) is not None for table in tables]
+        used = (stiffness > 0) | (damping > 0) | (sliders > 0) | stopped
+        self._about, self._element, self._axis = np.nonzero(used)
+        self.owners = owners[self._element]
         self._stiffness = stiffness[used]
         in_series = series[used] > 0
         self._series = np.flatnonzero(in_series)
-        self._series_stiffness, self._series_damping = (
-            series[used][in_series],
-            damping[used][in_series],
-        )
+        self._series_stiffness = series[used][in_series]
+        self._series_damping = damping[used][in_series]
         self._damping = np.where(in_series, 0.0, damping[used])
-        preload = np.zeros((2, count, 3))
-        preload[0, :, Z] = preloads(places, vehicle)
-        self._preload = preload[used]
-        numbers = np.flatnonzero(stopped[used])
-        owners = np.nonzero(stopped)[1]
-        self._stops = [
-            (int(row), Stop(tables[owner].bump_stop))
-            for row, owner in zip(numbers, owners, strict=True)
-        ]
+        self._stops = []
+        for row in np.flatnonzero(stopped[used]).tolist():
+            curve = tables[self._element[row]].curve(int(self._axis[row]))
+            assert curve is not None
+            self._stops.append((row, Stop(curve)))
+        rows = np.flatnonzero(sliders[used] > 0)
+        numbers = np.full(used.shape, -1)
+        numbers[used] = np.arange(len(self._element))
+        # that of the vertical spring of the same element; of a slider without a share its own
+        carrying = numbers[0, self._element[rows], Z]
+        carrying = np.where(shares[used][rows] > 0, carrying, rows)
+        self._friction_rows = np.stack([rows, carrying], axis=1)
+        self._friction = np.stack([each[used][rows] for each in (sliders, limits, shares)], axis=1)
 
     @property
     def series_count(self) -> int:
@@ -121,12 +147,21 @@ class Suspension:
         self.damping_power = self._core.step(q, v, series)
         return self._generalised.copy()
 
+    def settle(self) -> None:
+        """Sliders stay where the last step() moved them to: once a time step."""
+        self._core.settle()
+
+    def release(self) -> None:
+        """Sliders' springs are without force at the displacements of the last step()."""
+        self._anchor[:] = self.displacement[self._friction_rows[:, 0]]
+
     def jacobian(self) -> tuple[Vector, Vector, Vector]:
         """Of the generalised force of the last step by q, v and series forces, nearly.
 
-        How the elements' directions turn with the bodies is left out: [nv, nv], [nv, nv], [nv, n].
+        How the elements' directions turn with the bodies is left out, and sliders stick: [nv, nv],
+        [nv, nv], [nv, n].
         """
-        stiffness = self._stiffness.copy()
+        stiffness = self._with_sliders()
         for row, stop in self._stops:
             stiffness[row] += stop.slope(float(self.displacement[row]))
         by_q = -self.matrix.T @ (stiffness[:, None] * self.matrix)
@@ -139,13 +174,10 @@ class Suspension:
         return by_v, -self._series_stiffness / self._series_damping
 
     def potential(self, series: Vector) -> float:
-        """J, of springs, preloads and stops at the last step."""
+        """J, of springs, preloads, stops and the sliders' springs at the last step."""
         d = self.displacement
         springs = 0.5 * float(self._stiffness @ d**2) + float(self._preload @ d)
         stops = sum(stop.energy(float(d[row])) for row, stop in self._stops)
-        return springs + stops + 0.5 * float(np.sum(series**2 / self._series_stiffness))
-
-
-def table_of(tables: list[ElementTable], along: str, about: str) -> Vector:
-    """[2, elements, 3], of coefficients along and about the axes."""
-    return np.array([[getattr(table, name) for table in tables] for name in (along, about)])
+        sliders = 0.5 * float(np.sum(self.friction_force**2 / self._friction[:, 0]))
+        dampers = 0.5 * float(np.sum(series**2 / self._series_stiffness))
+        return springs + stops + sliders + dampers

@@ -1,8 +1,8 @@
 """The equations of motion: vehicle, suspension, track and contacts.
 
-    y = (q [50], v [50], forces of dampers with springs in series [n]),    y' = f(y, u),
+    y = (q [n], v [n], forces of dampers with springs in series [m]),    y' = f(y, u),
 
-u [24] the rails' lateral and vertical deviations at the eight wheels and their vertical rates. They
+u [3 wheels] the rails' lateral and vertical deviations at the wheels and their vertical rates. They
 follow from where the wheelsets are: they are known ahead, and the time steppers use that.
 """
 
@@ -24,26 +24,24 @@ from railpatch.pinocchio.derivative import WrenchDerivatives
 from wheelset_demo.system import BAD, ContactFailure, no_forces
 from wheelset_demo.vehicle.alignment import Alignment
 from wheelset_demo.vehicle.irregularity import ARM, irregularity_of
-from wheelset_demo.vehicle.model import CAR_BODY, vehicle_model
-from wheelset_demo.vehicle.scene import WHEELSETS, VehicleScene
+from wheelset_demo.vehicle.model import vehicle_model
+from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.slope import slope_wrenches
 from wheelset_demo.vehicle.suspension import Suspension
 
 Vector = NDArray[np.float64]
-WHEELS = 2 * WHEELSETS
 # columns of a wheelset's state that a rail's lateral and vertical deviations and its vertical rate
 # move against
 LATERAL, VERTICAL, RATE = 1, 2, 8
-INPUTS = 3 * WHEELS
 # of a wrench, what rails that are not level add: along the track, about y and z
 FORCE_AND_TURNS = [0, 4, 5]
 
 
 @dataclass(frozen=True)
 class VehicleState:
-    """time: s. values: [100 + n], coordinates, velocities, forces of dampers with springs in series
-    (N). work: [12], J, since the start: by WORKS, then of friction at each wheel, left and right of
-    the first wheelset first. count: of the coordinates."""
+    """time: s. values: [2 n + m], coordinates, velocities, forces of dampers with springs in series
+    (N). work: [4 + wheels], J, since the start: by WORKS, then of friction at each wheel, left and
+    right of the first wheelset first. count: n, of the coordinates."""
 
     time: float
     values: Vector
@@ -52,24 +50,25 @@ class VehicleState:
 
     @property
     def q(self) -> Vector:
-        """[50], m, rad: see wheelset_demo.vehicle.model."""
+        """[n], m, rad: see wheelset_demo.vehicle.model."""
         return self.values[: self.count]
 
     @property
     def v(self) -> Vector:
-        """[50], m/s, rad/s."""
+        """[n], m/s, rad/s."""
         return self.values[self.count : 2 * self.count]
 
     @property
     def series(self) -> Vector:
-        """[n], N."""
+        """[m], N."""
         return self.values[2 * self.count :]
 
 
 @dataclass(frozen=True)
 class Rates:
-    """values: [100 + n], of a state's. powers: [12], W, as of a state's work. inputs: [24], m,
-    m/s, the rails' deviations at the wheels and their vertical rates. status: of the contacts."""
+    """values: [2 n + m], of a state's. powers: [4 + wheels], W, as of a state's work. inputs: [3
+    wheels], m, m/s, the rails' deviations at the wheels and their vertical rates. status: of the
+    contacts."""
 
     values: Vector
     powers: Vector
@@ -78,11 +77,11 @@ class Rates:
 
 
 class HeldDerivatives:
-    """Of the contacts' wrenches, some of an earlier state. by_side: [4, 2, 6, 12]."""
+    """Of the contacts' wrenches, some of an earlier state. by_side: [wheelsets, 2, 6, 12]."""
 
     def __init__(self, element: ForceElement) -> None:
         self._element = element
-        self.by_side = np.zeros((WHEELSETS, 2, 6, 12))
+        self.by_side = np.zeros((len(element.joints), 2, 6, 12))
 
     def renew(self, wheelsets: Iterable[int]) -> None:
         """Those of the last step. Raises CaseError."""
@@ -94,18 +93,18 @@ class HeldDerivatives:
         wrenches = self._element.contact_wrench
         return [
             chain.of(self._element, k).wrench(wrenches[k], self.by_side[k].sum(axis=0))
-            for k in range(WHEELSETS)
+            for k in range(len(wrenches))
         ]
 
 
 class VehicleSystem:
     """Vehicle, suspension, track and contacts of a scene. Keeps the contacts' last solutions.
 
-    slope_wrenches: [4, 2, 3], of left and right wheel at the last rates(), Fx (N), My, Mz (N m) in
-    track axes: of rails that are not level, beside the element's wrenches. evaluations, renewals:
-    number of rates() and of derivatives(). contact_seconds, derivative_seconds: s, CPU time of the
-    calling thread in the force element and in derivatives(); further threads:
-    element.helper_seconds.
+    wheelsets: their number. slope_wrenches: [wheelsets, 2, 3], of left and right wheel at the last
+    rates(), Fx (N), My, Mz (N m) in track axes: of rails that are not level, beside the element's
+    wrenches. evaluations, renewals: number of rates() and of derivatives(). contact_seconds,
+    derivative_seconds: s, CPU time of the calling thread in the force element and in derivatives();
+    further threads: element.helper_seconds.
     """
 
     def __init__(self, scene: VehicleScene) -> None:
@@ -119,9 +118,11 @@ class VehicleSystem:
         self.irregularity = (
             None if table is None else irregularity_of(table, scene.length, scene.vehicle.length)
         )
-        names = [f"wheelset_{k + 1}" for k in range(WHEELSETS)]
-        contact = scene.at_height(derivatives=True)
-        self.element = ForceElement(self.model, names, contact, threads=scene.run.threads)
+        names = [axle.name for axle in scene.vehicle.axles]
+        self.wheelsets = len(names)
+        cases = scene.cases(derivatives=True)
+        self.element = ForceElement(self.model, names, cases, threads=scene.run.threads)
+        self._radii = np.array([one.case.wheelset.nominal_radius for one in cases])
         self.suspension = Suspension(scene, self.vehicle)
         self.count = self.model.nv
         self.size = 2 * self.count + self.suspension.series_count
@@ -134,16 +135,16 @@ class VehicleSystem:
         self._joints = [self.vehicle.joints[name] for name in names]
         self._car = self.vehicle.columns[0]
         self._control = np.zeros(self.count)
-        self.slope_wrenches = np.zeros((WHEELSETS, 2, 3))
-        self._slopes = self.course.slopes.reshape(WHEELSETS, 2, 2)
-        self._sloped = np.zeros((WHEELSETS, 6))
-        rails = self.element.rails.reshape(WHEELSETS, -1)
+        self.slope_wrenches = np.zeros((self.wheelsets, 2, 3))
+        self._slopes = self.course.slopes.reshape(-1, 2, 2)
+        self._sloped = np.zeros((self.wheelsets, 6))
+        rails = self.element.rails.reshape(self.wheelsets, -1)
         self._known = self.course.inputs, self.course.ahead, self.course.bend
         self._placed = self.element.tracks, rails
         self._held = HeldDerivatives(self.element)
 
     def rates(self, time: float, values: Vector) -> Rates:
-        """At a time (s) and values [100 + n]. Raises ContactFailure."""
+        """At a time (s) and values [2 n + m]. Raises ContactFailure."""
         n = self.count
         q, v, series = values[:n], values[n : 2 * n], values[2 * n :]
         pin.forwardKinematics(self.model, self.data, q, v)
@@ -172,13 +173,13 @@ class VehicleSystem:
 
     def _course(self) -> _core.Course:
         """The track and its rails, ready to be asked for at every step."""
-        straight = np.zeros(0), np.zeros((4, 0, INPUTS // 3))
+        straight = np.zeros(0), np.zeros((4, 0, 8))
         rails = straight if self.irregularity is None else self.irregularity.pieces
         columns = self.vehicle.carriers[:, :2].astype(np.int64)
         return _core.Course(*self.alignment.pieces, *rails, columns, ARM, self.count)
 
     def place_track(self, q: Vector, v: Vector) -> Vector:
-        """Puts track frames under the wheelsets, rails into them; [24], the inputs."""
+        """Puts track frames under the wheelsets, rails into them; [3 wheels], the inputs."""
         self.course.place(q, v, *self._placed)
         self.element.positions[:] = self.positions
         return self._known[0].copy()
@@ -186,19 +187,18 @@ class VehicleSystem:
     def _add_slope_wrenches(self) -> float:
         """Of rails that are not level, on the wheelsets, see slope; their power (W)."""
         if self.course.level:
-            self.slope_wrenches = np.zeros((WHEELSETS, 2, 3))
+            self.slope_wrenches = np.zeros((self.wheelsets, 2, 3))
             return 0.0
         element = self.element
-        radius = self.scene.case.wheelset.nominal_radius
         self.slope_wrenches = slope_wrenches(
-            element.wheels, element.lateral_normals, self._slopes, radius, ARM
+            element.wheels, element.lateral_normals, self._slopes, self._radii, ARM
         )
         self._sloped[:, FORCE_AND_TURNS] = self.slope_wrenches.sum(axis=1)
         return element.place_all(self._sloped, self._fext)
 
     def look_ahead(self, values: Vector, step: float) -> tuple[Vector, Vector]:
-        """[24] each, of what is known ahead: the inputs where the wheelsets will be in ``step`` s,
-        and second differences of the rails' places under them over as long.
+        """[3 wheels] each, of what is known ahead: the inputs where the wheelsets will be in
+        ``step`` s, and second differences of the rails' places under them over as long.
 
         These are by the track's own way in the world: the curve's turning off, the change of cant.
         In track axes, as the inputs; that of rates is none. values: whose rates were the last ones.
@@ -209,11 +209,10 @@ class VehicleSystem:
     def derivatives(self, values: Vector, wheelsets: Iterable[int]) -> tuple[Vector, Vector]:
         """Of the rates at values whose rates were the last ones asked for, nearly.
 
-        [size, size] by the values and [size, 24] by the inputs. wheelsets: whose
-        contacts' derivatives are found anew, exact or by differences, as Contact.jacobian() says;
-        those of the others are held. How the track frame turns on along the track is left out, and
-        so are the forces of slopes, some thousandth of the contacts'.
-        Raises CaseError.
+        [size, size] by the values and [size, 3 wheels] by the inputs. wheelsets: whose contacts'
+        derivatives are found anew, exact or by differences, as Contact.jacobian() says; those of
+        the others are held. How the track frame turns on along the track is left out, and so are
+        the forces of slopes, some thousandth of the contacts'. Raises CaseError.
         """
         begin = clock.thread_time()
         self.renewals += 1
@@ -235,15 +234,15 @@ class VehicleSystem:
         series_by_v, series_by_series = suspension.series_jacobian()
         matrix[2 * n :, n : 2 * n] = series_by_v
         matrix[2 * n :, 2 * n :] = np.diag(series_by_series)
-        inputs = np.zeros((self.size, INPUTS))
+        inputs = np.zeros((self.size, 6 * self.wheelsets))
         inputs[n : 2 * n] = inverse @ self._force_by_rails(found.chain)
         self.derivative_seconds += clock.thread_time() - begin
         return matrix, inputs
 
     def _force_by_rails(self, chain: StateChain) -> Vector:
-        """[nv, 24], of the generalised force by the inputs."""
+        """[nv, 3 wheels], of the generalised force by the inputs."""
         deviations, rates = [], []
-        for k in range(WHEELSETS):
+        for k in range(self.wheelsets):
             state = chain.of(self.element, k)
             jacobian = chain.jacobian(self.element.joints[k])
             for by_wheel in self._held.by_side[k]:
@@ -273,7 +272,7 @@ class VehicleSystem:
     def statuses(self) -> str:
         """How the last contacts of each wheelset ended."""
         found = []
-        for k in range(WHEELSETS):
+        for k in range(self.wheelsets):
             result = self.element.result(k)
             for side in SIDES:
                 if result[side]["status"] in BAD:
@@ -304,6 +303,6 @@ class VehicleSystem:
         }
 
     @property
-    def car_body(self) -> int:
-        """Index of the car body's joint."""
-        return self.vehicle.joints[CAR_BODY]
+    def reference(self) -> str:
+        """Name of the body that is held at speed and whose accelerations are told."""
+        return self.vehicle.bodies[0]

@@ -15,8 +15,9 @@ from railpatch.result import Warned
 from wheelset_demo.scene import GRAVITY
 from wheelset_demo.system import WORKS, ContactFailure
 from wheelset_demo.vehicle.assessment import RATIO_LIMIT, assess, shift_limit
+from wheelset_demo.vehicle.bodies import doubtful_bodies
 from wheelset_demo.vehicle.means import rail_forces
-from wheelset_demo.vehicle.scene import VehicleScene, doubtful_bodies
+from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.simulation import Simulation
 from wheelset_demo.vehicle.step_times import text_of
 from wheelset_demo.vehicle.system import VehicleState
@@ -32,12 +33,13 @@ Advance = Callable[[VehicleState], None]
 class VehicleTrace:
     """The n kept steps of a run.
 
-    times: [n], s. positions: [n, 4], m, along the track. lateral, yaw: [n, 4], m, rad, of the
-    wheelsets on their track. guiding, loads: [n, 8], N, on the rails Y, outward > 0, and Q, down,
-    of left and right wheel of each wheelset; mean_guiding, mean_loads: over the last 2 m. felt: [n,
-    3], m/s^2, acceleration of the car body's centre less gravity's, in its axes. works: [n, 12], J,
-    as those of a state. energies: [n, 4], J, by STORES. failure: what ended the run before its end.
-    logging_share: -, of the wall time, in the log; None without one.
+    times: [n], s. positions: [n, wheelsets], m, along the track. lateral, yaw: the same, m, rad, of
+    the wheelsets on their track. guiding, loads: [n, wheels], N, on the rails Y, outward > 0, and
+    Q, down, of left and right wheel of each wheelset; mean_guiding, mean_loads: over the last 2 m.
+    felt: [n, 3], m/s^2, acceleration of the centre of the body of reference less gravity's, in its
+    axes. works: [n, 4 + wheels], J, as those of a state. energies: [n, 4], J, by STORES. failure:
+    what ended the run before its end. logging_share: -, of the wall time, in the log; None without
+    one.
     """
 
     scene: VehicleScene
@@ -91,11 +93,12 @@ class VehicleTrace:
 
 
 def felt_by_car_body(simulation: Simulation) -> Vector:
-    """m/s^2, [3]: acceleration of the car body's centre less gravity's, in its axes."""
+    """m/s^2, [3]: acceleration of the centre of the body of reference less gravity's, in its
+    axes."""
     count, columns = simulation.system.count, simulation.system.vehicle.columns[0]
     acceleration = simulation.rates.values[count + columns[:3]]
     acceleration[2] -= GRAVITY
-    rotation, _ = simulation.body_poses()["car_body"]
+    rotation, _ = simulation.body_poses()[simulation.system.reference]
     return rotation.T @ acceleration
 
 
@@ -143,7 +146,7 @@ class VehicleSummary:
     derailment: greatest Y/Q of a wheel, Y outward. load_range: N, least and greatest Q. guiding: N,
     greatest force of a wheelset across the track, either way. offset: m, greatest of a wheelset
     from the track's middle. comfort: m/s^2, standard deviation, over the whole run, of lateral and
-    vertical acceleration at the car body's centre in its axes. friction: J, [8], at each wheel.
+    vertical acceleration at the car body's centre in its axes. friction: J, [wheels], at each.
     open_balance: J, most that was missing in the energy of bodies and springs; lost: J, in friction
     and dampers. seconds: of the time steps: total, by the clock; cpu, of all
     threads, and of it contact (force element) and derivatives. real_time: -, total over the time
@@ -247,6 +250,12 @@ class VehicleSummary:
         ]
 
 
+def own_doubts(scene: VehicleScene) -> list[str]:
+    """Of the noise of profile files, of all wheelsets."""
+    cases = {id(axle.table): scene.case_of(axle) for axle in scene.vehicle.axles}
+    return list(dict.fromkeys(text for one in cases.values() for text in run_doubts(one, Path())))
+
+
 def fixed(value: float, places: int) -> str:
     """With so many decimal places, and no -0."""
     return f"{round(value, places) + 0.0:.{places}f}"
@@ -272,7 +281,9 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
         assessed = {
             "derailment_percentile": found.ratio,
             "shift_percentile": found.shift,
-            "shift_limit": shift_limit(simulation.scene.axle_load, run.shift_factor),
+            "shift_limit": shift_limit(
+                float(system.suspension.statics.loads.min()), run.shift_factor
+            ),
             "load_percentile": found.load,
             "load_median": found.median_load,
             "acceleration_percentile": found.acceleration,
@@ -294,8 +305,8 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
         seconds=seconds,
         real_time=wall / time if time > 0 else 0.0,
         warnings=[
-            *doubtful_bodies(simulation.scene),
-            *run_doubts(simulation.scene.case, Path()),
+            *doubtful_bodies(simulation.scene.vehicle),
+            *own_doubts(simulation.scene),
             *trace.warned.lines(),
         ],
         **assessed,

@@ -193,14 +193,14 @@ class Course {
 // columns of a wheel's row: forces, moments
 enum { kFy = 1, kFz = 2, kMx = 3 };
 
-void slope_wrenches(const Cube &wheels, const Grid &normals, const Cube &slopes, double radius,
-                    double arm,
+void slope_wrenches(const Cube &wheels, const Grid &normals, const Cube &slopes,
+                    const Values &radii, double arm,
                     nb::ndarray<double, nb::ndim<3>, nb::c_contig, nb::device::cpu> to) {
   const size_t count = wheels.shape(0);
   const bool fits = wheels.shape(1) == 2 && wheels.shape(2) > kMx && normals.shape(0) == count &&
                     normals.shape(1) == 2 && slopes.shape(0) == count && slopes.shape(1) == 2 &&
-                    slopes.shape(2) == 2 && to.shape(0) == count && to.shape(1) == 2 &&
-                    to.shape(2) == 3;
+                    slopes.shape(2) == 2 && radii.shape(0) == count && to.shape(0) == count &&
+                    to.shape(1) == 2 && to.shape(2) == 3;
   if (!fits) throw nb::value_error("arrays of wheels do not fit together");
   for (size_t k = 0; k < count; ++k)
     for (size_t side = 0; side < 2; ++side) {
@@ -208,7 +208,7 @@ void slope_wrenches(const Cube &wheels, const Grid &normals, const Cube &slopes,
       const double lateral = slopes(k, side, kLateral), vertical = slopes(k, side, kVertical);
       const double place = side == 0 ? -arm : arm;
       to(k, side, 0) = -(across * lateral + down * vertical);
-      to(k, side, 1) = -radius * (across - normals(k, side)) * lateral;
+      to(k, side, 1) = -radii(k) * (across - normals(k, side)) * lateral;
       to(k, side, 2) = wheels(k, side, kMx) * vertical + place * across * lateral;
     }
 }
@@ -246,7 +246,7 @@ void bind_course(nb::module_ &m) {
       .def_prop_ro("middle", &C::middle, "m, mean of the positions.")
       .def_prop_ro("level", &C::level, "Whether no rail has a slope.");
   m.def("slope_wrenches", &slope_wrenches, nb::arg("wheels"), nb::arg("normals"), nb::arg("slopes"),
-        nb::arg("radius"), nb::arg("arm"), nb::arg("to"), "See wheelset_demo.vehicle.slope.");
+        nb::arg("radii"), nb::arg("arm"), nb::arg("to"), "See wheelset_demo.vehicle.slope.");
 }
 
 }  // namespace railpatch::python

@@ -27,8 +27,8 @@ Point cross(Point a, Point b) {
 }
 
 struct Body {
-  size_t columns[kPlaces];
-  double arm;  // m, of the centre, to the right of the joint
+  size_t columns[kPlaces];  // width of a state: the body does not have it
+  double arm;               // m, of the centre, to the right of the joint
   Point origin, centre, ahead, axes[3];
 };
 
@@ -38,7 +38,7 @@ struct Element {
   Point point_b, apart;
 };
 
-// points of a bump stop's table, displacements >= 0
+// points of a bump stop's table, displacements that increase
 struct Stop {
   std::vector<double> d, force;
 
@@ -57,6 +57,13 @@ struct Row {
   Stop stop;  // empty: none
 };
 
+// dry friction: a spring and a slider in series, whose limit is a force and a share of the load
+// that another row carries
+struct Friction {
+  size_t row, load_row;
+  double stiffness, limit, coefficient;
+};
+
 struct Series {
   size_t row;
   double stiffness, damping;
@@ -68,20 +75,19 @@ Point point_of(const Grid &rows, size_t k) {
 }
 
 double stop_force(const Stop &stop, double d) {
-  const double size = std::abs(d);
-  if (stop.d.empty() || size <= stop.d[0]) return 0.0;
-  const auto next = std::upper_bound(stop.d.begin(), stop.d.end(), size);
-  const size_t last = stop.d.size() - 2;
-  const size_t k = std::min<size_t>(static_cast<size_t>(next - stop.d.begin()) - 1, last);
+  if (stop.d.empty()) return 0.0;
+  const auto next = std::upper_bound(stop.d.begin() + 1, stop.d.end() - 1, d);
+  const auto k = static_cast<size_t>(next - stop.d.begin()) - 1;
   const double slope = (stop.force[k + 1] - stop.force[k]) / (stop.d[k + 1] - stop.d[k]);
-  return std::copysign(stop.force[k] + slope * (size - stop.d[k]), d);
+  return stop.force[k] + slope * (d - stop.d[k]);
 }
 
 class Suspension {
  public:
   Suspension(size_t width, const IndexGrid &columns, const Values &arms, const IndexGrid &ends,
              const Grid &at_a, const Grid &at_b, const IndexGrid &rows, const Grid &coefficients,
-             const Indices &series_rows, const Grid &series, const nb::list &stops)
+             const Indices &series_rows, const Grid &series, const nb::list &stops,
+             const IndexGrid &friction_rows, const Grid &friction)
       : width_(width) {
     const size_t elements = ends.shape(0), count = rows.shape(0);
     const bool fits = columns.shape(1) == kPlaces && arms.shape(0) == columns.shape(0) &&
@@ -89,11 +95,13 @@ class Suspension {
                       at_a.shape(0) == elements && at_b.shape(0) == elements &&
                       rows.shape(1) == 3 && coefficients.shape(0) == count &&
                       coefficients.shape(1) == 3 && series.shape(0) == series_rows.shape(0) &&
-                      series.shape(1) == 2;
+                      series.shape(1) == 2 && friction_rows.shape(1) == 2 &&
+                      friction.shape(0) == friction_rows.shape(0) && friction.shape(1) == 3;
     if (!fits) throw nb::value_error("arrays of a suspension do not fit together");
     bodies_.resize(columns.shape(0));
     for (size_t k = 0; k < bodies_.size(); ++k) {
-      for (size_t i = 0; i < kPlaces; ++i) bodies_[k].columns[i] = below(columns(k, i), width);
+      for (size_t i = 0; i < kPlaces; ++i)
+        bodies_[k].columns[i] = columns(k, i) == -1 ? width : below(columns(k, i), width);
       bodies_[k].arm = arms(k);
     }
     for (size_t k = 0; k < elements; ++k)
@@ -114,6 +122,10 @@ class Suspension {
     for (size_t k = 0; k < series_rows.shape(0); ++k)
       series_.push_back({below(series_rows(k), count), series(k, 0), series(k, 1)});
     for (const nb::handle one : stops) add_stop(nb::cast<nb::tuple>(one));
+    for (size_t k = 0; k < friction_rows.shape(0); ++k)
+      friction_.push_back({below(friction_rows(k, 0), count), below(friction_rows(k, 1), count),
+                           friction(k, 0), friction(k, 1), friction(k, 2)});
+    for (auto *of_friction : {&friction_force_, &anchor_}) of_friction->resize(friction_.size());
     matrix_.resize(count * width);
     for (auto *of_rows : {&displacement_, &rate_, &force_}) of_rows->resize(count);
     series_rates_.resize(series_.size());
@@ -139,8 +151,15 @@ class Suspension {
       series_rates_[k] = s.stiffness * (rate_[s.row] - f / s.damping);
       power += f * f / s.damping;
     }
+    for (size_t k = 0; k < friction_.size(); ++k) power += rub(k);
     for (size_t k = 0; k < rows_.size(); ++k) collect(k);
     return power;
+  }
+
+  // sliders move on to where the last step() has them: once a time step
+  void settle() {
+    for (size_t k = 0; k < friction_.size(); ++k)
+      anchor_[k] = displacement_[friction_[k].row] - friction_force_[k] / friction_[k].stiffness;
   }
 
   double *matrix() { return matrix_.data(); }
@@ -149,8 +168,11 @@ class Suspension {
   double *force() { return force_.data(); }
   double *series_rates() { return series_rates_.data(); }
   double *generalised() { return generalised_.data(); }
+  double *friction_force() { return friction_force_.data(); }
+  double *anchor() { return anchor_.data(); }
   size_t rows() const { return rows_.size(); }
   size_t series() const { return series_.size(); }
+  size_t friction() const { return friction_.size(); }
   size_t width() const { return width_; }
 
  private:
@@ -164,11 +186,12 @@ class Suspension {
         Stop(nb::cast<Values>(given[1]), nb::cast<Values>(given[2]));
   }
 
-  static void place(Body &body, const double *q) {
+  void place(Body &body, const double *q) const {
     double c[3], s[3];  // yaw, roll, pitch
     for (int i = 0; i < 3; ++i) {
-      c[i] = cos(q[body.columns[3 + i]]);
-      s[i] = sin(q[body.columns[3 + i]]);
+      const size_t column = body.columns[3 + i];
+      c[i] = column == width_ ? 1.0 : cos(q[column]);
+      s[i] = column == width_ ? 0.0 : sin(q[column]);
     }
     body.origin = {q[body.columns[0]], q[body.columns[1]], q[body.columns[2]]};
     body.ahead = {c[0], s[0], 0.0};
@@ -210,17 +233,33 @@ class Suspension {
         moved.x, moved.y, moved.z, lever.z, dot(body.ahead, lever), dot(body.axes[1], lever)};
     double rate = 0;
     for (size_t i = 0; i < kPlaces; ++i) {
+      if (body.columns[i] == width_) continue;
       matrix_[k * width_ + body.columns[i]] = parts[i];
       rate += parts[i] * v[body.columns[i]];
     }
     return rate;
   }
 
+  // adds a slider's force to its row's; what it turns into heat, W
+  double rub(size_t k) {
+    const Friction &f = friction_[k];
+    const Row &carries = rows_[f.load_row];
+    const double carried = carries.stiffness * displacement_[f.load_row] + carries.preload;
+    // springs that have let go press no more
+    const double pressed = std::max(0.0, carries.preload < 0 ? -carried : carried);
+    const double limit = f.limit + f.coefficient * pressed;
+    const double stuck = f.stiffness * (displacement_[f.row] - anchor_[k]);
+    const bool slips = std::abs(stuck) > limit;
+    friction_force_[k] = slips ? std::copysign(limit, stuck) : stuck;
+    force_[f.row] -= friction_force_[k];
+    return slips ? std::max(0.0, friction_force_[k] * rate_[f.row]) : 0.0;
+  }
+
   void collect(size_t k) {
     const Element &e = elements_[rows_[k].element];
     for (const size_t body : {e.a, e.b})
       for (const size_t column : bodies_[body].columns)
-        generalised_[column] += force_[k] * matrix_[k * width_ + column];
+        if (column != width_) generalised_[column] += force_[k] * matrix_[k * width_ + column];
   }
 
   size_t width_;
@@ -228,7 +267,9 @@ class Suspension {
   std::vector<Element> elements_;
   std::vector<Row> rows_;
   std::vector<Series> series_;
+  std::vector<Friction> friction_;
   std::vector<double> matrix_, displacement_, rate_, force_, series_rates_, generalised_;
+  std::vector<double> friction_force_, anchor_;  // anchor: where a slider's spring has no force
 };
 
 using Array = nb::ndarray<nb::numpy, double, nb::ndim<1>>;
@@ -252,20 +293,25 @@ void bind_suspension(nb::module_ &m) {
       "stop_force",
       [](const Values &at, const Values &forces, double d) { return stop_force({at, forces}, d); },
       nb::arg("at"), nb::arg("forces"), nb::arg("d"),
-      "N, of a bump stop whose table has these points, at a displacement (m).");
+      "N, of a bump stop whose table has these points, at a displacement (m); on along its first "
+      "and last line.");
   using S = Suspension;
   nb::class_<S>(m, "Suspension", "Forces of a vehicle's springs, dampers, rods and bump stops.")
-      .def(nb::init<size_t, const IndexGrid &, const Values &, const IndexGrid &, const Grid &,
-                    const Grid &, const IndexGrid &, const Grid &, const Indices &, const Grid &,
-                    const nb::list &>(),
-           nb::arg("width"), nb::arg("columns"), nb::arg("arms"), nb::arg("ends"), nb::arg("at_a"),
-           nb::arg("at_b"), nb::arg("rows"), nb::arg("coefficients"), nb::arg("series_rows"),
-           nb::arg("series"), nb::arg("stops"),
-           "width: number of coordinates; columns: of each body's x, y, z, yaw, roll, pitch; arms: "
-           "m, of its centre, to the right; ends: bodies A and B of each element; at_a, at_b: m, "
-           "in them; rows: element, axis, whether about it; coefficients: of the rows, stiffness, "
-           "damping, preload; series_rows, series: rows with a spring and a damper in series, "
-           "stiffness and damping; stops: (row, displacements, forces).")
+      .def(
+          nb::init<size_t, const IndexGrid &, const Values &, const IndexGrid &, const Grid &,
+                   const Grid &, const IndexGrid &, const Grid &, const Indices &, const Grid &,
+                   const nb::list &, const IndexGrid &, const Grid &>(),
+          nb::arg("width"), nb::arg("columns"), nb::arg("arms"), nb::arg("ends"), nb::arg("at_a"),
+          nb::arg("at_b"), nb::arg("rows"), nb::arg("coefficients"), nb::arg("series_rows"),
+          nb::arg("series"), nb::arg("stops"), nb::arg("friction_rows"), nb::arg("friction"),
+          "width: number of coordinates; columns: of each body's x, y, z, yaw, roll, pitch, -1: it "
+          "has none; arms: m, of its centre, to the right; ends: bodies A and B of each element; "
+          "at_a, at_b: m, "
+          "in them; rows: element, axis, whether about it; coefficients: of the rows, stiffness, "
+          "damping, preload; series_rows, series: rows with a spring and a damper in series, "
+          "stiffness and damping; stops: (row, displacements, forces); friction_rows, friction: of "
+          "sliders, row and the row whose spring presses them, stiffness, limit, coefficient.")
+      .def("settle", &S::settle, "Sliders stay where the last step() moved them to.")
       .def("step", &S::step, nb::arg("q"), nb::arg("v"), nb::arg("series"),
            "Fills the arrays; W, what the dampers turn into heat.")
       .def_prop_ro("matrix", &matrix_of, "[rows, width], rates of the rows by the velocities.")
@@ -273,6 +319,9 @@ void bind_suspension(nb::module_ &m) {
       .def_prop_ro("rate", &view<&S::rate, &S::rows>, "m/s, rad/s, of the rows.")
       .def_prop_ro("force", &view<&S::force, &S::rows>, "N, N m, of the rows on body B.")
       .def_prop_ro("series_rates", &view<&S::series_rates, &S::series>, "N/s.")
+      .def_prop_ro("friction_force", &view<&S::friction_force, &S::friction>, "N, N m, of sliders.")
+      .def_prop_ro("anchor", &view<&S::anchor, &S::friction>,
+                   "m, rad, of the rows, where a slider's spring has no force; may be written.")
       .def_prop_ro("generalised", &view<&S::generalised, &S::width>, "Generalised force.");
 }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -18,17 +18,20 @@ class VehicleGeometry:
     """What the 3D scene of a vehicle shows.
 
     ``wheelset``: profiles of its wheels and rails. ``boxes``: cuboids by the name of a body, others
-    are not drawn. ``centre_line``: m, [n, 3], of the track in start axes; left out: no line.
-    Raises ValueError where a value has the wrong shape.
+    are not drawn. ``own``: by a wheelset's number, of those with other profiles. ``centre_line``:
+    m, [n, 3], of the track in start axes; left out: no line. Raises ValueError where a value has
+    the wrong shape.
     """
 
     wheelset: SceneGeometry
     boxes: Mapping[str, Boxes]
     centre_line: np.ndarray | None = None
+    own: Mapping[int, SceneGeometry] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        if not isinstance(self.wheelset, SceneGeometry) or self.wheelset.kind != "rail":
-            raise ValueError("geometry: wheelset must be a SceneGeometry of kind 'rail'")
+        for one in (self.wheelset, *self.own.values()):
+            if not isinstance(one, SceneGeometry) or one.kind != "rail":
+                raise ValueError("geometry: wheelset must be a SceneGeometry of kind 'rail'")
         for name, boxes in self.boxes.items():
             for box in boxes:
                 if [len(part) for part in box] != [3, 3] or not np.isfinite(box).all():

@@ -76,7 +76,7 @@ def bodies(geometry: VehicleGeometry, wheelsets: int) -> SceneUpdate:
         for name, boxes in geometry.boxes.items()
     ]
     for number in range(1, wheelsets + 1):
-        entities += _axle(geometry.wheelset, number)
+        entities += _axle(geometry.own.get(number, geometry.wheelset), number)
     if geometry.centre_line is not None:
         points = np.asarray(geometry.centre_line, dtype=float)
         points = points[:: -(-len(points) // _MOST_POINTS)]
