@@ -436,6 +436,11 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
   checker check(message);
   check_bulk(c, in, check);
   check_fluid(c, in, check);
+  for (const double scale : in.friction_scale) {
+    check.number("friction_scale", scale, input_range::friction_scale);
+    check.require(has_tangential(c) || scale == 1,
+                  "friction_scale must be 1 in a scene without a tangential problem");
+  }
   check.require(in.friction_coefficient == 0,
                 "friction_coefficient must be 0 in a step: rp_set_friction_coefficient sets it");
   if (c.kind == RP_PATCH) {
@@ -447,7 +452,7 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
     if (c.regime == RP_TRANSIENT_ROLLING)
       check.field("distance", in.distance, input_range::distance);
     check.require(in.direction == 1 || in.direction == -1, "direction must be 1 or -1");
-    check_force(c, friction_coefficient, in, check);
+    check_force(c, friction_coefficient * in.friction_scale[RP_RIGHT], in, check);
     return check.error();
   }
   if (c.load == RP_FORCE)

@@ -108,7 +108,7 @@ rp_result contact::solve_to_accuracy(const rp_input &input) {
     out = finer;
     excess_ = excess(out);
   }
-  if (excess_ > 1) report_inaccurate(patch().friction(), config_.accuracy, out);
+  if (excess_ > 1) report_inaccurate(friction_of_sides(), config_.accuracy, out);
   return out;
 }
 
@@ -130,7 +130,13 @@ bool contact::solve_closed(const rp_input &input, rp_result &out) {
 }
 
 double contact::excess(const rp_result &result) const {
-  return excess_of(result, patch().friction(), config_.accuracy);
+  return excess_of(result, friction_of_sides(), config_.accuracy);
+}
+
+std::array<double, 2> contact::friction_of_sides() const {
+  const double coefficient = patch().coefficient();
+  return {coefficient * driver_->friction_scale(RP_LEFT),
+          coefficient * driver_->friction_scale(RP_RIGHT)};
 }
 
 void contact::select(size_t level) {

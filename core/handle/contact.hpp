@@ -2,6 +2,7 @@
 // of the last step need.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -59,6 +60,7 @@ class contact {
   void note_kept();
   void take_noted();
   double excess(const rp_result &result) const;
+  std::array<double, 2> friction_of_sides() const;  // -, in the last step
   void select(size_t level);
   void go_on(size_t level);
   const patch_scene &patch() const { return driver_->solver().scene(); }

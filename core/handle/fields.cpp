@@ -188,7 +188,7 @@ rp_error contact::field(int side, int patch, rp_field name, double *values, size
       if (m.history.friction.size() > 0)
         copy.scalar(m.history.friction);
       else
-        copy.scalar(friction_of_heat{m, this->patch().friction_scale});
+        copy.scalar(friction_of_heat{m, driver_->friction_scale(side)});
       break;
     case RP_FIELD_PLASTIC_DISPLACEMENT:
       copy.vector(m.history.plastic[0], m.history.plastic[1]);

@@ -125,19 +125,21 @@ std::vector<rp_config> configs_of_levels(const rp_config &first) {
   return levels;
 }
 
-double excess_of(const rp_result &result, double friction, double accuracy) {
+double excess_of(const rp_result &result, const std::array<double, 2> &friction, double accuracy) {
   double greatest = 0;
   bool solved = true;
-  for_each_solution(result, [&](const rp_side_result &, const rp_patch_result &patch) {
+  for_each_solution(result, [&](const rp_side_result &side, const rp_patch_result &patch) {
     solved = solved && (patch.status == RP_CONVERGED || patch.status == RP_NO_CONTACT);
-    greatest = std::max(greatest, excess_of(patch, friction, accuracy));
+    const double own = friction[static_cast<size_t>(&side - result.side)];
+    greatest = std::max(greatest, excess_of(patch, own, accuracy));
   });
   return solved && combine_status(result.status, RP_NO_CONTACT) == RP_CONVERGED ? greatest : 0;
 }
 
-void report_inaccurate(double friction, double accuracy, rp_result &out) {
+void report_inaccurate(const std::array<double, 2> &friction, double accuracy, rp_result &out) {
   for_each_solution(out, [&](rp_side_result &side, rp_patch_result &patch) {
-    const double excess = excess_of(patch, friction, accuracy);
+    const double own = friction[static_cast<size_t>(&side - out.side)];
+    const double excess = excess_of(patch, own, accuracy);
     if (!(excess > 1)) return;
     const verdict found = std::isinf(excess)
                               ? verdict{RP_ACCURACY_NOT_MET, RP_REASON_NO_ESTIMATE}

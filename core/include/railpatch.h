@@ -676,6 +676,9 @@ typedef struct rp_input {
   double oil_film;          /* m */
   double rail_work[2]; /* J/m, >= 0, friction work that wheels before have spent on each metre of
                           the rail, with fluid_recovery; by side, of a patch RP_RIGHT */
+  /* -, 0 ... 100, factor of the friction law on each wheel, beside friction_factor and
+   * friction_along_factor; by side, of a patch RP_RIGHT; 1 without a tangential problem */
+  double friction_scale[2];
 } rp_input;
 
 /* One patch. Values of stages that the scene leaves out are NaN (element counts 0). Linear theory

@@ -548,7 +548,9 @@
   X(double, oil_film, 1, number, own, NAN, "[]", 0, 1, 1e-6, "m",                                  \
     "layer of the liquid on the surfaces before the contact")                                      \
   X(double, rail_work, 2, number, own, 0, "[)", 0, HUGE_VAL, 100, "J/m",                           \
-    "friction work that wheels before have spent on each metre of the rail")
+    "friction work that wheels before have spent on each metre of the rail")                       \
+  X(double, friction_scale, 2, number, own, 1, "[]", 0, 100, 0.1, "-",                             \
+    "factor of the friction law on each wheel, [left, right]; of a patch the second")
 
 /* --- choices: Y(type, list of the type's enumerators) -------------------------------------- */
 #define RP_CHOICES(Y)                                  \

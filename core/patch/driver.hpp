@@ -37,6 +37,8 @@ class driver {
   const std::vector<patch_memory> &memories() const { return memory_; }
   // Of one patch, null where there is no such.
   virtual const patch_memory *find(int side, int patch) const = 0;
+  // -, of the friction law in the last step.
+  virtual double friction_scale(int) const { return solver_.scene().friction_scale; }
   // Whether a side is solved as its mirror image.
   virtual bool mirrors(int) const { return false; }
 

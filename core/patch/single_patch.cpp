@@ -70,6 +70,7 @@ void single_patch::step(const rp_input &in, rp_result &out) {
   rp_side_result &side = out.side[RP_RIGHT];
   rp_patch_result &result = side.patch[0];
   side.patch_count = 1;
+  solver_.set_friction_scale(in.friction_scale[RP_RIGHT]);
   if (rates_) rates_->problem = {};
   patch_memory &m = memory();
   patch_problem problem;

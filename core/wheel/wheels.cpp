@@ -92,6 +92,7 @@ double wheels::evaluate(double z, rp_result &out) {
     rp_side_result &side = out.side[wheel.side()];
     wheel.move_to(z);
     set_bulk(wheel.side());
+    solver_.set_friction_scale(scale_[wheel.side()]);
     if (cleaning_) solver_.set_cleaning_work(cleaned_[wheel.side()]);
     wheel.evaluate(solver_, memory_of(w), side);
     vertical -= side.force[2];
@@ -107,7 +108,8 @@ double wheels::evaluate(double z, rp_result &out) {
 }
 
 void wheels::step(const rp_input &in, rp_result &out) {
-  if (friction_along_.varies()) solver_.set_friction_scale(friction_along_.at(in.x));
+  const double along = friction_along_.varies() ? friction_along_.at(in.x) : 1.0;
+  for (int side = 0; side < 2; ++side) scale_[side] = along * in.friction_scale[side];
   if (bulk_) bulk_->begin(in.time_step);
   for (size_t side = 0; cleaning_ && side < 2; ++side)
     cleaned_[side] =

@@ -51,6 +51,7 @@ class wheels final : public driver {
   void step(const rp_input &input, rp_result &result) override;
   void reset() override;
   const patch_memory *find(int side, int patch) const override;
+  double friction_scale(int side) const override { return scale_[side]; }
   bool mirrors(int side) const override { return side == RP_LEFT; }
   kept_numbers kept() override;
   void differentiate(const rp_input &direction, const rp_input &input, const rp_result &result,
@@ -100,7 +101,7 @@ class wheels final : public driver {
   void rest_at(double touch, rp_result &result);
   void solve_supported(const rp_input &input, rp_result &result);
   void report_search(const verdict &found, double residual, rp_result &result) const;
-  double friction_rate(const rp_input &direction, const rp_input &input) const;
+  double friction_rate(const rp_input &direction, const rp_input &input, int side) const;
 
   std::vector<wheel_contact> wheels_;
   size_t patches_;  // of each wheel
@@ -110,6 +111,7 @@ class wheels final : public driver {
   bool whole_forces_;
   double depth_ = 0;  // m, last z found minus first touch; 0: none
   friction_factor friction_along_;
+  double scale_[2] = {1, 1};               // of the law on each wheel, in this step
   std::optional<rail_support> support_;    // where rails are on springs
   std::optional<bulk_temperatures> bulk_;  // where bodies store heat
   // Friction work on each metre of the wheels' circumference, and how fast it grows; by side.

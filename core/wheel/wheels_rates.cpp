@@ -55,15 +55,15 @@ size_t wheels::derivative_bytes() const {
   return solver_.derivative_bytes() + own;
 }
 
-// Of the friction coefficient with its factor along the track.
-double wheels::friction_rate(const rp_input &direction, const rp_input &input) const {
-  const patch_scene &scene = solver_.scene();
-  double rate = scene.friction_scale * direction.friction_coefficient;
-  if (friction_along_.varies()) {
-    const double slope = friction_along_.slope(input.x);
-    rate += scene.friction_coefficient * slope * direction.x;
-  }
-  return rate;
+// Of the friction coefficient with its factors along the track and of a wheel.
+double wheels::friction_rate(const rp_input &direction, const rp_input &input, int side) const {
+  const double coefficient = solver_.scene().friction_coefficient;
+  const double scale = input.friction_scale[side], change = direction.friction_scale[side];
+  double rate = scale_[side] * direction.friction_coefficient;
+  if (!friction_along_.varies()) return rate + coefficient * change;
+  const double slope = friction_along_.slope(input.x);
+  rate += coefficient * scale * slope * direction.x;
+  return rate + coefficient * friction_along_.at(input.x) * change;
 }
 
 int wheels::found_columns(int (&columns)[3]) const {
@@ -98,10 +98,11 @@ void wheels::differentiate(const rp_input &direction, const rp_input &input,
   rp_input inputs[4] = {total};
   for (int k = 0; k < found; ++k) inputs[k + 1] = unit_direction(direction, column[k]);
   const int count = 1 + found;
-  const double friction[4] = {friction_rate(direction, input), 0, 0, 0};
   for (size_t w = 0; w < wheels_.size(); ++w) {
     const wheel_contact &wheel = wheels_[w];
     const int side = wheel.side();
+    const double friction[4] = {friction_rate(direction, input, side), 0, 0, 0};
+    solver_.set_friction_scale(scale_[side]);
     const derivative_outcome outcome = wheel.differentiate(
         solver_, memory_of(w), rates_->wheels, inputs, friction, count, {}, result.side[side],
         rates_->changes.data() + static_cast<ptrdiff_t>(side) * count);
@@ -165,6 +166,7 @@ bool wheels::balance_slopes(const rp_input &at, const rp_result &result, balance
   for (int k = 0; k < count; ++k) inputs[k] = unit_direction(at, column[k]);
   for (size_t w = 0; w < wheels_.size(); ++w) {
     const int side = wheels_[w].side();
+    solver_.set_friction_scale(scale_[side]);
     const derivative_outcome outcome = wheels_[w].differentiate(
         solver_, memory_of(w), rates_->wheels, inputs, friction, count, {coarse_tolerance, false},
         result.side[side], rates_->changes.data() + static_cast<ptrdiff_t>(side) * count);
@@ -192,7 +194,6 @@ void wheels::jacobian(const rp_input &input, const rp_result &result, rp_jacobia
   const int count = friction_along_.varies() ? direction_count : direction_count - 1;
   for (int k = 0; k < count; ++k) {
     inputs[k] = unit_direction(input, directions[k]);
-    friction[k] = friction_rate(inputs[k], input);
   }
   // no better than the solution they belong to
   const double tolerance = std::clamp(0.1 * tolerance_, exact_tolerance, coarse_tolerance);
@@ -201,6 +202,8 @@ void wheels::jacobian(const rp_input &input, const rp_result &result, rp_jacobia
   for (size_t w = 0; w < wheels_.size(); ++w) {
     const wheel_contact &wheel = wheels_[w];
     const int side = wheel.side();
+    solver_.set_friction_scale(scale_[side]);
+    for (int k = 0; k < count; ++k) friction[k] = friction_rate(inputs[k], input, side);
     const derivative_outcome outcome =
         wheel.differentiate(solver_, memory_of(w), rates_->wheels, inputs, friction, count, options,
                             result.side[side], rates_->changes.data());

@@ -237,7 +237,7 @@ def test_every_problem_is_told_at_once_with_a_hint() -> None:
         "friction.coeficient: value is 0.3, but the key is unknown, allowed law, coefficient, "
         "shape, kinetic, amplitude, halving_speed, polach_a, polach_b, memory_distance, "
         "memory_speed, reference, change, reference_temperature, temperature_range, factor, "
-        "along_track; did you mean 'coefficient'?",
+        "along_track, scale; did you mean 'coefficient'?",
         "method.tolerance: value is 'small', allowed a number",
     ]
 

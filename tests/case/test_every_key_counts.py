@@ -209,6 +209,7 @@ VALUES: dict[str, Any] = {
     "fluid.reference_rate": 2e-9,
     "fluid.recovery": {"coefficient": 2e-3},
     "fluid.rail_work": [500.0, 700.0],
+    "friction.scale": [0.8, 0.7],
     "track.rail_support": {"stiffness": [3e7, 9e7]},
     "profiles.smoothing": 1e-3,
     "profiles.wheel": "cone@1:20",

@@ -979,7 +979,7 @@ TEST_F(Garbage, ConfigsOfPatchesDoNotCrash) {
 
 TEST_F(Garbage, ConfigsOfWheelsDoNotCrash) {
   const scenes::profile_pair pair;
-  for (int n = 0; n < 2500; ++n) {
+  for (int n = 0; n < 4000; ++n) {
     const rp_track track = random() % 2 ? RP_RAIL : RP_ROLLER;
     rp_config c = scenes::wheels(random() % 2 ? RP_WHEELSET : RP_WHEEL_RAIL, track, pair);
     c.element_size[0] = c.element_size[1] = 2e-3;

@@ -23,6 +23,7 @@ TYPES = {
     "Int32": (ct.c_int32, "Int32"),
     "Enumeration": (ct.c_int64, "Int64"),
     "String": (ct.c_char_p, "String"),
+    "Boolean": (ct.c_bool, "Boolean"),
 }
 
 

@@ -19,6 +19,7 @@ from slave3 import Fmu3, Slave3
 
 def packed(folder: Path, case: dict[str, Any], **options: Any) -> Fmu | Fmu3:
     """The FMU of a case, valid, unpacked and loaded."""
+    folder.mkdir(exist_ok=True)
     path = folder / "chosen.fmu"
     pack_fmu(load_scene(case), path, backend=OWN, **options)
     assert validate_fmu(str(path)) == []
@@ -97,8 +98,80 @@ def test_what_cannot_be_chosen_is_refused(options: Any, why: str, tmp_path: Path
     assert not list(tmp_path.iterdir())
 
 
-def test_friction_of_another_law_is_no_input(tmp_path: Path) -> None:
-    with pytest.raises(CaseError, match="Coulomb's"):
-        pack_fmu(load_scene(SCENES["hot"]), tmp_path / "a.fmu", backend=OWN, inputs=["friction"])
-    with pytest.raises(CaseError, match="with wheels only"):
-        pack_fmu(load_scene(PATCH), tmp_path / "a.fmu", backend=OWN, patches=1)
+def test_friction_of_each_wheel_is_that_of_a_scene_with_it(tmp_path: Path) -> None:
+    """As an input, of a wheelset: the same bits as a scene with one coefficient, mirrored."""
+    fmu = packed(tmp_path, RAIL, inputs=["friction"])
+    assert not {"friction.coefficient"} & fmu.references.keys()
+    low = packed(tmp_path / "low", with_values(RAIL, friction__coefficient=0.17))
+    usual = packed(tmp_path / "usual", RAIL)
+    names = [n for n in usual.names("output", "Real") if n.startswith(("left.", "right."))]
+    with Slave(fmu) as slave, Slave(usual) as of_usual:
+        slave.initialize()
+        of_usual.initialize()
+        start = slave.get("friction.left.coefficient", "friction.right.coefficient")
+        assert start == of_usual.get("friction.coefficient") * 2
+        assert slave.get(*names) == of_usual.get(*names)
+    with Slave(fmu) as slave, Slave(low) as of_low, Slave(usual) as of_usual:
+        assert slave.set({"friction.left.coefficient": 0.17}) == OK
+        for one in (slave, of_low, of_usual):
+            one.initialize()
+        for name in names:
+            same = of_low if name.startswith("left.") else of_usual
+            assert slave.get(name) == same.get(name), name
+        assert slave.step(0.0, 1e-3) == OK
+        # of the wheel whose friction it is, and of no other
+        forces = ["left.force[1]", "left.force[2]", "right.force[1]", "right.force[2]"]
+        status, rates = slave.derivative(forces, {"friction.left.coefficient": 1.0})
+        assert status == OK
+        state, ends = slave.save(), []
+        for value in (0.169, 0.171):
+            assert slave.restore(state) == OK
+            assert slave.set({"friction.left.coefficient": value}) == OK
+            assert slave.step(1e-3, 1e-3) == OK
+            ends.append(slave.get(*forces))
+        differences = [(b - a) / 2e-3 for a, b in zip(*ends, strict=True)]
+        assert rates == pytest.approx(differences, rel=2e-2, abs=1e-6 * max(map(abs, rates)))
+        assert max(map(abs, rates[:2])) > 0
+        assert rates[2:] == [0.0, 0.0]
+
+
+def test_friction_of_another_law_is_a_factor(tmp_path: Path) -> None:
+    """In a scene with temperature: 1 is the law as it is, 0.5 what a law of half does."""
+    case = load_scene(SCENES["hot"]).case
+    fmu = packed(tmp_path, SCENES["hot"], inputs=["friction"])
+    halves = {key: 0.5 * getattr(case.friction, key) for key in ("reference", "change")}
+    half = packed(
+        tmp_path / "half",
+        with_values(SCENES["hot"], **{f"friction__{k}": v for k, v in halves.items()}),
+    )
+    usual = packed(tmp_path / "usual", SCENES["hot"])
+    assert "friction.scale" in fmu.names("input")
+    outputs = usual.names("output", "Real")
+    with Slave(fmu) as slave, Slave(usual) as of_usual, Slave(half) as of_half:
+        of_usual.initialize()
+        slave.initialize()
+        assert slave.get(*outputs) == of_usual.get(*outputs)
+    with Slave(fmu) as slave, Slave(half) as of_half:
+        assert slave.set({"friction.scale": 0.5}) == OK
+        slave.initialize()
+        of_half.initialize()
+        assert slave.get(*outputs) == pytest.approx(of_half.get(*outputs), rel=1e-6)
+        assert slave.set({"friction.scale": 101.0}) == ERROR
+
+
+def test_a_factor_of_the_scene_is_in_the_fmu(tmp_path: Path) -> None:
+    """Where friction is no input, too."""
+    case = with_values(RAIL, friction__scale=[0.5, 1.0])
+    low = packed(tmp_path / "low", with_values(RAIL, friction__coefficient=0.15))
+    fmu = packed(tmp_path, case)
+    with Slave(fmu) as slave, Slave(low) as of_low:
+        slave.initialize()
+        of_low.initialize()
+        assert slave.get("left.force[1]") == pytest.approx(of_low.get("left.force[1]"), rel=1e-9)
+        assert slave.get("right.force[1]") != of_low.get("right.force[1]")
+
+
+def test_friction_without_a_tangential_problem_is_no_input(tmp_path: Path) -> None:
+    scene = load_scene(SCENES["frictionless"])
+    with pytest.raises(CaseError, match="--inputs: value is 'friction'"):
+        pack_fmu(scene, tmp_path / "a.fmu", backend=OWN, inputs=["friction"])

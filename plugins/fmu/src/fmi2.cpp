@@ -7,19 +7,6 @@ using namespace railpatch::fmu::fmi2;
 
 namespace {
 
-// A scene has no variables of this type.
-template <class T>
-fmi2Status none(fmi2Component component, const Call &call, const char *type,
-                const fmi2ValueReference *references, size_t count, T *values) {
-  return call_of(component, call, [&](Instance &i) {
-    if (count == 0) return Status::ok;
-    if (references == nullptr) return i.refuse(call, "vr is NULL");
-    if (values == nullptr) return i.refuse(call, "value is NULL");
-    return i.refuse(call, std::string("there is no ") + type + " with value reference " +
-                              text_of_whole(references[0]));
-  });
-}
-
 // Status of an asynchronous step, which this FMU never has.
 template <class T>
 fmi2Status pending(fmi2Component component, const Call &call, fmi2StatusKind kind, T *value) {
@@ -137,12 +124,14 @@ fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t
 
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                           fmi2Boolean value[]) {
-  return none(c, fmi2::get_boolean, "Boolean", vr, nvr, value);
+  const Call &call = fmi2::get_boolean;
+  return call_of(c, call, [&](Instance &i) { return i.get(call, Type::boolean, vr, nvr, value); });
 }
 
 fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                          fmi2String value[]) {
-  return none(c, fmi2::get_string, "String", vr, nvr, value);
+  const Call &call = fmi2::get_string;
+  return call_of(c, call, [&](Instance &i) { return i.get_text(call, vr, nvr, value); });
 }
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
@@ -159,12 +148,14 @@ fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t
 
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                           const fmi2Boolean value[]) {
-  return none(c, fmi2::set_boolean, "Boolean", vr, nvr, value);
+  const Call &call = fmi2::set_boolean;
+  return call_of(c, call, [&](Instance &i) { return i.set(call, Type::boolean, vr, nvr, value); });
 }
 
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                          const fmi2String value[]) {
-  return none(c, fmi2::set_string, "String", vr, nvr, value);
+  const Call &call = fmi2::set_string;
+  return call_of(c, call, [&](Instance &i) { return i.set_text(call, vr, nvr, value); });
 }
 
 // --- saved states ------------------------------------------------------------------------------

@@ -28,6 +28,8 @@ inline constexpr Call reset{"fmi3Reset", any};
 inline constexpr Call get_float64{"fmi3GetFloat64", read};
 inline constexpr Call get_int32{"fmi3GetInt32", read};
 inline constexpr Call get_int64{"fmi3GetInt64", read};
+inline constexpr Call get_boolean{"fmi3GetBoolean", read};
+inline constexpr Call set_boolean{"fmi3SetBoolean", whole};
 inline constexpr Call get_string{"fmi3GetString", read};
 inline constexpr Call set_float64{"fmi3SetFloat64", before | running};
 inline constexpr Call set_int32{"fmi3SetInt32", whole};

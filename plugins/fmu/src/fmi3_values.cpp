@@ -92,14 +92,26 @@ fmi3Status fmi3SetInt64(fmi3Instance instance, const fmi3ValueReference valueRef
 
 fmi3Status fmi3GetString(fmi3Instance instance, const fmi3ValueReference valueReferences[],
                          size_t nValueReferences, fmi3String values[], size_t nValues) {
-  return none(instance, "fmi3GetString", "String", valueReferences, nValueReferences, values,
-              nValues);
+  const Call &call = fmi3::get_string;
+  return call_of(instance, call, [&](Instance &i) {
+    Status status = check(i, call, valueReferences, nValueReferences, values);
+    if (status == Status::ok)
+      status = i.flatten(call, Type::text, valueReferences, nValueReferences, nValues);
+    return status == Status::ok ? i.get_text(call, i.flat().data(), i.flat().size(), values)
+                                : status;
+  });
 }
 
 fmi3Status fmi3SetString(fmi3Instance instance, const fmi3ValueReference valueReferences[],
                          size_t nValueReferences, const fmi3String values[], size_t nValues) {
-  return none(instance, "fmi3SetString", "String", valueReferences, nValueReferences, values,
-              nValues);
+  const Call &call = fmi3::set_string;
+  return call_of(instance, call, [&](Instance &i) {
+    Status status = check(i, call, valueReferences, nValueReferences, values);
+    if (status == Status::ok)
+      status = i.flatten(call, Type::text, valueReferences, nValueReferences, nValues);
+    return status == Status::ok ? i.set_text(call, i.flat().data(), i.flat().size(), values)
+                                : status;
+  });
 }
 
 fmi3Status fmi3GetFloat32(fmi3Instance instance, const fmi3ValueReference valueReferences[],
@@ -186,14 +198,14 @@ fmi3Status fmi3SetUInt64(fmi3Instance instance, const fmi3ValueReference valueRe
 
 fmi3Status fmi3GetBoolean(fmi3Instance instance, const fmi3ValueReference valueReferences[],
                           size_t nValueReferences, fmi3Boolean values[], size_t nValues) {
-  return none(instance, "fmi3GetBoolean", "Boolean", valueReferences, nValueReferences, values,
-              nValues);
+  return get(instance, fmi3::get_boolean, Type::boolean, valueReferences, nValueReferences, values,
+             nValues);
 }
 
 fmi3Status fmi3SetBoolean(fmi3Instance instance, const fmi3ValueReference valueReferences[],
                           size_t nValueReferences, const fmi3Boolean values[], size_t nValues) {
-  return none(instance, "fmi3SetBoolean", "Boolean", valueReferences, nValueReferences, values,
-              nValues);
+  return set(instance, fmi3::set_boolean, Type::boolean, valueReferences, nValueReferences, values,
+             nValues);
 }
 
 fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference valueReferences[],

@@ -92,6 +92,7 @@ std::unique_ptr<Instance> Instance::create(const Making &making, Interface inter
     return nullptr;
   }
   instance->contact_.reset(contact);
+  if (scene.options.friction_sides != 0) rp_set_friction_coefficient(contact, 1, nullptr);
   instance->wheels_ = scene.config.kind != RP_PATCH;
   instance->derivatives_ = scene.config.derivatives != 0;
   if (scene.config.temperature != 0) std::copy_n(scene.config.bulk_temperature, 2, instance->bulk_);
@@ -100,6 +101,7 @@ std::unique_ptr<Instance> Instance::create(const Making &making, Interface inter
   instance->options_ = scene.options;
   instance->content_ = hash_of(scene.guid);
   instance->variables_ = std::move(scene.variables);
+  instance->constants_ = std::move(scene.constants);
   const std::vector<SceneArray> arrays = std::move(scene.variable_arrays);
   if (!scene.choices[0].empty() || !scene.choices[1].empty()) instance->scene_ = std::move(content);
   if (!instance->index_variables() || !instance->index_arrays(arrays)) {
@@ -115,7 +117,7 @@ bool Instance::index_variables() {
     const Variable &variable = *variables_[i].variable;
     if (variable.reference >= index_.size()) index_.resize(variable.reference + 1, -1);
     index_[variable.reference] = static_cast<int16_t>(i);
-    if (variable.role == Role::output || variable.role == Role::independent) continue;
+    if (variable.role != Role::input && variable.role != Role::parameter) continue;
     if (known_ != i) return false;
     ++known_;
   }
@@ -133,6 +135,7 @@ bool Instance::index_variables() {
 void Instance::start_values() {
   rp_default_input(&input_);
   std::copy_n(bulk_, 2, input_.bulk_temperature);
+  std::copy_n(options_.friction_scale, 2, input_.friction_scale);
   values_.clear();
   for (const SceneVariable &item : variables_) values_.push_back(item.start);
   at_.assign(known_, 0);
@@ -377,9 +380,11 @@ Status Instance::get(const Call &call, Type type, const Reference *references, s
 bool Instance::settable(const Call &call, int index, double value) {
   const SceneVariable &item = variables_[static_cast<size_t>(index)];
   const Variable &variable = *item.variable;
-  if (variable.role == Role::output || variable.role == Role::independent) {
-    const bool output = variable.role == Role::output;
-    refuse(call, item.name + (output ? " is an output" : " is the independent variable"));
+  if (variable.role != Role::input && variable.role != Role::parameter) {
+    const char *what = variable.role == Role::output     ? " is an output"
+                       : variable.role == Role::constant ? " is a constant"
+                                                         : " is the independent variable";
+    refuse(call, item.name + what);
     return false;
   }
   if (mode_ == Mode::continuous && !is_input(variable)) {
@@ -432,8 +437,10 @@ Status Instance::set(const Call &call, Type type, const Reference *references, s
 template Status Instance::get(const Call &, Type, const Reference *, size_t, double *);
 template Status Instance::get(const Call &, Type, const Reference *, size_t, int32_t *);
 template Status Instance::get(const Call &, Type, const Reference *, size_t, int64_t *);
+template Status Instance::get(const Call &, Type, const Reference *, size_t, bool *);
 template Status Instance::set(const Call &, Type, const Reference *, size_t, const double *);
 template Status Instance::set(const Call &, Type, const Reference *, size_t, const int32_t *);
 template Status Instance::set(const Call &, Type, const Reference *, size_t, const int64_t *);
+template Status Instance::set(const Call &, Type, const Reference *, size_t, const bool *);
 
 }  // namespace railpatch::fmu

@@ -45,6 +45,11 @@ class Instance {
   Status set(const Call &call, Type type, const Reference *references, size_t count,
              const T *values);
 
+  // texts that stay as long as the instance
+  Status get_text(const Call &call, const Reference *references, size_t count, const char **values);
+  Status set_text(const Call &call, const Reference *references, size_t count,
+                  const char *const *values);
+
   // FMI 3.0: the components of arrays, into flat()
   Status flatten(const Call &call, Type type, const Reference *references, size_t count,
                  size_t value_count);
@@ -149,7 +154,8 @@ class Instance {
 
   Log log_;
   std::vector<SceneVariable> variables_;
-  std::vector<int16_t> index_;    // by value reference, -1: not in this scene
+  std::vector<std::unique_ptr<Variable>> constants_;  // of them, those that no table knows
+  std::vector<int16_t> index_;                        // by value reference, -1: not in this scene
   std::vector<uint32_t> extent_;  // of variables: components of an array, 0: in the array before
   std::vector<Reference> flat_;   // components of a call's arrays
   uint64_t content_ = 0;          // tells this FMU's states from those of another

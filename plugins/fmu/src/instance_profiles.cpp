@@ -39,6 +39,8 @@ Status Instance::make_contact(const Call &call, const Profiles &profiles, Contac
   rp_message message = {};
   const rp_error error = rp_create(&config, &contact, &message);
   made.reset(contact);
+  if (contact != nullptr && options_.friction_sides != 0)
+    rp_set_friction_coefficient(contact, 1, nullptr);
   if (error == RP_OK) return Status::ok;
   return refuse(call, std::string("the contact with these profiles cannot be made: ") +
                           (message.text[0] != '\0' ? message.text : rp_error_text(error)));

@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::string_view kHead = "railpatch-fmu-scene";
 constexpr int kVersion = 1;
+// no variable of the table has such references
+constexpr uint32_t kFirstConstant = 4001, kLastConstant = 9999;
 constexpr std::string_view kArrays[] = {"arc_length", "y", "z", "dy", "dz"};
 
 // The words of one line.
@@ -147,6 +149,9 @@ bool read_option(Words &words, Scene &scene) {
   if (name == "history") return words.number(o.history);
   if (name == "averaged") return words.number(o.averaged);
   if (name == "friction_input") return words.number(o.friction_input);
+  if (name == "friction_sides") return words.number(o.friction_sides);
+  if (name == "friction_left") return words.number(o.friction_scale[0]);
+  if (name == "friction_right") return words.number(o.friction_scale[1]);
   if (name == "time_step") return words.number(o.time_step);
   return name == "distance" && words.number(o.distance);
 }
@@ -158,6 +163,54 @@ bool read_variable(Words &words, Scene &scene) {
   item.name = words.next();
   item.variable = find_variable(reference);
   if (item.name.empty() || item.variable == nullptr || !words.number(item.start)) return false;
+  scene.variables.push_back(std::move(item));
+  return true;
+}
+
+int hex_of(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+}
+
+// False where a code is cut off. %00 stands for nothing.
+bool read_text(std::string_view word, std::string &text) {
+  for (size_t i = 0; i < word.size(); ++i) {
+    if (word[i] != '%') {
+      text += word[i];
+      continue;
+    }
+    const int high = i + 2 < word.size() ? hex_of(word[i + 1]) : -1;
+    const int low = high >= 0 ? hex_of(word[i + 2]) : -1;
+    if (low < 0) return false;
+    if (high + low > 0) text += static_cast<char>(16 * high + low);
+    i += 2;
+  }
+  return !word.empty();
+}
+
+bool read_constant(Words &words, Scene &scene) {
+  uint32_t reference = 0;
+  if (!words.number(reference) || reference < kFirstConstant || reference > kLastConstant)
+    return false;
+  const std::string_view kind = words.next();
+  Type type = Type::real;
+  if (kind == "integer")
+    type = Type::integer;
+  else if (kind == "boolean")
+    type = Type::boolean;
+  else if (kind == "text")
+    type = Type::text;
+  else if (kind != "real")
+    return false;
+  SceneVariable item{};
+  item.name = words.next();
+  if (item.name.empty()) return false;
+  if (type == Type::text ? !read_text(words.next(), item.text) : !words.number(item.start))
+    return false;
+  scene.constants.push_back(
+      std::make_unique<Variable>(Variable{reference, type, Role::constant, no_field, no_field,
+                                          item.start, item.start, 0, 0, 0, Absent::zero, true}));
+  item.variable = scene.constants.back().get();
   scene.variables.push_back(std::move(item));
   return true;
 }
@@ -177,7 +230,7 @@ bool read_array(Words &words, Scene &scene) {
   SceneArray array{};
   if (!words.number(array.reference) || !words.number(array.size)) return false;
   scene.variable_arrays.push_back(array);
-  return array.size > 1 && array.size <= 3;
+  return array.size > 1 && array.size <= 16;
 }
 
 bool read_line(std::string_view line, Scene &scene) {
@@ -205,6 +258,8 @@ bool read_line(std::string_view line, Scene &scene) {
     good = read_option(words, scene);
   } else if (key == "variable") {
     good = read_variable(words, scene);
+  } else if (key == "constant") {
+    good = read_constant(words, scene);
   } else if (key == "held") {
     good = read_held(words, scene);
   } else if (key == "array") {

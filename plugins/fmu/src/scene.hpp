@@ -15,6 +15,9 @@
 //   option NAME VALUE                           one of Options
 //   variable REFERENCE NAME START               in the order of modelDescription.xml: what is not
 //                                               an output first
+//   constant REFERENCE real|integer|boolean|text NAME VALUE
+//                                               a key of the scene that is fixed; of a text with
+//                                               %xx in place of what is no letter or number
 //   held REFERENCE                              an input before that is always 0: a component of a
 //                                               vector that is without effect
 //   array REFERENCE SIZE                        FMI 3.0: this variable and those that follow it in
@@ -22,6 +25,7 @@
 //   end CRC                                     CRC-32 of all bytes before this line, hexadecimal
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -35,6 +39,7 @@ struct SceneVariable {
   std::string name;
   double start;
   bool held = false;
+  std::string text = {};  // of a constant that is one
 };
 
 struct SceneArray {
@@ -44,10 +49,12 @@ struct SceneArray {
 struct Options {
   int32_t history =
       0;  // 1: later steps depend on earlier ones, not only through the solver's start
-  int32_t averaged = 0;        // 1: means over a step are asked for
-  int32_t friction_input = 0;  // 1: the coefficient of friction is an input
-  double time_step = 0;        // s, of the solve at the start, where there is no step yet
-  double distance = 0;         // m, of that solve: distance rolled of a patch in transient rolling
+  int32_t averaged = 0;               // 1: means over a step are asked for
+  int32_t friction_input = 0;         // 1: the coefficient of friction is an input
+  int32_t friction_sides = 0;         // 1: that of each wheel is one, by rp_input.friction_scale
+  double friction_scale[2] = {1, 1};  // of the law on each wheel, where it is no input
+  double time_step = 0;               // s, of the solve at the start, where there is no step yet
+  double distance = 0;  // m, of that solve: distance rolled of a patch in transient rolling
 };
 
 struct ProfileArrays {
@@ -64,7 +71,8 @@ struct Scene {
   Options options;
   std::vector<SceneVariable> variables;
   std::vector<SceneArray> variable_arrays;
-  std::vector<double> arrays[2][2][5];  // wheel or rail, side, arc_length y z dy dz
+  std::vector<std::unique_ptr<Variable>> constants;  // which no table knows
+  std::vector<double> arrays[2][2][5];               // wheel or rail, side, arc_length y z dy dz
   std::vector<double> distance;
   std::vector<Section> sections[2];
   std::vector<double> runout[2], rail_height[2];

@@ -15,6 +15,7 @@ enum class Type : uint8_t {
   integer = 2,
   enumeration = 4,
   text = 8,
+  boolean = 16,
   whole = 2 | 4,
   number = 1 | 2 | 4
 };
@@ -23,7 +24,7 @@ constexpr bool among(Type type, Type asked) {
   return (static_cast<unsigned>(type) & static_cast<unsigned>(asked)) != 0;
 }
 
-enum class Role : uint8_t { input, output, parameter, independent };
+enum class Role : uint8_t { input, output, parameter, independent, constant };
 
 inline constexpr size_t no_field = SIZE_MAX;
 

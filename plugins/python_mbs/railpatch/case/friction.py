@@ -28,6 +28,10 @@ from railpatch.case.types import (
 )
 
 Coefficient = Annotated[float, between(0, 10)]
+NotNegative = Annotated[float, between(0, 100)]
+Scale = Annotated[list[NotNegative], Field(min_length=2, max_length=2)]
+# key of a step and the key of the table that it moves
+MOVED_FRICTION = {"friction_scale": "scale"}
 Terms = Annotated[list[Number], Field(min_length=1, max_length=2)]
 Speeds = Annotated[list[Positive], Field(min_length=1, max_length=2)]
 # keys of each law, needed and optional
@@ -104,6 +108,12 @@ class Friction(Table):
         "track, wheelset.x (wheel_rail, wheelset)",
     )
 
+    scale: Scale = Field(
+        default=[1.0, 1.0],
+        description="-, factor of the law on the left and right wheel, beside the other factors; "
+        "of a patch the second counts. Moves",
+    )
+
     @model_validator(mode="after")
     def _by_law(self) -> Friction:
         refuse(self._keys_of_law())
@@ -114,7 +124,7 @@ class Friction(Table):
         needed, optional = KEYS[self.law]
         if self.law == "slip_velocity":
             needed = SHAPES[self.shape]
-        allowed = {"law", "factor", "along_track", *needed, *optional}
+        allowed = {"law", "factor", "along_track", "scale", *needed, *optional}
         if self.law == "slip_velocity":
             allowed.add("shape")
         for name in needed:
@@ -159,6 +169,11 @@ class Friction(Table):
                 yield relation(name, str(points), "factors within 0 ... 100")
 
     @property
+    def moving(self) -> tuple[str, ...]:
+        """The factor of each wheel, by the name of a step's key."""
+        return tuple(MOVED_FRICTION)
+
+    @property
     def terms(self) -> tuple[list[float], list[float]]:
         """Amplitudes (-) and halving speeds (m/s) of the slip-velocity law."""
         if self.law != "slip_velocity":
@@ -184,7 +199,7 @@ class Friction(Table):
     def greatest_anywhere(self) -> float:
         """-, greatest coefficient that the law may give at any place."""
         factor = 1.0 if self.factor is None else max(value for _, value in self.factor)
-        return factor * self.greatest
+        return factor * max(self.scale) * self.greatest
 
     @property
     def greatest(self) -> float:

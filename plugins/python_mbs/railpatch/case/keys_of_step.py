@@ -47,6 +47,8 @@ class Moving(TypedDict, total=False):
     water_temperature: float
     oil_film: float
     rail_work: Numbers
+    # with friction
+    friction_scale: Numbers
     # with temperatures
     temperature: Mapping[str, float]
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from railpatch.case.fluid import MOVED
+from railpatch.case.friction import MOVED_FRICTION
 from railpatch.case.load import Case, check_table, plain
 from railpatch.case.messages import show
 from railpatch.case.patch import PatchCase
@@ -15,6 +16,8 @@ from railpatch.errors import CaseError
 
 # tables that are given whole or in part, by their name
 BY_TABLE = ("track", "temperature")
+# tables whose keys have other names in a step
+OF_STEP = {"fluid": MOVED, "friction": MOVED_FRICTION}
 # of a deviation: shapes, which do not move
 FIXED = {*WheelDeviation.model_fields, *Rail.model_fields} - set(Deviation.model_fields)
 
@@ -43,7 +46,7 @@ def changed_case(case: Case, changes: Mapping[str, Any]) -> Case:
     for key, value in plain(changes).items():
         values = tables.setdefault(keys[key], {})
         if key not in BY_TABLE:
-            values[MOVED[key] if keys[key] == "fluid" else key] = value
+            values[OF_STEP.get(keys[key], {}).get(key, key)] = value
             continue
         if not isinstance(value, dict):
             raise CaseError(f"{key}: value is {show(value)}, allowed a table")

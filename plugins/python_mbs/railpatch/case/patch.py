@@ -237,7 +237,9 @@ class PatchCase(Table):
     @property
     def moving(self) -> tuple[str, ...]:
         """The tables that hold keys which move."""
-        return ("load", "motion", *(("fluid",) if self.fluid is not None else ()))
+        fluid = ("fluid",) if self.fluid is not None else ()
+        friction = ("friction",) if self.friction is not None and self.has_tangential else ()
+        return ("load", "motion", *fluid, *friction)
 
     @property
     def has_tangential(self) -> bool:

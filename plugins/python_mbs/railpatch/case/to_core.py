@@ -16,6 +16,7 @@ from typing import Any
 from railpatch import _core
 from railpatch.case.creep_table import default_table, table_from
 from railpatch.case.fluid import MOVED, OF_KNOT
+from railpatch.case.friction import MOVED_FRICTION
 from railpatch.case.gap import read_gap
 from railpatch.case.load import Case, Scene, plain
 from railpatch.case.longitudinal import shape_config
@@ -245,6 +246,9 @@ def input_of(case: Case) -> dict[str, Any]:
     """Fields of rp_input."""
     values: dict[str, Any] = {}
     for name in case.moving:
+        if name == "friction":  # its law is the config's
+            values |= {field: getattr(case.friction, key) for field, key in MOVED_FRICTION.items()}
+            continue
         values |= passed(name, getattr(case, name), _core.INPUT_FIELDS)
     if isinstance(case, PatchCase):
         motion = case.motion
@@ -267,7 +271,8 @@ def input_of(case: Case) -> dict[str, Any]:
 
 # keys of a step that are plain numbers in the core's input and, given by themselves, need no other
 # check than their range
-PLAIN = ("normal_force", "approach", "creepage", "spin_creepage", "rolling_speed", *MOVED)
+PLAIN = ("normal_force", "approach", "creepage", "spin_creepage", "rolling_speed")
+PLAIN += (*MOVED, *MOVED_FRICTION)
 
 
 def plain_moves(case: Case) -> dict[str, tuple[int, int, str, float, float]]:

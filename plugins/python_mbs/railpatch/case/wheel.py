@@ -315,7 +315,9 @@ class _WheelCase(Table):
     @property
     def moving(self) -> tuple[str, ...]:
         """The tables that hold keys which move."""
-        return ("wheelset", "track", *(("fluid",) if self.fluid is not None else ()))
+        fluid = ("fluid",) if self.fluid is not None else ()
+        friction = ("friction",) if self.friction is not None and self.has_tangential else ()
+        return ("wheelset", "track", *fluid, *friction)
 
     @property
     def sides(self) -> tuple[str, ...]:

@@ -38,11 +38,15 @@ def input_conditions(inputs: Sequence[str], kind: Kind) -> set[str]:
     for name in inputs:
         if name not in INPUTS:
             raise CaseError(f"--inputs: value is {name!r}, allowed {', '.join(INPUTS)}")
-    if "friction" in inputs and not {"tangential", "coulomb"} <= kind.conditions:
+    if "friction" not in inputs:
+        return set()
+    if "tangential" not in kind.conditions:
         raise CaseError(
-            "--inputs: value is 'friction', allowed where friction is Coulomb's, one coefficient"
+            "--inputs: value is 'friction', allowed where there is a tangential problem"
         )
-    return {f"{name} input" for name in inputs}
+    if "coulomb" not in kind.conditions or "fluid" in kind.conditions:
+        return {"friction scale"}
+    return {"friction sides" if kind.kind == "wheelset" else "friction input"}
 
 
 def chosen(variables: list[Variable], outputs: Sequence[str]) -> list[Variable]:

@@ -28,7 +28,26 @@ BASE_UNITS = {
     "J": {"kg": 1, "m": 2, "s": -2},
     "m3/s": {"m": 3, "s": -1},
     "degC": {"K": 1, "offset": 273.15},
+    # of constants
+    "%": {"factor": 0.01},
+    "m/s2": {"m": 1, "s": -2},
+    "1/m": {"m": -1},
+    "1/s": {"s": -1},
+    "s/m": {"s": 1, "m": -1},
+    "1/N": {"kg": -1, "m": -1, "s": 2},
+    "N/m": {"kg": 1, "s": -2},
+    "N.s/m": {"kg": 1, "s": -1},
+    "Pa/m": {"kg": 1, "m": -2, "s": -2},
+    "Pa.s": {"kg": 1, "m": -1, "s": -1},
+    "K": {"K": 1},
+    "W/K": {"kg": 1, "m": 2, "s": -3, "K": -1},
+    "W/(m.K)": {"kg": 1, "m": 1, "s": -3, "K": -1},
+    "J/(kg.K)": {"m": 2, "s": -2, "K": -1},
+    "kg/m3": {"kg": 1, "m": -3},
+    "J/m": {"kg": 1, "m": 1, "s": -2},
 }
+# that have no declared type: there is nothing to say of them
+PLAIN = ("String", "Boolean")
 CAPABILITIES = {
     "canHandleVariableCommunicationStepSize": "true",
     "canInterpolateInputs": "true",
@@ -171,8 +190,12 @@ def type_attributes(table: Table, name: str) -> dict[str, Any]:
     declared = table.types[name]
     if "items" in declared:
         return {"quantity": name}
-    if table.base(name) == "String":
+    if table.base(name) in PLAIN:
         return {}
+    if "range" not in declared:  # a constant
+        keys = ("quantity", "unit", "nominal")
+        found = {key: declared[key] for key in keys if key in declared}
+        return found | ({"displayUnit": declared["display"][0]} if "display" in declared else {})
     low, high = declared["range"]
     if "unit" not in declared:
         return {"quantity": name, "min": low, "max": high}
@@ -191,7 +214,7 @@ def type_lines(table: Table, variables: list[Variable]) -> list[str]:
     lines = ["  <TypeDefinitions>"]
     for name, declared in used_types(table, variables).items():
         base = table.base(name)
-        if base == "String":
+        if base in PLAIN:
             continue
         lines.append(f"    <SimpleType{attributes({'name': name})}>")
         element = f"      <{base}{attributes(type_attributes(table, name))}"
@@ -219,14 +242,19 @@ def variable_lines(table: Table, variable: Variable) -> list[str]:
     value = {"declaredType": variable.type, **type_attributes(table, variable.type)}
     if variable.base == "Enumeration":
         value |= {"min": int(variable.range[0]), "max": int(variable.range[1])}
-    if variable.base == "String":
+    if variable.base in PLAIN:
         value = {}
-    value["start"] = variable.start
+    value["start"] = start_text(variable)
     return [
         f"    <ScalarVariable{attributes(role)}>",
         f"      <{variable.base}{attributes(value)}/>",
         "    </ScalarVariable>",
     ]
+
+
+def start_text(variable: Variable) -> Any:
+    """A start value as XML has it."""
+    return str(variable.start).lower() if variable.base == "Boolean" else variable.start
 
 
 def variability(variable: Variable) -> str:

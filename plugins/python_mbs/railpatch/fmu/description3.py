@@ -5,10 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from railpatch.fmu.description import (
+    PLAIN,
     Labels,
     attributes,
     experiment_line,
     log_category_lines,
+    start_text,
     type_attributes,
     unit_lines,
     used_types,
@@ -25,7 +27,13 @@ from railpatch.fmu.table import (
 )
 
 # names of FMI 3.0 for the base types of FMI 2.0
-ELEMENTS = {"Real": "Float64", "Integer": "Int32", "Enumeration": "Enumeration", "String": "String"}
+ELEMENTS = {
+    "Real": "Float64",
+    "Integer": "Int32",
+    "Enumeration": "Enumeration",
+    "String": "String",
+    "Boolean": "Boolean",
+}
 
 
 def description3_xml(
@@ -77,7 +85,7 @@ def type_lines(table: Table, variables: list[Variable]) -> list[str]:
     lines = ["  <TypeDefinitions>"]
     for name, declared in used_types(table, variables).items():
         base = table.base(name)
-        if base == "String":
+        if base in PLAIN:
             continue
         element = f"    <{ELEMENTS[base]}Type"
         listed = attributes({"name": name, **type_attributes(table, name)})
@@ -110,6 +118,9 @@ def variable_lines(table: Table, item: Item) -> list[str]:
             f"      <Start{start}/>",
             f"    </{element}>",
         ]
+    if first.base == "Boolean":
+        listed |= {"initial": "exact", "start": start_text(first)}
+        return [f"    <{element}{attributes(listed)}/>"]
     listed["declaredType"] = first.type
     if first.causality != "independent":
         listed["initial"] = "calculated" if first.causality == "output" else "exact"

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from html import escape
+from typing import Any
 
 from railpatch.case.load import Case
 from railpatch.fmu.description import Labels
+from railpatch.fmu.frames import STYLE as PICTURE_STYLE
+from railpatch.fmu.frames import pictures
 from railpatch.fmu.table import Kind, Table, Variable, dependencies, first_item
 from railpatch.fmu.this_scene import scene_table
 
@@ -152,23 +155,31 @@ def notice(backend: str, runtime: str | None = None) -> str:
 
 
 def index_html(
-    labels: Labels, table: Table, kind: Kind, variables: list[Variable], guid: str, case: Case
+    labels: Labels,
+    table: Table,
+    kind: Kind,
+    variables: list[Variable],
+    guid: str,
+    case: Case,
+    config: dict[str, Any],
 ) -> str:
-    """The page: needs no network."""
+    """The page: needs no network. config: of the core, for its profiles."""
     known = [v for v in variables if v.causality in ("input", "parameter")]
     outputs = [v for v in variables if v.causality == "output"]
     title = escape(labels.name)
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>{title}</title>
-<style>{STYLE}</style></head><body>
+<style>{STYLE}{PICTURE_STYLE}</style></head><body>
 <h1>{title}</h1>
 <p>{escape(labels.description)} Made by Railpatch {escape(labels.version)}; licence:
 {escape(labels.licence)}; GUID <code>{escape(guid)}</code>.</p>
 <h2>This scene</h2>
 <p>What the FMU was made of, as the keys of its case; inputs and parameters are not among them, they
-are listed below with their start values.</p>
+are listed below with their start values. What a key says beyond its default is in the FMU itself
+too, as a constant (causality local) of the same name.</p>
 {scene_table(case, names_of(known))}
 <h2>Frames and signs</h2>{FRAMES + REFERENCE_POINTS if kind.kind != "patch" else PATCH_FRAME}
+{pictures(kind, config)}
 <h2>Inputs and parameters</h2>{apart(labels)}
 <p>Start values are those of the scene: the FMU runs without any being set. Geometry, material and
 method are fixed in the FMU; parameters may be changed between steps{fixed(known)}.</p>

@@ -22,6 +22,7 @@ from railpatch.case.to_core import config_of
 from railpatch.contact import Contact, at_balance
 from railpatch.errors import CaseError
 from railpatch.fmu.choice import chosen, input_conditions, with_patches
+from railpatch.fmu.constants import constants_of
 from railpatch.fmu.description import Labels, description_xml
 from railpatch.fmu.description3 import description3_xml
 from railpatch.fmu.document import index_html
@@ -76,6 +77,7 @@ class Contents:
     libraries: Libraries
     creep_table: bytes | None
     choices: Choices
+    config: dict[str, Any]
     version: int = 2
 
     def description(self, token: str) -> str:
@@ -196,6 +198,7 @@ def contents_of(
         warnings=(*doubtful, *apart),
     )
     variables = chosen(variables_of(table, kind, scene.case), options.outputs)
+    variables += constants_of(scene.case, table, variables)
     creep_table = config["creep_table"].tobytes() if "creep_table" in config else None
     return Contents(
         labels=labels,
@@ -207,6 +210,7 @@ def contents_of(
         libraries=libraries,
         creep_table=creep_table,
         choices=choices,
+        config=config,
         version=options.version,
     )
 
@@ -293,7 +297,7 @@ def files_of(contents: Contents, guid: str) -> dict[str, bytes]:
         "resources/scene.txt": c.scene_text(guid),
         "documentation/reference.csv": reference_csv(c.scene, c.variables),
         "documentation/index.html": index_html(
-            c.labels, c.table, c.kind, c.variables, guid, c.scene.case
+            c.labels, c.table, c.kind, c.variables, guid, c.scene.case, c.config
         ),
     }
     if sources:

@@ -6,6 +6,7 @@ import re
 import zlib
 from collections.abc import Iterator
 from typing import Any
+from urllib.parse import quote
 
 import numpy as np
 
@@ -21,6 +22,8 @@ from railpatch.errors import CaseError
 from railpatch.fmu.profiles import Choices
 from railpatch.fmu.table import Kind, Table, Variable, items_of, with_start
 
+# of options; what is not here is 0 where nothing is said
+OPTION_DEFAULTS = {"friction_left": 1, "friction_right": 1}
 PROFILE_ARRAYS = ("arc_length", "y", "z", "dy", "dz")
 
 
@@ -139,6 +142,8 @@ def start_of(variable: Variable, case: Case) -> float | int | str:
     """The case's value of an input or parameter."""
     if variable.start is not None:
         return variable.start
+    if variable.field.startswith("friction_scale"):
+        return friction_start(variable, case)
     name, index = split_name(variable.name)
     path = name.split(".")
     if name in MOVED:
@@ -153,6 +158,17 @@ def start_of(variable: Variable, case: Case) -> float | int | str:
     if value is None:  # a roller's speed that the case leaves out
         value = 0.0
     return float(value) if variable.base == "Real" else int(value)
+
+
+def friction_start(variable: Variable, case: Case) -> float:
+    """Of one wheel: its coefficient, or the factor of the law."""
+    assert case.friction is not None
+    assert variable.side is not None
+    scale = case.friction.scale[variable.side]
+    if not variable.name.endswith("coefficient"):
+        return scale
+    assert case.friction.coefficient is not None
+    return case.friction.coefficient * scale
 
 
 def split_name(name: str) -> tuple[str, int | None]:
@@ -192,9 +208,17 @@ def options_of(case: Case, kind: Kind) -> dict[str, float]:
         "history": int("history" in kind.conditions),
         "averaged": int("averaged" in kind.conditions),
         "friction_input": int("friction input" in kind.conditions),
+        "friction_sides": int("friction sides" in kind.conditions),
+        **{f"friction_{side}": value for side, value in scales_of(case).items()},
         "time_step": start.get("time_step", 0.0),
         "distance": start.get("distance", 0.0),
     }
+
+
+def scales_of(case: Case) -> dict[str, float]:
+    """Factors of the friction law by side."""
+    friction = case.friction if case.has_tangential else None
+    return dict(zip(SIDES, friction.scale if friction is not None else (1.0, 1.0), strict=True))
 
 
 def lines_of(
@@ -232,15 +256,29 @@ def lines_of(
     if config.get("undeformed_distance") is not None:
         yield f"distance {spell_array(np.asarray(config['undeformed_distance']).ravel())}"
     for name, value in options.items():
-        if value:
+        if value != OPTION_DEFAULTS.get(name, 0):
             yield f"option {name} {spell([value])}"
     for v in variables:
+        if v.causality == "local":
+            yield constant_line(v)
+            continue
         yield f"variable {v.reference} {v.name} {spell([v.start or 0])}"
         if v.held:
             yield f"held {v.reference}"
     for item in items_of(variables, version):
         if item.is_array:
             yield f"array {item.first.reference} {len(item.variables)}"
+
+
+def constant_line(variable: Variable) -> str:
+    """A constant of the scene; words of a text are joined by their code."""
+    start = variable.start
+    if variable.base == "String":
+        word = quote(str(start), safe="") or "%00"
+        return f"constant {variable.reference} text {variable.name} {word}"
+    kind = {"Real": "real", "Integer": "integer", "Boolean": "boolean"}[variable.base]
+    number = float(start) if kind == "real" else int(start or 0)
+    return f"constant {variable.reference} {kind} {variable.name} {number!r}"
 
 
 def spell_array(values: Any) -> str:

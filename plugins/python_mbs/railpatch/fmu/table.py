@@ -162,6 +162,8 @@ class Table:
             return "Real"
         if "text" in declared:
             return "String"
+        if "flag" in declared:
+            return "Boolean"
         return "Enumeration" if "items" in declared else "Integer"
 
     def range(self, name: str) -> tuple[float, float]:

@@ -19,7 +19,7 @@ def scene_table(case: Case, inputs: set[str]) -> str:
     """HTML. inputs: names of variables, whose values are start values."""
     rows = ["<tr><th>key of the case</th><th>value</th><th>meaning</th></tr>"]
     rows.append(f"<tr><td><code>kind</code></td><td>{escape(case.kind)}</td><td></td></tr>")
-    for name, value, meaning in keys_of(case, ""):
+    for name, value, meaning, _ in keys_of(case, ""):
         if name in inputs or name in LEFT_OUT:
             continue
         cells = (f"<code>{escape(name)}</code>", escape(spelled(value)), escape(meaning))
@@ -27,8 +27,8 @@ def scene_table(case: Case, inputs: set[str]) -> str:
     return "<table>\n" + "\n".join(rows) + "\n</table>"
 
 
-def keys_of(model: BaseModel, before: str) -> Iterator[tuple[str, Any, str]]:
-    """Name, value and meaning of every key that has a value."""
+def keys_of(model: BaseModel, before: str) -> Iterator[tuple[str, Any, str, bool]]:
+    """Name, value and meaning of every key that has a value, and whether it is the default."""
     for name, field in type(model).model_fields.items():
         value = getattr(model, name)
         if value is None:
@@ -37,7 +37,7 @@ def keys_of(model: BaseModel, before: str) -> Iterator[tuple[str, Any, str]]:
         if isinstance(value, BaseModel):
             yield from keys_of(value, f"{whole}.")
         else:
-            yield whole, value, field.description or ""
+            yield whole, value, field.description or "", value == field.default
 
 
 def spelled(value: Any) -> str:
