@@ -11,6 +11,9 @@ namespace {
 
 // of the groups: far outside of all that they describe, and within what numbers hold
 constexpr double least_load = 1e-30, least_pressure = 1e-12;
+// logarithms of 145, 3.18, 1.29, 1.48
+constexpr double ln_145 = 4.976733742420574, ln_3_18 = 1.1568811967920856,
+                 ln_1_29 = 0.25464221837358075, ln_1_48 = 0.3920420877760237;
 
 }  // namespace
 
@@ -24,10 +27,10 @@ elliptic_film::elliptic_film(const film_contact &c) {
   const double k = 1.0 + 0.006 * log_d + 0.63 * exp(4.0 / 7.0 * log_d);
   const double log_k = log(k);
   const double width = log(1.0 + 0.796 * exp(14.0 / 15.0 * log_d));
-  const double log_rigid = log(145.0) - 15.0 / 7.0 * width - log_d - 2.0 * log_n;
-  const double log_elastic = log(3.18) - 14.0 / 25.0 * log_k - log_d / 15.0 - 2.0 / 15.0 * log_n;
-  const double log_rp = log(1.29) - 2.0 / 3.0 * log(1.0 + 0.691 * d) + 2.0 / 3.0 * log_l;
-  const double log_ep = log(1.48) - 7.0 / 20.0 * log_k - log_d / 24.0 - log_n / 12.0 + 0.75 * log_l;
+  const double log_rigid = ln_145 - 15.0 / 7.0 * width - log_d - 2.0 * log_n;
+  const double log_elastic = ln_3_18 - 14.0 / 25.0 * log_k - log_d / 15.0 - 2.0 / 15.0 * log_n;
+  const double log_rp = ln_1_29 - 2.0 / 3.0 * log(1.0 + 0.691 * d) + 2.0 / 3.0 * log_l;
+  const double log_ep = ln_1_48 - 7.0 / 20.0 * log_k - log_d / 24.0 - log_n / 12.0 + 0.75 * log_l;
   rigid_ = exp(std::min(1.5 * log_rigid, 600.0));
   elastic_ = exp(-4.0 * log_elastic);
   limit_ = d * d * d * d / (1.8 * 1.8 * 1.8 * 1.8);
@@ -42,9 +45,9 @@ elliptic_film::elliptic_film(const film_contact &c) {
 }
 
 film_point elliptic_film::at(double q) const {
-  const double root = std::sqrt(q);
+  const double root = std::sqrt(q), log_q = q == 1.0 ? 0.0 : log(q);
   const double a = rigid_ / (q * q * std::sqrt(root));
-  const double e = q == 1.0 ? elastic_ : elastic_ * pow(q, 0.4);
+  const double e = q == 1.0 ? elastic_ : elastic_ * exp(0.4 * log_q);
   const double both = std::sqrt(std::sqrt(std::sqrt(e + limit_)));  // to the power 1/8
   const double b = 1.0 / (both * both * both);
   const double log_i = 2.0 / 3.0 * log(a + b);
@@ -54,8 +57,8 @@ film_point elliptic_film::at(double q) const {
     return {exp(log_i) * unit_ / root, -2.0 * i_by_ri - 2.0 / 15.0 * i_by_ei,
             1.5 * i_by_ri + 0.1 * i_by_ei + 0.5, by_part};
   }
-  const double log_p = log_piezo_ + log(root);
-  const double z = 1.2 * ratio_ * (q == 1.0 ? 1.0 : pow(q, -0.6)), decay = exp(-z);
+  const double log_p = log_piezo_ + 0.5 * log_q;
+  const double z = 1.2 * ratio_ * (q == 1.0 ? 1.0 : exp(-0.6 * log_q)), decay = exp(-z);
   const double s = 1.5 * (1.0 + decay), way = log_i - log_p;
   // ln h = ln P + ln(1 + exp(s way))/s, from the greater of both
   const double y = s * way, small = exp(-std::fabs(y)), rest = log(1.0 + small);

@@ -30,36 +30,54 @@ struct shared_load {
   double share, film;
 };
 
-// The root of ln(film of the liquid's part) = ln(sigma t(d)) by Newton's method within a bracket;
-// the left side falls with d, the right one rises.
+// The root of ln(film of the liquid's part) = ln(sigma t(d)) by Newton's method within a bracket,
+// in u = ln(d - d_0), d_0 where asperities bear all: with it the liquid's part of the load falls to
+// 0 as e^u, and both sides are nearly straight lines over u, near d_0 and far from it. The left
+// side falls with u, the right one rises.
 shared_load share_load(const elliptic_film &film, const inlet &in, double roughness,
                        double hardness, double pressure) {
   // share of the asperities where all touches; a pressure above the hardness flattens them
   const double most = std::max(hardness / pressure, 1.0 + 1e-12);
-  const double low_end = distance_of(1.0 / most);
-  const double touching = roughness * mean_film(low_end);
+  const double least = distance_of(1.0 / most);
+  const double touching = roughness * mean_film(least);
   if (!(in.layer > touching)) return {1.0, in.layer};
-  double low = low_end, high = HUGE_VAL, slope;
-  double d = std::max(low + 1e-3, in.film(film.at(1.0).thickness, slope) / roughness - 0.4);
+  double slope;
+  const film_point flooded = film.at(1.0);
+  const double all = in.film(flooded.thickness, slope);
+  // how far the mean planes part if the liquid bears all, and if asperities bear nearly all
+  const double lifted = std::max((all - touching) / roughness, 0.0);
+  const double apart = lifted / (1.0 - exp(-lifted) / most);
+  const double power = std::min(slope * flooded.by_part, -1e-3);
+  const double part = exp(std::clamp(log(touching / all) / power, -20.0, 0.0));
+  const double close = std::min(part / (most * density(least)), 1.0 - std::min(least, 0.0));
+  double u = log(std::max(apart, close));
+  double low = -HUGE_VAL, high = HUGE_VAL, width = HUGE_VAL;
   shared_load found{1.0, touching};
   for (int k = 0; k < 100; ++k) {
-    const double f = std::min(most * beyond(d), 1.0), q = std::max(1.0 - f, 1e-14);
+    const double way = exp(u), d = least + way, tail = beyond(d), bell = density(d);
+    const double q = std::clamp(1.0 - most * tail, 1e-14, 1.0);
     const film_point point = film.at(q);
-    const double h = in.film(point.thickness, slope), t = mean_film(d);
-    found = {f, roughness * t};
+    const double h = in.film(point.thickness, slope);
+    const double t = d < -4.0 ? mean_film(d) : d * (1.0 - tail) + bell;
     const double value = log(h / (roughness * t));
-    if (value > 0)
-      low = d;
-    else
-      high = d;
-    const double falls = slope * point.by_part * most * density(d) / q - (1.0 - beyond(d)) / t;
-    double next = d - value / falls;
-    // a third way into the bracket where Newton's step leaves it
-    if (!(next > low && next < high))
-      next = std::isfinite(high) ? 0.5 * (low + high) : low + 2.0 * (d - low) + 1.0;
-    const double step = std::fabs(next - d);
-    d = next;
-    if (!(step > 1e-13 * (1.0 + std::fabs(d))) || value == 0) break;
+    (value > 0 ? low : high) = u;
+    const double falls = way * (slope * point.by_part * most * bell / q - (1.0 - tail) / t);
+    const double newton = -value / falls;
+    // the error of what is found is the square of the last step
+    if (std::fabs(newton) < 1e-6) {
+      found.share = std::clamp(most * (tail - bell * way * newton), 0.0, 1.0);
+      found.film = roughness * (t + (1.0 - tail) * way * newton);
+      break;
+    }
+    found = {std::min(most * tail, 1.0), roughness * t};
+    if (u < -40.0 || high - low < 1e-15 * std::fabs(u)) break;
+    const double next = u + newton, bracket = high - low;
+    const bool slow = k % 4 == 3 && !(bracket < 0.5 * width);
+    if (k % 4 == 3) width = bracket;
+    if (next > low && next < high && !(slow && std::isfinite(bracket)))
+      u = next;
+    else  // half of the bracket, or a step on
+      u = low == -HUGE_VAL ? u - 2.0 : high == HUGE_VAL ? u + 2.0 : 0.5 * (low + high);
   }
   return found;
 }

@@ -30,6 +30,20 @@ void weigh(double x, double w[4]) {
   w[3] = a * b * c / 6.0;
 }
 
+// acos within 2e-8, of -1 to 1 (a number beyond): Hastings' polynomial (Abramowitz and Stegun
+// 1964, 4.4.46).
+inline double near_acos(double x) {
+  const double y = std::fabs(x);
+  double p = 0.0066700901 - 0.0012624911 * y;
+  p = -0.0170881256 + p * y;
+  p = 0.0308918810 + p * y;
+  p = -0.0501743046 + p * y;
+  p = 0.0889789874 + p * y;
+  p = -0.2145988016 + p * y;
+  p = 1.5707963050 + p * y;
+  return 0.5 * pi - std::copysign(0.5 * pi - p * std::sqrt(std::fabs(1.0 - y)), x);
+}
+
 // The first of the four nodes about a place, 0 ... count - 1.
 int first_of(double at, int count) {
   return std::clamp(static_cast<int>(std::floor(at)) - 1, 0, count - 4);
@@ -37,51 +51,55 @@ int first_of(double at, int count) {
 
 }  // namespace
 
-double strip_table::s_of(int row) {
-  const double low = log(least_s);
-  return exp(low + row * (log(most_s) - low) / (rows - 1));
-}
-
-double strip_table::r_of(int column) {
-  const double low = std::sqrt(least_r);
-  const double root = low + column * (std::sqrt(most_r) - low) / (columns - 1);
-  return root * root;
-}
-
-strip_table::place strip_table::place_of(double s, double r) {
+strip_table::place strip_table::place_of_s(double s) {
+  const double at = (log(std::clamp(s, least_s, most_s)) - low_s) / across_s * (rows - 1);
   place p;
-  const double low = log(least_s), across = log(most_s) - low;
-  const double at_s = (log(std::clamp(s, least_s, most_s)) - low) / across * (rows - 1);
-  const double low_r = std::sqrt(least_r), across_r = std::sqrt(most_r) - low_r;
-  const double at_r =
-      (std::sqrt(std::clamp(r, least_r, most_r)) - low_r) / across_r * (columns - 1);
-  p.s = first_of(at_s, rows);
-  p.r = first_of(at_r, columns);
-  weigh(at_s - p.s, p.of_s);
-  weigh(at_r - p.r, p.of_r);
+  p.first = first_of(at, rows);
+  weigh(at - p.first, p.weight);
+  return p;
+}
+
+strip_table::place strip_table::place_of_r(double r) {
+  const double at = (std::sqrt(std::clamp(r, least_r, most_r)) - low_r) / across_r * (columns - 1);
+  place p;
+  p.first = first_of(at, columns);
+  weigh(at - p.first, p.weight);
   return p;
 }
 
 const double *strip_table::node(int s, int r) { return solved + (s * columns + r) * numbers; }
 
-strip_table::strip strip_table::at(double s, double r) {
-  const place p = place_of(s, r);
+strip_table::rows_of::rows_of(double s) {
+  const place p = place_of_s(s);
+  const double *v[4];
+  for (int i = 0; i < 4; ++i) v[i] = node(p.first + i, 0);
+  const double *w = p.weight;
+  for (size_t k = 0; k < of_r_.size(); ++k)
+    of_r_[k] = w[0] * v[0][k] + w[1] * v[1][k] + w[2] * v[2][k] + w[3] * v[3][k];
+}
+
+strip_table::strip strip_table::rows_of::at(double r) const {
+  const place p = place_of_r(r);
+  const double *v[4], *w = p.weight;
+  for (int j = 0; j < 4; ++j) v[j] = of_r_.data() + (p.first + j) * numbers;
+  const auto sum = [&](int k) {
+    return w[0] * v[0][k] + w[1] * v[1][k] + w[2] * v[2][k] + w[3] * v[3][k];
+  };
   strip found{};
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) {
-      const double w = p.of_s[i] * p.of_r[j], *v = node(p.s + i, p.r + j);
-      found.end += w * v[0];
-      found.share += w * v[1];
-      for (int k = 0; k < profile_nodes; ++k) found.liquid[static_cast<size_t>(k)] += w * v[2 + k];
-    }
+  found.end = sum(0);
+  found.share = sum(1);
+  for (int k = 0; k < profile_nodes; ++k) found.liquid[static_cast<size_t>(k)] = sum(2 + k);
   return found;
 }
 
+strip_table::strip strip_table::at(double s, double r) { return rows_of(s).at(r); }
+
 double strip_table::share(double s, double r) {
-  const place p = place_of(s, r);
+  const place of_s = place_of_s(s), of_r = place_of_r(r);
   double sum = 0;
   for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) sum += p.of_s[i] * p.of_r[j] * node(p.s + i, p.r + j)[1];
+    for (int j = 0; j < 4; ++j)
+      sum += of_s.weight[i] * of_r.weight[j] * node(of_s.first + i, of_r.first + j)[1];
   return std::clamp(sum, 0.0, 1.0);
 }
 
@@ -99,15 +117,26 @@ double strip_table::share_of_ellipse(double s, double r) {
   return std::clamp(0.25 * pi * 1.5 * sum, 0.0, 1.0);
 }
 
-double strip_table::strip::pressure(double theta) const {
-  if (!(theta < end) || !(theta > 0)) return 0;
-  // nodes at theta = end (1 - cos(pi k/(nodes - 1)))/2
-  const double at = acos(1.0 - 2.0 * theta / end) / pi * (profile_nodes - 1);
+// of the nodes' number
+double strip_table::strip::between(double at) const {
   const int first = first_of(at, profile_nodes);
   double w[4], sum = 0;
   weigh(at - first, w);
   for (int k = 0; k < 4; ++k) sum += w[k] * liquid[static_cast<size_t>(first + k)];
   return std::max(sum, 0.0);
+}
+
+double strip_table::strip::pressure(double theta) const {
+  if (!(theta < end) || !(theta > 0)) return 0;
+  // nodes at theta = end (1 - cos(pi k/(nodes - 1)))/2
+  return between(acos(1.0 - 2.0 * theta / end) / pi * (profile_nodes - 1));
+}
+
+void strip_table::strip::pressures(const double *x, int count, double *found) const {
+  const double over = 2.0 / end, cavitation = -cos(end), each = (profile_nodes - 1) / pi;
+  for (int i = 0; i < count; ++i) found[i] = near_acos(1.0 - over * near_acos(-x[i]));
+  for (int i = 0; i < count; ++i)
+    found[i] = x[i] > -1 && x[i] < cavitation ? between(found[i] * each) : 0.0;
 }
 
 }  // namespace railpatch

@@ -6,6 +6,8 @@
 
 #include <array>
 
+#include "numeric/elementary.hpp"
+
 namespace railpatch {
 
 class strip_table {
@@ -19,11 +21,31 @@ class strip_table {
     std::array<double, profile_nodes> liquid;  // P
     // P over p_0 at X = -cos(theta)
     double pressure(double theta) const;
+    // At count places X, -1 the leading edge; angles within 4e-8.
+    void pressures(const double *x, int count, double *found) const;
+
+   private:
+    double between(double at) const;
   };
   static constexpr int numbers = profile_nodes + 2;
-  static double s_of(int row);
-  static double r_of(int column);
+  // logarithm of the least S and from it to the most, square root of the least r and from it
+  static constexpr double low_s = -13.815510557964274, across_s = 25.328436022934503;
+  static constexpr double low_r = 0.1, across_r = 0.64161984870956632;
+  static double s_of(int row) { return exp(low_s + row * across_s / (rows - 1)); }
+  static double r_of(int column) {
+    const double root = low_r + column * across_r / (columns - 1);
+    return root * root;
+  }
   static strip at(double s, double r);
+  // All strips of one S, as the rows of an elliptic contact have it.
+  class rows_of {
+   public:
+    explicit rows_of(double s);
+    strip at(double r) const;
+
+   private:
+    std::array<double, columns * numbers> of_r_;
+  };
   // Share of asperities alone, and of all rows of an ellipse: r in its middle. S is the same in
   // all.
   static double share(double s, double r);
@@ -31,10 +53,11 @@ class strip_table {
 
  private:
   struct place {
-    int s, r;  // first of four nodes
-    double of_s[4], of_r[4];
+    int first;  // of four nodes
+    double weight[4];
   };
-  static place place_of(double s, double r);
+  static place place_of_s(double s);
+  static place place_of_r(double r);
   static const double *node(int s, int r);
 };
 

@@ -20,18 +20,12 @@ constexpr double barred = 0.27774310294369754, quadratic = 0.37738917651535963, 
 constexpr double least_flow = 1e-12;
 // ends of the search for d: 1 - Phi is 1 and 1e-300 there
 constexpr double lowest = -9.0, highest = 37.0;
-constexpr double tolerance = 1e-6;
 
-// d, and what goes with it.
-struct section {
-  double d, share, density, film, flow, slope;  // slope: of flow by film
-  explicit section(double at) : d(at), share(beyond(at)), density(railpatch::density(at)) {
-    film = at < -4.0 ? mean_film(at) : at * (1.0 - share) + density;
-    const double above = std::max(film - barred, 0.0);
-    flow = std::max(above * above * (quadratic + cubic * above), least_flow);
-    slope = above * (2.0 * quadratic + 3.0 * cubic * above);
-  }
-};
+// of the distribution's table, from -reach to reach
+constexpr int reach = 8, each = 32, entries = 2 * reach * each + 1;
+// 1/n!
+constexpr double over[] = {1.0,       1.0,       1.0 / 2,    1.0 / 6,    1.0 / 24,
+                           1.0 / 120, 1.0 / 720, 1.0 / 5040, 1.0 / 40320};
 
 }  // namespace
 
@@ -40,26 +34,80 @@ double flow_factor(double t) {
   return above * above * (quadratic + cubic * above);
 }
 
-double elliptic_strip::at(double theta) const { return sin(theta); }
+double elliptic_strip::at(double, double sine) const { return sine; }
 
 double elliptic_strip::peak() const { return 0.5 * pi; }
+
+// d, and what goes with it.
+struct strip_solver::section {
+  double d, share, density, film, flow, slope;  // slope: of flow by film
+
+  section(double at, double tail, double bell) : d(at), share(tail), density(bell) {
+    film = at < -4.0 ? mean_film(at) : at * (1.0 - tail) + bell;
+    flows();
+  }
+  // By so little that its square does not count.
+  void move(double by) {
+    d += by;
+    film += (1.0 - share) * by;
+    share -= density * by;
+    flows();
+  }
+
+ private:
+  void flows() {
+    const double above = std::max(film - barred, 0.0);
+    flow = std::max(above * above * (quadratic + cubic * above), least_flow);
+    slope = above * (2.0 * quadratic + 3.0 * cubic * above);
+  }
+};
 
 strip_solver::strip_solver(int steps) : steps_(steps) {
   for (auto *b : {&theta_, &liquid_, &film_})
     *b = aligned_buffer<double>(static_cast<size_t>(steps + 1));
+  bell_ = aligned_buffer<double>(entries);
+  tail_ = aligned_buffer<double>(entries);
+  for (int k = 0; k < entries; ++k) {
+    const double d = static_cast<double>(k) / each - reach;
+    bell_[static_cast<size_t>(k)] = density(d);
+    tail_[static_cast<size_t>(k)] = beyond(d);
+  }
 }
 
-double strip_solver::march(const strip_pressure &pressure, double s, double r, double end) {
-  const double h = end / steps_;
-  const double nominal = pressure.at(end);
-  section now(distance_of(std::clamp(r * nominal, 1e-300, 1.0 - 1e-15)));
+// By Taylor's series from the nearest entry; its terms are Hermite's polynomials.
+strip_solver::section strip_solver::at(double d) const {
+  const double place = (d + reach) * each + 0.5;
+  if (!(place >= 0 && place < entries)) return {d, beyond(d), density(d)};
+  const int k = static_cast<int>(place);
+  const double n = static_cast<double>(k) / each - reach, x = d - n, square = n * n;
+  const double bell = bell_[static_cast<size_t>(k)];
+  const double third = square - 1.0, fourth = n * (square - 3.0);
+  const double fifth = square * (square - 6.0) + 3.0;
+  const double sixth = n * (square * (square - 10.0) + 15.0);
+  const double sum =
+      1.0 -
+      x * (0.5 * n - x * (third * over[3] -
+                          x * (fourth * over[4] - x * (fifth * over[5] - x * sixth * over[6]))));
+  const double z = -x * (n + 0.5 * x);  // phi/phi(n) is its exponential
+  double growth = over[8];
+  for (int i = 7; i >= 0; --i) growth = over[i] + z * growth;
+  return {d, tail_[static_cast<size_t>(k)] - bell * x * sum, bell * growth};
+}
+
+double strip_solver::march(const strip_pressure &pressure, double s, double r, double end,
+                           double tolerance) {
+  const double h = end / steps_, over_r = 1.0 / r;
+  double cosine = cos(end), sine = sin(end);
+  const double turn = cos(h), lift_of = sin(h);
+  const double nominal = pressure.at(cosine, sine);
+  section now = at(distance_of(std::clamp(r * nominal, 1e-300, 1.0 - 1e-15)));
   flow_ = now.film;
-  double p = 0, rate = 0;  // P, dP/dtheta
+  double p = 0, rate = 0, moved = 0;  // P, dP/dtheta, d in the last step
   for (int k = steps_; k > 0; --k) {
-    const auto at = static_cast<size_t>(k);
-    theta_[at] = k == steps_ ? end : k * h;
-    liquid_[at] = p;
-    film_[at] = now.film;
+    const auto here = static_cast<size_t>(k);
+    theta_[here] = k == steps_ ? end : k * h;
+    liquid_[here] = p;
+    film_[here] = now.film;
     const double known = p - 0.5 * h * rate;  // P at the step's end but for its own rate
     if (k == 1) {
       theta_[0] = 0;
@@ -67,30 +115,35 @@ double strip_solver::march(const strip_pressure &pressure, double s, double r, d
       film_[0] = HUGE_VAL;
       return known;
     }
-    const double theta = (k - 1) * h, load = pressure.at(theta);
+    const double before = cosine;
+    cosine = before * turn + sine * lift_of;
+    sine = sine * turn - before * lift_of;
+    const double load = pressure.at(cosine, sine);
     if (!(known < load)) return known - load + (k - 1);
     // load - (1 - Phi)/r - known + h/2 s sin(theta) (t - C)/K = 0 for d
-    const double weight = 0.5 * h * s * sin(theta);
-    double low = lowest, high = highest, d = now.d;
+    const double weight = 0.5 * h * s * sine;
+    double low = lowest, high = highest, d = std::clamp(now.d + moved, lowest, highest);
+    const double last = now.d;
     for (int i = 0; i < 80; ++i) {
-      now = section(d);
-      const double lift = (now.film - flow_) / now.flow;
-      const double value = load - now.share / r - known + weight * lift;
+      now = at(d);
+      const double over_flow = 1.0 / now.flow, resistance = weight * over_flow,
+                   lifted = now.film - flow_;
+      const double value = load - known - now.share * over_r + resistance * lifted;
       (value < 0 ? low : high) = d;
-      const double grows =
-          now.density / r + weight * (1.0 - now.share) * (1.0 - lift * now.slope) / now.flow;
-      double next = d - value / grows;
-      if (!(next > low && next < high)) next = 0.5 * (low + high);
-      const double moved = std::fabs(next - d);
-      d = next;
-      if (moved <= tolerance || high - low < tolerance) {
-        // Newton's next step would be its square
-        now = section(d);
+      const double grows = now.density * over_r +
+                           (1.0 - now.share) * resistance * (1.0 - lifted * now.slope * over_flow);
+      const double step = -value / grows;
+      if (std::fabs(step) <= tolerance) {
+        now.move(step);
         break;
       }
+      if (high - low < tolerance) break;
+      d += step;
+      if (!(d > low && d < high)) d = 0.5 * (low + high);
     }
+    moved = now.d - last;
     rate = weight * 2.0 / h * (now.film - flow_) / now.flow;
-    p = load - now.share / r;
+    p = load - now.share * over_r;
   }
   return p;
 }
@@ -103,7 +156,9 @@ strip_solution strip_solver::solve(const strip_pressure &pressure, double s, dou
   const bool warm = start > -1 && start < 1;
   const double begin =
       warm ? std::clamp(acos(-start), low + 1e-6 * width, high - 1e-6 * width) : low + 0.4 * width;
-  rising_root root(begin, (warm ? 0.01 : 0.15) * width, 64.0 * width);
+  // of d, before Newton's last step, which squares it
+  const double tolerance = std::clamp(0.3 * std::sqrt(precision), 1e-7, 1e-4);
+  rising_root root(begin, (warm ? 0.003 : 0.15) * width, 64.0 * width);
   double end = begin;
   for (; found.marches < 200; ++found.marches) {
     const double at = root.at();
@@ -112,7 +167,7 @@ strip_solution strip_solver::solve(const strip_pressure &pressure, double s, dou
       root.report(at <= low ? -1.0 : 1.0);
       continue;
     }
-    const double value = march(pressure, s, r, at), moved = std::fabs(at - end);
+    const double value = march(pressure, s, r, at, tolerance), moved = std::fabs(at - end);
     end = at;
     found.residual = value;
     found.converged =

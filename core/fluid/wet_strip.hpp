@@ -23,7 +23,7 @@ namespace railpatch {
 
 // Nominal pressure over p_0 at X = -cos(theta), and theta where it is greatest.
 struct strip_pressure {
-  virtual double at(double theta) const = 0;
+  virtual double at(double cosine, double sine) const = 0;  // of theta
   virtual double peak() const = 0;
 
  protected:
@@ -31,7 +31,7 @@ struct strip_pressure {
 };
 
 struct elliptic_strip final : strip_pressure {
-  double at(double theta) const override;
+  double at(double cosine, double sine) const override;
   double peak() const override;
 };
 
@@ -55,15 +55,18 @@ class strip_solver {
   const double *theta() const { return theta_.data(); }
   const double *liquid() const { return liquid_.data(); }
   const double *film() const { return film_.data(); }
-  size_t bytes() const { return 3 * theta_.bytes(); }
+  size_t bytes() const { return 3 * theta_.bytes() + bell_.bytes() + tail_.bytes(); }
 
  private:
+  struct section;
+  section at(double d) const;
   // P at the leading edge, or more than it could be where P meets the nominal pressure before.
-  double march(const strip_pressure &pressure, double s, double r, double end);
+  double march(const strip_pressure &pressure, double s, double r, double end, double tolerance);
 
   int steps_;
   double flow_ = 0;
   aligned_buffer<double> theta_, liquid_, film_;
+  aligned_buffer<double> bell_, tail_;  // phi and 1 - Phi at steps of d
 };
 
 double flow_factor(double t);

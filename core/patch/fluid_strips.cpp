@@ -35,6 +35,9 @@ class run_of_elements final : public strip_pressure {
       return fall > 0 ? std::clamp(square(last) / fall, 0.05, 1.0) : 1.0;
     };
     const double lead = edge(0, 1), trail = edge(count - 1, count - 2);
+    over_greatest_ = 1.0 / greatest_;
+    over_lead_ = 1.0 / lead;
+    over_trail_ = 1.0 / trail;
     front_ = -lead;
     half_ = 0.5 * (count - 1 + lead + trail);
     half_length_ = half_ * dx;
@@ -43,13 +46,16 @@ class run_of_elements final : public strip_pressure {
   double greatest() const { return greatest_; }
   // of an element
   double theta(int i) const { return acos(std::clamp(1.0 - (i - front_) / half_, -1.0, 1.0)); }
-  double at(double theta) const override {
-    const double u = front_ + half_ * (1.0 - cos(theta));
-    const int i = static_cast<int>(std::floor(u));
-    const double left = i < 0 ? 0.0 : square(i), right = i + 1 >= count_ ? 0.0 : square(i + 1);
-    const double low = i < 0 ? front_ : i, high = i + 1 >= count_ ? front_ + 2 * half_ : i + 1;
-    const double share = high > low ? std::clamp((u - low) / (high - low), 0.0, 1.0) : 0.0;
-    return std::sqrt(std::max(left + share * (right - left), 0.0)) / greatest_;
+  double at(double cosine, double) const override {
+    const double u = front_ + half_ * (1.0 - cosine);
+    const int i = u < 0 ? -1 : std::min(static_cast<int>(u), count_ - 1);
+    if (i >= 0 && i + 1 < count_) {
+      const double left = square(i), right = square(i + 1);
+      return std::sqrt(left + (u - i) * (right - left)) * over_greatest_;
+    }
+    const double way = i < 0 ? (u - front_) * over_lead_ : 1.0 - (u - i) * over_trail_;
+    const double all = i < 0 ? square(0) : square(i);
+    return std::sqrt(all * std::clamp(way, 0.0, 1.0)) * over_greatest_;
   }
   double peak() const override { return theta(most_); }
 
@@ -62,6 +68,7 @@ class run_of_elements final : public strip_pressure {
   int count_, most_ = 0;
   bool backwards_;
   double greatest_ = 0, front_ = 0, half_ = 0, half_length_ = 0;
+  double over_greatest_ = 0, over_lead_ = 0, over_trail_ = 0;
 };
 
 }  // namespace
@@ -89,13 +96,18 @@ strip_outcome fluid_strips::solve(const grid &g, const double *pressure, const h
                                   int direction, const strip_liquid &liquid, double *fluid) {
   const bool ellipse = hertz.semi_axes[0] > 0;
   strip_outcome found;
-  if (ellipse) found = of_ellipse(hertz, liquid);
+  std::optional<strip_table::rows_of> rows;
+  if (ellipse) {
+    found = of_ellipse(hertz, liquid);
+    // the same for all rows, as half lengths go with greatest pressures
+    rows.emplace(liquid.s(hertz.semi_axes[0], hertz.max_pressure));
+  }
   double all = 0, left = 0, greatest = 0, beside = 0;
-  start_ = -2;
+  off_ = 0;
   for (int j = 0; j < g.ny; ++j) {
     std::fill_n(fluid + j * g.nx, g.nx, 0.0);
     if (ellipse) {
-      add_elliptic_row(g, j, pressure, hertz, direction, liquid, fluid);
+      add_elliptic_row(g, j, pressure, hertz, direction, liquid, *rows, fluid);
     } else {
       for (int i = 0; i < g.nx; ++i) {
         if (!(pressure[j * g.nx + i] > 0)) continue;
@@ -119,18 +131,25 @@ strip_outcome fluid_strips::solve(const grid &g, const double *pressure, const h
 
 void fluid_strips::add_elliptic_row(const grid &g, int j, const double *pressure,
                                     const hertz_contact &hertz, int direction,
-                                    const strip_liquid &liquid, double *fluid) {
+                                    const strip_liquid &liquid, const strip_table::rows_of &rows,
+                                    double *fluid) {
   const double *axes = hertz.semi_axes;
   // rows of elements whose middle lies outside have a sliver of the ellipse
   const double level = std::sqrt(std::max(inside_ellipse(axes, 0.0, g.y(j)), 1e-6));
   const double unit = level * hertz.max_pressure, half = level * axes[0];
-  const strip_table::strip row =
-      strip_table::at(liquid.s(half, unit), std::min(liquid.r(unit), most_r));
-  for (int i = 0; i < g.nx; ++i) {
-    const int at = j * g.nx + i;
-    if (!(pressure[at] > 0)) continue;
-    const double from_front = std::clamp(-direction * g.x(i) / half, -1.0, 1.0);
-    fluid[at] = std::min(unit * row.pressure(acos(-from_front)), most_part * pressure[at]);
+  const strip_table::strip row = rows.at(std::min(liquid.r(unit), most_r));
+  constexpr int block = 64;
+  double from_front[block], found[block];
+  int from = 0, to = g.nx;
+  while (from < to && !(pressure[j * g.nx + from] > 0)) ++from;
+  while (to > from && !(pressure[j * g.nx + to - 1] > 0)) --to;
+  for (int begin = from; begin < to; begin += block) {
+    const int count = std::min(block, to - begin), first = j * g.nx + begin;
+    for (int i = 0; i < count; ++i)
+      from_front[i] = std::clamp(-direction * g.x(begin + i) / half, -1.0, 1.0);
+    row.pressures(from_front, count, found);
+    for (int i = 0; i < count; ++i)
+      fluid[first + i] = std::min(unit * found[i], most_part * pressure[first + i]);
   }
 }
 
@@ -141,9 +160,10 @@ bool fluid_strips::add_row(const grid &g, int j, int first, int last, const doub
   // rolling towards +x the leading edge is there
   const run_of_elements run(pressure + j * g.nx + first, count, g.dx, direction > 0);
   const double unit = run.greatest();
-  const strip_solution found = solver_->solve(run, liquid.s(run.half_length(), unit),
-                                              std::min(liquid.r(unit), most_r), start_, 1e-8);
-  start_ = found.cavitation;
+  const double number = liquid.s(run.half_length(), unit), r = std::min(liquid.r(unit), most_r);
+  const double elliptic = -cos(strip_table::at(number, r).end);
+  const strip_solution found = solver_->solve(run, number, r, elliptic + off_, 1e-8);
+  off_ = found.cavitation - elliptic;
   const double *theta = solver_->theta(), *p = solver_->liquid();
   const double step = theta[1];
   for (int i = 0; i < count; ++i) {

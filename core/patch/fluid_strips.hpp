@@ -46,12 +46,13 @@ class fluid_strips {
  private:
   static void add_elliptic_row(const grid &g, int j, const double *pressure,
                                const hertz_contact &hertz, int direction,
-                               const strip_liquid &liquid, double *fluid);
+                               const strip_liquid &liquid, const strip_table::rows_of &rows,
+                               double *fluid);
   bool add_row(const grid &g, int j, int first, int last, const double *pressure, int direction,
                const strip_liquid &liquid, double *fluid);
 
   std::optional<strip_solver> solver_;
-  double start_ = -2;  // X_c of the last row
+  double off_ = 0;  // X_c of the last row less that of an elliptic pressure
 };
 
 }  // namespace railpatch
