@@ -218,3 +218,23 @@ def test_an_instance_takes_less_than_12_MB(name: str, made: Callable[[str], Fmu]
             assert slave.derivative(["force[3]"], {"wheelset.y": 1.0})[0] == OK
         taken = (resident() - before) / count
     assert 1 < taken < 12
+
+
+@pytest.mark.parametrize("name", WANTED)
+def test_every_vector_names_its_frame_and_every_turn_its_point(
+    name: str, made: Callable[[str], Fmu]
+) -> None:
+    """In its own description, for who sees the list of variables alone."""
+    for variable in made(name).variables.values():
+        if variable.attrib["causality"] == "local":
+            continue
+        text, quantity = variable.attrib["description"], variable[0].attrib.get("quantity")
+        own = variable.attrib["name"]
+        if own.endswith("]"):
+            assert re.search(r"(track|wheelset) axes|contact frame", text), own
+        if own.startswith("wheelset") and quantity in ("Angle", "AngularVelocity"):
+            assert re.search(r"through|about its axle", text), own
+        if quantity == "Torque":
+            assert re.search(r"about the wheelset's centre|contact reference", text), own
+        if own.startswith("wheelset") and quantity in ("Length", "Velocity"):
+            assert re.search(r"centre|origin|profile", text), own

@@ -266,7 +266,8 @@ def test_a_patch_has_no_text_of_wheelsets(unpacked: Callable[..., Fmu]) -> None:
     assert "wheelset" not in frames.lower()
 
 
-def test_terminals_hold_variables_that_are_there(tmp_path: Path) -> None:
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_terminals_hold_variables_that_are_there(fmi: int, tmp_path: Path) -> None:
     schema = Path(fmpy.__file__).with_name("schema") / "fmi3" / "fmi3TerminalsAndIcons.xsd"
     for name, terminals in (
         ("rail", ["wheelset", "left_wheel", "left_rail", "right_wheel", "right_rail"]),
@@ -274,7 +275,7 @@ def test_terminals_hold_variables_that_are_there(tmp_path: Path) -> None:
         ("patch", ["contact"]),
     ):
         path = tmp_path / f"{name}.fmu"
-        pack_fmu(load_scene(SCENES[name]), path, backend=OWN, fmi=3)
+        pack_fmu(load_scene(SCENES[name]), path, backend=OWN, fmi=fmi)
         with zipfile.ZipFile(path) as archive:
             root = etree.fromstring(archive.read("terminalsAndIcons/terminalsAndIcons.xml"))
             assert archive.read("terminalsAndIcons/icon.png")[1:4] == b"PNG"

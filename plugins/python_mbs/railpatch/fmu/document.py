@@ -49,6 +49,14 @@ MISSING = """
 where something varies with them. Rails and rollers turn about x only in this version. Outputs
 of a patch that is not there are 0, its status is no_contact.</p>
 """
+REFERENCE = """
+<p><code>documentation/reference.csv</code> has the outputs at the start values.
+<code>reference_inputs.csv</code> and <code>reference_outputs.csv</code> are a series over time: the
+outputs of a row are those after the step that ends at its time, with the inputs of the row before
+set at its beginning (row 0: after initialization), steps of DefaultExperiment's stepSize. They were
+solved by the contact's own core, not by this FMU: where it gives other numbers than rounding and
+the solvers' tolerance explain, its library or the call of it is wrong.</p>
+"""
 RANGE = """
 <p>The theory is that of elastic half-spaces in rolling with the scene's law of friction: patches
 are small against the radii of wheel and rail; in steady rolling, motion changes little while the
@@ -189,6 +197,7 @@ method are fixed in the FMU; parameters may be changed between steps{fixed(known
 (pose), also of the speeds along the track (rolling), also of other speeds (sliding), also
 friction.</p>
 {variable_table(table, outputs, known, kind)}
+<h2>Reference</h2>{REFERENCE}
 <h2>Range of validity</h2>{RANGE}
 <h2>Coupling</h2>{COUPLING}
 <p><b>Length of a step</b>: {labels.step.sentence()}</p>{interfaces(labels, kind)}

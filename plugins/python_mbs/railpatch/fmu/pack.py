@@ -29,7 +29,7 @@ from railpatch.fmu.document import index_html
 from railpatch.fmu.libraries import Libraries, libraries_of
 from railpatch.fmu.picture import model_png
 from railpatch.fmu.profiles import TYPES, Choices, check_starts, choices_of
-from railpatch.fmu.reference import reference_csv
+from railpatch.fmu.reference import csv_of, reference_csv, series
 from railpatch.fmu.scene import kind_of, scene_text, variables_of
 from railpatch.fmu.sources import build_description, with_source_files
 from railpatch.fmu.step_size import step_size_of
@@ -289,6 +289,7 @@ def files_of(contents: Contents, guid: str) -> dict[str, bytes]:
     c = contents
     sources = c.libraries.sources
     description = c.description(guid)
+    inputs, outputs = series(c.scene, c.variables, c.labels.step.seconds, c.labels.name)
     texts = {
         # FMI 3.0 has buildDescription.xml alone
         "modelDescription.xml": description
@@ -296,6 +297,8 @@ def files_of(contents: Contents, guid: str) -> dict[str, bytes]:
         else with_source_files(description, sources),
         "resources/scene.txt": c.scene_text(guid),
         "documentation/reference.csv": reference_csv(c.scene, c.variables),
+        "documentation/reference_inputs.csv": csv_of(inputs),
+        "documentation/reference_outputs.csv": csv_of(outputs),
         "documentation/index.html": index_html(
             c.labels, c.table, c.kind, c.variables, guid, c.scene.case, c.config
         ),
@@ -305,10 +308,9 @@ def files_of(contents: Contents, guid: str) -> dict[str, bytes]:
         texts["sources/buildDescription.xml"] = build_description(name, sources)
     files = {path: text.encode() for path, text in texts.items()}
     files |= {"model.png": model_png(), **c.libraries.files(c.labels.identifier, c.backend)}
-    if c.version == 3:
-        icons = {"icon.png": model_png(), "icon.svg": ICON.encode()}
-        icons["terminalsAndIcons.xml"] = terminals_xml(c.variables).encode()
-        files |= {f"{FOLDER}/{name}": content for name, content in icons.items()}
+    icons = {"icon.png": model_png(), "icon.svg": ICON.encode()}
+    icons["terminalsAndIcons.xml"] = terminals_xml(c.variables, c.version).encode()
+    files |= {f"{FOLDER}/{name}": content for name, content in icons.items()}
     if c.creep_table is not None:
         files["resources/creep_table.bin"] = c.creep_table
     return files

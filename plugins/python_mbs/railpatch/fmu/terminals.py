@@ -1,4 +1,6 @@
-"""terminalsAndIcons of FMI 3.0: the wheelset, its wheels, its rails, and a drawn icon."""
+"""terminalsAndIcons of FMI 3.0, and of FMI 2.0 since its version 2.0.4: the wheelset, its wheels,
+its rails, and a drawn icon. The file is that of FMI 3.0 in both; vectors are arrays in FMI 3.0 alone.
+"""
 
 from __future__ import annotations
 
@@ -29,9 +31,9 @@ ICON = f"""<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {SIZE} {SIZE}">
 """
 
 
-def terminals_xml(variables: list[Variable]) -> str:
-    """terminalsAndIcons.xml."""
-    items = [i for i in items_of(variables, 3) if i.first.causality in ("input", "output")]
+def terminals_xml(variables: list[Variable], version: int) -> str:
+    """terminalsAndIcons.xml. version: of the FMU."""
+    items = [i for i in items_of(variables, version) if i.first.causality in ("input", "output")]
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',
         '<fmiTerminalsAndIcons fmiVersion="3.0">',
@@ -80,11 +82,16 @@ def member_of(name: str, terminal: str) -> str | None:
     if terminal == "wheelset":
         if parts[0] == "wheelset" and len(parts) == 2:
             return parts[1]
-        return name if name in ("force", "moment", "z") else None
+        return name if plain(name) in ("force", "moment", "z") else None
     side, body = terminal.split("_")
     owner = "wheelset" if body == "wheel" else "track"
     if parts[:2] == [owner, side]:
         return ".".join(parts[2:])
-    if body == "wheel" and parts[0] == side and parts[1:] in (["force"], ["moment"]):
+    if body == "wheel" and parts[0] == side and plain(".".join(parts[1:])) in ("force", "moment"):
         return parts[1]
     return None
+
+
+def plain(name: str) -> str:
+    """Without the component of a vector."""
+    return name.partition("[")[0]
