@@ -64,7 +64,8 @@ def series(
     """Inputs and outputs over time, columns by name: some inputs move to and fro by sines.
 
     Row 0 is the start, each further one the end of a communication step of `step` (s); the inputs
-    of a row are set at its time, and act in the step that begins there. Raises CaseError where not even inputs at rest can be solved.
+    of a row are set at its time, and act in the step that begins there. Raises CaseError where not
+    even inputs at rest can be solved.
     """
     moves = moves_of(scene.case, variables)
     for size in SIZES:

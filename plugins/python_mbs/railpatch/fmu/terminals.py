@@ -1,5 +1,5 @@
 """terminalsAndIcons of FMI 3.0, and of FMI 2.0 since its version 2.0.4: the wheelset, its wheels,
-its rails, and a drawn icon. The file is that of FMI 3.0 in both; vectors are arrays in FMI 3.0 alone.
+its rails, and a drawn icon. The file is that of FMI 3.0 in both; FMI 3.0 alone has arrays in it.
 """
 
 from __future__ import annotations
