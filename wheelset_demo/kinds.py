@@ -10,6 +10,7 @@ from railpatch.case.kinds import Ending, SceneKind, with_tables
 from railpatch.errors import CaseError
 
 from wheelset_demo.scene import DEFAULT, MODELS, scene_file
+from wheelset_demo.vehicle.deviations import DipTable
 from wheelset_demo.vehicle.scene import DEFAULT as DEFAULT_VEHICLE
 from wheelset_demo.vehicle.scene import OPTIONAL, TABLES
 
@@ -73,7 +74,7 @@ def ending_of(summary: Any) -> Ending:
 
 def vehicle() -> SceneKind:
     """A vehicle on track, in time."""
-    model = with_tables(WheelsetCase, TABLES, *OPTIONAL)
+    model = with_tables(WheelsetCase, {**TABLES, "dip": list[DipTable]}, *OPTIONAL, "dip")
     command = "railpatch vehicle SCENE -o run.mcap"
     scene = scene_file(DEFAULT_VEHICLE)
     return SceneKind("vehicle", model, scene, command, run_vehicle, units=VEHICLE_UNITS)

@@ -108,7 +108,7 @@ def momentum(trace: Trace) -> dict[str, list[float]]:
 
 def ran_with(scene: Any) -> Effective:
     """The tables of a scene of this package as they run."""
-    known = ("name", "text", "case", "profiles")
+    known = ("name", "text", "case", "profiles", "measured")
     tables = {f.name: getattr(scene, f.name) for f in fields(scene) if f.name not in known}
     step = scene.run.step
     names = {name: Path(name).name for name in scene.profiles.values()}

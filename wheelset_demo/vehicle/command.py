@@ -89,7 +89,8 @@ def vehicle(
     try:
         with wrong_calls():
             loaded = load_vehicle_scene(scene, overrides)
-            check_output(output, file, *files_of(loaded.case, file.parent))
+            record = () if loaded.measured is None else (loaded.measured.path,)
+            check_output(output, file, *record, *files_of(loaded.case, file.parent))
             chosen = COMPARED if compare else methods
             found = run_all(loaded, chosen, quiet, output, step_times=step_times)
     except ContactFailure as failure:

@@ -19,6 +19,7 @@ from wheelset_demo.scene import GRAVITY, SNAPSHOTS
 from wheelset_demo.system import WORKS, ContactFailure
 from wheelset_demo.trace import STORES
 from wheelset_demo.vehicle.bodies import FreeBodyTable, VehicleTable
+from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.simulation import Simulation
 
 # m, drawn: length beyond the wheelsets, width and height of the body of reference; length beyond
@@ -128,6 +129,15 @@ class Recorder:
             wheel["moment"][1] += more[1]
             wheel["moment"][2] += more[2]
             found[side] = wheel
+        if system.support is not None:
+            found["support"] = system.support.logged(index)
+            places, rates = system.support.place[index], system.support.rate[index]
+            for k, side in enumerate(SIDES):
+                own = slice(2 * k, 2 * k + 2)
+                found[side] |= {
+                    "rail_deflection": places[own].tolist(),
+                    "rail_deflection_rate": rates[own].tolist(),
+                }
         if fields:
             found["fields"] = {side: result[side]["patches"] for side in SIDES}
         return found
@@ -203,11 +213,18 @@ def open_log(path: Path, simulation: Simulation) -> VehicleLog:
         wheelsets=simulation.system.wheelsets,
         case_text=scene.text,
         case_name=scene.name,
-        profiles=attachments(scene),
+        profiles=attachments(scene) | record_of(scene),
         geometry=geometry(simulation),
         scene_rate=scene.run.scene_rate,
         ran_with=ran_with(scene),
     )
+
+
+def record_of(scene: VehicleScene) -> dict[str, bytes]:
+    """The content of the rails' record by its name; none of a spectrum."""
+    if scene.measured is None:
+        return {}
+    return {scene.measured.path.name: scene.measured.path.read_bytes()}
 
 
 def geometry(simulation: Simulation) -> VehicleGeometry:

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 from railpatch.case.load import Scene, check_case, check_table
+from railpatch.case.track import Irregularity
 from railpatch.case.types import NotNegative, Table
 from railpatch.case.wheel import WheelsetCase
 from railpatch.errors import CaseError
@@ -29,7 +30,14 @@ from wheelset_demo.scene import (
 )
 from wheelset_demo.vehicle.alignment import AlignmentTable
 from wheelset_demo.vehicle.bodies import Axle, VehicleTable
+from wheelset_demo.vehicle.deviations import DipTable
 from wheelset_demo.vehicle.irregularity import IrregularityTable
+from wheelset_demo.vehicle.measured_track import (
+    MeasuredTrack,
+    MeasuredTrackTable,
+    read_measured,
+)
+from wheelset_demo.vehicle.support import SupportTable
 
 DEFAULT = "vehicle_curve.toml"
 # found at the start, or no part of a scene that runs on its own track
@@ -78,19 +86,40 @@ TABLES: dict[str, type[Table]] = {
     "vehicle": VehicleTable,
     "alignment": AlignmentTable,
     "irregularity": IrregularityTable,
+    "support": SupportTable,
+    "measured_track": MeasuredTrackTable,
     "run": RunTable,
 }
-OPTIONAL = ("alignment", "irregularity")
+OPTIONAL = ("alignment", "irregularity", "support", "measured_track")
 
 
 @dataclass(frozen=True, kw_only=True)
 class VehicleScene(RunScene):
-    """A vehicle's scene. irregularity: None for straight rails."""
+    """A vehicle's scene. irregularity: None for straight rails. dip: dipped joints. support: None
+    for rails on rigid ground. measured_track: the record that measured is read from."""
 
     vehicle: VehicleTable
     alignment: AlignmentTable
     irregularity: IrregularityTable | None
     run: RunTable
+    dip: tuple[DipTable, ...] = ()
+    support: SupportTable | None = None
+    measured_track: MeasuredTrackTable | None = None
+    measured: MeasuredTrack | None = None
+
+    @property
+    def recorded(self) -> Irregularity | None:
+        """The rails of the record, from where the vehicle stands at the start on. Raises
+        RecordError where it is too short for the run."""
+        if self.measured is None or self.measured_track is None:
+            return None
+        begins = self.measured_track.begins
+        return self.measured.rails(self.vehicle.length, begins, self.way)
+
+    @property
+    def way(self) -> float:
+        """m, from the last wheelset at the start to the first at the end, at the start's speed."""
+        return self.speed * self.run.duration + self.vehicle.length
 
     @property
     def steps(self) -> int:
@@ -149,8 +178,13 @@ def load_vehicle_scene(
     """
     path = scene_file(DEFAULT) if path is None else Path(path)
     checks = {name: partial(checked_table, name) for name in TABLES}
+    checks["dip"] = checked_dips
     scene = load_checked(path, "vehicle", checks, check_run, VehicleScene, overrides)
-    return with_own_profiles(scene, path.parent)
+    scene = with_own_profiles(scene, path.parent)
+    table = scene.measured_track
+    if table is None:
+        return scene
+    return replace(scene, measured=read_measured(table, path.parent, scene.way))
 
 
 def with_own_profiles(scene: VehicleScene, folder: Path) -> VehicleScene:
@@ -182,8 +216,25 @@ def checked_table(name: str, table: Any) -> Any:
     return check_present(name, TABLES[name], table)
 
 
+def checked_dips(dips: Any) -> tuple[DipTable, ...]:
+    """The list [[dip]]; none where it is left out. Raises CaseError."""
+    if dips is None:
+        return ()
+    if not isinstance(dips, list):
+        raise CaseError(f"dip: value is {dips!r}, allowed a list of [[dip]] tables")
+    return tuple(check_table(DipTable, dip, f"dip[{index}]") for index, dip in enumerate(dips))
+
+
 def check_run(
-    case: Any, run: RunTable, alignment: AlignmentTable, vehicle: VehicleTable, **_: Any
+    case: Any,
+    run: RunTable,
+    alignment: AlignmentTable,
+    vehicle: VehicleTable,
+    dip: tuple[DipTable, ...] = (),
+    support: SupportTable | None = None,
+    irregularity: IrregularityTable | None = None,
+    measured_track: MeasuredTrackTable | None = None,
+    **_: Any,
 ) -> None:
     """Refuses cases that are no wheelset with friction, a start in a curve. Raises CaseError."""
     check_kind(case, "vehicle")
@@ -202,6 +253,17 @@ def check_run(
         )
     if wheelset.z is None:
         problems.append("wheelset.vertical_force: given, allowed 'z' = 0: the vehicle is its load")
+    if irregularity is not None and measured_track is not None:
+        problems.append("measured_track: given with [irregularity], allowed one of them")
+    if support is not None and case.track.rail_support is not None:
+        problems.append("track.rail_support: given, allowed to be left out beside [support]")
+    for index, one in enumerate(dip):
+        first = one.position - 0.5 * one.length
+        if not first >= vehicle.length:
+            problems.append(
+                f"dip[{index}].position: value is {one.position}, allowed >= "
+                f"{vehicle.length + 0.5 * one.length:.6g} m: the vehicle starts on level rails"
+            )
     key, straight = alignment.start
     if straight < vehicle.length:
         problems.append(

@@ -16,6 +16,7 @@ from wheelset_demo.vehicle.means import SlidingMeans
 from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.step_times import StepTimes
 from wheelset_demo.vehicle.steppers import Bdf2
+from wheelset_demo.vehicle.support import SupportTable
 from wheelset_demo.vehicle.system import Rates, Vector, VehicleState, VehicleSystem
 
 
@@ -69,6 +70,8 @@ class Simulation:
         self.state, self.rates = self._stepper.step(self.state, self.rates)
         self.system.suspension.settle()
         self.means.add(self.system.course.middle - before, self.element.wheels)
+        if self.system.support is not None:
+            self.system.support.meet()
 
     def _timed_step(self, times: StepTimes) -> None:
         wall, cpu = clock.perf_counter(), self._cpu()
@@ -108,23 +111,33 @@ def at_start(scene: VehicleScene, system: VehicleSystem) -> VehicleState:
     values = np.zeros(system.size)
     q, v = values[:n], values[n : 2 * n]
     loads = system.suspension.statics.loads
-    found: dict[tuple[int, float], tuple[float, float]] = {}
+    found: dict[tuple[int, float], tuple[float, float, Vector]] = {}
+    deflections = []
     for axle, load in zip(scene.vehicle.axles, loads.tolist(), strict=True):
         alike = id(axle.table), round(load, 3)
         if alike not in found:
-            found[alike] = wheels_under_load(scene.case_of(axle), load)
-        q[vehicle.carriers[axle.number - 1, 2]], radius = found[alike]
+            found[alike] = wheels_under_load(scene.case_of(axle), load, scene.support)
+        q[vehicle.carriers[axle.number - 1, 2]], radius, below = found[alike]
         v[vehicle.spins[axle.number - 1]] = -scene.speed / radius
-    q[:] = vehicle.rest + system.suspension.statics.sunk(q[vehicle.carriers[:, 2]])
+        deflections.append(below)
+    nv = system.model.nv
+    q[:nv] = vehicle.rest + system.suspension.statics.sunk(q[vehicle.carriers[:, 2]])
+    if system.support is not None:
+        q[nv:] = system.support.at_rest(np.array(deflections))
     v[vehicle.ahead] = scene.speed
     system.positions[:] = q[vehicle.carriers[:, 0]]
     return VehicleState(0.0, values, np.zeros(len(WORKS) + 2 * system.wheelsets), n)
 
 
-def wheels_under_load(case: WheelsetCase, load: float) -> tuple[float, float]:
-    """m: how far a wheelset in the middle is pressed down by a load (N), its rolling radius."""
+def wheels_under_load(
+    case: WheelsetCase, load: float, support: SupportTable | None = None
+) -> tuple[float, float, Vector]:
+    """m: how far a wheelset in the middle is pressed down by a load (N), its rolling radius, and
+    deflections [2, 2] of left and right rail on the track below, lateral and vertical."""
     content = without_friction(case.model_dump())
     content["wheelset"] |= {"vertical_force": load, "z": None}
+    if support is not None:
+        content["track"]["rail_support"] = {"stiffness": list(support.static_stiffness)}
     content["method"]["derivatives"] = False
     result = Contact(content).step()
     if result.status in BAD or result.status == "no_contact":
@@ -133,4 +146,7 @@ def wheels_under_load(case: WheelsetCase, load: float) -> tuple[float, float]:
             f"carry: {result.status}: {result.reason}"
         )
     radii = [result[side]["rolling_radius"] for side in SIDES]
-    return float(result["z"]), float(np.mean(radii))
+    found = np.zeros((2, 2))
+    if support is not None:
+        found[:] = [result[side]["rail_deflection"] for side in SIDES]
+    return float(result["z"]), float(np.mean(radii)), found

@@ -2,6 +2,9 @@
 
     y = (q [n], v [n], forces of dampers with springs in series [m]),    y' = f(y, u),
 
+with the coordinates of the track below the rails, where there are any, at the end of q and v
+(wheelset_demo.vehicle.support), and
+
 u [3 wheels] the rails' lateral and vertical deviations at the wheels and their vertical rates. They
 follow from where the wheelsets are: they are known ahead, and the time steppers use that.
 """
@@ -23,10 +26,12 @@ from railpatch.pinocchio.derivative import WrenchDerivatives
 
 from wheelset_demo.system import BAD, ContactFailure, no_forces
 from wheelset_demo.vehicle.alignment import Alignment
-from wheelset_demo.vehicle.irregularity import ARM, irregularity_of
+from wheelset_demo.vehicle.deviations import deviations_of
+from wheelset_demo.vehicle.irregularity import ARM
 from wheelset_demo.vehicle.model import vehicle_model
 from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.slope import slope_wrenches
+from wheelset_demo.vehicle.support import Support
 from wheelset_demo.vehicle.suspension import Suspension
 
 Vector = NDArray[np.float64]
@@ -114,9 +119,8 @@ class VehicleSystem:
         self.model = self.vehicle.model
         self.data = self.model.createData()
         self.alignment = Alignment(scene.alignment, scene.length)
-        table = scene.irregularity
-        self.irregularity = (
-            None if table is None else irregularity_of(table, scene.length, scene.vehicle.length)
+        self.irregularity = deviations_of(
+            scene.irregularity, scene.dip, scene.length, scene.vehicle.length, scene.recorded
         )
         names = [axle.name for axle in scene.vehicle.axles]
         self.wheelsets = len(names)
@@ -124,17 +128,17 @@ class VehicleSystem:
         self.element = ForceElement(self.model, names, cases, threads=scene.run.threads)
         self._radii = np.array([one.case.wheelset.nominal_radius for one in cases])
         self.suspension = Suspension(scene, self.vehicle)
-        self.count = self.model.nv
+        self.support = None if scene.support is None else Support(scene.support, self.wheelsets)
+        self.count = self.model.nv + (0 if self.support is None else self.support.count)
         self.size = 2 * self.count + self.suspension.series_count
         self.course = self._course()
         self.positions = self.course.positions
         self.evaluations = self.renewals = 0
         self.contact_seconds = self.derivative_seconds = 0.0
         self._fext = no_forces(self.model)
-        self._zero = np.zeros(self.count)
         self._joints = [self.vehicle.joints[name] for name in names]
         self._car = self.vehicle.columns[0]
-        self._control = np.zeros(self.count)
+        self._control = np.zeros(self.model.nv)
         self.slope_wrenches = np.zeros((self.wheelsets, 2, 3))
         self._slopes = self.course.slopes.reshape(-1, 2, 2)
         self._sloped = np.zeros((self.wheelsets, 6))
@@ -145,10 +149,12 @@ class VehicleSystem:
 
     def rates(self, time: float, values: Vector) -> Rates:
         """At a time (s) and values [2 n + m]. Raises ContactFailure."""
-        n = self.count
-        q, v, series = values[:n], values[n : 2 * n], values[2 * n :]
+        n, nv = self.count, self.model.nv
+        q, v, series = values[:nv], values[n : n + nv], values[2 * n :]
         pin.forwardKinematics(self.model, self.data, q, v)
         inputs = self.place_track(q, v)
+        if self.support is not None:
+            self.support.put_rails(values[nv:n], values[n + nv : 2 * n], self.element.rails)
         for joint in self._joints:
             self._fext[joint].setZero()
         self.evaluations += 1
@@ -165,9 +171,14 @@ class VehicleSystem:
         tau = self.suspension.step(q, v, series)
         drive = self._drive(q, v, tau)
         acceleration = pin.aba(self.model, self.data, q, v, tau, self._fext)
-        found = np.concatenate([v, acceleration, self.suspension.series_rates])
-        friction = self.element.wheels[:, :, 6].ravel()
         damping = self.suspension.damping_power
+        if self.support is not None:
+            below, on_rails = self.support.step(self.element.wheels)
+            acceleration = np.concatenate([acceleration, below])
+            contact += on_rails
+            damping += self.support.damping_power
+        found = np.concatenate([values[n : 2 * n], acceleration, self.suspension.series_rates])
+        friction = self.element.wheels[:, :, 6].ravel()
         powers = np.array([contact, friction.sum(), damping, drive, *friction])
         return Rates(found, powers, inputs, status)
 
@@ -176,7 +187,7 @@ class VehicleSystem:
         straight = np.zeros(0), np.zeros((4, 0, 8))
         rails = straight if self.irregularity is None else self.irregularity.pieces
         columns = self.vehicle.carriers[:, :2].astype(np.int64)
-        return _core.Course(*self.alignment.pieces, *rails, columns, ARM, self.count)
+        return _core.Course(*self.alignment.pieces, *rails, columns, ARM, self.model.nv)
 
     def place_track(self, q: Vector, v: Vector) -> Vector:
         """Puts track frames under the wheelsets, rails into them; [3 wheels], the inputs."""
@@ -203,7 +214,7 @@ class VehicleSystem:
         These are by the track's own way in the world: the curve's turning off, the change of cant.
         In track axes, as the inputs; that of rates is none. values: whose rates were the last ones.
         """
-        self.course.look_ahead(values[self.count : 2 * self.count], step)
+        self.course.look_ahead(values[self.count : self.count + self.model.nv], step)
         return self._known[1].copy(), self._known[2]
 
     def derivatives(self, values: Vector, wheelsets: Iterable[int]) -> tuple[Vector, Vector]:
@@ -216,8 +227,8 @@ class VehicleSystem:
         """
         begin = clock.thread_time()
         self.renewals += 1
-        n, suspension = self.count, self.suspension
-        q, v = values[:n], values[n : 2 * n]
+        n, nv, suspension = self.count, self.model.nv, self.suspension
+        q, v, bodies = values[:nv], values[n : n + nv], slice(n, n + nv)
         tau = self.suspension.matrix.T @ self.suspension.force
         self._held.renew(wheelsets)
         found = acceleration_derivatives(self.model, self.data, q, v, tau, self._fext, [self._held])
@@ -228,14 +239,18 @@ class VehicleSystem:
         by_v = by_v - self.scene.run.speed_control * np.outer(control, control)
         matrix = np.zeros((self.size, self.size))
         matrix[:n, n : 2 * n] = np.eye(n)
-        matrix[n : 2 * n, :n] = found.by_q + inverse @ by_q
-        matrix[n : 2 * n, n : 2 * n] = found.by_v + inverse @ by_v
-        matrix[n : 2 * n, 2 * n :] = inverse @ by_series
+        matrix[bodies, :nv] = found.by_q + inverse @ by_q
+        matrix[bodies, bodies] = found.by_v + inverse @ by_v
+        matrix[bodies, 2 * n :] = inverse @ by_series
         series_by_v, series_by_series = suspension.series_jacobian()
-        matrix[2 * n :, n : 2 * n] = series_by_v
+        matrix[2 * n :, bodies] = series_by_v
         matrix[2 * n :, 2 * n :] = np.diag(series_by_series)
         inputs = np.zeros((self.size, 6 * self.wheelsets))
-        inputs[n : 2 * n] = inverse @ self._force_by_rails(found.chain)
+        inputs[bodies] = inverse @ self._force_by_rails(found.chain)
+        if self.support is not None:
+            self.support.fill(
+                matrix, inputs, inverse, self.element, self._held.by_side, found.chain
+            )
         self.derivative_seconds += clock.thread_time() - begin
         return matrix, inputs
 
@@ -284,12 +299,16 @@ class VehicleSystem:
 
     def stored(self, state: VehicleState) -> Vector:
         """J, [4]: kinetic, gravity, suspension, elastic energy of pressure in the contacts, of a
-        state whose rates were the last ones asked for."""
+        state whose rates were the last ones asked for. The track's below the rails are part of the
+        first and the third."""
+        nv = self.model.nv
+        moving, springs = (0.0, 0.0) if self.support is None else self.support.energies()
+        q, v = state.q[:nv], state.v[:nv]
         return np.array(
             [
-                pin.computeKineticEnergy(self.model, self.data, state.q, state.v),
-                pin.computePotentialEnergy(self.model, self.data, state.q),
-                self.suspension.potential(state.series),
+                pin.computeKineticEnergy(self.model, self.data, q, v) + moving,
+                pin.computePotentialEnergy(self.model, self.data, q),
+                self.suspension.potential(state.series) + springs,
                 self.element.pressure_energy,
             ]
         )

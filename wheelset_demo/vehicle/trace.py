@@ -153,7 +153,9 @@ class VehicleSummary:
     simulated. warnings: of the scene's bodies and of all logged steps. step_times: as
     StepTimes.to_dict(), where they were asked for.
     *_percentile, load_median, shift_limit: as wheelset_demo.vehicle.assessment has them (EN 14363):
-    -, N, N, N, N, m/s^2 (lateral, vertical); None where the run is too short for them.
+    -, N, N, N, N, m/s^2 (lateral, vertical); None where the run is too short for them. support:
+    greatest of every time step, as Support.summary(); None on rigid ground. measured_track: what
+    the record of the rails holds, as MeasuredTrack.summary().
     """
 
     good: bool
@@ -178,6 +180,8 @@ class VehicleSummary:
     load_percentile: float | None = None
     load_median: float | None = None
     acceleration_percentile: tuple[float, float] | None = None
+    support: dict[str, list[float] | None] | None = None
+    measured_track: dict[str, Any] | None = None
     logging_share: float | None = None
     step_times: dict[str, Any] | None = None
 
@@ -220,11 +224,42 @@ class VehicleSummary:
             ),
             ("real time", f"{self.real_time:.2f} s for a second simulated"),
         ]
-        lines[5:5] = self._assessed()
+        lines[5:5] = [*self._assessed(), *self._below()]
+        lines[1:1] = self._recorded()
         if self.logging_share is not None:
             lines.append(("logging", f"{100 * self.logging_share:.2g} % of the run's wall time"))
         found = "\n".join(f"{name:<16}{value}" for name, value in lines)
         return found if self.step_times is None else f"{found}\n{text_of(self.step_times)}"
+
+    def _recorded(self) -> list[tuple[str, str]]:
+        """A line of the rails' record."""
+        if self.measured_track is None:
+            return []
+        found = self.measured_track
+        (usual, largest), (low, high) = found["spacing"], found["waves"]
+        rms = ", ".join(f"{1e3 * value:.2f}" for value in found["rms"])
+        text = (
+            f"{found['file']}, {found['rows']} rows, {usual:.3g} m apart ({largest:.3g} at most), "
+            f"waves of {low:.3g} to {high:.4g} m; left and right, lateral and vertical {rms} mm rms"
+        )
+        return [("rails", text)]
+
+    def _below(self) -> list[tuple[str, str]]:
+        """A line of the track below the rails."""
+        if self.support is None:
+            return []
+        found = self.support
+        place, pad, ballast = found["rail_deflection"], found["pad_force"], found["ballast_force"]
+        # they are there together
+        assert place is not None
+        assert pad is not None
+        text = (
+            f"rail {1e3 * place[0]:.2f} mm lateral, {1e3 * place[1]:.2f} mm vertical at most; pad "
+            f"{pad[0] / 1e3:.1f}, {pad[1] / 1e3:.1f} kN"
+        )
+        if ballast is not None:
+            text += f"; ballast below a seat {ballast[0] / 1e3:.1f}, {ballast[1] / 1e3:.1f} kN"
+        return [("track", text)]
 
     def _assessed(self) -> list[tuple[str, str]]:
         """Lines of percentiles beside their limits."""
@@ -274,7 +309,7 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
         "contact": simulation.contact_seconds,
         "derivatives": system.derivative_seconds,
     }
-    run = simulation.scene.run
+    run, measured = simulation.scene.run, simulation.scene.measured
     found = assess(trace, run.step * run.log_every)
     assessed: dict[str, Any] = {}
     if found is not None:
@@ -306,10 +341,13 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
         real_time=wall / time if time > 0 else 0.0,
         warnings=[
             *doubtful_bodies(simulation.scene.vehicle),
+            *(() if measured is None else measured.warnings),
             *own_doubts(simulation.scene),
             *trace.warned.lines(),
         ],
         **assessed,
+        support=None if system.support is None else system.support.summary(),
+        measured_track=None if measured is None else measured.summary(),
         logging_share=trace.logging_share,
         step_times=None if simulation.step_times is None else simulation.step_times.to_dict(),
     )

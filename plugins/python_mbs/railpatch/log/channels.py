@@ -146,7 +146,7 @@ WHEELSET_STATE = Message(
         _number("moment", "N m", "their moment about the wheelset's centre", "track", size=3),
         _number("curvature", "1/m", "curvature of the track, right-hand curve > 0", "track"),
         _number("cant", "rad", "cant of the track", "track"),
-        _number("left_rail", "m", "lateral, vertical deviation of the left rail", "track", size=2),
+        _number("left_rail", "m", "lateral, vertical place of the left rail", "track", size=2),
         _number("right_rail", "m", "the same of the right rail", "track", size=2),
         *(_listed("result", name) for name in LOGGED),
     ),
@@ -500,6 +500,18 @@ VEHICLE_BODIES = Message(
     (Field("bodies", BODY, "", "one entry per body, always in the same order", size=0),),
 )
 
+TRACK_SUPPORT = Message(
+    "TrackSupport",
+    "Track below the rails under one wheelset; pairs are lateral, vertical.",
+    (
+        _number("left_pad_force", "N", "of the left rail on its pad", "track", size=2),
+        _number("right_pad_force", "N", "of the right rail on its pad", "track", size=2),
+        _number("left_ballast_force", "N", "of the left rail seat on its ballast", "track", size=2),
+        _number("right_ballast_force", "N", "of the right rail seat", "track", size=2),
+        _number("sleeper", "m, m, rad", "its y, z and roll from rest", "track", size=3),
+    ),
+)
+
 SOLVER_STATS = Message(
     "SolverStats",
     "Work and wall-clock time of one position or time step.",
@@ -543,6 +555,7 @@ AXLE_CHANNELS = (
     Channel("/wheelset/N/state", WHEELSET_STATE, "where wheelset N is and how it moves"),
     Channel("/wheelset/N/left/contact", WHEEL_CONTACT, "result of its left wheel"),
     Channel("/wheelset/N/right/contact", WHEEL_CONTACT, "result of its right wheel"),
+    Channel("/wheelset/N/support", TRACK_SUPPORT, "track below; only in scenes that have one"),
     Channel("/wheelset/N/left/fields", CONTACT_FIELDS, "fields of its left patches"),
     Channel("/wheelset/N/right/fields", CONTACT_FIELDS, "fields of its right patches"),
 )

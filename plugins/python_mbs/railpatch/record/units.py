@@ -31,6 +31,12 @@ UNITS: dict[str, dict[str, Unit]] = {
         "um": Unit(1e-6),
         "in": Unit(0.0254),
     },
+    "way": {
+        "m": Unit(1.0),
+        "km": Unit(1e3),
+        "ft": Unit(0.3048),
+        "mi": Unit(1609.344),
+    },
     "force": {
         "N": Unit(1.0),
         "kN": Unit(1e3),

@@ -62,10 +62,10 @@ class VehicleLog(Log):
         """Logs one time step; the fields of each dict stand in channels.py.
 
         ``wheelsets``: of each, from the front, ``state``, ``left``, ``right`` and, for a snapshot,
-        ``fields``, as for RunLog.write. ``bodies``: a dict each; wheelset N is called
-        "wheelset_N", and turns with the pitch of its state where that has one. ``tracks``: of each
-        wheelset the origin (m) and the quaternion of its track axes, in start axes; without them no
-        rails and patches are shown.
+        ``fields``, as for RunLog.write, and ``support`` where it has a track below. ``bodies``: a
+        dict each; wheelset N is called "wheelset_N", and turns with the pitch of its state where
+        that has one. ``tracks``: of each wheelset the origin (m) and the quaternion of its track
+        axes, in start axes; without them no rails and patches are shown.
 
         Raises ValueError for a bad value, and logs nothing of this step then.
         """
@@ -84,6 +84,8 @@ class VehicleLog(Log):
                 given[f"{above}/state"] = wheelset["state"]
                 for side in SIDES:
                     given[f"{above}/{side}/contact"] = wheelset[side]
+                if "support" in wheelset:
+                    given[f"{above}/support"] = wheelset["support"]
                 messages |= snapshots(wheelset.get("fields") or {}, above)
             for topic, values in given.items():
                 messages[topic] = encode(channel(topic).message, values, topic)

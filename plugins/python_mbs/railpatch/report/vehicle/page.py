@@ -18,8 +18,8 @@ from railpatch.report.data import has_bulk
 from railpatch.report.patch_views import over_distance
 from railpatch.report.scene import friction_of
 from railpatch.report.tables import identity
+from railpatch.report.vehicle import below_rails, limits
 from railpatch.report.vehicle import figures as vehicle_figures
-from railpatch.report.vehicle import limits
 from railpatch.report.vehicle.data import VehicleRun, snapshot
 from railpatch.report.warnings import warnings
 
@@ -188,6 +188,7 @@ def _sections(data: VehicleRun) -> list[str]:
             "<h2>Bulk temperatures of the wheels</h2>",
             plot(figures.bulk_temperatures(data), "bulk-temperatures"),
         ]
+    parts += below_rails.section(data)
     if len(data.run["/vehicle/energy"]):
         parts += ["<h2>Energies</h2>", plot(balance_figures.energy(data), "energy")]
     return parts
