@@ -34,6 +34,10 @@ VEHICLE_UNITS = {
     **dict.fromkeys(("comfort", "acceleration_percentile"), "m/s^2"),
     **dict.fromkeys(("friction", "open_balance", "lost"), "J"),
     "step_times": "",
+    "support.rail_deflection": "m",
+    **dict.fromkeys(("support.pad_force", "support.ballast_force"), "N"),
+    "measured_track": "m",
+    "measured_track.rows": "",
 }
 
 

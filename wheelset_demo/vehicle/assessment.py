@@ -45,13 +45,19 @@ class Assessment:
     """SI. ratio: greatest 99.85 % of a wheel's Y/Q, Y outward. shift: N, greatest of a wheelset's
     sum of Y by 0.15 and 99.85 %, either way. load, median_load: N, greatest 99.85 % and 50 % of a
     wheel's Q. acceleration: m/s^2, lateral, vertical, the greater of 0.15 and 99.85 %,
-    without gravity's."""
+    without gravity's. ratios, loads, median_loads: the same of each wheel, shifts: of each
+    wheelset. places: number of the places that they are of."""
 
     ratio: float
     shift: float
     load: float
     median_load: float
     acceleration: tuple[float, float]
+    ratios: tuple[float, ...] = ()
+    shifts: tuple[float, ...] = ()
+    loads: tuple[float, ...] = ()
+    median_loads: tuple[float, ...] = ()
+    places: int = 0
 
 
 def shift_limit(axle_load: float, factor: float) -> float:
@@ -86,13 +92,19 @@ def assess(trace: Kept, interval: float) -> Assessment | None:
     least, _, greatest = np.percentile(moved, PERCENTILES, axis=0)
     lateral, vertical = np.maximum(np.abs(least), np.abs(greatest)).tolist()
     # a wheel in the air has no ratio; interpolation between ranks must not meet infinities
-    ratio = np.percentile(ratios, PERCENTILES[-1], axis=0, method="lower").max()
+    by_wheel = np.percentile(ratios, PERCENTILES[-1], axis=0, method="lower")
+    ratio, shifts = by_wheel.max(), np.maximum(np.abs(low), np.abs(high))
     return Assessment(
         ratio=float(ratio) if np.isfinite(ratio) else 0.0,
-        shift=float(max(np.abs(low).max(), np.abs(high).max())),
+        shift=float(shifts.max()),
         load=float(most.max()),
         median_load=float(median.max()),
         acceleration=(lateral, vertical),
+        ratios=tuple(np.where(np.isfinite(by_wheel), by_wheel, 0.0).tolist()),
+        shifts=tuple(shifts.tolist()),
+        loads=tuple(most.tolist()),
+        median_loads=tuple(median.tolist()),
+        places=len(places),
     )
 
 

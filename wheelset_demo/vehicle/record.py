@@ -19,6 +19,7 @@ from wheelset_demo.scene import GRAVITY, SNAPSHOTS
 from wheelset_demo.system import WORKS, ContactFailure
 from wheelset_demo.trace import STORES
 from wheelset_demo.vehicle.bodies import FreeBodyTable, VehicleTable
+from wheelset_demo.vehicle.comfort import NAMES
 from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.simulation import Simulation
 
@@ -42,6 +43,7 @@ class Recorder:
         self._start: np.ndarray | None = None
         self._done = 0.0, 0
         self._written = -math.inf
+        self._blocks = 0
 
     def write(self, simulation: Simulation) -> None:
         """The present state, where its turn has come; the run's last one too."""
@@ -50,8 +52,33 @@ class Recorder:
         if self._pace is not None and not self._pace.due(time) and not last:
             return
         with self._log.stream.counted():
+            self._comfort(simulation)
             self._log.write(time, **self.messages(simulation, self._fields.due(time)))
         self._written = time
+
+    def _comfort(self, simulation: Simulation) -> None:
+        """Blocks that have become whole, at their ends."""
+        comfort = simulation.comfort
+        if comfort is None:
+            return
+        for end, block in list(zip(comfort.ends, comfort.blocks, strict=True))[self._blocks :]:
+            self._log.write_comfort(end, comfort_message(comfort.names, block))
+            self._blocks += 1
+
+    def ended(self, simulation: Simulation, assessed: dict[str, Any]) -> None:
+        """What is known at the end alone: percentiles and mean comfort."""
+        with self._log.stream.counted():
+            found = dict(assessed)
+            if simulation.comfort is not None:
+                told = simulation.comfort.summary()
+                self._comfort(simulation)
+                if told["blocks"]:
+                    found["comfort_blocks"] = told["blocks"]
+                    found["comfort"] = [
+                        {"name": name, **values} for name, values in told["points"].items()
+                    ]
+            if found:
+                self._log.write_assessment(simulation.state.time, found)
 
     def failed(self, simulation: Simulation, failure: ContactFailure) -> None:
         """The last state that is good, if it is not written yet, and the contacts that were asked
@@ -167,6 +194,16 @@ class Recorder:
             "wall_time": now[0] - before[0],
             "contact_evaluations": len(SIDES) * (now[1] - before[1]),
         }
+
+
+def comfort_message(names: list[str], block: np.ndarray) -> dict[str, Any]:
+    """Of one block; the names are those of comfort.py's table."""
+    return {
+        "points": [
+            {"name": name, **dict(zip(NAMES, values, strict=True))}
+            for name, values in zip(names, block.tolist(), strict=True)
+        ]
+    }
 
 
 def bodies(simulation: Simulation) -> list[dict[str, Any]]:

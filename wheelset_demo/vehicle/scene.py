@@ -30,6 +30,7 @@ from wheelset_demo.scene import (
 )
 from wheelset_demo.vehicle.alignment import AlignmentTable
 from wheelset_demo.vehicle.bodies import Axle, VehicleTable
+from wheelset_demo.vehicle.comfort import LONGEST_STEP, ComfortTable
 from wheelset_demo.vehicle.deviations import DipTable
 from wheelset_demo.vehicle.irregularity import IrregularityTable
 from wheelset_demo.vehicle.measured_track import (
@@ -88,15 +89,17 @@ TABLES: dict[str, type[Table]] = {
     "irregularity": IrregularityTable,
     "support": SupportTable,
     "measured_track": MeasuredTrackTable,
+    "comfort": ComfortTable,
     "run": RunTable,
 }
-OPTIONAL = ("alignment", "irregularity", "support", "measured_track")
+OPTIONAL = ("alignment", "irregularity", "support", "measured_track", "comfort")
 
 
 @dataclass(frozen=True, kw_only=True)
 class VehicleScene(RunScene):
     """A vehicle's scene. irregularity: None for straight rails. dip: dipped joints. support: None
-    for rails on rigid ground. measured_track: the record that measured is read from."""
+    for rails on rigid ground. measured_track: the record that measured is read from.
+    comfort: None where it is not asked for."""
 
     vehicle: VehicleTable
     alignment: AlignmentTable
@@ -106,6 +109,7 @@ class VehicleScene(RunScene):
     support: SupportTable | None = None
     measured_track: MeasuredTrackTable | None = None
     measured: MeasuredTrack | None = None
+    comfort: ComfortTable | None = None
 
     @property
     def recorded(self) -> Irregularity | None:
@@ -216,6 +220,26 @@ def checked_table(name: str, table: Any) -> Any:
     return check_present(name, TABLES[name], table)
 
 
+def comfort_problems(comfort: ComfortTable, run: RunTable, vehicle: VehicleTable) -> list[str]:
+    """Of points on bodies that are not there, and of steps too long for the filters."""
+    names = [body.name for body in vehicle.bodies]
+    found = [
+        f"comfort.point[{index}].body: value is {point.body!r}, allowed {', '.join(names)}"
+        for index, point in enumerate(comfort.point)
+        if point.body is not None and point.body not in names
+    ]
+    if run.step > LONGEST_STEP:
+        found.append(
+            f"run.step: value is {run.step}, allowed <= {LONGEST_STEP:g} s with [comfort], whose "
+            "filters reach to 100 Hz"
+        )
+    if not comfort.start < run.duration:
+        found.append(
+            f"comfort.start: value is {comfort.start}, allowed < run.duration ({run.duration} s)"
+        )
+    return found
+
+
 def checked_dips(dips: Any) -> tuple[DipTable, ...]:
     """The list [[dip]]; none where it is left out. Raises CaseError."""
     if dips is None:
@@ -234,6 +258,7 @@ def check_run(
     support: SupportTable | None = None,
     irregularity: IrregularityTable | None = None,
     measured_track: MeasuredTrackTable | None = None,
+    comfort: ComfortTable | None = None,
     **_: Any,
 ) -> None:
     """Refuses cases that are no wheelset with friction, a start in a curve. Raises CaseError."""
@@ -253,6 +278,8 @@ def check_run(
         )
     if wheelset.z is None:
         problems.append("wheelset.vertical_force: given, allowed 'z' = 0: the vehicle is its load")
+    if comfort is not None:
+        problems += comfort_problems(comfort, run, vehicle)
     if irregularity is not None and measured_track is not None:
         problems.append("measured_track: given with [irregularity], allowed one of them")
     if support is not None and case.track.rail_support is not None:

@@ -12,6 +12,7 @@ from railpatch.case.types import SIDES
 from railpatch.case.wheel import WheelsetCase
 
 from wheelset_demo.system import BAD, WORKS
+from wheelset_demo.vehicle.comfort import Comfort
 from wheelset_demo.vehicle.means import SlidingMeans
 from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.step_times import StepTimes
@@ -24,7 +25,8 @@ class Simulation:
     """A scene, ready to run: the vehicle stands on its wheels and rolls at the scene's speed.
 
     scene: VehicleScene. system: the equations of motion; element: its force element. state, rates:
-    the present ones. means: Y and Q over the last 2 m, of every time step. wall_seconds,
+    the present ones. means: Y and Q over the last 2 m, of every time step. comfort: of the scene's
+    points, where it asks. wall_seconds,
     cpu_seconds: s, spent in steps() so far, by the clock and of all threads, without what its
     caller does in between. step_times: of each step, where they were asked for.
     """
@@ -40,6 +42,7 @@ class Simulation:
         self.system.suspension.release()
         self._stepper = Bdf2(self.system, scene.run.step, scene.run.derivatives_every)
         self.means = SlidingMeans(self.element.wheels)
+        self.comfort = comfort_of(scene, self.system)
         self._solved_before = self._contact_cpu()
         self.step_times = (
             StepTimes(scene.steps, scene.run.step, scene.run.threads) if step_times else None
@@ -72,6 +75,10 @@ class Simulation:
         self.means.add(self.system.course.middle - before, self.element.wheels)
         if self.system.support is not None:
             self.system.support.meet()
+        if self.comfort is not None:
+            self.comfort.add(
+                self.state.time, self.state.values, self.rates.values, self.state.count
+            )
 
     def _timed_step(self, times: StepTimes) -> None:
         wall, cpu = clock.perf_counter(), self._cpu()
@@ -103,6 +110,14 @@ class Simulation:
     def energies(self) -> Vector:
         """J, [4]: kinetic, gravity, suspension, elastic energy of the contacts."""
         return self.system.stored(self.state)
+
+
+def comfort_of(scene: VehicleScene, system: VehicleSystem) -> Comfort | None:
+    """What measures it; None where the scene does not ask."""
+    if scene.comfort is None:
+        return None
+    columns = dict(zip(system.vehicle.bodies, system.vehicle.columns, strict=True))
+    return Comfort(scene.comfort, scene.run.step, scene.vehicle.bodies, columns)
 
 
 def at_start(scene: VehicleScene, system: VehicleSystem) -> VehicleState:

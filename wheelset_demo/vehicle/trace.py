@@ -16,6 +16,7 @@ from wheelset_demo.scene import GRAVITY
 from wheelset_demo.system import WORKS, ContactFailure
 from wheelset_demo.vehicle.assessment import RATIO_LIMIT, assess, shift_limit
 from wheelset_demo.vehicle.bodies import doubtful_bodies
+from wheelset_demo.vehicle.comfort import text_of as text_of_comfort
 from wheelset_demo.vehicle.means import rail_forces
 from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.simulation import Simulation
@@ -114,7 +115,9 @@ def run_vehicle(
     from wheelset_demo.vehicle.record import Recorder, open_log
 
     with open_log(output, simulation) as log:
-        trace = traced(simulation, advance, Recorder(log, simulation))
+        recorder = Recorder(log, simulation)
+        trace = traced(simulation, advance, recorder)
+        recorder.ended(simulation, assessed_of(trace, simulation))
         log.close(str(trace.failure or ""))
     trace.logging_share = log.share
     return trace
@@ -155,7 +158,8 @@ class VehicleSummary:
     *_percentile, load_median, shift_limit: as wheelset_demo.vehicle.assessment has them (EN 14363):
     -, N, N, N, N, m/s^2 (lateral, vertical); None where the run is too short for them. support:
     greatest of every time step, as Support.summary(); None on rigid ground. measured_track: what
-    the record of the rails holds, as MeasuredTrack.summary().
+    the record of the rails holds, as MeasuredTrack.summary(). ride_comfort: as Comfort.summary()
+    (EN 12299); None where the scene does not ask.
     """
 
     good: bool
@@ -182,6 +186,7 @@ class VehicleSummary:
     acceleration_percentile: tuple[float, float] | None = None
     support: dict[str, list[float] | None] | None = None
     measured_track: dict[str, Any] | None = None
+    ride_comfort: dict[str, Any] | None = None
     logging_share: float | None = None
     step_times: dict[str, Any] | None = None
 
@@ -224,7 +229,7 @@ class VehicleSummary:
             ),
             ("real time", f"{self.real_time:.2f} s for a second simulated"),
         ]
-        lines[5:5] = [*self._assessed(), *self._below()]
+        lines[5:5] = [*self._assessed(), *self._ride(), *self._below()]
         lines[1:1] = self._recorded()
         if self.logging_share is not None:
             lines.append(("logging", f"{100 * self.logging_share:.2g} % of the run's wall time"))
@@ -243,6 +248,12 @@ class VehicleSummary:
             f"waves of {low:.3g} to {high:.4g} m; left and right, lateral and vertical {rms} mm rms"
         )
         return [("rails", text)]
+
+    def _ride(self) -> list[tuple[str, str]]:
+        """A line of comfort."""
+        return (
+            [] if self.ride_comfort is None else [("comfort", text_of_comfort(self.ride_comfort))]
+        )
 
     def _below(self) -> list[tuple[str, str]]:
         """A line of the track below the rails."""
@@ -296,6 +307,30 @@ def fixed(value: float, places: int) -> str:
     return f"{round(value, places) + 0.0:.{places}f}"
 
 
+def least_limit(simulation: Simulation) -> float:
+    """N, of a wheelset's sum of Y, by the least load at rest."""
+    factor = simulation.scene.run.shift_factor
+    return shift_limit(float(simulation.system.suspension.statics.loads.min()), factor)
+
+
+def assessed_of(trace: VehicleTrace, simulation: Simulation) -> dict[str, Any]:
+    """Of the log's channel: percentiles with their limits; nothing where the run is too short."""
+    run = simulation.scene.run
+    found = assess(trace, run.step * run.log_every)
+    if found is None:
+        return {}
+    return {
+        "places": found.places,
+        "derailment": list(found.ratios),
+        "shift": list(found.shifts),
+        "load": list(found.loads),
+        "median_load": list(found.median_loads),
+        "acceleration": list(found.acceleration),
+        "derailment_limit": RATIO_LIMIT,
+        "shift_limit": least_limit(simulation),
+    }
+
+
 def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
     """Of a run."""
     positions = trace.array("positions")
@@ -316,9 +351,7 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
         assessed = {
             "derailment_percentile": found.ratio,
             "shift_percentile": found.shift,
-            "shift_limit": shift_limit(
-                float(system.suspension.statics.loads.min()), run.shift_factor
-            ),
+            "shift_limit": least_limit(simulation),
             "load_percentile": found.load,
             "load_median": found.median_load,
             "acceleration_percentile": found.acceleration,
@@ -348,6 +381,7 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
         **assessed,
         support=None if system.support is None else system.support.summary(),
         measured_track=None if measured is None else measured.summary(),
+        ride_comfort=None if simulation.comfort is None else simulation.comfort.summary(),
         logging_share=trace.logging_share,
         step_times=None if simulation.step_times is None else simulation.step_times.to_dict(),
     )

@@ -500,6 +500,42 @@ VEHICLE_BODIES = Message(
     (Field("bodies", BODY, "", "one entry per body, always in the same order", size=0),),
 )
 
+COMFORT_POINT = Message(
+    "ComfortPoint",
+    "Comfort at one point of a body, in its axes.",
+    (
+        Field("name", "string", "", "of the point in the scene", required=True),
+        _number("longitudinal", "m/s^2", "weighted by Wd, of 5 s or their 95 %", "body"),
+        _number("lateral", "m/s^2", "weighted by Wd, likewise", "body"),
+        _number("vertical", "m/s^2", "weighted by Wb, likewise", "body"),
+        _number("mean_comfort", "-", "N_MV = 6 times the length of the 95 % percentiles"),
+    ),
+)
+
+COMFORT = Message(
+    "Comfort",
+    "Continuous comfort (EN 12299): root mean squares over the 5 s before.",
+    (Field("points", COMFORT_POINT, "", "one entry per point of the scene", size=0),),
+)
+
+ASSESSMENT = Message(
+    "Assessment",
+    "Percentiles of a whole run as EN 14363 counts them, left and right wheel of the first "
+    "wheelset first, and mean comfort as EN 12299 does.",
+    (
+        _count("places", "number of the places, every 0.5 m, that percentiles are of"),
+        _number("derailment", "-", "99.85 % of each wheel's Y/Q, Y outward", size=0),
+        _number("shift", "N", "0.15 or 99.85 % of each wheelset's sum of Y, by size", size=0),
+        _number("load", "N", "99.85 % of each wheel's Q", size=0),
+        _number("median_load", "N", "50 % of each wheel's Q", size=0),
+        _number("acceleration", "m/s^2", "lateral, vertical, of the body of reference", size=2),
+        _number("derailment_limit", "-", "of Y/Q"),
+        _number("shift_limit", "N", "of a wheelset's sum of Y"),
+        _count("comfort_blocks", "number of whole blocks of 5 s"),
+        Field("comfort", COMFORT_POINT, "", "95 % of them, one entry per point", size=0),
+    ),
+)
+
 TRACK_SUPPORT = Message(
     "TrackSupport",
     "Track below the rails under one wheelset; pairs are lateral, vertical.",
@@ -548,6 +584,8 @@ VEHICLE_CHANNELS = (
     Channel("/vehicle/state", VEHICLE_STATE, "how far the vehicle has come"),
     Channel("/vehicle/bodies", VEHICLE_BODIES, "car body, bogie frames, wheelsets"),
     Channel("/vehicle/energy", ENERGY, "balance of energies"),
+    Channel("/vehicle/comfort", COMFORT, "every 5 s; only in scenes that ask for comfort"),
+    Channel("/vehicle/assessment", ASSESSMENT, "percentiles and mean comfort; once, at the end"),
     Channel("/solver/stats", SOLVER_STATS, "iterations and times"),
 )
 # and of each of its wheelsets, N = 1 in front

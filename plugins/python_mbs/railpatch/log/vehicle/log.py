@@ -97,6 +97,20 @@ class VehicleLog(Log):
                     messages["/scene/contact"] = vehicle_scene.contact(wheelsets, time_ns)
             self.stream.add(messages, time_ns)
 
+    def write_comfort(self, time_s: float, values: Mapping[str, Any]) -> None:
+        """Continuous comfort of the 5 s that end at a time; fields stand in channels.py. Times may
+        lie before the last step written. Raises ValueError for a bad value."""
+        self._write_beside("/vehicle/comfort", time_s, values)
+
+    def write_assessment(self, time_s: float, values: Mapping[str, Any]) -> None:
+        """Percentiles and mean comfort of the whole run, likewise."""
+        self._write_beside("/vehicle/assessment", time_s, values)
+
+    def _write_beside(self, topic: str, time_s: float, values: Mapping[str, Any]) -> None:
+        with self.stream.counted():
+            message = encode(channel(topic).message, values, topic)
+            self.stream.add({topic: message}, round(1e9 * time_s))
+
     def _check_number(self, name: str, values: Sequence[Any]) -> None:
         if len(values) != self._count:
             raise ValueError(f"{name} has {len(values)} entries; it must have {self._count}")

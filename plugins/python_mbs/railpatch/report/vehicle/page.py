@@ -18,7 +18,7 @@ from railpatch.report.data import has_bulk
 from railpatch.report.patch_views import over_distance
 from railpatch.report.scene import friction_of
 from railpatch.report.tables import identity
-from railpatch.report.vehicle import below_rails, limits
+from railpatch.report.vehicle import assessed, below_rails, limits
 from railpatch.report.vehicle import figures as vehicle_figures
 from railpatch.report.vehicle.data import VehicleRun, snapshot
 from railpatch.report.warnings import warnings
@@ -43,6 +43,7 @@ def body(
         plot(vehicle_figures.beside_limits(data), "limits"),
         tables.table(limits.HEAD, limits.rows(data)),
         folded("What is held against the standard", f"<p>{escape(STANDARD)}</p>"),
+        *assessed.section(data),
         f"<h2>Wheels</h2>{tables.table(*wheels(data))}",
     ]
     return "".join(
