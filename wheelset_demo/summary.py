@@ -56,9 +56,7 @@ class Summary:
         w, e = self.waves, self.energies
         lines = [
             ("distance", f"{self.distance:.2f} m in {self.duration:.3f} s, {self.steps} steps"),
-            ("wave length", f"{w.length:.3f} m, mean of {w.count} half waves"),
-            ("Klingel", f"{w.klingel:.3f} m with conicity {w.conicity:.5f} found in the run"),
-            ("amplitude", f"{1e3 * w.first:.3f} mm at first, {1e3 * w.last:.3f} mm at last"),
+            *waves_in_words(w, self.distance),
             ("drive", f"{e['drive']:.4g} J put in"),
             ("lost", f"{e['friction']:.4g} J in friction, {e['damping']:.4g} J in dampers"),
             (
@@ -81,6 +79,24 @@ class Summary:
         if math.isfinite(self.logging_share):
             lines.append(("logging", f"{100 * self.logging_share:.2g} % of the run's wall time"))
         return "\n".join(f"{name:<16}{value}" for name, value in lines)
+
+
+def waves_in_words(w: Waves, distance: float) -> list[tuple[str, str]]:
+    """Lines for the terminal, also on what a run is too short for. distance: m."""
+    if math.isfinite(w.length):
+        length = f"{w.length:.3f} m, mean of {w.count} half waves"
+    else:
+        length = f"none in {distance:.2f} m: y crosses the middle less than twice"
+    found = f"conicity {w.conicity:.5f} found in the run"
+    if math.isfinite(w.klingel):
+        klingel = f"{w.klingel:.3f} m with {found}"
+    elif math.isfinite(w.conicity):
+        klingel = f"none with {found}"
+    else:
+        klingel = "none: the run shows no conicity"
+    first = f"{1e3 * w.first:.3f} mm at first, " if math.isfinite(w.first) else ""
+    after = f"{1e3 * w.last:.3f} mm at last" if math.isfinite(w.last) else "no half wave after that"
+    return [("wave length", length), ("Klingel", klingel), ("amplitude", first + after)]
 
 
 def plain(value: Any) -> Any:

@@ -7,6 +7,9 @@ namespace railpatch {
 
 namespace {
 
+// degrees C, below and above which water is no liquid before the contact
+constexpr range of_water{0, 100, false, false};
+
 void check_given(const char *name, double value, const range &r, checker &check) {
   if (!std::isnan(value)) check.number(name, value, r);
 }
@@ -92,6 +95,10 @@ const char *not_combined(const rp_config &c) {
   if (ehl) {
     if (const char *wrong = not_with_ehl(c)) return wrong;
   }
+  if (!regimes && !std::isnan(c.fluid_water_rate) && !std::isnan(c.fluid_oil_film))
+    return "fluid_oil_film must be NaN with fluid_water_rate: one of them says what arrives";
+  if (!regimes && c.fluid_liquid == RP_LIQUID_WATER && c.fluid_eyring_stress > 0)
+    return "fluid_eyring_stress must be 0 with fluid_liquid = water, whose own friction is 0";
   if (c.kind == RP_PATCH && c.geometry == RP_LINE_CONTACT && !ehl)
     return "fluid_model must be none with a line contact: the film is that of an elliptic one";
   if (c.accuracy > 0)
@@ -126,6 +133,8 @@ void check_fluid(const rp_config &c, checker &check) {
       check.require(c.fluid_viscosity_temperature[i] > c.fluid_viscosity_temperature[i - 1],
                     "fluid_viscosity_temperature must increase");
   }
+  if (c.fluid_model != RP_FLUID_REGIMES && c.fluid_liquid == RP_LIQUID_WATER)
+    check_given("fluid_temperature", c.fluid_temperature, of_water, check);
   check_knots(c, check);
   if (check.error() != RP_OK) return;
   const char *wrong = not_combined(c);
@@ -151,6 +160,11 @@ void check_fluid(const rp_config &c, const rp_input &in, checker &check) {
   check_given("water_rate", in.water_rate, input_range::water_rate, check);
   check_given("water_temperature", in.water_temperature, input_range::water_temperature, check);
   check_given("oil_film", in.oil_film, input_range::oil_film, check);
+  const auto said = [](double now, double usual) { return !std::isnan(now) || !std::isnan(usual); };
+  check.require(!said(in.water_rate, c.fluid_water_rate) || !said(in.oil_film, c.fluid_oil_film),
+                "oil_film must be left NaN with water_rate: one of them says what arrives");
+  if (c.fluid_liquid == RP_LIQUID_WATER)
+    check_given("water_temperature", in.water_temperature, of_water, check);
 }
 
 }  // namespace railpatch

@@ -168,7 +168,8 @@ enum {
   X(RP_WARNING_LAYER_STIFFNESS, 14, "layer.shear_modulus is outside 1e6 to 1e12 Pa")               \
   X(RP_WARNING_GAUGE, 15, "gauge is not 40 to 120 mm wider than flange_back_distance")             \
   X(RP_WARNING_HEIGHTS, 16,                                                                        \
-    "other heights nearly or quite carry the vertical force too: forces jump near this position")
+    "other heights nearly or quite carry the vertical force too: forces jump near this position")  \
+  X(RP_WARNING_WATER, 17, "water as a liquid is warmer than 100 or colder than 0 degrees C")
 
 #define RP_ENUM_ENTRY(name, value, text) name = value,
 typedef enum rp_error { RP_ERRORS(RP_ENUM_ENTRY) } rp_error;
@@ -692,7 +693,7 @@ typedef struct rp_patch_result {
                                 along s at the contact reference, with what pressure adds to it */
   double spin_moment;        /* N m on the wheel about n at the contact reference */
   double max_pressure;       /* Pa */
-  double contact_area;       /* m^2 */
+  double contact_area;       /* m^2; with RP_FLUID_EHL that of the dry contact */
   int32_t elements[4];       /* exterior, stick, slip, plastic; indexed by rp_element */
   double max_temperature;    /* degrees C, of the contact; NaN: not part of the scene */
   double friction_power;     /* W, that friction turns into heat: the part of creep_power that the

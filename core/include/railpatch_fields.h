@@ -33,7 +33,8 @@
   X(double, spin_moment, 1, number, odd, zero_rolling, alone, NAN, "N m",                         \
     "moment about the normal")                                                                    \
   X(double, max_pressure, 1, number, even, zero, alone, NAN, "Pa", "highest contact pressure")    \
-  X(double, contact_area, 1, number, even, zero, alone, NAN, "m^2", "area in contact")            \
+  X(double, contact_area, 1, number, even, zero, alone, NAN, "m^2",                               \
+    "area in contact; with fluid_model = ehl that of the dry contact")                            \
   X(int32_t, elements, 4, count, even, kept, alone, 0, "-", "the element division, counted")      \
   X(double, max_temperature, 1, number, even, own, greatest, NAN, "degrees C",                    \
     "highest surface temperature of the contact")                                                 \

@@ -108,9 +108,9 @@ double fluid_ehl::take_over(const patch_problem &problem, const ehl_problem &lub
       memory.fluid_film[at] = film_of(lubricated.roughness, s.gap[k]).film.value;
       if (p == greatest) middle = memory.fluid_film[at];
     }
+  // area and size stay those of the dry contact: liquid presses far before it
   pressure.max_pressure = greatest;
   pressure.elastic_energy = energy;
-  pressure.contact_area = touching * g.dx * g.dy;
   pressure.exterior = g.count() - touching;
   return middle;
 }

@@ -67,7 +67,8 @@ def test_files_hold_the_same_stresses(tmp_path: Path) -> None:
     [
         (("-o", "x.pdf"), "allowed a name that ends in .html, .csv, .npz"),
         (("--depth", "-1"), "--depth"),
-        (("--patch", "2"), "no such patch"),
+        (("--patch", "2"), "--patch: value is 2, allowed 1 to 1"),
+        (("--patch", "0"), "--patch"),
         (("--body", "sleeper"), "--body"),
     ],
 )

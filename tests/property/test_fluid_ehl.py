@@ -46,6 +46,20 @@ def solved(case: dict[str, Any], **changes: Any) -> railpatch.Result:
     return result
 
 
+@pytest.mark.parametrize("speed", [0.0, 1.0, 20.0])
+def test_the_area_is_that_of_the_dry_contact(speed: float) -> None:
+    """However far before it liquid presses."""
+    motion = {**BASE["motion"], "rolling_speed": speed}
+    wet = solved({**BASE, "motion": motion})
+    dry = solved({name: table for name, table in BASE.items() if name != "fluid"})
+    for name in ("contact_area", "contact_size"):
+        assert wet[name] == pytest.approx(dry[name], rel=0.06), name
+    assert wet["contact_area"] == pytest.approx(np.pi * 6e-3 * 5e-3, rel=0.1)
+    x, y = np.array(wet["x"]), np.array(wet["y"])
+    bears = (np.array(wet["pressure"]) > 0).sum() * (x[1] - x[0]) * (y[1] - y[0])
+    assert (bears > 1.5 * wet["contact_area"]) == (speed > 0.0)
+
+
 @pytest.mark.parametrize("speed", [0.01, 1.0, 20.0, 100.0])
 @pytest.mark.parametrize("direction", [1, -1])
 def test_laws_of_friction(speed: float, direction: int) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -216,7 +217,7 @@ class VehicleSummary:
                 f"{lateral:.3f} m/s^2 lateral, {vertical:.3f} m/s^2 vertical, standard deviations "
                 "over the run",
             ),
-            ("friction", " ".join(fixed(part / 1e3, 2) for part in self.friction) + " kJ a wheel"),
+            ("friction", f"{works(self.friction)} a wheel"),
             (
                 "balance",
                 f"open by {self.open_balance:.3g} J at most; {self.lost:.4g} J were lost in "
@@ -300,6 +301,14 @@ def own_doubts(scene: VehicleScene) -> list[str]:
     """Of the noise of profile files, of all wheelsets."""
     cases = {id(axle.table): scene.case_of(axle) for axle in scene.vehicle.axles}
     return list(dict.fromkeys(text for one in cases.values() for text in run_doubts(one, Path())))
+
+
+def works(values: Sequence[float]) -> str:
+    """J as text, in J or kJ, with three digits of the greatest."""
+    greatest = max(map(abs, values), default=0.0)
+    unit, scale = ("kJ", 1e3) if greatest >= 1e3 else ("J", 1.0)
+    places = 2 - math.floor(math.log10(greatest / scale)) if greatest > 0 else 0
+    return " ".join(fixed(value / scale, min(max(places, 0), 9)) for value in values) + f" {unit}"
 
 
 def fixed(value: float, places: int) -> str:

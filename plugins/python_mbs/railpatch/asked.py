@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,7 @@ class Asked:
         self._displaced = False  # it has displacements, where there are some
         # rows of the last step's patches by side, with their shares, for distributions of runs
         self.rows: dict[str, list[tuple[float, dict[str, NDArray[np.float64]]]]] = {}
+        self._seconds = {"subsurface": 0.0, "damage": 0.0}
 
     @property
     def needs_fields(self) -> bool:
@@ -73,13 +75,17 @@ class Asked:
         fields: bool,
     ) -> None:
         loaded = patch["status"] in SOLVED and patch["normal_force"] > 0
+        begin = time.perf_counter()
         if (below := self._case.subsurface) is not None:
             patch["subsurface"] = self._stresses(below, side, index, fields) if loaded else None
+        middle = time.perf_counter()
+        self._seconds["subsurface"] += middle - begin
         if (law := self._case.damage) is None:
             return
         patch["damage"] = None
         if loaded:
             patch["damage"] = self._damage(law, {**raw, **patch}, side, wheel, fields)
+        self._seconds["damage"] += time.perf_counter() - middle
 
     def _stresses(self, below: Below, side: str, index: int, fields: bool) -> dict[str, Any]:
         """Below one patch."""
@@ -120,6 +126,21 @@ class Asked:
             numbers["fields"] = {**arrays, **{f"row_{name}": v for name, v in rows.items()}}
         self.rows[side].append((patch.get("share", 1.0), rows))
         return numbers
+
+    def described(self) -> list[dict[str, Any]]:
+        """As Contact.stages(), of steps so far; their memory is not known."""
+        reasons = {}
+        if (below := self._case.subsurface) is not None:
+            count = len(below.depths)
+            depths = "1 depth" if count == 1 else f"{count} depths"
+            reasons["subsurface"] = f"asked for: stresses at {depths} below the {below.body}"
+        if (law := self._case.damage) is not None:
+            reasons["damage"] = f"asked for: wear = {law.wear}, basis = {law.basis}"
+        return [
+            {"name": name, "present": name in reasons, "bytes": None, "seconds": seconds,
+             "reason": reasons.get(name, f"no table {name} in the case")}
+            for name, seconds in self._seconds.items()
+        ]  # fmt: skip
 
     def _add_to_wheel(self, wheel: dict[str, Any], parts: list[dict[str, Any]]) -> None:
         """What is greatest of its patches, or of a wheelset's wheels, and sums of wear."""

@@ -16,7 +16,6 @@ from railpatch import _core
 from railpatch.asked import Asked
 from railpatch.case.keys_of_step import signature
 from railpatch.case.load import Case, Scene, check_table, load_scene
-from railpatch.case.messages import show
 from railpatch.case.moving import changed_case, moving_keys, with_numbers
 from railpatch.case.patch import Motion, PatchCase
 from railpatch.case.scene_profiles import Shelf, placement_doubts, profile_notes
@@ -29,7 +28,7 @@ from railpatch.case.to_core import (
     rates_of,
 )
 from railpatch.case.track import add_irregularity, irregularity_of
-from railpatch.case.types import SIDES
+from railpatch.case.types import SIDES, show
 from railpatch.errors import CaseError
 from railpatch.on_demand import OnDemand, Reader
 from railpatch.pressure_error import Replica, doubts, lines, replica_of
@@ -232,8 +231,9 @@ class Contact:
         """Of the last step of a case with [damage], by side: share and rows of each patch, as
         railpatch.damage.distribution.Distribution takes them. Empty without contact.
 
-        A row has s, wheel, rail (m: lateral in the contact frame, y in the axes of both profiles),
-        height (m, across it) and wear (kg/m^2, mass by metre rolled and by width).
+        A row has s, wheel, rail (m: lateral in the contact frame, y in the axes of both profiles;
+        a patch given by itself has s alone), height (m, across it) and wear (kg/m^2, mass by metre
+        rolled and by width).
         Raises CaseError.
         """
         if self._asked is None or self._checked.damage is None:
@@ -329,6 +329,10 @@ class Contact:
     def stages(self) -> list[dict[str, Any]]:
         """name, present, reason, bytes (memory held) and seconds (0 without timing) per stage."""
         return self._core.describe()
+
+    def asked(self) -> list[dict[str, Any]]:
+        """As stages(), of [subsurface] and [damage]: seconds of all steps, bytes None."""
+        return (self._asked or Asked(self, self._checked)).described()
 
     def _data(self, raw: dict[str, Any], wall_time: float, fields: bool) -> dict[str, Any]:
         """The JSON result's content for the case's kind; raw: rp_result."""

@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 from railpatch import _core
 from railpatch.case.asked import refuse_asked
 from railpatch.case.load import Case, Scene, load_scene
-from railpatch.case.messages import show
 from railpatch.case.moving import moving_keys, refuse_unknown
 from railpatch.case.patch import PatchCase
 from railpatch.case.to_core import BODY_OF_TABLE, DEVIATION, config_of, field_of, input_of
 from railpatch.case.track import irregularity_of
-from railpatch.case.types import BODIES, SIDES
+from railpatch.case.types import BODIES, SIDES, show
 from railpatch.contact import CaseSource
 from railpatch.errors import CaseError, StateError
 from railpatch.pressure_error import run_doubts

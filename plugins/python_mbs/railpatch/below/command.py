@@ -44,10 +44,11 @@ FORMATS = (".html", ".csv", ".npz")
 )
 @click.option(
     "--patch",
-    type=click.IntRange(0),
-    default=0,
+    type=click.IntRange(1),
+    default=1,
     show_default=True,
-    help="Of several patches of a wheel, in the order of the result.",
+    help="Of several patches of a wheel, counted from 1 as in the table of `railpatch solve`; "
+    "alternatives after them.",
 )
 @click.option(
     "--dang-van",
@@ -80,7 +81,7 @@ def subsurface(
     check_output(output, case)
     if output is not None and output.suffix.lower() not in FORMATS:
         raise refusal(output, f"a name that ends in {', '.join(FORMATS)}")
-    from railpatch.below.greatest import greatest, rows_of, usual_depths
+    from railpatch.below.greatest import greatest, index_of, rows_of, usual_depths
     from railpatch.contact import Contact
     from railpatch.subsurface import Subsurface
 
@@ -94,10 +95,11 @@ def subsurface(
                 click.echo(f"status: {result.status}: {result.reason}", err=True)
             context.exit(EXIT_NOT_CONVERGED)
         try:
+            index = index_of(result, side, patch)
             below = Subsurface(
-                contact, depths or usual_depths(result, side, patch), dang_van=dang_van
+                contact, depths or usual_depths(result, side, index), dang_van=dang_van
             )
-            found = below.solve(side=side, patch=patch, body=body)
+            found = below.solve(side=side, patch=index, body=body)
         except LookupError as error:
             raise WrongCall(str(error)) from None
         table = greatest(found)

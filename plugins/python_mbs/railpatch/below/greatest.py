@@ -18,17 +18,27 @@ COLUMNS = {"depth": "m", "von_mises": "Pa", "von_mises_x": "m", "von_mises_y": "
            "dang_van": "Pa", "dang_van_y": "m"}  # fmt: skip
 
 
+def patches_of(result: Result, side: str) -> list[dict[str, Any]]:
+    """Of a wheel, alternatives last, or the one given by itself."""
+    found = result.data.get(side, result.data)
+    return [*found["patches"], *found["alternatives"]] if "patches" in found else [found]
+
+
+def index_of(result: Result, side: str, number: int) -> int:
+    """The place in the result of a patch counted from 1. Raises LookupError where there is none."""
+    count = len(patches_of(result, side))
+    if number > count:
+        there = f"1 to {count}" if count else "none: there is no contact"
+        raise LookupError(f"--patch: value is {number}, allowed {there} ({side})")
+    return number - 1
+
+
 def usual_depths(result: Result, side: str, patch: int) -> Vector:
     """m, [DEPTHS], by the size of the patch, closer near the surface, where stresses change most.
-    Raises LookupError where there is none."""
-    data = result.data
-    found = data.get(side, data)
-    patches = found.get("patches", [found])
-    if patch >= len(patches):
-        raise LookupError(f"side {side!r}, patch {patch}: no such patch in the last step")
-    at = patches[patch]
+    patch: its place in the result. Raises LookupError where it has no pressure."""
+    at = patches_of(result, side)[patch]
     if at.get("pressure") is None:
-        raise LookupError(f"patch {patch}: its theories give no pressure element by element")
+        raise LookupError(f"patch {patch + 1}: its theories give no pressure element by element")
     loaded = np.asarray(at["pressure"]) > 0
     x = np.broadcast_to(np.asarray(at["x"]), loaded.shape)[loaded]
     y = np.broadcast_to(np.asarray(at["y"])[:, None], loaded.shape)[loaded]

@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 
 from railpatch.case.theories import has_tractions
 from railpatch.case.types import (
+    LEFT_OUT,
     NotNegative,
     Number,
     Positive,
@@ -18,6 +19,7 @@ from railpatch.case.types import (
     exactly,
     refuse,
     relation,
+    show,
 )
 from railpatch.errors import CaseError
 
@@ -29,6 +31,11 @@ Steps = Annotated[
 ]
 Life = Annotated[list[Annotated[list[Number], exactly(2)]], Field(min_length=2, max_length=32)]
 ASSUMED = "assumed"
+# keys that one law of wear reads
+OF_LAW = {
+    "usfd": ("usfd_rate", "usfd_plateau", "usfd_slope", "usfd_limits"),
+    "archard": ("hardness", "archard_map", "seizure_pressure", "seizure_coefficient"),
+}
 
 
 class Subsurface(Table):
@@ -123,14 +130,20 @@ class Damage(Table):
         return self
 
     def _orders(self) -> Problems:
+        for law, names in OF_LAW.items():
+            for name in names if law != self.wear else ():
+                value = getattr(self, name)
+                if value != type(self).model_fields[name].default:
+                    allowed = f"{LEFT_OUT} with wear = {self.wear!r}"
+                    yield relation(name, show(value), allowed)
         if not self.usfd_limits[0] <= self.usfd_limits[1]:
             yield relation("usfd_limits", str(self.usfd_limits), "the lower limit first")
         for name, at in (("archard_map", "slip speeds"), ("whole_life", "wear numbers")):
             points = getattr(self, name)
             if not all(a[0] < b[0] for a, b in pairwise(points)):
-                yield relation(name, str(points), f"{at} that increase")
+                yield relation(name, show(points), f"{at} that increase")
         if self.archard_map[0][0] != 0:
-            yield relation("archard_map", str(self.archard_map), "a first slip speed of 0")
+            yield relation("archard_map", show(self.archard_map), "a first slip speed of 0")
 
 
 def check_asked(case: Any, line: bool) -> Problems:

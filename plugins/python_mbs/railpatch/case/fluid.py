@@ -21,6 +21,7 @@ from railpatch.case.types import (
     one_of,
     refuse,
     relation,
+    show,
     within,
 )
 
@@ -40,6 +41,8 @@ ViscosityTable = Annotated[list[Pair], Field(min_length=2, max_length=MOST_POINT
 PRESSURE_COEFFICIENT = {None: 0.5e-9, "water": 0.5e-9, "oil": 20e-9}
 CONDUCTIVITY = {"water": 0.6, "oil": 0.14}
 EYRING_STRESS = {"oil": 5e6}
+# degrees C, of water before the contact; the core's check has the same
+LIQUID_WATER = (0.0, 100.0)
 # keys of a step and the key of the table that each moves
 MOVED = {
     "water_rate": "water_rate",
@@ -142,8 +145,8 @@ class Fluid(Table):
     temperature: Annotated[float, within("fluid_temperature")] | None = Field(
         default=None,
         description="degrees C, of the liquid before the contact, where its viscosity depends on "
-        "it; left out: the mean of [temperature]'s wheel and rail, without that table 20. Moves as "
-        "water_temperature",
+        "it, of water 0 to 100; left out: the mean of [temperature]'s wheel and rail, without that "
+        "table 20. Moves as water_temperature",
     )
     water_rate: Annotated[float, within("fluid_water_rate")] | None = Field(
         default=None,
@@ -152,8 +155,8 @@ class Fluid(Table):
     )
     oil_film: Annotated[float, within("fluid_oil_film")] | None = Field(
         default=None,
-        description="m, layer of liquid on the surfaces before the contact: the film is starved; "
-        "left out: flooded. Moves",
+        description="m, layer of liquid on the surfaces before the contact, in place of "
+        "water_rate: the film is starved; left out: flooded. Moves",
     )
     starvation: float = key(of="fluid_starvation")
     inlet_heating: bool = Field(
@@ -167,8 +170,8 @@ class Fluid(Table):
     )
     eyring_stress: Annotated[float, within("fluid_eyring_stress")] | None = Field(
         default=None,
-        description="Pa, of the liquid's own friction; 0: none; left out: 0, with oil 5e6 "
-        "(assumed)",
+        description="Pa, of the liquid's own friction; 0: none, as of water; left out: 0, with "
+        "oil 5e6 (assumed)",
     )
     limiting_friction: float = key("; with eyring_stress", of="fluid_limiting_friction")
     knots: Knots | None = Field(
@@ -205,7 +208,7 @@ class Fluid(Table):
         for name in UNREAD.get(self.model, ()):
             if self._changed(name):
                 shown = getattr(self, name)
-                yield relation(name, repr(shown), f"{LEFT_OUT} with model = {self.model!r}")
+                yield relation(name, show(shown), f"{LEFT_OUT} with model = {self.model!r}")
         for name in ("hardness", "mean_pressure"):
             read = self.share == "load_sharing" or (
                 name == "hardness" and self.model in {"strip", "ehl"}
@@ -216,6 +219,12 @@ class Fluid(Table):
             yield relation(
                 "liquid_conductivity", self.liquid_conductivity, "only with inlet_heating = true"
             )
+        if self.liquid == "water" and self.eyring_stress:
+            allowed = "0 with liquid = 'water', whose own friction is 0"
+            yield relation("eyring_stress", self.eyring_stress, allowed)
+        if self.model != "regimes" and None not in (self.water_rate, self.oil_film):
+            allowed = f"{LEFT_OUT} with water_rate: one of them says what arrives"
+            yield relation("oil_film", self.oil_film, allowed)
         if self._changed("limiting_friction") and not self.core["eyring_stress"] > 0:
             yield relation("limiting_friction", self.limiting_friction, "only with eyring_stress")
 
@@ -223,18 +232,18 @@ class Fluid(Table):
         if self.water_rate is None:
             yield relation("water_rate", "missing", "a number in m^3/s with model = 'regimes'")
         if self.recovery is None and self._changed("rail_work"):
-            yield relation("rail_work", str(self.rail_work), "only with recovery")
+            yield relation("rail_work", show(self.rail_work), "only with recovery")
         if self.knots is None:
             return
         columns = dict(zip(OF_KNOT, zip(*self.knots, strict=True), strict=True))
         if any(b <= a for a, b in itertools.pairwise(columns["rate"])):
-            yield relation("knots", str(self.knots), "water rates that increase")
+            yield relation("knots", show(self.knots), "water rates that increase")
         for name, values in columns.items():
             field = listed(f"fluid_knot_{name}")
             low, high, open_low = field["low"], field["high"], field["bounds"][0] == "("
             if not all(low <= v <= high and not (open_low and v == low) for v in values):
                 allowed = f"{name} within {field['bounds'][0]}{low:g}, {high:g}]"
-                yield relation("knots", str(self.knots), allowed)
+                yield relation("knots", show(self.knots), allowed)
 
     def _viscosity(self) -> Problems:
         by_temperature = self.liquid is not None or self.viscosity_table is not None
@@ -246,6 +255,11 @@ class Fluid(Table):
             yield relation("viscosity", "missing", "a number, liquid = 'water' or viscosity_table")
         if self.liquid is not None and self.viscosity_table is not None:
             yield relation("liquid", repr(self.liquid), f"{LEFT_OUT} with viscosity_table")
+        if self.liquid == "water" and self.temperature is not None:
+            low, high = LIQUID_WATER
+            if not low <= self.temperature <= high:
+                allowed = f"{low:g} to {high:g} with liquid = 'water'"
+                yield relation("temperature", self.temperature, allowed)
         for name in ("reference_temperature", "roelands_slope"):
             if self.liquid != "oil" and self._changed(name):
                 yield relation(name, getattr(self, name), "only with liquid = 'oil'")
@@ -260,11 +274,11 @@ class Fluid(Table):
             return
         places = [place for place, _ in self.viscosity_table]
         if any(b <= a for a, b in itertools.pairwise(places)):
-            shown = str(self.viscosity_table)
+            shown = show(self.viscosity_table)
             yield relation("viscosity_table", shown, "pairs with increasing temperatures")
         low, high = (listed("fluid_viscosity")[end] for end in ("low", "high"))
         if not all(low <= value <= high for _, value in self.viscosity_table):
-            shown = str(self.viscosity_table)
+            shown = show(self.viscosity_table)
             yield relation("viscosity_table", shown, f"viscosities within {low:g} ... {high:g}")
         if self.inlet_heating and self.liquid_conductivity is None:
             yield relation(
@@ -309,7 +323,12 @@ class Fluid(Table):
         if self.model == "regimes":
             return ("water_rate", *(("rail_work",) if self.recovery is not None else ()))
         known = self.liquid is not None or self.viscosity_table is not None
-        unread = UNREAD.get(self.model, ())
+        unread = {*UNREAD.get(self.model, ())}
+        # of both ways to say what arrives the one that the case has
+        if self.water_rate is not None:
+            unread.add("oil_film")
+        elif self.oil_film is not None:
+            unread.add("water_rate")
         return tuple(
             name
             for name, key in MOVED.items()

@@ -12,8 +12,9 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BaseModel, Field, TypeAdapter, ValidationError
 
-from railpatch.case.messages import problems, show
+from railpatch.case.messages import problems
 from railpatch.case.patch import PatchCase
+from railpatch.case.types import show
 from railpatch.case.wheel import WheelRailCase, WheelsetCase
 from railpatch.errors import CaseError
 

@@ -7,6 +7,8 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
+from railpatch.case.types import show
+
 ALLOWED = {
     "greater_than": "> {gt}",
     "greater_than_equal": ">= {ge}",
@@ -92,12 +94,6 @@ def spell(prefix: str, loc: list[Any]) -> str:
     for part in loc:
         key += f"[{part}]" if isinstance(part, int) else f".{part}" if key else str(part)
     return key
-
-
-def show(value: Any) -> str:
-    """The value, cut to a readable length."""
-    text = "a table" if isinstance(value, dict) else repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def table_at(model: type[BaseModel], loc: list[Any]) -> type[BaseModel] | None:

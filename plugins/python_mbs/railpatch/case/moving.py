@@ -8,9 +8,8 @@ from typing import Any
 from railpatch.case.fluid import MOVED
 from railpatch.case.friction import MOVED_FRICTION
 from railpatch.case.load import Case, check_table, plain
-from railpatch.case.messages import show
 from railpatch.case.patch import PatchCase
-from railpatch.case.types import SIDES
+from railpatch.case.types import SIDES, show
 from railpatch.case.wheel import Deviation, Rail, WheelDeviation
 from railpatch.errors import CaseError
 

@@ -20,12 +20,11 @@ from railpatch.case.friction import MOVED_FRICTION
 from railpatch.case.gap import read_gap
 from railpatch.case.load import Case, Scene, plain
 from railpatch.case.longitudinal import shape_config
-from railpatch.case.messages import show
 from railpatch.case.moving import BY_TABLE, moving_keys, refuse_unknown
 from railpatch.case.patch import SHAPES, STEPWISE, PatchCase
 from railpatch.case.resolve import choose, resolved
 from railpatch.case.scene_profiles import Placed, Shelf, scene_profiles
-from railpatch.case.types import BODIES, MOST_POINTS, SIDES, Table, listed
+from railpatch.case.types import BODIES, MOST_POINTS, SIDES, Table, listed, show
 from railpatch.case.wheel import Deviation, WheelRailCase, WheelsetCase
 from railpatch.errors import CaseError
 from railpatch.profiles import Profile

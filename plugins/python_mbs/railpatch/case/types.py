@@ -204,8 +204,17 @@ def twice(value: Any) -> Any:
 
 # what a check of several relations gives: one for each that is broken
 Problems = Iterator[PydanticCustomError]
+LONGEST = 60  # characters of a value in a message
 # of a key that nothing would read
 LEFT_OUT = "none: it must be left out"
+
+
+def show(value: Any) -> str:
+    """A value of a case as its file has it, cut to a readable length."""
+    if isinstance(value, dict | BaseModel):
+        return "a table"
+    text = repr(value)
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
 
 
 def relation(key: str, value: Any, allowed: str) -> PydanticCustomError:

@@ -361,7 +361,9 @@ class _WheelCase(Table):
                 self.fluid, self.friction, self.method.accuracy, self.method.tangential
             )
             if self.fluid is not None and self.fluid.model == "ehl":
-                yield relation("fluid.model", "'ehl'", "another model but with kind = 'patch'")
+                others = "'film', 'strip' or 'regimes'"
+                allowed = f"{others} with kind = {self.kind!r}: 'ehl' is of kind = 'patch'"
+                yield relation("fluid.model", "'ehl'", allowed)
             yield from check_physics(
                 self.friction, self.layer, self.temperature, self.grid, self.method
             )

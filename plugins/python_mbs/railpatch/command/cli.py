@@ -133,7 +133,7 @@ def explain(context: click.Context, case: Path, quiet: bool) -> None:
         choice = choose(contact.case)
         if choice is not None and contact.case.method.accuracy is not None:
             click.echo(choice.spell(contact.case.method.accuracy))
-        print_stages(contact.stages(), result)
+        print_stages([*contact.stages(), *contact.asked()], result)
     if not result.good:
         context.exit(EXIT_NOT_CONVERGED)
 

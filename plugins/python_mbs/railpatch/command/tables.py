@@ -129,12 +129,13 @@ def print_stages(
         # what is part of another stage has no time of its own
         timed = stage["seconds"] > 0
         share = f"{100 * stage['seconds'] / total:.1f} %" if timed else "-"
-        used = (memory(stage["bytes"]), share) if stage["present"] else ("", "")
+        held = "" if stage["bytes"] is None else memory(stage["bytes"])
+        used = (held, share) if stage["present"] else ("", "")
         needed = "yes" if stage["present"] else "no"
         table.add_row(stage["name"], needed, *used, stage["reason"])
     console.print(table)
     console.print(
-        f"{memory(sum(stage['bytes'] for stage in stages))}, "
+        f"{memory(sum(stage['bytes'] or 0 for stage in stages))}, "
         f"{1e3 * result['wall_time']:.3g} ms from a cold start, {result.status}"
     )
 

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from railpatch.errors import CaseError
+
 Array = NDArray[np.float64]
 LOW, HIGH, BINS = -0.2, 0.2, 1600  # m, of a profile's y
 
@@ -27,10 +29,13 @@ class Distribution:
         self.way = 0.0
 
     def add(self, rows: dict[str, Array], way: float, share: float = 1.0) -> None:
-        """Rows of a patch (railpatch.damage.patch) over a way (m), with its share in the wheel."""
+        """Rows of a patch (railpatch.damage.patch) over a way (m), with its share in the wheel.
+        Raises CaseError for those of a patch given by itself."""
         for body in ("wheel", "rail"):
+            if body not in rows:
+                raise CaseError(["rows: of a patch without profiles, allowed those of a wheel"])
             place = rows[body]
-            if not np.isfinite(place).all() or not place.size:
+            if not place.size:
                 continue
             order = np.argsort(place)
             place, mass = place[order], (rows["wear"] * rows["height"])[order] * way * share
@@ -54,12 +59,13 @@ class Distribution:
         return float(mass.sum() * (self.edges[1] - self.edges[0])) + self.outside[body]
 
 
-def summed(numbers: list[tuple[float, dict[str, Any]]]) -> dict[str, float]:
-    """Of a wheel's patches by share: sums of rates, the greatest of indices."""
-    found: dict[str, float] = {}
+def summed(numbers: list[tuple[float, dict[str, Any]]]) -> dict[str, float | None]:
+    """Of a wheel's patches by share: sums of rates, the greatest of indices, None where none is
+    known."""
+    found: dict[str, float | None] = {}
     for name in ("wear_rate", "whole_life_damage"):
         found[name] = math.fsum(share * values[name] for share, values in numbers)
     for name in ("wheel_depth_rate", "rail_depth", "fatigue_index", "stress_index"):
-        known = [values[name] for _, values in numbers if not math.isnan(values[name])]
-        found[name] = max(known, default=math.nan)
+        known = [values[name] for _, values in numbers if values[name] is not None]
+        found[name] = max(known, default=None)
     return found

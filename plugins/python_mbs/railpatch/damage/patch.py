@@ -50,12 +50,14 @@ def damage_of(
 
     patch: a result with fields where the law asks for elements. radius: m, on which the wheel
     rolls, NaN: unknown, and no depth of the wheel. direction: of rolling. speed: m/s, of rolling.
-    Rows: wheel, rail: m, y in the axes of each profile (NaN of a patch given by itself); height:
-    m, across each row; wear: kg/m^2, mass by metre rolled and by width of the row.
+    Rows: s: m, lateral in the contact frame; wheel, rail: m, y in the axes of each profile, which a
+    patch given by itself has not; height: m, across each row; wear: kg/m^2, mass by metre rolled
+    and by width of the row.
 
     wear_rate: kg/m, mass that each body loses by metre rolled. wheel_depth_rate: -, greatest depth
     by metre rolled, round the wheel. rail_depth: m, greatest depth of one passage. work_scale: -,
-    by which the elements' work was multiplied so that its sum is friction_power over the speed.
+    by which the elements' work was multiplied so that its sum is friction_power over the speed;
+    None by the patch, and without work. stress_index: Pa; None of theories without tractions.
     """
     elements = law.basis == "elements"
     rows = _rows_of_elements if elements else _rows_of_patch
@@ -64,7 +66,7 @@ def damage_of(
     greatest = float(depth.max()) if depth.size else 0.0
     numbers = {
         "wear_rate": float((table["wear"] * table["height"]).sum()),
-        "wheel_depth_rate": greatest / (math.tau * radius) if radius > 0 else math.nan,
+        "wheel_depth_rate": greatest / (math.tau * radius) if radius > 0 else None,
         "rail_depth": greatest,
         "fatigue_index": fatigue_index(patch["traction_coefficient"], patch["max_pressure"], law),
         "whole_life_damage": whole_life(patch["wear_number"], law),
@@ -73,8 +75,8 @@ def damage_of(
     # the profiles' y axes go from the flange outward: on the left against the contact frame's s
     across = (-1 if left else 1) * math.cos(patch.get("contact_angle", 0.0))
     for body in ("wheel", "rail"):
-        at = patch.get(f"{body}_profile_position", (math.nan, math.nan))[0]
-        table[body] = at + across * table["s"]
+        if (at := patch.get(f"{body}_profile_position")) is not None and math.isfinite(at[0]):
+            table[body] = at[0] + across * table["s"]
     return numbers, table
 
 
@@ -99,7 +101,7 @@ def _rows_of_elements(
     size = np.hypot(*np.asarray(patch["traction"]))
     found = {
         "stress_index": float((size - law.shear_yield).max()),
-        "work_scale": float(scale),
+        "work_scale": float(scale) if math.isfinite(scale) else None,
         "fields": {"work": work, "wear": wear, "stress_index": size - law.shear_yield},
     }
     table = {"s": y, "height": np.full(len(y), dy), "wear": wear.sum(axis=1) * dx}
@@ -112,13 +114,14 @@ def _rows_of_patch(
     """The patch's mean over its width as half an ellipse, by the work or pressure of all of it."""
     del direction
     area, width = patch["contact_area"], patch["contact_size"][1]
+    greatest = patch["max_traction"]
+    known = greatest is not None and math.isfinite(greatest)
+    found = {"stress_index": greatest - law.shear_yield if known else None, "work_scale": None}
     s = (np.arange(ROWS) + 0.5) / ROWS - 0.5
     chord = np.sqrt(1.0 - (2 * s) ** 2)
     if not area > 0:
         zeros = np.zeros(ROWS)
-        return {"stress_index": math.nan, "work_scale": math.nan}, {
-            "s": zeros, "height": zeros, "wear": zeros,
-        }  # fmt: skip
+        return found, {"s": zeros, "height": zeros, "wear": zeros}
     creepage = math.hypot(*patch["creepage"])
     if law.wear == "usfd":
         wear = float(usfd(patch["wear_number"] / area, law))
@@ -129,4 +132,4 @@ def _rows_of_patch(
     height = np.full(ROWS, width / ROWS)
     shape = chord / (chord * height).sum()
     table = {"s": s * width, "height": height, "wear": wear * area * shape}
-    return {"stress_index": math.nan, "work_scale": math.nan}, table
+    return found, table

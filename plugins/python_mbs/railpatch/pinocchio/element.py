@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 from railpatch import _core
 from railpatch.case.fluid import changes_with_time
 from railpatch.case.load import Scene
-from railpatch.case.messages import show
 from railpatch.case.to_core import POSE_AND_VELOCITY, input_of
-from railpatch.case.types import SIDES
+from railpatch.case.types import SIDES, show
 from railpatch.case.wheel import WheelsetCase
 from railpatch.contact import CaseSource, Contact
 from railpatch.errors import CaseError

@@ -19,8 +19,7 @@ from scipy.stats import qmc
 from railpatch._core import version
 from railpatch.case.kinds import kind_of
 from railpatch.case.load import KINDS, OTHERS, check_table, plain, read_toml
-from railpatch.case.messages import show
-from railpatch.case.types import Number, Table, relation
+from railpatch.case.types import Number, Table, relation, show
 from railpatch.command.output import is_file
 from railpatch.errors import CaseError
 
