@@ -15,7 +15,7 @@ from typing import Any
 
 from railpatch import _core
 from railpatch.case.creep_table import default_table, table_from
-from railpatch.case.fluid import MOVED, OF_KNOT
+from railpatch.case.fluid import LIQUID_WATER, MOVED, OF_KNOT
 from railpatch.case.friction import MOVED_FRICTION
 from railpatch.case.gap import read_gap
 from railpatch.case.load import Case, Scene, plain
@@ -288,11 +288,17 @@ def plain_moves(case: Case) -> dict[str, tuple[int, int, str, float, float]]:
         names = tuple(keys)
     members = _core.LAYOUTS["input"]["members"]
     moves = {}
+    # of two ways to say how much liquid arrives one counts
+    several_supplies = {"water_rate", "oil_film"} <= keys.keys()
     for name in names:
+        if several_supplies and name in ("water_rate", "oil_film"):
+            continue
         field = _core.INPUT_FIELDS.get(name)
         if name not in keys or field is None or len(field["shape"]) > 1:
             continue
         bounds = (field["bounds"], field["low"], field["high"])
+        if name == "water_temperature" and case.fluid is not None and case.fluid.liquid == "water":
+            bounds = ("[]", *LIQUID_WATER)
         moves[name] = (members[name][0], *(field["shape"] or (0,)), *bounds)
     return moves
 
