@@ -56,7 +56,8 @@ def names(variables: list[Any]) -> dict[str, int]:
     """The value references of what no side has, of a vector the first."""
     found: dict[str, int] = {}
     for variable in variables:
-        if variable.side is None:
+        # a file of each side by the left one's
+        if variable.side is None or (variable.base == "String" and variable.side == 0):
             found.setdefault(variable.name.split("[")[0].replace(".", "_"), variable.reference)
     return found
 

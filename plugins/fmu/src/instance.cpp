@@ -103,7 +103,8 @@ std::unique_ptr<Instance> Instance::create(const Making &making, Interface inter
   instance->variables_ = std::move(scene.variables);
   instance->constants_ = std::move(scene.constants);
   const std::vector<SceneArray> arrays = std::move(scene.variable_arrays);
-  if (!scene.choices[0].empty() || !scene.choices[1].empty()) instance->scene_ = std::move(content);
+  if (!scene.choices[0].empty() || !scene.choices[1].empty() || scene.options.profile_files != 0)
+    instance->scene_ = std::move(content);
   if (!instance->index_variables() || !instance->index_arrays(arrays)) {
     instance->log_.error(call + "the variables of scene.txt do not belong together");
     return nullptr;
@@ -137,6 +138,7 @@ void Instance::start_values() {
   std::copy_n(bulk_, 2, input_.bulk_temperature);
   std::copy_n(options_.friction_scale, 2, input_.friction_scale);
   values_.clear();
+  take_files({});
   for (const SceneVariable &item : variables_) values_.push_back(item.start);
   at_.assign(known_, 0);
   solved_.assign(known_, 0);
@@ -410,7 +412,8 @@ bool Instance::in_range(const Call &call, int index, double value) {
     return false;
   }
   // a profile must be one of those that are there
-  const double high = variable.fixed ? profile_count(variable) : variable.high;
+  const bool choice = variable.fixed && variable.type == Type::enumeration;
+  const double high = choice ? profile_count(variable) : variable.high;
   if (value >= variable.low && value <= high) return true;
   refuse(call, item.name + " is " + text_of(value) + ", allowed " + text_of(variable.low) +
                    " ... " + text_of(high));

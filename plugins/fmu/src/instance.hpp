@@ -11,6 +11,7 @@
 #include "calls.hpp"
 #include "log.hpp"
 #include "outputs.hpp"
+#include "profile_file.hpp"
 #include "railpatch.h"
 #include "scene.hpp"
 #include "snapshot.hpp"
@@ -86,7 +87,8 @@ class Instance {
     void operator()(rp_contact *contact) const { rp_destroy(contact); }
   };
   using Contact = std::unique_ptr<rp_contact, Destroy>;
-  using Profiles = std::array<size_t, 2>;  // numbers of the wheel's and the rail's, from 1
+  // numbers of the wheel's and the rail's, from 1, and those of the files by ProfileFiles, 0: none
+  using Profiles = std::array<double, 6>;
   explicit Instance(Log log) : log_(std::move(log)) {}
 
   // The contact's last solution: none that belongs to the outputs, one that a restored state was
@@ -144,7 +146,13 @@ class Instance {
   double profile_count(const Variable &variable) const;
   // Numbers of the profiles among values of all inputs and parameters.
   Profiles profiles_of(const std::vector<double> &values) const;
-  Status make_contact(const Call &call, const Profiles &profiles, Contact &made);
+  Status make_contact(const Call &call, const Profiles &profiles, const ProfileFiles &files,
+                      Contact &made);
+  // place in ProfileFiles of a variable that names a file
+  static size_t place_of_file(const Variable &variable);
+  Status load_profile(const Call &call, const SceneVariable &item, const char *path,
+                      ProfileFile &file);
+  void take_files(const ProfileFiles &files);
   // Makes the contact anew where other profiles were chosen.
   Status take_profiles(const Call &call);
   std::vector<double> saved_numbers() const;
@@ -168,9 +176,10 @@ class Instance {
                      std::numeric_limits<double>::quiet_NaN()};
   size_t known_ = 0;  // number of inputs and parameters, which come first
   std::vector<std::pair<size_t, size_t>> means_;  // mean over a step, and what it is the mean of
-  std::string table_;             // of creep forces, which the contact uses in place
-  std::unique_ptr<Scene> scene_;  // kept where profiles can be chosen, else null
-  Profiles made_ = {1, 1};        // those of the contact
+  std::string table_;                   // of creep forces, which the contact uses in place
+  std::unique_ptr<Scene> scene_;        // kept where profiles can be chosen, else null
+  Profiles made_ = {1, 1, 0, 0, 0, 0};  // those of the contact
+  ProfileFiles files_;                  // those that were set
   Contact contact_;
   rp_input input_ = {};     // of the last solve
   Outputs outputs_ = {};    // of the last solve

@@ -43,6 +43,8 @@ Status Instance::get_state(const Call &call, StateHandle *state) {
     const rp_error error = rp_save_state(contact_.get(), core.data(), core.size());
     if (error != RP_OK) return refuse(call, rp_error_text(error));
   }
+  std::vector<unsigned char> files;
+  if (options_.profile_files != 0) files = bytes_of(files_);
   SnapshotHeader header = {};
   header.content = content_;
   header.time = time_;
@@ -54,7 +56,8 @@ Status Instance::get_state(const Call &call, StateHandle *state) {
   header.interface = static_cast<uint16_t>(interface_);
   header.solved = solution_ != Solution::none ? 1 : 0;
   header.largest_known = largest_known_ ? 1 : 0;
-  return give_handle(call, std::make_unique<Snapshot>(pack(header, saved_numbers(), core)), state);
+  return give_handle(call, std::make_unique<Snapshot>(pack(header, saved_numbers(), core, files)),
+                     state);
 }
 
 Status Instance::set_state(const Call &call, StateHandle state) {
@@ -73,10 +76,16 @@ Status Instance::set_state(const Call &call, StateHandle state) {
     std::memcpy(numbers.data(), values_of(bytes), numbers.size() * sizeof(double));
   for (size_t i = 0; i < known_; ++i)
     if (!in_range(call, static_cast<int>(i), numbers[i])) return Status::error;
+  ProfileFiles files;
+  if (header.files > 0 && !files_of(files_of(bytes), header.files, files))
+    return refuse(call, "the profiles in the state cannot be read");
   const Profiles profiles = profiles_of(numbers);
+  for (size_t i = 0; i < files.size(); ++i)
+    if (profiles[2 + i] != files[i].number)
+      return refuse(call, "the profiles in the state are not those that it names");
   Contact other;
   if (profiles != made_) {
-    const Status status = make_contact(call, profiles, other);
+    const Status status = make_contact(call, profiles, files, other);
     if (status != Status::ok) return status;
   }
   rp_contact *contact = other != nullptr ? other.get() : contact_.get();
@@ -84,6 +93,7 @@ Status Instance::set_state(const Call &call, StateHandle state) {
   if (error != RP_OK) return refuse(call, rp_error_text(error));
   if (other != nullptr) contact_ = std::move(other);
   made_ = profiles;
+  take_files(files);
   const double *from = numbers.data();
   for (auto *to : {&values_, &solved_, &rates_, &input_derivatives_}) {
     std::copy_n(from, to->size(), to->begin());

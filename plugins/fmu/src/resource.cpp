@@ -140,6 +140,17 @@ std::vector<std::string> resource_folders(const std::string &location) {
   return paths;
 }
 
+bool read_path(const std::string &path, std::string &content, std::string &tried) {
+  std::vector<std::string> paths{path};
+  if (has_scheme(path)) paths = resource_folders(path);
+  tried.clear();
+  for (const std::string &one : paths) {
+    if (read_file(one, content)) return true;
+    tried += (tried.empty() ? "" : ", ") + one;
+  }
+  return false;
+}
+
 bool read_resource(const std::string &location, const char *name, std::string &content,
                    std::string &tried) {
   tried.clear();

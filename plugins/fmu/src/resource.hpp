@@ -15,4 +15,7 @@ std::vector<std::string> resource_folders(const std::string &location);
 bool read_resource(const std::string &location, const char *name, std::string &content,
                    std::string &tried);
 
+// A file by its path, as the operating system has it or as a URI "file:...". The same otherwise.
+bool read_path(const std::string &path, std::string &content, std::string &tried);
+
 }  // namespace railpatch::fmu

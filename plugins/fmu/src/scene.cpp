@@ -1,16 +1,12 @@
 #include "scene.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <cstdio>
-#include <limits>
 #include <string_view>
 #include <type_traits>
 
-#include "checksum.hpp"
 #include "log.hpp"
 #include "railpatch_fields.h"
+#include "words.hpp"
 
 namespace railpatch::fmu {
 
@@ -20,47 +16,6 @@ constexpr std::string_view kHead = "railpatch-fmu-scene";
 constexpr int kVersion = 1;
 // no variable of the table has such references
 constexpr uint32_t kFirstConstant = 4001, kLastConstant = 9999;
-constexpr std::string_view kArrays[] = {"arc_length", "y", "z", "dy", "dz"};
-
-// The words of one line.
-class Words {
- public:
-  explicit Words(std::string_view line) : rest_(line) {}
-
-  std::string_view next() {
-    const size_t start = rest_.find_first_not_of(' ');
-    if (start == std::string_view::npos) return rest_ = {};
-    rest_.remove_prefix(start);
-    const std::string_view word = rest_.substr(0, rest_.find(' '));
-    rest_.remove_prefix(word.size());
-    return word;
-  }
-
-  // A whole number, as doubles hold it: see text_of_whole.
-  template <class T>
-  bool number(T &value) {
-    double read = 0;
-    constexpr auto low = static_cast<double>(std::numeric_limits<T>::min());
-    const double high = std::min(static_cast<double>(std::numeric_limits<T>::max()), 0x1p53);
-    if (!number(read) || read != std::floor(read) || read < low || read > high) return false;
-    value = static_cast<T>(read);
-    return true;
-  }
-
-  bool number(double &value) {
-    const std::string_view word = next();
-    const char *end = word.data() + word.size();
-    if (word.empty()) return false;
-    const auto read = std::from_chars(word.data(), end, value);
-    return read.ec == std::errc() && read.ptr == end && std::isfinite(value);
-  }
-
-  bool done() { return rest_.find_first_not_of(' ') == std::string_view::npos; }
-  size_t left() const { return rest_.size(); }
-
- private:
-  std::string_view rest_;
-};
 
 template <class T>
 bool read_field(Words &words, T &field) {
@@ -89,16 +44,6 @@ bool read_set(Words &words, Scene &scene) {
   return false;
 }
 
-bool read_values(Words &words, std::vector<double> &values) {
-  size_t count = 0;
-  // a value takes two characters at least
-  if (!words.number(count) || count > words.left()) return false;
-  values.resize(count);
-  for (double &value : values)
-    if (!words.number(value)) return false;
-  return true;
-}
-
 bool read_profile(Words &words, Scene &scene) {
   const std::string_view body = words.next();
   int side = -1;
@@ -106,7 +51,7 @@ bool read_profile(Words &words, Scene &scene) {
     return false;
   const std::string_view name = words.next();
   for (size_t i = 0; i < 5; ++i)
-    if (name == kArrays[i]) return read_values(words, scene.arrays[body == "rail"][side][i]);
+    if (name == profile_arrays[i]) return read_values(words, scene.arrays[body == "rail"][side][i]);
   return false;
 }
 
@@ -121,7 +66,7 @@ bool read_section(Words &words, Scene &scene) {
   const std::string_view name = words.next();
   if (name == "position") return read_values(words, sections[index].position);
   for (size_t i = 0; i < 5; ++i)
-    if (name == kArrays[i]) return read_values(words, sections[index].arrays[i]);
+    if (name == profile_arrays[i]) return read_values(words, sections[index].arrays[i]);
   return false;
 }
 
@@ -134,7 +79,7 @@ bool read_choice(Words &words, Scene &scene) {
   if (number - 2 == choices.size()) choices.emplace_back();
   const std::string_view name = words.next();
   for (size_t i = 0; i < 5; ++i)
-    if (name == kArrays[i]) return read_values(words, choices[number - 2].arrays[i]);
+    if (name == profile_arrays[i]) return read_values(words, choices[number - 2].arrays[i]);
   return false;
 }
 
@@ -149,6 +94,7 @@ bool read_option(Words &words, Scene &scene) {
   if (name == "history") return words.number(o.history);
   if (name == "averaged") return words.number(o.averaged);
   if (name == "friction_input") return words.number(o.friction_input);
+  if (name == "profile_files") return words.number(o.profile_files);
   if (name == "friction_sides") return words.number(o.friction_sides);
   if (name == "friction_left") return words.number(o.friction_scale[0]);
   if (name == "friction_right") return words.number(o.friction_scale[1]);
@@ -165,27 +111,6 @@ bool read_variable(Words &words, Scene &scene) {
   if (item.name.empty() || item.variable == nullptr || !words.number(item.start)) return false;
   scene.variables.push_back(std::move(item));
   return true;
-}
-
-int hex_of(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
-}
-
-// False where a code is cut off. %00 stands for nothing.
-bool read_text(std::string_view word, std::string &text) {
-  for (size_t i = 0; i < word.size(); ++i) {
-    if (word[i] != '%') {
-      text += word[i];
-      continue;
-    }
-    const int high = i + 2 < word.size() ? hex_of(word[i + 1]) : -1;
-    const int low = high >= 0 ? hex_of(word[i + 2]) : -1;
-    if (low < 0) return false;
-    if (high + low > 0) text += static_cast<char>(16 * high + low);
-    i += 2;
-  }
-  return !word.empty();
 }
 
 bool read_constant(Words &words, Scene &scene) {
@@ -312,14 +237,6 @@ bool connect(Scene &scene) {
   const auto *shape = config.distance_shape;
   return shape[0] > 0 && shape[1] > 0 &&
          scene.distance.size() == static_cast<size_t>(shape[0]) * static_cast<size_t>(shape[1]);
-}
-
-bool check_end(std::string_view text, size_t begin, std::string_view line) {
-  Words words(line.substr(3));
-  const std::string_view word = words.next();
-  char found[16];
-  std::snprintf(found, sizeof found, "%08x", static_cast<unsigned>(crc32(text.data(), begin)));
-  return word == found;
 }
 
 bool check_head(std::string_view line) {

@@ -53,6 +53,7 @@ struct Options {
   int32_t friction_input = 0;         // 1: the coefficient of friction is an input
   int32_t friction_sides = 0;         // 1: that of each wheel is one, by rp_input.friction_scale
   double friction_scale[2] = {1, 1};  // of the law on each wheel, where it is no input
+  int32_t profile_files = 0;          // 1: profiles may be read at run time
   double time_step = 0;               // s, of the solve at the start, where there is no step yet
   double distance = 0;  // m, of that solve: distance rolled of a patch in transient rolling
 };

@@ -10,7 +10,7 @@ namespace railpatch::fmu {
 namespace {
 
 constexpr char kMark[8] = {'R', 'P', 'F', 'M', 'U', 'S', 'T', '\n'};
-constexpr uint32_t kVersion = 2;
+constexpr uint32_t kVersion = 3;
 constexpr size_t kChecked = offsetof(SnapshotHeader, content);
 constexpr size_t kHeader = sizeof(SnapshotHeader);
 
@@ -19,21 +19,23 @@ bool known_mode(uint32_t mode) { return mode != 0 && mode <= 128 && (mode & (mod
 
 }  // namespace
 
-static_assert(kHeader == 88, "no padding: every byte of a snapshot is defined");
+static_assert(kHeader == 96, "no padding: every byte of a snapshot is defined");
 
 Snapshot pack(SnapshotHeader header, const std::vector<double> &values,
-              const std::vector<unsigned char> &core) {
+              const std::vector<unsigned char> &core, const std::vector<unsigned char> &files) {
   const size_t bytes = values.size() * sizeof(double);
-  Snapshot snapshot(kHeader + bytes + core.size());
+  Snapshot snapshot(kHeader + bytes + core.size() + files.size());
   std::memcpy(header.mark, kMark, sizeof kMark);
   header.version = kVersion;
   header.size = snapshot.size();
   header.values = values.size();
   header.core = core.size();
+  header.files = files.size();
   unsigned char *at = snapshot.data();
   std::memcpy(at, &header, kHeader);
   if (bytes > 0) std::memcpy(at + kHeader, values.data(), bytes);
   if (!core.empty()) std::memcpy(at + kHeader + bytes, core.data(), core.size());
+  if (!files.empty()) std::memcpy(at + kHeader + bytes + core.size(), files.data(), files.size());
   header.checksum = crc32(at + kChecked, snapshot.size() - kChecked);
   std::memcpy(at + offsetof(SnapshotHeader, checksum), &header.checksum, sizeof header.checksum);
   return snapshot;
@@ -48,8 +50,8 @@ const char *check(const unsigned char *bytes, size_t size, uint64_t content, siz
   if (header.checksum != crc32(bytes + kChecked, size - kChecked)) return "the state was altered";
   if (header.content != content) return "the state is of another FMU";
   const size_t rest = size - kHeader;
-  if (header.values != values || header.core > rest ||
-      rest - header.core != values * sizeof(double))
+  if (header.values != values || header.core > rest || header.files > rest - header.core ||
+      rest - header.core - header.files != values * sizeof(double))
     return "the state has another size";
   if (!known_mode(header.mode) || !std::isfinite(header.time)) return "the state was altered";
   return nullptr;
@@ -65,6 +67,10 @@ const unsigned char *values_of(const unsigned char *bytes) { return bytes + kHea
 
 const unsigned char *core_of(const unsigned char *bytes) {
   return bytes + kHeader + header_of(bytes).values * sizeof(double);
+}
+
+const unsigned char *files_of(const unsigned char *bytes) {
+  return core_of(bytes) + header_of(bytes).core;
 }
 
 }  // namespace railpatch::fmu

@@ -101,6 +101,12 @@ def scene_names() -> list[str]:
     help="The same of both rails or rollers: profiles.rail.",
 )
 @click.option(
+    "--profile-files",
+    is_flag=True,
+    help="Also take the profile of each wheel and rail from a file at run time: parameters "
+    "profiles.wheel_left_file, ...; `railpatch profile FILE -o NAME.profile` makes such files.",
+)
+@click.option(
     "--libraries",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
     metavar="FOLDER",
@@ -121,6 +127,7 @@ def fmu(
     patches: int | None,
     wheel_profiles: tuple[str, ...],
     rail_profiles: tuple[str, ...],
+    profile_files: bool,
     libraries: Path | None,
     quiet: bool,
 ) -> None:
@@ -153,6 +160,7 @@ def fmu(
         libraries=libraries,
         wheel_profiles=wheels,
         rail_profiles=rails,
+        profile_files=profile_files,
         fmi=int(fmi),
         inputs=listed(inputs),
         outputs=listed(outputs),

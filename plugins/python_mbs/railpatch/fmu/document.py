@@ -244,11 +244,13 @@ def variable_table(
         declared = table.types[v.type]
         shown = declared["display"][0] if "display" in declared else ""
         if known is None:
-            cell = f"{v.start:g}"
+            cell = f"{v.start:g}" if not isinstance(v.start, str) else v.start
         else:
             found = len(dependencies(v, known, kind))
             cell = "all" if found == len(known) else f"{v.level} ({found})"
         low, high = (f"{limit:g}" for limit in v.range)
+        if v.base == "String":
+            low = high = ""
         meaning = v.description
         if "items" in declared:
             numbered = enumerate(declared["items"], first_item(declared))

@@ -28,7 +28,7 @@ from railpatch.fmu.description3 import description3_xml
 from railpatch.fmu.document import index_html
 from railpatch.fmu.libraries import Libraries, libraries_of
 from railpatch.fmu.picture import model_png
-from railpatch.fmu.profiles import TYPES, Choices, check_starts, choices_of
+from railpatch.fmu.profiles import TYPES, Choices, check_starts, choices_of, file_conditions
 from railpatch.fmu.reference import csv_of, reference_csv, series
 from railpatch.fmu.scene import kind_of, scene_text, variables_of
 from railpatch.fmu.sources import build_description, with_source_files
@@ -58,6 +58,7 @@ class Options:
     largest_step: bool
     wheel_profiles: Sequence[str] = ()
     rail_profiles: Sequence[str] = ()
+    profile_files: bool = False
     version: Literal[2, 3] = 2  # of FMI
     inputs: Sequence[str] = ()
     outputs: Sequence[str] = ()
@@ -109,6 +110,7 @@ def pack_fmu(
     libraries: Path | None = None,
     wheel_profiles: Sequence[str] = (),
     rail_profiles: Sequence[str] = (),
+    profile_files: bool = False,
     fmi: Literal[2, 3] = 2,
     inputs: Sequence[str] = (),
     outputs: Sequence[str] = (),
@@ -126,13 +128,16 @@ def pack_fmu(
     folder that `make fmu` made, with all platforms and sources; None: this one's library.
     wheel_profiles, rail_profiles: built-in names or files (relative ones start at the scene's
     folder), to choose from beside the case's own, for both sides; each combination's start must be
-    solved. fmi: 2 (FMI 2.0) or 3 (FMI 3.0, vectors are arrays). inputs: "friction", the coefficient
-    of Coulomb's law as an input. outputs: which to keep, by name, by patterns ("left.*") or
-    groups (OUTPUT_GROUPS); none: all. patches: of each wheel, in place of the case's max_patches.
+    solved. profile_files: of each wheel and rail a parameter with the path of a prepared profile
+    (railpatch.profiles.prepared), read at run time. fmi: 2 (FMI 2.0) or 3 (FMI 3.0, vectors are
+    arrays). inputs: "friction", coefficients of Coulomb's law or factors of another law as inputs.
+    outputs: which to keep, by name, by patterns ("left.*") or groups (OUTPUT_GROUPS); none: all.
+    patches: of each wheel, in place of the case's max_patches.
     The same scene, libraries and SOURCE_DATE_EPOCH give the same bytes. Raises CaseError.
     """
     output = Path(output)
-    profiles = {"wheel_profiles": wheel_profiles, "rail_profiles": rail_profiles}
+    profiles: dict[str, Any] = {"wheel_profiles": wheel_profiles, "rail_profiles": rail_profiles}
+    profiles["profile_files"] = profile_files
     asked = {"inputs": inputs, "outputs": outputs, "patches": patches}
     options = Options(derivatives, averages, largest_step, **profiles, version=fmi, **asked)
     contents = contents_of(scene, output.stem, name, backend, options, libraries)
@@ -169,6 +174,7 @@ def contents_of(
     choices = choices_of(scene, {"wheel": options.wheel_profiles, "rail": options.rail_profiles})
     also = {"version 3"} if options.version == 3 else set()
     also |= input_conditions(options.inputs, kind)
+    also |= file_conditions(scene) if options.profile_files else set()
     kind = replace(kind, conditions=kind.conditions | choices.conditions() | also)
     for body in choices.sources:
         table.fill(TYPES[body], choices.items(body))

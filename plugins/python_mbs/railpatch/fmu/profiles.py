@@ -94,6 +94,16 @@ def own_source(scene: Scene, body: Body) -> str:
     return str(own.pop())
 
 
+def file_conditions(scene: Scene) -> set[str]:
+    """What the variables depend on where profiles are read at run time. Raises CaseError."""
+    case = scene.case
+    if isinstance(case, PatchCase):
+        raise CaseError("--profile-files: given, allowed with wheels only")
+    along = any(getattr(case.track, side).sections for side in case.sides)
+    # a rail that changes along the track is not one profile
+    return {"wheel files"} if along else {"wheel files", "rail files"}
+
+
 def with_profile(scene: Scene, body: Body, source: str) -> Scene:
     """The scene with another profile of that body, on both sides."""
     case = scene.case

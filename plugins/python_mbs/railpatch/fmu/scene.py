@@ -210,6 +210,7 @@ def options_of(case: Case, kind: Kind) -> dict[str, float]:
         "friction_input": int("friction input" in kind.conditions),
         "friction_sides": int("friction sides" in kind.conditions),
         **{f"friction_{side}": value for side, value in scales_of(case).items()},
+        "profile_files": int("wheel files" in kind.conditions),
         "time_step": start.get("time_step", 0.0),
         "distance": start.get("distance", 0.0),
     }

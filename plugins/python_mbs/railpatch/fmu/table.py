@@ -174,7 +174,7 @@ class Table:
             # of an empty list the scene has the items: as many as it likes
             return first, first + (len(declared["items"]) or MOST_ITEMS) - 1
         if "text" in declared:
-            return 0, 0
+            return 0, 4294967296.0  # the number of a file: 1 and its CRC-32
         return tuple(declared["range"])
 
     def _expand(self, row: dict[str, Any], kind: Kind) -> Iterator[Variable]:

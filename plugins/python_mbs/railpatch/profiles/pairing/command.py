@@ -18,6 +18,7 @@ from railpatch.page.browser import BrowserError
 from railpatch.profiles.pairing.contact_points import Dimensions
 from railpatch.profiles.pairing.doctor import tables_of
 from railpatch.profiles.pairing.pressures import LOAD
+from railpatch.profiles.prepared import SUFFIX, write_prepared
 from railpatch.profiles.raw import Mirror, Reading, Role, Unit
 
 
@@ -30,7 +31,11 @@ def length_option(name: str, field: str, text: str) -> click.Option:
 
 @click.command("profile")
 @click.argument("source", metavar="NAME|FILE", shell_complete=complete_file)
-@output_option("PLOT.html|.pdf", "The page to write; a PDF is made by Chromium, Chrome or Edge.")
+@output_option(
+    "PLOT.html|.pdf|NAME.profile",
+    "The page to write; a PDF is made by Chromium, Chrome or Edge. NAME.profile: no page, but the "
+    "profile as an FMU reads it at run time.",
+)
 @click.option(
     "--rail",
     metavar="NAME|FILE",
@@ -99,6 +104,12 @@ def profile(
     greatest pressure, with the error that the points' noise leaves in it, which go into
     PLOT.contact.csv and PLOT.contact.json too. The page needs no network.
     """
+    if output.suffix == SUFFIX:
+        refuse_same(output, source)
+        path = prepare(source, output, role, smoothing, Reading(unit, swap, mirror, origin))
+        if not quiet:
+            click.echo(path)
+        return
     if rail is not None and wheel is not None:
         raise WrongCall("--rail, --wheel: both given, allowed one: the profile's partner")
     check_page(output, source, rail, wheel)
@@ -128,3 +139,20 @@ def profile(
         click.echo(written)
         for path in tables_of(written):
             click.echo(path)
+
+
+def prepare(
+    source: str, output: Path, role: Role | None, smoothing: float | None, reading: Reading
+) -> Path:
+    """Writes a prepared profile, read and smoothed as a scene would. Raises ProfileError."""
+    from railpatch.profiles import load_profile
+    from railpatch.profiles.pairing.page import EITHER, role_of
+
+    if role is None and source.partition("@")[0] in EITHER:
+        raise WrongCall(f"--role: left out, allowed wheel or rail: {source} may be either")
+    role = role or role_of(source)
+    profile = load_profile(source, role, smoothing=smoothing, reading=reading)
+    try:
+        return write_prepared(profile, role, Path(source).name, output)
+    except OSError as error:
+        raise wrong_call(error) from None
