@@ -12,10 +12,21 @@ from itertools import pairwise
 from typing import Annotated, Any
 
 from pydantic import Field, model_validator
-from railpatch.case.types import BODIES, SIDES, Number, Positive, Table, exactly, refuse, relation
+from railpatch.case.types import (
+    BODIES,
+    SIDES,
+    NotNegative,
+    Number,
+    Positive,
+    Table,
+    exactly,
+    refuse,
+    relation,
+)
 from railpatch.case.wheel import PROFILE_KEYS, Text, WheelsetCase
 
 from wheelset_demo.vehicle.elements import ElementTable
+from wheelset_demo.vehicle.traction import DriveTable
 
 Name = Annotated[str, Field(pattern="^[A-Za-z][A-Za-z0-9_]*$", max_length=60)]
 Place = Annotated[list[Number], exactly(3)]
@@ -182,12 +193,20 @@ class VehicleTable(Table):
     body: Annotated[list[FreeBodyTable], Field(min_length=1)] = Field(
         description="(no unit): bodies, one [[vehicle.body]] each"
     )
+    hold_height: NotNegative | None = Field(
+        default=None,
+        description="m, above the rails' tops, at which the force acts that holds the speed: a "
+        "coupler's; left out: at the centre of the body of reference",
+    )
     wheelset: Annotated[list[WheelsetTable], Field(min_length=1)] = Field(
         description="(no unit): wheelsets, one [[vehicle.wheelset]] for those that are alike"
     )
     element: Annotated[list[ElementTable], Field(min_length=1)] = Field(
         description="(no unit): springs, dampers, stops and sliders, one [[vehicle.element]] for "
         "those that are alike"
+    )
+    drive: list[DriveTable] = Field(
+        default=[], description="(no unit): driven or braked wheelsets, one [[vehicle.drive]] each"
     )
 
     @model_validator(mode="after")
@@ -217,6 +236,11 @@ class VehicleTable(Table):
                     if name not in known:
                         key = f"element[{k}].places[{i}].between"
                         yield relation(key, repr(name), ", ".join(known))
+        for k, drive in enumerate(self.drive):
+            if drive.reaction not in names:
+                yield relation(f"drive[{k}].reaction", repr(drive.reaction), ", ".join(names))
+            if not 1 <= min(drive.wheelsets) <= max(drive.wheelsets) <= count:
+                yield relation(f"drive[{k}].wheelsets", drive.wheelsets, f"1 to {count}")
         for body in self.body:
             if body.name not in met:
                 yield relation(f"body {body.name!r}", "free", "an element that holds it")

@@ -142,6 +142,10 @@ class Recorder:
             "right_rail": rails[1],
             **logged(result),
         }
+        if index in system.drives.driven:
+            q, v = simulation.state.q, simulation.state.v
+            state["drive_torque"] = float(system.drives.torque[index])
+            state["slip_speed"] = float(system.drives.slip_speeds(q, v)[index])
         wheels = slice(2 * index, 2 * index + 2)
         lost = simulation.state.work[len(WORKS) :][wheels].tolist()
         means = simulation.means.guiding[wheels].tolist(), simulation.means.loads[wheels].tolist()

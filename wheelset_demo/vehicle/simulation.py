@@ -70,6 +70,7 @@ class Simulation:
     def _step(self) -> None:
         before = self.system.course.middle
         self.element.pass_time(self.scene.run.step)
+        self.system.drives.update(self.state.time, self.state.q, self.state.v)
         self.state, self.rates = self._stepper.step(self.state, self.rates)
         self.system.suspension.settle()
         self.means.add(self.system.course.middle - before, self.element.wheels)

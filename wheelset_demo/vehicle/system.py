@@ -27,6 +27,7 @@ from railpatch.pinocchio.derivative import WrenchDerivatives
 from wheelset_demo.system import BAD, ContactFailure, no_forces
 from wheelset_demo.vehicle.alignment import Alignment
 from wheelset_demo.vehicle.deviations import deviations_of
+from wheelset_demo.vehicle.drives import Drives
 from wheelset_demo.vehicle.irregularity import ARM
 from wheelset_demo.vehicle.model import vehicle_model
 from wheelset_demo.vehicle.scene import VehicleScene
@@ -138,6 +139,11 @@ class VehicleSystem:
         self._fext = no_forces(self.model)
         self._joints = [self.vehicle.joints[name] for name in names]
         self._car = self.vehicle.columns[0]
+        self.drives = Drives(scene.vehicle.drive, self.vehicle, self._radii)
+        height = scene.vehicle.bodies[0].position[2]
+        held = scene.vehicle.hold_height
+        # m, below the centre: where the force acts that holds the speed
+        self._hold_arm = 0.0 if held is None else height - held
         self._control = np.zeros(self.model.nv)
         self.slope_wrenches = np.zeros((self.wheelsets, 2, 3))
         self._slopes = self.course.slopes.reshape(-1, 2, 2)
@@ -170,6 +176,8 @@ class VehicleSystem:
         contact = self.element.contact_power + self._add_slope_wrenches()
         tau = self.suspension.step(q, v, series)
         drive = self._drive(q, v, tau)
+        if self.drives:
+            drive += self.drives.add(q, v, tau)
         acceleration = pin.aba(self.model, self.data, q, v, tau, self._fext)
         damping = self.suspension.damping_power
         if self.support is not None:
@@ -271,9 +279,11 @@ class VehicleSystem:
         return np.array(deviations + rates).T
 
     def _ahead(self, q: Vector) -> Vector:
-        """[nv], the direction in which the car body points; overwritten by the next."""
+        """[nv], of the speed that is held: ahead, by the body of reference, in the velocities;
+        overwritten by the next."""
         yaw = float(q[self._car[3]])
         self._control[self._car[:2]] = math.cos(yaw), math.sin(yaw)
+        self._control[self._car[5]] = self._hold_arm
         return self._control
 
     def _drive(self, q: Vector, v: Vector, tau: Vector) -> float:

@@ -148,6 +148,8 @@ WHEELSET_STATE = Message(
         _number("cant", "rad", "cant of the track", "track"),
         _number("left_rail", "m", "lateral, vertical place of the left rail", "track", size=2),
         _number("right_rail", "m", "the same of the right rail", "track", size=2),
+        _number("drive_torque", "N m", "of motors or brakes, > 0 pulls; of driven wheelsets"),
+        _number("slip_speed", "m/s", "rolling at the nominal radius, less the vehicle's speed"),
         *(_listed("result", name) for name in LOGGED),
     ),
 )

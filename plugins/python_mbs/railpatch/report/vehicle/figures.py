@@ -125,6 +125,28 @@ def friction(data: VehicleRun) -> go.Figure:
     return _sides(data, "lost in friction [kJ]", lambda wheel: 1e-3 * data.friction_work(wheel))
 
 
+def driven(data: VehicleRun) -> list[int]:
+    """Numbers of wheelsets with motors or brakes."""
+    return [
+        number
+        for number, series in data.wheelsets.items()
+        if any(message.get("drive_torque") is not None for message in series.messages)
+    ]
+
+
+def drives(data: VehicleRun) -> go.Figure:
+    """Torque on each driven wheelset and its slip speed."""
+    figure = make_subplots(2, 1, shared_xaxes=True, vertical_spacing=0.06)
+    names = (("drive_torque", 1e-3, "torque [kN m]"), ("slip_speed", 1.0, "slip speed [m/s]"))
+    for row, (name, factor, label) in enumerate(names, start=1):
+        for number in driven(data):
+            line = factor * data.wheelsets[number][name]
+            Adder(figure, data, row, 1).line(data.along, line, f"wheelset {number}", _color(number))
+        figure.update_yaxes(title_text=label, row=row, col=1)
+    figure.update_xaxes(title_text=data.along_label, row=2)
+    return styled(figure, 560)
+
+
 def bulk_temperatures(data: VehicleRun) -> go.Figure:
     """Of the wheels; rails, which are always new, have the temperature that the case gives."""
     title = "bulk temperature [°C]"

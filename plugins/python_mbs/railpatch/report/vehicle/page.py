@@ -177,6 +177,12 @@ def _sections(data: VehicleRun) -> list[str]:
         "<h2>Wheelsets on the track</h2>",
         plot(figures.positions(data), "positions"),
     ]
+    if figures.driven(data):
+        parts += [
+            "<h2>Traction</h2><p>Torque of motors or brakes, &gt; 0 pulls, and slip speed: rolling "
+            "at the nominal radius less the vehicle's speed.</p>",
+            plot(figures.drives(data), "traction"),
+        ]
     if any("acceleration" in b and b["acceleration"] for b in _first_bodies(data)):
         parts += [
             "<h2>Accelerations</h2><p>Of the bodies' centres, in the bodies' axes.</p>",
