@@ -14,6 +14,8 @@ from wheelset_demo.vehicle.deviations import DipTable
 from wheelset_demo.vehicle.scene import DEFAULT as DEFAULT_VEHICLE
 from wheelset_demo.vehicle.scene import OPTIONAL, TABLES
 
+# beside the coach
+OTHER_VEHICLES = ("freight_wagon.toml", "locomotive.toml")
 # of summaries: what is measured by the clock
 TIMES = {"solve_seconds", "wall_time", "logging_share", "seconds", "real_time"}
 # of a wheelset's summary and of a vehicle's: what its numbers are in, by name or by the table's
@@ -81,7 +83,15 @@ def vehicle() -> SceneKind:
     model = with_tables(WheelsetCase, {**TABLES, "dip": list[DipTable]}, *OPTIONAL, "dip")
     command = "railpatch vehicle SCENE -o run.mcap"
     scene = scene_file(DEFAULT_VEHICLE)
-    return SceneKind("vehicle", model, scene, command, run_vehicle, units=VEHICLE_UNITS)
+    return SceneKind(
+        "vehicle",
+        model,
+        scene,
+        command,
+        run_vehicle,
+        units=VEHICLE_UNITS,
+        others=tuple(scene_file(name) for name in OTHER_VEHICLES),
+    )
 
 
 def run_vehicle(scene: Path, log: Path) -> Ending:

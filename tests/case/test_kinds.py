@@ -54,7 +54,8 @@ def test_an_example_is_written_with_its_files_and_runs(name: str, tmp_path: Path
         assert solved.exit_code == 0, solved.output
     again = CliRunner().invoke(cli, ["init", name, str(folder)])
     assert again.exit_code == 2
-    assert f"has {name}.toml, {name}.schema.json" in again.output
+    others = "".join(f"{other.name}, " for other in kind_of(name).others)
+    assert f"has {name}.toml, {others}{name}.schema.json" in again.output
     assert scene.read_text() == text
 
 
@@ -78,3 +79,13 @@ def test_what_is_there_is_never_replaced(tmp_path: Path) -> None:
         write_example(rig, tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == [profile]
     assert len(rig.files()) == 4
+
+
+@pytest.mark.parametrize("scene", kind_of("vehicle").others, ids=lambda path: path.stem)
+def test_other_vehicles_are_written_and_run(scene: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "new"
+    assert CliRunner().invoke(cli, ["init", "vehicle", str(folder)]).exit_code == 0
+    written = folder / scene.name
+    assert written.read_text().startswith("#:schema vehicle.schema.json\n")
+    done = CliRunner().invoke(cli, ["vehicle", str(written), "--duration", "0.02", "--json"])
+    assert done.exit_code == 0, done.output

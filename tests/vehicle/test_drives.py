@@ -53,8 +53,8 @@ def table(**control):
 
 
 def test_controller_in_closed_form():
-    """A slip above the target at 10 m/s: 1 m/s is sought, 2 m/s found, e = -1 m/s; from an integral of
-    1000 N m it falls by 100 e T a sample, and the proportional part takes 200 N m."""
+    """A slip above the target at 10 m/s: 1 m/s is sought, 2 m/s found, e = -1 m/s; from an integral
+    of 1000 N m it falls by 100 e T a sample, and the proportional part takes 200 N m."""
     drive = Drive(table(period=0.1, rate=1e9), np.array([0.5]))
     # wheels that do not slip: what is wanted
     drive.update(2.0, 10.0, np.array([-20.0]))

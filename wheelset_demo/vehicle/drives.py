@@ -9,8 +9,8 @@ target less s,
     I = I + integral e period within 0 ... |wanted|,
     |T| = proportional e + I within 0 ... |wanted|,   changed by rate at most,
 
-at every period, and held in between. Speeds are those of wheel and body as they are: sensors without
-noise or delay.
+at every period, and held in between. Speeds are those of wheel and body as they are: sensors
+without noise or delay.
 """
 
 from __future__ import annotations

@@ -40,8 +40,8 @@ class DriveTable(Table):
     )
     reaction: str = Field(description="(no unit): name of the body that carries the motors")
     torque: Courses = Field(
-        description="[[s, N m], ...], on each wheelset over time, > 0 pulls; straight lines between "
-        "the points, held before and after"
+        description="[[s, N m], ...], on each wheelset over time, > 0 pulls; straight lines "
+        "between the points, held before and after"
     )
     slip_control: SlipControlTable | None = Field(
         default=None, description="takes torque away where wheels slip too much (no unit)"

@@ -61,7 +61,7 @@ class SceneKind:
     a ``Followed``. prepare: of the same, takes the content, the folder and what is unknown in each
     row, and gives it ``Prepared`` for a match. base: the kind whose example this one's names, which
     is written beside. units: of a run's own numbers by their dotted names, or by the name of the
-    table that they stand in.
+    table that they stand in. others: further examples of the kind, written beside it.
     """
 
     name: str
@@ -72,6 +72,7 @@ class SceneKind:
     base: str | None = None
     follow: Callable[..., Any] | None = None
     prepare: Callable[..., Prepared] | None = None
+    others: tuple[Path, ...] = ()
     units: Mapping[str, str] = field(default_factory=dict)
 
     def schema(self) -> dict[str, Any]:
@@ -90,9 +91,12 @@ class SceneKind:
 
     def files(self) -> list[Path]:
         """The profile files that the example names."""
-        named = read_toml(self.scene).get("profiles", {}).values()
-        places = [self.scene.parent / name for name in named if isinstance(name, str)]
-        return sorted({place for place in places if place.is_file()})
+        found = set()
+        for scene in (self.scene, *self.others):
+            named = read_toml(scene).get("profiles", {}).values()
+            places = [scene.parent / name for name in named if isinstance(name, str)]
+            found |= {place for place in places if place.is_file()}
+        return sorted(found)
 
 
 def with_tables(
@@ -129,8 +133,10 @@ def kind_of(name: str) -> SceneKind:
 def contents_of(kind: SceneKind) -> dict[str, bytes]:
     """Of the files of the example by name: the scene, its schema, what the scene names."""
     schema = f"{kind.name}.schema.json"
+    head = f"#:schema {schema}\n".encode()
     return {
-        f"{kind.name}.toml": f"#:schema {schema}\n".encode() + kind.scene.read_bytes(),
+        f"{kind.name}.toml": head + kind.scene.read_bytes(),
+        **{scene.name: head + scene.read_bytes() for scene in kind.others},
         schema: (json.dumps(kind.schema(), indent=2) + "\n").encode(),
         **{file.name: file.read_bytes() for file in kind.files()},
         **(contents_of(kind_of(kind.base)) if kind.base else {}),

@@ -168,8 +168,8 @@ def init(kind: str, folder: Path, quiet: bool) -> None:
     """Write a scene to start from into a folder, with all its files.
 
     KIND: patch, wheel_rail, wheelset, rig, curve, wheelset_run, vehicle or sweep. Beside the scene
-    stand the profiles that it names and its JSON schema, by which editors check it. Files that are
-    there are never replaced.
+    stand the profiles that it names and its JSON schema, by which editors check it, and further
+    examples where there are some. Files that are there are never replaced.
     """
     from railpatch.case.kinds import kind_of, write_example
 
