@@ -46,6 +46,18 @@ def test_one_line(command: str, scene: str, tmp_path: Path, monkeypatch: pytest.
     assert ran.stderr == f"Error: this is a scene of railpatch {scene}, allowed {wanted}\n"
 
 
+def test_a_match_of_an_own_scene(tmp_path: Path):
+    """It is one of this command but for a table."""
+    file = tmp_path / "rig.toml"
+    file.write_text(SCENES["rig"].read_text() + "\n[match]\n")
+    ran = invoke("rig", file, "-o", tmp_path / "run.mcap")
+    assert ran.exit_code == 2
+    assert ran.stderr == (
+        "Error: this is a scene of railpatch match, allowed one of railpatch rig: it is without its"
+        " table [match]\n"
+    )
+
+
 def test_a_theory_that_cannot_have_the_scenes_friction(tmp_path: Path):
     """Known from the scene, with its key, not from the core."""
     law = 'law = "slip_velocity"\nkinetic = 0.2\namplitude = 0.1\nhalving_speed = 0.5\n'

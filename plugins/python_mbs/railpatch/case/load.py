@@ -81,7 +81,9 @@ def refuse_others(content: Mapping[str, Any], command: str | None = None) -> Non
     wanted = f"one of railpatch {command}" if command else "a contact case"
     own = ", ".join(f"[{table}]" for table, name in OTHERS.items() if name == command)
     shown = f"a scene of railpatch {found}" if found else f"a contact case, without {own}"
-    raise CaseError(f"this is {shown}, allowed {wanted}")
+    inside = any(table in content for table, name in OTHERS.items() if name == command)
+    more = f": it is without its table [{found}]" if inside and found == "match" else ""
+    raise CaseError(f"this is {shown}, allowed {wanted}{more}")
 
 
 def read_toml(path: Path) -> dict[str, Any]:
