@@ -17,7 +17,9 @@ LOOKS_INSIDE = {
     "elementary.cpp": {"numeric/elementary.hpp"},
     "angles.hpp": {"numeric/elementary.hpp"},
     "frames.cpp": {"numeric/elementary.hpp"},
+    "vehicle_bodies.cpp": {"numeric/elementary.hpp"},
     "vehicle_course.cpp": {"numeric/elementary.hpp"},
+    "vehicle_equations.cpp": {"numeric/elementary.hpp"},
     "vehicle_suspension.cpp": {"numeric/elementary.hpp"},
 }
 

@@ -180,6 +180,7 @@ def test_steppers_agree():
         simulation = Simulation(scenes.scene(duration=0.3, irregular=True))
         start = simulation.state.q[1].copy()
         simulation._stepper = stepper(simulation.system, 1e-3, 10)
+        simulation._compiled = None
         for _ in simulation.steps():
             pass
         places.append(simulation.state.q)

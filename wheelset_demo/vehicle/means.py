@@ -38,6 +38,11 @@ class SlidingMeans:
         self._core.add(way, wheels)
 
     @property
+    def compiled(self) -> _core.SlidingMeans:
+        """The same in C++, for what is compiled beside it."""
+        return self._core
+
+    @property
     def guiding(self) -> Vector:
         """N, [wheels]."""
         return self._means[: self._count].copy()

@@ -13,6 +13,7 @@ from railpatch.case.wheel import WheelsetCase
 
 from wheelset_demo.system import BAD, WORKS
 from wheelset_demo.vehicle.comfort import Comfort
+from wheelset_demo.vehicle.compiled import CompiledSteps, covers
 from wheelset_demo.vehicle.means import SlidingMeans
 from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.step_times import StepTimes
@@ -41,6 +42,11 @@ class Simulation:
         self.rates: Rates = self.system.rates(self.state.time, self.state.values)
         self.system.suspension.release()
         self._stepper = Bdf2(self.system, scene.run.step, scene.run.derivatives_every)
+        self._compiled = (
+            CompiledSteps(self.system, scene.run.step, scene.run.derivatives_every)
+            if covers(self.system)
+            else None
+        )
         self.means = SlidingMeans(self.element.wheels)
         self.comfort = comfort_of(scene, self.system)
         self._solved_before = self._contact_cpu()
@@ -58,17 +64,44 @@ class Simulation:
         every, count = self.scene.run.log_every, self.scene.steps
         for done in range(0, count, every):
             begin = clock.perf_counter(), self._cpu()
-            for _ in range(min(every, count - done)):
-                if self.step_times is None:
-                    self._step()
-                else:
-                    self._timed_step(self.step_times)
+            self._several(min(every, count - done))
             self.wall_seconds += clock.perf_counter() - begin[0]
             self.cpu_seconds += self._cpu() - begin[1]
             yield self.state
 
-    def _step(self) -> None:
-        before = self.system.course.middle
+    @property
+    def _unasked(self) -> bool:
+        return self.step_times is None and self.comfort is None
+
+    def _several(self, count: int) -> None:
+        """Steps; at once where nothing is asked for in between."""
+        compiled = self._compiled
+        if compiled is not None and compiled.begun and self._unasked:
+            self._step(count)
+            return
+        for _ in range(count):
+            if self.step_times is None:
+                self._step(1)
+            else:
+                self._timed_step(self.step_times)
+
+    def _step(self, count: int) -> None:
+        """count: more than one where steps are compiled."""
+        if self._compiled is not None and self._compiled.begun:
+            found = self._compiled.advance(count, self.means)
+            self.state, self.rates, failure = found
+            if failure is not None:
+                raise failure
+        else:
+            self._next_step()
+        if self.comfort is not None:
+            self.comfort.add(
+                self.state.time, self.state.values, self.rates.values, self.state.count
+            )
+
+    def _next_step(self) -> None:
+        """By the system, as it stands in Python."""
+        before, state, rates = self.system.course.middle, self.state, self.rates
         self.element.pass_time(self.scene.run.step)
         self.system.drives.update(self.state.time, self.state.q, self.state.v)
         self.state, self.rates = self._stepper.step(self.state, self.rates)
@@ -76,14 +109,12 @@ class Simulation:
         self.means.add(self.system.course.middle - before, self.element.wheels)
         if self.system.support is not None:
             self.system.support.meet()
-        if self.comfort is not None:
-            self.comfort.add(
-                self.state.time, self.state.values, self.rates.values, self.state.count
-            )
+        if self._compiled is not None:
+            self._compiled.begin(self.state, self.state.values - state.values, rates)
 
     def _timed_step(self, times: StepTimes) -> None:
         wall, cpu = clock.perf_counter(), self._cpu()
-        self._step()
+        self._step(1)
         times.add(clock.perf_counter() - wall, self._cpu() - cpu)
 
     def solve_again(self) -> None:

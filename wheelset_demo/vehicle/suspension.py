@@ -138,6 +138,11 @@ class Suspension:
         self._friction = np.stack([each[used][rows] for each in (sliders, limits, shares)], axis=1)
 
     @property
+    def compiled(self) -> _core.Suspension:
+        """The same in C++, for what is compiled beside it."""
+        return self._core
+
+    @property
     def series_count(self) -> int:
         """Number of dampers with a spring in series, each of which has a force as its state."""
         return len(self._series)

@@ -106,7 +106,7 @@ class HeldDerivatives:
 class VehicleSystem:
     """Vehicle, suspension, track and contacts of a scene. Keeps the contacts' last solutions.
 
-    wheelsets: their number. slope_wrenches: [wheelsets, 2, 3], of left and right wheel at the last
+    wheelsets: their number; radii: m, nominal, of their wheels. slope_wrenches: [wheelsets, 2, 3], of left and right wheel at the last
     rates(), Fx (N), My, Mz (N m) in track axes: of rails that are not level, beside the element's
     wrenches. evaluations, renewals: number of rates() and of derivatives(). contact_seconds,
     derivative_seconds: s, CPU time of the calling thread in the force element and in derivatives();
@@ -127,7 +127,7 @@ class VehicleSystem:
         self.wheelsets = len(names)
         cases = scene.cases(derivatives=True)
         self.element = ForceElement(self.model, names, cases, threads=scene.run.threads)
-        self._radii = np.array([one.case.wheelset.nominal_radius for one in cases])
+        self.radii = np.array([one.case.wheelset.nominal_radius for one in cases])
         self.suspension = Suspension(scene, self.vehicle)
         self.support = None if scene.support is None else Support(scene.support, self.wheelsets)
         self.count = self.model.nv + (0 if self.support is None else self.support.count)
@@ -210,7 +210,7 @@ class VehicleSystem:
             return 0.0
         element = self.element
         self.slope_wrenches = slope_wrenches(
-            element.wheels, element.lateral_normals, self._slopes, self._radii, ARM
+            element.wheels, element.lateral_normals, self._slopes, self.radii, ARM
         )
         self._sloped[:, FORCE_AND_TURNS] = self.slope_wrenches.sum(axis=1)
         return element.place_all(self._sloped, self._fext)

@@ -10,9 +10,12 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "convert.hpp"
+#include "vehicle.hpp"
+#include "watching.hpp"
 #include "workers.hpp"
 
 namespace railpatch::python {
@@ -23,7 +26,15 @@ using Array = nb::ndarray<nb::numpy, double, nb::ndim<2>>;
 
 static_assert(sizeof(TrackState) == 12 * sizeof(double));
 
-enum { kMotion = 18, kWrench = 6, kState = 12, kContact = 6, kPower = 5, kPlacement = 12 };
+enum {
+  kMotion = 18,
+  kWrench = 6,
+  kState = 12,
+  kContact = 6,
+  kPower = 5,
+  kPlacement = 12,
+  kBySide = 144
+};
 // rails: offset and velocity, both by side; wheels: force, moment, creep power, patches, power of
 // friction
 enum { kRails = 12, kWheel = 9, kWheels = 2 * kWheel, kLateral = 2 };
@@ -43,6 +54,11 @@ void check_placements(const Grid &rows, size_t count) {
 // NaN where the scene has no tangential problem: no friction
 double or_zero(double power) { return std::isnan(power) ? 0.0 : power; }
 
+std::string unfound_derivatives(rp_status status) {
+  return std::string("method.tolerance: the contact's derivatives are ") + rp_status_text(status) +
+         ", allowed a tolerance at which they converge";
+}
+
 struct Wheelset {
   Steppable *contact;
   rp_input given, input;  // as the case has it, as it was last solved
@@ -51,15 +67,19 @@ struct Wheelset {
   double seconds;  // spent
   double waiting;  // s, gone by since the last step
   std::exception_ptr refused;
+  bool curved;  // has a curved reference surface
+  std::vector<double> rows[2];
 };
 
 // Arrays live as long as the element and are seen from Python as they are: one row a wheelset.
-class ForceElement {
+class ForceElement final : public VehicleContacts {
  public:
   ForceElement(const nb::list &contacts, const nb::list &inputs, const Values &radii,
-               const Grid &placements, const Grid &tracks, double frame_speed, int threads)
+               const Grid &placements, const Grid &tracks, double frame_speed, int threads,
+               const nb::list &curved)
       : frame_speed_(frame_speed), count_(nb::len(contacts)) {
-    const bool fits = nb::len(inputs) == count_ && radii.shape(0) == count_;
+    const bool fits =
+        nb::len(inputs) == count_ && radii.shape(0) == count_ && nb::len(curved) == count_;
     if (!fits) throw nb::value_error("one input and radius a contact");
     if (threads < 1) throw nb::value_error("one thread or more");
     check_placements(placements, count_);
@@ -77,6 +97,7 @@ class ForceElement {
       w.result = {};
       w.placement = placement_at(placements.data() + kPlacement * k);
       w.seconds = w.waiting = 0;
+      w.curved = nb::cast<bool>(nb::object(curved[k]));
     }
     positions_.resize(count_);
     rails_.resize(count_ * kRails);
@@ -88,10 +109,15 @@ class ForceElement {
     state_.resize(count_);
     contact_.resize(count_ * kContact);
     power_.resize(count_ * kPower);
+    by_side_.resize(count_ * kBySide);
   }
 
   int step() {
     nb::gil_scoped_release unlocked;
+    return solve();
+  }
+
+  int solve() override {
     std::lock_guard<std::mutex> guard(mutex_);
     workers_->run(count_, [this](size_t k) { try_wheelset(k); });
     solves_ += count_;
@@ -103,8 +129,26 @@ class ForceElement {
     return status;
   }
 
+  void find_derivatives(const size_t *wheelsets, size_t count) override {
+    std::lock_guard<std::mutex> guard(mutex_);
+    workers_->run(count, [this, wheelsets](size_t i) { try_derivatives(wheelsets[i]); });
+    for (size_t i = 0; i < count; ++i)
+      if (wheelsets_[wheelsets[i]].refused)
+        std::rethrow_exception(wheelsets_[wheelsets[i]].refused);
+  }
+
+  const double *by_side() const override { return by_side_.data(); }
+
+  void state_at(size_t k, const double *placement, const double *velocity,
+                double *state) const override {
+    const Wheelset &w = wheelsets_[k];
+    const TrackState s = track_state(placement_at(placement), velocity, w.placement, track(k),
+                                     frame_speed_, radii_[k]);
+    std::copy_n(&s.x, kState, state);
+  }
+
   // for bodies that store heat; goes by in the next step that is solved
-  void pass_time(double seconds) {
+  void pass_time(double seconds) override {
     for (Wheelset &w : wheelsets_) w.waiting += seconds;
   }
 
@@ -120,15 +164,18 @@ class ForceElement {
   double place_all(const Grid &wrenches) {
     if (wrenches.shape(0) != count_ || wrenches.shape(1) != kWrench)
       throw nb::value_error("one wrench of 6 a wheelset");
+    place_wrenches(wrenches.data());
     double power = 0;
-    for (size_t k = 0; k < count_; ++k) {
-      const double *given = wrenches.data() + k * kWrench;
-      double *placed = placed_.data() + k * kWrench;
-      joint_wrench(given, given + 3, joint(k), wheelsets_[k].placement, track(k), placed);
-      const double *velocity = motion_.data() + k * kMotion + 12;
-      for (int i = 0; i < kWrench; ++i) power += placed[i] * velocity[i];
-    }
+    for (size_t k = 0; k < count_; ++k)
+      for (int i = 0; i < kWrench; ++i)
+        power += placed_[k * kWrench + i] * motion_[k * kMotion + 12 + i];
     return power;
+  }
+
+  void place_wrenches(const double *given) override {
+    for (size_t k = 0; k < count_; ++k, given += kWrench)
+      joint_wrench(given, given + 3, joint(k), wheelsets_[k].placement, track(k),
+                   placed_.data() + k * kWrench);
   }
 
   nb::dict result(size_t k) const {
@@ -150,19 +197,19 @@ class ForceElement {
   size_t solves() const { return solves_; }
   double helper_seconds() { return workers_->seconds(); }
 
-  double *tracks() { return tracks_.data(); }
-  double *positions() { return positions_.data(); }
-  double *rails() { return rails_.data(); }
-  double *wheels() { return wheels_.data(); }
-  double *lateral() { return lateral_.data(); }
+  double *tracks() override { return tracks_.data(); }
+  double *positions() override { return positions_.data(); }
+  double *rails() override { return rails_.data(); }
+  double *wheels() override { return wheels_.data(); }
+  double *lateral() override { return lateral_.data(); }
 
-  double *motion() { return motion_.data(); }
-  double *wrench() { return wrench_.data(); }
-  double *placed() { return placed_.data(); }
+  double *motion() override { return motion_.data(); }
+  double *wrench() override { return wrench_.data(); }
+  double *placed() override { return placed_.data(); }
   double *state() { return &state_.data()->x; }
-  double *contact() { return contact_.data(); }
-  double *power() { return power_.data(); }
-  size_t count() const { return count_; }
+  double *contact() override { return contact_.data(); }
+  double *power() override { return power_.data(); }
+  size_t count() const override { return count_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -183,6 +230,20 @@ class ForceElement {
       step_wheelset(k);
     } catch (...) {
       wheelsets_[k].refused = std::current_exception();
+    }
+  }
+
+  void try_derivatives(size_t k) {
+    Wheelset &w = wheelsets_[k];
+    w.refused = nullptr;
+    try {
+      rp_jacobian found;
+      w.contact->differentiate_all(found);
+      if (found.status == RP_NOT_CONVERGED || found.status == RP_OUT_OF_RANGE)
+        throw CallError{RP_ERROR_VALUE, unfound_derivatives(found.status)};
+      std::copy_n(&found.side[0][0][0], kBySide, by_side_.data() + k * kBySide);
+    } catch (...) {
+      w.refused = std::current_exception();
     }
   }
 
@@ -240,8 +301,13 @@ class ForceElement {
     power[4] = result.pressure_energy;
     double *wheel = wheels_.data() + k * kWheels;
     double *lateral = lateral_.data() + k * kLateral;
+    int number = 0;
     for (const rp_side_result &side : result.side) {
-      *lateral++ = side.force[1] - lateral_creep(side);
+      const double creep =
+          wheelsets_[k].curved
+              ? lateral_creep_of_rows(*wheelsets_[k].contact, number++, side, wheelsets_[k].rows)
+              : lateral_creep(side);
+      *lateral++ = side.force[1] - creep;
       std::copy_n(side.force, 3, wheel);
       std::copy_n(side.moment, 3, wheel + 3);
       wheel[6] = or_zero(side.creep_power);
@@ -254,7 +320,7 @@ class ForceElement {
   std::vector<Wheelset> wheelsets_;
   double frame_speed_;
   size_t count_;
-  std::vector<double> radii_, motion_, wrench_, contact_, power_, placed_;
+  std::vector<double> radii_, motion_, wrench_, contact_, power_, placed_, by_side_;
   std::vector<double> tracks_, positions_, rails_, wheels_, lateral_;
   std::vector<TrackState> state_;
   size_t solves_ = 0;
@@ -273,16 +339,20 @@ Array view(nb::handle_t<ForceElement> self) {
 
 void bind_force_element(nb::module_ &m) {
   using E = ForceElement;
-  nb::class_<E>(m, "ForceElement",
-                "Contacts of wheelsets in a multibody model; arrays have one row a wheelset.")
+  nb::class_<VehicleContacts>(m, "VehicleContacts", "What a vehicle's steps ask of contacts.");
+  nb::class_<E, VehicleContacts>(
+      m, "ForceElement",
+      "Contacts of wheelsets in a multibody model; arrays have one row a wheelset.")
       .def(nb::init<const nb::list &, const nb::list &, const Values &, const Grid &, const Grid &,
-                    double, int>(),
+                    double, int, const nb::list &>(),
            nb::arg("contacts"), nb::arg("inputs"), nb::arg("radii"), nb::arg("placements"),
-           nb::arg("tracks"), nb::arg("frame_speed"), nb::arg("threads"), nb::keep_alive<1, 2>(),
+           nb::arg("tracks"), nb::arg("frame_speed"), nb::arg("threads"), nb::arg("curved"),
+           nb::keep_alive<1, 2>(),
            "contacts: Contact, kept alive by the list, which must not change; inputs: fields of "
            "rp_input that stay; radii: m, nominal; placements: of the wheelsets in their joints, "
            "tracks: of the track in the world at each, rotation by rows and origin, 12 numbers; "
-           "frame_speed: m/s, of the world along the track; threads: that solve them.")
+           "frame_speed: m/s, of the world along the track; threads: that solve them; curved: "
+           "whether a contact has a curved reference surface.")
       .def("step", &E::step,
            "Reads 'motion', solves all contacts, writes the other arrays; returns the worst "
            "status. The interpreter's lock is released.")
@@ -319,7 +389,7 @@ void bind_force_element(nb::module_ &m) {
           "wheels", &view<kWheels, &E::wheels>,
           "By side: force, moment about the centre, creep power, patches, power of friction.")
       .def_prop_ro("lateral", &view<kLateral, &E::lateral>,
-                   "By side: lateral force without that of tractions, patches on planes.")
+                   "By side: lateral force without that of tractions.")
       .def_prop_ro("power", &view<kPower, &E::power>,
                    "Of the contacts: power of the forces (W), elastic energy (J), creep power (W), "
                    "frictional power (W), elastic energy of the pressure (J).");

@@ -15,6 +15,8 @@
 
 #include <nanobind/nanobind.h>
 
+#include <vector>
+
 #include "railpatch.h"
 
 namespace railpatch::python {
@@ -23,6 +25,9 @@ namespace railpatch::python {
 class Steppable {
  public:
   virtual void solve(const rp_input &input, rp_result &result) = 0;
+  virtual void differentiate_all(rp_jacobian &found) = 0;
+  // of the last step's patch; its numbers, none where it has no such field
+  virtual size_t read_field(int side, int patch, rp_field field, std::vector<double> &to) = 0;
 
  protected:
   ~Steppable() = default;
@@ -52,6 +57,10 @@ void joint_wrench(const double force[3], const double moment[3], const Placement
 
 // N, to the right on a wheel, of the tractions of all its patches, on planes
 double lateral_creep(const rp_side_result &side);
+// The same on a curved reference surface, where the lateral `creep_force` holds a part of pressure,
+// by rows, each at an angle of its own. side: the last step's, 0 or 1; room: for two fields.
+double lateral_creep_of_rows(Steppable &contact, int side, const rp_side_result &result,
+                             std::vector<double> room[2]);
 
 void bind_force_element(nanobind::module_ &m);
 

@@ -89,4 +89,25 @@ double lateral_creep(const rp_side_result &side) {
   return sum;
 }
 
+double lateral_creep_of_rows(Steppable &contact, int side, const rp_side_result &result,
+                             std::vector<double> room[2]) {
+  double sum = 0;
+  for (int i = 0; i < result.patch_count + result.alternative_count; ++i) {
+    const size_t rows = contact.read_field(side, i, RP_FIELD_ROW_ANGLE, room[0]);
+    const size_t tractions = contact.read_field(side, i, RP_FIELD_TRACTION, room[1]);
+    if (rows == 0 || tractions == 0) continue;
+    // the lateral ones come second
+    const size_t elements = tractions / 2, along = elements / rows;
+    const rp_patch_result &patch = result.patch[i];
+    double force = 0;
+    for (size_t j = 0; j < rows; ++j) {
+      double row = 0;
+      for (size_t k = 0; k < along; ++k) row += room[1][elements + j * along + k];
+      force += cos(room[0][j]) * row;
+    }
+    sum += patch.share * patch.element_size[0] * patch.element_size[1] * force;
+  }
+  return sum;
+}
+
 }  // namespace railpatch::python

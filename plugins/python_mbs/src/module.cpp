@@ -128,6 +128,21 @@ class Contact : public Steppable {
     check(rp_step(contact_.get(), &input, &result, &message), &message);
   }
 
+  void differentiate_all(rp_jacobian &found) override {
+    rp_message message = {};
+    std::lock_guard<std::mutex> guard(mutex_);
+    check(rp_get_jacobian(contact_.get(), &found, &message), &message);
+  }
+
+  size_t read_field(int side, int patch, rp_field field, std::vector<double> &to) override {
+    std::lock_guard<std::mutex> guard(mutex_);
+    double none = 0.0;
+    size_t count = 0;
+    if (rp_get_field(contact_.get(), side, patch, field, &none, &count) != RP_ERROR_SIZE) return 0;
+    to.resize(std::max(to.size(), count));
+    return rp_get_field(contact_.get(), side, patch, field, to.data(), &count) == RP_OK ? count : 0;
+  }
+
   // Records of rp_input to as many of what `slices` take of an rp_result: (from, bytes, to), in
   // bytes of both records. Raises StateError with the place of a wrong input.
   static void step_many(const nb::list &all, const Records &inputs, size_t length,
@@ -444,6 +459,7 @@ NB_MODULE(_core, m) {
   bind_suspension(m);
   bind_course(m);
   bind_means(m);
+  bind_steps(m);
 }
 
 }  // namespace railpatch::python

@@ -63,7 +63,7 @@ struct Wheelset {
   std::array<double, kBends> bends;
 };
 
-class Course {
+class Course final : public VehicleCourse {
  public:
   Course(const Values &track_knots, const Cube &track, const Values &rail_knots, const Cube &rails,
          const IndexGrid &columns, double arm, size_t width)
@@ -85,20 +85,28 @@ class Course {
     if (tracks.shape(0) != count() || tracks.shape(1) != kPlacement || rails.shape(0) != count() ||
         rails.shape(1) != kRailRow)
       throw nb::value_error("one row of 12 a wheelset");
+    place_all(q.data(), v.data(), tracks.data(), rails.data());
+  }
+
+  void place_all(const double *q, const double *v, double *tracks, double *rails) override {
     for (size_t k = 0; k < count(); ++k) {
       Wheelset &w = wheelsets_[k];
-      w.speed = hypot(v(w.x), v(w.y));
-      positions_[k] = foot(q(w.x), q(w.y), positions_[k]);
-      put_track(w, positions_[k], &tracks(k, 0));
-      put_rails(k, &rails(k, 0));
+      w.speed = hypot(v[w.x], v[w.y]);
+      positions_[k] = foot(q[w.x], q[w.y], positions_[k]);
+      put_track(w, positions_[k], tracks + k * kPlacement);
+      put_rails(k, rails + k * kRailRow);
     }
   }
 
   void look_ahead(const Values &v, double step) {
     check(v);
+    look_ahead_all(v.data(), step);
+  }
+
+  void look_ahead_all(const double *v, double step) override {
     for (size_t k = 0; k < count(); ++k) {
       const Wheelset &w = wheelsets_[k];
-      const double speed = hypot(v(w.x), v(w.y)), squared = (step * speed) * (step * speed);
+      const double speed = hypot(v[w.x], v[w.y]), squared = (step * speed) * (step * speed);
       double slopes[4];
       deviations(k, positions_[k] + step * speed, speed, ahead_.data(), slopes);
       const double off = w.bends[kCurvature] * squared, cant = w.bends[kCantAngle];
@@ -111,23 +119,24 @@ class Course {
     }
   }
 
-  double middle() const {
+  double middle() const override {
     double sum = 0;
     for (const double s : positions_) sum += s;
     return sum / static_cast<double>(count());
   }
-  bool level() const {
+  bool level() const override {
     return std::all_of(slopes_.begin(), slopes_.end(), [](double s) { return s == 0; });
   }
 
-  size_t count() const { return wheelsets_.size(); }
+  size_t count() const override { return wheelsets_.size(); }
+  size_t width() const override { return width_; }
   size_t sloped() const { return 4 * count(); }
   size_t known() const { return 6 * count(); }
-  double *positions() { return positions_.data(); }
-  double *slopes() { return slopes_.data(); }
-  double *inputs() { return inputs_.data(); }
-  double *ahead() { return ahead_.data(); }
-  double *bend() { return bend_.data(); }
+  double *positions() override { return positions_.data(); }
+  double *slopes() override { return slopes_.data(); }
+  double *inputs() override { return inputs_.data(); }
+  double *ahead() override { return ahead_.data(); }
+  double *bend() override { return bend_.data(); }
 
  private:
   void check(const Values &state) const {
@@ -203,14 +212,9 @@ void slope_wrenches(const Cube &wheels, const Grid &normals, const Cube &slopes,
                     to.shape(1) == 2 && to.shape(2) == 3;
   if (!fits) throw nb::value_error("arrays of wheels do not fit together");
   for (size_t k = 0; k < count; ++k)
-    for (size_t side = 0; side < 2; ++side) {
-      const double across = wheels(k, side, kFy), down = wheels(k, side, kFz);
-      const double lateral = slopes(k, side, kLateral), vertical = slopes(k, side, kVertical);
-      const double place = side == 0 ? -arm : arm;
-      to(k, side, 0) = -(across * lateral + down * vertical);
-      to(k, side, 1) = -radii(k) * (across - normals(k, side)) * lateral;
-      to(k, side, 2) = wheels(k, side, kMx) * vertical + place * across * lateral;
-    }
+    for (size_t side = 0; side < 2; ++side)
+      slope_wrench(&wheels(k, side, 0), normals(k, side), &slopes(k, side, 0), radii(k),
+                   side == 0 ? -arm : arm, &to(k, side, 0));
 }
 
 template <double *(Course::*Data)(), size_t (Course::*Count)() const>
@@ -221,9 +225,20 @@ nb::ndarray<nb::numpy, double, nb::ndim<1>> view(nb::handle_t<Course> self) {
 
 }  // namespace
 
+void slope_wrench(const double *wheel, double normal, const double *slope, double radius,
+                  double place, double *to) {
+  const double across = wheel[kFy], down = wheel[kFz];
+  const double lateral = slope[kLateral], vertical = slope[kVertical];
+  to[0] = -(across * lateral + down * vertical);
+  to[1] = -radius * (across - normal) * lateral;
+  to[2] = wheel[kMx] * vertical + place * across * lateral;
+}
+
 void bind_course(nb::module_ &m) {
   using C = Course;
-  nb::class_<C>(m, "Course", "Wheelsets of a vehicle on a bent track with rails not straight.")
+  nb::class_<VehicleCourse>(m, "VehicleCourse", "What a vehicle's steps ask of a course.");
+  nb::class_<C, VehicleCourse>(m, "Course",
+                               "Wheelsets of a vehicle on a bent track with rails not straight.")
       .def(nb::init<const Values &, const Cube &, const Values &, const Cube &, const IndexGrid &,
                     double, size_t>(),
            nb::arg("track_knots"), nb::arg("track"), nb::arg("rail_knots"), nb::arg("rails"),

@@ -16,14 +16,14 @@ namespace {
 
 enum { kFy = 1, kFz = 2 };
 
-class SlidingMeans {
+class SlidingMeans final : public VehicleMeans {
  public:
   SlidingMeans(const Cube &wheels, double length, double least_load)
       : length_(length), least_load_(least_load), wheels_(wheels.shape(0) * wheels.shape(1)) {
     if (wheels.shape(0) == 0 || wheels.shape(1) != 2)
       throw nb::value_error("left and right wheels, one or more");
     for (auto *forces : {&forces_, &means_}) forces->resize(2 * wheels_);
-    read(wheels, forces_);
+    read(wheels.data(), wheels.shape(2), forces_);
     ways_.assign(kRoom, 0.0);
     integrals_.assign(kRoom * 2 * wheels_, 0.0);
     means_ = forces_;
@@ -33,16 +33,20 @@ class SlidingMeans {
 
   void add(double way, const Cube &wheels) {
     if (wheels.shape(0) * wheels.shape(1) != wheels_) throw nb::value_error("other wheels");
+    add_step(way, wheels.data(), wheels.shape(2));
+  }
+
+  void add_step(double way, const double *wheels, size_t row) override {
     before_ = forces_;
-    read(wheels, forces_);
+    read(wheels, row, forces_);
     if (!(way > 0)) return;
     append(way);
-    const double now = ways_[row(count_ - 1)], begin = now - length_;
-    while (count_ > 2 && ways_[row(1)] <= begin) {
-      first_ = row(1);
+    const double now = ways_[place(count_ - 1)], begin = now - length_;
+    while (count_ > 2 && ways_[place(1)] <= begin) {
+      first_ = place(1);
       --count_;
     }
-    const double first = ways_[row(0)], second = ways_[row(1)];
+    const double first = ways_[place(0)], second = ways_[place(1)];
     // the way's begin lies between the first two
     const double share = std::max(0.0, (begin - first) / (second - first));
     if (begin >= 0 && !whole_) {
@@ -67,22 +71,22 @@ class SlidingMeans {
   static constexpr size_t kRoom = 256;
 
   // on the rails: outward of all wheels, then down
-  void read(const Cube &wheels, std::vector<double> &to) const {
+  void read(const double *wheels, size_t row, std::vector<double> &to) const {
     for (size_t k = 0; k < wheels_; ++k) {
-      to[k] = (k % 2 == 0 ? 1.0 : -1.0) * wheels(k / 2, k % 2, kFy);
-      to[wheels_ + k] = -wheels(k / 2, k % 2, kFz);
+      to[k] = (k % 2 == 0 ? 1.0 : -1.0) * wheels[k * row + kFy];
+      to[wheels_ + k] = -wheels[k * row + kFz];
     }
   }
 
-  size_t row(size_t k) const { return (first_ + k) % ways_.size(); }
-  double *integral(size_t k) { return integrals_.data() + row(k) * means_.size(); }
+  size_t place(size_t k) const { return (first_ + k) % ways_.size(); }
+  double *integral(size_t k) { return integrals_.data() + place(k) * means_.size(); }
 
   void append(double way) {
     if (count_ == ways_.size()) widen();
     ++count_;
     const double *last = integral(count_ - 2);
     double *next = integral(count_ - 1);
-    ways_[row(count_ - 1)] = ways_[row(count_ - 2)] + way;
+    ways_[place(count_ - 1)] = ways_[place(count_ - 2)] + way;
     for (size_t i = 0; i < means_.size(); ++i)
       next[i] = last[i] + 0.5 * way * (before_[i] + forces_[i]);
   }
@@ -132,7 +136,9 @@ nb::ndarray<nb::numpy, double, nb::ndim<1>> means_of(nb::handle_t<SlidingMeans> 
 
 void bind_means(nb::module_ &m) {
   using M = SlidingMeans;
-  nb::class_<M>(m, "SlidingMeans", "Means of a vehicle's wheel forces over its last way.")
+  nb::class_<VehicleMeans>(m, "VehicleMeans", "What a vehicle's steps ask of means.");
+  nb::class_<M, VehicleMeans>(m, "SlidingMeans",
+                              "Means of a vehicle's wheel forces over its last way.")
       .def(nb::init<const Cube &, double, double>(), nb::arg("wheels"), nb::arg("length"),
            nb::arg("least_load"), "wheels: [wheelsets, 2, n], force first; length: m.")
       .def("add", &M::add, nb::arg("way"), nb::arg("wheels"), "The state after `way` m.")

@@ -54,7 +54,8 @@ struct Row {
   size_t element, axis;
   bool about;
   double stiffness, damping, preload;
-  Stop stop;  // empty: none
+  double sticking;  // N/m, N m/rad, of its slider's spring
+  Stop stop;        // empty: none
 };
 
 // dry friction: a spring and a slider in series, whose limit is a force and a share of the load
@@ -74,15 +75,26 @@ Point point_of(const Grid &rows, size_t k) {
   return {from[0], from[1], from[2]};
 }
 
+// N/m, of the piece of its table; first: its first point
+double piece_of(const Stop &stop, double d, size_t &first) {
+  const auto next = std::upper_bound(stop.d.begin() + 1, stop.d.end() - 1, d);
+  first = static_cast<size_t>(next - stop.d.begin()) - 1;
+  return (stop.force[first + 1] - stop.force[first]) / (stop.d[first + 1] - stop.d[first]);
+}
+
 double stop_force(const Stop &stop, double d) {
   if (stop.d.empty()) return 0.0;
-  const auto next = std::upper_bound(stop.d.begin() + 1, stop.d.end() - 1, d);
-  const auto k = static_cast<size_t>(next - stop.d.begin()) - 1;
-  const double slope = (stop.force[k + 1] - stop.force[k]) / (stop.d[k + 1] - stop.d[k]);
+  size_t k = 0;
+  const double slope = piece_of(stop, d, k);
   return stop.force[k] + slope * (d - stop.d[k]);
 }
 
-class Suspension {
+double stop_slope(const Stop &stop, double d) {
+  size_t k = 0;
+  return stop.d.empty() ? 0.0 : piece_of(stop, d, k);
+}
+
+class Suspension final : public VehicleSuspension {
  public:
   Suspension(size_t width, const IndexGrid &columns, const Values &arms, const IndexGrid &ends,
              const Grid &at_a, const Grid &at_b, const IndexGrid &rows, const Grid &coefficients,
@@ -118,6 +130,7 @@ class Suspension {
                        coefficients(k, 0),
                        coefficients(k, 1),
                        coefficients(k, 2),
+                       0.0,
                        {}});
     for (size_t k = 0; k < series_rows.shape(0); ++k)
       series_.push_back({below(series_rows(k), count), series(k, 0), series(k, 1)});
@@ -125,6 +138,7 @@ class Suspension {
     for (size_t k = 0; k < friction_rows.shape(0); ++k)
       friction_.push_back({below(friction_rows(k, 0), count), below(friction_rows(k, 1), count),
                            friction(k, 0), friction(k, 1), friction(k, 2)});
+    for (const Friction &f : friction_) rows_[f.row].sticking += f.stiffness;
     for (auto *of_friction : {&friction_force_, &anchor_}) of_friction->resize(friction_.size());
     matrix_.resize(count * width);
     for (auto *of_rows : {&displacement_, &rate_, &force_}) of_rows->resize(count);
@@ -136,17 +150,21 @@ class Suspension {
   double step(const Values &q, const Values &v, const Values &series) {
     if (q.shape(0) != width_ || v.shape(0) != width_ || series.shape(0) != series_.size())
       throw nb::value_error("a state of another size");
-    for (Body &body : bodies_) place(body, q.data());
+    return find_forces(q.data(), v.data(), series.data());
+  }
+
+  double find_forces(const double *q, const double *v, const double *series) override {
+    for (Body &body : bodies_) place(body, q);
     for (Element &e : elements_) {
       e.point_b = material(bodies_[e.b], e.at_b);
       e.apart = e.point_b - material(bodies_[e.a], e.at_a);
     }
     std::fill(generalised_.begin(), generalised_.end(), 0.0);
     double power = 0;
-    for (size_t k = 0; k < rows_.size(); ++k) power += load(k, v.data());
+    for (size_t k = 0; k < rows_.size(); ++k) power += load(k, v);
     for (size_t k = 0; k < series_.size(); ++k) {
       const Series &s = series_[k];
-      const double f = series(k);
+      const double f = series[k];
       force_[s.row] -= f;
       series_rates_[k] = s.stiffness * (rate_[s.row] - f / s.damping);
       power += f * f / s.damping;
@@ -157,25 +175,71 @@ class Suspension {
   }
 
   // sliders move on to where the last step() has them: once a time step
-  void settle() {
+  void settle() override {
     for (size_t k = 0; k < friction_.size(); ++k)
       anchor_[k] = displacement_[friction_[k].row] - friction_force_[k] / friction_[k].stiffness;
+  }
+
+  void add_derivatives(double *to) const override {
+    const size_t stride = 2 * width_ + series_.size();
+    for (size_t k = 0; k < rows_.size(); ++k) {
+      const Row &row = rows_[k];
+      const double stiffness = tangent(k);
+      const double *rate = matrix_.data() + k * width_;
+      each_column(k, [&](size_t i) {
+        each_column(k, [&](size_t j) {
+          to[i * stride + j] -= stiffness * rate[i] * rate[j];
+          to[i * stride + width_ + j] -= row.damping * rate[i] * rate[j];
+        });
+      });
+    }
+    for (size_t k = 0; k < series_.size(); ++k)
+      each_column(series_[k].row, [&](size_t i) {
+        to[i * stride + 2 * width_ + k] -= matrix_[series_[k].row * width_ + i];
+      });
+  }
+
+  void series_derivatives(double *by_v, double *by_series) const override {
+    for (size_t k = 0; k < series_.size(); ++k) {
+      const Series &s = series_[k];
+      for (size_t i = 0; i < width_; ++i)
+        by_v[k * width_ + i] = s.stiffness * matrix_[s.row * width_ + i];
+      by_series[k] = -s.stiffness / s.damping;
+    }
   }
 
   double *matrix() { return matrix_.data(); }
   double *displacement() { return displacement_.data(); }
   double *rate() { return rate_.data(); }
   double *force() { return force_.data(); }
-  double *series_rates() { return series_rates_.data(); }
-  double *generalised() { return generalised_.data(); }
   double *friction_force() { return friction_force_.data(); }
   double *anchor() { return anchor_.data(); }
   size_t rows() const { return rows_.size(); }
-  size_t series() const { return series_.size(); }
   size_t friction() const { return friction_.size(); }
-  size_t width() const { return width_; }
+  double *series_rates() override { return series_rates_.data(); }
+  double *generalised() override { return generalised_.data(); }
+  size_t series() const override { return series_.size(); }
+  size_t width() const override { return width_; }
 
  private:
+  // N/m, N m/rad, of a row as it is displaced, sliders stick
+  double tangent(size_t k) const {
+    return rows_[k].stiffness + rows_[k].sticking + stop_slope(rows_[k].stop, displacement_[k]);
+  }
+
+  // both ends' columns, some of them of both
+  template <typename Take>
+  void each_column(size_t k, Take &&take) const {
+    const Element &e = elements_[rows_[k].element];
+    const Body &a = bodies_[e.a], &b = bodies_[e.b];
+    for (const size_t column : a.columns)
+      if (column < width_) take(column);
+    for (const size_t column : b.columns)
+      if (column < width_ &&
+          std::find(a.columns, a.columns + kPlaces, column) == a.columns + kPlaces)
+        take(column);
+  }
+
   static size_t below(int64_t index, size_t count) {
     if (index < 0 || static_cast<size_t>(index) >= count) throw nb::index_error();
     return static_cast<size_t>(index);
@@ -296,7 +360,9 @@ void bind_suspension(nb::module_ &m) {
       "N, of a bump stop whose table has these points, at a displacement (m); on along its first "
       "and last line.");
   using S = Suspension;
-  nb::class_<S>(m, "Suspension", "Forces of a vehicle's springs, dampers, rods and bump stops.")
+  nb::class_<VehicleSuspension>(m, "VehicleSuspension", "What a vehicle's steps ask of one.");
+  nb::class_<S, VehicleSuspension>(m, "Suspension",
+                                   "Forces of a vehicle's springs, dampers, rods and bump stops.")
       .def(
           nb::init<size_t, const IndexGrid &, const Values &, const IndexGrid &, const Grid &,
                    const Grid &, const IndexGrid &, const Grid &, const Indices &, const Grid &,

@@ -11,9 +11,6 @@
 
 namespace railpatch::python {
 
-namespace {
-
-// s, CPU time of this thread; where the system has no such clock, of any
 double thread_seconds() {
 #ifdef CLOCK_THREAD_CPUTIME_ID
   timespec now;
@@ -22,6 +19,8 @@ double thread_seconds() {
   const auto since = std::chrono::steady_clock::now().time_since_epoch();
   return std::chrono::duration<double>(since).count();
 }
+
+namespace {
 
 long process_number() {
 #if defined(__unix__) || defined(__APPLE__)

@@ -10,6 +10,9 @@
 
 namespace railpatch::python {
 
+// s, CPU time of this thread; where the system has no such clock, of any
+double thread_seconds();
+
 class Workers {
  public:
   // threads: >= 1, of which the caller is one: 1 makes none. Raises std::system_error where the

@@ -101,9 +101,6 @@ class ForceElement:
             if contact.case.track.irregularity is not None:
                 raise CaseError("track.irregularity: given, allowed in a multibody model none")
         self._stores = [changes_with_time(contact.case) for contact in self.contacts]
-        self._curved = any(
-            contact.case.method.reference_surface == "curved" for contact in self.contacts
-        )
         self.frame_speed = float(frame_speed)
         self.wheelset = pin.SE3.Identity() if wheelset is None else wheelset
         self._core = _core.ForceElement(
@@ -114,6 +111,7 @@ class ForceElement:
             placements([track] * len(joints)),
             self.frame_speed,
             threads,
+            [contact.case.method.reference_surface == "curved" for contact in self.contacts],
         )
         self._tracks, self._rails = self._core.tracks, self._core.rails
         # of each wheelset, and the number of solves at which they were found
@@ -178,6 +176,16 @@ class ForceElement:
             raise CaseError(f"seconds: value is {show(seconds)}, allowed >= 0 and finite")
         if any(self._stores):
             self._core.pass_time(float(seconds))
+
+    @property
+    def compiled(self) -> _core.ForceElement:
+        """The same in C++, for what is compiled beside it."""
+        return self._core
+
+    @property
+    def changes_with_time(self) -> bool:
+        """Whether pass_time() has something to do."""
+        return any(self._stores)
 
     def place(self, index: int, force: Sequence[float], moment: Sequence[float]) -> NDArray:
         """[6], another wrench on a wheelset, as fext wants it, at the last step's position.
@@ -311,11 +319,7 @@ class ForceElement:
     def lateral_normals(self) -> NDArray[np.float64]:
         """N, [wheelsets, 2], of left and right wheel: the parts to the right of pressures in
         `wheels`, at the last step; the rest of the lateral force is of creep."""
-        # the tractions' part is known row by row where each has an angle of its own
-        if not self._curved:
-            return self._lateral
-        rows = [self.result(index, fields=True) for index in range(len(self.joints))]
-        return np.array([[lateral_normal(result[side]) for side in SIDES] for result in rows])
+        return self._lateral
 
     def track_rotation(self, index: int) -> NDArray[np.float64]:
         """[3, 3], from a wheelset's track axes to the world's."""
@@ -441,24 +445,6 @@ def joint_index(model: pin.Model, joint: str | int) -> int:
     if isinstance(joint, bool) or not isinstance(joint, int) or not 1 <= joint < model.njoints:
         raise ValueError(f"joint: value is {joint!r}, allowed 1 to {model.njoints - 1}, or a name")
     return joint
-
-
-def lateral_normal(wheel: dict[str, Any]) -> float:
-    """N, to the right on a wheel, of the pressures: what its creep forces leave."""
-    creep = sum(patch["share"] * lateral_creep(patch) for kind in PATCHES for patch in wheel[kind])
-    return float(wheel["force"][1] - creep)
-
-
-def lateral_creep(patch: dict[str, Any]) -> float:
-    """N, to the right on a wheel, of a patch's tractions. On a curved reference surface, where the
-    lateral `creep_force` holds a part of pressure, by its rows."""
-    angles = np.asarray(patch.get("row_angle", ()))
-    if not angles.size:
-        return float(patch["creep_force"][1] * math.cos(patch["contact_angle"]))
-    if not np.size(patch["traction"]):
-        return 0.0
-    area = (patch["x"][1] - patch["x"][0]) * (patch["y"][1] - patch["y"][0])
-    return float(area * np.cos(angles) @ np.sum(patch["traction"][1], axis=1))
 
 
 def check_case(case: Any) -> None:

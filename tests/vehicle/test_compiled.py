@@ -1,0 +1,116 @@
+"""The compiled equations of motion and steps, against those in Python by Pinocchio."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import vehicle_parts as parts
+import vehicle_scenes as scenes
+
+from wheelset_demo.vehicle import Simulation, VehicleScene
+from wheelset_demo.vehicle.compiled import core_of
+
+CURVE = {"straight": 25.0, "transition": 60.0, "arc": 1e3, "radius": 800.0, "cant": 0.1}
+
+
+def bogie(folder: Path) -> VehicleScene:
+    """One frame on two wheelsets without axle boxes, springs with sliders, dampers in series."""
+    vehicle = parts.bogie()
+    slider = {"friction_stiffness": [0.0, 4e6, 0.0], "friction_force": [0.0, 3e3, 0.0]}
+    slider["series_stiffness"] = [0.0, 0.0, 1e6]
+    vehicle["element"] = [{**element, **slider} for element in vehicle["element"]]
+    return parts.load(folder, vehicle)
+
+
+@pytest.fixture(scope="module", params=["coach", "bogie"])
+def given(request, tmp_path_factory) -> VehicleScene:
+    """Into a transition, on irregular rails: no two bodies move alike."""
+    given = scenes.scene(duration=0.4, irregular=True, speed=60.0, alignment=CURVE)
+    if request.param == "bogie":
+        other = bogie(tmp_path_factory.mktemp("bogie"))
+        given = replace(other, alignment=given.alignment, irregularity=given.irregularity)
+        given = given.with_run(duration=0.4).with_method(**scenes.QUICK)
+    return given
+
+
+@pytest.fixture(scope="module")
+def moved(given) -> Simulation:
+    """At its end; in Python, too, the last rates are those of the state."""
+    simulation = scenes.finished(given)
+    simulation.solve_again()
+    return simulation
+
+
+def test_accelerations_are_those_of_pinocchio(moved):
+    system, state = moved.system, moved.state
+    core, wanted = core_of(system), moved.rates
+    n = system.count
+    assert np.abs(wanted.values[n : 2 * n]).max() > 1.0
+    core.evaluate(state.values)
+    # the contacts, solved again from their own solution, move by their tolerance
+    scale = np.abs(wanted.values[n : 2 * n]).max()
+    np.testing.assert_allclose(core.rates, wanted.values, atol=1e-7 * scale)
+    np.testing.assert_allclose(core.powers, wanted.powers, rtol=1e-6, atol=1e-3)
+    np.testing.assert_allclose(core.slope_wrenches, system.slope_wrenches, rtol=1e-6, atol=1e-3)
+
+
+def test_derivatives_are_those_of_pinocchio(moved):
+    """By positions, velocities, forces in series and what the rails do."""
+    system, state = moved.system, moved.state
+    n, every = system.count, range(system.wheelsets)
+    matrix, inputs = system.derivatives(state.values, every)
+    core = core_of(system)
+    core.evaluate(state.values)
+    core.differentiate(state.values, np.array(every, dtype=np.int64))
+    # by differences of the motion, and contacts' derivatives are by differences, too; slopes'
+    # wrenches are held in the world, not in the joint: a few newtons that turn
+    for got, wanted, slack in (
+        (core.by_state[:, :n], matrix[n : 2 * n, :n], 1e-4),
+        (core.by_state[:, n : 2 * n], matrix[n : 2 * n, n : 2 * n], 1e-5),
+        (core.by_state[:, 2 * n :], matrix[n : 2 * n, 2 * n :], 1e-9),
+        (core.by_inputs, inputs[n : 2 * n], 1e-5),
+        (core.series_by_v, matrix[2 * n :, n : 2 * n], 1e-9),
+        (core.series_by_series, np.diagonal(matrix)[2 * n :], 1e-12),
+    ):
+        scale = np.abs(wanted).max(axis=-1, keepdims=True)
+        assert scale.max() > 0
+        assert (np.abs(got - wanted) <= slack * np.maximum(scale, 1.0)).all()
+
+
+def test_steps_are_those_in_python(given):
+    """With derivatives at every step, when none are old."""
+    runs = []
+    for compiled in (True, False):
+        simulation = Simulation(given.with_run(duration=0.1, derivatives_every=1))
+        assert simulation._compiled is not None
+        if not compiled:
+            simulation._compiled = None
+        for _ in simulation.steps():
+            pass
+        runs.append(simulation)
+    one, other = runs
+    n = one.system.count
+    for part in (slice(0, n), slice(n, 2 * n), slice(2 * n, None)):
+        wanted = other.state.values[part]
+        moved = np.abs(wanted).max()
+        np.testing.assert_allclose(one.state.values[part], wanted, atol=1e-7 * moved)
+    works = np.abs(other.state.work).max()
+    np.testing.assert_allclose(one.state.work, other.state.work, atol=1e-5 * works)
+    np.testing.assert_allclose(one.means.loads, other.means.loads, rtol=1e-5)
+    np.testing.assert_allclose(one.means.guiding, other.means.guiding, atol=1.0)
+    assert one.system.evaluations == other.system.evaluations + 1
+
+
+def test_several_steps_at_once_are_single_ones(given):
+    """To the bit: a log or a histogram changes nothing."""
+    short = given.with_run(duration=0.1, log_every=7)
+    one, other = Simulation(short), Simulation(short, step_times=True)
+    for simulation in (one, other):
+        for _ in simulation.steps():
+            pass
+    np.testing.assert_array_equal(one.state.values, other.state.values)
+    np.testing.assert_array_equal(one.state.work, other.state.work)
+    np.testing.assert_array_equal(one.rates.values, other.rates.values)
