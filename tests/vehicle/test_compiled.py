@@ -22,7 +22,7 @@ def bogie(folder: Path) -> VehicleScene:
     slider = {"friction_stiffness": [0.0, 4e6, 0.0], "friction_force": [0.0, 3e3, 0.0]}
     slider["series_stiffness"] = [0.0, 0.0, 1e6]
     vehicle["element"] = [{**element, **slider} for element in vehicle["element"]]
-    return parts.load(folder, vehicle)
+    return parts.load(folder, vehicle, head="hold_height = 1.1")
 
 
 @pytest.fixture(scope="module", params=["coach", "bogie"])

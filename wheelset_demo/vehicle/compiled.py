@@ -2,8 +2,8 @@
 
 For scenes of bodies, elements and contacts alone; what else they may have, track below the rails
 and drives with slip control, is in system.py, which holds the same equations for all. Tests compare
-the two. Wheelsets take turns in renewing their contacts' derivatives, so that no step makes all; none
-are older than ``every`` steps.
+the two. Wheelsets take turns in renewing their contacts' derivatives, so that no step makes all;
+none are older than ``every`` steps.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ class CompiledSteps:
 
 def covers(system: VehicleSystem) -> bool:
     """Whether a system has nothing but bodies, elements and contacts."""
-    return system.support is None
+    return system.support is None and not system.drives
 
 
 def core_of(system: VehicleSystem) -> _core.VehicleSteps:
@@ -104,7 +104,7 @@ def core_of(system: VehicleSystem) -> _core.VehicleSteps:
     kinds = [(model.parents[k] - 1, JOINTS.index(model.joints[k].shortname())) for k in joints]
     frames = [model.jointPlacements[k] for k in joints]
     masses = [model.inertias[k] for k in joints]
-    reference = system.vehicle.columns[0]
+    x, y, _, yaw, _, pitch = system.vehicle.columns[0].tolist()
     return _core.VehicleSteps(
         system.element.compiled,
         system.course,
@@ -115,7 +115,7 @@ def core_of(system: VehicleSystem) -> _core.VehicleSteps:
         model.gravity.linear.copy(),
         np.array(system.element.joints, dtype=np.int64) - 1,
         system.radii,
-        np.array([ARM, run.speed_control, system.scene.speed]),
-        reference[[0, 1, 3]].astype(np.int64),
+        np.array([ARM, system.hold_arm, run.speed_control, system.scene.speed]),
+        np.array([x, y, pitch, yaw], dtype=np.int64),
         system.vehicle.carriers[:, 1:3].astype(np.int64),
     )

@@ -106,11 +106,12 @@ class HeldDerivatives:
 class VehicleSystem:
     """Vehicle, suspension, track and contacts of a scene. Keeps the contacts' last solutions.
 
-    wheelsets: their number; radii: m, nominal, of their wheels. slope_wrenches: [wheelsets, 2, 3], of left and right wheel at the last
-    rates(), Fx (N), My, Mz (N m) in track axes: of rails that are not level, beside the element's
-    wrenches. evaluations, renewals: number of rates() and of derivatives(). contact_seconds,
-    derivative_seconds: s, CPU time of the calling thread in the force element and in derivatives();
-    further threads: element.helper_seconds.
+    wheelsets: their number; radii: m, nominal, of their wheels; hold_arm: m, below the reference
+    body's centre, where its speed is held. slope_wrenches: [wheelsets, 2, 3], of left and right
+    wheel at the last rates(), Fx (N), My, Mz (N m) in track axes: of rails that are not level,
+    beside the element's wrenches. evaluations, renewals: number of rates() and of derivatives().
+    contact_seconds, derivative_seconds: s, CPU time of the calling thread in the force element and
+    in derivatives(); further threads: element.helper_seconds.
     """
 
     def __init__(self, scene: VehicleScene) -> None:
@@ -139,11 +140,11 @@ class VehicleSystem:
         self._fext = no_forces(self.model)
         self._joints = [self.vehicle.joints[name] for name in names]
         self._car = self.vehicle.columns[0]
-        self.drives = Drives(scene.vehicle.drive, self.vehicle, self._radii)
+        self.drives = Drives(scene.vehicle.drive, self.vehicle, self.radii)
         height = scene.vehicle.bodies[0].position[2]
         held = scene.vehicle.hold_height
         # m, below the centre: where the force acts that holds the speed
-        self._hold_arm = 0.0 if held is None else height - held
+        self.hold_arm = 0.0 if held is None else height - held
         self._control = np.zeros(self.model.nv)
         self.slope_wrenches = np.zeros((self.wheelsets, 2, 3))
         self._slopes = self.course.slopes.reshape(-1, 2, 2)
@@ -283,7 +284,7 @@ class VehicleSystem:
         overwritten by the next."""
         yaw = float(q[self._car[3]])
         self._control[self._car[:2]] = math.cos(yaw), math.sin(yaw)
-        self._control[self._car[5]] = self._hold_arm
+        self._control[self._car[5]] = self.hold_arm
         return self._control
 
     def _drive(self, q: Vector, v: Vector, tau: Vector) -> float:

@@ -126,18 +126,19 @@ double VehicleEquations::add_slopes() {
 }
 
 void VehicleEquations::ahead(const double *q, double *found) const {
-  const double yaw = q[numbers_.ahead[2]];
+  const double yaw = q[numbers_.ahead[kAhead]];
   found[0] = cos(yaw);
   found[1] = sin(yaw);
+  found[2] = numbers_.hold;
 }
 
 double VehicleEquations::drive(const double *q, const double *v) {
-  double along[2];
+  double along[kAhead], speed = 0;
   ahead(q, along);
   const size_t *at = numbers_.ahead;
-  const double speed = along[0] * v[at[0]] + along[1] * v[at[1]];
+  for (size_t i = 0; i < kAhead; ++i) speed += along[i] * v[at[i]];
   const double force = numbers_.gain * (numbers_.speed - speed);
-  for (size_t i = 0; i < 2; ++i) tau_[at[i]] += force * along[i];
+  for (size_t i = 0; i < kAhead; ++i) tau_[at[i]] += force * along[i];
   return force * speed;
 }
 
@@ -158,10 +159,10 @@ void VehicleEquations::differentiate(const double *values, const size_t *wheelse
   for (size_t k = 0; k < this->wheelsets(); ++k) add_contacts(k);
   suspension_.add_derivatives(forces_.data());
   suspension_.series_derivatives(series_by_v_.data(), series_by_series_.data());
-  double along[2];
+  double along[kAhead];
   ahead(values, along);
-  for (size_t i = 0; i < 2; ++i)
-    for (size_t j = 0; j < 2; ++j)
+  for (size_t i = 0; i < kAhead; ++i)
+    for (size_t j = 0; j < kAhead; ++j)
       forces_[numbers_.ahead[i] * size() + n_ + numbers_.ahead[j]] -=
           numbers_.gain * along[i] * along[j];
   find_inverse();

@@ -12,7 +12,8 @@ namespace railpatch::python {
 // Forces of rails that are not level, the drive.
 struct VehicleNumbers {
   double arm;                  // m, half the distance of the contacts
-  size_t ahead[3];             // columns of the driven body's x, y, yaw
+  size_t ahead[4];             // columns of the driven body's x, y, pitch, yaw
+  double hold;                 // m, below its centre, where the speed is held
   double gain, speed;          // N s/m, m/s
   std::vector<size_t> axle;    // joints of the wheelsets
   std::vector<double> radius;  // m, of their wheels
@@ -53,7 +54,7 @@ class VehicleEquations {
   size_t evaluations = 0, renewals = 0;  // calls of evaluate() and of differentiate()
 
  private:
-  enum { kWorks = 4, kWheel = 9, kMotion = 18, kState = 12 };
+  enum { kAhead = 3, kWorks = 4, kWheel = 9, kMotion = 18, kState = 12 };
 
   void give_motion();
   double add_slopes();

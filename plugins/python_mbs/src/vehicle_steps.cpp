@@ -85,11 +85,11 @@ std::vector<Joint> joints_of(const IndexGrid &kinds, const Grid &placements, con
 
 VehicleNumbers numbers_of(const Indices &axles, const Values &radii, const Values &numbers,
                           const Indices &ahead) {
-  if (numbers.shape(0) != 3 || ahead.shape(0) != 3 || radii.shape(0) != axles.shape(0))
-    throw nb::value_error("a radius a wheelset; arm, gain, speed; x, y, yaw");
-  VehicleNumbers found{numbers(0), {}, numbers(1), numbers(2), {}, {}};
+  if (numbers.shape(0) != 4 || ahead.shape(0) != 4 || radii.shape(0) != axles.shape(0))
+    throw nb::value_error("a radius a wheelset; arm, hold, gain, speed; x, y, pitch, yaw");
+  VehicleNumbers found{numbers(0), {}, numbers(1), numbers(2), numbers(3), {}, {}};
   found.radius.assign(radii.data(), radii.data() + radii.shape(0));
-  for (size_t i = 0; i < 3; ++i) found.ahead[i] = static_cast<size_t>(ahead(i));
+  for (size_t i = 0; i < 4; ++i) found.ahead[i] = static_cast<size_t>(ahead(i));
   for (size_t k = 0; k < axles.shape(0); ++k) found.axle.push_back(static_cast<size_t>(axles(k)));
   return found;
 }
@@ -356,8 +356,9 @@ void bind_steps(nb::module_ &m) {
            "kinds: of each joint, its parent (-1: the world) and whether it moves along x, y, z "
            "(0 to 2) or about them (3 to 5); placements: in the parent, 12 numbers; inertias: "
            "mass, centre, inertia about it, 13 numbers; axles, radii: joints of the wheelsets, m; "
-           "numbers: m, half the distance of the contacts, N s/m, m/s, of the drive; ahead: the "
-           "driven body's x, y, yaw; watched: of each wheelset, two coordinates.")
+           "numbers: m, half the distance of the contacts, how far below its centre a body is held "
+           "at speed, N s/m, m/s; ahead: its x, y, pitch, yaw; watched: of each wheelset, two "
+           "coordinates.")
       .def("evaluate", &V::evaluate, nb::arg("values"),
            "Fills 'rates' and 'powers'; the contacts' worst status.")
       .def("differentiate", &V::differentiate, nb::arg("values"), nb::arg("wheelsets"),
