@@ -151,12 +151,20 @@ def profile(
     return make
 
 
+WATER = '[fluid]\nmodel = "film"\nroughness = 1e-6\nliquid = "water"\n'
 NUMBER = r"[-+0-9.eE]+"
 MISTAKES: tuple[Mistake, ...] = (
     # --- a contact patch --------------------------------------------------------------------------
     *(
         Mistake(RESEARCHER, what, "solve {}", make)
         for what, make in (
+            ("water of 150 degrees C", patch(more=WATER + "temperature = 150.0\n")),
+            ("water between bodies of 150 degrees C",
+             patch(more=WATER + "[temperature]\nwheel = 150.0\nrail = 150.0\n")),
+            ("an oil's Eyring stress for water", patch(more=WATER + "eyring_stress = 5e6\n")),
+            ("a film of oil beside a rate of water",
+             patch(more=WATER + "water_rate = 1e-8\noil_film = 1e-6\n")),
+            ("a hardness for wear by work", patch(more="[damage]\nhardness = 3.2e9\n")),
             ("shear modulus in GPa", patch(more="[material]\nshear_modulus = 82.0\n")),
             ("shear modulus in MPa", patch(more="[material]\nshear_modulus = 82e3\n")),
             ("Young's modulus in place of Poisson's ratio",
@@ -246,6 +254,8 @@ MISTAKES: tuple[Mistake, ...] = (
     ),
     Mistake(VEHICLE, "the scene of a wheelset to a vehicle", "vehicle {}", scene("wheelset")),
     Mistake(VEHICLE, "the scene of a patch to a run", "wheelset {} -o a.mcap", scene("patch")),
+    Mistake(VEHICLE, "lubrication on the grid of a wheel", "solve {}",
+            wheel((r"\Z", "\n" + WATER.replace("film", "ehl", 1)))),
     Mistake(VEHICLE, "a car body in t", "vehicle {} --duration 0.01 --method fastsim",
             scene("vehicle", (r"^mass = .*$", "mass = 32.0"))),
     # --- profile files ----------------------------------------------------------------------------
