@@ -3,10 +3,13 @@ core, or warned of."""
 
 from __future__ import annotations
 
+import random
+import re
 from typing import Any
 
 import pytest
 import railpatch
+from bits.combinations import COMMON, OF_PATCHES, OF_WHEELS, PATCH_BASE, WHEELSET_BASE
 from case_samples import PATCH, WHEELSET, with_values
 from click.testing import CliRunner
 from railpatch import _core
@@ -62,6 +65,23 @@ def test_fluids_are_refused_in_plain_words(name: str) -> None:
         with pytest.raises(railpatch.CaseError) as error:
             railpatch.Contact({**case, "fluid": fluid, "method": method})
         assert said in error.value.problems
+
+
+def test_no_refusal_shows_an_object_of_python() -> None:
+    """Of pairs of tables and keys that exclude each other."""
+    rng, told = random.Random(16), []
+    for base, own in ((PATCH_BASE, OF_PATCHES), (WHEELSET_BASE, OF_WHEELS)):
+        features = list({**COMMON, **OF_PATCHES, **OF_WHEELS, **own}.values())
+        for _ in range(250):
+            one, other = rng.sample(features, 2)
+            try:
+                load_scene(with_values(with_values(base, **one), **other))
+            except TypeError:  # keys of a table that the other leaves out
+                continue
+            except railpatch.CaseError as error:
+                told += error.problems
+    assert len(told) > 300
+    assert [text for text in told if re.search(r"\w\([a-z_]+=|<class|object at", text)] == []
 
 
 def core_of(fluid: dict[str, Any], **changes: Any) -> Any:

@@ -220,8 +220,9 @@ def show(value: Any) -> str:
 def relation(key: str, value: Any, allowed: str) -> PydanticCustomError:
     """Error of a relation between keys; the key is relative to the table that raises it. Checks
     of several relations give all that are broken, for refuse()."""
+    shown = show(value) if isinstance(value, BaseModel | dict | list) else value
     return PydanticCustomError(
-        "relation", "relation", {"key": key, "shown": value, "allowed": allowed}
+        "relation", "relation", {"key": key, "shown": shown, "allowed": allowed}
     )
 
 
