@@ -125,9 +125,13 @@ def test_steps_are_refused_as_cases_are() -> None:
         one.step(oil_film=1e-6)
     both = railpatch.Contact({**PATCH, "fluid": OIL})
     assert both.step(oil_film=1e-6).good
-    with pytest.raises(railpatch.CaseError, match="oil_film must be left NaN with water_rate"):
+    with pytest.raises(railpatch.CaseError, match="water_rate: value is 1e-08, but this is no mov"):
         both.step(water_rate=1e-8)
     both = railpatch.Contact({**PATCH, "fluid": OIL})
+    with pytest.raises(
+        railpatch.CaseError, match="oil_film: value is 1e-06, allowed none: it must"
+    ):
+        both.step(water_rate=1e-8, oil_film=1e-6)
     assert both.step(water_rate=1e-8).good
 
 
