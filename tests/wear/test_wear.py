@@ -143,6 +143,90 @@ def test_smoothing_keeps_the_sum_and_depth_goes_along_z() -> None:
     np.testing.assert_allclose(z - worn, 1e-4)
 
 
+BOTH = SWEEP.replace("distance = 1.5e6", 'bodies = "both"\ndistance = 1.5e6\npassages = 6e5')
+
+
+@pytest.fixture(scope="module")
+def both(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[dict[str, Any]]]:
+    """Wheels and rails together, steps by default."""
+    folder = tmp_path_factory.mktemp("both")
+    return folder, wear_profiles(load_wear(written(folder, sweep=BOTH)), folder / "out")
+
+
+def lost(folder: Path, before: str, after: str, body: str) -> tuple[np.ndarray, np.ndarray]:
+    """m, y and the depth that has worn off between two files, of a rail its head from above."""
+    y, z = read_points(folder / before)
+    same, worn = read_points(folder / after)
+    assert (y == same).all()
+    return y, (worn - z if body == "rail" else z - worn)
+
+
+def test_rails_wear_with_the_wheels(both: tuple[Path, list[dict[str, Any]]]) -> None:
+    """What a rail loses by metre is what all passages wear off, to 0.1 %, from the files."""
+    folder, rows = both
+    assert (rows[-1]["distance"], rows[-1]["passages"]) == (1.5e6, pytest.approx(6e5))
+    for before, after in itertools.pairwise(rows):
+        assert abs(after["balance"]) < 1e-3
+        for side in ("left", "right"):
+            y, depth = lost(folder / "out", before["rails"][side], after["rails"][side], "rail")
+            assert depth.min() > -1e-9
+            assert depth.max() < 2.1e-5
+            order = np.argsort(y)
+            section = np.trapezoid(depth[order], y[order])
+            mass = after["rail_mass"][side] - before["rail_mass"][side]
+            assert section * 7850 == pytest.approx(mass, rel=1e-3)
+    # a wheel and its rail lose the same in each contact: by metre and passage, by metre and turn
+    first = rows[1]
+    of_rail = first["rail_mass"]["left"] + first["rail_mass"]["right"]
+    of_wheel = first["mass"]["left"] + first["mass"]["right"]
+    assert of_rail / first["passages"] == pytest.approx(of_wheel / first["distance"], rel=1e-12)
+
+
+def test_the_profiles_do_not_depend_on_the_number_of_steps(
+    both: tuple[Path, list[dict[str, Any]]], tmp_path: Path
+) -> None:
+    """Steps of half the depth: every place of every profile within 2 % of the greatest depth."""
+    folder, rows = both
+    plan = load_wear(written(tmp_path, "largest_depth = 1e-5\n", sweep=BOTH))
+    finer = wear_profiles(plan, tmp_path / "out")
+    assert len(finer) > 1.5 * len(rows)
+    for body, key in (("wheel", "profiles"), ("rail", "rails")):
+        for side in ("left", "right"):
+            depths = [
+                lost(at / "out", one[0][key][side], one[-1][key][side], body)[1]
+                for at, one in ((folder, rows), (tmp_path, finer))
+            ]
+            assert abs(depths[0] - depths[1]).max() < 0.02 * depths[1].max(), (body, side)
+
+
+def test_rails_alone_by_passages(tmp_path: Path) -> None:
+    """Wheels stay; both rails alike where asked."""
+    sweep = SWEEP.replace("distance = 1.5e6", 'bodies = "rail"\npassages = 1e5\nrails_alike = true')
+    rows = wear_profiles(load_wear(written(tmp_path, sweep=sweep)), tmp_path / "out")
+    assert rows[-1]["passages"] == 1e5
+    assert "distance" not in rows[-1]
+    assert not list((tmp_path / "out").glob("wheel_*"))
+    files = [(tmp_path / "out" / name).read_bytes() for name in rows[-1]["rails"].values()]
+    assert files[0] == files[1]
+    arguments = ["wear", str(tmp_path / "sweep.toml"), "-o", str(tmp_path / "out")]
+    ended = CliRunner().invoke(cli, arguments)
+    assert ended.exit_code == 0, ended.output
+    assert "off rails" in ended.output
+    page = (tmp_path / "out" / "wear.html").read_text(encoding="utf-8")
+    for text in ("Both rails", "passages", "off rails [g/m]", "greatest Y/Q"):
+        assert text in page
+
+
+def test_processes_give_the_same_rows_and_files(
+    both: tuple[Path, list[dict[str, Any]]], tmp_path: Path
+) -> None:
+    folder, rows = both
+    plan = load_wear(written(tmp_path, sweep=BOTH))
+    assert wear_profiles(plan, tmp_path / "out", workers=2) == rows
+    for path in (folder / "out").glob("*.csv"):
+        assert (tmp_path / "out" / path.name).read_bytes() == path.read_bytes()
+
+
 @pytest.mark.parametrize(
     ("sweep", "scene", "text"),
     [
@@ -150,8 +234,27 @@ def test_smoothing_keeps_the_sum_and_depth_goes_along_z() -> None:
         (SWEEP, SCENE.replace("[damage]\n", ""), "damage"),
         (SWEEP.replace("weights = [1, 2, 2, 1]", "weights = [1]"), SCENE, "wear.weights"),
         (SWEEP.replace("distance = 1.5e6", "distance = -1.0"), SCENE, "wear.distance"),
+        (SWEEP.replace("distance = 1.5e6", ""), SCENE, r"distance: .*missing"),
+        (SWEEP + "passages = 1e5\n", SCENE, "passages"),
+        (SWEEP + "rails_alike = true\n", SCENE, "rails_alike"),
+        (SWEEP.replace("distance = 1.5e6", 'bodies = "rail"'), SCENE, "passages"),
+        (
+            BOTH,
+            SCENE.replace("[track]", '[track]\nkind = "roller"\nroller_radius = 1.0'),
+            "a roller is no rail",
+        ),
+        (
+            BOTH.replace("wheelset.yaw", "profiles.rail").replace(
+                "[-0.001, 0.0, 0.0005, 0.001]", '["UIC60", "UIC60", "UIC60@1:20", "UIC60@1:40"]'
+            ),
+            SCENE,
+            "none of rail profiles",
+        ),
     ],
-    ids=["no table", "no damage", "weights", "distance"],
+    ids=[
+        *("no table", "no damage", "weights", "distance", "no distance", "no rails"),
+        *("alike", "no passages", "roller", "varied"),
+    ],
 )
 def test_refused_by_name(tmp_path: Path, sweep: str, scene: str, text: str) -> None:
     """The error names the key."""

@@ -47,6 +47,13 @@ class Distribution:
             target += inside / (self.edges[1] - self.edges[0])
             self.outside[body] += float(mass.sum() - inside.sum())
 
+    def merge(self, other: Distribution) -> None:
+        """Adds the sums of another one."""
+        self.wheel += other.wheel
+        self.rail += other.rail
+        for body, mass in other.outside.items():
+            self.outside[body] += mass
+
     def depth(self, body: str, density: float, length: float) -> Array:
         """m, [BINS], that has worn off, measured across y. length: m, over which the mass is
         spread: round the wheel, or along the rail."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -20,10 +21,17 @@ from railpatch.command.output import check_folder
 @click.command("wear")
 @click.argument("sweep", metavar="SWEEP.toml", type=click.Path(path_type=Path))
 @folder_option("Folder for profiles, page and what is needed to go on.")
+@click.option(
+    "--workers",
+    type=click.IntRange(1, 1024),
+    default=1,
+    show_default=True,
+    help="Processes that solve the cases of the mix; the rows do not depend on it.",
+)
 @json_option("Print the rows as one JSON list.")
 @quiet_flag()
-def wear(sweep: Path, output: Path, as_json: bool, quiet: bool) -> None:
-    """Wear wheel profiles over a mix of cases: a sweep with a table [wear].
+def wear(sweep: Path, output: Path, workers: int, as_json: bool, quiet: bool) -> None:
+    """Wear profiles of wheels and rails over a mix of cases: a sweep with a table [wear].
 
     What is done is kept as it is done: the same command goes on where it was ended.
     """
@@ -43,14 +51,29 @@ def wear(sweep: Path, output: Path, as_json: bool, quiet: bool) -> None:
                     advance(None)
                 done = int(100 * part)
 
-            rows = wear_profiles(plan, output, progress=tell)
+            rows = wear_profiles(plan, output, workers=workers, progress=tell)
     page = write_wear_page(rows, output, sweep.name)
     if as_json:
         click.echo(json.dumps(rows, allow_nan=False))
     elif not quiet:
         last = rows[-1]
         click.echo(f"{'cases':<14}{len(plan.mix.points)}")
-        click.echo(f"{'distance':<14}{1e-3 * last['distance']:.6g} km in {len(rows) - 1} steps")
-        click.echo(f"{'worn off':<14}{1e3 * sum(last['mass'].values()):.4g} g")
+        for name, text in told(last):
+            click.echo(f"{name:<14}{text}")
+        click.echo(f"{'steps':<14}{len(rows) - 1}")
         click.echo(f"{'depth':<14}{1e3 * last['depth']:.4g} mm at most")
         click.echo(f"{'page':<14}{page}")
+
+
+def told(row: dict[str, Any]) -> list[tuple[str, str]]:
+    """How far, and what each body has lost."""
+    found = []
+    if "distance" in row:
+        found.append(("distance", f"{1e-3 * row['distance']:.6g} km"))
+    if "passages" in row:
+        found.append(("passages", f"{row['passages']:.6g}"))
+    if "mass" in row:
+        found.append(("off wheels", f"{1e3 * sum(row['mass'].values()):.4g} g"))
+    if "rail_mass" in row:
+        found.append(("off rails", f"{1e3 * sum(row['rail_mass'].values()):.4g} g/m"))
+    return found

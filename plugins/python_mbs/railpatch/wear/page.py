@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ from railpatch.page.document import document
 from railpatch.page.figures import LINES, plot, styled
 from railpatch.page.parts import Key, folded, opening
 from railpatch.page.tables import number, table
-from railpatch.wear.evolve import read_points
+from railpatch.wear.evolve import FILES, read_points
 from railpatch.writing import write_whole
 
 SHOWN = 6  # profiles
@@ -20,25 +21,34 @@ SHOWN = 6  # profiles
 def write_wear_page(rows: list[dict[str, Any]], folder: Path, name: str) -> Path:
     """wear.html in the folder, of rows as wear_profiles gives them."""
     last = rows[-1]
-    mass = sum(last["mass"].values())
     deepest = f"{1e3 * last['depth']:.3g} mm"
-    way = f"{1e-3 * last['distance']:.4g} km"
-    keys = [
-        Key("worn off", f"{1e3 * mass:.4g} g", f"of {len(last['mass'])} wheels"),
-        Key("greatest depth", deepest, f"after {way}"),
+    lost = []
+    if "mass" in last:
+        lost.append(("wheels", f"{1e3 * sum(last['mass'].values()):.4g} g", len(last["mass"])))
+    if "rail_mass" in last:
+        metre = f"{1e3 * sum(last['rail_mass'].values()):.4g} g/m"
+        lost.append(("rails", metre, len(last["rail_mass"])))
+    keys = [Key(f"worn off {what}", mass, f"of {count} {what}") for what, mass, count in lost]
+    keys += [
+        Key("greatest depth", deepest, f"after {label(last)}"),
         *course_key(rows, "conicity", "equivalent conicity"),
         *course_key(rows, "y_over_q", "greatest Y/Q of the mix"),
     ]
-    verdict = (
-        f"After {way} the wheels have lost {1e3 * mass:.4g} g, {deepest} at the deepest place."
-    )
-    body = [opening(f"Wear: {name}", "Wheel profiles that wear over a mix of cases", verdict, keys)]
-    for sides, heads in groups(rows, folder):
-        body += [
-            f"<h2>{heads}</h2>",
-            plot(depth_figure(rows, folder, sides[0]), f"depth-{sides[0]}"),
-            plot(profiles_figure(rows, folder, sides[0]), f"profile-{sides[0]}"),
-        ]
+    masses = " and ".join(f"the {what} have lost {mass}" for what, mass, _ in lost)
+    verdict = f"After {label(last)} {masses}, {deepest} at the deepest place."
+    what = " and ".join(what for what, _, _ in lost)
+    head = f"Profiles of {what} that wear over a mix of cases"
+    body = [opening(f"Wear: {name}", head, verdict, keys)]
+    for wheel_or_rail, key in FILES.items():
+        if key not in last:
+            continue
+        for sides, heads in groups(rows, folder, wheel_or_rail):
+            mark = f"{wheel_or_rail}-{sides[0]}"
+            body += [
+                f"<h2>{heads}</h2>",
+                plot(depth_figure(rows, folder, wheel_or_rail, sides[0]), f"depth-{mark}"),
+                plot(profiles_figure(rows, folder, wheel_or_rail, sides[0]), f"profile-{mark}"),
+            ]
     body += [
         "<h2>Over the way</h2>",
         plot(course_figure(rows, "conicity", "equivalent conicity"), "conicity"),
@@ -56,31 +66,46 @@ def course_key(rows: list[dict[str, Any]], name: str, words: str) -> list[Key]:
     return [Key(words, f"{known[-1]:.3f}", f"{known[0]:.3f} at first")] if known else []
 
 
-def groups(rows: list[dict[str, Any]], folder: Path) -> list[tuple[list[str], str]]:
-    """Wheels whose profiles are the same at every step, together, with a head for them."""
+def groups(rows: list[dict[str, Any]], folder: Path, body: str) -> list[tuple[list[str], str]]:
+    """Sides whose profiles are the same at every step, together, with a head for them."""
     found: dict[tuple[bytes, ...], list[str]] = {}
-    for side in rows[-1]["profiles"]:
-        texts = tuple((folder / row["profiles"][side]).read_bytes() for row in rows)
+    for side in rows[-1][FILES[body]]:
+        texts = tuple((folder / row[FILES[body]][side]).read_bytes() for row in rows)
         found.setdefault(texts, []).append(side)
     return [
-        (sides, "Both wheels" if len(sides) > 1 else f"{sides[0].capitalize()} wheel")
+        (sides, f"Both {body}s" if len(sides) > 1 else f"{sides[0].capitalize()} {body}")
         for sides in found.values()
     ]
 
 
 def steps_table(rows: list[dict[str, Any]]) -> str:
     """All rows, with how well the profiles' volume is the contacts' mass."""
-    head = ["way [km]", "worn off [g]", "greatest depth [mm]", "mass balance open by [%]",
-            "equivalent conicity", "greatest Y/Q"]  # fmt: skip
-    cells = [
-        [
-            number(1e-3 * row["distance"]), number(1e3 * sum(row["mass"].values())),
-            number(1e3 * row["depth"]), f"{100 * abs(row['balance']):.2g}",
-            *("-" if row[name] is None else number(row[name]) for name in ("conicity", "y_over_q")),
-        ]
-        for row in rows
-    ]  # fmt: skip
-    return table(head, cells)
+    columns: list[tuple[str, Callable[[dict[str, Any]], str]]] = []
+    last = rows[-1]
+    if "distance" in last:
+        columns.append(("way [km]", lambda row: number(1e-3 * row["distance"])))
+    if "passages" in last:
+        columns.append(("passages", lambda row: number(row["passages"])))
+    if "mass" in last:
+        columns.append(("off wheels [g]", lambda row: number(1e3 * sum(row["mass"].values()))))
+    if "rail_mass" in last:
+        columns.append(
+            ("off rails [g/m]", lambda row: number(1e3 * sum(row["rail_mass"].values())))
+        )
+    columns += [
+        ("greatest depth [mm]", lambda row: number(1e3 * row["depth"])),
+        ("mass balance open by [%]", lambda row: f"{100 * abs(row['balance']):.2g}"),
+        ("equivalent conicity", lambda row: known_or_not(row["conicity"])),
+        ("greatest Y/Q", lambda row: known_or_not(row["y_over_q"])),
+    ]
+    return table(
+        [head for head, _ in columns], [[cell(row) for _, cell in columns] for row in rows]
+    )
+
+
+def known_or_not(value: float | None) -> str:
+    """A number of a row, which it may not have."""
+    return "-" if value is None else number(value)
 
 
 def shown(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -90,11 +115,11 @@ def shown(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return [rows[k] for k in sorted(places)]
 
 
-def profiles_figure(rows: list[dict[str, Any]], folder: Path, side: str) -> go.Figure:
+def profiles_figure(rows: list[dict[str, Any]], folder: Path, body: str, side: str) -> go.Figure:
     """z over y, down."""
     figure = go.Figure()
     for color, row in zip(LINES, shown(rows), strict=False):
-        y, z = read_points(folder / row["profiles"][side])
+        y, z = read_points(folder / row[FILES[body]][side])
         figure.add_scatter(x=1e3 * y, y=1e3 * z, name=label(row), line={"color": color})
     styled(figure, 380)
     figure.update_xaxes(title_text="y, mm")
@@ -102,13 +127,13 @@ def profiles_figure(rows: list[dict[str, Any]], folder: Path, side: str) -> go.F
     return figure
 
 
-def depth_figure(rows: list[dict[str, Any]], folder: Path, side: str) -> go.Figure:
+def depth_figure(rows: list[dict[str, Any]], folder: Path, body: str, side: str) -> go.Figure:
     """What has worn off over y."""
     figure = go.Figure()
-    y, new = read_points(folder / rows[0]["profiles"][side])
+    y, new = read_points(folder / rows[0][FILES[body]][side])
     for color, row in zip(LINES, shown(rows), strict=False):
-        _, z = read_points(folder / row["profiles"][side])
-        figure.add_scatter(x=1e3 * y, y=1e3 * (new - z), name=label(row), line={"color": color})
+        _, z = read_points(folder / row[FILES[body]][side])
+        figure.add_scatter(x=1e3 * y, y=1e3 * abs(new - z), name=label(row), line={"color": color})
     styled(figure, 380)
     figure.update_xaxes(title_text="y, mm")
     figure.update_yaxes(title_text="wear depth, mm")
@@ -120,15 +145,20 @@ def course_figure(rows: list[dict[str, Any]], name: str, words: str) -> go.Figur
     known = [row for row in rows if row[name] is not None]
     figure = go.Figure()
     figure.add_scatter(
-        x=[1e-3 * row["distance"] for row in known], y=[row[name] for row in known],
+        x=[way_of(row) for row in known], y=[row[name] for row in known],
         mode="lines+markers", name=words, line={"color": LINES[0]}, showlegend=False,
     )  # fmt: skip
     styled(figure, 320)
-    figure.update_xaxes(title_text="way, km")
+    figure.update_xaxes(title_text="way, km" if "distance" in rows[-1] else "passages")
     figure.update_yaxes(title_text=words)
     return figure
 
 
+def way_of(row: dict[str, Any]) -> float:
+    """km, or passages where no wheel wears."""
+    return 1e-3 * row["distance"] if "distance" in row else row["passages"]
+
+
 def label(row: dict[str, Any]) -> str:
     """Of a profile."""
-    return f"{1e-3 * row['distance']:.4g} km"
+    return f"{way_of(row):.4g} {'km' if 'distance' in row else 'passages'}"
