@@ -80,6 +80,28 @@ def test_derivatives_are_those_of_pinocchio(moved):
         assert (np.abs(got - wanted) <= slack * np.maximum(scale, 1.0)).all()
 
 
+def test_derivatives_column_by_column(moved):
+    """Found in steps before they are due they are the same."""
+    core, values = core_of(moved.system), moved.state.values
+    core.evaluate(values)
+    every = np.arange(moved.system.wheelsets)
+    core.differentiate(values, every)
+    wanted = core.by_state.copy(), core.by_inputs.copy()
+    # another state's are held, until the last column is there
+    shaken = values.copy()
+    shaken[moved.system.vehicle.carriers[:, 1]] += 1e-3
+    core.evaluate(shaken)
+    core.differentiate(shaken, every)
+    core.evaluate(values)
+    for k in every:
+        for column in range(12):
+            core.find_column(k, column)
+    core.differentiate(values, every[:0])
+    for found, those in zip((core.by_state, core.by_inputs), wanted, strict=True):
+        scale = np.abs(those).max(axis=-1, keepdims=True)
+        assert (np.abs(found - those) <= 1e-5 * np.maximum(scale, 1.0)).all()
+
+
 def test_steps_are_those_in_python(given):
     """With derivatives at every step, when none are old."""
     runs = []

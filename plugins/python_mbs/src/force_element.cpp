@@ -54,6 +54,8 @@ void check_placements(const Grid &rows, size_t count) {
 // NaN where the scene has no tangential problem: no friction
 double or_zero(double power) { return std::isnan(power) ? 0.0 : power; }
 
+bool is_bad(rp_status status) { return status == RP_NOT_CONVERGED || status == RP_OUT_OF_RANGE; }
+
 std::string unfound_derivatives(rp_status status) {
   return std::string("method.tolerance: the contact's derivatives are ") + rp_status_text(status) +
          ", allowed a tolerance at which they converge";
@@ -67,7 +69,8 @@ struct Wheelset {
   double seconds;  // spent
   double waiting;  // s, gone by since the last step
   std::exception_ptr refused;
-  bool curved;  // has a curved reference surface
+  bool by_differences;  // derivatives
+  bool curved;          // has a curved reference surface
   std::vector<double> rows[2];
 };
 
@@ -97,6 +100,7 @@ class ForceElement final : public VehicleContacts {
       w.result = {};
       w.placement = placement_at(placements.data() + kPlacement * k);
       w.seconds = w.waiting = 0;
+      w.by_differences = false;
       w.curved = nb::cast<bool>(nb::object(curved[k]));
     }
     positions_.resize(count_);
@@ -110,6 +114,7 @@ class ForceElement final : public VehicleContacts {
     contact_.resize(count_ * kContact);
     power_.resize(count_ * kPower);
     by_side_.resize(count_ * kBySide);
+    columns_.resize(count_ * kBySide);
   }
 
   int step() {
@@ -138,6 +143,20 @@ class ForceElement final : public VehicleContacts {
   }
 
   const double *by_side() const override { return by_side_.data(); }
+  bool by_differences(size_t k) const override { return wheelsets_[k].by_differences; }
+
+  void find_column(size_t k, size_t column) override {
+    std::lock_guard<std::mutex> guard(mutex_);
+    double found[2][6];
+    const rp_status status = wheelsets_[k].contact->differentiate_column(column, found);
+    if (is_bad(status)) throw CallError{RP_ERROR_VALUE, unfound_derivatives(status)};
+    double *to = columns_.data() + k * kBySide + column;
+    for (size_t i = 0; i < 12; ++i) to[i * kState] = found[i / 6][i % 6];
+  }
+
+  void take_columns(size_t k) override {
+    std::copy_n(columns_.data() + k * kBySide, kBySide, by_side_.data() + k * kBySide);
+  }
 
   void state_at(size_t k, const double *placement, const double *velocity,
                 double *state) const override {
@@ -239,8 +258,8 @@ class ForceElement final : public VehicleContacts {
     try {
       rp_jacobian found;
       w.contact->differentiate_all(found);
-      if (found.status == RP_NOT_CONVERGED || found.status == RP_OUT_OF_RANGE)
-        throw CallError{RP_ERROR_VALUE, unfound_derivatives(found.status)};
+      if (is_bad(found.status)) throw CallError{RP_ERROR_VALUE, unfound_derivatives(found.status)};
+      w.by_differences = found.kind == RP_DERIVATIVE_BY_DIFFERENCES;
       std::copy_n(&found.side[0][0][0], kBySide, by_side_.data() + k * kBySide);
     } catch (...) {
       w.refused = std::current_exception();
@@ -320,7 +339,7 @@ class ForceElement final : public VehicleContacts {
   std::vector<Wheelset> wheelsets_;
   double frame_speed_;
   size_t count_;
-  std::vector<double> radii_, motion_, wrench_, contact_, power_, placed_, by_side_;
+  std::vector<double> radii_, motion_, wrench_, contact_, power_, placed_, by_side_, columns_;
   std::vector<double> tracks_, positions_, rails_, wheels_, lateral_;
   std::vector<TrackState> state_;
   size_t solves_ = 0;

@@ -26,6 +26,8 @@ class Steppable {
  public:
   virtual void solve(const rp_input &input, rp_result &result) = 0;
   virtual void differentiate_all(rp_jacobian &found) = 0;
+  // one column of the same
+  virtual rp_status differentiate_column(size_t column, double found[2][6]) = 0;
   // of the last step's patch; its numbers, none where it has no such field
   virtual size_t read_field(int side, int patch, rp_field field, std::vector<double> &to) = 0;
 

@@ -134,6 +134,24 @@ class Contact : public Steppable {
     check(rp_get_jacobian(contact_.get(), &found, &message), &message);
   }
 
+  rp_status differentiate_column(size_t column, double found[2][6]) override {
+    rp_input d;
+    rp_default_direction(&d);
+    double *const numbers[] = {&d.x,     &d.y,  &d.z,  &d.roll,      &d.yaw,      &d.pitch,
+                               &d.speed, &d.vy, &d.vz, &d.roll_rate, &d.yaw_rate, &d.pitch_rate};
+    *numbers[column] = 1.0;
+    rp_result change;
+    rp_derivative_kind kind = RP_DERIVATIVE_EXACT;
+    rp_message message = {};
+    std::lock_guard<std::mutex> guard(mutex_);
+    check(rp_differentiate(contact_.get(), &d, &change, &kind, &message), &message);
+    for (size_t side = 0; side < 2; ++side) {
+      std::copy_n(change.side[side].force, 3, found[side]);
+      std::copy_n(change.side[side].moment, 3, found[side] + 3);
+    }
+    return change.status;
+  }
+
   size_t read_field(int side, int patch, rp_field field, std::vector<double> &to) override {
     std::lock_guard<std::mutex> guard(mutex_);
     double none = 0.0;

@@ -30,6 +30,11 @@ class VehicleContacts {
   // of these wheelsets at the last step, to by_side(); throws where they are not found
   virtual void find_derivatives(const size_t *wheelsets, size_t count) = 0;
   virtual const double *by_side() const = 0;  // [wheelsets][2][6][12]
+  // Whether a wheelset's are found by differences: then also column by column, each at another step
+  // and all of them taken at last.
+  virtual bool by_differences(size_t k) const = 0;
+  virtual void find_column(size_t k, size_t column) = 0;
+  virtual void take_columns(size_t k) = 0;
   // of a wheelset's joint placed and moving like this
   virtual void state_at(size_t k, const double *placement, const double *velocity,
                         double *state) const = 0;

@@ -171,6 +171,12 @@ void VehicleEquations::differentiate(const double *values, const size_t *wheelse
   derivative_seconds += thread_seconds() - begin;
 }
 
+void VehicleEquations::find_column(size_t wheelset, size_t column) {
+  const double begin = thread_seconds();
+  contacts_.find_column(wheelset, column);
+  derivative_seconds += thread_seconds() - begin;
+}
+
 // How accelerations change with the bodies' places and velocities while all forces stay as they are
 // in the world, at points that move with their joints, by differences. Trees do not know of each
 // other: one coordinate of each moves at a time.

@@ -29,6 +29,8 @@ class VehicleEquations {
   // Derivatives at the state of the last evaluate(), those of the contacts found anew for some
   // wheelsets and held for the others. Throws where they are not found.
   void differentiate(const double *values, const size_t *wheelsets, size_t count);
+  // A part of that, for later.
+  void find_column(size_t wheelset, size_t column);
 
   size_t coordinates() const { return n_; }
   size_t series() const { return m_; }

@@ -142,6 +142,14 @@ class VehicleSteps {
     equations_.differentiate(values.data(), found.data(), found.size());
   }
 
+  // of one wheelset's derivatives; the last one takes them all
+  void find_column(size_t wheelset, size_t column) {
+    if (wheelset >= equations_.wheelsets() || column >= kColumns) throw nb::index_error();
+    nb::gil_scoped_release unlocked;
+    equations_.find_column(wheelset, column);
+    if (column + 1 == kColumns) contacts_.take_columns(wheelset);
+  }
+
   // after the first step: values, works, rates and inputs before it are given
   void begin(const Values &values, const Values &work, const Values &change, const Values &older,
              const Values &older_inputs, double time, double step, size_t every, double surprise) {
@@ -191,6 +199,8 @@ class VehicleSteps {
   VehicleEquations &equations() { return equations_; }
 
  private:
+  enum { kColumns = 12 };  // of a wheelset's derivatives
+
   void check(const Values &state) const {
     if (state.shape(0) != equations_.size()) throw nb::value_error("a state of another size");
   }
@@ -201,23 +211,42 @@ class VehicleSteps {
     std::copy_n(course_.inputs(), inputs_.size(), inputs_.data());
   }
 
-  // those whose derivatives are old or known to be wrong; ages are spread over the wheelsets, so
-  // that these take turns
+  // Those whose derivatives are old or known to be wrong; ages are spread over the wheelsets, so
+  // that these take turns. Those by differences are found bit by bit in the steps before they are
+  // due.
   void keep_fresh() {
-    for (size_t k = 0; k < ages_.size(); ++k)
-      if (ages_[k] >= every_ && std::find(wrong_.begin(), wrong_.end(), k) == wrong_.end())
+    differentiating_ = true;
+    const bool spread = every_ >= kColumns * ages_.size();
+    bool renewed = false;
+    for (size_t k = 0; k < ages_.size(); ++k) {
+      if (std::find(wrong_.begin(), wrong_.end(), k) != wrong_.end()) continue;
+      const bool by_columns = spread && contacts_.by_differences(k);
+      if (by_columns && ages_[k] >= every_) {
+        contacts_.take_columns(k);
+        ages_[k] = 0;
+        renewed = true;
+      } else if (ages_[k] >= every_) {
         wrong_.push_back(k);
-    if (!wrong_.empty()) {
+      } else if (by_columns && ages_[k] + kColumns >= every_) {
+        equations_.find_column(k, ages_[k] + kColumns - every_);
+      }
+    }
+    if (!wrong_.empty() || renewed) {
       std::sort(wrong_.begin(), wrong_.end());
-      differentiating_ = true;
       equations_.differentiate(values_.data(), wrong_.data(), wrong_.size());
-      differentiating_ = false;
       factor();
-      for (const size_t k : wrong_) ages_[k] = fresh_ ? k * every_ / ages_.size() : 0;
+      for (const size_t k : wrong_) ages_[k] = fresh_ ? first_age(k) : 0;
       wrong_.clear();
       fresh_ = false;
     }
+    differentiating_ = false;
     for (size_t &age : ages_) ++age;
+  }
+
+  // so that the first one is due soonest, and no columns are left out
+  size_t first_age(size_t k) const {
+    const size_t spread = every_ > kColumns ? every_ - kColumns : every_;
+    return k * spread / ages_.size();
   }
 
   // 1 - 2/3 h A, whose rows of coordinates say that rates are velocities, by eliminating them, and
@@ -363,6 +392,8 @@ void bind_steps(nb::module_ &m) {
            "Fills 'rates' and 'powers'; the contacts' worst status.")
       .def("differentiate", &V::differentiate, nb::arg("values"), nb::arg("wheelsets"),
            "Fills 'by_state' and the others at the state of the last evaluate().")
+      .def("find_column", &V::find_column, nb::arg("wheelset"), nb::arg("column"),
+           "Of a wheelset's derivatives, for the next differentiate(): all twelve in turn.")
       .def("begin", &V::begin, nb::arg("values"), nb::arg("work"), nb::arg("change"),
            nb::arg("older"), nb::arg("older_inputs"), nb::arg("time"), nb::arg("step"),
            nb::arg("every"), nb::arg("surprise"),
