@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from railpatch.case.types import SIDES
+from railpatch.damage.run import RunWear, rows_of
 from railpatch.log import RunLog, scene_geometry
 from railpatch.result import Warned
 
@@ -24,7 +26,8 @@ class Summary:
     """Of a run with n positions.
 
     path: of the log. converged: [n]. evaluations: [n], of both wheels. wall_time: s, [n], of
-    finding each balance. logging_share: of the run, in the log. warned: of all positions.
+    finding each balance. logging_share: of the run, in the log. warned: of all positions. wear: of
+    a scene with [damage], each position for the time since the one before.
     """
 
     path: Path
@@ -33,6 +36,7 @@ class Summary:
     wall_time: NDArray[np.float64]
     logging_share: float
     warned: Warned
+    wear: RunWear | None = None
 
     @property
     def good(self) -> bool:
@@ -50,7 +54,8 @@ class Summary:
             f"wall time     {1e3 * np.median(self.wall_time):.3g} ms a position (median), "
             f"{self.wall_time.sum():.3g} s in all\n"
             f"logging       {100 * self.logging_share:.2g} % of the run's wall time\n"
-            f"log           {self.path}"
+            + ("" if self.wear is None else f"wear          {self.wear.text()}\n")
+            + f"log           {self.path}"
         )
 
 
@@ -69,6 +74,8 @@ def replay(
     snapshots = scene.snapshot_every()
     rows = []
     warned = Warned()
+    wear = wear_of(scene)
+    before = 0.0
     with RunLog(
         path,
         case_text=scene.text,
@@ -88,8 +95,24 @@ def replay(
                     fields = balancer.fields(balance)
                     messages["fields"] = {side: fields[side]["patches"] for side in SIDES}
                 log.write(position.time, **messages)
+            if wear is not None and balance.converged:
+                way = abs(scene.case.track.roller_radius * scene.speed_at(position))
+                worn = rows_of(balancer.fields(balance).to_dict())
+                wear.add(1, worn, way * (position.time - before))
+            before = position.time
             warned.add(f"{position.time:.4g} s", balance.result.warnings)
             rows.append((balance.converged, balance.evaluations, wall_time))
             progress(balance)
+        if wear is not None:
+            log.write_wear(before, {side: wear.message((1, side)) for side in SIDES})
     converged, evaluations, wall_times = (np.array(column) for column in zip(*rows, strict=True))
-    return Summary(Path(path), converged, evaluations, wall_times, log.share, warned)
+    return Summary(Path(path), converged, evaluations, wall_times, log.share, warned, wear)
+
+
+def wear_of(scene: RigScene) -> RunWear | None:
+    """What lays wear over the profiles of wheels and rollers; None without [damage]."""
+    law = scene.case.damage
+    if law is None:
+        return None
+    case = scene.case
+    return RunWear(law, [case.wheelset.nominal_radius], math.tau * case.track.roller_radius)

@@ -109,7 +109,9 @@ def momentum(trace: Trace) -> dict[str, list[float]]:
 def ran_with(scene: Any) -> Effective:
     """The tables of a scene of this package as they run."""
     known = ("name", "text", "case", "profiles", "measured")
-    tables = {f.name: getattr(scene, f.name) for f in fields(scene) if f.name not in known}
+    own = [f.name for f in fields(scene) if f.name not in known]
+    # a list without tables is one that the file does not have
+    tables = {name: getattr(scene, name) or None for name in own}
     step = scene.run.step
     names = {name: Path(name).name for name in scene.profiles.values()}
     return effective(

@@ -116,6 +116,10 @@ class Run(Table):
         "steps; 0: none",
     )
 
+    damage_every: Annotated[int, Field(ge=1, le=100_000)] = Field(
+        default=10, description="-, every n-th step's wear counts, for the way since; of [damage]"
+    )
+
     @property
     def exact(self) -> bool:
         """Whether the contact's derivatives are asked for."""
@@ -267,8 +271,12 @@ def track_problems(case: Any, instead: str = "") -> list[str]:
 
 
 def refuse_bulk(case: Any, run: str) -> None:
-    """Refuses bodies that store heat, or the work that cleans them, where no time passes for them.
-    run: what has none."""
+    """Refuses bodies that store heat, the work that cleans them and wear, where no time passes for
+    them. run: what has none."""
+    if case.damage is not None:
+        raise CaseError(
+            f"damage: given, allowed to be left out: {run} has no way over which profiles wear"
+        )
     if case.fluid is not None and case.fluid.recovery is not None:
         raise CaseError(
             f"fluid.recovery: value is given, allowed to be left out: {run} has no time in which "
@@ -294,10 +302,17 @@ def start_problems(case: Any, found: tuple[str, ...], why: str) -> list[str]:
     ]
 
 
+def wear_problems(case: Any, run: Any) -> list[str]:
+    """Of a key of [run] that has nothing to say."""
+    if case.damage is None and "damage_every" in run.model_fields_set:
+        return [f"run.damage_every: value is {run.damage_every}, allowed with [damage] alone"]
+    return []
+
+
 def check_run(case: Any, body: BodyTable, run: Run, **_: Any) -> None:
     """Refuses cases that are no wheelset on straight track with a load and friction."""
     check_kind(case, "wheelset")
-    wheelset, problems = case.wheelset, track_problems(case)
+    wheelset, problems = case.wheelset, track_problems(case) + wear_problems(case, run)
     if not wheelset.speed > 0:
         problems.append(f"wheelset.speed: value is {wheelset.speed}, allowed > 0 m/s")
     elif not 1 <= run.distance / (wheelset.speed * run.step) <= 1e7:

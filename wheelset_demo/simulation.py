@@ -6,6 +6,8 @@ import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from railpatch.case.types import SIDES
+from railpatch.damage.run import RunWear
 from railpatch.log import RunLog, scene_geometry
 from railpatch.log.stream import Pace
 
@@ -43,9 +45,16 @@ class Simulation:
         trace = Trace(self.scene)
         recorder = Recorder(self.scene, self.system)
         pace = None if run.write_rate is None else Pace(run.write_rate)
+        law, worn_at = self.scene.case.damage, float(self.state.q[0])
+        if law is not None:
+            trace.wear = RunWear(law, [self.scene.case.wheelset.nominal_radius])
         try:
             for index in range(steps + 1):
                 rates = self.system.rates(self.state.time, self.state.motion)
+                if trace.wear is not None and (index % run.damage_every == 0 or index == steps):
+                    at = float(self.state.q[0])
+                    trace.wear.add(1, self.system.element.wear_rows(), at - worn_at)
+                    worn_at = at
                 if index % run.log_every == 0 or index == steps:
                     # steps with fields, and the last one, are written in any case
                     wanted = trace.snapshot_due() or index == steps
@@ -64,6 +73,9 @@ class Simulation:
                 # a stage may be the logged step itself: times must rise
                 late = max(failure.time, trace.times[-1] + 1e-9)
                 log.write(late, **recorder.failed())
+        if log is not None and trace.wear is not None:
+            wear = trace.wear
+            log.write_wear(self.state.time, {side: wear.message((1, side)) for side in SIDES})
         trace.finish(self.system)
         return trace
 

@@ -22,7 +22,7 @@ Vector = NDArray[np.float64]
 @dataclass(frozen=True)
 class Summary:
     """A run in numbers. Energies in J since the start; wall_time in s; logging_share of it in the
-    log.
+    log. wear: as RunWear.summary(), of [damage]; wear_text: for the terminal.
 
     Errors of the balances are parts of the energy lost, and of momentum and moment of momentum at
     the start.
@@ -45,10 +45,13 @@ class Summary:
     solve_seconds: float
     wall_time: float
     logging_share: float
+    wear: dict[str, Any] | None = None
+    wear_text: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """Plain numbers; None for what is not known."""
         values = dict(self.__dict__) | {"waves": dict(self.waves.__dict__)}
+        del values["wear_text"]
         return {key: plain(value) for key, value in values.items()}
 
     def text(self) -> str:
@@ -76,6 +79,8 @@ class Summary:
                 f"in {self.evaluations} evaluations",
             ),
         ]
+        if self.wear_text:
+            lines.append(("wear", self.wear_text))
         if math.isfinite(self.logging_share):
             lines.append(("logging", f"{100 * self.logging_share:.2g} % of the run's wall time"))
         return "\n".join(f"{name:<16}{value}" for name, value in lines)
@@ -134,6 +139,8 @@ def summarise(
         solve_seconds=trace.solve_seconds,
         wall_time=wall_time,
         logging_share=logging_share,
+        wear=None if trace.wear is None else trace.wear.summary(),
+        wear_text="" if trace.wear is None else trace.wear.text(),
     )
 
 

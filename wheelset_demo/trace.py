@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from railpatch import Result
 from railpatch.case.types import SIDES
+from railpatch.damage.run import RunWear
 from railpatch.result import Warned
 
 from wheelset_demo.scene import WheelsetScene
@@ -26,7 +27,8 @@ class Trace:
     bodies. radii: [n][2], m, rolling radii left and right. contacts: [n][2], m, lateral
     positions of the contacts, weighted with their load; NaN for a wheel in the air. statuses: [n],
     by side. warned: of all steps. result: of the last one. failure: what ended the run before its
-    end. evaluations, solve_seconds: contact work of the whole run.
+    end. evaluations, solve_seconds: contact work of the whole run. wear: over the profiles, of
+    a case with [damage].
     """
 
     scene: WheelsetScene
@@ -44,6 +46,7 @@ class Trace:
     failure: ContactFailure | None = None
     evaluations: int = 0
     solve_seconds: float = 0.0
+    wear: RunWear | None = None
 
     def add(self, system: System, state: State) -> None:
         """A step whose rates were the last ones asked of the system."""

@@ -70,7 +70,7 @@ def test_bodies(run):
 def test_table_has_every_topic(run):
     table = {entry.topic: entry for entry in vehicle_channels(4)}
     assert set(run.counts) <= set(table) | set(WELL_KNOWN)
-    assert len(table) == 6 + 4 * 6
+    assert len(table) == 6 + 4 * 8
     for topic, entry in table.items():
         assert channel(topic).message is entry.message
         assert "N" not in topic

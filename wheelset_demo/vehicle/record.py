@@ -77,6 +77,10 @@ class Recorder:
                     found["comfort"] = [
                         {"name": name, **values} for name, values in told["points"].items()
                     ]
+            wear = simulation.wear
+            if wear is not None:
+                time = simulation.state.time
+                self._log.write_wear(time, {w: wear.message(w) for w in wear.by_wheel})
             if found:
                 self._log.write_assessment(simulation.state.time, found)
 

@@ -27,6 +27,7 @@ from wheelset_demo.scene import (
     scene_file,
     start_problems,
     track_problems,
+    wear_problems,
 )
 from wheelset_demo.vehicle.alignment import AlignmentTable
 from wheelset_demo.vehicle.bodies import Axle, VehicleTable
@@ -77,6 +78,9 @@ class RunTable(Table):
         default=1.0,
         description="-, k of the limit k (10 kN + P0/3) of a wheelset's sum of Y, which the "
         "summary states; EN 14363 has 0.85 for freight wagons (from memory)",
+    )
+    damage_every: Annotated[int, Field(ge=1, le=100_000)] = Field(
+        default=10, description="-, every n-th step's wear counts, for the way since; of [damage]"
     )
     speed_control: NotNegative = Field(
         default=1e4, description="N s/m, of the force that holds the body of reference at the speed"
@@ -278,6 +282,7 @@ def check_run(
         )
     if wheelset.z is None:
         problems.append("wheelset.vertical_force: given, allowed 'z' = 0: the vehicle is its load")
+    problems += wear_problems(case, run)
     if comfort is not None:
         problems += comfort_problems(comfort, run, vehicle)
     if irregularity is not None and measured_track is not None:

@@ -10,6 +10,7 @@ from railpatch import CaseError, Contact
 from railpatch.case.common import without_friction
 from railpatch.case.types import SIDES
 from railpatch.case.wheel import WheelsetCase
+from railpatch.damage.run import RunWear
 
 from wheelset_demo.system import BAD, WORKS
 from wheelset_demo.vehicle.comfort import Comfort
@@ -27,7 +28,7 @@ class Simulation:
 
     scene: VehicleScene. system: the equations of motion; element: its force element. state, rates:
     the present ones. means: Y and Q over the last 2 m, of every time step. comfort: of the scene's
-    points, where it asks. wall_seconds,
+    points, where it asks. wear: over the profiles, where its case has [damage]. wall_seconds,
     cpu_seconds: s, spent in steps() so far, by the clock and of all threads, without what its
     caller does in between. step_times: of each step, where they were asked for.
     """
@@ -49,6 +50,8 @@ class Simulation:
         )
         self.means = SlidingMeans(self.element.wheels)
         self.comfort = comfort_of(scene, self.system)
+        self.wear = wear_of(scene)
+        self._steps_done, self._worn_at = 0, self.system.positions.copy()
         self._solved_before = self._contact_cpu()
         self.step_times = (
             StepTimes(scene.steps, scene.run.step, scene.run.threads) if step_times else None
@@ -71,7 +74,7 @@ class Simulation:
 
     @property
     def _unasked(self) -> bool:
-        return self.step_times is None and self.comfort is None
+        return self.step_times is None and self.comfort is None and self.wear is None
 
     def _several(self, count: int) -> None:
         """Steps; at once where nothing is asked for in between."""
@@ -98,6 +101,8 @@ class Simulation:
             self.comfort.add(
                 self.state.time, self.state.values, self.rates.values, self.state.count
             )
+        if self.wear is not None:
+            self._wear_off(self.wear)
 
     def _next_step(self) -> None:
         """By the system, as it stands in Python."""
@@ -111,6 +116,17 @@ class Simulation:
             self.system.support.meet()
         if self._compiled is not None:
             self._compiled.begin(self.state, self.state.values - state.values, rates)
+
+    def _wear_off(self, wear: RunWear) -> None:
+        """The way since the last sample, every n-th step and at the run's end."""
+        self._steps_done += 1
+        every = self.scene.run.damage_every
+        if self._steps_done % every and self._steps_done != self.scene.steps:
+            return
+        ways = self.system.positions - self._worn_at
+        self._worn_at = self.system.positions.copy()
+        for index, way in enumerate(ways.tolist()):
+            wear.add(index + 1, self.element.wear_rows(index), way)
 
     def _timed_step(self, times: StepTimes) -> None:
         wall, cpu = clock.perf_counter(), self._cpu()
@@ -150,6 +166,15 @@ def comfort_of(scene: VehicleScene, system: VehicleSystem) -> Comfort | None:
         return None
     columns = dict(zip(system.vehicle.bodies, system.vehicle.columns, strict=True))
     return Comfort(scene.comfort, scene.run.step, scene.vehicle.bodies, columns)
+
+
+def wear_of(scene: VehicleScene) -> RunWear | None:
+    """What lays it over the profiles; None where the scene does not ask."""
+    law = scene.case.damage
+    if law is None:
+        return None
+    cases = [scene.case_of(axle) for axle in scene.vehicle.axles]
+    return RunWear(law, [case.wheelset.nominal_radius for case in cases])
 
 
 def at_start(scene: VehicleScene, system: VehicleSystem) -> VehicleState:

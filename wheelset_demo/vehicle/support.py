@@ -17,13 +17,16 @@ wheelset's track does to the next, sleepers at their distance and the rails' rol
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 from railpatch.case.types import NotNegative, Positive, Table, exactly, relation
-from railpatch.pinocchio import ForceElement, StateChain
+
+if TYPE_CHECKING:
+    # what reads a scene does without Pinocchio
+    from railpatch.pinocchio import ForceElement, StateChain
 
 Vector = NDArray[np.float64]
 # columns of a wheelset's state that a rail's places and rates move against: y, z, vy, vz

@@ -160,7 +160,7 @@ class VehicleSummary:
     -, N, N, N, N, m/s^2 (lateral, vertical); None where the run is too short for them. support:
     greatest of every time step, as Support.summary(); None on rigid ground. measured_track: what
     the record of the rails holds, as MeasuredTrack.summary(). ride_comfort: as Comfort.summary()
-    (EN 12299); None where the scene does not ask.
+    (EN 12299); None where the scene does not ask. wear: as RunWear.summary(), of [damage].
     """
 
     good: bool
@@ -188,6 +188,8 @@ class VehicleSummary:
     support: dict[str, list[float] | None] | None = None
     measured_track: dict[str, Any] | None = None
     ride_comfort: dict[str, Any] | None = None
+    wear: dict[str, Any] | None = None
+    wear_text: str = ""
     logging_share: float | None = None
     step_times: dict[str, Any] | None = None
 
@@ -196,6 +198,7 @@ class VehicleSummary:
         return {
             key: list(value) if isinstance(value, tuple) else value
             for key, value in self.__dict__.items()
+            if key != "wear_text"
         }
 
     def text(self) -> str:
@@ -232,6 +235,8 @@ class VehicleSummary:
         ]
         lines[5:5] = [*self._assessed(), *self._ride(), *self._below()]
         lines[1:1] = self._recorded()
+        if self.wear_text:
+            lines.append(("wear", self.wear_text))
         if self.logging_share is not None:
             lines.append(("logging", f"{100 * self.logging_share:.2g} % of the run's wall time"))
         found = "\n".join(f"{name:<16}{value}" for name, value in lines)
@@ -391,6 +396,8 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
         support=None if system.support is None else system.support.summary(),
         measured_track=None if measured is None else measured.summary(),
         ride_comfort=None if simulation.comfort is None else simulation.comfort.summary(),
+        wear=None if simulation.wear is None else simulation.wear.summary(),
+        wear_text="" if simulation.wear is None else simulation.wear.text(),
         logging_share=trace.logging_share,
         step_times=None if simulation.step_times is None else simulation.step_times.to_dict(),
     )

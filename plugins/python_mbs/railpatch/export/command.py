@@ -52,6 +52,12 @@ def with_library(
     help="Only these columns, by their whole name, path or field: 'force.y', '*temperature'; may "
     "be given several times.",
 )
+@click.option(
+    "--wear",
+    is_flag=True,
+    help="In place of a row for each moment what the run has worn off over the profiles of wheels "
+    "and rails, of a scene with [damage]: .csv or .json.",
+)
 @click.option("--list", "listed", is_flag=True, help="Print names, units and meanings of columns.")
 @quiet_flag()
 def export(
@@ -59,6 +65,7 @@ def export(
     output: Path | None,
     channels: tuple[str, ...],
     signals: tuple[str, ...],
+    wear: bool,
     listed: bool,
     quiet: bool,
 ) -> None:
@@ -72,6 +79,11 @@ def export(
     if output is None and not listed:
         raise WrongCall("--output: value is missing, allowed a file to write, or --list")
     check_output(output, run)
+    if wear:
+        if channels or signals or listed or output is None:
+            raise WrongCall("--wear: given, allowed with --output alone")
+        export_wear(run, output, quiet)
+        return
     try:
         if output is not None:
             format_of(output)
@@ -85,3 +97,23 @@ def export(
             click.echo(f"{column.head}  {column.text}")
     if output is not None and not quiet:
         click.echo(f"{output}: {len(table.time)} rows, {len(table.columns)} columns")
+
+
+def export_wear(run: Path, output: Path, quiet: bool) -> None:
+    """The distributions of wear of a log."""
+    from railpatch.log.reader import read_run
+    from railpatch.log.worn import write_worn
+
+    if output.suffix.lower() not in (".csv", ".json"):
+        raise WrongCall(
+            f"--output: value is {str(output)!r}, allowed a name that ends in .csv or .json with "
+            "--wear"
+        )
+    try:
+        write_worn(read_run(run), output)
+    except ValueError as error:
+        raise WrongCall(f"{run}: {error}") from None
+    except OSError as error:
+        raise wrong_call(error) from None
+    if not quiet:
+        click.echo(f"{output}: wear over the profiles")

@@ -502,6 +502,22 @@ VEHICLE_BODIES = Message(
     (Field("bodies", BODY, "", "one entry per body, always in the same order", size=0),),
 )
 
+WEAR = Message(
+    "Wear",
+    "What a run has worn off one wheel and what it rolled on, over their profiles.",
+    (
+        _number("way", "m", "rolled"),
+        _number("mass", "kg", "that each body lost, by the contacts"),
+        _number("wheel_mass", "kg", "the same, summed over the wheel's profile"),
+        _number("rail_mass", "kg", "the same, summed over the rail's or roller's profile"),
+        _number("y", "m", "middles of bins, of both profiles", "profile", size=0),
+        _number("wheel", "kg/m", "mass by width of the wheel's profile", size=0),
+        _number("rail", "kg/m", "mass by width of the rail's or roller's profile", size=0),
+        _number("wheel_depth", "m", "that is worn off, across y, round the wheel", size=0),
+        _number("rail_depth", "m", "that is worn off along the way, or round the roller", size=0),
+    ),
+)
+
 COMFORT_POINT = Message(
     "ComfortPoint",
     "Comfort at one point of a body, in its axes.",
@@ -576,6 +592,8 @@ CHANNELS = (
     Channel("/right/conditioning", RIG_CONDITIONING, "right friction; only in such rigs"),
     Channel("/wheelset/energy", ENERGY, "balance of energies; only in runs on track"),
     Channel("/wheelset/momentum", MOMENTUM, "balance of momenta; only in runs on track"),
+    Channel("/left/wear", WEAR, "of the left wheel; once, at the end, where there is [damage]"),
+    Channel("/right/wear", WEAR, "of the right wheel"),
     Channel("/solver/stats", SOLVER_STATS, "iterations and times"),
     Channel("/left/fields", CONTACT_FIELDS, "fields of the left patches, at chosen moments"),
     Channel("/right/fields", CONTACT_FIELDS, "fields of the right patches, at chosen moments"),
@@ -596,6 +614,8 @@ AXLE_CHANNELS = (
     Channel("/wheelset/N/left/contact", WHEEL_CONTACT, "result of its left wheel"),
     Channel("/wheelset/N/right/contact", WHEEL_CONTACT, "result of its right wheel"),
     Channel("/wheelset/N/support", TRACK_SUPPORT, "track below; only in scenes that have one"),
+    Channel("/wheelset/N/left/wear", WEAR, "of its left wheel; once, at the end"),
+    Channel("/wheelset/N/right/wear", WEAR, "of its right wheel"),
     Channel("/wheelset/N/left/fields", CONTACT_FIELDS, "fields of its left patches"),
     Channel("/wheelset/N/right/fields", CONTACT_FIELDS, "fields of its right patches"),
 )

@@ -113,6 +113,11 @@ class LogStream:
             if time.monotonic() - self._flushed_at >= FLUSH_INTERVAL:
                 self._flush()
 
+    def beside(self, messages: Mapping[str, Any], time_ns: int) -> None:
+        """The same of what is no step: the next one may come at the same moment or before."""
+        with self._lock:
+            self._pending.append((time_ns, messages))
+
     def first(self, topic: str, message: Any) -> None:
         """A message before the first moment, at time 0."""
         last = self._last_ns

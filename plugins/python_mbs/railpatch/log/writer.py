@@ -114,6 +114,16 @@ class RunLog(Log):
                 messages["/scene/contact"] = scene.contact(sides, time_ns)
             self.stream.add(messages, time_ns)
 
+    def write_wear(self, time_s: float, wear: Mapping[str, Mapping[str, Any]]) -> None:
+        """What the whole run has worn off, by side; once, at its end. Raises ValueError for a bad
+        value."""
+        with self.stream.counted():
+            messages = {
+                f"/{side}/wear": encode(channel(f"/{side}/wear").message, values, f"/{side}/wear")
+                for side, values in wear.items()
+            }
+            self.stream.beside(messages, round(1e9 * time_s))
+
 
 def snapshots(fields: Mapping[str, Sequence[Mapping[str, Any]]], above: str = "") -> dict[str, Any]:
     """The fields' messages of a wheelset by topic. above: topic that its sides' are below."""

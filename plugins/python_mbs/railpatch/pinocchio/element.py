@@ -381,9 +381,25 @@ class ForceElement:
     def result(self, index: int = 0, *, fields: bool = False) -> Result:
         """The last step's result of a wheelset, as Contact.step() returns it; wall_time is NaN.
 
-        fields: with the fields of each patch.
+        fields: with the fields of each patch. A case with [damage] has it, see wear_rows() too.
         """
-        return Result(self.contacts[index]._data(self._core.result(index), np.nan, fields))
+        return Result(self._whole(index, fields))
+
+    def wear_rows(self, index: int = 0) -> dict[str, list[tuple[float, dict[str, Any]]]]:
+        """Of the last step of a wheelset whose case has [damage], as Contact.wear_rows().
+
+        Raises CaseError where it has none.
+        """
+        self._whole(index, False)
+        return self.contacts[index].wear_rows()
+
+    def _whole(self, index: int, fields: bool) -> dict[str, Any]:
+        """A result's content, with what the case asks for."""
+        contact, raw = self.contacts[index], self._core.result(index)
+        if contact._asked is None:
+            return contact._data(raw, np.nan, fields)
+        data = contact._data(raw, np.nan, fields or contact._asked.needs_fields)
+        return contact._asked.add(data, raw, fields)
 
     @property
     def warnings(self) -> list[str]:
@@ -477,11 +493,10 @@ def check_case(case: Any) -> None:
             f"wheelset.time_step: value is {case.wheelset.time_step}, allowed 0: {several}"
         )
     problems += problems_of_bulk(case)
-    problems += [
-        f"{name}: given, allowed none in a force element: take it from a sweep or a rig"
-        for name in ("subsurface", "damage")
-        if getattr(case, name) is not None
-    ]
+    if case.subsurface is not None:
+        problems.append(
+            "subsurface: given, allowed none in a force element: take it from a sweep or a rig"
+        )
     if problems:
         raise CaseError(problems)
 

@@ -18,7 +18,7 @@ from railpatch.page.parts import folded
 from railpatch.page.patch_figure import most_loaded, states_of
 from railpatch.page.printing import write_page
 from railpatch.page.tables import number, table, whole
-from railpatch.report import answers, balance_figures, figures, reference, rig_page, tables
+from railpatch.report import answers, balance_figures, figures, reference, rig_page, tables, worn
 from railpatch.report.beside import Beside, beside_log, beside_measured, beside_record
 from railpatch.report.beside_page import section
 from railpatch.report.data import Positions, positions, snapshot
@@ -173,6 +173,7 @@ def _sections(
         "<h2>Contact patches</h2><p>Each point is one patch. Distances count outwards from the "
         "track's centre line; a contact angle is positive at a left wheel's flange.</p>",
         plot(figures.patches(data), "patches"),
+        *worn.sections(data.run),
     ]
     if data.has_bulk:
         parts += [

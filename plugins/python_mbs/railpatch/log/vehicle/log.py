@@ -106,10 +106,15 @@ class VehicleLog(Log):
         """Percentiles and mean comfort of the whole run, likewise."""
         self._write_beside("/vehicle/assessment", time_s, values)
 
+    def write_wear(self, time_s: float, wear: Mapping[tuple[int, str], Mapping[str, Any]]) -> None:
+        """Of the whole run, by number of the wheelset and side, likewise."""
+        for (number, side), values in wear.items():
+            self._write_beside(f"/wheelset/{number}/{side}/wear", time_s, values)
+
     def _write_beside(self, topic: str, time_s: float, values: Mapping[str, Any]) -> None:
         with self.stream.counted():
             message = encode(channel(topic).message, values, topic)
-            self.stream.add({topic: message}, round(1e9 * time_s))
+            self.stream.beside({topic: message}, round(1e9 * time_s))
 
     def _check_number(self, name: str, values: Sequence[Any]) -> None:
         if len(values) != self._count:

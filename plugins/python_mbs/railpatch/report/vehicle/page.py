@@ -13,7 +13,7 @@ from railpatch.case.types import SIDES
 from railpatch.page import tables
 from railpatch.page.figures import plot
 from railpatch.page.parts import BAD, folded, opening
-from railpatch.report import balance_figures
+from railpatch.report import balance_figures, worn
 from railpatch.report.data import has_bulk
 from railpatch.report.patch_views import over_distance
 from railpatch.report.scene import friction_of
@@ -195,6 +195,7 @@ def _sections(data: VehicleRun) -> list[str]:
             "<h2>Bulk temperatures of the wheels</h2>",
             plot(figures.bulk_temperatures(data), "bulk-temperatures"),
         ]
+    parts += worn.sections(data.run)
     parts += below_rails.section(data)
     if len(data.run["/vehicle/energy"]):
         parts += ["<h2>Energies</h2>", plot(balance_figures.energy(data), "energy")]
