@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from railpatch import CaseError
@@ -73,8 +74,15 @@ def linearised(scene: WheelsetScene, speed: float) -> Vector:
 
 def slowest_mode(scene: WheelsetScene, speed: float) -> Mode:
     """Of all waves at a speed (m/s)."""
-    values, vectors = np.linalg.eig(linearised(scene, speed))
+    return mode_of(linearised(scene, speed), speed)
+
+
+def mode_of(matrix: Vector, speed: float, counts: Callable[[Vector], bool] | None = None) -> Mode:
+    """Of a matrix of rates at a speed (m/s). counts: whether a wave of this shape is looked at."""
+    values, vectors = np.linalg.eig(matrix)
     waves = np.flatnonzero(values.imag > SLOWEST)
+    if counts is not None:
+        waves = np.array([k for k in waves if counts(np.abs(vectors[:, k]))], dtype=np.int64)
     if not waves.size:
         # no wave at all: nothing but decay, or drift
         waves = np.arange(len(values))
@@ -111,10 +119,15 @@ def critical_mode(scene: WheelsetScene, lowest: float, highest: float) -> Mode |
 
 def search_modes(scene: WheelsetScene, lowest: float, highest: float) -> Search:
     """Between these speeds (m/s), up to the critical one. Raises CaseError, ContactFailure."""
+    return search(partial(slowest_mode, scene), lowest, highest)
+
+
+def search(mode_at: Callable[[float], Mode], lowest: float, highest: float) -> Search:
+    """The same of the slowest mode at each speed (m/s)."""
     found: dict[float, Mode] = {}
 
     def growth(speed: float) -> float:
-        found[speed] = slowest_mode(scene, speed)
+        found[speed] = mode_at(speed)
         return found[speed].growth
 
     def result(critical: Mode | None) -> Search:

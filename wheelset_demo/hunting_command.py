@@ -57,6 +57,11 @@ def default_scene_text() -> str:
     metavar="M/S",
     help="Of the run that is logged; left out: 1.1 of the critical speed.",
 )
+@click.option(
+    "--slip",
+    is_flag=True,
+    help="Of a vehicle: its sliders slip, with their stiffness left out; without it they stick.",
+)
 @json_option()
 @show_scene_option(default_scene_text)
 @quiet_flag("Print nothing but --json.")
@@ -69,14 +74,15 @@ def hunting(
     simulate: bool,
     output: Path | None,
     speed: float | None,
+    slip: bool,
     as_json: bool,
     quiet: bool,
 ) -> None:
-    """Find the speed above which a wheelset hunts.
+    """Find the speed above which a wheelset or a vehicle hunts.
 
     From the eigenvalues of the equations of motion, linearised straight on with the contact's
-    derivatives. The scene is one of railpatch wheelset; without one it has coned wheels and a
-    primary suspension. A contact that cannot be solved ends it with exit code 3.
+    derivatives. The scene is one of railpatch wheelset or railpatch vehicle; without one it has
+    coned wheels and a primary suspension. A contact that cannot be solved ends it with exit code 3.
     """
     for name, value in (("--lowest", lowest), ("--highest", highest)):
         if not SLOWEST <= value <= FASTEST:
@@ -85,12 +91,20 @@ def hunting(
         raise WrongCall(f"--lowest: value is {lowest}, allowed below --highest ({highest})")
     if speed is not None and (output is None or not 0 < speed <= FASTEST):
         raise WrongCall(f"--speed: value is {speed}, allowed > 0, at most {FASTEST:g}, with -o")
+    from railpatch.case.load import read_toml
+
     from wheelset_demo.scene import load_wheelset_scene, scene_file
     from wheelset_demo.system import ContactFailure
 
     try:
         with wrong_calls():
             file = scene_file(SCENE) if scene is None else scene
+            if "vehicle" in read_toml(file):
+                refuse_time(simulate, output)
+                show(search_whole(file, lowest, highest, slip), as_json, quiet)
+                return
+            if slip:
+                raise WrongCall("--slip: given, allowed with a scene of railpatch vehicle")
             loaded = load_wheelset_scene(file)
             check_output(output, file, *files_of(loaded.case, file.parent))
             found = search(loaded, lowest, highest, simulate)
@@ -113,14 +127,35 @@ def show(found: dict[str, Any], as_json: bool, quiet: bool) -> None:
         click.echo(text_of(found))
 
 
-def search(scene: Any, lowest: float, highest: float, simulate: bool) -> dict[str, Any]:
-    """What is printed: SI units, None for what was not found."""
-    from wheelset_demo.hunting import critical_speed_in_time, search_modes, slowest_mode
+def refuse_time(simulate: bool, output: Path | None) -> None:
+    """Of a vehicle. Raises WrongCall."""
+    for name, given in (("--simulate", simulate), ("--output", output is not None)):
+        if given:
+            text = "allowed with a scene of railpatch wheelset: railpatch vehicle runs in time"
+            raise WrongCall(f"{name}: given, {text}")
 
-    searched = search_modes(scene, lowest, highest)
+
+def search_whole(file: Path, lowest: float, highest: float, slip: bool) -> dict[str, Any]:
+    """What is printed of a vehicle: SI units, None for what was not found."""
+    from wheelset_demo.vehicle.hunting import moves_at, search_vehicle, vehicle_mode
+    from wheelset_demo.vehicle.scene import load_vehicle_scene
+
+    scene = load_vehicle_scene(file)
+    searched = search_vehicle(scene, lowest, highest, slip)
+    found = found_by(scene.name, searched, lowest, highest)
+    middle = found["critical_speed"]
+    speeds = [lowest, highest] if middle is None else [part * middle for part in BRACKET]
+    around = [vehicle_mode(scene, speed, slip) for speed in speeds]
+    found["growth"] = [{"speed": m.speed, "growth": m.growth} for m in around]
+    found["moves"] = moves_at(scene, speeds[0] if middle is None else middle, slip)
+    return found
+
+
+def found_by(name: str, searched: Any, lowest: float, highest: float) -> dict[str, Any]:
+    """Of a search between two speeds (m/s)."""
     mode, diverging = searched.critical, searched.diverging
-    found: dict[str, Any] = {
-        "scene": scene.name,
+    return {
+        "scene": name,
         "range": [lowest, highest],
         "critical_speed": None if mode is None else mode.speed,
         "frequency": None if mode is None else mode.frequency,
@@ -131,6 +166,15 @@ def search(scene: Any, lowest: float, highest: float, simulate: bool) -> dict[st
         if diverging is None
         else {"speed": diverging.speed, "growth": diverging.divergence},
     }
+
+
+def search(scene: Any, lowest: float, highest: float, simulate: bool) -> dict[str, Any]:
+    """What is printed: SI units, None for what was not found."""
+    from wheelset_demo.hunting import critical_speed_in_time, search_modes, slowest_mode
+
+    searched = search_modes(scene, lowest, highest)
+    mode = searched.critical
+    found = found_by(scene.name, searched, lowest, highest)
     speeds = [lowest, highest] if mode is None else [part * mode.speed for part in BRACKET]
     around = [slowest_mode(scene, speed) for speed in speeds]
     found["growth"] = [{"speed": m.speed, "growth": m.growth} for m in around]
@@ -189,6 +233,9 @@ def text_of(found: dict[str, Any]) -> str:
         away = found["divergence"]
         text = f"{away['growth']:+.4f} 1/s at {away['speed']:.2f} m/s, without waves"
         lines.append(("divergence", text))
+    if "moves" in found:
+        shown = ", ".join(f"{name} {size:.2f}" for name, size in found["moves"].items())
+        lines.append(("moves", f"across the track: {shown}"))
     if "runs" in found:
         in_time = found["critical_speed_in_time"]
         away = 100 * (in_time / speed - 1)

@@ -173,6 +173,12 @@ class Suspension:
         by_v = -self.matrix.T @ (self._damping[:, None] * self.matrix)
         return by_q, by_v, -self.matrix[self._series].T
 
+    def stuck(self) -> Vector:
+        """[nv, nv], N/m and the like: stiffness of sliders that stick, at the last step()."""
+        rows = self.matrix[self._friction_rows[:, 0]]
+        found: Vector = rows.T @ (self._friction[:, :1] * rows)
+        return found
+
     def series_jacobian(self) -> tuple[Vector, Vector]:
         """Of series_rates by v [n, nv] and by the series forces [n], a diagonal."""
         by_v = self._series_stiffness[:, None] * self.matrix[self._series]
