@@ -156,6 +156,27 @@ def test_it_goes_with_every_feature(name: str, tmp_path: Path) -> None:
         assert 0.0 < result[side]["max_pressure_error"] < 1.0
 
 
+def test_it_goes_with_all_that_only_tractions_read(tmp_path: Path) -> None:
+    """The same errors, whatever friction, liquid and heat there are beside the pressure."""
+    bare = case(made(tmp_path, NOISY), "wheelset", vertical_force=1.6e5)
+    rolls = {**bare, "method": {"tangential": "polach"}, "friction": {"coefficient": 0.3}}
+    liquid = {"model": "film", "roughness": 1e-6, "liquid": "water", "temperature": 20.0}
+    regimes = {"model": "regimes", "water_rate": 1e-8, "rail_work": [300.0, 200.0]}
+    found = [
+        railpatch.solve({**rolls, **tables}, folder=tmp_path)["left"]["max_pressure_error"]
+        for tables in (
+            {"method": {"tangential": "none"}, "friction": None},
+            {"friction": {"coefficient": 0.3, "scale": [0.8, 0.9]}},
+            {"fluid": {**liquid, "water_rate": 1e-8}},
+            {"fluid": {**liquid, "oil_film": 1e-6}},
+            {"fluid": {**regimes, "recovery": {"coefficient": 1e-3}}},
+            {"temperature": {"wheel": 80.0, "rail": 20.0}, "method": {"tangential": "full"}},
+        )
+    ]
+    assert len(set(found)) == 1
+    assert 0.0 < found[0] < 1.0
+
+
 def test_it_goes_with_profiles_along_the_track(tmp_path: Path) -> None:
     names = made(tmp_path, NOISY)
     sections = [{"position": -1.0, "profile": names["rail"]}, {"position": 1.0, "profile": "UIC60"}]

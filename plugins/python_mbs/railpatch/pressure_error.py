@@ -18,6 +18,7 @@ from typing import Any
 from railpatch import _core
 from railpatch.case.common import Grid
 from railpatch.case.fluid import MOVED
+from railpatch.case.friction import MOVED_FRICTION
 from railpatch.case.load import Scene
 from railpatch.case.resolve import resolved
 from railpatch.case.scene_profiles import BODIES, Shelf, placed_profiles, placement_doubts
@@ -32,8 +33,8 @@ DRAWS = 16
 BOUND = 2.0
 # elements across a contact, [along rolling, lateral]: noise changes the shape across
 ELEMENTS = [8, 20]
-# inputs of heat and liquids: without a tangential problem there is neither
-OF_TRACTIONS = {"bulk_temperature", *MOVED}
+# inputs of heat, liquids and friction: without a tangential problem there is none of them
+OF_TRACTIONS = {"bulk_temperature", *MOVED, *MOVED_FRICTION}
 # m, lateral positions that stand for those of a run; N, of a wheel where the scene has no load
 POSITIONS = (-6e-3, -4e-3, -2e-3, 0.0, 2e-3, 4e-3, 6e-3)
 USUAL_LOAD = 80e3
