@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "numeric/elementary.hpp"
+#include "numeric/fade.hpp"
 #include "numeric/simd.hpp"
 
 namespace railpatch {
@@ -15,7 +16,7 @@ namespace {
 using std::numbers::pi;
 using shapes_header = shape_table_header;
 
-constexpr char shape_magic[8] = {'R', 'P', 'S', 'H', 'A', 'P', 'E', '1'};
+constexpr char shape_magic[8] = {'R', 'P', 'S', 'H', 'A', 'P', 'E', '2'};
 constexpr size_t shapes_checked_from = offsetof(shapes_header, node_count);
 constexpr double shape_stiffness[3] = {4.2, 3.7, 2.3};
 constexpr int shape_cells = shapes_header::spins * shape_table::directions * shape_table::radii;
@@ -23,6 +24,9 @@ constexpr int most_nodes = 20000;
 // -, of the distances between shapes: below this they count alike, as a grid's elements let them
 // differ by as much
 constexpr double alike = 0.05;
+// Sizes of the weights of a plane whose sum is 1, added up: above the first they are mixed with
+// those of the distances, more so up to the second.
+constexpr double magnified = 2.0, beyond = 4.0;
 constexpr double poisson_within = 0.005;
 
 struct shape_layout {
@@ -62,6 +66,29 @@ RAILPATCH_DISPATCH void add_distances(const float *blocks, int count, const floa
     }
 }
 
+// Sums weight[k] times the four numbers at offset[k], each component by itself, so that no sum
+// depends on the width of the vectors (as add_weighted of creep_table.cpp).
+RAILPATCH_DISPATCH void add_cells(const int16_t *of, const int *offset, const double *weight,
+                                  int count, double *sum) {
+#if defined(__GNUC__)
+  typedef int16_t shorts __attribute__((vector_size(8)));
+  typedef int32_t integers __attribute__((vector_size(16)));
+  typedef double doubles __attribute__((vector_size(32)));
+  doubles total = {};
+  for (int k = 0; k < count; ++k) {
+    shorts part;
+    std::memcpy(&part, of + offset[k], sizeof part);
+    const integers wide = __builtin_convertvector(part, integers);
+    total += weight[k] * __builtin_convertvector(wide, doubles);
+  }
+  std::memcpy(sum, &total, sizeof total);
+#else
+  std::fill_n(sum, 4, 0.0);
+  for (int k = 0; k < count; ++k)
+    for (int i = 0; i < 4; ++i) sum[i] += weight[k] * of[offset[k] + i];
+#endif
+}
+
 // Of values at four rising places x for one between the middle ones: the cubic through these with
 // the slopes of parabolas through three neighbours; at the end of an axis, where the last is none,
 // with the chord's slope there.
@@ -99,7 +126,7 @@ const char *shape_table::defect(const void *data, size_t size) {
   std::memcpy(&h, bytes, sizeof h);
   if (h.bytes != size || size % 8 != 0) return "has not the length that its header says";
   if (h.node_count < neighbours + 1 || h.node_count > most_nodes)
-    return "has fewer than 7 or more than 20000 shapes";
+    return "has fewer than 15 or more than 20000 shapes";
   if (h.recipe_bytes < 0 || shape_layout_of(h).ellipses > size)
     return "has not the length that its shapes ask for";
   if (table_checksum(bytes + shapes_checked_from, size - shapes_checked_from) != h.checksum)
@@ -190,7 +217,7 @@ shape_of_pressure shape_table::describe(const grid &g, const double *pressure) {
 }
 
 // The nearest nodes and the one after them, in order; returns how many.
-int shape_table::nearest(const std::array<float, shapes_header::features> &feature,
+int shape_table::nearest(const shape_features &feature,
                          std::array<near, neighbours + 1> &found) const {
   constexpr int blocks = 32, most = blocks * lanes;
   float squares[most];
@@ -216,13 +243,69 @@ int shape_table::nearest(const std::array<float, shapes_header::features> &featu
   return count;
 }
 
+// Of the nearest nodes, adding up to 1: value at the shape of the plane through what they have,
+//   sum w (y - y0 - s.(f_node - f))^2 + alike^2 |s|^2 least,
+// whose normal equations a Cholesky factorisation solves.
+shape_table::node_weights shape_table::weigh(const shape_features &feature,
+                                             const std::array<near, neighbours + 1> &found) const {
+  constexpr int n = shapes_header::features;  // the plane's value and seven slopes
+  node_weights weight;
+  const double end = found[neighbours].distance;
+  double all = 0;
+  for (size_t k = 0; k < neighbours; ++k) {
+    const double d = found[k].distance, w = end > 0 ? (1.0 - d / end) / (d + alike) : 0.0;
+    all += weight[k] = w * w;
+  }
+  // all as far away as the one that does not count
+  if (!(all > 0)) {
+    weight.fill(1.0 / neighbours);
+    return weight;
+  }
+  double row[neighbours][n], matrix[n][n] = {};
+  for (size_t k = 0; k < neighbours; ++k) {
+    weight[k] /= all;
+    const int node = found[k].node;
+    const float *of = feature_ + node / lanes * (n * lanes) + node % lanes;
+    row[k][0] = 1.0;
+    for (int i = 1; i < n; ++i)
+      row[k][i] = static_cast<double>(of[(i - 1) * lanes]) -
+                  static_cast<double>(feature[static_cast<size_t>(i - 1)]);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j <= i; ++j) matrix[i][j] += weight[k] * row[k][i] * row[k][j];
+  }
+  for (int i = 1; i < n; ++i) matrix[i][i] += alike * alike;
+  // of L L^T = matrix only the first row of the inverse is asked for
+  double first[n] = {1.0};
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      double sum = matrix[i][j];
+      for (int k = 0; k < j; ++k) sum -= matrix[i][k] * matrix[j][k];
+      matrix[i][j] = i == j ? std::sqrt(sum) : sum / matrix[j][j];
+    }
+    for (int k = 0; k < i; ++k) first[i] -= matrix[i][k] * first[k];
+    first[i] /= matrix[i][i];
+  }
+  for (int i = n - 1; i >= 0; --i) {
+    for (int k = i + 1; k < n; ++k) first[i] -= matrix[k][i] * first[k];
+    first[i] /= matrix[i][i];
+  }
+  node_weights plane;
+  double size = 0;
+  for (size_t k = 0; k < neighbours; ++k) {
+    double sum = 0;
+    for (int i = 0; i < n; ++i) sum += first[i] * row[k][i];
+    plane[k] = weight[k] * sum;
+    size += std::fabs(plane[k]);
+  }
+  const double kept = fade((size - magnified) / (beyond - magnified));
+  for (size_t k = 0; k < neighbours; ++k) weight[k] += kept * (plane[k] - weight[k]);
+  return weight;
+}
+
 // Where creepages lie between a node's remainders: four along each axis.
 struct shape_table::place_between {
-  struct entry {
-    int offset;  // of a node's numbers; of the moment's sign and the forces' alike
-    double weight;
-  };
-  std::array<entry, 64> at;
+  std::array<int, 64> offset;  // of a node's numbers
+  std::array<double, 64> weight;
   int count = 0;
 };
 
@@ -262,7 +345,8 @@ shape_table::place_between shape_table::between(const double v[3]) const {
         if (s < 0) s = -s, d += directions / 2, weight = -weight;
         if (r < 0) r = -r, d += directions / 2;
         const int cell = (s * directions + (d + directions) % directions) * radii + r;
-        out.at[static_cast<size_t>(out.count++)] = {4 * cell, weight};
+        out.offset[static_cast<size_t>(out.count)] = 4 * cell;
+        out.weight[static_cast<size_t>(out.count++)] = weight;
       }
   return out;
 }
@@ -271,11 +355,8 @@ shape_table::place_between shape_table::between(const double v[3]) const {
 void shape_table::interpolate(int node, const place_between &place, double weight,
                               double sum[3]) const {
   const int16_t *of = remainder_ + 4 * static_cast<size_t>(node) * shape_cells;
-  double found[3] = {0, 0, 0};
-  for (int k = 0; k < place.count; ++k) {
-    const place_between::entry &e = place.at[static_cast<size_t>(k)];
-    for (int d = 0; d < 3; ++d) found[d] += e.weight * of[e.offset + d];
-  }
+  double found[4];
+  add_cells(of, place.offset.data(), place.weight.data(), place.count, found);
   for (int d = 0; d < 3; ++d) sum[d] += weight * found[d];
 }
 
@@ -289,7 +370,7 @@ shape_table::correction shape_table::evaluate(const grid &g, const double *press
   shape_of_pressure shape = describe(g, pressure);
   // of the powers of x only x y turns its sign in the mirror image
   shape.feature[3] *= direction;
-  std::array<float, shapes_header::features> feature;
+  shape_features feature;
   for (size_t k = 0; k < feature.size(); ++k)
     feature[k] = static_cast<float>(h.scale[k] * shape.feature[k]);
   std::array<near, neighbours + 1> found;
@@ -307,22 +388,11 @@ shape_table::correction shape_table::evaluate(const grid &g, const double *press
       scale * shape_stiffness[2] * direction * reach * spin_creepage};
   const double mirror = v[2] < 0 ? -1.0 : 1.0;
   for (double &part : v) part *= mirror;
-  const double end = found[neighbours].distance;
-  double weight[neighbours], all = 0;
-  for (int k = 0; k < neighbours; ++k) {
-    const double d = found[static_cast<size_t>(k)].distance;
-    const double w = end > 0 ? (1.0 - d / end) / (d + alike) : 0.0;
-    all += weight[k] = w * w;
-  }
-  // all as far away as the one that does not count
-  if (!(all > 0)) {
-    std::fill_n(weight, neighbours, 1.0);
-    all = neighbours;
-  }
   double sum[3] = {0, 0, 0};
   const place_between place = between(v);
-  for (int k = 0; k < neighbours; ++k)
-    if (weight[k] > 0) interpolate(found[static_cast<size_t>(k)].node, place, weight[k] / all, sum);
+  const node_weights weight = weigh(feature, found);
+  for (size_t k = 0; k < neighbours; ++k)
+    if (weight[k] != 0) interpolate(found[k].node, place, weight[k], sum);
   out.force[0] = mirror * direction * bound * h.unit[0] * sum[0];
   out.force[1] = mirror * bound * h.unit[1] * sum[1];
   out.moment = mirror * direction * bound * c * h.unit[2] * sum[2] +

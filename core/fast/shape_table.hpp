@@ -8,10 +8,13 @@
 // pressed_ellipses.hpp, over the bound B = mu Fn (moment: c B, c = sqrt(a b)). It depends on
 //   v = (G c^2/B) (4.2 xi, 3.7 eta, 2.3 r phi),   r^2 = (a^2 + b^2)/2
 // by cubics with continuous slopes in the spin v3, in the direction of (v1, v2) and in
-// t = |(v1, v2)|/(R + |(v1, v2)|), at t = 1 nothing. Between shapes the nearest nodes count with
+// t = |(v1, v2)|/(R + |(v1, v2)|), at t = 1 nothing. Between shapes the nearest nodes count: of
+// what they have the plane is fitted through the features, moving least squares with the weights
 //   w = ((1 - d/D)/(d + d0))^2,   D the distance of the nearest that does not count
 // (Franke and Nielson 1980, Int. J. Numer. Meth. Engng 15), so that forces follow the shape without
-// jumps. v -> -v turns the signs; rolling along -x is the mirror image in x.
+// jumps. Slopes are drawn to 0 as far as nodes lie closer than features are known; where a shape
+// lies so far outside of its nodes that the plane would magnify what they have, w itself counts.
+// v -> -v turns the signs; rolling along -x is the mirror image in x.
 //
 // One block of bytes, little-endian, made by `railpatch table --wheel --rail`: header, then
 //   float   feature[node/8][8][8 nodes]             times the scales, the last 0; of nodes that
@@ -33,8 +36,8 @@
 namespace railpatch {
 
 struct shape_table_header {
-  static constexpr int features = 8, spins = 8;
-  char magic[8];      // "RPSHAPE1"
+  static constexpr int features = 8, spins = 12;
+  char magic[8];      // "RPSHAPE2"
   uint64_t bytes;     // of all
   uint64_t checksum;  // as creep_table_header's
   int32_t node_count, recipe_bytes;
@@ -56,7 +59,7 @@ struct shape_of_pressure {
 
 class shape_table {
  public:
-  static constexpr int directions = 16, radii = 8, neighbours = 6;
+  static constexpr int directions = 12, radii = 9, neighbours = 14;
   static constexpr int lanes = 8;  // nodes of a block of features
 
   // Whether a block of bytes says that it is one.
@@ -90,8 +93,11 @@ class shape_table {
     int node;
     double distance;
   };
-  int nearest(const std::array<float, shape_table_header::features> &feature,
-              std::array<near, neighbours + 1> &found) const;
+  using shape_features = std::array<float, shape_table_header::features>;
+  using node_weights = std::array<double, neighbours>;
+  int nearest(const shape_features &feature, std::array<near, neighbours + 1> &found) const;
+  node_weights weigh(const shape_features &feature,
+                     const std::array<near, neighbours + 1> &found) const;
   struct place_between;
   place_between between(const double v[3]) const;
   void interpolate(int node, const place_between &place, double weight, double sum[3]) const;

@@ -12,19 +12,26 @@ namespace {
 
 using std::numbers::pi;
 
-// values: w0, then of each unit w, v0 and v [inputs]; offsets: by theory of the normal problem
+// values: w0, then of all units w, of all v0, and of all v, input by input; offsets: by theory of
+// the normal problem
 struct network {
+  static constexpr int most_units = 16;
   const double *values;
   int inputs, units;
   double offsets[4];
   double at(const double *features, rp_normal_method normal) const {
-    double sum = values[0] + offsets[normal];
-    const double *unit = values + 1;
-    for (int k = 0; k < units; ++k, unit += inputs + 2) {
-      double t = unit[1];
-      for (int i = 0; i < inputs; ++i) t += unit[2 + i] * features[i];
-      sum += unit[0] * t / (1.0 + std::abs(t));
+    const double *w = values + 1, *v = w + units;
+    double t[most_units];
+    std::copy_n(v, units, t);
+    for (int i = 0; i < inputs; ++i) {
+      v += units;
+      // an ellipse has but a third of the features
+      if (features[i] == 0) continue;
+      for (int k = 0; k < units; ++k) t[k] += v[k] * features[i];
     }
+    for (int k = 0; k < units; ++k) t[k] = w[k] * t[k] / (1.0 + std::abs(t[k]));
+    double sum = values[0] + offsets[normal];
+    for (int k = 0; k < units; ++k) sum += t[k];
     return sum;
   }
 };

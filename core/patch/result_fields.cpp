@@ -64,25 +64,36 @@ void set_still(rp_side_result &r) {
 #define RP_START(type, name, count, role, mirror, unloaded, sum, start, ...) \
   for_each_in(r.name, [](auto &v) { v = start; });
 
-rp_patch_result empty_patch_result() {
+namespace {
+
+constexpr rp_patch_result new_patch_result() {
   rp_patch_result r{};
   RP_PATCH_RESULT_FIELDS(RP_START, RP_NONE)
   return r;
 }
 
-rp_side_result empty_side_result() {
+constexpr rp_side_result new_side_result() {
   rp_side_result r{};
   RP_SIDE_RESULT_FIELDS(RP_START, RP_NONE)
-  std::fill_n(r.patch, RP_MAX_PATCHES, empty_patch_result());
+  std::fill_n(r.patch, RP_MAX_PATCHES, new_patch_result());
   return r;
 }
 
-rp_result empty_result() {
+constexpr rp_result new_result() {
   rp_result r{};
   RP_RESULT_FIELDS(RP_START, RP_NONE)
-  std::fill_n(r.side, 2, empty_side_result());
+  std::fill_n(r.side, 2, new_side_result());
   return r;
 }
+
+// copied into each step's
+constexpr rp_result no_result = new_result();
+
+}  // namespace
+
+rp_patch_result empty_patch_result() { return no_result.side[0].patch[0]; }
+rp_side_result empty_side_result() { return no_result.side[0]; }
+rp_result empty_result() { return no_result; }
 
 void set_unloaded(const patch_scene &scene, rp_patch_result &result) {
   const bool rolling = scene.tangential != RP_TANGENTIAL_NONE;

@@ -19,7 +19,7 @@ enum class field_sum { alone, by_share, added, greatest };
 
 // Every number of a member, which may be an array of arrays.
 template <class T, class F>
-void for_each_in(T &field, F &&f) {
+constexpr void for_each_in(T &field, F &&f) {
   if constexpr (std::is_array_v<T>) {
     for (auto &part : field) for_each_in(part, f);
   } else {

@@ -24,10 +24,11 @@ struct network {
 double at(const network &net, const std::vector<double> &features, rp_normal_method normal) {
   double sum = net.values[0] + net.offsets[normal];
   for (int k = 0; k < net.units; ++k) {
-    const double *unit = net.values + 1 + k * (net.inputs + 2);
-    double t = unit[1];
-    for (int i = 0; i < net.inputs; ++i) t += unit[2 + i] * features[static_cast<size_t>(i)];
-    sum += unit[0] * t / (1 + std::fabs(t));
+    // of each kind of number those of all units
+    const auto number = [&](int kind) { return net.values[1 + kind * net.units + k]; };
+    double t = number(1);
+    for (int i = 0; i < net.inputs; ++i) t += number(2 + i) * features[static_cast<size_t>(i)];
+    sum += number(0) * t / (1 + std::fabs(t));
   }
   return sum;
 }

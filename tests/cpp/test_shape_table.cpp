@@ -23,7 +23,7 @@ using std::numbers::pi;
 constexpr int spins = head::spins, directions = shape_table::directions;
 constexpr int radii = shape_table::radii, lanes = shape_table::lanes;
 constexpr int cells = spins * directions * radii;
-constexpr double places[spins] = {0, 0.2, 0.45, 0.9, 1.6, 2.8, 5, 9};
+constexpr double places[spins] = {0, 0.15, 0.3, 0.5, 0.75, 1.05, 1.5, 2.1, 3, 4.5, 7, 11};
 constexpr double shear = 82e9;
 
 struct node {
@@ -35,7 +35,7 @@ struct node {
 struct block : tables::table {
   explicit block(const std::vector<node> &nodes) {
     head h{};
-    std::memcpy(h.magic, "RPSHAPE1", 8);
+    std::memcpy(h.magic, "RPSHAPE2", 8);
     h.node_count = static_cast<int32_t>(nodes.size());
     h.recipe_bytes = 3;
     h.poisson_ratio = 0.25;
@@ -98,7 +98,7 @@ std::array<double, 3> nothing(int, int, int) { return {0, 0, 0}; }
 
 // One shape with remainders, all others out of sight.
 block lone(const std::function<std::array<double, 3>(int, int, int)> &remainder) {
-  std::vector<node> nodes(8);
+  std::vector<node> nodes(16);
   for (size_t n = 0; n < nodes.size(); ++n) {
     nodes[n].feature.fill(n == 0 ? 0.0 : 1e6);
     nodes[n].remainder = nothing;
@@ -178,7 +178,7 @@ TEST(ShapeTable, BrokenBytesAreRefused) {
   refused([](block &b) { b.words.resize(4); }, "too short");
   refused([](block &b) { b.words.pop_back(); }, "length");
   refused([](block &b) { b.words[b.words.size() / 2] ^= 1; }, "altered");
-  in_header([](head &h) { h.node_count = 6; }, "7 or more");
+  in_header([](head &h) { h.node_count = 14; }, "15 or more");
   in_header([](head &h) { h.node_count = 20001; }, "20000");
   in_header([](head &h) { h.node_count = 19000; }, "ask for");
   in_header([](head &h) { h.recipe_bytes = -1; }, "ask for");
@@ -249,7 +249,7 @@ TEST(ShapeTable, HoldsItsNodes) {
 TEST(ShapeTable, IsExactForParabolas) {
   const auto value = [](double spin) { return 0.03 * spin - 0.002 * spin * spin; };
   const block b = lone([&](int s, int, int t) -> std::array<double, 3> {
-    const double k = value(places[s]) * (1 - t * t / 64.0);
+    const double k = value(places[s]) * (1 - t * t / (1.0 * radii * radii));
     return {k, k, 0};
   });
   shape_table table(b.data(), 0.25);
@@ -259,7 +259,7 @@ TEST(ShapeTable, IsExactForParabolas) {
     for (double t : {2.5, 4.25, 6.75}) {
       const auto v = node_v(spin, 3.3, t);
       const found_at f = at(table, g, p, v.data());
-      const double wanted = value(spin) * (1 - t * t / 64.0);
+      const double wanted = value(spin) * (1 - t * t / (1.0 * radii * radii));
       // rounded remainders, each half of a unit
       EXPECT_NEAR(f.force[0], wanted, 1e-4) << spin << " " << t;
       EXPECT_NEAR(f.force[1], wanted, 1e-4);
@@ -283,6 +283,42 @@ std::vector<node> random_nodes(int count) {
     };
   }
   return nodes;
+}
+
+// Of what grows evenly with the features the plane through the nearest nodes has the slopes, but
+// for the pull towards none, the weaker the farther nodes lie from each other.
+TEST(ShapeTable, FollowsSlopesOfTheShape) {
+  const grid g = square(24, 6e-3);
+  const auto p = pressure_of(g, lopsided);
+  const auto here = shape_table::describe(g, p.data()).feature;
+  constexpr double wanted = 0.02;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> number(-1, 1);
+  double of_plane = 0, of_nearest = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    std::vector<node> nodes(200);
+    double nearest = 1e9, there = 0;
+    for (node &n : nodes) {
+      n.feature = here;
+      const double x = number(random), y = number(random), z = number(random);
+      n.feature[0] += x;
+      n.feature[1] += y;
+      n.feature[5] += z;
+      const double v = wanted + 0.04 * x - 0.03 * y + 0.05 * z, d = x * x + y * y + z * z;
+      if (d < nearest) nearest = d, there = v;
+      n.remainder = [v](int, int, int t) -> std::array<double, 3> {
+        return {t > 0 ? v : 0.0, t > 0 ? -v : 0.0, 0};
+      };
+    }
+    const block b(nodes);
+    shape_table table(b.data(), 0.25);
+    const auto v = node_v(places[4], 3, 4);
+    const found_at f = at(table, g, p, v.data());
+    EXPECT_NEAR(f.force[1], -f.force[0], 1e-9);
+    of_plane += (f.force[0] - wanted) * (f.force[0] - wanted);
+    of_nearest += (there - wanted) * (there - wanted);
+  }
+  EXPECT_LT(std::sqrt(of_plane), 0.25 * std::sqrt(of_nearest));
 }
 
 TEST(ShapeTable, TurnsItsSignWithTheCreepages) {
@@ -339,7 +375,7 @@ TEST(ShapeTable, DoesNotJump) {
 }
 
 TEST(ShapeTable, CountsInTheInterface) {
-  std::vector<node> nodes(8);
+  std::vector<node> nodes(16);
   for (node &n : nodes) {
     // Hertz on a grid, up to what its elements leave
     n.feature = {0, 0, 3.0 / 35, 0, 0, 1.0 / 35, 3.0 / 35, 0};

@@ -44,12 +44,20 @@ from railpatch.writing import write_whole
     show_default=True,
     help="Of a pair: states held out that tell the table's error.",
 )
+@click.option(
+    "--shapes",
+    "most",
+    type=click.IntRange(50, 20000),
+    default=2000,
+    show_default=True,
+    help="Of a pair: shapes at most, where --error is not reached sooner.",
+)
 @click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of a pair.")
 @quiet_flag("Print no errors and no progress.")
 def table(
     output: Path, jobs: int, keep: bool, wheel: str | None, rail: str | None, case: Path | None,
     error: float, y: tuple[float, float] | None, load: tuple[float, float] | None, check: int,
-    seed: int, quiet: bool,
+    most: int, seed: int, quiet: bool,
 ) -> None:  # fmt: skip
     """Solve a table of creep forces for tangential = 'table'.
 
@@ -64,7 +72,7 @@ def table(
     if case is not None or wheel is not None or rail is not None:
         from railpatch.evidence.table.pair_command import make_pair
 
-        make_pair(output, jobs, (wheel, rail), case, error, (y, load), check, seed, quiet)
+        make_pair(output, jobs, (wheel, rail), case, error, (y, load), check, most, seed, quiet)
         return
     from railpatch.case.creep_table import describe_table
     from railpatch.evidence.table.make import make_table, part_count

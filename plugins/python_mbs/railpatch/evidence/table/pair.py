@@ -1,8 +1,8 @@
 """Contacts of one pair of profiles: places, shapes of pressure, motions that give creepages.
 
-What is solved is one wheel on its rail or roller at heights found for its load. Friction is that of
-the case: forces over friction times load depend on creepages over friction only, so other
-coefficients are other creepages.
+What is solved is one wheel on its rail or roller at heights found for its load. The shapes of a
+table are solved with the case's friction: forces over friction times load depend on creepages over
+friction only, so other coefficients are other creepages.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from railpatch.case.accuracy import fitted_size
 from railpatch.case.load import Scene, load_scene
 from railpatch.case.wheel import WheelRailCase
 from railpatch.contact import Contact
@@ -22,12 +23,13 @@ from railpatch.many import solve_many
 Vector = NDArray[np.float64]
 # of v, core/fast/shape_table.hpp
 STIFFNESS = np.array([4.2, 3.7, 2.3])
-SPEED = 20.0  # m/s, which steady forces do not depend on
+SPEED = 20.0  # m/s on rails, which steady forces do not depend on
+STEP = 0.05  # of creepages, and 1/m of spin, that tell how they follow from rates
 COARSE = {"elements": [16, 16]}
-NODES = {"elements": [32, 32], "fitted": [16, 16]}
-CHECK = {"elements": [40, 40], "fitted": [20, 20]}
+# elements, and scale of railpatch.case.accuracy.fitted_size
+NODES, CHECK = (40, 15), (48, 22)
 FULL = {"tangential": "full", "tolerance": 1e-4, "max_iterations": 500}
-SEQUENCE = 113  # of the creepages of a shape those of one spin
+SEQUENCE = 97  # of the creepages of a shape those of one spin
 
 
 @dataclass(frozen=True)
@@ -80,14 +82,21 @@ class Pair:
         self.shear_modulus = float(np.mean(material.shear_modulus))
         self.poisson_ratio = float(np.mean(material.poisson_ratio))
         self.friction = checked.friction.coefficient
-        self.roller = checked.track.kind == "roller"
+        track = checked.track
+        self.roller = track.kind == "roller"
+        turning = (track.roller_pitch_rate or 0.0) * (track.roller_radius or 0.0)
+        self.speed = abs(turning) or SPEED
         self._still = Contact(scene)
         loaded = self.scene({"tangential": "polach"}, COARSE, vertical_force=1e5)
         self._loaded = Contact(loaded)
         self._radius = checked.wheelset.nominal_radius
 
-    def scene(self, method: dict[str, Any], grid: dict[str, Any], **height: float) -> Scene:
-        """The pair by other methods; height: z (m) or vertical_force (N)."""
+    def scene(
+        self, method: dict[str, Any], grid: dict[str, Any], friction: float | None = None,
+        **height: float,
+    ) -> Scene:  # fmt: skip
+        """The pair by other methods; friction: None is the case's; height: z (m) or vertical_force
+        (N)."""
         found = {key: value for key, value in self._case.items() if key not in ("grid", "method")}
         wheelset = {
             key: value
@@ -99,6 +108,8 @@ class Pair:
             for key, value in self._case.get("method", {}).items()
             if key in ("normal", "reference_surface", "patch_rule", "contact_frame")
         }
+        if friction is not None:
+            found["friction"] = {**found["friction"], "coefficient": friction}
         return load_scene(
             {
                 **found,
@@ -127,7 +138,7 @@ class Pair:
                 return found
 
     def _patch(self, at: dict[str, float], radius: float) -> Place | None:
-        rates = {"pitch_rate": -SPEED / radius, "vy": 0.0, "yaw_rate": 0.0, **self._along()}
+        rates = {"pitch_rate": -self.speed / radius, "vy": 0.0, "yaw_rate": 0.0, **self._along()}
         still = self._still.step(**at, **rates, fields=True)
         patches = still["patches"]
         if not patches:
@@ -167,10 +178,34 @@ class Pair:
         scale = self.friction * place.normal_force / (self.shear_modulus * square)
         return scale / STIFFNESS / np.array([1.0, 1.0, reach])
 
-    def inputs(self, place: Place, creepages: Vector) -> dict[str, Vector]:
-        """Moving inputs of a place for creepages [n, 3] about the patch's reference."""
-        change = np.linalg.solve(place.motion, (creepages - place.rest).T).T
-        found = {name: np.full(len(creepages), value) for name, value in place.at.items()}
+    def inputs(self, place: Place, creepages: Vector, elements: list[int]) -> dict[str, Vector]:
+        """Moving inputs of a place for creepages [n, 3] about the patch's reference, as a grid has
+        it."""
+        # slips and the rolling speed, which creepages are over, are linear in the rates u:
+        # c = (c0 + A u)/(1 + g.u), so A and g are in c at u = 0 and at both ends of each step
+        size = STEP / np.abs(place.motion.diagonal())
+        steps = np.concatenate([np.zeros((1, 3)), np.diag(size), -np.diag(size)])
+        quick = self.scene({"tangential": "polach"}, {"elements": elements}, z=0.0)
+        found = self._creepages(quick, place, self._moving(place, steps))
+        rest, up, down = found[0], found[1:4], found[4:]
+        bent, span = 2.0 * rest - up - down, up - down
+        g = (bent * span).sum(axis=1) / (span * span).sum(axis=1) / size
+        slopes = ((up * (1.0 + g * size)[:, None] - rest) / size[:, None]).T
+        systems = slopes - creepages[:, :, None] * g
+        change = np.linalg.solve(systems, (creepages - rest)[:, :, None])[:, :, 0]
+        return self._moving(place, change)
+
+    @staticmethod
+    def _creepages(scene: Scene, place: Place, inputs: dict[str, Vector]) -> Vector:
+        """Those of the patch, [n, 3]."""
+        names = ["patches.creepage", "patches.spin_creepage"]
+        states = solve_many(scene, inputs, threads=1, sequence=len(inputs["y"]), outputs=names)
+        creepage, spin = (states[name][:, place.k] for name in names)
+        return np.column_stack([creepage, spin])
+
+    def _moving(self, place: Place, change: Vector) -> dict[str, Vector]:
+        """Moving inputs for changes [n, 3] of pitch_rate, vy and yaw_rate."""
+        found = {name: np.full(len(change), value) for name, value in place.at.items()}
         found["pitch_rate"] = place.rates["pitch_rate"] + change[:, 0]
         found["vy"], found["yaw_rate"] = change[:, 1], change[:, 2]
         for name, value in self._along(1.0).items():
@@ -184,34 +219,43 @@ class Pair:
         found[:, 1] -= found[:, 2] * place.centre[0]
         return found
 
-    def natural(self, place: Place, count: int) -> Vector:
-        """Random creepages [count, 3] of running on straight and curved track, any friction."""
+    @staticmethod
+    def grid(place: Place, fineness: tuple[int, int]) -> dict[str, Any]:
+        """Of the full theory, for a place's shape."""
+        elements, scale = fineness
+        a, b = place.axes
+        return {"elements": [elements, elements], "fitted": list(fitted_size(scale, a / b))}
+
+    def natural(self, place: Place, count: int) -> tuple[Vector, float]:
+        """Random creepages [count, 3] of running on straight and curved track, and a friction
+        coefficient."""
         r = self.ranges
         size = np.exp(self.random.uniform(*np.log(r.creepage), (count, 2)))
         signs = self.random.choice([-1.0, 1.0], (count, 2))
-        friction = np.exp(self.random.uniform(*np.log(r.friction), count))
-        turn = self.random.uniform(-r.curvature, r.curvature, count) * SPEED
+        turn = self.random.uniform(-r.curvature, r.curvature, count) * self.speed
         found = np.zeros((count, 3))
         found[:, :2] = size * signs
         found[:, 2] = place.rest[2] + turn * place.motion[2, 2]
-        return found * (self.friction / friction)[:, None]
+        return found, float(np.exp(self.random.uniform(*np.log(r.friction))))
 
     def solve(
         self, place: Place, creepages: Vector, method: dict[str, Any], grid: dict[str, Any],
-        threads: int,
+        threads: int, friction: float | None = None, moved_on: list[int] | None = None,
     ) -> tuple[Vector, NDArray[np.bool_]]:  # fmt: skip
         """Forces [n, 2] over the bound and moment over c times it, about the reference, of a patch;
-        and which are solved."""
+        and which are solved. friction: None is the case's; moved_on: elements of the grid whose
+        creepages they are, None the one that solves."""
         # one after the other the pressure stays, and tractions begin near the last ones
         count = len(creepages)
+        inputs = self.inputs(place, creepages, moved_on or grid["elements"])
         states = solve_many(
-            self.scene(method, grid, z=0.0), self.inputs(place, creepages), threads=threads,
+            self.scene(method, grid, friction, z=0.0), inputs, threads=threads,
             sequence=SEQUENCE if count % SEQUENCE == 0 else count,
         )  # fmt: skip
         k = place.k
         if k >= states["patches.status"].shape[1]:
             return np.zeros((len(creepages), 3)), np.zeros(len(creepages), bool)
-        bound = self.friction * states["patches.normal_force"][:, k]
+        bound = (friction or self.friction) * states["patches.normal_force"][:, k]
         size = np.sqrt(np.prod(place.axes))
         moment = states["patches.spin_moment"][:, k] / size
         force = np.column_stack([states["patches.creep_force"][:, k], moment]) / bound[:, None]

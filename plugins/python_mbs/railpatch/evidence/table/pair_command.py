@@ -53,7 +53,7 @@ def ranges_of(y: tuple[float, float] | None, load: tuple[float, float] | None) -
 
 def make_pair(
     output: Path, jobs: int, profiles: tuple[str | None, str | None], case: Path | None,
-    error: float, ranges: PairOfRanges, check: int, seed: int, quiet: bool,
+    error: float, ranges: PairOfRanges, check: int, most: int, seed: int, quiet: bool,
 ) -> None:  # fmt: skip
     """Makes and writes the table, and tells its errors."""
     check_output(output)
@@ -64,7 +64,7 @@ def make_pair(
     label = " on ".join(str(name) for name in profiles) if case is None else case.name
     pair = Pair(content, folder, ranges_of(*ranges), seed, label)
     with progress(quiet) as step:
-        data = make_shapes(pair, error, check, jobs, step)
+        data = make_shapes(pair, error, check, jobs, step, most)
     try:
         write_whole(output, data)
     except OSError as failed:

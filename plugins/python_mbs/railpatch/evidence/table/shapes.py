@@ -21,11 +21,12 @@ from railpatch.case.creep_table import SHAPES_BODY, SHAPES_MAGIC, checksum, defa
 from railpatch.evidence.table.blob import padded
 from railpatch.evidence.table.pair import CHECK, COARSE, FULL, NODES, Pair, Place, Vector
 
-SPINS = np.array([0.0, 0.2, 0.45, 0.9, 1.6, 2.8, 5.0, 9.0])
-DIRECTIONS, RADII, RADIUS, LANES = 16, 8, 3.0, 8
+# long contacts turn from stick to slip between spins of 0.3 and 2
+SPINS = np.array([0.0, 0.15, 0.3, 0.5, 0.75, 1.05, 1.5, 2.1, 3.0, 4.5, 7.0, 11.0])
+DIRECTIONS, RADII, RADIUS, LANES = 12, 9, 1.7, 8
 # of the features over their standard deviation
 WEIGHT = np.array([1.5, 1.0, 1.0, 0.5, 1.0, 1.0, 1.0, 0.0])
-FIRST, ROUND, MOST = 200, 100, 4000
+FIRST, ROUND = 60, 60
 STATES = 4  # creepages of a place that is tried
 NEEDED = 0.5  # of the error asked for: a shape that errs by less is no node
 LEVEL = 0.95
@@ -62,7 +63,8 @@ class Shapes:
     def add(self, place: Place) -> None:
         """Solves a node; one that the full theory does not solve everywhere is left out."""
         creepages = self.pair.at_centre(place, self._v.reshape(-1, 3))
-        full, solved = self.pair.solve(place, creepages, FULL, NODES, self.threads)
+        grid = self.pair.grid(place, NODES)
+        full, solved = self.pair.solve(place, creepages, FULL, grid, self.threads)
         fast, _ = self.pair.solve(place, creepages, {"tangential": "table"}, COARSE, self.threads)
         if not (solved.all() and np.isfinite(fast).all()):
             return
@@ -106,10 +108,12 @@ class Shapes:
 def tried(shapes: Shapes, place: Place, table: Path) -> tuple[Vector, Vector]:
     """Errors of force over the bound and of moment over c times it at random creepages."""
     pair = shapes.pair
-    creepages = pair.natural(place, STATES)
-    full, solved = pair.solve(place, creepages, FULL, CHECK, shapes.threads)
+    creepages, friction = pair.natural(place, STATES)
     method = {"tangential": "table", "table_file": str(table)}
-    fast, _ = pair.solve(place, creepages, method, COARSE, shapes.threads)
+    (full, solved), (fast, _) = (
+        pair.solve(place, creepages, of, grid, shapes.threads, friction, COARSE["elements"])
+        for of, grid in ((FULL, pair.grid(place, CHECK)), (method, COARSE))
+    )
     missing = (full - fast)[solved]
     return np.hypot(missing[:, 0], missing[:, 1]), np.abs(missing[:, 2])
 
@@ -121,10 +125,11 @@ def distance(shapes: Shapes, place: Place) -> float:
 
 
 def make_shapes(
-    pair: Pair, error: float, check: int, threads: int, step: Callable[[str], None]
-) -> bytes:
+    pair: Pair, error: float, check: int, threads: int, step: Callable[[str], None],
+    most: int,
+) -> bytes:  # fmt: skip
     """The bytes of a table for a pair. error: of force over friction's bound, asked for of 95 % of
-    the states; check: states that tell it; step: called with what is being done."""
+    the states; check: states that tell it; step: called with what is being done; most: shapes."""
     began = time.perf_counter()
     shapes = Shapes(pair, threads)
     while len(shapes) < FIRST:
@@ -134,7 +139,7 @@ def make_shapes(
     with TemporaryDirectory() as folder:
         table = Path(folder) / "table.bin"
         found = np.inf
-        while len(shapes) < MOST:
+        while len(shapes) < most:
             table.write_bytes(shapes.data(FAR, [1.0, 1.0], {}))
             places = [pair.place() for _ in range(ROUND)]
             errors = [tried(shapes, place, table)[0] for place in places]
@@ -144,7 +149,7 @@ def make_shapes(
             if found < 0.8 * error:
                 break
             for place, own in zip(places, errors, strict=True):
-                if len(own) and own.max() > NEEDED * error:
+                if len(shapes) < most and len(own) and own.max() > NEEDED * error:
                     shapes.add(place)
                     step(f"{len(shapes)} shapes, 95 % below {100 * found:.2f} %")
         made = time.perf_counter() - began
