@@ -40,6 +40,8 @@ VEHICLE_UNITS = {
     **dict.fromkeys(("support.pad_force", "support.ballast_force"), "N"),
     "measured_track": "m",
     "measured_track.rows": "",
+    # by names that a scene gives, in several units
+    **dict.fromkeys(("ride_comfort", "wear", "wear_text"), ""),
 }
 
 

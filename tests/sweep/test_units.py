@@ -69,7 +69,7 @@ def test_of_keys(kind: str, key: str, unit: str) -> None:
 )
 def test_every_number_of_a_run_has_a_line(summary: type, units: dict[str, str]) -> None:
     names = {field.name for field in fields(summary)} - TIMES - {"good", "message", "warnings"}
-    assert names == {name for name in units if "." not in name}
+    assert names == {name.partition(".")[0] for name in units}
 
 
 def test_quantities_that_have_units_show_them() -> None:
@@ -89,13 +89,13 @@ def test_every_kind_with_a_run_has_units() -> None:
 @pytest.mark.parametrize(
     ("values", "unit", "text"),
     [
-        ([7.62e8, 7.98e8], "Pa", "762 to 798 MPa"),
-        ([-31473.0, 27522.0], "N", "\u221231.5 to 27.5 kN"),
-        ([0.01, 0.01], "rad", "0.01 rad"),
+        ([7.62e8, 7.98e8], "Pa", "762 to 798\u00a0MPa"),
+        ([-31473.0, 27522.0], "N", "\u221231.5 to 27.5\u00a0kN"),
+        ([0.01, 0.01], "rad", "0.01\u00a0rad"),
         ([12000.0], "", "12\u2009000"),
-        ([2e-10, 4.82e-8], "m", "0.2 to 48.2 nm"),
-        ([0.3], "m", "0.3 m"),
-        ([12000.0], "m", "12\u2009000 m"),
+        ([2e-10, 4.82e-8], "m", "0.2 to 48.2\u00a0nm"),
+        ([0.3], "m", "0.3\u00a0m"),
+        ([12000.0], "m", "12\u2009000\u00a0m"),
     ],
 )
 def test_numbers_at_a_glance(values: list[float], unit: str, text: str) -> None:

@@ -75,7 +75,7 @@ def key_label(sweep: Sweep, key: str) -> str:
 
 def with_unit(text: str, unit: str) -> str:
     """A number's text."""
-    return f"{text} {unit}" if unit else text
+    return f"{text}\u00a0{unit}" if unit else text
 
 
 def glance(values: Array, unit: str) -> str:
@@ -206,7 +206,7 @@ def _responses(sweep: Sweep, names: list[str]) -> list[str]:
         cols=len(keys),
         shared_yaxes=True,
         horizontal_spacing=0.03,
-        vertical_spacing=0.12 / len(names),
+        vertical_spacing=0.2 / len(names),
     )
     for column, key in enumerate(keys, 1):
         at, texts = key_values(sweep, key)
@@ -234,15 +234,15 @@ def _responses(sweep: Sweep, names: list[str]) -> list[str]:
                 row=row,
                 col=column,
             )
-            if row == len(names):
-                figure.update_xaxes(title_text=key_label(sweep, key), row=row, col=column)
+            # each has its own: on a narrow screen they stand below each other
+            figure.update_xaxes(title_text=key_label(sweep, key), row=row, col=column)
             if texts:
                 figure.update_xaxes(
                     tickvals=list(range(len(texts))), ticktext=texts, row=row, col=column
                 )
             if column == 1:
                 figure.update_yaxes(title_text=output_label(sweep, name), row=row, col=column)
-    styled(figure, 120 + 220 * len(names))
+    styled(figure, 120 + 240 * len(names))
     text = "<p class=sub>Dots are cases, the line is their mean along the key.</p>"
     figure.update_xaxes(exponentformat="SI")
     figure.update_yaxes(exponentformat="SI")
