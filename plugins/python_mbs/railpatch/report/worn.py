@@ -23,14 +23,12 @@ Wheel = tuple[int, str]
 TEXT = (
     "Of the whole run, by y of each profile as it was given, flange or gauge side at negative y: "
     "depth that has worn off, measured across y, of wheels spread round them, of {counterpart}. "
-    "The mass by the contacts is that of the patches themselves, that over the profiles the sum of "
-    "the distribution."
+    "Mass is that of the patches themselves, which each body loses, and over the profiles the sum "
+    "of the distribution; depths are the greatest."
 )
 SPREAD = {"rail": "rails along the way of the run", "roller": "rollers round them"}
-HEAD = (
-    *("wheel", "way [m]", "mass by the contacts [g]", "over the wheel [g]", "over the rail [g]"),
-    *("wheel depth most [µm]", "at y [mm]", "rail depth most [µm]", "at y [mm]"),
-)
+# m, that profiles are shown beyond what is worn
+MARGIN = 0.012
 
 
 def sections(run: Run) -> list[str]:
@@ -42,28 +40,42 @@ def sections(run: Run) -> list[str]:
     text = TEXT.format(counterpart=SPREAD.get(kind, SPREAD["rail"]))
     return [
         f"<h2>Wear over the profiles</h2><p>{text}</p>",
-        tables.table(HEAD, [row(wheel, values) for wheel, values in found.items()]),
-        plot(figure(run, found), "wear"),
+        tables.table(head(kind), [row(wheel, values, kind) for wheel, values in found.items()]),
+        plot(figure(run, found, kind), "wear"),
     ]
 
 
-def row(wheel: Wheel, values: dict[str, Any]) -> list[object]:
+def scale_of(body: str, kind: str) -> tuple[float, str]:
+    """Of depths: a rail is passed once, which leaves nanometres."""
+    return (1e9, "nm") if (body, kind) == ("rail", "rail") else (1e6, "µm")
+
+
+def head(kind: str) -> tuple[str, ...]:
+    """Of the table."""
+    wheel, rail = (scale_of(body, kind)[1] for body in BODIES)
+    return (
+        *("wheel", "way [m]", "mass [g]", "over the wheel [g]", f"over the {kind} [g]"),
+        *(f"wheel depth [{wheel}]", "at y [mm]", f"{kind} depth [{rail}]", "at y [mm]"),
+    )
+
+
+def row(wheel: Wheel, values: dict[str, Any], kind: str) -> list[object]:
     """Of the table."""
     cells: list[object] = [f"{wheel[0]} {wheel[1]}", tables.short(values["way"])]
     cells += [tables.short(1e3 * values[name]) for name in ("mass", "wheel_mass", "rail_mass")]
     y = np.array(values.get("y") or [np.nan])
-    for name in ("wheel_depth", "rail_depth"):
-        depth = np.array(values.get(name) or [0.0])
-        cells += [tables.short(1e6 * depth.max()), tables.short(1e3 * y[depth.argmax()])]
+    for body in BODIES:
+        depth = np.array(values.get(f"{body}_depth") or [0.0])
+        factor, _ = scale_of(body, kind)
+        cells += [tables.short(factor * depth.max()), tables.short(1e3 * y[depth.argmax()])]
     return cells
 
 
-def figure(run: Run, found: dict[Wheel, dict[str, Any]]) -> go.Figure:
+def figure(run: Run, found: dict[Wheel, dict[str, Any]], kind: str) -> go.Figure:
     """Depths of wheels and rails, left beside right, over their profiles where these are known."""
     shown = make_subplots(
         4,
         2,
-        shared_xaxes=True,
         row_heights=[0.32, 0.18, 0.32, 0.18],
         horizontal_spacing=0.1,
         vertical_spacing=0.06,
@@ -75,7 +87,7 @@ def figure(run: Run, found: dict[Wheel, dict[str, Any]]) -> go.Figure:
             shown.add_trace(
                 go.Scatter(
                     x=1e3 * np.array(values.get("y") or []),
-                    y=1e6 * np.array(values.get(f"{body}_depth") or []),
+                    y=scale_of(body, kind)[0] * np.array(values.get(f"{body}_depth") or []),
                     name=name,
                     legendgroup=name,
                     showlegend=body == "wheel" and side == "left" and len(found) > len(SIDES),
@@ -86,23 +98,38 @@ def figure(run: Run, found: dict[Wheel, dict[str, Any]]) -> go.Figure:
                 col=column,
             )
     for side in SIDES:
+        reach = reach_of(found, side)
         for body in BODIES:
             place = 2 * BODIES.index(body) + 2, SIDES.index(side) + 1
-            _add_profile(shown, profile_of(run, body, side), place)
+            _add_profile(shown, profile_of(run, body, side), reach, place)
+        shown.update_xaxes(range=[1e3 * end for end in reach], col=SIDES.index(side) + 1)
     for place, body in enumerate(BODIES):
-        shown.update_yaxes(title_text=f"{body} depth [µm]", row=2 * place + 1, col=1)
+        name, unit = kind if body == "rail" else body, scale_of(body, kind)[1]
+        shown.update_yaxes(title_text=f"{name} depth [{unit}]", row=2 * place + 1, col=1)
         shown.update_yaxes(title_text="z [mm]", autorange="reversed", row=2 * place + 2, col=1)
         shown.update_yaxes(autorange="reversed", row=2 * place + 2, col=2)
-    shown.update_xaxes(title_text="y on the profile [mm]", row=4)
+        shown.update_xaxes(title_text=f"y on the {name}'s profile [mm]", row=2 * place + 2)
     return styled(shown, 760)
 
 
+def reach_of(found: dict[Wheel, dict[str, Any]], side: str) -> tuple[float, float]:
+    """m, of what is shown of both profiles of a side: what is worn, and a margin."""
+    worn = [values["y"] for (_, own), values in found.items() if own == side and values.get("y")]
+    if not worn:
+        return -5 * MARGIN, 5 * MARGIN
+    return min(map(min, worn)) - MARGIN, max(map(max, worn)) + MARGIN
+
+
 def _add_profile(
-    shown: go.Figure, points: tuple[np.ndarray, np.ndarray] | None, place: tuple[int, int]
+    shown: go.Figure,
+    points: tuple[np.ndarray, np.ndarray] | None,
+    reach: tuple[float, float],
+    place: tuple[int, int],
 ) -> None:
     if points is None:
         return
-    y, z = points
+    inside = (points[0] >= reach[0]) & (points[0] <= reach[1])
+    y, z = (part[inside] for part in points)
     line = go.Scatter(
         x=1e3 * y, y=1e3 * z, mode="lines", line={"color": GREY, "width": 1.5}, showlegend=False
     )

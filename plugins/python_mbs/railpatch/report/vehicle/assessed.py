@@ -58,12 +58,12 @@ def percentiles(data: VehicleRun, found: dict[str, Any]) -> list[str]:
 
 
 def rows(data: VehicleRun, found: dict[str, Any]) -> list[list[object]]:
-    """By wheel; the sum of Y beside the left one."""
+    """By wheel; the sum of Y is that of its wheelset."""
     told: list[list[object]] = []
     for place, number in enumerate(data.wheelsets):
         for k, side in enumerate(SIDES):
             wheel = 2 * place + k
-            shift = tables.short(1e-3 * found["shift"][place]) if k == 0 else ""
+            shift = tables.short(1e-3 * found["shift"][place])
             told.append(
                 [
                     f"{number} {side}",
@@ -72,7 +72,7 @@ def rows(data: VehicleRun, found: dict[str, Any]) -> list[list[object]]:
                     tables.short(1e-3 * found["load"][wheel]),
                     tables.short(1e-3 * found["median_load"][wheel]),
                     shift,
-                    tables.short(1e-3 * found["shift_limit"]) if k == 0 else "",
+                    tables.short(1e-3 * found["shift_limit"]),
                 ]
             )
     return told
