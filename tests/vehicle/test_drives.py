@@ -11,6 +11,8 @@ import pytest
 import vehicle_parts as parts
 import vehicle_scenes as scenes
 from click.testing import CliRunner
+from railpatch.case.fluid import Fluid
+from railpatch.case.friction import Friction
 from railpatch.command.cli import cli
 from railpatch.errors import CaseError
 from railpatch.log import read_run
@@ -22,13 +24,13 @@ from wheelset_demo.vehicle.trace import run_vehicle
 from wheelset_demo.vehicle.traction import DriveTable
 
 RADIUS, TORQUE, COUPLER = 0.625, 46875.0, 1.05
-STEP = 24.0  # m, where friction falls
+STEP = 20.0  # m, where friction falls
 
 
 def locomotive(*, control: bool = True, friction: float = 0.5, **run):
     """That of the package with a quick theory; the full torque from the start."""
     scene = load_vehicle_scene(scene_file("locomotive.toml"))
-    scene = scene.with_run(**run).with_method(tangential="polach")
+    scene = scene.with_run(**{"step": 2e-3, **run}).with_method(tangential="polach")
     law = scene.case.friction.model_copy(
         update={"along_track": [[STEP, 1.0], [STEP + 1.0, friction]]}
     )
@@ -141,10 +143,14 @@ def test_pull_and_load_transfer(pulling):
     assert loads[:2].sum() < loads[2:].sum()
 
 
-def test_energy_closes_while_pulling(pulling):
-    simulation = Simulation(locomotive(duration=0.3))
-    trace = run_vehicle(simulation)
-    assert trace.open_balance() < 1e-3 * abs(trace.works[-1][3])
+def test_energy_closes_while_pulling():
+    """Of what the drives put in, less than a thousandth is missing; better with shorter steps."""
+    missing = []
+    for step in (2e-3, 1e-3):
+        trace = run_vehicle(Simulation(locomotive(duration=0.2, step=step)))
+        missing.append(trace.open_balance() / trace.works[-1][3])
+    assert 0 < missing[1] < 1e-3
+    assert missing[1] < 0.7 * missing[0]
 
 
 def test_slip_control_on_a_friction_step():
@@ -153,7 +159,7 @@ def test_slip_control_on_a_friction_step():
     torque less friction over their inertia."""
     ends, heats, slips = [], [], []
     for control in (True, False):
-        simulation = Simulation(locomotive(control=control, duration=2.6, log_every=20))
+        simulation = Simulation(locomotive(control=control, duration=2.1, log_every=20))
         trace = run_vehicle(simulation)
         assert trace.failure is None
         state = simulation.state
@@ -162,8 +168,8 @@ def test_slip_control_on_a_friction_step():
         heats.append(trace.works[-1][1])
     speed = float(ends[0].state.v[0])
     np.testing.assert_allclose(slips[0], 0.03 * speed, rtol=0.1)
-    assert (slips[1] > 10.0).all()
-    assert heats[1] > 5 * heats[0]
+    assert (slips[1] > 5.0).all()
+    assert heats[1] > 3 * heats[0]
     wheels = ends[0].element.wheels
     used = wheels[:, :, 0] / -wheels[:, :, 2]
     # Polach's law at half of 0.55 and this slip; a little of the contact still adheres
@@ -172,6 +178,44 @@ def test_slip_control_on_a_friction_step():
     # what the controller leaves is what the rails take
     held = ends[0].system.drives.torque / RADIUS
     np.testing.assert_allclose(held, wheels[:, :, 0].sum(axis=1), rtol=0.03)
+
+
+def test_slip_control_on_wet_rails():
+    """A film of water bears half of the load: the drives ask for five times as much as the wetted
+    asperities give. All wheelsets come to the slip that is sought and use the contacts' own
+    effective friction whole."""
+    scene = locomotive(duration=1.0, log_every=100)
+    fluid = Fluid(
+        model="film",
+        share="film_ratio",
+        roughness=0.5765e-6,
+        boundary_friction=0.1485,
+        liquid="water",
+        temperature=20.0,
+    )
+    wet = {"friction": Friction(coefficient=0.5), "fluid": fluid}
+    ramp = [[0.0, 0.0], [1.0, TORQUE]]
+    drives = [one.model_copy(update={"torque": ramp}) for one in scene.vehicle.drive]
+    simulation = Simulation(
+        replace(
+            scene,
+            case=scene.case.model_copy(update=wet),
+            vehicle=scene.vehicle.model_copy(update={"drive": drives}),
+        )
+    )
+    assert run_vehicle(simulation).failure is None
+    slips = simulation.system.drives.slip_speeds(simulation.state.q, simulation.state.v)
+    np.testing.assert_allclose(slips, 0.03 * simulation.state.v[0], rtol=0.05)
+    wheels = simulation.element.wheels
+    used = wheels[:, :, 0] / -wheels[:, :, 2]
+    for index in range(4):
+        result = simulation.element.result(index)
+        for side, part in zip(("left", "right"), used[index], strict=True):
+            (patch,) = result[side]["patches"]
+            assert 0.05 < patch["effective_friction"] < 0.1485
+            assert part == pytest.approx(patch["effective_friction"], rel=0.01)
+    held = simulation.system.drives.torque
+    assert (held < 0.25 * TORQUE).all()
 
 
 def test_traction_in_log_and_report(tmp_path):
