@@ -114,14 +114,19 @@ double log_axis_ratio(double c0, double c1) {
   return t;
 }
 
-hertz_contact complete(double a, double b, const double curvatures[2], double modulus,
+// rf: R_F(0, a^2, b^2).
+hertz_contact complete(double a, double b, double rf, const double curvatures[2], double modulus,
                        double force) {
-  const double rf = carlson_rf(0, a * a, b * b);
   return {{a, b},
           {curvatures[0], curvatures[1]},
           force,
           3.0 * force / (2.0 * pi * modulus) * rf,
           3.0 * force / (2.0 * pi * a * b)};
+}
+
+hertz_contact of_size(const hertz_shape &u, double size, double modulus, double force) {
+  const double a = size * u.a, b = size * u.b;
+  return complete(a, b, carlson_rf(0, a * a, b * b), u.curvatures, modulus, force);
 }
 
 }  // namespace
@@ -137,7 +142,7 @@ hertz_shape hertz_shape_of(const double curvatures[2]) {
 
 hertz_contact hertz_from_force(const hertz_shape &u, double modulus, double force) {
   const double size = cbrt(force * u.rd0 / (2.0 * pi * modulus * u.curvatures[0]));
-  return complete(size * u.a, size * u.b, u.curvatures, modulus, force);
+  return of_size(u, size, modulus, force);
 }
 
 hertz_contact hertz_from_force(const double curvatures[2], double modulus, double force) {
@@ -151,21 +156,33 @@ hertz_contact hertz_from_approach(const double curvatures[2], double modulus, do
 hertz_contact hertz_from_approach(const hertz_shape &u, double modulus, double approach) {
   const double size = std::sqrt(approach * u.rd0 / (3.0 * u.curvatures[0] * u.rf));
   const double force = 2.0 * pi * modulus * u.curvatures[0] * size * size * size / u.rd0;
-  return complete(size * u.a, size * u.b, u.curvatures, modulus, force);
+  return of_size(u, size, modulus, force);
+}
+
+hertz_ellipse hertz_ellipse_of(const double semi_axes[2]) {
+  const double a2 = semi_axes[0] * semi_axes[0], b2 = semi_axes[1] * semi_axes[1];
+  return {{semi_axes[0], semi_axes[1]},
+          {carlson_rd(0, b2, a2), carlson_rd(0, a2, b2)},
+          carlson_rf(0, a2, b2)};
+}
+
+hertz_contact hertz_from_ellipse(const hertz_ellipse &e, double modulus, double force) {
+  const double size = force / (2.0 * pi * modulus);
+  const double curvatures[2] = {size * e.rd[0], size * e.rd[1]};
+  return complete(e.semi_axes[0], e.semi_axes[1], e.rf, curvatures, modulus, force);
 }
 
 hertz_contact hertz_from_ellipse(const double semi_axes[2], double modulus, double force) {
-  const double a2 = semi_axes[0] * semi_axes[0], b2 = semi_axes[1] * semi_axes[1];
-  const double size = force / (2.0 * pi * modulus);
-  const double curvatures[2] = {size * carlson_rd(0, b2, a2), size * carlson_rd(0, a2, b2)};
-  return complete(semi_axes[0], semi_axes[1], curvatures, modulus, force);
+  return hertz_from_ellipse(hertz_ellipse_of(semi_axes), modulus, force);
+}
+
+hertz_contact hertz_ellipse_from_approach(const hertz_ellipse &e, double modulus, double approach) {
+  return hertz_from_ellipse(e, modulus, 2.0 * pi * modulus * approach / (3.0 * e.rf));
 }
 
 hertz_contact hertz_ellipse_from_approach(const double semi_axes[2], double modulus,
                                           double approach) {
-  const double a2 = semi_axes[0] * semi_axes[0], b2 = semi_axes[1] * semi_axes[1];
-  return hertz_from_ellipse(semi_axes, modulus,
-                            2.0 * pi * modulus * approach / (3.0 * carlson_rf(0, a2, b2)));
+  return hertz_ellipse_from_approach(hertz_ellipse_of(semi_axes), modulus, approach);
 }
 
 hertz_contact hertz_line(double radius, double width, double modulus, double force) {

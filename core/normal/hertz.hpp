@@ -37,8 +37,18 @@ hertz_contact hertz_from_force(const hertz_shape &shape, double modulus, double 
 hertz_contact hertz_from_approach(const hertz_shape &shape, double modulus, double approach);
 hertz_contact hertz_from_force(const double curvatures[2], double modulus, double force);
 hertz_contact hertz_from_approach(const double curvatures[2], double modulus, double approach);
+// Of an ellipse that is given R_D(0, b^2, a^2), R_D(0, a^2, b^2) and R_F(0, a^2, b^2), whatever the
+// load.
+struct hertz_ellipse {
+  double semi_axes[2];  // m
+  double rd[2], rf;
+};
+hertz_ellipse hertz_ellipse_of(const double semi_axes[2]);
 // The curvatures that give the ellipse under the load.
+hertz_contact hertz_from_ellipse(const hertz_ellipse &ellipse, double modulus, double force);
 hertz_contact hertz_from_ellipse(const double semi_axes[2], double modulus, double force);
+hertz_contact hertz_ellipse_from_approach(const hertz_ellipse &ellipse, double modulus,
+                                          double approach);
 hertz_contact hertz_ellipse_from_approach(const double semi_axes[2], double modulus,
                                           double approach);
 // Line contact, force and approach-free: semi_axes[1] and the approach stay zero.

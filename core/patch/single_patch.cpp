@@ -24,6 +24,7 @@ single_patch::single_patch(const single_patch_setup &setup, const patch_scene &s
     std::copy_n(setup.distance, count, distance_.data());
     setup_.distance = nullptr;
   }
+  if (setup.geometry == RP_SEMI_AXES) ellipse_ = hertz_ellipse_of(setup.semi_axes);
   if (setup.geometry == RP_CURVATURES) shape_ = hertz_shape_of(setup.curvatures);
   if (!scene.exact) return;
   rates_.emplace();
@@ -123,8 +124,8 @@ hertz_contact single_patch::hertz_of(const rp_input &in) const {
   const bool force = setup_.force_given;
   switch (setup_.geometry) {
     case RP_SEMI_AXES:
-      return force ? hertz_from_ellipse(setup_.semi_axes, modulus, in.normal_force)
-                   : hertz_ellipse_from_approach(setup_.semi_axes, modulus, in.approach);
+      return force ? hertz_from_ellipse(ellipse_, modulus, in.normal_force)
+                   : hertz_ellipse_from_approach(ellipse_, modulus, in.approach);
     case RP_CURVATURES:
       return force ? hertz_from_force(shape_, modulus, in.normal_force)
                    : hertz_from_approach(shape_, modulus, in.approach);

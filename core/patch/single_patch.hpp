@@ -54,6 +54,7 @@ class single_patch final : public driver {
 
   single_patch_setup setup_;
   hertz_shape shape_{};              // of curvatures that are given
+  hertz_ellipse ellipse_{};          // of semi-axes that are given
   aligned_buffer<double> distance_;  // m, of the case
   std::optional<rates> rates_;
 };
