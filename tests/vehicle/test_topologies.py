@@ -61,6 +61,24 @@ def test_loads_follow_from_moments(tmp_path):
     assert loads.sum() == pytest.approx(FRAME * GRAVITY, rel=1e-12)
 
 
+def test_a_body_beside_the_middle(tmp_path):
+    """0.1 m to the right: its weight's moment is on the wheelsets at once, and right wheels carry
+    more by moment over the distance of the contacts, 2 e each."""
+    vehicle = parts.bogie()
+    vehicle["body"][0]["position"] = [0.0, 0.1, 0.6]
+    simulation = Simulation(parts.load(tmp_path, vehicle, duration=0.6, log_every=10))
+    moments = simulation.system.suspension.statics.moments
+    assert moments.sum() == pytest.approx(FRAME * GRAVITY * 0.1, rel=1e-9)
+    rows = [-simulation.element.wheels[:, :, 2] for state in simulation.steps() if state.time > 0.3]
+    left, right = np.mean(rows, axis=0).sum(axis=0)
+    result = simulation.element.result(0)
+    half = 0.5 * (
+        result["right"]["patches"][0]["position"][1] - result["left"]["patches"][0]["position"][1]
+    )
+    # lateral forces at the rails' tops turn the whole by their height: they sum to nearly nothing
+    assert (right - left) * half == pytest.approx(FRAME * GRAVITY * 0.1, rel=0.03)
+
+
 def six_axles():
     """A locomotive's layout: a body on two bogies of three wheelsets, with axle boxes."""
     frames = {"bogie_1": 5.0, "bogie_2": -5.0}

@@ -1,4 +1,4 @@
-"""A railway vehicle of 50 degrees of freedom on straight and curved track, with irregular rails.
+"""Railway vehicles, of any number of wheelsets, on straight and curved track, with irregular rails.
 
     railpatch vehicle --compare
 
@@ -12,9 +12,10 @@ In Python:
         element = simulation.element       # railpatch.pinocchio.ForceElement, one row a wheelset
         ...
 
-state.time in s, state.q and state.v [50] as in wheelset_demo.vehicle.model; element.states,
-.wheels, .contact_wrench, .tracks, .positions, .rails and .result(index) are of that state. Names
-of bodies: car_body, bogie_1, bogie_2, wheelset_1 ... 4, axle_box_1_left ... axle_box_4_right.
+state.time in s, state.q and state.v [n] as in wheelset_demo.vehicle.model; element.states, .wheels,
+.contact_wrench, .tracks, .positions, .rails and .result(index) are of that state. Names of bodies
+are the scene's; wheelsets and axle boxes are wheelset_1, axle_box_1_left, axle_box_1_right and so
+on from the front.
 """
 
 from importlib import import_module

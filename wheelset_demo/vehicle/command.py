@@ -71,9 +71,9 @@ def vehicle(
     quiet: bool,
     **overrides: Any,
 ) -> None:
-    """Run a vehicle of 50 degrees of freedom on its track.
+    """Run a vehicle of any bodies and wheelsets on its track.
 
-    Without a scene it runs 20 s at 300 km/h through a curve whose rails have irregularities. A
+    Without a scene a coach runs 20 s at 300 km/h through a curve whose rails have irregularities. A
     contact that cannot be solved ends the run with exit code 3; the log up to there is kept.
     """
     if compare and methods:
