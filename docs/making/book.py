@@ -59,6 +59,13 @@ def commit(place: str = "") -> tuple[str, str]:
     return (found[0], found[1]) if len(found) == 2 else ("", "")
 
 
+@cache
+def changed() -> bool:
+    """Whether the checkout holds more than its commit."""
+    words = ["git", "-C", str(ROOT), "status", "--porcelain", "--untracked-files=no"]
+    return bool(subprocess.run(words, capture_output=True, text=True, check=False).stdout)
+
+
 def run(claim: dict[str, Any]) -> dict[str, Any]:
     """Runs a claim's command in the checkout."""
     begin = time.perf_counter()
@@ -79,6 +86,7 @@ def run(claim: dict[str, Any]) -> dict[str, Any]:
         "seconds": round(time.perf_counter() - begin, 1),
         "date": now.strftime("%Y-%m-%d"),
         "commit": commit()[1],
+        "changed": changed(),
         "printed": "\n".join(lines[-60:]),
         "error": "" if done.returncode == 0 else (done.stderr or done.stdout)[-2000:],
     }
@@ -106,7 +114,8 @@ def entry(claim: dict[str, Any], known: dict[str, dict[str, Any]]) -> list[str]:
         lines += [f"Not run for this page ({how}); evidence of {date}, commit `{which}`.", ""]
     else:
         word = "Holds" if done["good"] else "**Does not hold**"
-        when = f"{done['date']}, commit `{done['commit']}`, {done['seconds']:g} s"
+        more = " with changes that were not committed" if done["changed"] else ""
+        when = f"{done['date']}, commit `{done['commit']}`{more}, {done['seconds']:g} s"
         lines += [f"{word}: {when}.", ""]
         shown = done["printed"].strip() or done["error"].strip()
         if claim.get("show") == "table" and done["good"]:
