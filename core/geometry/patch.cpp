@@ -276,23 +276,25 @@ void keep_heaviest(part_interval *groups, double *angles, int &count, int limit)
   }
 }
 
-// How far from s, which touches where gaps are `lower` less, the nearest contact is then, m; 0:
-// none that it would be one patch with.
-double neighbour_of(const side_geometry &side, const blend_rules &rule, double s, double lower) {
-  double nearest = 0;
+// Where gaps are `lower` less a part appears at found.at: its nearest neighbour that it would be
+// one patch with, and the greatest gap on the way.
+void find_neighbour(const side_geometry &side, const blend_rules &rule, double lower,
+                    appearance &found) {
   for (const int step : {-1, 1}) {
     double bump = 0;
     for (int k = 0; k * closest < rule.two; ++k) {
       const double distance = (k + 1) * closest;
-      const double gap = gap_at(side, s + step * distance) - lower;
+      const double gap = gap_at(side, found.at + step * distance) - lower;
       bump = std::max(bump, gap);
       if (bump > rule.high) break;
       if (gap >= 0) continue;
-      if (nearest == 0 || distance < nearest) nearest = distance;
+      if (found.neighbour == 0 || distance < std::fabs(found.neighbour)) {
+        found.neighbour = step * distance;
+        found.bump = bump;
+      }
       break;
     }
   }
-  return nearest;
 }
 
 }  // namespace
@@ -311,6 +313,10 @@ void find_parts(const side_geometry &side, part_set &found) {
     if (found.parts[i].weight > 0) found.parts[found.count++] = found.parts[i];
   }
   for (int i = 0; i + 1 < found.count; ++i) find_bump(side, found.parts[i], found.parts[i + 1]);
+}
+
+double lowest_gap(const side_geometry &side, double begin, double end) {
+  return lowest(side, begin, end);
 }
 
 search_result find_patches(const side_geometry &side, const patch_rules &rules, part_set &found,
@@ -351,9 +357,12 @@ int find_appearances(const side_geometry &side, const patch_rules &rules, double
     const double g = exact(i);
     if (last <= before && last < g && last > low - closeness && last < high + closeness) {
       const double s = lowest(side, side.sample_s(i - 2), side.sample_s(i));
-      appearance found{z + gap_at(side, s), 0};
+      appearance found;
+      found.z = z + gap_at(side, s);
+      found.at = s;
       const bool within = found.z > low && found.z < high;
-      const double distance = within ? neighbour_of(side, rules.blend, s, found.z - z) : 0;
+      if (within) find_neighbour(side, rules.blend, found.z - z, found);
+      const double distance = std::fabs(found.neighbour);
       // as wide as it is then
       const double half = 0.5 * rules.blend.grown * distance;
       found.length = 0.5 * (gap_at(side, s - half) + gap_at(side, s + half)) - (found.z - z);

@@ -68,12 +68,18 @@ search_result find_patches(const side_geometry &side, const patch_rules &rules, 
 // A second part of contact that appears as the wheel goes down: beside another it soon belongs to
 // one patch with that one, so that what the wheel carries rises within less than a micrometre.
 struct appearance {
-  double z = 0;       // m, of the wheelset, at which it appears
-  double length = 0;  // m, of z, until it is one with its neighbour
+  double z = 0;          // m, of the wheelset, at which it appears
+  double length = 0;     // m, of z, until it is one with its neighbour
+  double at = 0;         // m, arc length on the wheel
+  double neighbour = 0;  // m, from there to inside of the neighbour, > 0 along the arc length
+  double bump = 0;       // m, greatest gap between both
 };
 // Those for which z lies between low and high: how many of `most` were written. Blended rule only.
 int find_appearances(const side_geometry &side, const patch_rules &rules, double low, double high,
                      appearance *out, int most);
+
+// The arc length on the wheel of the least gap between two, where it has one minimum.
+double lowest_gap(const side_geometry &side, double begin, double end);
 
 // The wheelset's z at which this wheel first touches; false where the profiles do not overlap.
 bool first_touch(const side_geometry &side, double &z);

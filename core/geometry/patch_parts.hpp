@@ -151,21 +151,28 @@ T interaction(const blend_rules &rule, const basic_part<T> &a, const basic_part<
   return near < 1.0 ? pow(near, 0.8) : T(1);
 }
 
-// How far two neighbours are one patch: 1, or 0 for patches of their own.
+// How far two neighbours are one patch: 1, or 0 for patches of their own. By their distance, the
+// smaller one's width, the greatest gap between and their contact angles.
 template <class T>
-T joined(const blend_rules &rule, const basic_part<T> &a, const basic_part<T> &b) {
+T joined(const blend_rules &rule, const T &d, const T &w, const T &bump, const T &angle_a,
+         const T &angle_b) {
   using std::fabs;
-  using std::min;
-  const T d = facing_distance(a, b), w = min(lateral_width(a), lateral_width(b));
-  const T apart = (fabs(b.angle - a.angle) - rule.angle_from) / (rule.angle_to - rule.angle_from);
+  const T apart = (fabs(angle_b - angle_a) - rule.angle_from) / (rule.angle_to - rule.angle_from);
   const T alike = rule.angle_fraction + (1.0 - rule.angle_fraction) * fade(apart);
   // gaps are vertical, and greater than across the surfaces where these are steep
-  const T cosine = cos(0.5 * (a.angle + b.angle));
+  const T cosine = cos(0.5 * (angle_a + angle_b));
   const T upright = alike / (cosine > rule.steepest ? cosine : T(rule.steepest));
   const T low = upright * rule.low, high = upright * rule.high;
-  const T near = fade((a.bump - low) / (high - low)) * fade((d - rule.one) / (rule.two - rule.one));
+  const T near = fade((bump - low) / (high - low)) * fade((d - rule.one) / (rule.two - rule.one));
   const T share = w / (rule.grown * d);
   return share < 1.0 ? near * (1.0 - fade(share)) : near;
+}
+
+template <class T>
+T joined(const blend_rules &rule, const basic_part<T> &a, const basic_part<T> &b) {
+  using std::min;
+  const T d = facing_distance(a, b), w = min(lateral_width(a), lateral_width(b));
+  return joined(rule, d, w, a.bump, a.angle, b.angle);
 }
 
 // Share of the interval [begin, end) of `count` parts; joined[k] is that of parts k and k + 1.

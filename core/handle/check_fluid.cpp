@@ -1,6 +1,7 @@
 // A liquid between wheel and rail: its own numbers, and what it is not combined with.
 #include <cmath>
 
+#include "half_space/influence.hpp"
 #include "handle/checker.hpp"
 
 namespace railpatch {

@@ -245,8 +245,10 @@ void wheel_contact::solve_patch(patch_contact &solver, patch_region &region, int
   for (size_t k = 0; k < 2; ++k) memory.rail[k] = geometry_->motion().rail.offset[k + 1];
 
   if (!solutions_.empty()) solutions_[static_cast<size_t>(index)] = {true, problem, wrench, depth};
+  const double before = out.force[2];
   add_force(region, depth, wrench, result.normal_force, out);
   if (solver.scene().turns()) add_turning_force(region, memory.turning.about_x, out);
+  vertical_[static_cast<size_t>(index)] = (before - out.force[2]) / region.share;
   // beyond a profile's end there is no surface: an edge in contact is outside the theory
   if (region.at_profile_end)
     degrade(result, RP_OUT_OF_RANGE, RP_REASON_PROFILE_END, region.frame.origin[1]);

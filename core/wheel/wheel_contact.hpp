@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "geometry/geometry.hpp"
+#include "geometry/joining.hpp"
 #include "geometry/longitudinal_shape.hpp"
 #include "geometry/patch.hpp"
 #include "geometry/rail_sections.hpp"
@@ -43,6 +44,13 @@ struct wheel_setup {
 // first, so the order is a function of the last solution only.
 void match_memory(const patch_region *regions, int count, patch_memory *memory, int slots);
 
+// Vertical forces on the rail (N) that a wheel has if two neighbouring parts are patches of their
+// own, and if they are one.
+struct division_forces {
+  double apart = 0, joined = 0;
+  bool apart_known = false, joined_known = false;
+};
+
 class wheel_contact {
  public:
   explicit wheel_contact(const wheel_setup &setup);
@@ -56,6 +64,16 @@ class wheel_contact {
   int appearances(double low, double high, appearance *out, int most) const {
     return find_appearances(*geometry_, rules_, low, high, out, most);
   }
+  // The parts of the last state that are partly one patch, those that are most evenly both; -1: no
+  // such, or not by the blended rule.
+  int joining_gap() const;
+  joining joining_at(int gap) const { return {*geometry_, parts_, gap}; }
+  joining joining_at(const appearance &found) const { return {*geometry_, rules_.blend, found}; }
+  double joined(const joining &pair, double z) const { return pair.joined(rules_.blend, z); }
+  // Of the last state, as far as its patches tell them; the pair learns of its parts.
+  division_forces forces_of(joining &pair) const;
+  // N, on the rail.
+  double vertical_force() const;
   // Solves the contact at the placed position. memory: of this side's patches, max_patches.
   void evaluate(patch_contact &solver, patch_memory *memory, rp_side_result &result);
   // Derivatives of that solution by rates of the inputs and of the friction coefficient: changes[k]
@@ -104,9 +122,10 @@ class wheel_contact {
   patch_rules rules_;
   part_set parts_;
   std::array<patch_region, RP_MAX_PATCHES> regions_;
-  int patches_ = 0;                        // of the last state
-  std::vector<patch_solution> solutions_;  // of these; only for exact derivatives
-  double time_step_ = 0;                   // s
+  std::array<double, RP_MAX_PATCHES> vertical_{};  // N on the rail, of a patch that counts fully
+  int patches_ = 0;                                // of the last state
+  std::vector<patch_solution> solutions_;          // of these; only for exact derivatives
+  double time_step_ = 0;                           // s
 };
 
 }  // namespace railpatch

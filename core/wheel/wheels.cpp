@@ -10,6 +10,7 @@
 #include "numeric/nan.hpp"
 #include "patch/result_sums.hpp"
 #include "wheel/force_samples.hpp"
+#include "wheel/joined_forces.hpp"
 #include "wheel/wheel_loads.hpp"
 #include "wheel/wheelset_power.hpp"
 
@@ -239,6 +240,7 @@ void wheels::find_z(double target, rp_result &out) {
   }
   force_search search(target, depth, tolerance_);
   force_samples samples(target);
+  std::array<joined_forces, 2> forces;
   double nearest = HUGE_VAL, residual = HUGE_VAL;  // m, depth that came nearest; its residual
   double force = 0;
   bool spent = false;
@@ -252,7 +254,7 @@ void wheels::find_z(double target, rp_result &out) {
     // where no force is known yet there is nothing to end with
     spent = most_work_ > 0 && out.work >= most_work_ && std::isfinite(residual);
     if (spent) break;
-    if (search.wants_rises()) tell_rises(touch, search);
+    if (!beyond()) foresee(touch, target, forces, search);
   }
   if (spent) {
     if (depth != nearest) residual = std::fabs(evaluate(touch + nearest, out) - target) / target;
@@ -335,17 +337,29 @@ bool wheels::beyond() const {
                      [](const wheel_contact &wheel) { return wheel.beyond(); });
 }
 
-// Where parts of contact appear between the depths that the search has bracketed.
-void wheels::tell_rises(double touch, force_search &search) const {
-  std::array<appearance, force_search::most_rises> found;
-  std::array<force_rise, force_search::most_rises> rises;
-  int count = 0;
-  for (const wheel_contact &wheel : wheels_)
-    count += wheel.appearances(touch + search.low(), touch + search.high(), found.data() + count,
-                               force_search::most_rises - count);
-  for (size_t i = 0; i < static_cast<size_t>(count); ++i)
-    rises[i] = {found[i].z - touch, found[i].length};
-  search.give_rises(rises.data(), count);
+// Where parts are being joined, the depth at which the divisions' forces will make up the target.
+void wheels::foresee(double touch, double target, std::array<joined_forces, 2> &forces,
+                     force_search &search) const {
+  constexpr double far = 1e-2;  // of the force, from which on parts that appear are looked for
+  constexpr double way = 0.5;   // of the depth
+  const double depth = search.last();
+  bool joins = false;
+  for (size_t w = 0; w < wheels_.size(); ++w) {
+    forces[w].add(touch, depth, wheels_[w]);
+    if (search.between_known() && search.residual() > far)
+      forces[w].look_between(touch, search.low(), search.high(), wheels_[w]);
+    joins = joins || forces[w].joins();
+  }
+  if (!joins) return;
+  const auto excess = [&](double at) {
+    double sum = -target;
+    for (size_t w = 0; w < wheels_.size(); ++w) sum += forces[w].force(at, wheels_[w]);
+    return sum;
+  };
+  const double low = std::max(search.low(), (1 - way) * depth);
+  const double high = std::min(search.high(), (1 + way) * depth);
+  const double found = root_between(low, high, 0.1 * tolerance_ * target, excess);
+  if (found > low && found < high) search.suggest(found);
 }
 
 // Without load the wheels just touch; what rounding leaves of a contact there they are lifted off.

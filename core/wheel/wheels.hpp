@@ -42,6 +42,7 @@ struct wheels_setup {
 };
 
 class force_samples;
+class joined_forces;
 
 class wheels final : public driver {
  public:
@@ -96,7 +97,8 @@ class wheels final : public driver {
                      rp_result &result);
   bool beyond() const;
   bool falls_while_joining(double depth, double force, const rp_result &out) const;
-  void tell_rises(double touch, force_search &search) const;
+  void foresee(double touch, double target, std::array<joined_forces, 2> &forces,
+               force_search &search) const;
   double carried(const rp_result &result) const;
   void rest_at(double touch, rp_result &result);
   void solve_supported(const rp_input &input, rp_result &result);

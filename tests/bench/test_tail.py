@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
+from railpatch import _core
+from railpatch.case.to_core import config_of
 from railpatch.evidence.bench.tail import (
     ACROSS,
     BOUNDS,
@@ -10,7 +12,10 @@ from railpatch.evidence.bench.tail import (
     LOADS,
     METHODS,
     Tail,
+    Walk,
     folded,
+    inputs_of,
+    moving_wheel,
     quantile,
     random_walk,
     tail,
@@ -59,3 +64,21 @@ def test_work_is_the_same_each_time() -> None:
         else:
             assert first.lifted == 0
             assert first.evaluations.max() > 1
+
+
+def test_steps_where_one_patch_becomes_two_take_few_evaluations() -> None:
+    """Two hundred steps of the walk over the flange's root, at light loads: in each a second part
+    of contact may appear, and force rises steeply."""
+    long = random_walk(20000)
+    part = slice(16700, 16900)
+    walk = Walk(long.y[part], long.yaw[part], long.load[part], long.lift[part])
+    scene = moving_wheel(METHODS[0][1], False)
+    contact = _core.Contact(config_of(scene), False)
+    results = [contact.step(one) for one in inputs_of(scene, walk, False)]
+    assert {result["status"] for result in results} == {"converged"}
+    loads = np.array([-result["force"][2] for result in results])
+    assert np.abs(loads / walk.load - 1).max() < 1e-5
+    joining = [bool(result["right"]["alternatives"]) for result in results]
+    assert sum(joining) > 30
+    # by secants and halving alone: 9 at most, and 10 of them above 7
+    assert max(result["evaluations"] for result in results) <= 7

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "geometry/joining.hpp"
 #include "surfaces.hpp"
 
 namespace {
@@ -206,16 +207,20 @@ TEST_P(PatchSearch, BumpIsTheGreatestGapBetweenTwoParts) {
   EXPECT_GT(several, 2);
 }
 
-// Just above an appearance there is one part less than just below, beside a neighbour; at its
-// length it is as wide as lets both be one patch, to a half (ForceSearch.AKnownRise). On a rail
-// with ripples of 4 um.
-TEST_P(PatchSearch, TellsWherePartsAppear) {
-  profiles::curve rippled = profiles::rail();
-  for (size_t i = 0; i < rippled.y.size(); ++i) {
+profiles::curve with_ripples() {
+  profiles::curve rail = profiles::rail();
+  for (size_t i = 0; i < rail.y.size(); ++i) {
     constexpr double wave = 5e-3, height = 4e-6;
-    rippled.z[i] += height * std::cos(2 * M_PI * rippled.y[i] / wave);
-    rippled.dz[i] -= height * 2 * M_PI / wave * std::sin(2 * M_PI * rippled.y[i] / wave);
+    rail.z[i] += height * std::cos(2 * M_PI * rail.y[i] / wave);
+    rail.dz[i] -= height * 2 * M_PI / wave * std::sin(2 * M_PI * rail.y[i] / wave);
   }
+  return rail;
+}
+
+// Just above an appearance there is one part less than just below, beside a neighbour; at its
+// length it is as wide as lets both be one patch, to a half. On a rail with ripples of 4 um.
+TEST_P(PatchSearch, TellsWherePartsAppear) {
+  const profiles::curve rippled = with_ripples();
   const profile rail(surfaces::view(rippled));
   side_geometry on(scene.wheel_curve, rail, scene.sizes, scene.track);
   const auto parts = [&](double z) {
@@ -252,6 +257,65 @@ TEST_P(PatchSearch, TellsWherePartsAppear) {
     EXPECT_EQ(find_appearances(on, rules, touch + 1e-6, touch + 1e-6, list, 4), 0);
   }
   EXPECT_GT(told, 10);
+}
+
+// What a search for parts finds at other heights: by the appearance alone to a quarter, between two
+// heights whose parts are known to half a hundredth, and at these to rounding.
+TEST_P(PatchSearch, TellsHowFarPartsAreJoined) {
+  const profiles::curve rippled = with_ripples();
+  const profile rail(surfaces::view(rippled));
+  side_geometry on(scene.wheel_curve, rail, scene.sizes, scene.track);
+  const patch_rules rules;
+  part_set found;
+  // the neighbours on both sides of what appeared, at z; false: they are not two
+  const auto exact = [&](const joining &pair, double z, double &value, int &first) {
+    on.move_to(z);
+    find_parts(on, found);
+    for (first = 0; first + 1 < found.count; ++first) {
+      const part &a = found.parts[first], &b = found.parts[first + 1];
+      if (!(a.begin < pair.inside(0) && pair.inside(0) < a.end)) continue;
+      if (!(b.begin < pair.inside(1) && pair.inside(1) < b.end)) continue;
+      value = joined(rules.blend, a, b);
+      return true;
+    }
+    return false;
+  };
+  int told = 0, steep = 0;
+  for (int i = 0; i < 120; ++i) {
+    side_motion m;
+    m.wheelset.y = -6e-3 + 1e-4 * i;
+    on.place(m);
+    double touch = 0;
+    ASSERT_TRUE(first_touch(on, touch));
+    on.move_to(touch);
+    appearance list[4];
+    const int count = find_appearances(on, rules, touch + 1e-6, touch + 1.5e-4, list, 4);
+    for (int k = 0; k < count; ++k) {
+      on.move_to(touch);
+      joining pair(on, rules.blend, list[k]);
+      EXPECT_EQ(pair.joined(rules.blend, list[k].z), 0);
+      const auto height = [&](double share) { return list[k].z + share * list[k].length; };
+      double value = 0;
+      int first = 0;
+      for (const double share : {0.2, 0.35, 0.5, 0.7}) {
+        if (!exact(pair, height(share), value, first)) continue;
+        ++told;
+        steep += value > 0.1 && value < 0.9;
+        EXPECT_NEAR(pair.joined(rules.blend, height(share)), value, 0.25) << i << " " << share;
+      }
+      for (const double share : {0.3, 0.6}) {
+        if (!exact(pair, height(share), value, first)) continue;
+        pair.add(on, found.parts[first], found.parts[first + 1]);
+        EXPECT_NEAR(pair.joined(rules.blend, height(share)), value, 1e-12) << i << " " << share;
+      }
+      for (const double share : {0.35, 0.45, 0.55}) {
+        if (!exact(pair, height(share), value, first)) continue;
+        EXPECT_NEAR(pair.joined(rules.blend, height(share)), value, 5e-3) << i << " " << share;
+      }
+    }
+  }
+  EXPECT_GT(told, 40);
+  EXPECT_GT(steep, 10);
 }
 
 TEST_P(PatchSearch, FirstTouchLeavesNoGap) {

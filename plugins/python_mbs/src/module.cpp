@@ -219,8 +219,9 @@ class Contact : public Steppable {
               *reinterpret_cast<rp_result *>(result.data()));
   }
 
-  nb::tuple time_steps(const nb::list &inputs, const nb::list &reset, int repeat) {
-    timed_steps steps(inputs, reset, repeat);
+  nb::tuple time_steps(const nb::list &inputs, const nb::list &reset, int repeat,
+                       bool processor_time) {
+    timed_steps steps(inputs, reset, repeat, processor_time);
     {
       nb::gil_scoped_release unlocked;
       std::lock_guard<std::mutex> guard(mutex_);
@@ -458,10 +459,11 @@ NB_MODULE(_core, m) {
       .def("step_record", &Contact::step_record, nb::arg("input"), nb::arg("result"),
            "Bytes of one rp_input to those of one rp_result. The interpreter's lock is released.")
       .def("time_steps", &Contact::time_steps, nb::arg("inputs"), nb::arg("reset"),
-           nb::arg("repeat") = 1,
+           nb::arg("repeat") = 1, nb::arg("processor_time") = false,
            "Steps through a list of inputs `repeat` times, each time forgetting the last solution "
            "before the inputs whose `reset` is true. Returns the seconds of each step [repeat, n], "
-           "without Python's own, and the results of the last pass.")
+           "without Python's own, and the results of the last pass; processor_time: those of the "
+           "processor where the system counts them, else by the wall's clock.")
       .def("field", &Contact::field, nb::arg("side"), nb::arg("patch"), nb::arg("name"),
            "A field of the last step as a flat array, x fastest; None where it does not exist.")
       .def("below", &Contact::below, nb::keep_alive<0, 1>(), nb::arg("depths"),

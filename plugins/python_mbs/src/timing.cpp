@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <complex>
+#include <ctime>
 
 #include "convert.hpp"
 // a run time means little without the machine's, so this one file looks behind railpatch.h
@@ -18,6 +19,17 @@ double since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
+// s, by the wall's clock, or of the processor in this thread where the system counts that.
+double now(bool processor_time) {
+#ifdef CLOCK_THREAD_CPUTIME_ID
+  timespec spent{};
+  if (processor_time && clock_gettime(CLOCK_THREAD_CPUTIME_ID, &spent) == 0)
+    return static_cast<double>(spent.tv_sec) + 1e-9 * static_cast<double>(spent.tv_nsec);
+#endif
+  static_cast<void>(processor_time);
+  return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+}
+
 // the array takes the numbers over
 template <class Array>
 Array array_of(std::unique_ptr<double[]> values, std::initializer_list<size_t> shape) {
@@ -28,8 +40,9 @@ Array array_of(std::unique_ptr<double[]> values, std::initializer_list<size_t> s
 
 }  // namespace
 
-timed_steps::timed_steps(const nb::list &inputs, const nb::list &reset, int repeat)
-    : repeat_(repeat > 0 ? static_cast<size_t>(repeat) : 0) {
+timed_steps::timed_steps(const nb::list &inputs, const nb::list &reset, int repeat,
+                         bool processor_time)
+    : repeat_(repeat > 0 ? static_cast<size_t>(repeat) : 0), processor_time_(processor_time) {
   if (repeat < 1) throw nb::value_error("repeat: allowed 1 and more");
   if (nb::len(inputs) != nb::len(reset)) throw nb::value_error("reset: allowed one per input");
   for (const nb::handle given : inputs) {
@@ -46,9 +59,9 @@ rp_error timed_steps::run(rp_contact *contact, rp_message &message) {
   for (size_t pass = 0; pass < repeat_; ++pass)
     for (size_t i = 0; i < inputs_.size(); ++i) {
       if (reset_[i]) rp_reset(contact);
-      const auto begin = Clock::now();
+      const double begin = now(processor_time_);
       const rp_error code = rp_step(contact, &inputs_[i], &results_[i], &message);
-      *next++ = since(begin);
+      *next++ = now(processor_time_) - begin;
       if (code != RP_OK) return code;
     }
   return RP_OK;

@@ -17,7 +17,7 @@ namespace nb = nanobind;
 class timed_steps {
  public:
   // raises ValueError where the lists differ in length or repeat < 1
-  timed_steps(const nb::list &inputs, const nb::list &reset, int repeat);
+  timed_steps(const nb::list &inputs, const nb::list &reset, int repeat, bool processor_time);
 
   // needs no interpreter; stops at the first step that the library refuses
   rp_error run(rp_contact *contact, rp_message &message);
@@ -28,6 +28,7 @@ class timed_steps {
   std::vector<rp_input> inputs_;
   std::vector<char> reset_;
   size_t repeat_;
+  bool processor_time_;
   std::vector<rp_result> results_;
   std::unique_ptr<double[]> seconds_;
 };
