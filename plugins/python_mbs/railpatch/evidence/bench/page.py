@@ -276,8 +276,8 @@ def slowest_steps(report: Report) -> str:
     ranges = [f"to {bound:g}" for bound in BOUNDS] + ["beyond"]
     return (
         "<h2>The slowest steps</h2><p>S1002 on UIC60, steps as at 1 ms: a random walk over tread, "
-        "root and flange; where the position is prescribed, off the rail and back too. Each step is "
-        f"made {REPEATS} times from the same state, and its least processor time counts. Times "
+        "root and flange; where the position is prescribed, off the rail and back too. Each step "
+        f"is made {REPEATS} times from the same state, and its least processor time counts. Times "
         "that so many steps are not above, and their ratio to the median. Evaluations and "
         "operator products of a step: median and most; they do not depend on the machine.</p>"
         + table(

@@ -42,6 +42,7 @@ SHARES = (50.0, 99.0, 99.99, 100.0)  # %, of steps that take at most as long
 # bounds of the histogram, in medians; the last bin is open
 BOUNDS = (0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
 
+
 def fastsim(normal: str) -> tuple[str, dict[str, Any]]:
     """A fast normal theory with FASTSIM on 10 x 10 elements."""
     name = {"hertz": "Hertz", "kik_piotrowski": "Kik-Piotrowski", "analyn": "ANALYN"}[normal]
