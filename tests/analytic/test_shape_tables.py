@@ -140,6 +140,8 @@ def test_other_files_are_refused(table: Path, tmp_path: Path) -> None:
         (("--wheel", "S1002", "--rail", "nothing.csv"), "nothing.csv"),
         (("--wheel", "S1002", "--rail", "UIC60", "--y", "3", "1"), "--y: value is 3 1"),
         (("--wheel", "S1002", "--rail", "UIC60", "--load", "0", "10"), "--load: value is 0 10"),
+        (("--wheel", "S1002", "--rail", "UIC60", "--yaw", "0"), "--yaw: value is 0"),
+        (("--wheel", "S1002", "--rail", "UIC60", "--shapes", "20"), "--shapes"),
     ],
 )
 def test_wrong_calls(tmp_path: Path, arguments: tuple[str, ...], words: str) -> None:

@@ -38,6 +38,9 @@ from railpatch.writing import write_whole
 @click.option("--y", type=(float, float), metavar="MM MM", help="Of a pair: lateral positions.")
 @click.option("--load", type=(float, float), metavar="KN KN", help="Of a pair: loads of the wheel.")
 @click.option(
+    "--yaw", type=float, metavar="MRAD", help="Of a pair: the greatest yaw angle to either side."
+)
+@click.option(
     "--check",
     type=click.IntRange(100),
     default=2000,
@@ -56,8 +59,8 @@ from railpatch.writing import write_whole
 @quiet_flag("Print no errors and no progress.")
 def table(
     output: Path, jobs: int, keep: bool, wheel: str | None, rail: str | None, case: Path | None,
-    error: float, y: tuple[float, float] | None, load: tuple[float, float] | None, check: int,
-    most: int, seed: int, quiet: bool,
+    error: float, y: tuple[float, float] | None, load: tuple[float, float] | None,
+    yaw: float | None, check: int, most: int, seed: int, quiet: bool,
 ) -> None:  # fmt: skip
     """Solve a table of creep forces for tangential = 'table'.
 
@@ -72,7 +75,9 @@ def table(
     if case is not None or wheel is not None or rail is not None:
         from railpatch.evidence.table.pair_command import make_pair
 
-        make_pair(output, jobs, (wheel, rail), case, error, (y, load), check, most, seed, quiet)
+        make_pair(
+            output, jobs, (wheel, rail), case, error, (y, load, yaw), check, most, seed, quiet
+        )
         return
     from railpatch.case.creep_table import describe_table
     from railpatch.evidence.table.make import make_table, part_count

@@ -15,7 +15,7 @@ from railpatch.evidence.table.pair import Pair, Ranges
 from railpatch.evidence.table.shapes import make_shapes
 from railpatch.writing import write_whole
 
-PairOfRanges = tuple[tuple[float, float] | None, tuple[float, float] | None]
+Asked = tuple[tuple[float, float] | None, tuple[float, float] | None, float | None]
 
 
 def pair_case(wheel: str | None, rail: str | None) -> dict[str, Any]:
@@ -35,8 +35,10 @@ def pair_case(wheel: str | None, rail: str | None) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def ranges_of(y: tuple[float, float] | None, load: tuple[float, float] | None) -> Ranges:
-    """In mm and kN, else the default ones. Raises CaseError."""
+def ranges_of(
+    y: tuple[float, float] | None, load: tuple[float, float] | None, yaw: float | None = None
+) -> Ranges:
+    """In mm, kN and mrad, else the default ones. Raises CaseError."""
     found: dict[str, Any] = {}
     limits = {"--y": (y, -50.0, 50.0, 1e-3, "y"), "--load": (load, 0.1, 500.0, 1e3, "load")}
     for option, (given, low, high, unit, name) in limits.items():
@@ -48,12 +50,16 @@ def ranges_of(y: tuple[float, float] | None, load: tuple[float, float] | None) -
                 f"from {low:g} to {high:g}"
             )
         found[name] = (unit * given[0], unit * given[1])
+    if yaw is not None:
+        if not 0 < yaw <= 100:
+            raise CaseError(f"--yaw: value is {yaw:g}, allowed more than 0 and at most 100")
+        found["yaw"] = 1e-3 * yaw
     return Ranges(**found)
 
 
 def make_pair(
     output: Path, jobs: int, profiles: tuple[str | None, str | None], case: Path | None,
-    error: float, ranges: PairOfRanges, check: int, most: int, seed: int, quiet: bool,
+    error: float, ranges: Asked, check: int, most: int, seed: int, quiet: bool,
 ) -> None:  # fmt: skip
     """Makes and writes the table, and tells its errors."""
     check_output(output)

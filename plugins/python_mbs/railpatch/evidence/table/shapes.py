@@ -132,7 +132,7 @@ def make_shapes(
     the states; check: states that tell it; step: called with what is being done; most: shapes."""
     began = time.perf_counter()
     shapes = Shapes(pair, threads)
-    while len(shapes) < FIRST:
+    while len(shapes) < min(FIRST, most):
         shapes.add(pair.place())
         step(f"{len(shapes)} shapes")
     shapes.set_scale()
