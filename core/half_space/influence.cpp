@@ -77,15 +77,23 @@ void influence::make_kernels(int half_x, int half_y) {
 void influence::make_half_space_kernels() {
   const int nx = half_x_ + 2, ny = half_y_ + 2;
   // primitives at the element corners, from half an element before the origin on
-  for (int j = 0; j < ny; ++j)
-    for (int i = 0; i < nx; ++i) {
-      const double x = (i - 0.5) * grid_.dx, y = (j - 0.5) * grid_.dy;
-      const auto at = static_cast<size_t>(j * nx + i);
-      corner_[0][at] = y_log(x, y);
-      corner_[1][at] = y_log(y, x);
-      corner_[2][at] = -hypot(x, y);
-      if (medium_.by_length) make_rates(x, y, i - 0.5, at);
-    }
+  const auto each = [&](auto &&take) {
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i)
+        take((i - 0.5) * grid_.dx, (j - 0.5) * grid_.dy, i, static_cast<size_t>(j * nx + i));
+  };
+  each([&](double x, double y, int, size_t at) {
+    corner_[0][at] = x / std::abs(y);
+    corner_[1][at] = y / std::abs(x);
+  });
+  // y_log of all
+  for (int k = 0; k < 2; ++k) asinh_of(corner_[k].data(), nx * ny);
+  each([&](double x, double y, int i, size_t at) {
+    if (medium_.by_length) return make_rates(x, y, i - 0.5, at);
+    corner_[0][at] *= y;
+    corner_[1][at] *= x;
+    corner_[2][at] = -hypot(x, y);
+  });
   const double nu = medium_.elastic.poisson_ratio;
   const double c = 1.0 / (pi * medium_.elastic.shear_modulus);
   for (int j = 0; j <= half_y_; ++j)
@@ -104,11 +112,11 @@ void influence::make_half_space_kernels() {
     }
 }
 
-// A corner at (i - 1/2) dx moves by i - 1/2 with dx.
+// A corner at (i - 1/2) dx moves by i - 1/2 with dx; its asinh(y/|x|) is there.
 void influence::make_rates(double x, double y, double moves, size_t at) {
   const double r = hypot(x, y);
   corner_[0][at] = moves * y / r;
-  corner_[1][at] = moves * (asinh(y / std::abs(x)) - y / r);
+  corner_[1][at] = moves * (corner_[1][at] - y / r);
   corner_[2][at] = -moves * x / r;
 }
 

@@ -30,6 +30,9 @@ double cosh(double x);
 double asinh(double x);
 double erfc(double x);
 
+// asinh of each, in its place: the same bits
+void asinh_of(double *values, int count);
+
 // lengths whose squares are too large or too small for a number
 double scaled_hypot(double x, double y);
 

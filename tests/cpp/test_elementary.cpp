@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "numeric/elementary.hpp"
 
@@ -197,6 +198,26 @@ TEST(elementary_limits, are_those_of_c) {
   EXPECT_EQ(railpatch::cbrt(27.0), 3.0);
   EXPECT_EQ(railpatch::pow(0.5, 3.0), 0.125);
   EXPECT_EQ(railpatch::atan2(1.0, 1.0), std::atan(1.0));
+}
+
+TEST(elementary_rows, asinh_of_many_is_that_of_each) {
+  numbers random;
+  // of no whole number of chunks, at ends of what is done at once, and what is not
+  std::vector<double> values = {
+      0.0, -0.0, infinity, -infinity, not_a_number, 5e-324,   1e308,       -1e-310,
+      1.0, -1.0, 1e8,      0x1p-30,   -1e8,         -0x1p-30, 1.0000001e8, 0x1.0000000000001p-30};
+  for (int i = 0; i < count; ++i) {
+    const double x = random.over_octaves(-33, 30);
+    values.push_back(random.bits() % 2 == 0 ? x : -x);
+  }
+  for (const size_t length : {values.size(), size_t{1}, size_t{63}, size_t{64}, size_t{65}}) {
+    std::vector<double> found(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(length));
+    railpatch::asinh_of(found.data(), static_cast<int>(length));
+    for (size_t k = 0; k < length; ++k)
+      EXPECT_EQ(std::bit_cast<uint64_t>(found[k]),
+                std::bit_cast<uint64_t>(railpatch::asinh(values[k])))
+          << values[k];
+  }
 }
 
 TEST(elementary_limits, angles_beyond_all_measure_stay_sines) {
