@@ -20,8 +20,8 @@ from railpatch.case.friction import Friction
 from railpatch.case.load import load_scene
 from railpatch.case.to_core import config_of, input_of
 
-# over the wheel's place on the track, and over time: a patch has none
-NO_LAW = {"along_track", "bulk"}
+# over the wheel's place on the track, by wheel, and over time: a patch has none
+NO_LAW = {"along_track", "scale", "bulk"}
 RADIUS, SPEED = 0.46, 10.0
 SIZE = 6e-4  # m, of the elements
 TIME_STEP = 0.7 * SIZE / SPEED
