@@ -45,7 +45,7 @@ CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
 SOURCES := $(shell find core plugins rig_model wheelset_demo -type f -not -name '*.pyc' 2>/dev/null) \
 	CMakeLists.txt README.md
 
-.PHONY: help tools asan-core build-asan demo docs book pages viewer fmu fmu-clients fmu-fftw contact-addon wheels release test test-long lint format clean setup \
+.PHONY: help tools asan-core build-asan demo docs book pages viewer fmu fmu-clients fmu-fftw contact-addon wheels smoke release test test-long lint format clean setup \
 	system test-cpp test-python test-asan pruning mutants bits-steps
 
 help: ## this list
@@ -99,6 +99,11 @@ wheels: fmu ## wheels for Linux and Windows, their checks, and a first hour's wo
 	$(BIN)/python plugins/python_mbs/wheels/make_wheels.py build/fmu build/wheels
 	$(BIN)/python plugins/python_mbs/wheels/check_wheels.py build/wheels
 	$(BIN)/python plugins/python_mbs/wheels/smoke.py build/wheels build/wheels/tried
+
+# NAMES: of the environments that plugins/python_mbs/wheels/environments.py lists; all that can be made
+NAMES ?=
+smoke: ## the wheels of `make wheels` in many environments; Debian's need root and debootstrap, Windows' Wine
+	$(BIN)/python plugins/python_mbs/wheels/environments.py build/wheels build/smoke $(NAMES)
 
 release: wheels ## build/release-files: wheels, source archive, FMUs, checksums, bill of materials
 	rm -rf build/release-files && mkdir -p build/release-files

@@ -31,6 +31,8 @@ WANTED = {
     for tag in ("cp310-cp310", "cp311-cp311", "cp312-abi3")
     for system in ("manylinux_2_28_x86_64", "win_amd64")
 }
+# of each version of FMI
+LIBRARIES = {"railpatch_fmu_eigen", "railpatch_fmu3_eigen"}
 PLATFORMS = ("linux64", "win64", "aarch64-linux")
 TEXTS = {"LICENSE", "NOTICE", "MPL-2.0.txt", "LLVM.txt", "MinGW-w64.txt", "Zig.txt"}
 SYSTEM = {
@@ -58,7 +60,10 @@ def check_content(path: Path, archive: zipfile.ZipFile) -> set[str]:
     for platform in PLATFORMS:
         folder = f"railpatch/fmu/lib/{platform}/"
         libraries = [name for name in names if name.startswith(folder)]
-        must(len(libraries) == 1 and "eigen" in libraries[0], f"{path.name}: {folder}")
+        found = {Path(name).stem for name in libraries}
+        must(
+            found == LIBRARIES, f"{path.name}: {folder} has {sorted(LIBRARIES)}, found {libraries}"
+        )
     for name in ("_core.pyi", "py.typed", "fmu/variables.toml", "fmu/lib/sources.zip"):
         must(f"railpatch/{name}" in names, f"{path.name} has {name}")
     must(not [n for n in names if re.search(r"fftw|GPL", n)], f"{path.name}: nothing of the GPL")

@@ -33,6 +33,11 @@ class Python:
         return "cp" + "".join(self.version.split(".")[:2])
 
     @property
+    def minor(self) -> str:
+        """As one says it: 3.10."""
+        return self.version.rpartition(".")[0]
+
+    @property
     def archive(self) -> str:
         """Name of the file."""
         return f"{ARTIFACT}-{self.version}-{self.release}-{self.system}-x86_64.jar"
@@ -45,7 +50,7 @@ class Python:
     @property
     def headers(self) -> str:
         """Folder of Python.h in the archive."""
-        inner = "" if self.system == "windows" else f"python{self.version.rpartition('.')[0]}/"
+        inner = "" if self.system == "windows" else f"python{self.minor}/"
         return f"{self.root}include/{inner}"
 
 
@@ -90,8 +95,8 @@ PYTHONS = (
     Python(
         "3.14.3",
         "1.5.13",
-        "windows",
-        "3291bf3d8f405335ac21dbe55780521fdfd295b0f9f43f7e6e8c55bedd709cb3",
+        "linux",
+        "eb5f1a6fe2dc498ac18927189a37f28a47b0ba06ae6bd85112eff023fe2eb46f",
     ),
 )
 
@@ -131,9 +136,11 @@ def headers(python: Python, archives: Path, folder: Path) -> None:
 
 
 def interpreter(python: Python, archives: Path, folder: Path) -> Path:
-    """The whole of a Python for Windows in a folder, with its program; made once."""
+    """The whole of a Python in FOLDER/TAG, made once; gives its program."""
     made = folder / python.tag
-    if not (made / "python.exe").is_file():
+    windows = python.system == "windows"
+    program = made / ("python.exe" if windows else f"bin/python{python.minor}")
+    if not program.is_file():
         shutil.rmtree(made, ignore_errors=True)
         with zipfile.ZipFile(fetch(python, archives)) as archive:
             for name in archive.namelist():
@@ -141,6 +148,9 @@ def interpreter(python: Python, archives: Path, folder: Path) -> Path:
                     target = made / name.removeprefix(python.root)
                     target.parent.mkdir(parents=True, exist_ok=True)
                     target.write_bytes(archive.read(name))
-        for program in made.glob("bin/*.exe"):
-            shutil.copy(program, made)
-    return made / "python.exe"
+        if windows:
+            for tool in made.glob("bin/*.exe"):
+                shutil.copy(tool, made)
+        else:
+            program.chmod(0o755)
+    return program

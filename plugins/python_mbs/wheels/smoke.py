@@ -2,9 +2,11 @@
 
 Run by the Python that is to be tried, with nothing but its standard library: makes a virtual
 environment in FOLDER (--here: uses this Python itself), lets pip choose among the wheels in WHEELS
-and fetch what they depend on, and runs the command: solve, rig, fmu, report, export, and one that
-has to say what is missing. Writes FOLDER/found.json; ends with 1 where something does not hold.
---constraint NAME... holds dependencies back, for systems that cannot run the newest.
+and fetch what they and fmpy depend on, and runs the command: solve, rig, fmu, report, export, the
+FMU in fmpy, and a command that has to say what is missing. Writes FOLDER/found.json; ends with 1
+where something does not hold.
+--constraint NAME... holds dependencies back, for systems that cannot run the newest. --native: of a
+wheel that `pip wheel .` has built, whose FMUs are for its own system.
 """
 
 from __future__ import annotations
@@ -74,7 +76,6 @@ class Trial:
     def call(self, *command: str | Path, code: int = 0) -> str:
         """A program's output; ends where its exit code is another."""
         words = [str(word) for word in command]
-        # a fresh name: what goes to a file works under Wine, where some pipes do not
         done = subprocess.run(
             words, stdin=subprocess.DEVNULL, capture_output=True, text=True, encoding="utf-8"
         )
@@ -118,15 +119,19 @@ def replayed(trial: Trial) -> str:
     return hashlib.sha256(table.read_bytes().replace(b"\r\n", b"\n")).hexdigest()[:16]
 
 
-def packed(trial: Trial) -> int:
-    """The size of an FMU for all systems."""
+def packed(trial: Trial, native: bool) -> int:
+    """The size of an FMU for all systems, which fmpy has run here."""
     made = trial.folder / "rail.fmu"
     trial.railpatch("fmu", "--scene", "patch", "-o", made)
     with zipfile.ZipFile(made) as archive:
         names = archive.namelist()
     there = {name.split("/")[1] for name in names if name.startswith("binaries/")}
-    must(there >= BINARIES, f"an FMU for {sorted(BINARIES)}, found {sorted(there)}")
-    must(any(name.startswith("sources/") for name in names), "an FMU with its sources")
+    wanted = set() if native else BINARIES
+    must(there >= wanted, f"an FMU for {sorted(wanted)}, found {sorted(there)}")
+    sources = any(name.startswith("sources/") for name in names)
+    must(sources or native, "an FMU with its sources")
+    told = trial.call(trial.python, "-m", "railpatch.fmu.try_out", made)
+    must("valid" in told, f"fmpy runs the FMU: {told}")
     return made.stat().st_size
 
 
@@ -136,6 +141,7 @@ def main() -> None:
     parser.add_argument("wheels", type=Path)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--here", action="store_true")
+    parser.add_argument("--native", action="store_true")
     parser.add_argument("--constraint", nargs="*", default=[])
     arguments = parser.parse_args()
     arguments.folder.mkdir(parents=True, exist_ok=True)
@@ -143,7 +149,7 @@ def main() -> None:
     start = time.perf_counter()
     trial.call(
         *(trial.python, "-m", "pip", "install", "--quiet", "--only-binary", ":all:"),
-        *("--find-links", arguments.wheels, "railpatch", *arguments.constraint),
+        *("--find-links", arguments.wheels, "railpatch", "fmpy", *arguments.constraint),
     )
     installed = time.perf_counter() - start
     told = json.loads(trial.call(trial.python, "-c", ASK))
@@ -158,7 +164,7 @@ def main() -> None:
         "install_seconds": round(installed, 1),
         "solve": solved(trial),
         "rig": replayed(trial),
-        "fmu_bytes": packed(trial),
+        "fmu_bytes": packed(trial, arguments.native),
     }
     (arguments.folder / "found.json").write_text(json.dumps(found, indent=2) + "\n")
     print(json.dumps(found, indent=2))
