@@ -144,6 +144,7 @@ placed_profile::placed_profile(const profile &curve, body kind) : curve_(&curve)
       std::clamp(static_cast<int>(std::ceil(length / sample_spacing)), 16, max_samples);
   raw_.resize(static_cast<size_t>(count) + 1);
   samples_.resize(raw_.size());
+  if (kind_ == body::rail) before_.resize(2 * raw_.size() + 1);
   reload();
   place(0, 0, 0);
 }
@@ -191,6 +192,20 @@ void placed_profile::find_branch() {
   while (b + 1 < samples_.size() && open(b + 1) && samples_[b + 1].y > samples_[b].y) ++b;
   first_ = static_cast<int>(a);
   last_ = static_cast<int>(b);
+  if (kind_ == body::rail) index_branch();
+}
+
+// As profile::assign does for arc lengths, so that a search by y starts next to its goal.
+void placed_profile::index_branch() {
+  const double from = sample(first_).y, length = sample(last_).y - from;
+  const auto stretches = static_cast<double>(before_.size() - 1);
+  stretches_per_length_ = length > 0 ? stretches / length : 0.0;
+  int k = first_;
+  for (size_t b = 0; b < before_.size(); ++b) {
+    const double y = from + static_cast<double>(b) * (length / stretches);
+    while (k + 1 < last_ && sample(k + 1).y <= y) ++k;
+    before_[b] = k;
+  }
 }
 
 int placed_profile::first_not_before(double y) const {
@@ -202,6 +217,13 @@ int placed_profile::first_not_before(double y) const {
 bool placed_profile::find(double y, double &s) const {
   if (!(y >= sample(first_).y && y <= sample(last_).y)) return false;
   int a = first_, b = last_;
+  if (kind_ == body::rail) {
+    const auto most = static_cast<int>(before_.size()) - 2;
+    const int at = std::min(static_cast<int>((y - sample(a).y) * stretches_per_length_), most);
+    // one to either side, for rounding
+    a = before_[static_cast<size_t>(std::max(at - 1, 0))];
+    b = std::min(before_[static_cast<size_t>(std::min(at + 2, most + 1))] + 1, last_);
+  }
   while (b - a > 1) {
     const int m = (a + b) / 2;
     (sample(m).y <= y ? a : b) = m;

@@ -91,17 +91,22 @@ class placed_profile {
   double extreme() const;
   // The least y down to the given height below the top of a rail: the gauge face.
   double innermost(double height) const;
-  std::size_t bytes() const { return samples_.size() * 2 * sizeof(curve_point); }
+  std::size_t bytes() const {
+    return samples_.size() * 2 * sizeof(curve_point) + before_.size() * sizeof(int);
+  }
 
  private:
   curve_point turned(const curve_point &p) const;
   void find_branch();
+  void index_branch();
 
   const profile *curve_;
   body kind_;
   bool placed_ = false;
   double angle_ = 0, cos_ = 1, sin_ = 0, y_ = 0, z_ = 0, step_ = 0;
   std::vector<curve_point> raw_, samples_;
+  std::vector<int> before_;  // of a rail: sample of the branch at the start of equal stretches of y
+  double stretches_per_length_ = 0;
   int first_ = 0, last_ = 0, extreme_ = 0;
 };
 
