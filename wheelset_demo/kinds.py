@@ -26,6 +26,8 @@ WHEELSET_UNITS = {
     **dict.fromkeys(("waves.count", "waves.conicity"), ""),
     "duration": "s",
     "energies": "J",
+    # of both bodies, in several units
+    **dict.fromkeys(("wear", "wear_text"), ""),
 }
 VEHICLE_UNITS = {
     **dict.fromkeys(("steps", "derailment", "derailment_percentile"), ""),

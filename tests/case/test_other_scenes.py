@@ -29,7 +29,13 @@ COMMANDS = {
     "rig": ("rig", ["-o", "run.mcap"]),
     "curve": ("curve", []),
 }
-PAIRS = [(c, s) for c, (own, _) in COMMANDS.items() for s in SCENES if s != own]
+PAIRS = [
+    (c, s)
+    for c, (own, _) in COMMANDS.items()
+    for s in SCENES
+    # hunting takes vehicles too
+    if s != own and (c, s) != ("hunting", "vehicle")
+]
 
 
 def invoke(*arguments: object) -> Result:

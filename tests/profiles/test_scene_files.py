@@ -94,7 +94,7 @@ def test_a_wheel_with_another_origin_is_asked_for(folder: Path) -> None:
 
 def test_what_is_said_of_files_needs_files() -> None:
     with pytest.raises(
-        CaseError, match=r"profiles.wheel_file: value is .*mm.*, allowed with a file"
+        CaseError, match=r"profiles\.wheel_file: value is a table, allowed with a file as wheel"
     ):
         solve(case("S1002", "UIC60", wheel_file={"unit": "mm"}))
 

@@ -13,6 +13,8 @@ from railpatch.record.quantities import QUANTITIES
 from railpatch.record.read import force_doubts
 from railpatch.record.units import UNITS
 
+from wheelset_demo.vehicle import measured_track
+
 YAW = {"yaw": MeasuredColumn(name="AoA")}
 
 
@@ -101,7 +103,8 @@ def test_units_against_their_definitions():
     assert si("temperature", "K", 273.15) == 0
     assert si("turning", "rpm", 60) == pytest.approx(2 * np.pi)
     assert si("angle", "deg", 180) == np.pi
-    assert {q.dimension for q in QUANTITIES} == set(UNITS)
+    # of runs and of records of the track
+    assert {q.dimension for q in (*QUANTITIES, *measured_track.QUANTITIES)} == set(UNITS)
 
 
 @pytest.mark.parametrize(
