@@ -18,7 +18,7 @@ from wheelset_demo.scene import GRAVITY
 from wheelset_demo.vehicle import Simulation, load_vehicle_scene
 from wheelset_demo.vehicle.deviations import DipTable, deviations_of, dip_at
 from wheelset_demo.vehicle.support import SupportTable
-from wheelset_demo.vehicle.trace import run_vehicle, summarise
+from wheelset_demo.vehicle.trace import run_vehicle, step_doubts, summarise
 
 # rail, pads, a concrete sleeper, ballast: of the size that vehicle simulations take (assumed)
 WHOLE = SupportTable(
@@ -263,3 +263,15 @@ angle = 0.01
         path.write_text(text + good.replace(old, new), encoding="utf-8")
         with pytest.raises(CaseError, match=message):
             load_vehicle_scene(path)
+
+
+def test_steps_that_are_too_long_are_told():
+    """A joint's corner needs a step on it; an open balance of a tenth of the loss is told."""
+    scene = scenes.scene()
+    way = scene.speed * scene.run.step
+    sharp = replace(scene, dip=(DipTable(position=10.0, angle=0.01, corner=0.9 * way),))
+    even = replace(scene, dip=(DipTable(position=10.0, angle=0.01, corner=1.1 * way),))
+    assert "dip[0].corner" in step_doubts(sharp, 0.0, 0.0)[0]
+    assert step_doubts(even, 0.0, 0.0) == []
+    assert "open by 834 J where 1.57e+03 J were lost" in step_doubts(even, 834.0, 1570.0)[0]
+    assert step_doubts(even, 49.0, 0.0) == step_doubts(even, 90.0, 1570.0) == []

@@ -35,9 +35,15 @@ from railpatch.command.cli import cli
 from scipy.optimize import brentq
 
 from wheelset_demo.hunting import waves_in
-from wheelset_demo.scene import GRAVITY
+from wheelset_demo.scene import GRAVITY, scene_file
 from wheelset_demo.vehicle import Simulation, load_vehicle_scene
-from wheelset_demo.vehicle.hunting import Linearised, search_vehicle, straight, vehicle_mode
+from wheelset_demo.vehicle.hunting import (
+    ACCEPTED,
+    Linearised,
+    search_vehicle,
+    straight,
+    vehicle_mode,
+)
 
 SLOPE, CROWN, ARM, BASE = 1 / 20, 0.3, 1.0, 1.25
 STIFFNESS, DAMPING = [6e5, 9e5, 1e6], [4e3, 3e3, 2e4]
@@ -230,3 +236,12 @@ def test_a_vehicle_that_hunts_from_the_command_line(tmp_path):
         assert done.exit_code == 2
         assert "allowed with a scene of railpatch wheelset" in done.output
     assert CliRunner().invoke(cli, ["hunting", "--slip"]).exit_code == 2
+
+
+def test_a_heavy_wagon_with_sliders_stands_straight():
+    """Newton's steps are small there, as sliders let go after each."""
+    scene = load_vehicle_scene(scene_file("freight_wagon.toml"))
+    linear = Linearised(straight(scene, 20.0))
+    values, system = linear.values, linear.system
+    rates = system.rates(0.0, values).values
+    assert np.abs(rates[system.count : 2 * system.count]).max() < ACCEPTED

@@ -345,6 +345,27 @@ def assessed_of(trace: VehicleTrace, simulation: Simulation) -> dict[str, Any]:
     }
 
 
+# of a balance that is told: J, and its share of what was lost
+OPEN, OPEN_SHARE = 50.0, 0.1
+
+
+def step_doubts(scene: VehicleScene, balance: float, lost: float) -> list[str]:
+    """Warnings of time steps that are too long for the scene. balance, lost: J."""
+    way = scene.speed * scene.run.step
+    found = [
+        f"dip[{k}].corner: {dip.corner:g} m is less than the {way:.3g} m of a time step: forces "
+        f"of the joint ask for run.step <= {dip.corner / scene.speed:.2g} s"
+        for k, dip in enumerate(scene.dip)
+        if dip.corner < way
+    ]
+    if balance > max(OPEN, OPEN_SHARE * lost):
+        found.append(
+            f"energy: the balance is open by {balance:.3g} J where {lost:.3g} J were lost: a "
+            f"shorter run.step than {scene.run.step:g} s is asked for"
+        )
+    return found
+
+
 def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
     """Of a run."""
     positions = trace.array("positions")
@@ -390,6 +411,7 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
             *doubtful_bodies(simulation.scene.vehicle),
             *(() if measured is None else measured.warnings),
             *own_doubts(simulation.scene),
+            *step_doubts(simulation.scene, trace.open_balance(), trace.lost()),
             *trace.warned.lines(),
         ],
         **assessed,

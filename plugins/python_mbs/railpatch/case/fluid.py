@@ -252,7 +252,9 @@ class Fluid(Table):
             if self.viscosity is not None:
                 yield relation("viscosity", self.viscosity, f"{LEFT_OUT} with {which}")
         elif self.viscosity is None:
-            yield relation("viscosity", "missing", "a number, liquid = 'water' or viscosity_table")
+            yield relation(
+                "viscosity", "missing", "a number (of oil too), liquid = 'water' or a table"
+            )
         if self.liquid is not None and self.viscosity_table is not None:
             yield relation("liquid", repr(self.liquid), f"{LEFT_OUT} with viscosity_table")
         if self.liquid == "water" and self.temperature is not None:

@@ -63,8 +63,9 @@ def sum_of_guiding(data: VehicleRun, number: int) -> Array:
 
 
 def sum_limit(data: VehicleRun, number: int) -> float:
-    """N, Prud'homme's."""
-    return PRUDHOMME + static_load(data, number) / AXLE_PART
+    """N, Prud'homme's, with the scene's factor."""
+    factor = (scene_of(data.run).get("run") or {}).get("shift_factor", 1.0)
+    return float(factor) * (PRUDHOMME + static_load(data, number) / AXLE_PART)
 
 
 def load_limit(data: VehicleRun, number: int) -> float:

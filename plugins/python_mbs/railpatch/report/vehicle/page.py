@@ -53,7 +53,8 @@ def body(
 
 STANDARD = (
     "Limits are those of EN 14363:2016: Y/Q 0.8; sum of Y by Prud'homme, 10 kN and a third of the "
-    "static axle load; Q 90 kN above the static wheel load and at most 160 to 200 kN by speed; "
+    "static axle load, times the scene's run.shift_factor; Q 90 kN above the static wheel load and "
+    "at most 160 to 200 kN by speed; "
     "unloading 60 % of the static load; root mean squares of passenger vehicles' accelerations, "
     "0.5 m/s² lateral and 0.75 m/s² vertical. The static load is the mean of the run. The standard "
     "takes percentiles of 99.85 % in many sections of track and estimates from these; here the "
