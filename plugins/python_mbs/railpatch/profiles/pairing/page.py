@@ -26,7 +26,7 @@ from railpatch.writing import write_whole
 PARTNERS: dict[Role, str] = {"wheel": "UIC60@1:40", "rail": "S1002"}
 # built-in names that are one or the other, and those that are either
 ROLES: dict[str, Role] = {"S1002": "wheel", "UIC60": "rail"}
-EITHER = ("cone", "arc", "cylinder")
+EITHER = ("cone", "arc", "cylinder", "worn")
 # m, amplitudes of the plot and of the table
 AMPLITUDE = 3e-3  # m, of the conicity by which pairs are compared (EN 15302)
 AMPLITUDES = 1e-4 * np.arange(5, 81)
