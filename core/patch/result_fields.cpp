@@ -75,14 +75,14 @@ constexpr rp_patch_result new_patch_result() {
 constexpr rp_side_result new_side_result() {
   rp_side_result r{};
   RP_SIDE_RESULT_FIELDS(RP_START, RP_NONE)
-  std::fill_n(r.patch, RP_MAX_PATCHES, new_patch_result());
+  for (auto &patch : r.patch) patch = new_patch_result();
   return r;
 }
 
 constexpr rp_result new_result() {
   rp_result r{};
   RP_RESULT_FIELDS(RP_START, RP_NONE)
-  std::fill_n(r.side, 2, new_side_result());
+  for (auto &side : r.side) side = new_side_result();
   return r;
 }
 

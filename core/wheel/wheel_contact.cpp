@@ -273,8 +273,10 @@ void wheel_contact::place_patch(const patch_contact &solver, patch_region &regio
   place.contact_angle = region.frame.contact_angle;
   place.depth = depth;
   place.contact_depth = geometry_->contact_depth(region.frame, depth);
-  std::ranges::copy(geometry_->on_wheel_profile(region.frame, depth), place.on_wheel_profile);
-  std::ranges::copy(geometry_->on_rail_profile(region.frame), place.on_rail_profile);
+  const auto on_wheel = geometry_->on_wheel_profile(region.frame, depth);
+  const auto on_rail = geometry_->on_rail_profile(region.frame);
+  std::copy(on_wheel.begin(), on_wheel.end(), place.on_wheel_profile);
+  std::copy(on_rail.begin(), on_rail.end(), place.on_rail_profile);
   place.rolling_speed = rolling.rolling_speed;
   place.direction = rolling.direction;
 }

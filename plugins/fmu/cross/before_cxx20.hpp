@@ -69,6 +69,7 @@ class span {
 namespace numbers {
 inline constexpr double pi = 3.141592653589793238462643383279502884;
 inline constexpr double ln2 = 0.693147180559945309417232121458176568;
+inline constexpr double sqrt2 = 1.414213562373095048801688724209698079;
 inline constexpr double inv_sqrtpi = 0.564189583547756286948079451560772586;
 }  // namespace numbers
 }  // namespace std
