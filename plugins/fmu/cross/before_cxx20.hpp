@@ -39,6 +39,9 @@
 #include <type_traits>
 #include <utility>
 #include <vector>
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
 #if __cplusplus >= 202002L
 #include <numbers>
 #include <span>
