@@ -74,9 +74,8 @@ RAILPATCH_INLINE double logarithm_of(double n, double first, double second, doub
   return sum + left;
 }
 
-}  // namespace
-
-RAILPATCH_DISPATCH void asinh_of(double *values, int count) {
+// within this file: what chooses the clone would be seen from outside
+RAILPATCH_DISPATCH void find_asinh(double *values, int count) {
   double size[most], n[most], place[most], first[most], second[most], hi[most], lo[most];
   for (int from = 0; from < count; from += most) {
     const int here = std::min(most, count - from);
@@ -93,5 +92,9 @@ RAILPATCH_DISPATCH void asinh_of(double *values, int count) {
     for (int k = 0; k < here; ++k) at[k] = is_inside(std::abs(at[k])) ? size[k] : asinh(at[k]);
   }
 }
+
+}  // namespace
+
+void asinh_of(double *values, int count) { find_asinh(values, count); }
 
 }  // namespace railpatch
