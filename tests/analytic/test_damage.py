@@ -89,6 +89,19 @@ def test_work_of_elements(direction: int) -> None:
     assert errors[1] < 0.02
 
 
+@pytest.mark.parametrize("tangential", ["fastsim", "fastrip"])
+def test_work_of_fast_theories_is_what_their_forces_take(tangential: str) -> None:
+    """In steady rolling nothing else supplies it: -(F . creepage + M spin) by metre rolled."""
+    case = patch(method={"tangential": tangential}, damage={})
+    case["motion"] = {**case["motion"], "creepage": [1e-3, 5e-4], "spin_creepage": 0.4}
+    result = solve(case, fields=True)
+    taken = np.dot(result["creep_force"], case["motion"]["creepage"])
+    taken += result["spin_moment"] * case["motion"]["spin_creepage"]
+    area = np.diff(result["x"])[0] * np.diff(result["y"])[0]
+    work = result["damage"]["fields"]["work"].sum() * area
+    assert work == pytest.approx(-taken, rel=1e-12)
+
+
 def test_mild_wear_is_proportional_to_work() -> None:
     """With all work in the first branch both bases give 5.3e-9 kg/J of it, whatever the shape."""
     motion = {"creepage": [2e-4, 0.0], "rolling_speed": 10.0}

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from railpatch.case.asked import Damage
 from railpatch.case.asked import Subsurface as Below
 from railpatch.case.load import Case
+from railpatch.case.theories import FAST
 from railpatch.damage.distribution import summed
 from railpatch.damage.patch import damage_of
 from railpatch.result import FIELDS, SOLVED
@@ -119,7 +120,13 @@ class Asked:
         # the mean speed of both surfaces, as creepages have it
         speed = patch["rolling_speed"]
         numbers, rows = damage_of(
-            patch, law, radius, left=side == "left", direction=patch["direction"], speed=speed
+            patch,
+            law,
+            radius,
+            left=side == "left",
+            direction=patch["direction"],
+            speed=speed,
+            fast=self._case.method.tangential in FAST,
         )
         arrays = numbers.pop("fields", {})
         if fields:

@@ -44,24 +44,36 @@ def work_of(fields: dict[str, Any], direction: int) -> Array:
 
 
 def damage_of(
-    patch: dict[str, Any], law: Damage, radius: float, *, left: bool, direction: int, speed: float
+    patch: dict[str, Any],
+    law: Damage,
+    radius: float,
+    *,
+    left: bool,
+    direction: int,
+    speed: float,
+    fast: bool = False,
 ) -> tuple[dict[str, Any], dict[str, Array]]:
     """Numbers of a patch, and by row what wears.
 
     patch: a result with fields where the law asks for elements. radius: m, on which the wheel
     rolls, NaN: unknown, and no depth of the wheel. direction: of rolling. speed: m/s, of rolling.
+    fast: the tractions are a fast theory's, whose work is what its forces take.
     Rows: s: m, lateral in the contact frame; wheel, rail: m, y in the axes of each profile, which a
     patch given by itself has not; height: m, across each row; wear: kg/m^2, mass by metre rolled
     and by width of the row.
 
     wear_rate: kg/m, mass that each body loses by metre rolled. wheel_depth_rate: -, greatest depth
     by metre rolled, round the wheel. rail_depth: m, greatest depth of one passage. work_scale: -,
-    by which the elements' work was multiplied so that its sum is friction_power over the speed;
-    None by the patch, and without work. stress_index: Pa; None of theories without tractions.
+    by which the elements' work was multiplied so that its sum is friction_power over the speed, of
+    a fast theory creep_power; None by the patch, and without work. stress_index: Pa; None of
+    theories without tractions.
     """
     elements = law.basis == "elements"
-    rows = _rows_of_elements if elements else _rows_of_patch
-    found, table = rows(patch, law, direction, speed)
+    if elements:
+        power = max(patch["creep_power" if fast else "friction_power"], 0.0)
+        found, table = _rows_of_elements(patch, law, direction, speed, power)
+    else:
+        found, table = _rows_of_patch(patch, law, speed)
     depth = table["wear"] / law.worn_density  # m, of one passage
     greatest = float(depth.max()) if depth.size else 0.0
     numbers = {
@@ -81,13 +93,13 @@ def damage_of(
 
 
 def _rows_of_elements(
-    patch: dict[str, Any], law: Damage, direction: int, speed: float
+    patch: dict[str, Any], law: Damage, direction: int, speed: float, power: float
 ) -> tuple[dict[str, Any], dict[str, Array]]:
     x, y = np.asarray(patch["x"]), np.asarray(patch["y"])
     dx = abs(x[1] - x[0])
     dy = abs(y[1] - y[0]) if len(y) > 1 else patch["contact_size"][1]
     work = work_of(patch, direction)
-    given = patch["friction_power"] / speed if speed > 0 else 0.0
+    given = power / speed if speed > 0 else 0.0
     summed = float(work.sum()) * dx * dy
     scale = given / summed if summed > 0 else math.nan
     if math.isfinite(scale):
@@ -109,10 +121,9 @@ def _rows_of_elements(
 
 
 def _rows_of_patch(
-    patch: dict[str, Any], law: Damage, direction: int, speed: float
+    patch: dict[str, Any], law: Damage, speed: float
 ) -> tuple[dict[str, Any], dict[str, Array]]:
     """The patch's mean over its width as half an ellipse, by the work or pressure of all of it."""
-    del direction
     area, width = patch["contact_area"], patch["contact_size"][1]
     greatest = patch["max_traction"]
     known = greatest is not None and math.isfinite(greatest)

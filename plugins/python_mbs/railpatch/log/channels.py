@@ -194,7 +194,7 @@ DAMAGE = Message(
         _number("fatigue_index", "-", "FI_surf: above 0 beyond the surface's shakedown limit"),
         _number("stress_index", "Pa", "greatest traction less the yield stress in shear"),
         _number("whole_life_damage", "-", "of one passage, by the whole-life function of T gamma"),
-        _number("work_scale", "-", "of the elements' work, so that its sum is the friction power"),
+        _number("work_scale", "-", "of a patch's elements' work; null of a wheel and by the patch"),
     ),
 )
 
