@@ -200,7 +200,10 @@ def checked_parts(content: Any, model: type[Table], table: Any, name: str) -> li
     """The case, and the table ``name`` of its file. Raises CaseError with the problems of both."""
     problems: list[str] = []
     checked = []
-    for check in (lambda: check_case(content), lambda: check_table(model, table, name)):
+    for check in (
+        lambda: check_case(content, beside=(name,)),
+        lambda: check_table(model, table, name),
+    ):
         try:
             checked.append(check())
         except CaseError as error:

@@ -240,7 +240,7 @@ def load_checked(
         tables["run"] = {**tables["run"], **given}
     problems: list[str] = []
     checked: dict[str, Any] = {}
-    for name, check in (*checks.items(), ("case", check_case)):
+    for name, check in (*checks.items(), ("case", partial(check_case, beside=tuple(checks)))):
         try:
             checked[name] = check(content if name == "case" else tables[name])
         except CaseError as error:

@@ -23,7 +23,7 @@ from railpatch.evidence.continuity.worn import (
     worn_case,
 )
 
-from wheelset_demo.vehicle.bodies import doubtful_bodies
+from wheelset_demo.vehicle.plausible import doubtful_bodies
 from wheelset_demo.vehicle.scene import load_vehicle_scene
 
 LOADED = with_values(WHEELSET, wheelset__z=None, wheelset__vertical_force=1.2e5)
@@ -233,7 +233,7 @@ def test_bodies_of_a_vehicle() -> None:
     assert doubtful_bodies(vehicle) == []
     light = vehicle.body[0].model_copy(update={"mass": 32.0})
     changed = vehicle.model_copy(update={"body": [light, *vehicle.body[1:]]})
-    [text] = doubtful_bodies(changed)
+    text = doubtful_bodies(changed)[0]
     assert "vehicle.car_body.mass is 32 kg" in text
 
 

@@ -25,19 +25,16 @@ from railpatch.case.types import (
 )
 from railpatch.case.wheel import PROFILE_KEYS, Text, WheelsetCase
 
-from wheelset_demo.vehicle.elements import ElementTable
+from wheelset_demo.vehicle.elements import ElementTable, Place
 from wheelset_demo.vehicle.traction import DriveTable
 
 Name = Annotated[str, Field(pattern="^[A-Za-z][A-Za-z0-9_]*$", max_length=60)]
-Place = Annotated[list[Number], exactly(3)]
 # names that the run's log gives
 TAKEN = ("world", "start", "view")
 TAKEN_BEGINS = ("wheelset_", "wheels_", "axle_box_", "track_")
 MOST_WHEELSETS = 64
-# kg: railway vehicles from a narrow-gauge tram to a loaded freight wagon
-PLAUSIBLE = {"body": (100.0, 1.2e5), "wheelset": (300.0, 5e3), "axle_box": (10.0, 1e3)}
-# kg, of the heaviest body: nothing that is lighter is a vehicle's
-LIGHTEST = 1e3
+# m, of a vehicle between its first and its last wheelset
+LONGEST = 500.0
 SIGNS = dict(zip(SIDES, (-1.0, 1.0), strict=True))
 
 
@@ -46,8 +43,16 @@ class BodyTable(Table):
 
     mass: Positive = Field(description="kg")
     inertia: Annotated[list[Positive], exactly(3)] = Field(
-        description="kg m^2, about x, y, z through its centre"
+        description="kg m^2, about x, y, z through its centre; none above the sum of the others"
     )
+
+    @model_validator(mode="after")
+    def _possible(self) -> BodyTable:
+        if 2 * max(self.inertia) > sum(self.inertia) * (1 + 1e-9):
+            raise relation(
+                "inertia", self.inertia, "kg m^2 of which none is above the sum of the two others"
+            )
+        return self
 
 
 class FreeBodyTable(BodyTable):
@@ -74,7 +79,9 @@ class FreeBodyTable(BodyTable):
 class AxleBoxTable(BodyTable):
     """A body that pitches about the end of an axle; one at each side."""
 
-    lateral: Positive = Field(description="m, of its centre from the vehicle's middle")
+    lateral: Annotated[float, Field(gt=0, le=10)] = Field(
+        description="m, of its centre from the vehicle's middle"
+    )
 
 
 class OwnProfiles(Table):
@@ -228,6 +235,9 @@ class VehicleTable(Table):
         for before, axle in pairwise(self.axles):
             if not before.x > axle.x:
                 yield relation("wheelset.positions", axle.x, "each place for one wheelset only")
+        if self.length > LONGEST:
+            at = [axle.x for axle in self.axles]
+            yield relation("wheelset.positions", at, f"within {LONGEST:g} m: they are in m")
         known, met = self.names, set()
         for k, element in enumerate(self.element):
             for i, place in enumerate(element.places):
@@ -283,23 +293,3 @@ class VehicleTable(Table):
         """m, of a place of the vehicle at rest in the track's frame of which x = 0 is at the last
         wheelset."""
         return [x - self.axles[-1].x, y, -height]
-
-
-def doubtful_bodies(vehicle: VehicleTable) -> list[str]:
-    """Warnings of bodies whose mass no railway vehicle has."""
-    found = []
-
-    def check(name: str, kind: str, mass: float) -> None:
-        low, high = PLAUSIBLE[kind]
-        if vehicle.bodies[0].name == name:
-            low = LIGHTEST
-        if not low <= mass <= high:
-            found.append(f"vehicle.{name}.mass is {mass:g} kg, outside {low:g} to {high:g} kg")
-
-    for body in vehicle.bodies:
-        check(body.name, "body", body.mass)
-    for table in vehicle.wheelset:
-        check("wheelset", "wheelset", table.mass)
-        if table.axle_box is not None:
-            check("wheelset.axle_box", "axle_box", table.axle_box.mass)
-    return found

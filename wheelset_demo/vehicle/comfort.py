@@ -24,10 +24,11 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
-from railpatch.case.types import NotNegative, Number, Table, exactly, relation
+from railpatch.case.types import NotNegative, Table, relation
 from scipy.signal import bilinear_zpk, sosfilt, sosfilt_zi, zpk2sos
 
 from wheelset_demo.scene import GRAVITY
+from wheelset_demo.vehicle.elements import Place
 
 Vector = NDArray[np.float64]
 BAND, Q_BAND = (0.4, 100.0), 1 / math.sqrt(2)  # Hz, -
@@ -57,7 +58,7 @@ class PointTable(Table):
     name: Annotated[str, Field(pattern="^[A-Za-z][A-Za-z0-9_]*$", max_length=60)] = Field(
         description="(no unit): for results"
     )
-    at: Annotated[list[Number], exactly(3)] = Field(
+    at: Place = Field(
         description="m, at rest: ahead, to the right of the vehicle's middle, above the rails' tops"
     )
     body: str | None = Field(

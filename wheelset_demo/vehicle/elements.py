@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 from railpatch import _core
 from railpatch.case.types import NotNegative, Number, Table, exactly, refuse, relation
 from railpatch.case.wheel import Text
@@ -17,6 +17,19 @@ Triple = Annotated[list[NotNegative], exactly(3)]
 Curve = Annotated[list[Annotated[list[Number], exactly(2)]], Field(min_length=2)]
 NONE = [0.0, 0.0, 0.0]
 AXES = ("x", "y", "z")
+# m, by size: ahead, to the right of the vehicle's middle, above the rails' tops
+FARTHEST = (1e3, 10.0, 20.0)
+
+
+def near(place: list[float]) -> list[float]:
+    """Refuses places that are on no vehicle, of which most are in mm."""
+    if any(abs(x) > far for x, far in zip(place, FARTHEST, strict=True)):
+        allowed = ", ".join(f"{far:g}" for far in FARTHEST)
+        raise relation("", place, f"up to {allowed} m by size: places are in m")
+    return place
+
+
+Place = Annotated[list[Number], exactly(3), AfterValidator(near)]
 
 
 class PlaceTable(Table):
@@ -25,7 +38,7 @@ class PlaceTable(Table):
     between: Annotated[list[Text], exactly(2)] = Field(
         description="(no unit): names of bodies A and B; axes are those of A"
     )
-    at: Annotated[list[Number], exactly(3)] = Field(
+    at: Place = Field(
         description="m, of both its ends at rest: ahead, to the right of the vehicle's middle, "
         "above the rails' tops"
     )

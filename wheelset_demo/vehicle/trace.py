@@ -16,9 +16,14 @@ from railpatch.result import Warned
 from wheelset_demo.scene import GRAVITY
 from wheelset_demo.system import WORKS, ContactFailure
 from wheelset_demo.vehicle.assessment import RATIO_LIMIT, assess, shift_limit
-from wheelset_demo.vehicle.bodies import doubtful_bodies
 from wheelset_demo.vehicle.comfort import text_of as text_of_comfort
 from wheelset_demo.vehicle.means import rail_forces
+from wheelset_demo.vehicle.plausible import (
+    doubtful_bodies,
+    doubtful_elements,
+    doubtful_support,
+    unmet_dips,
+)
 from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.simulation import Simulation
 from wheelset_demo.vehicle.step_times import text_of
@@ -409,6 +414,9 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
         real_time=wall / time if time > 0 else 0.0,
         warnings=[
             *doubtful_bodies(simulation.scene.vehicle),
+            *doubtful_elements(simulation.scene.vehicle),
+            *doubtful_support(simulation.scene.support),
+            *unmet_dips(simulation.scene.dip, float(positions[-1].max())),
             *(() if measured is None else measured.warnings),
             *own_doubts(simulation.scene),
             *step_doubts(simulation.scene, trace.open_balance(), trace.lost()),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -126,22 +126,25 @@ def plain(value: Any) -> Any:
     return value
 
 
-def check_case(content: dict[str, Any]) -> Case:
-    """The checked case."""
+def check_case(content: dict[str, Any], beside: Iterable[str] = ()) -> Case:
+    """The checked case. beside: further tables that its file may have, taken out of the content.
+    Raises CaseError."""
     kind = content.get("kind")
     model = KINDS.get(kind) if isinstance(kind, str) else None
     if model is None:
         shown = show(kind) if "kind" in content else "missing"
         raise CaseError(f"kind: value is {shown}, allowed 'patch', 'wheel_rail' or 'wheelset'")
-    return check_table(model, content)
+    return check_table(model, content, beside=beside)
 
 
-def check_table(model: type[BaseModel], content: Any, prefix: str = "") -> Any:
-    """One checked table of a case. prefix: its key. Raises CaseError."""
+def check_table(
+    model: type[BaseModel], content: Any, prefix: str = "", beside: Iterable[str] = ()
+) -> Any:
+    """One checked table of a case. prefix: its key. beside: as check_case. Raises CaseError."""
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        raise CaseError(problems(model, error, prefix)) from None
+        raise CaseError(problems(model, error, prefix, beside)) from None
 
 
 def json_schema() -> dict[str, Any]:

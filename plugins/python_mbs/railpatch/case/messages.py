@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import difflib
-from typing import Any, get_args
+from collections.abc import Iterable, Iterator
+from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
@@ -29,8 +30,11 @@ ALLOWED = {
 }
 
 
-def problems(model: type[BaseModel], error: ValidationError, prefix: str = "") -> list[str]:
-    """One line for each error. prefix: key of the table that the model stands for."""
+def problems(
+    model: type[BaseModel], error: ValidationError, prefix: str = "", beside: Iterable[str] = ()
+) -> list[str]:
+    """One line for each error. prefix: key of the table that the model stands for. beside: keys
+    that may stand beside those of the model."""
     found: list[str] = []
     for item in error.errors(include_url=False):
         # of the union path | rows only the branch that was meant is of use
@@ -41,7 +45,7 @@ def problems(model: type[BaseModel], error: ValidationError, prefix: str = "") -
             each = [{"type": "relation", "loc": loc, "ctx": c} for c in item["ctx"]["found"]]
             found += dict.fromkeys(problem(model, one, prefix) for one in each)
             continue
-        text = problem(model, item, prefix)
+        text = problem(model, item, prefix, beside)
         # a number or a word in its place
         if item["type"] == "literal_error" and found and found[-1] == number_of(text):
             found[-1] += f" or {item['ctx']['expected']}"
@@ -56,7 +60,7 @@ def number_of(text: str) -> str:
     return f"{text.rsplit(', allowed ', 1)[0]}, allowed {ALLOWED['float_type']}"
 
 
-def problem(model: type[BaseModel], item: Any, prefix: str) -> str:
+def problem(model: type[BaseModel], item: Any, prefix: str, beside: Iterable[str] = ()) -> str:
     """The line for one of pydantic's errors."""
     context = item.get("ctx", {})
     loc = [part for part in item["loc"] if not is_branch(part)]
@@ -66,10 +70,14 @@ def problem(model: type[BaseModel], item: Any, prefix: str) -> str:
         return f"{key}: value is {context['shown']}, allowed {context['allowed']}"
     table = table_at(model, loc[:-1])
     if item["type"] == "extra_forbidden":
-        return unknown_key(key, str(loc[-1]), item["input"], table)
+        names = [*(table.model_fields if table else ()), *(beside if len(loc) == 1 else ())]
+        return unknown_key(key, str(loc[-1]), item["input"], names)
     if item["type"] == "missing":
         description = table.model_fields[str(loc[-1])].description if table else "a value"
         inner = f"a table [{key}]: " if table_at(model, loc) else ""
+        if inner and table and get_origin(table.model_fields[str(loc[-1])].annotation) is list:
+            inner = f"at least one [[{key}]]: "
+            description = str(description).removeprefix("(no unit): ")
         return f"{key}: value is missing, allowed {inner}{description}"
     if item["type"] == "value_error":
         said = str(context["error"])
@@ -97,21 +105,27 @@ def spell(prefix: str, loc: list[Any]) -> str:
 
 
 def table_at(model: type[BaseModel], loc: list[Any]) -> type[BaseModel] | None:
-    """The model of the table at a location."""
+    """The model of the table at a location, also of one in a list."""
     table: type[BaseModel] | None = model
     for part in loc:
+        if isinstance(part, int):
+            continue
         if table is None or part not in table.model_fields:
             return None
-        annotation = table.model_fields[part].annotation
-        options = [annotation, *get_args(annotation)]
-        tables = [x for x in options if isinstance(x, type) and issubclass(x, BaseModel)]
-        table = tables[0] if tables else None
+        table = next(models_in(table.model_fields[part].annotation), None)
     return table
 
 
-def unknown_key(key: str, name: str, value: Any, table: type[BaseModel] | None) -> str:
+def models_in(annotation: Any) -> Iterator[type[BaseModel]]:
+    """Models that a type names: itself, those of a union or a list."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for part in get_args(annotation):
+        yield from models_in(part)
+
+
+def unknown_key(key: str, name: str, value: Any, names: list[str]) -> str:
     """Names the key, what is allowed there, and the key that was perhaps meant."""
-    names = list(table.model_fields) if table else []
     text = f"{key}: value is {show(value)}, but the key is unknown, allowed {', '.join(names)}"
     close = difflib.get_close_matches(name, names, 1)
     return f"{text}; did you mean '{close[0]}'?" if close else text

@@ -1,0 +1,146 @@
+"""Numbers of a vehicle in another unit: refused, or warned of by field, value and range."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from railpatch.case.load import check_table
+from railpatch.errors import CaseError
+
+from wheelset_demo.scene import scene_file
+from wheelset_demo.vehicle.bodies import VehicleTable
+from wheelset_demo.vehicle.deviations import DipTable
+from wheelset_demo.vehicle.plausible import (
+    doubtful_bodies,
+    doubtful_elements,
+    doubtful_support,
+    unmet_dips,
+)
+from wheelset_demo.vehicle.scene import load_vehicle_scene
+from wheelset_demo.vehicle.support import SupportTable
+
+SCENES = ("vehicle_curve", "vehicle_straight", "freight_wagon", "locomotive")
+SUPPORT = {
+    "rail_mass": 60.0,
+    "pad_stiffness": [20e6, 100e6],
+    "sleeper_mass": 250.0,
+    "sleeper_inertia": 80.0,
+    "ballast_stiffness": [20e6, 60e6],
+}
+
+
+def table() -> dict[str, Any]:
+    return load_vehicle_scene().vehicle.model_dump(exclude_none=True)
+
+
+def checked(changed: dict[str, Any]) -> VehicleTable:
+    return check_table(VehicleTable, changed, "vehicle")
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_packaged_vehicles_have_no_warning(name: str) -> None:
+    scene = load_vehicle_scene(scene_file(f"{name}.toml"))
+    assert doubtful_bodies(scene.vehicle) == []
+    assert doubtful_elements(scene.vehicle) == []
+    assert doubtful_support(scene.support) == []
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("kN/mm", 1e-6), ("kN/m", 1e-3)])
+def test_springs_in_another_unit(unit: str, factor: float) -> None:
+    """kN/mm by the number itself, kN/m by how far the body sinks into them."""
+    changed = table()
+    for element in changed["element"]:
+        if max(element["stiffness"]) > 0:
+            element["stiffness"] = [factor * k for k in element["stiffness"]]
+            element.pop("bump_stop", None)
+    found = doubtful_elements(checked(changed))
+    wanted = "stiffness, z, is" if unit == "kN/mm" else "stiffness is in N/m"
+    assert any(wanted in text and "N/m" in text for text in found)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("friction_coefficient", [0.0, 6.0, 0.0], "coefficient, y, is 6, outside 0.001 to 1"),
+        ("bump_stop", {"z": [[0.0, 0.0], [25.0, 1e5]]}, "stop.z is 25 m, outside 0.0001 to 1 m"),
+        ("damping", [0.0, 0.0, 0.02], "damping, z, is 0.02 N s/m, outside 1 to 1e+08 N s/m"),
+    ],
+)  # fmt: skip
+def test_elements(key: str, value: Any, words: str) -> None:
+    changed = table()
+    element = changed["element"][0]
+    element[key] = value
+    if key == "friction_coefficient":
+        element["friction_stiffness"] = [0.0, 1e6, 0.0]
+    element["series_stiffness"] = [0.0, 0.0, 0.0]
+    assert any(words in text for text in doubtful_elements(checked(changed)))
+
+
+def test_inertias() -> None:
+    """No principal one above the sum of the others; a radius of gyration that a body can have."""
+    changed = table()
+    changed["body"][0]["inertia"] = [1e3, 1e3, 2.1e3]
+    with pytest.raises(CaseError, match="none is above the sum of the two others"):
+        checked(changed)
+    changed["body"][0]["inertia"] = [5e7, 1.9e9, 1.9e9]  # kg mm^2 in thousands
+    mass = changed["body"][0]["mass"]
+    [_, about_y, _] = doubtful_bodies(checked(changed))
+    assert f"a radius of gyration of {(1.9e9 / mass) ** 0.5:.3g} m, outside 0.02 to 15 m" in about_y
+
+
+@pytest.mark.parametrize("where", ["positions", "position", "at", "lateral"])
+def test_places_in_millimetres(where: str) -> None:
+    changed = table()
+    if where == "positions":
+        for wheelset in changed["wheelset"]:
+            wheelset["positions"] = [1e3 * x for x in wheelset["positions"]]
+    elif where == "position":
+        body = changed["body"][0]
+        body["position"] = [1e3 * x for x in body["position"]]
+    elif where == "at":
+        place = changed["element"][0]["places"][0]
+        place["at"] = [1e3 * x for x in place["at"]]
+    else:
+        changed["wheelset"][0].setdefault("axle_box", {"mass": 100.0, "inertia": [2.0, 4.0, 4.0]})
+        changed["wheelset"][0]["axle_box"]["lateral"] = 1e3
+    with pytest.raises(CaseError) as caught:
+        checked(changed)
+    allowed = str(caught.value).split(f"{where}: value is")[1]
+    assert ("<= 10" if where == "lateral" else "in m") in allowed
+
+
+def test_track_below_the_rails() -> None:
+    whole = check_table(SupportTable, SUPPORT, "support")
+    assert doubtful_support(whole) == []
+    changed = check_table(SupportTable, {**SUPPORT, "pad_stiffness": [20.0, 100.0]}, "support")
+    lateral, vertical = doubtful_support(changed)
+    assert lateral == "support.pad_stiffness, lateral, is 20 N/m, outside 1e+06 to 1e+10 N/m"
+    assert vertical == "support.pad_stiffness, vertical, is 100 N/m, outside 1e+06 to 1e+10 N/m"
+
+
+def test_joints_beyond_the_run() -> None:
+    near, far = (DipTable(position=x, angle=0.02) for x in (100.0, 900.0))
+    [text] = unmet_dips((near, far), 320.0)
+    assert text.startswith("dip[1].position is 900 m, and the first wheelset ends at 320 m")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("damping =", "dampening =", "friction_stiffness, friction_force"),
+        ("damping =", "dampening =", "did you mean 'damping'?"),
+        ("[run]", "[suport]\n[run]", "comfort, run, dip; did you mean 'support'?"),
+        ("[run]", "[comfort]\n[run]", "comfort.point: value is missing, allowed at least one [["),
+        ("[run]", "[[dip]]\nposition = 60.0\n[run]", "dip[0].angle: value is missing, allowed rad"),
+    ],
+)
+def test_unknown_and_missing_keys(tmp_path: Path, old: str, new: str, words: str) -> None:
+    """What is allowed stands there, also of tables in lists and of tables beside the case's."""
+    text = scene_file("vehicle_straight.toml").read_text(encoding="utf-8")
+    path = tmp_path / "own.toml"
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(CaseError) as caught:
+        load_vehicle_scene(path)
+    assert words in str(caught.value)
