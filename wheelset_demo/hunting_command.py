@@ -17,6 +17,7 @@ from railpatch.command.group import (
     quiet_flag,
     scene_argument,
     show_scene_option,
+    tell_warnings,
     wrong_calls,
 )
 from railpatch.command.output import check_output, files_of
@@ -101,7 +102,7 @@ def hunting(
             file = scene_file(SCENE) if scene is None else scene
             if "vehicle" in read_toml(file):
                 refuse_time(simulate, output)
-                show(search_whole(file, lowest, highest, slip), as_json, quiet)
+                show(search_whole(file, lowest, highest, slip, quiet), as_json, quiet)
                 return
             if slip:
                 raise WrongCall("--slip: given, allowed with a scene of railpatch vehicle")
@@ -135,12 +136,16 @@ def refuse_time(simulate: bool, output: Path | None) -> None:
             raise WrongCall(f"{name}: given, {text}")
 
 
-def search_whole(file: Path, lowest: float, highest: float, slip: bool) -> dict[str, Any]:
+def search_whole(
+    file: Path, lowest: float, highest: float, slip: bool, quiet: bool
+) -> dict[str, Any]:
     """What is printed of a vehicle: SI units, None for what was not found."""
     from wheelset_demo.vehicle.hunting import moves_at, search_vehicle, vehicle_mode
+    from wheelset_demo.vehicle.plausible import doubts_of
     from wheelset_demo.vehicle.scene import load_vehicle_scene
 
     scene = load_vehicle_scene(file)
+    tell_warnings(doubts_of(scene), strict=False, quiet=quiet)
     searched = search_vehicle(scene, lowest, highest, slip)
     found = found_by(scene.name, searched, lowest, highest)
     middle = found["critical_speed"]

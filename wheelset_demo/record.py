@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import fields
+from collections.abc import Iterable
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -106,17 +107,19 @@ def momentum(trace: Trace) -> dict[str, list[float]]:
     return values
 
 
-def ran_with(scene: Any) -> Effective:
-    """The tables of a scene of this package as they run."""
+def ran_with(scene: Any, doubts: Iterable[str] = ()) -> Effective:
+    """The tables of a scene of this package as they run. doubts: warnings of what it says."""
     known = ("name", "text", "case", "profiles", "measured")
     own = [f.name for f in fields(scene) if f.name not in known]
     # a list without tables is one that the file does not have
     tables = {name: getattr(scene, name) or None for name in own}
     step = scene.run.step
     names = {name: Path(name).name for name in scene.profiles.values()}
-    return effective(
+    made = effective(
         scene.text, scene.case, tables, step=step, duration=scene.steps * step, names=names
     )
+    told = " | ".join(filter(None, [made.about["doubts"], *doubts]))
+    return replace(made, about=made.about | {"doubts": told})
 
 
 def attachments(scene: WheelsetScene) -> dict[str, bytes]:

@@ -6,10 +6,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 from railpatch.case.load import check_table
+from railpatch.command.cli import cli
 from railpatch.errors import CaseError
+from railpatch.report.vehicle import assessed
 
 from wheelset_demo.scene import scene_file
+from wheelset_demo.vehicle.assessment import LEAST_RATE, LEAST_WAY, SLIDING
 from wheelset_demo.vehicle.bodies import VehicleTable
 from wheelset_demo.vehicle.deviations import DipTable
 from wheelset_demo.vehicle.plausible import (
@@ -144,3 +148,39 @@ def test_unknown_and_missing_keys(tmp_path: Path, old: str, new: str, words: str
     with pytest.raises(CaseError) as caught:
         load_vehicle_scene(path)
     assert words in str(caught.value)
+
+
+def test_doubts_are_said_first_and_on_the_page(tmp_path: Path) -> None:
+    """Before a run that may fail by them, by hunting too, and in the head of its report, which says
+    of a short run that it has no percentiles."""
+    text = scene_file("vehicle_straight.toml").read_text(encoding="utf-8")
+    before = (
+        text[: text.index("[run]")].replace("half_space", "hertz").replace('"full"', '"polach"')
+    )
+    path = tmp_path / "own.toml"
+    path.write_text(
+        before.replace("mass = 32000.0", "mass = 320.0")
+        + "[[dip]]\nposition = 900.0\nangle = 0.02\n[run]\nduration = 0.02\n",
+        encoding="utf-8",
+    )
+    log, page = tmp_path / "a.mcap", tmp_path / "a.html"
+    wanted = "vehicle.car_body.mass is 320 kg", "dip[0].position is 900 m"
+    for call in (["vehicle", str(path), "-o", str(log)], ["report", str(log), "-o", str(page)]):
+        ran = CliRunner().invoke(cli, call)
+        assert ran.exit_code == 0, ran.output
+        if call[0] == "vehicle":
+            for words in wanted:
+                assert ran.stderr.count(words) == 1
+    shown = page.read_text(encoding="utf-8")
+    for words in wanted:
+        assert words.removeprefix("v").removeprefix("d") in shown
+    assert "No percentiles as EN 14363 counts them" in shown
+    assert assessed.LEAST_WAY == LEAST_WAY + SLIDING
+    assert assessed.LEAST_RATE == LEAST_RATE
+    ran = CliRunner().invoke(
+        cli, ["vehicle", str(path), "--strict", "-o", str(tmp_path / "b.mcap")]
+    )
+    assert ran.exit_code == 2
+    assert not (tmp_path / "b.mcap").exists()
+    ran = CliRunner().invoke(cli, ["hunting", str(path), "--lowest", "20", "--highest", "21"])
+    assert wanted[0] in ran.stderr

@@ -10,6 +10,7 @@ from wheelset_demo.scene import GRAVITY
 from wheelset_demo.vehicle.bodies import BodyTable, VehicleTable
 from wheelset_demo.vehicle.deviations import DipTable
 from wheelset_demo.vehicle.elements import ElementTable
+from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.support import SupportTable
 
 # kg: railway vehicles from a narrow-gauge tram to a loaded freight wagon
@@ -52,6 +53,16 @@ def outside(name: str, value: float, low: float, high: float, unit: str) -> Iter
     if value and not low <= abs(value) <= high:
         shown = "" if unit == "-" else f" {unit}"
         yield f"{name} is {value:g}{shown}, outside {low:g} to {high:g}{shown}"
+
+
+def doubts_of(scene: VehicleScene) -> list[str]:
+    """Warnings of all that a scene says, before anything runs."""
+    return [
+        *doubtful_bodies(scene.vehicle),
+        *doubtful_elements(scene.vehicle),
+        *doubtful_support(scene.support),
+        *unmet_dips(scene.dip, scene.way),
+    ]
 
 
 def doubtful_bodies(vehicle: VehicleTable) -> list[str]:

@@ -20,6 +20,7 @@ from wheelset_demo.system import WORKS, ContactFailure
 from wheelset_demo.trace import STORES
 from wheelset_demo.vehicle.bodies import FreeBodyTable, VehicleTable
 from wheelset_demo.vehicle.comfort import NAMES
+from wheelset_demo.vehicle.plausible import doubts_of
 from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.simulation import Simulation
 
@@ -261,7 +262,7 @@ def open_log(path: Path, simulation: Simulation) -> VehicleLog:
         profiles=attachments(scene) | record_of(scene),
         geometry=geometry(simulation),
         scene_rate=scene.run.scene_rate,
-        ran_with=ran_with(scene),
+        ran_with=ran_with(scene, doubts_of(scene)),
     )
 
 

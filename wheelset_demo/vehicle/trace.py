@@ -10,20 +10,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from railpatch.log.channels import SLIDING
 from railpatch.pressure_error import run_doubts
 from railpatch.result import Warned
 
 from wheelset_demo.scene import GRAVITY
 from wheelset_demo.system import WORKS, ContactFailure
-from wheelset_demo.vehicle.assessment import RATIO_LIMIT, assess, shift_limit
+from wheelset_demo.vehicle.assessment import (
+    LEAST_RATE,
+    LEAST_WAY,
+    RATIO_LIMIT,
+    assess,
+    shift_limit,
+)
 from wheelset_demo.vehicle.comfort import text_of as text_of_comfort
 from wheelset_demo.vehicle.means import rail_forces
-from wheelset_demo.vehicle.plausible import (
-    doubtful_bodies,
-    doubtful_elements,
-    doubtful_support,
-    unmet_dips,
-)
+from wheelset_demo.vehicle.plausible import doubts_of
 from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.simulation import Simulation
 from wheelset_demo.vehicle.step_times import text_of
@@ -286,7 +288,10 @@ class VehicleSummary:
     def _assessed(self) -> list[tuple[str, str]]:
         """Lines of percentiles beside their limits."""
         if self.shift_percentile is None:
-            text = "none: they need 52 m and steps kept at 100 Hz or more"
+            text = (
+                f"none: they need {LEAST_WAY + SLIDING:g} m and steps kept at {LEAST_RATE:g} Hz "
+                "or more"
+            )
             return [("percentiles", text)]
         ratio, load, median = self.derailment_percentile, self.load_percentile, self.load_median
         # they are there together
@@ -413,10 +418,7 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
         seconds=seconds,
         real_time=wall / time if time > 0 else 0.0,
         warnings=[
-            *doubtful_bodies(simulation.scene.vehicle),
-            *doubtful_elements(simulation.scene.vehicle),
-            *doubtful_support(simulation.scene.support),
-            *unmet_dips(simulation.scene.dip, float(positions[-1].max())),
+            *doubts_of(simulation.scene),
             *(() if measured is None else measured.warnings),
             *own_doubts(simulation.scene),
             *step_doubts(simulation.scene, trace.open_balance(), trace.lost()),

@@ -159,7 +159,9 @@ class Rail(Deviation, RailShape):
 class Track(Table):
     """Rails or rollers."""
 
-    kind: one_of("track") = Field(default="rail", description="(no unit)")
+    kind: one_of("track") = Field(
+        default="rail", description="what the wheels run on, rails or rollers of a rig (no unit)"
+    )
     gauge: float = key()
     gauge_height: float = key()
     gauge_widening: float = key()

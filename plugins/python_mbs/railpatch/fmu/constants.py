@@ -166,7 +166,7 @@ def meaning_of(text: str) -> str:
     plain = text.partition("; hardly meant")[0].replace(" (no unit)", "").replace(", no unit", "")
     unit = unit_of_text(plain)
     plain = plain.removeprefix(f"{unit}, ") if unit else plain.removeprefix("(no unit)")
-    return plain.strip() or "as in the case"
+    return plain.strip()
 
 
 def type_of(constant: Constant) -> tuple[str, dict[str, Any]]:

@@ -67,11 +67,20 @@ def terminals_of(items: list[Item]) -> list[tuple[str, str, dict[str, Item]]]:
         found.append((f"{side}_rail", f"Deviation of the {side} rail or roller"))
     if not any(item.name.startswith("wheelset.") for item in items):
         found = [("contact", "Load and creepages of the patch, force and moment on the wheel")]
-    listed = [
-        (name, text, {member: i for i in items if (member := member_of(i.name, name)) is not None})
-        for name, text in found
-    ]
+    listed = [(name, text, members_of(items, name)) for name, text in found]
     return [(name, text, members) for name, text, members in listed if members]
+
+
+def members_of(items: list[Item], terminal: str) -> dict[str, Item]:
+    """By what they are called in a terminal; where an input and what is found of it have the same
+    name (z of a wheelset), the input."""
+    members: dict[str, Item] = {}
+    for item in items:
+        member = member_of(item.name, terminal)
+        if member is None or (member in members and members[member].first.causality == "input"):
+            continue
+        members[member] = item
+    return members
 
 
 def member_of(name: str, terminal: str) -> str | None:

@@ -15,6 +15,8 @@ from railpatch.page.figures import LINES, plot, styled
 from railpatch.report.vehicle.data import VehicleRun
 
 AXES = ("longitudinal", "lateral", "vertical")
+# m, of way, and Hz, of kept steps, that percentiles ask for: railpatch vehicle counts them
+LEAST_WAY, LEAST_RATE = 52.0, 100.0
 # of EN 12299's five minutes in blocks of 5 s
 WANTED = 60
 PERCENTILES = (
@@ -30,12 +32,20 @@ COMFORT = (
 
 
 def section(data: VehicleRun) -> list[str]:
-    """HTML; nothing where the log has neither."""
+    """HTML; why there are none where the log has no percentiles."""
     messages = data.run["/vehicle/assessment"].messages
-    parts: list[str] = []
-    if messages:
-        parts += percentiles(data, messages[-1]) + comfort(data, messages[-1])
-    return parts
+    found = messages[-1] if messages else {}
+    return [*(percentiles(data, found) or missing(data)), *comfort(data, found)]
+
+
+def missing(data: VehicleRun) -> list[str]:
+    """That the numbers above are no percentiles in the standard's sense, and what those ask for."""
+    way = float(data.along[-1] - data.along[0])
+    return [
+        "<p><b>No percentiles as EN 14363 counts them.</b> They ask for "
+        f"{LEAST_WAY:g} m of way and steps kept at {LEAST_RATE:g} Hz or more while the run is "
+        f"computed (run.step, run.log_every); this log is of {tables.short(way)} m.</p>"
+    ]
 
 
 def percentiles(data: VehicleRun, found: dict[str, Any]) -> list[str]:
