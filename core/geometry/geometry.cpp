@@ -214,6 +214,7 @@ side_motion mirrored(side_motion m) {
 
 track_config mirrored(track_config t) {
   t.curvature = -t.curvature;
+  t.origin_y = -t.origin_y;
   return t;
 }
 
@@ -241,6 +242,11 @@ side_geometry::side_geometry(const profile &wheel, const profile &rail,
 }
 
 void side_geometry::place_rail_marker() {
+  if (track_.placed) {
+    marker_y_ = track_.origin_y;
+    marker_z_ = track_.origin_z;
+    return;
+  }
   const bool roller = track_.kind == track_kind::roller;
   rail_.place(roller ? 0 : -track_.cant, 0, 0);
   marker_y_ = 0.5 * track_.gauge - rail_.innermost(track_.gauge_height);

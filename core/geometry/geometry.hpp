@@ -83,7 +83,8 @@ class side_geometry : private placement<double> {
                 const track_config &track);
 
   void place(const side_motion &motion);
-  // The rail's profile has changed; place() must follow.
+  // A profile has changed; place() must follow.
+  void reload_wheel() { wheel_.reload(); }
   void reload_rail();
   // Only z changes: the locus stays as it is, so this is nearly free.
   void move_to(double z);

@@ -47,6 +47,9 @@ struct track_config {
   double cant = 0;                     // rad, rail; > 0 leans towards the track centre
   double curvature = 0;                // 1/m, right-hand curve > 0
   double roller_radius = 0;            // m
+  // m, rail: of its profile's origin where placed; else gauge and the rail's top say where it lies
+  bool placed = false;
+  double origin_y = 0, origin_z = 0;
 };
 
 struct wheel_config {

@@ -1,4 +1,7 @@
 // Checks of wheels on rails and rollers.
+#include <cmath>
+#include <numbers>
+
 #include "geometry/longitudinal_shape.hpp"
 #include "half_space/coupling.hpp"
 #include "half_space/physics.hpp"
@@ -9,22 +12,52 @@ namespace railpatch {
 
 namespace {
 
-// A rail's profiles along the track; the profiles themselves are looked at where they are read.
+// Profiles' places along the track or round a wheel; the profiles themselves are looked at where
+// they are read.
+void check_places(const char *name, const double *place, int count, const range &allowed,
+                  checker &check) {
+  for (int k = 0; k < count; ++k) {
+    check.number(name, place[k], allowed);
+    if (k > 0) check.number(name, place[k], {place[k - 1], inf, true, true});
+  }
+}
+
 void check_sections(const rp_config &c, checker &check) {
   for (int side = 0; side < 2; ++side) {
     const bool left = side == RP_LEFT;
-    const int count = c.section_count[side];
-    if (check.error() != RP_OK || count == 0) continue;
     if (c.kind == RP_WHEEL_RAIL && side != c.side) continue;
-    const char *name = left ? "section_position[0]" : "section_position[1]";
-    const double *place = c.section_position[side];
-    check.require(c.rail_sections[side] != nullptr && place != nullptr,
-                  "rail_sections and section_position must be given where section_count is not 0");
-    if (check.error() != RP_OK) return;
-    for (int k = 0; k < count; ++k) {
-      check.number(name, place[k], finite);
-      if (k > 0) check.number(name, place[k], {place[k - 1], inf, true, true});
+    if (const int count = c.section_count[side]; count > 0 && check.error() == RP_OK) {
+      const double *place = c.section_position[side];
+      check.require(
+          c.rail_sections[side] != nullptr && place != nullptr,
+          "rail_sections and section_position must be given where section_count is not 0");
+      if (check.error() != RP_OK) return;
+      check_places(left ? "section_position[0]" : "section_position[1]", place, count, finite,
+                   check);
     }
+    if (const int count = c.wheel_section_count[side]; count > 0 && check.error() == RP_OK) {
+      const double *angle = c.wheel_section_angle[side];
+      check.require(c.wheel_sections[side] != nullptr && angle != nullptr,
+                    "wheel_sections and wheel_section_angle must be given where "
+                    "wheel_section_count is not 0");
+      if (check.error() != RP_OK) return;
+      check_places(left ? "wheel_section_angle[0]" : "wheel_section_angle[1]", angle, count,
+                   {0, 2 * std::numbers::pi, false, true}, check);
+    }
+  }
+}
+
+// A rail by the place of its profile's origin.
+void check_origin(const rp_config &c, checker &check) {
+  for (int side = 0; side < 2; ++side) {
+    const bool y = !std::isnan(c.rail_origin_y[side]), z = !std::isnan(c.rail_origin_z[side]);
+    check.require(y == z, "rail_origin_y and rail_origin_z must both be given, or neither");
+    if (!y) continue;
+    check.require(c.track == RP_RAIL, "rail_origin_y must be left out on rollers");
+    check.field(side == RP_LEFT ? "rail_origin_y[0]" : "rail_origin_y[1]", c.rail_origin_y[side],
+                config_range::rail_origin_y);
+    check.field(side == RP_LEFT ? "rail_origin_z[0]" : "rail_origin_z[1]", c.rail_origin_z[side],
+                config_range::rail_origin_z);
   }
 }
 
@@ -134,6 +167,7 @@ void check_wheels(const rp_config &c, checker &check) {
   check.require(c.contact_frame == RP_FRAME_TRACK || c.reference_surface == RP_REFERENCE_PLANE,
                 "contact_frame must be track with reference_surface = curved");
   check_sections(c, check);
+  check_origin(c, check);
   for (int k = 0; k < 2; ++k) {
     check.require(c.rail_damping[k] == 0 || c.rail_stiffness[k] > 0,
                   "rail_damping must be 0 in a direction whose rail_stiffness is 0: there the rail "

@@ -49,6 +49,9 @@ contact::contact(const rp_config &config)
   for (int side = 0; side < 2; ++side) {
     config_.rail_sections[side] = nullptr;
     config_.section_position[side] = nullptr;
+    config_.wheel_sections[side] = nullptr;
+    config_.wheel_section_angle[side] = nullptr;
+    config_.section_kink[side] = config_.wheel_section_kink[side] = nullptr;
     config_.runout[side] = config_.rail_height[side] = nullptr;
   }
 }

@@ -60,6 +60,10 @@ uint64_t fingerprint_of_arrays(const rp_config &c) {
     const auto *bytes = reinterpret_cast<const unsigned char *>(values);
     hash = hash * 31 + checksum(bytes, count * sizeof(double));
   };
+  const auto add_kinks = [&](const int32_t *values, int32_t count) {
+    for (int32_t i = 0; values && i < count; ++i)
+      hash = hash * 31 + static_cast<uint64_t>(values[i] != 0);
+  };
   if (c.kind == RP_PATCH && c.geometry == RP_UNDEFORMED_DISTANCE)
     add(c.undeformed_distance,
         static_cast<size_t>(c.distance_shape[0]) * static_cast<size_t>(c.distance_shape[1]));
@@ -92,7 +96,7 @@ uint64_t fingerprint_of_arrays(const rp_config &c) {
   // only profiles that a wheel is made from have been looked at
   const auto is_used = [&](int side) { return c.kind != RP_WHEEL_RAIL || side == c.side; };
   for (int side = 0; side < 2; ++side)
-    if (is_used(side)) add_profile(c.wheel[side]);
+    if (is_used(side) && c.wheel_section_count[side] == 0) add_profile(c.wheel[side]);
   for (int side = 0; side < 2; ++side)
     if (is_used(side) && c.section_count[side] == 0) add_profile(c.rail[side]);
   for (int side = 0; side < 2; ++side) {
@@ -100,7 +104,11 @@ uint64_t fingerprint_of_arrays(const rp_config &c) {
     add(c.rail_height[side], static_cast<size_t>(c.rail_height_count[side]));
     if (!is_used(side)) continue;
     add(c.section_position[side], static_cast<size_t>(c.section_count[side]));
+    add_kinks(c.section_kink[side], c.section_count[side]);
+    add_kinks(c.wheel_section_kink[side], c.wheel_section_count[side]);
     for (int k = 0; k < c.section_count[side]; ++k) add_profile(c.rail_sections[side][k]);
+    add(c.wheel_section_angle[side], static_cast<size_t>(c.wheel_section_count[side]));
+    for (int k = 0; k < c.wheel_section_count[side]; ++k) add_profile(c.wheel_sections[side][k]);
   }
   return hash;
 }

@@ -1,5 +1,7 @@
 // The wheels' part of a scene.
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "handle/scene_of.hpp"
 
@@ -15,41 +17,68 @@ profile_view checked_view(const rp_profile &p, const char *field) {
   return view;
 }
 
-// Profiles of a rail along the track; none where it has one profile.
-std::vector<profile_view> sections_of(const rp_config &c, int side) {
-  const int count = c.section_count[side];
+// Profiles of a rail along the track or of a wheel round it; none where it has one profile.
+std::vector<profile_view> sections_of(const rp_profile *given, const double *places, int count,
+                                      bool by_knot, const char *field) {
   std::vector<profile_view> views;
   if (count == 0) return views;
-  const char *field = side == RP_LEFT ? "rail_sections[0]" : "rail_sections[1]";
-  if (!c.rail_sections[side] || !c.section_position[side]) throw profile_error{field, "are null"};
+  if (!given || !places) throw profile_error{field, "are null"};
+  const char *apart = by_knot ? "must have as many knots"
+                              : "must have as many knots at the same shares of the arc length";
   for (int k = 0; k < count; ++k) {
-    views.push_back(checked_view(c.rail_sections[side][k], field));
-    if (!rail_sections::belong_together(views.front(), views.back()))
-      throw profile_error{field, "must have as many knots at the same shares of the arc length"};
+    views.push_back(checked_view(given[k], field));
+    if (!profile_sections::belong_together(views.front(), views.back(), by_knot))
+      throw profile_error{field, apart};
   }
   return views;
 }
 
+// Of several sections one that a profile is made for: the first, or where lengths differ the
+// longest.
+profile_view largest(const std::vector<profile_view> &sections, bool by_knot) {
+  const auto shorter = [](const profile_view &a, const profile_view &b) {
+    return a.s[a.n - 1] - a.s[0] < b.s[b.n - 1] - b.s[0];
+  };
+  return by_knot ? *std::max_element(sections.begin(), sections.end(), shorter) : sections.front();
+}
+
 // Both rails lean inwards by the same cant; a right-hand curve is a left-hand one in the mirror.
 track_config track_of(const rp_config &c, int side) {
+  const bool placed = !std::isnan(c.rail_origin_y[side]);
+  const double y = placed ? c.rail_origin_y[side] : 0.0;
   return {c.track == RP_ROLLER ? track_kind::roller : track_kind::rail,
           c.gauge + c.gauge_widening,
           c.gauge_height,
           c.cant,
           side == RP_LEFT ? -c.curvature : c.curvature,
-          c.roller_radius};
+          c.roller_radius,
+          placed,
+          side == RP_LEFT ? -y : y,
+          placed ? c.rail_origin_z[side] : 0.0};
 }
 
 wheel_setup wheel_of(const rp_config &c, int side) {
   wheel_setup setup;
   setup.side = side;
-  setup.sections = sections_of(c, side);
+  const bool left = side == RP_LEFT;
+  const bool by_knot = c.section_match == RP_SECTIONS_BY_KNOT;
+  const bool cubic = c.section_blend == RP_SECTIONS_CUBIC;
+  setup.along = {by_knot, cubic, 0, c.section_kink[side]};
+  setup.around = {by_knot, cubic, 2 * std::numbers::pi, c.wheel_section_kink[side]};
+  setup.sections =
+      sections_of(c.rail_sections[side], c.section_position[side], c.section_count[side], by_knot,
+                  left ? "rail_sections[0]" : "rail_sections[1]");
+  setup.wheel_sections =
+      sections_of(c.wheel_sections[side], c.wheel_section_angle[side], c.wheel_section_count[side],
+                  by_knot, left ? "wheel_sections[0]" : "wheel_sections[1]");
   setup.section_position = c.section_position[side];
-  setup.wheel = checked_view(c.wheel[side], side == RP_LEFT ? "wheel_left" : "wheel_right");
-  // of several sections the first one
+  setup.wheel_section_angle = c.wheel_section_angle[side];
+  setup.wheel = !setup.wheel_sections.empty()
+                    ? largest(setup.wheel_sections, by_knot)
+                    : checked_view(c.wheel[side], left ? "wheel_left" : "wheel_right");
   setup.rail = !setup.sections.empty()
-                   ? setup.sections.front()
-                   : checked_view(c.rail[side], side == RP_LEFT ? "rail_left" : "rail_right");
+                   ? largest(setup.sections, by_knot)
+                   : checked_view(c.rail[side], left ? "rail_left" : "rail_right");
   setup.shape = {c.runout[side],      c.runout_count[side],
                  c.rail_height[side], c.rail_height_count[side],
                  c.rail_height_start, c.rail_height_spacing};
@@ -59,8 +88,9 @@ wheel_setup wheel_of(const rp_config &c, int side) {
   setup.rules.blended = c.patch_rule == RP_PATCHES_BLENDED;
   setup.rules.inclined = c.contact_frame == RP_FRAME_INCLINED;
   setup.max_patches = c.max_patches;
-  setup.round_and_rigid = setup.sections.empty() && !setup.shape.given() &&
-                          c.reference_surface == RP_REFERENCE_PLANE && !has_support(c);
+  setup.round_and_rigid = setup.sections.empty() && setup.wheel_sections.empty() &&
+                          !setup.shape.given() && c.reference_surface == RP_REFERENCE_PLANE &&
+                          !has_support(c);
   return setup;
 }
 

@@ -311,6 +311,20 @@ typedef enum rp_patch_rule { RP_PATCH_RULES(RP_ENUM_ENTRY) } rp_patch_rule;
   X(RP_FRAME_INCLINED, 1, "inclined") /* along the roller's surface */
 typedef enum rp_contact_frame { RP_CONTACT_FRAMES(RP_ENUM_ENTRY) } rp_contact_frame;
 
+/* of profiles that vary along the track or round the wheel: knots that belong together */
+#define RP_SECTION_MATCHES(X)                                                                   \
+  X(RP_SECTIONS_BY_SHARE, 0, "share") /* lie at the same shares of the arc length */            \
+  X(RP_SECTIONS_BY_KNOT, 1, "knot")   /* have the same number, wherever they lie: edges go with \
+                                         their knots */
+typedef enum rp_section_match { RP_SECTION_MATCHES(RP_ENUM_ENTRY) } rp_section_match;
+
+/* what the knots do between two sections */
+#define RP_SECTION_BLENDS(X)                                                                    \
+  X(RP_SECTIONS_LINEAR, 0, "linear")                                                            \
+  X(RP_SECTIONS_CUBIC, 1, "cubic") /* cubics with a continuous slope, that of parabolas through \
+                                      three sections but at a section_kink */
+typedef enum rp_section_blend { RP_SECTION_BLENDS(RP_ENUM_ENTRY) } rp_section_blend;
+
 /* of the half-space theories for wheels */
 #define RP_REFERENCE_SURFACES(X)                                                                   \
   X(RP_REFERENCE_PLANE, 0, "plane") /* tangent to the contact reference */                         \
@@ -527,8 +541,9 @@ typedef struct rp_config {
                               over V, and at V = 0 no creep force */
   /* a rail's profile along the track, by input.x: by side, section_count profiles (0: the one
    * above, else 1 or more; copied) at increasing positions (m). All have as many knots, at the same
-   * shares of the arc length; between two sections the knots are interpolated linearly, beyond the
-   * ends the profile is constant. The rail's place follows from the profile at x. */
+   * shares of the arc length (but see section_match); between two sections the knots are
+   * interpolated linearly (but see section_blend), beyond the ends the profile is constant. The
+   * rail's place follows from the profile at x. */
   const rp_profile *rail_sections[2];
   const double *section_position[2];
   int32_t section_count[2];
@@ -630,6 +645,24 @@ typedef struct rp_config {
                             those of the first knot by 1 - exp(-tau W), W of rail_work and of what
                             the wheel has had on each metre of its circumference, part of the state
                             of wheels, which goes on by time_step; 0: nothing recovers */
+
+  /* rail_sections and wheel_sections: which knots belong together, and how they go over */
+  rp_section_match section_match;
+  rp_section_blend section_blend;
+  /* a wheel's profile round it: by side, wheel_section_count profiles (0: the one above, else 1 or
+   * more; copied) at increasing pitch angles (rad, 0 ... < 2 pi) and so on after a turn. The wheel
+   * is of revolution with the profile at the input's pitch (a rotation about y of its deviation
+   * added); what its radius does within the contact is runout's */
+  const rp_profile *wheel_sections[2];
+  const double *wheel_section_angle[2];
+  int32_t wheel_section_count[2];
+  /* m, by side: where the rail's profile has its origin, in track axes (left y < 0, z down), about
+   * which cant turns it: of sections whose heights and places are to be taken as they are. NaN:
+   * gauge says where it lies, its top being at z = 0. Both or neither; rails only */
+  double rail_origin_y[2], rail_origin_z[2];
+  /* by side, of each section: 1 where section_blend = RP_SECTIONS_CUBIC has no continuous slope, as
+   * where a part of the profile begins; null: nowhere. Copied */
+  const int32_t *section_kink[2], *wheel_section_kink[2];
 } rp_config;
 
 typedef struct rp_input {

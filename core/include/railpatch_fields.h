@@ -472,7 +472,21 @@
   X(double, fluid_reference_rate, 1, number, always, 1e-9, "(]", 0, 1, "m^3/s",                    \
     "q0: forces are interpolated over ln(rate + q0); assumed where left out")                      \
   X(double, fluid_recovery, 1, number, always, 0, "[]", 0, 1e6, "1/N",                             \
-    "tau: work W of friction on each metre cleans by 1 - exp(-tau W); 0: nothing recovers")
+    "tau: work W of friction on each metre cleans by 1 - exp(-tau W); 0: nothing recovers")        \
+  X(rp_section_match, section_match, 1, choice, wheels, RP_SECTIONS_BY_SHARE, "", 0, 0, "",        \
+    "which knots of profiles along the track or round the wheel belong together")                  \
+  X(rp_section_blend, section_blend, 1, choice, wheels, RP_SECTIONS_LINEAR, "", 0, 0, "",          \
+    "how knots go over from one section to the next")                                              \
+  O(const rp_profile *, wheel_sections, 2)                                                         \
+  O(const double *, wheel_section_angle, 2)                                                        \
+  X(int32_t, wheel_section_count, 2, integer, wheels, 0, "[]", 0, 100000, "-",                     \
+    "profiles of each wheel round it")                                                             \
+  X(double, rail_origin_y, 2, number, own, NAN, "[]", -10, 10, "m",                                \
+    "of each rail's profile in track axes; left out: gauge and the rail's top say where it lies")  \
+  X(double, rail_origin_z, 2, number, own, NAN, "[]", -1, 1, "m",                                  \
+    "of each rail's profile in track axes")                                                        \
+  O(const int32_t *, section_kink, 2)                                                              \
+  O(const int32_t *, wheel_section_kink, 2)
 
 /* X(type, name, count, role, where, start, bounds, low, high, scale, unit, text), as above and
  * role      place: a number whose size says nothing about how fast things change there
@@ -571,6 +585,8 @@
   Y(rp_spin_offset, RP_SPIN_OFFSETS)                   \
   Y(rp_patch_rule, RP_PATCH_RULES)                     \
   Y(rp_contact_frame, RP_CONTACT_FRAMES)               \
+  Y(rp_section_match, RP_SECTION_MATCHES)              \
+  Y(rp_section_blend, RP_SECTION_BLENDS)               \
   Y(rp_reference_surface, RP_REFERENCE_SURFACES)       \
   Y(rp_track, RP_TRACKS)                               \
   Y(rp_fluid_model, RP_FLUID_MODELS)                   \

@@ -44,6 +44,14 @@ contact_parts parts_on(const patch_region &region, const grid &g) {
   return parts;
 }
 
+std::unique_ptr<profile_sections> sections_from(const std::vector<profile_view> &views,
+                                                const double *positions,
+                                                const section_rules &rules) {
+  if (views.empty()) return nullptr;
+  return std::make_unique<profile_sections>(views.data(), positions, static_cast<int>(views.size()),
+                                            rules);
+}
+
 }  // namespace
 
 wheel_contact::wheel_contact(const wheel_setup &setup)
@@ -53,12 +61,20 @@ wheel_contact::wheel_contact(const wheel_setup &setup)
       standstill_speed_(setup.sizes.standstill_speed),
       grid_(setup.grid),
       rules_(setup.rules) {
-  if (!setup.sections.empty())
-    sections_ = std::make_unique<rail_sections>(setup.sections.data(), setup.section_position,
-                                                static_cast<int>(setup.sections.size()));
+  sections_ = sections_from(setup.sections, setup.section_position, setup.along);
+  wheel_sections_ = sections_from(setup.wheel_sections, setup.wheel_section_angle, setup.around);
   wheel_ = std::make_unique<profile>(setup.wheel);
   rail_ = std::make_unique<profile>(setup.rail);
   geometry_ = std::make_unique<side_geometry>(*wheel_, *rail_, setup.sizes, setup.track);
+  // made for the longest section
+  if (sections_ && setup.along.by_knot) {
+    rail_->assign(setup.sections.front());
+    geometry_->reload_rail();
+  }
+  if (wheel_sections_) {
+    wheel_->assign(setup.wheel_sections.front());
+    geometry_->reload_wheel();
+  }
   if (setup.keeps_solutions) solutions_.resize(static_cast<size_t>(setup.max_patches));
   if (!setup.shape.given()) return;
   shape_ = std::make_unique<longitudinal_shape>(setup.shape);
@@ -79,16 +95,24 @@ side_motion wheel_contact::motion_of(const rp_input &in) const {
 }
 
 void wheel_contact::place(const rp_input &in) {
+  const double pitch = in.pitch + in.wheel_rotation[side_][1];
+  bool changed = false;
   if (sections_) {
-    bool changed = false;
     const profile_view now = sections_->at(in.x, changed);
     if (changed) {
       rail_->assign(now);
       geometry_->reload_rail();
     }
   }
+  if (wheel_sections_) {
+    const profile_view now = wheel_sections_->at(pitch, changed);
+    if (changed) {
+      wheel_->assign(now);
+      geometry_->reload_wheel();
+    }
+  }
   time_step_ = in.time_step;
-  if (shape_) shape_->place(in.pitch + in.wheel_rotation[side_][1], in.x, nominal_radius_);
+  if (shape_) shape_->place(pitch, in.x, nominal_radius_);
   geometry_->place(motion_of(in));
 }
 
@@ -448,7 +472,7 @@ bool wheel_contact::first_touch(double &z) const { return railpatch::first_touch
 size_t wheel_contact::bytes() const {
   return wheel_->bytes() + rail_->bytes() + geometry_->bytes() +
          solutions_.size() * sizeof(patch_solution) + (sections_ ? sections_->bytes() : 0) +
-         (shape_ ? shape_->bytes() : 0);
+         (wheel_sections_ ? wheel_sections_->bytes() : 0) + (shape_ ? shape_->bytes() : 0);
 }
 
 }  // namespace railpatch

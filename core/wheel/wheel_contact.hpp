@@ -11,7 +11,7 @@
 #include "geometry/joining.hpp"
 #include "geometry/longitudinal_shape.hpp"
 #include "geometry/patch.hpp"
-#include "geometry/rail_sections.hpp"
+#include "geometry/profile_sections.hpp"
 #include "patch/patch_contact.hpp"
 #include "patch/patch_grid.hpp"
 #include "railpatch.h"
@@ -23,8 +23,10 @@ namespace railpatch {
 struct wheel_setup {
   int side = RP_RIGHT;
   profile_view wheel{}, rail{};
-  std::vector<profile_view> sections;  // of the rail along the track; empty: it has one profile
-  const double *section_position = nullptr;
+  // of the rail along the track and of the wheel by its pitch; empty: it has one profile
+  std::vector<profile_view> sections, wheel_sections;
+  const double *section_position = nullptr, *wheel_section_angle = nullptr;
+  section_rules along, around;
   longitudinal_values shape;
   wheel_config sizes;
   track_config track;
@@ -115,7 +117,8 @@ class wheel_contact {
   double nominal_radius_, standstill_speed_;
   grid_rules grid_;
   bool beyond_ = false;
-  std::unique_ptr<rail_sections> sections_;  // where the rail's profile varies along the track
+  // where the rail's profile varies along the track, the wheel's round it
+  std::unique_ptr<profile_sections> sections_, wheel_sections_;
   std::unique_ptr<profile> wheel_, rail_;
   std::unique_ptr<longitudinal_shape> shape_;  // null: round wheel, level rail
   std::unique_ptr<side_geometry> geometry_;

@@ -214,6 +214,13 @@ VALUES: dict[str, Any] = {
     "profiles.smoothing": 1e-3,
     "profiles.wheel": "cone@1:20",
     "profiles.rail": "UIC60",
+    **{
+        f"wheelset.{side}.sections": [
+            {"angle": 0.0, "profile": "S1002"},
+            {"angle": 0.01, "profile": "cone@1:20"},
+        ]
+        for side in ("left", "right")
+    },
 }
 OF_SIDES = {
     "offset": [1e-4, 2e-4, 1e-4],
@@ -228,6 +235,7 @@ OF_SIDES = {
     "joint.gap": 2e-3,
     "joint.position": 0.05,
     "sections": [{"position": 0.0, "profile": "UIC60"}],
+    "origin": [0.75, 1e-5],
 }
 
 
@@ -429,7 +437,8 @@ def needs_no_length(case: Case, path: str, value: Any) -> bool:
 
 def runs_round(case: Case, path: str, value: Any) -> bool:
     own = of_own_side(case, "wheelset")
-    return "runout" not in own and "flat" not in own.replace("flange", "")
+    shaped = any(word in own for word in ("runout", "sections"))
+    return not shaped and "flat" not in own.replace("flange", "")
 
 
 def bound_by_default(case: Case, path: str, value: Any) -> bool:

@@ -217,6 +217,67 @@ struct varying_track {
   }
 };
 
+// A switch: the right rail's sections by knot, of which the second has its knots elsewhere, cubic
+// with a kink, placed by its profile's origin, under a wheel of four profiles round it; must stay
+// alive as long as its configs are read.
+struct turnout {
+  profile_pair pair;
+  std::vector<profiles::curve> rails, wheels;
+  std::vector<rp_profile> rail_views, wheel_views;
+  double positions[4] = {1.0, 2.0, 2.7, 3.5}, angles[4] = {0.0, 1.5, 3.0, 4.5};
+  int32_t kinks[4] = {0, 1, 0, 0};
+
+  turnout() {
+    for (int k = 0; k < 4; ++k) {
+      profiles::curve rail = pair.rail, wheel = pair.wheel;
+      for (size_t i = 0; i < rail.s.size(); ++i) {
+        rail.y[i] += 1e-3 * k;
+        rail.z[i] += 2e-4 * (k % 3);
+        // stretched about its begin
+        const double stretch = 1 + 0.01 * (k % 2);
+        rail.s[i] = rail.s[0] + stretch * (rail.s[i] - rail.s[0]);
+        for (auto *of : {&rail.y, &rail.z}) (*of)[i] = (*of)[0] + stretch * ((*of)[i] - (*of)[0]);
+      }
+      for (double &z : wheel.z) z += 5e-5 * (k % 2);
+      rails.push_back(rail);
+      wheels.push_back(wheel);
+    }
+    for (size_t k = 0; k < 4; ++k) {
+      rail_views.push_back(rails[k].view());
+      wheel_views.push_back(wheels[k].view());
+    }
+  }
+  turnout(const turnout &) = delete;
+  turnout &operator=(const turnout &) = delete;
+
+  rp_config config(rp_kind kind) const {
+    rp_config c = scenes::wheels(kind, RP_RAIL, pair);
+    c.rail[RP_RIGHT] = c.wheel[RP_RIGHT] = rp_profile{};
+    c.rail_sections[RP_RIGHT] = rail_views.data();
+    c.section_position[RP_RIGHT] = positions;
+    c.section_kink[RP_RIGHT] = kinks;
+    c.section_count[RP_RIGHT] = 4;
+    c.wheel_sections[RP_RIGHT] = wheel_views.data();
+    c.wheel_section_angle[RP_RIGHT] = angles;
+    c.wheel_section_count[RP_RIGHT] = 4;
+    c.section_match = RP_SECTIONS_BY_KNOT;
+    c.section_blend = RP_SECTIONS_CUBIC;
+    c.rail_origin_y[RP_RIGHT] = 0.754;
+    c.rail_origin_z[RP_RIGHT] = 1e-4;
+    return c;
+  }
+  // along the track at 20 m/s
+  static std::vector<rp_input> inputs() {
+    std::vector<rp_input> all;
+    for (int i = 0; i < 6; ++i) {
+      all.push_back(running(RP_RAIL));
+      all.back().x = 0.6 * i + 0.7;
+      all.back().pitch = -1.1 * i;
+    }
+    return all;
+  }
+};
+
 // --- comparison ----------------------------------------------------------------------------
 
 // Every number of a result, in order; padding left out.

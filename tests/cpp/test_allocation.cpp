@@ -360,6 +360,12 @@ TEST(Step, OnATrackThatVariesAllocatesNothing) {
     }
 }
 
+TEST(Step, OnATurnoutAllocatesNothing) {
+  const scenes::turnout track;
+  for (rp_kind kind : {RP_WHEELSET, RP_WHEEL_RAIL})
+    EXPECT_EQ(run(scenes::coarse(track.config(kind)), scenes::turnout::inputs()).allocated, 0);
+}
+
 // A flat wheel and a rail with a dip, with patches that move over the rail.
 TEST(Step, OfTransientRollingWheelsAllocatesNothing) {
   const scenes::profile_pair pair;

@@ -297,6 +297,52 @@ TEST(Config, OfATrackThatVariesIsChecked) {
   EXPECT_EQ(scenes::handle(left).step(scenes::running(RP_RAIL)).status, RP_CONVERGED);
 }
 
+TEST(Config, OfATurnoutIsChecked) {
+  const scenes::turnout track;
+  const rp_config good = track.config(RP_WHEELSET);
+  const auto refuse = [&](const char *field, rp_error error, auto &&spoil) {
+    rp_config c = good;
+    spoil(c);
+    expect_refused(c, error, field);
+  };
+  refuse("wheel_section_count[0]", RP_ERROR_VALUE,
+         [](rp_config &c) { c.wheel_section_count[0] = -1; });
+  refuse("wheel_sections", RP_ERROR_VALUE, [](rp_config &c) { c.wheel_sections[1] = nullptr; });
+  refuse("wheel_sections", RP_ERROR_VALUE,
+         [](rp_config &c) { c.wheel_section_angle[1] = nullptr; });
+  const double equal[4] = {0.0, 1.0, 1.0, 2.0}, beyond[4] = {0.0, 1.0, 2.0, 6.2832};
+  const double before[4] = {-1e-3, 1.0, 2.0, 3.0};
+  for (const double *angles : {equal, beyond, before})
+    refuse("wheel_section_angle[1]", RP_ERROR_VALUE,
+           [&](rp_config &c) { c.wheel_section_angle[1] = angles; });
+  refuse("rail_origin_y", RP_ERROR_VALUE, [](rp_config &c) { c.rail_origin_z[1] = nan; });
+  refuse("rail_origin_y[1]", RP_ERROR_VALUE, [](rp_config &c) { c.rail_origin_y[1] = 11; });
+  refuse("rail_origin_z[1]", RP_ERROR_VALUE, [](rp_config &c) { c.rail_origin_z[1] = -1.1; });
+  refuse("rail_origin_y", RP_ERROR_VALUE, [](rp_config &c) {
+    c.track = RP_ROLLER;
+    c.cant = 0;
+  });
+  refuse("section_match", RP_ERROR_VALUE, [](rp_config &c) { put(c.section_match, 2); });
+  refuse("section_blend", RP_ERROR_VALUE, [](rp_config &c) { put(c.section_blend, -1); });
+  // knots that lie elsewhere than those of the first: only by knot; as many always
+  profiles::curve elsewhere = track.rails[1];
+  elsewhere.s[3] += 1e-6;
+  std::vector<rp_profile> moved = track.rail_views;
+  moved[1] = elsewhere.view();
+  rp_config by_knot = good;
+  by_knot.rail_sections[1] = moved.data();
+  EXPECT_EQ(scenes::handle(by_knot).step(scenes::turnout::inputs()[2]).status, RP_CONVERGED);
+  refuse("rail_sections[1]", RP_ERROR_PROFILE, [&](rp_config &c) {
+    c.section_match = RP_SECTIONS_BY_SHARE;
+    c.rail_sections[1] = moved.data();
+  });
+  std::vector<rp_profile> fewer = track.wheel_views;
+  fewer[2].count -= 1;
+  refuse("wheel_sections[1]", RP_ERROR_PROFILE,
+         [&](rp_config &c) { c.wheel_sections[1] = fewer.data(); });
+  EXPECT_EQ(scenes::handle(good).step(scenes::turnout::inputs()[2]).status, RP_CONVERGED);
+}
+
 TEST(Config, FittedRowsAreChecked) {
   const auto expect = [](int nodes, int rows, const char *field, const auto &change) {
     rp_config c = default_config();
@@ -953,7 +999,7 @@ class Garbage : public testing::Test {
 
 TEST_F(Garbage, ConfigsOfPatchesDoNotCrash) {
   std::vector<double> gap(20 * 20, 0.0);
-  for (int n = 0; n < 4000; ++n) {
+  for (int n = 0; n < 5000; ++n) {
     rp_config c = default_config();
     spoil(c);
     // half of them without what goes with few others only

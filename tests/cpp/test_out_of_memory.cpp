@@ -53,7 +53,8 @@ struct named {
   rp_config config;
 };
 
-std::vector<named> handles(const scenes::profile_pair &pair, const scenes::varying_track &varying) {
+std::vector<named> handles(const scenes::profile_pair &pair, const scenes::varying_track &varying,
+                           const scenes::turnout &turnout) {
   rp_config patch;
   rp_default_config(&patch);
   patch.geometry = RP_CURVATURES;
@@ -76,14 +77,16 @@ std::vector<named> handles(const scenes::profile_pair &pair, const scenes::varyi
           {"fitted rows, finer grids", fitted},
           {"transient, layer, falling friction", transient},
           {"wheelset", scenes::coarse(scenes::wheels(RP_WHEELSET, RP_RAIL, pair))},
-          {"rails on springs", scenes::coarse(varying.config(RP_WHEELSET))}};
+          {"rails on springs", scenes::coarse(varying.config(RP_WHEELSET))},
+          {"turnout", scenes::coarse(turnout.config(RP_WHEEL_RAIL))}};
 }
 
 TEST(OutOfMemory, AnyAllocationOfACreationMayFail) {
   const scenes::profile_pair pair;
   const scenes::varying_track varying;
   long failed = 0;
-  for (const named &scene : handles(pair, varying)) {
+  const scenes::turnout turnout;
+  for (const named &scene : handles(pair, varying, turnout)) {
     SCOPED_TRACE(scene.name);
     // what is made once a process
     rp_contact *first = nullptr;

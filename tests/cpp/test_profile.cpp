@@ -10,7 +10,7 @@
 #include <random>
 #include <string>
 
-#include "geometry/rail_sections.hpp"
+#include "geometry/profile_sections.hpp"
 #include "profiles.hpp"
 
 namespace {
@@ -449,7 +449,7 @@ TEST(RailSections, BlendLinearlyBetweenTheirPositions) {
                       lengths[k] * (all[0].s[i] - all[0].s[0]) / (all[0].s[8] - all[0].s[0]);
   const profile_view views[3] = {view(given[0]), view(given[1]), view(given[2])};
   const double positions[3] = {-1.0, 2.0, 2.5};
-  rail_sections sections(views, positions, 3);
+  profile_sections sections(views, positions, 3);
   double last = HUGE_VAL;
   int first_before = 0;
   double share_before = 0;
@@ -489,20 +489,20 @@ TEST(RailSections, KnotsBelongTogetherAtEqualShares) {
   const profiles::curve a = wild(1, 9);
   profiles::curve b = wild(2, 9);
   for (size_t i = 0; i < 9; ++i) b.s[i] = 2 + 3 * a.s[i];
-  EXPECT_TRUE(rail_sections::belong_together(view(a), view(b)));
+  EXPECT_TRUE(profile_sections::belong_together(view(a), view(b)));
   const double length = b.s[8] - b.s[0];
   for (size_t i = 1; i < 8; ++i)
     for (const double sign : {-1.0, 1.0}) {
       profiles::curve c = b;
       c.s[i] += sign * 0.8e-9 * length;
-      EXPECT_TRUE(rail_sections::belong_together(view(a), view(c)));
+      EXPECT_TRUE(profile_sections::belong_together(view(a), view(c)));
       c = b;
       c.s[i] += sign * 1.2e-9 * length;
-      EXPECT_FALSE(rail_sections::belong_together(view(a), view(c))) << i;
+      EXPECT_FALSE(profile_sections::belong_together(view(a), view(c))) << i;
     }
   profile_view shorter = view(b);
   shorter.n = 8;
-  EXPECT_FALSE(rail_sections::belong_together(view(a), shorter));
+  EXPECT_FALSE(profile_sections::belong_together(view(a), shorter));
 }
 
 }  // namespace

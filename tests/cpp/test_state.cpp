@@ -101,6 +101,8 @@ std::vector<scene> all_scenes() {
   add("left_wheel", one, wheel_inputs(RP_RAIL));
   static const scenes::varying_track track;
   add("varying_track", scenes::coarse(track.config(RP_WHEELSET)), scenes::varying_track::inputs());
+  static const scenes::turnout turnout;
+  add("turnout", scenes::coarse(turnout.config(RP_WHEELSET)), scenes::turnout::inputs());
   return all;
 }
 

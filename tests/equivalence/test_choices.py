@@ -39,6 +39,7 @@ KEYS: dict[str, tuple[str, set[str]]] = {
     # wheels do not shift, and without a tangential problem they have no motion
     "WheelMotion.regime": ("regime", {"none", "shift"}),
     "Track.kind": ("track", set()),
+    "Track.section_blend": ("section_blend", set()),
     "Wheel.side": ("side", set()),
     "PatchCase.kind": ("kind", {"wheel_rail", "wheelset"}),
     "WheelRailCase.kind": ("kind", {"patch", "wheelset"}),

@@ -57,14 +57,15 @@ bool read_profile(Words &words, Scene &scene) {
 
 bool read_side(Words &words, size_t &side) { return words.number(side) && side < 2; }
 
-bool read_section(Words &words, Scene &scene) {
+bool read_section(Words &words, SectionLists &lists) {
   size_t side = 0, index = 0;
   if (!read_side(words, side) || !words.number(index)) return false;
-  auto &sections = scene.sections[side];
+  auto &sections = lists.sections[side];
   if (index > sections.size()) return false;
   if (index == sections.size()) sections.emplace_back();
   const std::string_view name = words.next();
   if (name == "position") return read_values(words, sections[index].position);
+  if (name == "kink") return read_values(words, sections[index].kink);
   for (size_t i = 0; i < 5; ++i)
     if (name == profile_arrays[i]) return read_values(words, sections[index].arrays[i]);
   return false;
@@ -174,7 +175,9 @@ bool read_line(std::string_view line, Scene &scene) {
   } else if (key == "distance") {
     good = read_values(words, scene.distance);
   } else if (key == "section") {
-    good = read_section(words, scene);
+    good = read_section(words, scene.along);
+  } else if (key == "wheel_section") {
+    good = read_section(words, scene.around);
   } else if (key == "runout") {
     good = read_shape(words, scene.runout);
   } else if (key == "rail_height") {
@@ -193,17 +196,21 @@ bool read_line(std::string_view line, Scene &scene) {
   return good && words.done();
 }
 
-bool connect_sections(Scene &scene, size_t side) {
-  if (scene.sections[side].empty()) return true;
-  for (const Section &section : scene.sections[side]) {
+bool connect_sections(SectionLists &lists, size_t side, const rp_profile *(&profiles)[2],
+                      const double *(&positions)[2], const int32_t *(&kinks)[2],
+                      int32_t (&counts)[2]) {
+  if (lists.sections[side].empty()) return true;
+  for (const Section &section : lists.sections[side]) {
     rp_profile profile = {};
     if (section.position.size() != 1 || !make_profile(section.arrays, profile)) return false;
-    scene.section_profiles[side].push_back(profile);
-    scene.section_positions[side].push_back(section.position[0]);
+    lists.profiles[side].push_back(profile);
+    lists.positions[side].push_back(section.position[0]);
+    lists.kinks[side].push_back(section.kink.empty() ? 0 : static_cast<int32_t>(section.kink[0]));
   }
-  scene.config.rail_sections[side] = scene.section_profiles[side].data();
-  scene.config.section_position[side] = scene.section_positions[side].data();
-  scene.config.section_count[side] = static_cast<int32_t>(scene.section_profiles[side].size());
+  profiles[side] = lists.profiles[side].data();
+  positions[side] = lists.positions[side].data();
+  kinks[side] = lists.kinks[side].data();
+  counts[side] = static_cast<int32_t>(lists.profiles[side].size());
   return true;
 }
 
@@ -222,7 +229,10 @@ bool connect(Scene &scene) {
       rp_profile &profile = (body == 0 ? config.wheel : config.rail)[side];
       if (!arrays[0].empty() && !make_profile(arrays, profile)) return false;
     }
-    if (!connect_sections(scene, side) ||
+    if (!connect_sections(scene.along, side, config.rail_sections, config.section_position,
+                          config.section_kink, config.section_count) ||
+        !connect_sections(scene.around, side, config.wheel_sections, config.wheel_section_angle,
+                          config.wheel_section_kink, config.wheel_section_count) ||
         !connect_shape(scene.runout[side], config.runout_count[side], config.runout[side]) ||
         !connect_shape(scene.rail_height[side], config.rail_height_count[side],
                        config.rail_height[side]))

@@ -6,7 +6,8 @@
 //   set FIELD VALUE...                          a field of rp_config
 //   profile wheel|rail SIDE ARRAY COUNT VALUE...
 //   section SIDE INDEX ARRAY COUNT VALUE...     a rail's profile along the track, indices from 0;
-//                                               ARRAY may be position: one value
+//                                               ARRAY may be position or kink: one value
+//   wheel_section SIDE INDEX ARRAY ...          the same of a wheel round it
 //   choice wheel|rail NUMBER ARRAY COUNT VALUE...
 //                                               a further profile for both sides, which a parameter
 //                                               chooses; numbers from 2, 1 is that of profile
@@ -63,7 +64,15 @@ struct ProfileArrays {
 };
 
 struct Section {
-  std::vector<double> arrays[5], position;
+  std::vector<double> arrays[5], position, kink;
+};
+
+struct SectionLists {
+  std::vector<Section> sections[2];
+  // what the config points to
+  std::vector<rp_profile> profiles[2];
+  std::vector<double> positions[2];
+  std::vector<int32_t> kinks[2];
 };
 
 struct Scene {
@@ -75,12 +84,9 @@ struct Scene {
   std::vector<std::unique_ptr<Variable>> constants;  // which no table knows
   std::vector<double> arrays[2][2][5];               // wheel or rail, side, arc_length y z dy dz
   std::vector<double> distance;
-  std::vector<Section> sections[2];
+  SectionLists along, around;  // rails, wheels
   std::vector<double> runout[2], rail_height[2];
   std::vector<ProfileArrays> choices[2];  // wheel or rail: from number 2 on
-  // what the config points to
-  std::vector<rp_profile> section_profiles[2];
-  std::vector<double> section_positions[2];
 };
 
 // False: problem says which line is wrong and why. The config then points into the scene's arrays,

@@ -106,22 +106,46 @@ void fill_profiles(Reader &reader, const char *key, rp_profile (&to)[2],
 }
 
 // of each side a list of profiles and of their positions
-void fill_sections(Reader &reader, Config &to) {
-  if (!reader.has("rail_sections") || !reader.has("section_position")) return;
-  const auto sides = nb::cast<nb::list>(reader.at("rail_sections"));
-  const auto places = nb::cast<nb::list>(reader.at("section_position"));
+void fill_sections(Reader &reader, const char *key, const char *place, Sections (&to)[2],
+                   std::vector<Values> &keep) {
+  if (!reader.has(key) || !reader.has(place)) return;
+  const auto sides = nb::cast<nb::list>(reader.at(key));
+  const auto places = nb::cast<nb::list>(reader.at(place));
   for (size_t side = 0; side < 2; ++side) {
     const auto profiles = nb::cast<nb::list>(nb::object(sides[side]));
     const auto positions = nb::cast<nb::list>(nb::object(places[side]));
-    if (nb::len(profiles) != nb::len(positions)) throw nb::value_error("section_position");
+    if (nb::len(profiles) != nb::len(positions)) throw nb::value_error(place);
     for (size_t k = 0; k < nb::len(profiles); ++k) {
-      to.sections[side].emplace_back();
-      fill_profile(nb::object(profiles[k]), to.sections[side].back(), to.profiles);
-      to.section_position[side].push_back(nb::cast<double>(positions[k]));
+      to[side].profiles.emplace_back();
+      fill_profile(nb::object(profiles[k]), to[side].profiles.back(), keep);
+      to[side].places.push_back(nb::cast<double>(positions[k]));
     }
-    to.values.rail_sections[side] = to.sections[side].data();
-    to.values.section_position[side] = to.section_position[side].data();
-    to.values.section_count[side] = static_cast<int32_t>(to.sections[side].size());
+  }
+}
+
+// of each side 1 or 0 for each section
+void fill_kinks(Reader &reader, const char *key, Sections (&to)[2]) {
+  if (!reader.has(key)) return;
+  const auto sides = nb::cast<nb::list>(reader.at(key));
+  for (size_t side = 0; side < 2; ++side) {
+    for (const nb::handle kink : nb::cast<nb::list>(nb::object(sides[side])))
+      to[side].kinks.push_back(nb::cast<int32_t>(kink));
+    if (to[side].kinks.size() != to[side].profiles.size()) throw nb::value_error(key);
+  }
+}
+
+void connect_sections(Config &to) {
+  rp_config &c = to.values;
+  for (size_t side = 0; side < 2; ++side) {
+    const Sections &rail = to.rail_sections[side], &wheel = to.wheel_sections[side];
+    c.rail_sections[side] = rail.profiles.data();
+    c.section_position[side] = rail.places.data();
+    c.section_count[side] = static_cast<int32_t>(rail.profiles.size());
+    c.section_kink[side] = rail.kinks.empty() ? nullptr : rail.kinks.data();
+    c.wheel_section_kink[side] = wheel.kinks.empty() ? nullptr : wheel.kinks.data();
+    c.wheel_sections[side] = wheel.profiles.data();
+    c.wheel_section_angle[side] = wheel.places.data();
+    c.wheel_section_count[side] = static_cast<int32_t>(wheel.profiles.size());
   }
 }
 
@@ -269,7 +293,11 @@ void fill_config(const nb::dict &from, Config &to) {
   fill_values(reader, "rail_height", c.rail_height, c.rail_height_count, to.profiles);
   fill_profiles(reader, "wheel", c.wheel, to.profiles);
   fill_profiles(reader, "rail", c.rail, to.profiles);
-  fill_sections(reader, to);
+  fill_sections(reader, "rail_sections", "section_position", to.rail_sections, to.profiles);
+  fill_sections(reader, "wheel_sections", "wheel_section_angle", to.wheel_sections, to.profiles);
+  fill_kinks(reader, "section_kink", to.rail_sections);
+  fill_kinks(reader, "wheel_section_kink", to.wheel_sections);
+  connect_sections(to);
   reader.finish();
 }
 

@@ -17,12 +17,18 @@ using Values = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::
 using Bytes = nb::ndarray<const uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Grid = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
+// profiles along the track or round a wheel, and where
+struct Sections {
+  std::vector<rp_profile> profiles;
+  std::vector<double> places;
+  std::vector<int32_t> kinks;  // none, or one each
+};
+
 // a config and the arrays that its pointers look into
 struct Config {
   rp_config values;
   std::vector<Values> profiles;
-  std::vector<rp_profile> sections[2];
-  std::vector<double> section_position[2];
+  Sections rail_sections[2], wheel_sections[2];
   Grid gap;
   Bytes table;
 };

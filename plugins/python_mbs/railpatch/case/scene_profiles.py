@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Literal
 
+from railpatch.case.rails import SectionProfile
 from railpatch.case.wheel import WheelRailCase, WheelsetCase
 from railpatch.profiles import Profile, Reading, load_profile
 from railpatch.profiles.builtin import builtin_profile
@@ -57,6 +59,13 @@ def file_profile(
     return load_profile(str(path), body, folder=Path(), smoothing=smoothing, reading=reading)
 
 
+def sections_of(case: WheelCase, side: str) -> Iterator[tuple[Body, SectionProfile]]:
+    """Body and section: the profiles along the track and round the wheel of a side."""
+    for body, table in zip(BODIES, (case.wheelset, case.track), strict=True):
+        for section in getattr(table, side).sections or ():
+            yield body, section
+
+
 class Shelf:
     """The profiles of a case by body and name, each read once."""
 
@@ -75,8 +84,8 @@ class Shelf:
         """Reads all that the case names. Raises ProfileError."""
         placed_profiles(self.case, self)
         for side in self.case.sides:
-            for section in getattr(self.case.track, side).sections or ():
-                self.profile("rail", section.profile)
+            for body, section in sections_of(self.case, side):
+                self.profile(body, section.profile)
 
     def noisy(self) -> dict[tuple[Body, str], Profile]:
         """Those of files in whose points noise was found."""
@@ -165,8 +174,8 @@ def profile_notes(case: WheelCase, shelf: Shelf) -> dict[str, list[str]]:
     every = placed_profiles(case, shelf)
     profiles = [placed.profile for placed in every]
     for side in case.sides:
-        sections = getattr(case.track, side).sections or ()
-        profiles += [shelf.profile("rail", section.profile) for section in sections]
+        for body, section in sections_of(case, side):
+            profiles.append(shelf.profile(body, section.profile))
     for profile in profiles:
         if profile.notes:
             notes[Path(profile.name).name] = list(profile.notes)

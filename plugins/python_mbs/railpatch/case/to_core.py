@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -23,12 +24,12 @@ from railpatch.case.longitudinal import shape_config
 from railpatch.case.moving import BY_TABLE, moving_keys, refuse_unknown
 from railpatch.case.patch import SHAPES, STEPWISE, PatchCase
 from railpatch.case.resolve import choose, resolved
-from railpatch.case.scene_profiles import Placed, Shelf, scene_profiles
+from railpatch.case.scene_profiles import Placed, Shelf, scene_profiles, sections_of
 from railpatch.case.types import BODIES, MOST_POINTS, SIDES, Table, listed, show
 from railpatch.case.wheel import Deviation, WheelRailCase, WheelsetCase
 from railpatch.errors import CaseError
 from railpatch.profiles import Profile
-from railpatch.profiles.sections import matching_sections
+from railpatch.profiles.sections import matching_features, matching_sections
 
 WheelCase = WheelRailCase | WheelsetCase
 # first word of a field that holds a key of the table
@@ -205,7 +206,16 @@ def wheel_config(case: WheelCase, folder: Path, shelf: Shelf) -> dict[str, Any]:
         **passed("rail_support", case.track.rail_support, _core.CONFIG_FIELDS),
     }
     profiles = profiles_config(case, shelf, scene_profiles(case, shelf))
-    return {**config, **profiles, **shape_config(case, folder)}
+    return {**config, **profiles, **origin_config(case), **shape_config(case, folder)}
+
+
+def origin_config(case: WheelCase) -> dict[str, Any]:
+    """Rails that lie where they are said to."""
+    origins = [getattr(case.track, side).origin if side in case.sides else None for side in SIDES]
+    if not any(origins):
+        return {}
+    columns = [[math.nan if o is None else o[k] for o in origins] for k in range(2)]
+    return {"rail_origin_y": columns[0], "rail_origin_z": columns[1]}
 
 
 def profiles_config(case: WheelCase, shelf: Shelf, placed: list[Placed]) -> dict[str, Any]:
@@ -225,20 +235,54 @@ def profile_arrays(profile: Profile) -> dict[str, Any]:
 
 
 def sections_config(case: WheelCase, shelf: Shelf) -> dict[str, Any]:
-    """Profiles of the rails along the track, where they vary; [left, right]."""
-    rails = [getattr(case.track, side) for side in SIDES]
-    found = [
-        rail.sections if rail.sections and side in case.sides else []
-        for side, rail in zip(SIDES, rails, strict=True)
-    ]
-    if not any(found):
-        return {}
-    profiles = []
-    for sections in found:
-        loaded = [shelf.profile("rail", s.profile) for s in sections]
-        profiles.append([profile_arrays(p) for p in matching_sections(loaded)] if loaded else [])
-    positions = [[section.position for section in sections] for sections in found]
-    return {"rail_sections": profiles, "section_position": positions}
+    """Profiles of the rails along the track and of the wheels round them; [left, right]."""
+    parts = {side: list(sections_of(case, side)) for side in case.sides}
+    by_knot = any(part.features for side in case.sides for _, part in parts[side])
+    config: dict[str, Any] = {}
+    for body in BODIES:
+        places = "wheel_section_angle" if body == "wheel" else "section_position"
+        found = [[part for of, part in parts.get(side, ()) if of == body] for side in SIDES]
+        if not any(found):
+            continue
+        config[f"{body}_sections"] = [
+            section_arrays([shelf.profile(body, s.profile) for s in own], own, by_knot)
+            for own in found
+        ]
+        config[places] = [[section.place for section in own] for own in found]
+        kinks = [kinks_of(own, turns=body == "wheel") for own in found]
+        if case.track.section_blend == "cubic" and any(map(any, kinks)):
+            config["section_kink" if body == "rail" else "wheel_section_kink"] = kinks
+    return config | ({"section_match": "knot"} if by_knot else {})
+
+
+def kinks_of(sections: list[Any], *, turns: bool) -> list[int]:
+    """1 of each section where the slope over the place changes at once: as it says, or between it
+    and a neighbour a part begins or ends. turns: whether the first follows the last."""
+    kinks = [int(section.kink) for section in sections]
+    missing = [parts_missing(section) for section in sections]
+    for k in range(0 if turns else 1, len(sections)):
+        if missing[k] != missing[k - 1]:
+            kinks[k] = kinks[k - 1] = 1
+    return kinks
+
+
+def parts_missing(section: Any) -> tuple[bool, ...]:
+    """Of a section by part, up to its last feature."""
+    places = [0.0, *(section.features or ())]
+    return tuple(b == a for a, b in pairwise(places))
+
+
+def section_arrays(
+    profiles: list[Profile], sections: list[Any], by_knot: bool
+) -> list[dict[str, Any]]:
+    """The arrays of a list of sections. Raises ProfileError."""
+    if not profiles:
+        return []
+    if by_knot:
+        matched = matching_features(profiles, [section.features or () for section in sections])
+    else:
+        matched = matching_sections(profiles)
+    return [profile_arrays(profile) for profile in matched]
 
 
 def input_of(case: Case) -> dict[str, Any]:

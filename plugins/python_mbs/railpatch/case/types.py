@@ -26,6 +26,11 @@ def between(low: float, high: float) -> Any:
     return Field(ge=low, le=high, allow_inf_nan=False)
 
 
+def from_to_below(low: float, high: float) -> Any:
+    """The range of a number, the upper end not allowed."""
+    return Field(ge=low, lt=high, allow_inf_nan=False)
+
+
 def more_than(low: float, high: float) -> Any:
     """The range of a number, the lower end not allowed."""
     return Field(gt=low, le=high, allow_inf_nan=False)

@@ -24,7 +24,15 @@ from railpatch.case.common import (
     check_tangential,
 )
 from railpatch.case.fluid import Fluid, check_fluid
-from railpatch.case.rails import RailSupport, Sections, check_sections
+from railpatch.case.rails import (
+    RailSupport,
+    Section,
+    Sections,
+    WheelSection,
+    WheelSections,
+    check_blend,
+    check_sections,
+)
 from railpatch.case.rolling import RailShape, WheelMotion, WheelShape, check_rolling
 from railpatch.case.types import (
     LEFT_OUT,
@@ -82,6 +90,17 @@ class Deviation(Table):
 
 class WheelDeviation(Deviation, WheelShape):
     """Deviation of a wheel, and its shape around the circumference."""
+
+    sections: WheelSections | None = Field(
+        default=None,
+        description="profiles round the wheel (rad, file), interpolated in between; the one in "
+        "[profiles] is then the wheel that pages draw and that is checked in its place",
+    )
+
+    @model_validator(mode="after")
+    def _increasing(self) -> WheelDeviation:
+        check_sections(self.sections)
+        return self
 
 
 class Wheelset(Table):
@@ -149,6 +168,12 @@ class Rail(Deviation, RailShape):
         description="profiles along the track (m, file), interpolated linearly in between and "
         "constant beyond, instead of one in [profiles]",
     )
+    origin: Pair | None = Field(
+        default=None,
+        description="m, [y, z] of the profile's origin in track axes (left y < 0), of profiles "
+        "whose heights and places are to be taken as they are; left out: gauge and the rail's top "
+        "at z = 0 say where it lies",
+    )
 
     @model_validator(mode="after")
     def _increasing(self) -> Rail:
@@ -169,6 +194,11 @@ class Track(Table):
     curvature: float = key()
     roller_radius: float | None = key(default=None)
     roller_pitch_rate: float | None = key(default=None)
+    section_blend: one_of("section_blend") | None = Field(
+        default=None,
+        description="what knots of 'sections' of rails and wheels do between two: 'cubic' has a "
+        "continuous slope; only with two or more sections; left out: 'linear' (no unit)",
+    )
     irregularity: Text | None = Field(
         default=None,
         description="record of the rails' deviations (file, no unit), m: x, left lateral, left "
@@ -188,6 +218,9 @@ class Track(Table):
             for key in ("cant", "curvature"):
                 if getattr(self, key) != 0.0:
                     raise relation(key, getattr(self, key), "0 with kind = 'roller'")
+            for side in SIDES:
+                if (origin := getattr(self, side).origin) is not None:
+                    raise relation(f"{side}.origin", origin, "none with kind = 'roller'")
             return self
         for key in ("roller_radius", "roller_pitch_rate"):
             if getattr(self, key) is not None:
@@ -402,7 +435,17 @@ class _WheelCase(Table):
                 allowed = "a number with method.tangential = 'none': nothing turns the axle"
                 yield relation(f"wheelset.{name}", shown, allowed)
 
+    def section_lists(self, *tables: str) -> dict[str, list[Section] | list[WheelSection]]:
+        """Profiles along the track and round the wheels, by key."""
+        return {
+            f"{table}.{side}.sections": getattr(getattr(self, table), side).sections or []
+            for table in tables
+            for side in self.sides
+        }
+
     def _check_profiles(self) -> Problems:
+        lists = self.section_lists("track", "wheelset")
+        yield from check_blend(self.track.section_blend, lists)
         for body in ("wheel", "rail"):
             yield from self._check_read(body)
         for side in self.sides:
@@ -418,9 +461,8 @@ class _WheelCase(Table):
     def _check_read(self, body: Literal["wheel", "rail"]) -> Problems:
         """What is said of files is said of some."""
         names = [self.profiles.of(body, side)[1] for side in self.sides]
-        if body == "rail":
-            rails = [getattr(self.track, side) for side in self.sides]
-            names += [part.profile for rail in rails for part in rail.sections or ()]
+        lists = self.section_lists("track" if body == "rail" else "wheelset")
+        names += [part.profile for own in lists.values() for part in own]
         files = [name for name in names if name and builtin_profile(name, body) is None]
         table = getattr(self.profiles, f"{body}_file")
         if table is not None and not files:

@@ -25,6 +25,11 @@ from railpatch.fmu.table import Kind, Table, Variable, items_of, with_start
 # of options; what is not here is 0 where nothing is said
 OPTION_DEFAULTS = {"friction_left": 1, "friction_right": 1}
 PROFILE_ARRAYS = ("arc_length", "y", "z", "dy", "dz")
+# word of a line, body, fields of the places and of kinks
+SECTIONS = (
+    ("section", "rail", "section_position", "section_kink"),
+    ("wheel_section", "wheel", "wheel_section_angle", "wheel_section_kink"),
+)
 
 
 def kind_of(case: Case, config: dict[str, list[float]], *, averages: bool = False) -> Kind:
@@ -107,7 +112,7 @@ def along_conditions(case: WheelRailCase | WheelsetCase) -> set[str]:
             found |= {"shape along x", f"x {side}"}
         if along:
             found.add(f"x {side}")
-        if wheel.runout is not None or wheel.flat:
+        if wheel.runout is not None or wheel.flat or wheel.sections:
             found |= {"runout", f"pitch {side}"}
     if along and "shape along x" not in found:
         found.add("friction along x")
@@ -235,7 +240,7 @@ def lines_of(
     yield f"guid {guid}"
     for name, numbers in _core.config_numbers(config).items():
         # NaN stands for what is left out, which the core does by itself
-        if not np.isnan(np.asarray(numbers, float)).any():
+        if not np.isnan(np.asarray(numbers, float)).all():
             yield f"set {name} {spell(numbers)}"
     for body in ("wheel", "rail"):
         for side, profile in enumerate(config.get(body, ())):
@@ -244,12 +249,15 @@ def lines_of(
     for body, number, arrays in choices.arrays():
         for array in PROFILE_ARRAYS:
             yield f"choice {body} {number} {array} {spell_array(arrays[array])}"
-    for side, sections in enumerate(config.get("rail_sections", ())):
-        for index, profile in enumerate(sections):
-            position = config["section_position"][side][index]
-            yield f"section {side} {index} position 1 {spell([position])}"
-            for array in PROFILE_ARRAYS:
-                yield f"section {side} {index} {array} {spell_array(profile[array])}"
+    for word, body, place, kinks in SECTIONS:
+        for side, sections in enumerate(config.get(f"{body}_sections", ())):
+            for index, profile in enumerate(sections):
+                position = config[place][side][index]
+                yield f"{word} {side} {index} position 1 {spell([position])}"
+                if config.get(kinks) and config[kinks][side][index]:
+                    yield f"{word} {side} {index} kink 1 1"
+                for array in PROFILE_ARRAYS:
+                    yield f"{word} {side} {index} {array} {spell_array(profile[array])}"
     for name in ("runout", "rail_height"):
         for side, values in enumerate(config.get(name, ())):
             if values is not None:
