@@ -170,8 +170,9 @@ def test_a_gap_that_narrows_downwards_is_refused() -> None:
 def test_forces_are_continuous_through_the_transfer(
     kind: str, start: float, stop: float, step: float, carried: tuple[float, float], tmp_path: Path
 ) -> None:
-    """The rule of docs/continuity.md: between samples 0.1 mm apart along the track (0.4 mm on
-    the blade, which rises less), some 2 um of the parts' heights, no jump above 0.2 % of the wheel load that the slopes do not explain."""
+    """The rule of docs/continuity.md: between samples 0.1 mm apart along the track (0.4 mm on the
+    blade, which rises less), some 2 um of the parts' heights, no jump above 0.2 % of the wheel load
+    that the slopes do not explain."""
     case = case_of(kind, tmp_path)
     path = Sweep("x", lambda x: {"x": x}, start, stop, 1e-4, 1e-4)
     measure = Measure(case, path, case["wheelset"]["vertical_force"])
