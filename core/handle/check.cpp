@@ -47,7 +47,7 @@ void check_spin_offset(const rp_config &c, checker &check) {
     wrong =
         "spin_offset must be automatic or none where tangential gives no tractions: it belongs to "
         "steps from element to element";
-  else if (c.regime == RP_SHIFT)
+  else if (c.regime == RP_SHIFT && c.regime_changes == 0)
     wrong = "spin_offset must be automatic or none with regime = shift: nothing rolls";
   check.require(wrong == nullptr, wrong ? wrong : "");
 }
@@ -142,7 +142,7 @@ void check_build(const rp_config &c, checker &check) {
   if (has_physics || !has_tangential(c) || check.error() != RP_OK) return;
   const auto without = [&](bool asked, const char *text) { check.require(!asked, text); };
   without(
-      c.regime != RP_STEADY_ROLLING,
+      c.regime != RP_STEADY_ROLLING || c.regime_changes != 0,
       "regime must be none or steady_rolling: this build has no shift and no transient rolling");
   without(c.friction_law != RP_COULOMB,
           "friction_law must be coulomb: this build has no other friction laws");
@@ -153,43 +153,6 @@ void check_build(const rp_config &c, checker &check) {
   without(is_coupled(combine(c.shear_modulus, c.poisson_ratio)),
           "shear_modulus and poisson_ratio: (1-2nu)/G must be equal, this build has no coupling of "
           "normal and tangential directions");
-}
-
-// Wheels roll on from tractions and friction, and nothing else that the material would carry along.
-const char *wheels_cannot_roll(const rp_config &c) {
-  if (c.regime == RP_SHIFT)
-    return "regime must be none, steady_rolling or transient_rolling for wheels";
-  if (!(c.element_size[0] > 0))
-    return "regime = transient_rolling of wheels needs element_size in place of elements";
-  if (c.friction_law == RP_TEMPERATURE)
-    return "regime = transient_rolling of wheels needs friction_law = coulomb or slip_velocity in "
-           "this version";
-  if (c.layer_yield_stress > 0)
-    return "layer_yield_stress must be 0 with regime = transient_rolling of wheels in this version";
-  if (c.reference_surface != RP_REFERENCE_PLANE)
-    return "reference_surface must be plane with regime = transient_rolling of wheels";
-  if (c.temperature != 0)
-    return "temperature must be 0 with regime = transient_rolling of wheels in this version";
-  if (is_coupled(combine(c.shear_modulus, c.poisson_ratio)))
-    return "regime = transient_rolling of wheels needs equal (1-2nu)/G of both bodies in this "
-           "version";
-  return nullptr;
-}
-
-// Shift and transient rolling keep their grid in the frame of the contact.
-void check_regime(const rp_config &c, checker &check) {
-  if (!has_tangential(c) || c.regime == RP_STEADY_ROLLING) return;
-  const char *wrong = nullptr;
-  if (c.tangential != RP_TANGENTIAL_FULL || c.fitted[0] > 0)
-    wrong = "regime = shift and transient_rolling need tangential = full and no fitted rows";
-  else if (c.kind != RP_PATCH)
-    wrong = wheels_cannot_roll(c);
-  else if (c.geometry == RP_CURVATURES &&
-           !(c.element_size[0] > 0 && c.max_elements[0] > 0 && c.max_elements[1] > 0))
-    wrong =
-        "regime = shift and transient_rolling with curvatures need element_size and "
-        "max_elements: their grid is fixed";
-  check.require(wrong == nullptr, wrong ? wrong : "");
 }
 
 void check_prescribed(const rp_config &c, checker &check) {
@@ -449,7 +412,8 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
     else
       check.field("approach", in.approach, input_range::approach);
     check_ranges(in, case_part::patch, check);
-    if (c.regime == RP_TRANSIENT_ROLLING)
+    check_step_regime(c, in, check);
+    if (regime_of(c, in) == RP_TRANSIENT_ROLLING)
       check.field("distance", in.distance, input_range::distance);
     check.require(in.direction == 1 || in.direction == -1, "direction must be 1 or -1");
     check_force(c, friction_coefficient * in.friction_scale[RP_RIGHT], in, check);
@@ -460,7 +424,8 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
   else
     check.field("z", in.z, input_range::z);
   check_ranges(in, case_part::wheels, check);
-  const bool rolls_on = c.regime == RP_TRANSIENT_ROLLING && has_tangential(c);
+  check_step_regime(c, in, check);
+  const bool rolls_on = regime_of(c, in) == RP_TRANSIENT_ROLLING && has_tangential(c);
   check.number("time_step", in.time_step, rolls_on ? positive : input_range::time_step);
   for (const auto &rotation : in.rail_rotation)
     check.require(rotation[1] == 0 && rotation[2] == 0,

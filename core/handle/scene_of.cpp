@@ -118,11 +118,11 @@ fast_options fast_of(const rp_config &c, rp_tangential_method theory) {
 // lattices, where slip is collocated three quarters of an element behind the edge), of a layer's
 // none: measured, see docs/physics.md.
 double usual_spin_offset(const rp_config &c, const patch_scene &scene) {
-  const bool quarter = scene.full_on_grid() && scene.regime != motion::shift;
+  const bool quarter = scene.full_on_grid() && (scene.changes || scene.regime != motion::shift);
   return quarter && !(c.layer_thickness > 0) ? 0.25 : 0.0;
 }
 
-double spin_offset_of(const rp_config &c, const patch_scene &scene) {
+double spin_offset_of(const rp_config &c, const patch_scene &scene, bool steady) {
   switch (c.spin_offset) {
     case RP_SPIN_OFFSET_NONE:
       return 0.0;
@@ -130,6 +130,8 @@ double spin_offset_of(const rp_config &c, const patch_scene &scene) {
       return 1.0 / 6.0;
     case RP_SPIN_OFFSET_QUARTER:
       return 0.25;
+    case RP_SPIN_OFFSET_CONTACT:
+      return steady ? 1.0 / 6.0 : 0.0;
     default:
       return usual_spin_offset(c, scene);
   }
@@ -156,6 +158,7 @@ patch_scene patch_scene_of(const rp_config &c) {
   scene.max_iterations = c.max_iterations;
   if (scene.tangential == RP_TANGENTIAL_FULL && c.fitted[0] == 0) {
     scene.law = make_law(c);
+    scene.changes = c.regime_changes == 1;
     if (c.regime == RP_SHIFT) scene.regime = motion::shift;
     if (c.regime == RP_TRANSIENT_ROLLING) scene.regime = motion::transient;
     scene.moves = c.kind != RP_PATCH;
@@ -165,7 +168,8 @@ patch_scene patch_scene_of(const rp_config &c) {
     scene.fluid.emplace(fluid_of(c));
   for (int k = 0; k < 2; ++k) scene.fitted[k] = c.fitted[k];
   for (int k = 0; k < 2; ++k) scene.prescribed[k] = c.force_prescribed[k] != 0;
-  scene.spin_offset = spin_offset_of(c, scene);
+  scene.spin_offset = spin_offset_of(c, scene, true);
+  scene.step_spin_offset = spin_offset_of(c, scene, false);
   scene.usual_spin = scene.spin_offset == usual_spin_offset(c, scene);
   scene.derivatives = c.derivatives != 0;
   scene.stretches = c.kind != RP_PATCH && c.elements[0] > 0;

@@ -74,6 +74,7 @@ const char *coupling_reason(const patch_scene &scene) {
 const char *history_reason(const patch_scene &scene) {
   if (scene.tangential == RP_TANGENTIAL_NONE) return "no tangential problem";
   if (!scene.keeps_steps()) return "steady rolling does not depend on the last step";
+  if (scene.changes) return "regime_changes: tractions of the last step";
   return scene.regime == motion::shift ? "regime = shift: tractions of the last step"
                                        : "regime = transient_rolling: tractions of the last step";
 }

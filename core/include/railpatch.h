@@ -282,13 +282,15 @@ typedef enum rp_flexibility_blending {
 
 /* how far upstream of an element its spin term is read, of the way dq of a step: an element in
  * steady rolling, else input.distance or a wheel's way, at most the length of the contact */
-#define RP_SPIN_OFFSETS(X)                                                           \
-  X(RP_SPIN_OFFSET_NONE, 0, "none")                                                  \
-  X(RP_SPIN_OFFSET_SIXTH, 1, "sixth") /* x + dq/6, as the program CONTACT does */    \
-  /* a quarter for tangential = full on the uniform grid, but in a shift and with an \
-   * elastic layer; else none */                                                     \
-  X(RP_SPIN_OFFSET_AUTOMATIC, 2, "automatic")                                        \
-  X(RP_SPIN_OFFSET_QUARTER, 3, "quarter")
+#define RP_SPIN_OFFSETS(X)                                                            \
+  X(RP_SPIN_OFFSET_NONE, 0, "none")                                                   \
+  X(RP_SPIN_OFFSET_SIXTH, 1, "sixth") /* x + dq/6, as the program CONTACT does */     \
+  /* a quarter for tangential = full on the uniform grid, but in a shift and with an  \
+   * elastic layer; else none */                                                      \
+  X(RP_SPIN_OFFSET_AUTOMATIC, 2, "automatic")                                         \
+  X(RP_SPIN_OFFSET_QUARTER, 3, "quarter")                                             \
+  /* a sixth in steady rolling, none in other steps, as the program CONTACT has it */ \
+  X(RP_SPIN_OFFSET_CONTACT, 4, "contact")
 typedef enum rp_spin_offset { RP_SPIN_OFFSETS(RP_ENUM_ENTRY) } rp_spin_offset;
 
 /* which parts of contact of a wheel, the stretches where the profiles overlap, are one patch */
@@ -663,6 +665,11 @@ typedef struct rp_config {
   /* by side, of each section: 1 where section_blend = RP_SECTIONS_CUBIC has no continuous slope, as
    * where a part of the profile begins; null: nowhere. Copied */
   const int32_t *section_kink[2], *wheel_section_kink[2];
+
+  int32_t regime_changes; /* 1: a step may have another regime than the last one, from whose
+                             tractions it goes on (rp_input.step_regime); where the method is
+                             tangential = full on the uniform grid, without temperature and liquid.
+                             Of wheels steady and transient rolling */
 } rp_config;
 
 typedef struct rp_input {
@@ -713,6 +720,10 @@ typedef struct rp_input {
   /* -, 0 ... 100, factor of the friction law on each wheel, beside friction_factor and
    * friction_along_factor; by side, of a patch RP_RIGHT; 1 without a tangential problem */
   double friction_scale[2];
+
+  int32_t step_regime; /* with regime_changes, an rp_regime other than none: of this step, whose
+                          tractions the next one goes on from; those of steady rolling do not depend
+                          on what was before. -1: the config's */
 } rp_input;
 
 /* One patch. Values of stages that the scene leaves out are NaN (element counts 0). Linear theory

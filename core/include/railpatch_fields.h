@@ -486,7 +486,9 @@
   X(double, rail_origin_z, 2, number, own, NAN, "[]", -1, 1, "m",                                  \
     "of each rail's profile in track axes")                                                        \
   O(const int32_t *, section_kink, 2)                                                              \
-  O(const int32_t *, wheel_section_kink, 2)
+  O(const int32_t *, wheel_section_kink, 2)                                                        \
+  X(int32_t, regime_changes, 1, integer, always, 0, "[]", 0, 1, "-",                               \
+    "whether a step may have another regime than the last one, from whose tractions it goes on")
 
 /* X(type, name, count, role, where, start, bounds, low, high, scale, unit, text), as above and
  * role      place: a number whose size says nothing about how fast things change there
@@ -565,7 +567,9 @@
   X(double, rail_work, 2, number, own, 0, "[)", 0, HUGE_VAL, 100, "J/m",                           \
     "friction work that wheels before have spent on each metre of the rail")                       \
   X(double, friction_scale, 2, number, own, 1, "[]", 0, 100, 0.1, "-",                             \
-    "factor of the friction law on each wheel, [left, right]; of a patch the second")
+    "factor of the friction law on each wheel, [left, right]; of a patch the second")              \
+  X(int32_t, step_regime, 1, integer, own, -1, "", 0, 0, 0, "-",                                   \
+    "regime of this step where it may change; -1: the case's")
 
 /* --- choices: Y(type, list of the type's enumerators) -------------------------------------- */
 #define RP_CHOICES(Y)                                  \

@@ -114,17 +114,17 @@ void patch_history::shift_states(const grid &g, double upstream) {
   }
 }
 
-void patch_history::start_from_before(const grid &g, const bound_law &law) {
+void patch_history::start_from_before(const grid &g, const bound_law &law, bool goes_on) {
   if (!has_law()) return;
   const auto count = static_cast<size_t>(g.count());
   std::fill_n(friction.data(), count, 0.0);
   for (size_t i = 0; i < count; ++i) {
-    after[i] = before.size() ? before[i] : carried_state{{0, 0, 0}};
+    after[i] = goes_on ? before[i] : carried_state{{0, 0, 0}};
     after[i].v[0] = 0;
   }
   if (!law.plastic()) return;
   for (int c = 0; c < 2; ++c) {
-    if (before.size())
+    if (goes_on)
       std::copy_n(plastic_before[c].data(), count, plastic[c].data());
     else
       std::fill_n(plastic[c].data(), count, 0.0);
@@ -156,10 +156,9 @@ void patch_history::plastic_work(const grid &g, int direction, const double *px,
   }
 }
 
-inelastic_fields patch_history::fields(bound_law &law) {
-  const bool steps = before.size() > 0;
+inelastic_fields patch_history::fields(bound_law &law, bool goes_on) {
   return {&law,
-          steps ? before.data() : nullptr,
+          goes_on ? before.data() : nullptr,
           after.data(),
           plastic[0].data(),
           plastic[1].data(),

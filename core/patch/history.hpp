@@ -56,7 +56,8 @@ struct patch_history {
   void begin_states(const grid &g);
   void add_states(const grid &g, const past_tractions &past);
   // Sets what is carried as no contact leaves it, for elements that then are in contact to differ.
-  void start_from_before(const grid &g, const bound_law &law);
+  // goes_on: of the step; else as of fresh material, as in steady rolling.
+  void start_from_before(const grid &g, const bound_law &law, bool goes_on);
   // J/m^2 of the step's plastic displacement, in steady rolling over one element; traction p.
   void plastic_work(const grid &g, int direction, const double *px, const double *py,
                     double *work) const;
@@ -64,7 +65,7 @@ struct patch_history {
   void clear() { begun = held = false; }
   // The tractions are none of a step.
   void clear_now() { begun = false; }
-  inelastic_fields fields(bound_law &law);
+  inelastic_fields fields(bound_law &law, bool goes_on);
   // f(data, bytes) of what later steps depend on besides the tractions, on a grid of count elements
   template <class F>
   void for_each_kept(size_t count, F &&f) {

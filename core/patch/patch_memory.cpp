@@ -53,7 +53,7 @@ void patch_memory::unload(const grid &on, const bound_law *law) {
     if (field->size()) std::fill_n(field->data(), n, 0.0);
   if (division.size()) std::fill_n(division.data(), n, static_cast<unsigned char>(RP_EXTERIOR));
   if (history.energy.size()) std::fill_n(history.energy.data(), on.count(), 0.0);
-  if (history.has_law()) history.start_from_before(on, *law);
+  if (history.has_law()) history.start_from_before(on, *law, history.keeps_steps());
 }
 
 }  // namespace railpatch

@@ -40,6 +40,7 @@ struct patch_problem {
   bool force_given = false;
   double force = 0, approach = 0;
   double rolling_speed = 0;  // m/s; 0: standstill, no tangential traction arises
+  bool shifts = false;       // regime = shift: all speeds are ways
   rolling_input rolling;
   double tangential_force[2] = {0, 0};  // N, of the components prescribed
   hertz_contact hertz;                  // where the surfaces are quadratic, else all zero

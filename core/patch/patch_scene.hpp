@@ -27,22 +27,28 @@ struct patch_scene {
   rp_tangential_method tangential = RP_TANGENTIAL_FULL;  // NONE: no tangential stage
   bool has_regime = true;  // false: the motion asks for none, whatever the method
   motion regime = motion::steady;
+  bool changes = false;          // of regime, between steps
   bool moves = false;            // the grid moves between steps: of wheels
   std::optional<bound_law> law;  // beyond Coulomb's, or a layer that yields
   bool keeps_steps() const {
-    return has_physics && tangential == RP_TANGENTIAL_FULL && regime != motion::steady;
+    return has_physics && tangential == RP_TANGENTIAL_FULL && (changes || regime != motion::steady);
+  }
+  // A step begins with the last one's tractions: those of steady rolling are their own.
+  bool goes_on(const rolling_input &step) const {
+    return keeps_steps() && step.regime != motion::steady;
   }
   bool yields() const { return law && law->plastic(); }
   double tolerance = 1e-5;
   double normal_tolerance = 1e-5;
   int max_iterations = 100;
-  double spin_offset = 0;    // of a step's way, added to x in the spin term
-  bool usual_spin = true;    // that is the one by default
-  bool derivatives = false;  // rates of results are asked for
-  interrupt ask{};           // of the caller, between iterations
-  bool exact = false;        // and come from the solved equations, of the whole scene
-  bool stretches = false;    // grids whose dx and dy change at different rates
-  bool curved = false;       // reference surface, of wheels
+  double spin_offset = 0;       // of a step's way, added to x in the spin term
+  double step_spin_offset = 0;  // the same of transient rolling
+  bool usual_spin = true;       // that is the one by default
+  bool derivatives = false;     // rates of results are asked for
+  interrupt ask{};              // of the caller, between iterations
+  bool exact = false;           // and come from the solved equations, of the whole scene
+  bool stretches = false;       // grids whose dx and dy change at different rates
+  bool curved = false;          // reference surface, of wheels
   // pressure acts along those of the rail's surface, of wheels, which differ along rows too
   bool local_normals = false, slopes_along_rows = false;
   int fitted[2] = {0, 0};  // nodes and strips of the tangential problem; 0: on the uniform grid

@@ -63,7 +63,9 @@ void describe_tractions(const patch_scene &scene, const traction_outcome &t,
   result.creep_force[0] = wrench.force[0];
   result.creep_force[1] = wrench.force[1];
   result.spin_moment = wrench.moment[2];
-  result.creep_power = scene.keeps_steps() ? t.supplied : creep_power(result, result.rolling_speed);
+  // of steps that go on from the last one's tractions the force is the mean of both ends
+  result.creep_power =
+      std::isnan(t.supplied) ? creep_power(result, result.rolling_speed) : t.supplied;
   result.wear_number = wear_number(result);
   const double size = hypot(result.creep_force[0], result.creep_force[1]);
   if (result.normal_force > 0) result.traction_coefficient = size / result.normal_force;

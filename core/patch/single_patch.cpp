@@ -40,10 +40,18 @@ const char *single_patch::geometry_reason() const {
   return "undeformed distance of the given shape";
 }
 
+// That the step asks for, else the scene's.
+motion single_patch::regime_of(const rp_input &in) const {
+  if (in.step_regime < 0) return solver_.scene().regime;
+  return in.step_regime == RP_SHIFT               ? motion::shift
+         : in.step_regime == RP_TRANSIENT_ROLLING ? motion::transient
+                                                  : motion::steady;
+}
+
 rolling_input single_patch::motion_of(const rp_input &in) const {
   rolling_input step{
       {in.creepage[0], in.creepage[1]}, in.spin_creepage, in.direction, 0.0, nullptr};
-  step.regime = solver_.scene().regime;
+  step.regime = regime_of(in);
   step.speed = in.rolling_speed;
   if (step.regime != motion::transient) return step;
   // what stands still does not roll on: tractions stay, as in a shift by nothing
@@ -115,6 +123,7 @@ bool single_patch::pose(const rp_input &in, const patch_memory &m, patch_problem
   problem.place.direction = in.rolling_speed > 0 ? in.direction : 0;
   problem.rolling_speed = in.rolling_speed;
   problem.rolling = motion_of(in);
+  problem.shifts = regime_of(in) == motion::shift;
   for (int k = 0; k < 2; ++k) problem.tangential_force[k] = in.tangential_force[k];
   return true;
 }

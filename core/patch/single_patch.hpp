@@ -40,6 +40,7 @@ class single_patch final : public driver {
     aligned_buffer<double> distance, row_friction;
   };
   patch_memory &memory() { return memory_.front(); }
+  motion regime_of(const rp_input &input) const;
   rolling_input motion_of(const rp_input &input) const;
   bool is_apart(const rp_input &input) const;
   double approach_apart(const rp_input &input) const;

@@ -31,7 +31,7 @@ tangential_stage::tangential_stage(patch_workspace &shared, const fft_plans &pla
   const patch_scene &scene = shared.scene;
   const auto count = static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny);
   if (scene.full_on_grid()) {
-    const bool rolls_on = scene.regime == motion::transient;
+    const bool rolls_on = scene.changes || scene.regime == motion::transient;
     tangential_.emplace(
         max_nx, max_ny,
         tangential_solver::setup{scene.is_forced(), scene.law.has_value(), scene.yields(),
@@ -78,7 +78,7 @@ traction_outcome tangential_stage::solve(const patch_problem &problem,
   found.newton_iterations = t.newton_iterations;
   found.inner_iterations = t.products;
   found.residual = t.residual;
-  const double rate = scene.regime == motion::shift ? 1.0 : problem.rolling_speed;
+  const double rate = problem.shifts ? 1.0 : problem.rolling_speed;
   found.friction_power = rate * t.friction;
   found.supplied *= rate;
   if (scene.yields()) found.plastic_power *= rate;
@@ -87,7 +87,7 @@ traction_outcome tangential_stage::solve(const patch_problem &problem,
   if (!fast_) found.capacity = capacity(problem, pressure, memory, heat);
   if (!t.converged) explain(problem, pressure, t, found);
   // what shift and transient rolling know already
-  if (scene.tangential == RP_TANGENTIAL_FULL && !scene.keeps_steps())
+  if (scene.tangential == RP_TANGENTIAL_FULL && !scene.goes_on(rolling))
     found.elastic_energy =
         fitted_ ? fitted_->elastic_energy(*fitted_rows_) : elastic_energy(problem, memory);
   return found;
@@ -145,11 +145,11 @@ rolling_input tangential_stage::rolling_of(const patch_problem &problem, const p
   rolling_input rolling = problem.rolling;
   if (problem.past) {
     find_before(problem, rolling);
-  } else if (scene.keeps_steps()) {
+  } else if (scene.goes_on(rolling)) {
     rolling.px = memory.history.last_px.data();
     rolling.py = memory.history.last_py.data();
   }
-  if (!(problem.rolling_speed > 0) && scene.regime != motion::shift) {
+  if (!(problem.rolling_speed > 0) && !problem.shifts) {
     // standstill: creepage is not defined and no micro-slip has happened, so all sticks unloaded
     rolling.creepage[0] = rolling.creepage[1] = rolling.spin_creepage = 0;
   }
@@ -161,7 +161,8 @@ rolling_input tangential_stage::rolling_of(const patch_problem &problem, const p
     for (int c = 0; c < 2; ++c) rolling.coupled[c] = coupled->slip(c);
   }
   const grid &g = problem.g;
-  if (scene.spin_offset != 0) rolling.spin_offset = spin_offset_of(problem, memory, rolling);
+  const bool offset = scene.spin_offset != 0 || scene.step_spin_offset != 0;
+  if (offset && !problem.shifts) rolling.spin_offset = spin_offset_of(problem, memory, rolling);
   if (memory.curved && problem.rolling_speed > 0) add_slip_of_rows(g, *memory.curved, rolling);
   return rolling;
 }
@@ -169,8 +170,10 @@ rolling_input tangential_stage::rolling_of(const patch_problem &problem, const p
 // A part of the way that material has come in contact: of the step's, but no more than its length.
 double tangential_stage::spin_offset_of(const patch_problem &problem, const patch_memory &memory,
                                         const rolling_input &rolling) const {
-  const double part = shared_.scene.spin_offset;
-  if (rolling.regime != motion::transient) return part * rolling.direction * problem.g.dx;
+  if (rolling.regime == motion::steady)
+    return shared_.scene.spin_offset * rolling.direction * problem.g.dx;
+  const double part = shared_.scene.step_spin_offset;
+  if (rolling.regime == motion::shift) return part * rolling.direction * problem.g.dx;
   const double length = contact_length(problem.g, memory.pressure.data());
   const double way = problem.past ? problem.rolled : rolling.upstream();
   return part * std::clamp(way, -length, length);
@@ -314,7 +317,7 @@ tangential_result tangential_stage::solve_on_grid(const patch_problem &problem,
     coarse_start_->find(g, memory.pressure.data(), bound_.data(), rolling, options,
                         memory.fields());
   tangential_result t = solve_by_law(problem, rolling, memory, options, found);
-  if (shared_.scene.keeps_steps()) close_step(problem, rolling, memory, t, found);
+  if (shared_.scene.goes_on(rolling)) close_step(problem, rolling, memory, t, found);
   if (has_physics && shared_.scene.heat) find_friction_heat(problem, rolling, memory, t.friction);
   return t;
 }
@@ -327,8 +330,9 @@ tangential_result tangential_stage::solve_by_law(const patch_problem &problem,
   if (!has_physics || !shared_.scene.law)
     return tangential_->solve({*shared_.influence, g, memory.pressure.data(), bound_.data(),
                                rolling, options, memory.fields()});
-  memory.history.start_from_before(g, *shared_.scene.law);
-  const inelastic_fields fields = memory.history.fields(*shared_.scene.law);
+  const bool goes_on = shared_.scene.goes_on(rolling);
+  memory.history.start_from_before(g, *shared_.scene.law, goes_on);
+  const inelastic_fields fields = memory.history.fields(*shared_.scene.law, goes_on);
   inelastic_sums sums;
   const tangential_result t =
       tangential_->solve({*shared_.influence, g, memory.pressure.data(), bound_.data(), rolling,

@@ -112,6 +112,7 @@ void wheel_contact::place(const rp_input &in) {
     }
   }
   time_step_ = in.time_step;
+  step_regime_ = in.step_regime;
   if (shape_) shape_->place(pitch, in.x, nominal_radius_);
   geometry_->place(motion_of(in));
 }
@@ -258,7 +259,9 @@ void wheel_contact::solve_patch(patch_contact &solver, patch_region &region, int
   past_tractions past[RP_MAX_PATCHES];
   if (solver.scene().keeps_steps()) {
     memory.rolling = rolling_of(problem);
-    set_past(memories, region, problem, past);
+    const bool steady = step_regime_ < 0 ? solver.scene().regime == motion::steady
+                                         : step_regime_ == RP_STEADY_ROLLING;
+    if (!steady) set_past(memories, region, problem, past);
   }
   if (solver.scene().normal == RP_NORMAL_HERTZ)
     problem.hertz = hertz_of(region, depth, solver.scene().modulus());

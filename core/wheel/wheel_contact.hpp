@@ -129,6 +129,7 @@ class wheel_contact {
   int patches_ = 0;                                // of the last state
   std::vector<patch_solution> solutions_;          // of these; only for exact derivatives
   double time_step_ = 0;                           // s
+  int step_regime_ = -1;                           // of an input; -1: the scene's
 };
 
 }  // namespace railpatch

@@ -528,6 +528,13 @@ IDLE = [
     ),
     Idle("method.spin_offset", spin_by_default, "the one that is taken anyway", ()),
     Idle(
+        "method.spin_offset",
+        lambda c, k, v: v == "contact" and get(c, "method.spin_offset") == "sixth",
+        "in steady rolling a sixth too",
+        (),
+    ),
+    Idle("motion.regime_changes", nowhere, "lets steps have another regime; these have one"),
+    Idle(
         "method.tangential",
         lambda c, k, v: get(c, "motion.regime") == "none",
         "without motion none is taken anyway",

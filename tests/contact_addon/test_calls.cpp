@@ -378,6 +378,46 @@ TEST_F(Addon, AStepCanBeRepeated) {
   EXPECT_EQ(contact.solve(), -34) << "what is set within a sequence would lose its tractions";
 }
 
+// A shift, then rolling over an element at a time, then steady rolling: a sequence, P = 0.
+TEST_F(Addon, ARegimeMayChange) {
+  basic_contact contact(1);
+  contact.flag(1972, 1);
+  contact.creep(4e-6);
+  ASSERT_EQ(contact.solve(), 0);
+  const double shifted = contact.forces()[1];
+  contact.flag(1970, 0);
+  contact.flag(1972, 2);
+  contact.creep(1e-4);
+  ASSERT_EQ(contact.solve(), 0);
+  const double first = contact.forces()[1];
+  EXPECT_GT(std::fabs(first), 0.5 * std::fabs(shifted)) << "the shift's tractions roll along";
+  double rolled = first;
+  for (int k = 0; k < 60; ++k) {
+    ASSERT_EQ(contact.solve(), 0);
+    rolled = contact.forces()[1];
+  }
+  contact.flag(1972, 3);
+  ASSERT_EQ(contact.solve(), 0);
+  const double steady = contact.forces()[1];
+  EXPECT_NEAR(rolled, steady, 5e-3 * std::fabs(steady)) << "of the shift nothing is left";
+  // from the steady state, once in a history and once by a case of its own
+  contact.flag(1972, 2);
+  ASSERT_EQ(contact.solve(), 0);
+  const double on = contact.forces()[1];
+  EXPECT_NEAR(on, steady, 5e-3 * std::fabs(steady));
+  contact.flag(1972, 3);
+  contact.flag(1970, 2);
+  ASSERT_EQ(contact.solve(), 0);
+  EXPECT_NEAR(contact.forces()[1], steady, 1e-4 * std::fabs(steady));
+  contact.flag(1972, 2);
+  contact.flag(1970, 0);
+  ASSERT_EQ(contact.solve(), 0);
+  EXPECT_NEAR(contact.forces()[1], on, 1e-4 * std::fabs(on));
+  // without tractions there is nothing to lose
+  contact.flag(1972, 0);
+  EXPECT_EQ(contact.solve(), 0);
+}
+
 TEST_F(Addon, UnitsAndSigns) {
   basic_contact contact(1);
   contact.creep(1e-3, 2e-4, 0.1);

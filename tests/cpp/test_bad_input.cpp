@@ -408,7 +408,7 @@ TEST(Config, ChoicesAndCountsAreChecked) {
       {"tangential", [](rp_config &c, int v) { put(c.tangential, v); }, -1, 6},
       {"traction_bound", [](rp_config &c, int v) { put(c.traction_bound, v); }, -1, 3},
       {"flexibility_blending", [](rp_config &c, int v) { put(c.flexibility_blending, v); }, -1, 3},
-      {"spin_offset", [](rp_config &c, int v) { put(c.spin_offset, v); }, -1, 4},
+      {"spin_offset", [](rp_config &c, int v) { put(c.spin_offset, v); }, -1, 5},
       {"reference_surface", [](rp_config &c, int v) { put(c.reference_surface, v); }, -1, 2},
       {"elements[0]", [](rp_config &c, int v) { c.elements[0] = v; }, -5, 100000},
       {"force_prescribed[0]", [](rp_config &c, int v) { c.force_prescribed[0] = v; }, -1, 2},
@@ -939,7 +939,7 @@ class Garbage : public testing::Test {
     if (random() % 2) c.regime = static_cast<rp_regime>(random() % 4);
     if (random() % 2) c.normal = static_cast<rp_normal_method>(random() % 5);
     if (random() % 2) c.tangential = static_cast<rp_tangential_method>(random() % 8);
-    if (random() % 2) c.spin_offset = static_cast<rp_spin_offset>(random() % 4);
+    if (random() % 2) c.spin_offset = static_cast<rp_spin_offset>(random() % 5);
     if (random() % 60 == 0) put(c.kind, static_cast<int>(random()));
     if (rarely())
       for (int &n : c.fitted) n = count();

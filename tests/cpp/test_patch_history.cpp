@@ -91,7 +91,7 @@ TEST_P(PatchHistory, FreshMaterialHasNothing) {
   patch_history h(18, true, false, &law);
   EXPECT_TRUE(h.keeps_steps() && h.has_law());
   h.begin(g, 1e-3, px.data(), py.data());
-  h.start_from_before(g, law);
+  h.start_from_before(g, law, true);
   for (size_t k = 0; k < 18; ++k) {
     EXPECT_EQ(h.last_px[k], 0);
     EXPECT_EQ(h.last_py[k], 0);
@@ -107,7 +107,7 @@ TEST_P(PatchHistory, WhatWasCarriedIsWhereTheMaterialIs) {
     patch_history h(18, true, false, &law);
     fill(h);
     h.begin(g, upstream, px.data(), py.data());
-    h.start_from_before(g, law);
+    h.start_from_before(g, law, true);
     for (int j = 0; j < g.ny; ++j)
       for (int i = 0; i < g.nx; ++i) {
         const auto at = static_cast<size_t>(j * g.nx + i);

@@ -13,6 +13,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 CASES = [
     ("Regimes", {"history"}),
     ("Regimes", {"history"}),
+    ("Regimes", {"history"}),
     ("Unlike bodies", {"coupling"}),
     ("Third-body layer", {"plasticity"}),
     ("Friction", set()),

@@ -27,7 +27,7 @@ void get(const char *call, int *ire, int *icp, modules which, Task task) {
 
 double or_zero(double value) { return std::isfinite(value) ? value : 0.0; }
 
-bool is_shift(const problem &p) { return p.mapped.config.regime == RP_SHIFT; }
+bool is_shift(const problem &p) { return p.input.step_regime == RP_SHIFT; }
 
 // Copies a part of a field to a caller's array, which may be shorter or longer.
 void hand_out(const std::vector<double> &field, size_t part, size_t count, double unit, int n,

@@ -46,15 +46,12 @@ void map_normal(const problem &p, rp_config &c) {
                       : RP_NORMAL_HALF_SPACE;
 }
 
-void map_tangential(const problem &p, rp_config &c) {
+void map_tangential(const problem &p, bool in_history, rp_config &c) {
   const int t = p.flags.get(flag_tangential), m = p.material.method, b = p.flags.get(flag_bound);
   if (t == 1 && p.wheel_rail()) no("T = 1, a shift, of wheels on rails has no counterpart");
-  c.regime = t == 1   ? RP_SHIFT
-             : t == 2 ? RP_TRANSIENT_ROLLING
-             : t == 3 ? RP_STEADY_ROLLING
-                      : RP_REGIME_NONE;
+  c.regime = t > 0 ? RP_STEADY_ROLLING : RP_REGIME_NONE;
   c.tangential = RP_TANGENTIAL_FULL;
-  c.spin_offset = t == 3 ? RP_SPIN_OFFSET_SIXTH : RP_SPIN_OFFSET_NONE;
+  c.spin_offset = RP_SPIN_OFFSET_SIXTH;
   if (t == 0) {
     c.spin_offset = RP_SPIN_OFFSET_AUTOMATIC;
     if (p.wheel_rail()) {
@@ -84,6 +81,7 @@ void map_tangential(const problem &p, rp_config &c) {
   } else if (b == 3) {
     no("B = 3, the parabolic bound, is for FASTSIM (M = 3) here");
   }
+  if (t < 3 || in_history) let_regime_change(c);
   if (p.flags.get(flag_extra_slip) > 0)
     no(p.wheel_rail() ? "E3, spin dropped from the slip, has no counterpart"
                       : "E = 1, extra rigid slip of each element, has no counterpart");
@@ -338,14 +336,20 @@ double static_friction(const problem &p) {
   return v[0];
 }
 
-mapped_case map_case(const problem &p) {
+void let_regime_change(rp_config &c) {
+  c.regime = RP_TRANSIENT_ROLLING;
+  c.regime_changes = 1;
+  c.spin_offset = RP_SPIN_OFFSET_CONTACT;
+}
+
+mapped_case map_case(const problem &p, bool in_history) {
   for (const auto &[call, why] : p.refused)
     if (!why.empty()) no(why, why.starts_with("profile: ") ? error_profile : error_other);
   mapped_case out;
   rp_default_config(&out.config);
   map_bodies(p, out.config);
   map_normal(p, out.config);
-  map_tangential(p, out.config);
+  map_tangential(p, in_history, out.config);
   map_heat(p, out.config);
   map_friction(p, out.config);
   if (p.wheel_rail())
@@ -364,7 +368,7 @@ void input_of_basic(const problem &p, const mapped_case &mapped, rp_input &in) {
   in.approach = b.penetration;
   in.rolling_speed = b.velocity;
   in.direction = std::fabs(b.chi) > 1 ? -1 : 1;
-  if (c.regime == RP_TRANSIENT_ROLLING) {
+  if (p.flags.get(flag_tangential) == 2) {
     if (!(b.step > 0)) throw refusal{error_other, "DQ must be > 0 with T = 2"};
     in.distance = b.step;
   }
@@ -381,7 +385,7 @@ void input_of_basic(const problem &p, const mapped_case &mapped, rp_input &in) {
     }
 }
 
-void input_of_wheel(const problem &p, const mapped_case &mapped, rp_input &in) {
+void input_of_wheel(const problem &p, rp_input &in) {
   const wheel_data &w = p.wheel;
   const int s = p.side();
   in.x = w.position[0];
@@ -414,7 +418,7 @@ void input_of_wheel(const problem &p, const mapped_case &mapped, rp_input &in) {
   if (p.flags.get(flag_force) == 3)
     for (int k = 0; k < 2; ++k)
       if (w.support[2 * k] > 0) in.rail_offset[s][1 + k] += w.support[2 * k + 1] / w.support[2 * k];
-  if (mapped.config.regime == RP_TRANSIENT_ROLLING) {
+  if (p.flags.get(flag_tangential) == 2) {
     const double speed = std::fabs(w.velocity[0]) * (p.roller() ? w.roller_radius : 1.0);
     if (!(speed > 0) || !(w.step_ratio > 0))
       throw refusal{error_other, "T = 2 needs a speed and a step DQREL > 0"};
@@ -427,8 +431,12 @@ void input_of_wheel(const problem &p, const mapped_case &mapped, rp_input &in) {
 rp_input map_input(const problem &p, const mapped_case &mapped) {
   rp_input in;
   rp_default_input(&in);
+  if (mapped.config.regime_changes == 1) {
+    const int t = p.flags.get(flag_tangential);
+    in.step_regime = t == 1 ? RP_SHIFT : t == 2 ? RP_TRANSIENT_ROLLING : RP_STEADY_ROLLING;
+  }
   if (p.wheel_rail())
-    input_of_wheel(p, mapped, in);
+    input_of_wheel(p, in);
   else
     input_of_basic(p, mapped, in);
   return in;

@@ -13,11 +13,14 @@ struct refusal {
   std::string text;
 };
 
-// Raises refusal.
-mapped_case map_case(const problem &p);
+// in_history: a step that goes on from the last one's tractions, or leaves them to the next, also
+// of steady rolling. Raises refusal.
+mapped_case map_case(const problem &p, bool in_history);
 // Needs the case that was mapped. Raises refusal.
 rp_input map_input(const problem &p, const mapped_case &mapped);
 bool same_case(const mapped_case &a, const mapped_case &b);
+// Takes a case of steady rolling for one whose regime changes.
+void let_regime_change(rp_config &config);
 // Coefficient of friction at rest, of the first set.
 double static_friction(const problem &p);
 // Of a basic problem's grid by an ellipse: semi-axes a, b (m) and A1, B1 (1/m) of it, by the core.

@@ -13,10 +13,7 @@ namespace contact_addon {
 
 namespace {
 
-bool remembers(const problem &p) {
-  const rp_regime regime = p.mapped.config.regime;
-  return regime == RP_SHIFT || regime == RP_TRANSIENT_ROLLING;
-}
+bool remembers(const problem &p) { return p.mapped.config.regime_changes == 1; }
 
 void make_contact(problem &p) {
   rp_config config = p.mapped.config;
@@ -34,25 +31,44 @@ void make_contact(problem &p) {
   p.contact.reset(made);
 }
 
+// The last step, of steady rolling, with the handle that goes on from it.
+void roll_steadily(problem &p) {
+  rp_input in = p.input;
+  in.step_regime = RP_STEADY_ROLLING;
+  rp_result result;
+  rp_message message{};
+  if (rp_step(p.contact.get(), &in, &result, &message) != RP_OK)
+    throw refusal{error_other, message.text};
+}
+
 // The case and its handle, as long as nothing was changed the ones of before.
 void prepare(problem &p) {
   if (p.contact && !p.changed) return;
-  mapped_case mapped = map_case(p);
+  const int sequence = p.flags.get(flag_sequence);
+  const bool goes_on = p.contact && sequence != 2;
+  mapped_case mapped = map_case(p, goes_on && remembers(p));
   if (p.contact && same_case(mapped, p.mapped)) {
     p.mapped.grid = mapped.grid;
     p.changed = false;
     return;
   }
-  const int sequence = p.flags.get(flag_sequence);
-  if (p.contact && remembers(p) && sequence != 2)
+  const bool without = mapped.config.regime == RP_REGIME_NONE;  // nothing to lose
+  if (goes_on && remembers(p) && !without)
     throw refusal{error_grid_changed,
                   "settings changed within a sequence (P = " + std::to_string(sequence) +
                       "): its tractions would be lost; P = 2 begins a new one"};
+  // what a step of steady rolling left is not known to a case without history: once more
+  const bool from_steady = goes_on && p.solved && mapped.config.regime_changes == 1 &&
+                           p.mapped.config.regime == RP_STEADY_ROLLING;
+  mapped_case before = p.mapped;
+  if (from_steady) let_regime_change(before.config);
+  const bool same = from_steady && same_case(mapped, before);
   p.mapped = std::move(mapped);
   p.contact.reset();
   p.state_before.clear();
   make_contact(p);
   p.changed = false;
+  if (same) roll_steadily(p);
 }
 
 void begin(problem &p) {

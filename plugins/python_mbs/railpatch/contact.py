@@ -165,7 +165,8 @@ class Contact:
         """Solves with some moving inputs changed; the others keep their last value.
 
         patch: creepage or tangential_force, spin_creepage, rolling_speed, direction, normal_force
-        or approach; in transient rolling distance and steps: one step rolls distance/steps.
+        or approach; in transient rolling distance and steps: one step rolls distance/steps. Where
+        regimes may change (motion.regimes, of wheels motion.regime_changes) regime.
         wheel_rail, wheelset: the position and velocity keys of [wheelset] with left and right,
         roller_pitch_rate, track = {"left": ..., "right": ...}; left and right in part or whole.
         Not roll = "balanced" and pitch_rate = "free", which the step finds: the result has them.
@@ -457,25 +458,35 @@ def at_balance(scene: Scene, name: str) -> Scene:
 def _solved(contact: Contact, fields: bool) -> Result:
     """All steps of a contact's case."""
     motion = contact.case.motion if contact.case.kind == "patch" else None
-    if motion is None or motion.steps is None:
+    if motion is None or (motion.steps is None and not motion.changes):
         return contact.step(fields=fields)
     return solve_steps(contact, motion, fields)
 
 
+def with_regime(case: Case, regime: str) -> Case:
+    """The case with the regime of a step."""
+    if case.motion.regime == regime:
+        return case
+    motion = case.motion.model_copy(update={"regime": regime})
+    return case.model_copy(update={"motion": motion})
+
+
 def solve_steps(contact: Contact, motion: Motion, fields: bool) -> Result:
     """All steps of shift or transient rolling."""
-    count = motion.steps or 1
+    regimes = motion.of_steps
+    count = len(regimes)
     pairs = motion.creepages
     # the case's way is that of all steps
-    case = contact.case
+    of_regime = {regime: with_regime(contact.case, regime) for regime in regimes}
     rows: list[dict[str, Any]] = []
     warnings: dict[str, None] = {}
     wall_time = 0.0
     for index in range(count):
         pair = pairs[index] if len(pairs) > 1 else pairs[0]
         last = index == count - 1
-        result = contact._solve(case, pair, fields=fields and last)
-        rows.append({name: result[name] for name in STEP_KEYS if name in result.data})
+        result = contact._solve(of_regime[regimes[index]], pair, fields=fields and last)
+        row = {name: result[name] for name in STEP_KEYS if name in result.data}
+        rows.append({"regime": regimes[index], **row} if motion.changes else row)
         wall_time += result["wall_time"]
         warnings |= dict.fromkeys(result.warnings)
     ended = next((row for row in rows if row["status"] not in GOOD), result)

@@ -164,7 +164,7 @@ def check_asked(case: Any, line: bool) -> Problems:
         return
     if not case.has_tangential:
         yield relation("damage", "given", "none without a tangential problem")
-    elif case.motion.regime == "shift":
+    elif "shift" in (case.motion.regime, *(getattr(case.motion, "regimes", None) or ())):
         yield relation("damage", "given", "none with motion.regime = 'shift', which rolls no way")
     elif case.damage.basis == "elements" and (without or fitted):
         why = "fitted rows" if fitted else f"method.tangential = {method.tangential!r}"

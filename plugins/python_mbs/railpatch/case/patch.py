@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -98,6 +98,17 @@ class Motion(Table):
     regime: Literal["none", "shift", "transient_rolling", "steady_rolling"] = Field(
         default="steady_rolling", description="kind of motion (no unit)"
     )
+    regimes: (
+        Annotated[
+            list[Literal["shift", "transient_rolling", "steady_rolling"]], Field(min_length=1)
+        ]
+        | None
+    ) = Field(
+        default=None,
+        description="(no unit) of each step of a solve, which goes on from the tractions of the "
+        "one before; regime is then that of the first, and a moving key of a Contact. Left out: "
+        "regime in all steps",
+    )
     creepage: Pair | Pairs = Field(
         **likely(
             "creepage",
@@ -119,7 +130,8 @@ class Motion(Table):
     spin_creepage: float = key()
     rolling_speed: float = key()
     distance: Positive | None = Field(
-        default=None, description="m, rolled in all steps of a solve with transient_rolling"
+        default=None,
+        description="m, rolled in all steps of a solve with transient_rolling together",
     )
     steps: Annotated[int, Field(ge=1, le=1_000_000)] | None = Field(
         default=None,
@@ -137,9 +149,33 @@ class Motion(Table):
             keys.remove("creepage")
         if any(self.prescribed):
             keys.append("tangential_force")
-        if self.regime == "transient_rolling":
+        if self.rolls_on:
             keys += ["distance", "steps"]
+        if self.changes:
+            keys.append("regime")
         return tuple(keys)
+
+    @property
+    def changes(self) -> bool:
+        """Whether the regime may change from step to step."""
+        return self.regimes is not None
+
+    @property
+    def of_steps(self) -> list[str]:
+        """Regime of each step of a solve."""
+        return list(self.regimes) if self.regimes is not None else [self.regime] * (self.steps or 1)
+
+    @property
+    def rolls_on(self) -> bool:
+        """Whether a step may be one of transient rolling."""
+        return self.regime == "transient_rolling" or self.changes
+
+    @property
+    def step_distance(self) -> float | None:
+        """m, rolled in one step of transient rolling."""
+        if self.distance is None:
+            return None
+        return self.distance / max(self.of_steps.count("transient_rolling"), 1)
 
     @property
     def prescribed(self) -> tuple[bool, bool]:
@@ -152,18 +188,32 @@ class Motion(Table):
         """N, the components prescribed, else 0."""
         return [0.0 if force == "creepage" else force for force in self.tangential_force or (0, 0)]
 
+    @model_validator(mode="before")
+    @classmethod
+    def _first_regime(cls, data: Any) -> Any:
+        if isinstance(data, dict) and "regime" not in data and data.get("regimes"):
+            regimes = data["regimes"]
+            return {**data, "regime": regimes[0]} if isinstance(regimes, list) else data
+        return data
+
     @model_validator(mode="after")
     def _of_each_other(self) -> Motion:
         refuse(itertools.chain(self._by_regime(), self._by_step(), self._by_force()))
         return self
 
     def _by_regime(self) -> Problems:
-        rolls = self.regime == "transient_rolling"
+        rolls = "transient_rolling" in (self.regime, *self.of_steps)
         if rolls and self.distance is None:
             yield relation("distance", "missing", "a number > 0 with regime = 'transient_rolling'")
-        if not rolls and self.distance is not None:
+        if not self.rolls_on and self.distance is not None:
             yield relation("distance", self.distance, "only with regime = 'transient_rolling'")
-        if not rolls and self.regime != "shift" and self.steps is not None:
+        if self.regimes is not None:
+            if self.regime == "none":
+                yield relation("regime", "'none'", "a regime of motion with regimes")
+            if self.steps not in (None, len(self.regimes)):
+                allowed = f"{len(self.regimes)} or left out with so many regimes"
+                yield relation("steps", self.steps, allowed)
+        elif not rolls and self.regime != "shift" and self.steps is not None:
             yield relation("steps", self.steps, "only with regime = 'transient_rolling' or 'shift'")
         if self.regime != "none":
             return
@@ -181,8 +231,10 @@ class Motion(Table):
 
     def _by_step(self) -> Problems:
         count = len(self.creepages)
-        if count > 1 and count != (self.steps or 1):
-            yield relation("creepage", f"{count} pairs", f"one pair, or steps = {self.steps} pairs")
+        steps = len(self.of_steps)
+        if count > 1 and count != steps:
+            given = self.steps if self.regimes is None else steps
+            yield relation("creepage", f"{count} pairs", f"one pair, or steps = {given} pairs")
 
     def _by_force(self) -> Problems:
         if self.tangential_force is None:
@@ -352,7 +404,22 @@ class PatchCase(Table):
 
     def _check_regime(self) -> Problems:
         """What shift and transient rolling need: a grid that is fixed in the contact frame."""
-        regime = self.motion.regime
+        if self.motion.changes:
+            yield from self._check_changes()
+        for regime in dict.fromkeys((self.motion.regime, *self.motion.of_steps)):
+            yield from self._check_one_regime(regime)
+
+    def _check_changes(self) -> Problems:
+        """What regimes that change are not combined with."""
+        for name, given in (("temperature", self.temperature), ("fluid", self.fluid)):
+            if given is not None:
+                yield relation(name, "given", f"{LEFT_OUT} with motion.regimes")
+        if self.motion.regimes == ["steady_rolling"] * len(self.motion.regimes or ()):
+            # of others each regime says what it needs
+            yield from self._check_history("motion.regimes")
+
+    def _check_one_regime(self, regime: str) -> Problems:
+        """What a step of this regime needs."""
         if regime == "shift":
             for key, asked in (
                 ("fluid", self.fluid is not None),
@@ -367,20 +434,24 @@ class PatchCase(Table):
         if by_heat and couples(self.material):
             allowed = "'steady_rolling' with friction.law = 'temperature' and unlike (1 - 2 nu)/G"
             yield relation("motion.regime", f"'{regime}'", f"{allowed} in 'material'")
+        if regime == "shift" and not self.motion.changes:
+            yield from check_spin_offset(self.method, f"with regime = '{regime}'")
+        yield from self._check_history(f"regime = '{regime}'")
+
+    def _check_history(self, which: str) -> Problems:
+        """What steps that go on from each other need: the full theory on a grid that stays."""
         if self.method.tangential != "full":
             shown = repr(self.method.tangential)
-            yield relation("method.tangential", shown, f"'full' with regime = '{regime}'")
+            yield relation("method.tangential", shown, f"'full' with {which}")
         if self.grid is not None and self.grid.fitted is not None:
             shown = str(self.grid.fitted)
-            yield relation("grid.fitted", shown, f"{LEFT_OUT} with regime = '{regime}'")
-        if regime == "shift":
-            yield from check_spin_offset(self.method, f"with regime = '{regime}'")
+            yield relation("grid.fitted", shown, f"{LEFT_OUT} with {which}")
         if self.method.accuracy is not None:
-            shown = f"{LEFT_OUT} with regime = '{regime}': give 'grid'"
+            shown = f"{LEFT_OUT} with {which}: give 'grid'"
             yield relation("method.accuracy", self.method.accuracy, shown)
         sized = self.grid is not None and self.grid.element_size and self.grid.max_elements
         if self.geometry.curvatures is not None and not sized:
-            allowed = f"element_size and max_elements with curvatures and regime = '{regime}'"
+            allowed = f"element_size and max_elements with curvatures and {which}"
             yield relation("grid", "another", allowed)
 
     def _check_force(self) -> Problems:

@@ -113,6 +113,16 @@ class WheelMotion(Table):
         description="each step on its own, or rolling on from the last step's tractions by "
         "wheelset.time_step (no unit)",
     )
+    regime_changes: bool = Field(
+        default=False,
+        description="-, whether a step of a Contact may have another regime than the last one, "
+        "from whose tractions it goes on: regime is then a moving key",
+    )
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """The regime, where it changes."""
+        return ("regime",) if self.regime_changes else ()
 
 
 def shape_keys(case: Any) -> list[str]:
@@ -150,7 +160,9 @@ def check_rolling(case: Any) -> Problems:
     heights = [key for key in shaped if key.startswith("track")]
     if heights and case.track.kind == "roller":
         yield relation(heights[0], "given", "only with track.kind = 'rail'")
-    if case.motion.regime == "steady_rolling":
+    if case.motion.regime_changes and not case.has_tangential:
+        yield relation("motion.regime_changes", True, "False with method.tangential = 'none'")
+    if case.motion.regime == "steady_rolling" and not case.motion.regime_changes:
         heated = case.temperature is not None and case.temperature.bulk is not None
         cleans = case.fluid is not None and case.fluid.recovery is not None
         timed = heated or cleans or case.track.rail_support is not None
@@ -161,7 +173,13 @@ def check_rolling(case: Any) -> Problems:
             )
             yield relation("wheelset.time_step", case.wheelset.time_step, allowed)
         return
-    where = "with motion.regime = 'transient_rolling'"
+    changes = case.motion.regime_changes
+    regime = "motion.regime_changes" if changes else "motion.regime = 'transient_rolling'"
+    where = f"with {regime}"
+    if changes and case.fluid is not None:
+        yield relation("fluid", "given", f"{LEFT_OUT} {where}")
+    if changes and case.method.accuracy is not None:
+        yield relation("method.accuracy", case.method.accuracy, f"{LEFT_OUT} {where}: give 'grid'")
     if not case.wheelset.time_step > 0:
         yield relation("wheelset.time_step", case.wheelset.time_step, f"> 0 {where}")
     if case.method.tangential != "full":

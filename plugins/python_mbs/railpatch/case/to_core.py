@@ -85,7 +85,7 @@ def config_of(scene: Scene, shelf: Shelf | None = None) -> dict[str, Any]:
     for name in ("material", "method", "motion", "geometry", "wheelset", "track", "wheel"):
         config |= passed(name, getattr(case, name, None), _core.CONFIG_FIELDS)
     config |= friction_config(case) | layer_config(case) | temperature_config(case)
-    config |= fluid_config(case)
+    config |= fluid_config(case) | {"regime_changes": int(regime_changes(case))}
     if case.has_tangential and case.method.tangential == "table":
         file = case.method.table_file
         own = scene.folder / file if file is not None else None
@@ -93,6 +93,13 @@ def config_of(scene: Scene, shelf: Shelf | None = None) -> dict[str, Any]:
     if isinstance(case, PatchCase):
         return config | patch_config(case, scene.folder)
     return config | wheel_config(case, scene.folder, shelf or Shelf(case, scene.folder))
+
+
+def regime_changes(case: Case) -> bool:
+    """Whether steps may have different regimes."""
+    motion = case.motion
+    changes = motion.changes if isinstance(case, PatchCase) else motion.regime_changes
+    return changes and case.has_tangential
 
 
 def friction_config(case: Case) -> dict[str, Any]:
@@ -293,12 +300,14 @@ def input_of(case: Case) -> dict[str, Any]:
             values |= {field: getattr(case.friction, key) for field, key in MOVED_FRICTION.items()}
             continue
         values |= passed(name, getattr(case, name), _core.INPUT_FIELDS)
+    if regime_changes(case):
+        values["step_regime"] = _core.CHOICES["regime"].index(case.motion.regime)
     if isinstance(case, PatchCase):
         motion = case.motion
         values["creepage"] = motion.creepages[0]
         values["tangential_force"] = motion.forces
         if motion.distance is not None:
-            values["distance"] = motion.distance / (motion.steps or 1)
+            values["distance"] = motion.step_distance
     else:
         for name in case.wheelset.found:
             del values[name]
@@ -379,7 +388,7 @@ def rates_of(case: Case, direction: Mapping[str, Any]) -> dict[str, Any]:
         else:
             add_rate(rates, key, value, keys[key])
     if isinstance(case, PatchCase) and "distance" in rates:
-        rates["distance"] /= case.motion.steps or 1
+        rates["distance"] /= max(case.motion.of_steps.count("transient_rolling"), 1)
     return rates
 
 

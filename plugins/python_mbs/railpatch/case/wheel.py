@@ -352,7 +352,8 @@ class _WheelCase(Table):
         """The tables that hold keys which move."""
         fluid = ("fluid",) if self.fluid is not None else ()
         friction = ("friction",) if self.friction is not None and self.has_tangential else ()
-        return ("wheelset", "track", *fluid, *friction)
+        motion = ("motion",) if self.motion.regime_changes and self.has_tangential else ()
+        return ("wheelset", "track", *fluid, *friction, *motion)
 
     @property
     def sides(self) -> tuple[str, ...]:

@@ -37,7 +37,7 @@ def convert(
     """Make TOML files of the cases in an input file of the program CONTACT.
 
     What has no counterpart is refused by line and name, and nothing is written. Steps of a shift
-    or of transient rolling that go on from each other are one file.
+    and of rolling that go on from each other are one file.
     """
     if listed == (output is not None):
         raise WrongCall("say either -o DIR or --list")

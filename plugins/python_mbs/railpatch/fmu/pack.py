@@ -235,7 +235,11 @@ def check_options(options: Options, kind: Kind) -> None:
 
 def check_regime(scene: Scene) -> None:
     """A step of a slave is one in time. Raises CaseError."""
-    regime = getattr(getattr(scene.case, "motion", None), "regime", "none")
+    motion = getattr(scene.case, "motion", None)
+    for key in ("regimes", "regime_changes"):
+        if getattr(motion, key, None):
+            raise CaseError(f"motion.{key}: given, allowed in an FMU: left out, one regime for all")
+    regime = getattr(motion, "regime", "none")
     if regime == "shift":
         raise CaseError(
             "motion.regime: value is 'shift', allowed 'none', 'steady_rolling' or "

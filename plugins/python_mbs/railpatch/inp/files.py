@@ -100,11 +100,13 @@ def convert(path: Path) -> list[Converted]:
     be read."""
     found = []
     began: dict[tuple[int, tuple[int, int]], int] = {}
+    without: set[tuple[int, tuple[int, int]]] = set()  # whose last case has no tractions
     for case in cases_of(path):
         key = case.module, case.patch
         goes_on = case.digits["T"] in (1, 2) and case.digits["P"] == 0 and key in began
-        if not goes_on:
+        if not goes_on or key in without:
             began[key] = case.number
+        (without.discard if case.digits["T"] > 0 else without.add)(key)
         mapping = Mapping(case, path.name)
         try:
             tables, refused = mapping.tables(), None

@@ -8,7 +8,7 @@ from pathlib import Path
 from railpatch.contact import Contact, solve
 from railpatch.errors import CaseError
 from railpatch.inp.files import Converted, convert, sequences
-from railpatch.inp.sequences import changes_of
+from railpatch.inp.sequences import begun, changes_of
 from railpatch.inp.signs import in_contact
 from railpatch.result import Result
 
@@ -39,9 +39,9 @@ def solve_file(path: Path, *, fields: bool = False) -> list[Solved]:
         if len(steps) == 1:
             out.append(Solved(first, solve(first.tables, fields, folder=path.parent)))
             continue
-        contact = Contact(first.tables, folder=path.parent)
+        contact = Contact(begun(steps), folder=path.parent)
         out.append(Solved(first, contact.step(fields=fields)))
         for step in steps[1:]:
-            changes = changes_of(step, first, path.name)
+            changes = changes_of(step, steps, path.name)
             out.append(Solved(step, contact.step(fields=fields, **changes)))
     return sorted(out, key=lambda one: one.converted.case.number)

@@ -23,7 +23,7 @@ def plan(found: list[Converted], source: Path) -> list[tuple[str, dict[str, Any]
             continue
         try:
             for step in steps[1:]:
-                changes_of(step, steps[0], source.name)
+                changes_of(step, steps, source.name)
             files.append((steps[0].case.name, joined(steps, source.name)))
         except CaseError as error:
             wrong.append(str(error))

@@ -484,6 +484,8 @@ def check_case(case: Any) -> None:
         for name in case.wheelset.found
     ]
     several = "forces are asked for several times a step"
+    if case.motion.regime_changes:
+        problems.append(f"motion.regime_changes: value is True, allowed False: {several}")
     if case.motion.regime != "steady_rolling":
         problems.append(
             f"motion.regime: value is {case.motion.regime!r}, allowed 'steady_rolling': {several}"
