@@ -24,9 +24,9 @@ elliptic_film::elliptic_film(const film_contact &c) {
       std::max(c.force / (c.modulus * c.radius[0] * c.radius[0]) / (root * quarter), least_load);
   const double l = std::max(c.pressure_coefficient * c.modulus * quarter, least_pressure);
   const double d = c.radius[0] / c.radius[1], log_d = log(d), log_n = log(n), log_l = log(l);
-  const double k = 1.0 + 0.006 * log_d + 0.63 * exp(4.0 / 7.0 * log_d);
+  const double round = 0.63 * exp(4.0 / 7.0 * log_d), k = 1.0 + 0.006 * log_d + round;
   const double log_k = log(k);
-  const double width = log(1.0 + 0.796 * exp(14.0 / 15.0 * log_d));
+  const double wide = 0.796 * exp(14.0 / 15.0 * log_d), width = log(1.0 + wide);
   const double log_rigid = ln_145 - 15.0 / 7.0 * width - log_d - 2.0 * log_n;
   const double log_elastic = ln_3_18 - 14.0 / 25.0 * log_k - log_d / 15.0 - 2.0 / 15.0 * log_n;
   const double log_rp = ln_1_29 - 2.0 / 3.0 * log(1.0 + 0.691 * d) + 2.0 / 3.0 * log_l;
@@ -42,6 +42,9 @@ elliptic_film::elliptic_film(const film_contact &c) {
   ratio_ = exp(std::min(log_elastic - log_ep, 600.0));
   unit_ = c.radius[0] * root;
   piezoviscous_ = c.pressure_coefficient > 0;
+  const double k_by_ratio = (0.006 + 4.0 / 7.0 * round) / k;
+  by_ratio_ = {-2.0 * wide / (1.0 + wide) - 1.0, -14.0 / 25.0 * k_by_ratio - 1.0 / 15.0,
+               -2.0 / 3.0 * (0.691 * d / (1.0 + 0.691 * d)), -7.0 / 20.0 * k_by_ratio - 1.0 / 24.0};
 }
 
 film_point elliptic_film::at(double q) const {
@@ -52,10 +55,12 @@ film_point elliptic_film::at(double q) const {
   const double b = 1.0 / (both * both * both);
   const double log_i = 2.0 / 3.0 * log(a + b);
   const double i_by_ri = a / (a + b), i_by_ei = b / (a + b) * (e / (e + limit_));
+  const double i_by_limit = 1.0 - i_by_ri - i_by_ei;
   if (!piezoviscous_) {
     const double by_part = -1.5 * i_by_ri - 0.1 * i_by_ei - 0.5;
     return {exp(log_i) * unit_ / root, -2.0 * i_by_ri - 2.0 / 15.0 * i_by_ei,
-            1.5 * i_by_ri + 0.1 * i_by_ei + 0.5, by_part};
+            1.5 * i_by_ri + 0.1 * i_by_ei + 0.5, by_part,
+            i_by_ri * by_ratio_.ri + i_by_ei * by_ratio_.ei - i_by_limit};
   }
   const double log_p = log_piezo_ + 0.5 * log_q;
   const double z = 1.2 * ratio_ * (q == 1.0 ? 1.0 : exp(-0.6 * log_q)), decay = exp(-z);
@@ -75,6 +80,8 @@ film_point elliptic_film::at(double q) const {
   found.by_load = -2.0 * by_ri - 2.0 / 15.0 * by_ei - by_ep / 12.0;
   found.by_speed = 1.5 * by_ri + 0.1 * by_ei + by_rp / 6.0 + 0.25 * by_ep + 0.5;
   found.by_part = -1.5 * by_ri - 0.1 * by_ei + 0.5 * (by_rp + by_ep) - 0.5;
+  found.by_ratio = by_ri * by_ratio_.ri + by_ei * by_ratio_.ei - of_i * i_by_limit +
+                   by_rp * by_ratio_.rp + by_ep * by_ratio_.ep;
   return found;
 }
 

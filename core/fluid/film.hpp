@@ -31,6 +31,9 @@ struct film_point {
   double by_load;    // d ln h/d ln F, at the same radii
   double by_speed;   // d ln h/d ln(speed), and by the viscosity the same
   double by_part;    // d ln h/d ln q
+  double by_ratio;   // d ln h/d ln D, at the same groups
+  double by_radius_along() const { return 1.0 - by_speed - 2.0 * by_load + by_ratio; }
+  double by_radius_across() const { return -by_ratio; }
 };
 
 // The parts of the formula that do not depend on q.
@@ -45,6 +48,9 @@ class elliptic_film {
       of_rigid_;  // of h_RP^-8 + h_EP^-8 = P^-8: P; its logarithm; share of h_RP
   double ratio_;  // h_EI/h_EP
   double unit_;   // m, R_x U^(1/2)
+  struct {
+    double ri, ei, rp, ep;
+  } by_ratio_;  // d ln/d ln D of each film
   bool piezoviscous_;
 };
 

@@ -28,7 +28,13 @@ struct inlet {
 
 struct shared_load {
   double share, film;
+  double distance = nan;  // of the mean planes, over sigma; none where all touches
 };
+
+// Share of the asperities where all touches; a pressure above the hardness flattens them.
+double touching_share(double hardness, double pressure) {
+  return std::max(hardness / pressure, 1.0 + 1e-12);
+}
 
 // The root of ln(film of the liquid's part) = ln(sigma t(d)) by Newton's method within a bracket,
 // in u = ln(d - d_0), d_0 where asperities bear all: with it the liquid's part of the load falls to
@@ -36,8 +42,7 @@ struct shared_load {
 // side falls with u, the right one rises.
 shared_load share_load(const elliptic_film &film, const inlet &in, double roughness,
                        double hardness, double pressure) {
-  // share of the asperities where all touches; a pressure above the hardness flattens them
-  const double most = std::max(hardness / pressure, 1.0 + 1e-12);
+  const double most = touching_share(hardness, pressure);
   const double least = distance_of(1.0 / most);
   const double touching = roughness * mean_film(least);
   if (!(in.layer > touching)) return {1.0, in.layer};
@@ -67,9 +72,10 @@ shared_load share_load(const elliptic_film &film, const inlet &in, double roughn
     if (std::fabs(newton) < 1e-6) {
       found.share = std::clamp(most * (tail - bell * way * newton), 0.0, 1.0);
       found.film = roughness * (t + (1.0 - tail) * way * newton);
+      found.distance = d + way * newton;
       break;
     }
-    found = {std::min(most * tail, 1.0), roughness * t};
+    found = {std::min(most * tail, 1.0), roughness * t, d};
     if (u < -40.0 || high - low < 1e-15 * std::fabs(u)) break;
     const double next = u + newton, bracket = high - low;
     const bool slow = k % 4 == 3 && !(bracket < 0.5 * width);
@@ -80,6 +86,25 @@ shared_load share_load(const elliptic_film &film, const inlet &in, double roughn
       u = low == -HUGE_VAL ? u - 2.0 : high == HUGE_VAL ? u + 2.0 : 0.5 * (low + high);
   }
   return found;
+}
+
+inlet inlet_of(const fluid_scene &scene, const fluid_supply &supply, const wet_contact &c,
+               const viscosity &liquid) {
+  inlet in;
+  in.factor = scene.starvation;
+  const double v = c.film.speed;
+  if (scene.inlet_conductivity > 0) {
+    const double heating = liquid.value * liquid.fall * v * v / scene.inlet_conductivity;
+    if (heating > 0) in.factor /= 1.0 + 0.1 * pow(heating, 0.64);
+  }
+  if (supply.layer >= 0) in.layer = supply.layer;
+  if (supply.water_rate >= 0 && v > 0)
+    in.layer = std::min(in.layer, supply.water_rate / (v * 2.0 * c.half_width));
+  return in;
+}
+
+double nominal_pressure(const fluid_scene &scene, const wet_contact &c) {
+  return scene.mean_pressure > 0 ? scene.mean_pressure : c.mean_pressure;
 }
 
 double shear_friction(const fluid_scene &scene, const wet_contact &c, double film) {
@@ -96,16 +121,8 @@ film_outcome solve_film(const fluid_scene &scene, const fluid_supply &supply, we
   const viscosity liquid = scene.liquid.at(supply.temperature);
   c.film.viscosity = liquid.value;
   c.film.pressure_coefficient = scene.pressure_coefficient;
-  inlet in;
-  in.factor = scene.starvation;
   const double v = c.film.speed;
-  if (scene.inlet_conductivity > 0) {
-    const double heating = liquid.value * liquid.fall * v * v / scene.inlet_conductivity;
-    if (heating > 0) in.factor /= 1.0 + 0.1 * pow(heating, 0.64);
-  }
-  if (supply.layer >= 0) in.layer = supply.layer;
-  if (supply.water_rate >= 0 && v > 0)
-    in.layer = std::min(in.layer, supply.water_rate / (v * 2.0 * c.half_width));
+  const inlet in = inlet_of(scene, supply, c, liquid);
   film_outcome found;
   found.temperature = scene.liquid.liquid == RP_LIQUID_GIVEN ? nan : supply.temperature;
   const double boundary = scene.own_boundary ? scene.boundary_friction : c.dry_friction;
@@ -116,8 +133,8 @@ film_outcome solve_film(const fluid_scene &scene, const fluid_supply &supply, we
   if (!(v > 0) || !(c.film.force > 0) || !(in.layer > 0)) return found;
   const elliptic_film film(c.film);
   if (scene.share == RP_SHARE_LOAD_SHARING) {
-    const double pressure = scene.mean_pressure > 0 ? scene.mean_pressure : c.mean_pressure;
-    const shared_load both = share_load(film, in, scene.roughness, scene.hardness, pressure);
+    const shared_load both =
+        share_load(film, in, scene.roughness, scene.hardness, nominal_pressure(scene, c));
     found.share = both.share;
     found.film_thickness = both.film;
   } else {
@@ -128,6 +145,120 @@ film_outcome solve_film(const fluid_scene &scene, const fluid_supply &supply, we
   const double shear = shear_friction(scene, c, found.film_thickness);
   found.friction = asperity * found.share + shear * (1.0 - found.share);
   return found;
+}
+
+namespace {
+
+// Rates of the inlet: of the layer (m), and of the factor's logarithm.
+struct inlet_rate {
+  double log_factor = 0, layer = 0;
+};
+
+inlet_rate rate_of(const fluid_scene &scene, const fluid_supply &supply, const wet_contact &c,
+                   const viscosity &liquid, const wet_contact &d, const fluid_supply &ds) {
+  inlet_rate out;
+  const double v = c.film.speed, speed = d.film.speed / v;
+  const double heating = scene.inlet_conductivity > 0
+                             ? liquid.value * liquid.fall * v * v / scene.inlet_conductivity
+                             : 0.0;
+  if (heating > 0) {
+    const double thinner = 0.1 * pow(heating, 0.64);
+    const double by_temperature = liquid.bend / liquid.fall - liquid.fall;
+    out.log_factor =
+        -0.64 * thinner / (1.0 + thinner) * (by_temperature * ds.temperature + 2.0 * speed);
+  }
+  const double width = v * 2.0 * c.half_width, spread = supply.water_rate / width;
+  if (supply.layer >= 0) out.layer = ds.layer;
+  if (supply.water_rate >= 0 && !(supply.layer <= spread))
+    out.layer = ds.water_rate / width - spread * (speed + d.half_width / c.half_width);
+  return out;
+}
+
+double shear_rate(const fluid_scene &scene, const wet_contact &c, const wet_contact &d, double film,
+                  double film_rate, double log_viscosity) {
+  const double friction = shear_friction(scene, c, film);
+  if (!(friction > 0) || friction >= scene.limiting_friction) return 0;
+  const double exponent = c.film.pressure_coefficient * c.mean_pressure;
+  const double eyring = scene.eyring_stress, p = c.mean_pressure;
+  const double rate = c.film.viscosity * exp(std::min(exponent, 300.0)) * (c.slip_speed / film);
+  const double piezo = exponent < 300.0 ? c.film.pressure_coefficient * d.mean_pressure : 0.0;
+  const double log_rate = log_viscosity + piezo + d.slip_speed / c.slip_speed - film_rate / film;
+  const double ratio = rate / eyring;
+  return (rate / std::sqrt(1.0 + ratio * ratio) * log_rate - friction * d.mean_pressure) / p;
+}
+
+}  // namespace
+
+film_outcome film_rates(const fluid_scene &scene, const fluid_supply &supply,
+                        const wet_contact &contact, const wet_contact &d, const fluid_supply &ds) {
+  wet_contact c = contact;
+  const viscosity liquid = scene.liquid.at(supply.temperature);
+  c.film.viscosity = liquid.value;
+  c.film.pressure_coefficient = scene.pressure_coefficient;
+  const bool given = scene.liquid.liquid == RP_LIQUID_GIVEN;
+  film_outcome out{0, 0, given ? nan : ds.temperature, 0};
+  const inlet in = inlet_of(scene, supply, c, liquid);
+  const double v = c.film.speed, sigma = scene.roughness;
+  const double boundary = scene.own_boundary ? scene.boundary_friction : c.dry_friction;
+  const double boundary_rate = scene.own_boundary ? 0.0 : d.dry_friction;
+  const inlet_rate supplied = v > 0 ? rate_of(scene, supply, c, liquid, d, ds)
+                                    : inlet_rate{0, supply.layer >= 0 ? ds.layer : 0.0};
+  double asperity = boundary, asperity_rate = boundary_rate;
+  if (std::isfinite(in.layer)) {
+    const double dry = exp(-in.layer / sigma), more = (c.dry_friction - boundary) * dry;
+    asperity += more;
+    asperity_rate += (d.dry_friction - boundary_rate) * dry - more * supplied.layer / sigma;
+  }
+  out.friction = asperity_rate;
+  if (!(v > 0) || !(c.film.force > 0) || !(in.layer > 0)) return out;
+  const elliptic_film film(c.film);
+  const double log_viscosity = -liquid.fall * ds.temperature;
+  // of the logarithm of what the inlet leaves, where the liquid's part of the load stays
+  double slope;
+  const auto log_film = [&](const film_point &point) {
+    in.film(point.thickness, slope);
+    const double flooded = point.by_load * d.film.force / c.film.force +
+                           point.by_speed * (d.film.speed / v + log_viscosity) +
+                           point.by_radius_along() * d.film.radius[0] / c.film.radius[0] +
+                           point.by_radius_across() * d.film.radius[1] / c.film.radius[1] +
+                           supplied.log_factor;
+    return slope * flooded +
+           (std::isfinite(in.layer) ? (1.0 - slope) * supplied.layer / in.layer : 0.0);
+  };
+  double share, thickness;
+  if (scene.share == RP_SHARE_LOAD_SHARING) {
+    const double p = nominal_pressure(scene, c);
+    const shared_load both = share_load(film, in, sigma, scene.hardness, p);
+    share = both.share;
+    thickness = both.film;
+    if (std::isnan(both.distance)) {
+      out.film_thickness = supplied.layer;
+    } else {
+      const double distance = both.distance, tail = beyond(distance), bell = density(distance);
+      const double most = touching_share(scene.hardness, p), q = std::max(1.0 - share, 1e-14);
+      const bool follows = !(scene.mean_pressure > 0) && scene.hardness / p > 1.0 + 1e-12;
+      const double most_rate = follows ? -most * d.mean_pressure / p : 0.0;
+      const film_point point = film.at(q);
+      const double still = log_film(point) - slope * point.by_part * most_rate * tail / q;
+      const double falls =
+          slope * point.by_part * most * bell / q - (1.0 - tail) / mean_film(distance);
+      const double parts = -still / falls;
+      out.film_thickness = sigma * (1.0 - tail) * parts;
+      out.share = most_rate * tail - most * bell * parts;
+    }
+  } else {
+    const film_point point = film.at();
+    thickness = in.film(point.thickness, slope);
+    const double log_rate = log_film(point), exponent = 1.8 * pow(thickness / sigma, 1.2);
+    share = exp(-exponent);
+    out.film_thickness = thickness * log_rate;
+    out.share = -1.2 * exponent * share * log_rate;
+  }
+  const double shear = shear_friction(scene, c, thickness);
+  out.friction =
+      asperity_rate * share + (asperity - shear) * out.share +
+      shear_rate(scene, c, d, thickness, out.film_thickness, log_viscosity) * (1.0 - share);
+  return out;
 }
 
 }  // namespace railpatch

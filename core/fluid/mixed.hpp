@@ -66,4 +66,11 @@ struct film_outcome {
 
 film_outcome solve_film(const fluid_scene &scene, const fluid_supply &supply, wet_contact contact);
 
+// Rates of what is found, by those of the contact, but for the liquid's own, and of the supply: the
+// sharing of the load as an implicit function. Where a limit or a supply counts it stays the one
+// that does; of what is not given the rate is not read.
+film_outcome film_rates(const fluid_scene &scene, const fluid_supply &supply,
+                        const wet_contact &contact, const wet_contact &rate,
+                        const fluid_supply &supply_rate);
+
 }  // namespace railpatch

@@ -16,6 +16,7 @@ namespace railpatch {
 struct viscosity {
   double value;  // Pa s
   double fall;   // 1/K, -d ln eta/dT
+  double bend;   // 1/K^2, its slope: d fall/dT
 };
 
 struct viscosity_law {

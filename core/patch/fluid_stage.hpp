@@ -32,8 +32,8 @@ class fluid_stage {
   }
 
  private:
-  fluid_outcome solve_film(const hertz_contact &hertz, double temperature,
-                           const patch_problem &problem);
+  fluid_outcome solve_film(double temperature, const patch_problem &problem, double force,
+                           patch_memory &memory);
   fluid_outcome solve_ehl(double temperature, const patch_problem &problem, patch_memory &memory,
                           pressure_outcome &pressure);
   fluid_outcome solve_strips(const hertz_contact &hertz, double temperature,

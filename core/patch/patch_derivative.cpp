@@ -7,6 +7,7 @@
 #include "numeric/elementary.hpp"
 #include "numeric/nan.hpp"
 #include "numeric/sums.hpp"
+#include "patch/film_contact_of.hpp"
 #include "patch/patch_contact.hpp"
 
 namespace railpatch {
@@ -77,7 +78,7 @@ tangential_point patch_derivative::point_of(const solution &s) const {
           *s.blocks,
           s.problem.g,
           rolling_,
-          s.scene.friction(),
+          friction_of(s),
           m.row_friction.size() ? m.row_friction.data() : nullptr,
           m.pressure.data(),
           m.px.data(),
@@ -105,12 +106,14 @@ void patch_derivative::differentiate_tractions(const solution &s, const patch_va
                                                bool by_resultants, patch_change *out,
                                                derivative_outcome &outcome) {
   tangential_change t[at_once];
+  double friction[at_once];
+  for (int k = 0; k < count; ++k) friction[k] = friction_rate(s, in[k], rate_of(s, k), out[k]);
   if (s.problem.rolling_speed > 0) {
     tangential_variation v[at_once];
     for (int k = 0; k < count; ++k) {
       v[k] = {rate_of(s, k),
               in[k].row_friction,
-              in[k].friction_coefficient,
+              friction[k],
               {in[k].creepage[0], in[k].creepage[1]},
               in[k].spin_creepage,
               {in[k].size[0], in[k].size[1]},
@@ -130,7 +133,7 @@ void patch_derivative::differentiate_tractions(const solution &s, const patch_va
   }
   for (int k = 0; k < count; ++k) {
     add_tractions(s, in[k], t[k], o.energy, out[k]);
-    out[k].capacity = capacity_rate(s, in[k], rate_of(s, k));
+    out[k].capacity = capacity_rate(s, in[k], friction[k], rate_of(s, k));
   }
 }
 
@@ -261,12 +264,29 @@ void patch_derivative::complete(const solution &s, const patch_variation &v, con
   }
 }
 
+double patch_derivative::friction_of(const solution &s) {
+  return s.scene.fluid ? s.memory.wet.friction * s.scene.friction_scale : s.scene.friction();
+}
+
+double patch_derivative::friction_rate(const solution &s, const patch_variation &v,
+                                       const double *rate, patch_change &out) {
+  const patch_scene &scene = s.scene;
+  if (!scene.fluid)
+    return scene.friction_scale * v.friction.coefficient +
+           scene.friction_coefficient * v.friction.scale;
+  out.film = film_rates_of(scene, s.problem, s.memory, v, rate, out.normal_force);
+  // as it is reported: with the scale
+  out.film.friction =
+      scene.friction_scale * out.film.friction + s.memory.wet.friction * v.friction.scale;
+  return out.film.friction;
+}
+
 // Of the sum of friction coefficient times pressure, Coulomb's law. rate: of the pressure.
-double patch_derivative::capacity_rate(const solution &s, const patch_variation &v,
+double patch_derivative::capacity_rate(const solution &s, const patch_variation &v, double friction,
                                        const double *rate) {
   const grid &g = s.problem.g;
   const double *p = s.memory.pressure.data();
-  const double growth = v.size[0] / g.dx + v.size[1] / g.dy, mu = s.scene.friction();
+  const double growth = v.size[0] / g.dx + v.size[1] / g.dy, mu = friction_of(s);
   double sum = 0;
   for (int j = 0; j < g.ny; ++j) {
     double load = 0, change = 0;
@@ -277,8 +297,7 @@ double patch_derivative::capacity_rate(const solution &s, const patch_variation 
     const auto row = static_cast<size_t>(j);
     const double factor = s.memory.row_friction.size() ? s.memory.row_friction[row] : 1.0;
     const double turned = v.row_friction ? v.row_friction[row] : 0.0;
-    sum += mu * (factor * (change + growth * load) + turned * load) +
-           v.friction_coefficient * factor * load;
+    sum += mu * (factor * (change + growth * load) + turned * load) + friction * factor * load;
   }
   return sum * g.dx * g.dy;
 }

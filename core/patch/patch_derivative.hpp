@@ -8,6 +8,7 @@
 
 #include <optional>
 
+#include "fluid/mixed.hpp"
 #include "half_space/forces.hpp"
 #include "normal/hertz.hpp"
 #include "normal/normal_derivative.hpp"
@@ -18,6 +19,12 @@ namespace railpatch {
 struct patch_scene;
 struct patch_problem;
 struct patch_memory;
+
+// Rates of the friction coefficient, of its scale, and of a liquid's supply.
+struct friction_rates {
+  double coefficient = 0, scale = 0;
+  double water_rate = 0, water_temperature = 0, oil_film = 0;  // m^3/s, K, m
+};
 
 // One direction: rates of all that a patch's problem is made of, per unit of a parameter.
 struct patch_variation {
@@ -32,7 +39,7 @@ struct patch_variation {
   double normal_force = 0, approach = 0;                 // of the one that is prescribed
   double creepage[2] = {0, 0}, spin_creepage = 0;
   double rolling_speed = 0;
-  double friction_coefficient = 0;  // with the scene's scale, patch_scene::friction()
+  friction_rates friction;
 };
 
 // What follows for the patch's wrench, in the contact frame, and for its result.
@@ -46,6 +53,7 @@ struct patch_change {
   double capacity = 0;        // N, that friction could carry
   double friction_power = 0, elastic_energy = 0, pressure_energy = 0;
   turning_energy turning;  // where the scene has it
+  film_outcome film;       // of the scene's liquid
 };
 
 struct derivative_options {
@@ -97,9 +105,14 @@ class patch_derivative {
                 patch_change &out) const;
   void add_tractions(const solution &s, const patch_variation &v, const tangential_change &t,
                      bool energy, patch_change &out) const;
-  static double capacity_rate(const solution &s, const patch_variation &v, const double *rate);
+  static double capacity_rate(const solution &s, const patch_variation &v, double friction,
+                              const double *rate);
   tangential_point point_of(const solution &s) const;
   double *rate_of(const solution &s, int k);
+  // of patch_scene::friction() and its rate, with the liquid's film in out
+  static double friction_of(const solution &s);
+  static double friction_rate(const solution &s, const patch_variation &v, const double *rate,
+                              patch_change &out);
 
   std::optional<influence> by_length_;
   std::optional<normal_derivative> normal_;

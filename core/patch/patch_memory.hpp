@@ -78,6 +78,10 @@ struct patch_memory {
   aligned_buffer<double> creepage;                 // [2], of a prescribed creep force only
   bool estimated = false;                          // the last step's errors, from the features
   std::array<double, error_feature_count> error_features{};
+  struct {
+    hertz_contact ellipse;
+    double friction = 0;
+  } wet;  // with a liquid's film: what it formed on, and the coefficient without factors
   patch_history history;
   physics_part<heat_memory> heat;
   physics_part<conformal_rows> curved;

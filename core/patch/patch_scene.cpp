@@ -30,7 +30,7 @@ bool patch_scene::differentiates() const {
   if (curved || (normal != RP_NORMAL_HALF_SPACE && normal != RP_NORMAL_HERTZ)) return false;
   if (tangential == RP_TANGENTIAL_NONE) return true;
   return tangential == RP_TANGENTIAL_FULL && !is_fitted() && !law && !keeps_steps() && !heat &&
-         !fluid && !is_forced() && !couples();
+         (!fluid || fluid->model == RP_FLUID_FILM) && !is_forced() && !couples();
 }
 
 }  // namespace railpatch

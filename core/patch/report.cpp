@@ -151,6 +151,10 @@ void report_rates(const rp_patch_result &value, const patch_change &change, rp_p
   set(value.friction_power, rate.friction_power, change.friction_power);
   for (int c = 0; c < 2; ++c)
     set(value.contact_size[c], rate.contact_size[c], value.contact_size[c] * change.growth[c]);
+  set(value.central_film_thickness, rate.central_film_thickness, change.film.film_thickness);
+  set(value.mean_asperity_share, rate.mean_asperity_share, change.film.share);
+  set(value.fluid_temperature, rate.fluid_temperature, change.film.temperature);
+  set(value.effective_friction, rate.effective_friction, change.film.friction);
   const double size = hypot(value.creep_force[0], value.creep_force[1]);
   const double traction = value.traction_coefficient, used = value.utilised_friction;
   set(traction, rate.traction_coefficient,

@@ -88,9 +88,8 @@ void single_patch::differentiate(const rp_input &d, const rp_input &, const rp_r
   std::copy_n(d.creepage, 2, v.creepage);
   v.spin_creepage = d.spin_creepage;
   v.rolling_speed = d.rolling_speed;
-  const patch_scene &scene = solver_.scene();
-  v.friction_coefficient = scene.friction_scale * d.friction_coefficient +
-                           scene.friction_coefficient * d.friction_scale[RP_RIGHT];
+  v.friction = {d.friction_coefficient, d.friction_scale[RP_RIGHT], d.water_rate,
+                d.water_temperature, d.oil_film};
   if (setup_.geometry != RP_UNDEFORMED_DISTANCE) vary_shape(d, v);
   patch_change found;
   const derivative_outcome outcome = solver_.differentiate(problem, m, &v, 1, {}, &found);

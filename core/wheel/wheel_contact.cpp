@@ -448,7 +448,7 @@ void wheel_contact::set_friction(const patch_contact &solver, const contact_fram
 
 derivative_outcome wheel_contact::differentiate(patch_contact &solver, const patch_memory *memory,
                                                 wheel_derivative &work, const rp_input *directions,
-                                                const double *friction, int count,
+                                                const friction_rates *friction, int count,
                                                 const derivative_options &options,
                                                 const rp_side_result &result,
                                                 rp_side_result *changes) const {

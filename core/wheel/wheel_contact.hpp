@@ -83,7 +83,7 @@ class wheel_contact {
   // velocities.
   derivative_outcome differentiate(patch_contact &solver, const patch_memory *memory,
                                    wheel_derivative &work, const rp_input *directions,
-                                   const double *friction, int count,
+                                   const friction_rates *friction, int count,
                                    const derivative_options &options, const rp_side_result &result,
                                    rp_side_result *changes) const;
   // The last state is out of range for its geometry or normal problem, so its force is not known.

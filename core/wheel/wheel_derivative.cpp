@@ -61,7 +61,7 @@ struct wheel_derivative::step {
   patch_contact &solver;
   int count;
   const derivative_options &options;
-  const double *friction;
+  const friction_rates *friction;
   const rp_side_result &result;
   rp_side_result *changes;
   derivative_outcome outcome{};
@@ -91,7 +91,7 @@ struct wheel_derivative::step {
     return b == 0 ? depth : rated(solution.depth);
   }
 
-  step(const wheel_solution &w, patch_contact &p, const double *f, int n,
+  step(const wheel_solution &w, patch_contact &p, const friction_rates *f, int n,
        const derivative_options &o, const rp_side_result &found, rp_side_result *out)
       : wheel(w), solver(p), count(n), options(o), friction(f), result(found), changes(out) {}
 
@@ -116,8 +116,9 @@ struct wheel_derivative::step {
 };
 
 derivative_outcome wheel_derivative::solve(const wheel_solution &wheel, patch_contact &solver,
-                                           const side_motion *directions, const double *friction,
-                                           int count, const derivative_options &o,
+                                           const side_motion *directions,
+                                           const friction_rates *friction, int count,
+                                           const derivative_options &o,
                                            const rp_side_result &result, rp_side_result *changes) {
   step s(wheel, solver, friction, count, o, result, changes);
   s.begin(directions);
@@ -241,7 +242,7 @@ void wheel_derivative::set_motion(step &s, int index, patch_variation *in) {
       v.creepage[1] = s.rolling[b].eta.rate[slot];
       v.spin_creepage = s.rolling[b].phi.rate[slot];
       v.rolling_speed = s.rolling[b].rolling_speed.rate[slot];
-      v.friction_coefficient = s.friction[b * rate_directions + k];
+      v.friction = s.friction[b * rate_directions + k];
     }
   }
 }

@@ -45,12 +45,12 @@ class wheel_derivative {
   // The rules of geometry/patch.hpp whose shares are smooth, and all else this differentiates.
   static bool covers(const patch_rules &rules) { return rules.blended && !rules.inclined; }
 
-  // friction: rates of the friction coefficient. result: as the wheel's side reports it, for a left
+  // friction: of the directions. result: as the wheel's side reports it, for a left
   // wheel the mirror image, of which only what the mirror leaves as it is may be read. changes[k]:
   // rates of the right-hand wheel's doubles; statuses and counts are not set, but the grid's that
   // of the result.
   derivative_outcome solve(const wheel_solution &wheel, patch_contact &solver,
-                           const side_motion *directions, const double *friction, int count,
+                           const side_motion *directions, const friction_rates *friction, int count,
                            const derivative_options &o, const rp_side_result &result,
                            rp_side_result *changes);
   size_t bytes() const;

@@ -103,7 +103,7 @@ class wheels final : public driver {
   void rest_at(double touch, rp_result &result);
   void solve_supported(const rp_input &input, rp_result &result);
   void report_search(const verdict &found, double residual, rp_result &result) const;
-  double friction_rate(const rp_input &direction, const rp_input &input, int side) const;
+  friction_rates friction_rate(const rp_input &direction, const rp_input &input, int side) const;
 
   std::vector<wheel_contact> wheels_;
   size_t patches_;  // of each wheel

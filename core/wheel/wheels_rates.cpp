@@ -56,14 +56,16 @@ size_t wheels::derivative_bytes() const {
 }
 
 // Of the friction coefficient with its factors along the track and of a wheel.
-double wheels::friction_rate(const rp_input &direction, const rp_input &input, int side) const {
-  const double coefficient = solver_.scene().friction_coefficient;
-  const double scale = input.friction_scale[side], change = direction.friction_scale[side];
-  double rate = scale_[side] * direction.friction_coefficient;
-  if (!friction_along_.varies()) return rate + coefficient * change;
+friction_rates wheels::friction_rate(const rp_input &direction, const rp_input &input,
+                                     int side) const {
+  const double change = direction.friction_scale[side];
+  friction_rates out{direction.friction_coefficient, change, direction.water_rate,
+                     direction.water_temperature, direction.oil_film};
+  if (!friction_along_.varies()) return out;
   const double slope = friction_along_.slope(input.x);
-  rate += coefficient * scale * slope * direction.x;
-  return rate + coefficient * friction_along_.at(input.x) * change;
+  out.scale = input.friction_scale[side] * slope * direction.x;
+  out.scale += friction_along_.at(input.x) * change;
+  return out;
 }
 
 int wheels::found_columns(int (&columns)[3]) const {
@@ -101,7 +103,7 @@ void wheels::differentiate(const rp_input &direction, const rp_input &input,
   for (size_t w = 0; w < wheels_.size(); ++w) {
     const wheel_contact &wheel = wheels_[w];
     const int side = wheel.side();
-    const double friction[4] = {friction_rate(direction, input, side), 0, 0, 0};
+    const friction_rates friction[4] = {friction_rate(direction, input, side), {}, {}, {}};
     solver_.set_friction_scale(scale_[side]);
     const derivative_outcome outcome = wheel.differentiate(
         solver_, memory_of(w), rates_->wheels, inputs, friction, count, {}, result.side[side],
@@ -160,7 +162,7 @@ void wheels::differentiate(const rp_input &direction, const rp_input &input,
 // z follows. Returns false where they are not known.
 bool wheels::balance_slopes(const rp_input &at, const rp_result &result, balance_slope &slope) {
   rp_input inputs[3];
-  const double friction[3] = {0, 0, 0};
+  const friction_rates friction[3];
   int column[3];
   const int count = found_columns(column), z = force_given_ ? 1 : 0;
   for (int k = 0; k < count; ++k) inputs[k] = unit_direction(at, column[k]);
@@ -190,7 +192,7 @@ bool wheels::balance_slopes(const rp_input &at, const rp_result &result, balance
 
 void wheels::jacobian(const rp_input &input, const rp_result &result, rp_jacobian &out) {
   rp_input inputs[direction_count];
-  double friction[direction_count];
+  friction_rates friction[direction_count];
   const int count = friction_along_.varies() ? direction_count : direction_count - 1;
   for (int k = 0; k < count; ++k) {
     inputs[k] = unit_direction(input, directions[k]);

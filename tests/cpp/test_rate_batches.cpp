@@ -55,12 +55,12 @@ class RateBatches : public testing::Test {
     }
     return c;
   }
-  void differentiate(const rp_input *directions, const double *friction, int count,
+  void differentiate(const rp_input *directions, const friction_rates *friction, int count,
                      rp_side_result *changes) {
     wheel.differentiate(solver, memory.data(), work, directions, friction, count, {1e-10, false},
                         result, changes);
   }
-  std::vector<double> alone(const rp_input &direction, double friction) {
+  std::vector<double> alone(const rp_input &direction, const friction_rates &friction) {
     rp_side_result change{};
     differentiate(&direction, &friction, 1, &change);
     return numbers(change);
@@ -91,10 +91,10 @@ TEST_F(RateBatches, EveryDirectionIsWhatItIsAlone) {
   // what moves the surfaces, and then velocities alone
   constexpr int most = wheel_derivative::most_directions;
   rp_input directions[most];
-  double friction[most];
+  friction_rates friction[most];
   for (int k = 0; k < most; ++k) {
     directions[k] = no_direction();
-    friction[k] = 0.1 * (k + 1);
+    friction[k].coefficient = 0.1 * (k + 1);
     double *const rates[] = {&directions[k].y,         &directions[k].z,  &directions[k].roll,
                              &directions[k].yaw,       &directions[k].vy, &directions[k].speed,
                              &directions[k].pitch_rate};
@@ -120,7 +120,7 @@ TEST_F(RateBatches, EveryDirectionIsWhatItIsAlone) {
 
 // Before a direction that moves the wheelset, each that moves a side is known to move surfaces.
 TEST_F(RateBatches, WhatMovesASideMovesItsSurfacesAlone) {
-  const double friction[2] = {};
+  const friction_rates friction[2];
   for (const bool rail : {false, true})
     for (int k = 0; k < 6; ++k) {
       if (rail && k > 3) continue;  // rails turn about x only
@@ -132,7 +132,7 @@ TEST_F(RateBatches, WhatMovesASideMovesItsSurfacesAlone) {
       directions[1].yaw = 1;
       rp_side_result changes[2] = {};
       differentiate(directions, friction, 2, changes);
-      expect_same(alone(directions[0], 0), numbers(changes[0]));
+      expect_same(alone(directions[0], {}), numbers(changes[0]));
     }
 }
 
@@ -144,7 +144,7 @@ class RateBatchesByHertz : public RateBatches {
 // A whole batch that moves the surfaces, and a velocity in the next one.
 TEST_F(RateBatchesByHertz, WhatMovesSurfacesDoesNotReachTheNextBatch) {
   rp_input directions[rate_directions + 1];
-  const double friction[rate_directions + 1] = {};
+  const friction_rates friction[rate_directions + 1];
   for (rp_input &d : directions) d = no_direction();
   directions[0].y = directions[1].z = directions[2].roll = directions[3].yaw = 1;
   directions[4].wheel_offset[RP_RIGHT][1] = directions[5].rail_offset[RP_RIGHT][2] = 1;
@@ -153,7 +153,7 @@ TEST_F(RateBatchesByHertz, WhatMovesSurfacesDoesNotReachTheNextBatch) {
   differentiate(directions, friction, rate_directions + 1, changes);
   for (int k = 0; k <= rate_directions; ++k) {
     SCOPED_TRACE(k);
-    expect_same(numbers(changes[k]), alone(directions[k], 0));
+    expect_same(numbers(changes[k]), alone(directions[k], {}));
   }
 }
 
