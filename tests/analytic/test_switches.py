@@ -27,6 +27,7 @@ from railpatch.profiles.turnout import (
     CROWN,
     blade,
     blade_slice,
+    case_of,
     case_text,
     crossing,
     crossing_slice,
@@ -40,15 +41,6 @@ else:
     import tomli as tomllib
 
 Case = dict[str, Any]
-
-
-def case_of(kind: str, folder: Path) -> Case:
-    """A case of a turnout in a folder, with whole paths."""
-    slices = {"blade": blade, "crossing": crossing}[kind]()
-    case = tomllib.loads(case_text(write_slices(kind, slices, folder)))
-    for section in case["track"]["right"]["sections"]:
-        section["profile"] = str(folder / section["profile"])
-    return case
 
 
 def through(points: list[tuple[float, float]], spacing: float = 1e-4) -> Profile:

@@ -11,6 +11,7 @@ from typing import Any, Literal
 from railpatch.case.load import Scene
 from railpatch.case.patch import PatchCase
 from railpatch.case.to_core import config_of
+from railpatch.case.wheel import WheelRailCase, WheelsetCase
 from railpatch.contact import Contact
 from railpatch.errors import CaseError, ProfileError
 from railpatch.fmu.table import MOST_ITEMS
@@ -84,6 +85,11 @@ def own_source(scene: Scene, body: Body) -> str:
             "--rail-profile: given, allowed where the track's rail has no 'sections': profiles "
             "along the track are no choice"
         )
+    if body == "wheel" and round_wheels(case):
+        raise CaseError(
+            "--wheel-profile: given, allowed where the wheels have no 'sections': profiles round "
+            "a wheel are no choice"
+        )
     own = {case.profiles.of(body, side)[1] for side in case.sides}
     if len(own) > 1:
         found = " and ".join(repr(case.profiles.of(body, side)[1]) for side in case.sides)
@@ -94,11 +100,20 @@ def own_source(scene: Scene, body: Body) -> str:
     return str(own.pop())
 
 
+def round_wheels(case: WheelRailCase | WheelsetCase) -> bool:
+    """Whether a wheel's profile changes round it."""
+    return any(case.section_lists("wheelset").values())
+
+
 def file_conditions(scene: Scene) -> set[str]:
     """What the variables depend on where profiles are read at run time. Raises CaseError."""
     case = scene.case
     if isinstance(case, PatchCase):
         raise CaseError("--profile-files: given, allowed with wheels only")
+    if round_wheels(case):
+        raise CaseError(
+            "--profile-files: given, allowed where the wheels have no 'sections', which count then"
+        )
     along = any(getattr(case.track, side).sections for side in case.sides)
     # a rail that changes along the track is not one profile
     return {"wheel files"} if along else {"wheel files", "rail files"}

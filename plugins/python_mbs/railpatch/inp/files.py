@@ -107,7 +107,7 @@ def convert(path: Path) -> list[Converted]:
         if not goes_on or key in without:
             began[key] = case.number
         (without.discard if case.digits["T"] > 0 else without.add)(key)
-        mapping = Mapping(case, path.name)
+        mapping = Mapping(case, path.name, path.parent)
         try:
             tables, refused = mapping.tables(), None
             check_case(tables)

@@ -18,6 +18,7 @@ from railpatch.inp.digits import (
     SHAPE,
     USUAL,
 )
+from railpatch.inp.profiles import profiles_of, put_sections
 
 MM = 1e-3
 
@@ -25,9 +26,9 @@ MM = 1e-3
 class Mapping:
     """One case on its way. ``refuse`` raises with file and line."""
 
-    def __init__(self, case: Case, name: str) -> None:
+    def __init__(self, case: Case, name: str, folder: Path = Path()) -> None:
         self.case, self.digits, self.blocks = case, case.digits, case.blocks
-        self.name = name
+        self.name, self.folder = name, folder
         self.offset = (0.0, 0.0)  # m, of the grid's middle
 
     def refuse(self, what: str) -> CaseError:
@@ -366,6 +367,7 @@ class Mapping:
             raise self.refuse("C3 = 4 (influence of angles) without D = 4")
         if not self.tangential:
             method["tangential"] = "none"
+        profiles, sections = profiles_of(self.blocks, self.folder, self.refuse)
         tables = {
             "kind": "wheel_rail",
             "wheel": {"side": side},
@@ -373,8 +375,9 @@ class Mapping:
             "grid": {"element_size": [MM * patches["DX"], MM * patches["DS"]]},
             "wheelset": self._wheelset(side),
             "track": self._track(side),
-            "profiles": self._profiles(),
+            "profiles": profiles,
         }
+        put_sections(tables, sections, side)
         if d["T"] == 2:
             tables["motion"] = {"regime": "transient_rolling"}
             speed = abs(self._first_velocity()) * (self._roller_radius() if d["C1"] >= 4 else 1.0)
@@ -433,9 +436,11 @@ class Mapping:
     def _track(self, side: str) -> dict[str, Any]:
         d, b = self.digits, self.blocks
         t, roller = b["track"], d["C1"] >= 4
-        if not t["GAUGHT"] > 0:
-            raise self.refuse("GAUGHT <= 0 (a rail placed by RAILY0, RAILZ0)")
-        found: dict[str, Any] = {"gauge": MM * t["GAUGWD"], "gauge_height": MM * t["GAUGHT"]}
+        found: dict[str, Any] = {}
+        if t["GAUGHT"] > 0:
+            found = {"gauge": MM * t["GAUGWD"], "gauge_height": MM * t["GAUGHT"]}
+        elif roller:
+            raise self.refuse("GAUGHT <= 0 (a rail placed by RAILY0, RAILZ0) of rollers")
         if roller:
             if t.get("CURV", 0.0) != 0:
                 raise self.refuse("CURV of rollers")
@@ -465,30 +470,6 @@ class Mapping:
                 for force, k in ((s["FY"], s["KY"]), (s["FZ"], s["KZ"]))
             ]
             found.setdefault(side, {})["offset"] = [0.0, offset[1] + moved[0], offset[2] + moved[1]]
-        return found
-
-    def _profiles(self) -> dict[str, Any]:
-        found: dict[str, Any] = {}
-        lengths = []
-        for body in ("wheel", "rail"):
-            p = self.blocks[body]
-            if Path(p["file"]).suffix.lower() in (".slcs", ".slcw"):
-                raise self.refuse(f"a profile by slices ({p['file']})")
-            smooth, method = p["SMOOTH"], int(p.get("ISMOOTH", 0))
-            if smooth > 0 and method == 0:
-                raise self.refuse(f"SMOOTH = {smooth:g} by ISMOOTH = 0 (1 or 2 have a length)")
-            lengths.append(MM * max(smooth, 0.0))
-            found[body] = p["file"]
-            mirror = ("y" if p["MIRRORY"] == 1 else "") + ("z" if p.get("MIRRORZ", 0) == 1 else "")
-            reading = {"mirror": mirror} if mirror else {}
-            if p["SCALE"] not in (0.0, 1.0):
-                unit = {1000.0: "m", 25.4: "in"}.get(p["SCALE"])
-                if unit is None:
-                    raise self.refuse(f"SCALE = {p['SCALE']:g} of a profile (1, 25.4 or 1000)")
-                reading["unit"] = unit
-            if reading:
-                found[f"{body}_file"] = reading
-        if lengths[0] != lengths[1]:
-            raise self.refuse("two profiles with different smoothing")
-        found["smoothing"] = lengths[0]
+        if not t["GAUGHT"] > 0:
+            found.setdefault(side, {})["origin"] = [MM * t["RAILY0"], MM * t["RAILZ0"]]
         return found

@@ -39,9 +39,8 @@ def write_cases(files: list[tuple[str, dict[str, Any]]], source: Path, folder: P
     """
     profiles: dict[str, Path] = {}
     for _, tables in files:
-        for body in ("wheel", "rail"):
-            if (name := tables.get("profiles", {}).get(body)) is not None:
-                profiles[name] = source.parent / name
+        for table, key in named_profiles(tables):
+            profiles[table[key]] = source.parent / table[key]
     for name, place in profiles.items():
         if not place.is_file():
             raise CaseError(f"{source.name}: the profile {name!r} is not there: {place}")
@@ -54,9 +53,8 @@ def write_cases(files: list[tuple[str, dict[str, Any]]], source: Path, folder: P
     written = []
     for name, tables in files:
         whole = copy.deepcopy(tables)
-        for body in ("wheel", "rail"):
-            if body in whole.get("profiles", {}):
-                whole["profiles"][body] = Path(whole["profiles"][body]).name
+        for table, key in named_profiles(whole):
+            table[key] = Path(table[key]).name
         rows = whole.get("geometry", {}).get("undeformed_distance")
         if rows is not None:
             gap = f"{name}_gap.csv"
@@ -67,13 +65,34 @@ def write_cases(files: list[tuple[str, dict[str, Any]]], source: Path, folder: P
     return written
 
 
+def named_profiles(tables: dict[str, Any]) -> list[tuple[dict[str, Any], str]]:
+    """Tables and keys that name a profile's file."""
+    own = tables.get("profiles", {})
+    found = [(own, body) for body in ("wheel", "rail") if body in own]
+    for table in ("wheelset", "track"):
+        for side in ("left", "right"):
+            sections = tables.get(table, {}).get(side, {}).get("sections", ())
+            found += [(section, "profile") for section in sections]
+    return found
+
+
 def toml_of(table: dict[str, Any], name: str = "") -> str:
     """Of tables of texts, numbers and lists, whose spelling TOML shares with JSON."""
     plain = {key: value for key, value in table.items() if not isinstance(value, dict)}
     lines = [f"[{name}]"] if name and plain else []
-    lines += [f"{key} = {json.dumps(value, allow_nan=False)}" for key, value in plain.items()]
+    lines += [f"{key} = {value_of(value)}" for key, value in plain.items()]
     parts = ["\n".join(lines) + "\n"] if lines else []
     for key, value in table.items():
         if isinstance(value, dict):
             parts.append(toml_of(value, f"{name}.{key}" if name else key))
     return "\n".join(parts)
+
+
+def value_of(value: Any) -> str:
+    """Of a text, a number or a list, perhaps of tables."""
+    if isinstance(value, list) and value and isinstance(value[0], dict):
+        rows = [
+            ", ".join(f"{key} = {value_of(item)}" for key, item in row.items()) for row in value
+        ]
+        return "[\n" + "".join(f"  {{ {row} }},\n" for row in rows) + "]"
+    return json.dumps(value, allow_nan=False)

@@ -26,6 +26,7 @@ MISSING = 1e-6
 # least dy/ds of flanks inside of a profile: the core's surfaces end at 0.02, and rails lean
 STEEPEST = 0.1
 RIPPLE = 2e-4  # m
+SLACK = 1e-4  # m, of a feature at the end
 
 
 def matching_sections(profiles: Sequence[Profile]) -> list[Profile]:
@@ -78,7 +79,8 @@ def edges_of(profile: Profile, features: Sequence[float]) -> Array:
     """m, begin, features and end, each beyond the one before."""
     length = float(profile.arc_length[-1] - profile.arc_length[0])
     for before, feature in zip([0.0, *features], features, strict=False):
-        if not before <= feature <= length:
+        # the end may be said by the chords' length or to few digits
+        if not before <= feature <= length + SLACK:
             raise ProfileError(
                 profile.name,
                 f"has a feature at {feature:g} m, allowed {before:g} ... {length:g}: arc lengths "

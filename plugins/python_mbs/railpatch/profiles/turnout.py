@@ -12,14 +12,21 @@ writes a file of points for each slice, and a case that uses them.
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from railpatch.profiles.elementary import asin, cos, sin
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 Array = NDArray[np.float64]
 POINT_SPACING = 2.5e-4  # m, at most
@@ -31,6 +38,7 @@ CROWN = 0.3  # m, radius of a head
 LEAN = 0.15  # rad, of faces from upright
 FLANGEWAY = 0.044  # m
 DIVERGENCE = 1 / 15  # of both routes' gauge lines at a crossing
+NOSE_TIP, BLADE_TIP = 0.006, 0.003  # m, how wide
 BLADE_DIVERGENCE = 1 / 60  # of a stock rail's face and the gauge line
 
 
@@ -127,7 +135,7 @@ def crossing(step: float = 0.075) -> list[Slice]:
 
 def crossing_slice(x: float) -> Slice:
     """x: m, from the nose's tip on."""
-    width = 0.006 + DIVERGENCE * x
+    width = NOSE_TIP + DIVERGENCE * x
     wing = head(width + FLANGEWAY, -0.003 * min(1.0, max(0.0, (1.0 - x) / 0.5)))
     corner = crown_from(width + FLANGEWAY)
     if x < 0:
@@ -154,12 +162,12 @@ def blade(step: float = 0.15) -> list[Slice]:
 
 def blade_slice(x: float) -> Slice:
     """x: m, from the blade's tip on."""
-    width = 0.003 + BLADE_DIVERGENCE * x
+    width = BLADE_TIP + BLADE_DIVERGENCE * x
     stock = head(max(width, 0.0), 0.0)
     corner = crown_from(max(width, 0.0))
     if x < 0:
         return Slice(x, stock, (0.0, 0.0, arc_length_at(stock, corner)))
-    top = float(np.interp(width, [0.003, 0.025, 0.05], [0.014, 0.003, 0.0]))
+    top = float(np.interp(width, [BLADE_TIP, 0.025, 0.05], [0.014, 0.003, 0.0]))
     own = head(0.0, top)
     joint = hidden_from(own, stock)
     points = np.concatenate([between(own, -1.0, joint), between(stock, joint, 1.0)[1:]])
@@ -240,6 +248,14 @@ elements = [16, 16]
 shear_modulus = 8.2e10
 poisson_ratio = 0.28
 """
+
+
+def case_of(kind: str, folder: Path) -> dict[str, Any]:
+    """The same as a dictionary, with whole paths; writes the slices to a folder. Raises OSError."""
+    case: dict[str, Any] = tomllib.loads(case_text(write_slices(kind, KINDS[kind](), folder)))
+    for section in case["track"]["right"]["sections"]:
+        section["profile"] = str(folder / section["profile"])
+    return case
 
 
 def main() -> None:

@@ -137,6 +137,7 @@ def load_wear(path: str | Path) -> WearPlan:
                 raise CaseError(
                     f"vary.key: value is {key!r}, allowed for wear none of {body} profiles"
                 )
+    refuse_round_wheels(mix)
     if "rail" in table.worn:
         refuse_rails(mix)
     if table.weights is not None and len(table.weights) != len(mix.points):
@@ -145,6 +146,16 @@ def load_wear(path: str | Path) -> WearPlan:
             f"{len(mix.points)} cases"
         )
     return WearPlan(mix, table)
+
+
+def refuse_round_wheels(mix: Plan) -> None:
+    """Wheels that have no one profile to wear. Raises CaseError."""
+    for point in mix.points:
+        if any(check_case(mix.case(point)).section_lists("wheelset").values()):
+            raise CaseError(
+                "wear: wheels wear, allowed where the wheels have no 'sections': one that is not "
+                "worn alike all round has several profiles"
+            )
 
 
 def refuse_rails(mix: Plan) -> None:
