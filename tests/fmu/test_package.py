@@ -287,8 +287,11 @@ def test_terminals_hold_variables_that_are_there(fmi: int, tmp_path: Path) -> No
         assert set(members) <= names
         assert len(set(members)) == len(members)
         # what moves a scene is in a terminal, z too, whose output has the same name
-        moving = {v.name for v in read_model_description(str(path)).modelVariables
-                  if v.causality == "input" and v.name.startswith(("wheelset.", "track."))}  # fmt: skip
+        moving = {
+            v.name
+            for v in read_model_description(str(path)).modelVariables
+            if v.causality == "input" and v.name.startswith(("wheelset.", "track."))
+        }
         assert moving <= set(members)
         if name == "rail":
             assert "wheelset.z" in moving
