@@ -47,6 +47,8 @@ CHANGES: dict[str, tuple[float, ...]] = {
 LENGTHS = (2e-5, -2e-5, 1e-4, 3e-4)
 # a wheel that is not there, a number of something, or bits of the solver's way
 SILENT = ("status", "patch_count", "share", "elements.", "iterations", "residual", "contact_area")
+# of whole elements; where it is greatest the patch slips, and friction and pressure alone count
+SILENT += ("contact_size", "max_traction")
 
 
 def listed(fmu: Fmu, tag: str) -> dict[str, set[str]]:

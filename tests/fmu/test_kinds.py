@@ -231,7 +231,7 @@ def test_every_vector_names_its_frame_and_every_turn_its_point(
         text, quantity = variable.attrib["description"], variable[0].attrib.get("quantity")
         own = variable.attrib["name"]
         if own.endswith("]"):
-            assert re.search(r"(track|wheelset) axes|contact frame", text), own
+            assert re.search(r"(track|wheelset|profile) axes|contact frame", text), own
         if own.startswith("wheelset") and quantity in ("Angle", "AngularVelocity"):
             assert re.search(r"through|about its axle", text), own
         if quantity == "Torque":

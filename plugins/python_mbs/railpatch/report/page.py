@@ -18,7 +18,16 @@ from railpatch.page.parts import folded
 from railpatch.page.patch_figure import most_loaded, states_of
 from railpatch.page.printing import write_page
 from railpatch.page.tables import number, table, whole
-from railpatch.report import answers, balance_figures, figures, reference, rig_page, tables, worn
+from railpatch.report import (
+    answers,
+    balance_figures,
+    figures,
+    quantities,
+    reference,
+    rig_page,
+    tables,
+    worn,
+)
 from railpatch.report.beside import Beside, beside_log, beside_measured, beside_record
 from railpatch.report.beside_page import section
 from railpatch.report.data import Positions, positions, snapshot
@@ -167,6 +176,7 @@ def _sections(
         f"<h2>Forces on the {body}</h2><p>In track axes: x forward, y right, z down. The log holds "
         f"forces on the wheel; these are their opposites.</p>",
         plot(figures.forces(data, matches), "forces"),
+        *quantities.section(data),
         "<h2>Load transfer and position of the wheelset</h2>",
         plot(figures.wheelset_position(data, matches), "position"),
         *rig_page.sections(data),

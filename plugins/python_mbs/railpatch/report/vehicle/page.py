@@ -13,7 +13,7 @@ from railpatch.case.types import SIDES
 from railpatch.page import tables
 from railpatch.page.figures import plot
 from railpatch.page.parts import BAD, folded, opening
-from railpatch.report import balance_figures, worn
+from railpatch.report import balance_figures, quantities, worn
 from railpatch.report.data import has_bulk
 from railpatch.report.patch_views import over_distance
 from railpatch.report.scene import friction_of
@@ -129,7 +129,13 @@ def _comfort(data: VehicleRun) -> list[tuple[str, str]]:
 def wheels(data: VehicleRun) -> tuple[Sequence[str], list[list[object]]]:
     """Head and rows of the table of all wheels."""
     head = ["wheelset", "wheel", "Q least [kN]", "Q most [kN]", "Y/Q most", "y most [mm]"]
-    head += ["lost in friction [kJ]", "patches", "without contact", "not converged"]
+    head += [
+        *quantities.HEAD,
+        "lost in friction [kJ]",
+        "patches",
+        "without contact",
+        "not converged",
+    ]
     rows = []
     for number in data.wheelsets:
         lateral = 1e3 * float(np.nanmax(np.abs(data.wheelsets[number]["y"])))
@@ -141,6 +147,7 @@ def wheels(data: VehicleRun) -> tuple[Sequence[str], list[list[object]]]:
             patches = max(len(m["patches"]) for m in data.contact[wheel].messages)
             row: list[object] = [number, side, *map(tables.number, (load.min(), load.max()))]
             row += [tables.number(_greatest(data.ratio(wheel))), tables.number(lateral)]
+            row += quantities.greatest(data.contact[wheel])
             row.append(tables.number(1e-3 * data.friction_work(wheel)[-1]))
             rows.append([*row, patches, int((status == "no_contact").sum()), int(bad.sum())])
     return head, rows
@@ -175,6 +182,7 @@ def _sections(data: VehicleRun) -> list[str]:
     parts += [
         f"<h2>Y/Q</h2><p>On the rail, outward &gt; 0, {data.averaging}.</p>",
         plot(figures.ratios(data), "ratios"),
+        *quantities.vehicle_section(data),
         "<h2>Wheelsets on the track</h2>",
         plot(figures.positions(data), "positions"),
     ]

@@ -1,0 +1,99 @@
+"""What engineers read, on the pages of runs: the numbers of the log, each in its panel."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import plotly.graph_objects as go
+import pytest
+from railpatch.log import read_run
+from railpatch.report import quantities, write_report
+from railpatch.report.data import positions
+from railpatch.report.vehicle.data import vehicle_run
+
+from wheelset_demo.scene import load_wheelset_scene, scene_file
+from wheelset_demo.simulation import run_scene
+from wheelset_demo.vehicle import load_vehicle_scene
+from wheelset_demo.vehicle.simulation import Simulation
+from wheelset_demo.vehicle.trace import run_vehicle
+
+
+@pytest.fixture(scope="module")
+def wheelset_log(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("quantities")
+    text = scene_file("s1002.toml").read_text(encoding="utf-8")
+    text = text.replace('"half_space"', '"hertz"').replace('"full"', '"fastsim"')
+    (folder / "own.toml").write_text(text, encoding="utf-8")
+    scene = load_wheelset_scene(folder / "own.toml", {"distance": 0.6, "step": 1e-3})
+    run_scene(scene, folder / "a.mcap")
+    return folder / "a.mcap"
+
+
+def panels(figure: go.Figure) -> dict[str, list[go.Scatter]]:
+    """Traces by the title of their panel, which stands at its upper left corner."""
+    titles = {(round(a.x, 6), round(a.y, 6)): a.text for a in figure.layout.annotations}
+    found: dict[str, list[go.Scatter]] = {}
+    for trace in figure.data:
+        across = figure.layout[f"xaxis{(trace.xaxis or 'x')[1:]}"].domain
+        upward = figure.layout[f"yaxis{(trace.yaxis or 'y')[1:]}"].domain
+        title = titles.get((round(across[0], 6), round(upward[1], 6)))
+        if title is not None:
+            found.setdefault(title, []).append(trace)
+    return found
+
+
+def test_a_wheelset_has_all_of_them(wheelset_log: Path) -> None:
+    data = positions(read_run(wheelset_log))
+    figure = quantities.figure(data)
+    assert figure is not None
+    found = panels(figure)
+    assert set(found) == {
+        *("wear number T\u03b3 [N]", "Y/Q", "guiding force Y [kN]", "wheel load Q [kN]"),
+        *("utilised friction", "greatest traction [MPa]", "extent along x [mm]"),
+        *("extent across [mm]", "y on the wheel's profile [mm]", "y on the rail's profile [mm]"),
+        *("rolling radius difference [mm]", "radius difference over 2 y"),
+    }
+    # against the forces of the log, by separate arithmetic
+    for trace, side, outward in zip(found["Y/Q"], ("left", "right"), (1, -1), strict=True):
+        force = data.contact[side]["force"]
+        assert np.allclose(trace.y, outward * force[:, 1] / -force[:, 2], atol=1e-12)
+    for trace, side in zip(found["wheel load Q [kN]"], ("left", "right"), strict=True):
+        assert np.allclose(trace.y, -1e-3 * data.contact[side]["force"][:, 2])
+    assert all(0 <= v <= 1 + 1e-9 for trace in found["utilised friction"] for v in trace.y)
+    # wear number: over speed it is the power that creepages supply, here all of one sign
+    for trace, side in zip(found["wear number T\u03b3 [N]"], ("left", "right"), strict=True):
+        patches = [m["patches"] for m in data.contact[side].messages]
+        wanted = [
+            sum(
+                abs(p["creep_force"][0] * p["creepage"][0])
+                + abs(p["creep_force"][1] * p["creepage"][1])
+                + abs(p["spin_moment"] * p["spin_creepage"])
+                for p in own
+            )
+            for own in patches
+        ]
+        assert np.allclose(trace.y, wanted, rtol=1e-9)
+
+
+def test_the_page_has_the_figure(wheelset_log: Path, tmp_path: Path) -> None:
+    page = write_report(wheelset_log, tmp_path / "a.html").read_text(encoding="utf-8")
+    assert "<h2>What engineers read</h2>" in page
+
+
+def test_a_vehicle(tmp_path: Path) -> None:
+    """Three courses of each wheel and one of each wheelset; greatest numbers in its table."""
+    scene = load_vehicle_scene().with_method(normal="hertz", tangential="fastsim")
+    scene = scene.with_run(duration=0.02, log_every=1)
+    run_vehicle(Simulation(scene), output=tmp_path / "a.mcap")
+    data = vehicle_run(read_run(tmp_path / "a.mcap"))
+    found = panels(quantities.vehicle_figure(data))
+    assert len(found["T\u03b3 [N]"]) == 4
+    contact = data.contact[1, "left"]
+    assert np.allclose(found["T\u03b3 [N]"][0].y, contact["wear_number"])
+    assert len(found["rolling radius difference [mm]"]) == 4
+    first = [m["patches"][0]["wheel_profile_position"][0] for m in contact.messages]
+    assert np.allclose(found["y on the profile [mm]"][0].y, 1e3 * np.array(first))
+    page = write_report(tmp_path / "a.mcap", tmp_path / "a.html").read_text(encoding="utf-8")
+    for words in quantities.HEAD:
+        assert f">{words}</th>" in page
