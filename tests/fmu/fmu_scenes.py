@@ -138,6 +138,24 @@ SCENES: dict[str, dict[str, Any]] = {
             for side in ("left", "right")
         },
     ),
+    "turnout": with_values(
+        RAIL,
+        wheelset__z=None,
+        wheelset__vertical_force=1.2e5,
+        profiles__rail=None,
+        profiles__rail_left="UIC60@1:40",
+        track__section_blend="cubic",
+        track__right__origin=[0.7605, 1e-5],
+        track__right__sections=[
+            {"position": 0.0, "profile": "UIC60@1:40", "features": [0.06, 0.09]},
+            {"position": 2.0, "profile": "UIC60@1:20", "features": [0.062, 0.09], "kink": True},
+            {"position": 2.5, "profile": "UIC60@1:40", "features": [0.063, 0.09]},
+        ],
+        wheelset__right__sections=[
+            {"angle": 0.0, "profile": "S1002"},
+            {"angle": 3.0, "profile": "worn@14"},
+        ],
+    ),
     "along": with_values(RAIL, friction__along_track=[[0.0, 1.0], [1.0, 0.5]]),
     "flat": with_values(
         RAIL,
@@ -194,6 +212,10 @@ MOTIONS: dict[str, list[dict[str, float]]] = {
     "supported": [{"wheelset.y": 1e-4}, {"wheelset.z": 2.2e-4, "track.left.velocity[2]": 0.01}],
     "springs": [{"wheelset.y": 1e-4}, {"wheelset.z": 6e-4, "wheelset.yaw": 1e-3}],
     "sections": [{"wheelset.x": 0.4}, {"wheelset.x": 1.7, "wheelset.yaw": 1e-3}],
+    "turnout": [
+        {"wheelset.x": 0.4, "wheelset.pitch": 0.2},
+        {"wheelset.x": 2.2, "wheelset.pitch": -0.3},
+    ],
     "along": [{"wheelset.x": 0.4}, {"wheelset.x": 0.9, "wheelset.yaw": 1e-3}],
     "flat": [
         {"wheelset.x": 0.4, "wheelset.pitch": 0.5},

@@ -101,6 +101,7 @@ SOLVED += (
     "transient",
     "supported",
     "sections",
+    "turnout",
     "along",
     "flat",
 )

@@ -29,6 +29,7 @@ bool read_field(Words &words, T &field) {
     field = static_cast<T>(value);
     return true;
   } else {
+    if constexpr (std::is_same_v<T, double>) return words.number_or_none(field);
     return words.number(field);
   }
 }

@@ -3,7 +3,7 @@
 //
 //   railpatch-fmu-scene 1
 //   guid {...}
-//   set FIELD VALUE...                          a field of rp_config
+//   set FIELD VALUE...                          a field of rp_config; "-" of one side: left out
 //   profile wheel|rail SIDE ARRAY COUNT VALUE...
 //   section SIDE INDEX ARRAY COUNT VALUE...     a rail's profile along the track, indices from 0;
 //                                               ARRAY may be position or kink: one value

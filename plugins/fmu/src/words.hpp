@@ -40,18 +40,26 @@ class Words {
     return true;
   }
 
-  bool number(double &value) {
+  bool number(double &value) { return number_of(next(), value); }
+  // "-" stands for NaN: what is left out.
+  bool number_or_none(double &value) {
     const std::string_view word = next();
-    const char *end = word.data() + word.size();
-    if (word.empty()) return false;
-    const auto read = std::from_chars(word.data(), end, value);
-    return read.ec == std::errc() && read.ptr == end && std::isfinite(value);
+    if (word != "-") return number_of(word, value);
+    value = std::numeric_limits<double>::quiet_NaN();
+    return true;
   }
 
   bool done() { return rest_.find_first_not_of(' ') == std::string_view::npos; }
   size_t left() const { return rest_.size(); }
 
  private:
+  static bool number_of(std::string_view word, double &value) {
+    const char *end = word.data() + word.size();
+    if (word.empty()) return false;
+    const auto read = std::from_chars(word.data(), end, value);
+    return read.ec == std::errc() && read.ptr == end && std::isfinite(value);
+  }
+
   std::string_view rest_;
 };
 

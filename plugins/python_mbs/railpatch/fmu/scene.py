@@ -296,5 +296,5 @@ def spell_array(values: Any) -> str:
 
 
 def spell(numbers: Any) -> str:
-    """The shortest text that gives the same bits again."""
-    return " ".join(repr(n) for n in np.asarray(numbers).tolist())
+    """The shortest text that gives the same bits again; "-" for NaN."""
+    return " ".join("-" if n != n else repr(n) for n in np.asarray(numbers).tolist())
