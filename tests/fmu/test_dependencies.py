@@ -101,7 +101,6 @@ SOLVED += (
     "transient",
     "supported",
     "sections",
-    "turnout",
     "along",
     "flat",
 )
