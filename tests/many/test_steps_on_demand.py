@@ -138,7 +138,7 @@ def test_one_quantity_is_that_of_all(name: str) -> None:
 def test_every_moving_key_has_a_type() -> None:
     """Those of all kinds stand in the signature that editors and notebooks complete from."""
     moving = {key for case in CASES.values() for key in moving_keys(check_case(case))}
-    moving |= {"tangential_force", "distance", "steps", "temperature"}
+    moving |= {"tangential_force", "distance", "steps", "temperature", "regime"}
     assert moving == set(Moving.__annotations__)
     keys = set(inspect.signature(Contact.step).parameters)
     assert keys == {"self", "fields", *moving}
