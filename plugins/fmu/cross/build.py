@@ -36,6 +36,7 @@ OPTIONS = {
     "RAILPATCH_FMU": "ON",
     "RAILPATCH_PYTHON": "OFF",
     "RAILPATCH_TESTS": "OFF",
+    "RAILPATCH_UNITY": "ON",
     "RAILPATCH_WERROR": "OFF",  # this Clang warns of more than the compilers that we check with
 }
 # what the compiler's own runtime, linked into each library, is under
