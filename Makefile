@@ -64,7 +64,7 @@ demo: setup ## set-up, roller-rig replay, wheelset on track, an FMU; a page with
 	@printf '\nOpen this page: pictures of all of it, with links to the reports:\n  %s\n' \
 		"file://$(CURDIR)/build/demo/index.html"
 
-fmu: setup fmu-fftw ## FMUs of the default scene and of each kind for Linux, ARM, Windows; one with FFTW (GPL)
+fmu: setup fmu-fftw ## FMUs (FMI 2, 3) of the default scene and each kind for Linux, ARM, Windows; one with FFTW (GPL)
 	@mkdir -p build/fmu
 	$(BIN)/python -m pip install --quiet --group cross
 	$(BIN)/python plugins/fmu/cross/build.py build/fmu
@@ -74,7 +74,9 @@ fmu: setup fmu-fftw ## FMUs of the default scene and of each kind for Linux, ARM
 	@kinds="$$($(BIN)/python -c 'from railpatch.fmu.scenes import kinds; print(*kinds())')"; \
 	for kind in $$kinds; do \
 		$(BIN)/railpatch fmu --scene $$kind --libraries build/fmu/lib -o build/fmu/$$kind.fmu; \
+		$(BIN)/railpatch fmu --scene $$kind --fmi 3 --libraries build/fmu/lib -o build/fmu/$${kind}_fmi3.fmu; \
 		$(BIN)/python plugins/fmu/cross/check.py build/fmu/$$kind.fmu build/fmu/check; \
+		$(BIN)/python plugins/fmu/cross/check.py build/fmu/$${kind}_fmi3.fmu build/fmu/check; \
 	done
 	$(BIN)/python tests/bits/systems.py build/fmu
 
@@ -85,13 +87,14 @@ fmu-fftw: setup ## the FMU's library with FFTW, for `railpatch fmu --fft fftw --
 	$(BIN)/python -c 'from railpatch.fmu.libraries import stamp; print(stamp())' \
 		> $(FMU_FFTW)/railpatch/fmu/lib/stamp.txt
 
-fmu-clients: fmu ## the same in clients that others wrote: fmpy, libcosimpy, ecospy, FMI4j, VDMCheck2
+fmu-clients: fmu ## the same in clients that others wrote: fmpy, fmuloader, libcosimpy, ecospy, FMI4j, VDMCheck2
 	plugins/fmu/clients/run build/fmu/clients $$(ls build/fmu/*.fmu | grep -v gpl)
 
 contact-addon: setup ## the library with the calls of the program CONTACT, for Linux and Windows, in build/contact_addon
 	@mkdir -p build/contact_addon
 	$(BIN)/python -m pip install --quiet --group cross
-	$(BIN)/python plugins/contact_addon/build.py build/contact_addon
+	$(BIN)/python plugins/contact_addon/build.py build/fmu build/contact_addon
+	$(BIN)/python tests/contact_addon/systems.py build/fmu build/contact_addon
 
 wheels: fmu ## wheels for Linux and Windows, their checks, and a first hour's work in a clean environment
 	@.ci/system-packages mvn:maven readelf:binutils
@@ -107,7 +110,10 @@ smoke: ## the wheels of `make wheels` in many environments; Debian's need root a
 
 release: wheels ## build/release-files: wheels, source archive, FMUs, checksums, bill of materials
 	rm -rf build/release-files && mkdir -p build/release-files
-	$(BIN)/python -m build --sdist --outdir build/release-files .
+	@# of the files that git knows: not of what lies below build/, which takes minutes to walk through
+	rm -rf build/source && mkdir -p build/source
+	git ls-files -z | tar -c --null -T - | tar -x -C build/source
+	$(BIN)/python -m build --sdist --outdir build/release-files build/source
 	cp build/wheels/*.whl build/release-files
 	cp $$(ls build/fmu/*.fmu | grep -v gpl) build/release-files
 	$(BIN)/python plugins/python_mbs/wheels/bill.py build/release-files

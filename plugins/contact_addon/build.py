@@ -1,8 +1,9 @@
 """Builds the library with the calls of the program CONTACT for Linux and Windows:
-python build.py FOLDER
+python build.py TREES FOLDER
 
-Everything is made below FOLDER; FOLDER/lib has the libraries, the header and the Fortran module.
-Needs what plugins/fmu/cross/build.py needs. --platforms names some.
+TREES is the folder of plugins/fmu/cross/build.py, made there or here: both take the core that was
+compiled for a system from the same tree. FOLDER/lib has the libraries, the header and the Fortran
+module. Needs what that program needs. --platforms names some.
 """
 
 from __future__ import annotations
@@ -23,17 +24,17 @@ DEFAULT = ("linux64", "win64")
 def main() -> None:
     """All platforms."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("trees", type=Path)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--platforms", nargs="+", choices=DEFAULT, default=list(DEFAULT))
     arguments = parser.parse_args()
-    folder = arguments.folder.resolve()
-    use_cache(folder)
+    trees, folder = arguments.trees.resolve(), arguments.folder.resolve()
+    use_cache(trees)
     place = folder / "lib"
     shutil.rmtree(place, ignore_errors=True)
     place.mkdir(parents=True)
-    more = {"RAILPATCH_FMU": "OFF", "RAILPATCH_CONTACT_ADDON": "ON"}
     for name in arguments.platforms:
-        tree = compile_for(name, folder, ["contact_addon"], **more)
+        tree = compile_for(name, trees, ["contact_addon"], RAILPATCH_CONTACT_ADDON="ON")
         library = f"contact_addon_{name}{ENDINGS[PLATFORMS[name][1]]}"
         shutil.copy(tree / "plugins" / "contact_addon" / library, place)
     for name in ("contact_addon.h", "contact_addon.f90"):

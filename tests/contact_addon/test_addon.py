@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import railpatch
+from addon_inputs import write_inputs
 from profile_files import columns, simpack
 from published_data import MANCHESTER, numbers
 from railpatch.profiles import Reading, load_profile
@@ -45,20 +46,7 @@ def made(tmp_path_factory):
     for command in (c, fortran):
         done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
-    files = {}
-    for body, kind, mirror in (("wheel", 1, 1), ("rail", 0, 0)):
-        rows = read_numbers(MANCHESTER[body])
-        y, z = (np.array([row[key] for row in rows]) for key in ("y_mm", "z_mm"))
-        points = columns(-y[::-1], z[::-1]) if mirror else columns(y, z)
-        keys = {"units_len_f": "+1.0E+03", "mirror_y": mirror, "inversion": mirror}
-        files[body] = folder / f"{body}.{'prw' if kind else 'prr'}"
-        files[body].write_text(simpack(points, kind=kind, **keys))
-    keys = ("y_ws_mm", "roll_rad", "yaw_rad", "pitch_rate_rad_s")
-    lines = [
-        " ".join(repr(row[key]) for key in keys) for row in numbers("manchester_a22_right.csv")
-    ]
-    positions = folder / "positions.txt"
-    positions.write_text("\n".join(lines) + "\n")
+    files, positions = write_inputs(folder)
     return folder, files, positions
 
 

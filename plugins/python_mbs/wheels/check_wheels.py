@@ -42,12 +42,17 @@ SYSTEM = {
 PYTHON = {"cp310": r"python310\.dll", "cp311": r"python311\.dll", "cp312": r"python3\.dll"}
 
 
+def files_in(archive: zipfile.ZipFile) -> list[str]:
+    """Their names; auditwheel's archives have folders too."""
+    return [name for name in archive.namelist() if not name.endswith("/")]
+
+
 def check_record(archive: zipfile.ZipFile) -> None:
     """Every file is there as it was recorded."""
-    (record,) = (name for name in archive.namelist() if name.endswith(".dist-info/RECORD"))
+    (record,) = (name for name in files_in(archive) if name.endswith(".dist-info/RECORD"))
     rows = list(csv.reader(io.StringIO(archive.read(record).decode())))
     recorded = {name: digest for name, digest, _ in rows}
-    must(recorded.keys() == set(archive.namelist()), "RECORD names every file")
+    must(recorded.keys() == set(files_in(archive)), "RECORD names every file, and no other")
     for name, digest in recorded.items():
         if name != record:
             found = base64.urlsafe_b64encode(hashlib.sha256(archive.read(name)).digest())
@@ -56,7 +61,7 @@ def check_record(archive: zipfile.ZipFile) -> None:
 
 def check_content(path: Path, archive: zipfile.ZipFile) -> set[str]:
     """Libraries, licences; gives the names of what all wheels have alike."""
-    names = archive.namelist()
+    names = files_in(archive)
     for platform in PLATFORMS:
         folder = f"railpatch/fmu/lib/{platform}/"
         libraries = [name for name in names if name.startswith(folder)]
@@ -78,7 +83,7 @@ def check_content(path: Path, archive: zipfile.ZipFile) -> set[str]:
 
 def check_module(path: Path, archive: zipfile.ZipFile) -> str:
     """What the extension module asks for; gives it in words."""
-    (name,) = (n for n in archive.namelist() if re.match(r"railpatch/_core\..*(so|pyd)$", n))
+    (name,) = (n for n in files_in(archive) if re.match(r"railpatch/_core\..*(so|pyd)$", n))
     with tempfile.TemporaryDirectory() as folder:
         module = Path(archive.extract(name, folder))
         if "win_amd64" in path.name:
