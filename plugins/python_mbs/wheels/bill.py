@@ -76,7 +76,7 @@ def contained() -> list[Component]:
         ),
         ("ziglang", version("ziglang"), "MIT", "pypi", None, "compiler-rt, in all binaries"),
         ("mingw-w64", mingw, "ZPL-2.1", "generic", None, "runtime, in binaries for Windows"),
-        ("fmpy", version("fmpy"), "BSD-2-Clause", "pypi", None, "headers of FMI 2.0, in FMUs"),
+        ("fmpy", version("fmpy"), "BSD-2-Clause", "pypi", None, "headers of FMI, in FMUs"),
     )
     return [
         Component(

@@ -259,22 +259,23 @@ def tried(environment: Environment, wheels: Path, folder: Path, native: bool) ->
 def table(rows: Iterable[dict[str, object]]) -> str:
     """Markdown."""
     lines = [
-        "| environment | Python | system | wheel | numpy, scipy | installed, s | all, s | result |",
-        "|---|---|---|---|---|---|---|---|",
+        "| environment | Python | system | wheel | numpy, scipy "
+        "| `solve`, digest | `rig`, digest | `report` | `fmu` 2.0, 3.0, in fmpy |",
+        f"|{'---|' * 9}",
     ]
     for row in rows:
         name = f"`{row['name']}`, {row['text']}"
         if "missing" in row:
-            lines.append(f"| {name} | | | | | | | not tried: needs {row['missing']} |")
+            lines.append(f"| {name} | | | | | | | | not tried: needs {row['missing']} |")
         elif "failed" in row:
             last = str(row["failed"]).strip().splitlines()[-1:]
-            lines.append(f"| {name} | | | | | | {row['seconds']} | failed: {' '.join(last)} |")
+            lines.append(f"| {name} | | | | | | | | failed: {' '.join(last)} |")
         else:
             libraries = row["with"]
             cells = (
-                *(name, row["python"], row["libc"], row["tags"][0]),
+                *(name, row["python"], row["libc"], f"`{row['tags'][0]}`"),
                 f"{libraries['numpy']}, {libraries['scipy']}",
-                *(row["install_seconds"], row["seconds"], f"`{row['solve']}`, `{row['rig']}`"),
+                *(f"`{row['solve']}`", f"`{row['rig']}`", "ran", "ran"),
             )
             lines.append(f"| {' | '.join(map(str, cells))} |")
     return "\n".join(lines) + "\n"
