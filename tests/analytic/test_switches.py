@@ -225,6 +225,15 @@ def test_left_is_the_mirror_image(tmp_path: Path) -> None:
         assert b["force"] == [a["force"][0], -a["force"][1], a["force"][2]]
 
 
+def test_the_other_rail_is_not_read(tmp_path: Path) -> None:
+    """As runs of a wheelset ask for one wheel alone: sections of the other side, and what is said
+    of them, are left."""
+    case = case_of("blade", tmp_path)
+    other = with_values(case, wheel__side="left", profiles__rail_left="UIC60@1:40")
+    plain = with_values(other, track={"gauge": 1.435}, profiles__rail_file=None)
+    assert solve(other)["force"] == solve(plain)["force"]
+
+
 # --- round the wheel ------------------------------------------------------------------------------
 
 

@@ -436,16 +436,19 @@ class _WheelCase(Table):
                 allowed = "a number with method.tangential = 'none': nothing turns the axle"
                 yield relation(f"wheelset.{name}", shown, allowed)
 
-    def section_lists(self, *tables: str) -> dict[str, list[Section] | list[WheelSection]]:
-        """Profiles along the track and round the wheels, by key."""
+    def section_lists(
+        self, *tables: str, every: bool = False
+    ) -> dict[str, list[Section] | list[WheelSection]]:
+        """Profiles along the track and round the wheels, by key; every: of a side without a wheel
+        too, which a case of both leaves in one of its wheels."""
         return {
             f"{table}.{side}.sections": getattr(getattr(self, table), side).sections or []
             for table in tables
-            for side in self.sides
+            for side in (SIDES if every else self.sides)
         }
 
     def _check_profiles(self) -> Problems:
-        lists = self.section_lists("track", "wheelset")
+        lists = self.section_lists("track", "wheelset", every=True)
         yield from check_blend(self.track.section_blend, lists)
         for body in ("wheel", "rail"):
             yield from self._check_read(body)
@@ -462,7 +465,7 @@ class _WheelCase(Table):
     def _check_read(self, body: Literal["wheel", "rail"]) -> Problems:
         """What is said of files is said of some."""
         names = [self.profiles.of(body, side)[1] for side in self.sides]
-        lists = self.section_lists("track" if body == "rail" else "wheelset")
+        lists = self.section_lists("track" if body == "rail" else "wheelset", every=True)
         names += [part.profile for own in lists.values() for part in own]
         files = [name for name in names if name and builtin_profile(name, body) is None]
         table = getattr(self.profiles, f"{body}_file")
