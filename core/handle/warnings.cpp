@@ -79,7 +79,9 @@ uint32_t warnings_of_patch(const rp_config &config, const rp_patch_result &patch
 // pitch_rate: given or found
 uint32_t warnings_of_side(const rp_config &config, const rp_input &input, double pitch_rate,
                           int side, const rp_side_result &wheel) {
-  uint32_t found = 0;
+  const double friction = config.friction_coefficient * input.friction_scale[side];
+  uint32_t found = bit(RP_WARNING_FRICTION, config.tangential != RP_TANGENTIAL_NONE &&
+                                                friction > friction_coefficient_range[1]);
   double load = 0;
   for (int i = 0; i < wheel.patch_count + wheel.alternative_count; ++i) {
     const rp_patch_result &patch = wheel.patch[i];
@@ -116,9 +118,7 @@ uint32_t warnings_of_case(const rp_config &config) {
   const bool layer =
       config.layer_thickness > 0 && outside(config.layer_shear_modulus, layer_shear_modulus_range);
   return bit(RP_WARNING_STIFFNESS, soft) | bit(RP_WARNING_RADIUS, odd) |
-         bit(RP_WARNING_LAYER_STIFFNESS, layer) | bit(RP_WARNING_GAUGE, wide) |
-         bit(RP_WARNING_FRICTION, config.tangential != RP_TANGENTIAL_NONE &&
-                                      config.friction_coefficient > friction_coefficient_range[1]);
+         bit(RP_WARNING_LAYER_STIFFNESS, layer) | bit(RP_WARNING_GAUGE, wide);
 }
 
 void report_warnings(const rp_config &config, uint32_t of_case, const rp_input &input,

@@ -228,6 +228,15 @@ def test_a_command_warns_and_strict_refuses(tmp_path: Path) -> None:
     assert "100 N to 500 kN" in ran.stderr
 
 
+@pytest.mark.parametrize(("coefficient", "scale", "told"), [(0.6, 2.0, 1), (1.2, 0.5, 0)])
+def test_friction_of_a_step(coefficient: float, scale: float, told: int) -> None:
+    """By the coefficient with the step's own factor."""
+    case = with_values(PATCH, friction__coefficient=coefficient)
+    contact = railpatch.Contact(case)
+    found = contact.step(friction_scale=[scale, scale]).warnings
+    assert sum("friction is above 1" in text for text in found) == told
+
+
 def test_bodies_of_a_vehicle() -> None:
     vehicle = load_vehicle_scene(None, {}).vehicle
     assert doubtful_bodies(vehicle) == []

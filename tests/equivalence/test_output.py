@@ -188,3 +188,9 @@ def test_a_check_leaves_nothing_behind(tmp_path: Path):
     ended = invoke("hunting", heavy, "-o", tmp_path / "run.mcap")
     assert ended.exit_code in (2, 3), ended.output
     assert [file.name for file in tmp_path.iterdir()] == ["scene.toml"]
+
+
+def test_a_profile_of_another_ending_is_told_of_both(tmp_path: Path) -> None:
+    refused = invoke("profile", "S1002", "-o", tmp_path / "x.foo")
+    assert refused.exit_code == 2
+    assert "a name that ends in .html or .htm or .pdf or .profile" in refused.output

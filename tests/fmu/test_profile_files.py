@@ -138,7 +138,9 @@ def test_bad_files_are_refused_and_change_nothing(tmp_path: Path) -> None:
         "absent": (None, "cannot be read, tried"),
         "other": ("y,z\n0,0\n", "it is no prepared profile"),
         "altered": (text.replace("0.0", "0.1", 1), "its checksum is wrong"),
-        "cut": (text[: len(text) // 2], "understood"),
+        "cut": (text[: len(text) // 2], "it has no end: it was cut off"),
+        "cut at its end": (text[:-3], "it has no end: it was cut off"),
+        "with a line of its own": (text.replace("\nend ", "\nown 1\nend "), "is not understood"),
         "short": ("".join(text.splitlines(True)[:-1]), "it has no end"),
         "empty": ("", "it has no end"),
     }

@@ -197,6 +197,8 @@ def test_runs_on_a_record(tmp_path):
     (summary,) = json.loads(run.stdout)["runs"].values()
     assert summary["measured_track"]["file"] == "track.csv"
     assert summary["measured_track"]["waves"][0] == pytest.approx(0.5)
+    names = {f"{rail}_{way}" for rail in ("left", "right") for way in ("lateral", "vertical")}
+    assert set(summary["measured_track"]["rms"]) == names
     assert read_run(tmp_path / "run.mcap").attachments["track.csv"].data == path.read_bytes()
     run = CliRunner().invoke(cli, command)
     assert "waves of 0.5 to" in run.stdout

@@ -110,6 +110,10 @@ class MeasuredTrackTable(Table):
         return self
 
 
+# columns of deviations
+DEVIATIONS = ("left_lateral", "left_vertical", "right_lateral", "right_vertical")
+
+
 @dataclass(frozen=True)
 class MeasuredTrack:
     """A record as the rails of a track.
@@ -135,14 +139,14 @@ class MeasuredTrack:
         return Irregularity(self.s, share[:, None] * self.deviations)
 
     def summary(self) -> dict[str, Any]:
-        """Plain numbers: file, rows, spacing (usual, largest), waves (shortest, longest), rms of
-        left and right rail, lateral and vertical; m."""
+        """Plain numbers, m: file, rows, spacing (usual, largest), waves (shortest, longest), rms by
+        rail and direction."""
         return {
             "file": self.path.name,
             "rows": len(self.s),
             "spacing": list(self.spacing),
             "waves": list(self.waves),
-            "rms": self.deviations.std(axis=0).tolist(),
+            "rms": dict(zip(DEVIATIONS, self.deviations.std(axis=0).tolist(), strict=True)),
         }
 
 

@@ -69,7 +69,8 @@ class VehicleModel:
             for index, joint in enumerate(self.model.names)
             if index and self.model.idx_vs[index] == column
         )
-        return name
+        # a carrier is what of a wheelset does not spin
+        return name.replace("carrier_", "wheelset_")
 
 
 def vehicle_model(scene: VehicleScene) -> VehicleModel:

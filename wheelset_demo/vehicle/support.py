@@ -32,6 +32,7 @@ Vector = NDArray[np.float64]
 # columns of a wheelset's state that a rail's places and rates move against: y, z, vy, vz
 PLACES, RATES = [1, 2], [7, 8]
 RAILS, WITH_SLEEPER = 4, 7
+WAYS = ("lateral", "vertical")
 PositivePair = Annotated[list[Positive], exactly(2)]
 Pair = Annotated[list[NotNegative], exactly(2)]
 ON_SLEEPER = ("sleeper_inertia", "ballast_stiffness", "ballast_damping", "seat_distance")
@@ -143,10 +144,10 @@ class Support:
                 found = np.abs(part).reshape(-1, 2).max(axis=0)
                 np.maximum(greatest, found, out=greatest)
 
-    def summary(self) -> dict[str, list[float] | None]:
-        """Greatest so far, lateral and vertical: rail_deflection (m), pad_force, ballast_force (N,
-        None without a sleeper)."""
-        place, pad, ballast = self.greatest.tolist()
+    def summary(self) -> dict[str, dict[str, float] | None]:
+        """Greatest so far by direction: rail_deflection (m), pad_force, ballast_force (N, None
+        without a sleeper)."""
+        place, pad, ballast = (dict(zip(WAYS, row, strict=True)) for row in self.greatest.tolist())
         below = ballast if self.width > RAILS else None
         return {"rail_deflection": place, "pad_force": pad, "ballast_force": below}
 

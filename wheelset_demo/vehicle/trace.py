@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -255,7 +255,7 @@ class VehicleSummary:
             return []
         found = self.measured_track
         (usual, largest), (low, high) = found["spacing"], found["waves"]
-        rms = ", ".join(f"{1e3 * value:.2f}" for value in found["rms"])
+        rms = ", ".join(f"{1e3 * value:.2f}" for value in found["rms"].values())
         text = (
             f"{found['file']}, {found['rows']} rows, {usual:.3g} m apart ({largest:.3g} at most), "
             f"waves of {low:.3g} to {high:.4g} m; left and right, lateral and vertical {rms} mm rms"
@@ -278,11 +278,11 @@ class VehicleSummary:
         assert place is not None
         assert pad is not None
         text = (
-            f"rail {1e3 * place[0]:.2f} mm lateral, {1e3 * place[1]:.2f} mm vertical at most; pad "
-            f"{pad[0] / 1e3:.1f}, {pad[1] / 1e3:.1f} kN"
+            f"rail {1e3 * place['lateral']:.2f} mm lateral, {1e3 * place['vertical']:.2f} mm "
+            f"vertical at most; pad {kilonewtons(pad)}"
         )
         if ballast is not None:
-            text += f"; ballast below a seat {ballast[0] / 1e3:.1f}, {ballast[1] / 1e3:.1f} kN"
+            text += f"; ballast below a seat {kilonewtons(ballast)}"
         return [("track", text)]
 
     def _assessed(self) -> list[tuple[str, str]]:
@@ -316,6 +316,11 @@ def own_doubts(scene: VehicleScene) -> list[str]:
     """Of the noise of profile files, of all wheelsets."""
     cases = {id(axle.table): scene.case_of(axle) for axle in scene.vehicle.axles}
     return list(dict.fromkeys(text for one in cases.values() for text in run_doubts(one, Path())))
+
+
+def kilonewtons(force: Mapping[str, float]) -> str:
+    """Lateral and vertical."""
+    return f"{force['lateral'] / 1e3:.1f}, {force['vertical'] / 1e3:.1f} kN"
 
 
 def works(values: Sequence[float]) -> str:

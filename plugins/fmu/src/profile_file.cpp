@@ -51,6 +51,7 @@ bool parse_profile(const std::string &path, const std::string &content, bool rai
     }
     if (line.substr(0, 4) == "end ") {
       if (!check_end(all, begin, line)) {
+        if (all.back() != '\n') break;
         problem = "its checksum is wrong: it was altered";
         return false;
       }
@@ -68,6 +69,7 @@ bool parse_profile(const std::string &path, const std::string &content, bool rai
       return true;
     }
     if (number > 1 && !read_line(line, file)) {
+      if (all.find("\nend ") == all.npos) break;
       problem = "line " + text_of_whole(number) + " is not understood";
       return false;
     }

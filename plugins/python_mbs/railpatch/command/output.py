@@ -32,11 +32,12 @@ def check_output(output: Path | None, *inputs: Name) -> None:
         raise refusal(output, f"a file that can be written: {reason}") from None
 
 
-def check_page(output: Path, *inputs: Name) -> None:
-    """As check_output, and the name is none of another format. Raises WrongCall."""
+def check_page(output: Path, *inputs: Name, others: tuple[str, ...] = ()) -> None:
+    """As check_output, and the name is none of another format. others: endings of what the command
+    writes besides pages, for the message. Raises WrongCall."""
     check_output(output, *inputs)
     if output.suffix.lower() not in PAGE and not output.is_char_device():
-        raise refusal(output, f"a name that ends in {' or '.join(filter(None, PAGE))}")
+        raise refusal(output, f"a name that ends in {' or '.join(filter(None, (*PAGE, *others)))}")
     if output.suffix.lower() == PDF:
         try:
             find_browser()

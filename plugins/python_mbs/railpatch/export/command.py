@@ -58,6 +58,13 @@ def with_library(
     help="In place of a row for each moment what the run has worn off over the profiles of wheels "
     "and rails, of a scene with [damage]: .csv or .json.",
 )
+@click.option(
+    "--all",
+    "whole",
+    is_flag=True,
+    help="All columns of a vehicle's log, patches included: thousands. Without it and without "
+    "--channel and --signal those that are read first.",
+)
 @click.option("--list", "listed", is_flag=True, help="Print names, units and meanings of columns.")
 @quiet_flag()
 def export(
@@ -66,6 +73,7 @@ def export(
     channels: tuple[str, ...],
     signals: tuple[str, ...],
     wear: bool,
+    whole: bool,
     listed: bool,
     quiet: bool,
 ) -> None:
@@ -75,19 +83,25 @@ def export(
     """
     from railpatch.export.formats import format_of, write_table
     from railpatch.log.reader import read_run
+    from railpatch.log.table import LogTable, is_read
 
     if output is None and not listed:
         raise WrongCall("--output: value is missing, allowed a file to write, or --list")
     check_output(output, run)
     if wear:
-        if channels or signals or listed or output is None:
+        if channels or signals or whole or listed or output is None:
             raise WrongCall("--wear: given, allowed with --output alone")
         export_wear(run, output, quiet)
         return
     try:
         if output is not None:
             format_of(output)
-        table = read_run(run).table(channels, signals)
+        log = read_run(run)
+        table = log.table(channels, signals)
+        every = len(table.columns)
+        if "wheelsets" in log.metadata["railpatch"] and not (whole or channels or signals):
+            read = [column for column in table.columns[1:] if is_read(column.name)]
+            table = LogTable([table.columns[0], *read])
         if output is not None:
             write_table(table, output)
     except (ValueError, OSError) as error:
@@ -96,7 +110,9 @@ def export(
         for column in table.columns:
             click.echo(f"{column.head}  {column.text}")
     if output is not None and not quiet:
-        click.echo(f"{output}: {len(table.time)} rows, {len(table.columns)} columns")
+        count = len(table.columns)
+        left = "" if count == every else f" of {every}, which --all writes"
+        click.echo(f"{output}: {len(table.time)} rows, {count} columns{left}")
 
 
 def export_wear(run: Path, output: Path, quiet: bool) -> None:

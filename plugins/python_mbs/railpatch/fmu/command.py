@@ -68,7 +68,8 @@ def scene_names() -> list[str]:
     "--inputs",
     "inputs",
     metavar="friction",
-    help="Further inputs, separated by commas: friction, the coefficient of Coulomb's law.",
+    help="Further inputs, separated by commas: friction, the coefficient of Coulomb's law, of a "
+    "wheelset one for each wheel; of other laws a factor. Left out, it is a tunable parameter.",
 )
 @click.option(
     "--outputs",

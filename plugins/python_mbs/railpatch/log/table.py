@@ -29,6 +29,17 @@ AXES = {
 }
 SPACE = "xyz"
 Patterns = Sequence[str]
+# of a vehicle, whose log has thousands of columns: what is read first, by channel
+READ = {
+    "/vehicle/state": "*",
+    "/vehicle/bodies": r"bodies\[\d+\]\.(name|acceleration).*",
+    "/vehicle/comfort": "*",
+    "/wheelset/N/state": "x|y|z|roll|yaw|speed|rolling_radius_difference|conicity|wear_number|"
+    "drive_torque|slip_speed",
+    "/wheelset/N/support": "*",
+    "/wheelset/N/contact": r"status|force\..*|rolling_radius|(mean_)?(guiding_force|wheel_load)|"
+    "derailment_quotient|wear_number|friction_work|friction_power|wheel_temperature",
+}
 
 
 @dataclass(frozen=True)
@@ -114,6 +125,14 @@ def log_table(
     return LogTable(
         [Column(TIME, "s", "simulation time from the start of the run", moments), *found]
     )
+
+
+def is_read(name: str) -> bool:
+    """Whether a column of a vehicle's log is one of READ."""
+    topic, _, path = name.partition(".")
+    like = re.sub(r"^/wheelset/\d+/(left/|right/)?", "/wheelset/N/", topic)
+    pattern = READ.get(like)
+    return pattern == "*" or (pattern is not None and re.fullmatch(pattern, path) is not None)
 
 
 def chosen_topics(series: Mapping[str, Any], channels: Patterns, signals: Patterns) -> list[str]:

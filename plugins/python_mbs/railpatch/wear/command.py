@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from railpatch.command.ending import told_when_ended
 from railpatch.command.group import (
     folder_option,
     json_option,
@@ -40,7 +41,8 @@ def wear(sweep: Path, output: Path, workers: int, as_json: bool, quiet: bool) ->
     from railpatch.wear.page import write_wear_page
     from railpatch.wear.plan import load_wear
 
-    with wrong_calls():
+    kept = f"steps that are done are in {output}, and the same command goes on there"
+    with told_when_ended(lambda: kept), wrong_calls():
         plan = load_wear(sweep)
         with progress_bar("wearing", 100, quiet) as advance:
             done = 0

@@ -112,7 +112,7 @@ def profile(
         return
     if rail is not None and wheel is not None:
         raise WrongCall("--rail, --wheel: both given, allowed one: the profile's partner")
-    check_page(output, source, rail, wheel)
+    check_page(output, source, rail, wheel, others=(SUFFIX,))
     for path in tables_of(output):
         refuse_same(path, source, rail, wheel)
     # plotly takes a while to import; other commands need not wait for it
