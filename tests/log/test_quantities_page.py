@@ -88,12 +88,13 @@ def test_a_vehicle(tmp_path: Path) -> None:
     run_vehicle(Simulation(scene), output=tmp_path / "a.mcap")
     data = vehicle_run(read_run(tmp_path / "a.mcap"))
     found = panels(quantities.vehicle_figure(data))
-    assert len(found["T\u03b3 [N]"]) == 4
+    for side in ("left", "right"):
+        assert len(found[f"{side} wheels: T\u03b3 [N]"]) == 4
     contact = data.contact[1, "left"]
-    assert np.allclose(found["T\u03b3 [N]"][0].y, contact["wear_number"])
+    assert np.allclose(found["left wheels: T\u03b3 [N]"][0].y, contact["wear_number"])
     assert len(found["rolling radius difference [mm]"]) == 4
     first = [m["patches"][0]["wheel_profile_position"][0] for m in contact.messages]
-    assert np.allclose(found["y on the profile [mm]"][0].y, 1e3 * np.array(first))
+    assert np.allclose(found["left wheels: y on the profile [mm]"][0].y, 1e3 * np.array(first))
     page = write_report(tmp_path / "a.mcap", tmp_path / "a.html").read_text(encoding="utf-8")
     for words in quantities.HEAD:
         assert f">{words}</th>" in page

@@ -157,7 +157,6 @@ def vehicle_figure(data: VehicleRun) -> go.Figure:
         shared_xaxes=True,
         horizontal_spacing=0.1,
         vertical_spacing=0.05,
-        subplot_titles=("left wheels", "right wheels"),
     )
     for row, (name, part, label) in enumerate(rows, start=1):
         for column, side in enumerate(SIDES, start=1):
@@ -166,7 +165,7 @@ def vehicle_figure(data: VehicleRun) -> go.Figure:
                 Adder(shown, data, row, column).line(
                     data.along, line, f"wheelset {number}", _color(number)
                 )
-        shown.update_yaxes(title_text=label, row=row, col=1)
+            shown.update_yaxes(title_text=f"{side} wheels: {label}", row=row, col=column)
     for column, (name, text) in enumerate(OF_WHEELSET.items(), start=1):
         factor, label = scaled("/wheelset/1/state", name, text)
         for number, series in data.wheelsets.items():
