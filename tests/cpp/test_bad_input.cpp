@@ -982,6 +982,18 @@ class Garbage : public testing::Test {
   }
 
   // along a direction in which anything may change
+  // Without what varies along the track or round the wheels, and placed by the gauge.
+  static void of_one_profile(rp_config &c) {
+    const rp_config whole = default_config();
+    c.section_match = whole.section_match;
+    c.section_blend = whole.section_blend;
+    c.regime_changes = 0;
+    for (int side = 0; side < 2; ++side) {
+      c.section_count[side] = c.wheel_section_count[side] = 0;
+      c.runout_count[side] = c.rail_height_count[side] = 0;
+      c.rail_origin_y[side] = c.rail_origin_z[side] = nan;
+    }
+  }
   void differentiate(rp_contact *contact) {
     rp_input direction;
     rp_default_direction(&direction);
@@ -1025,12 +1037,15 @@ TEST_F(Garbage, ConfigsOfPatchesDoNotCrash) {
 
 TEST_F(Garbage, ConfigsOfWheelsDoNotCrash) {
   const scenes::profile_pair pair;
-  for (int n = 0; n < 4000; ++n) {
+  for (int n = 0; n < 2500; ++n) {
     const rp_track track = random() % 2 ? RP_RAIL : RP_ROLLER;
     rp_config c = scenes::wheels(random() % 2 ? RP_WHEELSET : RP_WHEEL_RAIL, track, pair);
     c.element_size[0] = c.element_size[1] = 2e-3;
     spoil(c);
-    if (n % 2) dry(c);
+    if (n % 2) {
+      dry(c);
+      of_one_profile(c);
+    }
     SCOPED_TRACE("number " + std::to_string(n));
     try_out(c, scenes::running(track));
   }
