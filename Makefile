@@ -94,7 +94,7 @@ contact-addon: setup ## the library with the calls of the program CONTACT, for L
 	@mkdir -p build/contact_addon
 	$(BIN)/python -m pip install --quiet --group cross
 	$(BIN)/python plugins/contact_addon/build.py build/fmu build/contact_addon
-	$(BIN)/python tests/contact_addon/systems.py build/fmu build/contact_addon
+	$(BIN)/python tests/contact_addon/systems.py build/contact_addon
 
 wheels: fmu ## wheels for Linux and Windows, their checks, and a first hour's work in a clean environment
 	@.ci/system-packages mvn:maven readelf:binutils
