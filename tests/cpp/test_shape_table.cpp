@@ -1,5 +1,5 @@
-// Corrections of creep forces by the shape of the pressure: the block's form, values at its nodes
-// and between, symmetries, and that nothing jumps.
+// Corrections of creep forces by the shape of the pressure: the block's form, functions of creepage
+// and how much of each a shape has, symmetries, and that nothing jumps.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,48 +22,54 @@ using std::numbers::pi;
 
 constexpr int spins = head::spins, directions = shape_table::directions;
 constexpr int radii = shape_table::radii, lanes = shape_table::lanes;
-constexpr int cells = spins * directions * radii;
+constexpr int cells = spins * directions * radii, functions = head::functions;
 constexpr double places[spins] = {0, 0.15, 0.3, 0.5, 0.75, 1.05, 1.5, 2.1, 3, 4.5, 7, 11};
 constexpr double shear = 82e9;
 
 struct node {
   std::array<double, head::features> feature{};
-  std::function<std::array<double, 3>(int spin, int direction, int t)> remainder;
+  std::array<double, functions> weight{};  // of which the first is not read
 };
 
-// A block with the small table of ellipses; remainders in units of 1e-4.
+using function_of_cells = std::function<std::array<double, 3>(int spin, int direction, int t)>;
+
+// A block with the small table of ellipses; functions in units of 1e-4.
 struct block : tables::table {
-  explicit block(const std::vector<node> &nodes) {
+  block(const std::vector<node> &nodes, const std::vector<function_of_cells> &given) {
     head h{};
-    std::memcpy(h.magic, "RPSHAPE2", 8);
+    std::memcpy(h.magic, "RPSHAPE3", 8);
     h.node_count = static_cast<int32_t>(nodes.size());
     h.recipe_bytes = 3;
     h.poisson_ratio = 0.25;
-    h.reach = 1;
+    h.reach = 0.5;
     h.radius = 3;
     std::copy_n(places, spins, h.spin);
     for (double &s : h.scale) s = 1;
-    for (double &u : h.unit) u = 1e-4;
+    h.unit = 1e-4;
     h.error[0] = 0.012;
     h.error[1] = 0.034;
     const size_t blocks = (nodes.size() + lanes - 1) / lanes;
     std::vector<float> features(blocks * lanes * head::features, 1e9f);
-    std::vector<int16_t> numbers(nodes.size() * cells * 4);
+    std::vector<double> weights;
     for (size_t n = 0; n < nodes.size(); ++n) {
       for (size_t k = 0; k < head::features; ++k)
         features[(n / lanes * head::features + k) * lanes + n % lanes] =
             static_cast<float>(nodes[n].feature[k]);
+      weights.insert(weights.end(), nodes[n].weight.begin(), nodes[n].weight.end());
+    }
+    std::vector<int16_t> numbers(3 * cells * functions);
+    for (size_t k = 0; k < given.size(); ++k)
       for (int c = 0; c < cells; ++c) {
-        const auto value =
-            nodes[n].remainder(c / radii / directions, c / radii % directions, c % radii);
+        const auto value = given[k](c / radii / directions, c / radii % directions, c % radii);
         for (size_t d = 0; d < 3; ++d)
-          numbers[4 * (n * cells + static_cast<size_t>(c)) + d] =
+          numbers[(3 * static_cast<size_t>(c) + d) * functions + k] =
               static_cast<int16_t>(std::lround(value[d] * 1e4));
       }
-    }
+    weights.resize(blocks * lanes * functions);
     const tables::table inner = tables::small();
     append(&h, sizeof h);
     append(features.data(), features.size() * sizeof(float));
+    append(weights.data(), weights.size() * sizeof(double));
     append(numbers.data(), numbers.size() * sizeof(int16_t));
     append("{} ", 3);
     append(inner.data(), inner.size());
@@ -96,16 +102,8 @@ struct block : tables::table {
 
 std::array<double, 3> nothing(int, int, int) { return {0, 0, 0}; }
 
-// One shape with remainders, all others out of sight.
-block lone(const std::function<std::array<double, 3>(int, int, int)> &remainder) {
-  std::vector<node> nodes(16);
-  for (size_t n = 0; n < nodes.size(); ++n) {
-    nodes[n].feature.fill(n == 0 ? 0.0 : 1e6);
-    nodes[n].remainder = nothing;
-  }
-  nodes[0].remainder = remainder;
-  return block(nodes);
-}
+// One function that all shapes have.
+block lone(const function_of_cells &function) { return {std::vector<node>(1), {function}}; }
 
 grid square(int n, double half) {
   grid g{};
@@ -178,7 +176,7 @@ TEST(ShapeTable, BrokenBytesAreRefused) {
   refused([](block &b) { b.words.resize(4); }, "too short");
   refused([](block &b) { b.words.pop_back(); }, "length");
   refused([](block &b) { b.words[b.words.size() / 2] ^= 1; }, "altered");
-  in_header([](head &h) { h.node_count = 14; }, "15 or more");
+  in_header([](head &h) { h.node_count = 0; }, "less than one");
   in_header([](head &h) { h.node_count = 20001; }, "20000");
   in_header([](head &h) { h.node_count = 19000; }, "ask for");
   in_header([](head &h) { h.recipe_bytes = -1; }, "ask for");
@@ -187,12 +185,19 @@ TEST(ShapeTable, BrokenBytesAreRefused) {
   in_header([](head &h) { h.spin[3] = h.spin[2]; }, "out of range");
   in_header([](head &h) { h.spin[0] = 0.1; }, "out of range");
   in_header([](head &h) { h.scale[1] = -1; }, "out of range");
-  in_header([](head &h) { h.unit[2] = INFINITY; }, "out of range");
+  in_header([](head &h) { h.unit = INFINITY; }, "out of range");
   in_header([](head &h) { h.error[0] = -0.1; }, "out of range");
   refused(
       [](block &b) {
         const float no = NAN;
         std::memcpy(b.words.data() + sizeof(head) / 8, &no, sizeof no);
+        b.reseal();
+      },
+      "no numbers");
+  refused(
+      [](block &b) {
+        const double no = INFINITY;
+        std::memcpy(b.words.data() + sizeof(head) / 8 + lanes * head::features / 2, &no, sizeof no);
         b.reseal();
       },
       "no numbers");
@@ -206,7 +211,8 @@ TEST(ShapeTable, BrokenBytesAreRefused) {
 }
 
 TEST(ShapeTable, DescribesHertz) {
-  // of a semi-ellipsoid <x^4> = 3/35 a^4, <x^2 y^2> = 1/35 a^2 b^2
+  // of a semi-ellipsoid <x^4> = 3/35 a^4, <x^2 y^2> = 1/35 a^2 b^2, and of its rows' loads
+  // 3/4 (1 - (y/b)^2)/b the square has the integral 3/5/b
   const grid g = square(160, 6e-3);
   const auto p = pressure_of(
       g, [](double x, double y) { return hertz((x - 1e-3) / 2e-3, (y + 5e-4) / 5e-3); });
@@ -215,11 +221,11 @@ TEST(ShapeTable, DescribesHertz) {
   EXPECT_NEAR(s.centre[1], -5e-4, 1e-6);
   EXPECT_NEAR(s.axes[0], 2e-3, 2e-6);
   EXPECT_NEAR(s.axes[1], 5e-3, 5e-6);
-  const double wanted[] = {std::log(0.4), 0, 3.0 / 35, 0, 0, 1.0 / 35, 3.0 / 35, 0};
+  const double wanted[] = {std::log(0.4), 0, 3.0 / 35, 0, 0, 1.0 / 35, 3.0 / 35, std::log(0.6)};
   for (size_t k = 0; k < head::features; ++k) EXPECT_NEAR(s.feature[k], wanted[k], 2e-3) << k;
 }
 
-TEST(ShapeTable, HoldsItsNodes) {
+TEST(ShapeTable, HoldsItsFunction) {
   const auto value = [](int s, int d, int t) -> std::array<double, 3> {
     // at no creepage no direction
     const double k = t == 0 ? 0.1 * s : std::sin(0.7 * s + 1.3 * d + 2.1 * t);
@@ -272,57 +278,70 @@ std::vector<node> random_nodes(int count) {
   std::vector<node> nodes(static_cast<size_t>(count));
   for (node &n : nodes) {
     for (double &f : n.feature) f = 0.3 * number(random);
-    n.feature.back() = 0;
+    for (double &w : n.weight) w = number(random);
+    n.feature.back() += std::log(0.6);
+  }
+  return nodes;
+}
+
+std::vector<function_of_cells> random_functions() {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> number(-1, 1);
+  std::vector<function_of_cells> found;
+  for (int k = 0; k < functions; ++k) {
     const double a = number(random), b = number(random);
-    n.remainder = [a, b](int s, int d, int t) -> std::array<double, 3> {
+    found.emplace_back([a, b](int s, int d, int t) -> std::array<double, 3> {
       const double angle = 2 * pi * d / directions, size = t * (radii - t) / 16.0;
       // odd where there is no spin
       const double even = 0.05 * b * places[s];
       return {0.1 * a * size * std::cos(angle) + even, 0.1 * a * size * std::sin(angle) - even,
               0.05 * b * size * std::sin(angle)};
-    };
+    });
   }
-  return nodes;
+  return found;
 }
 
-// Of what grows evenly with the features the plane through the nearest nodes has the slopes, but
-// for the pull towards none, the weaker the farther nodes lie from each other.
-TEST(ShapeTable, FollowsSlopesOfTheShape) {
+block random_block(int count) { return {random_nodes(count), random_functions()}; }
+
+// Amounts of the functions by the formula, node by node.
+TEST(ShapeTable, WeighsItsNodes) {
   const grid g = square(24, 6e-3);
   const auto p = pressure_of(g, lopsided);
-  const auto here = shape_table::describe(g, p.data()).feature;
-  constexpr double wanted = 0.02;
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> number(-1, 1);
-  double of_plane = 0, of_nearest = 0;
-  for (int trial = 0; trial < 20; ++trial) {
-    std::vector<node> nodes(200);
-    double nearest = 1e9, there = 0;
-    for (node &n : nodes) {
-      n.feature = here;
-      const double x = number(random), y = number(random), z = number(random);
-      n.feature[0] += x;
-      n.feature[1] += y;
-      n.feature[5] += z;
-      const double v = wanted + 0.04 * x - 0.03 * y + 0.05 * z, d = x * x + y * y + z * z;
-      if (d < nearest) nearest = d, there = v;
-      n.remainder = [v](int, int, int t) -> std::array<double, 3> {
-        return {t > 0 ? v : 0.0, t > 0 ? -v : 0.0, 0};
-      };
+  const auto s = shape_table::describe(g, p.data());
+  const double c = std::sqrt(s.axes[0] * s.axes[1]);
+  const auto given = random_functions();
+  for (int count : {1, 8, 83}) {
+    auto nodes = random_nodes(count);
+    // one that the shape hits, one out of sight
+    nodes.front().feature = s.feature;
+    if (count > 8) nodes.back().feature[2] += 1;
+    std::array<double, 3> wanted{};
+    constexpr int spin = 5, d = 7, t = 4;
+    for (size_t k = 0; k < functions; ++k) {
+      double amount = k == 0 ? 1.0 : 0.0;
+      for (const node &n : nodes) {
+        double square = 0;
+        for (size_t i = 0; i < head::features; ++i)
+          square += std::pow(n.feature[i] - s.feature[i], 2);
+        const double r = std::min(std::sqrt(square), 1.0);
+        if (k > 0) amount += n.weight[k] * std::pow(1 - r, 4) * (4 * r + 1);
+      }
+      const auto value = given[k](spin, d, t);
+      for (size_t i = 0; i < 3; ++i) wanted[i] += amount * std::lround(value[i] * 1e4) * 1e-4;
     }
-    const block b(nodes);
+    const block b(nodes, given);
     shape_table table(b.data(), 0.25);
-    const auto v = node_v(places[4], 3, 4);
+    const auto v = node_v(places[spin], d, t);
     const found_at f = at(table, g, p, v.data());
-    EXPECT_NEAR(f.force[1], -f.force[0], 1e-9);
-    of_plane += (f.force[0] - wanted) * (f.force[0] - wanted);
-    of_nearest += (there - wanted) * (there - wanted);
+    EXPECT_NEAR(f.force[0], wanted[0], 1e-6) << count;
+    EXPECT_NEAR(f.force[1], wanted[1], 1e-6);
+    const double moment = c * wanted[2] + s.centre[0] * f.force[1] - s.centre[1] * f.force[0];
+    EXPECT_NEAR(f.moment, moment, 1e-6 * c);
   }
-  EXPECT_LT(std::sqrt(of_plane), 0.25 * std::sqrt(of_nearest));
 }
 
 TEST(ShapeTable, TurnsItsSignWithTheCreepages) {
-  const block b(random_nodes(40));
+  const block b = random_block(40);
   shape_table table(b.data(), 0.25);
   const grid g = square(24, 6e-3);
   const auto p = pressure_of(g, lopsided);
@@ -344,13 +363,13 @@ TEST(ShapeTable, TurnsItsSignWithTheCreepages) {
 }
 
 TEST(ShapeTable, DoesNotJump) {
-  const block b(random_nodes(60));
+  const block b = random_block(60);
   shape_table table(b.data(), 0.25);
   const grid g = square(24, 6e-3);
   const auto one = pressure_of(g, lopsided);
   const auto two = pressure_of(g, [](double x, double y) { return hertz(x / 5e-3, y / 2e-3); });
   // creepages through 0, over the branch of the angle, beyond the last spin; pressures from one to
-  // the other, past where the nearest nodes change
+  // the other, past where nodes come into sight
   constexpr int steps = 4000;
   const std::array<double, 3> start = {-4.0, 0.3, -11.0}, end = {5.0, -0.37, 10.0};
   std::array<double, 2> last{};
@@ -375,15 +394,10 @@ TEST(ShapeTable, DoesNotJump) {
 }
 
 TEST(ShapeTable, CountsInTheInterface) {
-  std::vector<node> nodes(16);
-  for (node &n : nodes) {
-    // Hertz on a grid, up to what its elements leave
-    n.feature = {0, 0, 3.0 / 35, 0, 0, 1.0 / 35, 3.0 / 35, 0};
-    n.remainder = [](int, int, int t) -> std::array<double, 3> {
-      return {t > 0 ? 0.01 : 0.0, 0, 0};
-    };
-  }
-  const block b(nodes);
+  // Hertz on a grid, up to what its elements leave
+  const node n{{0, 0, 3.0 / 35, 0, 0, 1.0 / 35, 3.0 / 35, std::log(0.6)}, {}};
+  const block b(
+      {n}, {[](int, int, int t) -> std::array<double, 3> { return {t > 0 ? 0.01 : 0.0, 0, 0}; }});
   const tables::table plain = tables::small();
   rp_config c = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_TABLE, 32);
   c.geometry = RP_UNDEFORMED_DISTANCE;

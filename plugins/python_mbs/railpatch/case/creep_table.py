@@ -17,8 +17,8 @@ MAGIC = b"RPCREEP1"
 HEAD = struct.Struct("<8sQQ")
 BODY = struct.Struct("<4i2i3d2d1d3d2d")
 # of tables of shapes: core/fast/shape_table.hpp
-SHAPES_MAGIC = b"RPSHAPE2"
-SHAPES_BODY = struct.Struct("<2i3d12d8d3d2d")
+SHAPES_MAGIC = b"RPSHAPE3"
+SHAPES_BODY = struct.Struct("<2i3d12d8d1d2d")
 FILE = "creep_table.bin"
 MOST_BYTES = 200_000_000
 
@@ -53,8 +53,8 @@ def describe_table(data: bytes) -> dict[str, Any]:
 def shapes_recipe(data: bytes) -> dict[str, Any]:
     """Of a table of shapes."""
     count, text = SHAPES_BODY.unpack_from(data, HEAD.size)[:2]
-    node = 12 * 12 * 9 * 4 * 2  # spins, directions, sizes, numbers of 2 bytes
-    start = HEAD.size + SHAPES_BODY.size + -(-count // 8) * 8 * 8 * 4 + count * node
+    functions = 12 * 12 * 9 * 3 * 24 * 2  # spins, directions, sizes, Fx Fy Mz, of 2 bytes
+    start = HEAD.size + SHAPES_BODY.size + -(-count // 8) * 8 * (8 * 4 + 24 * 8) + functions
     return json.loads(data[start : start + text])
 
 

@@ -27,7 +27,8 @@ SPEED = 20.0  # m/s on rails, which steady forces do not depend on
 STEP = 0.05  # of creepages, and 1/m of spin, that tell how they follow from rates
 COARSE = {"elements": [16, 16]}
 # elements, and scale of railpatch.case.accuracy.fitted_size
-NODES, CHECK = (40, 15), (48, 22)
+# of nodes, of nodes with two parts, of states that are tried
+NODES, DIVIDED, CHECK = (40, 16), (48, 20), (48, 22)
 FULL = {"tangential": "full", "tolerance": 1e-4, "max_iterations": 500}
 SEQUENCE = 97  # of the creepages of a shape those of one spin
 
@@ -50,7 +51,8 @@ class Place:
     """A patch of a wheel at rest: its number k of count, how it moves, and its pressure's shape.
 
     motion: creepages by pitch_rate, vy, yaw_rate, [3, 3], and at rest, [3]. axes, centre: m.
-    features: as in core/fast/shape_table.hpp, not scaled.
+    features: as in core/fast/shape_table.hpp, not scaled. fall: least load of a row between two
+    parts, over the lesser one's greatest row; 1 where there is one part.
     """
 
     at: dict[str, float]
@@ -63,6 +65,7 @@ class Place:
     axes: Vector
     centre: Vector
     features: Vector
+    fall: float
 
 
 class Pair:
@@ -163,7 +166,8 @@ class Pair:
         motion = np.stack([(creepages(**step) - rest) / size for step, size in steps], axis=-1)
         axes, centre, features = shape(np.asarray(patch["x"]), np.asarray(patch["y"]), pressure)
         return Place(
-            at, k, motion, rest, rates, arm, patch["normal_force"], axes, centre, features
+            at, k, motion, rest, rates, arm, patch["normal_force"], axes, centre, features,
+            fall_of(pressure),
         )  # fmt: skip
 
     def _along(self, turning: float = 0.0) -> dict[str, float]:
@@ -265,6 +269,7 @@ class Pair:
 def shape(x: Vector, y: Vector, pressure: Vector) -> tuple[Vector, Vector, Vector]:
     """Semi-axes, centre (m) and features of a pressure [ny, nx], see core/fast/shape_table.hpp."""
     share = pressure / pressure.sum()
+    rows = share.sum(axis=1)
     centre = np.array([(share * x).sum(), (share * y[:, None]).sum()])
     across, along = (y - centre[1])[:, None], x - centre[0]
 
@@ -275,5 +280,14 @@ def shape(x: Vector, y: Vector, pressure: Vector) -> tuple[Vector, Vector, Vecto
     own = [step[0] ** 2 / 12, step[1] ** 2 / 12]
     a, b = np.sqrt(5 * (moment(2, 0) + own[0])), np.sqrt(5 * (moment(0, 2) + own[1]))
     powers = ((0, 3), (0, 4), (1, 1), (2, 1), (2, 2), (4, 0))
-    found = [np.log(a / b), *(moment(i, j) / (a**i * b**j) for i, j in powers), 0.0]
+    gathered = (rows**2).sum() * b / step[1]
+    found = [np.log(a / b), *(moment(i, j) / (a**i * b**j) for i, j in powers), np.log(gathered)]
     return np.array([a, b]), centre, np.array(found)
+
+
+def fall_of(pressure: Vector) -> float:
+    """Least load of a row over that of the lesser of the greatest rows before and after it."""
+    rows = pressure.sum(axis=1)
+    rows = rows[np.flatnonzero(rows)[0] : np.flatnonzero(rows)[-1] + 1]
+    before, after = np.maximum.accumulate(rows), np.maximum.accumulate(rows[::-1])[::-1]
+    return float((rows / np.minimum(before, after)).min())

@@ -19,17 +19,28 @@ import numpy as np
 from railpatch import _core
 from railpatch.case.creep_table import SHAPES_BODY, SHAPES_MAGIC, checksum, default_table
 from railpatch.evidence.table.blob import padded
-from railpatch.evidence.table.pair import CHECK, COARSE, FULL, NODES, Pair, Place, Vector
+from railpatch.evidence.table.kriging import MOST, Lengths, find_lengths, weights_of
+from railpatch.evidence.table.pair import (
+    CHECK,
+    COARSE,
+    DIVIDED,
+    FULL,
+    NODES,
+    Pair,
+    Place,
+    Vector,
+)
 
 # long contacts turn from stick to slip between spins of 0.3 and 2
 SPINS = np.array([0.0, 0.15, 0.3, 0.5, 0.75, 1.05, 1.5, 2.1, 3.0, 4.5, 7.0, 11.0])
-DIRECTIONS, RADII, RADIUS, LANES = 12, 9, 1.7, 8
-# of the features over their standard deviation
-WEIGHT = np.array([1.5, 1.0, 1.0, 0.5, 1.0, 1.0, 1.0, 0.0])
-FIRST, ROUND = 60, 60
+DIRECTIONS, RADII, RADIUS, LANES, FUNCTIONS = 12, 9, 1.7, 8, 24
+FIRST, ROUND = 60, 100
 STATES = 4  # creepages of a place that is tried
-NEEDED = 0.5  # of the error asked for: a shape that errs by less is no node
+NEEDED = 0.7  # of the error asked for: a shape that errs by less is no node
+RENEWED = 1.5  # times as many nodes tell the lengths anew
+APART = 0.6  # a fall of the rows' load below it, and there are two parts
 LEVEL = 0.95
+LEVELS = (50, 90, 95, 99, 100)  # of what is told of the error, per cent
 FAR = 1e9
 
 
@@ -54,7 +65,8 @@ class Shapes:
         self.pair, self.threads = pair, threads
         self.features: list[Vector] = []
         self.remainders: list[Vector] = []
-        self.scale = np.ones(8)
+        self.lengths: Lengths | None = None
+        self._told = 0  # nodes that told the lengths
         self._v = creepages_of_nodes()
 
     def __len__(self) -> int:
@@ -63,7 +75,7 @@ class Shapes:
     def add(self, place: Place) -> None:
         """Solves a node; one that the full theory does not solve everywhere is left out."""
         creepages = self.pair.at_centre(place, self._v.reshape(-1, 3))
-        grid = self.pair.grid(place, NODES)
+        grid = self.pair.grid(place, NODES if place.fall > APART else DIVIDED)
         full, solved = self.pair.solve(place, creepages, FULL, grid, self.threads)
         fast, _ = self.pair.solve(place, creepages, {"tangential": "table"}, COARSE, self.threads)
         if not (solved.all() and np.isfinite(fast).all()):
@@ -79,28 +91,55 @@ class Shapes:
         self.features.append(place.features)
         self.remainders.append(found.astype(np.float32))
 
-    def set_scale(self) -> None:
-        """By the nodes there are."""
-        spread = np.maximum(np.std(self.features, axis=0), 1e-3)
-        self.scale = WEIGHT / spread
+    def scale(self) -> Vector:
+        """Of the features. Raises RuntimeError before there is any data."""
+        if self.lengths is None:
+            raise RuntimeError("no table was made yet")
+        return 1.0 / self.lengths.length
+
+    def functions(self) -> tuple[Vector, Vector]:
+        """Of creepage [FUNCTIONS, ...], of which the first counts once; and weights [n, FUNCTIONS]
+        of nodes."""
+        features = np.array(self.features)
+        rows = np.array(self.remainders, float).reshape(len(self), -1)
+        mean = rows.mean(axis=0)
+        own, size, shared = np.linalg.svd(rows - mean, full_matrices=False)
+        most = min(FUNCTIONS - 1, len(self) - 1)
+        amounts = own[:, :most] * size[:most]
+        if len(self) >= RENEWED * self._told:
+            some = np.random.default_rng(len(self)).permutation(len(self))[:MOST]
+            self.lengths = find_lengths(features[some], amounts[some], self.lengths)
+            self._told = len(self)
+        assert self.lengths is not None
+        middle, weight = weights_of(features, amounts, self.lengths)
+        found, of_nodes = np.zeros((FUNCTIONS, rows.shape[1])), np.zeros((len(self), FUNCTIONS))
+        found[0] = mean + middle @ shared[:most]
+        found[1 : most + 1], of_nodes[:, 1 : most + 1] = shared[:most], weight
+        return found.reshape(FUNCTIONS, *self.remainders[0].shape), of_nodes
 
     def data(self, reach: float, error: list[float], about: dict[str, Any]) -> bytes:
         """The table's bytes."""
         count = len(self)
-        remainder = np.array(self.remainders)
-        unit = np.maximum(np.abs(remainder).reshape(-1, 3).max(axis=0) / 32767, 1e-9)
-        numbers = np.zeros((*remainder.shape[:-1], 4), "<i2")
-        numbers[..., :3] = np.round(remainder / unit)
+        functions, weight = self.functions()
+        # all functions as large as 16 bits take
+        size = np.abs(functions).reshape(FUNCTIONS, -1).max(axis=1)
+        size = np.where(size > 0, size, 1.0)
+        unit = max(size[0], 1e-9) / 32767
+        numbers = np.round(functions / size[:, None, None, None, None] * 32767).astype("<i2")
+        numbers = np.ascontiguousarray(np.moveaxis(numbers, 0, -1))
         blocks = -(-count // LANES)
+        weights = np.zeros((blocks * LANES, FUNCTIONS), "<f8")
+        weights[:count] = weight * size / size[0]
         features = np.full((blocks * LANES, 8), FAR, "<f4")
-        features[:count] = np.array(self.features) * self.scale
+        features[:count] = np.array(self.features) * self.scale()
         lanes = np.ascontiguousarray(features.reshape(blocks, LANES, 8).transpose(0, 2, 1))
         text = json.dumps(about, sort_keys=True).encode()
         body = SHAPES_BODY.pack(
-            count, len(text), self.pair.poisson_ratio, reach, RADIUS, *SPINS, *self.scale, *unit,
+            count, len(text), self.pair.poisson_ratio, reach, RADIUS, *SPINS, *self.scale(), unit,
             *error,
         )  # fmt: skip
-        body += lanes.tobytes() + numbers.tobytes() + padded(text) + default_table().tobytes()
+        body += lanes.tobytes() + weights.tobytes() + numbers.tobytes() + padded(text)
+        body += default_table().tobytes()
         head = struct.calcsize("<8sQQ")
         return struct.pack("<8sQQ", SHAPES_MAGIC, head + len(body), checksum(body)) + body
 
@@ -121,7 +160,55 @@ def tried(shapes: Shapes, place: Place, table: Path) -> tuple[Vector, Vector]:
 def distance(shapes: Shapes, place: Place) -> float:
     """To the nearest node."""
     nodes = np.array(shapes.features)
-    return float(np.linalg.norm((nodes - place.features) * shapes.scale, axis=1).min())
+    return float(np.linalg.norm((nodes - place.features) * shapes.scale(), axis=1).min())
+
+
+def refine(
+    shapes: Shapes, error: float, most: int, table: Path, step: Callable[[str], None]
+) -> None:
+    """Adds shapes of random places that err by too much, in rounds, until few do. table: a file
+    for the tables on the way."""
+    pair = shapes.pair
+    while len(shapes) < most:
+        table.write_bytes(shapes.data(FAR, [1.0, 1.0], {}))
+        places = [pair.place() for _ in range(ROUND)]
+        errors = [tried(shapes, place, table)[0] for place in places]
+        found = float(np.quantile(np.concatenate(errors), LEVEL))
+        step(f"{len(shapes)} shapes, 95 % below {100 * found:.2f} %")
+        # a round has few states: well below, so that a larger sample holds
+        if found < 0.8 * error:
+            return
+        for place, own in zip(places, errors, strict=True):
+            if len(shapes) < most and len(own) and own.max() > NEEDED * error:
+                shapes.add(place)
+                step(f"{len(shapes)} shapes, 95 % below {100 * found:.2f} %")
+
+
+def judge(
+    shapes: Shapes, check: int, table: Path, about: dict[str, Any], step: Callable[[str], None]
+) -> bytes:
+    """The table's bytes with its error from so many states of places that made no shape."""
+    table.write_bytes(shapes.data(FAR, [1.0, 1.0], {}))
+    places = [shapes.pair.place() for _ in range(-(-check // STATES))]
+    told = []
+    for number, place in enumerate(places, start=1):
+        told.append(tried(shapes, place, table))
+        step(f"{len(shapes)} shapes, held out {number}/{len(places)}")
+    reach = float(max(distance(shapes, place) for place in places))
+    force, moment = (np.concatenate(errors) for errors in zip(*told, strict=True))
+    about = {
+        **about,
+        "error": {
+            "force": np.percentile(force, LEVELS).tolist(),
+            "moment": np.percentile(moment, LEVELS).tolist(),
+            "cases": len(force),
+        },
+        "shapes": len(shapes),
+        "pair": shapes.pair.label,
+        "version": _core.version(),
+    }
+    stated = [float(np.quantile(found, LEVEL)) for found in (force, moment)]
+    return shapes.data(reach, stated, about)
 
 
 def make_shapes(
@@ -135,44 +222,8 @@ def make_shapes(
     while len(shapes) < min(FIRST, most):
         shapes.add(pair.place())
         step(f"{len(shapes)} shapes")
-    shapes.set_scale()
     with TemporaryDirectory() as folder:
         table = Path(folder) / "table.bin"
-        found = np.inf
-        while len(shapes) < most:
-            table.write_bytes(shapes.data(FAR, [1.0, 1.0], {}))
-            places = [pair.place() for _ in range(ROUND)]
-            errors = [tried(shapes, place, table)[0] for place in places]
-            found = float(np.quantile(np.concatenate(errors), LEVEL))
-            step(f"{len(shapes)} shapes, 95 % below {100 * found:.2f} %")
-            # a round has few states: well below, so that a larger sample holds
-            if found < 0.8 * error:
-                break
-            for place, own in zip(places, errors, strict=True):
-                if len(shapes) < most and len(own) and own.max() > NEEDED * error:
-                    shapes.add(place)
-                    step(f"{len(shapes)} shapes, 95 % below {100 * found:.2f} %")
-        made = time.perf_counter() - began
-        table.write_bytes(shapes.data(FAR, [1.0, 1.0], {}))
-        places = [pair.place() for _ in range(-(-check // STATES))]
-        told = []
-        for number, place in enumerate(places, start=1):
-            told.append(tried(shapes, place, table))
-            step(f"{len(shapes)} shapes, held out {number}/{len(places)}")
-    reach = float(max(distance(shapes, place) for place in places))
-    force, moment = (np.concatenate(errors) for errors in zip(*told, strict=True))
-    levels = (50, 95, 99)
-    about = {
-        "error": {
-            "force": np.percentile(force, levels).tolist(),
-            "moment": np.percentile(moment, levels).tolist(),
-            "cases": len(force),
-        },
-        "asked": error,
-        "shapes": len(shapes),
-        "seconds": round(made),
-        "pair": pair.label,
-        "version": _core.version(),
-    }
-    stated = [float(np.percentile(found, 95)) for found in (force, moment)]
-    return shapes.data(reach, stated, about)
+        refine(shapes, error, most, table, step)
+        about = {"asked": error, "seconds": round(time.perf_counter() - began)}
+        return judge(shapes, check, table, about, step)
