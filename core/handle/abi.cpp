@@ -4,6 +4,7 @@
 #include "handle/abi.hpp"
 #include "handle/case_fields.hpp"
 #include "handle/check.hpp"
+#include "handle/scene_of.hpp"
 #include "numeric/interrupt.hpp"
 #include "patch/status.hpp"
 #include "railpatch.h"
@@ -127,8 +128,9 @@ rp_error rp_get_jacobian(rp_contact *contact, rp_jacobian *out, rp_message *mess
                                    : "kind is patch, rp_get_jacobian needs wheel_rail or wheelset");
     return RP_ERROR_VALUE;
   }
-  if (contact->handle.config().roll_balanced != 0 || contact->handle.config().axle_free != 0) {
-    set_message(message, "roll_balanced and axle_free: rp_get_jacobian needs 0");
+  if (is_balanced(contact->handle.config())) {
+    set_message(message,
+                "roll_balanced, axle_free and longitudinal_prescribed: rp_get_jacobian needs 0");
     return RP_ERROR_VALUE;
   }
   if (!contact->handle.has_solution()) {

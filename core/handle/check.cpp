@@ -425,6 +425,10 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
     check.field("z", in.z, input_range::z);
   check_ranges(in, case_part::wheels, check);
   check_step_regime(c, in, check);
+  check.require(c.axle_free == 1 || in.axle_torque == 0,
+                "axle_torque must be 0 with axle_free = 0");
+  check.require(c.longitudinal_prescribed == 1 || in.longitudinal_force == 0,
+                "longitudinal_force must be 0 with longitudinal_prescribed = 0");
   const bool rolls_on = regime_of(c, in) == RP_TRANSIENT_ROLLING && has_tangential(c);
   check.number("time_step", in.time_step, rolls_on ? positive : input_range::time_step);
   for (const auto &rotation : in.rail_rotation)

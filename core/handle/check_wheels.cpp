@@ -140,10 +140,18 @@ void check_balance(const rp_config &c, checker &check) {
   const bool wheelset = c.kind == RP_WHEELSET;
   check.require(c.roll_balanced == 0 || wheelset,
                 "roll_balanced needs kind = wheelset: one wheel alone has a roll moment");
-  check.require(c.axle_free == 0 || wheelset, "axle_free needs kind = wheelset");
+  check.require(c.axle_free == 0 || c.kind != RP_PATCH,
+                "axle_free needs kind = wheel_rail or wheelset");
+  check.require(c.longitudinal_prescribed == 0 || c.kind != RP_PATCH,
+                "longitudinal_prescribed needs kind = wheel_rail or wheelset");
+  check.require(
+      c.longitudinal_prescribed == 0 || c.axle_free == 0,
+      "longitudinal_prescribed must be 0 with axle_free: one of them says the pitch rate");
   check.require(
       c.axle_free == 0 || has_tangential(c),
       "axle_free needs a tangential problem: without creep forces nothing turns the axle");
+  check.require(c.longitudinal_prescribed == 0 || has_tangential(c),
+                "longitudinal_prescribed needs a tangential problem: without it there is no force");
 }
 
 void check_max_work(const rp_config &c, checker &check) {
@@ -152,7 +160,8 @@ void check_max_work(const rp_config &c, checker &check) {
                 "max_work must be 0 but with wheels under a vertical force: no height is searched");
   check.require(!has_support(c),
                 "max_work must be 0 with rail_stiffness: the rails' place is part of the search");
-  check.require(!is_balanced(c), "max_work must be 0 with roll_balanced and axle_free");
+  check.require(!is_balanced(c),
+                "max_work must be 0 with roll_balanced, axle_free and longitudinal_prescribed");
   check.require(!(c.accuracy > 0), "max_work must be 0 with accuracy: finer grids cost more");
 }
 

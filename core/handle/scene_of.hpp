@@ -38,5 +38,6 @@ wheels_setup wheels_of(const rp_config &config, const patch_scene &scene);
 bool has_support(const rp_config &config);
 // Whether a wheelset's roll angle or pitch rate is found.
 bool is_balanced(const rp_config &config);
+bool finds_pitch_rate(const rp_config &config);
 
 }  // namespace railpatch

@@ -100,7 +100,11 @@ bool has_support(const rp_config &c) {
   return c.kind != RP_PATCH && (c.rail_stiffness[0] > 0 || c.rail_stiffness[1] > 0);
 }
 
-bool is_balanced(const rp_config &c) { return c.roll_balanced != 0 || c.axle_free != 0; }
+bool is_balanced(const rp_config &c) { return c.roll_balanced != 0 || finds_pitch_rate(c); }
+
+bool finds_pitch_rate(const rp_config &c) {
+  return c.axle_free != 0 || c.longitudinal_prescribed != 0;
+}
 
 wheels_setup wheels_of(const rp_config &c, const patch_scene &scene) {
   wheels_setup setup;
@@ -113,7 +117,10 @@ wheels_setup wheels_of(const rp_config &c, const patch_scene &scene) {
   setup.nominal_radius = c.nominal_radius;
   setup.whole_forces = c.patch_rule != RP_PATCHES_CONTACT || c.contact_frame == RP_FRAME_INCLINED;
   if (is_balanced(c))
-    setup.balance = balance_setup{c.roll_balanced != 0, c.axle_free != 0, 0.5 * c.gauge,
+    setup.balance = balance_setup{c.roll_balanced != 0,
+                                  finds_pitch_rate(c),
+                                  c.longitudinal_prescribed != 0,
+                                  0.5 * c.gauge,
                                   c.track == RP_ROLLER ? c.roller_radius : 0.0,
                                   std::max(c.standstill_speed, 1e-3)};
   if (c.friction_along_points > 0)

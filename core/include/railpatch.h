@@ -586,12 +586,12 @@ typedef struct rp_config {
                           tangential = RP_TANGENTIAL_TABLE they are those of the full theory,
                           beginning with fitted itself, and the table is asked first */
 
-  /* a wheelset in balance (RP_WHEELSET): what each step finds in place of an input, which then is
-   * not read. Derivatives are those of the balance, which follows. Not with rp_get_jacobian */
+  /* wheels in balance: what each step finds in place of an input, which then is not read.
+   * Derivatives are those of the balance, which follows. Not with rp_get_jacobian */
   int32_t roll_balanced; /* 1: the roll angle at which the contact forces have no moment about the
-                            track's x through the wheelset's centre */
-  int32_t axle_free;     /* 1: the pitch rate at which axle_torque is 0: no drive, no brake; with a
-                            tangential problem */
+                            track's x through the wheelset's centre (RP_WHEELSET) */
+  int32_t axle_free;     /* 1: the pitch rate at which axle_torque is the input's, 0 without drive
+                            and brake; with a tangential problem */
 
   /* may be null. Where it asks for the end rp_step returns RP_ERROR_INTERRUPTED within the time of
    * some products of the influence coefficients: the result is untouched, the handle as after
@@ -670,6 +670,10 @@ typedef struct rp_config {
                              tractions it goes on (rp_input.step_regime); where the method is
                              tangential = full on the uniform grid, without temperature and liquid.
                              Of wheels steady and transient rolling */
+
+  int32_t longitudinal_prescribed; /* 1: wheels in balance, see axle_free, which is then 0: the
+                                      pitch rate at which their contact forces along the track's x
+                                      are rp_input.longitudinal_force */
 } rp_config;
 
 typedef struct rp_input {
@@ -724,6 +728,11 @@ typedef struct rp_input {
   int32_t step_regime; /* with regime_changes, an rp_regime other than none: of this step, whose
                           tractions the next one goes on from; those of steady rolling do not depend
                           on what was before. -1: the config's */
+
+  double axle_torque;        /* N m, with axle_free: that of the contact forces about the axle; one
+                                that drives is above 0 */
+  double longitudinal_force; /* N on the wheel or on both, along the track's x, with
+                                longitudinal_prescribed */
 } rp_input;
 
 /* One patch. Values of stages that the scene leaves out are NaN (element counts 0). Linear theory

@@ -488,7 +488,9 @@
   O(const int32_t *, section_kink, 2)                                                              \
   O(const int32_t *, wheel_section_kink, 2)                                                        \
   X(int32_t, regime_changes, 1, integer, always, 0, "[]", 0, 1, "-",                               \
-    "whether a step may have another regime than the last one, from whose tractions it goes on")
+    "whether a step may have another regime than the last one, from whose tractions it goes on")   \
+  X(int32_t, longitudinal_prescribed, 1, integer, always, 0, "[]", 0, 1, "-",                      \
+    "whether the pitch rate is that at which the longitudinal force is the one given")
 
 /* X(type, name, count, role, where, start, bounds, low, high, scale, unit, text), as above and
  * role      place: a number whose size says nothing about how fast things change there
@@ -569,7 +571,12 @@
   X(double, friction_scale, 2, number, own, 1, "[]", 0, 100, 0.1, "-",                             \
     "factor of the friction law on each wheel, [left, right]; of a patch the second")              \
   X(int32_t, step_regime, 1, integer, own, -1, "", 0, 0, 0, "-",                                   \
-    "regime of this step where it may change; -1: the case's")
+    "regime of this step where it may change; -1: the case's")                                     \
+  X(double, axle_torque, 1, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, 100, "N m",              \
+    "of the contact forces about the axle, where the pitch rate is found; above 0: a drive")       \
+  X(double, longitudinal_force, 1, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, 100, "N",         \
+    "of the contact forces along the track, on the wheel or on both, where the pitch rate is "     \
+    "found")
 
 /* --- choices: Y(type, list of the type's enumerators) -------------------------------------- */
 #define RP_CHOICES(Y)                                  \

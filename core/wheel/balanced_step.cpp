@@ -4,7 +4,8 @@
 // Conditions, over what they are compared with (F the vertical force, b half the track's width, r
 // the nominal radius):
 //   roll        moment of the contact forces about the track's x through the centre, over F b
-//   pitch rate  torque of the contact forces about the axle, over F r
+//   pitch rate  torque of the contact forces about the axle less the one given, over F r; or their
+//               sum along the track's x less the one given, over F
 // The search starts where both wheels touch their rails at one height, and rolling without slip on
 // average.
 #include <algorithm>
@@ -56,10 +57,12 @@ struct wheels::balanced_state final : balanced_wheelset {
     // where nothing is carried all is in balance
     const double scale = load > 0 ? 1.0 / load : 0.0;
     const double roll = moment * scale / setup.half_width;
-    const double axle = own.torque(in, out) * scale / own.nominal_radius_;
+    const double axle = own.pitch_condition(in, out) * scale / lever();
     return setup.roll ? balance_pair{roll, axle} : balance_pair{axle, 0.0};
   }
 
+  // m, that the second condition is compared with beside the load
+  double lever() const { return setup.along ? 1.0 : own.nominal_radius_; }
   bool evaluate(const balance_pair &u, balance_pair &residual) override {
     set(u);
     solve();
@@ -70,8 +73,7 @@ struct wheels::balanced_state final : balanced_wheelset {
     if (!own.rates_ || !own.balance_slopes(in, out, slope)) return false;
     const double load = own.force_given_ ? in.vertical_force : carried;
     for (size_t i = 0; i < 2; ++i)
-      for (double &s : slope[i])
-        s /= load * (setup.roll && i == 0 ? setup.half_width : own.nominal_radius_);
+      for (double &s : slope[i]) s /= load * (setup.roll && i == 0 ? setup.half_width : lever());
     return load > 0;
   }
   // m, deepest of the patches
@@ -116,6 +118,14 @@ double wheels::torque(const rp_input &in, const rp_result &out) const {
       along += (cos(in.yaw) * side.force[0] + sin(in.yaw) * side.force[1]) * side.rolling_radius;
   }
   return whole_forces_ ? axle_torque(in, moment) : along;
+}
+
+// What the pitch rate's condition lacks: N m, or N.
+double wheels::pitch_condition(const rp_input &in, const rp_result &out) const {
+  if (!balance_->along) return torque(in, out) - in.axle_torque;
+  double sum = -in.longitudinal_force;
+  for (const auto &wheel : wheels_) sum += out.side[wheel.side()].force[0];
+  return sum;
 }
 
 double wheels::torque_rate(const rp_input &in, const rp_input &d, const rp_result &result,

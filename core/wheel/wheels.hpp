@@ -20,7 +20,8 @@ namespace railpatch {
 
 // What of a wheelset in balance is found, and what its search starts from.
 struct balance_setup {
-  bool roll = false, axle = false;
+  bool roll = false, axle = false;  // found: roll angle, pitch rate
+  bool along = false;        // with the pitch rate: by the longitudinal force, not the torque
   double half_width = 0;     // m, of the track
   double roller_radius = 0;  // m; 0: rails
   double least_speed = 0;    // m/s, of rolling, that steps of the pitch rate are measured with
@@ -81,6 +82,7 @@ class wheels final : public driver {
   void solve(const rp_input &input, rp_result &result);
   void solve_balanced(rp_input &input, rp_result &result);
   bool touching_roll(rp_input &input);
+  double pitch_condition(const rp_input &in, const rp_result &out) const;
   double torque(const rp_input &input, const rp_result &result) const;
   double torque_rate(const rp_input &input, const rp_input &direction, const rp_result &result,
                      const side_rates &rate) const;

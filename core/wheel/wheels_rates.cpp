@@ -77,10 +77,16 @@ int wheels::found_columns(int (&columns)[3]) const {
 }
 
 // Of the condition that belongs to a column of what is found: the vertical force, the roll moment,
-// the torque about the axle. rate: of the wheels by side.
+// the torque about the axle or the longitudinal force. rate: of the wheels by side.
 double wheels::found_rate(int column, const rp_input &at, const rp_input &direction,
                           const rp_result &result, const side_rates &rate) const {
-  if (column == pitch_rate_column) return torque_rate(at, direction, result, rate);
+  if (column == pitch_rate_column && !balance_->along)
+    return torque_rate(at, direction, result, rate) - direction.axle_torque;
+  if (column == pitch_rate_column) {
+    double along = -direction.longitudinal_force;
+    for (const auto &wheel : wheels_) along += rate[wheel.side()]->force[0];
+    return along;
+  }
   double sum = column == z_column ? direction.vertical_force : 0.0;
   for (const auto &wheel : wheels_)
     sum += column == z_column ? rate[wheel.side()]->force[2] : rate[wheel.side()]->moment[0];

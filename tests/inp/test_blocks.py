@@ -217,6 +217,13 @@ WHEEL_READ = [
     ),
     ({"rail": "'rail.txt' 1 25.4 0. 1"}, "profiles.rail_file.mirror", "yz"),
     (
+        {"first": "1203110", "velocity": "20000. 0 0 0 0 -3000."},
+        "wheelset.longitudinal_force",
+        3000.0,
+    ),
+    ({"first": "1203120", "velocity": "20000. 0 0 0 0 0."}, "wheelset.pitch_rate", "free"),
+    ({"first": "1203120", "velocity": "20000. 0 0 0 0 46e4"}, "wheelset.axle_torque", -460.0),
+    (
         {"first": "1203103", "flexibility": "1 1\n9\n1 2 3\n0.\n0. 1.\n0.5 1. 2.\n1\n3 0.5 0.5\n0"},
         "kind",
         "wheel_rail",
@@ -224,8 +231,7 @@ WHEEL_READ = [
 ]
 WHEEL_REFUSED = [
     ({"first": "1201100"}, "T = 1"),
-    ({"first": "1203110"}, "F = 1"),
-    ({"first": "1203120"}, "F = 2"),
+    ({"first": "1200110"}, "F = 1, 2"),
     ({"first": "1223100"}, "B = 2 on wheels"),
     ({"second": "0032033"}, "D = 3"),
     ({"second": "0072033"}, "D = 7"),

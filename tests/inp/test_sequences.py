@@ -95,3 +95,15 @@ def test_a_sequence_of_wheels(folder: Path) -> None:
     done = CliRunner().invoke(cli, ["convert", str(path), "-o", str(folder / "no")])
     assert done.exit_code == 2
     assert "railpatch solve" in done.output
+
+
+def test_force_and_torque_on_a_wheel(folder: Path) -> None:
+    """F = 1 and 2: FX and MY are of the rail, MY in N mm; signs of the other program again."""
+    path = folder / "driven.inp"
+    for digit, last, kept in (("1", "-3000.", "FX"), ("2", "-1.38e6", "")):
+        path.write_text(text_of(WHEEL, first=f"12031{digit}0", velocity=f"20000. 0 0 0 0 {last}"))
+        (found,) = solve_file(path)
+        assert found.result.status == "converged"
+        # 1380 N m by 460 mm are 3000 N
+        assert found.result["force"][0] == pytest.approx(3000.0, rel=1e-4 if kept else 0.02)
+        assert found.result["axle_torque"] == pytest.approx(1380.0, rel=0.02 if kept else 1e-4)

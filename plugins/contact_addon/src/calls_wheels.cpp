@@ -124,7 +124,10 @@ void cntc_getwheelsetvelocity(int *ire, int *count, double *values) {
   CONTACT_ADDON_NEEDS(call, ire, count, values)
   with_problem(call, *ire, -1, modules::wheels, patches::element, false, [&](problem &p) {
     const double L = p.unit().length, *w = p.wheel.velocity;
-    const double all[6] = {w[0] / (p.roller() ? 1.0 : L), w[1] / L, w[2] / L, w[3], w[4], w[5]};
+    const int force = p.flags.get(flag_force);
+    const bool found = p.solved && (force == 1 || force == 2);
+    const double turns = found ? p.result.pitch_rate : w[5];
+    const double all[6] = {w[0] / (p.roller() ? 1.0 : L), w[1] / L, w[2] / L, w[3], w[4], turns};
     copy(all, 6, count, values);
     return 0;
   });

@@ -278,8 +278,10 @@ void map_wheel(const problem &p, mapped_case &out) {
   c.side = p.side();
   c.load = p.flags.get(flag_normal) == 1 ? RP_FORCE : RP_POSITION;
   const int f = p.flags.get(flag_force), d = p.flags.get(flag_patches);
-  if (f == 1) no("F = 1, the longitudinal force on a wheel, has no counterpart");
-  if (f == 2) no("F = 2, the torque on a wheel, has no counterpart");
+  if ((f == 1 || f == 2) && c.tangential == RP_TANGENTIAL_NONE)
+    no("F = 1 and 2, force or torque on the wheel, need a tangential problem");
+  c.longitudinal_prescribed = f == 1;
+  c.axle_free = f == 2;
   if (d == 3 || d >= 6)
     no("D = " + std::to_string(d) + ", this search for contacts, has no counterpart");
   c.patch_rule = RP_PATCHES_CONTACT;
@@ -400,7 +402,14 @@ void input_of_wheel(const problem &p, rp_input &in) {
   in.vz = w.velocity[2];
   in.roll_rate = w.velocity[3];
   in.yaw_rate = w.velocity[4];
-  in.pitch_rate = w.velocity[5];
+  // force and torque are those on body 1
+  const int force = p.flags.get(flag_force);
+  if (force == 1)
+    in.longitudinal_force = -w.longitudinal_force;
+  else if (force == 2)
+    in.axle_torque = -w.velocity[5] * p.unit().length;
+  else
+    in.pitch_rate = w.velocity[5];
   // roll, yaw, pitch there; about x, y, z here
   constexpr int order[3] = {0, 2, 1};
   for (int k = 0; k < 3; ++k) {

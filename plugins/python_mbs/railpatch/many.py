@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from railpatch import _core
-from railpatch.case.asked import refuse_asked
+from railpatch.case.asked import refuse_asked, refuse_changes
 from railpatch.case.load import Case, Scene, load_scene
 from railpatch.case.moving import moving_keys, refuse_unknown
 from railpatch.case.patch import PatchCase
@@ -28,6 +28,7 @@ from railpatch.result import (
     PATCH_UNITS,
     PLACE_UNITS,
     TOTAL_UNITS,
+    TURNING,
     WHEEL_UNITS,
     WHEELSET_UNITS,
     shaped_field,
@@ -228,6 +229,7 @@ def solve_many(
     scene = case if isinstance(case, Scene) else load_scene(case, folder)
     check_call(scene, threads, fields, sequence)
     refuse_asked(scene.case, "in solve_many: steps of a Contact or a sweep have it")
+    refuse_changes(scene.case, "in solve_many: all states have one")
     columns, count = columns_of(scene.case, inputs)
     if count % sequence:
         raise CaseError(f"sequence: value is {sequence}, allowed what divides {count} states")
@@ -466,7 +468,9 @@ class Collected:
             return status | patch_arrays(self._part(results), names)
         sides = {side: results["side"][:, SIDES.index(side)] for side in self.case.sides}
         if self.case.kind == "wheel_rail":
-            return status | wheel_arrays(results, sides[self.case.wheel.side])
+            turning = TURNING if self.case.wheelset.found else ()
+            of_wheel = wheel_arrays(results, sides[self.case.wheel.side])
+            return status | of_wheel | {name: results[name] for name in turning}
         total = {
             name: results[name] for name in (*TOTAL_UNITS, *WHEELSET_UNITS) if name not in APART
         }

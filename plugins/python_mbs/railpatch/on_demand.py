@@ -12,6 +12,7 @@ from railpatch.case.types import SIDES
 from railpatch.result import (
     PATCH_UNITS,
     TOTAL_UNITS,
+    TURNING,
     WHEEL_UNITS,
     WHEELSET_UNITS,
     patch_data,
@@ -32,6 +33,7 @@ def sources(case: Case) -> dict[str, str]:
         found = dict.fromkeys(names, "patch") | {"warnings": "result"}
     elif case.kind == "wheel_rail":
         found = dict.fromkeys(WHEEL_UNITS, "side") | {"z": "result", "status": "result"}
+        found |= dict.fromkeys(TURNING if case.wheelset.found else (), "result")
     else:
         found = dict.fromkeys((*TOTAL_UNITS, *WHEELSET_UNITS), "result")
     return {name: struct for name, struct in found.items() if name not in FORMED}
@@ -60,7 +62,8 @@ class Reader:
             return {**data, **common}
         wheels = {side: wheel_data(raw[side], raw["z"]) for side in self._sides}
         if self._kind == "wheel_rail":
-            return {**wheels[self._sides[0]], "status": raw["status"], **common}
+            turning = {key: raw[key] for key in TURNING if key in self._sources}
+            return {**wheels[self._sides[0]], "status": raw["status"], **turning, **common}
         total = {key: raw[key] for key in (*TOTAL_UNITS, *WHEELSET_UNITS)}
         return {**total, **wheels, **common}
 

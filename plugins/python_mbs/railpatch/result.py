@@ -71,6 +71,8 @@ WHEELSET_UNITS = {
     name: unit_of("result", name)
     for name in ("roll", "pitch_rate", "axle_torque", "rolling_radius_difference", "conicity")
 }
+# of a wheel alone, where a step finds how it turns
+TURNING = ("pitch_rate", "axle_torque")
 DIVISION: tuple[str, ...] = _core.CHOICES["element"]
 # fields with their number of components
 FIELDS = {

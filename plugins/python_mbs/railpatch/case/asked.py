@@ -176,3 +176,11 @@ def refuse_asked(case: Any, where: str) -> None:
     given = [name for name in ("subsurface", "damage") if getattr(case, name, None) is not None]
     if given:
         raise CaseError([f"{name}: given, allowed none {where}" for name in given])
+
+
+def refuse_changes(case: Any, where: str) -> None:
+    """Of what has one regime for all steps. Raises CaseError."""
+    motion = getattr(case, "motion", None)
+    for key in ("regimes", "regime_changes"):
+        if getattr(motion, key, None):
+            raise CaseError(f"motion.{key}: given, allowed none {where}")

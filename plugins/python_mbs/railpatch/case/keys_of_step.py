@@ -38,6 +38,8 @@ class Moving(TypedDict, total=False):
     roll_rate: float
     pitch_rate: float
     yaw_rate: float
+    axle_torque: float
+    longitudinal_force: float
     time_step: float
     roller_pitch_rate: float
     left: Mapping[str, Numbers]

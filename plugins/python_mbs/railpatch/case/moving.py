@@ -10,7 +10,7 @@ from railpatch.case.friction import MOVED_FRICTION
 from railpatch.case.load import Case, check_table, plain
 from railpatch.case.patch import PatchCase
 from railpatch.case.types import SIDES, show
-from railpatch.case.wheel import Deviation, Rail, WheelDeviation
+from railpatch.case.wheel import OF_FREE, Deviation, Rail, WheelDeviation
 from railpatch.errors import CaseError
 
 # tables that are given whole or in part, by their name
@@ -72,7 +72,10 @@ def changed_case(case: Case, changes: Mapping[str, Any]) -> Case:
 
 def with_numbers(case: Case, numbers: Mapping[str, float]) -> Case:
     """The case of a wheelset with numbers in place of what it says to find."""
-    return case.model_copy(update={"wheelset": changed_table(case, "wheelset", dict(numbers))})
+    values: dict[str, Any] = dict(numbers)
+    if "pitch_rate" in numbers:
+        values |= dict.fromkeys(OF_FREE)
+    return case.model_copy(update={"wheelset": changed_table(case, "wheelset", values)})
 
 
 def changed_table(case: Case, name: str, values: dict[str, Any]) -> Any:

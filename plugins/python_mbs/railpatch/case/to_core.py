@@ -208,7 +208,8 @@ def wheel_config(case: WheelCase, folder: Path, shelf: Shelf) -> dict[str, Any]:
     config: dict[str, Any] = {
         "load": "position" if case.wheelset.z is not None else "force",
         "roll_balanced": int("roll" in found),
-        "axle_free": int("pitch_rate" in found),
+        "axle_free": int("pitch_rate" in found and case.wheelset.longitudinal_force is None),
+        "longitudinal_prescribed": int(case.wheelset.longitudinal_force is not None),
         "regime": case.motion.regime if case.has_tangential else "none",
         **passed("rail_support", case.track.rail_support, _core.CONFIG_FIELDS),
     }

@@ -66,6 +66,8 @@ WHEELSET_STATE = (
 )
 # of these, what a step finds where the word stands in place of a number
 FOUND = {"roll": "balanced", "pitch_rate": "free"}
+# what says the pitch rate that is found
+OF_FREE = ("axle_torque", "longitudinal_force")
 
 
 class Deviation(Table):
@@ -127,8 +129,15 @@ class Wheelset(Table):
     roll_rate: float = key()
     yaw_rate: float = key()
     pitch_rate: number_or("pitch_rate", FOUND["pitch_rate"]) = key(
-        "; 'free': that at which the contact forces have no torque about the axle (wheelset)",
+        "; 'free': that at which the contact forces have the torque axle_torque about the axle, or "
+        "along the track the sum longitudinal_force",
         bounded=False,
+    )
+    axle_torque: float | None = key(
+        "; only with pitch_rate = 'free', left out: 0, no drive and no brake", default=None
+    )
+    longitudinal_force: float | None = key(
+        "; only with pitch_rate = 'free', in place of axle_torque", default=None
     )
     time_step: float = key()
     nominal_radius: float = key(default=...)
@@ -145,13 +154,26 @@ class Wheelset(Table):
     @model_validator(mode="after")
     def _one_height(self) -> Wheelset:
         exactly_one(self, ("z", "vertical_force"))
+        refuse(self._by_pitch_rate())
         return self
+
+    def _by_pitch_rate(self) -> Problems:
+        for name in OF_FREE:
+            if (value := getattr(self, name)) is None:
+                continue
+            if self.pitch_rate != FOUND["pitch_rate"]:
+                yield relation(name, value, "only with pitch_rate = 'free'")
+        if self.axle_torque is not None and self.longitudinal_force is not None:
+            allowed = f"{LEFT_OUT} with longitudinal_force: one of them says the pitch rate"
+            yield relation("axle_torque", self.axle_torque, allowed)
 
     @property
     def moving(self) -> tuple[str, ...]:
         """Position and velocity, not the dimensions."""
         height = "z" if self.z is not None else "vertical_force"
-        given = (name for name in WHEELSET_STATE if name not in self.found)
+        given = [name for name in WHEELSET_STATE if name not in self.found]
+        if "pitch_rate" in self.found:
+            given.append("axle_torque" if self.longitudinal_force is None else OF_FREE[1])
         return (*given, height, *SIDES)
 
     @property
@@ -430,7 +452,7 @@ class _WheelCase(Table):
     def _check_balance(self) -> Problems:
         for name in self.wheelset.found:
             shown = repr(FOUND[name])
-            if len(self.sides) == 1:
+            if len(self.sides) == 1 and name == "roll":
                 yield relation(f"wheelset.{name}", shown, "a number with kind = 'wheel_rail'")
             elif name == "pitch_rate" and not self.has_tangential:
                 allowed = "a number with method.tangential = 'none': nothing turns the axle"

@@ -13,7 +13,6 @@ REFUSED = {
 }
 REFUSED_ON_WHEELS = {
     "T": {1: "a shift of wheels on rails"},
-    "F": {1: "the longitudinal force on a wheel", 2: "the torque on a wheel"},
     "D": {3: "slip of true surfaces", 6: "search", 7: "search", 8: "search", 9: "search"},
     "C3": {3: "bilinear elements"},
 }

@@ -418,12 +418,23 @@ class Mapping:
             if "RPITCH" not in v:
                 found["speed"] = MM * v["VS"]
             found |= {"vy": MM * v["VY"], "vz": MM * v["VZ"], "roll_rate": v["VROLL"]}
-            found |= {"yaw_rate": v["VYAW"], "pitch_rate": v["VPITCH"]}
+            found["yaw_rate"] = v["VYAW"]
+            found |= self._turning(v)
         elif self.tangential:
             raise self.refuse("rolling without velocities (E >= 2)")
         if "flexibility" in b:
             found[side] = self._deviation(b["flexibility"])
         return found
+
+    def _turning(self, v: dict[str, float]) -> dict[str, Any]:
+        """The pitch rate, or what it is found by: force or torque on body 1, here on the wheel."""
+        if "VPITCH" in v:
+            return {"pitch_rate": v["VPITCH"]}
+        if not self.tangential:
+            raise self.refuse("F = 1, 2 without a tangential problem (T = 0)")
+        if "FX" in v:
+            return {"pitch_rate": "free", "longitudinal_force": 0.0 - v["FX"]}
+        return {"pitch_rate": "free", "axle_torque": 0.0 - MM * v["MY"]}
 
     def _deviation(self, f: dict[str, float]) -> dict[str, Any]:
         return {
