@@ -18,7 +18,7 @@ from railpatch.case.moving import changed_case, moving_keys
 # "m, ..." of a value, "... (m, rad)" of a table, "... (no unit)" of a choice
 UNITS = (
     "-|%|m|s|N/m|N s/m|1/m|rad|rad/s|rad/m|m/s|s/m|N|Pa|Pa/m|K|degrees C|W/K|W/.m K.|J/.kg K.|"
-    "kg/m.3|kg/J|kg|Pa s|1/Pa|m.3/s|1/N|J/m"
+    "kg/m.3|kg/J|kg|Pa s|1/Pa|m.3/s|1/N|J/m|N m"
 )
 UNIT = re.compile(
     rf"^({UNITS})( and .*)?( or .*)?, |\((no unit|file|Pa|m|N|1/N|-|rad|degrees C)[^()]*"

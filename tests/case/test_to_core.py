@@ -36,6 +36,7 @@ MADE = {
     "distance_shape": "geometry.undeformed_distance",
     "roll_balanced": "wheelset.roll = 'balanced'",
     "axle_free": "wheelset.pitch_rate = 'free'",
+    "longitudinal_prescribed": "wheelset.longitudinal_force",
     "fluid_viscosity_points": "fluid.viscosity_table",
     "fluid_viscosity_temperature": "fluid.viscosity_table",
     "fluid_viscosity_value": "fluid.viscosity_table",

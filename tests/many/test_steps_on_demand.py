@@ -139,6 +139,7 @@ def test_every_moving_key_has_a_type() -> None:
     """Those of all kinds stand in the signature that editors and notebooks complete from."""
     moving = {key for case in CASES.values() for key in moving_keys(check_case(case))}
     moving |= {"tangential_force", "distance", "steps", "temperature", "regime"}
+    moving |= {"axle_torque", "longitudinal_force"}
     assert moving == set(Moving.__annotations__)
     keys = set(inspect.signature(Contact.step).parameters)
     assert keys == {"self", "fields", *moving}
