@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 import railpatch
 from case_samples import WHEELSET, with_values
+from railpatch.case.load import load_scene
+from railpatch.contact import at_balance
 
 SINGLE = with_values(
     WHEELSET,
@@ -156,3 +158,12 @@ def test_steps_and_what_friction_cannot_carry() -> None:
 def test_what_is_refused(change: dict[str, Any], key: str) -> None:
     with pytest.raises(railpatch.CaseError, match=key.replace(".", r"\.")):
         railpatch.Contact(with_values(SINGLE, **change))
+
+
+def test_numbers_of_a_balance() -> None:
+    """As an FMU of the scene starts: the rate that was found in place of what it was found by."""
+    scene = load_scene(with_values(SINGLE, wheelset__longitudinal_force=2e3))
+    numbers = at_balance(scene, "wheel").case.wheelset
+    assert numbers.longitudinal_force is None
+    found = railpatch.solve(with_values(SINGLE, wheelset__longitudinal_force=2e3))
+    assert numbers.pitch_rate == found["pitch_rate"]
