@@ -3,7 +3,7 @@
 Wheels of 0.46 m on rails of 0.30 m under 80 kN, steel. Top: adhesion over speed (both shares beside
 the design line 13.6/(85 + V), dry 27.2/(85 + V)), temperature, roughness, water rate. Below: the
 pressures along the middle of a contact by strips at 5, 20 and 72 m/s; creep curves dry, damp, wet,
-oiled; a wheel set that brakes over a wet stretch, and those that follow on the cleaned rail.
+oiled; a locomotive that brakes on a wet stretch, whose following wheels meet cleaned rails.
 
     python docs/fluids.py docs/fluids.svg
 """
@@ -11,19 +11,27 @@ oiled; a wheel set that brakes over a wet stretch, and those that follow on the 
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import railpatch
+from railpatch.case.fluid import Fluid
+from railpatch.case.friction import Friction
+
+from wheelset_demo.scene import scene_file
+from wheelset_demo.vehicle import Simulation, load_vehicle_scene
+from wheelset_demo.vehicle.wet_track import WetTable
 
 STEEL = {"shear_modulus": 210e9 / 2.6, "poisson_ratio": 0.3}
 RATIO = {"model": "film", "roughness": 0.5765e-6, "boundary_friction": 0.1485}
 SHARED = {"model": "film", "share": "load_sharing", "roughness": 0.3565e-6}
 SHARED |= {"boundary_friction": 0.1266}
 WATER = {"liquid": "water", "temperature": 20.0}
-# a braked wheelset: slip of 2 % at 20 m/s, 60 m dry, 120 m with 25 microlitres a second, 60 m dry
-SPEED, CREEPAGE, STRETCH, TAU, RADIUS = 20.0, 0.02, (60.0, 180.0, 240.0), 2e-4, 0.46
+SPEED = 20.0  # m/s
+# a braked locomotive: s, when the brakes come on; N m; m, where it is damp; 1/N
+BRAKED, TORQUE, STRETCH, TAU = 1.5, 46875.0, (20.0, 80.0), 2e-4
 
 
 def contact(fluid: dict[str, Any] | None, **tables: Any) -> railpatch.Contact:
@@ -65,7 +73,7 @@ def over_speed(panel: Any) -> None:
 
 def over_temperature(panel: Any) -> None:
     """At three speeds."""
-    temperatures = np.linspace(-5, 80, 40)
+    temperatures = np.linspace(1, 80, 40)
     of = contact({**RATIO, **WATER})
     for speed in (10.0, 40.0, 72.2):
         found = [friction(of, rolling_speed=speed, water_temperature=t) for t in temperatures]
@@ -138,29 +146,38 @@ def creep_curves(panel: Any) -> None:
 
 
 def braking(panel: Any) -> None:
-    """Wheelsets one behind the other over a wet stretch: each cleans the rail and itself."""
-    x = np.arange(0.0, STRETCH[2], 1.0)
-    spent = np.zeros_like(x)  # J/m, on each metre of the rail
-    of = contact({"model": "regimes", "water_rate": 0.0, "recovery": {"coefficient": TAU}})
-    for wheelset in range(1, 5):
-        own, found = 0.0, []  # J/m of its circumference
-        for place, before in zip(x, spent, strict=True):
-            wet = STRETCH[0] <= place < STRETCH[1]
-            result = of.step(
-                creepage=[CREEPAGE, 0.0],
-                rolling_speed=SPEED,
-                water_rate=25e-9 if wet else 0.0,
-                # nothing cleans what is dry
-                rail_work=[0.0, before + own],
-            )
-            found.append(-result["creep_force"][0] / 80e3)
-            # of this metre of the rail; of the wheel a turn takes 2 pi R metres
-            work = result["friction_power"] / SPEED
-            own += work / (2 * np.pi * RADIUS) if wet else 0.0
-            spent[int(place)] += work if wet else 0.0
-        panel.plot(x, found, label=f"wheelset {wheelset}")
-    panel.set_xlabel("way [m]; 60 to 180 m damp, 25 microlitres/s")
-    panel.set_ylabel("creep force over load")
+    """A locomotive brakes on a wet stretch: each wheelset cleans itself and the rails for the
+    next."""
+    scene = load_vehicle_scene(scene_file("locomotive.toml"))
+    scene = scene.with_run(step=2e-3, log_every=1, duration=6.0).with_method(tangential="polach")
+    damp = {"model": "regimes", "water_rate": 0.0, "recovery": {"coefficient": TAU}}
+    liquid = {"friction": Friction(coefficient=0.5), "fluid": Fluid(**damp)}
+    torque = [[0.0, 0.0], [BRAKED, 0.0], [BRAKED + 0.5, -TORQUE]]
+    drives = [one.model_copy(update={"torque": torque}) for one in scene.vehicle.drive]
+    wet = WetTable(position=STRETCH[0], length=STRETCH[1] - STRETCH[0], water_rate=25e-9)
+    simulation = Simulation(
+        replace(
+            scene,
+            case=scene.case.model_copy(update=liquid),
+            vehicle=scene.vehicle.model_copy(update={"drive": drives}),
+            wet=(wet,),
+        )
+    )
+    places, found = [], []
+    for _ in simulation.steps():
+        wheels = simulation.element.wheels
+        places.append(simulation.system.positions.copy())
+        found.append(wheels[:, :, 0].sum(axis=1) / wheels[:, :, 2].sum(axis=1))
+    cells = np.floor(2.0 * np.array(places)).astype(int)
+    for k in range(len(found[0])):
+        count = np.bincount(cells[:, k])
+        mean = np.bincount(cells[:, k], np.array(found)[:, k]) / np.maximum(count, 1)
+        there = np.nonzero(count)[0]
+        panel.plot(0.5 * there + 0.25, mean[there], label=f"wheelset {k + 1}")
+    panel.set_xlabel(
+        f"way [m]; {STRETCH[0]:g} to {STRETCH[1]:g} m damp, 25 microlitres/s a contact"
+    )
+    panel.set_ylabel("braking force over load")
 
 
 def main() -> None:

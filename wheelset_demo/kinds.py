@@ -10,9 +10,8 @@ from railpatch.case.kinds import Ending, SceneKind, with_tables
 from railpatch.errors import CaseError
 
 from wheelset_demo.scene import DEFAULT, MODELS, scene_file
-from wheelset_demo.vehicle.deviations import DipTable
 from wheelset_demo.vehicle.scene import DEFAULT as DEFAULT_VEHICLE
-from wheelset_demo.vehicle.scene import OPTIONAL, TABLES
+from wheelset_demo.vehicle.scene import LISTS, OPTIONAL, TABLES
 
 # beside the coach
 OTHER_VEHICLES = ("freight_wagon.toml", "locomotive.toml")
@@ -84,7 +83,8 @@ def ending_of(summary: Any) -> Ending:
 
 def vehicle() -> SceneKind:
     """A vehicle on track, in time."""
-    model = with_tables(WheelsetCase, {**TABLES, "dip": list[DipTable]}, *OPTIONAL, "dip")
+    lists = {name: list[table] for name, table in LISTS.items()}  # type: ignore[valid-type]
+    model = with_tables(WheelsetCase, {**TABLES, **lists}, *OPTIONAL, *LISTS)
     command = "railpatch vehicle SCENE -o run.mcap"
     scene = scene_file(DEFAULT_VEHICLE)
     return SceneKind(

@@ -90,7 +90,7 @@ def test_the_log_holds_the_file_and_what_ran(
     method = content["method"]
     assert about["theory"] == f"{method['normal']}, {method['tangential']}"
     own = ("body", "suspension", "run", "vehicle", "alignment", "irregularity", "rig")
-    own += ("dip", "support", "measured_track", "comfort")
+    own += ("dip", "support", "measured_track", "comfort", "wet")
     assert check_case({k: v for k, v in content.items() if k not in own}).kind == "wheelset"
     invoke("report", log, "-o", page)
     text = page.read_text(encoding="utf-8")

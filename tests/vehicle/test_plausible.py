@@ -135,7 +135,7 @@ def test_joints_beyond_the_run() -> None:
     [
         ("damping =", "dampening =", "friction_stiffness, friction_force"),
         ("damping =", "dampening =", "did you mean 'damping'?"),
-        ("[run]", "[suport]\n[run]", "comfort, run, dip; did you mean 'support'?"),
+        ("[run]", "[suport]\n[run]", "comfort, run, dip, wet; did you mean 'support'?"),
         ("[run]", "[comfort]\n[run]", "comfort.point: value is missing, allowed at least one [["),
         ("[run]", "[[dip]]\nposition = 60.0\n[run]", "dip[0].angle: value is missing, allowed rad"),
     ],

@@ -1,10 +1,11 @@
 """The time steps of Bdf2, compiled: equations of motion, derivatives and steps in C++.
 
-For scenes of bodies, elements and contacts alone; what else they may have, track below the rails
-and drives with slip control, is in system.py, which holds the same equations for all. Tests compare
-the two. Wheelsets take turns in renewing their contacts' derivatives, so that no step makes all;
-none are older than ``every`` steps. Those that contacts find by differences are found column by
-column in the twelve steps before they are due, where ``every`` leaves room for all wheelsets.
+For scenes of bodies, elements and contacts alone; what else they may have, track below the rails,
+drives with slip control, wet stretches and rails that wheels clean, is in system.py, which holds
+the same equations for all. Tests compare the two. Wheelsets take turns in renewing their contacts'
+derivatives, so that no step makes all; none are older than ``every`` steps. Those that contacts
+find by differences are found column by column in the twelve steps before they are due, where
+``every`` leaves room for all wheelsets.
 """
 
 from __future__ import annotations
@@ -95,7 +96,7 @@ class CompiledSteps:
 
 def covers(system: VehicleSystem) -> bool:
     """Whether a system has nothing but bodies, elements and contacts."""
-    return system.support is None and not system.drives
+    return system.support is None and system.wet is None and not system.drives
 
 
 def core_of(system: VehicleSystem) -> _core.VehicleSteps:

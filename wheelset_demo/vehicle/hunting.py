@@ -54,6 +54,7 @@ def straight(scene: VehicleScene, speed: float) -> VehicleScene:
         alignment=AlignmentTable(),
         irregularity=None,
         dip=(),
+        wet=(),
         measured_track=None,
         measured=None,
     )

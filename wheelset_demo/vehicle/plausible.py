@@ -12,6 +12,7 @@ from wheelset_demo.vehicle.deviations import DipTable
 from wheelset_demo.vehicle.elements import ElementTable
 from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.support import SupportTable
+from wheelset_demo.vehicle.wet_track import WetTable
 
 # kg: railway vehicles from a narrow-gauge tram to a loaded freight wagon
 MASSES = {"body": (100.0, 1.2e5), "wheelset": (300.0, 5e3), "axle_box": (10.0, 1e3)}
@@ -62,6 +63,7 @@ def doubts_of(scene: VehicleScene) -> list[str]:
         *doubtful_elements(scene.vehicle),
         *doubtful_support(scene.support),
         *unmet_dips(scene.dip, scene.way),
+        *unmet_water(scene.wet, scene.way),
     ]
 
 
@@ -158,4 +160,14 @@ def unmet_dips(dips: tuple[DipTable, ...], reached: float) -> list[str]:
         "no wheel comes to it"
         for k, dip in enumerate(dips)
         if dip.position - 0.5 * dip.length > reached
+    ]
+
+
+def unmet_water(wet: tuple[WetTable, ...], reached: float) -> list[str]:
+    """Warnings of wet stretches that no wheelset comes to. reached: m, as of unmet_dips."""
+    return [
+        f"wet[{k}].position is {one.position:g} m, and the first wheelset ends at {reached:.6g} m: "
+        "no wheel comes to it"
+        for k, one in enumerate(wet)
+        if one.position > reached
     ]

@@ -40,6 +40,7 @@ from wheelset_demo.vehicle.measured_track import (
     read_measured,
 )
 from wheelset_demo.vehicle.support import SupportTable
+from wheelset_demo.vehicle.wet_track import WetTable, wet_problems
 
 DEFAULT = "vehicle_curve.toml"
 # found at the start, or no part of a scene that runs on its own track
@@ -96,6 +97,8 @@ TABLES: dict[str, type[Table]] = {
     "comfort": ComfortTable,
     "run": RunTable,
 }
+# lists of tables, none of which is needed
+LISTS: dict[str, type[Table]] = {"dip": DipTable, "wet": WetTable}
 OPTIONAL = ("alignment", "irregularity", "support", "measured_track", "comfort")
 
 
@@ -103,7 +106,7 @@ OPTIONAL = ("alignment", "irregularity", "support", "measured_track", "comfort")
 class VehicleScene(RunScene):
     """A vehicle's scene. irregularity: None for straight rails. dip: dipped joints. support: None
     for rails on rigid ground. measured_track: the record that measured is read from.
-    comfort: None where it is not asked for."""
+    comfort: None where it is not asked for. wet: stretches with another supply of liquid."""
 
     vehicle: VehicleTable
     alignment: AlignmentTable
@@ -114,6 +117,7 @@ class VehicleScene(RunScene):
     measured_track: MeasuredTrackTable | None = None
     measured: MeasuredTrack | None = None
     comfort: ComfortTable | None = None
+    wet: tuple[WetTable, ...] = ()
 
     @property
     def recorded(self) -> Irregularity | None:
@@ -186,7 +190,7 @@ def load_vehicle_scene(
     """
     path = scene_file(DEFAULT) if path is None else Path(path)
     checks = {name: partial(checked_table, name) for name in TABLES}
-    checks["dip"] = checked_dips
+    checks |= {name: partial(checked_list, name) for name in LISTS}
     scene = load_checked(path, "vehicle", checks, check_run, VehicleScene, overrides)
     scene = with_own_profiles(scene, path.parent)
     table = scene.measured_track
@@ -244,13 +248,14 @@ def comfort_problems(comfort: ComfortTable, run: RunTable, vehicle: VehicleTable
     return found
 
 
-def checked_dips(dips: Any) -> tuple[DipTable, ...]:
-    """The list [[dip]]; none where it is left out. Raises CaseError."""
-    if dips is None:
+def checked_list(name: str, tables: Any) -> tuple[Any, ...]:
+    """A list of tables, [[dip]] or [[wet]]; none where it is left out. Raises CaseError."""
+    if tables is None:
         return ()
-    if not isinstance(dips, list):
-        raise CaseError(f"dip: value is {dips!r}, allowed a list of [[dip]] tables")
-    return tuple(check_table(DipTable, dip, f"dip[{index}]") for index, dip in enumerate(dips))
+    if not isinstance(tables, list):
+        raise CaseError(f"{name}: value is {tables!r}, allowed a list of [[{name}]] tables")
+    kind = LISTS[name]
+    return tuple(check_table(kind, one, f"{name}[{index}]") for index, one in enumerate(tables))
 
 
 def check_run(
@@ -263,6 +268,7 @@ def check_run(
     irregularity: IrregularityTable | None = None,
     measured_track: MeasuredTrackTable | None = None,
     comfort: ComfortTable | None = None,
+    wet: tuple[WetTable, ...] = (),
     **_: Any,
 ) -> None:
     """Refuses cases that are no wheelset with friction, a start in a curve. Raises CaseError."""
@@ -296,6 +302,7 @@ def check_run(
                 f"dip[{index}].position: value is {one.position}, allowed >= "
                 f"{vehicle.length + 0.5 * one.length:.6g} m: the vehicle starts on level rails"
             )
+    problems += wet_problems(wet, case.fluid)
     key, straight = alignment.start
     if straight < vehicle.length:
         problems.append(

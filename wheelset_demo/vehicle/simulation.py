@@ -42,6 +42,8 @@ class Simulation:
         self.wall_seconds = self.cpu_seconds = 0.0
         self.rates: Rates = self.system.rates(self.state.time, self.state.values)
         self.system.suspension.release()
+        if self.system.wet is not None:
+            self.system.wet.begin(self.system.positions)
         self._stepper = Bdf2(self.system, scene.run.step, scene.run.derivatives_every)
         self._compiled = (
             CompiledSteps(self.system, scene.run.step, scene.run.derivatives_every)
@@ -112,6 +114,9 @@ class Simulation:
         self.state, self.rates = self._stepper.step(self.state, self.rates)
         self.system.suspension.settle()
         self.means.add(self.system.course.middle - before, self.element.wheels)
+        if self.system.wet is not None:
+            spent = (self.state.work - state.work)[len(WORKS) :].reshape(-1, 2)
+            self.system.wet.leave(self.system.positions, spent)
         if self.system.support is not None:
             self.system.support.meet()
         if self._compiled is not None:

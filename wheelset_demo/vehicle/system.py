@@ -34,6 +34,7 @@ from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.slope import slope_wrenches
 from wheelset_demo.vehicle.support import Support
 from wheelset_demo.vehicle.suspension import Suspension
+from wheelset_demo.vehicle.wet_track import WetTrack
 
 Vector = NDArray[np.float64]
 # columns of a wheelset's state that a rail's lateral and vertical deviations and its vertical rate
@@ -131,6 +132,7 @@ class VehicleSystem:
         self.radii = np.array([one.case.wheelset.nominal_radius for one in cases])
         self.suspension = Suspension(scene, self.vehicle)
         self.support = None if scene.support is None else Support(scene.support, self.wheelsets)
+        self.wet = WetTrack.of(scene.wet, scene.case.fluid, scene.length, self.wheelsets)
         self.count = self.model.nv + (0 if self.support is None else self.support.count)
         self.size = 2 * self.count + self.suspension.series_count
         self.course = self._course()
@@ -202,6 +204,8 @@ class VehicleSystem:
         """Puts track frames under the wheelsets, rails into them; [3 wheels], the inputs."""
         self.course.place(q, v, *self._placed)
         self.element.positions[:] = self.positions
+        if self.wet is not None:
+            self.wet.put(self.positions, self.element.water)
         return self._known[0].copy()
 
     def _add_slope_wrenches(self) -> float:

@@ -37,7 +37,7 @@ enum {
 };
 // rails: offset and velocity, both by side; wheels: force, moment, creep power, patches, power of
 // friction
-enum { kRails = 12, kWheel = 9, kWheels = 2 * kWheel, kLateral = 2 };
+enum { kRails = 12, kWheel = 9, kWheels = 2 * kWheel, kLateral = 2, kWater = 3 };
 
 Placement placement_at(const double *from) {
   Placement placement;
@@ -105,6 +105,8 @@ class ForceElement final : public VehicleContacts {
     }
     positions_.resize(count_);
     rails_.resize(count_ * kRails);
+    water_.assign(count_ * kWater, 0.0);
+    for (size_t k = 0; k < count_; ++k) water_[k * kWater] = std::nan("");
     wheels_.resize(count_ * kWheels);
     lateral_.resize(count_ * kLateral);
     motion_.resize(count_ * kMotion);
@@ -219,6 +221,7 @@ class ForceElement final : public VehicleContacts {
   double *tracks() override { return tracks_.data(); }
   double *positions() override { return positions_.data(); }
   double *rails() override { return rails_.data(); }
+  double *water() { return water_.data(); }
   double *wheels() override { return wheels_.data(); }
   double *lateral() override { return lateral_.data(); }
 
@@ -274,6 +277,7 @@ class ForceElement final : public VehicleContacts {
     s.x += positions_[k];
     fill(s, w.input);
     move_rails(w, rails_.data() + k * kRails);
+    wet_rails(w, water_.data() + k * kWater);
     const auto begin = Clock::now();
     w.input.time_step = w.waiting;
     w.contact->solve(w.input, w.result);
@@ -292,6 +296,13 @@ class ForceElement final : public VehicleContacts {
         w.input.rail_offset[side][i] = w.given.rail_offset[side][i] + moved[3 * side + i];
         w.input.rail_velocity[side][i] = w.given.rail_velocity[side][i] + moved[6 + 3 * side + i];
       }
+  }
+
+  // the supply of liquid where the wheelset is, NaN: as the case says, and the work on the rails
+  static void wet_rails(Wheelset &w, const double *water) {
+    w.input.water_rate = std::isnan(water[0]) ? w.given.water_rate : water[0];
+    for (int side = 0; side < 2; ++side)
+      w.input.rail_work[side] = w.given.rail_work[side] + water[1 + side];
   }
 
   static void fill(const TrackState &s, rp_input &input) {
@@ -340,7 +351,7 @@ class ForceElement final : public VehicleContacts {
   double frame_speed_;
   size_t count_;
   std::vector<double> radii_, motion_, wrench_, contact_, power_, placed_, by_side_, columns_;
-  std::vector<double> tracks_, positions_, rails_, wheels_, lateral_;
+  std::vector<double> tracks_, positions_, rails_, water_, wheels_, lateral_;
   std::vector<TrackState> state_;
   size_t solves_ = 0;
   std::unique_ptr<Workers> workers_;
@@ -404,6 +415,8 @@ void bind_force_element(nb::module_ &m) {
                    "In: m, along the track, of the track frame's origin.")
       .def_prop_ro("rails", &view<kRails, &E::rails>,
                    "In: beside the case's, offsets of left and right rail (m), their velocities.")
+      .def_prop_ro("water", &view<kWater, &E::water>,
+                   "In: supply (m^3/s; NaN: the case's), work on left and right rail (J/m).")
       .def_prop_ro(
           "wheels", &view<kWheels, &E::wheels>,
           "By side: force, moment about the centre, creep power, patches, power of friction.")

@@ -307,6 +307,15 @@ class ForceElement:
         return self._rails.reshape(-1, 2, 2, 3)
 
     @property
+    def water(self) -> NDArray[np.float64]:
+        """[wheelsets, 3], of the liquid where each wheelset is; may be written before a step.
+
+        m^3/s, its supply, NaN: as the case has it; J/m, friction work that wheels before have spent
+        on left and right rail, beside the case's. Cases without [fluid] and such keys refuse them.
+        """
+        return self._core.water
+
+    @property
     def wheels(self) -> NDArray[np.float64]:
         """[wheelsets, 2, 9], of left and right wheel at the last step.
 

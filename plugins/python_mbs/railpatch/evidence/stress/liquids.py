@@ -104,7 +104,7 @@ def between(random: Random, low: float, high: float) -> float:
 
 def wet_mixture(seed: int, number: int) -> Trial:
     """The wet trial with this number: 0.01 to 150 m/s, roughness 10 nm to 10 um, layers of 1 nm to
-    10 um, -10 to 100 degrees C, loads from 100 N."""
+    10 um, -10 (water 0) to 100 degrees C, loads from 100 N."""
     random = np.random.default_rng([seed, 21, number])
     method = str(random.choice(["full", "fitted rows", "linear", "polach", "fastsim", "table"]))
     model = str(random.choice(["film", "strip", "regimes"], p=[0.55, 0.3, 0.15]))
@@ -136,10 +136,10 @@ def wet_mixture(seed: int, number: int) -> Trial:
     moves = [Move({}, statuses_of(method))]
     for _ in range(int(random.choice([0, 1, 2]))):
         changes: dict[str, Any] = {"rolling_speed": between(random, 0.01, 150.0)}
-        if model == "film" and random.random() < 0.5:
+        if model == "film" and random.random() < 0.5 and "water_rate" not in case["fluid"]:
             changes["oil_film"] = between(random, 1e-9, 1e-5)
         if words != "given" and model != "regimes":
-            changes["water_temperature"] = float(random.uniform(-10, 100))
+            changes["water_temperature"] = temperature(random, words)
         moves.append(Move(changes, statuses_of(method)))
     return Trial("wet", f"{number}: {model}, {words}", case, tuple(moves))
 
@@ -147,6 +147,11 @@ def wet_mixture(seed: int, number: int) -> Trial:
 def statuses_of(method: str) -> tuple[str, ...]:
     """Statuses: the linear theory ends where friction with a liquid does, soon."""
     return SAYS_SO if method == "linear" else expected(method)
+
+
+def temperature(random: Random, words: str) -> float:
+    """degrees C, of what is a liquid then."""
+    return float(random.uniform(0 if words == "water" else -10, 100))
 
 
 def liquid(random: Random, model: str) -> tuple[dict[str, Any], str]:
@@ -157,7 +162,7 @@ def liquid(random: Random, model: str) -> tuple[dict[str, Any], str]:
     found: dict[str, Any] = {"model": model, "roughness": between(random, 1e-8, 1e-5)}
     words = str(random.choice(["water", "given", "oil"]))
     if words != "given":
-        found |= {"liquid": words, "temperature": float(random.uniform(-10, 100))}
+        found |= {"liquid": words, "temperature": temperature(random, words)}
     if words != "water":
         found["viscosity"] = between(random, 3e-4, 3.0)
     if random.random() < 0.7:

@@ -1,0 +1,111 @@
+"""Wet stretches of the track, and rails that wheels clean for those that follow.
+
+With ``[fluid] recovery`` the work that friction spends on a metre of rail cleans it
+(docs/fluids.md): it is kept in cells along each rail, and every wheel meets the sum of what those
+ahead of it have left there. A wheel's work comes into a cell when it leaves it, so that it does not
+meet its own.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+from railpatch.case.fluid import Fluid
+from railpatch.case.types import NotNegative, Table
+
+Vector = NDArray[np.float64]
+CELL = 0.1  # m, of a rail
+MOST_CELLS = 2_000_000
+
+
+class WetTable(Table):
+    """A stretch of both rails with another supply of liquid."""
+
+    position: NotNegative = Field(description="m, along the track, where it begins")
+    length: Annotated[float, Field(gt=0, le=1e5)] = Field(description="m")
+    water_rate: NotNegative = Field(
+        description="m^3/s, of liquid for each contact there; elsewhere fluid.water_rate"
+    )
+
+
+def wet_problems(wet: tuple[WetTable, ...], fluid: Fluid | None) -> Iterator[str]:
+    """Of stretches without a liquid whose supply counts, and of two at a place."""
+    if wet and (fluid is None or fluid.water_rate is None):
+        yield "wet: given, allowed only with fluid.water_rate, that of the rest of the track"
+    ordered = sorted(range(len(wet)), key=lambda k: wet[k].position)
+    for a, b in itertools.pairwise(ordered):
+        end = wet[a].position + wet[a].length
+        if wet[b].position < end:
+            value = wet[b].position
+            yield f"wet[{b}].position: value is {value}, allowed >= {end:.6g} m, where another ends"
+
+
+class WetTrack:
+    """Supply and work along the rails. work: J/m, [2, cells], on left and right rail."""
+
+    def __init__(self, wet: tuple[WetTable, ...], fluid: Fluid, length: float, count: int) -> None:
+        """length: m, of the track; count: of wheelsets."""
+        ordered = sorted(wet, key=lambda one: one.position)
+        self._borders = np.array([x for w in ordered for x in (w.position, w.position + w.length)])
+        rates = [np.nan, *(x for w in ordered for x in (w.water_rate, np.nan))]
+        self._rates = np.array(rates)
+        self._cleans = fluid.recovery is not None
+        self.cell = max(CELL, length / MOST_CELLS)
+        cells = int(length / self.cell) + 2 if self._cleans else 1
+        self.work = np.zeros((2, cells))
+        self._own = np.zeros((count, 2))  # J, of the cell that a wheelset is in
+        self._at = np.full(count, np.nan)  # m
+
+    @classmethod
+    def of(
+        cls, wet: tuple[WetTable, ...], fluid: Fluid | None, length: float, count: int
+    ) -> WetTrack | None:
+        """None where nothing of it changes along the track."""
+        changes = fluid is not None and (bool(wet) or fluid.recovery is not None)
+        return cls(wet, fluid, length, count) if fluid is not None and changes else None
+
+    def begin(self, positions: Vector) -> None:
+        """The wheelsets stand at positions (m)."""
+        self._at[:] = positions
+
+    def put(self, positions: Vector, water: Vector) -> None:
+        """Into the force element's array what is at the positions (m) of the wheelsets."""
+        if len(self._borders):
+            water[:, 0] = self._rates[np.searchsorted(self._borders, positions, side="right")]
+        if self._cleans:
+            # in free rolling the work of a step can be less than nothing by its rounding
+            water[:, 1:] = np.maximum(self.work[:, self._cells(positions)].T, 0.0)
+
+    def _cells(self, positions: Vector) -> NDArray[np.int64]:
+        found = np.floor(positions / self.cell).astype(np.int64)
+        return np.clip(found, 0, self.work.shape[1] - 1)
+
+    def leave(self, positions: Vector, work: Vector) -> None:
+        """After a step to the positions (m): friction's work in it, [wheelsets, 2] (J), is spread
+        over the way."""
+        if not self._cleans:
+            return
+        for k, (end, begin) in enumerate(zip(positions.tolist(), self._at.tolist(), strict=True)):
+            if end > begin:
+                self._spend(k, begin, end, work[k] / (end - begin))
+        self._at[:] = positions
+
+    def _spend(self, k: int, begin: float, end: float, per_metre: Vector) -> None:
+        cell, last = self._cells(np.array([begin, end])).tolist()
+        while cell < last:
+            border = (cell + 1) * self.cell
+            self._own[k] += per_metre * (border - begin)
+            self.work[:, cell] += self._own[k] / self.cell
+            self._own[k] = 0.0
+            begin, cell = border, cell + 1
+        self._own[k] += per_metre * (end - begin)
+
+    @property
+    def spent(self) -> float:
+        """J, on both rails so far, with what is in the cells that wheels are in."""
+        return float(self.work.sum() * self.cell + self._own.sum())
