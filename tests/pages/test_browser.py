@@ -138,6 +138,12 @@ def test_figures_as_pictures(pages: dict[str, Path], tmp_path: Path) -> None:
     svg = write_figure(tmp_path / "a.svg", pages["rig"], "traction").read_text(encoding="utf-8")
     assert svg.count("<svg ") >= 3
     assert "yaw [mrad]" in svg
+    # titles below their axes: over them where texts could not be measured
+    titles = re.findall(r'<text class="xtitle" x="[\d.]+" y="([\d.]+)"', svg)
+    labels = re.findall(r'class="xtick"><text text-anchor="middle" x="0" y="([\d.]+)"', svg)
+    assert titles
+    assert labels
+    assert min(map(float, titles)) > max(map(float, labels))
     png = write_figure(tmp_path / "a.png", pages["rig"], "patch", width=600).read_bytes()
     assert png.startswith(b"\x89PNG")
     assert len(png) > 20_000

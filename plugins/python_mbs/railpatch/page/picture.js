@@ -9,7 +9,9 @@
     for (let e = figure; e && e !== document.body; e = e.parentElement) {
       if (e.tagName === "DETAILS") e.open = true;
       for (const other of e.parentElement.children) {
-        if (other !== e && !["SCRIPT", "STYLE"].includes(other.tagName)) other.style.display = "none";
+        // by the tester plotly measures texts: hidden, titles and labels had no size
+        const kept = ["SCRIPT", "STYLE"].includes(other.tagName) || other.id === "js-plotly-tester";
+        if (other !== e && !kept) other.style.display = "none";
       }
     }
     for (const spare of figure.querySelectorAll(".controls input, .controls label, .hint")) {
