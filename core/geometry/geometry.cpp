@@ -233,10 +233,11 @@ vec3 mirrored_axial(vec3 v) { return {-v[0], v[1], -v[2]}; }
 
 side_geometry::side_geometry(const profile &wheel, const profile &rail,
                              const wheel_config &wheel_sizes, const track_config &track)
-    : wheel_(wheel, body::wheel), rail_(rail, body::rail) {
+    : wheel_(wheel, body::wheel),
+      rail_(rail, body::rail),
+      samples_(static_cast<int>((wheel.end() - wheel.begin()) / wheel_.step() + 1.5)) {
   sizes_ = wheel_sizes;
   track_ = track;
-  gaps_.resize(static_cast<size_t>((wheel.end() - wheel.begin()) / wheel_.step() + 1.5));
   place_rail_marker();
   place({});
 }
@@ -253,12 +254,18 @@ void side_geometry::place_rail_marker() {
   marker_z_ = roller ? 0 : -rail_.evaluate(rail_.extreme()).z;
 }
 
+void side_geometry::reload_wheel() {
+  wheel_.reload();
+  samples_.referred = samples_.begun = false;
+}
+
 void side_geometry::reload_rail() {
   rail_.reload();
+  samples_.referred = samples_.begun = false;
   place_rail_marker();
 }
 
-void side_geometry::place(const side_motion &motion) {
+void side_geometry::place(const side_motion &motion, bool at_height) {
   place_axes(motion);
   const vec3 &off = motion.wheel.offset, &rail_off = motion.rail.offset;
   const bool roller = track_.kind == track_kind::roller;
@@ -266,14 +273,16 @@ void side_geometry::place(const side_motion &motion) {
   const double lean = motion.rail.rotation[0] - (roller ? 0 : track_.cant);
   rail_.place(lean, marker_y_ + rail_off[1], marker_z_ + rail_off[2]);
   // scanned at z = 0, so that a position reached by move_to() gives the same bits
-  move_to(0);
-  scan();
+  motion_.wheelset.z = 0;
+  place_centre();
+  scan(at_height && track_.kind == track_kind::rail && !shape_);
   move_to(motion.wheelset.z);
 }
 
 void side_geometry::move_to(double z) {
   motion_.wheelset.z = z;
   place_centre();
+  scan_near(z + closeness);
 }
 
 double side_geometry::roller_inclination(const vec3 &at) const {
@@ -348,7 +357,8 @@ section_point side_geometry::section(const contact_frame &frame, double start[2]
 }
 
 size_t side_geometry::bytes() const {
-  return sizeof *this + wheel_.bytes() + rail_.bytes() + gaps_.size() * sizeof(double);
+  return sizeof *this + wheel_.bytes() + rail_.bytes() + samples_.gap.size() * sizeof(double) +
+         samples_.stretches.size() * sizeof(gap_samples::stretch);
 }
 
 }  // namespace railpatch

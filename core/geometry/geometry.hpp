@@ -23,6 +23,7 @@
 // in the plane of that origin (z).
 #pragma once
 
+#include "geometry/gap_samples.hpp"
 #include "geometry/longitudinal_shape.hpp"
 #include "geometry/placement.hpp"
 #include "geometry/profile.hpp"
@@ -77,14 +78,17 @@ class side_geometry : private placement<double> {
  public:
   static constexpr double no_surface = 0.01;  // m, undeformed distance where a profile has ended
   static constexpr double far_apart = 1.0;    // m, gap along the locus there
+  static constexpr double closeness = 2e-5;   // m, sampled gaps below this are looked at closely
 
   // The profiles must outlive this object. Allocates; nothing else here does.
   side_geometry(const profile &wheel, const profile &rail, const wheel_config &wheel_sizes,
                 const track_config &track);
 
-  void place(const side_motion &motion);
+  // at_height: z is where it will stay; samples that cannot be near the rail may then be left out,
+  // and first_touch() and find_appearances() may not be asked.
+  void place(const side_motion &motion, bool at_height = false);
   // A profile has changed; place() must follow.
-  void reload_wheel() { wheel_.reload(); }
+  void reload_wheel();
   void reload_rail();
   // Only z changes: the locus stays as it is, so this is nearly free.
   void move_to(double z);
@@ -92,8 +96,16 @@ class side_geometry : private placement<double> {
 
   // Approximate vertical gaps at equally spaced points of the wheel's profile (within 1 um), for
   // the contact search; no_overlap() where the profiles have no lateral position in common.
-  int sample_count() const { return static_cast<int>(gaps_.size()); }
-  double sample_gap(int i) const { return gaps_[static_cast<std::size_t>(i)] - motion_.wheelset.z; }
+  int sample_count() const { return static_cast<int>(samples_.gap.size()); }
+  double sample_gap(int i) const {
+    return samples_.gap[static_cast<std::size_t>(i)] - motion_.wheelset.z;
+  }
+  // The first sample from i on that has been looked at; those before and it are not close.
+  int next_sample(int i) const {
+    for (; i < sample_count(); i = (i / gap_samples::block + 1) * gap_samples::block)
+      if (samples_.stretches[static_cast<std::size_t>(i / gap_samples::block)].known) break;
+    return i;
+  }
   double sample_s(int i) const { return wheel_.sample_s(i); }
   bool no_overlap() const { return !overlap_; }
 
@@ -152,7 +164,13 @@ class side_geometry : private placement<double> {
 
  private:
   void place_rail_marker();
-  void scan();
+  look_place look() const;
+  void scan(bool at_height);
+  void scan_all();
+  void scan_near(double limit);
+  void scan_block(int index);
+  void refer();
+  double highest_rail(double y, int &from) const;
   bool rail_point(double x, double y, double &z, curve_point &p) const;
   surface wheel_seen_from(const contact_frame &frame) const;
   surface rail_seen_from(const contact_frame &frame) const;
@@ -166,7 +184,7 @@ class side_geometry : private placement<double> {
   friend class moving_geometry;  // rates.hpp
 
   placed_profile wheel_, rail_;
-  std::vector<double> gaps_;  // by sample of the wheel, for z = 0
+  gap_samples samples_;
   bool overlap_ = false;
   const longitudinal_shape *shape_ = nullptr;
 };

@@ -1,4 +1,4 @@
-// Where wheel and rail are closest, along the wheel's profile: samples, and exact points.
+// Where wheel and rail are closest, along the wheel's profile.
 #include <algorithm>
 #include <cmath>
 
@@ -6,12 +6,6 @@
 #include "numeric/elementary.hpp"
 
 namespace railpatch {
-
-namespace {
-
-constexpr double aside = 0.02;  // m, what yaw may move the locus sideways
-
-}  // namespace
 
 // Sine of the angle along the circumference. With P = (r sin, u, r cos) and the normal
 // N = (sin du, -dr, cos du) in wheel axes, a rail asks for N_x = 0 in track axes; a roller for
@@ -43,53 +37,9 @@ vec3 side_geometry::wheel_point(const curve_point &p, double sine) const {
   return axis_origin_ + turn(wheel_axes_, {r * sine, p.y, r * std::sqrt(1 - sine * sine)});
 }
 
-// all samples of the wheel against chords of the rail: both are ordered in y, so walk along both
-void side_geometry::scan() {
-  std::fill(gaps_.begin(), gaps_.end(), far_apart);
-  overlap_ = false;
-  const bool roller = track_.kind == track_kind::roller;
-  const double from = rail_.sample(rail_.first()).y - aside,
-               to = rail_.sample(rail_.last()).y + aside;
-  const vec3 origin = axis_origin_;
-  const mat3 axes = wheel_axes_;
-  int k = rail_.first();
-  for (int i = wheel_.first(); i <= wheel_.last(); ++i) {
-    const curve_point &m = wheel_.sample(i);
-    const double radius = sizes_.nominal_radius + m.z;
-    // where the profiles have no lateral position in common there is nothing to find
-    const double y = origin[1] + (axes[1][1] * m.y + axes[1][2] * radius);
-    if (y < from || y > to) continue;
-    // the gap is least there, so that its error is that of the sine squared
-    const double sine = roller ? locus_sine(m, 0, 3e-2) : axes[0][1] * m.dz / (axes[0][0] * m.dy);
-    if (!(std::fabs(sine) < 0.9)) continue;
-    // wheel_point(), written out as it is asked for at every sample
-    const vec3 own = {radius * sine, m.y, radius * std::sqrt(1 - sine * sine)};
-    const auto along = [&](size_t j) {
-      return origin[j] + (axes[j][0] * own[0] + axes[j][1] * own[1] + axes[j][2] * own[2]);
-    };
-    const vec3 p = {along(0), along(1), along(2)};
-    while (k + 2 <= rail_.last() && rail_.sample(k + 1).y < p[1]) ++k;
-    while (k > rail_.first() && rail_.sample(k).y > p[1]) --k;
-    const curve_point &a = rail_.sample(k), &b = rail_.sample(std::min(k + 1, rail_.last()));
-    if (!(p[1] >= a.y && p[1] <= b.y)) continue;
-    double z = a.z + (b.z - a.z) * (p[1] - a.y) / std::max(b.y - a.y, 1e-12);
-    if (roller) {
-      const double x = p[0] - axle_x_, r = axle_z_ - z;
-      z = axle_z_ - std::sqrt(std::max(r * r - x * x, 0.0));
-    }
-    gaps_[static_cast<size_t>(i)] = z - p[2];
-    if (shape_) {
-      double angle;
-      gaps_[static_cast<size_t>(i)] = row_of(m, sine, z - p[2]).least(angle);
-    }
-    overlap_ = true;
-  }
-}
-
 bool side_geometry::rail_point(double x, double y, double &z, curve_point &p) const {
   double s;
-  if (!rail_.find(y, s)) return false;
-  p = rail_.evaluate(s);
+  if (!rail_.find(y, s, p)) return false;
   z = p.z;
   if (shape_) z -= shape_->height(x);
   if (track_.kind == track_kind::rail) return true;
@@ -188,6 +138,7 @@ row_overlap side_geometry::overlap(double s, double &y, double &dy) const {
 
 // by chords between the samples: near enough where only the roller's slope depends on it
 double side_geometry::sampled_gap(double s) const {
+  if (track_.kind == track_kind::rail) return 0;
   const double at = (s - wheel_.curve().begin()) / wheel_.step();
   const int i = std::clamp(static_cast<int>(at), 0, sample_count() - 2);
   const double a = sample_gap(i), b = sample_gap(i + 1), share = at - i;

@@ -11,7 +11,7 @@ namespace railpatch {
 
 namespace {
 
-constexpr double closeness = 2e-5;    // m, sampled gaps below this are looked at closely
+constexpr double closeness = side_geometry::closeness;
 constexpr double closest = 1e-4;      // m, steps on the way from an appearing part to its neighbour
 constexpr double least_share = 1e-6;  // what counts less is below any tolerance and left out
 
@@ -80,7 +80,7 @@ class part_list {
   part_list(const side_geometry &side, part *parts) : side_(side), parts_(parts) {}
 
   void search() {
-    for (int i = 0; i < side_.sample_count(); ++i) {
+    for (int i = 0; (i = pass_over(i)) < side_.sample_count(); ++i) {
       const double sampled = side_.sample_gap(i);
       if (!open_ && sampled >= closeness && last_ >= closeness) {
         before_ = last_;
@@ -106,6 +106,13 @@ class part_list {
     // a dip between samples: contact that is only just beginning
     if (!start && !stop && !open_ && i > 1 && last_ < closeness && last_ <= before_ && last_ <= g)
       dip(side_.sample_s(i - 2), s);
+  }
+
+  // samples that were not looked at, and their neighbours, are not close
+  int pass_over(int i) {
+    const int next = side_.next_sample(i);
+    if (next > i) before_ = last_ = closeness;
+    return next;
   }
 
   void dip(double a, double c) {

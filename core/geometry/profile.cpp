@@ -116,26 +116,11 @@ int profile::interval(double s) const {
   const int bucket = b < last ? static_cast<int>(b) : last;
   const int lo = first_[static_cast<size_t>(bucket)];
   const int hi = first_[static_cast<size_t>(std::min(bucket + 1, last))];
+  if (hi == lo) return lo;
   // clustered knots can share a bucket, so halve rather than walk
   const auto from = pieces_.begin() + lo + 1, to = pieces_.begin() + hi + 1;
   const auto at = std::upper_bound(from, to, s, [](double a, const piece &p) { return a < p.s; });
   return static_cast<int>(at - pieces_.begin()) - 1;
-}
-
-int profile::interval(double s, int last) const {
-  const auto k = static_cast<size_t>(last);
-  const bool above = last == 0 || s >= pieces_[k].s;
-  const bool below = k + 1 == pieces_.size() || s < pieces_[k + 1].s;
-  return above && below ? last : interval(s);
-}
-
-curve_point profile::evaluate(double s, int interval) const {
-  const piece &p = pieces_[static_cast<size_t>(interval)];
-  const double t = s - p.s;
-  const auto value = [t](const double *c) { return c[0] + t * (c[1] + t * (c[2] + t * c[3])); };
-  const auto slope = [t](const double *c) { return c[1] + t * (2 * c[2] + 3 * t * c[3]); };
-  const auto bend = [t](const double *c) { return 2 * c[2] + 6 * t * c[3]; };
-  return {value(p.y), value(p.z), slope(p.y), slope(p.z), bend(p.y), bend(p.z)};
 }
 
 placed_profile::placed_profile(const profile &curve, body kind) : curve_(&curve), kind_(kind) {
@@ -157,25 +142,15 @@ void placed_profile::reload() {
   placed_ = false;
 }
 
-curve_point placed_profile::turned(const curve_point &p) const {
-  const double c = cos_, s = sin_;
-  return {y_ + c * p.y - s * p.z, z_ + s * p.y + c * p.z, c * p.dy - s * p.dz,
-          s * p.dy + c * p.dz,    c * p.d2y - s * p.d2z,  s * p.d2y + c * p.d2z};
-}
-
-curve_point placed_profile::evaluate(double s, int interval) const {
-  return turned(curve_->evaluate(s, interval));
-}
-
 void placed_profile::place(double angle, double y, double z) {
-  // most scenes never move the rail in its own axes, nor the wheel's profile on its axle
-  if (placed_ && angle == angle_ && y == y_ && z == z_) return;
+  y_ = y;
+  z_ = z;
+  // few scenes turn the rail, or the wheel's profile on its axle
+  if (placed_ && angle == angle_) return;
   placed_ = true;
   angle_ = angle;
   cos_ = cos(angle);
   sin_ = sin(angle);
-  y_ = y;
-  z_ = z;
   for (size_t i = 0; i < raw_.size(); ++i) samples_[i] = turned(raw_[i]);
   find_branch();
 }
@@ -197,52 +172,71 @@ void placed_profile::find_branch() {
 
 // As profile::assign does for arc lengths, so that a search by y starts next to its goal.
 void placed_profile::index_branch() {
-  const double from = sample(first_).y, length = sample(last_).y - from;
+  const auto at = [&](int i) { return samples_[static_cast<size_t>(i)].y; };
+  const double from = at(first_), length = at(last_) - from;
   const auto stretches = static_cast<double>(before_.size() - 1);
   stretches_per_length_ = length > 0 ? stretches / length : 0.0;
   int k = first_;
   for (size_t b = 0; b < before_.size(); ++b) {
     const double y = from + static_cast<double>(b) * (length / stretches);
-    while (k + 1 < last_ && sample(k + 1).y <= y) ++k;
+    while (k + 1 < last_ && at(k + 1) <= y) ++k;
     before_[b] = k;
   }
 }
 
 int placed_profile::first_not_before(double y) const {
   const auto begin = samples_.begin() + first_, end = samples_.begin() + last_ + 1;
-  const auto before = [](const curve_point &p, double at) { return p.y < at; };
+  const auto before = [this](const curve_point &p, double at) { return p.y + y_ < at; };
   return static_cast<int>(std::lower_bound(begin, end, y, before) - samples_.begin());
 }
 
-bool placed_profile::find(double y, double &s) const {
-  if (!(y >= sample(first_).y && y <= sample(last_).y)) return false;
+bool placed_profile::find(double y, double &s, curve_point &p) const {
+  const auto at = [&](int i) { return samples_[static_cast<size_t>(i)].y + y_; };
+  if (!(y >= at(first_) && y <= at(last_))) return false;
   int a = first_, b = last_;
   if (kind_ == body::rail) {
     const auto most = static_cast<int>(before_.size()) - 2;
-    const int at = std::min(static_cast<int>((y - sample(a).y) * stretches_per_length_), most);
+    const int stretch = std::min(static_cast<int>((y - at(a)) * stretches_per_length_), most);
     // one to either side, for rounding
-    a = before_[static_cast<size_t>(std::max(at - 1, 0))];
-    b = std::min(before_[static_cast<size_t>(std::min(at + 2, most + 1))] + 1, last_);
+    a = before_[static_cast<size_t>(std::max(stretch - 1, 0))];
+    b = std::min(before_[static_cast<size_t>(std::min(stretch + 2, most + 1))] + 1, last_);
   }
   while (b - a > 1) {
     const int m = (a + b) / 2;
-    (sample(m).y <= y ? a : b) = m;
+    (at(m) <= y ? a : b) = m;
   }
-  // newton on y(s), kept between the two samples
   double lo = sample_s(a), hi = std::min(sample_s(b), curve_->end());
-  s = lo + (hi - lo) * (y - sample(a).y) / (sample(b).y - sample(a).y);
+  s = start_between(a, b, y, hi - lo);
+  // newton on y(s), kept between the two samples
   for (int i = 0, k = curve_->interval(s); i < 50; ++i) {
-    const curve_point p = evaluate(s, k);
+    p = evaluate(s, k);
     (p.y < y ? lo : hi) = s;
     double next = s - (p.y - y) / p.dy;
     if (!(next >= lo && next <= hi)) next = 0.5 * (lo + hi);
-    const double change = std::fabs(next - s);
+    const double change = next - s;
     s = next;
     // its error falls with the square: less than 1e-13 m remains of radii above 1 mm
-    if (change < 1e-8) break;
+    if (std::fabs(change) < 1e-8) {
+      p.y += change * (p.dy + 0.5 * change * p.d2y);
+      p.z += change * (p.dz + 0.5 * change * p.d2z);
+      p.dy += change * p.d2y;
+      p.dz += change * p.d2z;
+      break;
+    }
     k = curve_->interval(s, k);
   }
   return true;
+}
+
+// The cubic of s over y between two samples: as near as 1e-10 m where the curvature is smooth, so
+// that one newton step does.
+double placed_profile::start_between(int a, int b, double y, double length) const {
+  const curve_point &low = samples_[static_cast<size_t>(a)],
+                    &high = samples_[static_cast<size_t>(b)];
+  const double width = high.y - low.y, u = (y - y_ - low.y) / width;
+  const double first = width / low.dy - length, last = width / high.dy - length;
+  const double along = length * u + u * (1 - u) * (first * (1 - u) - last * u);
+  return sample_s(a) + std::clamp(along, 0.0, length);
 }
 
 double placed_profile::innermost(double height) const {

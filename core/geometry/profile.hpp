@@ -49,9 +49,21 @@ class profile {
   // Beyond the ends the end polynomials go on; ask covers() where that matters.
   bool covers(double s) const { return s >= begin_ && s <= end_; }
   // The interval that holds s; last is where a neighbouring s was found.
-  int interval(double s, int last) const;
+  int interval(double s, int last) const {
+    const auto k = static_cast<std::size_t>(last);
+    const bool above = last == 0 || s >= pieces_[k].s;
+    const bool below = k + 1 == pieces_.size() || s < pieces_[k + 1].s;
+    return above && below ? last : interval(s);
+  }
   int interval(double s) const;
-  curve_point evaluate(double s, int interval) const;
+  curve_point evaluate(double s, int interval) const {
+    const piece &p = pieces_[static_cast<std::size_t>(interval)];
+    const double t = s - p.s;
+    const auto value = [t](const double *c) { return c[0] + t * (c[1] + t * (c[2] + t * c[3])); };
+    const auto slope = [t](const double *c) { return c[1] + t * (2 * c[2] + 3 * t * c[3]); };
+    const auto bend = [t](const double *c) { return 2 * c[2] + 6 * t * c[3]; };
+    return {value(p.y), value(p.z), slope(p.y), slope(p.z), bend(p.y), bend(p.z)};
+  }
   curve_point evaluate(double s) const { return evaluate(s, interval(s)); }
   std::size_t bytes() const { return pieces_.size() * sizeof(piece) + first_.size() * sizeof(int); }
 
@@ -73,19 +85,29 @@ class placed_profile {
   void reload();
 
   void place(double angle, double y, double z);
-  curve_point evaluate(double s, int interval) const;
+  curve_point evaluate(double s, int interval) const {
+    return moved(turned(curve_->evaluate(s, interval)));
+  }
   curve_point evaluate(double s) const { return evaluate(s, curve_->interval(s)); }
   const profile &curve() const { return *curve_; }
+  double angle() const { return angle_; }
+  double moved_y() const { return y_; }
+  double moved_z() const { return z_; }
 
   // The arc length of the running branch at y (turned and moved); false where there is none.
-  bool find(double y, double &s) const;
+  bool find(double y, double &s) const {
+    curve_point p;
+    return find(y, s, p);
+  }
+  // And the point there.
+  bool find(double y, double &s, curve_point &p) const;
   // Samples of the running branch, equally spaced in s: first() to last(), both included.
   int first() const { return first_; }
   int last() const { return last_; }
   // The first of them that is not before y; last() + 1 where all are.
   int first_not_before(double y) const;
   double sample_s(int i) const { return curve_->begin() + i * step_; }
-  const curve_point &sample(int i) const { return samples_[static_cast<std::size_t>(i)]; }
+  curve_point sample(int i) const { return moved(samples_[static_cast<std::size_t>(i)]); }
   double step() const { return step_; }
   // The extreme point in z: highest of a rail, lowest of a wheel.
   double extreme() const;
@@ -96,7 +118,17 @@ class placed_profile {
   }
 
  private:
-  curve_point turned(const curve_point &p) const;
+  curve_point turned(const curve_point &p) const {
+    const double c = cos_, s = sin_;
+    return {c * p.y - s * p.z,   s * p.y + c * p.z,     c * p.dy - s * p.dz,
+            s * p.dy + c * p.dz, c * p.d2y - s * p.d2z, s * p.d2y + c * p.d2z};
+  }
+  curve_point moved(curve_point p) const {
+    p.y += y_;
+    p.z += z_;
+    return p;
+  }
+  double start_between(int a, int b, double y, double length) const;
   void find_branch();
   void index_branch();
 
@@ -104,7 +136,7 @@ class placed_profile {
   body kind_;
   bool placed_ = false;
   double angle_ = 0, cos_ = 1, sin_ = 0, y_ = 0, z_ = 0, step_ = 0;
-  std::vector<curve_point> raw_, samples_;
+  std::vector<curve_point> raw_, samples_;  // these turned, not moved
   std::vector<int> before_;  // of a rail: sample of the branch at the start of equal stretches of y
   double stretches_per_length_ = 0;
   int first_ = 0, last_ = 0, extreme_ = 0;

@@ -94,7 +94,7 @@ side_motion wheel_contact::motion_of(const rp_input &in) const {
   return side_ == RP_LEFT ? mirrored(motion) : motion;
 }
 
-void wheel_contact::place(const rp_input &in) {
+void wheel_contact::place(const rp_input &in, bool at_height) {
   const double pitch = in.pitch + in.wheel_rotation[side_][1];
   bool changed = false;
   if (sections_) {
@@ -114,7 +114,7 @@ void wheel_contact::place(const rp_input &in) {
   time_step_ = in.time_step;
   step_regime_ = in.step_regime;
   if (shape_) shape_->place(pitch, in.x, nominal_radius_);
-  geometry_->place(motion_of(in));
+  geometry_->place(motion_of(in), at_height);
 }
 
 grid wheel_contact::choose_grid(const patch_region &r) const {

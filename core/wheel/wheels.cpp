@@ -130,7 +130,7 @@ void wheels::step(const rp_input &in, rp_result &out) {
 void wheels::solve(const rp_input &in, rp_result &out) {
   {
     const stage_mark mark = solver_.marks().enter(RP_STAGE_GEOMETRY);
-    for (auto &wheel : wheels_) wheel.place(in);
+    for (auto &wheel : wheels_) wheel.place(in, !force_given_ && !support_);
   }
   if (support_) {
     solve_supported(in, out);

@@ -26,7 +26,8 @@ class StepTimes:
 
     def __init__(self, count: int, step: float, threads: int) -> None:
         self.step, self.threads, self.done = step, threads, 0
-        self._times = np.zeros((2, count))
+        # written to, or the system would find its pages one by one in the steps
+        self._times = np.full((2, count), 0.0)
 
     def add(self, wall: float, cpu: float) -> None:
         """One more step."""

@@ -32,7 +32,9 @@ long process_number() {
 
 }  // namespace
 
-Workers::Workers(int threads) : process_(process_number()) {
+Workers::Workers(int threads)
+    : process_(process_number()),
+      awake_(static_cast<unsigned>(threads) <= std::thread::hardware_concurrency()) {
   try {
     for (int k = 1; k < threads; ++k) threads_.emplace_back([this] { wait_for_tasks(); });
   } catch (...) {
@@ -42,6 +44,15 @@ Workers::Workers(int threads) : process_(process_number()) {
 }
 
 Workers::~Workers() { stop(); }
+
+// Others that want the processor get it meanwhile.
+template <class F>
+void Workers::stay_awake(F until) const {
+  constexpr std::chrono::microseconds long_enough{300};
+  const auto begin = std::chrono::steady_clock::now();
+  while (awake_ && !until() && std::chrono::steady_clock::now() - begin < long_enough)
+    std::this_thread::yield();
+}
 
 void Workers::stop() {
   // threads stay behind in the process that a fork came from
@@ -62,15 +73,19 @@ void Workers::run(size_t count, const std::function<void(size_t)> &task) {
     for (size_t k = 0; k < count; ++k) task(k);
     return;
   }
+  bool asleep = false;
   {
     std::lock_guard<std::mutex> guard(mutex_);
     task_ = &task;
-    count_ = open_ = count;
+    count_ = count;
+    open_ = count;
     next_ = 0;
     ++round_;
+    asleep = asleep_ > 0;
   }
-  begin_.notify_all();
+  if (asleep) begin_.notify_all();
   take_items();
+  stay_awake([this] { return open_ == 0; });
   std::unique_lock<std::mutex> lock(mutex_);
   end_.wait(lock, [this] { return open_ == 0; });
   task_ = nullptr;
@@ -83,10 +98,14 @@ double Workers::seconds() {
 
 void Workers::wait_for_tasks() {
   size_t seen = 0;
+  const auto called = [&] { return stop_ || round_ != seen; };
   while (true) {
+    stay_awake(called);
     {
       std::unique_lock<std::mutex> lock(mutex_);
-      begin_.wait(lock, [&] { return stop_ || round_ != seen; });
+      ++asleep_;
+      begin_.wait(lock, called);
+      --asleep_;
       if (stop_) return;
       seen = round_;
     }
