@@ -322,3 +322,17 @@ def test_a_line_in_full_slip_against_its_closed_form(creepage: float) -> None:
         (stress[5], shear + mu * along),
     ):
         np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-4 * peak)
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        ({"usfd_limits": [10.4, 77.2]}, "0 or >= 1000 Pa: 10.4 N/mm^2 are 10.4e6"),
+        ({"usfd_rate": 5.3}, "damage.usfd_rate: value is 5.3, allowed <= 0.0001"),
+        ({"usfd_plateau": 55.0}, "damage.usfd_plateau: value is 55.0, allowed <= 5"),
+    ],
+)
+def test_constants_in_other_units_are_refused(keys: dict[str, Any], words: str) -> None:
+    with pytest.raises(CaseError) as caught:
+        solve(patch(damage=keys))
+    assert words in str(caught.value)

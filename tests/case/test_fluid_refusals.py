@@ -246,3 +246,9 @@ coefficient = 0.3
     said = " ".join(CliRunner().invoke(cli, ["explain", str(case)]).output.split())
     assert "% asked for: stresses at 1 depth below the rail" in said
     assert "% asked for: wear = usfd, basis = elements" in said
+
+
+def test_oil_in_kelvin_is_refused() -> None:
+    case = with_values(PATCH, fluid={**OIL, "temperature": 293.15})
+    with pytest.raises(railpatch.CaseError, match="allowed <= 250 degrees C with liquid = 'oil'"):
+        railpatch.solve(case)

@@ -175,6 +175,8 @@ def test_doubts_are_said_first_and_on_the_page(tmp_path: Path) -> None:
     for words in wanted:
         assert words.removeprefix("v").removeprefix("d") in shown
     assert "No percentiles as EN 14363 counts them" in shown
+    assert "too short for what EN 14363 counts (52 m): on it no limit is passed" in shown
+    assert "stays within its limits" not in shown
     assert assessed.LEAST_WAY == LEAST_WAY + SLIDING
     assert assessed.LEAST_RATE == LEAST_RATE
     ran = CliRunner().invoke(

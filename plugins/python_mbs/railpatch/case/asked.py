@@ -31,6 +31,7 @@ Steps = Annotated[
 ]
 Life = Annotated[list[Annotated[list[Number], exactly(2)]], Field(min_length=2, max_length=32)]
 ASSUMED = "assumed"
+LEAST_LIMIT = 1e3  # Pa, of usfd_limits: less is N/mm^2
 # keys that one law of wear reads
 OF_LAW = {
     "usfd": ("usfd_rate", "usfd_plateau", "usfd_slope", "usfd_limits"),
@@ -79,17 +80,17 @@ class Damage(Table):
     worn_density: Annotated[float, between(100, 1e5)] = Field(
         default=7850.0, description=f"kg/m^3, of what wears off ({ASSUMED}: steel)"
     )
-    usfd_rate: Positive = Field(
+    usfd_rate: Annotated[float, between(1e-15, 1e-4)] = Field(
         default=5.3e-9,
         description="kg/J, mild wear: mass over work (Lewis and Dwyer-Joyce 2004: 5.3 ug/(m mm^2) "
         "by N/mm^2)",
     )
-    usfd_plateau: Positive = Field(
+    usfd_plateau: Annotated[float, between(1e-9, 5.0)] = Field(
         default=55.0e-3,
         description="kg/m^3, severe wear: mass by metre rolled and m^2 (Lewis and Dwyer-Joyce "
         "2004: 55.0 ug/(m mm^2))",
     )
-    usfd_slope: Positive = Field(
+    usfd_slope: Annotated[float, between(1e-15, 1e-4)] = Field(
         default=61.9e-9,
         description="kg/J, catastrophic wear: mass over what work is above the last limit (Lewis "
         "and Dwyer-Joyce 2004: 61.9 ug/(m mm^2) by N/mm^2)",
@@ -138,6 +139,9 @@ class Damage(Table):
                     yield relation(name, show(value), allowed)
         if not self.usfd_limits[0] <= self.usfd_limits[1]:
             yield relation("usfd_limits", str(self.usfd_limits), "the lower limit first")
+        if any(0 < limit < LEAST_LIMIT for limit in self.usfd_limits):
+            allowed = f"0 or >= {LEAST_LIMIT:g} Pa: 10.4 N/mm^2 are 10.4e6"
+            yield relation("usfd_limits", str(self.usfd_limits), allowed)
         for name, at in (("archard_map", "slip speeds"), ("whole_life", "wear numbers")):
             points = getattr(self, name)
             if not all(a[0] < b[0] for a, b in pairwise(points)):

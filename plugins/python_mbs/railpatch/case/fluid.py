@@ -41,6 +41,7 @@ ViscosityTable = Annotated[list[Pair], Field(min_length=2, max_length=MOST_POINT
 PRESSURE_COEFFICIENT = {None: 0.5e-9, "water": 0.5e-9, "oil": 20e-9}
 CONDUCTIVITY = {"water": 0.6, "oil": 0.14}
 EYRING_STRESS = {"oil": 5e6}
+HOT_OIL = 250.0  # degrees C
 # degrees C, of water before the contact; the core's check has the same
 LIQUID_WATER = (0.0, 100.0)
 # keys of a step and the key of the table that each moves
@@ -262,6 +263,9 @@ class Fluid(Table):
             if not low <= self.temperature <= high:
                 allowed = f"{low:g} to {high:g} with liquid = 'water'"
                 yield relation("temperature", self.temperature, allowed)
+        if self.liquid == "oil" and self.temperature is not None and self.temperature > HOT_OIL:
+            allowed = f"<= {HOT_OIL:g} degrees C with liquid = 'oil', which burns or boils beyond"
+            yield relation("temperature", self.temperature, allowed)
         for name in ("reference_temperature", "roelands_slope"):
             if self.liquid != "oil" and self._changed(name):
                 yield relation(name, getattr(self, name), "only with liquid = 'oil'")

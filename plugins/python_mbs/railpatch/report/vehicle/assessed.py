@@ -13,10 +13,11 @@ from railpatch.case.types import SIDES
 from railpatch.page import tables
 from railpatch.page.figures import LINES, plot, styled
 from railpatch.report.vehicle.data import VehicleRun
+from railpatch.report.vehicle.limits import LEAST_WAY, way_of
 
 AXES = ("longitudinal", "lateral", "vertical")
-# m, of way, and Hz, of kept steps, that percentiles ask for: railpatch vehicle counts them
-LEAST_WAY, LEAST_RATE = 52.0, 100.0
+# of kept steps, that percentiles ask for: railpatch vehicle counts them
+LEAST_RATE = 100.0  # Hz
 # of EN 12299's five minutes in blocks of 5 s
 WANTED = 60
 PERCENTILES = (
@@ -40,7 +41,7 @@ def section(data: VehicleRun) -> list[str]:
 
 def missing(data: VehicleRun) -> list[str]:
     """That the numbers above are no percentiles in the standard's sense, and what those ask for."""
-    way = float(data.along[-1] - data.along[0])
+    way = way_of(data)
     return [
         "<p><b>No percentiles as EN 14363 counts them.</b> They ask for "
         f"{LEAST_WAY:g} m of way and steps kept at {LEAST_RATE:g} Hz or more while the run is "

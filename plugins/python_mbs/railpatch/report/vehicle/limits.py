@@ -24,6 +24,7 @@ from railpatch.report.vehicle.data import VehicleRun
 Array = np.ndarray
 
 SHARE = 99.85  # %, of the percentile
+LEAST_WAY = 52.0  # m, that percentiles ask for: 50 m of means over 2 m
 RATIO = 0.8  # Y/Q
 # N: Prud'homme's limit of the sum of Y is 10 kN and a third of the static axle load
 PRUDHOMME, AXLE_PART = 10e3, 3.0
@@ -159,9 +160,32 @@ def verdict(keys: list[Key]) -> tuple[str, str]:
     return "All that this page holds against EN 14363 stays within its limits.", GOOD
 
 
+def within(data: VehicleRun, said: str, state: str) -> tuple[str, str]:
+    """A verdict as it is for a way that percentiles can be taken of; a shorter one is not good."""
+    way = way_of(data)
+    if state != GOOD or way >= LEAST_WAY:
+        return said, state
+    return (
+        f"Of {short(way)} m of way, too short for what EN 14363 counts ({LEAST_WAY:g} m): on it no "
+        "limit is passed.",
+        PLAIN,
+    )
+
+
+def way_of(data: VehicleRun) -> float:
+    """m, that the log has."""
+    return float(data.along[-1] - data.along[0])
+
+
 def rows(data: VehicleRun) -> list[list[object]]:
-    """Y, Q, Y/Q of each wheel and the sum of Y of its wheelset: percentile and greatest."""
+    """Y, Q, Y/Q of each wheel and the sum of Y of its wheelset: percentile, where the way is long
+    enough, and greatest."""
     found = []
+    counts = way_of(data) >= LEAST_WAY
+
+    def percentile(value: float) -> object:
+        return short(value) if counts else "-"
+
     for number in data.wheelsets:
         total = spread(sum_of_guiding(data, number))
         for side in SIDES:
@@ -174,8 +198,8 @@ def rows(data: VehicleRun) -> list[list[object]]:
             cells: list[object] = []
             for values, factor in columns:
                 one = spread(values)
-                cells += [short(factor * one.percentile), short(factor * one.most)]
-            sums = [short(1e-3 * total.percentile), short(1e-3 * total.most)]
+                cells += [percentile(factor * one.percentile), short(factor * one.most)]
+            sums = [percentile(1e-3 * total.percentile), short(1e-3 * total.most)]
             found.append([f"{number} {side}", *cells, *sums])
     return found
 

@@ -31,7 +31,7 @@ def body(
     over the run; other: the run whose patches are laid over its own."""
     bad = int((~data.solved).sum())
     keys = limits.key_numbers(data)
-    verdict, state = limits.verdict(keys)
+    verdict, state = limits.within(data, *limits.verdict(keys))
     if bad:
         verdict, state = f"{bad} of {data.count} steps did not converge. {verdict}", BAD
     head = [
