@@ -4,6 +4,8 @@ The contact of docs/fluids.md: R_x 0.46 m, R_y 0.30 m, 80 kN, water of 20 degree
 0.5 um.
 
     python docs/ehl.py docs/ehl.svg
+
+With --grid in place of the file it prints the table of grids.
 """
 
 from __future__ import annotations
@@ -91,5 +93,29 @@ def draw(path: Path) -> None:
     figure.savefig(path, metadata={"Date": None})
 
 
+def refine() -> None:
+    """The docs' table: rise of the reduced pressure, film and share over elements along rolling."""
+    for liquid, speed in ((WATER, 5.0), (WATER, 20.0), (WATER, 80.0), (OIL, 10.0)):
+        rows = []
+        for elements in (16, 24, 32, 48, 64, 96):
+            case = {**CASE, "grid": {"elements": [elements, 16]}}
+            contact = railpatch.Contact({**case, "fluid": {**liquid, "model": "ehl"}})
+            r = contact.step(rolling_speed=speed, fields=True)
+            alpha = liquid.get("pressure_coefficient", 5e-10)
+            reduced = 1 - np.exp(-alpha * np.array(r["fluid_pressure"])[:, ::-1])
+            rise = np.diff(reduced, axis=1, prepend=0.0).max() / reduced.max()
+            film, share = r["central_film_thickness"], r["mean_asperity_share"]
+            rows.append((elements, rise, film, share, len(r.warnings)))
+        name = "oil" if liquid is OIL else "water"
+        for elements, rise, film, share, warned in rows[:-1]:
+            error, more = 100 * (film / rows[-1][2] - 1), share - rows[-1][3]
+            told = "warned" if warned else ""
+            cells = f"{elements} | {rise:.3f} | {error:+.1f} | {more:+.3f} | {told}"
+            print(f"| {name}, {speed:g} m/s | {cells} |")
+
+
 if __name__ == "__main__":
-    draw(Path(sys.argv[1]))
+    if sys.argv[1] == "--grid":
+        refine()
+    else:
+        draw(Path(sys.argv[1]))

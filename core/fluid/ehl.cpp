@@ -38,6 +38,24 @@ double gap_of(const ehl_roughness &roughness, double pressure, double least) {
 
 }  // namespace
 
+double greatest_rise(const grid &g, int direction, double pressure_coefficient,
+                     const double *pressure) {
+  const double alpha = pressure_coefficient;
+  double greatest = 0, rise = 0;
+  for (int j = 0; j < g.ny; ++j) {
+    double last = 0;
+    for (int s = 0; s < g.nx; ++s) {
+      const int i = direction < 0 ? s : g.nx - 1 - s;
+      const double p = pressure[j * g.nx + i];
+      const double reduced = alpha > 0 ? (1 - exp(-alpha * p)) / alpha : p;
+      rise = std::max(rise, reduced - last);
+      greatest = std::max(greatest, reduced);
+      last = reduced;
+    }
+  }
+  return greatest > 0 ? rise / greatest : 0.0;
+}
+
 ehl_solver::ehl_solver(int max_nx, int max_ny)
     : system_(max_nx * max_ny),
       band_(2 * static_cast<size_t>(max_nx * max_ny), numbers_of(max_nx, max_ny)),

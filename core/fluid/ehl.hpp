@@ -34,6 +34,13 @@ struct ehl_result {
   double imbalance = 0;     // of mass, of what passes
 };
 
+// How coarse a grid is for its film: the liquid's greatest rise from one element to the next along
+// rolling, of its greatest, [ny][nx] Pa of the grid. What counts is the inlet, so the rise is that
+// of the reduced pressure (1 - exp(-alpha p))/alpha (Weibull; Grubin 1949, not verified), by which
+// Reynolds' equation has the viscosity at p = 0. 0 without pressure.
+double greatest_rise(const grid &g, int direction, double pressure_coefficient,
+                     const double *pressure);
+
 class ehl_solver {
  public:
   ehl_solver(int max_nx, int max_ny);

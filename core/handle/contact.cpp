@@ -66,7 +66,8 @@ const patch_memory *contact::solution(int side, int patch) const {
 void contact::step(const rp_input &input, rp_result &result) {
   if (derivative_) begin_record();
   rp_result out = config_.accuracy > 0 ? solve_to_accuracy(input) : solve(input);
-  report_warnings(config_, warnings_, input, out);
+  report_warnings(config_, warnings_ | warnings_of_film(config_, solution(RP_RIGHT, 0), out), input,
+                  out);
   result = out;
   if (derivative_) end_record(input, out);
 }

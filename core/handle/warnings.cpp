@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fluid/ehl.hpp"
 #include "railpatch_fields.h"
 
 namespace railpatch {
@@ -22,6 +23,7 @@ constexpr double least_flange = 0.015;            // m, height of a profile that
 constexpr double least_way = 0.01;                // m/s, below which nothing is said of turning
 constexpr double radius_range[2] = {1, 8};        // of wheels, over the width of their profiles
 constexpr int least_elements = 8;
+constexpr double coarse_rise = 0.1;  // of a film's pressure in an element: docs/ehl.md
 
 uint32_t bit(rp_warning warning, bool given) {
   return given ? uint32_t{1} << warning : uint32_t{0};
@@ -119,6 +121,15 @@ uint32_t warnings_of_case(const rp_config &config) {
       config.layer_thickness > 0 && outside(config.layer_shear_modulus, layer_shear_modulus_range);
   return bit(RP_WARNING_STIFFNESS, soft) | bit(RP_WARNING_RADIUS, odd) |
          bit(RP_WARNING_LAYER_STIFFNESS, layer) | bit(RP_WARNING_GAUGE, wide);
+}
+
+uint32_t warnings_of_film(const rp_config &config, const patch_memory *solution,
+                          const rp_result &result) {
+  if (config.fluid_model != RP_FLUID_EHL || !solution) return 0;
+  const double rise =
+      greatest_rise(solution->g, result.side[RP_RIGHT].patch[0].direction,
+                    config.fluid_pressure_coefficient, solution->fluid_pressure.data());
+  return bit(RP_WARNING_FILM_GRID, rise > coarse_rise);
 }
 
 void report_warnings(const rp_config &config, uint32_t of_case, const rp_input &input,

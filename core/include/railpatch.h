@@ -169,7 +169,9 @@ enum {
   X(RP_WARNING_GAUGE, 15, "gauge is not 40 to 120 mm wider than flange_back_distance")             \
   X(RP_WARNING_HEIGHTS, 16,                                                                        \
     "other heights nearly or quite carry the vertical force too: forces jump near this position")  \
-  X(RP_WARNING_WATER, 17, "water as a liquid is warmer than 100 or colder than 0 degrees C")
+  X(RP_WARNING_WATER, 17, "water as a liquid is warmer than 100 or colder than 0 degrees C")       \
+  X(RP_WARNING_FILM_GRID, 18,                                                                      \
+    "the grid is too coarse for the film that was found: more elements along rolling")
 
 #define RP_ENUM_ENTRY(name, value, text) name = value,
 typedef enum rp_error { RP_ERRORS(RP_ENUM_ENTRY) } rp_error;

@@ -148,6 +148,29 @@ def test_starved() -> None:
     assert much["central_film_thickness"] == pytest.approx(plenty, rel=1e-6)
 
 
+COARSE = "the grid is too coarse for the film that was found: more elements along rolling"
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+@pytest.mark.parametrize("fluid", [BASE["fluid"], {**OIL, "roughness": 1e-8}])
+def test_a_grid_too_coarse_for_the_film_is_warned_of(fluid: dict[str, Any], direction: int) -> None:
+    """By the rise of the reduced pressure, recomputed from the field; on a fine one: none."""
+    alpha = 5e-10 if fluid["liquid"] == "water" else 20e-9
+    films = []
+    for elements, warned in ((24, True), (96, False)):
+        case = {**BASE, "fluid": fluid, "grid": {"elements": [elements, 12]}}
+        motion = {"creepage": [1.5e-3, 0.0], "rolling_speed": 20.0, "direction": direction}
+        r = solved({**case, "motion": motion})
+        flow = np.array(r["fluid_pressure"])[:, ::-direction]
+        reduced = 1 - np.exp(-alpha * flow)
+        rise = np.diff(reduced, axis=1, prepend=0.0).max() / reduced.max()
+        assert (rise > 0.1) == warned
+        assert (COARSE in r.warnings) == warned
+        films.append(r["central_film_thickness"])
+    # what the warning means: films too thin
+    assert films[0] < 0.95 * films[1]
+
+
 def test_line_contact_and_approach() -> None:
     """Of a line contact; and an approach that gives back the force."""
     case = {**BASE, "motion": {"creepage": [1e-3, 0.0], "rolling_speed": 20.0}}
