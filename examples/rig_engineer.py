@@ -2,7 +2,7 @@
 # # Rig engineer: an own run, replayed and matched
 #
 # From a machine's file to computed forces beside the measured ones, and to the friction that the run had. The same on the
-# command line: `railpatch init rig mine`, `railpatch rig`, `railpatch report`, `railpatch match`.
+# command line: `railpatch init rig mine`, `railpatch rig`, `railpatch report`, `railpatch match`. `pip install 'railpatch[match]'`.
 
 # %%
 from pathlib import Path

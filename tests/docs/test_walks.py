@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import re
 import shlex
+import sys
 from pathlib import Path
 
 import pytest
@@ -11,23 +11,9 @@ from click.testing import CliRunner
 from railpatch.command.cli import cli
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-BLOCK = re.compile(r"^```sh\n(.*?)^```", re.DOTALL | re.MULTILINE)
-FORM = re.compile(r"\[|\b[A-Z]{3,}\b")
-INDENTED = re.compile(r"^ {4}(railpatch .*)$", re.MULTILINE)
+sys.path.insert(0, str(DOCS))
 
-
-def commands(page: str) -> list[list[str]]:
-    """Of railpatch, in a page's first block and in its indented lines, without comments; what has
-    placeholders in capitals is a form, not a command."""
-    text = (DOCS / page).read_text(encoding="utf-8")
-    block = BLOCK.search(text)
-    lines = [*(block[1].splitlines() if block else []), *INDENTED.findall(text)]
-    found = [shlex.split(line, comments=True) for line in lines]
-    return [
-        words[1:]
-        for words in found
-        if words[:1] == ["railpatch"] and not FORM.search(" ".join(words))
-    ]
+import walks  # noqa: E402
 
 
 @pytest.mark.parametrize(("page", "count"), [("measured_runs.md", 6), ("logs.md", 7)])
@@ -35,7 +21,8 @@ def test_commands_as_they_stand(
     page: str, count: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    found = commands(page)
+    lines = [shlex.split(line) for line in walks.commands(page)]
+    found = [words[1:] for words in lines if words[0] == "railpatch"]
     assert len(found) >= count
     for words in found:
         if words[0] == "match":
@@ -44,3 +31,14 @@ def test_commands_as_they_stand(
             continue
         ended = CliRunner().invoke(cli, words)
         assert ended.exit_code == 0, (words, ended.output)
+
+
+@pytest.mark.parametrize("walk", walks.WALKS, ids=lambda w: f"{w.person} {w.page} {w.spoken}")
+def test_each_person_has_something_to_follow(walk: walks.Walk) -> None:
+    """What the page gives to do; who follows it, and what to install, stands on the page too."""
+    installs, lines, code = walks.words_of(walk)
+    assert lines
+    assert bool(code) == (walk.page.endswith(".py") and not walk.spoken)
+    first = next(w for w in walks.WALKS if w.person == walk.person)
+    if walk == first:
+        assert installs, "the first page does not say what to install"
