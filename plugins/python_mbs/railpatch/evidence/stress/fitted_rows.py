@@ -21,6 +21,8 @@ from railpatch.evidence.stress.liquids import greatest_of
 from railpatch.evidence.stress.step import Finding, Step
 
 STICK, SLIP = 1, 2
+# Pa: films leave friction coefficients down to 1e-300, whose tractions are none
+NO_STRESS = 1e-100
 # micro-slip of the rows against rectangles, over the largest slip that the motion or the bound asks
 # for: the rows' own quadrature where stick ends
 OF_SLIP = 0.02
@@ -129,7 +131,7 @@ def fitted_findings(step: Step) -> Iterator[Finding]:
     yield Finding("sum of tractions", float(np.hypot(*(force - step.patch["creep_force"]))), limit)
     yield Finding("moment of tractions", abs(moment - step.patch["spin_moment"]), limit * reach)
     bound = friction * pressure
-    size, most_bound = np.hypot(px, py), max(float(bound.max()), 1e-300)
+    size, most_bound = np.hypot(px, py), max(float(bound.max()), NO_STRESS)
     over = float((size - bound * (1 + 1e-9)).max()) / most_bound
     yield Finding("traction over its bound", over, 1e-12)
     division, given = step["element_division"], step["micro_slip"]
