@@ -243,8 +243,8 @@ TEST_P(WheelDerivatives, OfEveryNumberEqualDifferences) {
       if (name == "friction_scale") return rolls;
       for (const char *other :
            {"normal_force", "approach", "creepage", "tangential_force", "spin_creepage",
-            "rolling_speed", "bulk_temperature", "distance", "time_step", "water_rate",
-            "water_temperature", "oil_film", "rail_work"})
+            "rolling_speed", "bulk_temperature", "distance", "time_step", "axle_torque",
+            "longitudinal_force", "water_rate", "water_temperature", "oil_film", "rail_work"})
         if (name == other) return false;
       return true;
     };
