@@ -234,6 +234,7 @@ REFUSED = [
     ({"motion__regimes": []}, "motion.regimes"),
     ({"motion__regimes": ["none"]}, "motion.regimes"),
     ({"motion__steps": 3}, "motion.steps"),
+    ({"motion__regime": "shift"}, "motion.regime: value is 'shift', allowed 'steady"),
     ({"motion__regimes": ["transient_rolling"], "motion__distance": None}, "motion.distance"),
     (
         {"motion__regimes": ["shift"], "friction": FEATURES["falling friction"]["friction"]},

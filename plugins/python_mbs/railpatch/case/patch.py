@@ -411,10 +411,14 @@ class PatchCase(Table):
 
     def _check_changes(self) -> Problems:
         """What regimes that change are not combined with."""
+        regimes = self.motion.regimes
+        if regimes and self.motion.regime != regimes[0]:
+            allowed = f"{regimes[0]!r}, the first of motion.regimes, or left out with them"
+            yield relation("motion.regime", repr(self.motion.regime), allowed)
         for name, given in (("temperature", self.temperature), ("fluid", self.fluid)):
             if given is not None:
                 yield relation(name, "given", f"{LEFT_OUT} with motion.regimes")
-        if self.motion.regimes == ["steady_rolling"] * len(self.motion.regimes or ()):
+        if regimes == ["steady_rolling"] * len(regimes or ()):
             # of others each regime says what it needs
             yield from self._check_history("motion.regimes")
 
