@@ -135,6 +135,40 @@ def headers(python: Python, archives: Path, folder: Path) -> None:
             target.write_bytes(archive.read(name))
 
 
+def imported(library: bytes) -> list[tuple[str, bool]]:
+    """What an import library names, and whether it is data (Microsoft, PE format, "Archive (Library)
+    File Format" and "Import Library Format")."""
+    if not library.startswith(b"!<arch>\n"):
+        raise ValueError("an import library begins with !<arch>")
+    found, at = [], 8
+    while at + 60 <= len(library):
+        size = int(library[at + 48 : at + 58])
+        member = library[at + 60 : at + 60 + size]
+        if member[:4] == b"\x00\x00\xff\xff":  # an import; others are the library's own
+            kind = int.from_bytes(member[18:20], "little") & 3
+            found.append((member[20 : member.index(b"\x00", 20)].decode(), kind == 1))
+        at += 60 + size + size % 2
+    return found
+
+
+def stable_interface(folder: Path, name: str) -> None:
+    """python3.dll beside a Python that has none: it hands on to the DLL of this name.
+
+    The presets publish the import library of the stable interface, but not its DLL.
+    """
+    names = imported((folder / "libs" / "python3.lib").read_bytes())
+    lines = [f"  {n} = {name}.{n}{' DATA' if data else ''}" for n, data in names]
+    definition = folder / "python3.def"
+    definition.write_text("\n".join(["LIBRARY python3.dll", "EXPORTS", *lines, ""]))
+    empty = folder / "python3.c"
+    empty.write_text("int DllMain(void *m, unsigned why, void *r) { return 1; }\n")
+    zig = [sys.executable, "-m", "ziglang", "cc", "-target", "x86_64-windows-gnu", "-shared"]
+    words = [*zig, empty, definition, "-o", folder / "python3.dll"]
+    done = subprocess.run(list(map(str, words)), capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"failed: {' '.join(map(str, words))}\n{done.stderr[-2000:]}")
+
+
 def interpreter(python: Python, archives: Path, folder: Path) -> Path:
     """The whole of a Python in FOLDER/TAG, made once; gives its program."""
     made = folder / python.tag
@@ -151,6 +185,8 @@ def interpreter(python: Python, archives: Path, folder: Path) -> Path:
         if windows:
             for tool in made.glob("bin/*.exe"):
                 shutil.copy(tool, made)
+            if not (made / "python3.dll").is_file():
+                stable_interface(made, f"python{python.tag[2:]}")
         else:
             program.chmod(0o755)
     return program
