@@ -136,8 +136,10 @@ def headers(python: Python, archives: Path, folder: Path) -> None:
 
 
 def imported(library: bytes) -> list[tuple[str, bool]]:
-    """What an import library names, and whether it is data (Microsoft, PE format, "Archive (Library)
-    File Format" and "Import Library Format")."""
+    """What an import library names, and whether it is data.
+
+    Its form: Microsoft, PE Format, "Archive (Library) File Format", "Import Library Format".
+    """
     if not library.startswith(b"!<arch>\n"):
         raise ValueError("an import library begins with !<arch>")
     found, at = [], 8
