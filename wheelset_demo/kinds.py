@@ -29,11 +29,11 @@ WHEELSET_UNITS = {
     **dict.fromkeys(("wear", "wear_text"), ""),
 }
 VEHICLE_UNITS = {
-    **dict.fromkeys(("steps", "derailment", "derailment_percentile"), ""),
+    **dict.fromkeys(("steps", "derailment", "derailment_percentile", "unloading"), ""),
     **dict.fromkeys(("distance", "offset"), "m"),
     "duration": "s",
     **dict.fromkeys(("load_range", "load_percentile", "load_median"), "N"),
-    **dict.fromkeys(("guiding", "shift_percentile", "shift_limit"), "N"),
+    **dict.fromkeys(("static_loads", "guiding", "shift_percentile", "shift_limit"), "N"),
     **dict.fromkeys(("comfort", "acceleration_percentile"), "m/s^2"),
     **dict.fromkeys(("friction", "open_balance", "lost"), "J"),
     "step_times": "",

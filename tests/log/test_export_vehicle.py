@@ -40,6 +40,7 @@ def test_what_is_read_first(log: Path) -> None:
         *("/wheelset/2/right/contact.derailment_quotient", "/wheelset/3/left/contact.wear_number"),
         *("/wheelset/1/left/contact.mean_guiding_force", "/vehicle/state.speed"),
         "/vehicle/bodies.bodies[0].acceleration.y",
+        *("/vehicle/assessment.static_load[0]", "/vehicle/assessment.most_derailment[7]"),
     ):
         assert wanted in names, wanted
     assert not any("patches[" in name for name in names)

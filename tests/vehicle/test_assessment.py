@@ -11,8 +11,8 @@ import vehicle_scenes as scenes
 
 from wheelset_demo.scene import GRAVITY
 from wheelset_demo.vehicle import Simulation
-from wheelset_demo.vehicle.assessment import assess, low_passed, shift_limit
-from wheelset_demo.vehicle.trace import run_vehicle, summarise
+from wheelset_demo.vehicle.assessment import assess, low_passed, shift_limit, unloading
+from wheelset_demo.vehicle.trace import assessed_of, run_vehicle, summarise
 
 STEP, SPEED = 5e-3, 40.0
 
@@ -84,6 +84,12 @@ def test_wheel_in_the_air_has_no_ratio():
     assert found.ratio == 0.0
 
 
+def test_unloading_is_of_the_load_at_rest():
+    """A half of each wheelset's: 60 kN, of it 15 kN left, is 0.75; more than at rest is below 0."""
+    found = unloading((15e3, 60e3, 88e3, 80e3), (120e3, 160e3))
+    assert found == pytest.approx((0.75, 0.0, -0.1, 0.0))
+
+
 def test_too_little():
     flat = (lambda t: 0 * t, lambda t: 5e4 + 0 * t, lambda t: 0 * t)
     assert assess(trace_of(*flat, speed=2.0), STEP) is None
@@ -95,7 +101,8 @@ def test_summary_of_a_run():
     simulation = Simulation(
         scenes.scene(speed=80.0, irregular=True, duration=0.9, step=2e-3, shift_factor=0.85)
     )
-    found = summarise(run_vehicle(simulation), simulation)
+    trace = run_vehicle(simulation)
+    found = summarise(trace, simulation)
     load = simulation.scene.vehicle.mass * GRAVITY / 4
     assert found.shift_limit == pytest.approx(0.85 * (1e4 + load / 3))
     assert 0 < found.shift_percentile <= 1.01 * found.guiding
@@ -103,4 +110,11 @@ def test_summary_of_a_run():
     assert low < found.load_median < found.load_percentile < 1.01 * high
     assert found.derailment_percentile < 1.01 * found.derailment
     assert "limit 0.8" in found.text()
+    assert found.static_loads == pytest.approx([load] * 4)
+    # the page's tiles are the summary's numbers
+    told = assessed_of(trace, simulation)
+    assert max(told["derailment"]) == found.derailment_percentile
+    assert max(told["shift"]) == found.shift_percentile
+    assert max(told["load"]) == found.load_percentile
+    assert 0 < max(told["guiding"]) < 1.01 * max(told["most_guiding"])
     assert "EN 14363" in found.text()

@@ -13,13 +13,14 @@ from railpatch.command.cli import cli
 from railpatch.layout import layout, topics_of
 from railpatch.log import read_run
 from railpatch.report import write_report
+from railpatch.report.vehicle import limits
 from railpatch.report.vehicle.data import vehicle_run
 
-from wheelset_demo.scene import scene_file
+from wheelset_demo.scene import GRAVITY, scene_file
 from wheelset_demo.vehicle.command import vehicle as command
 from wheelset_demo.vehicle.scene import load_vehicle_scene
 from wheelset_demo.vehicle.simulation import Simulation
-from wheelset_demo.vehicle.trace import run_vehicle
+from wheelset_demo.vehicle.trace import run_vehicle, summarise
 
 DURATION = 0.2
 
@@ -73,6 +74,33 @@ def test_wheels_of_both_sides_make_the_wheelsets_force(ran):
     for number in range(1, 5):
         total = sum(run[f"/wheelset/{number}/{side}/contact"]["force"] for side in SIDES)
         assert run[f"/wheelset/{number}/state"]["force"] == pytest.approx(total, rel=1e-9)
+
+
+def test_page_takes_loads_at_rest_and_extremes_of_every_step(ran):
+    """In a curve a run's mean is not what a wheel carries at rest; of steps that are not written
+    the extremes count too. A coach stands on its eight wheels alike."""
+    trace, simulation, run, _ = ran
+    data = vehicle_run(run)
+    weight = simulation.scene.vehicle.mass * GRAVITY
+    # a force of the wind's kind, in the numbers that are shown alone
+    for wheel in data.loads:
+        data.loads[wheel] = 1.1 * data.loads[wheel]
+    for number in range(1, 5):
+        assert limits.static_load(data, number) == pytest.approx(weight / 4, rel=1e-9)
+        assert limits.sum_limit(data, number) == pytest.approx(10e3 + weight / 12, rel=1e-9)
+    found, wheels = summarise(trace, simulation), list(data.contact)
+    assert found.static_loads == pytest.approx([weight / 4] * 4, rel=1e-9)
+    least = min(limits.least_load(data, wheel) for wheel in wheels)
+    assert least == pytest.approx(found.load_range[0], rel=1e-15)
+    assert found.unloading == pytest.approx(1 - least / (weight / 8), rel=1e-12)
+    assert max(limits.unloading(data, wheel) for wheel in wheels) == found.unloading
+    assert max(limits.load_spread(data, w).most for w in wheels) == found.load_range[1]
+    assert max(limits.ratio_spread(data, w).most for w in wheels) == found.derailment
+    assert max(limits.sum_spread(data, n).most for n in range(1, 5)) == found.guiding
+    assert limits.ride(data)[1] == pytest.approx(found.comfort, rel=1e-12)
+    # known from the run's begin on, should it be ended from outside
+    assert run["/vehicle/assessment"].messages[0]["static_load"] == pytest.approx([weight / 4] * 4)
+    assert "unloading" in found.text()
 
 
 def test_balance_of_energies(ran):

@@ -46,6 +46,12 @@ def test_means_are_integrals_over_the_last_metres():
     assert checked > 200
     # left wheels push outward, right ones inward: the greatest ratio is that of the left
     assert means.ratio == pytest.approx(0.1)
+    most = means.extremes
+    assert most.ratios == pytest.approx([0.1, -0.1] * 4)
+    assert most.least_loads == (means.load_range[0],) * 8
+    assert most.most_loads == (means.load_range[1],) * 8
+    assert most.guiding == pytest.approx([0.1 * means.load_range[1]] * 8)
+    assert most.sums == (means.sum,) * 4
     # a wheelset's, of both wheels
     assert means.sum == pytest.approx(0.2 * means.load_range[1])
 

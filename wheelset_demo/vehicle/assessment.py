@@ -4,12 +4,14 @@ Filters, percentiles and limits are those of EN 14363:2016, stated from memory, 
 hand: wheel forces and accelerations with a low pass of 20 Hz (Butterworth, order 4), forces as
 means over 2 m at every 0.5 m, percentiles 0.15, 50 and 99.85 %; Y/Q at most 0.8 (Nadal 1896 gives
 the form), a wheelset's sum of Y at most k (10 kN + P0/3) with P0 its load at rest (Prud'homme
-1967). Y/Q is that of the means. The whole run is one section: the standard's sorting by radius and
-its statistics over many sections are left to who runs several.
+1967); a wheel's load at least 40 % of that at rest. Y/Q is that of the means. The whole run is one
+section: the standard's sorting by radius and its statistics over many sections are left to who runs
+several.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -30,6 +32,7 @@ LEAST_WAY = 50.0  # m, of means
 PERCENTILES = (0.15, 50.0, 99.85)
 RATIO_LIMIT = 0.8
 BASE_SHIFT = 10e3  # N
+UNLOADING_LIMIT = 0.6  # of the wheel's load at rest
 
 
 class Kept(Protocol):
@@ -43,10 +46,10 @@ class Kept(Protocol):
 @dataclass(frozen=True)
 class Assessment:
     """SI. ratio: greatest 99.85 % of a wheel's Y/Q, Y outward. shift: N, greatest of a wheelset's
-    sum of Y by 0.15 and 99.85 %, either way. load, median_load: N, greatest 99.85 % and 50 % of a
-    wheel's Q. acceleration: m/s^2, lateral, vertical, the greater of 0.15 and 99.85 %,
-    without gravity's. ratios, loads, median_loads: the same of each wheel, shifts: of each
-    wheelset. places: number of the places that they are of."""
+    sum of Y by 0.15 and 99.85 %, either way. guiding: N, likewise of each wheel's Y. load,
+    median_load: N, greatest 99.85 % and 50 % of a wheel's Q. acceleration: m/s^2, lateral,
+    vertical, the greater of 0.15 and 99.85 %, without gravity's. ratios, loads, median_loads: the
+    same of each wheel, shifts: of each wheelset. places: number of the places that they are of."""
 
     ratio: float
     shift: float
@@ -57,12 +60,20 @@ class Assessment:
     shifts: tuple[float, ...] = ()
     loads: tuple[float, ...] = ()
     median_loads: tuple[float, ...] = ()
+    guiding: tuple[float, ...] = ()
     places: int = 0
 
 
 def shift_limit(axle_load: float, factor: float) -> float:
     """N, of a wheelset's sum of Y. axle_load: N."""
     return factor * (BASE_SHIFT + axle_load / 3)
+
+
+def unloading(least_loads: Sequence[float], static_loads: Sequence[float]) -> tuple[float, ...]:
+    """-, [wheels]: what a wheel's least load is below that at rest, a half of its wheelset's, as a
+    share of it. least_loads: N, [wheels]; static_loads: N, [wheelsets]."""
+    at_rest = np.repeat(np.asarray(static_loads) / 2, 2)
+    return tuple((1 - np.asarray(least_loads) / at_rest).tolist())
 
 
 def assess(trace: Kept, interval: float) -> Assessment | None:
@@ -104,6 +115,9 @@ def assess(trace: Kept, interval: float) -> Assessment | None:
         shifts=tuple(shifts.tolist()),
         loads=tuple(most.tolist()),
         median_loads=tuple(median.tolist()),
+        guiding=tuple(
+            np.abs(np.percentile(guiding, PERCENTILES[::2], axis=0)).max(axis=0).tolist()
+        ),
         places=len(places),
     )
 

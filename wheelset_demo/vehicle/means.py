@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 from railpatch import _core
@@ -18,6 +20,18 @@ def rail_forces(wheels: Vector) -> tuple[Vector, Vector]:
     return (OUTWARD * wheels[:, :, 1]).ravel(), -wheels[:, :, 2].ravel()
 
 
+@dataclass(frozen=True)
+class Extremes:
+    """[wheels] each, so far. ratios: -, greatest Y/Q; none: 0. guiding: N, greatest Y, either way.
+    least_loads, most_loads: N, Q. sums: N, [wheelsets], greatest sum of Y, either way."""
+
+    ratios: tuple[float, ...]
+    guiding: tuple[float, ...]
+    least_loads: tuple[float, ...]
+    most_loads: tuple[float, ...]
+    sums: tuple[float, ...]
+
+
 class SlidingMeans:
     """Of Y and Q over the last 2 m (EN 14363), and their extremes so far.
 
@@ -25,6 +39,7 @@ class SlidingMeans:
     so are the extremes; these begin anew with the first whole mean. ratio: -, greatest Y/Q of a
     wheel that carries something. load_range: N, least and greatest Q. sum: N, greatest force across
     the track on a wheelset, either way.
+    extremes: of each wheel, as Extremes.
     """
 
     def __init__(self, wheels: Vector) -> None:
@@ -66,3 +81,15 @@ class SlidingMeans:
     def load_range(self) -> tuple[float, float]:
         """N, so far."""
         return self._core.load_range
+
+    @property
+    def extremes(self) -> Extremes:
+        """Of each wheel."""
+        core = self._core
+        return Extremes(
+            ratios=tuple(x if np.isfinite(x) else 0.0 for x in core.most_ratios),
+            guiding=tuple(core.most_guiding),
+            least_loads=tuple(core.least_loads),
+            most_loads=tuple(core.most_loads),
+            sums=tuple(core.most_sums[::2]),
+        )

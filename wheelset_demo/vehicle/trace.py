@@ -20,8 +20,10 @@ from wheelset_demo.vehicle.assessment import (
     LEAST_RATE,
     LEAST_WAY,
     RATIO_LIMIT,
+    UNLOADING_LIMIT,
     assess,
     shift_limit,
+    unloading,
 )
 from wheelset_demo.vehicle.comfort import text_of as text_of_comfort
 from wheelset_demo.vehicle.means import rail_forces
@@ -124,6 +126,7 @@ def run_vehicle(
 
     with open_log(output, simulation) as log:
         recorder = Recorder(log, simulation)
+        log.write_assessment(simulation.state.time, at_rest(simulation))
         trace = traced(simulation, advance, recorder)
         recorder.ended(simulation, assessed_of(trace, simulation))
         log.close(str(trace.failure or ""))
@@ -168,6 +171,8 @@ class VehicleSummary:
     greatest of every time step, as Support.summary(); None on rigid ground. measured_track: what
     the record of the rails holds, as MeasuredTrack.summary(). ride_comfort: as Comfort.summary()
     (EN 12299); None where the scene does not ask. wear: as RunWear.summary(), of [damage].
+    static_loads: N, [wheelsets], on level rails at rest. unloading: -, greatest of a wheel, as a
+    share of its load at rest, of every time step.
     """
 
     good: bool
@@ -186,6 +191,8 @@ class VehicleSummary:
     seconds: dict[str, float]
     real_time: float
     warnings: list[str]
+    static_loads: tuple[float, ...] = ()
+    unloading: float | None = None
     derailment_percentile: float | None = None
     shift_percentile: float | None = None
     shift_limit: float | None = None
@@ -220,7 +227,7 @@ class VehicleSummary:
                 f"{self.derailment:.3f} at most, Y outward; a wheelset's Y "
                 f"{self.guiding / 1e3:.2f} kN at most, either way",
             ),
-            ("wheel loads", f"{fixed(low, 1)} ... {fixed(high, 1)} kN"),
+            ("wheel loads", f"{fixed(low, 1)} ... {fixed(high, 1)} kN{self._at_rest()}"),
             ("offset", f"{1e3 * self.offset:.2f} mm at most"),
             (
                 "car body",
@@ -248,6 +255,16 @@ class VehicleSummary:
             lines.append(("logging", f"{100 * self.logging_share:.2g} % of the run's wall time"))
         found = "\n".join(f"{name:<16}{value}" for name, value in lines)
         return found if self.step_times is None else f"{found}\n{text_of(self.step_times)}"
+
+    def _at_rest(self) -> str:
+        """Wheels' loads at rest, and how far they fall below."""
+        if self.unloading is None:
+            return ""
+        halves = dict.fromkeys(fixed(load / 2e3, 1) for load in self.static_loads)
+        return (
+            f"; at rest {', '.join(halves)} kN, unloading {100 * self.unloading:.1f} % at most "
+            f"(limit {100 * UNLOADING_LIMIT:g} %)"
+        )
 
     def _recorded(self) -> list[tuple[str, str]]:
         """A line of the rails' record."""
@@ -342,15 +359,30 @@ def least_limit(simulation: Simulation) -> float:
     return shift_limit(float(simulation.system.suspension.statics.loads.min()), factor)
 
 
+def at_rest(simulation: Simulation) -> dict[str, list[float]]:
+    """Of the log's channel: what is known before the first step."""
+    return {"static_load": simulation.system.suspension.statics.loads.tolist()}
+
+
 def assessed_of(trace: VehicleTrace, simulation: Simulation) -> dict[str, Any]:
-    """Of the log's channel: percentiles with their limits; nothing where the run is too short."""
-    run = simulation.scene.run
+    """Of the log's channel: loads at rest, extremes; percentiles with their limits where the run is
+    long enough for them."""
+    run, most, felt = simulation.scene.run, simulation.means.extremes, trace.array("felt")
+    told = at_rest(simulation) | {
+        "most_derailment": list(most.ratios),
+        "most_guiding": list(most.guiding),
+        "most_shift": list(most.sums),
+        "least_load": list(most.least_loads),
+        "most_load": list(most.most_loads),
+        "acceleration_rms": felt[:, 1:].std(axis=0).tolist(),
+    }
     found = assess(trace, run.step * run.log_every)
     if found is None:
-        return {}
-    return {
+        return told
+    return told | {
         "places": found.places,
         "derailment": list(found.ratios),
+        "guiding": list(found.guiding),
         "shift": list(found.shifts),
         "load": list(found.loads),
         "median_load": list(found.median_loads),
@@ -385,7 +417,7 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
     """Of a run."""
     positions = trace.array("positions")
     distance = float(positions[-1, 0] - positions[0, 0])
-    means = simulation.means
+    means, statics = simulation.means, simulation.system.suspension.statics.loads
     felt, time = trace.array("felt"), simulation.state.time
     system, wall = simulation.system, simulation.wall_seconds
     seconds = {
@@ -429,6 +461,8 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
             *step_doubts(simulation.scene, trace.open_balance(), trace.lost()),
             *trace.warned.lines(),
         ],
+        static_loads=tuple(statics.tolist()),
+        unloading=max(unloading(means.extremes.least_loads, statics)),
         **assessed,
         support=None if system.support is None else system.support.summary(),
         measured_track=None if measured is None else measured.summary(),

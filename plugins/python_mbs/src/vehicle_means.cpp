@@ -1,8 +1,10 @@
 // The class railpatch._core.SlidingMeans: see wheelset_demo/vehicle/means.py.
 
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -24,6 +26,7 @@ class SlidingMeans final : public VehicleMeans {
       throw nb::value_error("left and right wheels, one or more");
     for (auto *forces : {&forces_, &means_}) forces->resize(2 * wheels_);
     read(wheels.data(), wheels.shape(2), forces_);
+    for (auto &one : extremes_) one.resize(wheels_);
     ways_.assign(kRoom, 0.0);
     integrals_.assign(kRoom * 2 * wheels_, 0.0);
     means_ = forces_;
@@ -65,6 +68,10 @@ class SlidingMeans final : public VehicleMeans {
   std::pair<double, double> load_range() const { return {low_, high_}; }
   double *means() { return means_.data(); }
   size_t size() const { return means_.size(); }
+  // by kExtremes; of a wheelset's two wheels the same sum
+  const std::vector<double> &most(int which) const { return extremes_[which]; }
+
+  enum { kRatio, kSum, kGuiding, kLeastLoad, kMostLoad, kExtremes };
 
  private:
   // rows to begin with: more than a vehicle at speed needs
@@ -106,6 +113,8 @@ class SlidingMeans final : public VehicleMeans {
     sum_ = 0;
     low_ = -ratio_;
     high_ = ratio_;
+    for (int which = 0; which < kExtremes; ++which)
+      extremes_[which].assign(wheels_, which == kLeastLoad ? low_ : high_);
   }
 
   void meet() {
@@ -114,9 +123,22 @@ class SlidingMeans final : public VehicleMeans {
       if (load > least_load_) ratio_ = std::max(ratio_, means_[k] / load);
       low_ = std::min(low_, load);
       high_ = std::max(high_, load);
+      double &least = extremes_[kLeastLoad][k];
+      least = std::min(least, load);
+      if (load > least_load_) raise(kRatio, k, means_[k] / load);
+      raise(kMostLoad, k, load);
+      raise(kGuiding, k, std::abs(means_[k]));
     }
-    for (size_t k = 0; k < wheels_; k += 2)
-      sum_ = std::max(sum_, std::abs(means_[k] - means_[k + 1]));
+    for (size_t k = 0; k < wheels_; k += 2) {
+      const double both = std::abs(means_[k] - means_[k + 1]);
+      sum_ = std::max(sum_, both);
+      for (size_t i : {k, k + 1}) raise(kSum, i, both);
+    }
+  }
+
+  void raise(int which, size_t k, double value) {
+    double &most = extremes_[which][k];
+    most = std::max(most, value);
   }
 
   double length_, least_load_;
@@ -125,6 +147,7 @@ class SlidingMeans final : public VehicleMeans {
   double ratio_, sum_, low_, high_;
   // way (m), and integral of the forces over it (J), a ring
   std::vector<double> ways_, integrals_, forces_, before_, means_;
+  std::array<std::vector<double>, kExtremes> extremes_;  // each of all wheels
 };
 
 nb::ndarray<nb::numpy, double, nb::ndim<1>> means_of(nb::handle_t<SlidingMeans> self) {
@@ -145,6 +168,11 @@ void bind_means(nb::module_ &m) {
       .def_prop_ro("ratio", &M::ratio)
       .def_prop_ro("sum", &M::sum)
       .def_prop_ro("load_range", &M::load_range)
+      .def_prop_ro("most_ratios", [](const M &self) { return self.most(M::kRatio); })
+      .def_prop_ro("most_sums", [](const M &self) { return self.most(M::kSum); })
+      .def_prop_ro("most_guiding", [](const M &self) { return self.most(M::kGuiding); })
+      .def_prop_ro("least_loads", [](const M &self) { return self.most(M::kLeastLoad); })
+      .def_prop_ro("most_loads", [](const M &self) { return self.most(M::kMostLoad); })
       .def_prop_ro("means", &means_of, "N, on the rails: outward, then down, of all wheels.");
 }
 

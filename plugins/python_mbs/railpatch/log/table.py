@@ -34,6 +34,7 @@ READ = {
     "/vehicle/state": "*",
     "/vehicle/bodies": r"bodies\[\d+\]\.(name|acceleration).*",
     "/vehicle/comfort": "*",
+    "/vehicle/assessment": "*",
     "/wheelset/N/state": "x|y|z|roll|yaw|speed|rolling_radius_difference|conicity|wear_number|"
     "drive_torque|slip_speed",
     "/wheelset/N/support": "*",

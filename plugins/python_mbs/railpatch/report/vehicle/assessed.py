@@ -13,7 +13,7 @@ from railpatch.case.types import SIDES
 from railpatch.page import tables
 from railpatch.page.figures import LINES, plot, styled
 from railpatch.report.vehicle.data import VehicleRun
-from railpatch.report.vehicle.limits import LEAST_WAY, way_of
+from railpatch.report.vehicle.limits import LEAST_WAY, sum_limit, way_of
 
 AXES = ("longitudinal", "lateral", "vertical")
 # of kept steps, that percentiles ask for: railpatch vehicle counts them
@@ -34,8 +34,7 @@ COMFORT = (
 
 def section(data: VehicleRun) -> list[str]:
     """HTML; why there are none where the log has no percentiles."""
-    messages = data.run["/vehicle/assessment"].messages
-    found = messages[-1] if messages else {}
+    found = data.assessment
     return [*(percentiles(data, found) or missing(data)), *comfort(data, found)]
 
 
@@ -83,7 +82,7 @@ def rows(data: VehicleRun, found: dict[str, Any]) -> list[list[object]]:
                     tables.short(1e-3 * found["load"][wheel]),
                     tables.short(1e-3 * found["median_load"][wheel]),
                     shift,
-                    tables.short(1e-3 * found["shift_limit"]),
+                    tables.short(1e-3 * sum_limit(data, number)),
                 ]
             )
     return told

@@ -48,6 +48,12 @@ class VehicleRun:
         return self.state.time
 
     @cached_property
+    def assessment(self) -> dict[str, Any]:
+        """What the run says of itself as a whole; empty where the log has nothing of it."""
+        messages = self.run["/vehicle/assessment"].messages
+        return messages[-1] if messages else {}
+
+    @cached_property
     def statuses(self) -> dict[Wheel, np.ndarray]:
         """By wheel, [n]."""
         return {wheel: series["status"] for wheel, series in self.contact.items()}

@@ -27,22 +27,22 @@ def beside_limits(data: VehicleRun) -> go.Figure:
     # short: eight of them stand below a narrow panel
     names = [f"{number}{side[0].upper()}" for number, side in wheels]
     panels = (
-        ("Y/Q", names, [limits.spread(data.ratio(w)) for w in wheels], 1.0, [limits.RATIO]),
+        ("Y/Q", names, [limits.ratio_spread(data, w) for w in wheels], 1.0, [limits.RATIO]),
         (
             "sum of Y [kN]",
             [str(n) for n in numbers],
-            [limits.spread(limits.sum_of_guiding(data, n)) for n in numbers],
+            [limits.sum_spread(data, n) for n in numbers],
             1e-3,
             [limits.sum_limit(data, n) for n in numbers],
         ),
         (
             "Q [kN]",
             names,
-            [limits.spread(data.mean_loads[w]) for w in wheels],
+            [limits.load_spread(data, w) for w in wheels],
             1e-3,
             [limits.load_limit(data, w[0]) for w in wheels],
         ),
-        ("Y [kN]", names, [limits.spread(data.mean_guiding[w]) for w in wheels], 1e-3, []),
+        ("Y [kN]", names, [limits.guiding_spread(data, w) for w in wheels], 1e-3, []),
     )
     for place, (title, at, found, factor, most) in enumerate(panels):
         row, column = divmod(place, 2)

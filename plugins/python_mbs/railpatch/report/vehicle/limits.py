@@ -1,13 +1,16 @@
 """Forces and accelerations of a vehicle beside the limits of EN 14363:2016.
 
-Forces are means over 2 m of way. The standard takes percentiles of 99.85 % in sections of track
-and estimates from many of them; here the whole run is one section, and its percentile is taken as
-it is. The standard measures accelerations on the floor and filters them; here they are those of a
-body's centre, as logged.
+Forces are means over 2 m of way. The standard takes percentiles of 99.85 % in sections of track and
+estimates from many of them; here the whole run is one section, and its percentile is taken as it
+is: the one that the run itself found, of its kept steps, and extremes those of every time step; of
+the logged steps where the log has none of these. Loads at rest are those that the log has. The
+standard measures accelerations on the floor and filters them; here they are those of a body's
+centre, as logged.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,7 +22,7 @@ from railpatch.page.tables import short
 from railpatch.profiles import load_profile
 from railpatch.profiles.shape import shape_of
 from railpatch.report.scene import friction_of, scene_of
-from railpatch.report.vehicle.data import VehicleRun
+from railpatch.report.vehicle.data import VehicleRun, Wheel
 
 Array = np.ndarray
 
@@ -54,8 +57,56 @@ def spread(values: Array) -> Spread:
 
 
 def static_load(data: VehicleRun, number: int) -> float:
-    """N, of an axle: mean over the run of both wheels' loads."""
+    """N, of an axle at rest; of a log without it the mean over the run of both wheels' loads."""
+    known = data.assessment.get("static_load")
+    if known:
+        return float(known[number - 1])
     return float(np.nanmean(sum(data.loads[number, side] for side in SIDES)))
+
+
+def ratio_spread(data: VehicleRun, wheel: Wheel) -> Spread:
+    """Of Y/Q, Y outward."""
+    return _spread(data, "derailment", _place(wheel), lambda: data.ratio(wheel))
+
+
+def guiding_spread(data: VehicleRun, wheel: Wheel) -> Spread:
+    """N, of Y, by size."""
+    return _spread(data, "guiding", _place(wheel), lambda: data.mean_guiding[wheel])
+
+
+def load_spread(data: VehicleRun, wheel: Wheel) -> Spread:
+    """N, of Q."""
+    return _spread(data, "load", _place(wheel), lambda: data.mean_loads[wheel])
+
+
+def sum_spread(data: VehicleRun, number: int) -> Spread:
+    """N, of a wheelset's sum of Y, by size."""
+    return _spread(data, "shift", number - 1, lambda: sum_of_guiding(data, number))
+
+
+def least_load(data: VehicleRun, wheel: Wheel) -> float:
+    """N, of Q."""
+    known = data.assessment.get("least_load")
+    return float(known[_place(wheel)] if known else np.nanmin(data.mean_loads[wheel]))
+
+
+def unloading(data: VehicleRun, wheel: Wheel) -> float:
+    """-, share of a wheel's load at rest, a half of its axle's, that its least is below it."""
+    return 1 - 2 * least_load(data, wheel) / static_load(data, wheel[0])
+
+
+def _place(wheel: Wheel) -> int:
+    """Of a wheel in the log's lists."""
+    return 2 * (wheel[0] - 1) + SIDES.index(wheel[1])
+
+
+def _spread(data: VehicleRun, name: str, place: int, logged: Callable[[], Array]) -> Spread:
+    """As the run found it, or of what was logged."""
+    percentile, most = (data.assessment.get(key) for key in (name, f"most_{name}"))
+    if percentile and most:
+        return Spread(float(percentile[place]), float(most[place]))
+    found = spread(logged())
+    return Spread(found.percentile, float(most[place])) if most else found
 
 
 def sum_of_guiding(data: VehicleRun, number: int) -> Array:
@@ -102,25 +153,23 @@ def ride(data: VehicleRun) -> tuple[str, tuple[float, float]]:
     if values.ndim != 2:
         return "", (float("nan"), float("nan"))
     name = data.body_names()[0].replace("_", " ")
-    lateral, vertical = (float(np.nanstd(values[:, axis])) for axis in (1, 2))
+    known = data.assessment.get("acceleration_rms")
+    lateral, vertical = known or (float(np.nanstd(values[:, axis])) for axis in (1, 2))
     return name, (lateral, vertical)
 
 
 def key_numbers(data: VehicleRun) -> list[Key]:
     """Of all wheels, each beside its limit."""
     keys = []
-    ratios = {wheel: spread(data.ratio(wheel)).percentile for wheel in data.contact}
+    ratios = {wheel: ratio_spread(data, wheel).percentile for wheel in data.contact}
     keys.append(_key("Y/Q", ratios, dict.fromkeys(ratios, RATIO), 1.0, ""))
-    sums = {(n, ""): spread(sum_of_guiding(data, n)).percentile for n in data.wheelsets}
+    sums = {(n, ""): sum_spread(data, n).percentile for n in data.wheelsets}
     limits = {(n, ""): sum_limit(data, n) for n in data.wheelsets}
     keys.append(_key("sum of Y, a wheelset", sums, limits, 1e-3, " kN"))
-    loads = {wheel: spread(data.mean_loads[wheel]).percentile for wheel in data.contact}
+    loads = {wheel: load_spread(data, wheel).percentile for wheel in data.contact}
     most = {wheel: load_limit(data, wheel[0]) for wheel in loads}
     keys.append(_key("wheel load Q", loads, most, 1e-3, " kN"))
-    lifted = {
-        wheel: 1 - 2 * float(np.nanmin(values)) / static_load(data, wheel[0])
-        for wheel, values in data.mean_loads.items()
-    }
+    lifted = {wheel: unloading(data, wheel) for wheel in data.contact}
     keys.append(_key("wheel unloading", lifted, dict.fromkeys(lifted, UNLOADING), 100.0, " %"))
     name, found = ride(data)
     for axis, value, limit in zip(AXES, found, RIDE, strict=True):
@@ -187,17 +236,16 @@ def rows(data: VehicleRun) -> list[list[object]]:
         return short(value) if counts else "-"
 
     for number in data.wheelsets:
-        total = spread(sum_of_guiding(data, number))
+        total = sum_spread(data, number)
         for side in SIDES:
             wheel = number, side
             columns = (
-                (data.mean_guiding[wheel], 1e-3),
-                (data.mean_loads[wheel], 1e-3),
-                (data.ratio(wheel), 1.0),
+                (guiding_spread(data, wheel), 1e-3),
+                (load_spread(data, wheel), 1e-3),
+                (ratio_spread(data, wheel), 1.0),
             )
             cells: list[object] = []
-            for values, factor in columns:
-                one = spread(values)
+            for one, factor in columns:
                 cells += [percentile(factor * one.percentile), short(factor * one.most)]
             sums = [percentile(1e-3 * total.percentile), short(1e-3 * total.most)]
             found.append([f"{number} {side}", *cells, *sums])

@@ -20,7 +20,7 @@ from railpatch.report.scene import friction_of
 from railpatch.report.tables import identity
 from railpatch.report.vehicle import assessed, below_rails, limits
 from railpatch.report.vehicle import figures as vehicle_figures
-from railpatch.report.vehicle.data import VehicleRun, snapshot
+from railpatch.report.vehicle.data import VehicleRun, Wheel, snapshot
 from railpatch.report.warnings import warnings
 
 
@@ -56,7 +56,8 @@ STANDARD = (
     "static axle load, times the scene's run.shift_factor; Q 90 kN above the static wheel load and "
     "at most 160 to 200 kN by speed; "
     "unloading 60 % of the static load; root mean squares of passenger vehicles' accelerations, "
-    "0.5 m/s² lateral and 0.75 m/s² vertical. The static load is the mean of the run. The standard "
+    "0.5 m/s² lateral and 0.75 m/s² vertical. Static loads are those "
+    "at rest on level rails, the mean of the run in logs that have none. The standard "
     "takes percentiles of 99.85 % in many sections of track and estimates from these; here the "
     "whole run is one section. It measures accelerations on the floor and filters them; here they "
     "are those of a body's centre, about their mean, as logged."
@@ -141,12 +142,15 @@ def wheels(data: VehicleRun) -> tuple[Sequence[str], list[list[object]]]:
         lateral = 1e3 * float(np.nanmax(np.abs(data.wheelsets[number]["y"])))
         for side in SIDES:
             wheel = number, side
-            load = 1e-3 * data.mean_loads[wheel]
+            load = (
+                1e-3 * limits.least_load(data, wheel),
+                1e-3 * limits.load_spread(data, wheel).most,
+            )
             status = data.statuses[wheel]
             bad = ~np.isin(status, ("converged", "no_contact"))
             patches = max(len(m["patches"]) for m in data.contact[wheel].messages)
-            row: list[object] = [number, side, *map(tables.number, (load.min(), load.max()))]
-            row += [tables.number(_greatest(data.ratio(wheel))), tables.number(lateral)]
+            row: list[object] = [number, side, *map(tables.number, load)]
+            row += [tables.number(most_ratio(data, wheel)), tables.number(lateral)]
             row += quantities.greatest(data.contact[wheel])
             row.append(tables.number(1e-3 * data.friction_work(wheel)[-1]))
             rows.append([*row, patches, int((status == "no_contact").sum()), int(bad.sum())])
@@ -167,9 +171,13 @@ def unsolved(data: VehicleRun) -> str:
     return tables.table([*head, *(f"{number} {side}" for number, side in data.contact)], rows)
 
 
-def _greatest(values: np.ndarray) -> float:
-    known = values[np.isfinite(values)]
-    return float(known.max()) if known.size else float("nan")
+def most_ratio(data: VehicleRun, wheel: Wheel) -> float:
+    """-, greatest Y/Q, Y outward."""
+    known = data.assessment.get("most_derailment")
+    if known:
+        return limits.ratio_spread(data, wheel).most
+    values = data.ratio(wheel)
+    return float(np.nanmax(values)) if np.isfinite(values).any() else float("nan")
 
 
 def _sections(data: VehicleRun) -> list[str]:
