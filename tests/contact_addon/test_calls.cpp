@@ -333,16 +333,6 @@ TEST_F(Addon, WhatHasNoCounterpartIsRefusedByName) {
   }
 }
 
-TEST_F(Addon, RailsPlacedByTheirProfileAreRefused) {
-  int re = 1, wheels = -1, module = 1, version, error, length = 1, z = 1, five = 5;
-  cntc_initialize(&re, &module, &version, &error, " ", &length);
-  double track[] = {-1, 700, 0, 0, 500};  // GAUGHT <= 0, RAILY0, RAILZ0, CANT, NOMRAD
-  cntc_settrackdimensions(&re, &z, &five, track);
-  cntc_calculate(&re, &wheels, &error);
-  EXPECT_EQ(error, -99);
-  EXPECT_NE(said().find("GAUGHT"), std::string::npos);
-}
-
 TEST_F(Addon, WrongCountsChangeNothing) {
   basic_contact contact(1);
   ASSERT_EQ(contact.solve(), 0);

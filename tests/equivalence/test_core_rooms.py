@@ -13,6 +13,8 @@ INTERFACE = {"railpatch.h", "railpatch_fields.h"}
 LOOKS_INSIDE = {
     "timing.cpp": {"numeric/fft.hpp", "numeric/memory.hpp"},  # times the FFT itself
     "module.cpp": {"fast/theories.hpp"},  # hands the table of theories on to Python
+    # hands out the profile that the core has between two slices
+    "slices.cpp": {"geometry/profile_sections.hpp"},
     # functions that are the same on every computer: for Python, for the angles of bodies
     "elementary.cpp": {"numeric/elementary.hpp"},
     "angles.hpp": {"numeric/elementary.hpp"},

@@ -62,6 +62,13 @@ inline int count_of(double value) {
   return value >= 1 && value <= 100000 ? static_cast<int>(value + 0.5) : 0;
 }
 
+// A name below a folder, unless it is an absolute one.
+std::string below_folder(const std::string &folder, const std::string &path);
+// A profile's file, by the lists of cntc_setprofileinputfname; what goes wrong is told by
+// cntc_calculate.
+int set_profile(const char *call, problem &p, const std::string &path, int nints, const int *ints,
+                int nreals, const double *reals);
+
 // Sets a member of the configuration; notes where that is a change.
 template <class T>
 void put(problem &p, T &member, const T &value) {

@@ -139,10 +139,17 @@ std::vector<double> sampled(const profile_curve &curve, int sampling, double ste
   return out;
 }
 
-// All values of a task; lengths in mm, arc lengths in the caller's unit.
+bool varies(const problem &p, bool rail) {
+  return !(rail ? p.wheel.rail_slices : p.wheel.wheel_slices).empty();
+}
+
+// All values of a task; of slices where the last case has them; lengths in mm, arc lengths in the
+// caller's unit.
 std::vector<double> profile_values(const problem &p, bool rail, int task, int sampling,
                                    double step) {
-  const profile_curve &curve = rail ? p.wheel.rail_profile : p.wheel.wheel_profile;
+  const profile_curve &curve = varies(p, rail) ? profile_now(p, rail)
+                               : rail          ? p.wheel.rail_profile
+                                               : p.wheel.wheel_profile;
   const profile_points &points = rail ? p.wheel.rail_points : p.wheel.wheel_points;
   if (sampling < 0 && (task == 0 || task == 1)) {
     std::vector<double> out;
@@ -187,12 +194,15 @@ std::vector<double> profile_values(const problem &p, bool rail, int task, int sa
 
 std::vector<double> gauge_values(const problem &p) {
   const wheel_data &w = p.wheel;
+  const profile_curve &rail = varies(p, true) ? profile_now(p, true) : w.rail_profile;
   const double height = w.gauge_height > 0 ? w.gauge_height : 0.014;
-  const auto place =
-      design_place(w.rail_profile, p.roller(), w.gauge, height, p.roller() ? 0.0 : w.cant);
+  const auto place = design_place(rail, p.roller(), w.gauge, height, p.roller() ? 0.0 : w.cant);
   const double inner = 0.5 * w.gauge - place[0];
-  const double L = p.unit().length;
-  return {inner / L, (height - place[1]) / L, place[0] / L, place[1] / L, 0, 0};
+  const double L = p.unit().length, side = p.left() ? -1.0 : 1.0;
+  const bool placed = !(w.gauge_height > 0);
+  const double at[2] = {placed ? side * w.rail_place[0] : place[0],
+                        placed ? w.rail_place[1] : place[1]};
+  return {inner / L, (height - place[1]) / L, at[0] / L, at[1] / L, 0, 0};
 }
 
 }  // namespace

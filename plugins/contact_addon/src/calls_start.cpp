@@ -74,12 +74,3 @@ void cntc_finalizelast(void) {
     return 0;
   });
 }
-
-void cntc_readinpfile(int *ire, int *, const char *name, int *len_name, int *ierror) {
-  const char *call = "cntc_readinpfile";
-  CONTACT_ADDON_NEEDS(call, ire, ierror)
-  *ierror = with_problem(call, *ire, -1, modules::wheels, patches::element, true, [&](problem &) {
-    say(call, "input files are read by `railpatch convert`, not here: " + text_of(name, len_name));
-    return error_input_file;
-  });
-}

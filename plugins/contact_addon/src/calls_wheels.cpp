@@ -52,8 +52,8 @@ void location(const problem &p, int icp, const rp_patch_result &r, double out[38
   const vector3 at{r.position[0], r.position[1], r.position[2]};
   for (size_t k = 0; k < 3; ++k) out[k] = at[k] / L;
   out[3] = r.contact_angle;
-  put_place(out + 4, f.rail, at, p.mapped.rail_profile, p.left(), r.contact_angle - f.rail_roll, L);
-  put_place(out + 9, f.wheel, at, p.mapped.wheel_profile, p.left(), r.contact_angle - f.wheel_roll,
+  put_place(out + 4, f.rail, at, profile_now(p, true), p.left(), r.contact_angle - f.rail_roll, L);
+  put_place(out + 9, f.wheel, at, profile_now(p, false), p.left(), r.contact_angle - f.wheel_roll,
             L);
   pressure_centre(p, icp, r, out + 14);
   out[14] /= L;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "angles.hpp"
+#include "solve.hpp"
 
 namespace contact_addon {
 
@@ -117,8 +118,10 @@ frames frames_of(const problem &p) {
   const int s = p.side();
   const double side = p.left() ? -1.0 : 1.0;
   frames f;
-  const auto place =
-      design_place(p.mapped.rail_profile, p.roller(), c.gauge, c.gauge_height, c.cant);
+  const std::array<double, 2> place =
+      w.gauge_height > 0
+          ? design_place(profile_now(p, true), p.roller(), c.gauge, c.gauge_height, c.cant)
+          : std::array<double, 2>{side * c.rail_origin_y[s], c.rail_origin_z[s]};
   f.rail_roll = -side * c.cant + p.input.rail_rotation[s][0];
   f.rail.place = {0, side * place[0] + p.input.rail_offset[s][1],
                   place[1] + p.input.rail_offset[s][2]};

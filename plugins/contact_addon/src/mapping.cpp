@@ -308,7 +308,9 @@ void map_wheel(const problem &p, mapped_case &out) {
     c.gauge = w.gauge;
     c.gauge_height = w.gauge_height;
   } else {
-    no("GAUGHT <= 0, rails placed by RAILY0 and RAILZ0, has no counterpart");
+    if (p.roller()) no("GAUGHT <= 0, placed by RAILY0 and RAILZ0, of rollers has no counterpart");
+    c.rail_origin_y[c.side] = w.rail_place[0];
+    c.rail_origin_z[c.side] = w.rail_place[1];
   }
   if (p.roller()) {
     if (w.cant != 0) no("CANT of rollers has no counterpart: incline the profile");
@@ -326,6 +328,11 @@ void map_wheel(const problem &p, mapped_case &out) {
   if (w.rail_profile.empty()) no("no rail profile was given", error_profile);
   out.wheel_profile = w.wheel_profile;
   out.rail_profile = w.rail_profile;
+  out.wheel_slices = w.wheel_matched;
+  out.rail_slices = w.rail_matched;
+  if (w.wheel_slices.featured() || w.rail_slices.featured()) c.section_match = RP_SECTIONS_BY_KNOT;
+  if (w.wheel_slices.place.size() > 1 || w.rail_slices.place.size() > 1)
+    c.section_blend = RP_SECTIONS_CUBIC;
   out.profile_changes = w.profile_changes;
 }
 

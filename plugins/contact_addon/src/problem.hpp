@@ -13,6 +13,7 @@
 #include "flags.hpp"
 #include "profile.hpp"
 #include "railpatch.h"
+#include "slices.hpp"
 #include "units.hpp"
 
 namespace contact_addon {
@@ -74,13 +75,15 @@ struct wheel_data {
   double rail[6] = {};            // DY DZ DROLL VY VZ VROLL
   double support[4] = {};         // KY FY KZ FZ
   double flange_back_distance = 1.36, flange_back_position = -0.07, nominal_radius = 0.46;
-  double position[6] = {};        // S Y Z ROLL YAW PITCH
-  double velocity[6] = {};        // VS|RPITCH VY VZ VROLL VYAW VPITCH
-  double flexibility[12] = {};    // DX DY DZ DROLL DYAW DPITCH, their rates
-  double vertical_force = 0;      // N
-  double longitudinal_force = 0;  // N, FX_WS
-  profile_curve wheel_profile, rail_profile;
+  double position[6] = {};                    // S Y Z ROLL YAW PITCH
+  double velocity[6] = {};                    // VS|RPITCH VY VZ VROLL VYAW VPITCH
+  double flexibility[12] = {};                // DX DY DZ DROLL DYAW DPITCH, their rates
+  double vertical_force = 0;                  // N
+  double longitudinal_force = 0;              // N, FX_WS
+  profile_curve wheel_profile, rail_profile;  // of slices the first
   profile_points wheel_points, rail_points;
+  profile_slices wheel_slices, rail_slices;
+  std::shared_ptr<matched_slices> wheel_matched, rail_matched;
   int profile_changes = 0;
 };
 
@@ -109,6 +112,7 @@ struct mapped_case {
   rp_config config{};
   std::vector<double> distance;
   profile_curve wheel_profile, rail_profile;
+  std::shared_ptr<matched_slices> wheel_slices, rail_slices;
   int profile_changes = 0;
   bool on_own_grid = false;     // elements are the caller's
   double offset[2] = {0, 0};    // m, of the grid's middle from the caller's origin
@@ -117,7 +121,7 @@ struct mapped_case {
 };
 
 struct problem {
-  std::mutex busy;
+  std::recursive_mutex busy;  // also of calls that a call is made of
   int module = 0, ire = 0, icp = 0;
 
   flag_values flags;

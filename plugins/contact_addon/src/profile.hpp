@@ -44,6 +44,9 @@ struct profile_options {
   int mirror_z = 0;        // -1 no, 1 yes, 0 where the flange or the head's sides point up
 };
 
+// Slopes at the knots of the C2 cubic spline with those at its ends.
+std::vector<double> slopes(const std::vector<double> &x, const std::vector<double> &y, double first,
+                           double last);
 // By content and extension: SIMPACK, MiniProf, two columns. Raises profile_error.
 profile_points read_points(const std::string &path, const profile_options &options);
 // Mirrored and turned round as asked, in place. Raises profile_error.

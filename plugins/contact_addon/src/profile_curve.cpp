@@ -43,25 +43,35 @@ values solve_tridiagonal(const values &lower, const values &middle, const values
   return found;
 }
 
-// Slopes at the knots of the natural cubic spline.
-values slopes(const values &x, const values &y) {
+// Of a row of a spline's equations: its ends are free, or have slopes.
+struct spline_end {
+  double own, other, right;
+};
+
+values slopes(const values &x, const values &y, const spline_end *given) {
   const size_t n = x.size();
   values h(n - 1), rise(n - 1);
   for (size_t i = 0; i + 1 < n; ++i) {
     h[i] = x[i + 1] - x[i];
     rise[i] = (y[i + 1] - y[i]) / h[i];
   }
-  values lower(h.begin() + 1, h.end()), middle{2.0}, upper{1.0}, right{3 * rise[0]};
+  const spline_end free[2] = {{2.0, 1.0, 3 * rise[0]}, {2.0, 1.0, 3 * rise[n - 2]}};
+  const spline_end *end = given ? given : free;
+  values lower(h.begin() + 1, h.end()), middle{end[0].own}, upper{end[0].other};
+  values right{end[0].right};
   for (size_t i = 0; i + 2 < n; ++i) {
     middle.push_back(2 * (h[i] + h[i + 1]));
     upper.push_back(h[i]);
     right.push_back(3 * (h[i + 1] * rise[i] + h[i] * rise[i + 1]));
   }
-  lower.push_back(1.0);
-  middle.push_back(2.0);
-  right.push_back(3 * rise[n - 2]);
+  lower.push_back(end[1].other);
+  middle.push_back(end[1].own);
+  right.push_back(end[1].right);
   return solve_tridiagonal(lower, middle, upper, right);
 }
+
+// Of the natural cubic spline.
+values slopes(const values &x, const values &y) { return slopes(x, y, nullptr); }
 
 // A symmetric positive definite matrix of five diagonals.
 values solve_five(const values &middle, const values &beside, const values &after, values value) {
@@ -208,6 +218,11 @@ void reverse(profile_points &p) {
 }
 
 }  // namespace
+
+values slopes(const values &x, const values &y, double first, double last) {
+  const spline_end given[2] = {{1.0, 0.0, first}, {1.0, 0.0, last}};
+  return slopes(x, y, given);
+}
 
 void orient(const std::string &name, const profile_options &options, profile_points &p) {
   if (p.y.size() < 5)

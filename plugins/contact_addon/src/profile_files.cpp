@@ -240,8 +240,6 @@ profile_points read_columns(const std::string &path, const std::vector<std::stri
 
 profile_points read_points(const std::string &path, const profile_options &options) {
   const std::string name = lower(path);
-  for (const char *end : {".slcs", ".slcw"})
-    if (ends_with(name, end)) fail(path, 0, "profiles by slices are not read here");
   const std::vector<std::string> lines = lines_of(path);
   bool simpack = false, headed = false;
   for (const std::string &line : lines) {

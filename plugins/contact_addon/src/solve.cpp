@@ -23,6 +23,21 @@ void make_contact(problem &p) {
       config.wheel[s] = p.mapped.wheel_profile.view();
       config.rail[s] = p.mapped.rail_profile.view();
     }
+  std::vector<rp_profile> wheels, rails;
+  const auto along = [&config](const matched_slices *slices, std::vector<rp_profile> &views,
+                               const rp_profile **profiles, const double **places, int32_t *counts,
+                               const int32_t **kinks) {
+    if (slices == nullptr) return;
+    views = slices->views();
+    profiles[config.side] = views.data();
+    places[config.side] = slices->place.data();
+    counts[config.side] = static_cast<int32_t>(views.size());
+    kinks[config.side] = slices->kink.data();
+  };
+  along(p.mapped.wheel_slices.get(), wheels, config.wheel_sections, config.wheel_section_angle,
+        config.wheel_section_count, config.wheel_section_kink);
+  along(p.mapped.rail_slices.get(), rails, config.rail_sections, config.section_position,
+        config.section_count, config.section_kink);
   rp_message message{};
   rp_contact *made = nullptr;
   const rp_error error = rp_create(&config, &made, &message);
@@ -189,6 +204,13 @@ grid_data grid_of(const problem &p, const rp_patch_result &r) {
   g.dx = r.element_size[0];
   g.dy = r.element_size[1];
   return g;
+}
+
+const profile_curve &profile_now(const problem &p, bool rail) {
+  matched_slices *slices = (rail ? p.mapped.rail_slices : p.mapped.wheel_slices).get();
+  if (slices && p.solved) return slice_at(*slices, rail ? p.input.x : p.input.pitch);
+  return p.solved ? (rail ? p.mapped.rail_profile : p.mapped.wheel_profile)
+                  : (rail ? p.wheel.rail_profile : p.wheel.wheel_profile);
 }
 
 std::vector<double> field_of(const problem &p, int icp, rp_field field, int parts) {

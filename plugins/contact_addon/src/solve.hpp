@@ -16,6 +16,8 @@ const rp_patch_result *patch_of(const problem &p, int icp);
 int index_of(const problem &p, int icp);
 // The caller's grid of a patch: of module 1 the core's.
 grid_data grid_of(const problem &p, const rp_patch_result &r);
+// The profile of wheel or rail where the last case has it.
+const profile_curve &profile_now(const problem &p, bool rail);
 // A field on that grid, SI, signs of the core; parts: 1, or 2 with all of the first ahead. Empty
 // where the scene has none.
 std::vector<double> field_of(const problem &p, int icp, rp_field field, int parts = 1);
