@@ -1,10 +1,10 @@
 """What must hold of an FMU for many systems: python check.py NAME.fmu FOLDER [--compile]
 
-Looks at the libraries' symbols (binutils), runs those of this machine by steps.c, where Wine is
-installed those of Windows too, and where QEMU is installed those for ARM (Debian: wine64;
-qemu-user-static and libc6-arm64-cross), and compares their numbers; --compile: also the library
-that fmpy makes of the sources, with the compiler of this machine. FOLDER is for what is made here;
-it may stay.
+Looks at the libraries' symbols (binutils), runs those of this machine by steps.c, of FMI 3.0 by
+steps_fmi3.c, where Wine is installed those of Windows too, and where QEMU is installed those for
+ARM (Debian: wine64; qemu-user-static and libc6-arm64-cross), and compares their numbers; --compile:
+also the library that fmpy makes of the sources, with the compiler of this machine. FOLDER is for
+what is made here; it may stay.
 """
 
 from __future__ import annotations
@@ -45,12 +45,17 @@ class Emulator:
     """Runs another system's programs here."""
 
     name: str
-    platform: str
+    platforms: tuple[str, str]  # in FMI 2.0, in FMI 3.0
     target: str  # of the compiler
     program: list[str | Path]
     ending: str = ""
     prefix: str = ""  # of a path
     libraries: tuple[str, ...] = ()
+
+    @property
+    def platform(self) -> str:
+        """Its name in FMI 2.0."""
+        return self.platforms[0]
 
 
 def emulators() -> list[Emulator]:
@@ -58,12 +63,13 @@ def emulators() -> list[Emulator]:
     found = []
     if (wine := which("wine64", "wine", "/usr/lib/wine/wine64")) is not None:
         target = "x86_64-windows-gnu"
-        found.append(Emulator("Wine", "win64", target, [wine], ".exe", "Z:"))
+        found.append(Emulator("Wine", ("win64", "x86_64-windows"), target, [wine], ".exe", "Z:"))
     qemu = which("qemu-aarch64", "qemu-aarch64-static")
     if qemu is not None and ARM.is_dir():
         target = "aarch64-linux-gnu.2.17"
         program = [qemu, "-L", ARM]
-        found.append(Emulator("QEMU", "aarch64-linux", target, program, libraries=("-ldl",)))
+        name = "aarch64-linux"
+        found.append(Emulator("QEMU", (name, name), target, program, libraries=("-ldl",)))
     return found
 
 
@@ -114,6 +120,40 @@ def check_pe(platform: str, path: Path) -> set[str]:
     return set(re.findall(r"^\s*\[\s*\d+\](?: \+base\[\s*\d+\]\s+[0-9a-f]+)? (\w+)", names, re.M))
 
 
+@dataclass(frozen=True)
+class Variable:
+    """A real one of a model description, of either version of FMI."""
+
+    reference: str
+    causality: str
+    quantity: str
+    nominal: float
+    start: str  # of an array, commas between its values
+    length: int  # of an array; else 1
+
+    @staticmethod
+    def of(element: ET.Element, version: int) -> Variable:
+        """As it is declared."""
+        declared = element[0].attrib if version == 2 else element.attrib
+        length = 1
+        for dimension in element.findall("Dimension"):
+            length *= int(dimension.attrib["start"])
+        return Variable(
+            element.attrib["valueReference"],
+            element.attrib["causality"],
+            declared.get("quantity", ""),
+            float(declared.get("nominal", 1.0)),
+            ",".join(declared.get("start", "").split()),
+            length,
+        )
+
+    def keys(self, version: int) -> list[str]:
+        """What the program for this version prints before its values."""
+        if version == 2:
+            return [self.reference]
+        return [f"{self.reference}[{k}]" for k in range(self.length)]
+
+
 class Unpacked:
     """An FMU in a folder."""
 
@@ -122,7 +162,12 @@ class Unpacked:
         zipfile.ZipFile(path).extractall(folder)
         self.folder = folder
         self.root = ET.parse(folder / "modelDescription.xml").getroot()
-        self.reals = [v for v in self.root.iter("ScalarVariable") if v[0].tag == "Real"]
+        self.version = int(self.root.attrib["fmiVersion"][0])
+        if self.version == 2:
+            found = [v for v in self.root.iter("ScalarVariable") if v[0].tag == "Real"]
+        else:
+            found = list(self.root.iter("Float64"))
+        self.reals = [Variable.of(v, self.version) for v in found if "causality" in v.attrib]
 
     def binary(self, platform: str) -> Path:
         """Of a platform; the only file there."""
@@ -132,18 +177,37 @@ class Unpacked:
         """FMI's names."""
         return sorted(p.name for p in (self.folder / "binaries").iterdir())
 
+    @property
+    def here(self) -> str:
+        """The name of this system."""
+        return "linux64" if self.version == 2 else "x86_64-linux"
+
+    @property
+    def program(self) -> str:
+        """What runs it, without the ending of its source."""
+        return "steps" if self.version == 2 else "steps_fmi3"
+
+    @property
+    def outputs(self) -> list[Variable]:
+        """What is compared."""
+        return [v for v in self.reals if v.causality == "output"]
+
     def arguments(self, platform: str, prefix: str) -> list[str]:
-        """Of steps.c; prefix: stands before a path."""
-        moved = next(v for v in self.reals if v.attrib["causality"] == "input")
-        outputs = [v for v in self.reals if v.attrib["causality"] == "output"]
+        """Of the program; prefix: stands before a path."""
+        moved = next(v for v in self.reals if v.causality == "input")
         library = f"{prefix}{self.binary(platform)}"
-        resources = f"file://{'/' if prefix else ''}{prefix}{self.folder / 'resources'}"
-        numbers = [v.attrib["valueReference"] for v in outputs]
-        start = [moved.attrib["valueReference"], moved[0].attrib["start"]]
-        return [library, self.root.attrib["guid"], resources, str(LOADS), *start, *numbers]
+        resources = f"{prefix}{self.folder / 'resources'}"
+        if self.version == 2:
+            resources = f"file://{'/' if prefix else ''}{resources}"
+            token, numbers = self.root.attrib["guid"], [v.reference for v in self.outputs]
+        else:
+            resources += "/"
+            token = self.root.attrib["instantiationToken"]
+            numbers = [f"{v.reference}:{v.length}" for v in self.outputs]
+        return [library, token, resources, str(LOADS), moved.reference, moved.start, *numbers]
 
     def run(self, platform: str, program: list[str | Path], prefix: str = "") -> dict[str, float]:
-        """Reference -> the last value."""
+        """Reference, of an array with the element -> the last value."""
         environment = {"WINEDEBUG": "-all", "DISPLAY": "", **os.environ}
         text = output(*program, *self.arguments(platform, prefix), env=environment)
         rows = [line.split() for line in text.splitlines()]
@@ -152,18 +216,17 @@ class Unpacked:
     def worst(self, one: dict[str, float], other: dict[str, float]) -> float:
         """Largest difference, relative to the largest output of the same quantity, or where that is
         0 but for rounding, as a moment by symmetry, to a thousandth of the nominal value."""
-        outputs = [v for v in self.reals if v.attrib["valueReference"] in one]
+        each = [(v, key) for v in self.outputs for key in v.keys(self.version)]
+        must(each and {key for _, key in each} == set(one) == set(other), "every output is there")
         sizes: dict[str, float] = {}
-        for v in outputs:
-            quantity, value = v[0].attrib["quantity"], one[v.attrib["valueReference"]]
-            least = 1e-3 * float(v[0].attrib["nominal"])
-            sizes[quantity] = max(sizes.get(quantity, 0.0), least, abs(value))
+        for v, key in each:
+            least = 1e-3 * v.nominal
+            sizes[v.quantity] = max(sizes.get(v.quantity, 0.0), least, abs(one[key]))
         found = 0.0
-        for v in outputs:
-            reference, quantity = v.attrib["valueReference"], v[0].attrib["quantity"]
+        for v, key in each:
             # the residual is the rest that the solver left: rounding itself
-            if quantity != "RelativeError":
-                found = max(found, abs(one[reference] - other[reference]) / sizes[quantity])
+            if v.quantity != "RelativeError":
+                found = max(found, abs(one[key] - other[key]) / sizes[v.quantity])
         return found
 
 
@@ -187,8 +250,8 @@ def main() -> None:
     path, folder = arguments.fmu.resolve(), arguments.folder.resolve()
     must(path.stat().st_size < 5e6, "the FMU is below 5 MB")
     fmu = Unpacked(path, folder / path.stem)
-    version = fmu.root.attrib["fmiVersion"][0]
-    header = package("fmpy") / "c-code" / f"fmi{version}Functions.h"
+    headers = package("fmpy") / "c-code"
+    header = headers / f"fmi{fmu.version}Functions.h"
     expected = set(FUNCTIONS.findall(header.read_text()))
     for platform in fmu.platforms():
         if "darwin" in platform:
@@ -198,32 +261,31 @@ def main() -> None:
         exports = look(platform, fmu.binary(platform))
         must(exports <= expected, f"{platform}: only FMI's functions, not {exports - expected}")
         must(exports == expected, f"{platform}: all of FMI's functions, not {expected - exports}")
-    if version == "3":  # steps.c is of FMI 2; tests/fmu/test_fmi3.py compares their numbers
-        return
-    source, headers = Path(__file__).with_name("steps.c"), package("fmpy") / "c-code"
+    source = Path(__file__).with_name(f"{fmu.program}.c")
     zig = [package("ziglang") / "zig", "cc", source, f"-I{headers}"]
-    output(*zig, "-ldl", "-o", folder / "steps")
-    here = fmu.run("linux64", [folder / "steps"])
-    print(f"linux64: {LOADS} loads, 100 steps here")
+    output(*zig, "-ldl", "-o", folder / fmu.program)
+    here = fmu.run(fmu.here, [folder / fmu.program])
+    print(f"{fmu.here}: {LOADS} loads, 100 steps here")
     os.environ.setdefault("WINEPREFIX", str(folder / "wine"))
     for other in emulators():
-        if other.platform in fmu.platforms():
-            program = folder / f"steps_{other.platform}{other.ending}"
+        platform = other.platforms[fmu.version - 2]
+        if platform in fmu.platforms():
+            program = folder / f"{fmu.program}_{platform}{other.ending}"
             output(*zig, "-target", other.target, *other.libraries, "-o", program)
-            there = fmu.run(other.platform, [*other.program, program], prefix=other.prefix)
-            compare(fmu, here, there, f"{other.platform} under {other.name}")
+            there = fmu.run(platform, [*other.program, program], prefix=other.prefix)
+            compare(fmu, here, there, f"{platform} under {other.name}")
     if arguments.compile:
         own = compiled(path, folder / f"{path.stem}_compiled")
-        names = output("nm", "-DC", "--defined-only", own.binary("linux64"))
+        names = output("nm", "-DC", "--defined-only", own.binary(fmu.here))
         must("railpatch" not in names and " rp_" not in names, "compiled by fmpy: hides the core")
         must(not re.search(r" u ", names), "compiled by fmpy: holds nothing unique in a process")
-        compare(fmu, here, own.run("linux64", [folder / "steps"]), "compiled by fmpy")
+        compare(fmu, here, own.run(fmu.here, [folder / fmu.program]), "compiled by fmpy")
 
 
 def compare(fmu: Unpacked, here: dict[str, float], there: dict[str, float], name: str) -> None:
-    """Prints the difference to linux64's numbers; ends where it is too large."""
+    """Prints the difference to the numbers of this system; ends where it is too large."""
     worst = fmu.worst(here, there)
-    print(f"{name}: {LOADS} loads, 100 steps, {worst:.1e} from linux64")
+    print(f"{name}: {LOADS} loads, 100 steps, {worst:.1e} from {fmu.here}")
     must(worst < SAME, f"{name}: {worst} is below {SAME}")
 
 

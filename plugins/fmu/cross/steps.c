@@ -3,25 +3,8 @@
  *   steps LIBRARY GUID RESOURCES LOADS MOVED START REFERENCE...
  * Loads and unloads the library LOADS times; then makes 100 steps in which the input MOVED goes on
  * by 1e-8 each, and prints the Real outputs in hexadecimal. Exit code 0 where all went well. */
-#include <stdio.h>
-#include <stdlib.h>
-
 #include "fmi2Functions.h"
-
-#ifdef _WIN32
-#define WIN32_LEAN_AND_MEAN
-#include <windows.h>
-static void *open_library(const char *path) { return (void *)LoadLibraryA(path); }
-static void *find(void *library, const char *name) {
-  return (void *)GetProcAddress((HMODULE)library, name);
-}
-static int close_library(void *library) { return FreeLibrary((HMODULE)library) != 0; }
-#else
-#include <dlfcn.h>
-static void *open_library(const char *path) { return dlopen(path, RTLD_NOW | RTLD_LOCAL); }
-static void *find(void *library, const char *name) { return dlsym(library, name); }
-static int close_library(void *library) { return dlclose(library) == 0; }
-#endif
+#include "library.h"
 
 static void say(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status,
                 fmi2String category, fmi2String message, ...) {
@@ -29,23 +12,9 @@ static void say(fmi2ComponentEnvironment environment, fmi2String name, fmi2Statu
   fprintf(stderr, "%s: status %d, %s: %s\n", name, (int)status, category, message);
 }
 
-static void check(int good, const char *what) {
-  if (good) return;
-  fprintf(stderr, "failed: %s\n", what);
-  exit(1);
-}
-
-#define FUNCTION(name) name##TYPE *name##_ = (name##TYPE *)find(library, #name)
-
 int main(int count, char **arguments) {
   check(count > 7, "seven arguments or more");
-  const char *path = arguments[1];
-  for (int i = 0; i < atoi(arguments[4]); ++i) {
-    void *library = open_library(path);
-    check(library != NULL && close_library(library), "load and unload");
-  }
-  void *library = open_library(path);
-  check(library != NULL, "load");
+  void *library = load(arguments[1], atoi(arguments[4]));
   FUNCTION(fmi2Instantiate);
   FUNCTION(fmi2SetupExperiment);
   FUNCTION(fmi2EnterInitializationMode);
