@@ -249,7 +249,7 @@ def test_command(rig_file, tmp_path):
     done = CliRunner().invoke(report, [str(rig_file), "-o", str(output), "--at", "0.5"])
     assert done.exit_code == 0
     assert done.output.strip() == str(output)
-    assert "Position 18" in _text(output)
+    assert "position 18" in _text(output)
     quiet = CliRunner().invoke(report, [str(rig_file), "-o", str(output), "--quiet"])
     assert quiet.output == ""
 

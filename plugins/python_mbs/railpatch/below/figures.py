@@ -36,11 +36,11 @@ def sections(found: Mapping[str, Any]) -> go.Figure:
             ),
             row=1, col=k,
         )  # fmt: skip
-        figure.update_xaxes(title_text=f"{name}, mm", row=1, col=k)
+        figure.update_xaxes(title_text=f"{name} [mm]", row=1, col=k)
         figure.update_yaxes(autorange="reversed", row=1, col=k)
     styled(figure, 420)
     figure.update_layout(modebar={"orientation": "h"})
-    figure.update_yaxes(title_text="depth, mm", row=1, col=1)
+    figure.update_yaxes(title_text="depth [mm]", row=1, col=1)
     return figure
 
 
@@ -56,6 +56,6 @@ def over_depth(table: Mapping[str, Any], measures: Mapping[str, str]) -> go.Figu
             )
         )  # fmt: skip
     styled(figure, 420)
-    figure.update_xaxes(title_text="greatest at the depth, MPa", rangemode="tozero")
-    figure.update_yaxes(title_text="depth, mm", autorange="reversed")
+    figure.update_xaxes(title_text="greatest at the depth [MPa]", rangemode="tozero")
+    figure.update_yaxes(title_text="depth [mm]", autorange="reversed")
     return figure

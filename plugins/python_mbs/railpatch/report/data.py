@@ -50,6 +50,11 @@ class Positions:
         """Number of positions, n."""
         return len(self.state)
 
+    def along_text(self, value: str) -> str:
+        """``value`` of the abscissa as one says it: "time 2.5 s"."""
+        name, _, unit = self.along_label.partition(" [")
+        return f"{name} {value} {unit.rstrip(']')}".rstrip()
+
     @property
     def counterpart(self) -> str:
         """What the wheels run on: "roller" or "rail"."""

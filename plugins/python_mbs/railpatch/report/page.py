@@ -270,13 +270,13 @@ def _patch_section(data: Positions, at: float | None, other: Positions | None) -
                 "<p>This log holds no fields of patches.</p>"]  # fmt: skip
     index = chosen["index"]
     yaw = number(1e3 * data.state["yaw"][index])
-    where = f"Position {index}, {data.along_label} {number(data.along[index])}, yaw {yaw} mrad"
+    where = f"position {index}, {data.along_text(number(data.along[index]))}, yaw {yaw} mrad"
     lines = [_patch_line(data, side, chosen) for side in SIDES]
     shown = [grid for side in SIDES if (grid := most_loaded(chosen[side]))]
     states = ", ".join(ELEMENT_STATES[number] for number in states_of(shown)[1:])
     over = f" Red outlines: {other.run.path.name}, nearest position." if other is not None else ""
     return [
-        f"<h2>Contact patches, element by element</h2><p>First: {escape(where)}. "
+        f"<h2>Contact patches, element by element</h2><p>Shown first: {escape(where)}. "
         f"{escape(' '.join(lines))} Arrows: traction on the wheel. Elements in contact are in one "
         f"of the states {states}. Rolling is towards +x.{escape(over)}</p>",
         viewer_of(data, index, other),

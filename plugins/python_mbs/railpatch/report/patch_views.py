@@ -43,7 +43,7 @@ def viewer_of(data: Positions, start: int, other: Positions | None = None) -> st
 
 def _text(data: Positions, index: int) -> str:
     """Where a position is."""
-    parts = [f"{data.along_label} {data.along[index]:.4g}"]
+    parts = [data.along_text(f"{data.along[index]:.4g}")]
     parts += [
         f"{text} {factor * data.state[name][index]:.3g} {unit}"
         for name, text, factor, unit in (("yaw", "yaw", 1e3, "mrad"), ("y", "y", 1e3, "mm"))

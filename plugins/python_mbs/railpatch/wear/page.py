@@ -122,8 +122,8 @@ def profiles_figure(rows: list[dict[str, Any]], folder: Path, body: str, side: s
         y, z = read_points(folder / row[FILES[body]][side])
         figure.add_scatter(x=1e3 * y, y=1e3 * z, name=label(row), line={"color": color})
     styled(figure, 380)
-    figure.update_xaxes(title_text="y, mm")
-    figure.update_yaxes(title_text="z, mm", autorange="reversed")
+    figure.update_xaxes(title_text="y [mm]")
+    figure.update_yaxes(title_text="z [mm]", autorange="reversed")
     return figure
 
 
@@ -135,8 +135,8 @@ def depth_figure(rows: list[dict[str, Any]], folder: Path, body: str, side: str)
         _, z = read_points(folder / row[FILES[body]][side])
         figure.add_scatter(x=1e3 * y, y=1e3 * abs(new - z), name=label(row), line={"color": color})
     styled(figure, 380)
-    figure.update_xaxes(title_text="y, mm")
-    figure.update_yaxes(title_text="wear depth, mm")
+    figure.update_xaxes(title_text="y [mm]")
+    figure.update_yaxes(title_text="wear depth [mm]")
     return figure
 
 
@@ -149,7 +149,7 @@ def course_figure(rows: list[dict[str, Any]], name: str, words: str) -> go.Figur
         mode="lines+markers", name=words, line={"color": LINES[0]}, showlegend=False,
     )  # fmt: skip
     styled(figure, 320)
-    figure.update_xaxes(title_text="way, km" if "distance" in rows[-1] else "passages")
+    figure.update_xaxes(title_text="way [km]" if "distance" in rows[-1] else "passages")
     figure.update_yaxes(title_text=words)
     return figure
 
