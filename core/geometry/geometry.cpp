@@ -81,7 +81,7 @@ bool meet(const surface &f, const vec3 &base, hit &h) {
     const double det = m.dy * g - dr * f.qn[1];
     if (!(std::fabs(det) > grazing)) return h.valid = false;
     const double dp = -(f1 * g + f.qn[1] * f2) / det, dn = -(m.dy * f2 + dr * f1) / det;
-    const double scale = std::min(1.0, step_limit / std::max(std::fabs(dp), 1e-300));
+    const double scale = std::fabs(dp) > step_limit ? step_limit / std::fabs(dp) : 1.0;
     h.p += scale * dp;
     h.n += scale * dn;
     if (std::fabs(dp) < 4e-7 && std::fabs(dn) < 4e-7) return h.valid = curve.covers(h.p);
@@ -159,11 +159,71 @@ void follow_row(const surface &f, const surface_grid &g, int row, int column, co
   march(f, g, row, column - 1, -1, middle, put);
 }
 
-void fill_row(const surface &f, const surface_grid &g, int row, int column, const hit &middle,
-              double *heights) {
-  follow_row(f, g, row, column, middle,
-             [heights](int i, const hit &h) { heights[i] = h.valid ? h.n : nan; });
-}
+// Rows from their middle columns outwards, side by side: a row's next element waits for its last
+// one, those of other rows do not. Each row is what follow_row() makes of it.
+class row_filler {
+ public:
+  row_filler(const surface &f, const surface_grid &g, int column, double *heights)
+      : f_(f), g_(g), column_(column), heights_(heights) {}
+
+  void add(int row, const hit &middle) {
+    if (!middle.valid || (f_.prismatic && !f_.shape)) {
+      std::fill_n(at(row), g_.nx, middle.valid ? middle.n : nan);
+      return;
+    }
+    lane &own = lanes_[static_cast<size_t>(count_++)];
+    own.row = row;
+    own.middle = middle;
+    if (count_ == most) fill();
+  }
+  void fill() {
+    march(column_, 1);
+    march(column_ - 1, -1);
+    count_ = 0;
+  }
+
+ private:
+  static constexpr int most = 4;
+  struct lane {
+    int row = 0;
+    hit middle, a, b, c;
+    bool going = false;
+  };
+
+  double *at(int row) const { return heights_ + static_cast<std::ptrdiff_t>(row) * g_.nx; }
+
+  void march(int from, int step) {
+    for (int l = 0; l < count_; ++l) {
+      lane &own = lanes_[static_cast<size_t>(l)];
+      own.a = own.b = own.c = own.middle;
+      own.going = true;
+    }
+    for (int i = from, k = 0; i >= 0 && i < g_.nx; i += step, ++k)
+      for (int l = 0; l < count_; ++l) advance(lanes_[static_cast<size_t>(l)], i, k);
+  }
+
+  void advance(lane &own, int i, int k) {
+    double &height = at(own.row)[i];
+    height = nan;
+    if (!own.going) return;
+    hit h = own.a;
+    if (k > 1) h.p = 2 * own.a.p - own.b.p;
+    if (k > 2) h.n = 3 * (own.a.n - own.b.n) + own.c.n;
+    own.going = meet(f_, f_.at(g_.x0 + i * g_.dx, g_.y0 + own.row * g_.dy), h);
+    if (!own.going) return;
+    height = h.n;
+    own.c = own.b;
+    own.b = own.a;
+    own.a = h;
+  }
+
+  const surface &f_;
+  const surface_grid &g_;
+  int column_;
+  double *heights_;
+  std::array<lane, most> lanes_;
+  int count_ = 0;
+};
 
 int clamp_index(double position, int count) {
   const double last = count - 1;
@@ -309,8 +369,9 @@ void side_geometry::undeformed_distance(const contact_frame &frame, const surfac
   const int column = clamp_index(-g.x0 / g.dx, g.nx);
   const auto at = [&](int row) { return h + static_cast<std::ptrdiff_t>(row) * g.nx; };
   const surface wheel = wheel_seen_from(frame);
-  for_rows(wheel, g, column,
-           [&](int row, const hit &m) { fill_row(wheel, g, row, column, m, at(row)); });
+  row_filler filler(wheel, g, column, h);
+  for_rows(wheel, g, column, [&](int row, const hit &m) { filler.add(row, m); });
+  filler.fill();
   // the rail's heights are used row by row, in strips that fit on the stack
   const surface rail = rail_seen_from(frame);
   constexpr int strip = 256;
@@ -321,7 +382,8 @@ void side_geometry::undeformed_distance(const contact_frame &frame, const surfac
     part.x0 = g.x0 + first * g.dx;
     const int middle = std::clamp(column - first, 0, part.nx - 1);
     for_rows(rail, part, middle, [&](int row, const hit &m) {
-      fill_row(rail, part, row, middle, m, heights);
+      follow_row(rail, part, row, middle, m,
+                 [&](int i, const hit &on) { heights[i] = on.valid ? on.n : nan; });
       subtract(heights, part.nx, at(row) + first);
     });
   }

@@ -66,6 +66,13 @@ struct section_point {
   double wheel_angle = 0, rail_angle = 0;  // rad, about x from the frame's s to the surface
 };
 
+// Where on both profiles the last point of the locus was found: the next one is looked for from
+// there on. What is found does not depend on it.
+struct locus_place {
+  int wheel = 0;
+  profile_place rail;
+};
+
 struct surface;
 
 struct surface_visitor {
@@ -122,9 +129,19 @@ class side_geometry : private placement<double> {
 
   // Exact, at arc length s of the wheel's profile; with a shape the gap is the least one of the
   // row, see longitudinal_shape.hpp.
-  locus_point locus(double s) const;
+  locus_point locus(double s) const {
+    locus_place anywhere;
+    return locus(s, anywhere);
+  }
+  locus_point locus(double s, locus_place &last) const;
   // Its gap alone; far_apart where it is not valid.
-  double gap(double s) const;
+  double gap(double s) const {
+    locus_place anywhere;
+    return gap(s, anywhere);
+  }
+  double gap(double s, locus_place &last) const;
+  // And its derivative, where nothing is shaped along x; on a roller nearly, if yawed.
+  double gap(double s, locus_place &last, double &slope) const;
   // The rail surface at (x, y): z, and the angle of its profile; false beyond the profile.
   bool rail_surface(double x, double y, double &z, double &angle) const;
   // start: arc lengths of wheel and rail profile to search from, NaN where they are not known; out
@@ -171,7 +188,7 @@ class side_geometry : private placement<double> {
   void scan_block(int index);
   void refer();
   double highest_rail(double y, int &from) const;
-  bool rail_point(double x, double y, double &z, curve_point &p) const;
+  bool rail_point(double x, double y, double &z, curve_point &p, profile_place &last) const;
   surface wheel_seen_from(const contact_frame &frame) const;
   surface rail_seen_from(const contact_frame &frame) const;
   double locus_sine(const curve_point &p, double gap, double tolerance) const;

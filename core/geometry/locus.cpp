@@ -37,9 +37,10 @@ vec3 side_geometry::wheel_point(const curve_point &p, double sine) const {
   return axis_origin_ + turn(wheel_axes_, {r * sine, p.y, r * std::sqrt(1 - sine * sine)});
 }
 
-bool side_geometry::rail_point(double x, double y, double &z, curve_point &p) const {
+bool side_geometry::rail_point(double x, double y, double &z, curve_point &p,
+                               profile_place &last) const {
   double s;
-  if (!rail_.find(y, s, p)) return false;
+  if (!rail_.find(y, s, p, last)) return false;
   z = p.z;
   if (shape_) z -= shape_->height(x);
   if (track_.kind == track_kind::rail) return true;
@@ -51,36 +52,62 @@ bool side_geometry::rail_point(double x, double y, double &z, curve_point &p) co
 
 bool side_geometry::rail_surface(double x, double y, double &z, double &angle) const {
   curve_point p;
-  const bool there = rail_point(x, y, z, p);
+  profile_place anywhere;
+  const bool there = rail_point(x, y, z, p, anywhere);
   if (there) angle = inclination(p);
   return there;
 }
 
-double side_geometry::gap(double s) const {
+double side_geometry::gap(double s, locus_place &last) const {
   if (shape_) {
-    const locus_point l = locus(s);
+    const locus_point l = locus(s, last);
     return l.valid ? l.gap : far_apart;
   }
-  const curve_point p = wheel_.evaluate(s);
+  double slope;
+  return gap(s, last, slope);
+}
+
+// Of the slope: at the locus the gap does not change with x, so that only the way of its point in y
+// counts, with what that moves by its turning along the circumference.
+double side_geometry::gap(double s, locus_place &last, double &slope) const {
+  slope = 0;
+  last.wheel = wheel_.curve().interval(s, last.wheel);
+  const curve_point p = wheel_.evaluate(s, last.wheel);
   if (!wheel_.curve().covers(s) || !(p.dy > 0)) return far_apart;
   const double sine = locus_sine(p, sampled_gap(s), 1e-7);
   if (!(std::fabs(sine) < 0.9)) return far_apart;
   const vec3 at = wheel_point(p, sine);
   double z;
   curve_point rail;
-  return rail_point(at[0], at[1], z, rail) ? z - at[2] : far_apart;
+  if (!rail_point(at[0], at[1], z, rail, last.rail)) return far_apart;
+  const double cosine = std::sqrt(1 - sine * sine), r = sizes_.nominal_radius + p.z;
+  const vec3 along = turn(wheel_axes_, {p.dz * sine, p.dy, p.dz * cosine});
+  double rise = rail.dz / rail.dy, across = along[2];
+  if (track_.kind == track_kind::roller) {
+    const double ahead = at[0] - axle_x_, above = axle_z_ - z;
+    rise *= (axle_z_ - rail.z) / above;
+    across -= ahead / above * along[0];
+  }
+  const double turning =
+      wheel_axes_[0][1] / wheel_axes_[0][0] * (p.d2z * p.dy - p.dz * p.d2y) / (p.dy * p.dy) * r;
+  const double aside = turning * (wheel_axes_[1][0] - wheel_axes_[1][2] * sine / cosine) / along[1];
+  slope = (rise * along[1] - across) * (1 + aside);
+  return z - at[2];
 }
 
-locus_point side_geometry::locus(double s) const {
+locus_point side_geometry::locus(double s, locus_place &last) const {
   locus_point l;
-  const curve_point p = wheel_.evaluate(s);
+  last.wheel = wheel_.curve().interval(s, last.wheel);
+  const curve_point p = wheel_.evaluate(s, last.wheel);
   if (!wheel_.curve().covers(s) || !(p.dy > 0)) return l;
   const double sine = locus_sine(p, sampled_gap(s), 1e-7);
   if (!(std::fabs(sine) < 0.9)) return l;
   l.sine = sine;
   l.wheel = wheel_point(p, sine);
-  l.valid = rail_surface(l.wheel[0], l.wheel[1], l.rail_z, l.contact_angle);
+  curve_point rail;
+  l.valid = rail_point(l.wheel[0], l.wheel[1], l.rail_z, rail, last.rail);
   if (!l.valid) return l;
+  l.contact_angle = inclination(rail);
   l.gap = l.rail_z - l.wheel[2];
   const double cosine = std::sqrt(1 - sine * sine);
   const vec3 normal = turn(wheel_axes_, {sine * p.dy, -p.dz, cosine * p.dy});

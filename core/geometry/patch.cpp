@@ -18,10 +18,10 @@ constexpr double least_share = 1e-6;  // what counts less is below any tolerance
 double gap_at(const side_geometry &side, double s) { return side.gap(s); }
 
 // where the gap changes sign between a and b: halving, sped up by the Illinois rule
-double edge(const side_geometry &side, double a, double b) {
-  double fa = gap_at(side, a), fb = gap_at(side, b);
+double edge(const side_geometry &side, double a, double b, locus_place &last) {
+  double fa = side.gap(a, last), fb = side.gap(b, last);
   for (int i = 0; i < 100 && std::fabs(b - a) > 1e-12; ++i) {
-    const double m = b - fb * (b - a) / (fb - fa), fm = gap_at(side, m);
+    const double m = b - fb * (b - a) / (fb - fa), fm = side.gap(m, last);
     if (fm == 0) return m;
     if ((fm < 0) != (fb < 0)) {
       a = b;
@@ -34,6 +34,24 @@ double edge(const side_geometry &side, double a, double b) {
     fb = fm;
   }
   return b;
+}
+
+// The same between two samples that are gaps nearly: by newton's steps, two where the profiles are
+// smooth, from where the line through both changes sign. Its error falls with the square.
+double edge(const side_geometry &side, double a, double b, double near_a, double near_b,
+            locus_place &last) {
+  const double enough = side.level() ? 1e-8 : 1e-10;  // m, of a step
+  double at = b - near_b * (b - a) / (near_b - near_a), before = HUGE_VAL;
+  for (int i = 0; i < 8 && !side.shaped(); ++i) {
+    if (!(std::min(a, b) <= at && at <= std::max(a, b))) break;
+    double slope;
+    const double step = -side.gap(at, last, slope) / slope, size = std::fabs(step);
+    if (!(size < 0.5 * before)) break;
+    at += step;
+    if (size < enough) return std::clamp(at, std::min(a, b), std::max(a, b));
+    before = size;
+  }
+  return edge(side, a, b, last);
 }
 
 // least gap between a and c, where the middle is lower than both: golden section
@@ -87,7 +105,8 @@ class part_list {
         last_ = sampled;
         continue;
       }
-      const double g = std::fabs(sampled) < closeness ? gap_at(side_, side_.sample_s(i)) : sampled;
+      const double g =
+          std::fabs(sampled) < closeness ? side_.gap(side_.sample_s(i), place_) : sampled;
       advance(i, g);
       before_ = last_;
       last_ = g;
@@ -101,8 +120,8 @@ class part_list {
   void advance(int i, double g) {
     const double s = side_.sample_s(i), back = i > 0 ? side_.sample_s(i - 1) : s;
     const bool start = g < 0 && !open_, stop = g >= 0 && open_;
-    if (start) begin(last_ < ended ? edge(side_, back, s) : s, !(last_ < ended));
-    if (stop) close(g < ended ? edge(side_, s, back) : back, !(g < ended));
+    if (start) begin(last_ < ended ? edge(side_, back, s, last_, g, place_) : s, !(last_ < ended));
+    if (stop) close(g < ended ? edge(side_, s, back, g, last_, place_) : back, !(g < ended));
     // a dip between samples: contact that is only just beginning
     if (!start && !stop && !open_ && i > 1 && last_ < closeness && last_ <= before_ && last_ <= g)
       dip(side_.sample_s(i - 2), s);
@@ -118,8 +137,8 @@ class part_list {
   void dip(double a, double c) {
     const double m = lowest(side_, a, c);
     if (!(gap_at(side_, m) < 0)) return;
-    begin(edge(side_, a, m), false);
-    close(edge(side_, c, m), false);
+    begin(edge(side_, a, m, place_), false);
+    close(edge(side_, c, m, place_), false);
   }
 
   void begin(double s, bool cut_off) {
@@ -146,6 +165,7 @@ class part_list {
   int count_ = 0;
   bool open_ = false, overflow_ = false;
   double last_ = side_geometry::far_apart, before_ = last_;
+  locus_place place_;
 };
 
 // A row whose overlap has any shape along x, see longitudinal_shape.hpp.
@@ -311,7 +331,8 @@ void find_parts(const side_geometry &side, part_set &found) {
   list.search();
   found.count = 0;
   found.overflow = list.overflow();
-  const auto locus = [&](double s) { return side.locus(s); };
+  locus_place last;
+  const auto locus = [&](double s) { return side.locus(s, last); };
   for (int i = 0; i < list.count(); ++i) {
     if (side.shaped())
       sum_shaped_rows(side, found.parts[i]);

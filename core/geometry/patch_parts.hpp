@@ -99,8 +99,15 @@ void sum_rows(const Locus &locus, basic_part<T> &p) {
   using std::sqrt;
   const T half = 0.5 * (p.end - p.begin), middle = 0.5 * (p.end + p.begin);
   decltype(locus(p.begin)) row[part_rows + 2];
-  for (int i = 1; i <= part_rows; ++i)
-    row[i] = locus(middle - half * cos(std::numbers::pi * (i - 0.5) / part_rows));
+  // cosines of equally spaced angles, each from the two before it
+  const double turn = 2 * cos(std::numbers::pi / part_rows);
+  double now = cos(0.5 * std::numbers::pi / part_rows), before = now;
+  for (int i = 1; i <= part_rows; ++i) {
+    row[i] = locus(middle - half * now);
+    const double next = turn * now - before;
+    before = now;
+    now = next;
+  }
   row[0] = locus(p.begin);
   row[part_rows + 1] = locus(p.end);
   p.first = row[0].wheel;

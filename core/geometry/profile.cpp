@@ -190,9 +190,12 @@ int placed_profile::first_not_before(double y) const {
   return static_cast<int>(std::lower_bound(begin, end, y, before) - samples_.begin());
 }
 
-bool placed_profile::find(double y, double &s, curve_point &p) const {
+// The sample of the branch, but its last, that y is not before; last: where one nearby was.
+int placed_profile::sample_before(double y, int last) const {
   const auto at = [&](int i) { return samples_[static_cast<size_t>(i)].y + y_; };
-  if (!(y >= at(first_) && y <= at(last_))) return false;
+  const auto holds = [&](int i) { return at(i) <= y && (i + 1 == last_ || y < at(i + 1)); };
+  for (const int near : {last, last + 1})
+    if (near >= first_ && near < last_ && holds(near)) return near;
   int a = first_, b = last_;
   if (kind_ == body::rail) {
     const auto most = static_cast<int>(before_.size()) - 2;
@@ -205,10 +208,19 @@ bool placed_profile::find(double y, double &s, curve_point &p) const {
     const int m = (a + b) / 2;
     (at(m) <= y ? a : b) = m;
   }
+  return a;
+}
+
+bool placed_profile::find(double y, double &s, curve_point &p, profile_place &last) const {
+  const auto at = [&](int i) { return samples_[static_cast<size_t>(i)].y + y_; };
+  if (!(y >= at(first_) && y <= at(last_))) return false;
+  const int a = sample_before(y, last.sample), b = std::min(a + 1, last_);
+  last.sample = a;
   double lo = sample_s(a), hi = std::min(sample_s(b), curve_->end());
   s = start_between(a, b, y, hi - lo);
   // newton on y(s), kept between the two samples
-  for (int i = 0, k = curve_->interval(s); i < 50; ++i) {
+  int k = curve_->interval(s, last.interval);
+  for (int i = 0; i < 50; ++i) {
     p = evaluate(s, k);
     (p.y < y ? lo : hi) = s;
     double next = s - (p.y - y) / p.dy;
@@ -225,6 +237,7 @@ bool placed_profile::find(double y, double &s, curve_point &p) const {
     }
     k = curve_->interval(s, k);
   }
+  last.interval = k;
   return true;
 }
 

@@ -51,9 +51,13 @@ class profile {
   // The interval that holds s; last is where a neighbouring s was found.
   int interval(double s, int last) const {
     const auto k = static_cast<std::size_t>(last);
-    const bool above = last == 0 || s >= pieces_[k].s;
-    const bool below = k + 1 == pieces_.size() || s < pieces_[k + 1].s;
-    return above && below ? last : interval(s);
+    const auto ends = [&](std::size_t i) {
+      return i + 1 == pieces_.size() || s < pieces_[i + 1].s;
+    };
+    if (last > 0 && s < pieces_[k].s)
+      return last == 1 || s >= pieces_[k - 1].s ? last - 1 : interval(s);
+    if (ends(k)) return last;
+    return ends(k + 1) ? last + 1 : interval(s);
   }
   int interval(double s) const;
   curve_point evaluate(double s, int interval) const {
@@ -78,6 +82,12 @@ class profile {
 
 enum class body { wheel, rail };
 
+// Where a search on a placed profile ended, for the next one to start from. What is found does not
+// depend on it.
+struct profile_place {
+  int sample = -1, interval = 0;
+};
+
 class placed_profile {
  public:
   placed_profile(const profile &curve, body kind);
@@ -97,10 +107,11 @@ class placed_profile {
   // The arc length of the running branch at y (turned and moved); false where there is none.
   bool find(double y, double &s) const {
     curve_point p;
-    return find(y, s, p);
+    profile_place anywhere;
+    return find(y, s, p, anywhere);
   }
-  // And the point there.
-  bool find(double y, double &s, curve_point &p) const;
+  // And the point there; last: where a search nearby ended, and this one.
+  bool find(double y, double &s, curve_point &p, profile_place &last) const;
   // Samples of the running branch, equally spaced in s: first() to last(), both included.
   int first() const { return first_; }
   int last() const { return last_; }
@@ -128,6 +139,7 @@ class placed_profile {
     p.z += z_;
     return p;
   }
+  int sample_before(double y, int last) const;
   double start_between(int a, int b, double y, double length) const;
   void find_branch();
   void index_branch();

@@ -336,6 +336,71 @@ TEST_P(PatchSearch, FirstTouchLeavesNoGap) {
   }
 }
 
+// Ends of parts are where the gap is zero, also of one that a few nanometres of depth open.
+TEST_P(PatchSearch, EndsHaveNoGap) {
+  int ends = 0;
+  for (int i = 0; i < 60; ++i) {
+    place(-4e-3 + 1.5e-4 * i, std::pow(10.0, -8 + 4.0 * (i % 20) / 19), 6e-3 * std::sin(2.0 * i));
+    part_set found;
+    find_parts(side, found);
+    ASSERT_GT(found.count, 0);
+    for (int k = 0; k < found.count; ++k) {
+      const part &p = found.parts[k];
+      if (p.cut_off) continue;
+      for (const double s : {p.begin, p.end}) {
+        // across the 1e-11 m that an end may be off the gap changes sign
+        const double inward = s == p.begin ? 1e-11 : -1e-11;
+        EXPECT_LT(side.gap(s + inward), 1e-15) << i;
+        EXPECT_GT(side.gap(s - inward), -1e-15) << i;
+        ++ends;
+      }
+    }
+  }
+  EXPECT_GT(ends, 100);
+}
+
+TEST_P(PatchSearch, SlopeIsThatOfTheGap) {
+  constexpr double step = 1e-6;
+  const double slack = scene.track.kind == track_kind::rail ? 1e-4 : 1e-2;
+  int known = 0;
+  for (const double yaw : {0.0, 8e-3, -3e-3}) {
+    place(1.3e-3, 2e-5, yaw);
+    for (int i = 0; i < 200; ++i) {
+      const double s = side.sample_s(0) + 3.1e-4 * i;
+      locus_place last;
+      double slope = 0;
+      const double gap = side.gap(s, last, slope);
+      EXPECT_EQ(gap, side.gap(s));
+      // beyond 20 mm no part of contact ends
+      if (!(std::fabs(gap) < 0.02)) continue;
+      const double low = side.gap(s - step), high = side.gap(s + step);
+      EXPECT_NEAR(slope, (high - low) / (2 * step), slack * (1 + std::fabs(slope))) << s;
+      ++known;
+    }
+  }
+  EXPECT_GT(known, 200);
+}
+
+// From wherever a search starts it ends with the same bits.
+TEST_P(PatchSearch, PlacesOfTheLastSearchChangeNothing) {
+  place(0.5e-3, 5e-5, 4e-3);
+  locus_place last;
+  int valid = 0;
+  for (int i = 0; i < 600; ++i) {
+    const double share = std::fmod(0.618034 * i * (i % 3 == 0 ? 1.0 : 0.01), 1.0);
+    const double s = side.sample_s(0) + share * (side.sample_s(side.sample_count() - 1));
+    const locus_point one = side.locus(s), other = side.locus(s, last);
+    ASSERT_EQ(one.valid, other.valid);
+    if (!one.valid) continue;
+    ++valid;
+    EXPECT_EQ(one.gap, other.gap);
+    EXPECT_EQ(one.contact_angle, other.contact_angle);
+    EXPECT_EQ(one.wheel, other.wheel);
+    EXPECT_EQ(side.gap(s), side.gap(s, last));
+  }
+  EXPECT_GT(valid, 200);
+}
+
 TEST_P(PatchSearch, TellsWhereThereIsNone) {
   patch_region regions[2];
   part_set found;
