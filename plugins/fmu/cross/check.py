@@ -88,6 +88,12 @@ def output(*command: str | Path, **options: object) -> str:
     return done.stdout
 
 
+def made(source: Path, program: Path, *command: str | Path) -> None:
+    """Compiles it, where it is not newer than its source."""
+    if not program.is_file() or program.stat().st_mtime < source.stat().st_mtime:
+        output(*command, "-o", program)
+
+
 def must(good: object, what: str) -> None:
     """Ends where something does not hold."""
     if not good:
@@ -263,7 +269,7 @@ def main() -> None:
         must(exports == expected, f"{platform}: all of FMI's functions, not {expected - exports}")
     source = Path(__file__).with_name(f"{fmu.program}.c")
     zig = [package("ziglang") / "zig", "cc", source, f"-I{headers}"]
-    output(*zig, "-ldl", "-o", folder / fmu.program)
+    made(source, folder / fmu.program, *zig, "-ldl")
     here = fmu.run(fmu.here, [folder / fmu.program])
     print(f"{fmu.here}: {LOADS} loads, 100 steps here")
     os.environ.setdefault("WINEPREFIX", str(folder / "wine"))
@@ -271,7 +277,7 @@ def main() -> None:
         platform = other.platforms[fmu.version - 2]
         if platform in fmu.platforms():
             program = folder / f"{fmu.program}_{platform}{other.ending}"
-            output(*zig, "-target", other.target, *other.libraries, "-o", program)
+            made(source, program, *zig, "-target", other.target, *other.libraries)
             there = fmu.run(platform, [*other.program, program], prefix=other.prefix)
             compare(fmu, here, there, f"{platform} under {other.name}")
     if arguments.compile:
