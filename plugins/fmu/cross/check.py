@@ -20,7 +20,7 @@ import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from build import package
+from build import package, use_cache
 
 GLIBC = (2, 17)
 # names of FMI 2.0 and 3.0
@@ -89,8 +89,9 @@ def output(*command: str | Path, **options: object) -> str:
 
 
 def made(source: Path, program: Path, *command: str | Path) -> None:
-    """Compiles it, where it is not newer than its source."""
-    if not program.is_file() or program.stat().st_mtime < source.stat().st_mtime:
+    """Compiles it, where it is not newer than its source and what lies beside that."""
+    newest = max(path.stat().st_mtime for path in source.parent.glob("*.[ch]"))
+    if not program.is_file() or program.stat().st_mtime < newest:
         output(*command, "-o", program)
 
 
@@ -254,6 +255,7 @@ def main() -> None:
     parser.add_argument("--compile", action="store_true")
     arguments = parser.parse_args()
     path, folder = arguments.fmu.resolve(), arguments.folder.resolve()
+    use_cache(folder.parent)  # of `make fmu`: the compiler's parts for each system are there
     must(path.stat().st_size < 5e6, "the FMU is below 5 MB")
     fmu = Unpacked(path, folder / path.stem)
     headers = package("fmpy") / "c-code"
