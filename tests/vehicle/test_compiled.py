@@ -9,11 +9,27 @@ import numpy as np
 import pytest
 import vehicle_parts as parts
 import vehicle_scenes as scenes
+from railpatch.case.fluid import Fluid
+from railpatch.case.friction import Friction
 
-from wheelset_demo.vehicle import Simulation, VehicleScene
+from wheelset_demo.scene import scene_file
+from wheelset_demo.vehicle import Simulation, VehicleScene, load_vehicle_scene
 from wheelset_demo.vehicle.compiled import core_of
+from wheelset_demo.vehicle.support import SupportTable
+from wheelset_demo.vehicle.wet_track import WetTable
 
 CURVE = {"straight": 25.0, "transition": 60.0, "arc": 1e3, "radius": 800.0, "cant": 0.1}
+
+# rails, pads, a sleeper, ballast
+SUPPORT = SupportTable(
+    rail_mass=60.0,
+    pad_stiffness=[30e6, 120e6],
+    pad_damping=[20e3, 30e3],
+    sleeper_mass=300.0,
+    sleeper_inertia=180.0,
+    ballast_stiffness=[25e6, 50e6],
+    ballast_damping=[40e3, 60e3],
+)
 
 
 def bogie(folder: Path) -> VehicleScene:
@@ -25,12 +41,27 @@ def bogie(folder: Path) -> VehicleScene:
     return parts.load(folder, vehicle, head="hold_height = 1.1")
 
 
-@pytest.fixture(scope="module", params=["coach", "bogie"])
+def braked() -> VehicleScene:
+    """A locomotive whose slip is controlled, on wet rails that its wheels clean, on a support."""
+    scene = load_vehicle_scene(scene_file("locomotive.toml")).with_method(**scenes.QUICK)
+    fluid = Fluid(model="regimes", water_rate=0.0, recovery={"coefficient": 2e-4})
+    changes = {"fluid": fluid, "friction": Friction(coefficient=0.5)}
+    case = scene.case.model_copy(update=changes)
+    brake = {"torque": [[0.0, -1e4], [0.1, -5e4]]}
+    drives = [one.model_copy(update=brake) for one in scene.vehicle.drive]
+    vehicle = scene.vehicle.model_copy(update={"drive": drives})
+    wet = (WetTable(position=0.0, length=16.0, water_rate=25e-9),)
+    return replace(scene, case=case, vehicle=vehicle, wet=wet, support=SUPPORT)
+
+
+@pytest.fixture(scope="module", params=["coach", "bogie", "sprung", "braked"])
 def given(request, tmp_path_factory) -> VehicleScene:
     """Into a transition, on irregular rails: no two bodies move alike."""
     given = scenes.scene(duration=0.4, irregular=True, speed=60.0, alignment=CURVE)
-    if request.param == "bogie":
-        other = bogie(tmp_path_factory.mktemp("bogie"))
+    if request.param == "sprung":
+        return replace(given, support=SUPPORT)
+    if request.param != "coach":
+        other = bogie(tmp_path_factory.mktemp("bogie")) if request.param == "bogie" else braked()
         given = replace(other, alignment=given.alignment, irregularity=given.irregularity)
         given = given.with_run(duration=0.4).with_method(**scenes.QUICK)
     return given
@@ -48,7 +79,7 @@ def test_accelerations_are_those_of_pinocchio(moved):
     system, state = moved.system, moved.state
     core, wanted = core_of(system), moved.rates
     n = system.count
-    assert np.abs(wanted.values[n : 2 * n]).max() > 1.0
+    assert np.abs(wanted.values[n : 2 * n]).max() > 0.5
     core.evaluate(state.values)
     # the contacts, solved again from their own solution, move by their tolerance
     scale = np.abs(wanted.values[n : 2 * n]).max()
@@ -124,6 +155,16 @@ def test_steps_are_those_in_python(given):
     np.testing.assert_allclose(one.means.loads, other.means.loads, rtol=1e-5)
     np.testing.assert_allclose(one.means.guiding, other.means.guiding, atol=1.0)
     assert one.system.evaluations == other.system.evaluations + 1
+    if one.system.support is not None:
+        below, wanted = one.system.support, other.system.support
+        np.testing.assert_allclose(below.greatest, wanted.greatest, rtol=1e-5)
+        np.testing.assert_allclose(below.forces, wanted.forces, rtol=1e-5, atol=1.0)
+    if one.system.drives:
+        assert np.abs(other.system.drives.torque).min() > 0
+        np.testing.assert_allclose(one.system.drives.torque, other.system.drives.torque, rtol=1e-6)
+    if one.system.wet is not None:
+        assert one.system.wet.spent == pytest.approx(other.system.wet.spent, rel=1e-5)
+        assert one.system.wet.spent > 0
 
 
 def test_several_steps_at_once_are_single_ones(given):

@@ -19,7 +19,7 @@ from railpatch.log import read_run
 
 from wheelset_demo.scene import scene_file
 from wheelset_demo.vehicle import Simulation, load_vehicle_scene
-from wheelset_demo.vehicle.drives import Drive
+from wheelset_demo.vehicle.drives import drive_of
 from wheelset_demo.vehicle.trace import run_vehicle
 from wheelset_demo.vehicle.traction import DriveTable
 
@@ -57,7 +57,7 @@ def table(**control):
 def test_controller_in_closed_form():
     """A slip above the target at 10 m/s: 1 m/s is sought, 2 m/s found, e = -1 m/s; from an integral
     of 1000 N m it falls by 100 e T a sample, and the proportional part takes 200 N m."""
-    drive = Drive(table(period=0.1, rate=1e9), np.array([0.5]))
+    drive = drive_of(table(period=0.1, rate=1e9), np.array([0.5]))
     # wheels that do not slip: what is wanted
     drive.update(2.0, 10.0, np.array([-20.0]))
     assert drive.torque == pytest.approx([1000.0])
@@ -77,11 +77,11 @@ def test_controller_in_closed_form():
 
 def test_rate_and_brakes():
     """Torques change by the rate at most; brakes see wheels that turn too slowly."""
-    drive = Drive(table(period=0.1, rate=500.0), np.array([0.5]))
+    drive = drive_of(table(period=0.1, rate=500.0), np.array([0.5]))
     drive.update(0.0, 10.0, np.array([-40.0]))
     assert drive.torque[0] == pytest.approx(950.0)
     braking = table(period=0.1, rate=1e9).model_copy(update={"torque": [[0.0, -1000.0]]})
-    drive = Drive(braking, np.array([0.5]))
+    drive = drive_of(braking, np.array([0.5]))
     drive.update(0.0, 10.0, np.array([-20.0]))
     assert drive.torque[0] == pytest.approx(-1000.0)
     drive.update(0.1, 10.0, np.array([-16.0]))

@@ -1,11 +1,10 @@
 """The time steps of Bdf2, compiled: equations of motion, derivatives and steps in C++.
 
-For scenes of bodies, elements and contacts alone; what else they may have, track below the rails,
-drives with slip control, wet stretches and rails that wheels clean, is in system.py, which holds
-the same equations for all. Tests compare the two. Wheelsets take turns in renewing their contacts'
-derivatives, so that no step makes all; none are older than ``every`` steps. Those that contacts
-find by differences are found column by column in the twelve steps before they are due, where
-``every`` leaves room for all wheelsets.
+system.py holds the same equations, by Pinocchio; tests compare the two. Track below the rails,
+drives and rails that wheels clean are one and the same object for both. Wheelsets take turns in
+renewing their contacts' derivatives, so that no step makes all; none are older than ``every``
+steps. Those that contacts find by differences are found column by column in the twelve steps before
+they are due, where ``every`` leaves room for all wheelsets.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ REFUSED = sum(1 << STATUSES.index(status) for status in BAD)
 
 
 class CompiledSteps:
-    """Of a system that covers() allows. core: the same in C++."""
+    """Of a system. core: the same in C++."""
 
     def __init__(self, system: VehicleSystem, step: float, every: int) -> None:
         self._system, self._step, self._every = system, step, every
@@ -85,18 +84,13 @@ class CompiledSteps:
     def _tell(self, state: VehicleState) -> None:
         """The system what it would know of the last step had it made it."""
         core, system = self.core, self._system
-        pin.forwardKinematics(system.model, system.data, state.q, state.v)
+        nv = system.model.nv
+        pin.forwardKinematics(system.model, system.data, state.q[:nv], state.v[:nv])
         system.slope_wrenches = core.slope_wrenches.copy()
-        system.suspension.damping_power = float(core.powers[2])
         system.evaluations = int(self._known[0]) + core.evaluations
         system.renewals = int(self._known[1]) + core.renewals
         system.contact_seconds = float(self._spent[0]) + core.contact_seconds
         system.derivative_seconds = float(self._spent[1]) + core.derivative_seconds
-
-
-def covers(system: VehicleSystem) -> bool:
-    """Whether a system has nothing but bodies, elements and contacts."""
-    return system.support is None and system.wet is None and not system.drives
 
 
 def core_of(system: VehicleSystem) -> _core.VehicleSteps:
@@ -120,4 +114,7 @@ def core_of(system: VehicleSystem) -> _core.VehicleSteps:
         np.array([ARM, system.hold_arm, run.speed_control, system.scene.speed]),
         np.array([x, y, pitch, yaw], dtype=np.int64),
         system.vehicle.carriers[:, 1:3].astype(np.int64),
+        None if system.support is None else system.support.compiled,
+        system.drives.compiled if system.drives else None,
+        None if system.wet is None else system.wet.compiled,
     )

@@ -14,7 +14,7 @@ from railpatch.damage.run import RunWear
 
 from wheelset_demo.system import BAD, WORKS
 from wheelset_demo.vehicle.comfort import Comfort
-from wheelset_demo.vehicle.compiled import CompiledSteps, covers
+from wheelset_demo.vehicle.compiled import CompiledSteps
 from wheelset_demo.vehicle.means import SlidingMeans
 from wheelset_demo.vehicle.scene import VehicleScene
 from wheelset_demo.vehicle.step_times import StepTimes
@@ -45,10 +45,9 @@ class Simulation:
         if self.system.wet is not None:
             self.system.wet.begin(self.system.positions)
         self._stepper = Bdf2(self.system, scene.run.step, scene.run.derivatives_every)
-        self._compiled = (
-            CompiledSteps(self.system, scene.run.step, scene.run.derivatives_every)
-            if covers(self.system)
-            else None
+        # None: steps in Python, the first ones and what tests compare with
+        self._compiled: CompiledSteps | None = CompiledSteps(
+            self.system, scene.run.step, scene.run.derivatives_every
         )
         self.means = SlidingMeans(self.element.wheels)
         self.comfort = comfort_of(scene, self.system)

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
+from railpatch import _core
 from railpatch.case.types import NotNegative, Positive, Table, exactly, relation
 
 if TYPE_CHECKING:
@@ -83,7 +84,8 @@ class Support:
 
     Of the last step(): place, rate: m, m/s (rad, rad/s), [wheelsets, width]. forces: N, [wheelsets,
     rows], of the springs and dampers on what is below them: pads left lateral, vertical, right
-    likewise, ballast likewise. damping_power: W, >= 0. greatest: by meet(), see summary().
+    likewise, ballast likewise. greatest: by meet(), see summary(). compiled: the same in C++, whose
+    memory these are.
     """
 
     def __init__(self, table: SupportTable, wheelsets: int) -> None:
@@ -102,47 +104,36 @@ class Support:
         self._masses = np.array(masses)
         self._k = rows.T @ (self._stiffness[:, None] * rows)
         self._c = rows.T @ (self._damping[:, None] * rows)
-        shape = wheelsets, self.width
-        self.place, self.rate = np.zeros(shape), np.zeros(shape)
-        self.forces = np.zeros((wheelsets, len(rows)))
-        self.damping_power = 0.0
-        self._on_rails = np.zeros(shape)
-        self.greatest = np.zeros((3, 2))
+        core = _core.Support(wheelsets, rows, self._stiffness, self._damping, self._masses)
+        self.compiled = core
+        self.place: Vector = core.place
+        self.rate: Vector = core.rate
+        self.forces: Vector = core.forces
+        self.greatest: Vector = core.greatest
+        self._found = np.zeros(self.count)
 
     def put_rails(self, place: Vector, rate: Vector, rails: Vector) -> None:
         """Adds deflections and their rates to a force element's rails, which are placed. place,
         rate: [count]."""
-        self.place[:] = place.reshape(self.place.shape)
-        self.rate[:] = rate.reshape(self.rate.shape)
-        shape = len(rails), 2, 2
-        rails[:, 0, :, 1:] += self.place[:, :RAILS].reshape(shape)
-        moved = self.rate[:, :RAILS].reshape(shape)
-        # nothing else moves a rail sideways
-        rails[:, 1, :, 1] = moved[:, :, 0]
-        rails[:, 1, :, 2] += moved[:, :, 1]
+        self.compiled.put_rails(place, rate, rails)
 
     def step(self, wheels: Vector) -> tuple[Vector, float]:
         """[count], second derivatives of the coordinates; W, power of the wheels on the rails.
 
         wheels: as ForceElement.wheels.
         """
-        on_rails = -wheels[:, :, 1:3].reshape(len(wheels), RAILS)
-        rates = self.rate @ self._rows.T
-        damped = self._damping * rates
-        self.forces = self._stiffness * (self.place @ self._rows.T) + damped
-        self.damping_power = float((damped * rates).sum())
-        self._on_rails[:, :RAILS] = on_rails
-        found = (self._on_rails - self.forces @ self._rows) / self._masses
-        return found.ravel(), float((on_rails * self.rate[:, :RAILS]).sum())
+        power = self.compiled.step(wheels, self._found)
+        return self._found.copy(), power
+
+    @property
+    def damping_power(self) -> float:
+        """W, >= 0, at the last step()."""
+        return self.compiled.damping_power
 
     def meet(self) -> None:
         """Takes the last step() into what was greatest: m, N, by size, [3, 2], of rails' places, of
         forces in pads and in ballast, lateral and vertical."""
-        parts = [self.place[:, :RAILS], self.forces[:, :RAILS], self.forces[:, RAILS:]]
-        for greatest, part in zip(self.greatest, parts, strict=True):
-            if part.size:
-                found = np.abs(part).reshape(-1, 2).max(axis=0)
-                np.maximum(greatest, found, out=greatest)
+        self.compiled.meet()
 
     def summary(self) -> dict[str, dict[str, float] | None]:
         """Greatest so far by direction: rail_deflection (m), pad_force, ballast_force (N, None

@@ -40,8 +40,8 @@ class Suspension:
 
     Of the last step(), overwritten by the next: displacement, rate (m, m/s or rad, rad/s), force (N
     or N m), of the rows; matrix: [rows, nv]; series_rates: N/s; friction_force: N or N m, of the
-    sliders. damping_power: W, >= 0, turned into heat by dampers and sliders. owners: [rows], index
-    of a row's table in vehicle.element. statics: what the elements carry at rest.
+    sliders. owners: [rows], index of a row's table in vehicle.element. statics: what the elements
+    carry at rest.
     """
 
     def __init__(self, scene: VehicleScene, model: VehicleModel) -> None:
@@ -57,7 +57,6 @@ class Suspension:
         points = np.array([vehicle.place(*place.at) for _, place in places])
         self._at = [points - model.centres[self._ends[:, end]] for end in (0, 1)]
         self._model, self._width = model, model.model.nv
-        self.damping_power = 0.0
         self._rows(vehicle.element, np.array([owner for owner, _ in places]))
         self.statics = self._at_rest()
         self._preload = self.statics.preload
@@ -143,13 +142,18 @@ class Suspension:
         return self._core
 
     @property
+    def damping_power(self) -> float:
+        """W, >= 0, turned into heat by dampers and sliders at the last step()."""
+        return self._core.damping_power
+
+    @property
     def series_count(self) -> int:
         """Number of dampers with a spring in series, each of which has a force as its state."""
         return len(self._series)
 
     def step(self, q: Vector, v: Vector, series: Vector) -> Vector:
         """[nv], generalised forces. series: N, forces of dampers with springs in series."""
-        self.damping_power = self._core.step(q, v, series)
+        self._core.step(q, v, series)
         return self._generalised.copy()
 
     def settle(self) -> None:

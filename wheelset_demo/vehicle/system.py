@@ -243,6 +243,9 @@ class VehicleSystem:
         n, nv, suspension = self.count, self.model.nv, self.suspension
         q, v, bodies = values[:nv], values[n : n + nv], slice(n, n + nv)
         tau = self.suspension.matrix.T @ self.suspension.force
+        self._drive(q, v, tau)
+        if self.drives:
+            self.drives.add(q, v, tau)
         self._held.renew(wheelsets)
         found = acceleration_derivatives(self.model, self.data, q, v, tau, self._fext, [self._held])
         upper = np.triu(self.data.Minv)

@@ -15,6 +15,7 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
+from railpatch import _core
 from railpatch.case.fluid import Fluid
 from railpatch.case.types import NotNegative, Table
 
@@ -46,20 +47,18 @@ def wet_problems(wet: tuple[WetTable, ...], fluid: Fluid | None) -> Iterator[str
 
 
 class WetTrack:
-    """Supply and work along the rails. work: J/m, [2, cells], on left and right rail."""
+    """Supply and work along the rails. work: J/m, [2, cells], on left and right rail; compiled: the
+    same in C++, whose memory it is."""
 
     def __init__(self, wet: tuple[WetTable, ...], fluid: Fluid, length: float, count: int) -> None:
         """length: m, of the track; count: of wheelsets."""
         ordered = sorted(wet, key=lambda one: one.position)
-        self._borders = np.array([x for w in ordered for x in (w.position, w.position + w.length)])
-        rates = [np.nan, *(x for w in ordered for x in (w.water_rate, np.nan))]
-        self._rates = np.array(rates)
-        self._cleans = fluid.recovery is not None
+        borders = np.array([x for w in ordered for x in (w.position, w.position + w.length)])
+        rates = np.array([np.nan, *(x for w in ordered for x in (w.water_rate, np.nan))])
         self.cell = max(CELL, length / MOST_CELLS)
-        cells = int(length / self.cell) + 2 if self._cleans else 1
-        self.work = np.zeros((2, cells))
-        self._own = np.zeros((count, 2))  # J, of the cell that a wheelset is in
-        self._at = np.full(count, np.nan)  # m
+        cells = int(length / self.cell) + 2 if fluid.recovery is not None else 0
+        self.compiled = _core.WetRails(count, borders, rates, self.cell, cells)
+        self.work: Vector = self.compiled.work
 
     @classmethod
     def of(
@@ -71,41 +70,18 @@ class WetTrack:
 
     def begin(self, positions: Vector) -> None:
         """The wheelsets stand at positions (m)."""
-        self._at[:] = positions
+        self.compiled.begin(positions)
 
     def put(self, positions: Vector, water: Vector) -> None:
         """Into the force element's array what is at the positions (m) of the wheelsets."""
-        if len(self._borders):
-            water[:, 0] = self._rates[np.searchsorted(self._borders, positions, side="right")]
-        if self._cleans:
-            # in free rolling the work of a step can be less than nothing by its rounding
-            water[:, 1:] = np.maximum(self.work[:, self._cells(positions)].T, 0.0)
-
-    def _cells(self, positions: Vector) -> NDArray[np.int64]:
-        found = np.floor(positions / self.cell).astype(np.int64)
-        return np.clip(found, 0, self.work.shape[1] - 1)
+        self.compiled.put(positions, water)
 
     def leave(self, positions: Vector, work: Vector) -> None:
         """After a step to the positions (m): friction's work in it, [wheelsets, 2] (J), is spread
         over the way."""
-        if not self._cleans:
-            return
-        for k, (end, begin) in enumerate(zip(positions.tolist(), self._at.tolist(), strict=True)):
-            if end > begin:
-                self._spend(k, begin, end, work[k] / (end - begin))
-        self._at[:] = positions
-
-    def _spend(self, k: int, begin: float, end: float, per_metre: Vector) -> None:
-        cell, last = self._cells(np.array([begin, end])).tolist()
-        while cell < last:
-            border = (cell + 1) * self.cell
-            self._own[k] += per_metre * (border - begin)
-            self.work[:, cell] += self._own[k] / self.cell
-            self._own[k] = 0.0
-            begin, cell = border, cell + 1
-        self._own[k] += per_metre * (end - begin)
+        self.compiled.leave(positions, work)
 
     @property
     def spent(self) -> float:
         """J, on both rails so far, with what is in the cells that wheels are in."""
-        return float(self.work.sum() * self.cell + self._own.sum())
+        return float(self.work.sum() * self.cell + self.compiled.own.sum())

@@ -221,7 +221,7 @@ class ForceElement final : public VehicleContacts {
   double *tracks() override { return tracks_.data(); }
   double *positions() override { return positions_.data(); }
   double *rails() override { return rails_.data(); }
-  double *water() { return water_.data(); }
+  double *water() override { return water_.data(); }
   double *wheels() override { return wheels_.data(); }
   double *lateral() override { return lateral_.data(); }
 

@@ -479,6 +479,9 @@ NB_MODULE(_core, m) {
   bind_suspension(m);
   bind_course(m);
   bind_means(m);
+  bind_support(m);
+  bind_drives(m);
+  bind_wet_rails(m);
   bind_steps(m);
 }
 

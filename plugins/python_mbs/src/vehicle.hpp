@@ -42,6 +42,7 @@ class VehicleContacts {
   virtual double *tracks() = 0;
   virtual double *positions() = 0;
   virtual double *rails() = 0;
+  virtual double *water() = 0;
   virtual double *wheels() = 0;
   virtual double *lateral() = 0;
   virtual double *wrench() = 0;
@@ -81,13 +82,60 @@ class VehicleSuspension {
   virtual size_t width() const = 0;
   virtual size_t series() const = 0;
   // derivatives of the last forces, nearly, see Suspension.jacobian: added to
-  // [width][2 width + series], of the generalised force by q, v and series forces,
-  virtual void add_derivatives(double *to) const = 0;
-  // and of the series' rates: written to [series][width], by v, and [series], by themselves
-  virtual void series_derivatives(double *by_v, double *by_series) const = 0;
+  // [width][2 coordinates + series], of the generalised force by q, v and series forces,
+  virtual void add_derivatives(double *to, size_t coordinates) const = 0;
+  // and of the series' rates: written to [series][coordinates], by v, and [series], by themselves
+  virtual void series_derivatives(double *by_v, size_t coordinates, double *by_series) const = 0;
 
  protected:
   ~VehicleSuspension() = default;
+};
+
+// Track below the rails: coordinates beside the bodies', `width` a wheelset, rails first.
+class VehicleSupport {
+ public:
+  // deflections and their rates onto rails that are placed
+  virtual void put_rails(const double *place, const double *rate, double *rails) = 0;
+  // second derivatives of the coordinates; W, of the wheels on the rails
+  virtual double find_rates(const double *wheels, size_t row, double *found) = 0;
+  virtual void meet() = 0;
+  virtual double damping_power() const = 0;  // W
+  virtual double rail_mass() const = 0;      // kg
+  virtual size_t width() const = 0;
+  virtual size_t count() const = 0;
+  // [width][width], of a wheelset's second derivatives without its wheels
+  virtual const double *by_places() const = 0;
+  virtual const double *by_rates() const = 0;
+
+ protected:
+  ~VehicleSupport() = default;
+};
+
+class VehicleDrives {
+ public:
+  virtual void update(double time, const double *q, const double *v) = 0;
+  // to generalised forces; W
+  virtual double add_forces(const double *q, const double *v, double *tau) = 0;
+
+ protected:
+  ~VehicleDrives() = default;
+};
+
+class VehicleWetRails {
+ public:
+  virtual void put(const double *positions, double *water) const = 0;
+  // friction's work in a step, J, of each wheel
+  virtual void leave(const double *positions, const double *work) = 0;
+
+ protected:
+  ~VehicleWetRails() = default;
+};
+
+// What not every vehicle has; none: nullptr.
+struct VehicleExtras {
+  VehicleSupport *support = nullptr;
+  VehicleDrives *drives = nullptr;
+  VehicleWetRails *wet = nullptr;
 };
 
 class VehicleMeans {
@@ -106,6 +154,9 @@ void slope_wrench(const double *wheel, double normal, const double *slope, doubl
 void bind_steps(nb::module_ &m);
 void bind_suspension(nb::module_ &m);
 void bind_course(nb::module_ &m);
+void bind_support(nb::module_ &m);
+void bind_drives(nb::module_ &m);
+void bind_wet_rails(nb::module_ &m);
 void bind_means(nb::module_ &m);
 
 }  // namespace railpatch::python

@@ -21,43 +21,49 @@ enum { kPitch = 5 };
 // columns of a wheelset's state that a rail's lateral and vertical deviations and its vertical rate
 // move against
 constexpr size_t against[3] = {1, 2, 8};
+// and those that its places and rates on a support move against
+constexpr size_t on_rail[2][2] = {{1, 2}, {7, 8}};
 
 }  // namespace
 
 VehicleEquations::VehicleEquations(VehicleContacts &contacts, VehicleCourse &course,
-                                   VehicleSuspension &suspension, Bodies bodies,
-                                   VehicleNumbers numbers)
+                                   VehicleSuspension &suspension, VehicleExtras extras,
+                                   Bodies bodies, VehicleNumbers numbers)
     : contacts_(contacts),
       course_(course),
       suspension_(suspension),
+      extras_(extras),
       bodies_(std::move(bodies)),
       numbers_(std::move(numbers)),
-      n_(bodies_.count()),
+      bodies_n_(bodies_.count()),
+      n_(bodies_n_ + (extras.support != nullptr ? extras.support->count() : 0)),
       m_(suspension.series()) {
   const size_t count = contacts.count();
-  const bool fits = suspension.width() == n_ && course.width() == n_ && course.count() == count &&
-                    numbers_.axle.size() == count && numbers_.radius.size() == count;
+  const bool fits =
+      suspension.width() == bodies_n_ && course.width() == bodies_n_ && course.count() == count &&
+      numbers_.axle.size() == count && numbers_.radius.size() == count &&
+      n_ - bodies_n_ == (extras.support != nullptr ? count * extras.support->width() : 0);
   if (!fits) throw nb::value_error("parts of a vehicle do not fit together");
   for (const size_t joint : numbers_.axle)
-    if (joint >= n_) throw nb::index_error();
+    if (joint >= bodies_n_) throw nb::index_error();
   for (const size_t column : numbers_.ahead)
-    if (column >= n_) throw nb::index_error();
+    if (column >= bodies_n_) throw nb::index_error();
   const size_t most = bodies_.most_joints();
   rates_.resize(size());
   powers_.resize(powers_count());
-  for (auto *to : {&tau_, &moved_, &found_, &base_}) to->resize(n_);
+  for (auto *to : {&tau_, &moved_, &found_, &base_}) to->resize(bodies_n_);
   slopes_.resize(count * 6);
   wrenches_.resize(count * 6);
   by_state_.resize(n_ * size());
-  forces_.resize(n_ * size());
+  forces_.resize(bodies_n_ * size());
   by_inputs_.resize(n_ * known());
-  inputs_.resize(n_ * known());
+  inputs_.resize(bodies_n_ * known());
   series_by_v_.resize(m_ * n_);
   series_by_series_.resize(m_);
   loads_.resize(count * 6);
   states_.resize(count * kState);
   by_joint_.resize(2 * count * most * kState);
-  inverse_.resize(n_ * most);
+  inverse_.resize(bodies_n_ * most);
 }
 
 void VehicleEquations::give_motion() {
@@ -75,6 +81,9 @@ int VehicleEquations::evaluate(const double *values) {
   bodies_.move(q, v);
   course_.place_all(q, v, contacts_.tracks(), contacts_.rails());
   std::copy_n(course_.positions(), wheelsets(), contacts_.positions());
+  VehicleSupport *support = extras_.support;
+  if (support != nullptr) support->put_rails(q + bodies_n_, v + bodies_n_, contacts_.rails());
+  if (extras_.wet != nullptr) extras_.wet->put(contacts_.positions(), contacts_.water());
   give_motion();
   ++evaluations;
   const double begin = thread_seconds();
@@ -87,8 +96,13 @@ int VehicleEquations::evaluate(const double *values) {
   }
   contact += add_slopes();
   powers_[2] = suspension_.find_forces(q, v, series);
-  std::copy_n(suspension_.generalised(), n_, tau_.data());
+  std::copy_n(suspension_.generalised(), bodies_n_, tau_.data());
   powers_[3] = drive(q, v);
+  if (extras_.drives != nullptr) powers_[3] += extras_.drives->add_forces(q, v, tau_.data());
+  if (support != nullptr) {
+    contact += support->find_rates(contacts_.wheels(), kWheel, rates_.data() + n_ + bodies_n_);
+    powers_[2] += support->damping_power();
+  }
   for (size_t k = 0; k < 2 * wheelsets(); ++k) {
     powers_[kWorks + k] = contacts_.wheels()[kWheel * k + 6];
     friction += powers_[kWorks + k];
@@ -157,8 +171,8 @@ void VehicleEquations::differentiate(const double *values, const size_t *wheelse
   std::fill(by_inputs_.begin(), by_inputs_.end(), 0.0);
   bend_inertia(values);
   for (size_t k = 0; k < this->wheelsets(); ++k) add_contacts(k);
-  suspension_.add_derivatives(forces_.data());
-  suspension_.series_derivatives(series_by_v_.data(), series_by_series_.data());
+  suspension_.add_derivatives(forces_.data(), n_);
+  suspension_.series_derivatives(series_by_v_.data(), n_, series_by_series_.data());
   double along[kAhead];
   ahead(values, along);
   for (size_t i = 0; i < kAhead; ++i)
@@ -168,6 +182,7 @@ void VehicleEquations::differentiate(const double *values, const size_t *wheelse
   find_inverse();
   to_accelerations(forces_.data(), by_state_.data(), size());
   to_accelerations(inputs_.data(), by_inputs_.data(), known());
+  if (extras_.support != nullptr) add_support();
   derivative_seconds += thread_seconds() - begin;
 }
 
@@ -194,7 +209,7 @@ void VehicleEquations::bend_inertia(const double *values) {
     contacts_.state_at(k, contacts_.motion() + k * kMotion, contacts_.motion() + k * kMotion + 12,
                        states_.data() + k * kState);
   }
-  std::copy_n(rates_.data() + n_, n_, base_.data());
+  std::copy_n(rates_.data() + n_, bodies_n_, base_.data());
   std::fill(by_state_.begin(), by_state_.end(), 0.0);
   for (size_t number = 0; number < bodies_.most_joints(); ++number)
     for (const bool velocity : {false, true}) vary(values, number, velocity);
@@ -206,15 +221,15 @@ void VehicleEquations::bend_inertia(const double *values) {
 // One coordinate of each tree, or its velocity.
 void VehicleEquations::vary(const double *values, size_t number, bool velocity) {
   const size_t most = bodies_.most_joints(), shift = velocity ? n_ : 0;
-  std::copy_n(values + shift, n_, moved_.data());
-  for (size_t i = 0; i < n_; ++i)
+  std::copy_n(values + shift, bodies_n_, moved_.data());
+  for (size_t i = 0; i < bodies_n_; ++i)
     if (bodies_.number(i) == number) moved_[i] += small;
   bodies_.move(velocity ? values : moved_.data(), velocity ? moved_.data() : values + n_);
   load_bodies();
   bodies_.accelerate(tau_.data(), found_.data());
-  for (size_t j = 0; j < n_; ++j) {
+  for (size_t j = 0; j < bodies_n_; ++j) {
     if (bodies_.number(j) != number) continue;
-    for (size_t i = 0; i < n_; ++i)
+    for (size_t i = 0; i < bodies_n_; ++i)
       if (bodies_.tree(i) == bodies_.tree(j))
         by_state_[i * size() + shift + j] = (found_[i] - base_[i]) / small;
   }
@@ -240,7 +255,7 @@ void VehicleEquations::add_contacts(size_t k) {
   const double *left = contacts_.by_side() + k * 144, *right = left + 72;
   for (const bool velocity : {false, true}) {
     const double *states = by_joint_.data() + ((velocity ? wheelsets() : 0) + k) * most * kState;
-    for (size_t j = 0; j < n_; ++j) {
+    for (size_t j = 0; j < bodies_n_; ++j) {
       if (bodies_.tree(j) != bodies_.tree(joint)) continue;
       const double *by = states + bodies_.number(j) * kState;
       double wrench[6] = {};
@@ -260,6 +275,56 @@ void VehicleEquations::add_contacts(size_t k) {
       const size_t column = input < 2 ? 4 * k + 2 * side + input : 4 * count + 2 * k + side;
       add_wrench(k, wrench, inputs_.data() + column, known());
     }
+  if (extras_.support != nullptr) add_rails(k);
+}
+
+// What a wheelset's rails do to it as they move on their support.
+void VehicleEquations::add_rails(size_t k) {
+  const size_t first = bodies_n_ + k * extras_.support->width();
+  for (size_t side = 0; side < 2; ++side)
+    for (const bool velocity : {false, true})
+      for (size_t way = 0; way < 2; ++way) {
+        const double *by = contacts_.by_side() + k * 144 + side * 72 + on_rail[velocity][way];
+        double wrench[6];
+        for (size_t i = 0; i < 6; ++i) wrench[i] = -by[i * kState];
+        const size_t column = (velocity ? n_ : 0) + first + 2 * side + way;
+        add_wrench(k, wrench, forces_.data() + column, size());
+      }
+}
+
+// Rows of the support: its springs and what the wheels feel, the other way.
+void VehicleEquations::add_support() {
+  const VehicleSupport &support = *extras_.support;
+  const size_t width = support.width(), most = bodies_.most_joints(), count = wheelsets();
+  for (size_t k = 0; k < count; ++k) {
+    const size_t first = bodies_n_ + k * width, tree = bodies_.tree(numbers_.axle[k]);
+    for (size_t i = 0; i < width; ++i) {
+      double *row = by_state_.data() + (first + i) * size() + first;
+      std::copy_n(support.by_places() + i * width, width, row);
+      std::copy_n(support.by_rates() + i * width, width, row + n_);
+    }
+    for (size_t wheel = 0; wheel < 4; ++wheel) {
+      const size_t side = wheel / 2, rail = first + 2 * side;
+      const double *force = contacts_.by_side() + k * 144 + side * 72 + (1 + wheel % 2) * kState;
+      double felt[kState];
+      for (size_t c = 0; c < kState; ++c) felt[c] = force[c] / support.rail_mass();
+      double *row = by_state_.data() + (first + wheel) * size();
+      for (const bool velocity : {false, true}) {
+        const size_t shift = velocity ? n_ : 0;
+        const double *states = by_joint_.data() + ((velocity ? count : 0) + k) * most * kState;
+        for (size_t j = 0; j < bodies_n_; ++j) {
+          if (bodies_.tree(j) != tree) continue;
+          const double *by = states + bodies_.number(j) * kState;
+          for (size_t c = 0; c < kState; ++c) row[shift + j] -= felt[c] * by[c];
+        }
+        for (size_t way = 0; way < 2; ++way)
+          row[shift + rail + way] += felt[on_rail[velocity][way]];
+      }
+      double *known_row = by_inputs_.data() + (first + wheel) * known();
+      for (size_t way = 0; way < 2; ++way) known_row[4 * k + 2 * side + way] = felt[against[way]];
+      known_row[4 * count + 2 * k + side] = felt[against[2]];
+    }
+  }
 }
 
 // A wrench on a wheelset, at its centre in track axes, into a column of generalised forces.
@@ -275,7 +340,7 @@ void VehicleEquations::add_wrench(size_t k, const double *wrench, double *column
 // [n][joints of a tree]: what a force on a joint of the same tree changes an acceleration by
 void VehicleEquations::find_inverse() {
   const size_t most = bodies_.most_joints();
-  for (size_t i = 0; i < n_; ++i)
+  for (size_t i = 0; i < bodies_n_; ++i)
     for (size_t j = 0; j < most; ++j) inverse_[i * most + j] = bodies_.number(i) == j ? 1.0 : 0.0;
   bodies_.respond(inverse_.data(), most, most);
 }
@@ -283,8 +348,8 @@ void VehicleEquations::find_inverse() {
 // Adds what generalised forces change accelerations by.
 void VehicleEquations::to_accelerations(const double *from, double *to, size_t stride) {
   const size_t most = bodies_.most_joints();
-  for (size_t i = 0; i < n_; ++i)
-    for (size_t j = 0; j < n_; ++j) {
+  for (size_t i = 0; i < bodies_n_; ++i)
+    for (size_t j = 0; j < bodies_n_; ++j) {
       if (bodies_.tree(i) != bodies_.tree(j)) continue;
       const double factor = inverse_[i * most + bodies_.number(j)];
       const double *row = from + j * stride;

@@ -22,7 +22,7 @@ struct VehicleNumbers {
 class VehicleEquations {
  public:
   VehicleEquations(VehicleContacts &contacts, VehicleCourse &course, VehicleSuspension &suspension,
-                   Bodies bodies, VehicleNumbers numbers);
+                   VehicleExtras extras, Bodies bodies, VehicleNumbers numbers);
 
   // Rates and powers at a state; the contacts' worst status. Throws for a state that they refuse.
   int evaluate(const double *values);
@@ -66,6 +66,8 @@ class VehicleEquations {
   void bend_inertia(const double *values);
   void vary(const double *values, size_t number, bool velocity);
   void add_contacts(size_t k);
+  void add_support();
+  void add_rails(size_t k);
   void add_wrench(size_t k, const double *wrench, double *column, size_t stride);
   void find_inverse();
   void to_accelerations(const double *from, double *to, size_t stride);
@@ -73,9 +75,11 @@ class VehicleEquations {
   VehicleContacts &contacts_;
   VehicleCourse &course_;
   VehicleSuspension &suspension_;
+  VehicleExtras extras_;
   Bodies bodies_;
   VehicleNumbers numbers_;
-  size_t n_, m_;
+  // coordinates of bodies, of all, forces in series
+  size_t bodies_n_, n_, m_;
   std::vector<double> rates_, powers_, tau_, slopes_, wrenches_;
   std::vector<double> by_state_, by_inputs_, series_by_v_, series_by_series_;
   // of differentiate(): world forces and moments on the wheelsets, their states and derivatives

@@ -99,11 +99,13 @@ class VehicleSteps {
   VehicleSteps(VehicleContacts &contacts, VehicleCourse &course, VehicleSuspension &suspension,
                const IndexGrid &kinds, const Grid &placements, const Grid &inertias,
                const Values &gravity, const Indices &axles, const Values &radii,
-               const Values &numbers, const Indices &ahead, const IndexGrid &watched)
+               const Values &numbers, const Indices &ahead, const IndexGrid &watched,
+               VehicleSupport *support, VehicleDrives *drives, VehicleWetRails *wet)
       : contacts_(contacts),
         course_(course),
         suspension_(suspension),
-        equations_(contacts, course, suspension,
+        extras_{support, drives, wet},
+        equations_(contacts, course, suspension, extras_,
                    Bodies(joints_of(kinds, placements, inertias), gravity.data()),
                    numbers_of(axles, radii, numbers, ahead)),
         left_(equations_.coordinates()) {
@@ -122,6 +124,7 @@ class VehicleSteps {
     ages_.resize(count);
     wrong_.reserve(count);
     loss_.resize(equations_.series());
+    spent_.resize(2 * count);
   }
 
   int evaluate(const Values &values) {
@@ -295,6 +298,8 @@ class VehicleSteps {
   bool step(uint32_t refused, bool stores, VehicleMeans &means) {
     keep_fresh();
     foresee();
+    const double *q = values_.data(), *v = q + equations_.coordinates();
+    if (extras_.drives != nullptr) extras_.drives->update(time_, q, v);
     // a state that the contacts refuse leaves the last one
     const double before = course_.middle();
     if (stores) contacts_.pass_time(step_);
@@ -302,6 +307,9 @@ class VehicleSteps {
     if (refused >> status_ & 1u) return false;
     for (size_t i = 0; i < work_.size(); ++i)
       work_[i] += 0.5 * step_ * (powers_[i] + equations_.powers()[i]);
+    const size_t wheels = work_.size() - spent_.size();
+    for (size_t i = 0; i < spent_.size(); ++i)
+      spent_[i] = 0.5 * step_ * (powers_[wheels + i] + equations_.powers()[wheels + i]);
     time_ += step_;
     values_.swap(next_);
     last_.swap(change_);
@@ -311,6 +319,8 @@ class VehicleSteps {
     watch();
     suspension_.settle();
     means.add_step(course_.middle() - before, contacts_.wheels(), 9);
+    if (extras_.wet != nullptr) extras_.wet->leave(course_.positions(), spent_.data());
+    if (extras_.support != nullptr) extras_.support->meet();
     return true;
   }
 
@@ -351,11 +361,12 @@ class VehicleSteps {
   VehicleContacts &contacts_;
   VehicleCourse &course_;
   VehicleSuspension &suspension_;
+  VehicleExtras extras_;
   VehicleEquations equations_;
   Elimination left_;
   std::vector<size_t> watched_, ages_, wrong_;
   std::vector<double> values_, next_, last_, older_, rates_, known_, change_, assumed_, loss_;
-  std::vector<double> inputs_, older_inputs_, bend_, work_, powers_;
+  std::vector<double> inputs_, older_inputs_, bend_, work_, powers_, spent_;
   double time_ = 0, step_ = 0, surprise_ = 0;
   size_t every_ = 1;
   int status_ = 0;
@@ -377,17 +388,20 @@ void bind_steps(nb::module_ &m) {
   nb::class_<V>(m, "VehicleSteps", "A vehicle's equations of motion and its time steps.")
       .def(nb::init<VehicleContacts &, VehicleCourse &, VehicleSuspension &, const IndexGrid &,
                     const Grid &, const Grid &, const Values &, const Indices &, const Values &,
-                    const Values &, const Indices &, const IndexGrid &>(),
+                    const Values &, const Indices &, const IndexGrid &, VehicleSupport *,
+                    VehicleDrives *, VehicleWetRails *>(),
            nb::arg("contacts"), nb::arg("course"), nb::arg("suspension"), nb::arg("kinds"),
            nb::arg("placements"), nb::arg("inertias"), nb::arg("gravity"), nb::arg("axles"),
            nb::arg("radii"), nb::arg("numbers"), nb::arg("ahead"), nb::arg("watched"),
+           nb::arg("support").none(), nb::arg("drives").none(), nb::arg("wet").none(),
            nb::keep_alive<1, 2>(), nb::keep_alive<1, 3>(), nb::keep_alive<1, 4>(),
+           nb::keep_alive<1, 14>(), nb::keep_alive<1, 15>(), nb::keep_alive<1, 16>(),
            "kinds: of each joint, its parent (-1: the world) and whether it moves along x, y, z "
            "(0 to 2) or about them (3 to 5); placements: in the parent, 12 numbers; inertias: "
            "mass, centre, inertia about it, 13 numbers; axles, radii: joints of the wheelsets, m; "
            "numbers: m, half the distance of the contacts, how far below its centre a body is held "
            "at speed, N s/m, m/s; ahead: its x, y, pitch, yaw; watched: of each wheelset, two "
-           "coordinates.")
+           "coordinates; support, drives, wet: None where there are none.")
       .def("evaluate", &V::evaluate, nb::arg("values"),
            "Fills 'rates' and 'powers'; the contacts' worst status.")
       .def("differentiate", &V::differentiate, nb::arg("values"), nb::arg("wheelsets"),

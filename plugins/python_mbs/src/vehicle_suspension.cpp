@@ -171,7 +171,7 @@ class Suspension final : public VehicleSuspension {
     }
     for (size_t k = 0; k < friction_.size(); ++k) power += rub(k);
     for (size_t k = 0; k < rows_.size(); ++k) collect(k);
-    return power;
+    return damping_power_ = power;
   }
 
   // sliders move on to where the last step() has them: once a time step
@@ -180,8 +180,8 @@ class Suspension final : public VehicleSuspension {
       anchor_[k] = displacement_[friction_[k].row] - friction_force_[k] / friction_[k].stiffness;
   }
 
-  void add_derivatives(double *to) const override {
-    const size_t stride = 2 * width_ + series_.size();
+  void add_derivatives(double *to, size_t coordinates) const override {
+    const size_t stride = 2 * coordinates + series_.size();
     for (size_t k = 0; k < rows_.size(); ++k) {
       const Row &row = rows_[k];
       const double stiffness = tangent(k);
@@ -189,25 +189,26 @@ class Suspension final : public VehicleSuspension {
       each_column(k, [&](size_t i) {
         each_column(k, [&](size_t j) {
           to[i * stride + j] -= stiffness * rate[i] * rate[j];
-          to[i * stride + width_ + j] -= row.damping * rate[i] * rate[j];
+          to[i * stride + coordinates + j] -= row.damping * rate[i] * rate[j];
         });
       });
     }
     for (size_t k = 0; k < series_.size(); ++k)
       each_column(series_[k].row, [&](size_t i) {
-        to[i * stride + 2 * width_ + k] -= matrix_[series_[k].row * width_ + i];
+        to[i * stride + 2 * coordinates + k] -= matrix_[series_[k].row * width_ + i];
       });
   }
 
-  void series_derivatives(double *by_v, double *by_series) const override {
+  void series_derivatives(double *by_v, size_t coordinates, double *by_series) const override {
     for (size_t k = 0; k < series_.size(); ++k) {
       const Series &s = series_[k];
       for (size_t i = 0; i < width_; ++i)
-        by_v[k * width_ + i] = s.stiffness * matrix_[s.row * width_ + i];
+        by_v[k * coordinates + i] = s.stiffness * matrix_[s.row * width_ + i];
       by_series[k] = -s.stiffness / s.damping;
     }
   }
 
+  double damping_power() const { return damping_power_; }
   double *matrix() { return matrix_.data(); }
   double *displacement() { return displacement_.data(); }
   double *rate() { return rate_.data(); }
@@ -334,6 +335,7 @@ class Suspension final : public VehicleSuspension {
   std::vector<Friction> friction_;
   std::vector<double> matrix_, displacement_, rate_, force_, series_rates_, generalised_;
   std::vector<double> friction_force_, anchor_;  // anchor: where a slider's spring has no force
+  double damping_power_ = 0;
 };
 
 using Array = nb::ndarray<nb::numpy, double, nb::ndim<1>>;
@@ -380,6 +382,7 @@ void bind_suspension(nb::module_ &m) {
       .def("settle", &S::settle, "Sliders stay where the last step() moved them to.")
       .def("step", &S::step, nb::arg("q"), nb::arg("v"), nb::arg("series"),
            "Fills the arrays; W, what the dampers turn into heat.")
+      .def_prop_ro("damping_power", &S::damping_power, "W, of the last forces.")
       .def_prop_ro("matrix", &matrix_of, "[rows, width], rates of the rows by the velocities.")
       .def_prop_ro("displacement", &view<&S::displacement, &S::rows>, "m, rad, of the rows.")
       .def_prop_ro("rate", &view<&S::rate, &S::rows>, "m/s, rad/s, of the rows.")
