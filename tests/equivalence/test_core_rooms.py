@@ -21,6 +21,7 @@ LOOKS_INSIDE = {
     "frames.cpp": {"numeric/elementary.hpp"},
     "vehicle_bodies.cpp": {"numeric/elementary.hpp"},
     "vehicle_course.cpp": {"numeric/elementary.hpp"},
+    "vehicle_drives.cpp": {"numeric/elementary.hpp"},
     "vehicle_equations.cpp": {"numeric/elementary.hpp"},
     "vehicle_suspension.cpp": {"numeric/elementary.hpp"},
 }
