@@ -29,6 +29,7 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
+import scipy
 from pydantic import Field
 from railpatch import Contact, Result
 from railpatch.case import WheelsetCase
@@ -38,7 +39,6 @@ from railpatch.case.load import Scene, check_case, plain, read_toml, refuse_othe
 from railpatch.case.types import SIDES, NotNegative, Number, Table
 from railpatch.errors import CaseError
 from railpatch.result import CARRIES
-from scipy.optimize import brentq
 
 from rig_model.broyden import Broyden
 from rig_model.newton import Newton
@@ -383,7 +383,9 @@ class Frictionless:
             if best is None or abs(excess) < best[1]:
                 best = (y, abs(excess))
             if before is not None and before[1] * excess <= 0:
-                y = brentq(lambda at: self._excess(at, radius), before[0], y, xtol=1e-6)
+                y = scipy.optimize.brentq(
+                    lambda at: self._excess(at, radius), before[0], y, xtol=1e-6
+                )
                 return self._at(y)
             before = (y, excess)
         if best is None:

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 from railpatch.profiles.spline import cubic_spline
-from scipy.interpolate import PchipInterpolator
 
 
 @dataclass(frozen=True)
@@ -79,4 +79,4 @@ def polygon(table: Sequence[Sequence[float]], at: NDArray[np.float64]) -> list[f
 def monotone(table: Sequence[Sequence[float]], at: NDArray[np.float64]) -> list[float]:
     """Cubic through the rows (progress, value) without overshoot (Fritsch and Butland 1984)."""
     rows = np.array(table, dtype=float)
-    return PchipInterpolator(rows[:, 0], rows[:, 1])(at).tolist()
+    return scipy.interpolate.PchipInterpolator(rows[:, 0], rows[:, 1])(at).tolist()

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 from railpatch import Contact, Result
 from railpatch.case.types import SIDES
-from scipy.interpolate import PchipInterpolator
 
 from rig_model.programme import Position
 from rig_model.scene import RigScene
@@ -90,7 +90,9 @@ class Baseline:
         self._low, self._high = (found[0][0], found[-1][0]) if found else (0.0, 0.0)
         self._values = np.array([e.unknowns for _, e in found]) if found else np.zeros((1, 3))
         at = [y for y, _ in found]
-        self._over_y = PchipInterpolator(at, self._values) if len(found) > 1 else None
+        self._over_y = (
+            scipy.interpolate.PchipInterpolator(at, self._values) if len(found) > 1 else None
+        )
 
     def __call__(self, position: Position) -> Vector:
         """z (m), roll (rad), pitch rate (rad/s), [3]; beyond the knots that of the last one."""

@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
+import scipy
 from railpatch import CaseError
-from scipy.optimize import brentq
 
 from wheelset_demo.scene import WheelsetScene, refuse_bulk
 from wheelset_demo.simulation import Simulation
@@ -142,7 +142,7 @@ def search(mode_at: Callable[[float], Mode], lowest: float, highest: float) -> S
         if growth(before) > 0:
             return result(None)
         if growth(speed) > 0:
-            root = float(brentq(growth, before, speed, rtol=ACCURACY))
+            root = float(scipy.optimize.brentq(growth, before, speed, rtol=ACCURACY))
             growth(root)
             return result(found[root])
     return result(None)
@@ -229,4 +229,4 @@ def critical_speed_in_time(
     if growth(low) > 0 or growth(high) < 0:
         shown = ", ".join(f"{run.growth:.3g} 1/s at {run.speed:.4g} m/s" for run in runs.values())
         raise CaseError(f"run: waves grow by {shown}, allowed < 0 and > 0")
-    return float(brentq(growth, low, high, rtol=ACCURACY)), list(runs.values())
+    return float(scipy.optimize.brentq(growth, low, high, rtol=ACCURACY)), list(runs.values())

@@ -17,7 +17,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import expm
+import scipy
 
 from wheelset_demo.coupling.masters import Mean
 from wheelset_demo.coupling.multibody import MOTION, Multibody
@@ -110,7 +110,7 @@ def over_step(system: Linearised, step: float) -> tuple[Vector, Vector, Vector]:
     block = np.zeros((n + 2 * m, n + 2 * m))
     block[:n, :n], block[:n, n : n + m] = system.a, system.b
     block[n : n + m, n + m :] = np.eye(m)
-    found = expm(step * block)[:n]
+    found = scipy.linalg.expm(step * block)[:n]
     return found[:, :n], found[:, n : n + m], found[:, n + m :]
 
 

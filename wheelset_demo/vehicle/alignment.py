@@ -16,10 +16,10 @@ import math
 from typing import Annotated
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, model_validator
 from railpatch.case.types import Number, Positive, Table, relation
-from scipy.interpolate import CubicSpline
 
 from wheelset_demo.vehicle.sections import CANT_BASE, SectionTable, Sequence, check_sections
 
@@ -147,7 +147,9 @@ class Alignment:
         steps = self._way(nodes[:-1], np.full(len(nodes) - 1, SPACING))
         places = np.vstack([np.zeros(2), np.cumsum(steps, axis=0)])
         # the start is at the origin: one node lies before it
-        self._spline = CubicSpline(nodes, np.hstack([places - places[1], self._angles(nodes)]))
+        self._spline = scipy.interpolate.CubicSpline(
+            nodes, np.hstack([places - places[1], self._angles(nodes)])
+        )
 
     @property
     def pieces(self) -> tuple[Vector, Vector]:

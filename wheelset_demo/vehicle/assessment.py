@@ -16,9 +16,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 from railpatch.log.channels import LEAST_LOAD, SLIDING
-from scipy.signal import butter, sosfilt, sosfilt_zi
 
 from wheelset_demo.scene import GRAVITY
 
@@ -124,7 +124,7 @@ def assess(trace: Kept, interval: float) -> Assessment | None:
 
 def low_passed(values: Vector, interval: float) -> Vector:
     """[n, columns], by 20 Hz; as if the first values had always been there. interval: s."""
-    sections = butter(ORDER, CORNER, fs=1 / interval, output="sos")
-    rest = sosfilt_zi(sections)[:, :, None] * values[0]
-    found, _ = sosfilt(sections, values, axis=0, zi=rest)
+    sections = scipy.signal.butter(ORDER, CORNER, fs=1 / interval, output="sos")
+    rest = scipy.signal.sosfilt_zi(sections)[:, :, None] * values[0]
+    found, _ = scipy.signal.sosfilt(sections, values, axis=0, zi=rest)
     return np.asarray(found)

@@ -22,10 +22,10 @@ from collections.abc import Sequence
 from typing import Annotated, Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 from railpatch.case.types import NotNegative, Table, relation
-from scipy.signal import bilinear_zpk, sosfilt, sosfilt_zi, zpk2sos
 
 from wheelset_demo.scene import GRAVITY
 from wheelset_demo.vehicle.elements import Place
@@ -101,7 +101,9 @@ def sections_of(kind: str, step: float) -> Vector:
         zeros += roots(fifth, q_fifth).tolist()
         poles.append(roots(sixth, q_sixth))
         gain *= k * (sixth / fifth) ** 2
-    return np.asarray(zpk2sos(*bilinear_zpk(zeros, np.concatenate(poles), gain, rate)))
+    return np.asarray(
+        scipy.signal.zpk2sos(*scipy.signal.bilinear_zpk(zeros, np.concatenate(poles), gain, rate))
+    )
 
 
 class Comfort:
@@ -159,12 +161,12 @@ class Comfort:
         if self._states is None:
             # as if the first values had always been there
             self._states = [
-                sosfilt_zi(sections)[:, :, None] * felt[0, :, axis]
+                scipy.signal.sosfilt_zi(sections)[:, :, None] * felt[0, :, axis]
                 for axis, sections in enumerate(self._sections)
             ]
         weighted = np.empty_like(felt)
         for axis, sections in enumerate(self._sections):
-            weighted[:, :, axis], self._states[axis] = sosfilt(
+            weighted[:, :, axis], self._states[axis] = scipy.signal.sosfilt(
                 sections, felt[:, :, axis], axis=0, zi=self._states[axis]
             )
         squared = weighted**2

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import PPoly
 
 from railpatch.case.gap import read_rows
 from railpatch.case.load import Scene
@@ -49,7 +49,9 @@ class Irregularity:
         # deviations and slopes side by side: one evaluation gives both
         slope = self._spline.derivative().c
         slope = np.concatenate([np.zeros_like(slope[:1]), slope])
-        self._both = PPoly(np.concatenate([self._spline.c, slope], axis=-1), self._spline.x)
+        self._both = scipy.interpolate.PPoly(
+            np.concatenate([self._spline.c, slope], axis=-1), self._spline.x
+        )
 
     def at(self, x: ArrayLike) -> NDArray[np.float64]:
         """m, [..., 2, 2]: of the left and right rail, lateral and vertical, for each x."""

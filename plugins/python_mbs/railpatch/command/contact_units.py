@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import click
-from scipy.io import savemat
+import scipy
 
 from railpatch.case.load import read_toml
 from railpatch.command.group import EXIT_NOT_CONVERGED, tell_warnings, wrong_calls
@@ -69,5 +69,7 @@ def solve_in_contact_units(
 def matlab(cases: list[dict[str, Any]]) -> bytes:
     """A file with one struct for each case: case1, case2, ..."""
     buffer = io.BytesIO()
-    savemat(buffer, {f"case{one['case']}": for_matlab(one) for one in cases}, oned_as="row")
+    scipy.io.savemat(
+        buffer, {f"case{one['case']}": for_matlab(one) for one in cases}, oned_as="row"
+    )
     return buffer.getvalue()

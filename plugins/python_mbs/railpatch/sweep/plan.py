@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
-from scipy.stats import qmc
 
 from railpatch._core import version
 from railpatch.case.kinds import kind_of
@@ -278,9 +278,9 @@ def unit_points(table: SweepTable, keys: int) -> Array:
     count, seed = table.samples, table.seed
     assert count is not None
     if table.design == "latin_hypercube":
-        return qmc.LatinHypercube(keys, seed=seed).random(count)
+        return scipy.stats.qmc.LatinHypercube(keys, seed=seed).random(count)
     if table.design == "sobol":
-        return qmc.Sobol(keys, seed=seed).random(count)
+        return scipy.stats.qmc.Sobol(keys, seed=seed).random(count)
     salib()
     from SALib.sample import morris, sobol
 

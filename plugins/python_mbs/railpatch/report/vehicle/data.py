@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
+import scipy
 
 from railpatch.case.types import SIDES
 from railpatch.log.channels import LEAST_LOAD, SLIDING
@@ -110,7 +110,10 @@ class VehicleRun:
     def _means(self, name: str, values: dict[Wheel, np.ndarray]) -> dict[Wheel, np.ndarray]:
         if self.means_logged:
             return {wheel: series[name] for wheel, series in self.contact.items()}
-        return {wheel: uniform_filter1d(found, self.width) for wheel, found in values.items()}
+        return {
+            wheel: scipy.ndimage.uniform_filter1d(found, self.width)
+            for wheel, found in values.items()
+        }
 
     def ratio(self, wheel: Wheel) -> np.ndarray:
         """-, [n], Y/Q of the means; NaN for a wheel without load."""
