@@ -31,10 +31,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve, solve_triangular
-from scipy.optimize import least_squares, minimize
-from scipy.stats import qmc
 
 from railpatch.errors import CaseError
 from railpatch.match.model import DIFFERENCE, Model
@@ -174,7 +172,7 @@ class Search:
     def whitened(self, values: Array, weights: list[tuple[NDArray[np.intp], Array]]) -> Array:
         """[points, ...] of [observed, m, ...]: with unit covariance."""
         parts = [
-            solve_triangular(factor, values[k][rows], lower=True)
+            scipy.linalg.solve_triangular(factor, values[k][rows], lower=True)
             for k, (rows, factor) in enumerate(weights)
         ]
         return np.concatenate(parts)
@@ -223,7 +221,7 @@ class Search:
             return np.concatenate([own, self.prior_slopes(shares)])[:, free]
 
         begin = np.clip(start[free], 1e-6, 1 - 1e-6)
-        found = least_squares(
+        found = scipy.optimize.least_squares(
             left, begin, slope, bounds=(0.0, 1.0), loss=loss, x_scale=0.1, max_nfev=most, xtol=1e-5,
             ftol=1e-5,
         )  # fmt: skip
@@ -288,7 +286,11 @@ class Search:
         """The best of evenly spread first guesses, that of the file first."""
         given = np.array([0.5 if s.start is None else s.share(s.start) for s in self.sought])
         many = FEW if self.model.free else TRIED
-        tried = qmc.Sobol(len(given), seed=seed).random(many) if count > 1 else np.zeros((0, 0))
+        tried = (
+            scipy.stats.qmc.Sobol(len(given), seed=seed).random(many)
+            if count > 1
+            else np.zeros((0, 0))
+        )
         loss = self.model.plan.table.loss
 
         def cost(shares: Array) -> float:
@@ -301,7 +303,7 @@ class Search:
     def _cost(self, shares: Array, noise: Noise, loss: str) -> float:
         difference = self.computed(shares) - np.nan_to_num(self.measured)
         z = np.concatenate([self.whitened(difference, self.weights(noise)), self.prior(shares)])
-        return float(least_squares(lambda _: z, [0.0], loss=loss, max_nfev=1).cost)
+        return float(scipy.optimize.least_squares(lambda _: z, [0.0], loss=loss, max_nfev=1).cost)
 
     def _misfit(self, shares: Array) -> float:
         """rms over the greatest measured value, of all quantities."""
@@ -340,7 +342,7 @@ class Search:
 
         best, least = Noise(error, degrees=known), -self.likelihood(computed, Noise(error))
         for length in (0.1, 0.5):
-            found = minimize(
+            found = scipy.optimize.minimize(
                 loss,
                 np.log([0.7, 1.0, length]),
                 method="L-BFGS-B",
@@ -371,9 +373,9 @@ class Search:
         for k, there in enumerate(self.there):
             rows = np.flatnonzero(there & self.kept)
             left = self.measured[k, rows] - computed[k, rows]
-            factor = cho_factor(self.covariance_of(k, rows, noise, whole), lower=True)
+            factor = scipy.linalg.cho_factor(self.covariance_of(k, rows, noise, whole), lower=True)
             logarithm = np.log(np.diag(factor[0])).sum()
-            total -= 0.5 * float(left @ cho_solve(factor, left)) + logarithm
+            total -= 0.5 * float(left @ scipy.linalg.cho_solve(factor, left)) + logarithm
             total -= 0.5 * len(rows) * np.log(2 * np.pi)
         return float(total)
 

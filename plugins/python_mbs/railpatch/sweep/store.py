@@ -43,7 +43,7 @@ def read_sweep(folder: str | Path) -> Any:
     path = Path(folder) / TABLE
     if not path.is_file():
         raise CaseError(f"{folder}: has no {TABLE}, allowed the folder of a finished sweep")
-    return pyarrow.parquet.read_table(path)
+    return pyarrow.parquet.ParquetFile(path).read()
 
 
 def write_chunk(folder: Path, chunk: Chunk, rows: Sequence[Row]) -> Path:
@@ -60,7 +60,7 @@ def read_rows(folder: Path, wanted: Iterable[str], outputs: Sequence[str]) -> di
     ids, found = set(wanted), {}
     for path in sorted((folder / CHUNKS).glob("*.parquet")):
         try:
-            content = pyarrow.parquet.read_table(path).to_pydict()
+            content = pyarrow.parquet.ParquetFile(path).read().to_pydict()
         except (OSError, pyarrow.ArrowException):
             continue
         if not {*COLUMNS, *outputs} <= set(content):

@@ -45,7 +45,8 @@ def plain(unit: str) -> str:
 
 @cache
 def _schema(kind: str) -> dict[str, object]:
-    return kind_of(kind).schema()
+    # without what other commands read of such files, whose code takes long to load
+    return kind_of(kind).model.model_json_schema()
 
 
 @cache
