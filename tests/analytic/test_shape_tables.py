@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +15,7 @@ from railpatch import CaseError, Contact
 from railpatch.case.creep_table import describe_table
 from railpatch.command.cli import cli
 from railpatch.evidence.table import shapes
+from railpatch.evidence.table.gaps import LEFT, Gaps
 from railpatch.evidence.table.pair import CHECK, COARSE, FULL, Pair, Ranges
 from railpatch.evidence.table.pair_command import pair_case
 
@@ -27,14 +30,16 @@ def pair(seed: int) -> Pair:
 
 @pytest.fixture(scope="module")
 def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Of sixteen shapes, told by 100 states."""
+    """Of sixteen shapes, half of them solved at a third of the creepages, told by 100 states."""
     file = tmp_path_factory.mktemp("shapes") / "tread.bin"
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(shapes, "FIRST", 16)
+        patch.setattr(shapes, "WHOLE", 8)
         patch.setattr(shapes, "ROUND", 4)
         for name in ("NODES", "DIVIDED"):
             patch.setattr(shapes, name, (24, 8))
-        file.write_bytes(shapes.make_shapes(pair(1), 0.01, 100, 1, lambda _text: None, 18))
+        parts = file.with_name("parts")
+        file.write_bytes(shapes.make_shapes(pair(1), 0.01, 100, 1, lambda _text: None, 18, parts))
     return file
 
 
@@ -158,3 +163,55 @@ def test_the_recipe_is_in_it(table: Path) -> None:
     assert about["error"]["cases"] >= 90
     assert 16 <= about["shapes"] <= 18
     json.dumps(about)
+
+
+class Stopped(Exception):
+    """In place of a machine that goes down."""
+
+
+def test_a_run_that_was_stopped_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the same places, shapes and errors as one that was not."""
+    for name, value in (("FIRST", 4), ("ROUND", 2), ("WHOLE", 3), ("KEPT", 1)):
+        monkeypatch.setattr(shapes, name, value)
+    for name in ("NODES", "DIVIDED", "CHECK"):
+        monkeypatch.setattr(shapes, name, (16, 6))
+    solved: list[str] = []
+
+    def stop(text: str) -> None:
+        solved.append(text)
+        if len(solved) == 3:
+            raise Stopped
+
+    def made(parts: str, step: Callable[[str], None] = lambda _text: None) -> dict[str, Any]:
+        data = shapes.make_shapes(pair(1), 0.05, 8, 1, step, 5, tmp_path / parts)
+        return {key: value for key, value in describe_table(data).items() if key != "seconds"}
+
+    whole = made("whole")
+    with pytest.raises(Stopped):
+        made("parts", stop)
+    assert len(np.load(tmp_path / "parts/shapes.npz")["features"]) == 2
+    assert made("parts") == whole
+    # of another pair, or damaged: they are solved anew
+    other = shapes.Shapes(Pair(pair_case("S1002", "UIC60@1:20"), ".", NARROW, 1, "other"), 1)
+    other.go_on(tmp_path / "parts/shapes.npz")
+    (tmp_path / "parts/shapes.npz").write_bytes(b"no archive")
+    shapes.Shapes(pair(1), 1).go_on(tmp_path / "parts/shapes.npz")
+    assert len(other) == 0
+
+
+def test_gaps_are_filled_by_what_rows_share() -> None:
+    """Sums of five functions, known at a third of the places, to what noise leaves of them."""
+    random = np.random.default_rng(3)
+    functions = random.normal(size=(5, 99, 3))
+    amounts = 0.01 * random.normal(size=(41, 5))
+    rows = 0.1 + np.einsum("nk,kpc->npc", amounts, functions)
+    known = np.arange(0, 99, 3)
+    gaps = Gaps(rows[:40], known)
+    # five numbers from 99 with a standard deviation of LEFT each, without any noise in them
+    assert np.abs(gaps.filled(rows[40][known]) - rows[40]).max() < LEFT
+    noisy = rows[40] + LEFT * random.normal(size=rows[40].shape)
+    found = gaps.filled(noisy[known])
+    assert (found[known] == noisy[known]).all()
+    others = np.setdiff1d(np.arange(99), known)
+    # the five amounts' errors, seen by functions of size 1: sqrt(5 / 99) LEFT expected
+    assert np.sqrt(np.mean((found - rows[40])[others] ** 2)) < 2 * np.sqrt(5 / 99) * LEFT

@@ -70,13 +70,14 @@ def table(
 
     With --wheel and --rail, or --case: a table for the contacts of one pair of profiles, which are
     no ellipses, for method.table_file. The full theory solves shapes until random states err by
-    less than --error; takes from minutes to more than an hour on one core.
+    less than --error; takes from minutes to more than an hour on one core. A run that was stopped
+    goes on as well.
     """
     if case is not None or wheel is not None or rail is not None:
         from railpatch.evidence.table.pair_command import make_pair
 
         make_pair(
-            output, jobs, (wheel, rail), case, error, (y, load, yaw), check, most, seed, quiet
+            output, jobs, (wheel, rail), case, error, (y, load, yaw), check, most, seed, keep, quiet
         )
         return
     from railpatch.case.creep_table import describe_table

@@ -7,7 +7,7 @@ friction only, so other coefficients are other creepages.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -30,7 +30,6 @@ COARSE = {"elements": [16, 16]}
 # of nodes, of nodes with two parts, of states that are tried
 NODES, DIVIDED, CHECK = (40, 16), (48, 20), (48, 22)
 FULL = {"tangential": "full", "tolerance": 1e-4, "max_iterations": 500}
-SEQUENCE = 97  # of the creepages of a shape those of one spin
 
 
 @dataclass(frozen=True)
@@ -94,6 +93,10 @@ class Pair:
         self._loaded = Contact(loaded)
         self._radius = checked.wheelset.nominal_radius
 
+    def about(self) -> dict[str, Any]:
+        """What says which pair it is: the case and the ranges of its places."""
+        return {"case": self._case, "ranges": asdict(self.ranges)}
+
     def scene(
         self, method: dict[str, Any], grid: dict[str, Any], friction: float | None = None,
         **height: float,
@@ -127,6 +130,9 @@ class Pair:
         """A random one with contact."""
         r = self.ranges
         while True:
+            # a place hangs on no other: a run that goes on finds the same
+            self._loaded.reset()
+            self._still.reset()
             where = {
                 "y": self.random.uniform(*r.y),
                 "yaw": self.random.uniform(-r.yaw, r.yaw),
@@ -245,16 +251,17 @@ class Pair:
     def solve(
         self, place: Place, creepages: Vector, method: dict[str, Any], grid: dict[str, Any],
         threads: int, friction: float | None = None, moved_on: list[int] | None = None,
+        sequence: int | None = None,
     ) -> tuple[Vector, NDArray[np.bool_]]:  # fmt: skip
         """Forces [n, 2] over the bound and moment over c times it, about the reference, of a patch;
         and which are solved. friction: None is the case's; moved_on: elements of the grid whose
-        creepages they are, None the one that solves."""
+        creepages they are, None the one that solves; sequence: so many states go on from each
+        other, None all."""
         # one after the other the pressure stays, and tractions begin near the last ones
-        count = len(creepages)
         inputs = self.inputs(place, creepages, moved_on or grid["elements"])
         states = solve_many(
             self.scene(method, grid, friction, z=0.0), inputs, threads=threads,
-            sequence=SEQUENCE if count % SEQUENCE == 0 else count,
+            sequence=sequence or len(creepages),
         )  # fmt: skip
         k = place.k
         if k >= states["patches.status"].shape[1]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -59,7 +60,7 @@ def ranges_of(
 
 def make_pair(
     output: Path, jobs: int, profiles: tuple[str | None, str | None], case: Path | None,
-    error: float, ranges: Asked, check: int, most: int, seed: int, quiet: bool,
+    error: float, ranges: Asked, check: int, most: int, seed: int, keep: bool, quiet: bool,
 ) -> None:  # fmt: skip
     """Makes and writes the table, and tells its errors."""
     check_output(output)
@@ -69,19 +70,22 @@ def make_pair(
     folder = "." if case is None else str(case.parent)
     label = " on ".join(str(name) for name in profiles) if case is None else case.name
     pair = Pair(content, folder, ranges_of(*ranges), seed, label)
-    with progress(quiet) as step:
-        data = make_shapes(pair, error, check, jobs, step, most)
+    parts = output.with_name(f"{output.name}.parts")
     try:
+        with progress(quiet) as step:
+            data = make_shapes(pair, error, check, jobs, step, most, parts)
         write_whole(output, data)
     except OSError as failed:
         raise CaseError(f"{output}: cannot be written: {failed.strerror or failed}") from None
+    if not keep:
+        shutil.rmtree(parts, ignore_errors=True)
     about = describe_table(data)
     if quiet:
         return
     found = about["error"]
     click.echo(
-        f"{output}: {len(data)} bytes, {about['shapes']} shapes, {about['seconds']} s; "
-        "error in per cent, median / 90 / 95 / 99 % / worst"
+        f"{output}: {len(data)} bytes, {about['shapes']} shapes, {about['seconds']} s of processor "
+        "time; error in per cent, median / 90 / 95 / 99 % / worst"
     )
     texts = [" / ".join(f"{100 * e:.3f}" for e in found[key]) for key in ("force", "moment")]
     click.echo(f"  {about['pair']}  {found['cases']} states  force {texts[0]}  moment {texts[1]}")
