@@ -429,6 +429,13 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
                 "axle_torque must be 0 with axle_free = 0");
   check.require(c.longitudinal_prescribed == 1 || in.longitudinal_force == 0,
                 "longitudinal_force must be 0 with longitudinal_prescribed = 0");
+  const bool finds_rate = c.axle_free == 1 || c.longitudinal_prescribed == 1;
+  const bool turns = c.track == RP_ROLLER && in.roller_pitch_rate != 0;
+  check.require(!finds_rate || in.speed != 0 || turns,
+                c.track == RP_ROLLER
+                    ? "speed or roller_pitch_rate must not be 0 where the pitch rate is found: "
+                      "nothing rolls"
+                    : "speed must not be 0 where the pitch rate is found: nothing rolls");
   const bool rolls_on = regime_of(c, in) == RP_TRANSIENT_ROLLING && has_tangential(c);
   check.number("time_step", in.time_step, rolls_on ? positive : input_range::time_step);
   for (const auto &rotation : in.rail_rotation)

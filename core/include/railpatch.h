@@ -146,7 +146,13 @@ enum {
     "method.max_work was spent before a height z was found that carries the vertical force, "  \
     "by the relative residual: smaller steps, or greater method.max_work")                     \
   X(RP_REASON_FLUID, 24,                                                                       \
-    "the liquid's pressure was not found in each row of the contact: finer elements")
+    "the liquid's pressure was not found in each row of the contact: finer elements")          \
+  X(RP_REASON_TORQUE, 25,                                                                      \
+    "wheelset.axle_torque is greater than what friction can carry (N m): a smaller torque, "   \
+    "a greater load or friction")                                                              \
+  X(RP_REASON_DRIVEN_FORCE, 26,                                                                \
+    "wheelset.longitudinal_force is greater than what friction can carry (N): a smaller "      \
+    "force, a greater load or friction")
 
 /* --- warnings: bits of what can hardly be meant. X(name, value, text): the bit is 1 << value ---
  */

@@ -101,6 +101,29 @@ struct wheels::balanced_state final : balanced_wheelset {
     return radius > 0 && std::isfinite(slip) ? -slip / radius : 0.0;
   }
 
+  // What friction can carry of what drives the wheelset, N m or N.
+  double most_driven() const {
+    double most = 0;
+    for (const auto &wheel : own.wheels_) {
+      const rp_side_result &side = out.side[wheel.side()];
+      const double arm = setup.along ? 1.0 : side.rolling_radius;
+      for (int i = 0; i < side.patch_count + side.alternative_count; ++i) {
+        const rp_patch_result &p = side.patch[i];
+        if (!(p.utilised_friction > 0)) continue;
+        most += arm * p.share * hypot(p.creep_force[0], p.creep_force[1]) / p.utilised_friction;
+      }
+    }
+    return most;
+  }
+  // Why the search found nothing.
+  verdict failure(rp_status status, double residual) const {
+    const double asked = setup.along ? in.longitudinal_force : in.axle_torque;
+    const double most = setup.axle ? most_driven() : 0.0;
+    if (most > 0 && std::abs(asked) > most)
+      return {RP_OUT_OF_RANGE, setup.along ? RP_REASON_DRIVEN_FORCE : RP_REASON_TORQUE, most};
+    return {status, RP_REASON_BALANCE, residual};
+  }
+
   wheels &own;
   const balance_setup &setup;
   rp_input &in;
@@ -193,11 +216,11 @@ void wheels::solve_balanced(rp_input &in, rp_result &out) {
   const balance_outcome found = find_balance(state, search);
   state.set(found.unknown);
   if (!found.known) {
-    report_search({RP_OUT_OF_RANGE, RP_REASON_BALANCE}, HUGE_VAL, out);
+    report_search(state.failure(RP_OUT_OF_RANGE, nan), HUGE_VAL, out);
     return fail();
   }
   verdict ended;
-  if (!found.converged) ended = {RP_NOT_CONVERGED, RP_REASON_BALANCE, found.residual};
+  if (!found.converged) ended = state.failure(RP_NOT_CONVERGED, found.residual);
   report_search(ended, found.residual, out);
 }
 

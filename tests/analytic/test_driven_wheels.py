@@ -136,7 +136,7 @@ def test_steps_and_what_friction_cannot_carry() -> None:
     # 0.3 times 60 kN
     beyond = contact.step(longitudinal_force=2.5e4)
     assert beyond.status != "converged"
-    assert "pitch rate" in beyond.reason
+    assert "longitudinal_force is greater than what friction can carry" in beyond.reason
 
 
 @pytest.mark.parametrize(
@@ -167,3 +167,30 @@ def test_numbers_of_a_balance() -> None:
     assert numbers.longitudinal_force is None
     found = railpatch.solve(with_values(SINGLE, wheelset__longitudinal_force=2e3))
     assert numbers.pitch_rate == found["pitch_rate"]
+
+
+@pytest.mark.parametrize("key", ["axle_torque", "longitudinal_force"])
+@pytest.mark.parametrize("name", CASES)
+def test_more_than_friction_carries_is_refused_with_what_it_can(name: str, key: str) -> None:
+    """The bound: Coulomb's law, friction coefficient times normal forces, about the axle by the
+    rolling radius, which is the nominal one but for the contact's place on the profile."""
+    case = CASES[name]
+    load = case["wheelset"]["vertical_force"]
+    most = 0.3 * load * (1 if key == "longitudinal_force" else 0.46)
+    result = railpatch.solve(with_values(case, **{f"wheelset__{key}": -1.2 * most}))
+    assert result["status"] == "out_of_range"
+    # contacts are inclined: the normal force is a little more than the load
+    text, _, value = result.reason.rpartition("(")
+    assert float(value.rstrip(")")) == pytest.approx(most, rel=0.01)
+    assert f"wheelset.{key} is greater than what friction can carry" in text
+    below = railpatch.solve(with_values(case, **{f"wheelset__{key}": -0.8 * most}))
+    assert below["status"] == "converged"
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_what_stands_still_has_no_pitch_rate(name: str) -> None:
+    case = with_values(CASES[name], wheelset__speed=0.0)
+    if name == "roller":
+        case = with_values(case, track__roller_pitch_rate=0.0)
+    with pytest.raises(railpatch.CaseError, match="must not be 0 where the pitch rate is found"):
+        railpatch.solve(case)
