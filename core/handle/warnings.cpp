@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "fluid/ehl.hpp"
+#include "handle/checker.hpp"
 #include "railpatch_fields.h"
 
 namespace railpatch {
@@ -22,6 +23,10 @@ constexpr double play_range[2] = {0.04, 0.12};    // m, gauge minus flange back 
 constexpr double least_flange = 0.015;            // m, height of a profile that has one
 constexpr double least_way = 0.01;                // m/s, below which nothing is said of turning
 constexpr double radius_range[2] = {1, 8};        // of wheels, over the width of their profiles
+constexpr double longest_shift = 1e-3;            // m
+constexpr double longest_step = 0.1;              // m, of transient rolling
+constexpr double greatest_speed = 200;            // m/s
+constexpr double body_range[2] = {0.002, 20};     // m, radii of bodies that touch
 constexpr int least_elements = 8;
 constexpr double coarse_rise = 0.1;  // of a film's pressure in an element: docs/ehl.md
 
@@ -50,6 +55,29 @@ bool turns_wrongly(const rp_config &config, const rp_input &in, double pitch_rat
   if (config.track == RP_ROLLER) way += in.roller_pitch_rate * config.roller_radius;
   const double rate = pitch_rate + in.wheel_angular_velocity[side][1];
   return std::fabs(way) > least_way && !(-rate * way > 0);
+}
+
+// Of a step: motions in another unit. A patch's speed and distance are given, wheels' follow.
+uint32_t warnings_of_motion(const rp_config &config, const rp_input &in) {
+  const bool alone = config.kind == RP_PATCH;
+  const int regime =
+      config.tangential == RP_TANGENTIAL_NONE ? RP_REGIME_NONE : regime_of(config, in);
+  const double turning =
+      config.track == RP_ROLLER ? in.roller_pitch_rate * config.roller_radius : 0;
+  const double speed = alone ? in.rolling_speed : in.speed + turning;
+  const double way = alone ? in.distance : std::fabs(speed) * in.time_step;
+  const double shift = std::max(std::fabs(in.creepage[0]), std::fabs(in.creepage[1]));
+  return bit(RP_WARNING_SHIFT, alone && regime == RP_SHIFT && shift > longest_shift) |
+         bit(RP_WARNING_DISTANCE, regime == RP_TRANSIENT_ROLLING && way > longest_step) |
+         bit(RP_WARNING_SPEED, std::fabs(speed) > greatest_speed);
+}
+
+// Of radii in mm, or given in place of curvatures.
+bool doubtful_bodies(const rp_config &config) {
+  if (config.kind != RP_PATCH) return false;
+  if (config.geometry == RP_LINE_CONTACT) return outside(config.line_contact_radius, body_range);
+  if (config.geometry != RP_CURVATURES) return false;
+  return outside(1 / std::max(config.curvatures[0], config.curvatures[1]), body_range);
 }
 
 uint32_t warnings_of_patch(const rp_config &config, const rp_patch_result &patch) {
@@ -120,6 +148,7 @@ uint32_t warnings_of_case(const rp_config &config) {
   const bool layer =
       config.layer_thickness > 0 && outside(config.layer_shear_modulus, layer_shear_modulus_range);
   return bit(RP_WARNING_STIFFNESS, soft) | bit(RP_WARNING_RADIUS, odd) |
+         bit(RP_WARNING_CURVATURES, doubtful_bodies(config)) |
          bit(RP_WARNING_LAYER_STIFFNESS, layer) | bit(RP_WARNING_GAUGE, wide);
 }
 
@@ -134,12 +163,14 @@ uint32_t warnings_of_film(const rp_config &config, const patch_memory *solution,
 
 void report_warnings(const rp_config &config, uint32_t of_case, const rp_input &input,
                      rp_result &result) {
+  const uint32_t of_motion = warnings_of_motion(config, input);
   int touching = 0;
   for (int side = 0; side < 2; ++side) {
     if (!in_use(config, side)) continue;
     rp_side_result &wheel = result.side[side];
     // those of the search for the height are there already
-    wheel.warnings |= of_case | warnings_of_side(config, input, result.pitch_rate, side, wheel);
+    wheel.warnings |=
+        of_case | of_motion | warnings_of_side(config, input, result.pitch_rate, side, wheel);
     touching += wheel.patch_count > 0;
   }
   // said of the wheel in the air

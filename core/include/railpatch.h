@@ -177,7 +177,13 @@ enum {
     "other heights nearly or quite carry the vertical force too: forces jump near this position")  \
   X(RP_WARNING_WATER, 17, "water as a liquid is warmer than 100 or colder than 0 degrees C")       \
   X(RP_WARNING_FILM_GRID, 18,                                                                      \
-    "the grid is too coarse for the film that was found: more elements along rolling")
+    "the grid is too coarse for the film that was found: more elements along rolling")             \
+  X(RP_WARNING_SHIFT, 19, "regime shift: creepage is the way of the step, in m; it is above 1 mm") \
+  X(RP_WARNING_DISTANCE, 20, "transient rolling: a step is longer than 100 mm")                    \
+  X(RP_WARNING_SPEED, 21, "a speed is above 200 m/s")                                              \
+  X(RP_WARNING_CURVATURES, 22,                                                                     \
+    "a radius of the bodies is outside 2 mm to 20 m: greatest of "                                 \
+    "curvatures, in 1/m, or line_contact_radius, in m")
 
 #define RP_ENUM_ENTRY(name, value, text) name = value,
 typedef enum rp_error { RP_ERRORS(RP_ENUM_ENTRY) } rp_error;

@@ -153,6 +153,8 @@ def profile(
 
 WATER = '[fluid]\nmodel = "film"\nroughness = 1e-6\nliquid = "water"\n'
 NUMBER = r"[-+0-9.eE]+"
+# a grid that does not change with the load
+FIXED = (r"elements = \[.*\]", "element_size = [5e-4, 5e-4]\nmax_elements = [64, 64]")
 MISTAKES: tuple[Mistake, ...] = (
     # --- a contact patch --------------------------------------------------------------------------
     *(
@@ -194,6 +196,11 @@ MISTAKES: tuple[Mistake, ...] = (
             ("text for a number",
              patch((f"coefficient = {NUMBER}", 'coefficient = "0.3"'))),
             ("a decimal comma", patch((f"coefficient = {NUMBER}", "coefficient = 0,3"))),
+            ("a shift in mm",
+             patch((r"steady_rolling", "shift"), (r"creepage = \[.*\]", "creepage = [0.02, 0.0]"),
+                   (r"^spin_creepage.*$", ""), (r"^rolling_speed.*$", ""), FIXED)),
+            ("a rolled distance in mm",
+             patch((r"steady_rolling\"", "transient_rolling\"\ndistance = 0.5"), FIXED)),
             ("a grid of 6 x 6", patch((r"elements = \[.*\]", "elements = [6, 6]"))),
             ("a grid of 4000 x 4000", patch((r"elements = \[.*\]", "elements = [4000, 4000]"))),
             ("an element in mm",
@@ -239,6 +246,8 @@ MISTAKES: tuple[Mistake, ...] = (
             ("y in mm", loaded((r"^\[wheelset\]", "[wheelset]\ny = 3.0"))),
             ("y without roll", loaded((r"^\[wheelset\]", "[wheelset]\ny = 3e-3"))),
             ("yaw in degrees", loaded((r"^\[wheelset\]", "[wheelset]\nyaw = 0.5"))),
+            ("speed in mm/s",
+             loaded((f"^speed = {NUMBER}", "speed = 2e4"), (f"^pitch_rate = {NUMBER}", "pitch_rate = -43478.3"))),
             ("speed in km/h", loaded((f"^speed = {NUMBER}", "speed = 72.0"))),
             ("a pitch rate of the other sign",
              loaded((f"pitch_rate = {NUMBER}", "pitch_rate = 43.478"))),

@@ -57,6 +57,44 @@ MISTAKES: dict[str, tuple[dict[str, Any], str]] = {
         with_values(PATCH, layer={"shear_modulus": 6e9, "thickness": 0.02}),
         "layer",
     ),
+    "a shift in mm": (
+        with_values(PATCH, motion={"regime": "shift", "creepage": [0.02, 0.0]}),
+        "above 1 mm",
+    ),
+    "a step in mm": (
+        with_values(
+            PATCH,
+            motion={
+                "regime": "transient_rolling",
+                "distance": 0.5,
+                "creepage": [1e-3, 0.0],
+                "rolling_speed": 20.0,
+            },
+        ),
+        "longer than 100 mm",
+    ),
+    "a wheel's time step in ms": (
+        with_values(
+            LOADED,
+            motion={"regime": "transient_rolling"},
+            wheelset__time_step=1.0,
+            wheelset__speed=20.0,
+            wheelset__pitch_rate=-20.0 / 0.46,
+        ),
+        "longer than 100 mm",
+    ),
+    "speed in mm/s": (
+        with_values(LOADED, wheelset__speed=2e4, wheelset__pitch_rate=-2e4 / 0.46),
+        "200 m/s",
+    ),
+    "radii in place of curvatures": (
+        with_values(PATCH, geometry={"curvatures": [0.02, 0.03]}),
+        "2 mm to 20 m",
+    ),
+    "radii in mm": (
+        with_values(PATCH, geometry={"curvatures": [600.0, 600.0]}, load__normal_force=500.0),
+        "2 mm to 20 m",
+    ),
     "a grid of 6 x 6": (with_values(PATCH, grid={"elements": [6, 6]}), "8 elements"),
 }
 # the condition -> the case, its status and a word of the reason

@@ -17,9 +17,11 @@ from wheelset_demo.vehicle.assessment import LEAST_RATE, LEAST_WAY, SLIDING
 from wheelset_demo.vehicle.bodies import VehicleTable
 from wheelset_demo.vehicle.deviations import DipTable
 from wheelset_demo.vehicle.plausible import (
+    LONGEST_WAY,
     doubtful_bodies,
     doubtful_elements,
     doubtful_support,
+    doubts_of,
     unmet_dips,
 )
 from wheelset_demo.vehicle.scene import load_vehicle_scene
@@ -49,6 +51,15 @@ def test_packaged_vehicles_have_no_warning(name: str) -> None:
     assert doubtful_bodies(scene.vehicle) == []
     assert doubtful_elements(scene.vehicle) == []
     assert doubtful_support(scene.support) == []
+
+
+def test_steps_that_pass_what_excites_a_vehicle() -> None:
+    speed = load_vehicle_scene().speed
+    for share, warned in ((0.9, False), (1.1, True)):
+        scene = load_vehicle_scene(None, {"step": share * LONGEST_WAY / speed})
+        told = [text for text in doubts_of(scene) if text.startswith("run.step")]
+        assert bool(told) == warned
+        assert not warned or "0.275 m" in told[0]
 
 
 @pytest.mark.parametrize(("unit", "factor"), [("kN/mm", 1e-6), ("kN/m", 1e-3)])

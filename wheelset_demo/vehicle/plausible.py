@@ -56,15 +56,29 @@ def outside(name: str, value: float, low: float, high: float, unit: str) -> Iter
         yield f"{name} is {value:g}{shown}, outside {low:g} to {high:g}{shown}"
 
 
+# m, of way in a time step: irregularities of the track have waves of 3 m and more
+LONGEST_WAY = 0.25
+
+
 def doubts_of(scene: VehicleScene) -> list[str]:
     """Warnings of all that a scene says, before anything runs."""
     return [
+        *long_steps(scene.speed, scene.run.step),
         *doubtful_bodies(scene.vehicle),
         *doubtful_elements(scene.vehicle),
         *doubtful_support(scene.support),
         *unmet_dips(scene.dip, scene.way),
         *unmet_water(scene.wet, scene.way),
     ]
+
+
+def long_steps(speed: float, step: float) -> Iterator[str]:
+    """The warning of time steps (s) in which a vehicle (m/s) passes what excites it."""
+    if abs(speed) * step > LONGEST_WAY:
+        yield (
+            f"run.step is {step:g} s, in which {abs(speed) * step:.3g} m of track are passed, more "
+            f"than {LONGEST_WAY:g} m"
+        )
 
 
 def doubtful_bodies(vehicle: VehicleTable) -> list[str]:
