@@ -23,7 +23,7 @@ struct look_place {
 
 struct gap_samples {
   static constexpr int block = 16;
-  static constexpr double reach = 5e-4;  // m
+  static constexpr double reach = 2.5e-4;  // m
 
   // Samples of one block: their points on the wheel, y along the axis and radius r.
   struct stretch {

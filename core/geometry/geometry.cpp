@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/row_hits.hpp"
 #include "numeric/elementary.hpp"
 #include "numeric/nan.hpp"
 
@@ -11,7 +12,7 @@ namespace railpatch {
 
 namespace {
 
-constexpr double grazing = 0.03;     // least cosine between n and a surface's normal
+constexpr double grazing = grazing_cosine;
 constexpr double step_limit = 2e-3;  // m, of a newton step along a profile
 
 constexpr mat3 identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -84,7 +85,8 @@ bool meet(const surface &f, const vec3 &base, hit &h) {
     const double scale = std::fabs(dp) > step_limit ? step_limit / std::fabs(dp) : 1.0;
     h.p += scale * dp;
     h.n += scale * dn;
-    if (std::fabs(dp) < 4e-7 && std::fabs(dn) < 4e-7) return h.valid = curve.covers(h.p);
+    if (std::fabs(dp) < close_step && std::fabs(dn) < close_step)
+      return h.valid = curve.covers(h.p);
   }
   return h.valid = false;
 }
@@ -159,71 +161,55 @@ void follow_row(const surface &f, const surface_grid &g, int row, int column, co
   march(f, g, row, column - 1, -1, middle, put);
 }
 
-// Rows from their middle columns outwards, side by side: a row's next element waits for its last
-// one, those of other rows do not. Each row is what follow_row() makes of it.
-class row_filler {
- public:
-  row_filler(const surface &f, const surface_grid &g, int column, double *heights)
-      : f_(f), g_(g), column_(column), heights_(heights) {}
-
-  void add(int row, const hit &middle) {
-    if (!middle.valid || (f_.prismatic && !f_.shape)) {
-      std::fill_n(at(row), g_.nx, middle.valid ? middle.n : nan);
-      return;
+// A row of a round surface, heights at h, from its middle column outwards, where it ends at the
+// first element that is missed.
+void fill_row(const surface &f, const surface_grid &g, int row, int column, const hit &middle,
+              double *h) {
+  constexpr int strip = 256;
+  double p[strip], n[strip], off[strip];
+  const double s = g.y0 + row * g.dy, at = g.x0 + column * g.dx;
+  const profile &curve = f.meridian->curve();
+  row_of_lines lines{f.meridian->piece_at(curve.interval(middle.p, middle.interval)),
+                     f.at(at, s),
+                     f.qx,
+                     f.qn,
+                     middle.p,
+                     middle.n};
+  for (double &c : lines.meridian.z) c *= f.sign;
+  lines.meridian.z[0] += f.radius;
+  // the row's ends, outwards from the middle
+  int ends[2] = {-1, g.nx};
+  for (int first = 0; first < g.nx; first += strip) {
+    const int count = std::min(strip, g.nx - first);
+    // whole vectors
+    const int filled = std::min(strip, (count + 3) / 4 * 4);
+    meet_row(lines, g.x0 + first * g.dx - at, g.dx, filled, p, n, off);
+    for (int k = 0; k < count; ++k) {
+      const int i = first + k;
+      if (off[k] != 0) {
+        hit one{p[k], n[k], middle.interval, false};
+        if (!meet(f, f.at(g.x0 + i * g.dx, s), one)) {
+          if (i < column) ends[0] = i;
+          if (i >= column) ends[1] = std::min(ends[1], i);
+        }
+        n[k] = one.n;
+      }
+      h[i] = n[k];
     }
-    lane &own = lanes_[static_cast<size_t>(count_++)];
-    own.row = row;
-    own.middle = middle;
-    if (count_ == most) fill();
   }
-  void fill() {
-    march(column_, 1);
-    march(column_ - 1, -1);
-    count_ = 0;
-  }
+  for (int i = 0; i <= ends[0]; ++i) h[i] = nan;
+  for (int i = ends[1]; i < g.nx; ++i) h[i] = nan;
+}
 
- private:
-  static constexpr int most = 4;
-  struct lane {
-    int row = 0;
-    hit middle, a, b, c;
-    bool going = false;
-  };
-
-  double *at(int row) const { return heights_ + static_cast<std::ptrdiff_t>(row) * g_.nx; }
-
-  void march(int from, int step) {
-    for (int l = 0; l < count_; ++l) {
-      lane &own = lanes_[static_cast<size_t>(l)];
-      own.a = own.b = own.c = own.middle;
-      own.going = true;
-    }
-    for (int i = from, k = 0; i >= 0 && i < g_.nx; i += step, ++k)
-      for (int l = 0; l < count_; ++l) advance(lanes_[static_cast<size_t>(l)], i, k);
-  }
-
-  void advance(lane &own, int i, int k) {
-    double &height = at(own.row)[i];
-    height = nan;
-    if (!own.going) return;
-    hit h = own.a;
-    if (k > 1) h.p = 2 * own.a.p - own.b.p;
-    if (k > 2) h.n = 3 * (own.a.n - own.b.n) + own.c.n;
-    own.going = meet(f_, f_.at(g_.x0 + i * g_.dx, g_.y0 + own.row * g_.dy), h);
-    if (!own.going) return;
-    height = h.n;
-    own.c = own.b;
-    own.b = own.a;
-    own.a = h;
-  }
-
-  const surface &f_;
-  const surface_grid &g_;
-  int column_;
-  double *heights_;
-  std::array<lane, most> lanes_;
-  int count_ = 0;
-};
+// NaN where the surface is missed.
+void heights_of_row(const surface &f, const surface_grid &g, int row, int column, const hit &middle,
+                    double *h) {
+  if (middle.valid && !f.prismatic && !f.shape)
+    fill_row(f, g, row, column, middle, h);
+  else
+    follow_row(f, g, row, column, middle,
+               [&](int i, const hit &on) { h[i] = on.valid ? on.n : nan; });
+}
 
 int clamp_index(double position, int count) {
   const double last = count - 1;
@@ -365,15 +351,16 @@ surface side_geometry::rail_seen_from(const contact_frame &frame) const {
 }
 
 void side_geometry::undeformed_distance(const contact_frame &frame, const surface_grid &g,
-                                        double *h) const {
+                                        double *h, surface_slopes *slopes) const {
   const int column = clamp_index(-g.x0 / g.dx, g.nx);
   const auto at = [&](int row) { return h + static_cast<std::ptrdiff_t>(row) * g.nx; };
   const surface wheel = wheel_seen_from(frame);
-  row_filler filler(wheel, g, column, h);
-  for_rows(wheel, g, column, [&](int row, const hit &m) { filler.add(row, m); });
-  filler.fill();
+  for_rows(wheel, g, column,
+           [&](int row, const hit &m) { heights_of_row(wheel, g, row, column, m, at(row)); });
   // the rail's heights are used row by row, in strips that fit on the stack
   const surface rail = rail_seen_from(frame);
+  const frame_axes<double> axes = axes_of(frame);
+  if (slopes) slopes->clear(1, g.ny);
   constexpr int strip = 256;
   double heights[strip];
   for (int first = 0; first < g.nx; first += strip) {
@@ -382,8 +369,10 @@ void side_geometry::undeformed_distance(const contact_frame &frame, const surfac
     part.x0 = g.x0 + first * g.dx;
     const int middle = std::clamp(column - first, 0, part.nx - 1);
     for_rows(rail, part, middle, [&](int row, const hit &m) {
-      follow_row(rail, part, row, middle, m,
-                 [&](int i, const hit &on) { heights[i] = on.valid ? on.n : nan; });
+      heights_of_row(rail, part, row, middle, m, heights);
+      if (slopes && first == 0 && m.valid)
+        put_slope(frame.origin, axes, {0.0, g.y0 + row * g.dy}, m.p, m.n, slopes->place(row),
+                  *slopes);
       subtract(heights, part.nx, at(row) + first);
     });
   }

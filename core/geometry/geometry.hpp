@@ -151,8 +151,10 @@ class side_geometry : private placement<double> {
   // Of a roller's surface along x, rad, > 0 where it falls.
   double roller_inclination(const vec3 &at) const;
 
-  // h[ny][nx], x fastest; no_surface beyond the profiles.
-  void undeformed_distance(const contact_frame &frame, const surface_grid &grid, double *h) const;
+  // h[ny][nx], x fastest; no_surface beyond the profiles. slopes: of a level rail, if asked for, as
+  // rail_slopes() finds them.
+  void undeformed_distance(const contact_frame &frame, const surface_grid &grid, double *h,
+                           surface_slopes *slopes = nullptr) const;
 
   // The rail's slopes on a grid, zero where the rail does not reach; along_rows: by element where
   // they differ along x, else those at x = 0.
@@ -195,15 +197,41 @@ class side_geometry : private placement<double> {
   double sampled_gap(double s) const;
   vec3 wheel_point(const curve_point &p, double sine) const;
   longitudinal_row row_of(const curve_point &p, double sine, double gap) const;
+  void put_slope(const vec3 &origin, const frame_axes<double> &f, const std::array<double, 2> &at,
+                 double p, double n, std::ptrdiff_t to, surface_slopes &out) const;
   double sideways(double x, double sine, const curve_point &p) const;
   void find_closest(const curve_point &p, double sine, locus_point &l) const;
 
   friend class moving_geometry;  // rates.hpp
+  friend class locus_walk;
 
   placed_profile wheel_, rail_;
   gap_samples samples_;
   bool overlap_ = false;
   const longitudinal_shape *shape_ = nullptr;
+};
+
+// Points of the locus that lie near each other, one after the other: side_geometry::locus() of each
+// but for rounding. On a level rail each is found from the one before.
+class locus_walk {
+ public:
+  explicit locus_walk(const side_geometry &side);
+  locus_point operator()(double s);
+
+ private:
+  bool follow(double s, locus_point &l);
+  bool meet_rail(double y);
+  double angle_of(double dy, double dz);
+
+  const side_geometry &side_;
+  bool level_, begun_ = false;
+  double low_, high_;  // m, y of the rail's running branch
+  locus_place place_;
+  profile_piece wheel_{}, rail_{};  // those of the last point
+  double at_ = 0;                   // m, on the rail's piece
+  double y_ = 0, dy_ = 1, d2y_ = 0;
+  // rad, of a direction near the last ones
+  double angle_ = 0, along_ = 0, down_ = 0;
 };
 
 }  // namespace railpatch

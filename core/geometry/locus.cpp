@@ -172,4 +172,112 @@ double side_geometry::sampled_gap(double s) const {
   return std::max(a, b) < 0.5 * far_apart ? a + share * (b - a) : 0;
 }
 
+namespace {
+
+double value(const double *c, double t) { return c[0] + t * (c[1] + t * (c[2] + t * c[3])); }
+double slope(const double *c, double t) { return c[1] + t * (2 * c[2] + 3 * t * c[3]); }
+
+// where a piece, known up to its end, is left for another
+bool beyond(const profile_piece &piece, double t) {
+  return !(t >= 0 && t <= piece.end - piece.begin);
+}
+
+}  // namespace
+
+locus_walk::locus_walk(const side_geometry &side)
+    : side_(side),
+      level_(side.level() && !side.shaped()),
+      low_(side.rail_.sample(side.rail_.first()).y),
+      high_(side.rail_.sample(side.rail_.last()).y) {}
+
+locus_point locus_walk::operator()(double s) {
+  locus_point l;
+  if (level_ && follow(s, l)) return l;
+  begun_ = false;
+  return side_.locus(s, place_);
+}
+
+bool locus_walk::follow(double s, locus_point &l) {
+  const profile &curve = side_.wheel_.curve();
+  if (!curve.covers(s)) return false;
+  if (!begun_ || beyond(wheel_, s - wheel_.begin)) {
+    place_.wheel = curve.interval(s, place_.wheel);
+    wheel_ = side_.wheel_.piece_at(place_.wheel);
+  }
+  const double t = s - wheel_.begin, z = value(wheel_.z, t);
+  const double dy = slope(wheel_.y, t), dz = slope(wheel_.z, t);
+  if (!(dy > 0)) return false;
+  const mat3 &m = side_.wheel_axes_;
+  l.sine = m[0][1] * dz / (m[0][0] * dy);
+  if (!(std::fabs(l.sine) < 0.9)) return false;
+  const double r = side_.sizes_.nominal_radius + z, cosine = std::sqrt(1 - l.sine * l.sine);
+  l.wheel = side_.axis_origin_ + turn(m, {r * l.sine, value(wheel_.y, t), r * cosine});
+  if (!meet_rail(l.wheel[1])) return false;
+  l.valid = true;
+  l.rail_z = value(rail_.z, at_);
+  l.gap = l.rail_z - l.wheel[2];
+  l.contact_angle = angle_of(dy_, slope(rail_.z, at_));
+  const vec3 along{l.sine * dy, -dz, cosine * dy};
+  const double down = 1 / dot(m[2], along);
+  l.normal = {0, down * dot(m[1], along), down * dot(m[2], along)};
+  l.curvature = 0.5 / r;
+  return true;
+}
+
+// Newton's steps of the second order from the last point; their error falls with the cube.
+bool locus_walk::meet_rail(double y) {
+  constexpr double far = 1e-3, close = 1e-6;  // m
+  const placed_profile &rail = side_.rail_;
+  if (!(y >= low_ && y <= high_)) return false;
+  if (!begun_) {
+    double s;
+    curve_point p;
+    if (!rail.find(y, s, p, place_.rail)) return false;
+    place_.rail.interval = rail.curve().interval(s, place_.rail.interval);
+    rail_ = rail.piece_at(place_.rail.interval);
+    at_ = s - rail_.begin;
+    begun_ = true;
+    along_ = 0;
+  } else {
+    const double way = (y - y_) / dy_;
+    at_ += way - 0.5 * d2y_ / dy_ * way * way;
+    if (!(std::fabs(way) < far)) return false;
+  }
+  for (int i = 0; i < 8; ++i) {
+    if (beyond(rail_, at_)) {
+      const double s = rail_.begin + at_;
+      if (!rail.curve().covers(s)) return false;
+      place_.rail.interval = rail.curve().interval(s, place_.rail.interval);
+      rail_ = rail.piece_at(place_.rail.interval);
+      at_ = s - rail_.begin;
+    }
+    dy_ = slope(rail_.y, at_);
+    d2y_ = 2 * rail_.y[2] + 6 * at_ * rail_.y[3];
+    y_ = value(rail_.y, at_);
+    const double way = (y - y_) / dy_, change = way - 0.5 * d2y_ / dy_ * way * way;
+    if (!(std::fabs(change) < far)) return false;
+    at_ += change;
+    if (std::fabs(change) > close) continue;
+    y_ = y;
+    dy_ += change * d2y_;
+    return dy_ > 0;
+  }
+  return false;
+}
+
+// rad, as atan2: by its series from a direction that is not far off.
+double locus_walk::angle_of(double dy, double dz) {
+  constexpr double near = 0.1;
+  const double x = (dz * along_ - dy * down_) / (dy * along_ + dz * down_);
+  if (!(std::fabs(x) < near)) {
+    along_ = dy;
+    down_ = dz;
+    return angle_ = atan2(dz, dy);
+  }
+  const double u = x * x;
+  double sum = 0;
+  for (int k = 15; k > 1; k -= 2) sum = u * (1.0 / k - sum);
+  return angle_ + x * (1 - sum);
+}
+
 }  // namespace railpatch

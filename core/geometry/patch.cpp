@@ -105,8 +105,9 @@ class part_list {
         last_ = sampled;
         continue;
       }
-      const double g =
-          std::fabs(sampled) < closeness ? side_.gap(side_.sample_s(i), place_) : sampled;
+      // within contact a sample's sign is all that counts
+      const double near = open_ ? 0.25 * closeness : closeness;
+      const double g = std::fabs(sampled) < near ? side_.gap(side_.sample_s(i), place_) : sampled;
       advance(i, g);
       before_ = last_;
       last_ = g;
@@ -331,8 +332,8 @@ void find_parts(const side_geometry &side, part_set &found) {
   list.search();
   found.count = 0;
   found.overflow = list.overflow();
-  locus_place last;
-  const auto locus = [&](double s) { return side.locus(s, last); };
+  locus_walk walk(side);
+  const auto locus = [&](double s) { return walk(s); };
   for (int i = 0; i < list.count(); ++i) {
     if (side.shaped())
       sum_shaped_rows(side, found.parts[i]);

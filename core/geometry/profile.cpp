@@ -123,6 +123,15 @@ int profile::interval(double s) const {
   return static_cast<int>(at - pieces_.begin()) - 1;
 }
 
+profile_piece profile::piece_at(int interval) const {
+  const auto k = static_cast<size_t>(interval);
+  const piece &p = pieces_[k];
+  profile_piece out{p.s, k + 1 < pieces_.size() ? pieces_[k + 1].s : end_, {}, {}};
+  std::copy_n(p.y, 4, out.y);
+  std::copy_n(p.z, 4, out.z);
+  return out;
+}
+
 placed_profile::placed_profile(const profile &curve, body kind) : curve_(&curve), kind_(kind) {
   const double length = curve.end() - curve.begin();
   const int count =
@@ -153,6 +162,18 @@ void placed_profile::place(double angle, double y, double z) {
   sin_ = sin(angle);
   for (size_t i = 0; i < raw_.size(); ++i) samples_[i] = turned(raw_[i]);
   find_branch();
+}
+
+profile_piece placed_profile::piece_at(int interval) const {
+  profile_piece out = curve_->piece_at(interval);
+  for (size_t i = 0; i < 4; ++i) {
+    const double y = out.y[i], z = out.z[i];
+    out.y[i] = cos_ * y - sin_ * z;
+    out.z[i] = sin_ * y + cos_ * z;
+  }
+  out.y[0] += y_;
+  out.z[0] += z_;
+  return out;
 }
 
 void placed_profile::find_branch() {

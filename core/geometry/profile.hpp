@@ -34,6 +34,11 @@ const char *text(profile_fault fault);
 struct curve_point {
   double y, z, dy, dz, d2y, d2z;
 };
+// y and z as polynomials of s - begin, up to s = end.
+struct profile_piece {
+  double begin, end;  // m
+  double y[4], z[4];
+};
 double inclination(const curve_point &p);
 double curvature(const curve_point &p);
 
@@ -69,6 +74,7 @@ class profile {
     return {value(p.y), value(p.z), slope(p.y), slope(p.z), bend(p.y), bend(p.z)};
   }
   curve_point evaluate(double s) const { return evaluate(s, interval(s)); }
+  profile_piece piece_at(int interval) const;
   std::size_t bytes() const { return pieces_.size() * sizeof(piece) + first_.size() * sizeof(int); }
 
  private:
@@ -99,6 +105,8 @@ class placed_profile {
     return moved(turned(curve_->evaluate(s, interval)));
   }
   curve_point evaluate(double s) const { return evaluate(s, curve_->interval(s)); }
+  // Turned and moved.
+  profile_piece piece_at(int interval) const;
   const profile &curve() const { return *curve_; }
   double angle() const { return angle_; }
   double moved_y() const { return y_; }

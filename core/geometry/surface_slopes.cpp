@@ -1,8 +1,6 @@
 // Slopes of the rail's surface against a contact frame, and their rates.
 #include "geometry/surface_slopes.hpp"
 
-#include <algorithm>
-
 #include "geometry/geometry.hpp"
 #include "geometry/rates.hpp"
 
@@ -26,34 +24,34 @@ surface_grid at_centre(surface_grid g) {
   return g;
 }
 
-void clear(const surface_slopes &out, int rows) {
-  for (double *field : {out.height, out.across, out.along})
-    std::fill_n(field, out.place(rows), 0.0);
-}
-
 }  // namespace
+
+// Where the line along n at a place of the frame meets the rail, at an arc length and a height.
+void side_geometry::put_slope(const vec3 &origin, const frame_axes<double> &f,
+                              const std::array<double, 2> &place, double p, double n,
+                              std::ptrdiff_t to, surface_slopes &out) const {
+  const bool roller = track_.kind == track_kind::roller;
+  const bool shaped = shape_ && shape_->has_height() && !roller;
+  const curve_point m = rail_.evaluate(p);
+  const vec3 at = origin + place[0] * f.x + place[1] * f.s + n * f.n;
+  const double r = axle_z_ - m.z;
+  const vec3 normal = roller
+                          ? vec3{(at[0] - axle_x_) / r * m.dy, m.dz, (at[2] - axle_z_) / r * m.dy}
+                          : vec3{shaped ? shape_->height_slope(at[0]) * m.dy : 0.0, -m.dz, m.dy};
+  const double along_n = dot(normal, f.n);
+  out.height[to] = n;
+  out.across[to] = -dot(normal, f.s) / along_n;
+  out.along[to] = -dot(normal, f.x) / along_n;
+}
 
 void side_geometry::rail_slopes(const contact_frame &frame, const surface_grid &whole,
                                 bool along_rows, surface_slopes &out) const {
-  const bool roller = track_.kind == track_kind::roller;
-  const bool shaped = shape_ && shape_->has_height() && !roller;
   const surface_grid g = along_rows && !level() ? whole : at_centre(whole);
   const frame_axes<double> f = axes_of(frame);
-  out.columns = g.nx;
-  clear(out, g.ny);
+  out.clear(g.nx, g.ny);
   each_element elements([&](int column, int row, double p, double n) {
-    const curve_point m = rail_.evaluate(p);
-    const vec3 at =
-        frame.origin + (g.x0 + column * g.dx) * f.x + (g.y0 + row * g.dy) * f.s + n * f.n;
-    const double r = axle_z_ - m.z;
-    const vec3 normal = roller
-                            ? vec3{(at[0] - axle_x_) / r * m.dy, m.dz, (at[2] - axle_z_) / r * m.dy}
-                            : vec3{shaped ? shape_->height_slope(at[0]) * m.dy : 0.0, -m.dz, m.dy};
-    const double along_n = dot(normal, f.n);
-    const auto to = out.place(row) + column;
-    out.height[to] = n;
-    out.across[to] = -dot(normal, f.s) / along_n;
-    out.along[to] = -dot(normal, f.x) / along_n;
+    put_slope(frame.origin, f, {g.x0 + column * g.dx, g.y0 + row * g.dy}, p, n,
+              out.place(row) + column, out);
   });
   meet_surface(body::rail, frame, g, elements);
 }
@@ -66,8 +64,7 @@ void moving_geometry::rail_slope_rates(const rated_frame &frame, const surface_g
   const surface_grid g = roller ? whole : at_centre(whole);
   const frame_axes<rated> f = axes_of(frame);
   for (int k = 0; k < count; ++k) {
-    out[k].columns = g.nx;
-    clear(out[k], g.ny);
+    out[k].clear(g.nx, g.ny);
   }
   const auto on_lattice = [&](int axis, double first, int index, double size) {
     rated v(first + index * size);

@@ -2,6 +2,7 @@
 // along n, and how it is inclined. Pressure acts along its normals and not along the frame's one.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 namespace railpatch {
@@ -12,6 +13,11 @@ struct surface_slopes {
   int columns = 1;
 
   std::ptrdiff_t place(int row) const { return static_cast<std::ptrdiff_t>(row) * columns; }
+  // of so many columns, none inclined
+  void clear(int count, int rows) {
+    columns = count;
+    for (double *field : {height, across, along}) std::fill_n(field, place(rows), 0.0);
+  }
 };
 
 }  // namespace railpatch

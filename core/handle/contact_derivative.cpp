@@ -125,6 +125,14 @@ rp_input moved(const rp_config &config, const double bulk_temperature[2], const 
   return in;
 }
 
+bool moves_places_alone(const rp_input &rates) {
+  bool alone = true;
+  for_each_number(rates, [&](const char *name, const double &rate, double) {
+    alone = alone && (rate == 0 || is_place(name));
+  });
+  return alone;
+}
+
 // out: rates of all its numbers from two results, a distance apart along the direction.
 void divide(const rp_result (&ends)[2], double distance, rp_result &out) {
   double *to[result_numbers];
@@ -154,6 +162,7 @@ void contact::differentiate_by_differences(const rp_input &d, rp_result &out) {
   });
   const double reach = reach_of(config_, record.input, rates);
   if (!(reach > 0)) return;
+  if (!record.before && driver_->uniform_along() && moves_places_alone(rates)) return;
   const double length = cbrt(beside.tolerance_) / reach;
   rp_result ends[2];
   double places[2] = {-length, length};

@@ -59,6 +59,8 @@ class driver {
   // By pose and velocity, of wheels, whose height may be found by their load.
   virtual bool has_jacobian() const { return false; }
   virtual bool finds_height() const { return false; }
+  // Whether nothing changes along the track or round a wheel: steps do not depend on places there.
+  virtual bool uniform_along() const { return false; }
   virtual void jacobian(const rp_input &, const rp_result &, rp_jacobian &) {}
 
   virtual const char *geometry_reason() const = 0;

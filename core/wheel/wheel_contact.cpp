@@ -313,11 +313,13 @@ double wheel_contact::place_grid(const patch_contact &solver, patch_region &regi
                                  patch_memory &memory) const {
   double *h = memory.undeformed_distance.data();
   const surface_grid on{g.nx, g.ny, g.x0, g.y0, g.dx, g.dy};
+  const bool sloped = memory.slope_fields.size() && !memory.curved;
+  const bool by_row = sloped && geometry_->level();  // found with the distance
   if (memory.curved)
     memory.curved->place(*geometry_, g, h, memory.slopes);
   else
-    geometry_->undeformed_distance(region.frame, on, h);
-  if (memory.slope_fields.size() && !memory.curved)
+    geometry_->undeformed_distance(region.frame, on, h, by_row ? &memory.slopes : nullptr);
+  if (sloped && !by_row)
     geometry_->rail_slopes(region.frame, on, !solver.scene().closed_form(), memory.slopes);
   if (memory.row_friction.size() > 0) set_friction(solver, region.frame, memory);
   return -*std::min_element(h, h + g.count());

@@ -58,6 +58,7 @@ class wheel_contact {
   explicit wheel_contact(const wheel_setup &setup);
 
   int side() const { return side_; }
+  bool uniform_along() const { return !sections_ && !wheel_sections_ && !shape_; }
   void place(const rp_input &input, bool at_height = false);
   void move_to(double z) { geometry_->move_to(z); }
   // z at which wheel and rail first touch; false where they have no lateral position in common.

@@ -2,6 +2,7 @@
 // prescribed vertical force, roll angle and pitch rate found for a balance, rails that deflect.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -60,6 +61,11 @@ class wheels final : public driver {
                      rp_result &change) override;
   bool has_jacobian() const override { return true; }
   bool finds_height() const override { return force_given_; }
+  bool uniform_along() const override {
+    return !friction_along_.varies() &&
+           std::all_of(wheels_.begin(), wheels_.end(),
+                       [](const wheel_contact &wheel) { return wheel.uniform_along(); });
+  }
   void jacobian(const rp_input &input, const rp_result &result, rp_jacobian &out) override;
   const char *geometry_reason() const override;
   size_t geometry_bytes() const override;

@@ -401,6 +401,65 @@ TEST_P(PatchSearch, PlacesOfTheLastSearchChangeNothing) {
   EXPECT_GT(valid, 200);
 }
 
+// Points found one from the other are those found alone, over kinks of the profiles too.
+TEST_P(PatchSearch, WalkIsTheLocus) {
+  for (const double y : {-1e-3, 0.5e-3, 3e-3}) {
+    place(y, 8e-5, 6e-3);
+    part_set found;
+    find_parts(side, found);
+    ASSERT_GT(found.count, 0);
+    locus_walk walk(side);
+    for (int k = 0; k < found.count; ++k)
+      for (int i = 0; i <= 60; ++i) {
+        const part &p = found.parts[k];
+        const double s = p.begin + (p.end - p.begin) * i / 60;
+        const locus_point one = side.locus(s), other = walk(s);
+        ASSERT_TRUE(one.valid);
+        ASSERT_TRUE(other.valid);
+        // both end where an error that falls with the step's square or cube is below 1e-13 m
+        EXPECT_NEAR(other.gap, one.gap, 3e-13);
+        EXPECT_NEAR(other.contact_angle, one.contact_angle, 1e-10);
+        EXPECT_NEAR(other.curvature, one.curvature, 1e-14);
+        for (size_t j = 0; j < 3; ++j) {
+          EXPECT_NEAR(other.wheel[j], one.wheel[j], 1e-15);
+          EXPECT_NEAR(other.normal[j], one.normal[j], 1e-14);
+        }
+      }
+  }
+}
+
+// Rows of a grid are what is met on the line through each element alone; slopes of a level rail
+// found with them are those found alone.
+TEST_P(PatchSearch, HeightsAreThoseOfEachElement) {
+  place(0.5e-3, 8e-5, 6e-3);
+  part_set found;
+  patch_region regions[4];
+  ASSERT_GT(find_patches(side, {}, found, regions, 4).count, 0);
+  const patch_region &r = regions[0];
+  const int nx = 21, ny = 9;
+  const double dx = 1.2 * (r.x_max - r.x_min) / (nx - 1), dy = (r.s_max - r.s_min) / (ny - 1);
+  const surface_grid g{nx, ny, -0.5 * (nx - 1) * dx, r.s_min, dx, dy};
+  std::vector<double> h(nx * ny), field(6 * ny);
+  const bool level = GetParam() == track_kind::rail;
+  surface_slopes with{field.data(), field.data() + ny, field.data() + 2 * ny};
+  surface_slopes alone{field.data() + 3 * ny, field.data() + 4 * ny, field.data() + 5 * ny};
+  side.undeformed_distance(r.frame, g, h.data(), level ? &with : nullptr);
+  const frame_axes<double> axes = axes_of(r.frame);
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) {
+      contact_frame moved = r.frame;
+      moved.origin = r.frame.origin + (g.x0 + i * dx) * axes.x + (g.y0 + j * dy) * axes.s;
+      double start[2] = {std::nan(""), std::nan("")};
+      const section_point both = side.section(moved, start);
+      ASSERT_TRUE(both.valid);
+      EXPECT_NEAR(h[static_cast<size_t>(j * nx + i)], both.rail - both.wheel, 1e-10);
+    }
+  if (!level) return;
+  side.rail_slopes(r.frame, g, true, alone);
+  for (int k = 0; k < 3 * ny; ++k)
+    EXPECT_EQ(field[static_cast<size_t>(k)], field[static_cast<size_t>(3 * ny + k)]);
+}
+
 TEST_P(PatchSearch, TellsWhereThereIsNone) {
   patch_region regions[2];
   part_set found;
