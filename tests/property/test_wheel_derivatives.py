@@ -264,6 +264,31 @@ def test_with_vertical_force_the_height_follows():
     assert result["status"] == "converged"
 
 
+def test_places_count_where_something_varies():
+    """By differences: none by the place along a track that is the same everywhere and the pitch of
+    a round wheel; friction that changes along the track changes the creep force with its slope."""
+    law = {"coefficient": 0.3, "along_track": [[0.0, 1.0], [1.0, 0.5]]}
+    state = {"x": 0.5, "y": 1e-3, "z": 3e-4, "speed": 20.0, "pitch_rate": -21.0 / 0.46}
+    x, pitch = (POSE_AND_VELOCITY.index(name) for name in ("x", "pitch"))
+    by_x = []
+    for friction in ({"coefficient": 0.3}, law):
+        case = {**rail_case(BUILT_IN), "friction": friction}
+        case["wheelset"] = {**case["wheelset"], "vertical_force": None, "z": 3e-4}
+        case["method"] = {"normal": "hertz", "tangential": "polach", "derivatives": True}
+        contact = Contact(case)
+        result = contact.step(**state)
+        found = contact.jacobian()
+        assert found["kind"] == "differences"
+        matrix = np.array(found["left"])
+        assert np.abs(matrix[:, pitch]).max() == 0
+        assert np.abs(matrix).max() > 0
+        by_x.append((matrix[0, x], result["left"]["force"][0]))
+    assert by_x[0][0] == 0
+    # wheels that slip: the force goes with the coefficient, 0.75 of 0.3, which falls by 0.5 a metre
+    slope, force = by_x[1]
+    assert slope == pytest.approx(-0.5 / 0.75 * force, rel=0.05)
+
+
 def test_needs_derivatives_and_wheels():
     case = rail_case(BUILT_IN)
     contact = Contact(case)
