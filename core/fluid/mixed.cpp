@@ -143,7 +143,8 @@ film_outcome solve_film(const fluid_scene &scene, const fluid_supply &supply, we
     found.share = exp(-1.8 * pow(found.film_thickness / scene.roughness, 1.2));
   }
   const double shear = shear_friction(scene, c, found.film_thickness);
-  found.friction = asperity * found.share + shear * (1.0 - found.share);
+  found.shear = shear * (1.0 - found.share);
+  found.friction = asperity * found.share + found.shear;
   return found;
 }
 
@@ -255,9 +256,10 @@ film_outcome film_rates(const fluid_scene &scene, const fluid_supply &supply,
     out.share = -1.2 * exponent * share * log_rate;
   }
   const double shear = shear_friction(scene, c, thickness);
-  out.friction =
-      asperity_rate * share + (asperity - shear) * out.share +
+  const double by_shear =
       shear_rate(scene, c, d, thickness, out.film_thickness, log_viscosity) * (1.0 - share);
+  out.friction = asperity_rate * share + (asperity - shear) * out.share + by_shear;
+  out.shear = by_shear - shear * out.share;
   return out;
 }
 

@@ -62,6 +62,7 @@ struct film_outcome {
   double share = 1;           // of asperities
   double temperature = 0;     // degrees C, of the liquid
   double friction = 0;        // -
+  double shear = 0;           // -, the part of it that the liquid's own shear has
 };
 
 film_outcome solve_film(const fluid_scene &scene, const fluid_supply &supply, wet_contact contact);

@@ -832,6 +832,9 @@ typedef struct rp_patch_result {
    * of the rail's surface, and of the wheel's the approach below it. Shapes along rolling are no
    * part of a profile: z has them */
   double wheel_profile_position[2], rail_profile_position[2];
+  double fluid_power; /* W, the part of friction_power that the shear of the liquid itself takes,
+                         the heat of the film; asperities take the rest. NaN: no liquid in the
+                         scene, or RP_FLUID_REGIMES, whose curves do not say */
 } rp_patch_result;
 
 /* One wheel; on a roller see rp_contact_frame. NaN where a patch could not be solved. */
@@ -864,6 +867,7 @@ typedef struct rp_side_result {
                            as a flange presses; force[1] on the left, -force[1] on the right */
   double wheel_load;    /* N, Q of EN 14363: vertical force on the rail, track axes: -force[2] */
   double derailment_quotient; /* -, Y/Q; NaN where Q is not above 0 */
+  double fluid_power;         /* W, sum of share times each */
 } rp_side_result;
 
 typedef struct rp_result {
@@ -894,6 +898,7 @@ typedef struct rp_result {
                                        y: of cones the tangent of their angle. NaN for |y| below
                                        1e-5 m. The equivalent conicity of EN 15302 is that of a whole
                                        wave, see docs/profiles.md */
+  double fluid_power;               /* W, sum of the wheels */
 } rp_result;
 
 #define RP_FIELDS(X)                                                                             \

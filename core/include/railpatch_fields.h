@@ -104,7 +104,9 @@
   X(double, wheel_profile_position, 2, number, even, kept, alone, NAN, "m",                       \
     "contact reference in the axes of the wheel's profile: y, z")                                 \
   X(double, rail_profile_position, 2, number, even, kept, alone, NAN, "m",                        \
-    "contact reference in the axes of the rail's profile: y, z")
+    "contact reference in the axes of the rail's profile: y, z")                                  \
+  X(double, fluid_power, 1, number, even, own, by_share, NAN, "W",                                \
+    "part of the friction power that the liquid's own shear takes")
 
 #define RP_SIDE_RESULT_FIELDS(X, O)                                                      \
   X(rp_status, status, 1, status, even, kept, alone, RP_NO_CONTACT, "",                  \
@@ -158,7 +160,9 @@
     "Y: lateral force on the rail, track axes, > 0 outward")                             \
   X(double, wheel_load, 1, number, even, kept, alone, NAN, "N",                          \
     "Q: vertical force on the rail, track axes")                                         \
-  X(double, derailment_quotient, 1, number, even, kept, alone, NAN, "-", "Y/Q")
+  X(double, derailment_quotient, 1, number, even, kept, alone, NAN, "-", "Y/Q")          \
+  X(double, fluid_power, 1, number, even, kept, added, NAN, "W",                         \
+    "power that the liquid's own shear takes, of all patches by share")
 
 #define RP_RESULT_FIELDS(X, O)                                                                   \
   X(rp_status, status, 1, status, even, kept, alone, RP_CONVERGED, "", "how the solution ended") \
@@ -203,7 +207,9 @@
   X(double, rolling_radius_difference, 1, number, odd, kept, alone, NAN, "m",                    \
     "of the right wheel minus the left one's")                                                   \
   X(double, conicity, 1, number, even, kept, alone, NAN, "-",                                    \
-    "rolling radius difference over twice the lateral position")
+    "rolling radius difference over twice the lateral position")                                 \
+  X(double, fluid_power, 1, number, even, kept, alone, NAN, "W",                                 \
+    "power that the liquid's own shear takes, of all patches by share")
 
 /* --- inputs: X(type, name, count, role, where, start, bounds, low, high, unit, text) ---------
  * role      choice: an enumeration; number; integer; side: RP_LEFT or RP_RIGHT; points: numbers of

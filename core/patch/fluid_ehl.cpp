@@ -54,6 +54,7 @@ fluid_outcome fluid_ehl::solve(const patch_problem &problem, const patch_scene &
   out.found = true;
   out.temperature = fluid.liquid.liquid == RP_LIQUID_GIVEN ? nan : temperature;
   out.friction = boundary;
+  out.shear_part = 0;
   if (!(problem.rolling_speed > 0)) return stand_still(g, memory, out);
   ehl_problem lubricated;
   lubricated.area = g;
@@ -79,8 +80,11 @@ fluid_outcome fluid_ehl::solve(const patch_problem &problem, const patch_scene &
   pressure.iterations += found.iterations;
   out.asperity_share = 1 - found.fluid_force / found.normal_force;
   out.friction = boundary * out.asperity_share;
-  if (fluid.eyring_stress > 0)
-    out.friction += add_shear(problem, scene, lubricated, memory) / found.normal_force;
+  if (fluid.eyring_stress > 0) {
+    const double shear = add_shear(problem, scene, lubricated, memory) / found.normal_force;
+    out.friction += shear;
+    if (shear > 0) out.shear_part = shear / out.friction;
+  }
   return out;
 }
 

@@ -38,8 +38,9 @@ fluid_outcome fluid_stage::solve_film(double temperature, const patch_problem &p
   supply.temperature = temperature;
   const film_outcome film = railpatch::solve_film(*scene.fluid, supply, contact);
   scene.wet_friction = film.friction;
-  memory.wet = {ellipse, film.friction};
-  return {true, film.film_thickness, film.share, film.temperature, film.friction};
+  memory.wet = {ellipse, film.friction, film.shear};
+  const double part = film.shear > 0 ? film.shear / film.friction : 0.0;
+  return {true, film.film_thickness, film.share, film.temperature, film.friction, part};
 }
 
 // Where the tractions are found element by element the bound is that of the asperities' pressure;
@@ -58,8 +59,8 @@ fluid_outcome fluid_stage::solve_strips(const hertz_contact &hertz, double tempe
   const double boundary = fluid.own_boundary ? fluid.boundary_friction : scene.friction_coefficient;
   scene.wet_friction = scene.full_on_grid() ? boundary : boundary * found.share;
   const bool known = fluid.liquid.liquid != RP_LIQUID_GIVEN;
-  fluid_outcome out{true, found.film, found.share, known ? temperature : nan,
-                    boundary * found.share};
+  fluid_outcome out{
+      true, found.film, found.share, known ? temperature : nan, boundary * found.share, 0};
   out.converged = found.converged;
   return out;
 }

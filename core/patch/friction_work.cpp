@@ -151,4 +151,25 @@ void tangential_stage::find_friction_heat(const patch_problem &problem,
   for (size_t i = 0; i < count; ++i) shared_.friction[i] *= factor;
 }
 
+// N, of friction's work over the way, what the shear of the liquid takes: in each element its part
+// of the bound; where material has just left the contact, that of the element it comes from.
+double tangential_stage::fluid_work(const grid &g, int direction,
+                                    const patch_memory &memory) const {
+  double sum = 0;
+  for (int j = 0; j < g.ny; ++j) {
+    const double factor =
+        (memory.row_friction.size() ? memory.row_friction[static_cast<size_t>(j)] : 1.0) *
+        shared_.scene.friction_scale;
+    for (int i = 0; i < g.nx; ++i) {
+      const auto at = static_cast<size_t>(j * g.nx + i);
+      const int upstream = i + direction;
+      const bool left = !(bound_[at] > 0) && upstream >= 0 && upstream < g.nx;
+      const auto of = static_cast<size_t>(j * g.nx + (left ? upstream : i));
+      if (bound_[of] > 0)
+        sum += shared_.friction[at] * (factor * memory.fluid_shear[of] / bound_[of]);
+    }
+  }
+  return sum * g.dx * g.dy;
+}
+
 }  // namespace railpatch

@@ -32,6 +32,7 @@ struct traction_outcome : verdict {
   double moment = 0, force[2] = {0, 0};  // of theories without tractions
   double capacity = 0;                   // N, that friction could carry
   double max_traction = nan;             // Pa
+  double fluid_power = nan;              // W, where the liquid's shear is part of each bound
 };
 
 struct heat_outcome {
@@ -45,6 +46,7 @@ struct fluid_outcome {
   double film_thickness = 0, asperity_share = 1;  // m, -
   double temperature = 0;                         // degrees C
   double friction = 0;                            // -, without factors of the law
+  double shear_part = nan;                        // -, of the friction, of the liquid's own shear
   bool converged = true;
 };
 

@@ -142,7 +142,7 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   const stage_mark mark = shared_.marks.enter(RP_STAGE_FORCES);
   wrench = sum_forces(problem, n, t, memory);
   report(scene, problem, n, t, h, wrench, result);
-  if (f.found) describe_fluid(f, scene.friction_scale, result);
+  if (f.found) describe_fluid(f, t.fluid_power, scene.friction_scale, result);
   if (f.found && scene.fluid->model == RP_FLUID_REGIMES)
     result.effective_friction = scene.wet_friction * scene.friction_scale;
   if (f.found && scene.has_strips() && scene.heat && scene.heat->by_temperature)

@@ -275,9 +275,11 @@ double patch_derivative::friction_rate(const solution &s, const patch_variation 
     return scene.friction_scale * v.friction.coefficient +
            scene.friction_coefficient * v.friction.scale;
   out.film = film_rates_of(scene, s.problem, s.memory, v, rate, out.normal_force);
+  const auto &wet = s.memory.wet;
+  if (wet.shear > 0)
+    out.shear_part = (out.film.shear - wet.shear / wet.friction * out.film.friction) / wet.friction;
   // as it is reported: with the scale
-  out.film.friction =
-      scene.friction_scale * out.film.friction + s.memory.wet.friction * v.friction.scale;
+  out.film.friction = scene.friction_scale * out.film.friction + wet.friction * v.friction.scale;
   return out.film.friction;
 }
 

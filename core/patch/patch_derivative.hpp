@@ -54,6 +54,7 @@ struct patch_change {
   double friction_power = 0, elastic_energy = 0, pressure_energy = 0;
   turning_energy turning;  // where the scene has it
   film_outcome film;       // of the scene's liquid
+  double shear_part = 0;   // -, of the friction, of the liquid's own shear
 };
 
 struct derivative_options {

@@ -80,8 +80,9 @@ struct patch_memory {
   std::array<double, error_feature_count> error_features{};
   struct {
     hertz_contact ellipse;
-    double friction = 0;
-  } wet;  // with a liquid's film: what it formed on, and the coefficient without factors
+    double friction = 0, shear = 0;
+  } wet;  // with a liquid's film: what it formed on, the coefficient without factors and the
+          // liquid's own part of it
   patch_history history;
   physics_part<heat_memory> heat;
   physics_part<conformal_rows> curved;

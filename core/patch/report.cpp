@@ -104,11 +104,12 @@ void report(const patch_scene &scene, const patch_problem &problem, const pressu
   describe_heat(h, result);
 }
 
-void describe_fluid(const fluid_outcome &f, double scale, rp_patch_result &result) {
+void describe_fluid(const fluid_outcome &f, double power, double scale, rp_patch_result &result) {
   result.central_film_thickness = f.film_thickness;
   result.mean_asperity_share = f.asperity_share;
   result.fluid_temperature = f.temperature;
   result.effective_friction = f.friction * scale;
+  result.fluid_power = std::isnan(power) ? f.shear_part * result.friction_power : power;
 }
 
 void report_unloaded(const patch_scene &scene, const patch_problem &problem,
@@ -155,6 +156,10 @@ void report_rates(const rp_patch_result &value, const patch_change &change, rp_p
   set(value.mean_asperity_share, rate.mean_asperity_share, change.film.share);
   set(value.fluid_temperature, rate.fluid_temperature, change.film.temperature);
   set(value.effective_friction, rate.effective_friction, change.film.friction);
+  if (value.fluid_power > 0)
+    set(value.fluid_power, rate.fluid_power,
+        value.fluid_power / value.friction_power * change.friction_power +
+            value.friction_power * change.shear_part);
   const double size = hypot(value.creep_force[0], value.creep_force[1]);
   const double traction = value.traction_coefficient, used = value.utilised_friction;
   set(traction, rate.traction_coefficient,

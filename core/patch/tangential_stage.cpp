@@ -318,7 +318,11 @@ tangential_result tangential_stage::solve_on_grid(const patch_problem &problem,
                         memory.fields());
   tangential_result t = solve_by_law(problem, rolling, memory, options, found);
   if (shared_.scene.goes_on(rolling)) close_step(problem, rolling, memory, t, found);
-  if (has_physics && shared_.scene.heat) find_friction_heat(problem, rolling, memory, t.friction);
+  const bool sheared = memory.fluid_shear.size() > 0;
+  if (has_physics && (shared_.scene.heat || sheared))
+    find_friction_heat(problem, rolling, memory, t.friction);
+  if (has_physics && sheared)
+    found.fluid_power = problem.rolling_speed * fluid_work(g, rolling.direction, memory);
   return t;
 }
 

@@ -73,6 +73,7 @@ class tangential_stage {
                      const patch_memory &memory);
   void find_friction_heat(const patch_problem &problem, const rolling_input &rolling,
                           const patch_memory &memory, double taken);
+  double fluid_work(const grid &g, int direction, const patch_memory &memory) const;
 
   patch_workspace &shared_;
   std::optional<tangential_solver> tangential_;

@@ -68,6 +68,8 @@ def wheelset() -> dict[str, Any]:
         "grid": {"elements": [8, 8]},
         "friction": {"coefficient": 0.3},
         "method": {"normal": "hertz", "tangential": "fastsim"},
+        # with a liquid that has a friction of its own
+        "fluid": {"model": "film", "roughness": 1e-6, "viscosity": 0.1, "eyring_stress": 5e6},
         "wheelset": {
             **{"y": 1e-3, "vertical_force": 1.2e5, "speed": 20.0, "pitch_rate": -20.0 / 0.46},
             **{"nominal_radius": 0.46, "flange_back_distance": 1.36},

@@ -42,6 +42,7 @@ NOT_THERE |= {
     "mean_asperity_share",
     "fluid_temperature",
     "effective_friction",
+    "fluid_power",
 }
 
 

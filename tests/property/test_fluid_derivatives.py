@@ -17,6 +17,7 @@ STEP = 2e-5  # of differences, by the scale of an input
 BOUND = 2e-6  # of the film's own numbers; of forces as without a liquid
 FILM = ("central_film_thickness", "mean_asperity_share", "fluid_temperature", "effective_friction")
 FORCES = ("creep_force", "spin_moment", "friction_power", "utilised_friction", "normal_force")
+FORCES += ("fluid_power",)
 
 
 def numbers(result: railpatch.Result, name: str) -> np.ndarray:

@@ -248,6 +248,7 @@ PATCH = Message(
         _listed("patch", "rail_profile_position", "profile"),
         Field("subsurface", SUBSURFACE, "", "stresses below it; only where the scene asks"),
         Field("damage", DAMAGE, "", "of both bodies; only where the scene asks"),
+        _listed("patch", "fluid_power"),
     ),
 )
 
@@ -296,6 +297,7 @@ WHEEL_CONTACT = Message(
         _listed("side", "derailment_quotient"),
         Field("subsurface", SUBSURFACE, "", "greatest of all patches; only where the scene asks"),
         Field("damage", DAMAGE, "", "of all patches; only where the scene asks"),
+        _listed("side", "fluid_power"),
     ),
 )
 
