@@ -21,6 +21,7 @@ constexpr double least_flow = 1e-12;
 // ends of the search for d: 1 - Phi is 1 and 1e-300 there
 constexpr double lowest = -9.0, highest = 37.0;
 
+constexpr int most_newton_steps = 12;
 // of the distribution's table, from -reach to reach
 constexpr int reach = 8, each = 32, entries = 2 * reach * each + 1;
 // 1/n!
@@ -34,7 +35,10 @@ double flow_factor(double t) {
   return above * above * (quadratic + cubic * above);
 }
 
-double elliptic_strip::at(double, double sine) const { return sine; }
+double elliptic_strip::at(double cosine, double sine, double &slope) const {
+  slope = cosine;
+  return sine;
+}
 
 double elliptic_strip::peak() const { return 0.5 * pi; }
 
@@ -63,7 +67,7 @@ struct strip_solver::section {
 };
 
 strip_solver::strip_solver(int steps) : steps_(steps) {
-  for (auto *b : {&theta_, &liquid_, &film_})
+  for (auto *b : {&theta_, &liquid_, &film_, &liquid_rate_, &film_rate_})
     *b = aligned_buffer<double>(static_cast<size_t>(steps + 1));
   bell_ = aligned_buffer<double>(entries);
   tail_ = aligned_buffer<double>(entries);
@@ -94,44 +98,57 @@ strip_solver::section strip_solver::at(double d) const {
   return {d, tail_[static_cast<size_t>(k)] - bell * x * sum, bell * growth};
 }
 
+// Rates marked _end are by theta of X_c, with which all nodes move.
 double strip_solver::march(const strip_pressure &pressure, double s, double r, double end,
-                           double tolerance) {
-  const double h = end / steps_, over_r = 1.0 / r;
-  double cosine = cos(end), sine = sin(end);
+                           double tolerance, double &slope) {
+  const double h = end / steps_, over_r = 1.0 / r, over_steps = 1.0 / steps_;
+  double cosine = cos(end), sine = sin(end), rise = 0;
   const double turn = cos(h), lift_of = sin(h);
-  const double nominal = pressure.at(cosine, sine);
+  const double nominal = pressure.at(cosine, sine, rise);
   section now = at(distance_of(std::clamp(r * nominal, 1e-300, 1.0 - 1e-15)));
   flow_ = now.film;
+  double d_end = now.density > 0 ? -r * rise / now.density : 0.0;
+  flow_rate_ = (1.0 - now.share) * d_end;
   double p = 0, rate = 0, moved = 0;  // P, dP/dtheta, d in the last step
+  double p_end = 0, rate_end = 0;
+  slope = 0;
   for (int k = steps_; k > 0; --k) {
     const auto here = static_cast<size_t>(k);
     theta_[here] = k == steps_ ? end : k * h;
     liquid_[here] = p;
     film_[here] = now.film;
-    const double known = p - 0.5 * h * rate;  // P at the step's end but for its own rate
+    liquid_rate_[here] = p_end;
+    film_rate_[here] = (1.0 - now.share) * d_end;
+    // P at the step's end but for its own rate
+    const double known = p - 0.5 * h * rate;
+    const double known_end = p_end - 0.5 * (over_steps * rate + h * rate_end);
     if (k == 1) {
       theta_[0] = 0;
       liquid_[0] = known;
       film_[0] = HUGE_VAL;
+      liquid_rate_[0] = known_end;
+      film_rate_[0] = 0;
+      slope = known_end;
       return known;
     }
-    const double before = cosine;
+    const double before = cosine, part = (k - 1) * over_steps;
     cosine = before * turn + sine * lift_of;
     sine = sine * turn - before * lift_of;
-    const double load = pressure.at(cosine, sine);
+    const double load = pressure.at(cosine, sine, rise);
     if (!(known < load)) return known - load + (k - 1);
     // load - (1 - Phi)/r - known + h/2 s sin(theta) (t - C)/K = 0 for d
     const double weight = 0.5 * h * s * sine;
     double low = lowest, high = highest, d = std::clamp(now.d + moved, lowest, highest);
     const double last = now.d;
+    double grows = 1;
     for (int i = 0; i < 80; ++i) {
       now = at(d);
       const double over_flow = 1.0 / now.flow, resistance = weight * over_flow,
                    lifted = now.film - flow_;
       const double value = load - known - now.share * over_r + resistance * lifted;
       (value < 0 ? low : high) = d;
-      const double grows = now.density * over_r +
-                           (1.0 - now.share) * resistance * (1.0 - lifted * now.slope * over_flow);
+      grows = now.density * over_r +
+              (1.0 - now.share) * resistance * (1.0 - lifted * now.slope * over_flow);
       const double step = -value / grows;
       if (std::fabs(step) <= tolerance) {
         now.move(step);
@@ -142,12 +159,34 @@ double strip_solver::march(const strip_pressure &pressure, double s, double r, d
       if (!(d > low && d < high)) d = 0.5 * (low + high);
     }
     moved = now.d - last;
-    rate = weight * 2.0 / h * (now.film - flow_) / now.flow;
+    const double over_flow = 1.0 / now.flow, lifted = (now.film - flow_) * over_flow;
+    const double load_end = rise * part;
+    const double pull = s * sine, pull_end = s * cosine * part;
+    const double weight_end = 0.5 * (over_steps * pull + h * pull_end);
+    d_end = -(load_end - known_end + weight_end * lifted - weight * flow_rate_ * over_flow) / grows;
+    rate = pull * lifted;
+    rate_end =
+        pull_end * lifted +
+        pull * over_flow * ((1.0 - now.share) * (1.0 - lifted * now.slope) * d_end - flow_rate_);
     p = load - now.share * over_r;
+    p_end = load_end + now.density * over_r * d_end;
   }
   return p;
 }
 
+// What the last march found, for X_c a little farther.
+void strip_solver::move(double end, double by) {
+  const double h = (end + by) / steps_;
+  for (int k = 0; k <= steps_; ++k) {
+    const auto here = static_cast<size_t>(k);
+    theta_[here] = k == steps_ ? end + by : k * h;
+    liquid_[here] += by * liquid_rate_[here];
+    film_[here] += by * film_rate_[here];
+  }
+  flow_ += by * flow_rate_;
+}
+
+// Newton's steps while they stay within the bracket, and shrink; else those of rising_root.
 strip_solution strip_solver::solve(const strip_pressure &pressure, double s, double r, double start,
                                    double precision) {
   strip_solution found;
@@ -158,20 +197,54 @@ strip_solution strip_solver::solve(const strip_pressure &pressure, double s, dou
       warm ? std::clamp(acos(-start), low + 1e-6 * width, high - 1e-6 * width) : low + 0.4 * width;
   // of d, before Newton's last step, which squares it
   const double tolerance = std::clamp(0.3 * std::sqrt(precision), 1e-7, 1e-4);
-  rising_root root(begin, (warm ? 0.003 : 0.15) * width, 64.0 * width);
-  double end = begin;
-  for (; found.marches < 200; ++found.marches) {
+  // of X_c, likewise
+  const double small = 0.3 * std::sqrt(precision);
+  double least = low, most = high, at = begin, last = HUGE_VAL;
+  for (int k = 0; k < most_newton_steps; ++k) {
+    double slope;
+    const double value = march(pressure, s, r, at, tolerance, slope), step = -value / slope;
+    ++found.marches;
+    (value < 0 ? least : most) = at;
+    const bool last_step = slope > 0 && std::fabs(step) <= small;
+    if (last_step || std::fabs(value) <= precision) {
+      if (last_step) move(at, step);
+      found.converged = true;
+      found.residual = last_step ? 0.0 : value;
+      found.cavitation = -cos(last_step ? at + step : at);
+      found.flow = flow_;
+      return found;
+    }
+    const bool newton = slope > 0 && std::fabs(step) < 0.5 * last;
+    last = newton ? std::fabs(step) : HUGE_VAL;
+    if (newton && at + step > least && at + step < most)
+      at += step;
+    else  // near the trailing edge all is steep
+      at = most < high ? 0.5 * (least + most) : at + 0.25 * (most - at);
+  }
+  return search(pressure, s, r, {begin, warm ? 0.003 * width : 0.15 * width, low, high}, tolerance,
+                precision, found.marches);
+}
+
+// By brackets, where Newton's steps lead nowhere.
+strip_solution strip_solver::search(const strip_pressure &pressure, double s, double r,
+                                    const range_of_end &range, double tolerance, double precision,
+                                    int marches) {
+  strip_solution found;
+  found.marches = marches;
+  rising_root root(range.begin, range.step, 64.0 * (range.high - range.low));
+  double end = range.begin, slope;
+  for (int k = 0; k < 200; ++k, ++found.marches) {
     const double at = root.at();
-    if (at <= low || at >= high) {
+    if (at <= range.low || at >= range.high) {
       // beyond the search: a value of the right sign
-      root.report(at <= low ? -1.0 : 1.0);
+      root.report(at <= range.low ? -1.0 : 1.0);
       continue;
     }
-    const double value = march(pressure, s, r, at, tolerance), moved = std::fabs(at - end);
+    const double value = march(pressure, s, r, at, tolerance, slope);
+    const double moved = std::fabs(at - end);
     end = at;
     found.residual = value;
-    found.converged =
-        std::fabs(value) <= precision || (found.marches > 0 && moved <= precision * at);
+    found.converged = std::fabs(value) <= precision || (k > 0 && moved <= precision * at);
     if (found.converged || root.exhausted()) break;
     root.report(value);
   }

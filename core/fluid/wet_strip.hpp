@@ -14,7 +14,8 @@
 // -cos(theta) takes the root of the pressure's ends away. Each step is the trapezoidal rule in
 // theta, of which d at its end is the unknown; X_c is found so that P vanishes at the leading edge:
 // where it is too far ahead, P falls below zero before, where too far behind it meets the nominal
-// pressure.
+// pressure. Each march carries the rates by theta of X_c along, so X_c is found by Newton's method,
+// and its last, small step is taken by these rates, without a march.
 #pragma once
 
 #include "numeric/memory.hpp"
@@ -23,7 +24,8 @@ namespace railpatch {
 
 // Nominal pressure over p_0 at X = -cos(theta), and theta where it is greatest.
 struct strip_pressure {
-  virtual double at(double cosine, double sine) const = 0;  // of theta
+  // of theta; slope: its rate by theta
+  virtual double at(double cosine, double sine, double &slope) const = 0;
   virtual double peak() const = 0;
 
  protected:
@@ -31,7 +33,7 @@ struct strip_pressure {
 };
 
 struct elliptic_strip final : strip_pressure {
-  double at(double cosine, double sine) const override;
+  double at(double cosine, double sine, double &slope) const override;
   double peak() const override;
 };
 
@@ -55,18 +57,28 @@ class strip_solver {
   const double *theta() const { return theta_.data(); }
   const double *liquid() const { return liquid_.data(); }
   const double *film() const { return film_.data(); }
-  size_t bytes() const { return 3 * theta_.bytes() + bell_.bytes() + tail_.bytes(); }
+  size_t bytes() const { return 5 * theta_.bytes() + bell_.bytes() + tail_.bytes(); }
 
  private:
   struct section;
   section at(double d) const;
-  // P at the leading edge, or more than it could be where P meets the nominal pressure before.
-  double march(const strip_pressure &pressure, double s, double r, double end, double tolerance);
+  // P at the leading edge, or more than it could be where P meets the nominal pressure before. The
+  // slope is its rate by theta of X_c, then 0.
+  double march(const strip_pressure &pressure, double s, double r, double end, double tolerance,
+               double &slope);
+  void move(double end, double by);
+  // theta of X_c: where to begin, by which step, and between which ends
+  struct range_of_end {
+    double begin, step, low, high;
+  };
+  strip_solution search(const strip_pressure &pressure, double s, double r,
+                        const range_of_end &range, double tolerance, double precision, int marches);
 
   int steps_;
-  double flow_ = 0;
+  double flow_ = 0, flow_rate_ = 0;
   aligned_buffer<double> theta_, liquid_, film_;
-  aligned_buffer<double> bell_, tail_;  // phi and 1 - Phi at steps of d
+  aligned_buffer<double> liquid_rate_, film_rate_;  // by theta of X_c
+  aligned_buffer<double> bell_, tail_;              // phi and 1 - Phi at steps of d
 };
 
 double flow_factor(double t);

@@ -46,16 +46,21 @@ class run_of_elements final : public strip_pressure {
   double greatest() const { return greatest_; }
   // of an element
   double theta(int i) const { return acos(std::clamp(1.0 - (i - front_) / half_, -1.0, 1.0)); }
-  double at(double cosine, double) const override {
-    const double u = front_ + half_ * (1.0 - cosine);
+  double at(double cosine, double sine, double &slope) const override {
+    const double u = front_ + half_ * (1.0 - cosine), moves = half_ * sine;
     const int i = u < 0 ? -1 : std::min(static_cast<int>(u), count_ - 1);
     if (i >= 0 && i + 1 < count_) {
       const double left = square(i), right = square(i + 1);
-      return std::sqrt(left + (u - i) * (right - left)) * over_greatest_;
+      const double value = std::sqrt(left + (u - i) * (right - left)) * over_greatest_;
+      slope = 0.5 * moves * (right - left) * over_greatest_ * over_greatest_ / value;
+      return value;
     }
     const double way = i < 0 ? (u - front_) * over_lead_ : 1.0 - (u - i) * over_trail_;
     const double all = i < 0 ? square(0) : square(i);
-    return std::sqrt(all * std::clamp(way, 0.0, 1.0)) * over_greatest_;
+    const double value = std::sqrt(all * std::clamp(way, 0.0, 1.0)) * over_greatest_;
+    const double rises = all * (i < 0 ? over_lead_ : -over_trail_);
+    slope = value > 0 ? 0.5 * moves * rises * over_greatest_ * over_greatest_ / value : 0.0;
+    return value;
   }
   double peak() const override { return theta(most_); }
 

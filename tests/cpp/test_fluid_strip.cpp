@@ -156,6 +156,26 @@ TEST(FluidStrip, RowsOfElements) {
   }
 }
 
+// From a place nearby some marches find the end, and their rates what lies between: to the
+// precision asked for, where it is sought to rounding.
+TEST(FluidStrip, NewtonsStepsFindTheSame) {
+  strip_solver cold(256), warm(256);
+  for (double number : {0.03, 0.36, 3.0, 30.0})
+    for (double r : {0.1, 1 / 2.8, 0.5}) {
+      const strip_solution all = cold.solve(elliptic_strip{}, number, r);
+      for (double off : {-0.02, 0.005, 0.02}) {
+        const double start = all.cavitation + off * (1 - all.cavitation);
+        const strip_solution found = warm.solve(elliptic_strip{}, number, r, start, 1e-8);
+        ASSERT_TRUE(found.converged) << number << " " << r << " " << off;
+        EXPECT_LE(found.marches, 6) << number << " " << r << " " << off;
+        EXPECT_NEAR(found.cavitation, all.cavitation, 1e-8) << number << " " << r << " " << off;
+        EXPECT_NEAR(found.flow / all.flow, 1, 1e-8) << number << " " << r << " " << off;
+        for (int k = 0; k < cold.nodes(); ++k)
+          EXPECT_NEAR(warm.liquid()[k], cold.liquid()[k], 1e-8) << number << " " << r << " " << k;
+      }
+    }
+}
+
 TEST(FluidStrip, Extremes) {
   strip_solver s(64);
   for (double number : {0.0, 1e-12, 1e-3, 1.0, 1e3, 1e6, 1e9})
