@@ -404,6 +404,7 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
     check.require(has_tangential(c) || scale == 1,
                   "friction_scale must be 1 in a scene without a tangential problem");
   }
+  check_slip_field(c, in, check);
   check.require(in.friction_coefficient == 0,
                 "friction_coefficient must be 0 in a step: rp_set_friction_coefficient sets it");
   if (c.kind == RP_PATCH) {

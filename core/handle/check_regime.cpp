@@ -41,7 +41,34 @@ void check_changes(const rp_config &c, checker &check) {
   check.require(wrong == nullptr, wrong ? wrong : "");
 }
 
+// Of a rigid slip of each element, on a grid that is given.
+void check_slip_field(const rp_config &c, checker &check) {
+  if (c.slip_by_element == 0) return;
+  const char *wrong = nullptr;
+  if (c.kind != RP_PATCH || c.geometry != RP_UNDEFORMED_DISTANCE)
+    wrong =
+        "slip_by_element needs kind = patch and geometry = undeformed_distance: a grid that is "
+        "given";
+  else if (!has_tangential(c) || c.tangential != RP_TANGENTIAL_FULL || c.fitted[0] > 0)
+    wrong = "slip_by_element needs a regime of motion, tangential = full and no fitted rows";
+  else if (c.fluid_model != RP_FLUID_NONE)
+    wrong = "fluid_model must be none with slip_by_element";
+  else if (c.accuracy > 0)
+    wrong = "accuracy must be 0 with slip_by_element: there is no error estimate";
+  else if (c.derivatives != 0)
+    wrong = "derivatives must be 0 with slip_by_element";
+  check.require(wrong == nullptr, wrong ? wrong : "");
+}
+
 }  // namespace
+
+void check_slip_field(const rp_config &c, const rp_input &in, checker &check) {
+  check.require(c.slip_by_element == 1 || in.slip_field == nullptr,
+                "slip_field must be null with slip_by_element = 0");
+  if (in.slip_field && check.error() == RP_OK)
+    check.numbers("slip_field", in.slip_field, 2 * c.distance_shape[0] * c.distance_shape[1],
+                  finite);
+}
 
 int regime_of(const rp_config &c, const rp_input &in) {
   return in.step_regime < 0 ? static_cast<int>(c.regime) : in.step_regime;
@@ -62,6 +89,7 @@ void check_step_regime(const rp_config &c, const rp_input &in, checker &check) {
 // Shift and transient rolling keep their grid in the frame of the contact.
 void check_regime(const rp_config &c, checker &check) {
   const bool changes = c.regime_changes == 1;
+  check_slip_field(c, check);
   if (changes) check_changes(c, check);
   if (!has_tangential(c) || (c.regime == RP_STEADY_ROLLING && !changes)) return;
   const char *wrong = nullptr;

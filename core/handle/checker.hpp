@@ -100,6 +100,8 @@ void check_regime(const rp_config &c, checker &check);
 // The regime of a step, an rp_regime, and what it may be.
 int regime_of(const rp_config &c, const rp_input &in);
 void check_step_regime(const rp_config &c, const rp_input &in, checker &check);
+// A rigid slip of each element of a step.
+void check_slip_field(const rp_config &c, const rp_input &in, checker &check);
 // What only some of the fast theories read must not be set for others.
 void check_fast(const rp_config &c, checker &check);
 // Which theories follow a law beside Coulomb's; grid: the full theory on the uniform grid.

@@ -159,6 +159,7 @@ patch_scene patch_scene_of(const rp_config &c) {
   if (scene.tangential == RP_TANGENTIAL_FULL && c.fitted[0] == 0) {
     scene.law = make_law(c);
     scene.changes = c.regime_changes == 1;
+    scene.slip_by_element = c.slip_by_element == 1;
     if (c.regime == RP_SHIFT) scene.regime = motion::shift;
     if (c.regime == RP_TRANSIENT_ROLLING) scene.regime = motion::transient;
     scene.moves = c.kind != RP_PATCH;

@@ -688,6 +688,11 @@ typedef struct rp_config {
   int32_t longitudinal_prescribed; /* 1: wheels in balance, see axle_free, which is then 0: the
                                       pitch rate at which their contact forces along the track's x
                                       are rp_input.longitudinal_force */
+
+  int32_t slip_by_element; /* 1: steps read rp_input.slip_field; of a patch with
+                              RP_UNDEFORMED_DISTANCE, tangential = full and no fitted rows, without
+                              liquid, accuracy and derivatives. creep_power is then what the whole
+                              rigid slip supplies, and there are no error estimates */
 } rp_config;
 
 typedef struct rp_input {
@@ -747,6 +752,12 @@ typedef struct rp_input {
                                 that drives is above 0 */
   double longitudinal_force; /* N on the wheel or on both, along the track's x, with
                                 longitudinal_prescribed */
+
+  const double *slip_field; /* -, with slip_by_element, else null: rigid slip of each element, wheel
+                               minus rail over the rolling speed, added to that of creepages and
+                               spin; RP_SHIFT: m, of this step. [2][distance_shape[1]]
+                               [distance_shape[0]], longitudinal before lateral; read in rp_step
+                               alone. null: none */
 } rp_input;
 
 /* One patch. Values of stages that the scene leaves out are NaN (element counts 0). Linear theory

@@ -496,7 +496,9 @@
   X(int32_t, regime_changes, 1, integer, always, 0, "[]", 0, 1, "-",                               \
     "whether a step may have another regime than the last one, from whose tractions it goes on")   \
   X(int32_t, longitudinal_prescribed, 1, integer, always, 0, "[]", 0, 1, "-",                      \
-    "whether the pitch rate is that at which the longitudinal force is the one given")
+    "whether the pitch rate is that at which the longitudinal force is the one given")             \
+  X(int32_t, slip_by_element, 1, integer, always, 0, "[]", 0, 1, "-",                              \
+    "whether steps read a rigid slip of each element")
 
 /* X(type, name, count, role, where, start, bounds, low, high, scale, unit, text), as above and
  * role      place: a number whose size says nothing about how fast things change there
@@ -582,7 +584,8 @@
     "of the contact forces about the axle, where the pitch rate is found; above 0: a drive")       \
   X(double, longitudinal_force, 1, number, wheels, 0, "()", -HUGE_VAL, HUGE_VAL, 100, "N",         \
     "of the contact forces along the track, on the wheel or on both, where the pitch rate is "     \
-    "found")
+    "found")                                                                                       \
+  O(const double *, slip_field, 1)
 
 /* --- choices: Y(type, list of the type's enumerators) -------------------------------------- */
 #define RP_CHOICES(Y)                                  \

@@ -72,6 +72,7 @@ void tangential_stage::close_step(const patch_problem &problem, const rolling_in
     work += 0.5 * (now.force[c] + before.force[c]) * (rolling.creepage[c] + found_creepage);
   }
   work += 0.5 * (now.moment[2] + before.moment) * rolling.spin_creepage;
+  if (problem.slip_field) work += field_work(problem, rolling, memory);
   found.supplied = -work;
   // of unlike bodies pressure has its part in the energy: friction is counted where it is
   if (shared_.coupled) {
@@ -95,6 +96,41 @@ void tangential_stage::close_step(const patch_problem &problem, const rolling_in
   const double factor = taken / (t.friction + plastic);
   t.friction *= factor;
   found.plastic_power *= factor;
+}
+
+// N, over the way: what the slip prescribed of each element does on the mean of both ends'
+// tractions, the earlier ones where the material is now.
+double tangential_stage::field_work(const patch_problem &problem, const rolling_input &rolling,
+                                    const patch_memory &memory) {
+  if (!(problem.rolling_speed > 0) && !problem.shifts) return 0.0;
+  const grid &g = problem.g;
+  const double *now[2] = {memory.px.data(), memory.py.data()};
+  const double *last[2] = {memory.history.last_px.data(), memory.history.last_py.data()};
+  double *before = shared_.mean[0].data(), sum = 0;
+  for (int c = 0; c < 2; ++c) {
+    shift_field(g, rolling.upstream(), 0.0, last[c], before);
+    for (int i = 0; i < g.count(); ++i)
+      sum += (now[c][i] + before[i]) * problem.slip_field[c * g.count() + i];
+  }
+  return 0.5 * sum * g.dx * g.dy;
+}
+
+// N: what creepages, spin and the slip of each element supply in steady rolling.
+double tangential_stage::rigid_work(const patch_problem &problem, const rolling_input &rolling,
+                                    const prescribed_force &force,
+                                    const patch_memory &memory) const {
+  const grid &g = problem.g;
+  const patch_wrench w =
+      sum_tractions(g, memory.pressure.data(), memory.px.data(), memory.py.data());
+  double work = w.moment[2] * rolling.spin_creepage;
+  for (int c = 0; c < 2; ++c) {
+    work += w.force[c] * (rolling.creepage[c] + force.creepage[c]);
+    if (!(problem.rolling_speed > 0)) continue;
+    const double *p = c == 0 ? memory.px.data() : memory.py.data();
+    work +=
+        dot(p, problem.slip_field + c * g.count(), static_cast<size_t>(g.count())) * g.dx * g.dy;
+  }
+  return -work;
 }
 
 // N/m^2 over the way of the step, of each element's material.

@@ -43,6 +43,7 @@ struct patch_problem {
   bool shifts = false;       // regime = shift: all speeds are ways
   rolling_input rolling;
   double tangential_force[2] = {0, 0};  // N, of the components prescribed
+  const double *slip_field = nullptr;   // -, prescribed of each element, [2][ny][nx]; null: none
   hertz_contact hertz;                  // where the surfaces are quadratic, else all zero
   contact_parts parts;
   const past_tractions *past = nullptr;  // of wheels in transient rolling, with their number

@@ -41,14 +41,15 @@ struct patch_scene {
   double tolerance = 1e-5;
   double normal_tolerance = 1e-5;
   int max_iterations = 100;
-  double spin_offset = 0;       // of a step's way, added to x in the spin term
-  double step_spin_offset = 0;  // the same of transient rolling
-  bool usual_spin = true;       // that is the one by default
-  bool derivatives = false;     // rates of results are asked for
-  interrupt ask{};              // of the caller, between iterations
-  bool exact = false;           // and come from the solved equations, of the whole scene
-  bool stretches = false;       // grids whose dx and dy change at different rates
-  bool curved = false;          // reference surface, of wheels
+  double spin_offset = 0;        // of a step's way, added to x in the spin term
+  double step_spin_offset = 0;   // the same of transient rolling
+  bool slip_by_element = false;  // steps have a rigid slip of each element
+  bool usual_spin = true;        // that is the one by default
+  bool derivatives = false;      // rates of results are asked for
+  interrupt ask{};               // of the caller, between iterations
+  bool exact = false;            // and come from the solved equations, of the whole scene
+  bool stretches = false;        // grids whose dx and dy change at different rates
+  bool curved = false;           // reference surface, of wheels
   // pressure acts along those of the rail's surface, of wheels, which differ along rows too
   bool local_normals = false, slopes_along_rows = false;
   int fitted[2] = {0, 0};  // nodes and strips of the tangential problem; 0: on the uniform grid

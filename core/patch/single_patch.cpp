@@ -124,6 +124,7 @@ bool single_patch::pose(const rp_input &in, const patch_memory &m, patch_problem
   problem.rolling_speed = in.rolling_speed;
   problem.rolling = motion_of(in);
   problem.shifts = regime_of(in) == motion::shift;
+  problem.slip_field = in.slip_field;
   for (int k = 0; k < 2; ++k) problem.tangential_force[k] = in.tangential_force[k];
   return true;
 }

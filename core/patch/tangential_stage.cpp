@@ -37,7 +37,8 @@ tangential_stage::tangential_stage(patch_workspace &shared, const fft_plans &pla
         tangential_solver::setup{scene.is_forced(), scene.law.has_value(), scene.yields(),
                                  scene.keeps_steps(), rolls_on ? &plans : nullptr, scene.moves});
     // with a prescribed force no creepage is known to start from
-    const bool plain = !scene.is_forced() && !scene.law && !scene.keeps_steps() && !scene.couples();
+    const bool plain = !scene.is_forced() && !scene.law && !scene.keeps_steps() &&
+                       !scene.couples() && !scene.slip_by_element;
     if (plain && coarse_start::serves(max_nx, max_ny))
       coarse_start_.emplace(scene.medium(), plans, max_nx, max_ny);
     bound_ = aligned_buffer<double>(count);
@@ -71,6 +72,8 @@ traction_outcome tangential_stage::solve(const patch_problem &problem,
     if (!scene.prescribed[c]) continue;
     found.creepage[c] = memory.creepage[static_cast<size_t>(c)] = force.creepage[c];
   }
+  if (problem.slip_field && !scene.goes_on(rolling))
+    found.supplied = rigid_work(problem, rolling, force, memory);
   found.stick = t.stick;
   found.slip = t.slip;
   found.exterior =
@@ -160,11 +163,27 @@ rolling_input tangential_stage::rolling_of(const patch_problem &problem, const p
     coupled->set_slip(memory.pressure.data(), rolling);
     for (int c = 0; c < 2; ++c) rolling.coupled[c] = coupled->slip(c);
   }
+  if (problem.slip_field && (problem.rolling_speed > 0 || problem.shifts))
+    add_slip_field(problem, rolling);
   const grid &g = problem.g;
   const bool offset = scene.spin_offset != 0 || scene.step_spin_offset != 0;
   if (offset && !problem.shifts) rolling.spin_offset = spin_offset_of(problem, memory, rolling);
   if (memory.curved && problem.rolling_speed > 0) add_slip_of_rows(g, *memory.curved, rolling);
   return rolling;
+}
+
+// What the step prescribes of each element, added to what the pressure causes.
+void tangential_stage::add_slip_field(const patch_problem &problem, rolling_input &rolling) {
+  const int count = problem.g.count();
+  for (int c = 0; c < 2; ++c) {
+    const double *field = problem.slip_field + c * count;
+    if (rolling.coupled[c]) {
+      double *slip = shared_.coupled->slip(c);
+      for (int i = 0; i < count; ++i) slip[i] += field[i];
+    } else {
+      rolling.coupled[c] = field;
+    }
+  }
 }
 
 // A part of the way that material has come in contact: of the step's, but no more than its length.

@@ -69,6 +69,11 @@ class tangential_stage {
   // of friction_work.cpp
   void close_step(const patch_problem &problem, const rolling_input &rolling, patch_memory &memory,
                   tangential_result &t, traction_outcome &found);
+  void add_slip_field(const patch_problem &problem, rolling_input &rolling);
+  double field_work(const patch_problem &problem, const rolling_input &rolling,
+                    const patch_memory &memory);
+  double rigid_work(const patch_problem &problem, const rolling_input &rolling,
+                    const prescribed_force &force, const patch_memory &memory) const;
   void find_friction(const patch_problem &problem, const rolling_input &rolling,
                      const patch_memory &memory);
   void find_friction_heat(const patch_problem &problem, const rolling_input &rolling,

@@ -128,6 +128,7 @@ VALUES: dict[str, Any] = {
     "motion.creepage": [1.3e-3, -5e-4],
     "motion.tangential_force": [-1e4, 1e3],
     "motion.distance": 2e-3,
+    "motion.slip_field": [[[1e-4] * 2] * 2, [[0.0] * 2] * 2],
     "motion.steps": 3,
     "motion.rolling_speed": 12.0,
     "motion.spin_creepage": 0.3,

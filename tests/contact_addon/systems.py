@@ -36,6 +36,8 @@ def linked(platform: str, folder: Path, ending: str) -> Path:
     if ending:  # what this machine's own programs need it has
         zig += ["-target", PLATFORMS[platform][0]]
     strict = ["-std=c11", "-Wall", "-Wextra", "-Werror", f"-I{folder / 'lib'}"]
+    # as the library: else each compiler joins products and sums as it likes
+    strict += ["-ffp-contract=off"]
     beside = [] if ending else ["-Wl,-rpath,$ORIGIN", "-lm"]
     output(*zig, *strict, HERE / "driver.c", library, *beside, "-o", program)
     return program

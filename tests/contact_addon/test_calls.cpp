@@ -288,7 +288,7 @@ TEST_F(Addon, WhatHasNoCounterpartIsRefusedByName) {
       {flag(1971, 4), -99, "B = 4"},
       {flag(1971, 2), -99, "need an ellipse"},
       {flag(1970, 1), -99, "P = 1"},
-      {flag(1980, 2), -99, "E = 1"},
+      {flag(1980, 2), -99, "E3"},
       {flag(1974, 3), -99, "F = 3"},
       {material(1, {.28, .28, 1, 1, 1, 1, 1, 1}), -99, "M = 1"},
       {material(2, {.28, .28, 1, 1, 1, 1, 1, 1}), -99, "M = 2"},
@@ -406,6 +406,40 @@ TEST_F(Addon, ARegimeMayChange) {
   // without tractions there is nothing to lose
   contact.flag(1972, 0);
   EXPECT_EQ(contact.solve(), 0);
+}
+
+// Of the same slip everywhere: that of a creepage, body 1 minus body 2, in steady rolling, a shift
+// (lengths) and after another; gone with E = 0.
+TEST_F(Addon, ExtraRigidSlipIsAddedToCreepages) {
+  basic_contact contact(1);
+  int count = 144;
+  std::vector<double> along(144, 7e-4), across(144, -2e-4);
+  const auto near = [&](const std::vector<double> &wanted) {
+    const auto found = contact.forces();
+    for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(found[k], wanted[k], 1e-4 * 12000) << k;
+  };
+  for (const int regime : {3, 1}) {
+    contact.flag(1972, regime);
+    const double unit = regime == 1 ? 1e-3 : 1.0;
+    contact.creep(1e-3 * unit, -2e-4 * unit);
+    ASSERT_EQ(contact.solve(), 0);
+    const auto wanted = contact.forces();
+    contact.creep(3e-4 * unit);
+    ASSERT_EQ(contact.solve(), 0);
+    const auto without = contact.forces();
+    for (double &w : along) w = 7e-4 * unit;
+    for (double &w : across) w = -2e-4 * unit;
+    cntc_setextrarigidslip(&contact.ire, &contact.icp, &count, along.data(), across.data());
+    ASSERT_EQ(contact.solve(), 0);
+    near(wanted);
+    int field = 22;
+    std::vector<double> w(144, 7.0);
+    cntc_getfielddata(&contact.ire, &contact.icp, &field, &count, w.data());
+    EXPECT_NEAR(std::fabs(w[70]), 1e-3 * unit, 1e-12);
+    contact.flag(1980, 0);
+    ASSERT_EQ(contact.solve(), 0);
+    near(without);
+  }
 }
 
 TEST_F(Addon, UnitsAndSigns) {

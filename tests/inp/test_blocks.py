@@ -113,7 +113,15 @@ BASIC_REFUSED = [
     ({"second": "029020", "material": "'coef.txt'\n.28 .28 82000 82000"}, "C3 = 9"),
     ({"second": "022020 2", "heat": "1 1 1 1"}, "M2 = 2"),
     ({"second": "022020 11"}, "gap weighting"),
-    ({"second": "022029", "extra": "0 0\n" * 480}, "extra rigid slip"),
+    (
+        {"potcon": "-3", "grid": "24 20 6. 4. 1.2", "distance": "", "second": "022009"}
+        | {"extra": "0 0\n" * 480},
+        "extra rigid slip with an ellipse",
+    ),
+    (
+        {"second": "022329", "material": ".28 .28 82000 82000 1 1 0", "extra": "0 0\n" * 480},
+        "extra rigid slip without the full theory",
+    ),
     ({"second": "322020", "friction": "0.1 0.2 800 .1 900 0.001 1."}, "L = 3 with a second term"),
     ({"second": "622020", "friction": "0.3 0 -.1 400 0 0"}, "L = 6 without temperatures"),
     ({"friction": "0.35 0.3"}, "L = 0 with FSTAT other than FKIN"),

@@ -33,6 +33,14 @@ CASES = {
     "force": with_values(
         PATCH, motion={"tangential_force": [-1e4, "creepage"], "rolling_speed": 10.0}
     ),
+    "slip by element": with_values(
+        PATCH,
+        geometry={
+            "undeformed_distance": [[2e-5, 1e-5, 2e-5], [1e-5, 0.0, 1e-5], [2e-5, 1e-5, 2e-5]]
+        },
+        grid={"element_size": [1e-3, 1e-3]},
+        motion={"slip_field": [[[1e-4] * 3] * 3, [[0.0] * 3] * 3], "rolling_speed": 10.0},
+    ),
     "shift": with_values(PATCH, motion={"regime": "shift", "creepage": [1e-5, 0.0]}),
     "wheel": ON_RAIL,
     "liquid": with_values(

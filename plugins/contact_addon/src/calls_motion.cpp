@@ -142,14 +142,23 @@ void cntc_setcreepages(int *ire, int *icp, double *vx, double *vy, double *phi) 
   });
 }
 
+// Body 1 minus body 2 in all units, as creepages; lengths with T = 1.
 void cntc_setextrarigidslip(int *ire, int *icp, int *count, double *wx, double *wy) {
   const char *call = "cntc_setextrarigidslip";
   CONTACT_ADDON_NEEDS(call, ire, icp, count, wx, wy)
   set_basic(call, ire, icp, [&](problem &p) {
     const bool large = p.grid.mx > 1000 || p.grid.my > 1000;
     if (!counted(call, *count, large ? 0 : p.grid.mx * p.grid.my)) return;
+    if (!finite(call, wx, *count) || !finite(call, wy, *count)) return;
+    const double size = p.flags.get(flag_tangential) == 1 ? p.unit().length : 1.0;
+    const double *given[2] = {wx, wy};
+    for (int c = 0; c < 2; ++c) {
+      p.extra_slip[c].assign(given[c], given[c] + *count);
+      for (double &w : p.extra_slip[c]) w *= size;
+    }
     std::string said;
-    if (p.flags.set(flag_extra_slip, 1, said)) p.changed = true;
+    p.flags.set(flag_extra_slip, 1, said);
+    p.changed = true;
   });
 }
 

@@ -91,8 +91,10 @@ void hand_out_rigid_slip(const problem &p, const rp_patch_result &r, int part, i
     if (static_cast<size_t>(k) >= count_of(p, r)) continue;
     const double x = g.x0 + k % g.mx * g.dx - p.mapped.offset[0];
     const double y = g.y0 + k / g.mx * g.dy - p.mapped.offset[1];
-    const double w =
+    double w =
         part == 0 ? r.creepage[0] - r.spin_creepage * y : r.creepage[1] + r.spin_creepage * x;
+    const std::vector<double> &own = p.mapped.slip;
+    if (!own.empty()) w += own[static_cast<size_t>(part) * count_of(p, r) + static_cast<size_t>(k)];
     out[k] = or_zero(w) * unit;
   }
 }

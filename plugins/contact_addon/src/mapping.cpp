@@ -82,9 +82,8 @@ void map_tangential(const problem &p, bool in_history, rp_config &c) {
     no("B = 3, the parabolic bound, is for FASTSIM (M = 3) here");
   }
   if (t < 3 || in_history) let_regime_change(c);
-  if (p.flags.get(flag_extra_slip) > 0)
-    no(p.wheel_rail() ? "E3, spin dropped from the slip, has no counterpart"
-                      : "E = 1, extra rigid slip of each element, has no counterpart");
+  if (p.flags.get(flag_extra_slip) > (p.wheel_rail() ? 0 : 1))
+    no("E3, spin dropped from the slip, has no counterpart");
 }
 
 void map_heat(const problem &p, rp_config &c) {
@@ -257,6 +256,22 @@ void map_grid(const problem &p, mapped_case &out) {
     }
 }
 
+// Extra rigid slip of each element; none where none was set.
+void map_slip(const problem &p, mapped_case &out) {
+  rp_config &c = out.config;
+  const bool rolls = c.regime != RP_REGIME_NONE;
+  if (p.flags.get(flag_extra_slip) == 0 || !rolls || p.extra_slip[0].empty()) return;
+  if (!out.on_own_grid || c.tangential != RP_TANGENTIAL_FULL)
+    no("E = 1, extra rigid slip of each element, needs the full theory (M = 0, 4) on a grid: not "
+       "with B = 2, 3 and IPOTCN = -4, -5");
+  if (p.extra_slip[0].size() != out.distance.size())
+    no("extra rigid slip has as many values as the grid has elements");
+  c.slip_by_element = 1;
+  c.derivatives = 0;
+  for (const auto &part : p.extra_slip)
+    for (const double w : part) out.slip.push_back(-w);
+}
+
 void map_basic(const problem &p, mapped_case &out) {
   rp_config &c = out.config;
   c.kind = RP_PATCH;
@@ -269,6 +284,7 @@ void map_basic(const problem &p, mapped_case &out) {
   c.force_prescribed[1] = f == 2;
   if (f > 0 && c.tangential != RP_TANGENTIAL_FULL) no("F > 0 needs the full theory, M = 0 or 4");
   map_grid(p, out);
+  map_slip(p, out);
 }
 
 void map_wheel(const problem &p, mapped_case &out) {
@@ -455,6 +471,7 @@ rp_input map_input(const problem &p, const mapped_case &mapped) {
     input_of_wheel(p, in);
   else
     input_of_basic(p, mapped, in);
+  if (!mapped.slip.empty()) in.slip_field = mapped.slip.data();
   return in;
 }
 

@@ -111,6 +111,7 @@ struct handle_deleter {
 struct mapped_case {
   rp_config config{};
   std::vector<double> distance;
+  std::vector<double> slip;  // of each element, wheel minus rail; none: not part of the case
   profile_curve wheel_profile, rail_profile;
   std::shared_ptr<matched_slices> wheel_slices, rail_slices;
   int profile_changes = 0;
@@ -134,7 +135,7 @@ struct problem {
   distance_data distance;
   basic_data basic;
   wheel_data wheel;
-  std::vector<double> extra_slip[2];
+  std::vector<double> extra_slip[2];  // by element, body 1 minus 2; m with T = 1
   // by call: why what was set with it has no counterpart; said when a case is to be solved
   std::array<std::pair<const char *, std::string>, 16> refused{};
 

@@ -46,9 +46,11 @@ void make_contact(problem &p) {
   p.contact.reset(made);
 }
 
-// The last step, of steady rolling, with the handle that goes on from it.
-void roll_steadily(problem &p) {
+// The last step, of steady rolling and with its slip by element, with the handle that goes on from
+// it.
+void roll_steadily(problem &p, const std::vector<double> &slip) {
   rp_input in = p.input;
+  in.slip_field = slip.empty() ? nullptr : slip.data();
   in.step_regime = RP_STEADY_ROLLING;
   rp_result result;
   rp_message message{};
@@ -64,6 +66,7 @@ void prepare(problem &p) {
   mapped_case mapped = map_case(p, goes_on && remembers(p));
   if (p.contact && same_case(mapped, p.mapped)) {
     p.mapped.grid = mapped.grid;
+    p.mapped.slip = std::move(mapped.slip);
     p.changed = false;
     return;
   }
@@ -83,7 +86,7 @@ void prepare(problem &p) {
   p.state_before.clear();
   make_contact(p);
   p.changed = false;
-  if (same) roll_steadily(p);
+  if (same) roll_steadily(p, before.slip);
 }
 
 void begin(problem &p) {

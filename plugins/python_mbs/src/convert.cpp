@@ -12,6 +12,7 @@
 #include <type_traits>
 
 #include "railpatch_fields.h"
+#include "watching.hpp"
 #include "words.hpp"
 
 namespace railpatch::python {
@@ -304,7 +305,25 @@ void fill_config(const nb::dict &from, Config &to) {
 void fill_input(const nb::dict &from, rp_input &c) {
   Reader reader(from);
   RP_INPUT_FIELDS(RAILPATCH_READ, RAILPATCH_SKIP)
+  reader.has("slip_field");  // of who keeps it: SlipField
   reader.finish();
+}
+
+void SlipField::fill(const nb::dict &from, rp_input &to) {
+  if (!from.contains("slip_field")) return;
+  decltype(values_) values;
+  if (!nb::try_cast(nb::object(from["slip_field"]), values)) throw nb::value_error("slip_field");
+  const auto ny = static_cast<size_t>(shape_[1]), nx = static_cast<size_t>(shape_[0]);
+  if (values.shape(0) != 2 || values.shape(1) != ny || values.shape(2) != nx) {
+    rp_message message = {};
+    std::snprintf(
+        message.text, sizeof message.text,
+        "motion.slip_field: value is of another shape, allowed twice %d rows of %d numbers",
+        shape_[1], shape_[0]);
+    check(RP_ERROR_VALUE, &message);
+  }
+  values_ = values;
+  to.slip_field = values_.data();
 }
 
 nb::dict config_dict(const rp_config &config) {

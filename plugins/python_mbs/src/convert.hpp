@@ -38,6 +38,20 @@ void fill_config(const nb::dict &from, Config &to);
 // keys that are left out keep their value
 void fill_input(const nb::dict &from, rp_input &to);
 
+// the rigid slip of each element that inputs point to, as long as they do
+class SlipField {
+ public:
+  void of(const rp_config &config) {
+    for (int k = 0; k < 2; ++k) shape_[k] = config.distance_shape[k];
+  }
+  // raises CaseError for an array of another shape than the grid's
+  void fill(const nb::dict &from, rp_input &to);
+
+ private:
+  nb::ndarray<const double, nb::ndim<3>, nb::c_contig, nb::device::cpu> values_;
+  int32_t shape_[2] = {0, 0};
+};
+
 // every plain field as a list of numbers, defaults filled in, enumerations as their values
 nb::dict config_dict(const rp_config &config);
 nb::dict result_dict(const rp_result &result);

@@ -44,6 +44,7 @@ class Contact : public Steppable {
     Config c;
     fill_config(config, c);
     table_ = c.table;
+    slip_.of(c.values);
     if (timing) {
       c.values.observer = StageClock::observe;
       c.values.observer_user = &clock_;
@@ -60,6 +61,7 @@ class Contact : public Steppable {
     rp_input input;
     rp_default_input(&input);
     fill_input(values, input);
+    slip_.fill(values, input);
     rp_result result;
     step_once(input, result);
     return result_dict(result);
@@ -70,6 +72,7 @@ class Contact : public Steppable {
     rp_input input;
     rp_default_input(&input);
     fill_input(values, input);
+    slip_.fill(values, input);
     auto outcome = std::make_unique<Outcome>();
     step_once(input, outcome->values);
     moves_.start(input);
@@ -325,6 +328,7 @@ class Contact : public Steppable {
 
   Signals signals_;
   Moves moves_;
+  SlipField slip_;
   Bytes table_;  // the contact uses it in place
   std::unique_ptr<rp_contact, Destroy> contact_;
   StageClock clock_;

@@ -183,8 +183,8 @@ def refuse_asked(case: Any, where: str) -> None:
 
 
 def refuse_changes(case: Any, where: str) -> None:
-    """Of what has one regime for all steps. Raises CaseError."""
+    """Of what has one regime, and no slip by element, for all steps. Raises CaseError."""
     motion = getattr(case, "motion", None)
-    for key in ("regimes", "regime_changes"):
+    for key in ("regimes", "regime_changes", "slip_field"):
         if getattr(motion, key, None):
             raise CaseError(f"motion.{key}: given, allowed none {where}")

@@ -23,6 +23,7 @@ class Moving(TypedDict, total=False):
     direction: Literal[1, -1]
     distance: float
     steps: int
+    slip_field: Sequence[Sequence[Numbers]]
     regime: Literal["shift", "transient_rolling", "steady_rolling"]
     # wheel_rail, wheelset
     x: float

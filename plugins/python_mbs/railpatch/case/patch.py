@@ -34,6 +34,7 @@ from railpatch.case.types import (
     LEFT_OUT,
     Curvatures,
     ForcePair,
+    Number,
     Pair,
     Pairs,
     Positive,
@@ -41,6 +42,7 @@ from railpatch.case.types import (
     SemiAxes,
     Shift,
     Table,
+    exactly,
     exactly_one,
     key,
     likely,
@@ -128,6 +130,21 @@ class Motion(Table):
         default=1, description="-, rolling towards +x (1) or towards -x (-1)"
     )
     spin_creepage: float = key()
+    slip_field: (
+        Annotated[
+            list[
+                Annotated[list[Annotated[list[Number], Field(min_length=1)]], Field(min_length=1)]
+            ],
+            exactly(2),
+        ]
+        | None
+    ) = Field(
+        default=None,
+        description="-, [longitudinal, lateral] rigid slip of each element, wheel minus rail over "
+        "the rolling speed, as rows from low to high y of elements from low to high x: added to "
+        "that of creepages and spin in each step; with shift m. Needs "
+        "geometry.undeformed_distance. Left out: none",
+    )
     rolling_speed: float = key()
     distance: Positive | None = Field(
         default=None,
@@ -153,6 +170,8 @@ class Motion(Table):
             keys += ["distance", "steps"]
         if self.changes:
             keys.append("regime")
+        if self.slip_field is not None:
+            keys.append("slip_field")
         return tuple(keys)
 
     @property
@@ -217,7 +236,7 @@ class Motion(Table):
             yield relation("steps", self.steps, "only with regime = 'transient_rolling' or 'shift'")
         if self.regime != "none":
             return
-        for name in ("creepage", "direction", "spin_creepage", "rolling_speed"):
+        for name in ("creepage", "direction", "spin_creepage", "slip_field", "rolling_speed"):
             value = getattr(self, name)
             if value != type(self).model_fields[name].default:
                 yield relation(name, str(value), f"{LEFT_OUT} with regime = 'none'")
@@ -305,6 +324,7 @@ class PatchCase(Table):
                 self._check_physics(),
                 self._check_of_wheels(),
                 self._check_shape(),
+                self._check_slip(),
                 check_asked(self, self.geometry.line_contact_radius is not None),
             )
         )
@@ -376,6 +396,30 @@ class PatchCase(Table):
             yield from self._check_line()
         if gap:
             yield from self._check_gap()
+
+    def _check_slip(self) -> Problems:
+        """What a slip of each element needs: a grid that is given, and the full theory on it."""
+        slip = self.motion.slip_field
+        if slip is None:
+            return
+        name = "motion.slip_field"
+        gap = self.geometry.undeformed_distance
+        if gap is None:
+            yield relation(name, "given", f"{LEFT_OUT} but with geometry.undeformed_distance")
+        elif not isinstance(gap, str):
+            shape = len(gap), len(gap[0]) if gap else 0
+            if any(len(part) != shape[0] or {*map(len, part)} != {shape[1]} for part in slip):
+                allowed = f"twice {shape[0]} rows of {shape[1]} numbers, as the grid has"
+                yield relation(name, "of another shape", allowed)
+        if self.method.tangential != "full":
+            shown = repr(self.method.tangential)
+            yield relation("method.tangential", shown, f"'full' with {name}")
+        if self.grid is not None and self.grid.fitted is not None:
+            yield relation("grid.fitted", str(self.grid.fitted), f"{LEFT_OUT} with {name}")
+        if self.fluid is not None:
+            yield relation("fluid", "given", f"{LEFT_OUT} with {name}")
+        if self.method.derivatives:
+            yield relation("method.derivatives", "True", f"False with {name}")
 
     def _check_gap(self) -> Problems:
         """What an undeformed distance needs: its own grid."""

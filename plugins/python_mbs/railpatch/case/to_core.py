@@ -14,6 +14,9 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from railpatch import _core
 from railpatch.case.creep_table import default_table, table_from
 from railpatch.case.fluid import LIQUID_WATER, MOVED, OF_KNOT
@@ -196,6 +199,7 @@ def patch_config(case: PatchCase, folder: Path) -> dict[str, Any]:
         "geometry": shape,
         "load": "force" if case.load.normal_force is not None else "position",
         "force_prescribed": [int(prescribed) for prescribed in case.motion.prescribed],
+        "slip_by_element": int(case.motion.slip_field is not None and case.has_tangential),
     }
     if shape == "undeformed_distance":
         config[shape] = read_gap(case.geometry.undeformed_distance, folder)
@@ -307,6 +311,8 @@ def input_of(case: Case) -> dict[str, Any]:
         motion = case.motion
         values["creepage"] = motion.creepages[0]
         values["tangential_force"] = motion.forces
+        if motion.slip_field is not None:
+            values["slip_field"] = slip_array(motion.slip_field)
         if motion.distance is not None:
             values["distance"] = motion.step_distance
     else:
@@ -320,6 +326,14 @@ def input_of(case: Case) -> dict[str, Any]:
         given = zip(bulk_of(case)["bulk_temperature"], case.temperature.stores, strict=True)
         values["bulk_temperature"] = [math.nan if stores else value for value, stores in given]
     return values
+
+
+def slip_array(slip: list[list[list[float]]]) -> NDArray[np.float64]:
+    """-, [2, lateral, along rolling]. Raises CaseError where rows are not of one length."""
+    lengths = {len(row) for part in slip for row in part}
+    if len(lengths) > 1 or len(slip[0]) != len(slip[1]):
+        raise CaseError("motion.slip_field: value is of another shape, allowed that of the grid")
+    return np.array(slip, dtype=float)
 
 
 # keys of a step that are plain numbers in the core's input and, given by themselves, need no other

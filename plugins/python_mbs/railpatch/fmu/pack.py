@@ -239,6 +239,8 @@ def check_regime(scene: Scene) -> None:
     for key in ("regimes", "regime_changes"):
         if getattr(motion, key, None):
             raise CaseError(f"motion.{key}: given, allowed in an FMU: left out, one regime for all")
+    if getattr(motion, "slip_field", None) is not None:
+        raise CaseError("motion.slip_field: given, allowed in an FMU: left out, inputs are numbers")
     regime = getattr(motion, "regime", "none")
     if regime == "shift":
         raise CaseError(

@@ -342,9 +342,9 @@ def _basic(reader: Reader, digits: dict[str, int], blocks: dict[str, Any]) -> No
         _friction(reader, digits, blocks)
     if digits["E"] in (2, 3, 9):
         count = blocks["grid"]["MX"] * blocks["grid"]["MY"]
-        [reader.real("extra rigid slip") for _ in range(2 * count)]
+        values = [reader.real("extra rigid slip") for _ in range(2 * count)]
         reader.end_line()
-        blocks["extra"] = {"E": digits["E"]}
+        blocks["extra"] = {"values": values}
     elif digits["E"] == 0:
         blocks.pop("extra", None)
 

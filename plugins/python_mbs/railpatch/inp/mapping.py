@@ -54,8 +54,6 @@ class Mapping:
         self.check(REFUSED)
         if self.digits["M2"] == 2 or "damping" in self.blocks:
             raise self.refuse("M2 = 2 (contact damping)")
-        if "extra" in self.blocks:
-            raise self.refuse("extra rigid slip")
         if self.digits["WGAP"] > 0:
             raise self.refuse("gap weighting")
         tables = self._wheel() if self.case.module == 1 else self._basic()
@@ -332,9 +330,26 @@ class Mapping:
             motion["tangential_force"] = force
             creepage = [0.0, creepage[1] if d["F"] == 1 else 0.0]
         motion["creepage"] = [value + 0.0 for value in creepage]
+        if "extra" in self.blocks:
+            motion["slip_field"] = self._extra_slip(unit)
         if d["T"] == 2:
             motion |= {"distance": MM * rolling["DQ"], "steps": 1}
         return motion
+
+    def _extra_slip(self, unit: float) -> list[list[list[float]]]:
+        """Rigid slip of each element, given as pairs of body 1 minus body 2 (assumed)."""
+        grid, values = self.blocks["grid"], self.blocks["extra"]["values"]
+        if grid["IPOTCN"] < 0:
+            raise self.refuse("extra rigid slip with an ellipse (IPOTCN < 0)")
+        if self.blocks["material"]["M"] not in (0, 4):
+            raise self.refuse("extra rigid slip without the full theory (M = 0, 4)")
+        mx, my = grid["MX"], grid["MY"]
+        if len(values) != 2 * mx * my:
+            raise self.refuse("extra rigid slip of another grid")
+        return [
+            [[-unit * values[2 * (j * mx + i) + c] + 0.0 for i in range(mx)] for j in range(my)]
+            for c in range(2)
+        ]
 
     def _at_rest(self) -> float:
         one = self.blocks["friction"]["sets"][0]

@@ -10,6 +10,7 @@ from railpatch.inp.files import Converted
 
 # of [motion] and [load], what Contact.step changes
 MOVING = ("creepage", "spin_creepage", "tangential_force", "rolling_speed", "direction", "distance")
+MOVING += ("slip_field",)
 # of these, what a shift has not
 OF_ROLLING = ("rolling_speed", "direction", "distance")
 # of [wheelset], what Contact.step does not change
@@ -81,6 +82,8 @@ def common(steps: list[Converted], key: str, name: str) -> dict[str, Any]:
         motion = step.tables["motion"]
         if key not in motion or (key in OF_ROLLING and motion["regime"] == "shift"):
             continue
+        if key == "slip_field" and any(key not in s.tables["motion"] for s in steps if s.tables):
+            raise several(step, name, key)
         if found.setdefault(key, motion[key]) != motion[key]:
             raise several(step, name, key)
     return found
@@ -114,6 +117,12 @@ def changes_of(step: Converted, steps: list[Converted], name: str) -> dict[str, 
         )
     regime = {"regime": regime_of(step)} if changes_regime(steps) else {}
     if step.tables["kind"] == "patch":
+        own, of_first = (one["motion"].keys() for one in (step.tables, first.tables))
+        if ("slip_field" in own) != ("slip_field" in of_first):
+            raise CaseError(
+                f"{name}, line {step.case.line}, case {step.case.number}: extra rigid slip that "
+                "comes or goes within a sequence (P = 0) has no counterpart: give zeros"
+            )
         return regime | moving_of(step.tables) | step.tables["load"]
     return regime | changes_of_wheel(step, first, name)
 
