@@ -41,11 +41,8 @@ row_start start_of(const row_of_lines &row) {
   return out;
 }
 
-}  // namespace
-
-RAILPATCH_DISPATCH
-void meet_row(const row_of_lines &row, double x0, double dx, int count, double *p, double *n,
-              double *off) {
+RAILPATCH_DISPATCH void meet_elements(const row_of_lines &row, double x0, double dx, int count,
+                                      double *p, double *n, double *off) {
   const row_start from = start_of(row);
   const profile_piece m = row.meridian;
   const vec3 a = row.q0, b = row.qx, c = row.qn;
@@ -72,6 +69,13 @@ void meet_row(const row_of_lines &row, double x0, double dx, int count, double *
                        (std::fabs(dn) < close_step) & (at >= 0) & (at <= length);
     off[i] = there ? 0.0 : 1.0;
   }
+}
+
+}  // namespace
+
+void meet_row(const row_of_lines &row, double x0, double dx, int count, double *p, double *n,
+              double *off) {
+  meet_elements(row, x0, dx, count, p, n, off);
 }
 
 }  // namespace railpatch
