@@ -72,7 +72,7 @@ traction_outcome tangential_stage::solve(const patch_problem &problem,
     if (!scene.prescribed[c]) continue;
     found.creepage[c] = memory.creepage[static_cast<size_t>(c)] = force.creepage[c];
   }
-  if (problem.slip_field && !scene.goes_on(rolling))
+  if (has_physics && problem.slip_field && !scene.goes_on(rolling))
     found.supplied = rigid_work(problem, rolling, force, memory);
   found.stick = t.stick;
   found.slip = t.slip;
