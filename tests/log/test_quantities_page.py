@@ -50,7 +50,8 @@ def test_a_wheelset_has_all_of_them(wheelset_log: Path) -> None:
     found = panels(figure)
     assert set(found) == {
         *("wear number T\u03b3 [N]", "Y/Q", "guiding force Y [kN]", "wheel load Q [kN]"),
-        *("utilised friction", "greatest traction [MPa]", "extent along x [mm]"),
+        *("traction coefficient", "utilised friction"),
+        *("greatest traction [MPa]", "extent along x [mm]"),
         *("extent across [mm]", "y on the wheel's profile [mm]", "y on the rail's profile [mm]"),
         *("rolling radius difference [mm]", "radius difference over 2 y"),
     }
@@ -61,6 +62,10 @@ def test_a_wheelset_has_all_of_them(wheelset_log: Path) -> None:
     for trace, side in zip(found["wheel load Q [kN]"], ("left", "right"), strict=True):
         assert np.allclose(trace.y, -1e-3 * data.contact[side]["force"][:, 2])
     assert all(0 <= v <= 1 + 1e-9 for trace in found["utilised friction"] for v in trace.y)
+    for trace, side in zip(found["traction coefficient"], ("left", "right"), strict=True):
+        patches = [p for m in data.contact[side].messages for p in m["patches"]]
+        wanted = [np.hypot(*p["creep_force"][:2]) / p["normal_force"] for p in patches]
+        assert np.allclose(trace.y, wanted, rtol=1e-9)
     # wear number: over speed it is the power that creepages supply, here all of one sign
     for trace, side in zip(found["wear number T\u03b3 [N]"], ("left", "right"), strict=True):
         patches = [m["patches"] for m in data.contact[side].messages]
@@ -82,7 +87,7 @@ def test_the_page_has_the_figure(wheelset_log: Path, tmp_path: Path) -> None:
 
 
 def test_a_vehicle(tmp_path: Path) -> None:
-    """Three courses of each wheel and one of each wheelset; greatest numbers in its table."""
+    """Five courses of each wheel and one of each wheelset; greatest numbers in its table."""
     scene = load_vehicle_scene().with_method(normal="hertz", tangential="fastsim")
     scene = scene.with_run(duration=0.02, log_every=1)
     run_vehicle(Simulation(scene), output=tmp_path / "a.mcap")
@@ -93,8 +98,11 @@ def test_a_vehicle(tmp_path: Path) -> None:
     contact = data.contact[1, "left"]
     assert np.allclose(found["left wheels: T\u03b3 [N]"][0].y, contact["wear_number"])
     assert len(found["rolling radius difference [mm]"]) == 4
-    first = [m["patches"][0]["wheel_profile_position"][0] for m in contact.messages]
-    assert np.allclose(found["left wheels: y on the profile [mm]"][0].y, 1e3 * np.array(first))
+    for body in ("wheel", "rail"):
+        first = [m["patches"][0][f"{body}_profile_position"][0] for m in contact.messages]
+        drawn = found[f"left wheels: y on the {body}'s profile [mm]"][0].y
+        assert np.allclose(drawn, 1e3 * np.array(first))
+    assert not any("liquid" in title for title in found)
     page = write_report(tmp_path / "a.mcap", tmp_path / "a.html").read_text(encoding="utf-8")
     for words in quantities.HEAD:
         assert f">{words}</th>" in page

@@ -17,17 +17,20 @@ from railpatch.report.vehicle.data import VehicleRun
 
 TEXT = (
     "Y and Q are on the {body}, Y outward; T\u03b3 is the sum of |Fx ξ|, |Fy η| and |M "
-    "φ|. Utilised friction is the creep force over what friction could carry. Where they touch "
-    "is the y of each profile in its own axes."
+    "φ|. The traction coefficient is the creep force over the normal force, utilised friction "
+    "the same over what friction could carry. Where they touch is the y of each profile in its "
+    "own axes."
 )
 OF_WHEEL = {
     "wear_number": "wear number T\u03b3",
     "derailment_quotient": "Y/Q",
     "guiding_force": "guiding force Y",
     "wheel_load": "wheel load Q",
+    "fluid_power": "power of the liquid's shear",
 }
 # of each patch: name, component, label
 OF_PATCH = (
+    ("traction_coefficient", None, "traction coefficient"),
     ("utilised_friction", None, "utilised friction"),
     ("max_traction", None, "greatest traction"),
     ("contact_size", 0, "extent along x"),
@@ -128,9 +131,9 @@ def values_of(contact: Series, name: str, part: int | None) -> tuple[np.ndarray,
 
 VEHICLE_TEXT = (
     "Of each wheel, at the logged steps: wear number T\u03b3, |Fx ξ| + |Fy η| + |M φ|, "
-    "the creep force over what friction could carry of the patch that carries most, and the y of "
-    "the wheel's profile where that patch is; of each wheelset the difference of rolling radii. Q, "
-    "Y/Q and the sum of Y stand above."
+    "of the patch that carries most the creep force over its normal force and over what friction "
+    "could carry, and the y of the wheel's and of the rail's profile where that patch is; of each "
+    "wheelset the difference of rolling radii. Q, Y/Q and the sum of Y stand above."
 )
 
 
@@ -146,11 +149,15 @@ def vehicle_section(data: VehicleRun) -> list[str]:
 
 def vehicle_figure(data: VehicleRun) -> go.Figure:
     """Rows of quantities, left wheels beside right ones, a line for each wheelset."""
-    rows = (
+    rows: tuple[tuple[str, int | None, str], ...] = (
         ("wear_number", None, "T\u03b3 [N]"),
+        ("traction_coefficient", None, "traction coefficient"),
         ("utilised_friction", None, "utilised friction"),
-        ("wheel_profile_position", 0, "y on the profile [mm]"),
+        ("wheel_profile_position", 0, "y on the wheel's profile [mm]"),
+        ("rail_profile_position", 0, "y on the rail's profile [mm]"),
     )
+    if any(np.isfinite(contact["fluid_power"]).any() for contact in data.contact.values()):
+        rows += (("fluid_power", None, "power of the liquid's shear [W]"),)
     shown = make_subplots(
         len(rows) + 1,
         2,
@@ -179,7 +186,7 @@ def vehicle_figure(data: VehicleRun) -> go.Figure:
 
 def course(contact: Series, name: str, part: int | None) -> np.ndarray:
     """[n]: of the wheel, or of the patch that carries most; mm of lengths."""
-    if name == "wear_number":
+    if name in OF_WHEEL:
         return contact[name]
     found = np.full(len(contact), np.nan)
     for index, message in enumerate(contact.messages):
