@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "numeric/sums.hpp"
+
 namespace railpatch {
 
 heat_stage::heat_stage(patch_workspace &shared, int max_nx, int max_ny) : shared_(shared) {
@@ -44,8 +46,13 @@ void heat_stage::set_flux(const patch_problem &problem, const patch_memory &memo
     const bool steps = problem.rolling.regime == motion::transient;
     memory.history.plastic_work(problem.g, problem.rolling.direction, memory.px.data(),
                                 memory.py.data(), work.data());
-    const double rate = problem.rolling_speed / (steps ? problem.rolling.distance : problem.g.dx);
-    for (int i = 0; i < problem.g.count(); ++i) work[static_cast<size_t>(i)] *= rate;
+    const grid &g = problem.g;
+    const auto count = static_cast<size_t>(g.count());
+    double rate = problem.rolling_speed / (steps ? problem.rolling.distance : g.dx);
+    // all that the layer takes becomes its share of heat, as with friction
+    const double sum = rate * total(work.data(), count) * g.dx * g.dy;
+    if (sum > 0) rate *= problem.rolling_speed * shared_.plastic_work / sum;
+    for (size_t i = 0; i < count; ++i) work[i] *= rate;
     plastic = work.data();
   }
   stage_->heat(shared_.friction.data(), plastic, q);

@@ -27,6 +27,7 @@ struct patch_workspace {
   // where friction's work is asked for element by element: N/m^2 over the way of the step, and what
   // it is found from
   aligned_buffer<double> friction, mean[2], moved[2];
+  double plastic_work = 0;  // N, of plastic displacement over the way of the last solve
   size_t friction_bytes() const { return 5 * friction.bytes(); }
 };
 

@@ -176,6 +176,8 @@ def test_plastic_work_heats(regime: str) -> None:
         work = np.diff(path[:, ::-1], axis=1, prepend=0.0)[:, ::-1]
         work[np.array(whole["pressure"]) == 0] = 0.0
         flux = 20.0 / dx * np.hypot(*whole["traction"]) * np.maximum(work, 0.0)
+        # which is in the proportion of the elements' work
+        flux *= whole["plastic_power"] / (flux.sum() * dx * (whole["y"][1] - whole["y"][0]))
         index = np.arange(len(whole["x"]))
         ahead = index[None, :] - index[:, None]
         edges = np.sqrt(np.maximum(np.stack([ahead + 1, ahead]), 0.0))
