@@ -74,10 +74,6 @@ void check_reference(const rp_config &c, checker &check) {
     wrong = "reference_surface = curved needs tangential = full or none";
   else if (c.fitted[0] > 0)
     wrong = "reference_surface = curved needs fitted = 0, 0";
-  else if (has_tangential(c) && (c.friction_law != RP_COULOMB || c.layer_yield_stress > 0))
-    wrong = "reference_surface = curved needs friction_law = coulomb and layer_yield_stress = 0";
-  else if (c.temperature == 1)
-    wrong = "reference_surface = curved needs temperature = 0";
   else if (has_tangential(c) && is_coupled(combine(c.shear_modulus, c.poisson_ratio)))
     wrong = "reference_surface = curved needs bodies with equal (1-2nu)/G";
   else if (c.regime == RP_TRANSIENT_ROLLING || c.regime_changes == 1)

@@ -612,34 +612,12 @@ def test_wrong_accuracies(values: dict[str, Any], line: str) -> None:
             "'curved': give 'grid'",
         ),
         (
-            {
-                "friction": {
-                    "law": "slip_velocity",
-                    "kinetic": 0.2,
-                    "amplitude": 0.1,
-                    "halving_speed": 1.0,
-                }
-            },
-            "friction.law: value is 'slip_velocity', allowed 'coulomb' with reference_surface = "
-            "'curved'",
-        ),
-        (
-            {"layer": {"thickness": 1e-5, "shear_modulus": 1e9, "yield_stress": 1e8}},
-            "layer.yield_stress: value is 100000000.0, allowed none: it must be left out with "
-            "reference_surface = 'curved'",
-        ),
-        (
             {"method__derivatives": True},
             "method.derivatives: value is True, allowed False with reference_surface = 'curved'",
         ),
         (
             {"method__tangential": "none", "method__derivatives": True},
             "method.derivatives: value is True, allowed False with reference_surface = 'curved'",
-        ),
-        (
-            {"temperature": {"wheel": 20.0, "rail": 20.0}},
-            "temperature: value is given, allowed none: it must be left out "
-            "with reference_surface = 'curved'",
         ),
         (
             {"material__shear_modulus": [82e9, 8e9]},

@@ -381,9 +381,6 @@ TEST(Config, CurvedReferenceSurfaceIsChecked) {
   expect("half_space", [](rp_config &c) { c.normal = RP_NORMAL_ANALYN; });
   expect("full or none", [](rp_config &c) { c.tangential = RP_TANGENTIAL_FASTSIM; });
   expect("fitted", [](rp_config &c) { c.fitted[0] = c.fitted[1] = 8; });
-  expect("coulomb", [](rp_config &c) { c.friction_law = RP_SLIP_VELOCITY; });
-  expect("layer_yield_stress", [](rp_config &c) { c.layer_yield_stress = 1e8; });
-  expect("temperature", [](rp_config &c) { c.temperature = 1; });
   expect("(1-2nu)/G", [](rp_config &c) { c.shear_modulus[0] = 2e9; });
   expect("regime", [](rp_config &c) { c.regime = RP_TRANSIENT_ROLLING; });
   expect("derivatives", [](rp_config &c) { c.derivatives = 1; });

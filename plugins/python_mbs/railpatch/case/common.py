@@ -448,14 +448,7 @@ def check_fitted(grid: Grid | None, method: Method, *, line: bool = False) -> Pr
         yield relation("grid.fitted", str(grid.fitted), "3 to 64 rows")
 
 
-def check_reference(
-    material: Material,
-    friction: Friction | None,
-    layer: Layer | None,
-    heat: Temperature | None,
-    grid: Grid | None,
-    method: Method,
-) -> Problems:
+def check_reference(material: Material, grid: Grid | None, method: Method) -> Problems:
     """What a curved reference surface is not combined with."""
     if method.reference_surface == "plane":
         return
@@ -468,18 +461,9 @@ def check_reference(
         yield relation("method.accuracy", method.accuracy, f"{LEFT_OUT} {with_it}: give 'grid'")
     if grid is not None and grid.fitted is not None:
         yield relation("grid.fitted", str(grid.fitted), f"{LEFT_OUT} {with_it}")
-    if heat is not None:
-        yield relation("temperature", "given", f"{LEFT_OUT} {with_it}")
     if method.derivatives:
         yield relation("method.derivatives", "True", f"False {with_it}")
-    if method.tangential == "none":
-        return
-    if friction is not None and friction.law != "coulomb":
-        yield relation("friction.law", repr(friction.law), f"'coulomb' {with_it}")
-    if layer is not None and layer.is_plastic:
-        shown = "given" if layer.yield_stress is None else layer.yield_stress
-        yield relation(yields_by(layer), shown, f"{LEFT_OUT} {with_it}")
-    if couples(material):
+    if method.tangential != "none" and couples(material):
         yield relation("material", "unlike bodies", f"equal (1 - 2 nu)/G {with_it}")
 
 

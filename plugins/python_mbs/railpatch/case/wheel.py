@@ -429,9 +429,7 @@ class _WheelCase(Table):
             yield from check_left_out(self, "with method.tangential = 'none'")
         yield from check_fitted(self.grid, self.method)
         yield from check_accuracy(self.grid, self.method)
-        yield from check_reference(
-            self.material, self.friction, self.layer, self.temperature, self.grid, self.method
-        )
+        yield from check_reference(self.material, self.grid, self.method)
         yield from check_rolling(self)
         yield from self._check_frame()
         yield from self._check_balance()
