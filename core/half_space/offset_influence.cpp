@@ -189,34 +189,103 @@ offset_influence::lines offset_influence::transfer(const grid &from, const grid 
   return along_y_.backward(back_columns, to.ny, lateral[0], lateral[1]);
 }
 
-void offset_influence::add_moved(const influence &a, const grid &from, const grid &to,
-                                 const double offset[2], double share, const double *px,
-                                 const double *py, double *ux, double *uy) {
+// Kernels between two grids, where they are not those of the last call.
+void offset_influence::place(const influence &a, const grid &from, const grid &to,
+                             const double offset[2]) {
   const int nx = std::max(from.nx, to.nx), ny = std::max(from.ny, to.ny);
   const int plan = plans_.find(2 * nx + 1, ny > 1 ? 2 * ny - 1 : 1);
   const bool same = plan == plan_ && offset[0] == offset_ && offset[1] == lateral_offset_ &&
                     to.dx == dx_ && to.dy == dy_ && from.nx == from_[0] && from.ny == from_[1] &&
                     to.nx == to_[0] && to.ny == to_[1];
-  if (!same) {
-    plan_ = plan;
-    offset_ = offset[0], lateral_offset_ = offset[1], dx_ = to.dx, dy_ = to.dy;
-    from_[0] = from.nx, from_[1] = from.ny, to_[0] = to.nx, to_[1] = to.ny;
-    along_x_.set_length(plans_.nx(plan));
-    along_y_.set_length(plans_.ny(plan));
-    make_moved_spectra(a);
-  }
-  const lines u = transfer(from, to, px, py);
-  const int columns = fft::whole_packs(to.nx);
+  if (same) return;
+  plan_ = plan;
+  offset_ = offset[0], lateral_offset_ = offset[1], dx_ = to.dx, dy_ = to.dy;
+  from_[0] = from.nx, from_[1] = from.ny, to_[0] = to.nx, to_[1] = to.ny;
+  along_x_.set_length(plans_.nx(plan));
+  along_y_.set_length(plans_.ny(plan));
+  make_moved_spectra(a);
+}
+
+// The layer's part, of elements at their own.
+void offset_influence::add_layer(const influence &a, const grid &from, const grid &to,
+                                 const double offset[2], double share, const double *px,
+                                 const double *py, double *ux, double *uy) const {
   const double flexibility = share * a.bodies().layer_flexibility;
+  if (!(flexibility > 0)) return;
   for (int j = 0; j < to.ny; ++j)
     for (int i = 0; i < to.nx; ++i) {
-      ux[j * to.nx + i] += share * u.re[j * columns + i];
-      uy[j * to.nx + i] += share * u.im[j * columns + i];
-      if (!(flexibility > 0)) continue;
       const double x = (offset[0] / to.dx) + i, y = (offset[1] / to.dy) + j;
       ux[j * to.nx + i] += flexibility * between(from, px, x, y);
       uy[j * to.nx + i] += flexibility * between(from, py, x, y);
     }
+}
+
+void offset_influence::add_moved(const influence &a, const grid &from, const grid &to,
+                                 const double offset[2], double share, const double *px,
+                                 const double *py, double *ux, double *uy) {
+  place(a, from, to, offset);
+  const lines u = transfer(from, to, px, py);
+  const int columns = fft::whole_packs(to.nx);
+  for (int j = 0; j < to.ny; ++j)
+    for (int i = 0; i < to.nx; ++i) {
+      ux[j * to.nx + i] += share * u.re[j * columns + i];
+      uy[j * to.nx + i] += share * u.im[j * columns + i];
+    }
+  add_layer(a, from, to, offset, share, px, py, ux, uy);
+}
+
+// By A_xx, A_xs, A_ss of one traction at a time: A_nn = (1 - nu)/(2 - nu) (A_xx + A_ss). The signs
+// are those of conformal_influence.hpp.
+void offset_influence::add_curved(const influence &a, const grid &from, const grid &to,
+                                  const double offset[2], double share, const curved_past &past,
+                                  const curved_sums &sums) {
+  place(a, from, to, offset);
+  const double nu = a.bodies().elastic.poisson_ratio, normal = (1.0 - nu) / (2.0 - nu);
+  const int columns = fft::whole_packs(to.nx);
+  double *scaled = padded_.data(), *none = scaled + from.count();
+  std::fill_n(none, from.count(), 0.0);
+  // adds factor (row) times a component of what a field causes, itself scaled by rows (null: 1)
+  const auto each = [&](const double *field, const double *by_source, bool along, auto &&add) {
+    for (int j = 0; j < from.ny; ++j)
+      for (int i = 0; i < from.nx; ++i)
+        scaled[j * from.nx + i] = (by_source ? by_source[j] : 1.0) * field[j * from.nx + i];
+    const lines u = transfer(from, to, along ? scaled : none, along ? none : scaled);
+    for (int j = 0; j < to.ny; ++j)
+      for (int i = 0; i < to.nx; ++i)
+        add(j, j * to.nx + i, share * u.re[j * columns + i], share * u.im[j * columns + i]);
+  };
+  double *const *t = sums.from_traction, *const *p = sums.from_pressure;
+  // what no inclination changes
+  each(past.px, nullptr, true, [&](int, int at, double x, double s) {
+    t[0][at] += x;
+    t[1][at] += 0.5 * s;
+  });
+  each(past.py, nullptr, false, [&](int, int at, double x, double) { t[0][at] += 0.5 * x; });
+  for (int k = 0; k < 2; ++k) {
+    const double *source = k == 0 ? past.cosine[0] : past.sine[0];
+    const double *same = k == 0 ? past.cosine[1] : past.sine[1];
+    const double *other = k == 0 ? past.sine[1] : past.cosine[1];
+    // half of sin d, of the gap; of what pressure moves the other sign
+    const double half = k == 0 ? 0.5 : -0.5;
+    each(past.px, source, true, [&](int j, int at, double, double s) {
+      t[1][at] += 0.5 * same[j] * s;
+      sums.gap[at] += half * other[j] * s;
+    });
+    each(past.py, source, false, [&](int j, int at, double x, double s) {
+      t[0][at] += 0.5 * same[j] * x;
+      t[1][at] += same[j] * s;
+      sums.gap[at] += half * other[j] * (1.0 + normal) * s;
+    });
+    each(past.py, source, true,
+         [&](int j, int at, double x, double) { sums.gap[at] += half * other[j] * normal * x; });
+    each(past.pressure, source, false, [&](int j, int at, double x, double s) {
+      p[0][at] -= half * other[j] * x;
+      p[1][at] -= half * other[j] * (1.0 + normal) * s;
+    });
+    each(past.pressure, source, true,
+         [&](int j, int at, double x, double) { p[1][at] -= half * other[j] * normal * x; });
+  }
+  add_layer(a, from, to, offset, share, past.px, past.py, t[0], t[1]);
 }
 
 void shift_field(const grid &g, double offset, double outside, const double *from, double *to) {

@@ -11,6 +11,19 @@
 
 namespace railpatch {
 
+// Tractions and pressure on rows of a curved reference surface, and sums of what they cause at
+// those of another one; inclinations of both are seen from one direction.
+struct curved_past {
+  const double *px, *py, *pressure;  // Pa, [ny][nx] of the grid that they lie on
+  const double *cosine[2];           // of its rows, and of the rows that see them
+  const double *sine[2];
+};
+struct curved_sums {
+  double *from_traction[2];  // m, tangential
+  double *from_pressure[2];  // m, tangential
+  double *gap;               // m, from the tractions
+};
+
 class offset_influence {
  public:
   explicit offset_influence(const fft_plans &plans, bool moves = false);
@@ -23,6 +36,11 @@ class offset_influence {
   // `from`, with elements of the same size. Needs `moves`.
   void add_moved(const influence &a, const grid &from, const grid &to, const double offset[2],
                  double share, const double *px, const double *py, double *ux, double *uy);
+  // The same from one curved reference surface to another (conformal_influence.hpp), whose rows are
+  // seen at their distance in arc length; with what the pressure moves along, and the tractions
+  // apart.
+  void add_curved(const influence &a, const grid &from, const grid &to, const double offset[2],
+                  double share, const curved_past &past, const curved_sums &sums);
   size_t bytes() const;
 
  private:
@@ -30,6 +48,9 @@ class offset_influence {
   using lines = typename fft::lines;
   void make_spectra(const influence &a, const grid &g);
   void make_moved_spectra(const influence &a);
+  void place(const influence &a, const grid &from, const grid &to, const double offset[2]);
+  void add_layer(const influence &a, const grid &from, const grid &to, const double offset[2],
+                 double share, const double *px, const double *py, double *ux, double *uy) const;
   void transform_kernel(int k);
   // the product itself; its result lies in the first columns of the rows returned
   lines transfer(const grid &from, const grid &to, const double *px, const double *py);

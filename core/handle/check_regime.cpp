@@ -17,8 +17,6 @@ const char *wheels_cannot_roll(const rp_config &c) {
            "this version";
   if (c.layer_yield_stress > 0)
     return "layer_yield_stress must be 0 with regime = transient_rolling of wheels in this version";
-  if (c.reference_surface != RP_REFERENCE_PLANE)
-    return "reference_surface must be plane with regime = transient_rolling of wheels";
   if (c.temperature != 0)
     return "temperature must be 0 with regime = transient_rolling of wheels in this version";
   if (is_coupled(combine(c.shear_modulus, c.poisson_ratio)))

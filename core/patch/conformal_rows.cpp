@@ -92,6 +92,31 @@ bool conformal_rows::arc_length(const side_geometry &side, double &s) const {
   return false;
 }
 
+double conformal_rows::arc_of(const side_geometry &side, double s) const {
+  double arc = s;
+  return arc_length(side, arc) ? arc : s;
+}
+
+void conformal_rows::take_mean(const grid &g, const double now[4], const double mean[4]) {
+  if (!(mean[3] > 0)) return;
+  double more[3];
+  for (int k = 0; k < 3; ++k) more[k] = mean[k] * mean[3] - now[k] * now[3];
+  for (int row = 0; row < rows_; ++row) {
+    const auto j = static_cast<size_t>(row);
+    xi_[j] = (xi_[j] * now[3] + more[0] - more[2] * g.y(row)) / mean[3];
+    eta_[j] = (eta_[j] * now[3] + more[1]) / mean[3];
+    phi_[j] = (phi_[j] * now[3] + more[2]) / mean[3];
+  }
+}
+
+double conformal_rows::slip(int component, double row, double x) const {
+  if (rows_ < 2) return slip(component, 0, x);
+  const int first = static_cast<int>(std::clamp(std::floor(row), 0.0, rows_ - 2.0));
+  const double share = row - first;
+  // a whole row is that row
+  return (1.0 - share) * slip(component, first, x) + share * slip(component, first + 1, x);
+}
+
 void conformal_rows::keep(int row, const point &p) {
   const auto j = static_cast<size_t>(row);
   const double c = cos(reference_.contact_angle), t = sin(reference_.contact_angle);

@@ -30,11 +30,17 @@ class conformal_rows {
   // the patch's rolling speed (m/s).
   void set_slip(const side_geometry &side, double depth, double rolling_speed);
 
+  // Of a step that goes on from the last one: slips become those of the mean motion, as the
+  // reference's do. Creepages, spin, rolling speed (m/s), at the step's end and their mean.
+  void take_mean(const grid &g, const double now[4], const double mean[4]);
+
   // Rigid slip at x (m) in a row.
   double slip(int component, int row, double x) const {
     const auto j = static_cast<size_t>(row);
     return component == 0 ? xi_[j] : eta_[j] + phi_[j] * x;
   }
+  // The same between rows, and straight on beyond them.
+  double slip(int component, double row, double x) const;
   // rad/m, of each row
   const double *spin() const { return phi_.data(); }
   // In the frame of the patch; pressure acts along the rows' normals, or along the rail's.
@@ -44,6 +50,12 @@ class conformal_rows {
   const double *sine() const { return sin_.data(); }
   // Track axes.
   double angle(int row) const { return angle_[static_cast<size_t>(row)]; }
+  aligned_buffer<double> &angles() { return angle_; }
+  const aligned_buffer<double> &angles() const { return angle_; }
+  // From track axes to those of the cosines and sines.
+  double turned(double angle) const { return angle - reference_.contact_angle; }
+  // Arc length of a distance along the reference's s, or that where the curve ends.
+  double arc_of(const side_geometry &side, double s) const;
   double y(int row) const { return y_[static_cast<size_t>(row)]; }
   double z(int row) const { return z_[static_cast<size_t>(row)]; }
   size_t bytes() const { return 12 * y_.bytes(); }

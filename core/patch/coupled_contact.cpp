@@ -74,6 +74,11 @@ void coupled_contact::set_slip(const double *pressure, const rolling_input &roll
   coupling_->from_pressure(0.0, pressure, here[0], here[1]);
   // distance_ is free until the next round
   const bool steady = rolling.regime == motion::steady;
+  if (!steady && rolling.before[0]) {
+    for (double *u : here)
+      for (int i = 0; i < grid_.count(); ++i) u[i] /= rolling.distance;
+    return;
+  }
   const double upstream = steady ? rolling.direction * grid_.dx : rolling.upstream();
   const double way = rolling.regime == motion::shift ? 1.0 : std::abs(upstream);
   coupling_->from_pressure(upstream, steady ? pressure : last_pressure_.data(), next_.data(),

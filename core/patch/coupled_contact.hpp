@@ -29,7 +29,14 @@ class coupled_contact {
   void remember(const grid &g, const double *pressure);
   // Slip that the pressure adds to the rigid slip, [2][ny][nx]; what else does may be added to it.
   double *slip(int component) { return slip_[component].data(); }
+  // Of wheels that roll on the last step's part is in rolling.before.
   void set_slip(const double *pressure, const rolling_input &rolling);
+  // m, along each other by the pressure
+  void displacement(const double *pressure, double *ux, double *uy) {
+    coupling_->from_pressure(0.0, pressure, ux, uy);
+  }
+  // No round of this solution has been finished.
+  bool begins() const { return rounds_ == 0; }
   // m, greatest normal displacement from the pressure
   void set_scale(double value) { scale_ = value; }
   // The greatest d' - d over the scale; a constant part counts only where the approach is given.

@@ -54,6 +54,11 @@ carried_work carried_by(const patch_problem &problem, const patch_memory &memory
   return sum;
 }
 
+// Where all sticks what is supplied is what is stored, but for what their sums are rounded by.
+double beyond_rounding(double taken, double largest) {
+  return std::abs(taken) <= rounding * largest ? 0.0 : taken;
+}
+
 }  // namespace
 
 // Where tractions go on from the last step's: what creepages supply by the mean of both, and what
@@ -61,6 +66,7 @@ carried_work carried_by(const patch_problem &problem, const patch_memory &memory
 void tangential_stage::close_step(const patch_problem &problem, const rolling_input &rolling,
                                   patch_memory &memory, tangential_result &t,
                                   traction_outcome &found) {
+  if (memory.curved) return close_curved(problem, rolling, memory, t, found);
   const grid &g = problem.g;
   const patch_wrench now =
       sum_tractions(g, memory.pressure.data(), memory.px.data(), memory.py.data());
@@ -81,11 +87,9 @@ void tangential_stage::close_step(const patch_problem &problem, const rolling_in
     return;
   }
   const double grown = (found.elastic_energy - before.energy) / rolling.distance;
-  double taken = found.supplied - grown;
-  // where all sticks the two are equal, but for what their sums are rounded by
   const double largest =
       std::max(std::abs(found.supplied), (found.elastic_energy + before.energy) / rolling.distance);
-  if (std::abs(taken) <= rounding * largest) taken = 0;
+  const double taken = beyond_rounding(found.supplied - grown, largest);
   const double plastic = shared_.scene.yields() ? found.plastic_power : 0.0;
   // a step in which traction turns round may give work back, which no plastic displacement does
   if (!(plastic > 0) || taken <= 0) {
@@ -96,6 +100,82 @@ void tangential_stage::close_step(const patch_problem &problem, const rolling_in
   const double factor = taken / (t.friction + plastic);
   t.friction *= factor;
   found.plastic_power *= factor;
+}
+
+// The same on a curved reference surface. Every row has a rigid slip of its own, and pressure moves
+// its elements along too: by u_p, in the energy p . (u + u_p)/2 of the tractions. What their mean
+// does by the change of u_p is the change of sum p . u_p/2 and of half of what each step's pressure
+// does with the other's tractions, by Betti at the elements of this one.
+void tangential_stage::close_curved(const patch_problem &problem, const rolling_input &rolling,
+                                    patch_memory &memory, tangential_result &t,
+                                    traction_outcome &found) {
+  const grid &g = problem.g;
+  const auto count = static_cast<size_t>(g.count());
+  patch_history &history = memory.history;
+  found.elastic_energy = elastic_energy(problem, memory);
+  double *u[2] = {shared_.mean[0].data(), shared_.mean[1].data()};
+  shared_.coupled->displacement(memory.pressure.data(), u[0], u[1]);
+  double pressed = 0, crossed = 0;
+  for (size_t i = 0; i < count; ++i) {
+    const double own = 0.5 * (memory.px[i] * u[0][i] + memory.py[i] * u[1][i]);
+    history.energy[i] += own;
+    pressed += own;
+    crossed += memory.pressure[i] * before_gap_[i] - memory.px[i] * before_pressed_[0][i] -
+               memory.py[i] * before_pressed_[1][i];
+  }
+  const double area = g.dx * g.dy;
+  const carried_work before = carried_by(problem, memory);
+  const double stored = found.elastic_energy + pressed * area;
+  const double grown = (stored - before.energy + 0.5 * crossed * area) / rolling.distance;
+  const double supplied = supplied_to_rows(problem, memory);
+  const double largest =
+      std::max(std::abs(supplied), (std::abs(stored) + std::abs(before.energy)) / rolling.distance);
+  t.friction = beyond_rounding(supplied - grown, largest);
+  // creepages are those of the reference, and force and moment what the patch states
+  const patch_wrench flat =
+      sum_tractions(g, memory.pressure.data(), memory.px.data(), memory.py.data());
+  const patch_wrench now =
+      memory.curved->sum_tractions(g, memory.pressure.data(), memory.px.data(), memory.py.data());
+  history.bent = {now.force[0] - flat.force[0], now.force[1] - flat.force[1],
+                  now.moment[2] - flat.moment[2]};
+  double last[3] = {before.force[0], before.force[1], before.moment};
+  for (int k = 0; k < problem.past_count; ++k) {
+    const past_tractions &past = problem.past[k];
+    const double part = past.history->last_share * past.rows / past.history->last_grid.ny;
+    for (size_t c = 0; c < 3; ++c) last[c] += part * past.history->last_bent[c];
+  }
+  const rolling_input &moved = problem.rolling;
+  found.supplied = -0.5 * ((now.force[0] + last[0]) * moved.creepage[0] +
+                           (now.force[1] + last[1]) * moved.creepage[1] +
+                           (now.moment[2] + last[2]) * moved.spin_creepage);
+}
+
+// N, over the way: what the rigid slip of rows does on the mean of both ends' tractions, the
+// earlier ones where they were then.
+double tangential_stage::supplied_to_rows(const patch_problem &problem,
+                                          const patch_memory &memory) const {
+  if (!(problem.rolling_speed > 0)) return 0.0;
+  const grid &g = problem.g;
+  const conformal_rows &rows = *memory.curved;
+  double sum = 0;
+  for (int j = 0; j < g.ny; ++j)
+    for (int i = 0; i < g.nx; ++i) {
+      const auto at = static_cast<size_t>(j * g.nx + i);
+      sum += memory.px[at] * rows.slip(0, j, g.x(i)) + memory.py[at] * rows.slip(1, j, g.x(i));
+    }
+  for (int k = 0; k < problem.past_count; ++k) {
+    const past_tractions &past = problem.past[k];
+    const patch_history &last = *past.history;
+    const double x0 = g.x0 - past.offset[0] + problem.rolled;
+    for (int j = 0; j < past.rows; ++j)
+      for (int i = 0; i < last.last_grid.nx; ++i) {
+        const auto at = static_cast<size_t>((past.first_row + j) * last.last_grid.nx + i);
+        const double x = x0 + i * g.dx, row = j - past.offset[1] / g.dy;
+        sum += last.last_share *
+               (last.last_px[at] * rows.slip(0, row, x) + last.last_py[at] * rows.slip(1, row, x));
+      }
+  }
+  return -0.5 * sum * g.dx * g.dy;
 }
 
 // N, over the way: what the slip prescribed of each element does on the mean of both ends'

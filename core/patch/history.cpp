@@ -7,8 +7,13 @@
 
 namespace railpatch {
 
-patch_history::patch_history(int max_count, bool steps, bool moves, const bound_law *law) {
+patch_history::patch_history(int max_count, bool steps, bool moves, const bound_law *law,
+                             int curved) {
   const auto n = static_cast<size_t>(max_count);
+  if (steps && curved > 0) {
+    last_angle = aligned_buffer<double>(static_cast<size_t>(curved));
+    last_pressure = aligned_buffer<double>(n);
+  }
   if (steps)
     for (auto *b : {&last_px, &last_py, &energy, &last_energy}) *b = aligned_buffer<double>(n);
   if (!law) return;
@@ -60,6 +65,13 @@ void patch_history::remember(const grid &g, const std::array<double, 3> &referen
   std::copy_n(py, g.count(), last_py.data());
   std::copy_n(energy.data(), g.count(), last_energy.data());
   if (has_law()) std::copy_n(after.data(), g.count(), last_states.data());
+}
+
+void patch_history::remember_curve(const double *pressure, const double *angle) {
+  if (!held || last_angle.size() == 0) return;
+  std::copy_n(angle, last_grid.ny, last_angle.data());
+  std::copy_n(pressure, last_grid.count(), last_pressure.data());
+  last_bent = bent;
 }
 
 void patch_history::begin_states(const grid &g) {

@@ -24,7 +24,8 @@ struct patch_history {
   patch_history() = default;
   // steps: the last step's tractions count; law: null for Coulomb friction without plasticity.
   // moves: of wheels, whose grid moves.
-  patch_history(int max_count, bool steps, bool moves, const bound_law *law);
+  // curved: rows of a curved reference surface, 0: a plane.
+  patch_history(int max_count, bool steps, bool moves, const bound_law *law, int curved);
   bool keeps_steps() const { return has_physics && last_px.size() > 0; }
   bool has_law() const { return has_physics && after.size() > 0; }
 
@@ -41,6 +42,10 @@ struct patch_history {
   // of wheels: creepages, spin, rolling speed (m/s) and way per second along x at the last step's
   // end
   std::array<double, 5> last_rolling{};
+  // of a curved reference surface: inclinations of the last step's rows (rad, track axes), its
+  // pressure, and what the curve and the pressure added to forces and spin moment
+  aligned_buffer<double> last_angle, last_pressure;
+  std::array<double, 3> bent{}, last_bent{};
   aligned_buffer<carried_state> before, after;
   aligned_buffer<double> plastic_before[2], plastic[2], yield_stress, friction;
 
@@ -51,6 +56,8 @@ struct patch_history {
   // solved, once or often.
   void remember(const grid &g, const std::array<double, 3> &reference, double share,
                 const double *px, const double *py);
+  // The same of a curved reference surface, after that.
+  void remember_curve(const double *pressure, const double *angle);
   // Of wheels, where there is a law: begins what was before with nothing, and adds what the last
   // step of a patch left where each element's material was then.
   void begin_states(const grid &g);
@@ -79,7 +86,7 @@ struct patch_history {
   size_t bytes() const;
   size_t step_bytes() const {
     return 4 * last_px.bytes() + before.bytes() + last_states.bytes() +
-           2 * plastic_before[0].bytes();
+           2 * plastic_before[0].bytes() + last_angle.bytes() + last_pressure.bytes();
   }
   size_t plastic_bytes() const { return 2 * plastic[0].bytes() + yield_stress.bytes(); }
 

@@ -65,6 +65,8 @@ void patch_contact::remember(patch_memory &memory) const {
                            memory.reference[2] - memory.rail[1]},
                           memory.share, memory.px.data(), memory.py.data());
   memory.history.last_rolling = memory.rolling;
+  if (memory.curved)
+    memory.history.remember_curve(memory.pressure.data(), memory.curved->angles().data());
 }
 
 heat_outcome patch_contact::leave_contact(const rolling_input &step, patch_memory &memory) {

@@ -28,8 +28,8 @@ patch_memory::patch_memory(int max_count, int max_rows, const patch_scene &scene
   for (auto *b : {&px, &py, &sx, &sy}) *b = aligned_buffer<double>(count);
   division = aligned_buffer<unsigned char>(count);
   if (scene.is_forced()) creepage = aligned_buffer<double>(2);
-  history =
-      patch_history(max_count, scene.keeps_steps(), scene.moves, scene.law ? &*scene.law : nullptr);
+  history = patch_history(max_count, scene.keeps_steps(), scene.moves,
+                          scene.law ? &*scene.law : nullptr, scene.curved ? max_rows : 0);
   if (scene.heat) heat.emplace(max_count / std::max(max_rows, 1), max_rows, *scene.heat);
   if (!scene.is_fitted()) return;
   node_x = aligned_buffer<double>(count);

@@ -13,6 +13,7 @@ struct patch_state_head {
   std::array<double, 3> reference;
   std::array<double, 5> rolling;
   double share, rail[2];
+  std::array<double, 3> bent;
   uint64_t warm, begun;
 };
 
@@ -22,6 +23,7 @@ inline patch_state_head head_of(const patch_memory &m) {
           m.rolling,
           m.share,
           {m.rail[0], m.rail[1]},
+          m.history.bent,
           m.warm ? 1u : 0u,
           m.history.begun ? 1u : 0u};
 }
@@ -32,6 +34,7 @@ inline void set_head(patch_memory &m, const patch_state_head &head) {
   m.rolling = head.rolling;
   m.share = head.share;
   for (int k = 0; k < 2; ++k) m.rail[k] = head.rail[k];
+  m.history.bent = head.bent;
   m.warm = head.warm != 0;
   m.history.begun = head.begun != 0;
   m.solved = false;
@@ -60,7 +63,9 @@ void for_each_state_field(Memory &m, const patch_state_head &head, F &&f) {
   put(m.py, tractions);
   put(m.node_pressure, tractions);
   put(m.creepage, m.creepage.size());
-  if (head.begun) m.history.for_each_kept(count, f);
+  if (!head.begun) return;
+  m.history.for_each_kept(count, f);
+  if (m.curved) put(m.curved->angles(), static_cast<size_t>(head.g.ny));
 }
 
 }  // namespace railpatch

@@ -51,10 +51,15 @@ tangential_stage::tangential_stage(patch_workspace &shared, const fft_plans &pla
   }
   if (scene.closed_form() || !scene.keeps_steps() || !scene.moves) return;
   for (auto &b : before_) b = aligned_buffer<double>(count);
+  if (!scene.curved) return;
+  for (auto *b : {&before_pressed_[0], &before_pressed_[1], &before_gap_})
+    *b = aligned_buffer<double>(count);
+  for (auto &b : last_rows_) b = aligned_buffer<double>(static_cast<size_t>(max_ny));
 }
 
 size_t tangential_stage::bytes() const {
-  return bound_.bytes() + 2 * before_[0].bytes() + (tangential_ ? tangential_->bytes() : 0) +
+  return bound_.bytes() + 2 * before_[0].bytes() + 3 * before_gap_.bytes() +
+         2 * last_rows_[0].bytes() + (tangential_ ? tangential_->bytes() : 0) +
          (coarse_start_ ? coarse_start_->bytes() : 0) +
          (fast_ ? sizeof(fast_solver) + fast_->bytes() : 0) +
          (fitted_ ? fitted_rows_->bytes() + fitted_->bytes() : 0);
@@ -147,7 +152,7 @@ rolling_input tangential_stage::rolling_of(const patch_problem &problem, const p
   const patch_scene &scene = shared_.scene;
   rolling_input rolling = problem.rolling;
   if (problem.past) {
-    find_before(problem, rolling);
+    find_before(problem, memory, rolling);
   } else if (scene.goes_on(rolling)) {
     rolling.px = memory.history.last_px.data();
     rolling.py = memory.history.last_py.data();
@@ -277,8 +282,10 @@ void tangential_stage::add_slip_of_rows(const grid &g, const conformal_rows &row
 }
 
 // The displacement by the last step's tractions where each element's material was then.
-void tangential_stage::find_before(const patch_problem &problem, rolling_input &rolling) {
+void tangential_stage::find_before(const patch_problem &problem, const patch_memory &memory,
+                                   rolling_input &rolling) {
   const stage_mark mark = shared_.marks.enter(RP_STAGE_HISTORY);
+  if (memory.curved) return find_curved_before(problem, *memory.curved, rolling);
   for (int c = 0; c < 2; ++c) {
     std::fill_n(before_[c].data(), problem.g.count(), 0.0);
     rolling.before[c] = before_[c].data();
@@ -293,6 +300,42 @@ void tangential_stage::find_before(const patch_problem &problem, rolling_input &
                            past.history->last_py.data() + first, before_[0].data(),
                            before_[1].data());
   }
+}
+
+// The same from rows of one curve to those of another, once for all rounds of a solution.
+void tangential_stage::find_curved_before(const patch_problem &problem, const conformal_rows &rows,
+                                          rolling_input &rolling) {
+  for (int c = 0; c < 2; ++c) rolling.before[c] = before_[c].data();
+  if (!shared_.coupled->begins()) return;
+  const grid &g = problem.g;
+  const curved_sums sums{{before_[0].data(), before_[1].data()},
+                         {before_pressed_[0].data(), before_pressed_[1].data()},
+                         before_gap_.data()};
+  for (double *field : {sums.from_traction[0], sums.from_traction[1], sums.from_pressure[0],
+                        sums.from_pressure[1], sums.gap})
+    std::fill_n(field, g.count(), 0.0);
+  for (int k = 0; k < problem.past_count; ++k) {
+    const past_tractions &past = problem.past[k];
+    const patch_history &last = *past.history;
+    grid from = last.last_grid;
+    const auto first = static_cast<ptrdiff_t>(past.first_row) * from.nx;
+    from.ny = past.rows;
+    for (int j = 0; j < from.ny; ++j) {
+      const double angle = rows.turned(last.last_angle[static_cast<size_t>(past.first_row + j)]);
+      last_rows_[0][static_cast<size_t>(j)] = cos(angle);
+      last_rows_[1][static_cast<size_t>(j)] = sin(angle);
+    }
+    const curved_past source{last.last_px.data() + first,
+                             last.last_py.data() + first,
+                             last.last_pressure.data() + first,
+                             {last_rows_[0].data(), rows.cosine()},
+                             {last_rows_[1].data(), rows.sine()}};
+    tangential_->add_curved(*shared_.influence, from, g, past.offset, last.last_share, source,
+                            sums);
+  }
+  for (int c = 0; c < 2; ++c)
+    for (int i = 0; i < g.count(); ++i)
+      before_[c][static_cast<size_t>(i)] += before_pressed_[c][static_cast<size_t>(i)];
 }
 
 void tangential_stage::set_bound(const grid &g, const patch_memory &memory, const double *mu) {

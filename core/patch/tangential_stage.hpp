@@ -41,7 +41,10 @@ class tangential_stage {
                         const rolling_input &rolling) const;
   void prescribe(const patch_problem &problem, const patch_memory &memory, rolling_input &rolling,
                  prescribed_force &force) const;
-  void find_before(const patch_problem &problem, rolling_input &rolling);
+  void find_before(const patch_problem &problem, const patch_memory &memory,
+                   rolling_input &rolling);
+  void find_curved_before(const patch_problem &problem, const conformal_rows &rows,
+                          rolling_input &rolling);
   void add_slip_of_rows(const grid &g, const conformal_rows &rows, rolling_input &rolling);
   void explain(const patch_problem &problem, const pressure_outcome &pressure,
                const tangential_result &t, traction_outcome &found) const;
@@ -69,6 +72,9 @@ class tangential_stage {
   // of friction_work.cpp
   void close_step(const patch_problem &problem, const rolling_input &rolling, patch_memory &memory,
                   tangential_result &t, traction_outcome &found);
+  void close_curved(const patch_problem &problem, const rolling_input &rolling,
+                    patch_memory &memory, tangential_result &t, traction_outcome &found);
+  double supplied_to_rows(const patch_problem &problem, const patch_memory &memory) const;
   void add_slip_field(const patch_problem &problem, rolling_input &rolling);
   double field_work(const patch_problem &problem, const rolling_input &rolling,
                     const patch_memory &memory);
@@ -87,6 +93,9 @@ class tangential_stage {
   std::optional<fitted_solver> fitted_;
   std::optional<fast_solver> fast_;
   aligned_buffer<double> bound_, before_[2];
+  // of a curved reference surface: what of it the pressure did, the gap by the last step's
+  // tractions, cosine and sine of its rows
+  aligned_buffer<double> before_pressed_[2], before_gap_, last_rows_[2];
 };
 
 }  // namespace railpatch

@@ -107,6 +107,10 @@ class tangential_solver {
                  double share, const double *px, const double *py, double *ux, double *uy) {
     offset_->add_moved(a, from, to, offset, share, px, py, ux, uy);
   }
+  void add_curved(const influence &a, const grid &from, const grid &to, const double offset[2],
+                  double share, const curved_past &past, const curved_sums &sums) {
+    offset_->add_curved(a, from, to, offset, share, past, sums);
+  }
   // all, and what of it serves the last step and the plastic layer
   size_t bytes() const;
   size_t history_bytes() const { return (offset_ ? offset_->bytes() : 0) + before_.bytes(); }

@@ -261,7 +261,12 @@ void wheel_contact::solve_patch(patch_contact &solver, patch_region &region, int
     memory.rolling = rolling_of(problem);
     const bool steady = step_regime_ < 0 ? solver.scene().regime == motion::steady
                                          : step_regime_ == RP_STEADY_ROLLING;
-    if (!steady) set_past(memories, region, problem, past);
+    if (!steady) {
+      set_past(memories, index, region, problem, past);
+      const double mean[4] = {problem.rolling.creepage[0], problem.rolling.creepage[1],
+                              problem.rolling.spin_creepage, problem.rolling_speed};
+      if (memory.curved) memory.curved->take_mean(g, memory.rolling.data(), mean);
+    }
   }
   if (solver.scene().normal == RP_NORMAL_HERTZ)
     problem.hertz = hertz_of(region, depth, solver.scene().modulus());
@@ -354,7 +359,7 @@ void wheel_contact::add_turning_force(const patch_region &region, double turning
 // rolled and the reference by what its place has changed; the wheel's differs from it by creepage
 // only. What solutions of the last step left counts with their shares, as it did in the force, and
 // goes to a patch where it lies nearer to its parts than to others, and near at all.
-void wheel_contact::set_past(const patch_memory *memory, const patch_region &region,
+void wheel_contact::set_past(const patch_memory *memory, int index, const patch_region &region,
                              patch_problem &problem, past_tractions *past) const {
   problem.past = past;
   const vec3 &rail = geometry_->motion().rail.offset;
@@ -374,7 +379,8 @@ void wheel_contact::set_past(const patch_memory *memory, const patch_region &reg
     if (!h.held) continue;
     const grid &g = h.last_grid;
     // in this frame; the rail has taken its material along
-    const double place = lateral({0, h.last_reference[1] + rail[1], h.last_reference[2] + rail[2]});
+    double place = lateral({0, h.last_reference[1] + rail[1], h.last_reference[2] + rail[2]});
+    if (memory[index].curved) place = memory[index].curved->arc_of(*geometry_, place);
     const auto row = [&](double s) {
       return static_cast<int>(
           std::clamp(std::ceil((s - place - g.y0) / g.dy), 0.0, static_cast<double>(g.ny)));

@@ -105,8 +105,8 @@ class wheel_contact {
                  rp_side_result &out) const;
   void add_turning_force(const patch_region &region, double turning, rp_side_result &out) const;
   // Sets what the last step left behind for the patch of a region; past: of max_patches.
-  void set_past(const patch_memory *memory, const patch_region &region, patch_problem &problem,
-                past_tractions *past) const;
+  void set_past(const patch_memory *memory, int index, const patch_region &region,
+                patch_problem &problem, past_tractions *past) const;
   std::array<double, 5> rolling_of(const patch_problem &problem) const;
   double set_rolling(patch_problem &problem) const;
   void set_friction(const patch_contact &solver, const contact_frame &frame,

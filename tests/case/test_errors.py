@@ -634,19 +634,6 @@ def test_curved_surfaces_stand_alone(values: dict[str, Any], line: str) -> None:
     assert problems_of(with_values(case, **values)) == [line]
 
 
-def test_curved_surfaces_roll_steadily() -> None:
-    case = with_values(
-        WHEELSET,
-        method__reference_surface="curved",
-        motion={"regime": "transient_rolling"},
-        wheelset__time_step=1e-3,
-    )
-    assert problems_of(case) == [
-        "method.reference_surface: value is 'curved', allowed 'plane' with motion.regime = "
-        "'transient_rolling'"
-    ]
-
-
 def test_patches_have_no_curved_surface() -> None:
     assert problems_of(with_values(PATCH, method__reference_surface="curved")) == [
         "method.reference_surface: value is 'curved', allowed 'plane' with kind = 'patch'"

@@ -374,8 +374,7 @@ TEST_F(Checks, Regimes) {
   });
   refuses("layer_yield_stress must be 0 with regime = transient_rolling of wheels",
           [](rp_config &c) { c.layer_yield_stress = 1e8; });
-  refuses("reference_surface must be plane with regime = transient_rolling of wheels",
-          [](rp_config &c) { c.reference_surface = RP_REFERENCE_CURVED; });
+  accepts([](rp_config &c) { c.reference_surface = RP_REFERENCE_CURVED; });
   refuses("temperature must be 0 with regime = transient_rolling of wheels",
           [](rp_config &c) { c.temperature = 1; });
   refuses("needs equal (1-2nu)/G of both bodies", [](rp_config &c) { c.poisson_ratio[0] = 0.1; });

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "half_space/conformal_coupling.hpp"
+#include "half_space/offset_influence.hpp"
 #include "normal/normal.hpp"
 #include "patch/conformal_rows.hpp"
 #include "scenes.hpp"
@@ -174,6 +175,59 @@ TEST(ConformalInfluence, IsSymmetricAndPositive) {
     EXPECT_NEAR(forth, back, imposed * own) << "span " << span;
     EXPECT_GT(own, 0) << "span " << span;
   }
+}
+
+// Love 1929, the normal displacement of a uniform pressure on an element at (x, y).
+double pressed(const grid &g, double x, double y) {
+  double sum = 0;
+  for (int k = 0; k < 4; ++k) {
+    const double u = x + (k & 1 ? -0.5 : 0.5) * g.dx, v = y + (k & 2 ? -0.5 : 0.5) * g.dy;
+    const double sign = k == 0 || k == 3 ? 1.0 : -1.0;
+    sum += sign * (v * std::asinh(u / std::fabs(v)) + u * std::asinh(v / std::fabs(u)));
+  }
+  return sum * (1 - poisson_ratio[0]) / (pi * shear_modulus[0]);
+}
+
+// From rows of one curve to those of another, which lie elsewhere: the same sums of turned vectors;
+// work of either state's tractions on the other's displacements is mutual.
+TEST(ConformalInfluence, MovesFromOneCurveToAnother) {
+  arc last(0.9, 0.0, 3), now(0.5, 0.0, 4);
+  const double offset[2] = {0.37 * now.g.dx, -1.6 * now.g.dy}, share = 0.75;
+  offset_influence moved(last.plans, true);
+  const curved_past past{last.px.data(),
+                         last.py.data(),
+                         last.pn.data(),
+                         {last.cosine.data(), now.cosine.data()},
+                         {last.sine.data(), now.sine.data()}};
+  field t[2] = {now.zero(), now.zero()}, p[2] = {now.zero(), now.zero()}, gap = now.zero();
+  moved.add_curved(now.a, last.g, now.g, offset, share, past,
+                   {{t[0].data(), t[1].data()}, {p[0].data(), p[1].data()}, gap.data()});
+  field u[2] = {now.zero(), now.zero()}, v[2] = {now.zero(), now.zero()}, apart = now.zero();
+  for (int k = 0; k < now.g.ny; ++k)
+    for (int i = 0; i < now.g.nx; ++i)
+      for (int l = 0; l < last.g.ny; ++l)
+        for (int j = 0; j < last.g.nx; ++j) {
+          const double x = offset[0] + (i - j) * now.g.dx, y = offset[1] + (k - l) * now.g.dy;
+          double a[3];
+          now.a.bodies_at(x, y, a);
+          const double n = pressed(now.g, x, y);
+          const double d = now.angle[static_cast<size_t>(k)] - last.angle[static_cast<size_t>(l)];
+          const double c = std::cos(d), s = std::sin(d);
+          const auto from = static_cast<size_t>(l * last.g.nx + j);
+          const auto to = static_cast<size_t>(k * now.g.nx + i);
+          const double px = share * last.px[from], ps = share * last.py[from];
+          const double pressure = share * last.pn[from];
+          u[0][to] += a[0] * px + 0.5 * (1 + c) * a[2] * ps;
+          u[1][to] += 0.5 * (1 + c) * a[2] * px + c * a[1] * ps;
+          v[0][to] -= 0.5 * s * a[2] * pressure;
+          v[1][to] -= 0.5 * s * (a[1] + n) * pressure;
+          apart[to] += 0.5 * s * (a[2] * px + (a[1] + n) * ps);
+        }
+  for (int c = 0; c < 2; ++c) {
+    expect_near(t[c], u[c], imposed, "from traction");
+    expect_near(p[c], v[c], imposed, "from pressure");
+  }
+  expect_near(gap, apart, imposed, "gap");
 }
 
 // --- geometry ----------------------------------------------------------------------------------

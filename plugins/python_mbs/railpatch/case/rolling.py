@@ -184,8 +184,6 @@ def check_rolling(case: Any) -> Problems:
         yield relation("wheelset.time_step", case.wheelset.time_step, f"> 0 {where}")
     if case.method.tangential != "full":
         yield relation("method.tangential", repr(case.method.tangential), f"'full' {where}")
-    if curved:
-        yield relation("method.reference_surface", "'curved'", f"'plane' {where}")
     if case.grid is not None and case.grid.fitted is not None:
         yield relation("grid.fitted", str(case.grid.fitted), f"{LEFT_OUT} {where}")
     if case.grid is None or case.grid.element_size is None:
