@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "numeric/dual.hpp"
 #include "numeric/elementary.hpp"
 
 namespace railpatch {
@@ -86,19 +87,29 @@ coefficient_table::coefficient_table(double poisson_ratio) {
       for (size_t d = 0; d < 2; ++d) values_[i][k][d] = at_poisson_ratio(kalker_values[i][k][d]);
 }
 
-creepage_coefficients coefficient_table::at(double axis_ratio) const {
+template <class T>
+void coefficient_table::at(const T &axis_ratio, T c[4]) const {
   const double greatest = log(kalker_greatest_ratio), step = 2.0 * greatest / (nodes - 1);
-  const double t = std::clamp(log(axis_ratio), -greatest, greatest);
-  const double place = (t + greatest) / step;
-  const int node = std::clamp(static_cast<int>(place), 0, nodes - 2);
+  T t = log(axis_ratio);
+  if (t < -greatest) t = -greatest;
+  if (t > greatest) t = greatest;
+  const T place = (t + greatest) / step;
+  const int node = std::clamp(static_cast<int>(value_of(place)), 0, nodes - 2);
   // cubic Hermite polynomial
-  const double u = place - node, v = 1.0 - u;
-  const double h0 = v * v * (1.0 + 2.0 * u), h1 = u * u * (1.0 + 2.0 * v);
-  const double d0 = step * u * v * v, d1 = -step * u * u * v;
+  const T u = place - node, v = 1.0 - u;
+  const T h0 = v * v * (1.0 + 2.0 * u), h1 = u * u * (1.0 + 2.0 * v);
+  const T d0 = step * u * v * v, d1 = -step * u * u * v;
   const auto &left = values_[node], &right = values_[node + 1];
-  double c[4];
   for (int k = 0; k < 4; ++k)
     c[k] = h0 * left[k][0] + d0 * left[k][1] + h1 * right[k][0] + d1 * right[k][1];
+}
+
+template void coefficient_table::at(const double &, double[4]) const;
+template void coefficient_table::at(const directed &, directed[4]) const;
+
+creepage_coefficients coefficient_table::at(double axis_ratio) const {
+  double c[4];
+  at(axis_ratio, c);
   const bool in_range =
       axis_ratio >= 1.0 / kalker_greatest_ratio && axis_ratio <= kalker_greatest_ratio;
   return {c[0], c[1], c[2], c[3], in_range};

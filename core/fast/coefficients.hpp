@@ -20,6 +20,9 @@ class coefficient_table {
  public:
   explicit coefficient_table(double poisson_ratio);
   creepage_coefficients at(double axis_ratio) const;
+  // The same c11, c22, c23, c33, with rates of the ratio's. T: double or directed.
+  template <class T>
+  void at(const T &axis_ratio, T coefficients[4]) const;
 
  private:
   static constexpr int nodes = 25;

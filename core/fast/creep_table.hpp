@@ -29,6 +29,7 @@
 #include <cstdint>
 
 #include "fast/fast_problem.hpp"
+#include "numeric/dual.hpp"
 
 namespace railpatch {
 
@@ -48,21 +49,26 @@ struct creep_table_header {
 // FNV-1a (Fowler, Noll, Vo 1991) by words of 8 bytes.
 uint64_t table_checksum(const unsigned char *data, size_t size);
 
-struct creep_problem {
-  double semi_axes[2];   // m
+// T: double, or directed, which tells how the forces change along a direction.
+template <class T>
+struct basic_creep_problem {
+  T semi_axes[2];        // m
   double shear_modulus;  // Pa
-  double bound;          // N, mu Fn
-  double creepage[2], spin_creepage;
+  T bound;               // N, mu Fn
+  T creepage[2], spin_creepage;
   int direction;
 };
+using creep_problem = basic_creep_problem<double>;
 
-struct creep_forces {
-  double force[2];  // N
-  double moment;    // N m
-  double friction;  // N, frictional power over the rolling speed
-  bool in_range;    // of the table; outside, its nearest a/b stands for a/b, and its parabola
-                    // continues in Poisson's ratio
+template <class T>
+struct basic_creep_forces {
+  T force[2];     // N
+  T moment;       // N m
+  T friction;     // N, frictional power over the rolling speed
+  bool in_range;  // of the table; outside, its nearest a/b stands for a/b, and its parabola
+                  // continues in Poisson's ratio
 };
+using creep_forces = basic_creep_forces<double>;
 
 class creep_table {
  public:
@@ -72,7 +78,8 @@ class creep_table {
   // The block is used in place, not copied, and has no defect.
   creep_table(const void *data, double poisson_ratio);
 
-  creep_forces evaluate(const creep_problem &problem) const;
+  template <class T>
+  basic_creep_forces<T> evaluate(const basic_creep_problem<T> &problem) const;
   // a/b itself within the table, else the one that stands for it.
   double nearest_ratio(double ratio) const;
   // 95th percentiles: of force over B and of moment over c B.
@@ -80,16 +87,29 @@ class creep_table {
   double moment_error() const { return header().error[1]; }
 
  private:
+  template <class T>
   struct axis {
-    int first;         // coefficient
-    double weight[4];  // of this and the next three
+    int first;    // coefficient
+    T weight[4];  // of this and the next three
   };
-  static axis locate(double position, int count);
+  template <class T>
+  static axis<T> locate(const T &position, int count);
   const creep_table_header &header() const { return *header_; }
-  void interpolate_scale(const axis &ratio, double s[3]) const;
-  void interpolate_linear(const axis &ratio, const axis &t, double m[5]) const;
-  void interpolate_remainder(const axis &ratio, const axis &psi, const axis &theta, const axis &t,
-                             double h[3]) const;
+  template <class T>
+  bool in_range(const T &log_ratio) const {
+    return poisson_in_range_ && log_ratio >= header().log_ratio[0] &&
+           log_ratio <= header().log_ratio[1];
+  }
+  template <class T>
+  basic_creep_forces<T> from_rest(const basic_creep_problem<T> &p, const axis<T> &ratio,
+                                  const T n[3], double along, double mirror, const T &c) const;
+  template <class T>
+  void interpolate_scale(const axis<T> &ratio, T s[3]) const;
+  template <class T>
+  void interpolate_linear(const axis<T> &ratio, const axis<T> &t, T m[5]) const;
+  template <class T>
+  void interpolate_remainder(const axis<T> &ratio, const axis<T> &psi, const axis<T> &theta,
+                             const axis<T> &t, T h[3]) const;
 
   const creep_table_header *header_;
   const double *scale_;

@@ -12,21 +12,6 @@ namespace railpatch {
 
 using std::numbers::pi;
 
-namespace {
-
-// Part of the load below which an ellipse may lie outside the table's range: its force would have
-// to err by a sixth to move the whole by 0.3 %.
-constexpr double little = 0.02;
-
-// N, frictional power over the rolling speed
-double friction_of(const creep_resultants &sums, const rolling_input &rolling) {
-  const double power = sums.force[0] * rolling.creepage[0] + sums.force[1] * rolling.creepage[1] +
-                       sums.moment * rolling.spin_creepage;
-  return std::max(0.0, -power);
-}
-
-}  // namespace
-
 fast_solver::fast_solver(const elastic_constants &elastic, const fast_options &options, int max_nx,
                          int max_ny)
     : elastic_(elastic),
@@ -34,13 +19,8 @@ fast_solver::fast_solver(const elastic_constants &elastic, const fast_options &o
       theory_(*theory_of(options.theory)),
       table_(elastic.poisson_ratio) {
   if (options.theory == RP_TANGENTIAL_TABLE) {
-    const void *table = options.creep_table;
-    if (shape_table::is_one(table, sizeof(shape_table_header))) {
-      shape_table_.emplace(table, elastic.poisson_ratio);
-      table = shape_table::ellipses(table).first;
-    }
-    creep_table_.emplace(table, elastic.poisson_ratio);
-    ellipses_ = pressed_ellipses(max_ny);
+    tables_ = std::make_unique<table_forces>(elastic, options.creep_table);
+    ellipses_ = pressed_ellipses<double>(max_ny);
   }
   if (!theory_.tractions) return;
   bound_ = aligned_buffer<double>(static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny));
@@ -161,65 +141,20 @@ void fast_solver::find_rows(const fast_patch &patch, int direction) {
   }
 }
 
-// The table takes its greatest a/b for a longer ellipse: creepages that this one feels as much.
-bool fast_solver::soften_beyond_table(const double axes[2], rolling_input &rolling) const {
-  const double ratio = axes[0] / axes[1];
-  const double nearest = creep_table_->nearest_ratio(ratio);
-  if (nearest == ratio) return false;
-  const creepage_coefficients own = table_.at(ratio), taken = table_.at(nearest);
-  rolling.creepage[0] *= own.c11 / taken.c11;
-  rolling.creepage[1] *= own.c22 / taken.c22;
-  rolling.spin_creepage *= own.c23 / taken.c23;
-  return true;
-}
-
-// Creep forces of the table on the ellipses that stand for the contact, each with the creepages at
-// its own centre.
+// Creep forces of the tables on a contact of any shape.
 tangential_result fast_solver::solve_by_ellipses(const fast_patch &patch,
                                                  const rolling_input &rolling,
                                                  creep_resultants &sums) {
-  ellipses_.set(patch.g, patch.pressure);
-  tangential_result result;
-  result.converged = true;
-  sums = {};
-  sums.capacity = patch.friction_coefficient * patch.normal_force;
-  for (int k = 0; k < ellipses_.count(); ++k) {
-    const pressed_ellipse &e = ellipses_[k];
-    fast_problem problem{elastic_, options_, table(), e.axes,  e.centre, 0.0, {},
-                         rolling,  patch.g,  nullptr, nullptr, {},       {},  rolling};
-    problem.at_centre.creepage[0] -= rolling.spin_creepage * e.centre[1];
-    problem.at_centre.creepage[1] += rolling.spin_creepage * e.centre[0];
-    problem.capacity = patch.friction_coefficient * e.load * patch.normal_force;
-    const bool softer = soften_beyond_table(e.axes, problem.at_centre);
-    creep_resultants own;
-    const tangential_result found = theory_.solve(problem, {}, own);
-    if (softer) own.friction = friction_of(own, rolling);
-    for (int n = 0; n < 2; ++n) sums.force[n] += e.share * own.force[n];
-    sums.moment += e.share * own.moment;
-    sums.friction += e.share * own.friction;
-    // beyond the table's axis ratios a part that hardly carries anything does not count
-    if (e.load > little) result.converged = result.converged && found.converged;
-  }
-  if (shape_table_) correct(patch, rolling, sums, result);
-  result.friction = sums.friction;
-  result.converged = result.converged && std::isfinite(result.friction);
-  return result;
-}
-
-// Adds what the table of shapes knows of this one, within friction's bound.
-void fast_solver::correct(const fast_patch &patch, const rolling_input &rolling,
-                          creep_resultants &sums, tangential_result &result) {
   const double bound = patch.friction_coefficient * patch.normal_force;
-  const shape_table::correction found =
-      shape_table_->evaluate(patch.g, patch.pressure, elastic_.shear_modulus, bound,
-                             rolling.creepage, rolling.spin_creepage, rolling.direction);
-  for (int n = 0; n < 2; ++n) sums.force[n] += found.force[n];
-  sums.moment += found.moment;
-  const double size = hypot(sums.force[0], sums.force[1]);
-  if (size > bound)
-    for (double &force : sums.force) force *= bound / size;
-  sums.friction = friction_of(sums, rolling);
-  result.converged = found.in_range;
+  const table_resultants<double> found = tables_->of_pressure<double>(
+      {patch.g, patch.pressure},
+      {{rolling.creepage[0], rolling.creepage[1]}, rolling.spin_creepage, rolling.direction}, bound,
+      ellipses_);
+  sums = {{found.force[0], found.force[1]}, found.moment, found.friction, bound};
+  tangential_result result;
+  result.friction = sums.friction;
+  result.converged = found.in_range && std::isfinite(result.friction);
+  return result;
 }
 
 tangential_result fast_solver::solve(const fast_patch &patch, const rolling_input &rolling,

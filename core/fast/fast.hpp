@@ -2,8 +2,7 @@
 // that stands for a contact area of any shape), the creepage coefficients, the traction bound and
 // the ends of the rows. Of an area of any shape the resultant theories see the creepages at its
 // centre of pressure, the others at the middle of each row. The table of creep forces, which is as
-// good as the full theory on an ellipse, takes the ellipses of pressed_ellipses.hpp in its place,
-// and what a table of shapes adds to them.
+// good as the full theory on an ellipse, takes others in its place: table_forces.hpp.
 //
 // Theories that give resultants only need no grid and no fields.
 //
@@ -13,12 +12,10 @@
 // nothing of where the material began to slip, so there is no memory.
 #pragma once
 
-#include <optional>
+#include <memory>
 
 #include "fast/coefficients.hpp"
-#include "fast/creep_table.hpp"
-#include "fast/pressed_ellipses.hpp"
-#include "fast/shape_table.hpp"
+#include "fast/table_forces.hpp"
 #include "fast/theories.hpp"
 #include "normal/hertz.hpp"
 #include "normal/row_contact.hpp"
@@ -53,11 +50,14 @@ class fast_solver {
     options_.polach = factors;
     options_.law.emplace(law);
   }
+  // Where the theory is that.
+  const table_forces *tables() const { return tables_.get(); }
   // The table of creep forces, where the theory is that, and of shapes, where there is one.
-  const creep_table *table() const { return creep_table_ ? &*creep_table_ : nullptr; }
-  const shape_table *shapes() const { return shape_table_ ? &*shape_table_ : nullptr; }
+  const creep_table *table() const { return tables_ ? &tables_->ellipses() : nullptr; }
+  const shape_table *shapes() const { return tables_ ? tables_->shapes() : nullptr; }
   size_t bytes() const {
-    return bound_.bytes() + leading_.bytes() + trailing_.bytes() + ellipses_.bytes();
+    return bound_.bytes() + leading_.bytes() + trailing_.bytes() + ellipses_.bytes() +
+           (tables_ ? sizeof *tables_ : 0);
   }
 
  private:
@@ -68,9 +68,6 @@ class fast_solver {
   ellipse ellipse_of(const fast_patch &patch) const;
   tangential_result solve_by_ellipses(const fast_patch &patch, const rolling_input &rolling,
                                       creep_resultants &sums);
-  bool soften_beyond_table(const double axes[2], rolling_input &rolling) const;
-  void correct(const fast_patch &patch, const rolling_input &rolling, creep_resultants &sums,
-               tangential_result &result);
   flexibilities flexibilities_of(const fast_problem &problem) const;
   creepage_coefficients coefficients(double axis_ratio) const;
   void set_bound(const fast_patch &patch);
@@ -82,9 +79,8 @@ class fast_solver {
   fast_options options_;
   const fast_theory &theory_;
   coefficient_table table_;
-  std::optional<creep_table> creep_table_;
-  std::optional<shape_table> shape_table_;
-  pressed_ellipses ellipses_;  // of the table
+  std::unique_ptr<table_forces> tables_;  // those theories alone pay for its memory that have it
+  pressed_ellipses<double> ellipses_;     // of the tables
   aligned_buffer<double> bound_, leading_, trailing_;
 };
 

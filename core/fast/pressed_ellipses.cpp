@@ -7,15 +7,19 @@
 
 namespace railpatch {
 
-pressed_ellipses::pressed_ellipses(int max_rows)
+using std::sqrt;
+
+template <class T>
+pressed_ellipses<T>::pressed_ellipses(int max_rows)
     : rows_(static_cast<size_t>(max_rows)),
       before_(static_cast<size_t>(max_rows)),
       beyond_(static_cast<size_t>(max_rows)) {}
 
 // Least rows between greater ones, in order; returns how many.
-int pressed_ellipses::find_falls(int ny) {
+template <class T>
+int pressed_ellipses<T>::find_falls(int ny) {
   const auto load = [&](int j) { return rows_[static_cast<size_t>(j)].load; };
-  double greatest = 0;
+  T greatest = 0;
   for (int j = 0; j < ny; ++j)
     before_[static_cast<size_t>(j)] = greatest = std::max(greatest, load(j));
   greatest = 0;
@@ -26,31 +30,32 @@ int pressed_ellipses::find_falls(int ny) {
     // of equal ones the first
     if (!(load(j) < load(j - 1))) continue;
     int next = j + 1;
-    while (next < ny && load(next) == load(j)) ++next;
+    while (next < ny && value_of(load(next)) == value_of(load(j))) ++next;
     if (next == ny || load(next) < load(j)) continue;
-    const double lesser =
-        std::min(before_[static_cast<size_t>(j)], beyond_[static_cast<size_t>(j)]);
-    const double joined = 1.0 - fade((load(j) / lesser - apart) / (one - apart));
+    const T lesser = std::min(before_[static_cast<size_t>(j)], beyond_[static_cast<size_t>(j)]);
+    const T joined = 1.0 - fade((load(j) / lesser - apart) / (one - apart));
     if (!(joined < 1)) continue;
     // parts meet where a parabola is least, so that nothing jumps as another row becomes the least
-    const double rise = load(j - 1) - load(j), ahead = load(j + 1) - load(j);
+    const T rise = load(j - 1) - load(j), ahead = load(j + 1) - load(j);
     falls_[count++] = {j, joined, rise / (rise + ahead)};
   }
   return count;
 }
 
 // The ellipse of the parts from one to another.
-void pressed_ellipses::add(const grid &g, int first_part, int last_part, int falls, double share) {
+template <class T>
+void pressed_ellipses<T>::add(const pressure_view<T> &g, int first_part, int last_part, int falls,
+                              const T &share) {
   const int first = first_part > 0 ? falls_[first_part - 1].row : 0;
   const int last = last_part < falls ? falls_[last_part].row : g.ny - 1;
-  const double middle = g.y((first + last) / 2);
-  double sum = 0, x = 0, y = 0, xx = 0, yy = 0;
+  const T middle = g.y((first + last) / 2);
+  T sum = 0, x = 0, y = 0, xx = 0, yy = 0;
   for (int j = first; j <= last; ++j) {
     const row_sums &row = rows_[static_cast<size_t>(j)];
-    double part = 1.0;
+    T part = 1.0;
     if (j == first && first_part > 0) part = 1.0 - falls_[first_part - 1].before;
     if (j == last && last_part < falls) part = falls_[last_part].before;
-    const double v = g.y(j) - middle, load = part * row.load;
+    const T v = g.y(j) - middle, load = part * row.load;
     sum += load;
     x += part * row.x;
     xx += part * row.xx;
@@ -62,22 +67,21 @@ void pressed_ellipses::add(const grid &g, int first_part, int last_part, int fal
   y /= sum;
   // elements have a second moment of their own; of Hertz's pressure it is a fifth of the axis
   // squared
-  const double along = std::max(0.0, xx / sum - x * x) + g.dx * g.dx / 12.0;
-  const double across = std::max(0.0, yy / sum - y * y) + g.dy * g.dy / 12.0;
-  ellipse_[count_++] = {{std::sqrt(5.0 * along), std::sqrt(5.0 * across)},
-                        {x + middle_, y + middle},
-                        sum / whole_,
-                        share};
+  const T along = std::max(T(0.0), xx / sum - x * x) + g.dx * g.dx / 12.0;
+  const T across = std::max(T(0.0), yy / sum - y * y) + g.dy * g.dy / 12.0;
+  ellipse_[count_++] = {
+      {sqrt(5.0 * along), sqrt(5.0 * across)}, {x + middle_, y + middle}, sum / whole_, share};
 }
 
-void pressed_ellipses::set(const grid &g, const double *pressure) {
+template <class T>
+void pressed_ellipses<T>::set(const pressure_view<T> &g) {
   count_ = 0;
   whole_ = 0;
   middle_ = g.x(g.nx / 2);
   for (int j = 0; j < g.ny; ++j) {
     row_sums row{0, 0, 0};
     for (int i = 0; i < g.nx; ++i) {
-      const double p = pressure[j * g.nx + i], x = g.x(i) - middle_;
+      const T p = g.at(j * g.nx + i), x = g.x(i) - middle_;
       row.load += p;
       row.x += p * x;
       row.xx += p * x * x;
@@ -87,13 +91,16 @@ void pressed_ellipses::set(const grid &g, const double *pressure) {
   }
   const int falls = find_falls(g.ny);
   for (int first = 0; first <= falls; ++first) {
-    double share = first > 0 ? 1.0 - falls_[first - 1].joined : 1.0;
+    T share = first > 0 ? 1.0 - falls_[first - 1].joined : T(1.0);
     for (int last = first; last <= falls && share > 0; ++last) {
-      const double joined = last < falls ? falls_[last].joined : 0.0;
+      const T joined = last < falls ? falls_[last].joined : T(0.0);
       if (joined < 1) add(g, first, last, falls, share * (1.0 - joined));
       share *= joined;
     }
   }
 }
+
+template class pressed_ellipses<double>;
+template class pressed_ellipses<directed>;
 
 }  // namespace railpatch

@@ -8,18 +8,21 @@
 // as divisions of a wheel's contact do, and forces follow the pressure without jumps.
 #pragma once
 
-#include "half_space/influence.hpp"
+#include "fast/pressure_view.hpp"
 #include "numeric/memory.hpp"
 
 namespace railpatch {
 
-struct pressed_ellipse {
-  double axes[2];    // m, along and across rolling
-  double centre[2];  // m
-  double load;       // of the whole
-  double share;      // with which it counts
+template <class T>
+struct basic_pressed_ellipse {
+  T axes[2];    // m, along and across rolling
+  T centre[2];  // m
+  T load;       // of the whole
+  T share;      // with which it counts
 };
 
+// T: double, or directed, which tells how they move along a direction.
+template <class T>
 class pressed_ellipses {
  public:
   static constexpr double apart = 0.3, one = 0.6;
@@ -30,31 +33,31 @@ class pressed_ellipses {
   explicit pressed_ellipses(int max_rows);
 
   // Of a pressure that is somewhere above 0.
-  void set(const grid &g, const double *pressure);
+  void set(const pressure_view<T> &pressure);
   int count() const { return count_; }
-  const pressed_ellipse &operator[](int k) const { return ellipse_[k]; }
+  const basic_pressed_ellipse<T> &operator[](int k) const { return ellipse_[k]; }
   size_t bytes() const { return rows_.bytes() + before_.bytes() + beyond_.bytes(); }
 
  private:
   // Sums of a row's pressure, and of that times x and times x^2.
   struct row_sums {
-    double load, x, xx;
+    T load, x, xx;
   };
   // A row at which two parts meet.
   struct fall {
     int row;
-    double joined;  // 1: one part
-    double before;  // part of the row that belongs to the part before, the rest to that beyond
+    T joined;  // 1: one part
+    T before;  // part of the row that belongs to the part before, the rest to that beyond
   };
   int find_falls(int ny);
-  void add(const grid &g, int first_part, int last_part, int falls, double share);
+  void add(const pressure_view<T> &g, int first_part, int last_part, int falls, const T &share);
 
   aligned_buffer<row_sums> rows_;
-  aligned_buffer<double> before_, beyond_;  // greatest row up to each, and from it on
+  aligned_buffer<T> before_, beyond_;  // greatest row up to each, and from it on
   fall falls_[most_parts];
-  pressed_ellipse ellipse_[most];
+  basic_pressed_ellipse<T> ellipse_[most];
   int count_ = 0;
-  double whole_ = 0, middle_ = 0;  // Pa, of all rows; m, x that sums are about
+  T whole_ = 0, middle_ = 0;  // Pa, of all rows; m, x that sums are about
 };
 
 }  // namespace railpatch

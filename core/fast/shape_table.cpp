@@ -13,6 +13,7 @@ namespace railpatch {
 
 namespace {
 
+using std::sqrt;
 using std::numbers::pi;
 using shapes_header = shape_table_header;
 
@@ -102,10 +103,12 @@ RAILPATCH_DISPATCH void add_cells(const int16_t *of, const int *offset, const do
 // Of values at four rising places x for one between the middle ones: the cubic through these with
 // the slopes of parabolas through three neighbours; at the end of an axis, where the last is none,
 // with the chord's slope there.
-std::array<double, 4> cubic_weights(const double x[4], double at, bool ends) {
-  const double h = x[2] - x[1], u = (at - x[1]) / h, before = x[1] - x[0];
-  const double slope[2] = {u * (1 - u) * (1 - u) * h, -u * u * (1 - u) * h};
-  std::array<double, 4> w = {0, (1 + 2 * u) * (1 - u) * (1 - u), u * u * (3 - 2 * u), 0};
+template <class T>
+std::array<T, 4> cubic_weights(const double x[4], const T &at, bool ends) {
+  const double h = x[2] - x[1], before = x[1] - x[0];
+  const T u = (at - x[1]) / h;
+  const T slope[2] = {u * (1 - u) * (1 - u) * h, -u * u * (1 - u) * h};
+  std::array<T, 4> w = {0, (1 + 2 * u) * (1 - u) * (1 - u), u * u * (3 - 2 * u), 0};
   w[0] -= slope[0] * h / (before * (before + h));
   w[1] += slope[0] * (h - before) / (before * h);
   w[2] += slope[0] * before / (h * (before + h));
@@ -120,6 +123,24 @@ std::array<double, 4> cubic_weights(const double x[4], double at, bool ends) {
   w[3] += slope[1] * h / (after * (h + after));
   return w;
 }
+
+// A place in the plane of (v1, v2): its size, and its direction in turns.
+struct polar {
+  double size, turn;
+};
+polar polar_of(double x, double y) { return {hypot(x, y), atan2(y, x) / (2.0 * pi)}; }
+// At 0 it moves off in the direction of its rate.
+struct directed_polar {
+  directed size, turn;
+};
+directed_polar polar_of(const directed &x, const directed &y) {
+  if (x.value != 0 || y.value != 0) return {hypot(x, y), atan2(y, x) / (2.0 * pi)};
+  const double dx = x.rate[0], dy = y.rate[0];
+  return {directed_of(0.0, hypot(dx, dy)), directed(atan2(dy, dx) / (2.0 * pi))};
+}
+
+bool counts(double weight) { return weight != 0; }
+bool counts(const directed &weight) { return weight.value != 0 || weight.rate[0] != 0; }
 
 }  // namespace
 
@@ -183,13 +204,14 @@ shape_table::shape_table(const void *data, double poisson_ratio)
   poisson_in_range_ = std::fabs(poisson_ratio - header_->poisson_ratio) <= poisson_within;
 }
 
-shape_of_pressure shape_table::describe(const grid &g, const double *pressure) {
-  shape_of_pressure out{};
-  double sum = 0, x0 = 0, y0 = 0;
+template <class T>
+basic_shape<T> shape_table::describe(const pressure_view<T> &g) {
+  basic_shape<T> out{};
+  T sum = 0, x0 = 0, y0 = 0;
   for (int j = 0; j < g.ny; ++j) {
-    double row = 0;
+    T row = 0;
     for (int i = 0; i < g.nx; ++i) {
-      const double p = pressure[j * g.nx + i];
+      const T p = g.at(j * g.nx + i);
       row += p;
       x0 += p * g.x(i);
     }
@@ -198,17 +220,17 @@ shape_of_pressure shape_table::describe(const grid &g, const double *pressure) {
   }
   out.centre[0] = x0 /= sum;
   out.centre[1] = y0 /= sum;
-  double xx = 0, yy = 0, xy = 0, x4 = 0, y3 = 0, y4 = 0, xxy = 0, xxyy = 0, gathered = 0;
+  T xx = 0, yy = 0, xy = 0, x4 = 0, y3 = 0, y4 = 0, xxy = 0, xxyy = 0, gathered = 0;
   for (int j = 0; j < g.ny; ++j) {
-    row_sums r{0, 0, 0, 0};
+    row_sums<T> r{0, 0, 0, 0};
     for (int i = 0; i < g.nx; ++i) {
-      const double p = pressure[j * g.nx + i], x = g.x(i) - x0, px = p * x, pxx = px * x;
+      const T p = g.at(j * g.nx + i), x = g.x(i) - x0, px = p * x, pxx = px * x;
       r.zero += p;
       r.one += px;
       r.two += pxx;
       r.four += pxx * x * x;
     }
-    const double y = g.y(j) - y0, y2 = y * y;
+    const T y = g.y(j) - y0, y2 = y * y;
     gathered += r.zero * r.zero;
     xx += r.two;
     x4 += r.four;
@@ -221,11 +243,11 @@ shape_of_pressure shape_table::describe(const grid &g, const double *pressure) {
   }
   // elements have a second moment of their own; of Hertz's pressure it is a fifth of the axis
   // squared
-  const double a = std::sqrt(5.0 * (xx / sum + g.dx * g.dx / 12.0));
-  const double b = std::sqrt(5.0 * (yy / sum + g.dy * g.dy / 12.0));
+  const T a = sqrt(5.0 * (xx / sum + g.dx * g.dx / 12.0));
+  const T b = sqrt(5.0 * (yy / sum + g.dy * g.dy / 12.0));
   out.axes[0] = a;
   out.axes[1] = b;
-  const double bb = b * b, aa = a * a;
+  const T bb = b * b, aa = a * a;
   out.feature = {log(a / b),           y3 / (sum * bb * b),
                  y4 / (sum * bb * bb), xy / (sum * a * b),
                  xxy / (sum * aa * b), xxyy / (sum * aa * bb),
@@ -234,7 +256,7 @@ shape_of_pressure shape_table::describe(const grid &g, const double *pressure) {
 }
 
 // How much of each function a shape has; returns the distance of the nearest node.
-double shape_table::weigh(const shape_features &feature, amounts &amount) const {
+double shape_table::weigh(const shape_features<double> &feature, amounts<double> &amount) const {
   amount.fill(0.0);
   double nearest = 1e9, distance[lanes], near[lanes];
   for (int first = 0; first < header_->node_count; first += lanes) {
@@ -247,46 +269,80 @@ double shape_table::weigh(const shape_features &feature, amounts &amount) const 
   return nearest;
 }
 
+// The same with rates: of d^2 = sum (f - f_n)^2, d near/dd = -20 d (1 - d)^3.
+double shape_table::weigh(const shape_features<directed> &feature,
+                          amounts<directed> &amount) const {
+  constexpr int features = shapes_header::features;
+  shape_features<double> place;
+  for (size_t k = 0; k < place.size(); ++k) place[k] = feature[k].value;
+  amounts<double> value{}, rate{};
+  double nearest = 1e9, distance[lanes], near[lanes], change[lanes];
+  for (int first = 0; first < header_->node_count; first += lanes) {
+    const float *block = feature_ + features * first;
+    find_near(block, place.data(), distance, near);
+    for (int lane = 0; lane < lanes; ++lane) {
+      nearest = std::min(nearest, distance[lane]);
+      change[lane] = 0;
+      if (!(distance[lane] < 1)) continue;
+      double along = 0;
+      for (int k = 0; k < features; ++k) {
+        const auto at = static_cast<size_t>(k);
+        along += (place[at] - static_cast<double>(block[k * lanes + lane])) * feature[at].rate[0];
+      }
+      const double u = 1.0 - distance[lane];
+      change[lane] = -20.0 * u * u * u * along;
+    }
+    add_nodes(weight_ + shape_functions * first, near, value.data());
+    add_nodes(weight_ + shape_functions * first, change, rate.data());
+  }
+  for (size_t k = 0; k < amount.size(); ++k) amount[k] = directed_of(value[k], rate[k]);
+  amount[0] = 1.0;
+  return nearest;
+}
+
 // Where creepages lie between the functions' numbers: four along each axis.
+template <class T>
 struct shape_table::place_between {
   std::array<int, 64> offset;  // of a cell's numbers
-  std::array<double, 64> weight;
+  std::array<T, 64> weight;
   int count = 0;
 };
 
 // Spin, direction and t between the cells. Where an axis ends at 0 it goes on with the
 // opposite direction: -v has the same forces with the other sign. At t = 1 all slides, and nothing
 // remains.
-shape_table::place_between shape_table::between(const double v[3]) const {
+template <class T>
+shape_table::place_between<T> shape_table::between(const T v[3]) const {
   const shapes_header &h = *header_;
-  const double size = hypot(v[0], v[1]);
-  double turn = atan2(v[1], v[0]) / (2.0 * pi) * directions;
-  if (turn < 0) turn += directions;
-  const double t = size / (h.radius + size) * radii;
-  const int first[2] = {std::min(static_cast<int>(turn), directions - 1),
-                        std::min(static_cast<int>(t), radii - 1)};
+  const auto at = polar_of(v[0], v[1]);
+  const T &size = at.size;
+  T turn = at.turn * directions;
+  if (turn < 0.0) turn += directions;
+  const T t = size / (h.radius + size) * radii;
+  const int first[2] = {std::min(static_cast<int>(value_of(turn)), directions - 1),
+                        std::min(static_cast<int>(value_of(t)), radii - 1)};
   int spin = 0;
-  while (spin + 2 < shapes_header::spins && h.spin[spin + 1] < v[2]) ++spin;
+  while (spin + 2 < shapes_header::spins && h.spin[spin + 1] < value_of(v[2])) ++spin;
   double spins[4];
   for (int k = 0; k < 4; ++k) {
     const int n = spin - 1 + k;
     spins[k] = n < 0 ? -h.spin[1] : h.spin[std::min(n, shapes_header::spins - 1)];
   }
   const bool last_spin = spin + 2 == shapes_header::spins;
-  const std::array<double, 4> of_spin =
-      cubic_weights(spins, std::min(v[2], h.spin[shapes_header::spins - 1]), last_spin);
+  const std::array<T, 4> of_spin =
+      cubic_weights<T>(spins, std::min(v[2], T(h.spin[shapes_header::spins - 1])), last_spin);
   const double even[4] = {-1, 0, 1, 2};
-  const std::array<double, 4> of_turn = cubic_weights(even, turn - first[0], false);
-  const std::array<double, 4> of_t = cubic_weights(even, t - first[1], first[1] == radii - 1);
+  const std::array<T, 4> of_turn = cubic_weights<T>(even, turn - first[0], false);
+  const std::array<T, 4> of_t = cubic_weights<T>(even, t - first[1], first[1] == radii - 1);
 
-  place_between out;
+  place_between<T> out;
   for (int k = 0; k < 4; ++k)
     for (int j = 0; j < 4; ++j)
       for (int i = 0; i < 4; ++i) {
         int s = spin - 1 + k, d = first[0] - 1 + j, r = first[1] - 1 + i;
-        double weight = of_spin[static_cast<size_t>(k)] * of_turn[static_cast<size_t>(j)] *
-                        of_t[static_cast<size_t>(i)];
-        if (r >= radii || weight == 0) continue;
+        T weight = of_spin[static_cast<size_t>(k)] * of_turn[static_cast<size_t>(j)] *
+                   of_t[static_cast<size_t>(i)];
+        if (r >= radii || !counts(weight)) continue;
         if (s < 0) s = -s, d += directions / 2, weight = -weight;
         if (r < 0) r = -r, d += directions / 2;
         const int cell = (s * directions + (d + directions) % directions) * radii + r;
@@ -297,7 +353,8 @@ shape_table::place_between shape_table::between(const double v[3]) const {
 }
 
 // Fx, Fy and Mz, in the functions' unit.
-void shape_table::interpolate(const place_between &place, const amounts &amount,
+template <>
+void shape_table::interpolate(const place_between<double> &place, const amounts<double> &amount,
                               double sum[3]) const {
   float found[cell_numbers];
   add_cells(function_, place.offset.data(), place.weight.data(), place.count, found);
@@ -309,40 +366,71 @@ void shape_table::interpolate(const place_between &place, const amounts &amount,
   }
 }
 
-shape_table::correction shape_table::evaluate(const grid &g, const double *pressure,
-                                              double shear_modulus, double bound,
-                                              const double creepage[2], double spin_creepage,
-                                              int direction) {
-  correction out{{0, 0}, 0, poisson_in_range_};
-  if (!(bound > 0)) return out;
+// It is linear in the place's weights and in the amounts.
+template <>
+void shape_table::interpolate(const place_between<directed> &place, const amounts<directed> &amount,
+                              directed sum[3]) const {
+  std::array<double, 64> weight, rate;
+  for (size_t k = 0; k < static_cast<size_t>(place.count); ++k) {
+    weight[k] = place.weight[k].value;
+    rate[k] = place.weight[k].rate[0];
+  }
+  float found[cell_numbers], change[cell_numbers];
+  add_cells(function_, place.offset.data(), weight.data(), place.count, found);
+  add_cells(function_, place.offset.data(), rate.data(), place.count, change);
+  for (int d = 0; d < 3; ++d) {
+    sum[d] = 0;
+    for (int k = 0; k < shape_functions; ++k) {
+      const auto at = static_cast<size_t>(shape_functions * d + k);
+      sum[d] += amount[static_cast<size_t>(k)] *
+                directed_of(static_cast<double>(found[at]), static_cast<double>(change[at]));
+    }
+  }
+}
+
+template <class T>
+shape_table::correction<T> shape_table::evaluate(const pressure_view<T> &pressure,
+                                                 double shear_modulus, const T &bound,
+                                                 const T creepage[2], const T &spin_creepage,
+                                                 int direction) const {
+  correction<T> out{{0, 0}, 0, poisson_in_range_};
+  if (!(bound > 0.0)) return out;
   const shapes_header &h = *header_;
-  shape_of_pressure shape = describe(g, pressure);
+  basic_shape<T> shape = describe(pressure);
   // of the powers of x only x y turns its sign in the mirror image
   shape.feature[3] *= direction;
-  shape_features feature;
+  shape_features<T> feature;
   for (size_t k = 0; k < feature.size(); ++k) feature[k] = h.scale[k] * shape.feature[k];
-  amounts amount;
+  amounts<T> amount;
   if (!(weigh(feature, amount) <= h.reach)) out.in_range = false;
 
-  const double square = shape.axes[0] * shape.axes[1], c = std::sqrt(square);
+  const T square = shape.axes[0] * shape.axes[1], c = sqrt(square);
   // spin moves the ends of a long contact by as much as its length tells
-  const double reach =
-      std::sqrt(0.5 * (shape.axes[0] * shape.axes[0] + shape.axes[1] * shape.axes[1]));
-  const double scale = shear_modulus * square / bound;
-  double v[3] = {
+  const T reach = sqrt(0.5 * (shape.axes[0] * shape.axes[0] + shape.axes[1] * shape.axes[1]));
+  const T scale = shear_modulus * square / bound;
+  T v[3] = {
       scale * shape_stiffness[0] * direction * (creepage[0] - spin_creepage * shape.centre[1]),
       scale * shape_stiffness[1] * (creepage[1] + spin_creepage * shape.centre[0]),
       scale * shape_stiffness[2] * direction * reach * spin_creepage};
-  const double mirror = v[2] < 0 ? -1.0 : 1.0;
-  for (double &part : v) part *= mirror;
-  double sum[3];
-  interpolate(between(v), amount, sum);
-  const double unit = mirror * bound * h.unit;
+  const double mirror = v[2] < 0.0 ? -1.0 : 1.0;
+  for (T &part : v) part *= mirror;
+  T sum[3];
+  interpolate(between<T>(v), amount, sum);
+  const T unit = mirror * bound * h.unit;
   out.force[0] = direction * unit * sum[0];
   out.force[1] = unit * sum[1];
   out.moment = direction * unit * c * sum[2] + shape.centre[0] * out.force[1] -
                shape.centre[1] * out.force[0];
   return out;
 }
+
+template shape_table::correction<double> shape_table::evaluate(const pressure_view<double> &,
+                                                               double, const double &,
+                                                               const double[2], const double &,
+                                                               int) const;
+template shape_table::correction<directed> shape_table::evaluate(const pressure_view<directed> &,
+                                                                 double, const directed &,
+                                                                 const directed[2],
+                                                                 const directed &, int) const;
 
 }  // namespace railpatch

@@ -36,7 +36,7 @@
 #include <utility>
 
 #include "fast/creep_table.hpp"
-#include "half_space/influence.hpp"
+#include "fast/pressure_view.hpp"
 
 namespace railpatch {
 
@@ -56,11 +56,13 @@ struct shape_table_header {
 };
 
 // What a pressure's first to fourth moments and the load of its rows tell.
-struct shape_of_pressure {
-  double centre[2];  // m
-  double axes[2];    // m
-  std::array<double, shape_table_header::features> feature;
+template <class T>
+struct basic_shape {
+  T centre[2];  // m
+  T axes[2];    // m
+  std::array<T, shape_table_header::features> feature;
 };
+using shape_of_pressure = basic_shape<double>;
 
 class shape_table {
  public:
@@ -77,29 +79,39 @@ class shape_table {
   // The block is used in place, not copied.
   shape_table(const void *data, double poisson_ratio);
 
+  template <class T>
   struct correction {
-    double force[2];  // N
-    double moment;    // N m, about the grid's origin
+    T force[2];  // N
+    T moment;    // N m, about the grid's origin
     bool in_range;
   };
-  // Of a pressure that is somewhere above 0; creepages at the grid's origin.
-  correction evaluate(const grid &g, const double *pressure, double shear_modulus, double bound,
-                      const double creepage[2], double spin_creepage, int direction);
+  // Of a pressure that is somewhere above 0; creepages at the grid's origin. T: double or directed.
+  template <class T>
+  correction<T> evaluate(const pressure_view<T> &pressure, double shear_modulus, const T &bound,
+                         const T creepage[2], const T &spin_creepage, int direction) const;
   double force_error() const { return header_->error[0]; }
   double moment_error() const { return header_->error[1]; }
 
-  static shape_of_pressure describe(const grid &g, const double *pressure);
+  template <class T>
+  static basic_shape<T> describe(const pressure_view<T> &pressure);
 
  private:
+  template <class T>
   struct row_sums {
-    double zero, one, two, four;  // of the pressure times powers of x
+    T zero, one, two, four;  // of the pressure times powers of x
   };
-  using shape_features = std::array<double, shape_table_header::features>;
-  using amounts = std::array<double, shape_table_header::functions>;
-  double weigh(const shape_features &feature, amounts &amount) const;
+  template <class T>
+  using shape_features = std::array<T, shape_table_header::features>;
+  template <class T>
+  using amounts = std::array<T, shape_table_header::functions>;
+  double weigh(const shape_features<double> &feature, amounts<double> &amount) const;
+  double weigh(const shape_features<directed> &feature, amounts<directed> &amount) const;
+  template <class T>
   struct place_between;
-  place_between between(const double v[3]) const;
-  void interpolate(const place_between &place, const amounts &amount, double sum[3]) const;
+  template <class T>
+  place_between<T> between(const T v[3]) const;
+  template <class T>
+  void interpolate(const place_between<T> &place, const amounts<T> &amount, T sum[3]) const;
 
   const shape_table_header *header_;
   const float *feature_;

@@ -71,9 +71,10 @@ class moving_geometry : private placement<rated> {
   // Where there is no surface they mean nothing.
   void distance_rates(const rated_frame &frame, const surface_grid &grid,
                       const lattice_rates *lattice, int count, double *const *rates) const;
-  // The same of the rail's slopes, out[k].
+  // The same of the rail's slopes, out[k]; along_rows: of each element where they differ along x.
   void rail_slope_rates(const rated_frame &frame, const surface_grid &grid,
-                        const lattice_rates *lattice, int count, surface_slopes *out) const;
+                        const lattice_rates *lattice, int count, bool along_rows,
+                        surface_slopes *out) const;
 
  private:
   // The profile in its meridian plane.

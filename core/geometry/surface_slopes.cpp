@@ -58,10 +58,10 @@ void side_geometry::rail_slopes(const contact_frame &frame, const surface_grid &
 
 // As on the side, the arc length where the rail is met being unknown.
 void moving_geometry::rail_slope_rates(const rated_frame &frame, const surface_grid &whole,
-                                       const lattice_rates *lattice, int count,
+                                       const lattice_rates *lattice, int count, bool along_rows,
                                        surface_slopes *out) const {
-  const bool roller = track_.kind == track_kind::roller;
-  const surface_grid g = roller ? whole : at_centre(whole);
+  const bool roller = track_.kind == track_kind::roller, along = roller && along_rows;
+  const surface_grid g = along ? whole : at_centre(whole);
   const frame_axes<rated> f = axes_of(frame);
   for (int k = 0; k < count; ++k) {
     out[k].clear(g.nx, g.ny);
@@ -75,7 +75,8 @@ void moving_geometry::rail_slope_rates(const rated_frame &frame, const surface_g
   each_element elements([&](int column, int row, double p, double) {
     const rated s = on_lattice(1, g.y0, row, g.dy);
     rated ahead(0.0);
-    if (roller) ahead = frame.origin[0] + on_lattice(0, g.x0, column, g.dx) - axle_x_;
+    if (roller) ahead = frame.origin[0] - axle_x_;
+    if (along) ahead += on_lattice(0, g.x0, column, g.dx);
     // from the frame's origin to the surface, in the plane across x
     const auto reach = [&](const point &m) {
       const rated r = axle_z_ - m.z;
@@ -91,13 +92,13 @@ void moving_geometry::rail_slope_rates(const rated_frame &frame, const surface_g
       normal = {ahead / r * m.dy, m.dz, (to[2] + frame.origin[2] - axle_z_) / r * m.dy};
     }
     const rated along_n = dot(normal, f.n), height = dot(to, f.n);
-    const rated across = -dot(normal, f.s) / along_n, along = -normal[0] / along_n;
+    const rated across = -dot(normal, f.s) / along_n, ahead_slope = -normal[0] / along_n;
     for (int k = 0; k < count; ++k) {
       const auto from = static_cast<size_t>(k);
       const auto at = out[k].place(row) + column;
       out[k].height[at] = height.rate[from];
       out[k].across[at] = across.rate[from];
-      out[k].along[at] = along.rate[from];
+      out[k].along[at] = ahead_slope.rate[from];
     }
   });
   const contact_frame fixed{{frame.origin[0].value, frame.origin[1].value, frame.origin[2].value},

@@ -66,6 +66,51 @@ void for_loads(const grid &g, const double *pressure, const surface_slopes &slop
 
 }  // namespace
 
+namespace {
+
+// N, of an elliptic pressure between the row's edges.
+template <class T>
+T load_of_row(const T &half_width, const T &force, const T &y, const T &half) {
+  const auto share = [&](const T &at) {
+    T t = at / half_width;
+    if (t < -1.0) t = -1.0;
+    if (t > 1.0) t = 1.0;
+    return T(0.75 * (t - t * t * t / 3.0));
+  };
+  return force * (share(y + half) - share(y - half));
+}
+
+}  // namespace
+
+void add_inclined_ellipse(double half_width, double force, const grid &g,
+                          const surface_slopes &slopes, patch_wrench &wrench) {
+  for (int j = 0; j < g.ny; ++j) {
+    const double y = g.y(j), load = load_of_row<double>(half_width, force, y, 0.5 * g.dy);
+    add_inclined(load, 0, y, slopes.height[j], slopes.across[j], slopes.along[j], wrench);
+  }
+}
+
+void add_inclined_ellipse_rates(const directed &half_width, const directed &force, const grid &g,
+                                const surface_slopes &slopes, const surface_slopes *rates,
+                                double origin, double size, patch_wrench &wrench) {
+  const auto rate_of = [&](double *surface_slopes::*field, int j) {
+    return directed_of((slopes.*field)[j], rates ? (rates->*field)[j] : 0.0);
+  };
+  for (int j = 0; j < g.ny; ++j) {
+    const directed y = directed_of(g.y(j), origin + j * size);
+    const directed load =
+        load_of_row<directed>(half_width, force, y, directed_of(0.5 * g.dy, 0.5 * size));
+    const directed height = rate_of(&surface_slopes::height, j);
+    const directed lateral = rate_of(&surface_slopes::across, j) * load;
+    const directed longitudinal = rate_of(&surface_slopes::along, j) * load;
+    wrench.force[0] += longitudinal.rate[0];
+    wrench.force[1] += lateral.rate[0];
+    wrench.moment[0] -= (height * lateral).rate[0];
+    wrench.moment[1] += (height * longitudinal).rate[0];
+    wrench.moment[2] -= (y * longitudinal).rate[0];
+  }
+}
+
 void add_inclined(const grid &g, const double *pressure, const surface_slopes &slopes,
                   patch_wrench &wrench) {
   for_loads(g, pressure, slopes, [&](int row, auto at, double force, double moment, double) {

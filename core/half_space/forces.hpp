@@ -8,6 +8,7 @@
 
 #include "geometry/surface_slopes.hpp"
 #include "half_space/influence.hpp"
+#include "numeric/dual.hpp"
 #include "numeric/elementary.hpp"
 
 namespace railpatch {
@@ -30,6 +31,15 @@ void add_inclined(const grid &g, const double *pressure, const surface_slopes &s
 // The same of a force (N) with its moment along x (N m), where the surface has the same slopes.
 void add_inclined(double force, double moment, double s, double height, double across, double along,
                   patch_wrench &wrench);
+// The same of an elliptic pressure that is not on the grid, by rows with the slopes of their
+// middle. half_width: m, of the ellipse.
+void add_inclined_ellipse(double half_width, double force, const grid &g,
+                          const surface_slopes &slopes, patch_wrench &wrench);
+// Its rates, with those of half width, force, rows (origin + index size, m) and slopes (null:
+// zero).
+void add_inclined_ellipse_rates(const directed &half_width, const directed &force, const grid &g,
+                                const surface_slopes &slopes, const surface_slopes *rates,
+                                double origin, double size, patch_wrench &wrench);
 // Adds the rates where the elements of a pressure move by origin + index size (m), and the slopes
 // by their rates (null: by none).
 void add_inclined_rates(const grid &g, const double *pressure, const surface_slopes &slopes,

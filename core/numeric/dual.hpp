@@ -73,6 +73,10 @@ dual<n> cos(const dual<n> &a) {
   return a.through(cos(a.value), -sin(a.value));
 }
 template <int n>
+dual<n> log(const dual<n> &a) {
+  return a.through(log(a.value), 1.0 / a.value);
+}
+template <int n>
 dual<n> fabs(const dual<n> &a) {
   return a.through(std::fabs(a.value), a.value < 0 ? -1.0 : 1.0);
 }
@@ -101,6 +105,14 @@ inline double value_of(double a) { return a; }
 template <int n>
 double value_of(const dual<n> &a) {
   return a.value;
+}
+
+// A number with its rate along one direction.
+using directed = dual<1>;
+inline directed directed_of(double value, double rate) {
+  directed a(value);
+  a.rate[0] = rate;
+  return a;
 }
 
 }  // namespace railpatch

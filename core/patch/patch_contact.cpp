@@ -12,20 +12,6 @@ constexpr int most_failures = 5;
 // of the liquid's temperature and that of the surfaces
 constexpr int most_rounds = 40;
 
-// Of an elliptic pressure that is not on the grid, by rows with the slopes of their middle.
-void add_inclined_ellipse(const hertz_contact &hertz, const grid &g, const surface_slopes &slopes,
-                          patch_wrench &wrench) {
-  const auto share = [&](double y) {
-    const double t = std::clamp(y / hertz.semi_axes[1], -1.0, 1.0);
-    return 0.75 * (t - t * t * t / 3.0);
-  };
-  for (int j = 0; j < g.ny; ++j) {
-    const double y = g.y(j), half = 0.5 * g.dy;
-    const double force = hertz.normal_force * (share(y + half) - share(y - half));
-    add_inclined(force, 0, y, slopes.height[j], slopes.across[j], slopes.along[j], wrench);
-  }
-}
-
 // Mean of a law of temperature on the asperities, over the whole load.
 double friction_by_heat(const grid &g, const patch_memory &memory) {
   double all = 0, sum = 0;
@@ -302,7 +288,8 @@ void patch_contact::complete(const patch_problem &problem, patch_memory &memory,
   const grid &g = problem.g;
   add_depth(problem.place.contact_depth, wrench.force[0], wrench.force[1], wrench);
   if (shared_.scene.closed_form())
-    add_inclined_ellipse(problem.hertz, g, memory.slopes, wrench);
+    add_inclined_ellipse(problem.hertz.semi_axes[1], problem.hertz.normal_force, g, memory.slopes,
+                         wrench);
   else
     add_inclined(g, memory.pressure.data(), memory.slopes, wrench);
   if (!shared_.scene.turns()) return;
@@ -317,10 +304,13 @@ derivative_outcome patch_contact::differentiate(const patch_problem &problem,
                                                 const derivative_options &options,
                                                 patch_change *out) {
   const stage_mark mark = shared_.marks.enter(RP_STAGE_DERIVATIVES);
-  const patch_derivative::solution found{
-      shared_.scene,    problem,
-      memory,           shared_.influence ? &*shared_.influence : nullptr,
-      normal_.solver(), tangential_.blocks()};
+  const patch_derivative::solution found{shared_.scene,
+                                         problem,
+                                         memory,
+                                         shared_.influence ? &*shared_.influence : nullptr,
+                                         normal_.solver(),
+                                         tangential_.blocks(),
+                                         tangential_.tables()};
   return derivative_->solve(found, in, count, options, out);
 }
 

@@ -20,25 +20,33 @@ constexpr int few = 3;
 
 bool on_half_space(const patch_scene &scene) { return scene.normal == RP_NORMAL_HALF_SPACE; }
 bool rolls(const patch_scene &scene) { return scene.tangential == RP_TANGENTIAL_FULL; }
+bool is_loaded(const patch_problem &problem, const patch_memory &memory) {
+  const double *p = memory.pressure.data();
+  if (memory.pressure.size() == 0) return problem.hertz.normal_force > 0;
+  return std::any_of(p, p + problem.g.count(), [](double v) { return v > 0; });
+}
 
 }  // namespace
 
 patch_derivative::patch_derivative(const patch_scene &scene, const fft_plans &plans, int max_nx,
                                    int max_ny, bool stretches) {
   const int count = max_nx * max_ny;
-  if (stretches && !(scene.line_width > 0)) {
+  if (stretches && !(scene.line_width > 0) && !scene.closed_form()) {
     influence::medium elastic{scene.elastic, 0.0, 0.0, rolls(scene)};
     elastic.by_length = true;
     by_length_.emplace(elastic, plans);
   }
   if (on_half_space(scene)) normal_.emplace(count, at_once);
   if (rolls(scene)) tangential_.emplace(max_nx, max_ny, few);
+  if (scene.tangential == RP_TANGENTIAL_TABLE) ellipses_.emplace(max_ny);
+  if (scene.closed_form()) return;
   pressure_ = aligned_buffer<double>::uninitialized(static_cast<size_t>(count) * at_once);
 }
 
 size_t patch_derivative::bytes() const {
   return sizeof *this + (by_length_ ? by_length_->bytes() : 0) + (normal_ ? normal_->bytes() : 0) +
-         (tangential_ ? tangential_->bytes() : 0) + pressure_.bytes();
+         (tangential_ ? tangential_->bytes() : 0) + (ellipses_ ? ellipses_->bytes() : 0) +
+         pressure_.bytes();
 }
 
 double *patch_derivative::rate_of(const solution &s, int k) {
@@ -53,8 +61,7 @@ derivative_outcome patch_derivative::solve(const solution &s, const patch_variat
   if (!(o.tolerance > 0)) o.tolerance = std::clamp(0.3 * s.scene.tolerance, 1e-9, 3e-6);
   const grid &g = s.problem.g;
   for (int k = 0; k < count; ++k) out[k] = {};
-  const double *p = s.memory.pressure.data();
-  if (!std::any_of(p, p + g.count(), [](double v) { return v > 0; })) return outcome;
+  if (!is_loaded(s.problem, s.memory)) return outcome;
   if (s.a) s.a->set_grid(g);
   if (by_length_) by_length_->set_grid(g);
   rolling_ = s.problem.rolling;
@@ -95,7 +102,10 @@ void patch_derivative::solve_some(const solution &s, const patch_variation *in, 
     differentiate_half_space(s, in, count, o, out, outcome);
   else
     for (int k = 0; k < count; ++k) differentiate_hertz(s, in[k], rate_of(s, k), out[k]);
-  for (int k = 0; k < count; ++k) add_pressure(s, in[k], rate_of(s, k), out[k]);
+  const bool closed = s.scene.closed_form();
+  for (int k = 0; k < count && !closed; ++k) add_pressure(s, in[k], rate_of(s, k), out[k]);
+  for (int k = 0; k < count && closed; ++k) out[k].wrench.force[2] = -out[k].normal_force;
+  for (int k = 0; k < count && s.tables; ++k) differentiate_table(s, in[k], rate_of(s, k), out[k]);
   if (tangential_) differentiate_tractions(s, in, count, o, by_resultants, out, outcome);
   for (int k = 0; k < count && s.memory.slope_fields.size(); ++k)
     complete(s, in[k], rate_of(s, k), out[k]);
@@ -189,7 +199,8 @@ void patch_derivative::differentiate_hertz(const solution &s, const patch_variat
   const double *p = s.memory.pressure.data();
   const double along = d.semi_axes[0] / a, across = b > 0 ? d.semi_axes[1] / b : 0.0;
   double sum = 0, change = 0;
-  for (int j = 0; j < g.ny; ++j)
+  const bool on_grid = !s.scene.closed_form();
+  for (int j = 0; j < g.ny && on_grid; ++j)
     for (int i = 0; i < g.nx; ++i) {
       const auto at = static_cast<size_t>(j * g.nx + i);
       rate[at] = 0;
@@ -201,9 +212,11 @@ void patch_derivative::differentiate_hertz(const solution &s, const patch_variat
       sum += p[at];
       change += rate[at];
     }
-  const double growth = v.size[0] / g.dx + v.size[1] / g.dy;
-  const double scale = d.normal_force / c.normal_force - growth - change / sum;
-  for (size_t i = 0; i < static_cast<size_t>(g.count()); ++i) rate[i] += scale * p[i];
+  if (on_grid) {
+    const double growth = v.size[0] / g.dx + v.size[1] / g.dy;
+    const double scale = d.normal_force / c.normal_force - growth - change / sum;
+    for (size_t i = 0; i < static_cast<size_t>(g.count()); ++i) rate[i] += scale * p[i];
+  }
   out.normal_force = d.normal_force;
   out.max_pressure = d.max_pressure;
   const bool line = s.scene.line_width > 0;
@@ -243,14 +256,25 @@ void patch_derivative::complete(const solution &s, const patch_variation &v, con
   const grid &g = s.problem.g;
   const double *p = m.pressure.data();
   patch_wrench whole{}, sum{};
+  const double *force = out.creep_force_value;
+  if (tangential_ || s.tables) {
+    add_depth(v.contact_depth, force[0], force[1], sum);
+    add_depth(s.problem.place.contact_depth, out.creep_force[0], out.creep_force[1], sum);
+  }
+  if (s.scene.closed_form()) {
+    const hertz_contact &hertz = s.problem.hertz;
+    add_inclined_ellipse_rates(directed_of(hertz.semi_axes[1], v.hertz.semi_axes[1]),
+                               directed_of(hertz.normal_force, v.hertz.normal_force), g, m.slopes,
+                               v.slopes, v.origin[1], v.size[1], sum);
+    for (int k = 0; k < 3; ++k) {
+      out.wrench.force[k] += sum.force[k];
+      out.wrench.moment[k] += sum.moment[k];
+    }
+    return;
+  }
   add_inclined(g, p, m.slopes, whole);
   add_inclined(g, rate, m.slopes, sum);
   add_inclined_rates(g, p, m.slopes, v.slopes, v.origin, v.size, sum);
-  if (tangential_) {
-    const patch_wrench w = sum_tractions(g, p, m.px.data(), m.py.data());
-    add_depth(v.contact_depth, w.force[0], w.force[1], sum);
-    add_depth(s.problem.place.contact_depth, out.creep_force[0], out.creep_force[1], sum);
-  }
   if (s.scene.turns()) {
     out.turning = energy_of_turning_rate(g, p, rate, m.undeformed_distance.data(), v.distance,
                                          m.slopes, v.slopes, v.size);
@@ -309,20 +333,66 @@ void patch_derivative::add_tractions(const solution &s, const patch_variation &v
                                      const tangential_change &t, bool energy,
                                      patch_change &out) const {
   const patch_memory &m = s.memory;
-  for (int c = 0; c < 2; ++c) out.creep_force[c] = out.wrench.force[c] = t.force[c];
-  out.spin_moment = out.wrench.moment[2] = t.moment;
   out.elastic_energy = energy ? out.elastic_energy + t.energy : nan;
+  const patch_wrench w = sum_tractions(s.problem.g, m.pressure.data(), m.px.data(), m.py.data());
+  const double force[2] = {w.force[0], w.force[1]};
+  for (int c = 0; c < 2; ++c) out.creep_force[c] = t.force[c];
+  out.spin_moment = t.moment;
+  add_creep_forces(s, v, force, w.moment[2], out);
+}
+
+// Creep forces, whose rates are in out, in the wrench; their size and power.
+void patch_derivative::add_creep_forces(const solution &s, const patch_variation &v,
+                                        const double (&force)[2], double moment,
+                                        patch_change &out) const {
+  std::copy_n(force, 2, out.creep_force_value);
+  for (int c = 0; c < 2; ++c) out.wrench.force[c] = out.creep_force[c];
+  out.wrench.moment[2] = out.spin_moment;
   const double speed = s.problem.rolling_speed;
   if (!(speed > 0)) return;
-  const patch_wrench w = sum_tractions(s.problem.g, m.pressure.data(), m.px.data(), m.py.data());
-  const double size = hypot(w.force[0], w.force[1]);
-  if (size > 0) out.creep_size = (w.force[0] * t.force[0] + w.force[1] * t.force[1]) / size;
-  const double work = rolling_.creepage[0] * w.force[0] + rolling_.creepage[1] * w.force[1] +
-                      rolling_.spin_creepage * w.moment[2];
-  const double rate = v.creepage[0] * w.force[0] + v.creepage[1] * w.force[1] +
-                      v.spin_creepage * w.moment[2] + rolling_.creepage[0] * t.force[0] +
-                      rolling_.creepage[1] * t.force[1] + rolling_.spin_creepage * t.moment;
+  const double size = hypot(force[0], force[1]);
+  if (size > 0)
+    out.creep_size = (force[0] * out.creep_force[0] + force[1] * out.creep_force[1]) / size;
+  const double work = rolling_.creepage[0] * force[0] + rolling_.creepage[1] * force[1] +
+                      rolling_.spin_creepage * moment;
+  const double rate = v.creepage[0] * force[0] + v.creepage[1] * force[1] +
+                      v.spin_creepage * moment + rolling_.creepage[0] * out.creep_force[0] +
+                      rolling_.creepage[1] * out.creep_force[1] +
+                      rolling_.spin_creepage * out.spin_moment;
   out.friction_power = -(v.rolling_speed * work + speed * rate);
+}
+
+// A table's forces, as fast_solver::solve has them.
+void patch_derivative::differentiate_table(const solution &s, const patch_variation &v,
+                                           const double *rate, patch_change &out) {
+  if (!(s.problem.rolling_speed > 0)) return;
+  const grid &g = s.problem.g;
+  const double *p = s.memory.pressure.data();
+  const rolling_input &r = s.problem.rolling;
+  const creep_motion<directed> motion{
+      {directed_of(r.creepage[0], v.creepage[0]), directed_of(r.creepage[1], v.creepage[1])},
+      directed_of(r.spin_creepage, v.spin_creepage),
+      r.direction};
+  const hertz_contact &hertz = s.problem.hertz;
+  const double load = on_half_space(s.scene)
+                          ? total(p, static_cast<size_t>(g.count())) * g.dx * g.dy
+                          : hertz.normal_force;
+  const directed bound = directed_of(friction_of(s), friction_rate(s, v, rate, out)) *
+                         directed_of(load, out.normal_force);
+  table_resultants<directed> found;
+  if (hertz.semi_axes[0] > 0) {
+    const directed axes[2] = {directed_of(hertz.semi_axes[0], v.hertz.semi_axes[0]),
+                              directed_of(hertz.semi_axes[1], v.hertz.semi_axes[1])};
+    found = s.tables->of_ellipse(axes, motion, bound);
+  } else {
+    found =
+        s.tables->of_pressure<directed>({g, p, rate, v.origin, v.size}, motion, bound, *ellipses_);
+  }
+  for (int c = 0; c < 2; ++c) out.creep_force[c] = found.force[c].rate[0];
+  out.spin_moment = found.moment.rate[0];
+  out.capacity = bound.rate[0];
+  const double force[2] = {found.force[0].value, found.force[1].value};
+  add_creep_forces(s, v, force, found.moment.value, out);
 }
 
 }  // namespace railpatch

@@ -1,6 +1,6 @@
 // Exact derivatives of one patch's solution: normal problem, then tangential problem
-// (normal/normal_derivative.hpp, tangential/tangential_derivative.hpp), then what results from
-// both.
+// (normal/normal_derivative.hpp, tangential/tangential_derivative.hpp, or a table's own
+// interpolation: fast/table_forces.hpp), then what results from both.
 //
 // They are those of the active sets as the solution has them: elements in contact, in stick and in
 // slip stay so. At a solution where an element is about to change, the derivative is one-sided.
@@ -8,6 +8,7 @@
 
 #include <optional>
 
+#include "fast/table_forces.hpp"
 #include "fluid/mixed.hpp"
 #include "half_space/forces.hpp"
 #include "normal/hertz.hpp"
@@ -47,7 +48,8 @@ struct patch_change {
   patch_wrench wrench{};
   double normal_force = 0, approach = 0;
   double creep_force[2] = {0, 0}, spin_moment = 0;
-  double creep_size = 0;  // N, of the creep force's length
+  double creep_force_value[2] = {0, 0};  // N, of which these are the rates
+  double creep_size = 0;                 // N, of the creep force's length
   double max_pressure = 0, contact_area = 0;
   double growth[2] = {0, 0};  // -, of the contact's extent along x and s, relative
   double capacity = 0;        // N, that friction could carry
@@ -83,6 +85,7 @@ class patch_derivative {
     influence *a;
     normal_solver *normal;
     row_blocks *blocks;
+    const table_forces *tables;
   };
   derivative_outcome solve(const solution &s, const patch_variation *in, int count,
                            const derivative_options &o, patch_change *out);
@@ -104,6 +107,10 @@ class patch_derivative {
                     patch_change &out) const;
   void complete(const solution &s, const patch_variation &v, const double *rate,
                 patch_change &out) const;
+  void differentiate_table(const solution &s, const patch_variation &v, const double *rate,
+                           patch_change &out);
+  void add_creep_forces(const solution &s, const patch_variation &v, const double (&force)[2],
+                        double moment, patch_change &out) const;
   void add_tractions(const solution &s, const patch_variation &v, const tangential_change &t,
                      bool energy, patch_change &out) const;
   static double capacity_rate(const solution &s, const patch_variation &v, double friction,
@@ -118,6 +125,7 @@ class patch_derivative {
   std::optional<influence> by_length_;
   std::optional<normal_derivative> normal_;
   std::optional<tangential_derivative> tangential_;
+  std::optional<pressed_ellipses<directed>> ellipses_;  // of tables
   rolling_input rolling_;
   aligned_buffer<double> pressure_;  // Pa, rates, [direction][ny][nx]
 };

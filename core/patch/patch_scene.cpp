@@ -29,6 +29,10 @@ bool patch_scene::estimates_force() const {
 bool patch_scene::differentiates() const {
   if (curved || (normal != RP_NORMAL_HALF_SPACE && normal != RP_NORMAL_HERTZ)) return false;
   if (tangential == RP_TANGENTIAL_NONE) return true;
+  // tables by their own interpolation (fast/table_forces.hpp)
+  if (tangential == RP_TANGENTIAL_TABLE)
+    return !law && !keeps_steps() && !heat && !fluid && !is_forced() &&
+           !friction_variation.varies() && !(line_width > 0);
   return tangential == RP_TANGENTIAL_FULL && !is_fitted() && !law && !keeps_steps() && !heat &&
          (!fluid || fluid->model == RP_FLUID_FILM) && !is_forced() && !couples();
 }

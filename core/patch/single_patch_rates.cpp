@@ -81,7 +81,7 @@ void single_patch::differentiate(const rp_input &d, const rp_input &, const rp_r
   set(value.spin_creepage, change.spin_creepage, d.spin_creepage);
   set(value.rolling_speed, change.rolling_speed, d.rolling_speed);
   if (!setup_.force_given) set(value.approach, change.approach, d.approach);
-  if (!m.solved || problem.g.count() == 0) return;
+  if (!m.solved || (problem.g.count() == 0 && !solver_.scene().closed_form())) return;
   patch_variation v;
   v.normal_force = d.normal_force;
   v.approach = d.approach;

@@ -26,6 +26,7 @@ class tangential_stage {
   void set_resultants(const traction_outcome &found, patch_memory &memory,
                       patch_wrench &wrench) const;
   bool on_grid() const { return !fitted_; }
+  const table_forces *tables() const { return fast_ ? fast_->tables() : nullptr; }
   const creep_table *table() const { return fast_ ? fast_->table() : nullptr; }
   const shape_table *shapes() const { return fast_ ? fast_->shapes() : nullptr; }
   row_blocks *blocks() { return tangential_ ? tangential_->blocks() : nullptr; }

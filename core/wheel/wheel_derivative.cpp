@@ -42,7 +42,8 @@ wheel_derivative::wheel_derivative(const patch_scene &scene, int max_count, int 
     row_friction_ =
         aligned_buffer<double>::uninitialized(directions * static_cast<size_t>(max_rows));
   if (!scene.local_normals) return;
-  const auto each = static_cast<size_t>(scene.slopes_along_rows ? max_count : max_rows);
+  const bool along = scene.slopes_along_rows && !scene.closed_form();
+  const auto each = static_cast<size_t>(along ? max_count : max_rows);
   slope_fields_ = aligned_buffer<double>::uninitialized(3 * directions * each);
   for (size_t k = 0; k < directions; ++k) {
     double *at = slope_fields_.data() + 3 * k * each;
@@ -200,7 +201,7 @@ void wheel_derivative::set_shape(step &s, int index, patch_variation *in) {
 void wheel_derivative::set_slopes(step &s, int index, patch_variation *in) {
   const grid &g = s.wheel.patches[index].problem.g;
   s.geometry[0]->rail_slope_rates(s.frame, {g.nx, g.ny, g.x0, g.y0, g.dx, g.dy}, s.lattice,
-                                  s.moving, slopes_);
+                                  s.moving, !s.solver.scene().closed_form(), slopes_);
   for (int k = 0; k < s.moving; ++k) in[k].slopes = &slopes_[k];
 }
 

@@ -346,7 +346,9 @@ TEST(CreepTable, SplinesOfTheFormat) {
 TEST(CreepTable, RangeHoldsItsEnds) {
   const tables::table t = varied({});
   const auto in_range = [&](double nu, double ratio) {
-    return creep_table(t.data(), nu).evaluate({{ratio, 1.0}, 8e10, 1e4, {1e-3, 0}, 0, 1}).in_range;
+    return creep_table(t.data(), nu)
+        .evaluate<double>({{ratio, 1.0}, 8e10, 1e4, {1e-3, 0}, 0, 1})
+        .in_range;
   };
   EXPECT_TRUE(in_range(0, 1) && in_range(0.5, 1) && in_range(0.23, 1));
   EXPECT_FALSE(in_range(-1e-9, 1) || in_range(0.5 + 1e-9, 1));
@@ -358,7 +360,7 @@ TEST(CreepTable, RangeHoldsItsEnds) {
   exact.set_header(h);
   for (double ratio : {0.25, 4.0})
     EXPECT_TRUE(creep_table(exact.data(), 0.2)
-                    .evaluate({{ratio, 1.0}, 8e10, 1e4, {1e-3, 0}, 0, 1})
+                    .evaluate<double>({{ratio, 1.0}, 8e10, 1e4, {1e-3, 0}, 0, 1})
                     .in_range);
 }
 
@@ -366,7 +368,7 @@ TEST(CreepTable, NothingMovesNothing) {
   const tables::table t = varied({});
   const creep_table table(t.data(), 0.28);
   for (const auto &[bound, xi] : {std::pair{0.0, 1e-3}, {1e4, 0.0}}) {
-    const creep_forces f = table.evaluate({{5e-3, 5e-3}, 8e10, bound, {xi, xi}, xi, 1});
+    const creep_forces f = table.evaluate<double>({{5e-3, 5e-3}, 8e10, bound, {xi, xi}, xi, 1});
     EXPECT_EQ(f.force[0], 0);
     EXPECT_EQ(f.force[1], 0);
     EXPECT_EQ(f.moment, 0);
@@ -382,7 +384,8 @@ TEST(CreepTable, CreepagesOfAnySize) {
   for (const auto &[xi, eta, phi] : std::vector<std::array<double, 3>>{
            {1, 0.3, 20}, {0.1, -1, 10}, {0.1, 0.1, 1000}, {0, 0, -700}}) {
     const auto at = [&, xi = xi, eta = eta, phi = phi](double size) {
-      return table.evaluate({{4e-3, 6e-3}, 8e10, 1e4, {xi * size, eta * size}, phi * size, 1});
+      return table.evaluate<double>(
+          {{4e-3, 6e-3}, 8e10, 1e4, {xi * size, eta * size}, phi * size, 1});
     };
     const creep_forces wanted = at(1e100);
     for (double size : {1e145, 1e148, 1e152, 1e200, 1e300}) {

@@ -35,12 +35,12 @@ std::vector<double> sampled(const grid &g, const std::vector<pressed> &parts) {
 const grid fine{120, 160, 1e-4, 1e-4, -5.95e-3, -7.95e-3};
 
 TEST(PressedEllipses, AreHertzsOwn) {
-  pressed_ellipses ellipses(fine.ny);
+  pressed_ellipses<double> ellipses(fine.ny);
   for (const pressed part :
        {pressed{4e-3, 2e-3, 1e-3, -2e-3, 1e9}, {2e-3, 6e-3, -3e-3, 1e-3, 1e8}}) {
-    ellipses.set(fine, sampled(fine, {part}).data());
+    ellipses.set({fine, sampled(fine, {part}).data()});
     ASSERT_EQ(ellipses.count(), 1);
-    const pressed_ellipse &found = ellipses[0];
+    const basic_pressed_ellipse<double> &found = ellipses[0];
     EXPECT_EQ(found.share, 1);
     EXPECT_NEAR(found.load, 1, 1e-15);
     // pressure at the middle of elements stands for its mean: 5/24 of the squared element over the
@@ -59,8 +59,8 @@ TEST(PressedEllipses, OfSeparatePartsAreOneEach) {
                                       {3e-3, 1.5e-3, 0, 4e-3, 5e8}};
   double whole = 0;
   for (const pressed &part : parts) whole += part.force();
-  pressed_ellipses ellipses(fine.ny);
-  ellipses.set(fine, sampled(fine, parts).data());
+  pressed_ellipses<double> ellipses(fine.ny);
+  ellipses.set({fine, sampled(fine, parts).data()});
   ASSERT_EQ(ellipses.count(), 3);
   for (int k = 0; k < 3; ++k) {
     const pressed &part = parts[static_cast<size_t>(k)];
@@ -75,10 +75,10 @@ TEST(PressedEllipses, OfSeparatePartsAreOneEach) {
 
 // Sums with the shares, of quantities that add up over parts: load, and such as the forces on them
 // depend on.
-std::vector<double> summed(const pressed_ellipses &ellipses) {
+std::vector<double> summed(const pressed_ellipses<double> &ellipses) {
   std::vector<double> sums(5, 0.0);
   for (int k = 0; k < ellipses.count(); ++k) {
-    const pressed_ellipse &e = ellipses[k];
+    const basic_pressed_ellipse<double> &e = ellipses[k];
     const double part = e.share * e.load;
     const double terms[] = {1.0, e.centre[0], e.centre[1], e.axes[0], e.axes[1]};
     for (size_t n = 0; n < sums.size(); ++n) sums[n] += part * terms[n] / (n > 0 ? 1e-3 : 1.0);
@@ -96,13 +96,13 @@ double apart(const std::vector<double> &a, const std::vector<double> &b) {
 // greater change.
 TEST(PressedEllipses, DoNotJumpAsPartsBecomeOne) {
   const grid g{24, 32, 5e-4, 5e-4, -5.75e-3, -7.75e-3};
-  pressed_ellipses ellipses(g.ny);
+  pressed_ellipses<double> ellipses(g.ny);
   int least = 99, greatest = 0;
   const auto at = [&](double s) {
-    ellipses.set(g, sampled(g, {{2e-3, 1.5e-3, 1e-3, -6e-3 + 8e-3 * s, 1e9},
-                                {4e-3, 2e-3, -1e-3, 0, 3e8},
-                                {3e-3, 1.5e-3, 0, 5e-3 - 3e-3 * s, 5e8}})
-                        .data());
+    ellipses.set({g, sampled(g, {{2e-3, 1.5e-3, 1e-3, -6e-3 + 8e-3 * s, 1e9},
+                                 {4e-3, 2e-3, -1e-3, 0, 3e8},
+                                 {3e-3, 1.5e-3, 0, 5e-3 - 3e-3 * s, 5e8}})
+                         .data()});
     least = std::min(least, ellipses.count()), greatest = std::max(greatest, ellipses.count());
     return summed(ellipses);
   };

@@ -135,13 +135,14 @@ struct found_at {
 found_at at(shape_table &table, const grid &g, const std::vector<double> &p, const double v[3],
             int direction = 1) {
   constexpr double bound = 1e3;
-  const railpatch::shape_of_pressure s = shape_table::describe(g, p.data());
+  const railpatch::shape_of_pressure s =
+      shape_table::describe(railpatch::pressure_view<double>(g, p.data()));
   const double product = s.axes[0] * s.axes[1];
   const double r = std::sqrt(0.5 * (s.axes[0] * s.axes[0] + s.axes[1] * s.axes[1]));
   const double unit = bound / (shear * product), spin = v[2] * unit / (2.3 * r);
   const double creepage[2] = {v[0] * unit / 4.2 + spin * s.centre[1],
                               v[1] * unit / 3.7 - spin * s.centre[0]};
-  const auto c = table.evaluate(g, p.data(), shear, bound, creepage, spin, direction);
+  const auto c = table.evaluate<double>({g, p.data()}, shear, bound, creepage, spin, direction);
   EXPECT_TRUE(std::isfinite(c.force[0]) && std::isfinite(c.force[1]) && std::isfinite(c.moment));
   return {{c.force[0] / bound, c.force[1] / bound}, c.moment / bound};
 }
@@ -216,7 +217,8 @@ TEST(ShapeTable, DescribesHertz) {
   const grid g = square(160, 6e-3);
   const auto p = pressure_of(
       g, [](double x, double y) { return hertz((x - 1e-3) / 2e-3, (y + 5e-4) / 5e-3); });
-  const railpatch::shape_of_pressure s = shape_table::describe(g, p.data());
+  const railpatch::shape_of_pressure s =
+      shape_table::describe(railpatch::pressure_view<double>(g, p.data()));
   EXPECT_NEAR(s.centre[0], 1e-3, 1e-6);
   EXPECT_NEAR(s.centre[1], -5e-4, 1e-6);
   EXPECT_NEAR(s.axes[0], 2e-3, 2e-6);
@@ -235,7 +237,7 @@ TEST(ShapeTable, HoldsItsFunction) {
   shape_table table(b.data(), 0.25);
   const grid g = square(24, 6e-3);
   const auto p = pressure_of(g, lopsided);
-  const auto s = shape_table::describe(g, p.data());
+  const auto s = shape_table::describe(railpatch::pressure_view<double>(g, p.data()));
   const double c = std::sqrt(s.axes[0] * s.axes[1]);
   for (int spin = 1; spin < spins; ++spin)
     for (int d = 0; d < directions; ++d)
@@ -307,7 +309,7 @@ block random_block(int count) { return {random_nodes(count), random_functions()}
 TEST(ShapeTable, WeighsItsNodes) {
   const grid g = square(24, 6e-3);
   const auto p = pressure_of(g, lopsided);
-  const auto s = shape_table::describe(g, p.data());
+  const auto s = shape_table::describe(railpatch::pressure_view<double>(g, p.data()));
   const double c = std::sqrt(s.axes[0] * s.axes[1]);
   const auto given = random_functions();
   for (int count : {1, 8, 83}) {
