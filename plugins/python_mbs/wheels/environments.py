@@ -190,6 +190,8 @@ def wine(minor: str, wheels: Path, folder: Path) -> Place:
             "DISPLAY": "",
             "RAILPATCH_SYSTEM": (told or ["wine"])[0],
             "PIP_CERT": f"Z:{CERTIFICATES}",
+            # it is its own environment, whatever the one around asks for
+            "PIP_REQUIRE_VIRTUALENV": "0",
             # else pip says what it says to a console that is none
             "PYTHONIOENCODING": "utf-8",
         },
