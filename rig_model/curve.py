@@ -236,6 +236,10 @@ def check_wheelset(case: Any) -> None:
         problems.append(
             "fluid.recovery: value is given, allowed to be left out: a steady curve has no time"
         )
+    if case.fluid is not None and case.fluid.dries:
+        problems.append(
+            "fluid.oxide.drying: value is given, allowed to be left out: a steady curve has no time"
+        )
     if problems:
         raise CaseError(problems)
     refuse_asked(case, "in a steady curve: solve its positions as cases")

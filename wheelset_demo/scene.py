@@ -282,6 +282,11 @@ def refuse_bulk(case: Any, run: str) -> None:
             f"fluid.recovery: value is given, allowed to be left out: {run} has no time in which "
             "wheels become clean"
         )
+    if case.fluid is not None and case.fluid.dries:
+        raise CaseError(
+            f"fluid.oxide.drying: value is given, allowed to be left out: {run} has no time in "
+            "which wheels dry"
+        )
     if case.temperature is not None and case.temperature.bulk is not None:
         raise CaseError(
             f"temperature.bulk: value is given, allowed to be left out: {run} has no time in which "

@@ -8,6 +8,18 @@
 
 namespace railpatch {
 
+double drying_paste::thicker(double water) const {
+  if (water == 1) return 1;
+  const double solids = content / (content + (1.0 - content) * water);
+  return exp(exponent * (std::min(solids, packed) - content));
+}
+
+double drying_paste::covers(double water) const {
+  if (water == 1) return 1;
+  const double then = content * (1.0 - packed) / ((1.0 - content) * packed);
+  return std::min(water / then, 1.0);
+}
+
 namespace {
 
 // The film that the inlet leaves of the flooded one: thinner by a factor, and with a given layer
@@ -115,10 +127,14 @@ double shear_friction(const fluid_scene &scene, const wet_contact &c, double fil
   return std::min(stress / c.mean_pressure, scene.limiting_friction);
 }
 
-}  // namespace
+viscosity viscosity_of(const fluid_scene &scene, const fluid_supply &supply) {
+  viscosity found = scene.liquid.at(supply.temperature);
+  found.value *= scene.paste.thicker(supply.oxide_water);
+  return found;
+}
 
-film_outcome solve_film(const fluid_scene &scene, const fluid_supply &supply, wet_contact c) {
-  const viscosity liquid = scene.liquid.at(supply.temperature);
+film_outcome solve_wet(const fluid_scene &scene, const fluid_supply &supply, wet_contact c) {
+  const viscosity liquid = viscosity_of(scene, supply);
   c.film.viscosity = liquid.value;
   c.film.pressure_coefficient = scene.pressure_coefficient;
   const double v = c.film.speed;
@@ -145,6 +161,17 @@ film_outcome solve_film(const fluid_scene &scene, const fluid_supply &supply, we
   const double shear = shear_friction(scene, c, found.film_thickness);
   found.shear = shear * (1.0 - found.share);
   found.friction = asperity * found.share + found.shear;
+  return found;
+}
+
+}  // namespace
+
+film_outcome solve_film(const fluid_scene &scene, const fluid_supply &supply, wet_contact c) {
+  film_outcome found = solve_wet(scene, supply, c);
+  const double covered = scene.paste.covers(supply.oxide_water);
+  if (covered == 1) return found;
+  found.friction = covered * found.friction + (1.0 - covered) * c.dry_friction;
+  found.shear *= covered;
   return found;
 }
 
@@ -188,12 +215,10 @@ double shear_rate(const fluid_scene &scene, const wet_contact &c, const wet_cont
   return (rate / std::sqrt(1.0 + ratio * ratio) * log_rate - friction * d.mean_pressure) / p;
 }
 
-}  // namespace
-
-film_outcome film_rates(const fluid_scene &scene, const fluid_supply &supply,
-                        const wet_contact &contact, const wet_contact &d, const fluid_supply &ds) {
+film_outcome wet_rates(const fluid_scene &scene, const fluid_supply &supply,
+                       const wet_contact &contact, const wet_contact &d, const fluid_supply &ds) {
   wet_contact c = contact;
-  const viscosity liquid = scene.liquid.at(supply.temperature);
+  const viscosity liquid = viscosity_of(scene, supply);
   c.film.viscosity = liquid.value;
   c.film.pressure_coefficient = scene.pressure_coefficient;
   const bool given = scene.liquid.liquid == RP_LIQUID_GIVEN;
@@ -260,6 +285,18 @@ film_outcome film_rates(const fluid_scene &scene, const fluid_supply &supply,
       shear_rate(scene, c, d, thickness, out.film_thickness, log_viscosity) * (1.0 - share);
   out.friction = asperity_rate * share + (asperity - shear) * out.share + by_shear;
   out.shear = by_shear - shear * out.share;
+  return out;
+}
+
+}  // namespace
+
+film_outcome film_rates(const fluid_scene &scene, const fluid_supply &supply,
+                        const wet_contact &contact, const wet_contact &d, const fluid_supply &ds) {
+  film_outcome out = wet_rates(scene, supply, contact, d, ds);
+  const double covered = scene.paste.covers(supply.oxide_water);
+  if (covered == 1) return out;
+  out.friction = covered * out.friction + (1.0 - covered) * d.dry_friction;
+  out.shear *= covered;
   return out;
 }
 

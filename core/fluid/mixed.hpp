@@ -14,6 +14,12 @@
 // verified); starved by a factor; and with a layer h_in on the surfaces, given, or a rate of water
 // spread over the width of the contact, by r/(1 + r^2)^(1/2), r = h_in/h (form after Chevalier,
 // Lubrecht, Cann, Colin and Dalmaz 1998, not verified; exponent assumed).
+//
+// A paste that dries (assumed): of its water the part w is left, so that solids c of its volume are
+// c/(c + (1 - c) w) and the viscosity rises as exp(k of them), until they are packed, c_p; from
+// there on the paste is as thick as that and covers the part w/w_p of the surfaces, w_p what is
+// left of the water then: mu = w/w_p mu of that paste + (1 - w/w_p) mu_dry, so that friction goes
+// over to dry as w goes to 0.
 #pragma once
 
 #include "fluid/film.hpp"
@@ -23,6 +29,18 @@
 #include "railpatch.h"
 
 namespace railpatch {
+
+// The paste of oxide; by time and work its water falls to 1/e.
+struct drying_paste {
+  double content = 0, exponent = 0;  // -
+  double per_second = 0;             // 1/s
+  double per_work = 0;               // m/J
+  bool dries() const { return per_second > 0 || per_work > 0; }
+  static constexpr double packed = 0.64;  // -, content: random close packing of spheres (assumed)
+  // -, of the viscosity, over that of the paste as it was given. water: the part that is left
+  double thicker(double water) const;
+  double covers(double water) const;  // -, of the surfaces
+};
 
 struct fluid_scene {
   rp_fluid_model model = RP_FLUID_FILM;
@@ -39,6 +57,7 @@ struct fluid_scene {
   double eyring_stress = 0;             // Pa, 0: the liquid has no friction
   double limiting_friction = 0.07;      // -
   water_regimes regimes;
+  drying_paste paste;
 };
 
 // Of a step; NaN: not given.
@@ -47,6 +66,7 @@ struct fluid_supply {
   double temperature = nan;  // degrees C
   double layer = nan;        // m, on the surfaces before the contact; not given: flooded
   double work = 0;           // J/m, of friction, that has cleaned wheel and rail
+  double oxide_water = 1;    // -, part of the paste's water that is left
 };
 
 struct wet_contact {

@@ -1,6 +1,7 @@
 // A liquid between wheel and rail: its own numbers, and what it is not combined with.
 #include <cmath>
 
+#include "fluid/mixed.hpp"
 #include "half_space/influence.hpp"
 #include "handle/checker.hpp"
 
@@ -43,9 +44,10 @@ const char *not_with_ehl(const rp_config &c) {
     return "fluid_model = ehl needs bodies of the same material";
   if (c.fluid_starvation != 1)
     return "fluid_starvation must be 1 with fluid_model = ehl: fluid_oil_film says what arrives";
-  if (c.fluid_inlet_conductivity > 0)
-    return "fluid_inlet_conductivity must be 0 with fluid_model = ehl: its inlet is as warm as it "
-           "says";
+  if (c.fluid_inlet_conductivity > 0 &&
+      (c.fluid_liquid == RP_LIQUID_GIVEN || !(c.fluid_eyring_stress > 0)))
+    return "fluid_inlet_conductivity must be 0 with fluid_model = ehl, but with "
+           "fluid_eyring_stress and a viscosity by temperature: the film's shear heats it";
   return nullptr;
 }
 
@@ -69,6 +71,21 @@ void check_knots(const rp_config &c, checker &check) {
     check.require(c.fluid_knot_rate[i] > c.fluid_knot_rate[i - 1], "fluid_knot_rate must increase");
 }
 
+// A paste that dries is a state of wheels.
+const char *not_with_drying(const rp_config &c) {
+  if (c.fluid_model != RP_FLUID_FILM)
+    return "fluid_drying_time and fluid_drying_work must be 0 but with fluid_model = film";
+  if (c.kind == RP_PATCH)
+    return "fluid_drying_time and fluid_drying_work must be 0 with kind = patch: the paste that "
+           "dries is that of a wheel";
+  if (!(c.fluid_oxide_content > 0 && c.fluid_oxide_content < drying_paste::packed))
+    return "fluid_oxide_content must be above 0 and below 0.64, where solids are packed, with "
+           "fluid_drying_time or fluid_drying_work";
+  if (c.bulk_mass[0] != 0 || c.bulk_mass[1] != 0)
+    return "fluid_drying_time and fluid_drying_work must be 0 with bulk_mass";
+  return nullptr;
+}
+
 const char *not_combined(const rp_config &c) {
   if (!has_tangential(c)) return "fluid_model must be none without a tangential problem";
   if (c.regime == RP_SHIFT)
@@ -82,6 +99,9 @@ const char *not_combined(const rp_config &c) {
     return "polach_k_a and polach_k_s must be 1 with fluid_model = regimes, which has its own";
   if (!regimes && c.fluid_recovery > 0)
     return "fluid_recovery must be 0 but with fluid_model = regimes";
+  if (c.fluid_drying_time > 0 || c.fluid_drying_work > 0) {
+    if (const char *wrong = not_with_drying(c)) return wrong;
+  }
   const bool strip = c.fluid_model == RP_FLUID_STRIP;
   const bool by_heat = c.friction_law == RP_TEMPERATURE && strip;
   if (c.friction_law != RP_COULOMB && !by_heat)

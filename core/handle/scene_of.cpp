@@ -98,6 +98,9 @@ fluid_scene fluid_of(const rp_config &c) {
                              c.fluid_knot_coefficient[i], c.fluid_knot_a[i],   c.fluid_knot_b[i]};
   fluid.regimes.reference_rate = c.fluid_reference_rate;
   fluid.regimes.recovery = c.fluid_recovery;
+  const auto inverse = [](double value) { return value > 0 ? 1.0 / value : 0.0; };
+  fluid.paste = {c.fluid_oxide_content, c.fluid_oxide_exponent, inverse(c.fluid_drying_time),
+                 inverse(c.fluid_drying_work)};
   return fluid;
 }
 
@@ -181,6 +184,8 @@ patch_scene patch_scene_of(const rp_config &c) {
   scene.fast = fast_of(c, scene.tangential);
   scene.ask = {c.interrupt, c.interrupt_user};
   scene.exact = (scene.derivatives || is_balanced(c)) && scene.differentiates();
+  // by the time of a step the exact ones know nothing
+  if (scene.derivatives && scene.fluid && scene.fluid->paste.dries()) scene.exact = false;
   return scene;
 }
 

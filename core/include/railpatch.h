@@ -638,7 +638,8 @@ typedef struct rp_config {
   double fluid_viscosity_value[RP_MAX_POINTS];       /* Pa s */
   double fluid_pressure_coefficient;                 /* 1/Pa, alpha of exp(alpha p) */
   double fluid_inlet_conductivity; /* W/(m K), of the liquid: its shear in the inlet heats it and
-                                      makes the film thinner; 0: it does not */
+                                      makes the film thinner; 0: it does not. RP_FLUID_EHL: its
+                                      shear in the contact, which falls as the film warms */
   double fluid_starvation;         /* -, 0 < ... 1: factor of the film */
   double fluid_eyring_stress;      /* Pa, of the liquid's own friction; 0: none */
   double fluid_limiting_friction;  /* -, which that does not exceed */
@@ -693,6 +694,13 @@ typedef struct rp_config {
                               RP_UNDEFORMED_DISTANCE, tangential = full and no fitted rows, without
                               liquid, accuracy and derivatives. creep_power is then what the whole
                               rigid slip supplies, and there are no error estimates */
+
+  /* fluid_oxide_content > 0 of wheels with RP_FLUID_FILM, not with bulk_mass: the paste on each
+   * wheel dries. Of its water exp(-X) is left, X = t/fluid_drying_time + W/fluid_drying_work, t the
+   * sum of time_step, W friction's work on each metre of the circumference: part of the state,
+   * docs/fluids.md; 0: it does not dry by that */
+  double fluid_drying_time; /* s */
+  double fluid_drying_work; /* J/m */
 } rp_config;
 
 typedef struct rp_input {
@@ -879,6 +887,8 @@ typedef struct rp_side_result {
   double wheel_load;    /* N, Q of EN 14363: vertical force on the rail, track axes: -force[2] */
   double derailment_quotient; /* -, Y/Q; NaN where Q is not above 0 */
   double fluid_power;         /* W, sum of share times each */
+  double oxide_water; /* -, part of the paste's water that drying has left on the wheel; NaN: no
+                         paste that dries */
 } rp_side_result;
 
 typedef struct rp_result {

@@ -162,7 +162,9 @@
     "Q: vertical force on the rail, track axes")                                         \
   X(double, derailment_quotient, 1, number, even, kept, alone, NAN, "-", "Y/Q")          \
   X(double, fluid_power, 1, number, even, kept, added, NAN, "W",                         \
-    "power that the liquid's own shear takes, of all patches by share")
+    "power that the liquid's own shear takes, of all patches by share")                  \
+  X(double, oxide_water, 1, number, even, kept, alone, NAN, "-",                         \
+    "part of the paste's water that drying has left on the wheel")
 
 #define RP_RESULT_FIELDS(X, O)                                                                   \
   X(rp_status, status, 1, status, even, kept, alone, RP_CONVERGED, "", "how the solution ended") \
@@ -498,7 +500,12 @@
   X(int32_t, longitudinal_prescribed, 1, integer, always, 0, "[]", 0, 1, "-",                      \
     "whether the pitch rate is that at which the longitudinal force is the one given")             \
   X(int32_t, slip_by_element, 1, integer, always, 0, "[]", 0, 1, "-",                              \
-    "whether steps read a rigid slip of each element")
+    "whether steps read a rigid slip of each element")                                             \
+  X(double, fluid_drying_time, 1, number, always, 0, "[]", 0, 1e12, "s",                           \
+    "in which the paste's water falls to 1/e; 0: it does not dry by time")                         \
+  X(double, fluid_drying_work, 1, number, always, 0, "[]", 0, 1e15, "J/m",                         \
+    "of friction on each metre of the circumference, by which the paste's water falls to 1/e; 0: " \
+    "it does not dry by work")
 
 /* X(type, name, count, role, where, start, bounds, low, high, scale, unit, text), as above and
  * role      place: a number whose size says nothing about how fast things change there

@@ -35,6 +35,54 @@ double width_of(const grid &g, const double *pressure) {
   return rows * g.dy;
 }
 
+// Shear stress of the film in an element (Pa), whose own work warms it: heated evenly between
+// surfaces as warm as the liquid, the temperature across it is a parabola, its mean above them
+// tau v h/(12 k). As viscosity falls with it, so does tau: one root, within a bracket.
+struct film_shear {
+  const fluid_scene &fluid;
+  const ehl_liquid &liquid;
+  double temperature;           // degrees C
+  double pressure, film, slip;  // Pa, m, m/s
+  double at(double rise) const {
+    ehl_liquid warm = liquid;
+    if (rise > 0) {
+      warm.viscosity = fluid.liquid.at(temperature + rise).value;
+      // the exponent z of Roelands' law stays
+      const double left = (log(warm.viscosity) + 9.67) / (log(liquid.viscosity) + 9.67);
+      warm.pressure_coefficient *= std::max(left, 0.0);
+    }
+    const double eta = warm.viscosity * viscosity_ratio(warm, pressure).value;
+    const double newton = eta * slip / film;
+    return std::min(fluid.eyring_stress * asinh(newton / fluid.eyring_stress),
+                    fluid.limiting_friction * pressure);
+  }
+  double solve() const {
+    const double cold = at(0);
+    if (!(fluid.inlet_conductivity > 0)) return cold;
+    const double per_stress = slip * film / (12.0 * fluid.inlet_conductivity);  // K/Pa
+    double low = 0, high = per_stress * cold, below = -high;  // K; of rise - per_stress tau
+    double above = high - per_stress * at(high);
+    if (!(above > 0)) return cold;  // at its limit, however warm
+    int last = 0;
+    for (int k = 0; k < 100 && high - low > 1e-13 * high; ++k) {
+      const double rise = low + (high - low) * below / (below - above);
+      const double value = rise - per_stress * at(rise);
+      if (!(value != 0)) return at(rise);
+      // Illinois: an end that stays counts half
+      if (value < 0) {
+        low = rise, below = value;
+        if (last < 0) above *= 0.5;
+      } else {
+        high = rise, above = value;
+        if (last > 0) below *= 0.5;
+      }
+      last = value < 0 ? -1 : 1;
+      if (std::fabs(value) < 1e-13 * high) break;
+    }
+    return at(last < 0 ? low : high);
+  }
+};
+
 // All liquid is pressed out: the dry pressure stays.
 fluid_outcome stand_still(const grid &g, patch_memory &memory, const fluid_outcome &found) {
   for (auto *field : {&memory.fluid_pressure, &memory.fluid_film, &memory.fluid_shear})
@@ -81,7 +129,8 @@ fluid_outcome fluid_ehl::solve(const patch_problem &problem, const patch_scene &
   out.asperity_share = 1 - found.fluid_force / found.normal_force;
   out.friction = boundary * out.asperity_share;
   if (fluid.eyring_stress > 0) {
-    const double shear = add_shear(problem, scene, lubricated, memory) / found.normal_force;
+    const double shear =
+        add_shear(problem, scene, lubricated, temperature, memory) / found.normal_force;
     out.friction += shear;
     if (shear > 0) out.shear_part = shear / out.friction;
   }
@@ -121,10 +170,10 @@ double fluid_ehl::take_over(const patch_problem &problem, const ehl_problem &lub
 
 // Returns its sum, N.
 double fluid_ehl::add_shear(const patch_problem &problem, const patch_scene &scene,
-                            const ehl_problem &lubricated, patch_memory &memory) const {
+                            const ehl_problem &lubricated, double temperature,
+                            patch_memory &memory) const {
   const grid &g = problem.g;
   const rolling_input &rolling = problem.rolling;
-  const double stress = scene.fluid->eyring_stress;
   double sum = 0;
   for (int j = 0; j < g.ny; ++j)
     for (int i = 0; i < g.nx; ++i) {
@@ -135,10 +184,9 @@ double fluid_ehl::add_shear(const patch_problem &problem, const patch_scene &sce
       const double slip =
           lubricated.speed * hypot(rolling.creepage[0] - rolling.spin_creepage * g.y(j),
                                    rolling.creepage[1] + rolling.spin_creepage * g.x(i));
-      const double eta = lubricated.liquid.viscosity * viscosity_ratio(lubricated.liquid, p).value;
-      const double newton = eta * slip / memory.fluid_film[at];
-      memory.fluid_shear[at] =
-          std::min(stress * asinh(newton / stress), scene.fluid->limiting_friction * p);
+      const film_shear shear{*scene.fluid, lubricated.liquid, temperature, p, memory.fluid_film[at],
+                             slip};
+      memory.fluid_shear[at] = shear.solve();
       sum += memory.fluid_shear[at] * g.dx * g.dy;
     }
   return sum;

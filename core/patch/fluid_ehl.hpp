@@ -4,7 +4,10 @@
 //
 // The liquid's shear stress is Eyring's, tau = tau_E asinh(eta gamma/tau_E), not above a limit
 // times its pressure, with gamma the rigid slip of the place over the film (assumed: where the
-// liquid bears the load the bodies' own slip is small beside it).
+// liquid bears the load the bodies' own slip is small beside it). With a conductivity of the liquid
+// eta is that of the film's mean temperature, which its own shear raises (parabola across the film
+// with even heating; after Johnson and Greenwood 1980, Wear 61, not verified); the inlet, where the
+// film forms, is as warm as before.
 #pragma once
 
 #include "fluid/ehl.hpp"
@@ -30,7 +33,7 @@ class fluid_ehl {
   double take_over(const patch_problem &problem, const ehl_problem &lubricated,
                    patch_memory &memory, pressure_outcome &pressure);
   double add_shear(const patch_problem &problem, const patch_scene &scene,
-                   const ehl_problem &lubricated, patch_memory &memory) const;
+                   const ehl_problem &lubricated, double temperature, patch_memory &memory) const;
 
   ehl_solver solver_;
 };

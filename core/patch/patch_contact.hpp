@@ -49,6 +49,7 @@ class patch_contact {
   void set_bulk_temperature(int k, double value) { heat_.set_bulk(k, value); }
   void set_fluid_supply(const fluid_supply &supply) { shared_.scene.supply = supply; }
   void set_cleaning_work(double value) { shared_.scene.supply.work = value; }
+  void set_oxide_water(double value) { shared_.scene.supply.oxide_water = value; }
   size_t influence_bytes() const { return shared_.influence ? shared_.influence->bytes() : 0; }
   size_t coupling_bytes() const { return shared_.coupled ? shared_.coupled->bytes() : 0; }
   size_t history_bytes() const {

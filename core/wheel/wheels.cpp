@@ -32,6 +32,10 @@ wheels::wheels(const wheels_setup &setup, const patch_scene &scene, const fft_pl
   if (setup.support) support_.emplace(*setup.support);
   if (setup.bulk) bulk_.emplace(*setup.bulk);
   if (has_physics && scene.fluid && scene.fluid->regimes.recovery > 0) cleaning_.emplace();
+  if (has_physics && scene.fluid && scene.fluid->paste.dries()) {
+    drying_.emplace();
+    paste_ = scene.fluid->paste;
+  }
   balance_ = setup.balance;
   if (!scene.exact) return;
   rates_ = std::make_unique<rates>(
@@ -63,6 +67,11 @@ driver::kept_numbers wheels::kept() {
     kept.heat = &*cleaning_;
     kept.heat_bytes = sizeof(cleaning);
   }
+  // nor a paste that dries
+  if (drying_) {
+    kept.heat = &*drying_;
+    kept.heat_bytes = sizeof(drying);
+  }
   return kept;
 }
 
@@ -71,6 +80,7 @@ void wheels::reset() {
   if (support_) support_->reset();
   if (bulk_) bulk_->reset();
   if (cleaning_) *cleaning_ = {};
+  if (drying_) *drying_ = {};
 }
 
 const char *wheels::geometry_reason() const {
@@ -95,6 +105,7 @@ double wheels::evaluate(double z, rp_result &out) {
     set_bulk(wheel.side());
     solver_.set_friction_scale(scale_[wheel.side()]);
     if (cleaning_) solver_.set_cleaning_work(cleaned_[wheel.side()]);
+    if (drying_) solver_.set_oxide_water(exp(-dry_[wheel.side()]));
     wheel.evaluate(solver_, memory_of(w), side);
     vertical -= side.force[2];
     for (int i = 0; i < side.patch_count + side.alternative_count; ++i)
@@ -115,6 +126,8 @@ void wheels::step(const rp_input &in, rp_result &out) {
   for (size_t side = 0; cleaning_ && side < 2; ++side)
     cleaned_[side] =
         in.rail_work[side] + cleaning_->work[side] + cleaning_->rate[side] * in.time_step;
+  for (int side = 0; drying_ && side < 2; ++side)
+    dry_[side] = drying_->dryness[side] + (paste_.per_second + drying_->rate[side]) * in.time_step;
   if (solver_.scene().keeps_steps())
     for (auto &m : memory_) solver_.remember(m);
   if (!balance_) {
@@ -163,6 +176,7 @@ void wheels::finish(const rp_input &in, rp_result &out) {
     report_search({RP_OUT_OF_RANGE, RP_REASON_BULK_TEMPERATURE}, out.residual, out);
   if (bulk_) keep_heat(out);
   if (cleaning_) keep_cleaning(in, out);
+  if (drying_) keep_drying(out);
 }
 
 // Each metre of the circumference is in contact once a turn, for its length over the speed.
@@ -175,6 +189,20 @@ void wheels::keep_cleaning(const rp_input &in, const rp_result &out) {
     cleaning_->work[s] = cleaned_[s] - in.rail_work[s];
     const double around = 2.0 * std::numbers::pi * side.rolling_radius;
     cleaning_->rate[s] = around > 0 ? side.friction_power / around : 0.0;
+  }
+}
+
+// As cleaning; what the step was solved with is told.
+void wheels::keep_drying(rp_result &out) {
+  const bool solved = out.status == RP_CONVERGED || out.status == RP_WORK_SPENT;
+  for (const auto &wheel : wheels_) {
+    const int s = wheel.side();
+    rp_side_result &side = out.side[s];
+    side.oxide_water = exp(-dry_[s]);
+    if (!solved && out.status != RP_NO_CONTACT) continue;
+    drying_->dryness[s] = dry_[s];
+    const double around = 2.0 * std::numbers::pi * side.rolling_radius;
+    drying_->rate[s] = around > 0 ? side.friction_power / around * paste_.per_work : 0.0;
   }
 }
 

@@ -100,6 +100,7 @@ class wheels final : public driver {
   void set_bulk(int side);
   void keep_heat(const rp_result &result);
   void keep_cleaning(const rp_input &input, const rp_result &result);
+  void keep_drying(rp_result &result);
   void find_z(double vertical_force, rp_result &result);
   double look_deeper(double touch, double depth, double carries, force_samples &samples,
                      rp_result &result);
@@ -129,7 +130,15 @@ class wheels final : public driver {
     double work[2] = {0, 0};  // J/m
     double rate[2] = {0, 0};  // J/(m s)
   };
-  std::optional<cleaning> cleaning_;      // where friction's work cleans wheels
+  std::optional<cleaning> cleaning_;  // where friction's work cleans wheels
+  // Of the paste on each wheel: -ln of the water that is left, and its rate by work.
+  struct drying {
+    double dryness[2] = {0, 0};  // -
+    double rate[2] = {0, 0};     // 1/s
+  };
+  std::optional<drying> drying_;          // where it dries
+  drying_paste paste_;                    // which
+  double dry_[2] = {0, 0};                // -, of this step
   double cleaned_[2] = {0, 0};            // J/m, of this step, with the rail's
   std::optional<balance_setup> balance_;  // where roll angle or pitch rate are found
   std::unique_ptr<rates> rates_;

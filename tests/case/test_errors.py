@@ -473,7 +473,8 @@ def test_steps_that_stand_alone_take_no_time() -> None:
     case = with_values(WHEELSET, wheelset__time_step=1e-3)
     assert problems_of(case) == [
         "wheelset.time_step: value is 0.001, allowed 0 but with motion.regime = "
-        "'transient_rolling', track.rail_support, temperature.bulk or fluid.recovery"
+        "'transient_rolling', track.rail_support, temperature.bulk, fluid.recovery or "
+        "fluid.oxide.drying"
     ]
     load_scene(with_values(case, track__rail_support={"stiffness": [2e7, 8e7]}))
     load_scene(with_values(case, temperature={"bulk": {"mass": 300.0}}))

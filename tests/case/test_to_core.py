@@ -48,6 +48,8 @@ MADE = {
     },
     "fluid_oxide_content": "fluid.oxide.solid_content",
     "fluid_oxide_exponent": "fluid.oxide.exponent",
+    "fluid_drying_time": "fluid.oxide.drying.time",
+    "fluid_drying_work": "fluid.oxide.drying.work",
     "section_count": "track.left.sections",
     "section_match": "track.left.sections features",
     "wheel_section_count": "wheelset.left.sections",

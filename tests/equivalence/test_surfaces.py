@@ -43,6 +43,7 @@ NOT_THERE |= {
     "fluid_temperature",
     "effective_friction",
     "fluid_power",
+    "oxide_water",
 }
 
 

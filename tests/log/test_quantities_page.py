@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import plotly.graph_objects as go
 import pytest
+from railpatch.case.fluid import Fluid
 from railpatch.log import read_run
 from railpatch.report import quantities, write_report
 from railpatch.report.data import positions
@@ -102,7 +104,34 @@ def test_a_vehicle(tmp_path: Path) -> None:
         first = [m["patches"][0][f"{body}_profile_position"][0] for m in contact.messages]
         drawn = found[f"left wheels: y on the {body}'s profile [mm]"][0].y
         assert np.allclose(drawn, 1e3 * np.array(first))
-    assert not any("liquid" in title for title in found)
+    assert not any(word in title for title in found for word in ("liquid", "film", "paste"))
     page = write_report(tmp_path / "a.mcap", tmp_path / "a.html").read_text(encoding="utf-8")
     for words in quantities.HEAD:
         assert f">{words}</th>" in page
+
+
+def test_a_vehicle_on_wet_rails(tmp_path: Path) -> None:
+    """Friction, share of the asperities, film in µm, and the water of a paste that dries."""
+    oxide = {"solid_content": 0.2, "drying": {"time": 0.05}}
+    fluid = Fluid(model="film", roughness=1e-6, liquid="water", temperature=20.0, oxide=oxide)
+    scene = load_vehicle_scene().with_method(normal="hertz", tangential="fastsim")
+    scene = scene.with_run(duration=0.02, log_every=1)
+    scene = replace(scene, case=scene.case.model_copy(update={"fluid": fluid}))
+    run_vehicle(Simulation(scene), output=tmp_path / "a.mcap")
+    data = vehicle_run(read_run(tmp_path / "a.mcap"))
+    found = panels(quantities.vehicle_figure(data))
+    contact = data.contact[1, "left"]
+    patches = [m["patches"][0] for m in contact.messages]
+    for title, name, factor in (
+        ("friction with the liquid", "effective_friction", 1.0),
+        ("load on asperities", "mean_asperity_share", 1.0),
+        ("film [µm]", "central_film_thickness", 1e6),
+    ):
+        drawn = found[f"left wheels: {title}"][0].y
+        assert np.allclose(drawn, factor * np.array([p[name] for p in patches]), rtol=1e-12)
+    # the exponential of the time
+    for title in ("left wheels: water left in the paste", "right wheels: water left in the paste"):
+        assert len(found[title]) == 4
+        water = np.array(found[title][0].y)
+        assert np.allclose(water, np.exp(-contact.time / 0.05), rtol=1e-6)
+    assert 0 < water[-1] < 0.7

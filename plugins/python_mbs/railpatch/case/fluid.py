@@ -42,6 +42,7 @@ PRESSURE_COEFFICIENT = {None: 0.5e-9, "water": 0.5e-9, "oil": 20e-9}
 CONDUCTIVITY = {"water": 0.6, "oil": 0.14}
 EYRING_STRESS = {"oil": 5e6}
 HOT_OIL = 250.0  # degrees C
+PACKED = 0.64  # -, content of solids; the core's check has the same
 # degrees C, of water before the contact; the core's check has the same
 LIQUID_WATER = (0.0, 100.0)
 # keys of a step and the key of the table that each moves
@@ -63,7 +64,7 @@ UNREAD = {
     ),
     "film": OF_REGIMES,
     "ehl": (
-        *("share", "mean_pressure", "starvation", "inlet_heating", "liquid_conductivity"),
+        *("share", "mean_pressure", "starvation", "inlet_heating"),
         *OF_REGIMES,
     ),
     "regimes": (
@@ -84,6 +85,25 @@ class Recovery(Table):
     )
 
 
+class Drying(Table):
+    """The water of the paste falls as exp(-t/time - W/work), on each wheel (assumed)."""
+
+    time: Annotated[float, more_than(0, 1e12)] | None = Field(
+        default=None, description="s, in which the water falls to 1/e; left out: not by time"
+    )
+    work: Annotated[float, more_than(0, 1e15)] | None = Field(
+        default=None,
+        description="J/m, of friction on each metre of the wheel's circumference, by whose heat "
+        "the water falls to 1/e; left out: not by work",
+    )
+
+    @model_validator(mode="after")
+    def _one(self) -> Drying:
+        if self.time is None and self.work is None:
+            refuse([relation("time", "missing", "a number in s, or work in J/m")])
+        return self
+
+
 class Oxide(Table):
     """Solids in the liquid, such as oxide of rail and wheel: a paste (model D)."""
 
@@ -93,6 +113,18 @@ class Oxide(Table):
         default=None,
         description="-, of asperities in the paste; left out: that of the table [fluid]",
     )
+    drying: Drying | None = Field(
+        default=None,
+        description="by time and friction's work, of wheels with model = 'film': friction goes "
+        "over to that of dry surfaces (-); left out: none",
+    )
+
+    @model_validator(mode="after")
+    def _dries(self) -> Oxide:
+        if self.drying is not None and not 0 < self.solid_content < PACKED:
+            allowed = f"> 0 and < {PACKED:g}, where solids are packed, with drying"
+            refuse([relation("solid_content", self.solid_content, allowed)])
+        return self
 
 
 class Fluid(Table):
@@ -167,7 +199,8 @@ class Fluid(Table):
     )
     liquid_conductivity: Annotated[float, more_than(0, 1e3)] | None = Field(
         default=None,
-        description="W/(m K), of the liquid, with inlet_heating; left out: 0.6, with oil 0.14",
+        description="W/(m K), of the liquid, with inlet_heating; left out: 0.6, with oil 0.14; "
+        "with model = 'ehl' its own shear in the contact heats it, left out: it does not",
     )
     eyring_stress: Annotated[float, within("fluid_eyring_stress")] | None = Field(
         default=None,
@@ -217,15 +250,26 @@ class Fluid(Table):
             if not read and self._changed(name):
                 yield relation(name, getattr(self, name), "only with share = 'load_sharing'")
         if self.liquid_conductivity is not None and not self.inlet_heating:
-            yield relation(
-                "liquid_conductivity", self.liquid_conductivity, "only with inlet_heating = true"
+            by_shear = self.core["eyring_stress"] > 0 and (
+                self.liquid is not None or self.viscosity_table is not None
             )
+            if self.model != "ehl":
+                allowed = "only with inlet_heating = true or model = 'ehl'"
+                yield relation("liquid_conductivity", self.liquid_conductivity, allowed)
+            elif not by_shear:
+                allowed = (
+                    "only with eyring_stress and a viscosity by temperature with model = 'ehl'"
+                )
+                yield relation("liquid_conductivity", self.liquid_conductivity, allowed)
         if self.liquid == "water" and self.eyring_stress:
             allowed = "0 with liquid = 'water', whose own friction is 0"
             yield relation("eyring_stress", self.eyring_stress, allowed)
         if self.model != "regimes" and None not in (self.water_rate, self.oil_film):
             allowed = f"{LEFT_OUT} with water_rate: one of them says what arrives"
             yield relation("oil_film", self.oil_film, allowed)
+        if self.dries and self.model != "film":
+            allowed = f"{LEFT_OUT} with model = {self.model!r}"
+            yield relation("oxide.drying", "given", allowed)
         if self._changed("limiting_friction") and not self.core["eyring_stress"] > 0:
             yield relation("limiting_friction", self.limiting_friction, "only with eyring_stress")
 
@@ -295,6 +339,11 @@ class Fluid(Table):
         return bool(getattr(self, name) != type(self).model_fields[name].default)
 
     @property
+    def dries(self) -> bool:
+        """Whether a paste on the wheels loses its water from step to step."""
+        return self.oxide is not None and self.oxide.drying is not None
+
+    @property
     def core(self) -> dict[str, Any]:
         """What of the core's numbers the liquid gives, by name without fluid_."""
         liquid = "table" if self.viscosity_table is not None else self.liquid or "given"
@@ -316,11 +365,16 @@ class Fluid(Table):
         if self.inlet_heating:
             usual = CONDUCTIVITY.get(self.liquid or "", 0.0)
             found["inlet_conductivity"] = self.liquid_conductivity or usual
+        elif self.model == "ehl" and self.liquid_conductivity is not None:
+            found["inlet_conductivity"] = self.liquid_conductivity
         if self.oxide is not None:
             found["oxide_content"] = self.oxide.solid_content
             found["oxide_exponent"] = self.oxide.exponent
             if self.oxide.boundary_friction is not None:
                 found["boundary_friction"] = self.oxide.boundary_friction
+            if self.oxide.drying is not None:
+                found["drying_time"] = self.oxide.drying.time or 0.0
+                found["drying_work"] = self.oxide.drying.work or 0.0
         return found
 
     @property
@@ -349,8 +403,10 @@ def check_fluid(
     tangential: str,
     *,
     prescribed: bool = False,
+    without_time: str | None = None,
 ) -> Problems:
-    """What a liquid is not combined with. accuracy: method's; prescribed: a creep force is."""
+    """What a liquid is not combined with. accuracy: method's; prescribed: a creep force is;
+    without_time: what of the case lets no paste dry."""
     if fluid is None:
         return
     if fluid.model == "regimes" and tangential != "polach":
@@ -364,6 +420,9 @@ def check_fluid(
     if by_heat and boundary is not None:
         allowed = f"{LEFT_OUT} with friction.law = 'temperature', which gives it"
         yield relation("fluid.boundary_friction", boundary, allowed)
+    if fluid.dries and without_time:
+        allowed = f"{LEFT_OUT} with {without_time}"
+        yield relation("fluid.oxide.drying", "given", allowed)
     if accuracy is not None:
         allowed = f"{LEFT_OUT} with [fluid], whose error is not known: give 'grid'"
         yield relation("method.accuracy", accuracy, allowed)
@@ -374,10 +433,10 @@ def check_fluid(
 
 
 def changes_with_time(case: Any) -> bool:
-    """Whether wheels store heat, or are cleaned, from step to step by the time between."""
+    """Whether wheels store heat, are cleaned, or dry, from step to step by the time between."""
     heat, fluid = case.temperature, case.fluid
     stores = heat is not None and heat.bulk is not None
-    return stores or (fluid is not None and fluid.recovery is not None)
+    return stores or (fluid is not None and (fluid.recovery is not None or fluid.dries))
 
 
 def check_ehl(fluid: Fluid | None, normal: str, regime: str, *, fitted: bool) -> Problems:
@@ -396,6 +455,6 @@ def without_dry_friction(fluid: Fluid | None) -> bool:
     """Whether no surface is dry, so that [friction] may be left out."""
     if fluid is not None and fluid.model == "regimes":
         return True
-    if fluid is None or fluid.water_rate is not None or fluid.oil_film is not None:
+    if fluid is None or fluid.water_rate is not None or fluid.oil_film is not None or fluid.dries:
         return False
     return fluid.core.get("boundary_friction", fluid.boundary_friction) is not None

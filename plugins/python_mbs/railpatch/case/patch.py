@@ -348,6 +348,7 @@ class PatchCase(Table):
                 self.method.accuracy,
                 self.method.tangential,
                 prescribed=prescribed,
+                without_time="kind = 'patch'",
             )
             yield from check_ehl(
                 self.fluid,

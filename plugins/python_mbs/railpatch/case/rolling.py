@@ -165,11 +165,12 @@ def check_rolling(case: Any) -> Problems:
     if case.motion.regime == "steady_rolling" and not case.motion.regime_changes:
         heated = case.temperature is not None and case.temperature.bulk is not None
         cleans = case.fluid is not None and case.fluid.recovery is not None
-        timed = heated or cleans or case.track.rail_support is not None
+        dries = case.fluid is not None and case.fluid.dries
+        timed = heated or cleans or dries or case.track.rail_support is not None
         if case.wheelset.time_step > 0 and not timed:
             allowed = (
                 "0 but with motion.regime = 'transient_rolling', track.rail_support, "
-                "temperature.bulk or fluid.recovery"
+                "temperature.bulk, fluid.recovery or fluid.oxide.drying"
             )
             yield relation("wheelset.time_step", case.wheelset.time_step, allowed)
         return

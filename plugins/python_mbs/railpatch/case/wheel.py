@@ -415,8 +415,13 @@ class _WheelCase(Table):
                 self.motion.regime,
                 self.fluid,
             )
+            stores = self.temperature is not None and self.temperature.bulk is not None
             yield from check_fluid(
-                self.fluid, self.friction, self.method.accuracy, self.method.tangential
+                self.fluid,
+                self.friction,
+                self.method.accuracy,
+                self.method.tangential,
+                without_time="temperature.bulk" if stores else None,
             )
             if self.fluid is not None and self.fluid.model == "ehl":
                 others = "'film', 'strip' or 'regimes'"

@@ -199,6 +199,8 @@ def scene_text(
         raise CaseError("temperature.bulk: given, allowed in an FMU none: temperatures are inputs")
     if scene.case.fluid is not None and scene.case.fluid.recovery is not None:
         raise CaseError("fluid.recovery: given, allowed in an FMU none: wheels are not cleaned")
+    if scene.case.fluid is not None and scene.case.fluid.dries:
+        raise CaseError("fluid.oxide.drying: given, allowed in an FMU none: wheels do not dry")
     config = {**config_of(scene), "derivatives": int(derivatives)}
     options = options_of(scene.case, kind)
     version = 3 if "version 3" in kind.conditions else 2

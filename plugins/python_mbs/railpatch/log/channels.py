@@ -298,6 +298,7 @@ WHEEL_CONTACT = Message(
         Field("subsurface", SUBSURFACE, "", "greatest of all patches; only where the scene asks"),
         Field("damage", DAMAGE, "", "of all patches; only where the scene asks"),
         _listed("side", "fluid_power"),
+        _listed("side", "oxide_water"),
     ),
 )
 

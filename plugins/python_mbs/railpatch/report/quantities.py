@@ -27,6 +27,7 @@ OF_WHEEL = {
     "guiding_force": "guiding force Y",
     "wheel_load": "wheel load Q",
     "fluid_power": "power of the liquid's shear",
+    "oxide_water": "water left in the paste",
 }
 # of each patch: name, component, label
 OF_PATCH = (
@@ -37,6 +38,19 @@ OF_PATCH = (
     ("contact_size", 1, "extent across"),
     ("wheel_profile_position", 0, "y on the wheel's profile"),
     ("rail_profile_position", 0, "y on the {body}'s profile"),
+    ("effective_friction", None, "friction with the liquid"),
+    ("mean_asperity_share", None, "load on asperities"),
+    ("central_film_thickness", None, "film"),
+)
+# shown in other units than others of their kind: factor from the log's, unit
+OWN_UNIT = {"wear_number": (1.0, "N"), "central_film_thickness": (1e6, "µm")}
+# of a vehicle's figure where they are known
+WHERE_WET = (
+    ("effective_friction", "friction with the liquid"),
+    ("mean_asperity_share", "load on asperities"),
+    ("central_film_thickness", "film [µm]"),
+    ("fluid_power", "power of the liquid's shear [W]"),
+    ("oxide_water", "water left in the paste"),
 )
 OF_WHEELSET = {
     "rolling_radius_difference": "rolling radius difference",
@@ -100,9 +114,12 @@ def wheels(
 ) -> str:
     """Both wheels' lines, or points of their patches. Gives the axis label."""
     path = name if name in OF_WHEEL else f"patches[].{name}"
-    # kN are too coarse for the wear number, by which laws of wear go
-    in_newtons = name == "wear_number"
-    factor, label = (1.0, f"{text} [N]") if in_newtons else scaled("/left/contact", path, text)
+    # kN are too coarse for the wear number, by which laws of wear go, and mm for films
+    if name in OWN_UNIT:
+        factor, own = OWN_UNIT[name]
+        label = f"{text} [{own}]"
+    else:
+        factor, label = scaled("/left/contact", path, text)
     for side in SIDES:
         add = Adder(shown, data, *place)
         if name in OF_WHEEL:
@@ -156,8 +173,11 @@ def vehicle_figure(data: VehicleRun) -> go.Figure:
         ("wheel_profile_position", 0, "y on the wheel's profile [mm]"),
         ("rail_profile_position", 0, "y on the rail's profile [mm]"),
     )
-    if any(np.isfinite(contact["fluid_power"]).any() for contact in data.contact.values()):
-        rows += (("fluid_power", None, "power of the liquid's shear [W]"),)
+    rows += tuple(
+        (name, None, label)
+        for name, label in WHERE_WET
+        if any(np.isfinite(course(one, name, None)).any() for one in data.contact.values())
+    )
     shown = make_subplots(
         len(rows) + 1,
         2,
@@ -185,7 +205,7 @@ def vehicle_figure(data: VehicleRun) -> go.Figure:
 
 
 def course(contact: Series, name: str, part: int | None) -> np.ndarray:
-    """[n]: of the wheel, or of the patch that carries most; mm of lengths."""
+    """[n]: of the wheel, or of the patch that carries most; mm of lengths, µm of films."""
     if name in OF_WHEEL:
         return contact[name]
     found = np.full(len(contact), np.nan)
@@ -195,7 +215,9 @@ def course(contact: Series, name: str, part: int | None) -> np.ndarray:
             value = max(patches, key=lambda p: p["normal_force"]).get(name)
             value = value[part] if value and part is not None else value
             found[index] = np.nan if value is None else value
-    return found if part is None else SHOWN["m"][0] * found
+    if part is not None:
+        return SHOWN["m"][0] * found
+    return OWN_UNIT.get(name, (1.0, ""))[0] * found
 
 
 def greatest(contact: Series) -> list[str]:
