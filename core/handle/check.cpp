@@ -223,6 +223,26 @@ void check_grid(const rp_config &c, checker &check) {
                 "max_elements must be 0 with elements: it is a capacity for element_size");
 }
 
+// Grids of one or two elements either way have no shape across by which other theories go.
+void check_strips(const rp_config &c, checker &check) {
+  if (!has_strips(c)) return;
+  const char *wrong = nullptr;
+  if (c.normal != RP_NORMAL_HALF_SPACE)
+    wrong = "distance_shape must be at least 3 either way but with normal = half_space";
+  else if (has_tangential(c) && (c.tangential != RP_TANGENTIAL_FULL || c.fitted[0] > 0))
+    wrong =
+        "distance_shape must be at least 3 either way but with tangential = full and no fitted "
+        "rows";
+  else if (c.fluid_model != RP_FLUID_NONE)
+    wrong = "distance_shape must be at least 3 either way with fluid_model";
+  else if (c.accuracy > 0)
+    wrong =
+        "distance_shape must be at least 3 either way with accuracy: there is no error estimate";
+  else if (c.derivatives != 0)
+    wrong = "distance_shape must be at least 3 either way with derivatives";
+  check.require(wrong == nullptr, wrong ? wrong : "");
+}
+
 void check_patch(const rp_config &c, checker &check) {
   if (c.geometry == RP_SEMI_AXES) check.field("semi_axes", c.semi_axes, config_range::semi_axes);
   if (c.geometry == RP_CURVATURES)
@@ -243,6 +263,7 @@ void check_patch(const rp_config &c, checker &check) {
   if (check.error() == RP_OK)
     check.numbers("undeformed_distance", c.undeformed_distance,
                   c.distance_shape[0] * c.distance_shape[1], {-1, 1, false, false});
+  if (check.error() == RP_OK) check_strips(c, check);
 }
 
 // Temperatures of a step; NaN stands for the config's.

@@ -95,6 +95,12 @@ inline bool has_tangential(const rp_config &c) {
   return c.regime != RP_REGIME_NONE && c.tangential != RP_TANGENTIAL_NONE;
 }
 
+// The grid given has only one or two elements either way.
+inline bool has_strips(const rp_config &c) {
+  return c.kind == RP_PATCH && c.geometry == RP_UNDEFORMED_DISTANCE &&
+         (c.distance_shape[0] < 3 || c.distance_shape[1] < 3);
+}
+
 // Shift and transient rolling, and regimes that change.
 void check_regime(const rp_config &c, checker &check);
 // The regime of a step, an rp_regime, and what it may be.

@@ -6,6 +6,7 @@
 
 #include "handle/case_fields.hpp"
 #include "handle/check.hpp"
+#include "handle/checker.hpp"
 #include "numeric/elementary.hpp"
 
 namespace railpatch {
@@ -159,6 +160,7 @@ patch_scene patch_scene_of(const rp_config &c) {
   // with neither nothing is left out, and the method says so
   scene.has_regime = c.regime != RP_REGIME_NONE || c.tangential == RP_TANGENTIAL_NONE;
   scene.max_iterations = c.max_iterations;
+  scene.strips = has_strips(c);
   if (scene.tangential == RP_TANGENTIAL_FULL && c.fitted[0] == 0) {
     scene.law = make_law(c);
     scene.changes = c.regime_changes == 1;

@@ -236,7 +236,7 @@
     "combined radius 1/(1/R_wheel + 1/R_rail) of a line contact")                                  \
   X(double, width, 1, number, own, 1, "[]", 1e-6, 1e3, "m", "width of the line contact")           \
   O(const double *, undeformed_distance, 1)                                                        \
-  X(int32_t, distance_shape, 2, integer, own, 0, "[]", 3, 1000, "-",                               \
+  X(int32_t, distance_shape, 2, integer, own, 0, "[]", 1, 1000, "-",                               \
     "elements of the undeformed distance [along rolling, lateral]")                                \
   X(rp_load, load, 1, choice, always, RP_FORCE, "", 0, 0, "",                                      \
     "whether the force or the position is given")                                                  \

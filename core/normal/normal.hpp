@@ -24,6 +24,8 @@ struct normal_options {
   double tolerance;  // of e on the contact area, relative to the greatest displacement
   int max_iterations;
   interrupt ask{};
+  // one or two elements either way are all the bodies that there are: no border that way
+  bool strips = false;
 };
 
 struct normal_result {

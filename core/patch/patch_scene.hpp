@@ -44,6 +44,7 @@ struct patch_scene {
   double spin_offset = 0;        // of a step's way, added to x in the spin term
   double step_spin_offset = 0;   // the same of transient rolling
   bool slip_by_element = false;  // steps have a rigid slip of each element
+  bool strips = false;           // the grid given has only one or two elements either way
   bool usual_spin = true;        // that is the one by default
   bool derivatives = false;      // rates of results are asked for
   interrupt ask{};               // of the caller, between iterations

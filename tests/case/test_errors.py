@@ -263,7 +263,7 @@ GAP = {"geometry__semi_axes": None, "grid": {"element_size": [1e-4, 1e-4]}}
         ("0,1\n2\n", "line 2 holds 1 values, allowed 2 as in the first"),
         ("0,1\n\n2,x\n", "gap.csv:3: value is 'x', allowed a finite number"),
         ("0,nan\n", "gap.csv:1: value is 'nan', allowed a finite number"),
-        ("0,1\n2,3\n", "shape is (2, 2), allowed 3 ... 1000 in each direction"),
+        (",".join(["0"] * 1001), "shape is (1, 1001), allowed 1 ... 1000 in each direction"),
         ("# nothing\n", "value is empty, allowed one row of numbers per grid row"),
     ],
 )

@@ -302,11 +302,12 @@ TEST_F(Addon, WhatHasNoCounterpartIsRefusedByName) {
        },
        -99, "CHI"},
       {[](basic_contact &c) {
-         int kind = 1, count = 6;
-         double grid[] = {12, 1, -6e-3, -6e-3, 1e-3, 1e-3};
+         int kind = 1, count = 6, m = 6, four = 4;
+         double grid[] = {12, 1, -6e-3, -6e-3, 1e-3, 12e-3}, steel[] = {.28, .28, 82e9, 82e9};
          cntc_setpotcontact(&c.ire, &c.icp, &kind, &count, grid);
+         cntc_setmaterialparameters(&c.ire, &c.icp, &m, &four, steel);
        },
-       -99, "12 x 1"},
+       -99, "distance_shape must be at least 3"},
       {[](basic_contact &c) {
          int kind = -6, count = 6;
          double ellipse[] = {12, 12, 5e-3, 5e-3, 4e-3, 1.2};
@@ -330,6 +331,33 @@ TEST_F(Addon, WhatHasNoCounterpartIsRefusedByName) {
     EXPECT_NE(said().find(it.named), std::string::npos) << it.named;
     std::vector<double> before(4, 7.0);
     EXPECT_EQ(good.forces(), before) << it.named << ": no old result is handed out";
+  }
+}
+
+// One row and one column, long enough for their contact: solved, with the load asked for.
+TEST_F(Addon, GridsOfOneRowAndOneColumn) {
+  for (int along = 0; along < 2; ++along) {
+    basic_contact contact(1 + along);
+    int kind = 1, count = 6;
+    double row[] = {12, 1, -6e-3, -6e-3, 1e-3, 12e-3},
+           column[] = {1, 12, -6e-3, -6e-3, 12e-3, 1e-3};
+    cntc_setpotcontact(&contact.ire, &contact.icp, &kind, &count, along ? column : row);
+    EXPECT_EQ(contact.solve(), 0) << said();
+    int mx = 0, my = 0;
+    cntc_getnumelements(&contact.ire, &contact.icp, &mx, &my);
+    EXPECT_EQ(mx, along ? 1 : 12);
+    EXPECT_EQ(my, along ? 12 : 1);
+    int n = 12;
+    double pn[12], px[12], py[12], sum[2] = {};
+    cntc_gettractions(&contact.ire, &contact.icp, &n, pn, px, py);
+    for (int i = 0; i < 12; ++i) sum[0] += pn[i] * 12e-6, sum[1] += px[i] * 12e-6;
+    const std::vector<double> forces = contact.forces();
+    EXPECT_NEAR(sum[0], 40000, 1e-2);
+    EXPECT_NEAR(forces[0], 40000, 1e-2);
+    EXPECT_NEAR(sum[1], forces[1], 1e-6 * 40000);
+    EXPECT_GT(std::fabs(forces[1]), 100);
+    EXPECT_EQ(pn[0], 0);
+    EXPECT_EQ(pn[11], 0);
   }
 }
 

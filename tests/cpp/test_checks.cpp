@@ -541,7 +541,7 @@ TEST_F(Checks, Distances) {
   for (int k = 0; k < 2; ++k)
     refuses("max_elements must be 0 with undeformed_distance: distance_shape is the grid",
             [k](rp_config &c) { c.max_elements[k] = 8; });
-  refuses("distance_shape[0] is 2", [](rp_config &c) { c.distance_shape[0] = 2; });
+  refuses("distance_shape[0] is 0", [](rp_config &c) { c.distance_shape[0] = 0; });
   gap[8] = 1.001;
   refuses("undeformed_distance[8] is 1.001", [](rp_config &) {});
   gap[8] = -1.001;

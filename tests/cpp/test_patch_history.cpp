@@ -56,7 +56,8 @@ class PatchHistory : public testing::TestWithParam<bool> {
 // they are, and nothing where there was no row. Two divisions count by their shares.
 TEST_P(PatchHistory, StatesAreReadWhereTheMaterialWas) {
   const auto linear = [&](double i, double j, int c) { return 1e-6 * (2 + i - 3 * j + c * i); };
-  patch_history last[2] = {{18, true, true, &law}, {18, true, true, &law}}, h(18, true, true, &law);
+  patch_history last[2] = {{18, true, true, &law, 0}, {18, true, true, &law, 0}},
+                h(18, true, true, &law, 0);
   for (int k = 0; k < 2; ++k) {
     fill(last[k]);
     for (int j = 0; j < g.ny; ++j)
@@ -88,7 +89,7 @@ TEST_P(PatchHistory, StatesAreReadWhereTheMaterialWas) {
 }
 
 TEST_P(PatchHistory, FreshMaterialHasNothing) {
-  patch_history h(18, true, false, &law);
+  patch_history h(18, true, false, &law, 0);
   EXPECT_TRUE(h.keeps_steps() && h.has_law());
   h.begin(g, 1e-3, px.data(), py.data());
   h.start_from_before(g, law, true);
@@ -104,7 +105,7 @@ TEST_P(PatchHistory, FreshMaterialHasNothing) {
 TEST_P(PatchHistory, WhatWasCarriedIsWhereTheMaterialIs) {
   for (const double upstream : {0.0, 1e-3, 4e-4, -1.7e-3, 9e-3}) {
     SCOPED_TRACE(upstream);
-    patch_history h(18, true, false, &law);
+    patch_history h(18, true, false, &law, 0);
     fill(h);
     h.begin(g, upstream, px.data(), py.data());
     h.start_from_before(g, law, true);
@@ -132,7 +133,7 @@ TEST_P(PatchHistory, WhatWasCarriedIsWhereTheMaterialIs) {
 
 // A smaller grid than what there is room for: nothing is written beside it.
 TEST_P(PatchHistory, WhatIsBesideTheGridStays) {
-  patch_history h(24, true, false, &law);
+  patch_history h(24, true, false, &law, 0);
   fill(h);
   for (size_t k = 18; k < 24; ++k) h.before[k] = {{5, 6, 7}};
   h.begin(g, 4e-4, px.data(), py.data());
@@ -145,7 +146,7 @@ TEST_P(PatchHistory, WhatIsBesideTheGridStays) {
 TEST_P(PatchHistory, PlasticWorkIsThatOfTheStepsDisplacement) {
   for (const bool steps : {true, false})
     for (const int direction : {1, -1}) {
-      patch_history h(18, steps, false, &law);
+      patch_history h(18, steps, false, &law, 0);
       if (steps) {
         fill(h);
         h.begin(g, 0, px.data(), py.data());

@@ -192,9 +192,9 @@ double distance_at(const distance_data &d, double x, double y) {
 }
 
 void check_size(const grid_data &g) {
-  if (g.mx < 3 || g.my < 3)
+  if (g.mx < 1 || g.my < 1)
     no("a grid of " + std::to_string(g.mx) + " x " + std::to_string(g.my) +
-       " elements: fewer than 3 either way have no counterpart");
+       " elements: fewer than 1 either way are not possible");
   if (g.mx > 1000 || g.my > 1000)
     no("a grid of more than 1000 elements either way has no counterpart");
 }

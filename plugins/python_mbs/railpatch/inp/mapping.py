@@ -236,10 +236,10 @@ class Mapping:
         else:
             size = [(b - a) / max(n - 1, 1) for a, b, n in zip(low, last, counts, strict=True)]
         first = [a + 0.5 * s if kind <= 2 else a for a, s in zip(low, size, strict=True)]
-        if min(counts) < 3 or max(counts) > 1000:
-            raise self.refuse(
-                f"a grid of {counts[0]} x {counts[1]} elements (3 to 1000 either way)"
-            )
+        if max(counts) > 1000:
+            raise self.refuse(f"a grid of {counts[0]} x {counts[1]} elements (1000 either way)")
+        if kind == 4 and min(counts) < 2:
+            raise self.refuse("IPOTCN = 4 with one row or column (nothing says its size)")
         middle = [f + 0.5 * (n - 1) * s for f, n, s in zip(first, counts, size, strict=True)]
         self.offset = MM * middle[0], MM * middle[1]
         rows = [
