@@ -183,8 +183,8 @@ def gapless(step: Step) -> Array:
 def heat_flux(step: Step) -> Array:
     """W/m^2, [ny, nx], that friction and the layer's plastic work give to both bodies.
 
-    No element gives heat back; what that and the place of the spin term leave of friction's power
-    goes to the elements by their share.
+    No element gives heat back; what that and the place of the spin term leave of friction's power,
+    and what the elements' work leaves of the layer's plastic power, goes to them by their share.
     """
     layer = step.case.layer
     work = np.maximum(step.friction_work, 0.0)
@@ -194,7 +194,11 @@ def heat_flux(step: Step) -> Array:
     if layer is not None and layer.is_plastic:
         speed = step.patch["rolling_speed"]
         plastic = (step["traction"] * plastic_increment(step)).sum(axis=0)
-        flux = flux + layer.plastic_heat_fraction * plastic * speed / step.rolled
+        plastic = plastic * speed / step.rolled
+        sum_of_it = float(plastic.sum()) * step.area
+        if sum_of_it > 0:
+            plastic = plastic * (step.patch["plastic_power"] / sum_of_it)
+        flux = flux + layer.plastic_heat_fraction * plastic
     return flux
 
 
