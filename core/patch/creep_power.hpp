@@ -28,10 +28,11 @@ inline double creep_power_rate(const rp_patch_result &r, const rp_patch_result &
   return creep_work(r) * d.rolling_speed - rate * r.rolling_speed;
 }
 
-// N, T gamma with each product by its size (Pearce and Sherratt 1991).
-inline double wear_number(const rp_patch_result &r) {
-  return std::fabs(r.creep_force[0] * r.creepage[0]) + std::fabs(r.creep_force[1] * r.creepage[1]) +
-         std::fabs(r.spin_moment * r.spin_creepage);
+// N, T gamma with each product by its size (Pearce and Sherratt 1991). force, moment: of the
+// tractions, N and N m.
+inline double wear_number(const double force[2], double moment, const rp_patch_result &r) {
+  return std::fabs(force[0] * r.creepage[0]) + std::fabs(force[1] * r.creepage[1]) +
+         std::fabs(moment * r.spin_creepage);
 }
 
 // A product that is zero has a kink there: the mean of both sides, which is none.

@@ -1,6 +1,9 @@
 // What the stages of a patch found in one step.
 #pragma once
 
+#include <optional>
+
+#include "half_space/forces.hpp"
 #include "normal/row_contact.hpp"
 #include "numeric/nan.hpp"
 #include "patch/status.hpp"
@@ -32,7 +35,9 @@ struct traction_outcome : verdict {
   double moment = 0, force[2] = {0, 0};  // of theories without tractions
   double capacity = 0;                   // N, that friction could carry
   double max_traction = nan;             // Pa
-  double fluid_power = nan;              // W, where the liquid's shear is part of each bound
+  // of the tractions along their own rows, where pressure has its part in the creep force
+  std::optional<patch_wrench> own;
+  double fluid_power = nan;  // W, where the liquid's shear is part of each bound
 };
 
 struct heat_outcome {

@@ -129,6 +129,8 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   if (fluid_.follows_heat()) warm_liquid(problem, memory, n, f, t, h);
   const stage_mark mark = shared_.marks.enter(RP_STAGE_FORCES);
   wrench = sum_forces(problem, n, t, memory);
+  if (memory.curved && memory.px.size())
+    t.own = sum_tractions(problem.g, memory.pressure.data(), memory.px.data(), memory.py.data());
   report(scene, problem, n, t, h, wrench, result);
   if (f.found) describe_fluid(f, t.fluid_power, scene.friction_scale, result);
   if (f.found && scene.fluid->model == RP_FLUID_REGIMES)

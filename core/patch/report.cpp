@@ -66,8 +66,9 @@ void describe_tractions(const patch_scene &scene, const traction_outcome &t,
   // of steps that go on from the last one's tractions the force is the mean of both ends
   result.creep_power =
       std::isnan(t.supplied) ? creep_power(result, result.rolling_speed) : t.supplied;
-  result.wear_number = wear_number(result);
-  const double size = hypot(result.creep_force[0], result.creep_force[1]);
+  const patch_wrench &own = t.own ? *t.own : wrench;
+  result.wear_number = wear_number(own.force, own.moment[2], result);
+  const double size = hypot(own.force[0], own.force[1]);
   if (result.normal_force > 0) result.traction_coefficient = size / result.normal_force;
   if (t.capacity > 0) result.utilised_friction = size / t.capacity;
   result.max_traction = t.max_traction;

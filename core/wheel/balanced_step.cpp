@@ -110,7 +110,7 @@ struct wheels::balanced_state final : balanced_wheelset {
       for (int i = 0; i < side.patch_count + side.alternative_count; ++i) {
         const rp_patch_result &p = side.patch[i];
         if (!(p.utilised_friction > 0)) continue;
-        most += arm * p.share * hypot(p.creep_force[0], p.creep_force[1]) / p.utilised_friction;
+        most += arm * p.share * p.normal_force * p.traction_coefficient / p.utilised_friction;
       }
     }
     return most;

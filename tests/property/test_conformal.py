@@ -97,6 +97,30 @@ def test_forces_are_sums_of_vectors(y: float, tangential: str) -> None:
     assert s.result["moment"] == pytest.approx(moment, abs=lever * np.linalg.norm(force))
 
 
+@pytest.mark.parametrize("rule", ["blended", "contact"])
+@pytest.mark.parametrize("coefficient", [0.05, 0.3])
+@pytest.mark.parametrize("y", PLACES)
+def test_friction_is_used_by_tractions_alone(y: float, coefficient: float, rule: str) -> None:
+    """The creep force has the lateral part of pressures that are inclined against each other, which
+    no friction carries and which wears nothing."""
+    case = wheel_case(y, "full", patch_rule=rule)
+    case["friction"]["coefficient"] = coefficient
+    for patch in railpatch.solve(case, fields=True)["patches"]:
+        area = np.diff(patch["x"][:2])[0] * np.diff(patch["y"][:2])[0]
+        px, ps = patch["traction"] * area
+        force, load = np.array([px.sum(), ps.sum()]), patch["pressure"].sum() * area
+        moment = (patch["x"] * ps - patch["y"][:, None] * px).sum()
+        size = np.hypot(*force)
+        assert patch["utilised_friction"] == pytest.approx(size / (coefficient * load), rel=1e-9)
+        assert patch["utilised_friction"] <= 1 + IMPOSED
+        assert patch["traction_coefficient"] == pytest.approx(
+            size / patch["normal_force"], rel=1e-9
+        )
+        gamma = [*patch["creepage"], patch["spin_creepage"]]
+        wear = np.abs(np.array([*force, moment]) * gamma).sum()
+        assert patch["wear_number"] == pytest.approx(wear, rel=1e-9)
+
+
 @pytest.mark.parametrize("y", PLACES)
 def test_any_traction_does_positive_work(y: float) -> None:
     s = solved(y, "full")
