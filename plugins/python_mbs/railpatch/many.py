@@ -314,13 +314,7 @@ def columns_of(case: Case, inputs: Mapping[str, Any]) -> tuple[dict[Place, NDArr
     for name, value in flat.items():
         field, index = places[name]
         shape = INPUT[field].shape[len(index) :]
-        try:
-            array = np.asarray(value, dtype=INPUT[field].base)
-        except (TypeError, ValueError):
-            raise CaseError(f"{name}: value is {show(value)}, allowed numbers") from None
-        if not np.isfinite(np.asarray(value, dtype=float)).all():
-            state = np.argwhere(~np.isfinite(np.asarray(value, dtype=float)))[0][:1]
-            raise CaseError(f"{name}: value of state {state} is not finite, allowed numbers")
+        array = numbers_of(name, value, INPUT[field].base)
         if array.shape == shape:
             columns[field, index] = array
         elif array.ndim == len(shape) + 1 and array.shape[1:] == shape:
@@ -340,6 +334,27 @@ def columns_of(case: Case, inputs: Mapping[str, Any]) -> tuple[dict[Place, NDArr
         raise CaseError(f"inputs: have {count} rows, allowed 1 to {MOST_STATES}")
     check_kept(case, columns, count)
     return columns, count
+
+
+def numbers_of(name: str, value: Any, kind: np.dtype) -> NDArray[Any]:
+    """An input's numbers as the core has them; text, truth values, complex numbers and what an
+    array masks are none, and integers have no fractions. Raises CaseError."""
+    try:
+        given = np.asarray(value)
+        numbers = given.astype(float) if given.dtype.kind in "iuf" else None
+    except (TypeError, ValueError):
+        numbers = None
+    if numbers is None or np.ma.is_masked(value):
+        raise CaseError(f"{name}: value is {show(value)}, allowed numbers")
+    wrong = ~np.isfinite(numbers)
+    if wrong.any():
+        state = np.argwhere(wrong)[0][:1]
+        raise CaseError(f"{name}: value of state {state} is not finite, allowed numbers")
+    array = numbers.astype(kind)
+    if (array != numbers).any():
+        state = np.argwhere(array != numbers)[0][:1]
+        raise CaseError(f"{name}: value of state {state} is no integer, allowed integers")
+    return array
 
 
 def check_kept(case: Case, columns: dict[Place, NDArray[Any]], count: int) -> None:
