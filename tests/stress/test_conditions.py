@@ -12,10 +12,19 @@ from railpatch import _core
 from railpatch.case.load import load_scene
 from railpatch.case.to_core import config_of, input_of
 from railpatch.evidence.stress.conditions import energy_balance, findings
+from railpatch.evidence.stress.fitted_rows import Rows, rectangle_findings
 from railpatch.evidence.stress.half_space import Array
-from railpatch.evidence.stress.run import no_numbers, steps_of, too_many_iterations
+from railpatch.evidence.stress.liquids import wet_mixture
+from railpatch.evidence.stress.plan import SEED
+from railpatch.evidence.stress.run import (
+    CLEAN,
+    no_numbers,
+    run_trial,
+    steps_of,
+    too_many_iterations,
+)
 from railpatch.evidence.stress.step import Step
-from railpatch.evidence.stress.trial import CREEPAGE, SPIN, nominal
+from railpatch.evidence.stress.trial import CREEPAGE, METHODS, SPIN, nominal
 
 
 def solved(*changes: dict[str, Any]) -> Step:
@@ -155,3 +164,48 @@ def test_prescribed_force_is_met() -> None:
     assert worst(step)["prescribed force"] <= 1
     values = {**step.values, "tangential_force": [1.001e4, 0.0]}
     assert worst(replace(step, values=values))["prescribed force"] > 1
+
+
+def test_rows_are_judged_by_the_traction_that_they_stand_for() -> None:
+    """The pole of spin lies within a step of these nodes: by sines through them, in place of
+    cubics, the slip of what sticks is 1.1 of what is allowed on any number of rectangles."""
+    row = run_trial(wet_mixture(SEED, 179))
+    assert row.method == "fitted rows"
+    assert row.verdict == CLEAN, row.reason
+    assert row.conditions < 0.3
+
+
+def test_traction_between_nodes_is_a_cubic() -> None:
+    """Of the angle, through the nodes, odd at both edges: what is such a cubic is met."""
+    count, length, width = 12, 4e-3, 1e-3
+    step = np.pi / (count + 1)
+    nodes = step * np.arange(1, count + 1)
+    x = (length * np.cos(nodes))[::-1]
+
+    def rows_of(function: Callable[[Array], Array]) -> Rows:
+        traction = np.tile(function(nodes)[::-1], (2, 3, 1))
+        return Rows(np.tile(x, (3, 1)), width * np.arange(3), traction)
+
+    angles = np.linspace(1e-3, np.pi - 1e-3, 200)
+    random = np.random.default_rng(3).normal(size=count)
+    assert rows_of(lambda _: random).between_nodes(nodes) == pytest.approx(
+        np.tile(random, (2, 3, 1))
+    )
+    middle = (angles >= 2 * step) & (angles <= np.pi - 2 * step)
+    found = rows_of(lambda t: t**3 - 2 * t**2 + 0.3).between_nodes(angles)[1, 2]
+    assert found[middle] == pytest.approx((angles**3 - 2 * angles**2 + 0.3)[middle])
+    first = angles <= step
+    found = rows_of(lambda t: t**3 - 2 * t).between_nodes(angles)[0, 1]
+    assert found[first] == pytest.approx((angles**3 - 2 * angles)[first])
+
+
+def test_spoilt_rows_are_found() -> None:
+    """A traction a tenth too small, and a micro-slip three tenths too great."""
+    step = solved(METHODS["fitted rows"], {"motion": MOTION})
+
+    def shares(step: Step) -> dict[str, float]:
+        return {finding.name: finding.share for finding in rectangle_findings(step)}
+
+    assert shares(spoilt(step, "traction", lambda p: 0.9 * p))["slip in stick"] > 1
+    found = shares(spoilt(step, "micro_slip", lambda s: 1.3 * s))
+    assert found["micro-slip"] > 1 > found["slip in stick"]

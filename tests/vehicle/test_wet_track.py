@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,8 +13,9 @@ from railpatch.case.fluid import Fluid
 from railpatch.case.friction import Friction
 from railpatch.errors import CaseError
 
-from wheelset_demo.scene import scene_file
-from wheelset_demo.vehicle import Simulation, load_vehicle_scene
+from rig_model.scene import default_scene, load_rig_scene
+from wheelset_demo.scene import load_wheelset_scene, scene_file
+from wheelset_demo.vehicle import Simulation, VehicleScene, load_vehicle_scene
 from wheelset_demo.vehicle.plausible import doubts_of
 from wheelset_demo.vehicle.trace import run_vehicle
 from wheelset_demo.vehicle.wet_track import CELL, WetTable, WetTrack
@@ -110,25 +113,140 @@ def test_nothing_is_kept_in_the_dry() -> None:
     assert Simulation(scene).system.wet is None
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("[[wet]]\nposition = 20.0\nlength = 5.0\nwater_rate = 1e-8\n", "fluid.water_rate"),
-        ("[[wet]]\nposition = 20.0\nwater_rate = 1e-8\n", r"wet\[0\].length: value is missing"),
-        ("[[wet]]\nposition = 20.0\nlength = -5.0\nwater_rate = 1e-8\n", r"wet\[0\].length"),
-        (
-            '[fluid]\nmodel = "film"\nroughness = 5e-7\nliquid = "water"\nwater_rate = 0.0\n'
-            + "[[wet]]\nposition = 20.0\nlength = 5.0\nwater_rate = 1e-8\n" * 2,
-            r"wet\[1\].position: value is 20.0, allowed >= 25 m",
-        ),
-    ],
-)
-def test_refused_by_name(text: str, message: str, tmp_path: Path) -> None:
+FLUID = """
+[fluid]
+model = "film"
+roughness = 5e-7
+liquid = "water"
+"""
+RATE = FLUID + "water_rate = 0.0\n"
+
+
+def stretch(**changes: str | None) -> str:
+    keys = {"position": "20.0", "length": "5.0", "water_rate": "1e-8", **changes}
+    lines = [f"{name} = {value}" for name, value in keys.items() if value is not None]
+    return "\n".join(["[[wet]]", *lines, ""])
+
+
+def loaded(text: str, tmp_path: Path) -> VehicleScene:
     path = tmp_path / "scene.toml"
     content = scene_file("vehicle_straight.toml").read_text(encoding="utf-8")
     path.write_text(content + "\n" + text, encoding="utf-8")
-    with pytest.raises(CaseError, match=message):
-        load_vehicle_scene(path)
+    return load_vehicle_scene(path)
+
+
+ONLY = "allowed only with fluid.water_rate, that of the rest of the track"
+KEYS = "but the key is unknown, allowed position, length, water_rate"
+# what is appended to a scene, and all that is said
+REFUSED: dict[str, tuple[str, list[str]]] = {
+    "no liquid": (stretch(), [f"wet: given without [fluid], {ONLY}"]),
+    "flooded": (FLUID + stretch(), [f"wet: given without fluid.water_rate, {ONLY}"]),
+    "a layer": (
+        FLUID + "oil_film = 1e-6\n" + stretch(),
+        [f"wet: given with fluid.oil_film, {ONLY}"],
+    ),
+    "strip": (
+        FLUID.replace("film", "strip") + stretch(),
+        ["wet: given with fluid.model = 'strip', allowed only with 'film' or 'regimes'"],
+    ),
+    "unknown key": (
+        RATE + stretch(rail_work="3.0"),
+        [f"wet[0].rail_work: value is 3.0, {KEYS}"],
+    ),
+    "its end": (
+        RATE + stretch(length=None, end="25.0"),
+        [
+            "wet[0].length: value is missing, allowed m",
+            f"wet[0].end: value is 25.0, {KEYS}",
+        ],
+    ),
+    "ends before it starts": (
+        RATE + stretch(length="-5.0"),
+        ["wet[0].length: value is -5.0, allowed > 0.0"],
+    ),
+    "no length": (RATE + stretch(length="0.0"), ["wet[0].length: value is 0.0, allowed > 0.0"]),
+    "endless": (
+        RATE + stretch(length="1e6"),
+        ["wet[0].length: value is 1000000.0, allowed <= 100000.0"],
+    ),
+    "before the track": (
+        RATE + stretch(position="-1.0"),
+        ["wet[0].position: value is -1.0, allowed >= 0.0"],
+    ),
+    "negative rate": (
+        RATE + stretch(water_rate="-1e-8"),
+        ["wet[0].water_rate: value is -1e-08, allowed >= 0.0"],
+    ),
+    "a river": (
+        RATE + stretch(water_rate="1e3"),
+        ["wet[0].water_rate: value is 1000.0, allowed <= 1.0"],
+    ),
+    "no number": (
+        RATE + stretch(water_rate="nan"),
+        ["wet[0].water_rate: value is nan, allowed a finite number"],
+    ),
+    "a word": (
+        RATE + stretch(water_rate="'much'"),
+        ["wet[0].water_rate: value is 'much', allowed a number"],
+    ),
+    "one table": (
+        RATE + stretch().replace("[[wet]]", "[wet]"),
+        [
+            "wet: value is {'position': 20.0, 'length': 5.0, 'water_rate': 1e-08}, allowed a list "
+            "of [[wet]] tables"
+        ],
+    ),
+    "twice": (
+        RATE + 2 * stretch(),
+        ["wet[1].position: value is 20.0, allowed >= 25 m, where another ends"],
+    ),
+    "two within a third": (
+        RATE + stretch(length="50.0") + stretch(position="22.0") + stretch(position="40.0"),
+        [
+            "wet[1].position: value is 22.0, allowed >= 70 m, where another ends",
+            "wet[2].position: value is 40.0, allowed >= 70 m, where another ends",
+        ],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_refused_by_name(name: str, tmp_path: Path) -> None:
+    text, said = REFUSED[name]
+    with pytest.raises(CaseError) as error:
+        loaded(text, tmp_path)
+    assert error.value.problems == said
+
+
+def test_stretches_that_touch(tmp_path: Path) -> None:
+    """In any order; where one ends the next begins."""
+    text = RATE + stretch(position="25.0", water_rate="2e-8") + stretch()
+    scene = loaded(text, tmp_path)
+    track = WetTrack.of(scene.wet, scene.case.fluid, scene.length, 1)
+    assert track is not None
+    water, places = np.zeros((1, 3)), (19.99, 20.0, 24.99, 25.0, 29.99, 30.0)
+    found = []
+    for place in places:
+        track.put(np.array([place]), water)
+        found.append(water[0, 0])
+    assert found == pytest.approx([np.nan, 1e-8, 1e-8, 2e-8, 2e-8, np.nan], nan_ok=True)
+
+
+@pytest.mark.parametrize(
+    ("load", "source"),
+    [
+        (load_wheelset_scene, scene_file("hunting.toml")),
+        (load_rig_scene, default_scene()),
+    ],
+)
+def test_other_runs_have_no_stretches(
+    load: Callable[[Path], Any], source: Path, tmp_path: Path
+) -> None:
+    """Of the vehicle alone: elsewhere the key is unknown."""
+    path = tmp_path / "scene.toml"
+    path.write_text(source.read_text(encoding="utf-8") + "\n" + stretch(), encoding="utf-8")
+    with pytest.raises(CaseError, match=r"wet: value is .* unknown"):
+        load(path)
 
 
 def test_water_that_no_wheel_comes_to_is_told() -> None:

@@ -8,7 +8,6 @@ meet its own.
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator
 from typing import Annotated
 
@@ -17,11 +16,13 @@ from numpy.typing import NDArray
 from pydantic import Field
 from railpatch import _core
 from railpatch.case.fluid import Fluid
-from railpatch.case.types import NotNegative, Table
+from railpatch.case.types import NotNegative, Table, within
 
 Vector = NDArray[np.float64]
 CELL = 0.1  # m, of a rail
 MOST_CELLS = 2_000_000
+# models of [fluid] that read a rate
+WITH_RATE = ("film", "regimes")
 
 
 class WetTable(Table):
@@ -29,7 +30,7 @@ class WetTable(Table):
 
     position: NotNegative = Field(description="m, along the track, where it begins")
     length: Annotated[float, Field(gt=0, le=1e5)] = Field(description="m")
-    water_rate: NotNegative = Field(
+    water_rate: Annotated[float, within("fluid_water_rate")] = Field(
         description="m^3/s, of liquid for each contact there; elsewhere fluid.water_rate"
     )
 
@@ -37,13 +38,23 @@ class WetTable(Table):
 def wet_problems(wet: tuple[WetTable, ...], fluid: Fluid | None) -> Iterator[str]:
     """Of stretches without a liquid whose supply counts, and of two at a place."""
     if wet and (fluid is None or fluid.water_rate is None):
-        yield "wet: given, allowed only with fluid.water_rate, that of the rest of the track"
+        allowed = "allowed only with fluid.water_rate, that of the rest of the track"
+        if fluid is None:
+            yield f"wet: given without [fluid], {allowed}"
+        elif fluid.model not in WITH_RATE:
+            models = " or ".join(repr(model) for model in WITH_RATE)
+            yield f"wet: given with fluid.model = {fluid.model!r}, allowed only with {models}"
+        elif fluid.oil_film is not None:
+            yield f"wet: given with fluid.oil_film, {allowed}"
+        else:
+            yield f"wet: given without fluid.water_rate, {allowed}"
     ordered = sorted(range(len(wet)), key=lambda k: wet[k].position)
-    for a, b in itertools.pairwise(ordered):
-        end = wet[a].position + wet[a].length
-        if wet[b].position < end:
-            value = wet[b].position
-            yield f"wet[{b}].position: value is {value}, allowed >= {end:.6g} m, where another ends"
+    end = 0.0
+    for k in ordered:
+        if wet[k].position < end:
+            value = wet[k].position
+            yield f"wet[{k}].position: value is {value}, allowed >= {end:.6g} m, where another ends"
+        end = max(end, wet[k].position + wet[k].length)
 
 
 class WetTrack:

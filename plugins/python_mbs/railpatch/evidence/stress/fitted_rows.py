@@ -1,11 +1,13 @@
 """Fitted rows: their conditions, and micro-slip by direct summation; shares nothing with the
 solver.
 
-Each row's traction is interpolated in the angle of its nodes by sines and cut into rectangles much
-finer than the nodes; their displacements are Kalker's closed forms (half_space.py), whose slope is
-taken by central differences where a rectangle lies around the point. Conditions: Kalker 1990,
-chapter 1; stick has no slip at the point half a step ahead of the node, slip has the bound against
-a slip between those of the two points around the node.
+Each row's traction is that which the rows stand for, cubics in the angle through its nodes, cut
+into rectangles much finer than the nodes; their displacements are Kalker's closed forms
+(half_space.py), whose slope is taken by central differences where a rectangle lies around the
+point. Conditions: Kalker 1990, chapter 1; stick has no slip at the point half a step ahead of the
+node, slip has the bound against a slip between those of the two points around the node. Any other
+way between the nodes, sines say, is another traction: where it turns within a step, as at the pole
+of spin, its slip differs by more than the conditions allow, on any number of rectangles.
 """
 
 from __future__ import annotations
@@ -66,13 +68,25 @@ class Rows:
         pieces = FINE * (self.count + 1)
         edges = np.pi * np.arange(pieces + 1) / pieces
         angles = 0.5 * (edges[1:] + edges[:-1])
-        order = np.arange(1, self.count + 1)
-        # from the angle 0 at the greatest x; the traction is an odd function of the angle
-        nodes = self.traction[:, :, ::-1]
-        coefficients = nodes @ np.sin(np.outer(order, order) * self.step) * 2 / (self.count + 1)
         ends = self.middle[:, None] + self.half_length[:, None] * np.cos(edges)
         x, length = 0.5 * (ends[:, 1:] + ends[:, :-1]), ends[:, :-1] - ends[:, 1:]
-        return x, length, coefficients @ np.sin(np.outer(order, angles))
+        return x, length, self.between_nodes(angles)
+
+    def between_nodes(self, angles: Array) -> Array:
+        """[2, rows, m], at angles (from 0 at the greatest x) the cubic through the four nodes
+        around; the traction is an odd function of the angle at both edges."""
+        nodes = self.traction[:, :, ::-1]
+        edge = np.zeros((*nodes.shape[:2], 1))
+        parts = [-nodes[:, :, :1], edge, nodes, edge, -nodes[:, :, -1:]]
+        known = np.concatenate(parts, axis=2)
+        place = angles / self.step
+        first = np.minimum(place.astype(int), self.count)
+        found = np.zeros((*nodes.shape[:2], angles.size))
+        for one in range(4):
+            others = [other for other in range(4) if other != one]
+            weight = np.prod([(place - first + 1 - k) / (one - k) for k in others], axis=0)
+            found += weight * known[:, :, first + one]
+        return found
 
     def slope(
         self, direction: int, shear_modulus: float, poisson_ratio: float, layer: float
