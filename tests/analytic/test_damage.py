@@ -89,6 +89,26 @@ def test_work_of_elements(direction: int) -> None:
     assert errors[1] < 0.02
 
 
+@pytest.mark.parametrize("shape", [(1, 12), (12, 1), (2, 12), (12, 2), (1, 1), (2, 2)])
+@pytest.mark.parametrize("wear", ["usfd", "archard"])
+def test_work_of_narrow_grids(shape: tuple[int, int], wear: str) -> None:
+    """Rows by columns; by the elements the work is the friction's there too, also where all stick:
+    then friction works as material leaves the contact."""
+    y, x = ((np.arange(n) - (n - 1) / 2) * 6e-4 for n in shape)
+    gap = 1.0 * x**2 + 1.5 * y[:, None] ** 2
+    case = patch(grid={"element_size": [6e-4, 6e-4]}, damage={"wear": wear})
+    case |= {"geometry": {"undeformed_distance": gap.tolist()}, "load": {"normal_force": 1e3}}
+    case["motion"] = {"creepage": [1e-4, 0.0], "rolling_speed": 10.0}
+    result = solve(case, fields=True)
+    work = result["damage"]["fields"]["work"]
+    power = work.sum() * 6e-4**2 * 10.0
+    assert power == pytest.approx(result["friction_power"], rel=1e-9)
+    assert power > 0
+    if shape == (2, 2):
+        assert result["elements"]["slip"] == 0
+        assert not work[:, 1].any()  # rolling to +x, material leaves on the other side
+
+
 @pytest.mark.parametrize("tangential", ["fastsim", "fastrip"])
 def test_work_of_fast_theories_is_what_their_forces_take(tangential: str) -> None:
     """In steady rolling nothing else supplies it: -(F . creepage + M spin) by metre rolled."""

@@ -13,6 +13,7 @@ from railpatch.damage.laws import archard, fatigue_index, usfd, whole_life
 
 Array = NDArray[np.float64]
 ROWS = 40  # of a patch without elements
+MOST_SCALE = 2.0  # of the elements' work; what is more lies behind the trailing edge
 # names and units of what a patch's damage holds; kg/m is per metre rolled
 UNITS = {
     "wear_rate": "kg/m",
@@ -25,6 +26,16 @@ UNITS = {
 }
 
 
+def moved(values: Array, by: int) -> Array:
+    """[..., nx], a column further along x (by = 1) or back (-1); 0 comes in."""
+    found = np.zeros_like(values)
+    if by > 0:
+        found[..., 1:] = values[..., :-1]
+    else:
+        found[..., :-1] = values[..., 1:]
+    return found
+
+
 def work_of(fields: dict[str, Any], direction: int) -> Array:
     """N/m^2, [ny, nx]: work of friction by metre rolled and area, >= 0.
 
@@ -35,12 +46,35 @@ def work_of(fields: dict[str, Any], direction: int) -> Array:
     traction, slip = fields["traction"], fields["micro_slip"]
     touching = fields["pressure"] > 0
     downstream = -1 if direction > 0 else 1
-    after = np.roll(slip, -downstream, axis=2)
-    upstream = np.roll(slip, downstream, axis=2)
-    inside = np.roll(touching, -downstream, axis=1)
-    behind = np.where(np.roll(touching, downstream, axis=1), 2 * slip - upstream, slip)
+    after, inside = moved(slip, -downstream), moved(touching, -downstream)
+    behind = np.where(moved(touching, downstream), 2 * slip - moved(slip, downstream), slip)
     after = np.where(inside, after, behind)
     return np.where(touching, np.maximum(-(traction * (slip + after)).sum(axis=0) / 2, 0.0), 0.0)
+
+
+def scaled_work(
+    fields: dict[str, Any], direction: int, power: float, speed: float, area: float
+) -> tuple[Array, float | None]:
+    """Work of elements of an area (m^2), as work_of() has it, whose sum is power (W) over speed,
+    and the factor that makes it so.
+
+    Where nearly all sticks, fields hold next to no slip: friction works as material leaves the
+    contact, which takes what is beyond MOST_SCALE. Its slip there gives its displacement back and
+    goes with its traction, so that the work goes with that one's square.
+    """
+    work = work_of(fields, direction)
+    given = power / speed if speed > 0 else 0.0
+    summed = float(work.sum()) * area
+    scale = given / summed if summed > 0 else math.inf
+    work = min(scale, MOST_SCALE) * work
+    if scale <= MOST_SCALE or not given > 0:
+        return work, scale if math.isfinite(scale) else None
+    touching = fields["pressure"] > 0
+    leaves = touching & ~moved(touching, 1 if direction > 0 else -1)
+    share = np.where(leaves, (np.asarray(fields["traction"]) ** 2).sum(axis=0), 0.0)
+    if not (total := float(share.sum())) > 0:
+        return work, None
+    return work + share * ((given - float(work.sum()) * area) / (total * area)), MOST_SCALE
 
 
 def damage_of(
@@ -96,14 +130,9 @@ def _rows_of_elements(
     patch: dict[str, Any], law: Damage, direction: int, speed: float, power: float
 ) -> tuple[dict[str, Any], dict[str, Array]]:
     x, y = np.asarray(patch["x"]), np.asarray(patch["y"])
-    dx = abs(x[1] - x[0])
+    dx = abs(x[1] - x[0]) if len(x) > 1 else patch["contact_size"][0]
     dy = abs(y[1] - y[0]) if len(y) > 1 else patch["contact_size"][1]
-    work = work_of(patch, direction)
-    given = power / speed if speed > 0 else 0.0
-    summed = float(work.sum()) * dx * dy
-    scale = given / summed if summed > 0 else math.nan
-    if math.isfinite(scale):
-        work = scale * work
+    work, scale = scaled_work(patch, direction, power, speed, dx * dy)
     pressure = np.asarray(patch["pressure"])
     if law.wear == "usfd":
         wear = usfd(work, law)
@@ -113,7 +142,7 @@ def _rows_of_elements(
     size = np.hypot(*np.asarray(patch["traction"]))
     found = {
         "stress_index": float((size - law.shear_yield).max()),
-        "work_scale": float(scale) if math.isfinite(scale) else None,
+        "work_scale": scale,
         "fields": {"work": work, "wear": wear, "stress_index": size - law.shear_yield},
     }
     table = {"s": y, "height": np.full(len(y), dy), "wear": wear.sum(axis=1) * dx}
