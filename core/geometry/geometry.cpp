@@ -296,8 +296,10 @@ void side_geometry::place_rail_marker() {
   }
   const bool roller = track_.kind == track_kind::roller;
   rail_.place(roller ? 0 : -track_.cant, 0, 0);
-  marker_y_ = 0.5 * track_.gauge - rail_.innermost(track_.gauge_height);
+  const placed_profile::inner_face face = rail_.innermost(track_.gauge_height);
+  marker_y_ = 0.5 * track_.gauge - face.y;
   marker_z_ = roller ? 0 : -rail_.evaluate(rail_.extreme()).z;
+  if (rail_sections_) find_marker_rates(face);
 }
 
 void side_geometry::reload_wheel() {

@@ -27,6 +27,7 @@
 #include "geometry/longitudinal_shape.hpp"
 #include "geometry/placement.hpp"
 #include "geometry/profile.hpp"
+#include "geometry/profile_sections.hpp"
 #include "geometry/surface_slopes.hpp"
 
 namespace railpatch {
@@ -81,6 +82,28 @@ struct surface_visitor {
   virtual void meet(int column, int row, double p, double n) = 0;
 };
 
+template <class Use>
+class each_element final : public surface_visitor {
+ public:
+  explicit each_element(Use use) : use_(use) {}
+  void meet(int column, int row, double p, double n) override { use_(column, row, p, n); }
+
+ private:
+  Use use_;
+};
+
+// By row: what a surface's height along n changes by with the position of its sections.
+struct section_visitor {
+  virtual ~section_visitor() = default;
+  virtual void meet(int row, double rate) = 0;
+};
+
+// At a lateral position: how the vertical depth of the overlap and the rail's angle change with the
+// place of the rail's sections (per m) and with the wheel's pitch (per rad).
+struct section_growth {
+  double depth[2] = {0, 0}, angle[2] = {0, 0};
+};
+
 class side_geometry : private placement<double> {
  public:
   static constexpr double no_surface = 0.01;  // m, undeformed distance where a profile has ended
@@ -119,6 +142,23 @@ class side_geometry : private placement<double> {
   // What varies along the rolling direction, null: nothing; place it before place().
   void set_shape(const longitudinal_shape *shape) { shape_ = shape; }
   bool shaped() const { return shape_ != nullptr; }
+
+  // Profiles that vary along the track and round the wheel, null: they do not. Both must hold the
+  // profile that was loaded last; section_slopes.cpp has what follows.
+  void set_sections(const profile_sections *rail, const profile_sections *wheel);
+  bool varies(body which) const { return which == body::rail ? rail_sections_ : wheel_sections_; }
+  // m, of the wheel ahead of the wheelset's place along the rail: its profile's plane at the axle.
+  double section_place(const side_motion &motion) const;
+  // From there to the wheelset's centre, reversed.
+  const vec3 &wheel_offset() const { return axis_offset_; }
+  section_growth section_growth_at(double s, const locus_point &at) const;
+  // Rates of a surface's height along n in the middle of each row, m by the position: of the rail
+  // at a place of the track, of the wheel.
+  void section_heights(body which, const contact_frame &frame, const surface_grid &grid,
+                       section_visitor &visitor) const;
+  // A moment of 1 about this takes 1 by the wheel's pitch and nothing by the wheelset's roll and
+  // yaw.
+  vec3 pitch_direction() const;
   // Whether the rail has no slope along x.
   bool level() const {
     return track_.kind == track_kind::rail && !(shape_ && shape_->has_height());
@@ -183,6 +223,8 @@ class side_geometry : private placement<double> {
 
  private:
   void place_rail_marker();
+  void find_marker_rates(const placed_profile::inner_face &face);
+  section_rate rail_rate_at(double p) const;
   look_place look() const;
   void scan(bool at_height);
   void scan_all();
@@ -209,6 +251,8 @@ class side_geometry : private placement<double> {
   gap_samples samples_;
   bool overlap_ = false;
   const longitudinal_shape *shape_ = nullptr;
+  const profile_sections *rail_sections_ = nullptr, *wheel_sections_ = nullptr;
+  double marker_rate_[2] = {0, 0};  // of y, z by the place along the rail
 };
 
 // Points of the locus that lie near each other, one after the other: side_geometry::locus() of each

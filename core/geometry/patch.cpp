@@ -199,6 +199,27 @@ void sum_shaped_rows(const side_geometry &side, part &p) {
   for (double *v : {&p.x, &p.y, &p.angle}) *v /= p.weight;
 }
 
+// The sums over rows, and how they change with the position of sections.
+void sum_section_rows(const side_geometry &side, locus_walk &walk, part &p) {
+  double at[part_rows + 2];
+  int calls = 0;
+  const auto locus = [&](double s) {
+    at[calls++] = s;
+    return walk(s);
+  };
+  double by_angle[2] = {0, 0};
+  const auto seen = [&](int call, const locus_point &l, double weight, double growth) {
+    const section_growth g = side.section_growth_at(at[call], l);
+    for (int k = 0; k < 2; ++k) {
+      p.weight_rate[k] += growth * g.depth[k];
+      by_angle[k] += growth * g.depth[k] * l.contact_angle + weight * g.angle[k];
+    }
+  };
+  sum_rows(locus, p, seen);
+  for (int k = 0; k < 2; ++k)
+    p.angle_rate[k] = (by_angle[k] - p.angle * p.weight_rate[k]) / p.weight;
+}
+
 bool together(const patch_rules &r, const part &a, const part &b) {
   return facing_distance(a, b) < r.separate && std::fabs(b.angle - a.angle) < r.max_angle;
 }
@@ -234,6 +255,7 @@ patch_region describe(const side_geometry &side, const patch_rules &r, const par
   out.weight = g.weight;
   out.share = g.share;
   if (r.blended) out.angle_slope = g.angle_slope;
+  if (r.blended) std::copy_n(g.angle_rate, 2, out.angle_rate);
   out.first_part = g.begin;
   out.parts = g.end - g.begin;
   const basic_bounds<double> bounds = bounds_of(parts, g, out.frame.origin, contact_angle);
@@ -334,9 +356,12 @@ void find_parts(const side_geometry &side, part_set &found) {
   found.overflow = list.overflow();
   locus_walk walk(side);
   const auto locus = [&](double s) { return walk(s); };
+  const bool varies = side.varies(body::rail) || side.varies(body::wheel);
   for (int i = 0; i < list.count(); ++i) {
     if (side.shaped())
       sum_shaped_rows(side, found.parts[i]);
+    else if (varies)
+      sum_section_rows(side, walk, found.parts[i]);
     else
       sum_rows(locus, found.parts[i]);
     if (found.parts[i].weight > 0) found.parts[found.count++] = found.parts[i];

@@ -38,6 +38,7 @@ struct patch_region {
   double weight = 0;                                  // of all rows, to compare patches
   double share = 1;                                   // that this solution has in the wheel's force
   place_slope angle_slope;                            // blended rule only
+  double angle_rate[2] = {0, 0};                      // as basic_part has them
   bool at_profile_end = false;                        // cut off by the end of a profile
   // parts follow each other in s: between part k and k + 1 lies s = cut[k], and there tractions
   // on one side act on the other with the factor coupling[k]

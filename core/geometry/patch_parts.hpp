@@ -34,6 +34,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
 #include "geometry/place_slope.hpp"
 #include "numeric/elementary.hpp"
@@ -69,6 +70,8 @@ struct basic_part {
   double bump_at = 0;
   // how these change with the wheel's place; zero where a wheel or rail is shaped along x
   basic_place_slope<T> weight_slope{}, angle_slope{};
+  // and with the position of the rail's and of the wheel's sections
+  double weight_rate[2] = {0, 0}, angle_rate[2] = {0, 0};
 };
 using part = basic_part<double>;
 
@@ -80,6 +83,7 @@ struct basic_interval {
   T weight{}, x{}, y{}, angle{};  // weighted means
   T share{};
   basic_place_slope<T> angle_slope{};
+  double angle_rate[2] = {0, 0};
 };
 using part_interval = basic_interval<double>;
 
@@ -93,9 +97,15 @@ constexpr int part_rows = 64;  // of one part, for its means
 // Rows at s = m - h cos t for equally spaced t: the weight's d^2.5 at the edges becomes smooth, so
 // that few rows give the means to many digits. Their number is fixed and a row is as wide as the
 // lateral distance of its neighbours, so the means move smoothly with the wheelset, kinks in the
-// profiles' curvature included.
-template <class T, class Locus>
-void sum_rows(const Locus &locus, basic_part<T> &p) {
+// profiles' curvature included. seen(number of the call of locus, point, weight, its growth with
+// the depth) is told each row that counts.
+struct nothing_seen {
+  template <class... Row>
+  void operator()(const Row &...) const {}
+};
+
+template <class T, class Locus, class Seen = nothing_seen>
+void sum_rows(const Locus &locus, basic_part<T> &p, const Seen &seen = {}) {
   using std::sqrt;
   const T half = 0.5 * (p.end - p.begin), middle = 0.5 * (p.end + p.begin);
   decltype(locus(p.begin)) row[part_rows + 2];
@@ -128,6 +138,7 @@ void sum_rows(const Locus &locus, basic_part<T> &p) {
     const T growth = 2.5 * weight / depth;
     p.weight_slope.add(growth, deeper);
     p.angle_slope.add(growth * l.contact_angle, deeper);
+    seen(i - 1, l, weight, growth);
     const T low = l.wheel[0] - reach, high = l.wheel[0] + reach;
     if (!any || low < p.x_min) p.x_min = low;
     if (!any || p.x_max < high) p.x_max = high;
@@ -210,6 +221,10 @@ basic_interval<T> sum_parts(const basic_part<T> *parts, int begin, int end) {
     const basic_part<T> &p = parts[i];
     g.angle_slope.add(p.weight / g.weight, p.angle_slope);
     g.angle_slope.add((p.angle - g.angle) / g.weight, p.weight_slope);
+    if constexpr (std::is_same_v<T, double>)
+      for (int k = 0; k < 2; ++k)
+        g.angle_rate[k] += p.weight / g.weight * p.angle_rate[k] +
+                           (p.angle - g.angle) / g.weight * p.weight_rate[k];
   }
   return g;
 }

@@ -273,25 +273,29 @@ double placed_profile::start_between(int a, int b, double y, double length) cons
   return sample_s(a) + std::clamp(along, 0.0, length);
 }
 
-double placed_profile::innermost(double height) const {
+placed_profile::inner_face placed_profile::innermost(double height) const {
   const double top = extreme(), depth = evaluate(top).z + height;
   int i = extreme_, best = i;
   for (; i >= 0 && sample(i).z < depth; --i)
     if (sample(i).y < sample(best).y) best = i;
-  double y = std::min(evaluate(top).y, sample(best).y);
+  inner_face out{evaluate(top).y, top, false};
+  const auto consider = [&](double y, double s, bool at_height) {
+    if (y < out.y) out = {y, s, at_height};
+  };
+  consider(sample(best).y, sample_s(best), false);
   // the samples only bracket where the height is reached ...
   if (i >= 0 && i < extreme_) {
     const double s =
         bisect(sample_s(i), sample_s(i + 1), [&](double m) { return evaluate(m).z - depth > 0; });
-    y = std::min(y, evaluate(s).y);
+    consider(evaluate(s).y, s, true);
   }
   // ... and where an undercut face lies furthest in
   if (best > std::max(i + 1, 0) && best < extreme_) {
     const double s = bisect(sample_s(best - 1), sample_s(best + 1),
                             [&](double m) { return evaluate(m).dy < 0; });
-    y = std::min(y, evaluate(s).y);
+    consider(evaluate(s).y, s, false);
   }
-  return y;
+  return out;
 }
 
 double placed_profile::extreme() const {

@@ -131,7 +131,11 @@ class placed_profile {
   // The extreme point in z: highest of a rail, lowest of a wheel.
   double extreme() const;
   // The least y down to the given height below the top of a rail: the gauge face.
-  double innermost(double height) const;
+  struct inner_face {
+    double y, s;     // m
+    bool at_height;  // it is where the height is reached
+  };
+  inner_face innermost(double height) const;
   std::size_t bytes() const {
     return samples_.size() * 2 * sizeof(curve_point) + before_.size() * sizeof(int);
   }

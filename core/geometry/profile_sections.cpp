@@ -23,6 +23,12 @@ cubic cubic_at(double t, double h, bool curved) {
   return {t * t * (3 - 2 * t), h * t * (1 - t) * (1 - t), -h * t * t * (1 - t)};
 }
 
+// Their derivatives by the share.
+cubic cubic_rate_at(double t, double h, bool curved) {
+  if (!curved) return {1, 0, 0};
+  return {6 * t * (1 - t), h * (1 - t) * (1 - 3 * t), -h * t * (2 - 3 * t)};
+}
+
 // About how much of the arc length belongs to knot i; also of its changes.
 double span(const std::vector<double> &s, std::size_t i) {
   const std::size_t last = s.size() - 1;
@@ -129,10 +135,10 @@ profile_sections::place profile_sections::place_of(double x) const {
 
 profile_view profile_sections::at(double x, bool &changed) {
   const place found = place_of(x);
-  changed = found.first != first_ || found.share != share_;
+  changed =
+      found.first != last_.first || found.second != last_.second || found.share != last_.share;
+  last_ = found;
   if (!changed) return view();
-  first_ = found.first;
-  share_ = found.share;
   if (rules_.by_knot || rules_.cubic)
     mix_knots(found);
   else
@@ -180,6 +186,63 @@ void profile_sections::mix_knots(const place &at) {
     now_.dy[i] += (w.first_slope * span(p->y, i) + w.second_slope * span(q->y, i)) / here;
     now_.dz[i] += (w.first_slope * span(p->z, i) + w.second_slope * span(q->z, i)) / here;
   }
+}
+
+// The derivative of mix_shares and mix_knots; a tangent is a sum over a length, of which both go.
+profile_sections::knot_rate profile_sections::rate_of(std::size_t i) const {
+  const section &a = sections_[last_.first], &b = sections_[last_.second];
+  const double per = 1 / last_.length;
+  if (!rules_.by_knot && !rules_.cubic) {
+    const std::size_t end = a.s.size() - 1;
+    const auto whole = [end](const section &k) { return k.s[end] - k.s[0]; };
+    const double of_a = whole(a), of_b = whole(b), length = whole(now_);
+    const auto tangent = [&](values section::*of) {
+      const double rise = of_b * (b.*of)[i] - of_a * (a.*of)[i];
+      return per * (rise - (now_.*of)[i] * (of_b - of_a)) / length;
+    };
+    return {per * (b.s[i] - a.s[i]), per * (b.y[i] - a.y[i]), per * (b.z[i] - a.z[i]),
+            tangent(&section::dy), tangent(&section::dz)};
+  }
+  const cubic w = cubic_rate_at(last_.share, last_.length, rules_.cubic);
+  const slopes *p = rules_.cubic ? &slopes_[right_[last_.first]] : nullptr;
+  const slopes *q = rules_.cubic ? &slopes_[left_[last_.second]] : nullptr;
+  const auto mix = [&](double from, double to, double first, double second) {
+    return per * (w.second * (to - from) + w.first_slope * first + w.second_slope * second);
+  };
+  const auto knot = [&](values section::*of, values slopes::*rate) {
+    return mix((a.*of)[i], (b.*of)[i], p ? (p->*rate)[i] : 0.0, q ? (q->*rate)[i] : 0.0);
+  };
+  const auto wide = [&](const slopes *of, values slopes::*rate) {
+    return of ? span(of->*rate, i) : 0.0;
+  };
+  const double here = span(now_.s, i);
+  const double grows = mix(span(a.s, i), span(b.s, i), wide(p, &slopes::s), wide(q, &slopes::s));
+  const auto tangent = [&](values section::*of, values slopes::*rate) {
+    const double rise =
+        mix(span(a.s, i) * (a.*of)[i], span(b.s, i) * (b.*of)[i], wide(p, rate), wide(q, rate));
+    return (rise - (now_.*of)[i] * grows) / here;
+  };
+  return {knot(&section::s, &slopes::s), knot(&section::y, &slopes::y),
+          knot(&section::z, &slopes::z), tangent(&section::dy, &slopes::y),
+          tangent(&section::dz, &slopes::z)};
+}
+
+section_rate profile_sections::rate(int piece, double t) const {
+  const auto i = static_cast<std::size_t>(piece);
+  if (last_.first == last_.second) return {};
+  const knot_rate a = rate_of(i), b = rate_of(i + 1);
+  const double length = now_.s[i + 1] - now_.s[i], grows = b.s - a.s;
+  // Hermite's cubic over the share: ends, and tangents by the share
+  const auto at = [&](double first, double last, double from, double to, double &slope) {
+    const double rise = last - first, bend = 3 * rise - 2 * from - to, turn = from + to - 2 * rise;
+    slope = (from + t * (2 * bend + 3 * t * turn)) / length;
+    return first + t * (from + t * (bend + t * turn));
+  };
+  const auto tangent = [&](double rate, double value) { return length * rate + grows * value; };
+  section_rate out;
+  out.y = at(a.y, b.y, tangent(a.dy, now_.dy[i]), tangent(b.dy, now_.dy[i + 1]), out.dy);
+  out.z = at(a.z, b.z, tangent(a.dz, now_.dz[i]), tangent(b.dz, now_.dz[i + 1]), out.dz);
+  return out;
 }
 
 std::size_t profile_sections::bytes() const {

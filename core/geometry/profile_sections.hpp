@@ -27,6 +27,13 @@ struct section_rules {
   const std::int32_t *kink = nullptr;  // of each section, 1: one; null: none
 };
 
+// How a point of the blended profile that stays at its share of a piece between two knots moves
+// with the position, and how that changes along the arc length.
+struct section_rate {
+  double y = 0, z = 0;    // m by position
+  double dy = 0, dz = 0;  // - by position
+};
+
 class profile_sections {
  public:
   // Views that have passed validate() and fault(), copied; positions (m or rad) increase, within
@@ -37,8 +44,10 @@ class profile_sections {
   static bool belong_together(const profile_view &a, const profile_view &b, bool by_knot = false);
 
   // The profile at x; changed tells whether it is another than the last one, at first the first
-  // section.
+  // section, or goes on to another section.
   profile_view at(double x, bool &changed);
+  // Of the last profile, at a share of the piece from knot i to the next: from its position on.
+  section_rate rate(int i, double share) const;
   std::size_t bytes() const;
 
  private:
@@ -52,8 +61,12 @@ class profile_sections {
     values s, y, z;
   };
   struct place {
-    std::size_t first, second;
-    double share, length;  // of the way from the first to the second, and that way
+    std::size_t first = 0, second = 0;
+    double share = 0, length = 1;  // of the way from the first to the second, and that way
+  };
+  // Rates of a knot by position; dy, dz those of the derivatives by arc length.
+  struct knot_rate {
+    double s, y, z, dy, dz;
   };
   profile_view view() const {
     return {now_.s.data(),  now_.y.data(),  now_.z.data(),
@@ -66,14 +79,14 @@ class profile_sections {
   void set_slopes(slopes &to, F slope) const;
   void mix_shares(const section &a, const section &b, double share);
   void mix_knots(const place &at);
+  knot_rate rate_of(std::size_t knot) const;
 
   std::vector<section> sections_;
   std::vector<slopes> slopes_;             // cubic: of the sections, two at a kink
   std::vector<std::size_t> left_, right_;  // which of them each section has on either side
   section now_;
   section_rules rules_;
-  std::size_t first_ = 0;  // section before x, and the share of the one that follows it
-  double share_ = 0;
+  place last_;  // of the profile now
 };
 
 }  // namespace railpatch

@@ -8,16 +8,6 @@ namespace railpatch {
 
 namespace {
 
-template <class Use>
-class each_element final : public surface_visitor {
- public:
-  explicit each_element(Use use) : use_(use) {}
-  void meet(int column, int row, double p, double n) override { use_(column, row, p, n); }
-
- private:
-  Use use_;
-};
-
 surface_grid at_centre(surface_grid g) {
   g.nx = 1;
   g.x0 = 0;

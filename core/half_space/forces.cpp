@@ -82,6 +82,16 @@ T load_of_row(const T &half_width, const T &force, const T &y, const T &half) {
 
 }  // namespace
 
+double load_of_row(const grid &g, const double *pressure, int row) {
+  double sum = 0;
+  for (int i = 0; i < g.nx; ++i) sum += pressure[row * g.nx + i];
+  return sum * g.dx * g.dy;
+}
+
+double load_of_row(double half_width, double force, const grid &g, int row) {
+  return load_of_row<double>(half_width, force, g.y(row), 0.5 * g.dy);
+}
+
 void add_inclined_ellipse(double half_width, double force, const grid &g,
                           const surface_slopes &slopes, patch_wrench &wrench) {
   for (int j = 0; j < g.ny; ++j) {

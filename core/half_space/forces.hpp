@@ -24,6 +24,10 @@ using patch_wrench = basic_wrench<double>;
 patch_wrench sum_tractions(const grid &g, const double *pressure, const double *px,
                            const double *py);
 
+// N, of the pressure in a row of elements; of an ellipse's, with its semi-axis across.
+double load_of_row(const grid &g, const double *pressure, int row);
+double load_of_row(double half_width, double force, const grid &g, int row);
+
 // Adds what pressure has beside its force along n, as it acts along the normals of an inclined
 // surface.
 void add_inclined(const grid &g, const double *pressure, const surface_slopes &slopes,

@@ -49,6 +49,8 @@ class conformal_rows {
   const double *cosine() const { return cos_.data(); }
   const double *sine() const { return sin_.data(); }
   // Track axes.
+  contact_frame frame(int row) const;
+  bool valid(int row) const { return valid_[static_cast<size_t>(row)] > 0; }
   double angle(int row) const { return angle_[static_cast<size_t>(row)]; }
   aligned_buffer<double> &angles() { return angle_; }
   const aligned_buffer<double> &angles() const { return angle_; }
@@ -69,7 +71,6 @@ class conformal_rows {
   point step(const side_geometry &side, const point &from, double length, double bend) const;
   bool arc_length(const side_geometry &side, double &s) const;
   void keep(int row, const point &p);
-  contact_frame frame(int row) const;
 
   contact_frame reference_;
   point first_;

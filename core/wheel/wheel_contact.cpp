@@ -75,6 +75,7 @@ wheel_contact::wheel_contact(const wheel_setup &setup)
     wheel_->assign(setup.wheel_sections.front());
     geometry_->reload_wheel();
   }
+  geometry_->set_sections(sections_.get(), wheel_sections_.get());
   if (setup.keeps_solutions) solutions_.resize(static_cast<size_t>(setup.max_patches));
   if (!setup.shape.given()) return;
   shape_ = std::make_unique<longitudinal_shape>(setup.shape);
@@ -96,9 +97,10 @@ side_motion wheel_contact::motion_of(const rp_input &in) const {
 
 void wheel_contact::place(const rp_input &in, bool at_height) {
   const double pitch = in.pitch + in.wheel_rotation[side_][1];
+  const side_motion motion = motion_of(in);
   bool changed = false;
   if (sections_) {
-    const profile_view now = sections_->at(in.x, changed);
+    const profile_view now = sections_->at(in.x + geometry_->section_place(motion), changed);
     if (changed) {
       rail_->assign(now);
       geometry_->reload_rail();
@@ -114,7 +116,7 @@ void wheel_contact::place(const rp_input &in, bool at_height) {
   time_step_ = in.time_step;
   step_regime_ = in.step_regime;
   if (shape_) shape_->place(pitch, in.x, nominal_radius_);
-  geometry_->place(motion_of(in), at_height);
+  geometry_->place(motion, at_height);
 }
 
 grid wheel_contact::choose_grid(const patch_region &r) const {
@@ -280,6 +282,8 @@ void wheel_contact::solve_patch(patch_contact &solver, patch_region &region, int
   const double before = out.force[2];
   add_force(region, depth, wrench, result.normal_force, out);
   if (solver.scene().turns()) add_turning_force(region, memory.turning.about_x, out);
+  if (rules_.blended && (sections_ || wheel_sections_))
+    add_section_force(solver.scene(), region, problem, memory, out);
   vertical_[static_cast<size_t>(index)] = (before - out.force[2]) / region.share;
   // beyond a profile's end there is no surface: an edge in contact is outside the theory
   if (region.at_profile_end)
@@ -353,6 +357,54 @@ void wheel_contact::add_turning_force(const patch_region &region, double turning
                                       rp_side_result &out) const {
   const vec3 centre = region.frame.origin - geometry_->lever(region.frame);
   add_yielding(scaled(region.share * turning, region.angle_slope), centre, out.force, out.moment);
+}
+
+// What the pressures' energy changes by as the rail's profile goes over into that farther on is the
+// wheel's force along the track, and as the wheel's goes over into that of another pitch its moment
+// about the axle. The force acts on the axle in the plane of the wheel's profile, whose place along
+// the track is that of the rail's.
+void wheel_contact::add_section_force(const patch_scene &scene, const patch_region &region,
+                                      const patch_problem &problem, const patch_memory &memory,
+                                      rp_side_result &out) const {
+  const grid &g = problem.g;
+  struct energy_of_rows final : section_visitor {
+    const patch_scene &scene;
+    const patch_problem &problem;
+    const patch_memory &memory;
+    int first = 0;
+    double sum = 0;
+    energy_of_rows(const patch_scene &s, const patch_problem &p, const patch_memory &m)
+        : scene(s), problem(p), memory(m) {}
+    void meet(int row, double rate) override {
+      const hertz_contact &ellipse = problem.hertz;
+      const double load =
+          scene.closed_form()
+              ? load_of_row(ellipse.semi_axes[1], ellipse.normal_force, problem.g, first + row)
+              : load_of_row(problem.g, memory.pressure.data(), first + row);
+      if (load > 0) sum += load * rate;
+    }
+  };
+  // by the place of the rail, deeper where it rises, and by the wheel's pitch
+  double energy[2] = {0, 0};
+  const surface_grid on{g.nx, g.ny, g.x0, g.y0, g.dx, g.dy};
+  for (int k = 0; k < 2; ++k) {
+    const body which = k == 0 ? body::rail : body::wheel;
+    if (!geometry_->varies(which)) continue;
+    energy_of_rows rows(scene, problem, memory);
+    if (!memory.curved) geometry_->section_heights(which, region.frame, on, rows);
+    for (; memory.curved && rows.first < g.ny; ++rows.first)
+      if (memory.curved->valid(rows.first))
+        geometry_->section_heights(which, memory.curved->frame(rows.first),
+                                   {g.nx, 1, g.x0, 0.0, g.dx, g.dy}, rows);
+    energy[k] = k == 0 ? -rows.sum : rows.sum;
+    if (scene.turns()) energy[k] += memory.turning.about_x * region.angle_rate[k];
+  }
+  const double along = -region.share * energy[0], pitching = -region.share * energy[1];
+  const vec3 &axle = geometry_->wheel_offset(), about = geometry_->pitch_direction();
+  out.force[0] += along;
+  out.moment[1] += axle[2] * along;
+  out.moment[2] -= axle[1] * along;
+  for (size_t k = 0; k < 3; ++k) out.moment[k] += pitching * about[k];
 }
 
 // The rail's material stays where it is on the rail, while the wheel moves on by the distance

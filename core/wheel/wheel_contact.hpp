@@ -104,6 +104,9 @@ class wheel_contact {
   void add_force(const patch_region &region, double depth, patch_wrench wrench, double normal_force,
                  rp_side_result &out) const;
   void add_turning_force(const patch_region &region, double turning, rp_side_result &out) const;
+  void add_section_force(const patch_scene &scene, const patch_region &region,
+                         const patch_problem &problem, const patch_memory &memory,
+                         rp_side_result &out) const;
   // Sets what the last step left behind for the patch of a region; past: of max_patches.
   void set_past(const patch_memory *memory, int index, const patch_region &region,
                 patch_problem &problem, past_tractions *past) const;

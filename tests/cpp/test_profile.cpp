@@ -430,7 +430,7 @@ TEST(GaugeFace, IsTheLeastLateralPositionDownToItsHeight) {
           if (at.z > top + height) break;
           least = std::min(least, at.y);
         }
-        EXPECT_NEAR(p.innermost(height), least, step) << face << ' ' << lean << ' ' << height;
+        EXPECT_NEAR(p.innermost(height).y, least, step) << face << ' ' << lean << ' ' << height;
       }
     }
   }
@@ -451,7 +451,7 @@ TEST(RailSections, BlendLinearlyBetweenTheirPositions) {
   const double positions[3] = {-1.0, 2.0, 2.5};
   profile_sections sections(views, positions, 3);
   double last = HUGE_VAL;
-  int first_before = 0;
+  int first_before = 0, second_before = 0;
   double share_before = 0;
   for (const double x : {-3.0, -1.5, -1.0, -0.25, -0.25, 1.999, 2.0, 2.1, 2.5, 2.6, 7.0, 0.5}) {
     size_t a = 0, b = 0;
@@ -464,8 +464,10 @@ TEST(RailSections, BlendLinearlyBetweenTheirPositions) {
       a = b = 2;
     bool changed = false;
     const profile_view v = sections.at(x, changed);
-    EXPECT_EQ(changed, static_cast<int>(a) != first_before || w != share_before) << x << last;
+    const bool moved = static_cast<int>(a) != first_before || static_cast<int>(b) != second_before;
+    EXPECT_EQ(changed, moved || w != share_before) << x << last;
     first_before = static_cast<int>(a);
+    second_before = static_cast<int>(b);
     share_before = w;
     ASSERT_EQ(v.n, 9);
     const double length = (1 - w) * lengths[a] + w * lengths[b];
