@@ -154,6 +154,26 @@ def test_mass_over_the_profiles(wear: str, basis: str) -> None:
             assert found.y[depth.argmax()] == pytest.approx(at, abs=4e-3)
 
 
+def test_distributions_take_numbers_alone() -> None:
+    """By name."""
+    contact = Contact({**WHEELSET, "damage": {}})
+    contact.step()
+    ((share, rows), *_) = contact.wear_rows()["left"]
+    found = Distribution()
+    for way in (np.nan, np.inf, -1.0):
+        with pytest.raises(CaseError, match=r"way: value is .*, allowed >= 0 and finite"):
+            found.add(rows, way, share)
+    for wrong in (np.nan, -0.1, 1.1):
+        with pytest.raises(CaseError, match=r"share: value is .*, allowed 0 to 1"):
+            found.add(rows, 1.0, wrong)
+    assert found.mass("wheel") == 0
+    with pytest.raises(CaseError, match="body: value is 'roller', allowed 'wheel', 'rail'"):
+        found.mass("roller")
+    for density, length in ((np.nan, 1.0), (7850.0, 0.0), (-7850.0, 1.0)):
+        with pytest.raises(CaseError, match=r"(density|length): value is .*, allowed > 0"):
+            found.depth("wheel", density, length)
+
+
 def test_wear_does_not_depend_on_the_number_of_sub_steps() -> None:
     """A wheelset that moves from 2 to 3 mm: mass by 8 and by 16 steps within 2 % (0.1 % here)."""
     masses = []

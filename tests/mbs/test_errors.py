@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import mbs_samples as samples
 import numpy as np
 import pinocchio as pin
@@ -101,6 +103,24 @@ def test_derivatives_need_a_step_and_the_option(asked):
     element = ForceElement(samples.model(), "wheelset", case)
     with pytest.raises(CaseError):
         element.derivatives()
+
+
+def test_numbers_that_are_none():
+    """By name; a joint twice would have its forces twice."""
+    model = samples.model()
+    with pytest.raises(ValueError, match="joint: value is 'wheelset' twice, allowed once"):
+        ForceElement(model, ["wheelset", "wheelset"], samples.CASE)
+    for speed in (math.nan, math.inf):
+        with pytest.raises(CaseError, match=r"frame_speed: value is .*, allowed a finite number"):
+            ForceElement(model, "wheelset", samples.CASE, frame_speed=speed)
+    element = ForceElement(model, "wheelset", samples.CASE)
+    for seconds in ("1", None, True, math.nan, -1.0):
+        with pytest.raises(CaseError, match=r"seconds: value is .*, allowed >= 0 and finite"):
+            element.pass_time(seconds)
+    for index in (1, -1, 0.5, None, True):
+        for asked in (element.state, element.result, element.derivatives):
+            with pytest.raises(CaseError, match=r"index: value is .*, allowed 0 to 0"):
+                asked(index)
 
 
 def test_lists_of_different_length():

@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from railpatch.case.types import BODIES, show
 from railpatch.errors import CaseError
 
 Array = NDArray[np.float64]
 LOW, HIGH, BINS = -0.2, 0.2, 1600  # m, of a profile's y
+ROUNDED = 1e-9  # of shares
 
 
 class Distribution:
@@ -30,8 +32,10 @@ class Distribution:
 
     def add(self, rows: dict[str, Array], way: float, share: float = 1.0) -> None:
         """Rows of a patch (railpatch.damage.patch) over a way (m), with its share in the wheel.
-        Raises CaseError for those of a patch given by itself."""
-        for body in ("wheel", "rail"):
+        Raises CaseError for those of a patch given by itself, and a way or share that is none."""
+        check_number("way", way, 0 <= way < math.inf, ">= 0 and finite")
+        check_number("share", share, 0 <= share <= 1 + ROUNDED, "0 to 1")
+        for body in BODIES:
             if body not in rows:
                 raise CaseError(["rows: of a patch without profiles, allowed those of a wheel"])
             place = rows[body]
@@ -55,15 +59,27 @@ class Distribution:
             self.outside[body] += mass
 
     def depth(self, body: str, density: float, length: float) -> Array:
-        """m, [BINS], that has worn off, measured across y. length: m, over which the mass is
-        spread: round the wheel, or along the rail."""
-        mass = self.wheel if body == "wheel" else self.rail
-        return mass / (density * length)
+        """m, [BINS], that has worn off, measured across y. density: kg/m^3. length: m, over which
+        the mass is spread: round the wheel, or along the rail. Raises CaseError."""
+        check_number("density", density, 0 < density < math.inf, "> 0 and finite")
+        check_number("length", length, 0 < length < math.inf, "> 0 and finite")
+        return self._of(body) / (density * length)
 
     def mass(self, body: str) -> float:
-        """kg, all of it."""
-        mass = self.wheel if body == "wheel" else self.rail
+        """kg, all of it. Raises CaseError."""
+        mass = self._of(body)
         return float(mass.sum() * (self.edges[1] - self.edges[0])) + self.outside[body]
+
+    def _of(self, body: str) -> Array:
+        if body not in BODIES:
+            raise CaseError([f"body: value is {show(body)}, allowed 'wheel', 'rail'"])
+        return self.wheel if body == "wheel" else self.rail
+
+
+def check_number(name: str, value: float, good: bool, allowed: str) -> None:
+    """Raises CaseError where it is not good."""
+    if not good:
+        raise CaseError([f"{name}: value is {show(value)}, allowed {allowed}"])
 
 
 def summed(numbers: list[tuple[float, dict[str, Any]]]) -> dict[str, float | None]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Sequence
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -95,6 +96,11 @@ class ForceElement:
         if len(cases) != len(joints):
             raise CaseError(f"case: value is a list of {len(cases)}, allowed {len(joints)}")
         self.joints = [joint_index(model, name) for name in joints]
+        for at, (name, index) in enumerate(zip(joints, self.joints, strict=True)):
+            if index in self.joints[:at]:
+                raise ValueError(f"joint: value is {name!r} twice, allowed once: one wheelset each")
+        if not math.isfinite(frame_speed):
+            raise CaseError(f"frame_speed: value is {show(frame_speed)}, allowed a finite number")
         self.contacts = [Contact(one, folder=folder, timing=timing) for one in cases]
         for contact in self.contacts:
             check_case(contact.case)
@@ -172,7 +178,8 @@ class ForceElement:
         wheel_temperature. Cases without that table do not change with time. Raises CaseError for a
         negative time.
         """
-        if not 0 <= seconds < math.inf:
+        number = isinstance(seconds, Real) and not isinstance(seconds, bool)
+        if not number or not 0 <= seconds < math.inf:
             raise CaseError(f"seconds: value is {show(seconds)}, allowed >= 0 and finite")
         if any(self._stores):
             self._core.pass_time(float(seconds))
@@ -220,6 +227,7 @@ class ForceElement:
 
     def derivatives_by_side(self, index: int = 0) -> Matrix:
         """[2, 6, 12], the same of left and right wheel."""
+        self._check(index)
         solves, found = self._derivatives[index]
         if solves != self.solves:
             jacobian = self.contacts[index].jacobian()
@@ -276,6 +284,7 @@ class ForceElement:
         x, y, z in m, roll, yaw, pitch in rad, speed, vy, vz in m/s, roll_rate, yaw_rate, pitch_rate
         in rad/s, as in the case's [wheelset]; pitch is within half a turn.
         """
+        self._check(index)
         return dict(zip(STATE, self._states[index].tolist(), strict=True))
 
     @property
@@ -402,8 +411,15 @@ class ForceElement:
         self._whole(index, False)
         return self.contacts[index].wear_rows()
 
+    def _check(self, index: int) -> None:
+        """Raises CaseError for the number of a wheelset that is none."""
+        if isinstance(index, bool) or index not in range(len(self.joints)):
+            most = len(self.joints) - 1
+            raise CaseError(f"index: value is {show(index)}, allowed 0 to {most}")
+
     def _whole(self, index: int, fields: bool) -> dict[str, Any]:
         """A result's content, with what the case asks for."""
+        self._check(index)
         contact, raw = self.contacts[index], self._core.result(index)
         if contact._asked is None:
             return contact._data(raw, np.nan, fields)
