@@ -279,6 +279,24 @@ def test_refused_by_name(tables: dict[str, Any], text: str) -> None:
         solve(patch(**tables))
 
 
+def test_slip_of_each_element_wears() -> None:
+    """As the creepage that it stands for; what goes by the wear number, which has creepages alone,
+    is refused or not there."""
+    x = (np.arange(16) - 7.5) * 6e-4
+    gap = 1.0 * x**2 + 1.5 * x[:, None] ** 2
+    plain = patch(grid={"element_size": [6e-4, 6e-4]}, damage={})
+    plain |= {"geometry": {"undeformed_distance": gap.tolist()}, "load": {"normal_force": 5e3}}
+    plain["motion"] = {"creepage": [1e-3, 0.0], "rolling_speed": 10.0}
+    field = {**plain, "motion": {"creepage": [0.0, 0.0], "rolling_speed": 10.0}}
+    field["motion"]["slip_field"] = [[[1e-3] * 16] * 16, [[0.0] * 16] * 16]
+    wanted, found = (solve(case)["damage"] for case in (plain, field))
+    assert found["wear_rate"] == pytest.approx(wanted["wear_rate"], rel=1e-9)
+    assert wanted["whole_life_damage"] is not None
+    assert found["whole_life_damage"] is None
+    with pytest.raises(CaseError, match=r"damage.basis: value is 'patch', allowed 'elements'"):
+        solve({**field, "damage": {"basis": "patch"}})
+
+
 def test_refused_where_results_are_not_of_a_contact() -> None:
     """Many states at once have no such tables."""
     with pytest.raises(CaseError, match="damage"):

@@ -75,6 +75,9 @@ def test_measures_are_those_of_the_tensors() -> None:
         ({"depth": [1e-3, np.nan]}, "depth: value is not finite"),
         ({"depth": []}, "depth: value has shape"),
         ({"depth": "1 mm"}, "depth: value is '1 mm'"),
+        ({"depth": ["1e-3"]}, "depth: value is .*, allowed numbers"),
+        ({"depth": [True]}, "depth: value is .*, allowed numbers"),
+        ({"depth": np.ma.masked_array([1e-3, 2e-3], [0, 1])}, "allowed numbers"),
         ({"depth": [1e-3], "dang_van": 4.0}, "dang_van: value is 4"),
     ],
 )

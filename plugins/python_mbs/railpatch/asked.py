@@ -128,6 +128,9 @@ class Asked:
             speed=speed,
             fast=self._case.method.tangential in FAST,
         )
+        if getattr(self._case.motion, "slip_field", None) is not None:
+            # the wear number has the creepages alone
+            numbers["whole_life_damage"] = None
         arrays = numbers.pop("fields", {})
         if fields:
             numbers["fields"] = {**arrays, **{f"row_{name}": v for name, v in rows.items()}}

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from railpatch import _core
+from railpatch.case.arrays import plain_numbers
 from railpatch.case.asked import refuse_asked, refuse_changes
 from railpatch.case.load import Case, Scene, load_scene
 from railpatch.case.moving import moving_keys, refuse_unknown
@@ -337,15 +338,9 @@ def columns_of(case: Case, inputs: Mapping[str, Any]) -> tuple[dict[Place, NDArr
 
 
 def numbers_of(name: str, value: Any, kind: np.dtype) -> NDArray[Any]:
-    """An input's numbers as the core has them; text, truth values, complex numbers and what an
-    array masks are none, and integers have no fractions. Raises CaseError."""
-    try:
-        given = np.asarray(value)
-        numbers = given.astype(float) if given.dtype.kind in "iuf" else None
-    except (TypeError, ValueError):
-        numbers = None
-    if numbers is None or np.ma.is_masked(value):
-        raise CaseError(f"{name}: value is {show(value)}, allowed numbers")
+    """An input's numbers as the core has them: finite, and integers without fractions. Raises
+    CaseError."""
+    numbers = plain_numbers(name, value)
     wrong = ~np.isfinite(numbers)
     if wrong.any():
         state = np.argwhere(wrong)[0][:1]

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from railpatch import _core
+from railpatch.case.arrays import plain_numbers
 from railpatch.case.theories import has_tractions
 from railpatch.case.types import BODIES, SIDES
 from railpatch.errors import CaseError
@@ -109,10 +110,7 @@ class Subsurface:
 
 def numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
     """Finite ones. Raises CaseError."""
-    try:
-        found = np.ascontiguousarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise CaseError(f"{name}: value is {value!r}, allowed numbers") from None
+    found = np.ascontiguousarray(plain_numbers(name, value))
     if not np.isfinite(found).all():
         raise CaseError(f"{name}: value is not finite, allowed finite numbers")
     return found

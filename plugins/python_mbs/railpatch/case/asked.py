@@ -173,6 +173,9 @@ def check_asked(case: Any, line: bool) -> Problems:
     elif case.damage.basis == "elements" and (without or fitted):
         why = "fitted rows" if fitted else f"method.tangential = {method.tangential!r}"
         yield relation("damage.basis", "'elements'", f"'patch' with {why}")
+    elif case.damage.basis == "patch" and getattr(case.motion, "slip_field", None) is not None:
+        allowed = "'elements' with motion.slip_field, which the wear number has not"
+        yield relation("damage.basis", "'patch'", allowed)
 
 
 def refuse_asked(case: Any, where: str) -> None:

@@ -17,6 +17,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
+from railpatch.case.arrays import plain_numbers
 from railpatch.case.gap import read_rows
 from railpatch.case.load import Scene
 from railpatch.case.patch import PatchCase
@@ -36,7 +37,7 @@ class Irregularity:
     """
 
     def __init__(self, x: ArrayLike, deviations: ArrayLike) -> None:
-        positions, values = np.asarray(x, dtype=float), np.asarray(deviations, dtype=float)
+        positions, values = plain_numbers(KEY, x), plain_numbers(KEY, deviations)
         if positions.ndim != 1 or positions.size < 2 or values.shape != (positions.size, 4):
             shapes = f"{positions.shape} and {values.shape}"
             raise CaseError(f"{KEY}: shapes are {shapes}, allowed n >= 2 and n rows of 4")
