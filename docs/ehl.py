@@ -5,7 +5,8 @@ The contact of docs/fluids.md: R_x 0.46 m, R_y 0.30 m, 80 kN, water of 20 degree
 
     python docs/ehl.py docs/ehl.svg
 
-With --grid in place of the file it prints the table of grids.
+With --grid in place of the file it prints the table of grids, with --moes that of circular contacts
+by Moes's numbers.
 """
 
 from __future__ import annotations
@@ -114,8 +115,50 @@ def refine() -> None:
             print(f"| {name}, {speed:g} m/s | {cells} |")
 
 
+def circle(load: float, growth: float, elements: int) -> tuple[dict[str, Any], float]:
+    """A smooth circular contact of Moes's numbers, as in tests/cpp/test_ehl.cpp: M of the load, L
+    of the viscosity's growth; and R U^(1/2) (m), the unit of films."""
+    modulus, ratio, radius, viscosity, alpha = 1.1e11, 0.3, 0.02, 0.04, 2.2e-8
+    stiffness = 2 * modulus
+    speed = (growth / (alpha * stiffness)) ** 4
+    case = {
+        "kind": "patch",
+        "material": {"shear_modulus": modulus * (1 - ratio), "poisson_ratio": ratio},
+        "geometry": {"curvatures": [0.5 / radius, 0.5 / radius]},
+        "load": {"normal_force": load * speed**0.75 * stiffness * radius**2},
+        "grid": {"elements": [elements, elements]},
+        "motion": {
+            "creepage": [0.0, 0.0],
+            "rolling_speed": speed * stiffness * radius / (2 * viscosity),
+        },
+        "fluid": {
+            "model": "ehl",
+            "roughness": 1e-9,
+            "boundary_friction": 0.1,
+            "viscosity": viscosity,
+            "pressure_coefficient": alpha,
+        },
+    }
+    return case, radius * speed**0.5
+
+
+def moes() -> None:
+    """The docs' table: central and least films of circular contacts over the fit of film."""
+    for load, growth in ((20.0, 5.0), (100.0, 10.0)):
+        for elements in (12, 24, 48):
+            case, unit = circle(load, growth, elements)
+            r = railpatch.Contact(case).step(fields=True)
+            fluid = {**case["fluid"], "model": "film"}
+            fit = railpatch.Contact({**case, "fluid": fluid}).step()["central_film_thickness"]
+            film, least = r["central_film_thickness"], np.min(r["film_thickness"])
+            cells = f"{film / unit:.3f} | {least / unit:.3f} | {100 * (film / fit - 1):+.1f}"
+            print(f"| {load:g}, {growth:g} | {elements} | {cells} |")
+
+
 if __name__ == "__main__":
     if sys.argv[1] == "--grid":
         refine()
+    elif sys.argv[1] == "--moes":
+        moes()
     else:
         draw(Path(sys.argv[1]))

@@ -18,6 +18,7 @@ RP_PLAUSIBLE_RANGES(RAILPATCH_RANGE)
 constexpr double steel_range[2] = {6e10, 1e11};   // Pa, shear moduli of steels are 7.5e10 to 8.5e10
 constexpr double pressure_range[2] = {1e7, 5e9};  // Pa
 constexpr double water_range[2] = {0, 100};       // degrees C, where water is a liquid
+constexpr double thick_film = 1e-4;               // m, of a liquid between the bodies
 constexpr double doubtful_size = 0.06;            // m, diameter of the circle of a contact's area
 constexpr double play_range[2] = {0.04, 0.12};    // m, gauge minus flange back distance
 constexpr double least_flange = 0.015;            // m, height of a profile that has one
@@ -96,7 +97,8 @@ uint32_t warnings_of_patch(const rp_config &config, const rp_patch_result &patch
            bit(RP_WARNING_SIZE, !line && width > doubtful_size);
   found |= bit(RP_WARNING_WATER, config.fluid_model != RP_FLUID_NONE &&
                                      config.fluid_liquid == RP_LIQUID_WATER &&
-                                     outside(patch.fluid_temperature, water_range));
+                                     outside(patch.fluid_temperature, water_range)) |
+           bit(RP_WARNING_THICK_FILM, patch.central_film_thickness > thick_film);
   bool coarse = false;
   for (int k = 0; k < (line ? 1 : 2); ++k) {
     // a grid of the case's own number has a border around it

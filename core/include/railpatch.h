@@ -183,7 +183,9 @@ enum {
   X(RP_WARNING_SPEED, 21, "a speed is above 200 m/s")                                              \
   X(RP_WARNING_CURVATURES, 22,                                                                     \
     "a radius of the bodies is outside 2 mm to 20 m: greatest of "                                 \
-    "curvatures, in 1/m, or line_contact_radius, in m")
+    "curvatures, in 1/m, or line_contact_radius, in m")                                            \
+  X(RP_WARNING_THICK_FILM, 23,                                                                     \
+    "a film is thicker than 0.1 mm, beyond what its formula is of: fluid.viscosity, in Pa s")
 
 #define RP_ENUM_ENTRY(name, value, text) name = value,
 typedef enum rp_error { RP_ERRORS(RP_ENUM_ENTRY) } rp_error;

@@ -242,10 +242,31 @@ TEST(Ehl, LineContactConvergesWithOrder) {
   EXPECT_NEAR(film[1] / film[2], 1, 0.01);
 }
 
+// Of a circular contact: second order, whose limit is above the fit of Nijenbanning, Venner and
+// Moes where the liquid is incompressible, as docs/ehl.md tells.
+TEST(Ehl, CircularContactConvergesWithOrder) {
+  double film[3];
+  bench b;
+  for (int k = 0; k < 3; ++k) {
+    const int sizes[] = {16, 24, 36};
+    b = bench::point(20, 5, sizes[k]);
+    const ehl_result r = b.solve();
+    ASSERT_TRUE(r.converged) << told(r);
+    film[k] = b.central();
+  }
+  const double shrinks = (film[1] - film[0]) / (film[2] - film[1]);
+  const double order = std::log(shrinks) / std::log(1.5);
+  EXPECT_NEAR(order, 2, 0.3) << film[0] << " " << film[1] << " " << film[2];
+  const double limit = film[2] + (film[2] - film[1]) / (shrinks - 1);
+  film_contact c{{radius, radius}, 2 * modulus,   b.problem.force,
+                 b.problem.speed,  oil_viscosity, alpha};
+  EXPECT_NEAR(limit * b.unit / elliptic_film(c).at().thickness, 1, 0.1);
+}
+
 // Circular contact: the fit of Nijenbanning, Venner and Moes, and load, mass and complementarity.
 TEST(Ehl, CircularContactHasThePublishedFilm) {
   bench b = bench::point(20, 5, 48);
-  b.problem.liquid.compressible = true;  // as in the fit
+  b.problem.liquid.compressible = true;
   const ehl_result r = b.solve();
   ASSERT_TRUE(r.converged) << told(r);
   film_contact c{{radius, radius}, 2 * modulus,   b.problem.force,
