@@ -187,6 +187,41 @@ def test_a_refused_change_leaves_the_inputs() -> None:
     assert contact.case == load_scene(with_values(PATCH, load__normal_force=5e4)).case
 
 
+WATER = {"model": "film", "roughness": 1e-6, "liquid": "water", "temperature": 20.0}
+GAP = [[1e-9 * (i - 5) ** 2 + 1e-9 * (j - 5) ** 2 for i in range(11)] for j in range(11)]
+NOTHING: dict[str, dict[str, Any]] = {
+    "creepage": PATCH,
+    "water_rate": with_values(PATCH, fluid={**WATER, "water_rate": 1e-9}),
+    "oil_film": with_values(PATCH, fluid={**WATER, "oil_film": 1e-7}),
+    "water_temperature": with_values(PATCH, fluid=WATER),
+    "slip_field": with_values(
+        PATCH,
+        geometry={"undeformed_distance": GAP},
+        grid={"element_size": [1e-5, 1e-5]},
+        load={"normal_force": 1e-2},
+        motion__slip_field=[[[0.0] * 11] * 11] * 2,
+    ),
+    "y": LOADED,
+    "axle_torque": with_values(LOADED, wheelset__pitch_rate="free", wheelset__axle_torque=10.0),
+    "roller_pitch_rate": with_values(
+        LOADED,
+        track={"kind": "roller", "roller_radius": 1.0, "roller_pitch_rate": 2.0},
+        wheelset__speed=0.0,
+    ),
+}
+
+
+@pytest.mark.parametrize("key", NOTHING)
+def test_a_step_leaves_nothing_out(key: str) -> None:
+    """Before the first step and in steps that go on; what was there stays."""
+    contact = railpatch.Contact(NOTHING[key])
+    for _ in range(2):
+        with pytest.raises(railpatch.CaseError, match=f"{key}.*value is None"):
+            contact.step(**{key: None})
+        contact.step()
+    assert contact.case == load_scene(NOTHING[key]).case
+
+
 def test_fields_add_up_to_the_resultants() -> None:
     result = railpatch.solve(with_values(PATCH, motion__spin_creepage=0.3), fields=True)
     x, y, p, t = (result[key] for key in ("x", "y", "pressure", "traction"))

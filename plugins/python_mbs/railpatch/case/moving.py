@@ -43,6 +43,9 @@ def changed_case(case: Case, changes: Mapping[str, Any]) -> Case:
     refuse_unknown(changes, keys, "")
     tables: dict[str, dict[str, Any]] = {}
     for key, value in plain(changes).items():
+        if value is None:
+            # the core would have the value of its start in place of none
+            raise CaseError(f"{key}: value is None, allowed a value: a step leaves nothing out")
         values = tables.setdefault(keys[key], {})
         if key not in BY_TABLE:
             values[OF_STEP.get(keys[key], {}).get(key, key)] = value
