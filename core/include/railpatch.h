@@ -787,9 +787,10 @@ typedef struct rp_patch_result {
   double friction_power;     /* W, that friction turns into heat: the part of creep_power that the
                                 layer does not take (Polach: without spin) and, of unlike bodies,
                                 what the pressure supplies by its moment against rolling; of FASTSIM
-                                traction times micro-slip. In shift and transient rolling also less
-                                what elastic energy grows by; elsewhere >= 0 */
-  double plastic_power;      /* W, >= 0, of the layer's plastic displacement; RP_SHIFT: both in J */
+                                traction times micro-slip. In transient rolling also less what
+                                elastic energy grows by; elsewhere >= 0. RP_SHIFT: J, of elements
+                                that slide against their bound once their traction is there */
+  double plastic_power;      /* W, >= 0, of the layer's plastic displacement; RP_SHIFT: J */
   double elastic_energy;     /* J; NaN for a line contact on fitted rows */
   int32_t normal_iterations; /* conjugate-gradient steps; evaluations of the fast theories */
   int32_t newton_iterations; /* of the tangential problem */
@@ -822,11 +823,12 @@ typedef struct rp_patch_result {
   double element_size[2];     /* m; fitted rows: 0 */
   double creep_power;         /* W, that creepages and spin supply: -(creep_force . creepage +
                                  spin_moment spin_creepage) rolling_speed, by every theory; over the
-                                 rolling speed it is T gamma. In shift and transient rolling force
-                                 and moment are the means of the step's both ends, and creepage is
-                                 that of its middle. RP_SHIFT: J, without the speed. What friction
-                                 and layer take of it: friction_power, plastic_power; in shift and
-                                 transient rolling the rest is the tractions' elastic energy */
+                                 rolling speed it is T gamma. In transient rolling force and moment
+                                 are the means of the step's both ends, and creepage is that of its
+                                 middle. RP_SHIFT: J, along a way on which elements stick first and
+                                 slide then. What friction and layer take of it: friction_power,
+                                 plastic_power; in shift and transient rolling the rest is the
+                                 tractions' elastic energy */
   double wheel_heat, rail_heat; /* W, into each body: its part of friction and plastic work by the
                                    effusivities, and what it gets from the other one. NaN: no
                                    temperature in the scene, or exchanged in transient rolling */
@@ -840,7 +842,9 @@ typedef struct rp_patch_result {
    * temperature, and the friction coefficient that follows, factors of the law included */
   double central_film_thickness, mean_asperity_share, fluid_temperature, effective_friction;
   double wear_number;          /* N, T gamma: |Fx xi| + |Fy eta| + |M phi| of creep_force, creepage,
-                                  spin_moment and spin_creepage above; RP_SHIFT: J */
+                                  spin_moment and spin_creepage above, of each step as it ends, also
+                                  where the regime changes; 0 at rolling_speed 0. Of rolling:
+                                  RP_SHIFT: NaN */
   double traction_coefficient; /* -, length of creep_force over normal_force; NaN without contact */
   double utilised_friction; /* -, length of creep_force over what friction could carry: the sum of
                                the elements' friction coefficients times pressure, as solved;

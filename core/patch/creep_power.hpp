@@ -29,14 +29,17 @@ inline double creep_power_rate(const rp_patch_result &r, const rp_patch_result &
 }
 
 // N, T gamma with each product by its size (Pearce and Sherratt 1991). force, moment: of the
-// tractions, N and N m.
+// tractions, N and N m. Of rolling: by the way that is rolled, so that of a shift there is none,
+// and 0 where nothing rolls.
 inline double wear_number(const double force[2], double moment, const rp_patch_result &r) {
+  if (!(r.rolling_speed > 0)) return 0;
   return std::fabs(force[0] * r.creepage[0]) + std::fabs(force[1] * r.creepage[1]) +
          std::fabs(moment * r.spin_creepage);
 }
 
 // A product that is zero has a kink there: the mean of both sides, which is none.
 inline double wear_number_rate(const rp_patch_result &r, const rp_patch_result &d) {
+  if (!(r.rolling_speed > 0)) return 0;
   const auto rate = [](double f, double c, double df, double dc) {
     const double change = df * c + f * dc;
     return f * c < 0 ? -change : f * c > 0 ? change : 0.0;

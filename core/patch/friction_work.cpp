@@ -80,13 +80,12 @@ void tangential_stage::close_step(const patch_problem &problem, const rolling_in
   work += 0.5 * (now.moment[2] + before.moment) * rolling.spin_creepage;
   if (problem.slip_field) work += field_work(problem, rolling, memory);
   found.supplied = -work;
-  // of unlike bodies pressure has its part in the energy: friction is counted where it is
-  if (shared_.coupled) {
-    find_friction(problem, rolling, memory);
-    t.friction = total(shared_.friction.data(), static_cast<size_t>(g.count())) * g.dx * g.dy;
-    return;
-  }
   const double grown = (found.elastic_energy - before.energy) / rolling.distance;
+  const bool moves = rolling.creepage[0] != 0 || rolling.creepage[1] != 0 ||
+                     rolling.spin_creepage != 0 || rolling.force || problem.slip_field;
+  if (has_physics && problem.shifts && moves)
+    return close_shift(problem, rolling, memory, grown, t, found);
+  if (shared_.coupled) return close_coupled(problem, rolling, memory, t, found);
   const double largest =
       std::max(std::abs(found.supplied), (found.elastic_energy + before.energy) / rolling.distance);
   const double taken = beyond_rounding(found.supplied - grown, largest);
@@ -100,6 +99,20 @@ void tangential_stage::close_step(const patch_problem &problem, const rolling_in
   const double factor = taken / (t.friction + plastic);
   t.friction *= factor;
   found.plastic_power *= factor;
+}
+
+// Of unlike bodies pressure has its part in the energy: friction and the layer's part are counted
+// where they are.
+void tangential_stage::close_coupled(const patch_problem &problem, const rolling_input &rolling,
+                                     const patch_memory &memory, tangential_result &t,
+                                     traction_outcome &found) {
+  const grid &g = problem.g;
+  find_friction(problem, rolling, memory);
+  t.friction = total(shared_.friction.data(), static_cast<size_t>(g.count())) * g.dx * g.dy;
+  if (!shared_.scene.yields() || problem.past) return;
+  const double plastic = plastic_works(problem, rolling, memory).by_mean;
+  found.plastic_power = std::max(plastic, 0.0);
+  t.friction += std::min(plastic, 0.0);
 }
 
 // The same on a curved reference surface. Every row has a rigid slip of its own, and pressure moves

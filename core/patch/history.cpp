@@ -14,6 +14,7 @@ patch_history::patch_history(int max_count, bool steps, bool moves, const bound_
     last_angle = aligned_buffer<double>(static_cast<size_t>(curved));
     last_pressure = aligned_buffer<double>(n);
   }
+  if (steps && !moves && curved == 0) last_pressure = aligned_buffer<double>(n);
   if (steps)
     for (auto *b : {&last_px, &last_py, &energy, &last_energy}) *b = aligned_buffer<double>(n);
   if (!law) return;
@@ -33,12 +34,14 @@ size_t patch_history::bytes() const {
   return step_bytes() + plastic_bytes() + after.bytes() + friction.bytes();
 }
 
-void patch_history::begin(const grid &g, double upstream, const double *px, const double *py) {
+void patch_history::begin(const grid &g, double upstream, const double *px, const double *py,
+                          const double *pressure) {
   if (!keeps_steps()) return;
   const auto count = static_cast<size_t>(g.count());
   if (!begun) {
     // fresh material everywhere, without traction
     for (auto *b : {&last_px, &last_py, &last_energy}) std::fill_n(b->data(), count, 0.0);
+    if (last_pressure.size()) std::fill_n(last_pressure.data(), count, 0.0);
     if (has_law()) std::fill_n(before.data(), count, carried_state{{0, 0, 0}});
     for (auto &p : plastic_before)
       if (p.size()) std::fill_n(p.data(), count, 0.0);
@@ -46,6 +49,8 @@ void patch_history::begin(const grid &g, double upstream, const double *px, cons
     std::copy_n(px, count, last_px.data());
     std::copy_n(py, count, last_py.data());
     std::copy_n(energy.data(), count, last_energy.data());
+    if (pressure && last_pressure.size() && last_angle.size() == 0)
+      std::copy_n(pressure, count, last_pressure.data());
     if (has_law()) shift_states(g, upstream);
     for (int c = 0; c < 2; ++c)
       if (plastic[c].size())

@@ -42,16 +42,19 @@ struct patch_history {
   // of wheels: creepages, spin, rolling speed (m/s) and way per second along x at the last step's
   // end
   std::array<double, 5> last_rolling{};
-  // of a curved reference surface: inclinations of the last step's rows (rad, track axes), its
-  // pressure, and what the curve and the pressure added to forces and spin moment
-  aligned_buffer<double> last_angle, last_pressure;
+  // Pa, of the last step, where the grid stays, and on a curved reference surface
+  aligned_buffer<double> last_pressure;
+  // of a curved reference surface: inclinations of the last step's rows (rad, track axes), and what
+  // the curve and the pressure added to forces and spin moment
+  aligned_buffer<double> last_angle;
   std::array<double, 3> bent{}, last_bent{};
   aligned_buffer<carried_state> before, after;
   aligned_buffer<double> plastic_before[2], plastic[2], yield_stress, friction;
 
   // Begins a step: what the last one left becomes what was before, moved with the material from
-  // x + upstream to x. Also where there is no law.
-  void begin(const grid &g, double upstream, const double *px, const double *py);
+  // x + upstream to x. Also where there is no law. pressure: of the last step, where it is kept.
+  void begin(const grid &g, double upstream, const double *px, const double *py,
+             const double *pressure = nullptr);
   // The same for wheels: keeps the last step's tractions, and what a law carries, while this one is
   // solved, once or often.
   void remember(const grid &g, const std::array<double, 3> &reference, double share,

@@ -42,7 +42,8 @@ void patch_contact::begin_step(const patch_problem &problem, patch_memory &memor
   const stage_mark mark = shared_.marks.enter(RP_STAGE_HISTORY);
   if (shared_.coupled)
     shared_.coupled->remember(problem.g, memory.history.begun ? memory.pressure.data() : nullptr);
-  memory.history.begin(problem.g, problem.rolling.upstream(), memory.px.data(), memory.py.data());
+  memory.history.begin(problem.g, problem.rolling.upstream(), memory.px.data(), memory.py.data(),
+                       memory.pressure.data());
 }
 
 void patch_contact::remember(patch_memory &memory) const {
@@ -58,7 +59,8 @@ void patch_contact::remember(patch_memory &memory) const {
 heat_outcome patch_contact::leave_contact(const rolling_input &step, patch_memory &memory) {
   memory.warm = false;
   if (!memory.history.begun) return {};
-  memory.history.begin(memory.g, step.upstream(), memory.px.data(), memory.py.data());
+  memory.history.begin(memory.g, step.upstream(), memory.px.data(), memory.py.data(),
+                       memory.pressure.data());
   patch_problem nothing;
   nothing.g = memory.g;
   nothing.rolling = step;

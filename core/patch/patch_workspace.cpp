@@ -22,7 +22,8 @@ patch_workspace::patch_workspace(const patch_scene &of, stage_marks at, const ff
   if (scene.closed_form()) return;
   for (auto &b : scratch) b = aligned_buffer<double>(static_cast<size_t>(max_count));
   const bool sheared = scene.has_ehl() && scene.full_on_grid() && scene.fluid->eyring_stress > 0;
-  const bool steps = scene.keeps_steps() && (scene.couples() || scene.slip_by_element);
+  const bool shifts = !scene.moves && (scene.changes || scene.regime == motion::shift);
+  const bool steps = scene.keeps_steps() && (scene.couples() || scene.slip_by_element || shifts);
   if (!scene.heat && !steps && !sheared) return;
   for (auto *b : {&friction, &mean[0], &mean[1], &moved[0], &moved[1]})
     *b = aligned_buffer<double>(static_cast<size_t>(max_count));

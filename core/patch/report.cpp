@@ -56,8 +56,9 @@ void describe(const patch_scene &scene, const patch_problem &problem, const pres
   result.spin_creepage = problem.rolling.spin_creepage;
 }
 
-void describe_tractions(const patch_scene &scene, const traction_outcome &t,
-                        const patch_wrench &wrench, rp_patch_result &result) {
+void describe_tractions(const patch_scene &scene, const patch_problem &problem,
+                        const traction_outcome &t, const patch_wrench &wrench,
+                        rp_patch_result &result) {
   for (int c = 0; c < 2; ++c)
     if (scene.prescribed[c]) result.creepage[c] = t.creepage[c];
   result.creep_force[0] = wrench.force[0];
@@ -67,7 +68,7 @@ void describe_tractions(const patch_scene &scene, const traction_outcome &t,
   result.creep_power =
       std::isnan(t.supplied) ? creep_power(result, result.rolling_speed) : t.supplied;
   const patch_wrench &own = t.own ? *t.own : wrench;
-  result.wear_number = wear_number(own.force, own.moment[2], result);
+  result.wear_number = problem.shifts ? nan : wear_number(own.force, own.moment[2], result);
   const double size = hypot(own.force[0], own.force[1]);
   if (result.normal_force > 0) result.traction_coefficient = size / result.normal_force;
   if (t.capacity > 0) result.utilised_friction = size / t.capacity;
@@ -101,7 +102,7 @@ void report(const patch_scene &scene, const patch_problem &problem, const pressu
   result.contact_area = n.contact_area;
   std::copy_n(n.size, 2, result.contact_size);
   result.elastic_energy = result.pressure_energy = n.elastic_energy;
-  if (scene.tangential != RP_TANGENTIAL_NONE) describe_tractions(scene, t, wrench, result);
+  if (scene.tangential != RP_TANGENTIAL_NONE) describe_tractions(scene, problem, t, wrench, result);
   describe_heat(h, result);
 }
 
@@ -117,6 +118,7 @@ void report_unloaded(const patch_scene &scene, const patch_problem &problem,
                      const pressure_outcome &n, const heat_outcome &h, rp_patch_result &result) {
   describe(scene, problem, n, result);
   set_unloaded(scene, result);
+  if (problem.shifts) result.wear_number = nan;
   describe_heat(h, result);
 }
 

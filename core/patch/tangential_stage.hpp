@@ -15,6 +15,12 @@
 
 namespace railpatch {
 
+// N, of plastic displacement over the way of a step, by the mean traction of both ends and by the
+// mean yield stress of both.
+struct plastic_sums {
+  double by_mean = 0, by_yield = 0;
+};
+
 class tangential_stage {
  public:
   tangential_stage(patch_workspace &shared, const fft_plans &plans, int max_nx, int max_ny);
@@ -73,6 +79,14 @@ class tangential_stage {
   // of friction_work.cpp
   void close_step(const patch_problem &problem, const rolling_input &rolling, patch_memory &memory,
                   tangential_result &t, traction_outcome &found);
+  void close_coupled(const patch_problem &problem, const rolling_input &rolling,
+                     const patch_memory &memory, tangential_result &t, traction_outcome &found);
+  // of shift_work.cpp
+  void close_shift(const patch_problem &problem, const rolling_input &rolling,
+                   const patch_memory &memory, double grown, tangential_result &t,
+                   traction_outcome &found);
+  plastic_sums plastic_works(const patch_problem &problem, const rolling_input &rolling,
+                             const patch_memory &memory) const;
   void close_curved(const patch_problem &problem, const rolling_input &rolling,
                     patch_memory &memory, tangential_result &t, traction_outcome &found);
   double supplied_to_rows(const patch_problem &problem, const patch_memory &memory) const;

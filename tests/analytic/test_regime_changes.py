@@ -191,9 +191,14 @@ def test_work_through_a_change() -> None:
         grown = (now["elastic_energy"] - last["elastic_energy"]) * rate
         assert now["creep_power"] - grown == pytest.approx(now["friction_power"], rel=1e-6)
         if not rolls:
-            # of rolling, what has just left contact slips too, and no field shows it
-            mean = 0.5 * (np.array(last["traction"]) + np.array(now["traction"]))
-            taken = -(mean * np.array(now["micro_slip"])).sum() * area
+            # of rolling, what has just left contact slips too, and no field shows it. Here what
+            # slid on the same way slides on, and other elements slide once they are at the bound
+            before, traction = np.array(last["traction"]), np.array(now["traction"])
+            bound = 0.3 * np.array(now["pressure"])
+            slid = np.hypot(*before) > (1 - 1e-6) * bound
+            slid &= (before * traction).sum(axis=0) > 0
+            against = np.where(slid, 0.5 * (before + traction), traction)
+            taken = -(against * np.array(now["micro_slip"])).sum() * area
             assert taken == pytest.approx(now["friction_power"], rel=1e-5)
         last = now
 
@@ -255,3 +260,22 @@ def test_steps_are_refused_by_name() -> None:
         falling.step(regime="shift")
     with pytest.raises(railpatch.CaseError, match="regime"):
         railpatch.Contact(PATCH).step(regime="shift")
+
+
+def test_wear_number_is_of_rolling() -> None:
+    """|Fx xi| + |Fy eta| + |M phi| of each step that rolls, as it ends, whatever was before, by the
+    metre: of a shift and without tractions there is none, at standstill nothing is worn."""
+    contact = railpatch.Contact(point())
+    for regime in ("shift", "transient_rolling", "steady_rolling", "shift", "transient_rolling"):
+        rolls = regime != "shift"
+        creepage = [8e-4, 4e-4] if rolls else [1e-6, -2e-6]
+        spin = 0.1 if rolls else 0.0
+        now = contact.step(regime=regime, creepage=creepage, spin_creepage=spin)
+        parts = [*(np.array(now["creep_force"]) * creepage), now["spin_moment"] * spin]
+        found = now["wear_number"]
+        assert found == pytest.approx(np.abs(parts).sum(), rel=1e-12) if rolls else np.isnan(found)
+    still = contact.step(regime="transient_rolling", rolling_speed=0.0)
+    assert np.hypot(*still["creep_force"]) > 0
+    assert still["wear_number"] == still["creep_power"] == 0
+    alone = railpatch.solve(with_values(point(), motion={"regime": "none"}, friction=None))
+    assert np.isnan(alone["wear_number"])

@@ -21,6 +21,7 @@ from railpatch.evidence.stress.inelastic import (
     inelastic_findings,
 )
 from railpatch.evidence.stress.liquids import greatest_of, liquid_findings
+from railpatch.evidence.stress.shift import beyond_the_mean, rubbed_in_shift
 from railpatch.evidence.stress.step import Finding, Step, curvatures_of
 
 # a solver measures its residual in its own way: over all elements together, by its own scale
@@ -107,10 +108,12 @@ def power_findings(step: Step, most: float) -> Iterator[Finding]:
     if size == 0:
         return
     limit = IMPOSED * step.tolerance
-    if step.history_known:
+    # of shift the way within the step counts, which the forces at its ends do not tell: see
+    # energy_balance
+    if step.history_known and step.regime != "shift":
         miss = abs(step.patch["creep_power"] - supplied_power(step))
         yield Finding("creep power", miss / size, SUMS)
-    if step.regime == "steady_rolling":
+    if step.regime == "steady_rolling" or (step.regime == "shift" and any(step.motion)):
         yield Finding("friction takes power", -step.patch["friction_power"] / size, limit)
     if np.isfinite(step.patch["plastic_power"]):
         yield Finding("plastic work", -step.patch["plastic_power"] / size, limit)
@@ -275,7 +278,8 @@ def energy_balance(step: Step) -> float:
     The work of the creepages, by the tractions at both ends of the step, is what friction and
     plastic displacement take as the result says, and what the bodies store or lose: the change of
     the tractions' energy by their displacements, which are computed again. Friction's part is also
-    the work of its elements by the solver's own slip, where material moves by whole ones.
+    the work of its elements by the solver's own slip, where material moves by whole ones. Of shift
+    the way within the step counts (shift.py).
     """
     if not step.good or not step.has("traction") or not step.has("pressure") or step.fitted:
         return float("nan")
@@ -289,6 +293,8 @@ def energy_balance(step: Step) -> float:
         return float("nan")
     time = step.rolled / speed
     work = supplied_power(step) * time
+    if step.regime == "shift":
+        work += beyond_the_mean(step)
     plastic = step.patch["plastic_power"]
     taken = (step.patch["friction_power"] + (plastic if np.isfinite(plastic) else 0.0)) * time
     stored = 0.0
@@ -301,6 +307,8 @@ def energy_balance(step: Step) -> float:
     if size == 0:
         return 0.0
     missing = abs(work - taken - stored)
+    if step.regime == "shift":
+        missing = max(missing, abs(step.patch["creep_power"] - work))
     if whole_elements(step) and not step.has("plastic_displacement"):
         missing = max(missing, abs(rubbed(step) - taken))
     return missing / size
@@ -328,6 +336,8 @@ def rubbed(step: Step) -> float:
     """J, what friction takes in the elements. Force and moment, which supply it, are summed at the
     elements' places at both ends of the step, while the spin acts where its term is read."""
     now, before = (p[1].sum() * step.area for p in (step["traction"], step.traction_before))
+    if step.regime == "shift" and any(step.motion):
+        return rubbed_in_shift(step)
     # N m, of both ends about the place of the spin term
     moment = 0.5 * ((now + before) * step.spin_offset - before * step.ahead)
     return float(step.friction_work.sum() * step.area + moment * step.motion[2] * step.rolled)
