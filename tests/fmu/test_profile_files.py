@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes as ct
 import zipfile
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -130,17 +131,50 @@ def test_a_state_carries_them(tmp_path: Path) -> None:
         assert slave.outputs() == expected
 
 
+def ended(lines: list[str]) -> str:
+    """A file of these lines, with its checksum."""
+    text = "".join(lines)
+    return f"{text}end {zlib.crc32(text.encode('ascii')):08x}\n"
+
+
 def test_bad_files_are_refused_and_change_nothing(tmp_path: Path) -> None:
     fmu = packed(tmp_path, RAIL, profile_files=True)
     good = prepared(tmp_path, "cone@1:20", "wheel")
     text = good.read_text()
+    lines = text.splitlines(True)
+    count = int(lines[4].split()[1])
     bad = {
         "absent": (None, "cannot be read, tried"),
         "other": ("y,z\n0,0\n", "it is no prepared profile"),
         "altered": (text.replace("0.0", "0.1", 1), "its checksum is wrong"),
         "cut": (text[: len(text) // 2], "it has no end: it was cut off"),
         "cut at its end": (text[:-3], "it has no end: it was cut off"),
-        "with a line of its own": (text.replace("\nend ", "\nown 1\nend "), "is not understood"),
+        "with a line of its own": (
+            text.replace("\nend ", "\nown 1\nend "),
+            "line 9 is not understood: begins with 'own', expected body, name, arc_length",
+        ),
+        "cut in its y": ("".join(lines[:4]) + lines[4][:60], f"'y' announces {count} values and"),
+        "with its y cut": (
+            "".join([*lines[:4], " ".join(lines[4].split()[:-3]) + "\n", *lines[5:]]),
+            f"line 5 is not understood: 'y' announces {count} values and has {count - 3}",
+        ),
+        "with a word": (
+            text.replace("\nz ", "\nz x"),
+            "line 6 is not understood: 'z' says no count, expected a whole number",
+        ),
+        "with a comma": (
+            "".join([*lines[:4], f"y {count} 0,1 " + lines[4].split(" ", 3)[3], *lines[5:]]),
+            "line 5 is not understood: 'y' has '0,1' as value 1, expected a finite number",
+        ),
+        "of nobody": (
+            text.replace("body wheel", "body tyre"),
+            "line 2 is not understood: 'body' is 'tyre', expected wheel or rail",
+        ),
+        "without its dz": (ended(lines[:7]), "its array 'dz' is missing"),
+        "with a short dz": (
+            ended([*lines[:7], "dz 2 0.0 0.0\n"]),
+            f"its arrays differ in length: 'arc_length' has {count} values, 'dz' has 2",
+        ),
         "short": ("".join(text.splitlines(True)[:-1]), "it has no end"),
         "empty": ("", "it has no end"),
     }
