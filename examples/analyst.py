@@ -80,5 +80,5 @@ print(", ".join(sorted(run.counts)))
 # %% [markdown]
 # ## From here
 #
-# - [Logs, reports, viewers](../logs.md): every option of `report`, `export` and `layout`.
-# - [Channels](../log_channels.md): every field with its unit and frame.
+# - [Logs, reports, viewers](../docs/logs.md): every option of `report`, `export` and `layout`.
+# - [Channels](../docs/log_channels.md): every field with its unit and frame.

@@ -128,6 +128,6 @@ assert advised < 0.1 / frequency
 # %% [markdown]
 # ## From here
 #
-# - [Co-simulation](../cosimulation.md): longest steps of five masters from 0.2 to 80 m/s, and the energy they make.
-# - [FMU](../fmu.md): kinds, model exchange, derivatives, other systems; [who has imported it](../fmu_clients.md).
-# - [Every variable](../reference/fmu_variables.md).
+# - [Co-simulation](../docs/cosimulation.md): longest steps of five masters from 0.2 to 80 m/s, and the energy they make.
+# - [FMU](../docs/fmu.md): kinds, model exchange, derivatives, other systems; [who has imported it](../docs/fmu_clients.md).
+# - [Every variable](../plugins/fmu/variables.toml).

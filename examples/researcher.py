@@ -87,7 +87,7 @@ assert abs(rate["creep_force"][0] / difference - 1) < 1e-3
 # %% [markdown]
 # ## From here
 #
-# - [Theories](../theories.md): what each one gives; [accuracy](../accuracy.md): its error and its run time.
-# - [Physics](../physics.md): falling friction, layers that yield, temperature, transient rolling, with sources.
-# - [Many states](../many_states.md) on several threads, [sweeps](../sweeps.md) on a cluster.
-# - [Parameters from points](../matching.md): a creep curve that was measured, and what it tells.
+# - [Theories](../docs/theories.md): what each one gives; [accuracy](../docs/accuracy.md): its error and its run time.
+# - [Physics](../docs/physics.md): falling friction, layers that yield, temperature, transient rolling, with sources.
+# - [Many states](../docs/many_states.md) on several threads, [sweeps](../docs/sweeps.md) on a cluster.
+# - [Parameters from points](../docs/matching.md): a creep curve that was measured, and what it tells.

@@ -153,6 +153,6 @@ assert friction.low < 0.45 < friction.high
 # %% [markdown]
 # ## From here
 #
-# - [Measured runs](../measured_runs.md): every column, unit and filter. [Profiles](../profiles.md): your own files.
-# - [Parameters from points](../matching.md): several parameters at once, explanations compared.
-# - [Keys of a rig](../reference/keys/rig.md), [commands](../reference/commands.md).
+# - [Measured runs](../docs/measured_runs.md): every column, unit and filter. [Profiles](../docs/profiles.md): your own files.
+# - [Parameters from points](../docs/matching.md): several parameters at once, explanations compared.
+# - [Keys of a rig](../rig_model/tables.py), [commands](../plugins/python_mbs/railpatch/command/cli.py).

@@ -112,6 +112,6 @@ figure
 # %% [markdown]
 # ## From here
 #
-# - [Vehicle](../vehicle.md): the model, the curve, time steps, run times. [Track](../track.md): curves and irregularities.
-# - [Profiles](../profiles.md): what is read of files, noise, smoothing. [Wheelset in balance](../balance.md).
-# - [Keys of a vehicle](../reference/keys/vehicle.md): every one with its unit and range.
+# - [Vehicle](../docs/vehicle.md): the model, the curve, time steps, run times. [Track](../docs/track.md): curves and irregularities.
+# - [Profiles](../docs/profiles.md): what is read of files, noise, smoothing. [Wheelset in balance](../docs/balance.md).
+# - [Keys of a vehicle](../wheelset_demo/vehicle/scene.py): every one with its unit and range.

@@ -5,27 +5,14 @@ from __future__ import annotations
 import re
 import sys
 from pathlib import Path
-from posixpath import normpath, relpath
 from typing import Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from mkdocs.structure.files import File, Files, InclusionLevel
 
-from making import ROOT, book, reference, tutorials
+from making import ROOT, book, links, reference, tutorials
 
-# files of the checkout that are pages or stand beside them, by what links name
-PROJECT = {
-    "CHANGELOG.md": "project/changelog.md",
-    "CONTRIBUTING.md": "project/contributing.md",
-    "core/README.md": "project/core.md",
-    "plugins/python_mbs/README.md": "project/python.md",
-    "LICENSE": "project/LICENSE.txt",
-    "NOTICE": "project/NOTICE.txt",
-    "core/include/railpatch.h": "reference/c_header.md",
-    "examples/README.md": "index.md",
-    **{f"examples/{script.name}": f"tutorials/{script.stem}.md" for script in tutorials.scripts()},
-}
 STYLE = """
 .md-grid { max-width: 78rem; }
 .md-typeset table:not([class]) { font-size: .68rem; }
@@ -38,13 +25,12 @@ STYLE = """
 .figure { background: #fff; }
 """
 FETCHED = re.compile(r'src="https://unpkg\.com/iframe-worker/[^"]*"')
-LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(([^)#\s]+)(#[^)\s]*)?\)")
 
 
 def on_files(files: Files, config: Any) -> Files:
     """Adds what is made."""
     made = reference.pages() | reference.index() | tutorials.pages() | book.pages()
-    for source, target in PROJECT.items():
+    for source, target in links.PROJECT.items():
         if target.startswith("project/"):
             made[target] = (ROOT / source).read_text(encoding="utf-8")
     made["making_style.css"] = STYLE
@@ -60,21 +46,7 @@ def on_files(files: Files, config: Any) -> Files:
 
 def on_page_markdown(markdown: str, page: Any, config: Any, files: Files) -> str:
     """Links by the places in the checkout become links in the site."""
-    here = page.file.src_uri
-    own = (s for s, target in PROJECT.items() if target == here and target.startswith("project/"))
-    source = next(own, f"docs/{here}")
-
-    def led(match: re.Match[str]) -> str:
-        text, target, anchor = match[1], match[2], match[3] or ""
-        if "://" in target or target.startswith("mailto:"):
-            return match[0]
-        place = normpath(f"{Path(source).parent.as_posix()}/{target}")
-        inside = place.removeprefix("docs/") if place.startswith("docs/") else PROJECT.get(place)
-        if inside is None:
-            return f"`{place}`" if text.strip("`") == target else f"{text} (`{place}`)"
-        return f"[{text}]({relpath(inside, Path(here).parent.as_posix())}{anchor})"
-
-    return LINK.sub(led, markdown)
+    return links.led(markdown, page.file.src_uri)
 
 
 def on_post_page(output: str, page: Any, config: Any) -> str:

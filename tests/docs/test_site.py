@@ -7,6 +7,7 @@ import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from posixpath import normpath
 from typing import Any
 
 import click
@@ -18,7 +19,7 @@ from railpatch.command.cli import cli
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "docs"))
 
-from making import book, reference, tutorials  # noqa: E402
+from making import book, links, reference, tutorials  # noqa: E402
 
 LINK = re.compile(r"(?<!!)\[[^\]]*\]\(([^)#\s]+)(?:#[^)\s]*)?\)|!\[[^\]]*\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
@@ -40,6 +41,20 @@ def test_links_lead_somewhere(page: Path) -> None:
     targets = [a or b for a, b in LINK.findall(text)]
     local = [t for t in targets if "://" not in t and not t.startswith("mailto:")]
     assert [t for t in local if not (page.parent / t).exists()] == []
+
+
+@pytest.mark.parametrize("script", tutorials.scripts(), ids=lambda s: s.stem)
+def test_links_of_examples_hold_in_checkout_and_site(made: dict[str, str], script: Path) -> None:
+    text = "\n".join(cell.source for cell in tutorials.cells(script) if cell.is_text)
+    targets = [t for t, _ in LINK.findall(text) if "://" not in t]
+    assert targets
+    assert [t for t in targets if not (script.parent / t).exists()] == []
+    page = f"tutorials/{script.stem}.md"
+    led = [t for t, _ in LINK.findall(links.led(text, page)) if "://" not in t]
+    assert len(led) == len(targets)
+    pages = {normpath(f"tutorials/{t}") for t in led}
+    known = {p.name for p in (ROOT / "docs").glob("*.md")} | set(made)
+    assert pages - known == set()
 
 
 def test_every_page_is_in_the_site() -> None:
