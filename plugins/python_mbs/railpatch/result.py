@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from html import escape
 from typing import Any, Protocol
@@ -253,6 +253,26 @@ def grid_of(patch: dict[str, Any]) -> dict[str, Any]:
     }
 
 
+# of the greatest component beside it, and of a patch's normal force (over a metre for moments):
+# less is what the solver's tolerance leaves where 0 is meant, by symmetry for instance
+NOISE = 1e-7
+NOISE_OF_LOAD = {"N": 1e-9, "N m": 1e-11}
+
+
+def noise_of(unit: str, load: float | None) -> float:
+    """What is printed as 0 below, in the unit, beside a load (N)."""
+    return NOISE_OF_LOAD.get(unit, 0.0) * abs(load or 0.0)
+
+
+def six_digits(values: Sequence[float], least: float = 0.0) -> list[str]:
+    """Numbers of one quantity for people: 0 for what is least or less, or noise beside the others.
+    Empty for NaN."""
+    size = max((abs(v) for v in values if math.isfinite(v)), default=0.0)
+    least = max(least, NOISE * size if len(values) > 1 else 0.0)
+    shown = (0.0 if abs(v) <= least else v + 0.0 for v in values)
+    return ["" if math.isnan(v) else f"{v:.6g}" for v in shown]
+
+
 def _html_table(title: str, quantities: dict[str, Any]) -> str:
     """What is a number, some numbers or a text."""
     units = {**PATCH_UNITS, **PLACE_UNITS, **WHEEL_UNITS, **WHEELSET_UNITS}
@@ -263,8 +283,13 @@ def _html_table(title: str, quantities: dict[str, Any]) -> str:
             continue
         if not all(isinstance(v, str | int | float) for v in values):
             continue
-        shown = ", ".join(f"{v:.6g}" if isinstance(v, float) else str(v) for v in values)
-        cells = (name, shown, units.get(name, ""))
+        unit = units.get(name, "")
+        floats = [v for v in values if isinstance(v, float)]
+        if len(floats) == len(values):
+            texts = six_digits(floats, noise_of(unit, quantities.get("normal_force")))
+        else:
+            texts = [f"{v:.6g}" if isinstance(v, float) else str(v) for v in values]
+        cells = (name, ", ".join(texts), unit)
         rows.append("".join(f"<td>{escape(cell)}</td>" for cell in cells))
     body = "".join(f"<tr>{row}</tr>" for row in rows)
     return f"<table><caption>{escape(title)}</caption>{body}</table>"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from rich.console import Console
@@ -10,7 +9,15 @@ from rich.table import Table
 
 from railpatch.case.scene_profiles import note_lines
 from railpatch.case.types import SIDES
-from railpatch.result import PATCH_UNITS, PLACE_UNITS, WHEEL_UNITS, WHEELSET_UNITS, Result
+from railpatch.result import (
+    PATCH_UNITS,
+    PLACE_UNITS,
+    WHEEL_UNITS,
+    WHEELSET_UNITS,
+    Result,
+    noise_of,
+    six_digits,
+)
 
 # told in lines of their own, not in columns
 IN_WORDS = ("reason", "warnings")
@@ -52,7 +59,9 @@ def patch_table(columns: list[tuple[str, dict[str, Any]]], units: dict[str, str]
     for key, unit in units.items():
         if key in IN_WORDS:
             continue
-        cells = [spell(patch[key]) for _, patch in columns]
+        cells = [
+            spell(patch[key], noise_of(unit, patch.get("normal_force"))) for _, patch in columns
+        ]
         if any(cells):
             table.add_row(key, unit, *cells)
     add_asked(table, [patch for _, patch in columns])
@@ -101,14 +110,16 @@ def new_table(names: list[str], title: str) -> Table:
     return table
 
 
-def spell(value: Any) -> str:
-    """Six digits; empty for what is left out."""
-    if value is None or (isinstance(value, float) and math.isnan(value)):
+def spell(value: Any, least: float = 0.0) -> str:
+    """Six digits; empty for what is left out. least: by size, of a number that is not noise."""
+    if value is None:
         return ""
     if isinstance(value, float):
-        return f"{value + 0.0:.6g}"
+        return six_digits([value], least)[0]
     if isinstance(value, list):
-        return " ".join(spell(item) for item in value)
+        if value and all(isinstance(item, float) for item in value):
+            return " ".join(six_digits(value, least))
+        return " ".join(spell(item, least) for item in value)
     if isinstance(value, dict):
         shown = {name: spell(item) for name, item in value.items() if item}
         return ", ".join(f"{text} {name}" for name, text in shown.items() if text)

@@ -19,10 +19,16 @@ def table(head: Sequence[str], rows: Iterable[Sequence[object]], css: str = "") 
     return "".join([*parts, "</table></div>"])
 
 
+# of numbers of pages, which are in units for people (kN, mm, MPa): less is rounding
+ROUNDING = 1e-12
+
+
 def number(value: float) -> str:
-    """Four digits, large numbers whole; a dash where there is no number."""
+    """Four digits, large numbers whole; a dash where there is no number, 0 for rounding."""
     if not np.isfinite(value):
         return "-"
+    if abs(value) < ROUNDING:
+        return "0"
     return f"{value:.4g}".replace("-", "\u2212") if abs(value) < 9999.5 else whole(value)
 
 
