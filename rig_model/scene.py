@@ -201,8 +201,10 @@ def checked_parts(content: Any, model: type[Table], table: Any, name: str) -> li
     problems: list[str] = []
     checked = []
     for check in (
-        lambda: check_case(content, beside=(name,)),
-        lambda: check_table(model, table, name),
+        lambda: check_case(content, beside={name: model}),
+        lambda: check_table(
+            model, table, name, among=({name: model, **WheelsetCase.model_fields},)
+        ),
     ):
         try:
             checked.append(check())

@@ -203,8 +203,10 @@ def load_wheelset_scene(
     file. Raises CaseError with every problem.
     """
     path = scene_file(DEFAULT) if path is None else Path(path)
-    checks = {name: partial(check_present, name, model) for name, model in MODELS.items()}
-    return load_checked(path, "wheelset", checks, check_run, WheelsetScene, overrides)
+    checks = {
+        name: partial(check_present, name, model, tables=MODELS) for name, model in MODELS.items()
+    }
+    return load_checked(path, "wheelset", checks, check_run, WheelsetScene, overrides, MODELS)
 
 
 def contact_scene(path: Path) -> tuple[str, Scene]:
@@ -212,11 +214,20 @@ def contact_scene(path: Path) -> tuple[str, Scene]:
     return path.stem, Scene(load_wheelset_scene(path).case, path.parent)
 
 
-def check_present(name: str, model: type[Table], table: Any) -> Any:
-    """A table that may not be left out. Raises CaseError."""
+def check_present(
+    name: str, model: type[Table], table: Any, tables: Mapping[str, Any] | None = None
+) -> Any:
+    """A table that may not be left out. tables: of the scene's own, by name. Raises CaseError."""
     if table is None:
-        raise CaseError(f"{name}: value is missing, allowed {model.__doc__}")
-    return check_table(model, table, name)
+        keys = ", ".join(model.model_fields)
+        said = (model.__doc__ or "").rstrip(".")
+        raise CaseError(f"{name}: value is missing, allowed {said}: a table [{name}] of {keys}")
+    return check_table(model, table, name, among=file_of(tables or {}))
+
+
+def file_of(tables: Mapping[str, Any]) -> tuple[dict[str, Any], ...]:
+    """A scene's file by its tables, those of the contact among them, for messages."""
+    return ({**tables, **WheelsetCase.model_fields},)
 
 
 def load_checked(
@@ -226,11 +237,12 @@ def load_checked(
     check_all: Callable[..., None],
     scene: Callable[..., Loaded],
     overrides: Mapping[str, Any] | None,
+    models: Mapping[str, Any],
 ) -> Loaded:
     """A scene of a command: tables of its own, each with its check, beside those of a case.
 
-    check_all: of tables and case together. scene: makes the scene of all of them. Raises CaseError
-    with every problem.
+    models: of those tables, for messages. check_all: of tables and case together. scene: makes the
+    scene of all of them. Raises CaseError with every problem.
     """
     content = plain(read_toml(path))
     refuse_others(content, command)
@@ -240,7 +252,7 @@ def load_checked(
         tables["run"] = {**tables["run"], **given}
     problems: list[str] = []
     checked: dict[str, Any] = {}
-    for name, check in (*checks.items(), ("case", partial(check_case, beside=tuple(checks)))):
+    for name, check in (*checks.items(), ("case", partial(check_case, beside=models))):
         try:
             checked[name] = check(content if name == "case" else tables[name])
         except CaseError as error:

@@ -11,6 +11,9 @@ import pytest
 from case_samples import PATCH, WHEELSET, with_values
 from railpatch import Contact, _core
 from railpatch.case import CaseError, load_scene
+from railpatch.case.homes import keys_in, models_in
+from railpatch.case.kinds import kind_of
+from railpatch.case.load import check_table
 from railpatch.case.to_core import config_of
 
 THEORIES = [f"'{word}'" for word in ("none", *_core.THEORIES)]
@@ -240,6 +243,41 @@ def test_every_problem_is_told_at_once_with_a_hint() -> None:
         "along_track, scale; did you mean 'coefficient'?",
         "method.tolerance: value is 'small', allowed a number",
     ]
+
+
+@pytest.mark.parametrize("kind", ["patch", "wheelset", "vehicle", "rig", "curve", "wheelset_run"])
+def test_every_key_in_another_table_is_led_to_its_own(kind: str) -> None:
+    """Of every table of a file of this kind: its keys, in every other one that has none of that
+    name, are answered by the name of a table that has it."""
+    fields = kind_of(kind).model.model_fields
+    tables = {name: next(models_in(of.annotation), None) for name, of in fields.items()}
+    keys: dict[str, set[str]] = {}
+    for key, table in keys_in(fields):
+        keys.setdefault(key, set()).add(table)
+    assert len(keys) > 60
+    for name, model in tables.items():
+        if model is None:
+            continue
+        strange = {key: "?" for key in keys if key not in model.model_fields}
+        with pytest.raises(CaseError) as caught:
+            check_table(model, strange, name, among=(fields,))
+        told = {line.split(":")[0]: line for line in caught.value.problems}
+        for key in strange:
+            said = told[f"{name}.{key}"].split(f"; {key!r} is a key of ")[1]
+            wanted = {table or "the top of the file" for table in keys[key]}
+            assert any(said.startswith(table) for table in wanted), (name, key, said)
+
+
+def test_a_key_of_another_kind_is_led_to_it() -> None:
+    (problem,) = problems_of(with_values(PATCH, motion__nominal_radius=0.46))
+    assert problem.endswith("; 'nominal_radius' is a key of [wheelset]")
+    (problem,) = problems_of(with_values(PATCH, regime="shift"))
+    assert problem.endswith("; 'regime' is a key of [motion]")
+    (problem,) = problems_of(with_values(PATCH, grid__rolling_sped=10.0))
+    assert problem.endswith("; did you mean 'rolling_speed' of [motion]?")
+    # where a near key stands in its own table, that comes first
+    (problem,) = problems_of(with_values(PATCH, friction__coeficient=0.3))
+    assert problem.endswith("; did you mean 'coefficient'?")
 
 
 def test_toml_errors_name_the_file(tmp_path: Path) -> None:

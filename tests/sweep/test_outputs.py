@@ -65,6 +65,10 @@ def test_values_of_a_run(name: str, value: float) -> None:
     ("name", "told"),
     [
         ("fores[1]", "'fores' is none of status, force"),
+        ("fores[1]", "; did you mean 'force'?"),
+        ("left.patches.angel", "'angel' is none of p, angle; did you mean 'angle'?"),
+        ("max(/weel.z)", "; did you mean '/wheel'?"),
+        ("max(/wheel.forse)", "; did you mean 'force'?"),
         ("force", "has 3 values, allowed one of them by [0] or one of min, max"),
         ("left", "allowed one of it: z, patches"),
         ("left.patches.q", "'q' is none of p, angle"),

@@ -149,10 +149,26 @@ def test_joints_beyond_the_run() -> None:
         ("[run]", "[suport]\n[run]", "comfort, run, dip, wet; did you mean 'support'?"),
         ("[run]", "[comfort]\n[run]", "comfort.point: value is missing, allowed at least one [["),
         ("[run]", "[[dip]]\nposition = 60.0\n[run]", "dip[0].angle: value is missing, allowed rad"),
+        ("[run]", "[[dip]]\nlengt = 1.0\n[run]", "rails; did you mean 'length'?"),
+        ("[run]", "[dip]\nangle = 0.02\n[run]", "[[dip]] tables, with the keys position, angle"),
+        ("[run]", "[[comfort]]\n[run]", "allowed a table [comfort], with the keys point, start"),
+        ("[run]", "[comfort]\npoint = 1\n[run]", "[[comfort.point]] tables, with the keys name"),
+        ("[vehicle]", "[vehicle]\ndrive = 3", "[[vehicle.drive]] tables, with the keys wheelsets"),
+        (
+            "[vehicle]",
+            "[vehicle]\nmass = 3.0",
+            "'mass' is a key of [[vehicle.body]], [[vehicle.whee",
+        ),
+        ("[run]", "[run]\npatch_rule = 'contact'", "'patch_rule' is a key of [method]"),
+        ("[wheelset]", "[wheelset]\npatch_rule = 'contact'", "'patch_rule' is a key of [method]"),
+        ("[method]", "[method]\nspeed_control = 1.0", "'speed_control' is a key of [run]"),
+        ("[run]", "[run]\npad_stifness = 1.0", "did you mean 'pad_stiffness' of [support]?"),
+        ("[run]", "[support]\nangle = 1.0\n[run]", "'angle' is a key of [[dip]]"),
     ],
 )
 def test_unknown_and_missing_keys(tmp_path: Path, old: str, new: str, words: str) -> None:
-    """What is allowed stands there, also of tables in lists and of tables beside the case's."""
+    """What is allowed stands there, also of tables in lists and of tables beside the case's; a key
+    of another table is answered by that table's name."""
     text = scene_file("vehicle_straight.toml").read_text(encoding="utf-8")
     path = tmp_path / "own.toml"
     path.write_text(text.replace(old, new, 1), encoding="utf-8")

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from pydantic import Field
 from railpatch.case.load import Scene, check_case, check_table
 from railpatch.case.track import Irregularity
-from railpatch.case.types import NotNegative, Table
+from railpatch.case.types import NotNegative, Table, show
 from railpatch.case.wheel import WheelsetCase
 from railpatch.errors import CaseError
 from railpatch.log.stream import SCENE_RATE
@@ -22,6 +22,7 @@ from wheelset_demo.scene import (
     RunScene,
     check_kind,
     check_present,
+    file_of,
     found_profiles,
     load_checked,
     scene_file,
@@ -99,6 +100,8 @@ TABLES: dict[str, type[Table]] = {
 }
 # lists of tables, none of which is needed
 LISTS: dict[str, type[Table]] = {"dip": DipTable, "wet": WetTable}
+# all of them, as a file has them
+OWN: dict[str, Any] = {**TABLES, **{name: list[table] for name, table in LISTS.items()}}  # type: ignore[valid-type]
 OPTIONAL = ("alignment", "irregularity", "support", "measured_track", "comfort")
 
 
@@ -191,7 +194,7 @@ def load_vehicle_scene(
     path = scene_file(DEFAULT) if path is None else Path(path)
     checks = {name: partial(checked_table, name) for name in TABLES}
     checks |= {name: partial(checked_list, name) for name in LISTS}
-    scene = load_checked(path, "vehicle", checks, check_run, VehicleScene, overrides)
+    scene = load_checked(path, "vehicle", checks, check_run, VehicleScene, overrides, OWN)
     scene = with_own_profiles(scene, path.parent)
     table = scene.measured_track
     if table is None:
@@ -225,7 +228,7 @@ def checked_table(name: str, table: Any) -> Any:
     """One table of the scene, by name. Raises CaseError."""
     if table is None and name in OPTIONAL:
         return AlignmentTable() if name == "alignment" else None
-    return check_present(name, TABLES[name], table)
+    return check_present(name, TABLES[name], table, OWN)
 
 
 def comfort_problems(comfort: ComfortTable, run: RunTable, vehicle: VehicleTable) -> list[str]:
@@ -252,10 +255,17 @@ def checked_list(name: str, tables: Any) -> tuple[Any, ...]:
     """A list of tables, [[dip]] or [[wet]]; none where it is left out. Raises CaseError."""
     if tables is None:
         return ()
-    if not isinstance(tables, list):
-        raise CaseError(f"{name}: value is {tables!r}, allowed a list of [[{name}]] tables")
     kind = LISTS[name]
-    return tuple(check_table(kind, one, f"{name}[{index}]") for index, one in enumerate(tables))
+    if not isinstance(tables, list):
+        keys = ", ".join(kind.model_fields)
+        raise CaseError(
+            f"{name}: value is {show(tables)}, allowed a list of [[{name}]] tables, with the keys "
+            f"{keys}"
+        )
+    return tuple(
+        check_table(kind, one, f"{name}[{index}]", among=file_of(OWN))
+        for index, one in enumerate(tables)
+    )
 
 
 def check_run(

@@ -12,6 +12,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BaseModel, Field, TypeAdapter, ValidationError
 
+from railpatch.case.homes import Tables
 from railpatch.case.messages import problems
 from railpatch.case.patch import PatchCase
 from railpatch.case.types import show
@@ -127,8 +128,8 @@ def plain(value: Any) -> Any:
 
 
 def check_case(content: dict[str, Any], beside: Iterable[str] = ()) -> Case:
-    """The checked case. beside: further tables that its file may have, taken out of the content.
-    Raises CaseError."""
+    """The checked case. beside: further tables that its file may have, taken out of the content,
+    by name, with their models where a key of theirs may have got elsewhere. Raises CaseError."""
     kind = content.get("kind")
     model = KINDS.get(kind) if isinstance(kind, str) else None
     if model is None:
@@ -138,13 +139,21 @@ def check_case(content: dict[str, Any], beside: Iterable[str] = ()) -> Case:
 
 
 def check_table(
-    model: type[BaseModel], content: Any, prefix: str = "", beside: Iterable[str] = ()
+    model: type[BaseModel],
+    content: Any,
+    prefix: str = "",
+    beside: Iterable[str] = (),
+    among: Tables = (),
 ) -> Any:
-    """One checked table of a case. prefix: its key. beside: as check_case. Raises CaseError."""
+    """One checked table of a case. prefix: its key. beside: as check_case. among: files, by the
+    names of their tables, in which keys that are unknown here are looked for, before contact
+    cases. Raises CaseError."""
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        raise CaseError(problems(model, error, prefix, beside)) from None
+        # of other kinds too: whoever writes a key of theirs learns which
+        files = (*among, *(kind.model_fields for kind in KINDS.values()))
+        raise CaseError(problems(model, error, prefix, beside, files)) from None
 
 
 def json_schema() -> dict[str, Any]:

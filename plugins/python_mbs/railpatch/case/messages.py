@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Iterable, Iterator
-from typing import Any, get_args, get_origin
+from collections.abc import Iterable, Mapping
+from typing import Any, get_origin
 
 from pydantic import BaseModel, ValidationError
 
+from railpatch.case.homes import Tables, models_in, unknown_key
 from railpatch.case.types import show
 
 ALLOWED = {
@@ -30,11 +30,20 @@ ALLOWED = {
 }
 
 
+# a value that is no table, or no list of tables
+NO_TABLE = ("list_type", "model_type", "model_attributes_type", "dict_type")
+
+
 def problems(
-    model: type[BaseModel], error: ValidationError, prefix: str = "", beside: Iterable[str] = ()
+    model: type[BaseModel],
+    error: ValidationError,
+    prefix: str = "",
+    beside: Iterable[str] = (),
+    among: Tables = (),
 ) -> list[str]:
     """One line for each error. prefix: key of the table that the model stands for. beside: keys
-    that may stand beside those of the model."""
+    that may stand beside those of the model. among: files in which a key that is unknown here may
+    have its place, nearest first."""
     found: list[str] = []
     for item in error.errors(include_url=False):
         # of the union path | rows only the branch that was meant is of use
@@ -45,7 +54,7 @@ def problems(
             each = [{"type": "relation", "loc": loc, "ctx": c} for c in item["ctx"]["found"]]
             found += dict.fromkeys(problem(model, one, prefix) for one in each)
             continue
-        text = problem(model, item, prefix, beside)
+        text = problem(model, item, prefix, beside, among)
         # a number or a word in its place
         if item["type"] == "literal_error" and found and found[-1] == number_of(text):
             found[-1] += f" or {item['ctx']['expected']}"
@@ -60,7 +69,13 @@ def number_of(text: str) -> str:
     return f"{text.rsplit(', allowed ', 1)[0]}, allowed {ALLOWED['float_type']}"
 
 
-def problem(model: type[BaseModel], item: Any, prefix: str, beside: Iterable[str] = ()) -> str:
+def problem(
+    model: type[BaseModel],
+    item: Any,
+    prefix: str,
+    beside: Iterable[str] = (),
+    among: Tables = (),
+) -> str:
     """The line for one of pydantic's errors."""
     context = item.get("ctx", {})
     loc = [part for part in item["loc"] if not is_branch(part)]
@@ -71,17 +86,22 @@ def problem(model: type[BaseModel], item: Any, prefix: str, beside: Iterable[str
     table = table_at(model, loc[:-1])
     if item["type"] == "extra_forbidden":
         names = [*(table.model_fields if table else ()), *(beside if len(loc) == 1 else ())]
-        return unknown_key(key, str(loc[-1]), item["input"], names)
+        more = beside if isinstance(beside, Mapping) else {}
+        files = among if prefix else ({**model.model_fields, **more}, *among)
+        return unknown_key(key, str(loc[-1]), item["input"], names, files)
     if item["type"] == "missing":
         description = table.model_fields[str(loc[-1])].description if table else "a value"
         inner = f"a table [{key}]: " if table_at(model, loc) else ""
         if inner and table and get_origin(table.model_fields[str(loc[-1])].annotation) is list:
             inner = f"at least one [[{key}]]: "
             description = str(description).removeprefix("(no unit): ")
-        return f"{key}: value is missing, allowed {inner}{description}"
+        return f"{key}: value is missing, allowed {inner}{description}{keys_of(model, loc)}"
     if item["type"] == "value_error":
         said = str(context["error"])
         return f"{key}: {said}" if key else said
+    if key and item["type"] in NO_TABLE and (keys := keys_of(model, loc)):
+        wanted = f"[[{key}]] tables" if item["type"] == "list_type" else f"a table [{key}]"
+        return f"{key}: value is {show(item['input'])}, allowed {wanted}{keys}"
     template = ALLOWED.get(item["type"])
     if item["loc"][-1:] == ("str",):
         template = "a path or rows of numbers"
@@ -116,16 +136,7 @@ def table_at(model: type[BaseModel], loc: list[Any]) -> type[BaseModel] | None:
     return table
 
 
-def models_in(annotation: Any) -> Iterator[type[BaseModel]]:
-    """Models that a type names: itself, those of a union or a list."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        yield annotation
-    for part in get_args(annotation):
-        yield from models_in(part)
-
-
-def unknown_key(key: str, name: str, value: Any, names: list[str]) -> str:
-    """Names the key, what is allowed there, and the key that was perhaps meant."""
-    text = f"{key}: value is {show(value)}, but the key is unknown, allowed {', '.join(names)}"
-    close = difflib.get_close_matches(name, names, 1)
-    return f"{text}; did you mean '{close[0]}'?" if close else text
+def keys_of(model: type[BaseModel], loc: list[Any]) -> str:
+    """The keys of the table that a location is for; nothing of other values."""
+    table = table_at(model, loc)
+    return f", with the keys {', '.join(table.model_fields)}" if table else ""

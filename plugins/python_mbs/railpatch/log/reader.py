@@ -5,9 +5,10 @@ The messages are decoded with the schemas in the file, so logs of other versions
 
 from __future__ import annotations
 
+import difflib
 import struct
 from collections import Counter
-from collections.abc import Iterator, MutableSequence, Sequence
+from collections.abc import Iterable, Iterator, MutableSequence, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
@@ -82,7 +83,16 @@ class Series:
     def _check_name(self, path: str) -> None:
         head = path.split(".")[0].split("[")[0]
         if self.messages and head not in self.messages[0]:
-            raise KeyError(f"no field {head!r}; the fields are {', '.join(self.messages[0])}")
+            names = ", ".join(self.messages[0])
+            raise KeyError(
+                f"no field {head!r}; the fields are {names}{near(head, self.messages[0])}"
+            )
+
+
+def near(name: str, names: Iterable[str]) -> str:
+    """A hint at the name that was perhaps meant."""
+    found = difflib.get_close_matches(name, list(names), 1)
+    return f"; did you mean {found[0]!r}?" if found else ""
 
 
 @dataclass
@@ -115,7 +125,8 @@ class Run:
                 known_channel(topic)
             except KeyError:
                 wrote = ", ".join(sorted(self.channels)) or "none"
-                raise KeyError(f"no channel {topic!r}; this log has {wrote}") from None
+                said = f"no channel {topic!r}; this log has {wrote}{near(topic, self.channels)}"
+                raise KeyError(said) from None
         return self.channels.get(topic) or Series()
 
     def table(self, channels: Sequence[str] = (), signals: Sequence[str] = ()) -> LogTable:

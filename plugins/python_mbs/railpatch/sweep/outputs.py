@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import re
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -116,8 +117,11 @@ def reach(value: Any, path: str, name: str) -> Iterator[Any]:
     if value is None:
         return
     if not isinstance(value, dict) or head not in value:
-        known = ", ".join(value) if isinstance(value, dict) else "a number"
-        raise CaseError(f"sweep.outputs: value is {name!r}, but {head!r} is none of {known}")
+        known = list(value) if isinstance(value, dict) else []
+        near = difflib.get_close_matches(head, known, 1)
+        hint = f"; did you mean {near[0]!r}?" if near else ""
+        shown = ", ".join(known) or "a number, which has nothing below it"
+        raise CaseError(f"sweep.outputs: value is {name!r}, but {head!r} is none of {shown}{hint}")
     yield from reach(value[head], path[len(head) :].removeprefix("."), name)
 
 
