@@ -151,7 +151,7 @@ REFUSED: dict[str, tuple[str, list[str]]] = {
     ),
     "unknown key": (
         RATE + stretch(rail_work="3.0"),
-        [f"wet[0].rail_work: value is 3.0, {KEYS}"],
+        [f"wet[0].rail_work: value is 3.0, {KEYS}; 'rail_work' is a key of [fluid]"],
     ),
     "its end": (
         RATE + stretch(length=None, end="25.0"),
@@ -192,8 +192,8 @@ REFUSED: dict[str, tuple[str, list[str]]] = {
     "one table": (
         RATE + stretch().replace("[[wet]]", "[wet]"),
         [
-            "wet: value is {'position': 20.0, 'length': 5.0, 'water_rate': 1e-08}, allowed a list "
-            "of [[wet]] tables"
+            "wet: value is a table, allowed a list of [[wet]] tables, with the keys position, "
+            "length, water_rate"
         ],
     ),
     "twice": (
