@@ -9,6 +9,7 @@ import numpy as np
 import plotly.graph_objects as go
 import pytest
 from railpatch.case.fluid import Fluid
+from railpatch.case.friction import Friction
 from railpatch.log import read_run
 from railpatch.report import quantities, write_report
 from railpatch.report.data import positions
@@ -19,6 +20,7 @@ from wheelset_demo.simulation import run_scene
 from wheelset_demo.vehicle import load_vehicle_scene
 from wheelset_demo.vehicle.simulation import Simulation
 from wheelset_demo.vehicle.trace import run_vehicle
+from wheelset_demo.vehicle.wet_track import WetTable
 
 
 @pytest.fixture(scope="module")
@@ -135,3 +137,33 @@ def test_a_vehicle_on_wet_rails(tmp_path: Path) -> None:
         water = np.array(found[title][0].y)
         assert np.allclose(water, np.exp(-contact.time / 0.05), rtol=1e-6)
     assert 0 < water[-1] < 0.7
+    assert not any("water rate" in title or "wheels ahead" in title for title in found)
+
+
+def test_a_vehicle_over_a_wet_stretch(tmp_path: Path) -> None:
+    """The rate where each wheel is, and the work by which those ahead have cleaned its rail."""
+    recovery = {"coefficient": 2e-4}
+    fluid = Fluid(model="regimes", water_rate=1e-9, recovery=recovery)
+    scene = load_vehicle_scene().with_method(normal="hertz", tangential="polach")
+    scene = scene.with_run(duration=0.1, log_every=4)
+    start = scene.vehicle.length - 0.5
+    wet = (WetTable(position=start, length=1.0, water_rate=25e-9),)
+    case = scene.case.model_copy(update={"fluid": fluid, "friction": Friction(coefficient=0.4)})
+    run_vehicle(Simulation(replace(scene, case=case, wet=wet)), output=tmp_path / "a.mcap")
+    data = vehicle_run(read_run(tmp_path / "a.mcap"))
+    found = panels(quantities.vehicle_figure(data))
+    for side in ("left", "right"):
+        rates = found[f"{side} wheels: water rate [µl/s]"]
+        first, others = np.array(rates[0].y), [np.array(one.y) for one in rates[1:]]
+        x = data.wheelsets[1]["x"]
+        inside = (start <= x) & (x < start + 1.0)
+        assert inside.any()
+        assert not inside.all()
+        assert np.allclose(first, np.where(inside, 25.0, 1.0), rtol=1e-12)
+        assert all(np.allclose(one, 1.0, rtol=1e-12) for one in others)
+        works = [np.array(one.y) for one in found[f"{side} wheels: work of wheels ahead [J/m]"]]
+        # nothing is ahead of the first; the second's way is that of the first
+        assert (works[0] == 0).all()
+        assert all((work >= 0).all() for work in works)
+        logged = data.contact[2, side]["rail_work"]
+        assert np.allclose(works[1], logged, rtol=1e-12)

@@ -165,6 +165,12 @@ class Recorder:
             wheel["moment"][1] += more[1]
             wheel["moment"][2] += more[2]
             found[side] = wheel
+        if system.wet is not None:
+            rate, *spent = element.water[index].tolist()
+            if np.isnan(rate):
+                rate = system.scene.case.fluid.water_rate
+            for side, work in zip(SIDES, spent, strict=True):
+                found[side] |= {"water_rate": rate, "rail_work": work}
         if system.support is not None:
             found["support"] = system.support.logged(index)
             places, rates = system.support.place[index], system.support.rate[index]

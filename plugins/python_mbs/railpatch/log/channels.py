@@ -299,6 +299,18 @@ WHEEL_CONTACT = Message(
         Field("damage", DAMAGE, "", "of all patches; only where the scene asks"),
         _listed("side", "fluid_power"),
         _listed("side", "oxide_water"),
+        _number(
+            "water_rate",
+            "m^3/s",
+            "supply of liquid for each contact where the wheel is; only in runs over wet stretches "
+            "or with recovery",
+        ),
+        _number(
+            "rail_work",
+            "J/m",
+            "friction work by which wheels ahead have cleaned each metre of the rail there; as "
+            "water_rate",
+        ),
     ),
 )
 

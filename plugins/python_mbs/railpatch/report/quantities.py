@@ -42,8 +42,14 @@ OF_PATCH = (
     ("mean_asperity_share", None, "load on asperities"),
     ("central_film_thickness", None, "film"),
 )
+# of the rail where the wheel is, in vehicle runs over wet stretches
+OF_RAIL = ("water_rate", "rail_work")
 # shown in other units than others of their kind: factor from the log's, unit
-OWN_UNIT = {"wear_number": (1.0, "N"), "central_film_thickness": (1e6, "µm")}
+OWN_UNIT = {
+    "wear_number": (1.0, "N"),
+    "central_film_thickness": (1e6, "µm"),
+    "water_rate": (1e9, "µl/s"),
+}
 # of a vehicle's figure where they are known
 WHERE_WET = (
     ("effective_friction", "friction with the liquid"),
@@ -51,6 +57,8 @@ WHERE_WET = (
     ("central_film_thickness", "film [µm]"),
     ("fluid_power", "power of the liquid's shear [W]"),
     ("oxide_water", "water left in the paste"),
+    ("water_rate", "water rate [µl/s]"),
+    ("rail_work", "work of wheels ahead [J/m]"),
 )
 OF_WHEELSET = {
     "rolling_radius_difference": "rolling radius difference",
@@ -208,6 +216,10 @@ def course(contact: Series, name: str, part: int | None) -> np.ndarray:
     """[n]: of the wheel, or of the patch that carries most; mm of lengths, µm of films."""
     if name in OF_WHEEL:
         return contact[name]
+    if name in OF_RAIL:
+        told = [message.get(name) for message in contact.messages]
+        known = np.array([np.nan if value is None else value for value in told])
+        return OWN_UNIT.get(name, (1.0, ""))[0] * known
     found = np.full(len(contact), np.nan)
     for index, message in enumerate(contact.messages):
         patches = [p for p in message.get("patches", []) if p.get("normal_force") is not None]
