@@ -447,7 +447,7 @@ typedef struct rp_config {
   /* patch */
   rp_geometry geometry;
   double semi_axes[2];               /* m, along rolling, lateral */
-  double curvatures[2];              /* 1/m */
+  double curvatures[2];              /* 1/m, c0 and c1: half of 1/R_wheel + 1/R_rail */
   double line_contact_radius;        /* m */
   double width;                      /* m, of the line contact */
   const double *undeformed_distance; /* m, [distance_shape[1]][distance_shape[0]], copied */
@@ -478,7 +478,7 @@ typedef struct rp_config {
   double friction_kinetic;          /* -, at high speed */
   double friction_amplitude[2];     /* -, at rest above the kinetic one; 0: no such term */
   double friction_halving_speed[2]; /* m/s, > 0 */
-  double friction_memory_distance;  /* m, over which mu follows mu(s); 0: at once */
+  double friction_memory_distance;  /* m slipped, over which mu follows mu(s); 0: at once */
   double friction_memory_speed;     /* m/s, > 0, least speed of following; 1e-3 without distance */
   double friction_reference;        /* -, of the temperature law, below its first temperature */
   double friction_change;           /* -, from there to the end of the range */

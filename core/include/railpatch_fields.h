@@ -231,7 +231,8 @@
     "semi-axes of the contact ellipse [along rolling, lateral]; the curvatures follow from the "   \
     "load")                                                                                        \
   X(double, curvatures, 2, number, own, 1, "[]", 1e-9, 1e6, "1/m",                                 \
-    "[c0, c1] of the undeformed distance c0 x^2 + c1 y^2")                                         \
+    "[c0, c1] of the undeformed distance c0 x^2 + c1 y^2, half the curvatures: along rolling "     \
+    "c0 = (1/R_wheel + 1/R_rail)/2, lateral c1 alike; a sphere of 0.4 m on a plane: [1.25, 1.25]") \
   X(double, line_contact_radius, 1, number, own, 0.5, "[]", 1e-6, 1e6, "m",                        \
     "combined radius 1/(1/R_wheel + 1/R_rail) of a line contact")                                  \
   X(double, width, 1, number, own, 1, "[]", 1e-6, 1e3, "m", "width of the line contact")           \
@@ -264,9 +265,9 @@
   X(double, friction_halving_speed, 2, number, always, 1, "()", 0, HUGE_VAL, "m/s",                \
     "at which a term is half its amplitude; one for each term")                                    \
   X(double, friction_memory_distance, 1, number, always, 0, "[]", 0, 1, "m",                       \
-    "over which the coefficient follows the law; 0: at once")                                      \
+    "way slipped (not rolled) over which the coefficient follows the law; 0: at once")             \
   X(double, friction_memory_speed, 1, number, always, 1e-3, "()", 0, HUGE_VAL, "m/s",              \
-    "least speed with which it follows the law")                                                   \
+    "least speed of slip with which it follows the law")                                           \
   X(double, friction_reference, 1, number, always, 0.3, "[]", 0, 10, "-",                          \
     "of the temperature law up to its first temperature")                                          \
   X(double, friction_change, 1, number, own, 0, "", 0, 0, "-",                                     \
