@@ -183,6 +183,7 @@ def _damping_and_heat(reader: Reader, digits: dict[str, int], blocks: dict[str, 
 def _profile(reader: Reader) -> dict[str, Any]:
     """A profile's line, and those that it says follow."""
     line = reader.line
+    reader.expect("'FILE' MIRRORY SCALE SMOOTH")
     values: dict[str, Any] = {"file": reader.string("a profile's name"), "line": line}
     values |= reader.reals("MIRRORY SCALE SMOOTH") | _optional(reader, "MIRRORZ PRFOPT")
     option = int(values.get("PRFOPT", 0))
@@ -199,6 +200,7 @@ def _profile(reader: Reader) -> dict[str, Any]:
 def _track(reader: Reader, digits: dict[str, int], blocks: dict[str, Any], roller: bool) -> None:
     z = digits["Z"]
     if z in (1, 3):
+        reader.expect("GAUGHT GAUGSQ GAUGWD " + ("NOMRAD" if roller else "CANT"))
         height = reader.real("GAUGHT")
         names = "GAUGSQ GAUGWD" if height > 0 else "RAILY0 RAILZ0"
         values = {"GAUGHT": height} | reader.reals(names)
@@ -262,13 +264,17 @@ def _wheel(reader: Reader, digits: dict[str, int], blocks: dict[str, Any]) -> No
 
 
 def _grid(reader: Reader, blocks: dict[str, Any]) -> None:
+    reader.expect("IPOTCN")
+    line = reader.line
     kind = reader.integer("IPOTCN")
     reader.end_line()
     if kind not in HERTZ and kind not in GRIDS:
-        raise reader.error(f"IPOTCN is {kind}, allowed -6 ... -1, 1 ... 4")
+        raise reader.error(f"IPOTCN is {kind}, allowed -6 ... -1, 1 ... 4{reader.told()}", line)
     values: dict[str, Any] = {"IPOTCN": kind}
+    sizes = (HERTZ | GRIDS)[kind]
+    reader.expect(f"MX MY {sizes}")
     values |= {name: reader.integer(name) for name in ("MX", "MY")}
-    values |= reader.reals((HERTZ | GRIDS)[kind])
+    values |= {name: reader.real(name) for name in sizes.split()}
     reader.end_line()
     mx, my = values["MX"], values["MY"]
     if min(mx, my) < 1 or mx * my > MAX_ELEMENTS:
@@ -279,6 +285,7 @@ def _grid(reader: Reader, blocks: dict[str, Any]) -> None:
 
 
 def _distance(reader: Reader, blocks: dict[str, Any]) -> None:
+    reader.expect("IBASE IPLAN")
     base, plan = reader.integer("IBASE"), reader.integer("IPLAN")
     reader.end_line()
     grid = blocks["grid"]

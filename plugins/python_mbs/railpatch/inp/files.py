@@ -43,6 +43,7 @@ def read_cases(name: str, text: str) -> list[Case]:
     while not reader.ended:
         if module is None:
             line = reader.line
+            reader.expect("MODULE REID CPID")
             kind = reader.integer("the module, 0, 1 or 3")
             first, second = reader.optional(), reader.optional()
             reader.end_line()

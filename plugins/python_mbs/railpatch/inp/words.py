@@ -15,6 +15,36 @@ MAX_LINE = 256
 REAL = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?$")
 ANGLE = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+))(d|r|rad|radians|deg|degrees)$", re.IGNORECASE)
 WORD = re.compile(r"'[^']*'|[^\s,=]+")
+# what lines hold and which digit asks for them, by their first value: a line too few or too many
+# shows where the next one is read
+LINES = {
+    "MODULE": "1, 3, or 0 at the end",
+    "MAXGS": "solver, G other than 1",
+    "PEN": "load and creepages",
+    "FN": "load and creepages",
+    "FSTAT": "friction, L = 0",
+    "FKIN": "friction, L = 2, 3, 4",
+    "FREF": "friction, L = 6",
+    "MEMDST": "friction's memory, L = 2, 3, 4, 6",
+    "CHI": "rolling direction, step and speed, T = 2, 3 with C3 >= 2",
+    "IF_METH": "influence by angles, C3 = 4",
+    "NU1": "materials of both bodies, C3 >= 2",
+    "CDAMPN": "damping, M2 = 2",
+    "BKTEMP": "heat, H = 3",
+    "IPOTCN": "kind of grid, D = 2",
+    "MX": "grid, D = 2",
+    "IBASE": "undeformed distance, Z = 2",
+    "DX": "grid and joining of patches, D >= 2",
+    "GAUGHT": "track, Z = 1, 3",
+    "'FILE'": "profile of the rail, Z = 3, or of the wheel, E = 3, 5",
+    "DY": "deviation of the rail, Z = 2, 3",
+    "KY": "springs under the rail, F = 3",
+    "FBDIST": "wheelset, E = 3, 5",
+    "S": "position, E >= 1",
+    "VS": "velocity, E >= 2",
+    "RPITCH": "velocity, E >= 2",
+    "VX": "rates of deviation, E = 4, 5",
+}
 
 
 @dataclass(frozen=True)
@@ -38,6 +68,24 @@ class Reader:
             if row:
                 self._rows.append(row)
         self._row, self._at = 0, 0
+        self._lines: list[tuple[str, int]] = []
+
+    def expect(self, names: str) -> None:
+        """Says for errors what is read from here on: values by name, or what stands for them."""
+        at_end = not self.ended and self._at >= len(self._rows[self._row])
+        row = min(self._row + at_end, len(self._rows) - 1)
+        self._lines.append((names, self._rows[row][0].line if self._rows else 0))
+
+    def told(self) -> str:
+        """Which line was expected where a word does not fit, and which was read before it."""
+        if not self._lines:
+            return ""
+        (names, line), before = self._lines[-1], self._lines[:-1]
+        text = f", in {_meant(names)}" if " " in names else ""
+        earlier = [one for one in before if one[1] < line]
+        if earlier:
+            text += f"; before it line {earlier[-1][1]} was read as {_meant(earlier[-1][0])}"
+        return text
 
     @property
     def ended(self) -> bool:
@@ -58,7 +106,7 @@ class Reader:
         while self._row < len(self._rows) and self._at >= len(self._rows[self._row]):
             self._row, self._at = self._row + 1, 0
         if self.ended:
-            raise CaseError(f"{self.name}: ends where {what} is needed")
+            raise CaseError(f"{self.name}: ends where {what} is needed{self.told()}")
         word = self._rows[self._row][self._at]
         self._at += 1
         return word
@@ -73,25 +121,30 @@ class Reader:
         word = self._next(what)
         value = number_of(word.text, angle=angle)
         if value is None:
-            raise self.error(f"{what}: expected a number, found {word.text[:40]!r}", word.line)
+            found = f"expected a number, found {word.text[:40]!r}"
+            raise self.error(f"{what}: {found}{self.told()}", word.line)
         return value
 
     def reals(self, names: str, angles: tuple[str, ...] = ()) -> dict[str, float]:
         """Mandatory numbers by name; the line's rest stays for optional ones."""
+        self.expect(names)
         return {name: self.real(name, angle=name in angles) for name in names.split()}
 
     def integer(self, what: str) -> int:
         """A mandatory whole number."""
-        value = self.real(what)
+        line, value = self.line, self.real(what)
         if value != int(value) or abs(value) > 2**31:
-            raise self.error(f"{what}: expected a whole number, found {value:g}")
+            found = f"expected a whole number, found {value:g}"
+            raise self.error(f"{what}: {found}{self.told()}", line)
         return int(value)
 
     def digits(self, what: str) -> str:
         """A control word."""
+        self.expect(what)
         word = self._next(what)
         if not re.fullmatch(r"\d{1,9}", word.text):
-            raise self.error(f"{what}: expected digits, found {word.text[:40]!r}", word.line)
+            found = f"expected digits, found {word.text[:40]!r}"
+            raise self.error(f"{what}: {found}{self.told()}", word.line)
         return word.text
 
     def optional(self, *, angle: bool = False) -> float | None:
@@ -108,8 +161,14 @@ class Reader:
         word = self._next(what)
         if not re.fullmatch(r"'[^']*'", word.text):
             found = f"expected a name in '...', found {word.text[:40]!r}"
-            raise self.error(f"{what}: {found}", word.line)
+            raise self.error(f"{what}: {found}{self.told()}", word.line)
         return word.text[1:-1].strip()
+
+
+def _meant(names: str) -> str:
+    """Names of a line's values with what they are."""
+    held = LINES.get(names) or LINES.get(names.split(" ", 1)[0])
+    return f"{names} ({held})" if held else names
 
 
 def number_of(text: str, *, angle: bool = False) -> float | None:
