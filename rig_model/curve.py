@@ -52,6 +52,15 @@ COLUMNS = (1, 2, 3, 4, 11)
 DEFAULT = Path(__file__).parent / "scenes" / "curve_s1002.toml"
 METHODS = ("newton", "broyden")
 
+# of each wheel, as results name them: what a curve is looked at for
+ANSWERS = {
+    "guiding_force": "N",
+    "wheel_load": "N",
+    "derailment_quotient": "-",
+    "wear_number": "N",
+    "rolling_radius": "m",
+}
+
 # m, lateral positions among which the one without creepage is looked for
 MOST_LATERAL = 0.012
 LATERAL_STEP = 5e-4
@@ -160,6 +169,8 @@ class SteadyCurve:
         "roll": "rad",
         "yaw": "rad",
         "pitch_rate": "rad/s",
+        **{f"{side}_{key}": unit for key, unit in ANSWERS.items() for side in SIDES},
+        **{f"{side}_max_pressure": "Pa" for side in SIDES},
         "residuals": "N, N m",
         "evaluations": "",
         "start_evaluations": "",
@@ -177,8 +188,9 @@ class SteadyCurve:
         return self.status in CARRIES
 
     def to_dict(self) -> dict[str, Any]:
-        """radius (m) and the keys of UNITS; force: on the wheel, track axes; contact_angle: of each
-        patch."""
+        """radius (m) and the keys of UNITS; guiding_force, wheel_load: Y, Q on the rail, see
+        docs/units.md; max_pressure: of a wheel's patches, None without; force: on the wheel, track
+        axes; contact_angle: of each patch."""
         data: dict[str, Any] = {"radius": self.radius, "status": self.status}
         data |= dict(zip(UNKNOWNS, map(float, self.unknowns), strict=True))
         data["residuals"] = None if self.residuals is None else self.residuals.tolist()
@@ -186,9 +198,13 @@ class SteadyCurve:
             data[key] = getattr(self, key)
         for side in SIDES:
             wheel = self.result[side]
+            patches = wheel["patches"]
+            for key in ANSWERS:
+                data[f"{side}_{key}"] = wheel[key] if math.isfinite(wheel[key]) else None
+            pressures = [patch["max_pressure"] for patch in patches]
+            data[f"{side}_max_pressure"] = max(pressures, default=None)
             data[f"{side}_force"] = list(wheel["force"])
-            angles = [patch["contact_angle"] for patch in wheel["patches"]]
-            data[f"{side}_contact_angle"] = angles
+            data[f"{side}_contact_angle"] = [patch["contact_angle"] for patch in patches]
         return data
 
 

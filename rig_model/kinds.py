@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,7 @@ from railpatch.case.kinds import Ending, Prepared, SceneKind, with_tables
 from railpatch.case.load import check_table
 from railpatch.record.columns import Columns, given
 from railpatch.record.forces import PARTS
+from railpatch.record.quantities import ratio_side
 from railpatch.record.read import read_record
 
 from rig_model.curve import DEFAULT, Curve, SteadyCurve, load_curve_scene, steady_curves
@@ -74,8 +75,20 @@ def prepare_rig(content: dict[str, Any], folder: Path, rows: Sequence[str]) -> P
     if record.kind != "time" and "duration" not in rig:
         rig["duration"] = float(len(record.at) - 1)
         told.append("rig.duration: nobody says it, taken as 1 s from row to row")
-    forces = tuple(name for name in record.signals if name.rpartition("_")[2] in PARTS)
-    return Prepared(content | {"rig": rig}, forces, record.units, [*record.warnings, *told])
+    return Prepared(
+        content | {"rig": rig}, forces_of(record.signals), record.units, [*record.warnings, *told]
+    )
+
+
+def forces_of(measured: Iterable[str]) -> tuple[str, ...]:
+    """What is observed where nobody says: forces, and L/V of sides whose lateral force is not there."""
+    names = tuple(measured)
+    return tuple(
+        name
+        for name in names
+        if name.rpartition("_")[2] in PARTS
+        or (ratio_side(name) and f"{ratio_side(name)}_lateral" not in names)
+    )
 
 
 def curve() -> SceneKind:

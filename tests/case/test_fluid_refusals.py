@@ -57,6 +57,25 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
 }
 
 
+def test_regimes_have_friction_of_their_own() -> None:
+    """A coefficient beside their knots would count for nothing; factors of a wheel's do."""
+    fluid = {"model": "regimes", "water_rate": 1e-8}
+    fast = {"normal": "hertz", "tangential": "polach"}
+    rolls = with_values(WHEELSET, fluid=fluid, method=fast, grid={"elements": [9, 9]})
+    message = (
+        "friction.coefficient: value is 0.36, allowed none: it must be left out with fluid.model = "
+        "'regimes', whose knots have friction of their own"
+    )
+    with pytest.raises(railpatch.CaseError, match=re.escape(message)):
+        railpatch.solve({**rolls, "friction": {"coefficient": 0.36}})
+    whole = railpatch.solve({**rolls, "friction": None})["right"]["patches"][0]
+    half = railpatch.solve({**rolls, "friction": {"scale": [1.0, 0.5]}})["right"]["patches"][0]
+    assert half["effective_friction"] == pytest.approx(0.5 * whole["effective_friction"], rel=1e-3)
+    dry = "friction.coefficient: value is missing, allowed a number with law = 'coulomb'"
+    with pytest.raises(railpatch.CaseError, match=re.escape(dry)):
+        railpatch.solve({**rolls, "fluid": None, "friction": {"scale": [1.0, 0.5]}})
+
+
 @pytest.mark.parametrize("name", REFUSED)
 def test_fluids_are_refused_in_plain_words(name: str) -> None:
     fluid, said = REFUSED[name]

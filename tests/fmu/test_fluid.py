@@ -36,6 +36,7 @@ SCENES: dict[str, dict[str, Any]] = {
     "strip": with_values(PATCH, fluid=STRIP, motion__creepage=[5e-3, 0.0]),
     "regimes": with_values(
         PATCH,
+        friction=None,
         fluid=DAMP,
         motion__creepage=[5e-3, 0.0],
         method={"normal": "hertz", "tangential": "polach"},
@@ -113,6 +114,20 @@ def test_inputs_are_those_that_the_scene_reads(name: str, packer: Packer) -> Non
     supply = {"water_rate", "oil_film"} & {*SCENES[name]["fluid"]}
     names = {"water_rate", "oil_film", "water_temperature"} & set(packer(name).names("input"))
     assert names == supply | ({"water_temperature"} if name != "regimes" else set())
+
+
+def test_friction_of_a_liquid_is_moved_by_its_factor(tmp_path: Path) -> None:
+    """Scenes without a coefficient of dry friction: none is in the FMU, a factor where asked."""
+    scene = SCENES["regimes"]
+    plain = Packer(tmp_path, {"plain": scene})("plain")
+    assert not any(name.startswith("friction") for name in plain.names("parameter"))
+    moved = Packer(tmp_path, {"moved": scene}, moved={"inputs": ["friction"]})("moved")
+    with Slave(moved).initialize() as slave:
+        slave.set({"friction.scale": 0.5})
+        assert slave.step(0.0, STEP) == OK, slave.log
+        found = slave.get("creep_force[1]")
+    wanted = railpatch.solve({**scene, "friction": {"scale": [1.0, 0.5]}})["creep_force"][0]
+    assert found == [wanted]
 
 
 def test_what_is_no_liquid_is_told(packer: Packer) -> None:

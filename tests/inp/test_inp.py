@@ -214,3 +214,14 @@ def test_ten_thousand_damaged_files(folder):
     read, refused = try_damaged(folder, 12, 10_000)
     print(f"\n{read} read, {refused} refused")
     assert read + refused == 10_000
+
+
+def test_signs_of_a_case_without_friction(tmp_path: Path) -> None:
+    """T = 0: the normal problem alone has no creep force and no spin moment."""
+    case = tmp_path / "normal.inp"
+    case.write_text(text_of(BASIC, first="200100", rolling="", motion="1000. 0. 0. 0."))
+    ran = CliRunner().invoke(cli, ["solve", str(case), "--signs", "contact"])
+    assert ran.exit_code == 0, ran.output
+    (found,) = json.loads(ran.stdout)
+    assert found["FN"] == pytest.approx(1000.0, rel=1e-9)
+    assert found["FX"] is found["FY"] is found["MZ"] is None

@@ -39,22 +39,23 @@ def scene(tmp_path: Path) -> Path:
     return path
 
 
-def record_of(scene: Path) -> None:
-    """A replay of the scene as a machine would have written it, with noise."""
+def record_of(scene: Path, observed: tuple[str, ...] = OBSERVED, noise: float = NOISE) -> None:
+    """A replay of the scene as a machine would have written it. noise: N, or - of a ratio."""
     run = kind_of("rig").run
     assert run is not None
     run(scene, scene.with_name("run.mcap"))
     found = Computed(read_run(scene.with_name("run.mcap")))
-    names = ["yaw", "lateral_position", *OBSERVED]
+    names = ["yaw", "lateral_position", *observed]
     units = {"yaw": ("mrad", 1e3), "lateral_position": ("mm", 1e3)}
+    units |= {name: ("-", 1.0) for name in observed if name.endswith("_ratio")}
     random = np.random.default_rng(3)
     columns, heads = [np.asarray(found.table["time"].values, dtype=float)], ["time [s]"]
     for name in names:
         unit, factor = units.get(name, ("kN", 1e-3))
         values = found.values(BY_NAME[name])
         assert values is not None
-        noise = NOISE if name in OBSERVED else 0.0
-        columns.append(factor * (values + noise * random.standard_normal(len(values))))
+        off = noise if name in observed else 0.0
+        columns.append(factor * (values + off * random.standard_normal(len(values))))
         heads.append(f"{name} [{unit}]")
     lines = [",".join(f"{value:.6g}" for value in row) for row in np.array(columns).T]
     scene.with_name("record.csv").write_text("\n".join([",".join(heads), *lines]) + "\n")
@@ -77,3 +78,17 @@ def test_friction_is_found_from_forces_and_yaw(scene: Path) -> None:
     write_match(found, scene.parent / "out")
     ended = kind_of("rig").run(scene.parent / "out" / "match.toml", scene.with_name("again.mcap"))
     assert ended.status == "converged"
+
+
+def test_friction_is_found_where_the_record_has_ratios_alone(scene: Path) -> None:
+    record_of(scene, ("left_ratio", "right_ratio"), 0.008)
+    text = scene.read_text()
+    text = text[: text.index("[rig]")].replace("coefficient = 0.52", "coefficient = 0.4")
+    seek = MATCH.replace("[match.observed]\nleft_lateral = {}\nright_lateral = {}\n", "")
+    path = scene.with_name("match.toml")
+    path.write_text(text + seek)
+    found = run_match(load_match(path))
+    assert set(found.plan.table.observed) == {"left_ratio", "right_ratio"}
+    parameter = found.parameters["friction.coefficient"]
+    assert parameter.low < 0.52 < parameter.high
+    assert parameter.high - parameter.low < 0.1

@@ -47,6 +47,17 @@ def test_noise_that_was_put_on_is_found(name: str, role: str, spacing: float, no
     assert noise_of(raw.y, raw.z, s) == pytest.approx(noise, rel=4 * 1.2 * (2 / s.size) ** 0.5)
 
 
+def test_noise_in_height_alone_is_found_on_the_level_part() -> None:
+    """As of an instrument that samples over y; on flanks it moves points along them."""
+    profile = builtin_profile("UIC60@1:40", "rail")
+    s = np.arange(profile.arc_length[0], profile.arc_length[-1], 2e-4)
+    y, z = profile.evaluate(s)
+    z = z + 4e-6 * np.random.default_rng(11).standard_normal(s.size)
+    level = np.abs(np.gradient(z, y)) < 0.5
+    found = noise_of(y, z, s)
+    assert found == pytest.approx(4e-6, rel=4 * 1.2 * (2 / np.count_nonzero(level)) ** 0.5)
+
+
 def test_designed_points_have_none() -> None:
     for name, role in (("S1002", "wheel"), ("UIC60", "rail"), ("cone@1:20", "wheel")):
         raw = noisy(name, role, 2e-4, 0.0, 0)

@@ -169,7 +169,7 @@ def test_it_goes_with_all_that_only_tractions_read(tmp_path: Path) -> None:
             {"friction": {"coefficient": 0.3, "scale": [0.8, 0.9]}},
             {"fluid": {**liquid, "water_rate": 1e-8}},
             {"fluid": {**liquid, "oil_film": 1e-6}},
-            {"fluid": {**regimes, "recovery": {"coefficient": 1e-3}}},
+            {"fluid": {**regimes, "recovery": {"coefficient": 1e-3}}, "friction": None},
             {"temperature": {"wheel": 80.0, "rail": 20.0}, "method": {"tangential": "full"}},
         )
     ]

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 from page_checks import check_page
 from railpatch.command.cli import cli
-from railpatch.profiles import load_profile
+from railpatch.profiles import builtin_profile, load_profile
 from railpatch.profiles.formulas import S1002_JOINTS
 from railpatch.profiles.pairing.contact_points import contact_points, positions
 from railpatch.profiles.pairing.doctor import tables_of
@@ -34,7 +34,9 @@ def test_page(arguments: list[str], title: str, role: str, tmp_path: Path) -> No
     page = tmp_path / "plot.html"
     ran = invoke(*arguments, "-o", page)
     assert ran.exit_code == 0, ran.output
-    assert ran.stdout.splitlines() == [str(page), *map(str, tables_of(page))]
+    said = ran.stdout.splitlines()
+    assert said[0].startswith(f"{title}: ")
+    assert said[-3:] == [str(page), *map(str, tables_of(page))]
     text = page.read_text(encoding="utf-8")
     assert f"<h2>{title}</h2>" in text
     assert f"{role} profile" in text
@@ -116,3 +118,27 @@ def test_figures_hold_the_numbers() -> None:
     amplitude = np.array([1e-3, 2e-3])
     trace = conicity_figure(amplitude, np.array([0.1, 0.2])).data[0]
     assert (list(trace.x), list(trace.y)) == ([1.0, 2.0], [0.1, 0.2])
+
+
+def test_answers_on_the_terminal_alone(tmp_path: Path) -> None:
+    ran = invoke("S1002", "--gauge-height", 0.010)
+    assert ran.exit_code == 0, ran.output
+    assert ran.stdout.startswith("S1002 on UIC60@1:40: equivalent conicity ")
+    for words in ("waves of", "greatest pressure in the middle", "steepest flank: "):
+        assert words in ran.stdout
+    assert not list(tmp_path.iterdir())
+
+
+def test_terminal_ends_with_the_lines_that_read_a_file(tmp_path: Path) -> None:
+    curve = builtin_profile("UIC60@1:40", "rail")
+    assert curve is not None
+    own = tmp_path / "rail.txt"
+    np.savetxt(own, 1e3 * np.column_stack([curve.y, curve.z]), fmt="%.5f")
+    ran = invoke(own, "--role", "rail")
+    assert ran.exit_code == 0, ran.output
+    lines = ran.stdout.splitlines()
+    assert lines[lines.index("[profiles]") :] == [
+        "[profiles]",
+        f'rail = "{own}"',
+        'rail_file = { unit = "mm", swap = false, mirror = "none" }',
+    ]

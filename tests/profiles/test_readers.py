@@ -35,6 +35,11 @@ def test_two_columns_in_m_with_commas_and_titles(write: Write) -> None:
     assert_is_the_wheel(write("w.csv", text))
 
 
+def test_commas_in_comments_tell_nothing_of_the_numbers(write: Write) -> None:
+    heading = "% track 12,4 km, 3,5 years, 60E1,1 right\n"
+    assert_is_the_wheel(write("w.txt", heading + columns(Y, Z)))
+
+
 def test_z_up_and_flange_at_plus_y_are_detected(write: Write) -> None:
     path = write("w.txt", columns(-Y, -Z))
     assert_is_the_wheel(path)

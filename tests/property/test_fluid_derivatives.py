@@ -213,7 +213,7 @@ def test_other_models_are_by_differences(fluid: dict[str, Any]) -> None:
     table = {k: v for k, v in {**WET["fluid"], **fluid}.items() if v is not None}
     case = {**WET, "fluid": table}
     if table["model"] == "regimes":
-        case["fluid"] = fluid
+        case |= {"fluid": fluid, "friction": None}
         case["method"] = {"normal": "hertz", "tangential": "polach", "derivatives": True}
     _, change = rates_of(case, rolling_speed=1.0)
     assert change["kind"] == "differences"

@@ -81,6 +81,21 @@ def test_balance():
         assert result["moment"][0] == pytest.approx(gyroscopic, abs=tolerance)
 
 
+def test_curves_tell_what_they_are_looked_at_for(found):
+    """Y and Q are the force on the rail, so minus that on the wheel, towards the field side."""
+    for item in found["newton"]:
+        data = item.to_dict()
+        assert set(item.UNITS) | {"radius"} == set(data)
+        for side, outwards in (("left", -1), ("right", 1)):
+            force = data[f"{side}_force"]
+            guiding, load = -outwards * force[1], -force[2]
+            assert data[f"{side}_guiding_force"] == pytest.approx(guiding, rel=1e-12)
+            assert data[f"{side}_wheel_load"] == pytest.approx(load, rel=1e-12)
+            assert data[f"{side}_derailment_quotient"] == pytest.approx(guiding / load, rel=1e-12)
+            patches = item.result[side]["patches"]
+            assert data[f"{side}_max_pressure"] == max(p["max_pressure"] for p in patches)
+
+
 def test_spin_loads_the_outer_wheel(found):
     """By its moment over the distance of the contacts, some 1.5 m; Y forces, and so the load's own
     transfer, stay. The vehicle's tests balance the same moment with those of its weights."""

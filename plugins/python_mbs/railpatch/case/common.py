@@ -495,6 +495,8 @@ def check_tangential(
         asking = f"method.tangential = {method.tangential!r} and motion.regime = {regime!r}"
         allowed = f"the table [friction] with 'coefficient' with {asking}"
         yield relation("friction", "missing", allowed)
+    if friction is not None and not without_dry_friction(fluid):
+        yield from friction.missing()
     if method.tangential != "full" and has_layer(layer):
         yield relation(
             "method.tangential", repr(method.tangential), "'full' with a layer of thickness > 0"

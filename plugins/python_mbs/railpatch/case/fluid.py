@@ -411,6 +411,9 @@ def check_fluid(
         return
     if fluid.model == "regimes" and tangential != "polach":
         yield relation("method.tangential", repr(tangential), "'polach' with model = 'regimes'")
+    if fluid.model == "regimes" and friction is not None and friction.coefficient is not None:
+        allowed = f"{LEFT_OUT} with fluid.model = 'regimes', whose knots have friction of their own"
+        yield relation("friction.coefficient", show(friction.coefficient), allowed)
     by_heat = fluid.model == "strip" and friction is not None and friction.law == "temperature"
     if friction is not None and friction.law != "coulomb" and not by_heat:
         others = " or 'temperature'" if fluid.model == "strip" else ""

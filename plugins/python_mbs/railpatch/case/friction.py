@@ -128,7 +128,8 @@ class Friction(Table):
         if self.law == "slip_velocity":
             allowed.add("shape")
         for name in needed:
-            if getattr(self, name) is None:
+            # Coulomb's: a liquid may have friction of its own, see missing()
+            if getattr(self, name) is None and self.law != "coulomb":
                 yield relation(name, "missing", f"a number with {self._named()}")
         for name, field in type(self).model_fields.items():
             if name not in allowed and getattr(self, name) != field.default:
@@ -141,6 +142,11 @@ class Friction(Table):
                 yield relation("memory_speed", self.memory_speed, why)
         for name in ("factor", "along_track"):
             yield from increasing(name, getattr(self, name) or ())
+
+    def missing(self) -> Problems:
+        """Of Coulomb's law without a coefficient, where no liquid has one."""
+        if self.law == "coulomb" and self.coefficient is None:
+            yield relation("friction.coefficient", "missing", f"a number with {self._named()}")
 
     def _named(self) -> str:
         shape = f" and shape = '{self.shape}'" if self.law == "slip_velocity" else ""
@@ -203,10 +209,10 @@ class Friction(Table):
 
     @property
     def greatest(self) -> float:
-        """-, greatest coefficient that the law may give, without factor."""
+        """-, greatest coefficient that the law may give, without factor; infinite where a liquid's
+        counts."""
         if self.law == "coulomb":
-            assert self.coefficient is not None
-            return self.coefficient
+            return math.inf if self.coefficient is None else self.coefficient
         if self.law == "temperature":
             assert self.reference is not None
             assert self.change is not None

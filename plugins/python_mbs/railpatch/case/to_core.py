@@ -153,7 +153,8 @@ def fluid_config(case: Case) -> dict[str, Any]:
         return {}
     config = passed("fluid", fluid, _core.CONFIG_FIELDS)
     config |= {f"fluid_{name}": value for name, value in fluid.core.items()}
-    if case.friction is None and "fluid_boundary_friction" in config:
+    given = case.friction is not None and case.friction.coefficient is not None
+    if not given and "fluid_boundary_friction" in config:
         config["friction_coefficient"] = config["fluid_boundary_friction"]
     if fluid.knots is not None:
         width = _core.CONFIG_FIELDS["fluid_knot_rate"]["shape"][0]

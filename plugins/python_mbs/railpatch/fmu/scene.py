@@ -63,8 +63,9 @@ def physics_conditions(case: Case) -> set[str]:
     if not case.has_tangential:
         return set()
     friction, heat = case.friction, case.temperature
-    law = "coulomb" if friction is None else friction.law
-    found = {"coulomb"} if law == "coulomb" else set()
+    found = set()
+    if friction is not None and friction.law == "coulomb" and friction.coefficient is not None:
+        found.add("coulomb")
     if case.method.tangential != "full":
         found.add("fast")
     if case.layer is not None and case.layer.is_plastic:
@@ -167,11 +168,11 @@ def start_of(variable: Variable, case: Case) -> float | int | str:
 
 def friction_start(variable: Variable, case: Case) -> float:
     """Of one wheel: its coefficient, or the factor of the law."""
-    assert case.friction is not None
     assert variable.side is not None
-    scale = case.friction.scale[variable.side]
+    scale = 1.0 if case.friction is None else case.friction.scale[variable.side]
     if not variable.name.endswith("coefficient"):
         return scale
+    assert case.friction is not None
     assert case.friction.coefficient is not None
     return case.friction.coefficient * scale
 

@@ -29,9 +29,9 @@ def patch_in_contact(
     moments and spin are about from the contact's. motion: of the case, whose creepages are given
     and in no result. What the case has not is null."""
     patch = (motion or {}) | {key: value for key, value in patch.items() if value is not None}
-    force = patch["creep_force"] or [None, None]
+    force = patch.get("creep_force") or [None, None]
     spin, creepage = patch.get("spin_creepage"), patch.get("creepage") or [None, None]
-    moment = patch["spin_moment"]
+    moment = patch.get("spin_moment")
     if moment is not None:
         moment += offset[0] * force[1] - offset[1] * force[0]
     if spin is not None and creepage[0] is not None:

@@ -37,12 +37,13 @@ def parse_numbers(path: Path, line: int, text: str, least: int = 2) -> list[floa
 def with_points(path: Path, text: str) -> tuple[str, str]:
     """The text with decimal points, and a note where it had decimal commas.
 
-    A comma between digits is a decimal one where something else separates the numbers. Raises
-    ProfileError where commas may be either.
+    A comma between digits is a decimal one where something else separates the numbers; comments
+    may say what they like. Raises ProfileError where commas may be either.
     """
-    if not DECIMAL_COMMA.search(text):
+    numbers = (row for row in text.splitlines() if not row.lstrip().startswith(COMMENT))
+    rows = [row for row in numbers if DECIMAL_COMMA.search(row)]
+    if not rows:
         return text, ""
-    rows = [row for row in text.splitlines() if DECIMAL_COMMA.search(row)]
     apart = [len(re.split(r"[;\t]|(?<=\d) +(?=[-+\d])", row.strip().rstrip(";"))) for row in rows]
     if min(apart) >= 2:
         return decimal_points(text), "decimal commas"

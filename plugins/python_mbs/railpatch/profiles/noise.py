@@ -26,12 +26,19 @@ ROUGHNESS = 1.0
 # -, of the values, which are multiples of a step where they are rounded to it; of the step, that
 # their unevenness has at the least
 MOSTLY, UNEVEN = 0.9, 0.05
+# sine of the greatest inclination that counts as level; windows of five points that tell the noise
+# there; how many times that of all it must be to count alone
+LEVEL, ENOUGH, MORE = 0.5, 50, 1.25
 # the standard deviation over the median of the deviations of normal noise
 NORMAL = 1.4826022185056018
 
 
 def noise_of(y: Array, z: Array, s: Array) -> float:
-    """m, standard deviation of the points across the profile; 0 for fewer than nine points."""
+    """m, standard deviation of the points across the profile; 0 for fewer than nine points.
+
+    Where an instrument errs in height alone, steep flanks show little of it: the noise is then that
+    of the level part, where contact is.
+    """
     if y.size < 9:
         return 0.0
     weights, gain = five_point_weights(s)
@@ -40,8 +47,14 @@ def noise_of(y: Array, z: Array, s: Array) -> float:
         windows = np.lib.stride_tricks.sliding_window_view(values, 5)
         parts.append((windows * weights).sum(axis=1))
     ty, tz = y[4:] - y[:-4], z[4:] - z[:-4]
-    across = (parts[1] * ty - parts[0] * tz) / hypot(ty, tz)
-    return float(NORMAL * np.median(np.abs(across) / gain))
+    long = hypot(ty, tz)
+    off = np.abs(parts[1] * ty - parts[0] * tz) / (long * gain)
+    noise = float(NORMAL * np.median(off))
+    level = np.abs(tz) <= LEVEL * long
+    if np.count_nonzero(level) < ENOUGH:
+        return noise
+    there = float(NORMAL * np.median(off[level]))
+    return there if there > MORE * noise else noise
 
 
 def rounding_of(values: Array) -> float:

@@ -31,6 +31,10 @@ def scene_of(run: Run) -> dict[str, Any]:
 
 def friction_of(run: Run) -> tuple[float, str]:
     """Greatest coefficient of friction, NaN where it is not known, and what a law makes of it."""
+    fluid = scene_of(run).get("fluid") or {}
+    if fluid.get("model") == "regimes":
+        knots = fluid.get("knots")
+        return float(knots[0][3]) if knots else DRY_KNOT, "of the driest of the water's regimes"
     table = scene_of(run).get("friction") or {}
     if table.get("coefficient") is not None:
         value = table["coefficient"]

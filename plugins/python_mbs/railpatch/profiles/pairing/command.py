@@ -34,7 +34,8 @@ def length_option(name: str, field: str, text: str) -> click.Option:
 @output_option(
     "PLOT.html|.pdf|NAME.profile",
     "The page to write; a PDF is made by Chromium, Chrome or Edge. NAME.profile: no page, but the "
-    "profile as an FMU reads it at run time.",
+    "profile as an FMU reads it at run time. Left out: the answers on the terminal alone.",
+    required=False,
 )
 @click.option(
     "--rail",
@@ -80,10 +81,11 @@ def length_option(name: str, field: str, text: str) -> click.Option:
 @length_option(
     "--flange-back-position", "flange_back_position", "m, of the flange back on the profile's y."
 )
+@length_option("--gauge-height", "gauge_height", "m, below the rail's top, of the gauge.")
 @quiet_flag()
 def profile(
     source: str,
-    output: Path,
+    output: Path | None,
     rail: str | None,
     wheel: str | None,
     smoothing: float | None,
@@ -96,7 +98,7 @@ def profile(
     quiet: bool,
     **lengths: float,
 ) -> None:
-    """Make a page of plots of a wheel or rail profile.
+    """Examine a wheel or rail profile, and make a page of plots.
 
     What was assumed of a file, with the lines of a scene that say so; its points, how far they lie
     off the curve, shape, slope, curvature and kinks; with the partner, for a wheelset with two such
@@ -104,7 +106,7 @@ def profile(
     greatest pressure, with the error that the points' noise leaves in it, which go into
     PLOT.contact.csv and PLOT.contact.json too. The page needs no network.
     """
-    if output.suffix == SUFFIX:
+    if output is not None and output.suffix == SUFFIX:
         refuse_same(output, source)
         path = prepare(source, output, role, smoothing, Reading(unit, swap, mirror, origin))
         if not quiet:
@@ -112,33 +114,37 @@ def profile(
         return
     if rail is not None and wheel is not None:
         raise WrongCall("--rail, --wheel: both given, allowed one: the profile's partner")
-    check_page(output, source, rail, wheel, others=(SUFFIX,))
-    for path in tables_of(output):
-        refuse_same(path, source, rail, wheel)
+    if output is not None:
+        check_page(output, source, rail, wheel, others=(SUFFIX,))
+        for path in tables_of(output):
+            refuse_same(path, source, rail, wheel)
     # plotly takes a while to import; other commands need not wait for it
-    from railpatch.profiles.pairing.page import write_profile_page
+    from railpatch.profiles.pairing.page import examine, write_profile_page
 
     by_partner: Role | None = "wheel" if rail is not None else "rail" if wheel is not None else None
     if role is not None and by_partner not in (None, role):
         raise WrongCall(f"--role: value is {role!r}, allowed {by_partner!r} with such a partner")
-    try:
-        written = write_profile_page(
-            source,
-            output,
-            role=role or by_partner,
-            reading=Reading(unit, swap, mirror, origin),
-            partner=rail or wheel,
-            dimensions=Dimensions(**lengths),
-            smoothing=smoothing,
-            load=load,
-            told=lambda note: click.echo(f"note: {note}", err=True),
-        )
-    except (BrowserError, OSError) as error:
-        raise wrong_call(error) from None
-    if not quiet:
-        click.echo(written)
-        for path in tables_of(written):
-            click.echo(path)
+    found = examine(
+        source,
+        role=role or by_partner,
+        reading=Reading(unit, swap, mirror, origin),
+        partner=rail or wheel,
+        dimensions=Dimensions(**lengths),
+        smoothing=smoothing,
+        load=load,
+    )
+    for note in found.told:
+        click.echo(f"note: {note}", err=True)
+    if output is not None:
+        try:
+            write_profile_page(found, output)
+        except (BrowserError, OSError) as error:
+            raise wrong_call(error) from None
+    if quiet:
+        return
+    click.echo(found.text())
+    for path in [output, *tables_of(output)] if output is not None else []:
+        click.echo(path)
 
 
 def prepare(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
@@ -33,9 +34,46 @@ AMPLITUDES = 1e-4 * np.arange(5, 81)
 TABLE = 1e-3 * np.arange(1, 9)
 
 
-def write_profile_page(
+@dataclass(frozen=True)
+class Examined:
+    """A profile with its partner: what there is to say of it."""
+
+    source: str | Path
+    role: Role
+    pair: tuple[str | Path, str | Path]  # wheel, rail
+    raw: RawProfile | None  # of a file
+    curves: tuple[Profile, Profile]  # wheel, rail
+    shape: Shape
+    points: ContactPoints
+    pressed: Pressures
+    notes: dict[str, list[str]]  # of each curve, by role of the profile and "partner"
+    lines: list[str]  # of TOML, that read the file so
+
+    @property
+    def profile(self) -> Profile:
+        """The profile itself."""
+        return self.curves[self.role == "rail"]
+
+    @property
+    def told(self) -> list[str]:
+        """What was assumed of each file, and what is doubtful."""
+        other = self.pair[self.role == "wheel"]
+        named = ((self.source, self.notes[self.role]), (other, self.notes["partner"]))
+        found = [f"{Path(name).name}: {note}" for name, notes in named for note in notes]
+        found += [f"doubtful: {text}" for text in self.pressed.doubts]
+        line = self.pressed.line()
+        return [*found, line] if line else found
+
+    def text(self) -> str:
+        """Answer, numbers and the lines of a scene, as the terminal shows them."""
+        verdict, keys = answers(self)
+        rows = [f"  {key.name}: {key.value}" + (f" ({key.note})" if key.note else "") for key in keys]
+        scene = ["", *self.lines] if self.raw is not None else []
+        return "\n".join([verdict, *rows, *scene])
+
+
+def examine(
     source: str | Path,
-    output: str | Path,
     *,
     role: Role | None = None,
     partner: str | Path | None = None,
@@ -43,21 +81,17 @@ def write_profile_page(
     smoothing: float | None = None,
     reading: Reading | None = None,
     load: float = LOAD,
-    told: Callable[[str], object] = lambda _: None,
-) -> Path:
-    """Writes the page on a profile by built-in name or file, and beside it the contact points as
-    tables (``doctor.tables_of``); returns ``output``.
+) -> Examined:
+    """A profile by built-in name or file, and its contact with a partner.
 
     role: "wheel" or "rail"; may be left out where name, extension or header tell. partner: the
     other profile; by default UIC60@1:40 for a wheel and S1002 for a rail. smoothing: m, as in
     load_profile, for the files of both. reading: what the profile's file does not say of itself.
-    load: N, on the wheel, of the pressures. told: called with what was assumed of each file.
-    Raises ProfileError, CaseError, OSError; nothing is written then.
+    load: N, on the wheel, of the pressures. Raises ProfileError, CaseError.
     """
     role = role or role_of(source)
     raw = read_profile(source, role, reading) if Path(source).is_file() else None
     profile = load_profile(source, role, smoothing=smoothing, reading=reading)
-    shape = shape_of(profile)
     other = partner or PARTNERS[role]
     pair = (source, other) if role == "wheel" else (other, source)
     points = contact_points(
@@ -65,47 +99,46 @@ def write_profile_page(
     )
     pressed = pressures(*pair, dimensions, load=load, smoothing=smoothing, readings={role: reading})
     beside = load_profile(other, "rail" if role == "wheel" else "wheel", smoothing=smoothing)
-    lines = doctor.scene_lines(source, role, raw)
     notes = {
         key: pressed.notes.get(Path(name).name, list(curve.notes))
         for key, name, curve in ((role, source, profile), ("partner", other, beside))
     }
     curves = (profile, beside) if role == "wheel" else (beside, profile)
+    lines = doctor.scene_lines(source, role, raw)
+    return Examined(
+        source, role, pair, raw, curves, shape_of(profile), points, pressed, notes, lines
+    )
+
+
+def write_profile_page(found: Examined, output: str | Path) -> Path:
+    """Writes the page on a profile, and beside it the contact points as tables
+    (``doctor.tables_of``); returns ``output``. Raises OSError."""
+    points, pressed = found.points, found.pressed
     body = "".join(
         [
-            opening_of(source, role, pair, shape, points, pressed),
+            opening_of(found),
             *(f"<p class=warn>{escape(text)}</p>" for text in pressed.doubts),
-            *pair_section(points, curves, pair),
+            *pair_section(points, found.curves, found.pair),
             *pressure_section(pressed),
-            *shape_section(shape, raw, profile),
-            *assumed_section(raw, notes[role], lines),
+            *shape_section(found.shape, found.raw, found.profile),
+            *assumed_section(found.raw, found.notes[found.role], found.lines),
         ]
     )
     columns = doctor.table(points, pressed)
-    texts = (doctor.csv_table(columns), doctor.json_table(columns, load, notes, lines))
-    write_page(output, document(Path(source).name, body))
+    texts = (
+        doctor.csv_table(columns),
+        doctor.json_table(columns, pressed.load, found.notes, found.lines),
+    )
+    write_page(output, document(Path(found.source).name, body))
     for path, text in zip(doctor.tables_of(output), texts, strict=True):
         write_whole(path, text.encode())
-    for name, found in ((source, notes[role]), (other, notes["partner"])):
-        for note in found:
-            told(f"{Path(name).name}: {note}")
-    for text in pressed.doubts:
-        told(f"doubtful: {text}")
-    if line := pressed.line():
-        told(line)
     return Path(output)
 
 
-def opening_of(
-    source: str | Path,
-    role: Role,
-    pair: tuple[str | Path, str | Path],
-    shape: Shape,
-    points: ContactPoints,
-    pressed: Pressures,
-) -> str:
-    """Conicity, pressure and flank of a profile on its partner."""
-    wheel, rail = (Path(name).name for name in pair)
+def answers(found: Examined) -> tuple[str, list[Key]]:
+    """One sentence, and conicity, pressure and flank of a profile on its partner."""
+    points, pressed, shape = found.points, found.pressed, found.shape
+    wheel, rail = (Path(name).name for name in found.pair)
     conicity = points.conicity(AMPLITUDE)
     radius, half = points.dimensions.nominal_radius, points.position[points.y.size // 2]
     keys = []
@@ -125,8 +158,9 @@ def opening_of(
         value = f"{short(1e-6 * pressed.pressure[most])} MPa"
         keys.append(Key("greatest pressure", value, f"at {short(1e3 * pressed.y[most])} mm"))
     # behind the flange's tip, or on the rail's field side, the slope has the other sign
-    slope = -shape.slope if role == "wheel" else np.abs(shape.slope)
-    keys.append(Key("steepest flank", f"{np.degrees(slope.max()):.1f}°", f"of the {role}"))
+    slope = -shape.slope if found.role == "wheel" else np.abs(shape.slope)
+    flank = f"{np.degrees(slope.max()):.1f}°"
+    keys.append(Key("steepest flank", flank, f"of the {found.role}"))
     lost = int(np.isnan(points.position).sum())
     keys.append(
         Key(
@@ -144,8 +178,15 @@ def opening_of(
     )
     if pressed.doubts:
         verdict += "; what the file is taken for is doubtful"
-    state = DOUBT if pressed.doubts or lost else GOOD
-    return opening(Path(source).name, f"{role} profile", verdict + ".", keys, state)
+    return verdict + ".", keys
+
+
+def opening_of(found: Examined) -> str:
+    """The answers at the head of the page."""
+    verdict, keys = answers(found)
+    doubtful = bool(found.pressed.doubts) or any(key.state == DOUBT for key in keys)
+    name, state = Path(found.source).name, DOUBT if doubtful else GOOD
+    return opening(name, f"{found.role} profile", verdict, keys, state)
 
 
 def assumed_section(raw: RawProfile | None, notes: Sequence[str], lines: list[str]) -> list[str]:
