@@ -81,7 +81,7 @@ def prepare_rig(content: dict[str, Any], folder: Path, rows: Sequence[str]) -> P
 
 
 def forces_of(measured: Iterable[str]) -> tuple[str, ...]:
-    """What is observed where nobody says: forces, and L/V of sides whose lateral force is not there."""
+    """What is observed where nobody says: forces, and L/V of sides without a lateral force."""
     names = tuple(measured)
     return tuple(
         name

@@ -19,10 +19,12 @@ from railpatch.profiles.noise import (
     ROUGHNESS,
     five_point_weights,
     noise_of,
+    outliers,
     rounding_of,
     wavelength_for,
 )
 from railpatch.profiles.shape import shape_of
+from railpatch.profiles.smooth import chord_length
 
 
 def noisy(name: str, role: str, spacing: float, noise: float, seed: int) -> RawProfile:
@@ -134,3 +136,41 @@ def test_noise_beyond_what_arcs_bear_is_refused() -> None:
         fit_profile(raw)
     notes = fit_profile(raw, 0.011).notes
     assert notes[-1] == "smoothed over more than the arcs of wheels and rails bear"
+
+
+@pytest.mark.parametrize(("name", "role"), [("S1002", "wheel"), ("UIC60@1:40", "rail")])
+@pytest.mark.parametrize("noise", [0.0, 2e-6])
+@pytest.mark.parametrize("off", [5e-5, -5e-5])
+def test_a_single_point_off_the_curve_is_left_out(
+    name: str, role: str, noise: float, off: float
+) -> None:
+    """Dirt on a rail: 0.05 mm, which the median of the noise does not see."""
+    raw = noisy(name, role, 2.5e-4, noise, 7)
+    clean = fit_profile(raw)
+    at = int(np.argmin(np.abs(raw.y - 2e-3)))
+    raw.z[at] += off
+    fitted = fit_profile(raw)
+    (note,) = [text for text in fitted.notes if "left out" in text]
+    assert f"a point left out at y = {1e3 * raw.y[at]:.4g} mm" in note
+    s = clean.arc_length[5:-5]
+    there, here = np.array(clean.evaluate(s)), np.array(fitted.evaluate(s))
+    # what the cubic across the hole, and one point less of noise, leave
+    assert np.abs(there - here).max() < 2e-7 + 2 * noise
+
+
+def test_corners_are_no_points_off_the_curve() -> None:
+    y = np.linspace(-30e-3, 30e-3, 241)
+    for angle in (2e-3, 0.1, 1.0):
+        z = angle * np.abs(y)
+        assert outliers(y, z, chord_length(y, z), 0.0) == []
+
+
+def test_stretches_without_points_are_told() -> None:
+    raw = noisy("S1002", "wheel", 2.5e-4, 0.0, 0)
+    keep = np.abs(raw.y - 10e-3) > 7.5e-3
+    for name in ("y", "z", "weight", "line"):
+        setattr(raw, name, getattr(raw, name)[keep])
+    (note,) = [text for text in fit_profile(raw).notes if "no points over" in text]
+    assert note.startswith("no points over 15")
+    whole = fit_profile(noisy("S1002", "wheel", 2.5e-4, 0.0, 0))
+    assert not any("no points" in text for text in whole.notes)

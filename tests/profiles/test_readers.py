@@ -38,6 +38,8 @@ def test_two_columns_in_m_with_commas_and_titles(write: Write) -> None:
 def test_commas_in_comments_tell_nothing_of_the_numbers(write: Write) -> None:
     heading = "% track 12,4 km, 3,5 years, 60E1,1 right\n"
     assert_is_the_wheel(write("w.txt", heading + columns(Y, Z)))
+    german = columns(Y, Z).replace(" ", ";").replace(".", ",")
+    assert_is_the_wheel(write("w.csv", "# km 1,5\n" + german + "# 2,5 mm beside it, 3,1 km\n"))
 
 
 def test_z_up_and_flange_at_plus_y_are_detected(write: Write) -> None:

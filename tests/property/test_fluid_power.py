@@ -110,7 +110,8 @@ def test_of_an_elastohydrodynamic_contact() -> None:
 def test_where_it_is_not_known_or_nothing() -> None:
     method = {**CASE["method"], "tangential": "polach"}
     regimes = {"model": "regimes", "water_rate": 1e-7}
-    assert math.isnan(solved({**CASE, "friction": None, "fluid": regimes, "method": method})["fluid_power"])
+    by_regimes = {**CASE, "friction": None, "fluid": regimes, "method": method}
+    assert math.isnan(solved(by_regimes)["fluid_power"])
     dry = {name: table for name, table in CASE.items() if name != "fluid"}
     assert math.isnan(solved(dry)["fluid_power"])
     stands = {**CASE["motion"], "rolling_speed": 0.0, "creepage": [0.0, 0.0]}

@@ -15,6 +15,7 @@ import pytest
 import railpatch
 from case_samples import WHEELSET, with_values
 from railpatch.case import CaseError
+from railpatch.case.fluid import DRY_FRICTION
 from scipy.interpolate import PchipInterpolator
 
 CREEPAGES = [1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3]
@@ -131,6 +132,16 @@ def test_recovery_on_the_rail() -> None:
         left = math.exp(-tau * work)
         found = -of.step(creepage=[0.02, 0.0], rail_work=[0.0, work])["creep_force"][0]
         assert found == pytest.approx(wet * left + dry * (1 - left), rel=1e-9)
+
+
+def test_friction_of_dry_rails_is_the_cores() -> None:
+    """By which pages judge Nadal's limit: at a slip of nothing Polach's law gives mu_0."""
+    slow = {"geometry": {"semi_axes": [RADIUS, RADIUS]}, "load": {"normal_force": LOAD}}
+    slow |= {"kind": "patch", "motion": {"creepage": [1e-9, 0.0], "rolling_speed": 5.0}}
+    slow |= {"fluid": {"model": "regimes", "water_rate": 0.0}}
+    slow |= {"method": {"normal": "hertz", "tangential": "polach"}}
+    found = railpatch.solve(slow)["effective_friction"]
+    assert found == pytest.approx(DRY_FRICTION, rel=1e-6)
 
 
 def test_recovery_of_a_wheel() -> None:

@@ -54,6 +54,8 @@ MOVED = {
 }
 
 
+# -, mu_0 of the driest of the knots that come with the core (Polach 2005)
+DRY_FRICTION = 0.55
 OF_REGIMES = ("knots", "reference_rate", "recovery", "rail_work")
 # keys that a model does not read
 UNREAD = {

@@ -63,9 +63,10 @@ def physics_conditions(case: Case) -> set[str]:
     if not case.has_tangential:
         return set()
     friction, heat = case.friction, case.temperature
-    found = set()
-    if friction is not None and friction.law == "coulomb" and friction.coefficient is not None:
-        found.add("coulomb")
+    law = None if friction is None else friction.law
+    # with a liquid there may be no coefficient of dry surfaces
+    coulomb = friction is not None and law == "coulomb" and friction.coefficient is not None
+    found = {"coulomb"} if coulomb else set()
     if case.method.tangential != "full":
         found.add("fast")
     if case.layer is not None and case.layer.is_plastic:

@@ -29,6 +29,9 @@ MOSTLY, UNEVEN = 0.9, 0.05
 # sine of the greatest inclination that counts as level; windows of five points that tell the noise
 # there; how many times that of all it must be to count alone
 LEVEL, ENOUGH, MORE = 0.5, 50, 1.25
+# of the noise, and m: how far off a point has to be to be left out; of that, what its neighbours
+# may be off without it
+FAR_OFF, SEEN, AGREED = 10.0, 5e-6, 0.2
 # the standard deviation over the median of the deviations of normal noise
 NORMAL = 1.4826022185056018
 
@@ -41,20 +44,50 @@ def noise_of(y: Array, z: Array, s: Array) -> float:
     """
     if y.size < 9:
         return 0.0
+    across, gain = off_neighbours(y, z, s)
+    off = np.abs(across) / gain
+    noise = float(NORMAL * np.median(off))
+    ty, tz = y[4:] - y[:-4], z[4:] - z[:-4]
+    level = np.abs(tz) <= LEVEL * hypot(ty, tz)
+    if np.count_nonzero(level) < ENOUGH:
+        return noise
+    there = float(NORMAL * np.median(off[level]))
+    return there if there > MORE * noise else noise
+
+
+def off_neighbours(y: Array, z: Array, s: Array) -> tuple[Array, Array]:
+    """m, [n - 4], how far each point but the first and last two is off the cubic through its two
+    neighbours on either side, across the profile; and the factor by which that is noisier than a
+    point."""
     weights, gain = five_point_weights(s)
     parts = []
     for values in (y, z):
         windows = np.lib.stride_tricks.sliding_window_view(values, 5)
         parts.append((windows * weights).sum(axis=1))
     ty, tz = y[4:] - y[:-4], z[4:] - z[:-4]
-    long = hypot(ty, tz)
-    off = np.abs(parts[1] * ty - parts[0] * tz) / (long * gain)
-    noise = float(NORMAL * np.median(off))
-    level = np.abs(tz) <= LEVEL * long
-    if np.count_nonzero(level) < ENOUGH:
-        return noise
-    there = float(NORMAL * np.median(off[level]))
-    return there if there > MORE * noise else noise
+    return (parts[1] * ty - parts[0] * tz) / hypot(ty, tz), gain
+
+
+def outliers(y: Array, z: Array, s: Array, noise: float) -> list[int]:
+    """Single points that lie off a curve which their neighbours agree on: indices.
+
+    noise: m, of the points. Without such a point its neighbours fit, which they do not where it is
+    a corner's.
+    """
+    if y.size < 9:
+        return []
+    across, gain = off_neighbours(y, z, s)
+    off = np.abs(across) / gain
+    found: list[int] = []
+    for i in (2 + np.flatnonzero(off > max(FAR_OFF * noise, SEEN))).tolist():
+        if off[i - 2] < off[max(i - 4, 0) : i + 1].max():
+            continue
+        begin = max(i - 4, 0)
+        near = [k for k in range(begin, min(i + 5, y.size)) if k != i]
+        left, factor = off_neighbours(y[near], z[near], s[near])
+        if left.size > 0 and np.abs(left / factor).max() < AGREED * off[i - 2]:
+            found.append(i)
+    return found
 
 
 def rounding_of(values: Array) -> float:

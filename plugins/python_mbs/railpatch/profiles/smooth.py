@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from railpatch.errors import ProfileError
 from railpatch.profiles.curve import Profile, Scatter
 from railpatch.profiles.elementary import GAUSS_5, hypot, weighted_sum
-from railpatch.profiles.noise import noise_of, wavelength_for
+from railpatch.profiles.noise import noise_of, off_neighbours, outliers, wavelength_for
 from railpatch.profiles.raw import RawProfile
 from railpatch.profiles.spline import cubic_spline, slopes, smoothed_values
 
@@ -39,6 +39,8 @@ ENOUGH = 0.8
 EVEN, SHARE, LONGEST = 0.3, 0.07, 9e-3
 # m, points closer than this are one: their rounding would shape the curve
 MIN_DISTANCE = 1e-5
+# distances between points; m and times their median: longer ones of files of many are told
+MANY, GAP, WIDE = 100, 4e-3, 10.0
 # -, share of the points that may turn back before a file is refused
 MAX_TURNING_BACK = 0.05
 
@@ -59,6 +61,13 @@ def fit_profile(raw: RawProfile, smoothing: float | None = None) -> Profile:
     spacing = float(np.median(np.diff(s)))
     rounded = raw.rounding / 12**0.5
     found = noise_of(y, z, s)
+    if apart := outliers(y, z, s, max(found, rounded)):
+        notes += off_notes(y, z, s, apart)
+        keep = np.delete(keep, apart)
+        y, z = raw.y[keep], raw.z[keep]
+        s = chord_length(y, z)
+        found = noise_of(y, z, s)
+    notes += gap_notes(y, s)
     noise = max(found, rounded)
     if rounded > QUIET:
         notes.append(
@@ -112,6 +121,29 @@ def fit_profile(raw: RawProfile, smoothing: float | None = None) -> Profile:
         return profile
     flattened = flattening(profile, raw.weight[keep], lengths)
     return replace(profile, scatter=Scatter(noise, spacing, lengths, flattened))
+
+
+def off_notes(y: Array, z: Array, s: Array, apart: list[int]) -> list[str]:
+    """On single points that are left out."""
+    across, _ = off_neighbours(y, z, s)
+    return [
+        f"a point left out at y = {1e3 * y[i]:.4g} mm: {1e6 * abs(across[i - 2]):.3g} um off its "
+        "neighbours, which agree"
+        for i in apart
+    ]
+
+
+def gap_notes(y: Array, s: Array) -> list[str]:
+    """On stretches without points, where the others are close."""
+    gaps = np.diff(s)
+    if gaps.size < MANY:
+        return []
+    wide = np.flatnonzero(gaps > max(GAP, WIDE * float(np.median(gaps))))
+    return [
+        f"no points over {1e3 * gaps[i]:.3g} mm from y = {1e3 * y[i]:.4g} mm on: the curve there "
+        "is that of its ends"
+        for i in wide
+    ]
 
 
 def range_of(lengths: Array) -> str:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from railpatch.case.fluid import DRY_FRICTION
 from railpatch.case.types import SIDES
 from railpatch.log.reader import Run, Series
 
@@ -34,7 +35,8 @@ def friction_of(run: Run) -> tuple[float, str]:
     fluid = scene_of(run).get("fluid") or {}
     if fluid.get("model") == "regimes":
         knots = fluid.get("knots")
-        return float(knots[0][3]) if knots else DRY_KNOT, "of the driest of the water's regimes"
+        dry = knots[0][3] if knots else DRY_FRICTION
+        return float(dry), "of the driest of the water's regimes"
     table = scene_of(run).get("friction") or {}
     if table.get("coefficient") is not None:
         value = table["coefficient"]

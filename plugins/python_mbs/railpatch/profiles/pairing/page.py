@@ -67,7 +67,8 @@ class Examined:
     def text(self) -> str:
         """Answer, numbers and the lines of a scene, as the terminal shows them."""
         verdict, keys = answers(self)
-        rows = [f"  {key.name}: {key.value}" + (f" ({key.note})" if key.note else "") for key in keys]
+        notes = [f" ({key.note})" if key.note else "" for key in keys]
+        rows = [f"  {key.name}: {key.value}{note}" for key, note in zip(keys, notes, strict=True)]
         scene = ["", *self.lines] if self.raw is not None else []
         return "\n".join([verdict, *rows, *scene])
 
