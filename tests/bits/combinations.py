@@ -99,6 +99,7 @@ COMMON: dict[str, Feature] = {
         "fluid": {"model": "film", "roughness": 1e-6, "boundary_friction": 0.2, "liquid": "water"}
     },
     "regimes of water": {
+        "friction__coefficient": None,
         "method__tangential": "polach",
         "fluid": {
             "model": "regimes",

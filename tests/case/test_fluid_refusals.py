@@ -61,7 +61,7 @@ def test_regimes_have_friction_of_their_own() -> None:
     """A coefficient beside their knots would count for nothing; factors of a wheel's do."""
     fluid = {"model": "regimes", "water_rate": 1e-8}
     fast = {"normal": "hertz", "tangential": "polach"}
-    rolls = with_values(WHEELSET, fluid=fluid, method=fast, grid={"elements": [9, 9]})
+    rolls = with_values(WHEELSET_BASE, fluid=fluid, method=fast)
     message = (
         "friction.coefficient: value is 0.36, allowed none: it must be left out with fluid.model = "
         "'regimes', whose knots have friction of their own"

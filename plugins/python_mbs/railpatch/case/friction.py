@@ -127,14 +127,17 @@ class Friction(Table):
         allowed = {"law", "factor", "along_track", "scale", *needed, *optional}
         if self.law == "slip_velocity":
             allowed.add("shape")
+        foreign = [
+            name
+            for name, field in type(self).model_fields.items()
+            if name not in allowed and getattr(self, name) != field.default
+        ]
         for name in needed:
-            # Coulomb's: a liquid may have friction of its own, see missing()
-            if getattr(self, name) is None and self.law != "coulomb":
+            # of Coulomb's alone a liquid may have friction of its own: see missing()
+            if getattr(self, name) is None and (foreign or self.law != "coulomb"):
                 yield relation(name, "missing", f"a number with {self._named()}")
-        for name, field in type(self).model_fields.items():
-            if name not in allowed and getattr(self, name) != field.default:
-                shown = repr(getattr(self, name))
-                yield relation(name, shown, f"{LEFT_OUT} with {self._named()}")
+        for name in foreign:
+            yield relation(name, repr(getattr(self, name)), f"{LEFT_OUT} with {self._named()}")
         if self.memory_distance == 0 and "memory_speed" in allowed:
             least = type(self).model_fields["memory_speed"].default
             if self.memory_speed != least:
