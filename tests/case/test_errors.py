@@ -207,6 +207,12 @@ def test_wrong_values_of_a_patch(key: str, value: Any, line: str) -> None:
         ("wheelset__left", {"offset": [0, 0]}, "wheelset.left.offset: value is [0, 0], allowed 3"),
         ("wheelset__nominal_radius", None, "wheelset.nominal_radius: value is missing, allowed m,"),
         ("track__roller_radius", 0.8, "track.roller_radius: value is 0.8, allowed only with kind"),
+        (
+            "track",
+            None,
+            "track: value is missing, allowed a table [track]: rails or rollers (m, rad, rad/s); "
+            "[track] with kind = 'rail' is enough",
+        ),
         ("track__kind", "roller", "track.roller_radius: value is missing, allowed a radius > 0"),
         ("profiles__rail", None, "profiles.rail_left: value is missing, allowed 'rail_left', or"),
         ("profiles__rail_left", "UIC60", "profiles.rail: value is 'UIC60@1:40', allowed only with"),

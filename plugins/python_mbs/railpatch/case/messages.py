@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any, get_origin
+from types import UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
@@ -95,6 +96,11 @@ def problem(
         if inner and table and get_origin(table.model_fields[str(loc[-1])].annotation) is list:
             inner = f"at least one [[{key}]]: "
             description = str(description).removeprefix("(no unit): ")
+        words = words_of(table.model_fields[str(loc[-1])].annotation) if table else []
+        if words:
+            inner, description = one_of_these(words), str(description).removeprefix("(no unit): ")
+            inner += f": {description}" if description else ""
+            return f"{key}: value is missing, allowed {inner}"
         return f"{key}: value is missing, allowed {inner}{description}{keys_of(model, loc)}"
     if item["type"] == "value_error":
         said = str(context["error"])
@@ -107,6 +113,24 @@ def problem(
         template = "a path or rows of numbers"
     allowed = template.format(**context) if template else item["msg"]
     return f"{key}: value is {show(item['input'])}, allowed {allowed}"
+
+
+def words_of(annotation: Any) -> list[Any]:
+    """Words that a type allows for a value by itself, in order."""
+    if get_origin(annotation) is Literal:
+        return list(get_args(annotation))
+    parts: tuple[Any, ...] = ()
+    if get_origin(annotation) in (Union, UnionType):
+        parts = get_args(annotation)
+    elif get_origin(annotation) is Annotated:
+        parts = get_args(annotation)[:1]
+    return [word for part in parts for word in words_of(part)]
+
+
+def one_of_these(words: list[Any]) -> str:
+    """'a', 'b' or 'c'."""
+    *first, last = map(repr, words)
+    return f"{', '.join(first)} or {last}" if first else last
 
 
 def is_branch(part: Any) -> bool:

@@ -366,7 +366,9 @@ class _WheelCase(Table):
     )
     motion: WheelMotion = Field(default=WheelMotion(), description="how wheels roll (no unit)")
     wheelset: Wheelset = Field(description="position, velocity, dimensions (m, rad, m/s, rad/s)")
-    track: Track = Field(description="rails or rollers (m, rad, rad/s)")
+    track: Track = Field(
+        description="rails or rollers (m, rad, rad/s); [track] with kind = 'rail' is enough"
+    )
     profiles: Profiles = Field(description="profiles by file or name (no unit)")
 
     @property
