@@ -242,3 +242,13 @@ def test_profiles_that_touch_nothing_at_the_start_are_said(tmp_path: Path) -> No
     assert "no contact at the start values" in page
     packed = pack_fmu(load_scene(LOADED), tmp_path / "c.fmu", rail_profiles=RAILS)
     assert packed.warnings == ()
+
+
+@pytest.mark.parametrize("kind", ["wheel", "wheelset_rail"])
+def test_a_start_that_touches_nothing_is_said(tmp_path: Path, kind: str) -> None:
+    """10 mm above the rails, of the wheel and of both wheels."""
+    file = Path(railpatch.__file__).parent / "fmu" / "kinds" / f"{kind}.toml"
+    case = tmp_path / "case.toml"
+    case.write_text(re.sub(r"(?m)^(z|vertical_force) = .*", "z = -0.01", file.read_text()))
+    packed = pack_fmu(load_scene(case), tmp_path / "a.fmu", name="case")
+    assert packed.warnings == ("case: no contact at the start values",)

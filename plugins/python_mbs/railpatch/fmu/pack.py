@@ -116,8 +116,8 @@ def pack_fmu(
     outputs: Sequence[str] = (),
     patches: int | None = None,
 ) -> PackedFmu:
-    """Writes the FMU of a scene; gives its path, with `warnings` where a combination of profiles
-    has no contact at the start values.
+    """Writes the FMU of a scene; gives its path, with `warnings` where the scene or a combination
+    of profiles has no contact at the start values.
 
     name: of the model. backend: "eigen" (permissive), or "fftw" (then the FMU is under the
     GPL). derivatives: of the outputs; "exact": where they come from the solved conditions;
@@ -183,6 +183,8 @@ def contents_of(
         scene, name, asked=options.derivatives != "none" and not kind.has_history
     )
     doubtful = [f"{name}: {text}, at the start values" for text in start["warnings"]]
+    if start["status"] == "no_contact":
+        doubtful.append(f"{name}: no contact at the start values")
     if not isinstance(scene.case, PatchCase):
         doubtful += [f"{name}: {text}" for text in run_doubts(scene.case, scene.folder)]
     apart = check_starts(choices, name)
