@@ -9,6 +9,7 @@ import pytest
 from railpatch.case.kinds import kind_of, write_example
 from railpatch.log import read_run
 from railpatch.match import load_match, run_match, write_match
+from railpatch.match.page import curves_of, residual_figure
 from railpatch.record.quantities import BY_NAME
 from railpatch.report.beside import Computed
 
@@ -74,6 +75,16 @@ def test_friction_is_found_from_forces_and_yaw(scene: Path) -> None:
     # ten numbers tell the noise to a fourth
     rms = float(np.sqrt(np.mean(found.explanations[0].fit.rms ** 2)))
     assert 0.5 * NOISE < rms < 1.5 * NOISE
+    # the page has the record's own units: yaw in mrad, forces in kN
+    record = np.loadtxt(scene.with_name("record.csv"), delimiter=",", skiprows=1)
+    for place in range(len(OBSERVED)):
+        figure = curves_of(found, place)
+        (measured,) = (curve for curve in figure.data if curve.name == "measured")
+        assert figure.layout.xaxis.title.text == "yaw [mrad]"
+        assert figure.layout.yaxis.title.text == f"{OBSERVED[place].replace('_', ' ')} [kN]"
+        assert measured.x == pytest.approx(record[:, 1], rel=1e-12)
+        assert measured.y == pytest.approx(record[:, 3 + place], rel=1e-12)
+        assert max(abs(residual_figure(found, place).data[0].y)) < 1e-2 * NOISE
     # the scene that comes of it runs, also from another folder
     write_match(found, scene.parent / "out")
     ended = kind_of("rig").run(scene.parent / "out" / "match.toml", scene.with_name("again.mcap"))

@@ -230,3 +230,16 @@ def test_sensitivities_of_a_linear_output(tmp_path: Path) -> None:
     for (_, first, _, total, _), size in zip(indices_of(plan, linear(plan, a)), a, strict=True):
         assert first == pytest.approx(size**2 / whole, abs=0.01)
         assert total == pytest.approx(size**2 / whole, abs=0.01)
+
+
+def test_the_page_says_which_outputs_have_no_card(tmp_path: Path) -> None:
+    """Four have one; of six the others are named, with their table."""
+    names = ["creep_force[0]", "wear_number", "friction_power", "creep_power", "utilised_friction"]
+    names.append("traction_coefficient")
+    listed = ", ".join(f'"{name}"' for name in names)
+    text = SWEEP.replace('"creep_force[0]", "max_pressure", "spin_moment"', listed)
+    run_sweep(files(tmp_path, text), tmp_path / "out")
+    page = (tmp_path / "out" / "sweep.html").read_text(encoding="utf-8")
+    left = "utilised_friction, traction_coefficient"
+    assert f"2 more of 6 outputs are in the table below, Results: {left}." in page
+    assert "more of" not in page.split("<h2>Responses</h2>")[1].split("<h2>")[0]

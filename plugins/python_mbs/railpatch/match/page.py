@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from html import escape
 
 import numpy as np
 import plotly.graph_objects as go
+from numpy.typing import ArrayLike, NDArray
 
 from railpatch.match.found import Judged, Match
 from railpatch.match.judge import NORMAL_95, correlations
+from railpatch.match.plan import input_name, observed_name
 from railpatch.page.document import document
 from railpatch.page.figures import COLORS, GREY, plot, styled
 from railpatch.page.parts import DOUBT, GOOD, PLAIN, Key, folded, opening
 from railpatch.page.tables import number, short, table
 from railpatch.record.quantities import BY_NAME
-from railpatch.record.units import UNITS
+from railpatch.record.units import UNITS, Unit, dimension_of
 from railpatch.report.data import SHOWN
 
 DASHES = ("solid", "dash", "dot", "dashdot")
@@ -22,6 +25,29 @@ DASHES = ("solid", "dash", "dot", "dashdot")
 LEAST_WITHIN = 85.0
 MOST_KEYS = 4  # parameters among the key numbers
 BAND = "rgba(59,125,196,0.18)"
+
+
+@dataclass(frozen=True)
+class Shown:
+    """The unit that the record has of a quantity: its name, "" of a plain number, and its size."""
+
+    name: str
+    unit: Unit
+
+    def values(self, si: ArrayLike) -> NDArray[np.float64]:
+        """Of values in SI units."""
+        return (np.asarray(si, dtype=float) - self.unit.offset) / self.unit.factor
+
+    def differences(self, si: ArrayLike) -> NDArray[np.float64]:
+        """Of differences and deviations in SI units."""
+        return np.asarray(si, dtype=float) / self.unit.factor
+
+    def label(self, name: str) -> str:
+        """A name with the unit."""
+        return f"{name} [{self.name}]" if self.name else name
+
+
+PLAIN_NUMBER = Shown("", Unit(1.0))
 
 
 def page_of(match: Match) -> str:
@@ -37,7 +63,7 @@ def page_of(match: Match) -> str:
             + plot(curves_of(match, place), f"curves-{place}")
         )
         parts.append(plot(residual_figure(match, place), f"left-{place}"))
-    parts += [parameters_of(own), chains_of(own), screening_of(own), samples_of(own)]
+    parts += [parameters_of(own), chains_of(match), screening_of(own), samples_of(own)]
     if own.rows is not None:
         parts.append(rows_of(own))
     if len(match.explanations) > 1:
@@ -56,7 +82,8 @@ def opening_of(match: Match) -> str:
         for p in own.parameters[:MOST_KEYS]
     ]
     for place, rms in enumerate(own.fit.rms):
-        keys.append(Key(f"off {label_of(match, place)}", short(float(rms)), "root mean square"))
+        off = float(shown_of(match, place).differences(rms))
+        keys.append(Key(f"off {label_of(match, place)}", short(off), "root mean square"))
     state = PLAIN
     if own.predicted is not None:
         share = 100 * own.predicted.within
@@ -98,20 +125,18 @@ def parameters_of(own: Judged) -> str:
     return "<h2>Parameters</h2>" + table(head, rows)
 
 
-def chains_of(own: Judged) -> str:
+def chains_of(match: Match) -> str:
     """Factors and offsets of measuring chains; nothing without."""
-    lines = [
-        [
-            key,
-            name,
-            number(value),
-            number(value - NORMAL_95 * error),
-            number(value + NORMAL_95 * error),
-        ]
-        for key, parts in own.chains.items()
-        for name, (value, error) in parts.items()
-    ]
-    head = ["measured", "of its chain", "value", "from", "to"]
+    lines = []
+    for key, parts in match.explanations[0].chains.items():
+        shown = shown_of(match, list(match.plan.table.observed).index(key))
+        for name, (value, error) in parts.items():
+            unit = shown if name == "offset" else PLAIN_NUMBER
+            ends = (value, value - NORMAL_95 * error, value + NORMAL_95 * error)
+            lines.append(
+                [key, name, unit.name or "-", *(number(float(unit.differences(v))) for v in ends)]
+            )
+    head = ["measured", "of its chain", "unit", "value", "from", "to"]
     return "<h2>Measuring chains</h2>" + table(head, lines) if lines else ""
 
 
@@ -173,14 +198,14 @@ def rows_of(own: Judged) -> str:
 
 def explanations_of(match: Match) -> str:
     """All beside each other, the one that predicts best first."""
-    rows, values = [], []
+    rows, values, first = [], [], shown_of(match, 0)
     for judged in sorted(match.explanations, key=rank):
         held, name = judged.predicted, judged.explanation.name
         rows.append(
             [
                 name,
-                number(float(judged.fit.rms[0])),
-                number(float(held.rms[0])) if held else "-",
+                number(float(first.differences(judged.fit.rms[0]))),
+                number(float(first.differences(held.rms[0]))) if held else "-",
                 f"{100 * held.within:.0f} %" if held else "-",
                 number(held.density) if held else "-",
                 number(judged.criterion),
@@ -189,7 +214,8 @@ def explanations_of(match: Match) -> str:
         values += [
             [name, p.key, number(p.value), number(p.low), number(p.high)] for p in judged.parameters
         ]
-    head = ["explanation", "rms", "rms, left out", "within 95 %", "log likelihood", "Akaike"]
+    rms = first.label("rms")
+    head = ["explanation", rms, f"{rms}, left out", "within 95 %", "log likelihood", "Akaike"]
     text = (
         "<p>Points left out in turn and predicted by the rest: their rms, the part of them inside "
         "the band of 95 % and the mean logarithm of their likelihood, by which explanations are "
@@ -199,31 +225,57 @@ def explanations_of(match: Match) -> str:
     return f"<h2>Explanations</h2>{text}{table(head, rows)}{table(found, values)}"
 
 
-def label_of(match: Match, place: int) -> str:
-    """Of what was observed."""
+def shown_of(match: Match, place: int) -> Shown:
+    """The record's unit of what was observed."""
     key, column = list(match.plan.table.observed.items())[place]
     if match.plan.record is None:
-        unit = next(iter(UNITS[BY_NAME[key].dimension]), "")
-        return f"{key.replace('_', ' ')} [{unit}]" if unit not in ("", "-") else key
-    return f"{key} / {column.over}" if column.over else key
+        return of_run(match, key)
+    return shown_as("" if column.over else match.plan.record.units.get(observed_name(key), ""))
+
+
+def shown_of_input(match: Match, name: str) -> Shown:
+    """The record's unit of an input."""
+    if match.plan.record is None:
+        return of_run(match, name)
+    return shown_as(match.plan.record.units.get(input_name(name), ""))
+
+
+def of_run(match: Match, name: str) -> Shown:
+    """The record's unit of a run's quantity; the SI unit of what the record does not have."""
+    own = next(iter(UNITS[BY_NAME[name].dimension]), "") if name in BY_NAME else ""
+    return shown_as(match.plan.units.get(name) or own)
+
+
+def shown_as(unit: str) -> Shown:
+    """A unit by its name."""
+    if unit in ("", "-"):
+        return PLAIN_NUMBER
+    dimension = dimension_of(unit)
+    return Shown(unit, UNITS[dimension][unit]) if dimension else Shown(unit, Unit(1.0))
+
+
+def label_of(match: Match, place: int) -> str:
+    """Of what was observed, with its unit."""
+    key, column = list(match.plan.table.observed.items())[place]
+    name = key if match.plan.record is not None else key.replace("_", " ")
+    return f"{name} / {column.over}" if column.over else shown_of(match, place).label(name)
 
 
 def input_label(match: Match, name: str) -> str:
-    """Of an input, with its unit where it is known: a run's yaw angle in rad."""
-    if match.plan.record is None and name in BY_NAME:
-        unit = next(iter(UNITS[BY_NAME[name].dimension]), "")
-        return f"{name} [{unit}]" if unit not in ("", "-") else name
-    return name
+    """Of an input, with its unit."""
+    return shown_of_input(match, name).label(name)
 
 
 def curves_of(match: Match, place: int) -> go.Figure:
-    """Measured points and computed curves over the first input, with the band of 95 %."""
-    own = match.explanations[0]
+    """Measured points and computed curves over the first input, with the band of 95 %, in the
+    record's units."""
+    own, shown = match.explanations[0], shown_of(match, place)
     name, at = next(iter(own.search.model.inputs.items()))
+    at = shown_of_input(match, name).values(at)
     order = np.argsort(at, kind="stable")
     figure = go.Figure()
-    spread = NORMAL_95 * own.fit.spread[place][order]
-    computed = own.fit.computed[place][order]
+    spread = shown.differences(NORMAL_95 * own.fit.spread[place][order])
+    computed = shown.values(own.fit.computed[place][order])
     figure.add_scatter(
         x=np.concatenate([at[order], at[order][::-1]]),
         y=np.concatenate([computed + spread, (computed - spread)[::-1]]),
@@ -236,8 +288,8 @@ def curves_of(match: Match, place: int) -> go.Figure:
     )
     for number_, judged in enumerate(match.explanations):
         figure.add_scatter(
-            x=judged.search.model.inputs[name][order],
-            y=judged.fit.computed[place][order],
+            x=at[order],
+            y=shown.values(judged.fit.computed[place][order]),
             mode="lines",
             name=judged.explanation.name,
             line={
@@ -247,7 +299,7 @@ def curves_of(match: Match, place: int) -> go.Figure:
         )
     figure.add_scatter(
         x=at,
-        y=own.search.measured[place],
+        y=shown.values(own.search.measured[place]),
         mode="markers",
         name="measured",
         marker={"color": COLORS["right"], "size": 6},
@@ -259,18 +311,18 @@ def curves_of(match: Match, place: int) -> go.Figure:
 
 def residual_figure(match: Match, place: int) -> go.Figure:
     """Measured minus computed, over the same."""
-    own = match.explanations[0]
+    own, shown = match.explanations[0], shown_of(match, place)
     name, at = next(iter(own.search.model.inputs.items()))
     figure = go.Figure()
     figure.add_scatter(
-        x=at,
-        y=own.fit.left[place],
+        x=shown_of_input(match, name).values(at),
+        y=shown.differences(own.fit.left[place]),
         mode="markers",
         marker={"color": COLORS["right"], "size": 6},
         name="measured minus computed",
     )
     figure.update_xaxes(title=input_label(match, name))
-    figure.update_yaxes(title="difference")
+    figure.update_yaxes(title=shown.label("difference"))
     figure.update_layout(showlegend=False)
     return styled(figure, 260)
 
@@ -289,12 +341,14 @@ def details_of(match: Match) -> str:
     """What was done, folded."""
     own, options = match.explanations[0], match.plan.table
     noise = own.fit.noise
+    each = [(shown_of(match, place), error) for place, error in enumerate(noise.error)]
+    errors = [f"{number(float(one.differences(error)))} {one.name}".strip() for one, error in each]
     lines = [
         ["record", match.plan.source],
         ["loss", options.loss],
         ["starts", str(options.starts)],
         ["intervals", options.intervals],
-        ["noise of a point", ", ".join(number(float(e)) for e in noise.error)],
+        ["noise of a point", ", ".join(errors)],
         ["of the model, over that", number(noise.size)],
         ["over, in standard deviations of the inputs", number(noise.length) if noise.size else "-"],
         ["evaluations of all points", str(sum(j.evaluations for j in match.explanations))],

@@ -108,12 +108,21 @@ def _opening(sweep: Sweep) -> list[str]:
         verdict += f" {name} is farthest from zero, {far}, at {_at(sweep, at)}."
     verdict += _strongest(sweep, shown)
     about = f"{plan.table.scene}, {kind}; design {plan.table.design}"
-    parts = [opening(plan.name, about, verdict, keys, state)]
+    parts = [opening(plan.name, about, verdict, keys, state), _left_out(shown, MOST_KEYS)]
     if failed:
         counts = Counter(sweep.rows[i].status for i in failed)
         told = ", ".join(f"{count} {status}" for status, count in counts.items())
         parts.append(f'<p class="warn">{escape(told)}: see the end of this page.</p>')
     return parts
+
+
+def _left_out(names: list[str], most: int) -> str:
+    """What of the outputs is not shown here, and where it is; nothing where all are."""
+    more = names[most:]
+    if not more:
+        return ""
+    text = f"{len(more)} more of {len(names)} outputs are in the table below, Results: "
+    return f"<p class=sub>{escape(text + ', '.join(more))}.</p>"
 
 
 def _range(sweep: Sweep, name: str) -> Key:
@@ -149,7 +158,7 @@ def _sections(sweep: Sweep) -> list[str]:
     shown, parts = shown_outputs(sweep), []
     if shown:
         parts += _sensitivities(sweep, shown)
-        parts += _responses(sweep, shown[:MOST_OUTPUTS])
+        parts += _responses(sweep, shown)
         parts += _extremes(sweep, shown)
         parts += _parallel(sweep, shown[:MOST_OUTPUTS])
     warned = Counter(text for row in sweep.rows for text in row.warnings)
@@ -198,8 +207,9 @@ def _at(sweep: Sweep, case: int) -> str:
     return ", ".join(f"{key} {with_unit(v, unit_of_varied(kind, key))}" for key, v in texts)
 
 
-def _responses(sweep: Sweep, names: list[str]) -> list[str]:
+def _responses(sweep: Sweep, outputs: list[str]) -> list[str]:
     """Each output over each key: cases, and their mean."""
+    names, left_out = outputs[:MOST_OUTPUTS], _left_out(outputs, MOST_OUTPUTS)
     keys = sweep.plan.keys
     figure = make_subplots(
         rows=len(names),
@@ -243,7 +253,7 @@ def _responses(sweep: Sweep, names: list[str]) -> list[str]:
             if column == 1:
                 figure.update_yaxes(title_text=output_label(sweep, name), row=row, col=column)
     styled(figure, 120 + 240 * len(names))
-    text = "<p class=sub>Dots are cases, the line is their mean along the key.</p>"
+    text = "<p class=sub>Dots are cases, the line is their mean along the key.</p>" + left_out
     figure.update_xaxes(exponentformat="SI")
     figure.update_yaxes(exponentformat="SI")
     return ["<h2>Responses</h2>" + text + plot(figure, "responses")]
