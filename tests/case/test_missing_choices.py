@@ -8,9 +8,10 @@ from typing import Any
 
 import pytest
 from pydantic import BaseModel, ValidationError
+from railpatch.case.homes import models_in
 from railpatch.case.kinds import kind_of, kinds, write_example
 from railpatch.case.load import read_toml
-from railpatch.case.messages import models_in, problems, words_of
+from railpatch.case.messages import problems, words_of
 from railpatch.match.plan import MatchTable
 from railpatch.sweep.plan import SweepFile
 
