@@ -1,5 +1,5 @@
 // The words of an input file: numbers, angles, strings, over lines, with what may be left out.
-// Equal to railpatch/inp/words.py.
+// Equal to railpatch/inp/words.py, whose messages also name the line that was expected.
 #pragma once
 
 #include <optional>
