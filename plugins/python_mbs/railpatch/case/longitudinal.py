@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from railpatch.case.gap import read_rows
-from railpatch.case.rolling import Flat, Joint, RailShape, WheelShape
+from railpatch.case.rolling import HIGHEST, Flat, Joint, RailShape, WheelShape
 from railpatch.case.types import SIDES
 from railpatch.errors import CaseError
 from railpatch.profiles.elementary import acos, cos, tan
@@ -79,18 +79,29 @@ def shape_config(case: Any, folder: Path) -> dict[str, Any]:
     wheels = [getattr(case.wheelset, side) for side in SIDES]
     rails = [getattr(case.track, side) for side in SIDES]
     config: dict[str, Any] = {}
-    runouts = [
+    runouts: list[Any] = [
         wheel_runout(wheel, radius, folder, f"wheelset.{side}.runout")
         if side in case.sides
         else None
         for wheel, side in zip(wheels, SIDES, strict=True)
     ]
     if any(values is not None for values in runouts):
+        check_heights(runouts, "wheelset", "runout")
         config["runout"] = runouts
     used = [
         rail if side in case.sides else RailShape() for rail, side in zip(rails, SIDES, strict=True)
     ]
     return {**config, **rail_heights(used, folder)}
+
+
+def check_heights(sides: list[Any], table: str, key: str) -> None:
+    """Refuses shapes that are higher or deeper than the core takes; of the key's rows, with what is
+    added to them. sides: m, left and right; None: level or round. Raises CaseError."""
+    for side, values in zip(SIDES, sides, strict=True):
+        largest = 0.0 if values is None else float(values[np.abs(values).argmax()])
+        if abs(largest) > HIGHEST:
+            allowed = f"heights of {-HIGHEST:g} to {HIGHEST:g} m"
+            raise CaseError(f"{table}.{side}.{key}: value is up to {largest:g}, allowed {allowed}")
 
 
 def wheel_runout(wheel: WheelShape, radius: float, folder: Path, key: str) -> Values | None:
@@ -143,6 +154,7 @@ def rail_heights(rails: list[RailShape], folder: Path) -> dict[str, Any]:
         )
     x = low + spacing * np.arange(count)
     heights = [sum((curve(x) for curve in own), np.zeros(count)) if own else None for own in curves]
+    check_heights(heights, "track", "running_surface")
     return {"rail_height": heights, "rail_height_start": low, "rail_height_spacing": spacing}
 
 

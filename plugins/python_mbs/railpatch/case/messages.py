@@ -29,6 +29,8 @@ ALLOWED = {
     "dict_type": "a table",
     "literal_error": "{expected}",
 }
+# pydantic's names of the branch of a union that is a text
+TEXTS = (("str",), ("constrained-str",))
 
 
 # a value that is no table, or no list of tables
@@ -48,7 +50,7 @@ def problems(
     found: list[str] = []
     for item in error.errors(include_url=False):
         # of the union path | rows only the branch that was meant is of use
-        if item["loc"][-1:] == ("str",) and isinstance(item["input"], list):
+        if item["loc"][-1:] in TEXTS and isinstance(item["input"], list):
             continue
         if item["type"] == "relations":
             loc = tuple(item["loc"])
@@ -109,7 +111,7 @@ def problem(
         wanted = f"[[{key}]] tables" if item["type"] == "list_type" else f"a table [{key}]"
         return f"{key}: value is {show(item['input'])}, allowed {wanted}{keys}"
     template = ALLOWED.get(item["type"])
-    if item["loc"][-1:] == ("str",):
+    if item["loc"][-1:] in TEXTS:
         template = "a path or rows of numbers"
     allowed = template.format(**context) if template else item["msg"]
     return f"{key}: value is {show(item['input'])}, allowed {allowed}"
@@ -136,7 +138,8 @@ def one_of_these(words: list[Any]) -> str:
 def is_branch(part: Any) -> bool:
     """pydantic puts the name of a union's branch, 'str' or 'list[...]', into the location."""
     return isinstance(part, str) and (
-        part in ("str", "float", "constrained-float") or part.startswith(("list[", "literal["))
+        part in ("str", "constrained-str", "float", "constrained-float")
+        or part.startswith(("list[", "literal["))
     )
 
 

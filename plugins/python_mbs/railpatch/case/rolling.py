@@ -20,7 +20,8 @@ from railpatch.case.types import (
     relation,
 )
 
-Height = Annotated[float, between(-0.1, 0.1)]
+HIGHEST = 0.1  # m, either way; the core's check has the same
+Height = Annotated[float, between(-HIGHEST, HIGHEST)]
 # keys of [wheelset.left], [track.left] and the right ones that do not move from step to step
 SHAPE_KEYS = ("runout", "flat", "running_surface", "joint")
 

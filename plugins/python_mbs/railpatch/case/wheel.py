@@ -46,6 +46,7 @@ from railpatch.case.types import (
     Vector,
     exactly_one,
     key,
+    listed,
     number_or,
     one_of,
     refuse,
@@ -200,6 +201,10 @@ class Rail(Deviation, RailShape):
     @model_validator(mode="after")
     def _increasing(self) -> Rail:
         check_sections(self.sections)
+        for k, value in enumerate(self.origin or ()):
+            low, high = (listed(f"rail_origin_{'yz'[k]}")[end] for end in ("low", "high"))
+            if not low <= value <= high:
+                raise relation(f"origin[{k}]", value, f"{low:g} to {high:g} m")
         return self
 
 
