@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from railpatch.errors import CaseError
 from railpatch.record.columns import given
+from railpatch.record.doubts import force_doubts, sign_doubts, speed_doubts
 from railpatch.record.quantities import BY_NAME, INPUT
-from railpatch.record.read import Record, force_doubts, read_record
+from railpatch.record.read import Record, read_record
 from railpatch.record.resample import resampled
 
 from rig_model.programme import Position, monotone, polygon
@@ -90,6 +91,8 @@ def measured_run(rig: Rig, case: Any, path: Path) -> Measured:
             f"{path}: positions come {least:.3g} s apart, allowed {LEAST_STEP:g} s or more"
         )
     warnings = [*record.warnings, *force_doubts(record, case.wheelset.vertical_force)]
+    warnings += speed_doubts(record, case.track.roller_pitch_rate, case.track.roller_radius)
+    warnings += sign_doubts(record)
     warnings += gaps_in(rows, driven, start, end)
     signals = {name: resampled(rows.time, values, at) for name, values in rows.signals.items()}
     whole = replace(rows, signals={name: bridged(rows, name) for name in driven})

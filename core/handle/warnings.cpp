@@ -28,6 +28,8 @@ constexpr double longest_shift = 1e-3;            // m
 constexpr double longest_step = 0.1;              // m, of transient rolling
 constexpr double greatest_speed = 200;            // m/s
 constexpr double body_range[2] = {0.002, 20};     // m, radii of bodies that touch
+constexpr double hardening_range[2] = {1e7, 1e17};  // Pa/m, either way
+constexpr double longest_hardening = 0.1;           // m, of plastic displacement in a table
 constexpr int least_elements = 8;
 constexpr double coarse_rise = 0.1;  // of a film's pressure in an element: docs/ehl.md
 
@@ -79,6 +81,58 @@ bool doubtful_bodies(const rp_config &config) {
   if (config.geometry == RP_LINE_CONTACT) return outside(config.line_contact_radius, body_range);
   if (config.geometry != RP_CURVATURES) return false;
   return outside(1 / std::max(config.curvatures[0], config.curvatures[1]), body_range);
+}
+
+bool doubtful_layer(const rp_config &config) {
+  const double slope = std::fabs(config.layer_hardening);
+  bool doubtful = config.layer_yield_stress > 0 &&
+                  (outside(config.layer_yield_stress, layer_yield_stress_range) ||
+                   (slope > 0 && outside(slope, hardening_range)));
+  for (int i = 0; i < config.hardening_points; ++i)
+    doubtful = doubtful || outside(config.hardening_stress[i], layer_yield_stress_range) ||
+               config.hardening_displacement[i] > longest_hardening;
+  return doubtful;
+}
+
+// Of what a case gives for all steps: K in place of degrees C. Of a table the first point counts.
+bool doubtful_temperatures(const rp_config &config) {
+  bool doubtful = false;
+  if (config.temperature) {
+    for (int body = 0; body < 2; ++body)
+      doubtful = doubtful || outside(config.bulk_temperature[body], bulk_temperature_range) ||
+                 (config.air_conductance[body] > 0 &&
+                  outside(config.air_temperature, air_temperature_range));
+  }
+  if (config.fluid_model == RP_FLUID_NONE) return doubtful;
+  return doubtful || outside(config.fluid_temperature, fluid_temperature_range) ||
+         (config.fluid_liquid == RP_LIQUID_OIL &&
+          outside(config.fluid_reference_temperature, fluid_reference_temperature_range)) ||
+         (config.fluid_liquid == RP_LIQUID_TABLE &&
+          outside(config.fluid_viscosity_temperature[0], fluid_temperature_range));
+}
+
+bool doubtful_slip_law(const rp_config &config) {
+  if (config.friction_law != RP_SLIP_VELOCITY) return false;
+  bool doubtful = outside(config.friction_memory_distance, friction_memory_distance_range);
+  for (int term = 0; term < 2; ++term)
+    doubtful =
+        doubtful || (config.friction_amplitude[term] != 0 &&
+                     outside(config.friction_halving_speed[term], friction_halving_speed_range));
+  return doubtful;
+}
+
+bool doubtful_supply(double rate, double film) {
+  return outside(rate, fluid_water_rate_range) || outside(film, fluid_oil_film_range);
+}
+
+// Of what a step gives in place of the case.
+uint32_t warnings_of_physics(const rp_config &config, const rp_input &in) {
+  const bool fluid = config.fluid_model != RP_FLUID_NONE;
+  bool hot = fluid && outside(in.water_temperature, fluid_temperature_range);
+  for (double temperature : in.bulk_temperature)
+    hot = hot || (config.temperature && outside(temperature, bulk_temperature_range));
+  return bit(RP_WARNING_TEMPERATURE, hot) |
+         bit(RP_WARNING_SUPPLY, fluid && doubtful_supply(in.water_rate, in.oil_film));
 }
 
 uint32_t warnings_of_patch(const rp_config &config, const rp_patch_result &patch) {
@@ -151,7 +205,13 @@ uint32_t warnings_of_case(const rp_config &config) {
       config.layer_thickness > 0 && outside(config.layer_shear_modulus, layer_shear_modulus_range);
   return bit(RP_WARNING_STIFFNESS, soft) | bit(RP_WARNING_RADIUS, odd) |
          bit(RP_WARNING_CURVATURES, doubtful_bodies(config)) |
-         bit(RP_WARNING_LAYER_STIFFNESS, layer) | bit(RP_WARNING_GAUGE, wide);
+         bit(RP_WARNING_LAYER_STIFFNESS, layer) | bit(RP_WARNING_GAUGE, wide) |
+         bit(RP_WARNING_YIELD, doubtful_layer(config)) |
+         bit(RP_WARNING_TEMPERATURE, doubtful_temperatures(config)) |
+         bit(RP_WARNING_SUPPLY,
+             config.fluid_model != RP_FLUID_NONE &&
+                 doubtful_supply(config.fluid_water_rate, config.fluid_oil_film)) |
+         bit(RP_WARNING_SLIP_LAW, doubtful_slip_law(config));
 }
 
 uint32_t warnings_of_film(const rp_config &config, const patch_memory *solution,
@@ -165,14 +225,14 @@ uint32_t warnings_of_film(const rp_config &config, const patch_memory *solution,
 
 void report_warnings(const rp_config &config, uint32_t of_case, const rp_input &input,
                      rp_result &result) {
-  const uint32_t of_motion = warnings_of_motion(config, input);
+  const uint32_t of_step = warnings_of_motion(config, input) | warnings_of_physics(config, input);
   int touching = 0;
   for (int side = 0; side < 2; ++side) {
     if (!in_use(config, side)) continue;
     rp_side_result &wheel = result.side[side];
     // those of the search for the height are there already
     wheel.warnings |=
-        of_case | of_motion | warnings_of_side(config, input, result.pitch_rate, side, wheel);
+        of_case | of_step | warnings_of_side(config, input, result.pitch_rate, side, wheel);
     touching += wheel.patch_count > 0;
   }
   // said of the wheel in the air

@@ -185,7 +185,18 @@ enum {
     "a radius of the bodies is outside 2 mm to 20 m: greatest of "                                 \
     "curvatures, in 1/m, or line_contact_radius, in m")                                            \
   X(RP_WARNING_THICK_FILM, 23,                                                                     \
-    "a film is thicker than 0.1 mm, beyond what its formula is of: fluid.viscosity, in Pa s")
+    "a film is thicker than 0.1 mm, beyond what its formula is of: fluid.viscosity, in Pa s")      \
+  X(RP_WARNING_YIELD, 24,                                                                          \
+    "layer: a yield stress (yield_stress, hardening_table) is outside 1e4 to 1e10 Pa, the "        \
+    "hardening outside 1e7 to 1e17 Pa/m, either way, or a table's displacement above 100 mm")      \
+  X(RP_WARNING_TEMPERATURE, 25,                                                                    \
+    "a temperature of wheel, rail, air or liquid is given outside -60 to 250 degrees C, which is " \
+    "their unit")                                                                                  \
+  X(RP_WARNING_SUPPLY, 26,                                                                         \
+    "of a liquid water_rate is above 1e-3 m^3/s (1 l/s), or oil_film above 5e-4 m")                \
+  X(RP_WARNING_SLIP_LAW, 27,                                                                       \
+    "friction: halving_speed, or ln(2)/polach_b, is outside 1e-5 to 100 m/s, or memory_distance "  \
+    "above 20 mm")
 
 #define RP_ENUM_ENTRY(name, value, text) name = value,
 typedef enum rp_error { RP_ERRORS(RP_ENUM_ENTRY) } rp_error;

@@ -627,13 +627,22 @@
 
 /* X(name, low, high): numbers of the configuration or the input that can hardly be meant outside of
  * this range, which warnings tell (RP_WARNINGS, whose texts name them). */
-#define RP_PLAUSIBLE_RANGES(X)      \
-  X(shear_modulus, 1e8, 1e12)       \
-  X(friction_coefficient, 0.0, 1.0) \
-  X(normal_force, 100.0, 5e5)       \
-  X(creepage, -0.1, 0.1)            \
-  X(spin_creepage, -20.0, 20.0)     \
-  X(layer_shear_modulus, 1e6, 1e12) \
+#define RP_PLAUSIBLE_RANGES(X)                 \
+  X(shear_modulus, 1e8, 1e12)                  \
+  X(friction_coefficient, 0.0, 1.0)            \
+  X(normal_force, 100.0, 5e5)                  \
+  X(creepage, -0.1, 0.1)                       \
+  X(spin_creepage, -20.0, 20.0)                \
+  X(layer_shear_modulus, 1e6, 1e12)            \
+  X(layer_yield_stress, 1e4, 1e10)             \
+  X(bulk_temperature, -60.0, 250.0)            \
+  X(air_temperature, -60.0, 250.0)             \
+  X(fluid_temperature, -60.0, 250.0)           \
+  X(fluid_reference_temperature, -60.0, 250.0) \
+  X(fluid_water_rate, 0.0, 1e-3)               \
+  X(fluid_oil_film, 0.0, 5e-4)                 \
+  X(friction_halving_speed, 1e-5, 100.0)       \
+  X(friction_memory_distance, 0.0, 0.02)       \
   X(y, -0.025, 0.025)
 
 #endif

@@ -85,13 +85,13 @@ def scene(kind: str, *changes: tuple[str, str]) -> Callable[[], str]:
     return make
 
 
-def recorded(head: str, *rows: str, yaw: str = 'name = "yaw"') -> Callable[[], str]:
-    """The rig's scene with a record in place of its programme."""
+def recorded(head: str, *rows: str, yaw: str = 'name = "yaw"', more: str = "") -> Callable[[], str]:
+    """The rig's scene with a record in place of its programme. more: columns beside the four."""
 
     def make() -> str:
         text = kinds()["rig"].scene.read_text(encoding="utf-8")
         keys = f'[rig]\nrecord = "run.csv"\n[rig.columns]\ntime = {{ name = "t" }}\nyaw = {{ {yaw} }}\n'
-        keys += 'lateral_position = { name = "y" }\nvertical_load = { name = "load" }\n'
+        keys += 'lateral_position = { name = "y" }\nvertical_load = { name = "load" }\n' + more
         Path("rig.toml").write_text(text[: text.index("[rig]")] + keys, encoding="utf-8")
         Path("run.csv").write_text("\n".join([head, *rows]), encoding="utf-8")
         return "rig.toml"
@@ -209,6 +209,21 @@ MISTAKES: tuple[Mistake, ...] = (
              patch(more="[layer]\nshear_modulus = 8.2e9\nthickness = 0.05\n")),
             ("a layer's modulus in GPa",
              patch(more="[layer]\nshear_modulus = 8.2\nthickness = 5e-5\n")),
+            ("a layer's yield stress in MPa",
+             patch(more="[layer]\nshear_modulus = 8.2e9\nthickness = 2e-5\nyield_stress = 50.0\n")),
+            ("a wheel's temperature in K",
+             patch(more="[temperature]\nwheel = 293.0\nrail = 293.0\n")),
+            ("a supply of water in l/s", patch(more=WATER + "water_rate = 0.025\n")),
+            ("a halving speed in mm/s",
+             patch((f"coefficient = {NUMBER}", 'law = "slip_velocity"\nkinetic = 0.1\n'
+                    "amplitude = 0.2\nhalving_speed = 400.0"))),
+            ("a memory of friction in mm",
+             patch((f"coefficient = {NUMBER}", 'law = "slip_velocity"\nkinetic = 0.1\n'
+                    "amplitude = 0.2\nhalving_speed = 0.4\nmemory_distance = 0.1"))),
+            ("a depth in mm", patch(more="[subsurface]\ndepths = [1.0]\n")),
+            ("a shear yield stress in MPa", patch(more="[damage]\nshear_yield = 300.0\n")),
+            ("a hardness of Brinell's scale",
+             patch(more='[damage]\nwear = "archard"\nhardness = 300.0\n')),
             ("a method in capitals", patch(more='[method]\ntangential = "FASTSIM"\n')),
             ("a theory beyond its range",
              patch((r"creepage = \[.*\]", "creepage = [0.05, 0.0]"),
@@ -258,6 +273,8 @@ MISTAKES: tuple[Mistake, ...] = (
             ("wheel and rail exchanged",
              wheel((r'wheel = "S1002"', 'wheel = "UIC60@1:40"'),
                    (r'rail = "UIC60@1:40"', 'rail = "S1002"'))),
+            ("a rail's origin in mm",
+             wheel((r"\Z", "\n[track.right]\norigin = [717.5, 0.0]\n"))),
             ("a scene of a vehicle", scene("vehicle")),
         )
     ),
@@ -323,6 +340,12 @@ MISTAKES: tuple[Mistake, ...] = (
             recorded(*RECORD, yaw='name = "yaw", unit = "rad"')),
     Mistake(RIG, "a record's load in lbf, called N", "rig {} -o a.mcap",
             recorded(RECORD[0].replace("kN", "N"), "0,0,0.3,30120", "1,2,0.6,30120")),
+    Mistake(RIG, "a record's speed in km/h, called m/s", "rig {} -o a.mcap",
+            recorded(RECORD[0] + ",v [m/s]", *(row + ",16" for row in RECORD[1:]),
+                     more='speed = { name = "v" }\n')),
+    Mistake(RIG, "a record's L/V in parts, called %", "rig {} -o a.mcap",
+            recorded(RECORD[0] + ",L/V [%]", *(row + ",0.4" for row in RECORD[1:]),
+                     more='left_ratio = { name = "L/V" }\n')),
     Mistake(RIG, "a record's column by another name", "rig {} -o a.mcap",
             recorded(*RECORD, yaw='name = "jaw"')),
     Mistake(RIG, "a record whose clock falls", "rig {} -o a.mcap",

@@ -28,6 +28,34 @@ from wheelset_demo.vehicle.scene import load_vehicle_scene
 
 LOADED = with_values(WHEELSET, wheelset__z=None, wheelset__vertical_force=1.2e5)
 STILL = {"grid__element_size": [1e-3, 1e-3]}
+YIELD, CELSIUS = "layer: a yield stress", "-60 to 250 degrees C"
+FILM = {"model": "film", "roughness": 1e-6}
+WATER = {**FILM, "liquid": "water"}
+
+
+def yielding(**keys: Any) -> dict[str, Any]:
+    """The patch with a plastic layer."""
+    return with_values(PATCH, layer={"shear_modulus": 8.2e9, "thickness": 2e-5, **keys})
+
+
+def oil(**keys: Any) -> dict[str, Any]:
+    """The patch with oil."""
+    return with_values(PATCH, fluid={**FILM, "liquid": "oil", "viscosity": 0.1, **keys})
+
+
+def falling(**keys: Any) -> dict[str, Any]:
+    """The patch with friction that falls with the speed of slip."""
+    law = {"law": "slip_velocity", "kinetic": 0.1, "amplitude": 0.2, "halving_speed": 1.0}
+    return with_values(PATCH, friction={**law, **keys})
+
+
+def stored(air: float) -> dict[str, Any]:
+    """A wheelset whose wheels are warmed, in air of so many degrees C."""
+    bulk = {"mass": [0.5, 2.0], "air_conductance": [3.0, 1.0], "air_temperature": air}
+    heat = {"wheel": 20.0, "rail": 20.0, "bulk": bulk}
+    return with_values(LOADED, temperature=heat, wheelset__time_step=1e-3, **STILL)
+
+
 # what was meant -> the case, and words of what is said
 MISTAKES: dict[str, tuple[dict[str, Any], str]] = {
     "GPa as Pa": (with_values(PATCH, material={"shear_modulus": 82.0}), "shear_modulus"),
@@ -96,6 +124,62 @@ MISTAKES: dict[str, tuple[dict[str, Any], str]] = {
         "2 mm to 20 m",
     ),
     "a grid of 6 x 6": (with_values(PATCH, grid={"elements": [6, 6]}), "8 elements"),
+    "a layer's yield stress in MPa": (yielding(yield_stress=50.0), YIELD),
+    "a layer's hardening in N/mm^3": (yielding(yield_stress=5e7, hardening=1e3), YIELD),
+    "a layer's softening in N/mm^3": (yielding(yield_stress=5e7, hardening=-2.0), YIELD),
+    "a hardening table in MPa": (yielding(hardening_table=[[0.0, 50.0], [1e-5, 60.0]]), YIELD),
+    "a hardening table in mm": (yielding(hardening_table=[[0.0, 5e7], [0.2, 6e7]]), YIELD),
+    "wheel in K": (with_values(PATCH, temperature={"wheel": 293.0, "rail": 20.0}), CELSIUS),
+    "rail in K": (with_values(PATCH, temperature={"wheel": 20.0, "rail": 293.0}), CELSIUS),
+    "air in K": (stored(290.0), CELSIUS),
+    "an oil's reference in K": (oil(reference_temperature=313.0), CELSIUS),
+    "a table of viscosities in K": (
+        with_values(
+            PATCH,
+            fluid={
+                **FILM,
+                "boundary_friction": 0.2,
+                "viscosity_table": [[293.0, 0.3], [333.0, 0.05]],
+            },
+        ),
+        CELSIUS,
+    ),
+    "a supply in l/s": (with_values(PATCH, fluid={**WATER, "water_rate": 0.025}), "water_rate"),
+    "an oil's film in mm": (oil(oil_film=1e-3), "oil_film"),
+    "a halving speed in mm/s": (falling(halving_speed=400.0), "halving_speed"),
+    "the second halving speed in mm/s": (
+        falling(amplitude=[0.1, 0.1], halving_speed=[0.4, 400.0]),
+        "halving_speed",
+    ),
+    "a memory in mm": (falling(memory_distance=0.1), "memory_distance"),
+    "a depth in mm": (with_values(PATCH, subsurface={"depths": [1e-3, 1.0]}), "in m"),
+    "a point's depth in mm": (
+        with_values(PATCH, subsurface={"depths": [1e-3], "points": [[0.0, 0.0, 0.5]]}),
+        "subsurface.points",
+    ),
+}
+# what lies just within the ranges, and published numbers: none is doubted
+WITHIN: dict[str, dict[str, Any]] = {
+    "a soft layer": yielding(yield_stress=1e4, hardening=-1e7),
+    "a steel's layer": yielding(yield_stress=1e10, hardening=1.23e14),
+    "a table": yielding(hardening_table=[[0.0, 1e8], [1e-6, 1.5e8], [1e-3, 2e8]]),
+    "a brake's heat": with_values(PATCH, temperature={"wheel": 250.0, "rail": -60.0}),
+    "frost": stored(-60.0),
+    "oil": oil(reference_temperature=100.0, temperature=-20.0),
+    "rain": with_values(PATCH, fluid={**WATER, "water_rate": 1e-3}),
+    "a thick film": oil(oil_film=5e-4),
+    "Polach's law": with_values(
+        PATCH,
+        friction={
+            "law": "slip_velocity",
+            "shape": "polach",
+            "coefficient": 0.55,
+            "polach_a": 0.4,
+            "polach_b": 0.6,
+        },
+    ),
+    "a memory": falling(halving_speed=1e-5, memory_distance=0.02),
+    "below": with_values(PATCH, subsurface={"depths": [0.0, 0.05]}),
 }
 # the condition -> the case, its status and a word of the reason
 UNSOLVED: dict[str, tuple[dict[str, Any], str, str]] = {
@@ -208,6 +292,50 @@ def test_a_fall_while_two_contacts_join_is_warned_of() -> None:
         depths = [below.step(y=y, z=found["z"] - 5e-9 * i)["force"][2] for i in range(1, 16)]
         assert (min(depths) < -LOAD) == several
         assert any("other heights" in text for text in found.warnings) == several
+
+
+@pytest.mark.parametrize("name", WITHIN)
+def test_what_may_be_meant_has_none(name: str) -> None:
+    result = railpatch.solve(WITHIN[name])
+    words = (YIELD, CELSIUS, "water_rate", "halving_speed", "subsurface")
+    assert [text for text in result.warnings if any(word in text for word in words)] == []
+
+
+@pytest.mark.parametrize(
+    ("case", "values", "words"),
+    [
+        (
+            with_values(PATCH, temperature={"wheel": 20.0, "rail": 20.0}),
+            {"temperature": {"wheel": 293.0, "rail": 293.0}},
+            CELSIUS,
+        ),
+        (oil(temperature=20.0), {"water_temperature": 293.0}, CELSIUS),
+        (with_values(PATCH, fluid={**WATER, "water_rate": 1e-7}), {"water_rate": 0.025}, "1 l/s"),
+        (oil(oil_film=1e-6), {"oil_film": 1e-3}, "oil_film"),
+    ],
+)
+def test_a_step_in_another_unit(case: dict[str, Any], values: dict[str, Any], words: str) -> None:
+    """Of what moves, the step is doubted that has it, and no other."""
+    contact = railpatch.Contact(case)
+    assert contact.step().warnings == []
+    assert any(words in text for text in contact.step(**values).warnings)
+
+
+@pytest.mark.parametrize(
+    ("damage", "key"),
+    [
+        ({"shear_yield": 300.0}, "damage.shear_yield: value is 300.0, allowed >= 1000000"),
+        (
+            {"wear": "archard", "hardness": 300.0},
+            "damage.hardness: value is 300.0, allowed >= 1000000",
+        ),
+    ],
+)
+def test_stresses_of_no_metal_are_refused(damage: dict[str, Any], key: str) -> None:
+    """MPa, and numbers of Brinell's scale."""
+    with pytest.raises(railpatch.CaseError) as caught:
+        railpatch.solve(with_values(PATCH, damage=damage))
+    assert str(caught.value).startswith(key)
 
 
 def test_correct_patches_have_none() -> None:

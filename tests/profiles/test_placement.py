@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import railpatch
+from case_samples import WHEELSET, with_values
 from railpatch.profiles import load_profile
 from railpatch.profiles.pairing.contact_points import Dimensions, pair_case
 from railpatch.profiles.placement import flange_of, gauge_note
@@ -81,3 +82,32 @@ def test_a_rail_says_where_it_is_held(write: Write) -> None:
     case = pair_case("S1002", write("r.dat", text), Dimensions(), None, {})
     notes = railpatch.solve(case)["profiles"]["r.dat"]
     assert any("its gauge side, at y = -32.0 mm" in note for note in notes), notes
+
+
+@pytest.mark.parametrize(
+    ("drop", "origin", "said"), [(2e-3, False, 1), (2e-3, True, 0), (4e-4, False, 0)]
+)
+def test_heights_of_slices_that_are_not_read(
+    drop: float, origin: bool, said: int, write: Write
+) -> None:
+    """Of two slices along the rail, one lower, whose origin is not said."""
+    rail = load_profile("UIC60@1:40", "rail")
+    sections = []
+    for k, z in enumerate((rail.z, rail.z + drop)):
+        text = "".join(f"{1e3 * a:.7f} {1e3 * b:.7f}\n" for a, b in zip(rail.y, z, strict=True))
+        sections.append({"position": float(k), "profile": str(write(f"slice_{k}.txt", text))})
+    case = with_values(
+        WHEELSET,
+        kind="wheel_rail",
+        profiles={"wheel": "S1002"},
+        track__right={"sections": sections, **({"origin": [0.7505, 0.0]} if origin else {})},
+        wheelset__z=None,
+        wheelset__vertical_force=6e4,
+        grid={"element_size": [1e-3, 1e-3]},
+    )
+    warnings = railpatch.solve(case).warnings
+    found = [text for text in warnings if text.startswith("track.right.sections: ")]
+    assert len(found) == said, warnings
+    for text in found:
+        assert "z = 0.00 to 2.00 mm of their files" in text
+        assert "track.right.origin" in text

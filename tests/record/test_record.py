@@ -9,8 +9,8 @@ import pytest
 from railpatch.errors import CaseError, RecordError
 from railpatch.record import MeasuredColumn, low_passed, read_record, resampled
 from railpatch.record.columns import load_columns
+from railpatch.record.doubts import force_doubts, sign_doubts
 from railpatch.record.quantities import QUANTITIES
-from railpatch.record.read import force_doubts
 from railpatch.record.units import UNITS
 
 from wheelset_demo.vehicle import measured_track
@@ -135,6 +135,7 @@ def test_numbers_beyond_their_range(tmp_path: Path, key, unit, rows, words):
         ("yaw", "mrad", "-0.018 0.018", "'rad'"),
         ("lateral_position", "mm", "-0.0066 0.0023", "'m'"),
         ("left_lateral", "N", "2 9", "'kN'"),
+        ("left_ratio", "%", "-0.05 0.4", "'-'"),
     ],
 )
 def test_numbers_that_are_hardly_meant(tmp_path: Path, key, unit, rows, word):
@@ -160,6 +161,32 @@ def test_forces_that_do_not_fit_the_load(tmp_path: Path):
     right = dict(columns, vertical_load=MeasuredColumn(name="load", unit="lbf"))
     right["left_lateral"] = MeasuredColumn(name="L", unit="kN")
     assert force_doubts(read_record(path, right), 133.95e3) == []
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "said"),
+    [
+        ([0.02, 0.1, 0.3, 0.4, 0.2, -0.1], [-0.02, -0.1, -0.3, -0.4, -0.2, 0.1], True),
+        ([0.02, 0.1, 0.3, 0.4, 0.2, -0.1], [0.1, 0.15, 0.35, 0.38, 0.28, 0.0], False),
+        # outwards on either side, as without yaw
+        ([-0.04, -0.05, -0.04, -0.05, -0.04, -0.05], [0.04, 0.05, 0.04, 0.05, 0.04, 0.05], False),
+        ([0.02, 0.1, 0.3], [-0.02, -0.1, -0.3], False),
+    ],
+)
+def test_wheels_with_different_signs(tmp_path: Path, left, right, said):
+    """Given as L/V, or by forces under a load that varies."""
+    pairs = list(zip(left, right, strict=True))
+    path = written(tmp_path, "l,r\n" + "".join(f"{a},{b}\n" for a, b in pairs))
+    columns = {f"{s}_ratio": MeasuredColumn(name=s[0], unit="-") for s in ("left", "right")}
+    doubts = sign_doubts(read_record(path, columns))
+    assert [text.split(":")[0] for text in doubts] == said * ["left_ratio and right_ratio"]
+    lines = [f"{(60 + i) * a},{60 + i},{(60 + i) * b}\n" for i, (a, b) in enumerate(pairs)]
+    path = written(tmp_path, "l,v,r\n" + "".join(lines))
+    names = {"left_lateral": "l", "right_lateral": "r"}
+    names |= {"left_vertical": "v", "right_vertical": "v"}
+    columns = {key: MeasuredColumn(name=name, unit="kN") for key, name in names.items()}
+    doubts = sign_doubts(read_record(path, columns))
+    assert [text.split(":")[0] for text in doubts] == said * ["left_lateral and right_lateral"]
 
 
 @pytest.mark.parametrize(

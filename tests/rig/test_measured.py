@@ -90,6 +90,40 @@ def test_positions_and_rate_choose_the_points(rig):
     assert load_rig_scene(path, {"rate": 10.0}).count == 41
 
 
+@pytest.mark.parametrize(
+    ("speed", "unit", "said"),
+    [
+        (16.0, "m/s", True),  # km/h
+        (16.0, "km/h", False),
+        (4.4704, "m/s", False),
+        (8.0, "m/s", False),
+        (10.0, "mph", False),
+        (2.0, "m/s", True),
+    ],
+)
+def test_a_speed_that_is_not_the_rollers(rig, speed, unit, said):
+    """4.4704 m/s, 10 mph, in the scene."""
+    record = rows(TIME, YAW, LATERAL, speed + 0 * TIME, head=f"t [s];AoA [mrad];y [mm];v [{unit}]")
+    columns = GIVEN.replace(", factor = 10.0", "") + "speed = { name = 'v' }\n"
+    doubts = load_rig_scene(rig(columns, record)).doubts
+    assert len(doubts) == said, doubts
+    for text in doubts:
+        assert text.startswith("speed: its median of ")
+        assert "track.roller_pitch_rate times track.roller_radius, 4.47" in text
+        assert (speed < 4) or "'km/h'" in text
+
+
+def test_a_speed_of_turning_that_is_not_the_rollers(rig):
+    """5.587 rad/s of the scene are 0.889 Hz, or 53.4 rpm."""
+    for unit, said in (("rad/s", 1), ("rpm", 0)):
+        head = f"t [s];AoA [mrad];y [mm];w [{unit}]"
+        record = rows(TIME, YAW, LATERAL, 53.4 + 0 * TIME, head=head)
+        columns = GIVEN.replace(", factor = 10.0", "") + "roller_pitch_rate = { name = 'w' }\n"
+        doubts = load_rig_scene(rig(columns, record)).doubts
+        assert len(doubts) == said, doubts
+        assert not said or "'rpm'" in doubts[0]
+
+
 def test_what_the_record_lacks_stands_in_rig(rig):
     record = rows(np.array([0.0, 20, 100]), np.array([133.0, 140, 150]), head="done [%];Q [kN]")
     table = (

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from railpatch.case.asked import Damage
+from railpatch.case.asked import Damage, asked_doubts
 from railpatch.case.asked import Subsurface as Below
 from railpatch.case.load import Case
 from railpatch.case.theories import FAST
@@ -64,6 +64,8 @@ class Asked:
                 for patch in found:
                     for name in FIELDS:
                         patch.pop(name, None)
+        if doubts := asked_doubts(self._case):
+            data["warnings"] = [*data["warnings"], *doubts]
         return data
 
     def _add_to_patch(

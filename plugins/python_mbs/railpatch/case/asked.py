@@ -32,6 +32,9 @@ Steps = Annotated[
 Life = Annotated[list[Annotated[list[Number], exactly(2)]], Field(min_length=2, max_length=32)]
 ASSUMED = "assumed"
 LEAST_LIMIT = 1e3  # Pa, of usfd_limits: less is N/mm^2
+# Pa: less is N/mm^2, or a number of Brinell's or Vickers' scale, in kgf/mm^2
+Stress = Annotated[float, between(1e6, 1e12)]
+DEEP = 0.05  # m, below which nothing is left of a contact's stresses: more is mm
 # keys that one law of wear reads
 OF_LAW = {
     "usfd": ("usfd_rate", "usfd_plateau", "usfd_slope", "usfd_limits"),
@@ -100,7 +103,7 @@ class Damage(Table):
         description="Pa, work by metre rolled and area where severe and catastrophic wear begin "
         "(Lewis and Dwyer-Joyce 2004)",
     )
-    hardness: Positive = Field(
+    hardness: Stress = Field(
         default=2.6e9, description=f"Pa, of the softer body, for Archard's law ({ASSUMED})"
     )
     archard_map: Steps = Field(
@@ -115,7 +118,7 @@ class Damage(Table):
         default=3.5e-2,
         description=f"-, of seizure (Jendel 2002; middle of its range, {ASSUMED})",
     )
-    shear_yield: Positive = Field(
+    shear_yield: Stress = Field(
         default=300e6, description=f"Pa, yield stress in pure shear, cyclic ({ASSUMED}: rail steel)"
     )
     whole_life: Life = Field(
@@ -148,6 +151,21 @@ class Damage(Table):
                 yield relation(name, show(points), f"{at} that increase")
         if self.archard_map[0][0] != 0:
             yield relation("archard_map", show(self.archard_map), "a first slip speed of 0")
+
+
+def asked_doubts(case: Any) -> list[str]:
+    """Warnings of depths that can hardly be meant."""
+    below = case.subsurface
+    if below is None:
+        return []
+    points = [point[2] for point in below.points or ()]
+    found = {"depths": max(below.depths), "points": max(points, default=0.0)}
+    return [
+        f"subsurface.{name}: a depth is {depth:g} m, hardly meant above {DEEP:g} m, where little "
+        "is left of a contact's stresses: depths are in m"
+        for name, depth in found.items()
+        if depth > DEEP
+    ]
 
 
 def check_asked(case: Any, line: bool) -> Problems:

@@ -32,6 +32,7 @@ from railpatch.case.types import (
     between,
     exactly_one,
     key,
+    likely,
     listed,
     of_bodies,
     one_of,
@@ -101,7 +102,11 @@ class Layer(Table):
     )
     thickness: float = key(of="layer_thickness", default=...)
     yield_stress: Annotated[float, between(1e-3, 1e15)] | None = Field(
-        default=None, description="Pa, at which the layer begins to yield; left out: elastic"
+        **likely(
+            "layer_yield_stress",
+            default=None,
+            description="Pa, at which the layer begins to yield; left out: elastic",
+        )
     )
     hardening: Annotated[float, between(-1e25, 1e25)] | None = Field(
         default=None,
@@ -136,6 +141,10 @@ class Layer(Table):
             if self.hardening_table[0][0] != 0:
                 shown = str(self.hardening_table[0])
                 yield relation("hardening_table", shown, "a first displacement of 0")
+            low, high = (listed("hardening_stress")[end] for end in ("low", "high"))
+            for k, (_, stress) in enumerate(self.hardening_table):
+                if not low <= stress <= high:
+                    yield relation(f"hardening_table[{k}][1]", stress, f"{low:g} to {high:g} Pa")
         elif self.hardening is not None and self.yield_stress is None:
             yield relation("hardening", self.hardening, "only with yield_stress")
         for name in () if self.is_plastic else ("plastic_rule", "plastic_heat_fraction"):
@@ -190,8 +199,18 @@ class Bulk(Table):
 class Temperature(Table):
     """Surface temperature of wheel and rail; the table is left out for none."""
 
-    wheel: Celsius = Field(default=0.0, description="degrees C, bulk temperature of the wheel")
-    rail: Celsius = Field(default=0.0, description="degrees C, bulk temperature of the rail")
+    wheel: Celsius = Field(
+        **likely(
+            "bulk_temperature",
+            default=0.0,
+            description="degrees C, bulk temperature of the wheel",
+        )
+    )
+    rail: Celsius = Field(
+        **likely(
+            "bulk_temperature", default=0.0, description="degrees C, bulk temperature of the rail"
+        )
+    )
     exchange: bool = Field(
         default=False,
         description="whether wheel and rail may become unequally warm in later steps (no unit); "

@@ -16,6 +16,7 @@ from railpatch.case.types import (
     between,
     exactly,
     key,
+    likely,
     listed,
     more_than,
     one_of,
@@ -178,20 +179,29 @@ class Fluid(Table):
         "oil 20e-9",
     )
     temperature: Annotated[float, within("fluid_temperature")] | None = Field(
-        default=None,
-        description="degrees C, of the liquid before the contact, where its viscosity depends on "
-        "it, of water 0 to 100; left out: the mean of [temperature]'s wheel and rail, without that "
-        "table 20. Moves as water_temperature",
+        **likely(
+            "fluid_temperature",
+            default=None,
+            description="degrees C, of the liquid before the contact, where its viscosity depends "
+            "on it, of water 0 to 100; left out: the mean of [temperature]'s wheel and rail, "
+            "without that table 20. Moves as water_temperature",
+        )
     )
     water_rate: Annotated[float, within("fluid_water_rate")] | None = Field(
-        default=None,
-        description="m^3/s, supply of liquid, spread over the width of each contact: the film is "
-        "starved; left out: flooded. Moves",
+        **likely(
+            "fluid_water_rate",
+            default=None,
+            description="m^3/s, supply of liquid, spread over the width of each contact: the film "
+            "is starved; left out: flooded. Moves",
+        )
     )
     oil_film: Annotated[float, within("fluid_oil_film")] | None = Field(
-        default=None,
-        description="m, layer of liquid on the surfaces before the contact, in place of "
-        "water_rate: the film is starved; left out: flooded. Moves",
+        **likely(
+            "fluid_oil_film",
+            default=None,
+            description="m, layer of liquid on the surfaces before the contact, in place of "
+            "water_rate: the film is starved; left out: flooded. Moves",
+        )
     )
     starvation: float = key(of="fluid_starvation")
     inlet_heating: bool = Field(

@@ -13,7 +13,6 @@ from railpatch import _core
 from railpatch.case.types import (
     LEFT_OUT,
     Celsius,
-    Number,
     Points,
     Positive,
     Problems,
@@ -25,6 +24,7 @@ from railpatch.case.types import (
     one_of,
     refuse,
     relation,
+    within,
 )
 
 Coefficient = Annotated[float, between(0, 10)]
@@ -32,7 +32,8 @@ NotNegative = Annotated[float, between(0, 100)]
 Scale = Annotated[list[NotNegative], Field(min_length=2, max_length=2)]
 # key of a step and the key of the table that it moves
 MOVED_FRICTION = {"friction_scale": "scale"}
-Terms = Annotated[list[Number], Field(min_length=1, max_length=2)]
+Amplitude = Annotated[float, within("friction_amplitude")]
+Terms = Annotated[list[Amplitude], Field(min_length=1, max_length=2)]
 Speeds = Annotated[list[Positive], Field(min_length=1, max_length=2)]
 # keys of each law, needed and optional
 KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
@@ -69,11 +70,15 @@ class Friction(Table):
     kinetic: Coefficient | None = Field(
         default=None, description="-, coefficient of friction at high micro-slip"
     )
-    amplitude: Number | Terms | None = Field(
+    amplitude: Amplitude | Terms | None = Field(
         default=None, description="-, at rest above kinetic; one or two terms"
     )
     halving_speed: Positive | Speeds | None = Field(
-        default=None, description="m/s, at which a term is half its amplitude; one for each term"
+        **likely(
+            "friction_halving_speed",
+            default=None,
+            description="m/s, at which a term is half its amplitude; one for each term",
+        )
     )
     polach_a: Annotated[float, between(0, 1)] | None = Field(
         default=None, description="-, A of Polach's law, friction at high micro-slip over at rest"

@@ -18,6 +18,8 @@ from railpatch.profiles.placement import Flange, flange_of, gauge_note
 Body = Literal["wheel", "rail"]
 WheelCase = WheelRailCase | WheelsetCase
 BODIES: tuple[Body, ...] = ("wheel", "rail")
+# m, between the tops of slices along a rail: more is hardly meant to be left out
+HEIGHTS = 0.5e-3
 
 
 @dataclass(frozen=True)
@@ -148,13 +150,33 @@ def flange_in(case: WheelCase, placed: Placed) -> Flange | None:
 
 
 def placement_doubts(case: WheelCase, shelf: Shelf) -> list[str]:
-    """Warnings of wheels whose flange says that they lie elsewhere than the scene has them."""
+    """Warnings of wheels whose flange says that they lie elsewhere than the scene has them, and of
+    rails along the track whose heights are not read."""
     found: dict[str, None] = {}
     for placed in placed_profiles(case, shelf):
         flange = flange_in(case, placed)
         for text in flange.doubts(case.wheelset.flange_back_position) if flange else ():
             found[f"{Path(placed.profile.name).name}: {text}"] = None
-    return list(found)
+    return [*found, *dropped_heights(case, shelf)]
+
+
+def dropped_heights(case: WheelCase, shelf: Shelf) -> list[str]:
+    """Warnings of slices along the track whose own heights differ and are not read, as no origin
+    says that they count."""
+    found = []
+    for side in case.sides:
+        rail = getattr(case.track, side)
+        if rail.origin is not None:
+            continue
+        tops = [float(shelf.profile("rail", s.profile).z.min()) for s in rail.sections or ()]
+        if tops and max(tops) - min(tops) > HEIGHTS:
+            found.append(
+                f"track.{side}.sections: the highest points of the profiles lie at z = "
+                f"{1e3 * min(tops):.2f} to {1e3 * max(tops):.2f} mm of their files, and each is "
+                f"put at z = 0 of the track: track.{side}.origin = [y, z] lets heights count as "
+                "they are"
+            )
+    return found
 
 
 def placement_note(case: WheelCase, placed: Placed) -> str:

@@ -55,7 +55,7 @@ def _of_wheel(side: str) -> tuple[Quantity, ...]:
             f"{side}_ratio",
             "number",
             f"lateral over vertical force, L/V, of {body}",
-            *(OUTPUT, -5.0, 5.0),
+            *(OUTPUT, -5.0, 5.0, 0.02),
         ),
         Quantity(
             f"{side}_wheel_temperature",

@@ -19,9 +19,6 @@ from railpatch.record.units import UNITS, dimension_of, spelt
 
 Array = NDArray[np.float64]
 
-# beyond this factor of what is to be expected a force is hardly meant in its unit, and within this
-# one another unit would fit
-HARDLY, FITS = 2.0, 1.4
 # of rows that a filter would need at their usual rate, over those there are
 MOST_UNEVEN = 20
 # columns of an exported log that are taken without being asked for
@@ -262,48 +259,3 @@ def abscissa_of(
     if kept.sum() < 2:
         raise RecordError(raw.path, f"has {kept.sum()} rows with {given[0]}, allowed 2 or more")
     return given[0], at[kept], kept
-
-
-def force_doubts(record: Record, load: float) -> list[str]:
-    """Forces that do not fit the load on both wheels (N), with the unit that would fit."""
-    signals, found = record.signals, []
-    expected = load
-    if "vertical_load" in signals:
-        own = float(np.nanmedian(signals["vertical_load"]))
-        found += off_by(record, "vertical_load", own, load, "wheelset.vertical_force")
-        expected = own
-    sides = [f"{side}_vertical" for side in ("left", "right") if f"{side}_vertical" in signals]
-    if sides:
-        # of both together the load is known, of one that it carries some part
-        total = sum(float(np.nanmedian(signals[name])) for name in sides) * 2 / len(sides)
-        found += off_by(record, sides[0], total, expected, "the vertical load")
-    for side in ("left", "right"):
-        lateral, vertical = signals.get(f"{side}_lateral"), signals.get(f"{side}_vertical")
-        if lateral is None or vertical is None:
-            continue
-        ratio = float(np.nanmax(np.abs(lateral)) / abs(np.nanmedian(vertical)))
-        if not 1e-3 < ratio < 2.0:
-            found.append(
-                f"{side}_lateral: is up to {ratio:.3g} of {side}_vertical, which is hardly meant: "
-                f"units {record.units[f'{side}_lateral']!r}, {record.units[f'{side}_vertical']!r}"
-            )
-    return found
-
-
-def off_by(record: Record, name: str, value: float, expected: float, what: str) -> list[str]:
-    """A force that differs by a factor, with the units whose ratio explains it."""
-    factor = value / expected
-    if 1 / HARDLY < factor < HARDLY:
-        return []
-    known = UNITS["force"]
-    used = known[record.units[name]].factor
-    fitting = [
-        repr(unit)
-        for unit, other in known.items()
-        if 1 / FITS < factor * other.factor / used < FITS
-    ]
-    hint = f"; is its unit {' or '.join(fitting)}?" if fitting else ""
-    return [
-        f"{name}: its median of {value:.6g} N (unit {record.units[name]!r}) is {factor:.3g} of "
-        f"{what}, {expected:.6g} N{hint}"
-    ]
