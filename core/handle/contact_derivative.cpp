@@ -29,7 +29,7 @@ derivative_record::derivative_record(const rp_config &config, driver &driver) {
   own.observer = nullptr;
   own.tolerance = std::min(own.tolerance, fine_tolerance);
   beside = std::make_unique<contact>(own);
-  const bool keeps = driver.solver().scene().keeps_steps() || driver.kept().all_bytes() > 0;
+  const bool keeps = driver.solver().scene().keeps_steps() || driver.kept().matter();
   if (keeps) before = std::make_unique<contact>(own);
 }
 

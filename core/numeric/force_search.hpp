@@ -17,6 +17,7 @@
 #include <cmath>
 
 #include "numeric/elementary.hpp"
+#include "numeric/nan.hpp"
 
 namespace railpatch {
 
@@ -54,6 +55,8 @@ class force_search {
       : target_(target), tolerance_(tolerance), depth_(first_depth) {
     lower_.value = -root(target);
   }
+  // Before the first report: how fast F^(2/3) rises, over a Hertzian contact of this depth.
+  void assume(double stiffness) { last_depth_ = depth_ * (1 - 1 / stiffness); }
 
   double depth() const { return depth_; }
   double residual() const { return residual_; }
@@ -67,6 +70,15 @@ class force_search {
   bool between_known() const { return bracketed() && upper_.known && lower_.depth > 0; }
   double low() const { return lower_.depth; }
   double high() const { return upper_.depth; }
+  // The same between the first depth and the last one, and how well it is known, 0 to 1: noise of
+  // the forces is a part of what they differ by.
+  double stiffness(double &known) const {
+    const double rise = reported_root_ - first_root_, way = reported_ - first_depth_;
+    known = 0;
+    if (!(way != 0) || !std::isfinite(rise)) return 1;
+    known = std::abs(rise) / (std::abs(rise) + noise * tolerance_ * root(target_));
+    return rise / way * reported_ / reported_root_;
+  }
   // The depth that was reported last.
   double last() const { return reported_; }
   // A depth that is expected to carry the force: taken where it lies in the bracket.
@@ -87,6 +99,8 @@ class force_search {
     ++steps_;
     reported_ = depth_;
     residual_ = beyond ? HUGE_VAL : std::abs(force - target_) / target_;
+    reported_root_ = beyond ? nan : root(force);
+    if (steps_ == 1) first_depth_ = reported_, first_root_ = reported_root_;
     if (converged()) return;
     const bool deeper = !beyond && force < target_;
     end &moved = deeper ? lower_ : upper_;
@@ -106,7 +120,8 @@ class force_search {
  private:
   static constexpr double max_depth = 0.02;  // m
   static constexpr int patience = 6, tired = 16;
-  static constexpr double slack = 8.0;  // two to the power of the steps granted
+  static constexpr double noise = 30.0;  // tolerances, of which a thirtieth part of it is known
+  static constexpr double slack = 8.0;   // two to the power of the steps granted
 
   // Of the bracket: a depth and, where the force there is known, its root minus the target's.
   struct end {
@@ -175,6 +190,7 @@ class force_search {
   double allowed_ = 0;  // m, of the bracket; 0: not yet bracketed after the patience
   double residual_ = HUGE_VAL;
   double reported_ = 0;                                                // m
+  double reported_root_ = 0, first_depth_ = 0, first_root_ = 0;        // N^(2/3), m
   double suggested_residual_ = HUGE_VAL, suggested_width_ = HUGE_VAL;  // at the last suggestion
   int steps_ = 0;
   int held_ = 0;  // steps that the upper end has stayed for, or less than 0: the lower one

@@ -49,7 +49,9 @@ class driver {
     size_t bytes = 0;
     void *heat = nullptr;  // the same of bodies that store it
     size_t heat_bytes = 0;
+    bool begins_only = false;  // `more` says where a search begins, and changes no more than that
     size_t all_bytes() const { return bytes + heat_bytes; }
+    bool matter() const { return heat_bytes > 0 || (bytes > 0 && !begins_only); }
   };
   virtual kept_numbers kept() { return {}; }
 

@@ -59,6 +59,7 @@ class wheel_contact {
 
   int side() const { return side_; }
   bool uniform_along() const { return !sections_ && !wheel_sections_ && !shape_; }
+  bool varies(body which) const { return geometry_->varies(which); }
   void place(const rp_input &input, bool at_height = false);
   void move_to(double z) { geometry_->move_to(z); }
   // z at which wheel and rail first touch; false where they have no lateral position in common.

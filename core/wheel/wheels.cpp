@@ -29,6 +29,10 @@ wheels::wheels(const wheels_setup &setup, const patch_scene &scene, const fft_pl
       friction_along_(setup.friction_along) {
   wheels_.reserve(setup.wheel.size());
   for (const auto &wheel : setup.wheel) wheels_.emplace_back(wheel);
+  for (const auto &wheel : wheels_) along_track_ = along_track_ || wheel.varies(body::rail);
+  for (const auto &wheel : wheels_)
+    if (force_given_ && !setup.support && (along_track_ || wheel.varies(body::wheel)))
+      guess_.emplace();
   if (setup.support) support_.emplace(*setup.support);
   if (setup.bulk) bulk_.emplace(*setup.bulk);
   if (has_physics && scene.fluid && scene.fluid->regimes.recovery > 0) cleaning_.emplace();
@@ -53,10 +57,15 @@ const patch_memory *wheels::find(int side, int patch) const {
 driver::kept_numbers wheels::kept() {
   static_assert(std::is_trivially_copyable_v<rail_support::rail>);
   static_assert(std::is_trivially_copyable_v<bulk_temperatures::numbers>);
+  static_assert(std::is_trivially_copyable_v<height_guess>);
   kept_numbers kept{&depth_};
   if (support_) {
     kept.more = support_->rails();
     kept.bytes = 2 * sizeof(rail_support::rail);
+  } else if (guess_) {
+    kept.more = &*guess_;
+    kept.bytes = sizeof(height_guess);
+    kept.begins_only = true;
   }
   if (bulk_) {
     kept.heat = bulk_->kept();
@@ -77,6 +86,7 @@ driver::kept_numbers wheels::kept() {
 
 void wheels::reset() {
   depth_ = 0;
+  if (guess_) *guess_ = {};
   if (support_) support_->reset();
   if (bulk_) bulk_->reset();
   if (cleaning_) *cleaning_ = {};
@@ -151,7 +161,7 @@ void wheels::solve(const rp_input &in, rp_result &out) {
     out.z = in.z;
     evaluate(in.z, out);
   } else {
-    find_z(in.vertical_force, out);
+    find_z(in, out);
   }
 }
 
@@ -241,8 +251,24 @@ double wheels::carried(const rp_result &out) const {
   return sum;
 }
 
+// N/m: what the vertical force rises by with the depth, by Hertz's law of each patch alone.
+double wheels::hertzian_slope(const rp_result &out) const {
+  double sum = 0;
+  for (const auto &wheel : wheels_) {
+    const rp_side_result &side = out.side[wheel.side()];
+    for (int i = 0; i < side.patch_count + side.alternative_count; ++i) {
+      const rp_patch_result &patch = side.patch[i];
+      const double cosine = cos(patch.contact_angle);
+      if (patch.normal_force > 0 && patch.approach > 0)
+        sum += patch.share * 1.5 * patch.normal_force / patch.approach * cosine * cosine;
+    }
+  }
+  return sum;
+}
+
 // Finds z for a prescribed vertical force.
-void wheels::find_z(double target, rp_result &out) {
+void wheels::find_z(const rp_input &in, rp_result &out) {
+  const double target = in.vertical_force, last = depth_;
   double touch = HUGE_VAL;
   for (const auto &wheel : wheels_) {
     double z = 0;
@@ -266,15 +292,19 @@ void wheels::find_z(double target, rp_result &out) {
     const double modulus = solver_.scene().modulus(), radius = 0.5 * nominal_radius_;
     depth = cbrt(9.0 * load * load / (16.0 * modulus * modulus * radius));
   }
+  const height_guess::way way{along_track_ ? in.x : in.pitch, touch};
+  if (guess_ && last > 0) depth = guess_->depth(last, way);
   force_search search(target, depth, tolerance_);
   force_samples samples(target);
   std::array<joined_forces, 2> forces;
   double nearest = HUGE_VAL, residual = HUGE_VAL;  // m, depth that came nearest; its residual
-  double force = 0;
+  double force = 0, stiffness = 1;
   bool spent = false;
   for (int i = 0; i < force_search::most_steps; ++i) {
     depth = search.depth();
     force = evaluate(touch + depth, out);
+    if (guess_) stiffness = hertzian_slope(out) * depth / (1.5 * force);
+    if (guess_ && i == 0) search.assume(guess_->stiffness(stiffness));
     search.report(force, beyond());
     if (!beyond()) samples.add(depth, force);
     if (search.residual() < residual) nearest = depth, residual = search.residual();
@@ -305,6 +335,11 @@ void wheels::find_z(double target, rp_result &out) {
     for (const auto &wheel : wheels_)
       out.side[wheel.side()].warnings |= uint32_t{1} << RP_WARNING_HEIGHTS;
   depth_ = search.converged() ? depth : 0.0;
+  if (!guess_) return;
+  double known;
+  const double found_stiffness = search.stiffness(known);
+  guess_->learn(found_stiffness, stiffness, known);
+  guess_->keep(depth_, way);
 }
 
 // Forces of depths beyond the one that carries the load, and of one on the way to it, for as much

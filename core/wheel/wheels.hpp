@@ -12,6 +12,7 @@
 #include "patch/driver.hpp"
 #include "tangential/friction_factor.hpp"
 #include "temperature/bulk.hpp"
+#include "wheel/height_guess.hpp"
 #include "wheel/moment_balance.hpp"
 #include "wheel/rail_support.hpp"
 #include "wheel/wheel_contact.hpp"
@@ -101,7 +102,7 @@ class wheels final : public driver {
   void keep_heat(const rp_result &result);
   void keep_cleaning(const rp_input &input, const rp_result &result);
   void keep_drying(rp_result &result);
-  void find_z(double vertical_force, rp_result &result);
+  void find_z(const rp_input &input, rp_result &result);
   double look_deeper(double touch, double depth, double carries, force_samples &samples,
                      rp_result &result);
   bool beyond() const;
@@ -109,6 +110,7 @@ class wheels final : public driver {
   void foresee(double touch, double target, std::array<joined_forces, 2> &forces,
                force_search &search) const;
   double carried(const rp_result &result) const;
+  double hertzian_slope(const rp_result &result) const;
   void rest_at(double touch, rp_result &result);
   void solve_supported(const rp_input &input, rp_result &result);
   void report_search(const verdict &found, double residual, rp_result &result) const;
@@ -120,7 +122,9 @@ class wheels final : public driver {
   double tolerance_, nominal_radius_;
   int most_work_;
   bool whole_forces_;
-  double depth_ = 0;  // m, last z found minus first touch; 0: none
+  double depth_ = 0;                   // m, last z found minus first touch; 0: none
+  std::optional<height_guess> guess_;  // where profiles vary
+  bool along_track_ = false;           // along the track, else round wheels alone
   friction_factor friction_along_;
   double scale_[2] = {1, 1};               // of the law on each wheel, in this step
   std::optional<rail_support> support_;    // where rails are on springs

@@ -267,12 +267,19 @@ TEST(Turnout, OfEqualSectionsIsOneProfile) {
       c.wheel_section_count[side] = 3;
     }
     scenes::handle varying(c), one(plain);
+    rp_config c_held = c, plain_held = plain;
+    c_held.load = plain_held.load = RP_POSITION;
+    scenes::handle varying_held(c_held), one_held(plain_held);
     for (int k = 0; k < 6; ++k) {
       rp_input in = scenes::running(RP_RAIL);
       in.x = -1.5 + 1.3 * k;
       in.pitch = -2.0 * k;
       in.y = 1e-3 * k;
-      expect_equal(varying.step(in), one.step(in));
+      // where profiles vary a search for the height begins elsewhere, and ends as near
+      const double z = one.step(in).z, depth = 1e-4;
+      EXPECT_NEAR(varying.step(in).z, z, 2 * plain.tolerance * depth);
+      in.z = z;
+      expect_equal(varying_held.step(in), one_held.step(in));
     }
   }
 }
