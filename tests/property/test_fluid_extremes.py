@@ -159,7 +159,7 @@ def test_from_wet_to_dry_nothing_jumps(model: str, speed: float) -> None:
     force = 8e4
     if model == "regimes":
         case = case_of("film", "cold water", {}, force, 5e-7)
-        case |= {"fluid": {"model": "regimes", "water_rate": 1e-8}}
+        case |= {"fluid": {"model": "regimes", "water_rate": 1e-8}, "friction": None}
         case["method"] = {"normal": "hertz", "tangential": "polach"}
     else:
         case = case_of(model, "cold water", {"water_rate": 1e-8}, force, 5e-7)
