@@ -17,7 +17,7 @@ from railpatch.page.document import document
 from railpatch.page.figures import BAD, COLORS, GREY, LINES, OTHER, plot, styled
 from railpatch.page.panels import marked_up, packed, parts_of
 from railpatch.page.parts import BAD as ABOVE
-from railpatch.page.parts import DOUBT, GOOD, Key, against, folded, opening
+from railpatch.page.parts import DOUBT, GOOD, Key, against, folded, key_numbers, opening
 from railpatch.page.tables import short
 from railpatch.page.viewer import MOST_BYTES, few, patches_viewer
 
@@ -92,6 +92,12 @@ def test_texts_of_files_stay_texts() -> None:
 
 def test_a_page_is_the_same_for_the_same_numbers() -> None:
     assert document("x", plot(two_by_two(), "f")) == document("x", plot(two_by_two(), "f"))
+
+
+def test_long_names_break_between_their_words() -> None:
+    html = key_numbers([Key("right.damage.wear_rate", "1 kg/m"), Key("at 0.5 mm", "2")])
+    assert "<dt>right.<wbr>damage.<wbr>wear_<wbr>rate</dt>" in html
+    assert "<dt>at 0.5 mm</dt>" in html
 
 
 def test_a_number_beside_its_limit() -> None:

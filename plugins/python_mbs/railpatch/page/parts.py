@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from html import escape
@@ -33,12 +34,17 @@ def opening(title: str, about: str, verdict: str, keys: Iterable[Key], state: st
 def key_numbers(keys: Iterable[Key]) -> str:
     """Cards beside each other."""
     cards = [
-        f'<div class="key {key.state}"><dt>{escape(key.name)}</dt><dd>{escape(key.value)}</dd>'
+        f'<div class="key {key.state}"><dt>{breakable(key.name)}</dt><dd>{escape(key.value)}</dd>'
         + (f"<dd class=note>{escape(key.note)}</dd>" if key.note else "")
         + "</div>"
         for key in keys
     ]
     return f"<dl class=keys>{''.join(cards)}</dl>" if cards else ""
+
+
+def breakable(name: str) -> str:
+    """Names of outputs, right.damage.wear_rate, break between their words where a card is narrow."""
+    return re.sub(r"([._])(?=[A-Za-z])", r"\1<wbr>", escape(name))
 
 
 def folded(title: str, html: str, *, open_: bool = False) -> str:
