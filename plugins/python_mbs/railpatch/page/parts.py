@@ -43,7 +43,7 @@ def key_numbers(keys: Iterable[Key]) -> str:
 
 
 def breakable(name: str) -> str:
-    """Names of outputs, right.damage.wear_rate, break between their words where a card is narrow."""
+    """Names of outputs, right.damage.wear_rate, break between their words on narrow cards."""
     return re.sub(r"([._])(?=[A-Za-z])", r"\1<wbr>", escape(name))
 
 
