@@ -53,13 +53,13 @@ class patch_contact {
   size_t influence_bytes() const { return shared_.influence ? shared_.influence->bytes() : 0; }
   size_t coupling_bytes() const { return shared_.coupled ? shared_.coupled->bytes() : 0; }
   size_t history_bytes() const {
-    return tangential_.history_bytes() + (shared_.scene.heat ? 0 : shared_.friction_bytes());
+    return tangential_.history_bytes() + (shared_.scene.keeps_steps() ? work_bytes() : 0);
   }
   size_t plastic_bytes() const { return tangential_.plastic_bytes(); }
   size_t fluid_bytes() const { return fluid_.bytes(); }
   size_t normal_bytes() const { return normal_.bytes(); }
   // with those of history and plasticity
-  size_t tangential_bytes() const { return tangential_.bytes(); }
+  size_t tangential_bytes() const { return tangential_.bytes() + work_bytes(); }
   size_t derivative_bytes() const { return derivative_ ? derivative_->bytes() : 0; }
   size_t heat_bytes() const {
     return heat_.bytes() + (shared_.scene.heat ? shared_.friction_bytes() : 0);
@@ -68,6 +68,8 @@ class patch_contact {
   size_t scratch_bytes() const { return 2 * shared_.scratch[0].bytes(); }
 
  private:
+  // of friction's work, where it is not the heat's
+  size_t work_bytes() const { return shared_.scene.heat ? 0 : shared_.friction_bytes(); }
   void warm_liquid(const patch_problem &problem, patch_memory &memory, pressure_outcome &n,
                    fluid_outcome &f, traction_outcome &t, heat_outcome &h);
   void begin_solve(const patch_problem &problem, patch_memory &memory);

@@ -259,7 +259,10 @@ TEST_F(Wheels, SlicesAreFollowed) {
     const double t = std::fmin(std::fmax(x, 0.0), 1.0);
     const double slope = t * t * (t - 1) * 0.25 * 0.5e-3;
     const double first = t * (1 - t) * (1 - t) * 0.75 * 0.5e-3;
-    const double fallen = t * t * (3 - 2 * t) * 0.5e-3;
+    double fallen = t * t * (3 - 2 * t) * 0.5e-3;
+    // the right wheel of a yawed wheelset is 0.75 m times 1 mrad behind its middle, before the
+    // second slice, where the rail falls by half of 0.5 mm a metre
+    if (x == 1.0) fallen -= 0.75e-3 * 0.25e-3;
     if (x != 0.5) {
       EXPECT_NEAR(z[2] - z0[2], fallen, 1e-7) << x;
     } else {
