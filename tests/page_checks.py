@@ -12,7 +12,7 @@ from typing import Any
 
 MOST = 2_000_000  # bytes
 KEYS = (4, 7)
-_VOID = {"meta", "br", "input", "img", "path", "circle", "rect", "link", "hr"}
+_VOID = {"meta", "br", "input", "img", "path", "circle", "rect", "link", "hr", "wbr"}
 
 
 def data_of(page: str) -> dict[str, Any]:
