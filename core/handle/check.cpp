@@ -228,18 +228,25 @@ void check_strips(const rp_config &c, checker &check) {
   if (!has_strips(c)) return;
   const char *wrong = nullptr;
   if (c.normal != RP_NORMAL_HALF_SPACE)
-    wrong = "distance_shape must be at least 3 either way but with normal = half_space";
+    wrong =
+        "distance_shape, of undeformed_distance, must be at least 3 either way "
+        "but with normal = half_space";
   else if (has_tangential(c) && (c.tangential != RP_TANGENTIAL_FULL || c.fitted[0] > 0))
     wrong =
-        "distance_shape must be at least 3 either way but with tangential = full and no fitted "
-        "rows";
+        "distance_shape, of undeformed_distance, must be at least 3 either way but with "
+        "tangential = full and no fitted rows";
   else if (c.fluid_model != RP_FLUID_NONE)
-    wrong = "distance_shape must be at least 3 either way with fluid_model";
+    wrong =
+        "distance_shape, of undeformed_distance, must be at least 3 either way "
+        "with fluid_model";
   else if (c.accuracy > 0)
     wrong =
-        "distance_shape must be at least 3 either way with accuracy: there is no error estimate";
+        "distance_shape, of undeformed_distance, must be at least 3 either way with accuracy: "
+        "there is no error estimate";
   else if (c.derivatives != 0)
-    wrong = "distance_shape must be at least 3 either way with derivatives";
+    wrong =
+        "distance_shape, of undeformed_distance, must be at least 3 either way "
+        "with derivatives";
   check.require(wrong == nullptr, wrong ? wrong : "");
 }
 
@@ -455,9 +462,9 @@ rp_error check_input(const rp_config &c, double friction_coefficient, const rp_i
   const bool turns = c.track == RP_ROLLER && in.roller_pitch_rate != 0;
   check.require(!finds_rate || in.speed != 0 || turns,
                 c.track == RP_ROLLER
-                    ? "speed or roller_pitch_rate must not be 0 where the pitch rate is found: "
+                    ? "speed or roller_pitch_rate must not be 0 where pitch_rate is free or found: "
                       "nothing rolls"
-                    : "speed must not be 0 where the pitch rate is found: nothing rolls");
+                    : "speed must not be 0 where pitch_rate is free or found: nothing rolls");
   const bool rolls_on = regime_of(c, in) == RP_TRANSIENT_ROLLING && has_tangential(c);
   check.number("time_step", in.time_step, rolls_on ? positive : input_range::time_step);
   for (const auto &rotation : in.rail_rotation)

@@ -97,6 +97,11 @@ def spin_by_default(case: Case, path: str, value: Any) -> bool:
     return value == ("quarter" if steps and rolls and not layer else "none")
 
 
+def spin_by_layer(case: Case, path: str, value: Any) -> bool:
+    transient = get(case, "motion.regime") == "transient_rolling"
+    return value == "contact" and transient and spin_by_default(case, path, "none")
+
+
 def untouched(case: Case, path: str, value: Any) -> bool:
     if case["kind"] != "wheelset":
         return False
@@ -170,6 +175,12 @@ IDLE = [
         "method.spin_offset",
         lambda c, k, v: v == "contact" and get(c, "method.spin_offset") == "sixth",
         "in steady rolling a sixth too",
+        (),
+    ),
+    Idle(
+        "method.spin_offset",
+        spin_by_layer,
+        "in transient rolling the program CONTACT reads spin in the middle, as layers do anyway",
         (),
     ),
     Idle("motion.regime_changes", nowhere, "lets steps have another regime; these have one"),

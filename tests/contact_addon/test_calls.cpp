@@ -307,7 +307,7 @@ TEST_F(Addon, WhatHasNoCounterpartIsRefusedByName) {
          cntc_setpotcontact(&c.ire, &c.icp, &kind, &count, grid);
          cntc_setmaterialparameters(&c.ire, &c.icp, &m, &four, steel);
        },
-       -99, "distance_shape must be at least 3"},
+       -99, "distance_shape, of undeformed_distance, must be at least 3"},
       {[](basic_contact &c) {
          int kind = -6, count = 6;
          double ellipse[] = {12, 12, 5e-3, 5e-3, 4e-3, 1.2};
