@@ -66,6 +66,7 @@ def test_values_of_a_run(name: str, value: float) -> None:
     [
         ("fores[1]", "'fores' is none of status, force"),
         ("fores[1]", "; did you mean 'force'?"),
+        ("fores[1]", "; of its log as max(/wheel.FIELD): /wheel"),
         ("left.patches.angel", "'angel' is none of p, angle; did you mean 'angle'?"),
         ("max(/weel.z)", "; did you mean '/wheel'?"),
         ("max(/wheel.forse)", "; did you mean 'force'?"),

@@ -45,7 +45,7 @@ def value_of(name: str, result: Mapping[str, Any], run: Run | None) -> Output:
     if path.startswith("/"):
         values = channel_values(name, path, run)
     else:
-        values = list(reach(result, path, name))
+        values = result_values(name, path, result, run)
         if statistic is None and len(values) > 1:
             raise CaseError(
                 f"sweep.outputs: value is {name!r}, which has {len(values)} values, allowed one of "
@@ -65,6 +65,19 @@ def value_of(name: str, result: Mapping[str, Any], run: Run | None) -> Output:
     if statistic not in ("first", "last") and not np.isfinite(array).any():
         return None
     return as_output(float(STATISTICS[statistic](array))) if len(array) else None
+
+
+def result_values(name: str, path: str, result: Mapping[str, Any], run: Run | None) -> list[Any]:
+    """Of a result, or a run's summary. Raises CaseError, for a run with the channels of its log."""
+    try:
+        return list(reach(result, path, name))
+    except CaseError as error:
+        if run is None or not run.channels:
+            raise
+        channels = ", ".join(sorted(run.channels))
+        raise CaseError(
+            f"{error}; of its log as max({min(run.channels)}.FIELD): {channels}"
+        ) from None
 
 
 def channel_values(name: str, path: str, run: Run | None) -> list[Any]:
