@@ -51,6 +51,21 @@ def test_modules_patches_and_what_is_kept(folder):
     assert tables["friction"]["coefficient"] == 0.35
 
 
+def test_a_case_that_does_not_end_its_module(folder):
+    """R = 0: the next case has no line MODULE. Who writes one is told of R."""
+    text = text_of(BASIC, third="0000210", end="") + text_of(BASIC)
+    with pytest.raises(CaseError, match=r"x.inp, line \d+: .*HGIAOWR of the case before, R, has"):
+        read_cases("x.inp", text)
+
+
+def test_a_mark_of_byte_order_and_names_in_capitals(tmp_path):
+    """As editors of Windows save files."""
+    text = "\ufeff" + text_of(BASIC).replace("\n", "\r\n")
+    (tmp_path / "A.INP").write_bytes(text.encode("utf-8"))
+    listed = CliRunner().invoke(cli, ["convert", str(tmp_path), "--list"])
+    assert listed.output.splitlines() == ["A.INP: case 1: patch"]
+
+
 SHIFT = text_of(BASIC, first="201100", rolling="", motion="1000. -0.0004 0. 0.", end="")
 GOES_ON = "3 MODULE\n001100\n100000\n0130211\n1000. -0.0008 0. 0.\n0 MODULE\n"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from click.testing import CliRunner
 from railpatch import CaseError, solve_many
 from railpatch.case.load import check_table, read_toml
+from railpatch.command.cli import cli
 from railpatch.errors import RecordError
 from railpatch.match import load_match, run_match
 from railpatch.match.command import match
@@ -233,6 +235,26 @@ def test_a_creep_curve_by_sought_alone(tmp_path: Path, heads: str, over: float, 
     assert found.to_dict()["parameters"]["friction.coefficient"]["unit"] == "-"
 
 
+def test_the_terminal_tells_units(tmp_path: Path) -> None:
+    """Of what is found and of what is left, apart from each other however long the numbers are."""
+    sought = 'sought = { "friction.coefficient" = [0.05, 0.6]'
+    text = PATCH.replace(sought, sought + ', "load.normal_force" = [5e4, 2e5]')
+    (tmp_path / "scene.toml").write_text(text + 'intervals = "covariance"\n')
+    creepage = np.linspace(1e-3, 2e-2, 12)
+    content = read_toml(tmp_path / "scene.toml")
+    del content["match"]
+    states = {"creepage": np.column_stack([creepage, 0 * creepage])}
+    force = np.asarray(solve_many(content, states)["creep_force"])[:, 0]
+    force = force + 100.0 * np.random.default_rng(4).standard_normal(len(force))
+    rows = "".join(f"{c:.8g},{f:.8g}\n" for c, f in zip(creepage, force, strict=True))
+    (tmp_path / "curve.csv").write_text("creepage,force [N]\n" + rows)
+    call = ["match", str(tmp_path / "scene.toml"), "-o", str(tmp_path / "out")]
+    shown = CliRunner().invoke(cli, call).stdout.splitlines()
+    assert re.fullmatch(r"load\.normal_force +\S+ +\S+ to \S+ N", shown[1])
+    assert re.fullmatch(r"friction\.coefficient +\S+ +\S+ to \S+", shown[0])
+    assert re.fullmatch(r"rms of creep_force\[0\] +\S+ N", shown[2])
+
+
 def test_columns_that_are_not_known_are_named(tmp_path: Path) -> None:
     path = tmp_path / "scene.toml"
     path.write_text(PATCH)
@@ -242,6 +264,63 @@ def test_columns_that_are_not_known_are_named(tmp_path: Path) -> None:
     (tmp_path / "curve.csv").write_text("creepage,force [mm]\n0.001,1\n0.002,2\n")
     with pytest.raises(RecordError, match=r"unit is 'mm', allowed one of a force"):
         load_match(path)
+
+
+@pytest.mark.parametrize(
+    ("head", "message"),
+    [
+        ("creepage [mm]", r"inputs.creepage\[0\].*unit: value is 'mm', allowed -, %, permille"),
+        ("creepage,spin_creepage [1/mm]", r"spin_creepage.*'1/mm', allowed rad/m"),
+        ("creepage,speed [N]", r"rolling_speed.*value is 'N', allowed m/s, km/h"),
+    ],
+)
+def test_units_are_those_of_the_key_that_a_column_drives(
+    tmp_path: Path, head: str, message: str
+) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(PATCH)
+    zeros = ",1" * head.count(",")
+    rows = "".join(f"{1e-3 * k}{zeros},{1e3 * k}\n" for k in range(1, 6))
+    (tmp_path / "curve.csv").write_text(f"{head},force [N]\n{rows}")
+    with pytest.raises(RecordError, match=message):
+        load_match(path)
+
+
+def test_an_observed_force_in_what_is_no_force_is_refused(tmp_path: Path) -> None:
+    text = (
+        PATCH
+        + """
+[match.inputs]
+"creepage[0]" = { name = "slip", unit = "%" }
+[match.observed]
+"creep_force[0]" = { name = "pull", unit = "kp" }
+"""
+    )
+    path = tmp_path / "scene.toml"
+    path.write_text(text)
+    (tmp_path / "curve.csv").write_text("slip;pull\n" + "".join(f"{k};{k}\n" for k in range(6)))
+    with pytest.raises(RecordError, match=r"creep_force\[0\].*value is 'kp', allowed N, kN"):
+        load_match(path)
+
+
+@pytest.mark.parametrize(("unit", "scale"), [("", 1e2), ("", 1e3), ("%", 1e2), ("‰", 1e3)])
+def test_creepages_that_can_hardly_be_meant(tmp_path: Path, unit: str, scale: float) -> None:
+    """Creepages to 5 %, in per cent or per mille: said in the head, they are these; else a
+    warning names the unit that would fit."""
+    path = tmp_path / "scene.toml"
+    path.write_text(PATCH)
+    creepage = np.linspace(2e-3, 5e-2, 25)
+    head = f"creepage [{unit}]" if unit else "creepage"
+    rows = "".join(f"{scale * c:.6g},{-1e4 * c:.6g}\n" for c in creepage)
+    (tmp_path / "curve.csv").write_text(f"{head},force [N]\n{rows}", encoding="utf-8")
+    plan = load_match(path)
+    doubts = [text for text in plan.warnings if "hardly meant of a creepage" in text]
+    if unit:
+        assert doubts == []
+        np.testing.assert_allclose(plan.inputs()["creepage[0]"], creepage, rtol=1e-5)
+    else:
+        assert len(doubts) == 1
+        assert doubts[0].endswith("'permille'?" if scale > 1e2 else "'%' or 'permille'?")
 
 
 @pytest.mark.parametrize(

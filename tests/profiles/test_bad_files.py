@@ -10,6 +10,10 @@ from railpatch.profiles import ProfileError, load_profile, read_profile
 
 Write = Callable[[str, str], Path]
 GOOD = "".join(f"{y} {0.02 * y * y}\n" for y in range(-30, 31))
+LINES = GOOD.splitlines()
+# a stylus that goes over the profile there and back, over the same points
+THERE_AND_BACK = "\n".join(LINES + LINES[::-1])
+TIMED = "".join(f"{0.9 * y:g} {0.02 * y * y} {0.1 * (y + 30):g}\n" for y in range(-30, 31))
 SIMPACK = f"header.begin\ntype=0\nheader.end\nspline.begin\nunits.len.f=1e3\npoint.begin\n{GOOD}"
 
 
@@ -23,6 +27,10 @@ SIMPACK = f"header.begin\ntype=0\nheader.end\nspline.begin\nunits.len.f=1e3\npoi
         ("a.txt", GOOD + "inf 1.0\n", 62, "value inf is not finite"),
         ("a.txt", GOOD + "31\n", 62, "expected 2 numbers, found '31'"),
         ("a.txt", "0 0\n" + "\x01\x02garbage\n", 2, "expected numbers"),
+        ("a.txt", "Wheel 3; 12.03.2024\ny;z\n" + GOOD, 1, "before them one line of titles"),
+        ("a.txt", "y [m];z [m]\n" + GOOD, None, "60 m wide"),
+        ("a.txt", THERE_AND_BACK, 2, "the points turn back at"),
+        ("a.txt", TIMED, None, "a third column that goes from 0 to 6 without a turn"),
         ("a.txt", "0 0\n1 1\n2 2\n", None, "holds 3 points, needs 5"),
         ("a.txt", "0 0\n" * 9, None, "0 m wide"),
         ("a.txt", GOOD.replace("-30 18.0", "-3000 18.0"), None, "3.03 m wide"),

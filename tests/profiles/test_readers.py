@@ -10,6 +10,7 @@ import pytest
 from profile_files import columns, miniprof, simpack
 from published_data import MANCHESTER, NRC
 from railpatch.profiles import fit_profile, load_profile, read_profile
+from railpatch.profiles.raw import Reading
 
 Write = Callable[[str, str], Path]
 
@@ -33,6 +34,26 @@ def test_two_columns_in_mm(write: Write) -> None:
 def test_two_columns_in_m_with_commas_and_titles(write: Write) -> None:
     text = "y,z\n" + columns(1e-3 * Y, 1e-3 * Z).replace(" ", ",")
     assert_is_the_wheel(write("w.csv", text))
+
+
+@pytest.mark.parametrize(("unit", "metres"), [("m", 1.0), ("mm", 1e-3), ("in", 0.0254)])
+def test_titles_say_the_unit_of_length(write: Write, unit: str, metres: float) -> None:
+    for titles in (f"y [{unit}] z [{unit}]", f'"Höhe quer ({unit})" "Höhe ({unit})"'):
+        path = write("w.txt", f"{titles}\n" + columns(1e-3 / metres * Y, 1e-3 / metres * Z))
+        raw = read_profile(path, "wheel")
+        np.testing.assert_allclose(raw.y, 1e-3 * Y, rtol=0, atol=0.0254 * DIGITS / 1e-3)
+        assert raw.notes == [f"unit of length {unit}, as its titles say"]
+        assert raw.taken.unit == unit
+    asked = read_profile(path, "wheel", Reading(unit=unit))
+    assert asked.notes == [f"unit of length {unit} as asked"]
+
+
+def test_weights_are_told(write: Write) -> None:
+    rows = columns(Y, Z).splitlines()
+    path = write("w.txt", "\n".join(f"{row} {1 + k % 3}" for k, row in enumerate(rows)))
+    assert "third column taken as the points' weights, 1 to 3" in read_profile(path, "wheel").notes
+    path = write("w.txt", "\n".join(f"{row} 1" for row in rows))
+    assert not any("weight" in note for note in read_profile(path, "wheel").notes)
 
 
 def test_commas_in_comments_tell_nothing_of_the_numbers(write: Write) -> None:

@@ -147,6 +147,20 @@ def test_ambiguous_files_are_refused(tmp_path, head, change, keys, message):
     assert "wrong.csv" in str(raised.value)
 
 
+def test_an_origin_of_the_other_sign_is_named(tmp_path):
+    """A chainage that falls has sign = -1, and so has the place in it: said with the refusal."""
+    path = tmp_path / "track.csv"
+    written(path, "km,vertical [m]", [12.0 - S / 1e3, WAVES["left_vertical"]])
+    distance = {
+        "distance": {"name": "km", "unit": "km", "sign": -1},
+        "vertical": {"name": "vertical"},
+    }
+    with pytest.raises(CaseError, match=r"is origin -11950\?$"):
+        read(path, columns=distance, origin=11950.0)
+    with pytest.raises(CaseError, match=r"run.duration$"):
+        read(path, columns=distance, origin=13000.0)
+
+
 def test_distances_and_cant_are_refused(tmp_path):
     path = tmp_path / "wrong.csv"
     written(path, "distance [m],vertical [m]", [S[::-1], WAVES["left_vertical"]])

@@ -133,7 +133,7 @@ class MeasuredTrack:
     def rails(self, start: float, begins: float, needed: float) -> Irregularity:
         """From straight rails at ``start`` (m) to the full deviations over ``begins`` (m). needed:
         m, of track that a run asks for. Raises RecordError for a record that is shorter."""
-        check_length(self.path, self.s, needed)
+        check_length(self.path, self.s, 0.0, needed)
         u = np.clip((self.s - start) / begins, 0.0, 1.0)
         share = u * u * (3 - 2 * u)
         return Irregularity(self.s, share[:, None] * self.deviations)
@@ -172,7 +172,7 @@ def read_measured(table: MeasuredTrackTable, folder: Path, needed: float) -> Mea
         raise RecordError(path, problem, raw.lines[row])
     origin = float(at[0]) if table.origin is None else table.origin
     s = at - origin
-    check_length(path, s, needed)
+    check_length(path, at, origin, needed)
     usual, largest = float(np.median(steps)), float(steps.max())
     waves = (
         table.shortest or LEAST_ROWS * largest,
@@ -185,15 +185,20 @@ def read_measured(table: MeasuredTrackTable, folder: Path, needed: float) -> Mea
     return MeasuredTrack(path, s, table.factor * found, (usual, largest), waves, tuple(warnings))
 
 
-def check_length(path: Path, s: Vector, needed: float) -> None:
-    """Refuses a record that begins too late or ends too soon. s: m, of the track. Raises
-    RecordError."""
-    if s[0] > 0 or s[-1] < needed:
-        raise RecordError(
-            path,
-            f"goes from {s[0]:.6g} to {s[-1]:.6g} m of the track, allowed 0 to {needed:.6g} m at "
-            "least, which the run takes: see measured_track.origin, run.duration",
-        )
+def check_length(path: Path, at: Vector, origin: float, needed: float) -> None:
+    """Refuses a record that begins too late or ends too soon. at: m, distances with their
+    column's sign. Raises RecordError."""
+    first, last = at[0] - origin, at[-1] - origin
+    if first <= 0 and last >= needed:
+        return
+    asked = ""
+    if origin != 0 and at[0] <= -origin <= at[-1]:
+        asked = f"; distances go from {at[0]:.6g} to {at[-1]:.6g} m: is origin {-origin:.6g}?"
+    raise RecordError(
+        path,
+        f"goes from {first:.6g} to {last:.6g} m of the track, allowed 0 to {needed:.6g} m at "
+        f"least, which the run takes: see measured_track.origin, run.duration{asked}",
+    )
 
 
 def columns_of(raw: RawTable, table: MeasuredTrackTable) -> Mapping[str, MeasuredColumn]:

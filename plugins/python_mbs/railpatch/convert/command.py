@@ -57,7 +57,9 @@ def convert(
 
 def show_list(source: Path, *, quiet: bool) -> bool:
     """Whether a case, or a file, cannot be converted."""
-    files = sorted(source.glob("*.inp")) if source.is_dir() else [source]
+    files = [source]
+    if source.is_dir():
+        files = sorted(file for file in source.iterdir() if file.suffix.lower() == ".inp")
     if not files:
         raise WrongCall(f"{source}: has no .inp files")
     bad = False

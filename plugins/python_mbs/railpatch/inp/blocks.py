@@ -73,6 +73,12 @@ def control(reader: Reader, module: int) -> dict[str, int]:
     for names in (FIRST if module == 1 else FIRST[1:], SECOND, THIRD):
         line, shown = reader.line, "".join(name[0] for name in names)
         word = reader.digits(f"the control word {shown}")
+        if "B" in names and len(word) == 1 and reader.beside.upper() == "MODULE":
+            raise reader.error(
+                f"a module begins within module {module}: the last digit of HGIAOWR of the case "
+                "before, R, has to be 1 to end that one",
+                line,
+            )
         if len(word) > len(names):
             raise reader.error(f"{shown}: {word} has too many digits", line)
         found |= dict(zip(names, map(int, word.rjust(len(names), "0")), strict=True))

@@ -111,6 +111,13 @@ class Reader:
         self._at += 1
         return word
 
+    @property
+    def beside(self) -> str:
+        """What follows on the line of the last word, or nothing."""
+        if self.ended or self._at >= len(self._rows[self._row]):
+            return ""
+        return self._rows[self._row][self._at].text
+
     def end_line(self) -> None:
         """What is left of the line is comment."""
         if self._at > 0:
@@ -187,6 +194,6 @@ def read_text(path: Path) -> str:
     try:
         if path.stat().st_size > MAX_BYTES:
             raise CaseError(f"{path}: is larger than 20 MB")
-        return path.read_bytes().decode("utf-8", errors="replace")
+        return path.read_bytes().decode("utf-8-sig", errors="replace")
     except OSError as error:
         raise CaseError(f"{path}: {error.strerror or error}") from error

@@ -55,7 +55,7 @@ def match(
     The table [match] of the scene says what is sought, between which ends, and which columns of the
     record are what.
     """
-    from railpatch.match.found import Match
+    from railpatch.match.found import Match, unit_of
     from railpatch.match.model import need_writer
     from railpatch.match.plan import load_match
     from railpatch.match.run import run_match, write_match
@@ -70,10 +70,12 @@ def match(
     def show(found: Match) -> None:
         for parameter in found.parameters.values():
             interval = f"{parameter.low:.6g} to {parameter.high:.6g}"
-            click.echo(f"{parameter.key:<38}{parameter.value:<12.6g}{interval}")
+            unit = "" if parameter.unit == "-" else f" {parameter.unit}"
+            click.echo(f"{parameter.key:<37} {parameter.value:<12.6g} {interval}{unit}".rstrip())
         own = found.explanations[0]
         for key, rms in zip(plan.table.observed, own.fit.rms, strict=True):
-            click.echo(f"{'rms of ' + key:<38}{rms:.4g}")
+            unit = unit_of(key, plan.table.observed[key], plan).replace("-", "")
+            click.echo(f"{'rms of ' + key:<37} {rms:.4g} {unit}".rstrip())
         for key, parts in own.chains.items():
             for name, (value, error) in parts.items():
                 click.echo(f"{f'{name} of {key}':<38}{value:<12.6g}+- {error:.3g}")

@@ -37,7 +37,7 @@ from numpy.typing import NDArray
 from railpatch.errors import CaseError
 from railpatch.match.model import DIFFERENCE, Model
 from railpatch.match.noise import Near, Noise
-from railpatch.match.plan import si_unit
+from railpatch.match.point_units import unit_of_observed
 from railpatch.record.quantities import BY_NAME
 
 Array = NDArray[np.float64]
@@ -363,7 +363,8 @@ class Search:
         named: dict[str, list[int]] = {}
         for k in np.flatnonzero(~np.isfinite(self.given)):
             key, column = columns[k]
-            own = f"{si_unit(column)} {column.over}" if column.name else BY_NAME[key].dimension
+            own = BY_NAME[key].dimension if not column.name else ""
+            own = own or f"{unit_of_observed(key, column, column.over)} {column.over}"
             named.setdefault(own, []).append(int(k))
         return [np.array(group) for group in named.values()]
 

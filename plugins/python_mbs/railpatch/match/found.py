@@ -11,7 +11,8 @@ from railpatch._core import version
 from railpatch.match.fit import Fit, Search
 from railpatch.match.found_parts import RowsFound, Sampled, Screened
 from railpatch.match.judge import LeftOut, correlations
-from railpatch.match.plan import Explanation, ObservedColumn, Plan, si_unit
+from railpatch.match.plan import Explanation, ObservedColumn, Plan
+from railpatch.match.point_units import unit_of_observed
 from railpatch.record.quantities import BY_NAME
 from railpatch.record.units import UNITS
 
@@ -148,7 +149,7 @@ def overall(judged: Judged, plan: Plan) -> dict[str, Any]:
 def unit_of(key: str, column: ObservedColumn, plan: Plan) -> str:
     """SI unit of what was observed."""
     if plan.record is not None:
-        return si_unit(column)
+        return unit_of_observed(key, column, column.over)
     return next(iter(UNITS[BY_NAME[key].dimension]))
 
 

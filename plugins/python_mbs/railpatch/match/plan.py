@@ -18,9 +18,14 @@ from railpatch.case.load import KINDS, check_table, plain, read_toml
 from railpatch.case.types import Number, Pair, Positive, Table, relation
 from railpatch.errors import CaseError
 from railpatch.match.heads import heads_of
+from railpatch.match.point_units import (
+    creepage_doubts,
+    own_unit,
+    unit_of_input,
+    unit_of_observed,
+)
 from railpatch.record import MeasuredColumn, Record, read_record
 from railpatch.record.quantities import BY_NAME, OUTPUT
-from railpatch.record.units import UNITS, dimension_of, spelt
 from railpatch.sweep.plan import Value, put
 
 Array = NDArray[np.float64]
@@ -375,7 +380,7 @@ def load_match(path: str | Path, record: str | Path | None = None) -> Plan:
     if file is None:
         raise CaseError("match.record: value is missing, allowed a file of points, or --record")
     table, told = by_heads(table, file)
-    read = points(table, file)
+    read = points(table, file, kind)
     return Plan(path.stem, table, kind, folder, made, read, {}, (*read.warnings, *told))
 
 
@@ -450,15 +455,24 @@ def leave_out(content: dict[str, Any], key: str, name: str) -> None:
     del place[last]
 
 
-def points(table: MatchTable, file: Path) -> Record:
+def points(table: MatchTable, file: Path, kind: str) -> Record:
     """The record, in SI units by the names of inputs and results. Raises RecordError."""
-    columns = {input_name(key): column for key, column in table.inputs.items()}
-    columns |= {observed_name(key): column for key, column in table.observed.items()}
+    driven = {input_name(key): column for key, column in table.inputs.items()}
+    columns = driven | {observed_name(key): column for key, column in table.observed.items()}
     for key, column in table.observed.items():
         if column.name is None:
             raise CaseError(f"match.observed.{key}.name: value is missing, allowed a column")
-    logged = {name: si_unit(column) for name, column in columns.items()}
-    return read_record(file, columns, logged=logged, prefix="match")
+    logged = {
+        input_name(key): unit_of_input(kind, key) or own_unit(column)
+        for key, column in table.inputs.items()
+    }
+    logged |= {
+        observed_name(key): unit_of_observed(key, column, column.over)
+        for key, column in table.observed.items()
+    }
+    read = read_record(file, columns, logged=logged, prefix="match")
+    slips = {name: one for name, one in driven.items() if name.startswith("inputs.creepage")}
+    return replace(read, warnings=[*read.warnings, *creepage_doubts(read, slips)])
 
 
 def by_heads(table: MatchTable, file: Path) -> tuple[MatchTable, list[str]]:
@@ -478,12 +492,6 @@ def by_heads(table: MatchTable, file: Path) -> tuple[MatchTable, list[str]]:
                 f"called {found.allowed(name)}"
             )
     return table.model_copy(update={"inputs": inputs, "observed": observed}), told
-
-
-def si_unit(column: MeasuredColumn) -> str:
-    """Of the dimension that a column's unit has; a number's where it has none."""
-    dimension = dimension_of(spelt(column.unit)) if column.unit else "number"
-    return next(iter(UNITS[dimension])) if dimension else str(column.unit)
 
 
 def values_of(seek: Mapping[str, SoughtTable], shares: Array) -> dict[str, Value]:

@@ -195,11 +195,15 @@ def clean(raw: RawProfile) -> tuple[NDArray[np.intp], list[str]]:
     turned: list[int] = []
     duplicates = 0
     for i in range(count):
-        if kept and hypot(raw.y[i] - raw.y[kept[-1]], raw.z[i] - raw.z[kept[-1]]) < MIN_DISTANCE:
+        if kept and same_place(raw, kept[-1], i):
             duplicates += 1
             continue
         while len(kept) > 1 and turns_back(raw, kept[-2], kept[-1], i):
             turned.append(kept.pop())
+        # the way back of a profile measured there and back may have the points of the way there
+        if kept and same_place(raw, kept[-1], i):
+            duplicates += 1
+            continue
         kept.append(i)
     if len(turned) > MAX_TURNING_BACK * count:
         first = min(turned)
@@ -217,6 +221,11 @@ def clean(raw: RawProfile) -> tuple[NDArray[np.intp], list[str]]:
     if turned:
         notes.append(f"{len(turned)} points left out where the profile turned back")
     return np.array(kept), notes
+
+
+def same_place(raw: RawProfile, a: int, b: int) -> bool:
+    """Whether two points are one."""
+    return bool(hypot(raw.y[b] - raw.y[a], raw.z[b] - raw.z[a]) < MIN_DISTANCE)
 
 
 def turns_back(raw: RawProfile, a: int, b: int, c: int) -> bool:

@@ -22,7 +22,7 @@ class Unit:
 # by dimension; the first is that of the log
 UNITS: dict[str, dict[str, Unit]] = {
     "time": {"s": Unit(1.0), "ms": Unit(1e-3), "min": Unit(60.0), "h": Unit(3600.0)},
-    "number": {"-": Unit(1.0), "%": Unit(0.01)},
+    "number": {"-": Unit(1.0), "%": Unit(0.01), "permille": Unit(1e-3)},
     "angle": {"rad": Unit(1.0), "mrad": Unit(1e-3), "urad": Unit(1e-6), "deg": Unit(DEGREE)},
     "length": {
         "m": Unit(1.0),
@@ -84,6 +84,8 @@ OTHERS = {
     "1/min": "rpm",
     "1/s": "Hz",
     "sec": "s",
+    "degrees C": "degC",
+    "‰": "permille",
     "1": "-",
     "": "-",
 }
