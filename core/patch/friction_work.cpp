@@ -85,7 +85,15 @@ void tangential_stage::close_step(const patch_problem &problem, const rolling_in
                      rolling.spin_creepage != 0 || rolling.force || problem.slip_field;
   if (has_physics && problem.shifts && moves)
     return close_shift(problem, rolling, memory, grown, t, found);
-  if (shared_.coupled) return close_coupled(problem, rolling, memory, t, found);
+  if (shared_.coupled) {
+    close_coupled(problem, rolling, memory, t, found);
+    // what is supplied has the spin's slip at the elements themselves, and that of the tractions
+    // before where these were
+    t.friction += 0.5 * rolling.spin_creepage *
+                  ((now.force[1] + before.force[1]) * rolling.spin_offset -
+                   before.force[1] * rolling.upstream());
+    return;
+  }
   const double largest =
       std::max(std::abs(found.supplied), (found.elastic_energy + before.energy) / rolling.distance);
   const double taken = beyond_rounding(found.supplied - grown, largest);
@@ -113,6 +121,43 @@ void tangential_stage::close_coupled(const patch_problem &problem, const rolling
   const double plastic = plastic_works(problem, rolling, memory).by_mean;
   found.plastic_power = std::max(plastic, 0.0);
   t.friction += std::min(plastic, 0.0);
+}
+
+// In steady rolling too the slip that pressure causes, k, does its work on the mean of both ends'
+// tractions, also of elements that have just left contact. By Betti sum (p + p_before)/2 . k is
+// then the pressure's on the normal displacement by the tractions, by central differences; and as
+// the gap is 0 in contact that is the pressure's on the undeformed distance: what turns the wheel
+// against the pressure's moment, but for the gap beside the edge, of second order. By the traction
+// of one end alone it was of first order.
+void tangential_stage::close_steady(const patch_problem &problem, const rolling_input &rolling,
+                                    const patch_memory &memory, tangential_result &t,
+                                    traction_outcome &found) {
+  const grid &g = problem.g;
+  double more = 0;
+  for (int c = 0; c < 2; ++c) {
+    const double *now = c == 0 ? memory.px.data() : memory.py.data();
+    // the rigid slip of elements and rows is in the same array, and does its work at the element
+    const double *field = problem.slip_field ? problem.slip_field + c * g.count() : nullptr;
+    for (int j = 0; j < g.ny; ++j)
+      for (int i = 0; i < g.nx; ++i) {
+        const int at = j * g.nx + i, upstream = i + rolling.direction;
+        const double before = upstream >= 0 && upstream < g.nx ? now[at + rolling.direction] : 0.0;
+        double slip = rolling.coupled[c][at];
+        if (field) slip -= field[at];
+        if (memory.curved) slip -= memory.curved->slip(c, j, g.x(i) + rolling.spin_offset);
+        more -= 0.5 * (before - now[at]) * slip;
+      }
+  }
+  more *= g.dx * g.dy;
+  const double plastic = shared_.scene.yields() ? found.plastic_power : 0.0;
+  if (!(plastic > 0)) {
+    // where all sticks there is nothing but the tolerance of the solution
+    t.friction = std::max(0.0, t.friction + more);
+    return;
+  }
+  const double factor = std::max(0.0, 1.0 + more / (t.friction + plastic));
+  t.friction *= factor;
+  found.plastic_power *= factor;
 }
 
 // The same on a curved reference surface. Every row has a rigid slip of its own, and pressure moves

@@ -379,7 +379,10 @@ tangential_result tangential_stage::solve_on_grid(const patch_problem &problem,
     coarse_start_->find(g, memory.pressure.data(), bound_.data(), rolling, options,
                         memory.fields());
   tangential_result t = solve_by_law(problem, rolling, memory, options, found);
-  if (shared_.scene.goes_on(rolling)) close_step(problem, rolling, memory, t, found);
+  if (shared_.scene.goes_on(rolling))
+    close_step(problem, rolling, memory, t, found);
+  else if (shared_.coupled && rolling.coupled[0])
+    close_steady(problem, rolling, memory, t, found);
   if (shared_.scene.yields()) shared_.plastic_work = found.plastic_power;
   const bool sheared = memory.fluid_shear.size() > 0;
   if (has_physics && (shared_.scene.heat || sheared))

@@ -81,6 +81,8 @@ class tangential_stage {
                   tangential_result &t, traction_outcome &found);
   void close_coupled(const patch_problem &problem, const rolling_input &rolling,
                      const patch_memory &memory, tangential_result &t, traction_outcome &found);
+  void close_steady(const patch_problem &problem, const rolling_input &rolling,
+                    const patch_memory &memory, tangential_result &t, traction_outcome &found);
   // of shift_work.cpp
   void close_shift(const patch_problem &problem, const rolling_input &rolling,
                    const patch_memory &memory, double grown, tangential_result &t,

@@ -86,7 +86,9 @@ def test_published_figures() -> None:
         found = result["creepage"][0]
         lines.append(Line(f"friction {friction}", found, published, 0.01 * abs(published)))
         assert abs(result["creep_force"][0]) <= 1e-6 * FORCE * friction
-        assert result["friction_power"] > 0
+        # with friction of 10 all sticks, and nothing is lost
+        assert result["friction_power"] >= 0
+        assert (result["friction_power"] > 1e-6) == (friction == 0.05)
     check(lines)
 
 
