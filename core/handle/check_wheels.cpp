@@ -76,8 +76,6 @@ void check_reference(const rp_config &c, checker &check) {
     wrong = "reference_surface = curved needs fitted = 0, 0";
   else if (has_tangential(c) && is_coupled(combine(c.shear_modulus, c.poisson_ratio)))
     wrong = "reference_surface = curved needs bodies with equal (1-2nu)/G";
-  else if (c.derivatives != 0)
-    wrong = "reference_surface = curved needs derivatives = 0 in this version";
   else if (has_shape(c))
     wrong = "reference_surface = curved needs wheels without runout and rails without rail_height";
   else if (!has_physics)

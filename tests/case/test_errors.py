@@ -660,14 +660,6 @@ def test_wrong_accuracies(values: dict[str, Any], line: str) -> None:
             "'curved': give 'grid'",
         ),
         (
-            {"method__derivatives": True},
-            "method.derivatives: value is True, allowed False with reference_surface = 'curved'",
-        ),
-        (
-            {"method__tangential": "none", "method__derivatives": True},
-            "method.derivatives: value is True, allowed False with reference_surface = 'curved'",
-        ),
-        (
             {"material__shear_modulus": [82e9, 8e9]},
             "material: value is unlike bodies, allowed equal (1 - 2 nu)/G with reference_surface "
             "= 'curved'",
@@ -677,8 +669,7 @@ def test_wrong_accuracies(values: dict[str, Any], line: str) -> None:
 def test_curved_surfaces_stand_alone(values: dict[str, Any], line: str) -> None:
     case = with_values(WHEELSET, method__reference_surface="curved")
     load_scene(case)
-    if values.get("method__tangential") == "none":
-        case = with_values(case, friction=None)
+    load_scene(with_values(case, method__derivatives=True))
     assert problems_of(with_values(case, **values)) == [line]
 
 

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 import railpatch
 from conformal_samples import FRICTION, PLACES, RADIUS, TOLERANCE, Solved, wheel_case
+from railpatch.case.to_core import POSE_AND_VELOCITY
 
 # the solver measures its residuals over all elements together; allow for another way of measuring
 IMPOSED = 10 * TOLERANCE
@@ -141,3 +142,21 @@ def test_elastic_energy_is_half_the_work() -> None:
 def test_planes_have_no_rows_of_their_own(name: str) -> None:
     result = railpatch.solve(wheel_case(0.0, "full", "plane"), fields=True)
     assert name not in result["patches"][0]
+
+
+def test_derivatives_are_by_differences() -> None:
+    """So that what asks for them, runs in time among it, goes on curved surfaces too."""
+    y, step = PLACES[0], 2e-6
+    case = wheel_case(y, "full", tolerance=1e-9, derivatives=True)
+    case["wheelset"]["z"] = railpatch.solve(case)["z"]
+    del case["wheelset"]["vertical_force"]
+    contact = railpatch.Contact(case)
+    contact.step()
+    found = contact.jacobian()
+    assert found["kind"] == "differences"
+    ahead, behind = (
+        railpatch.Contact(case).step(y=y + sign * step)["force"] for sign in (1.0, -1.0)
+    )
+    slope = np.subtract(ahead, behind) / (2 * step)
+    column = np.array(found["right"])[:3, POSE_AND_VELOCITY.index("y")]
+    assert column == pytest.approx(slope, abs=0.02 * np.abs(slope).max())

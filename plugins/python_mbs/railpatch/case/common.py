@@ -480,8 +480,6 @@ def check_reference(material: Material, grid: Grid | None, method: Method) -> Pr
         yield relation("method.accuracy", method.accuracy, f"{LEFT_OUT} {with_it}: give 'grid'")
     if grid is not None and grid.fitted is not None:
         yield relation("grid.fitted", str(grid.fitted), f"{LEFT_OUT} {with_it}")
-    if method.derivatives:
-        yield relation("method.derivatives", "True", f"False {with_it}")
     if method.tangential != "none" and couples(material):
         yield relation("material", "unlike bodies", f"equal (1 - 2 nu)/G {with_it}")
 
