@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import railpatch
 from click.testing import CliRunner, Result
 from railpatch.command.cli import cli
 
@@ -83,3 +84,22 @@ def test_theories_without_elements_are_named(tmp_path: Path) -> None:
     found = run(tmp_path, case=fast)
     assert found.exit_code == 2
     assert "no pressure element by element" in found.output
+
+
+def test_depths_in_mm_are_doubted(tmp_path: Path) -> None:
+    """As the case's own are: 0.5 m below a contact nothing is left."""
+    done = run(tmp_path, "--depth", "1e-3", "--depth", "0.5")
+    assert done.exit_code == 0, done.output
+    assert "warning: --depth: a depth is 0.5 m" in done.output
+    assert "--depth" not in run(tmp_path, "--depth", "0.05").output
+    assert run(tmp_path, "--depth", "0.5", "--strict").exit_code == 2
+    contact = railpatch.Contact(tmp_path / "case.toml")
+    contact.step()
+    below = railpatch.Subsurface(contact, [1e-3, 0.05])
+    assert below.warnings == []
+    below.at([[0.0, 0.0, 0.051]])
+    assert ["points: a depth is 0.051 m" in text for text in below.warnings] == [True]
+    below.at([[0.0, 0.0, 0.05]])
+    assert below.warnings == []
+    [text] = railpatch.Subsurface(contact, [1e-3, 0.06]).warnings
+    assert text.startswith("depth: a depth is 0.06 m, hardly meant above 0.05 m")

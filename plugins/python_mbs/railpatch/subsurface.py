@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from railpatch import _core
 from railpatch.case.arrays import plain_numbers
+from railpatch.case.asked import depth_doubts
 from railpatch.case.theories import has_tractions
 from railpatch.case.types import BODIES, SIDES
 from railpatch.errors import CaseError
@@ -63,6 +64,13 @@ class Subsurface:
         self._core = contact._core.below(self._depth.tolist(), displacements, float(dang_van))
         self._displacements = displacements
         self._contact = contact
+        self._deepest = {"depth": float(self._depth.max())}
+
+    @property
+    def warnings(self) -> list[str]:
+        """Depths that can hardly be meant, of all and of the points of the last at(): see
+        Result.warnings."""
+        return depth_doubts(self._deepest)
 
     def solve(self, *, side: str = "right", patch: int = 0, body: str = "rail") -> dict[str, Any]:
         """Below one patch of the last step, at the depths and under each element.
@@ -104,6 +112,7 @@ class Subsurface:
         if given.ndim != 2 or given.shape[1] != 3:
             raise CaseError(f"points: value has shape {given.shape}, allowed (n, 3)")
         inside("points[:, 2]", given[:, 2], 0.0, DEEPEST)
+        self._deepest["points"] = float(given[:, 2].max(initial=0.0))
         found = self._core.at(*place(side, patch, body), given).reshape(-1, 9)
         return found[:, :6], found[:, 6:]
 

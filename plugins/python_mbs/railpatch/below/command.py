@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from railpatch.case.asked import depth_doubts
 from railpatch.case.types import BODIES, SIDES
 from railpatch.command.group import (
     EXIT_NOT_CONVERGED,
@@ -89,7 +90,8 @@ def subsurface(
         contact = Contact(case)
         check_output(output, case, *files_of(contact.case, case.parent))
         result = contact.step(fields=True)
-        tell_warnings(result.warnings, strict=strict, quiet=quiet)
+        doubts = depth_doubts({"--depth": max(depths, default=0.0)})
+        tell_warnings([*result.warnings, *doubts], strict=strict, quiet=quiet)
         if not result.solved:
             if not quiet:
                 click.echo(f"status: {result.status}: {result.reason}", err=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import Annotated, Any, Literal
 
@@ -160,10 +161,15 @@ def asked_doubts(case: Any) -> list[str]:
         return []
     points = [point[2] for point in below.points or ()]
     found = {"depths": max(below.depths), "points": max(points, default=0.0)}
+    return depth_doubts({f"subsurface.{name}": depth for name, depth in found.items()})
+
+
+def depth_doubts(greatest: Mapping[str, float]) -> list[str]:
+    """The same of the greatest depths (m) by the name of what gave them."""
     return [
-        f"subsurface.{name}: a depth is {depth:g} m, hardly meant above {DEEP:g} m, where little "
+        f"{name}: a depth is {depth:g} m, hardly meant above {DEEP:g} m, where little "
         "is left of a contact's stresses: depths are in m"
-        for name, depth in found.items()
+        for name, depth in greatest.items()
         if depth > DEEP
     ]
 
