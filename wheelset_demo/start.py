@@ -22,6 +22,8 @@ TOLERANCE = 1e-4
 # longest step: m, rad, of lengths and angles, a tenth of the approach; -, of rates over the speed
 LENGTH_LIMIT = 2e-5
 RATE_LIMIT = 1e-3
+# -, rate of y but for rolling with the yaw angle, over the speed: creep forces are saturated there
+SLIDING = 5e-3
 
 
 def released(scene: WheelsetScene, system: System) -> State:
@@ -29,13 +31,14 @@ def released(scene: WheelsetScene, system: System) -> State:
 
     Vertical position, roll angle and the rates of y, yaw and pitch are those at which all
     accelerations but that along the track vanish: the quasi-static motion, which any other start
-    would reach within centimetres, after a bounce. Where there is none, near a flange, the
-    wheelset starts without the rate of yaw, and only its vertical and roll accelerations vanish.
+    would reach within centimetres, after a bounce. Where there is none, near a flange or where
+    friction is too small to hold the wheelset, it starts without the rates of y and yaw, and only
+    its vertical and roll accelerations vanish.
     Raises CaseError where both wheels cannot carry the load.
     """
     start = estimate(scene)
     motion = balanced(system, start, *QUASI_STATIC)
-    if motion is None:
+    if motion is None or slides(motion):
         start[COUNT + 4] = 0.0
         motion = balanced(system, start, *UPRIGHT)
     if motion is None:
@@ -44,6 +47,12 @@ def released(scene: WheelsetScene, system: System) -> State:
             f"wheelset.y: value is {y}, allowed one where both wheels can carry the load"
         )
     return State(0.0, motion, np.zeros(len(WORKS)))
+
+
+def slides(motion: Vector) -> bool:
+    """Whether it moves sideways faster than wheels roll: dampers balance what friction cannot."""
+    rolls = motion[COUNT] * motion[4]
+    return bool(abs(motion[COUNT + 1] - rolls) > SLIDING * motion[COUNT])
 
 
 def balanced(system: System, start: Vector, unknown: list[int], free: list[int]) -> Vector | None:
