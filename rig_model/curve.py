@@ -36,13 +36,14 @@ from railpatch.case import WheelsetCase
 from railpatch.case.asked import refuse_asked
 from railpatch.case.common import without_friction
 from railpatch.case.load import Scene, check_case, plain, read_toml, refuse_others
+from railpatch.case.rolling import place_problems
 from railpatch.case.types import SIDES, NotNegative, Number, Table
 from railpatch.errors import CaseError
 from railpatch.result import CARRIES
 
 from rig_model.broyden import Broyden
 from rig_model.newton import Newton
-from rig_model.scene import checked_parts
+from rig_model.scene import checked_parts, steady_problems
 from rig_model.search import Evaluation, Settings, Vector
 from rig_model.start import deepest, reference
 
@@ -244,6 +245,8 @@ def check_wheelset(case: Any) -> None:
         problems.append(f"wheelset.speed: value is {case.wheelset.speed}, allowed > 0 m/s")
     if not case.has_tangential:
         problems.append("method.tangential: value is 'none', allowed one with creep forces")
+    problems += steady_problems(case, "a curve is")
+    problems += place_problems(case, "a steady curve")
     if case.temperature is not None and case.temperature.bulk is not None:
         problems.append(
             "temperature.bulk: value is given, allowed to be left out: a steady curve has no time"

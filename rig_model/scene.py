@@ -245,6 +245,7 @@ def check_machine(case: Any, rig: Rig) -> None:
         )
     if not case.has_tangential:
         problems.append("method.tangential: value is 'none', allowed one with creep forces")
+    problems += steady_problems(case, "a position is")
     if rig.balance.axle_torque == "track" and case.method.contact_frame == "inclined":
         problems.append(
             "rig.balance.axle_torque: value is 'track', allowed 'wheelset' with "
@@ -265,6 +266,19 @@ def check_machine(case: Any, rig: Rig) -> None:
         raise CaseError(problems)
 
 
+def steady_problems(case: Any, what: str) -> list[str]:
+    """Of contacts with a history, where a search solves them. what: is solved."""
+    motion, why = case.motion, f"{what} solved several times, each of which would be a step"
+    problems = []
+    if motion.regime != "steady_rolling":
+        problems.append(
+            f"motion.regime: value is {motion.regime!r}, allowed 'steady_rolling': {why}"
+        )
+    if motion.regime_changes:
+        problems.append(f"motion.regime_changes: value is True, allowed False: {why}")
+    return problems
+
+
 def conditioning_refused(case: WheelsetCase) -> list[str]:
     """What friction that conditions cannot go with: rig_model/wheels.py, conditioning.py."""
     found = {"friction.along_track": case.friction.along_track if case.friction else None}
@@ -278,11 +292,6 @@ def conditioning_refused(case: WheelsetCase) -> list[str]:
         for key, value in found.items()
         if value is not None
     ]
-    if case.motion.regime != "steady_rolling":
-        refused.append(
-            f"motion.regime: value is {case.motion.regime!r}, allowed 'steady_rolling' with "
-            "rig.conditioning: a position is solved several times"
-        )
     method = case.method
     if method.normal == "hertz" and method.tangential in WITHOUT_FIELDS:
         refused.append(

@@ -18,7 +18,7 @@ import numpy as np
 import scipy
 from railpatch import CaseError
 
-from wheelset_demo.scene import WheelsetScene, refuse_bulk
+from wheelset_demo.scene import WheelsetScene, refuse_bulk, refuse_changes
 from wheelset_demo.simulation import Simulation
 from wheelset_demo.start import released
 from wheelset_demo.system import COUNT, System, Vector
@@ -64,6 +64,7 @@ def linearised(scene: WheelsetScene, speed: float) -> Vector:
     """[11, 11], of the rates of coordinates without pitch and of velocities, straight on at a
     speed (m/s). Raises CaseError, ContactFailure."""
     refuse_bulk(scene.case, "the search for a hunting speed")
+    refuse_changes(scene.case, "the search for a hunting speed")
     straight = scene.at_speed(speed, 0.0)
     system = System(straight, exact=True)
     state = released(straight, system)

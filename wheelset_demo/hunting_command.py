@@ -140,7 +140,7 @@ def search_whole(
     file: Path, lowest: float, highest: float, slip: bool, quiet: bool
 ) -> dict[str, Any]:
     """What is printed of a vehicle: SI units, None for what was not found."""
-    from wheelset_demo.vehicle.hunting import moves_at, search_vehicle, vehicle_mode
+    from wheelset_demo.vehicle.hunting import left_out, moves_at, search_vehicle, vehicle_mode
     from wheelset_demo.vehicle.plausible import doubts_of
     from wheelset_demo.vehicle.scene import load_vehicle_scene
 
@@ -153,6 +153,7 @@ def search_whole(
     around = [vehicle_mode(scene, speed, slip) for speed in speeds]
     found["growth"] = [{"speed": m.speed, "growth": m.growth} for m in around]
     found["moves"] = moves_at(scene, speeds[0] if middle is None else middle, slip)
+    found["left_out"] = left_out(scene)
     return found
 
 
@@ -241,6 +242,8 @@ def text_of(found: dict[str, Any]) -> str:
     if "moves" in found:
         shown = ", ".join(f"{name} {size:.2f}" for name, size in found["moves"].items())
         lines.append(("moves", f"across the track: {shown}"))
+    if found.get("left_out"):
+        lines.append(("left out", f"{', '.join(found['left_out'])}: straight, level, undriven"))
     if "runs" in found:
         in_time = found["critical_speed_in_time"]
         away = 100 * (in_time / speed - 1)

@@ -13,6 +13,7 @@ from pydantic import Field, model_validator
 from railpatch.case import WheelsetCase
 from railpatch.case.common import without_friction
 from railpatch.case.load import Scene, check_case, check_table, plain, read_toml, refuse_others
+from railpatch.case.rolling import place_problems
 from railpatch.case.types import NotNegative, Positive, Table, relation
 from railpatch.case.wheel import PROFILE_KEYS
 from railpatch.errors import CaseError
@@ -304,6 +305,13 @@ def refuse_bulk(case: Any, run: str) -> None:
             f"temperature.bulk: value is given, allowed to be left out: {run} has no time in which "
             "wheels warm"
         )
+
+
+def refuse_changes(case: Any, run: str) -> None:
+    """Refuses what changes along the track or round a wheel. run: what has one place of both."""
+    problems = place_problems(case, run)
+    if problems:
+        raise CaseError(problems)
 
 
 def start_problems(case: Any, found: tuple[str, ...], why: str) -> list[str]:

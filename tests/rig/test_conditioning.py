@@ -165,7 +165,6 @@ shear_modulus = 8.2e9                # Pa
 thickness = 5e-5                     # m
 """
 ALONG = "coefficient = 0.52\nalong_track = [[0, 1], [1, 1]]"
-ROLLING_ON = ("[track]", "time_step = 1e-3\n[motion]\nregime = 'transient_rolling'\n[track]")
 
 
 @pytest.mark.parametrize(
@@ -173,7 +172,6 @@ ROLLING_ON = ("[track]", "time_step = 1e-3\n[motion]\nregime = 'transient_rollin
     [
         (("coefficient = 0.52", ALONG), "friction.along_track: value is given"),
         ((LAYER, "[method]\nnormal = 'hertz'\ntangential = 'polach'\n"), "'polach'"),
-        (ROLLING_ON, "motion.regime: value is 'transient_rolling'"),
     ],
 )
 def test_refused_by_name(scene_with, change, text):

@@ -139,6 +139,17 @@ def test_wide_curve_is_nearly_straight():
         ("pitch_inertia = 110.0", "pitch_inertia = -1.0", "curve.pitch_inertia"),
         ("yaw_stiffness = 5e6", "yaw_stifness = 5e6", "curve.yaw_stifness"),
         ("vertical_force = 120e3", "z = 0.0", "wheelset.z"),
+        (
+            "[track]",
+            "time_step = 1e-3\n[motion]\nregime = 'transient_rolling'\n[track]",
+            "motion.regime: value is 'transient_rolling', allowed 'steady_rolling'",
+        ),
+        ("[track]", "left.flat = { depth = 3e-4, angle = 0.0 }\n[track]", "wheelset.left.flat"),
+        (
+            "coefficient = 0.3",
+            "coefficient = 0.3\nalong_track = [[-1, 0.5], [1, 1]]",
+            "friction.along_track: given, allowed to be left out: a steady curve has one place",
+        ),
     ],
 )
 def test_bad_scenes_are_refused(tmp_path, old, new, key):

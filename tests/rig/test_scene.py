@@ -15,6 +15,17 @@ YAW = "yaw = [[0.0, 0.0], [0.25, 0.018], [0.5, 0.0], [0.75, -0.018], [1.0, 0.0]]
 
 # what is replaced, by what, and what the message must hold
 WRONG = {
+    # it was "method.tangential: value is 'none'", of the balance's own first estimate
+    "rolling on": (
+        "[track]",
+        "time_step = 1e-3\n[motion]\nregime = 'transient_rolling'\n[track]",
+        ("motion.regime", "'transient_rolling'", "'steady_rolling'", "solved several times"),
+    ),
+    "regimes that change": (
+        "[track]",
+        "time_step = 1e-3\n[motion]\nregime_changes = true\n[track]",
+        ("motion.regime_changes", "True", "False"),
+    ),
     "unknown key": ("positions = 37", "positions = 37\nspeed = 3", ("rig.speed", "3", "unknown")),
     "unknown balance key": ("[rig]", "[rig.balance]\nmethod = 'x'\n[rig]", ("rig.balance.method",)),
     "nearly a key": ("duration = 360.0", "duratoin = 360.0", ("did you mean 'duration'",)),

@@ -32,18 +32,24 @@ import railpatch
 import vehicle_parts as parts
 from click.testing import CliRunner
 from railpatch.command.cli import cli
+from railpatch.errors import CaseError
 from scipy.optimize import brentq
 
-from wheelset_demo.hunting import waves_in
+from wheelset_demo.hunting import Mode, Search, waves_in
+from wheelset_demo.hunting_command import found_by, text_of
 from wheelset_demo.scene import GRAVITY, scene_file
 from wheelset_demo.vehicle import Simulation, load_vehicle_scene
+from wheelset_demo.vehicle.alignment import AlignmentTable
+from wheelset_demo.vehicle.deviations import DipTable
 from wheelset_demo.vehicle.hunting import (
     ACCEPTED,
     Linearised,
+    left_out,
     search_vehicle,
     straight,
     vehicle_mode,
 )
+from wheelset_demo.vehicle.wet_track import WetTable
 
 SLOPE, CROWN, ARM, BASE = 1 / 20, 0.3, 1.0, 1.25
 STIFFNESS, DAMPING = [6e5, 9e5, 1e6], [4e3, 3e3, 2e4]
@@ -236,6 +242,24 @@ def test_a_vehicle_that_hunts_from_the_command_line(tmp_path):
         assert done.exit_code == 2
         assert "allowed with a scene of railpatch wheelset" in done.output
     assert CliRunner().invoke(cli, ["hunting", "--slip"]).exit_code == 2
+
+
+def test_what_a_search_leaves_out_is_said():
+    """A curve, irregularities and dips are named; what the contact itself would meet is refused."""
+    scene = load_vehicle_scene(scene_file("vehicle_curve.toml"))
+    assert left_out(replace(scene, alignment=AlignmentTable(), irregularity=None)) == []
+    dip = DipTable(position=60.0, angle=0.01)
+    assert left_out(replace(scene, dip=(dip,))) == ["alignment", "irregularity", "dip"]
+    found = found_by("x", Search(None, Mode(1.0, -1.0, 1.0, np.ones(1)), None), 1.0, 2.0)
+    text = text_of({**found, "growth": [], "left_out": ["alignment", "dip"]})
+    assert "left out        alignment, dip: straight, level, undriven" in text
+    wet = WetTable(position=60.0, length=10.0, water_rate=1e-6)
+    with pytest.raises(CaseError, match=r"^wet: given, allowed to be left out: the search"):
+        vehicle_mode(replace(scene, wet=(wet,)), 20.0)
+    friction = scene.case.friction.model_copy(update={"along_track": [[0.0, 0.5], [9.0, 1.0]]})
+    case = scene.case.model_copy(update={"friction": friction})
+    with pytest.raises(CaseError, match=r"^friction.along_track: given, allowed to be left out"):
+        vehicle_mode(replace(scene, case=case), 20.0)
 
 
 def test_a_heavy_wagon_with_sliders_stands_straight():

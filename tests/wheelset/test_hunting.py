@@ -126,3 +126,24 @@ def test_wrong_calls(tmp_path: Path):
     ran = invoke(tmp_path / "none.toml")
     assert ran.exit_code == 2
     assert "none.toml" in ran.stderr
+
+
+@pytest.mark.parametrize(
+    ("key", "table"),
+    [
+        ("wheelset.left.flat", "[wheelset.left.flat]\ndepth = 3e-4\nangle = 0.0"),
+        ("track.right.joint", "[track.right.joint]\nposition = 0.0\ndepth = 1e-3"),
+        ("wheelset.right.runout", f"[wheelset.right]\nrunout = {[0.0, 1e-5] * 6}"),
+        ("friction.along_track", ""),
+    ],
+)
+def test_one_place_of_track_and_wheels(tmp_path: Path, key: str, table: str):
+    """A flat was taken to be under the wheel all along: 47.5 in place of 49.5 m/s."""
+    text = scene_file("hunting.toml").read_text(encoding="utf-8") + f"\n{table}\n"
+    if not table:
+        text = text.replace("[friction]", "[friction]\nalong_track = [[-1.0, 0.5], [1.0, 1.0]]")
+    file = tmp_path / "scene.toml"
+    file.write_text(text, encoding="utf-8")
+    ran = invoke(file)
+    assert ran.exit_code == 2
+    assert f"{key}: given, allowed to be left out: the search for a hunting speed" in ran.stderr

@@ -22,7 +22,7 @@ import scipy
 from wheelset_demo.coupling.masters import Mean
 from wheelset_demo.coupling.multibody import MOTION, Multibody
 from wheelset_demo.hunting import PITCH
-from wheelset_demo.scene import WheelsetScene, refuse_bulk
+from wheelset_demo.scene import WheelsetScene, refuse_bulk, refuse_changes
 from wheelset_demo.start import released
 from wheelset_demo.steppers import GAMMA
 from wheelset_demo.system import COUNT, System, Vector
@@ -88,6 +88,7 @@ def steady(system: System, motion: Vector, speed: float) -> Vector:
 def linearise(scene: WheelsetScene, speed: float) -> Linearised:
     """Straight on at a speed (m/s). Raises CaseError, ContactFailure."""
     refuse_bulk(scene.case, "a linearised wheelset")
+    refuse_changes(scene.case, "a linearised wheelset")
     straight = scene.at_speed(speed, 0.0)
     system = System(straight, exact=True)
     motion = steady(system, released(straight, system).motion, speed)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from railpatch.errors import CaseError
 
 from wheelset_demo.hunting import Mode, Search, mode_of, search
-from wheelset_demo.scene import refuse_bulk
+from wheelset_demo.scene import refuse_bulk, refuse_changes
 from wheelset_demo.vehicle.alignment import AlignmentTable
 from wheelset_demo.vehicle.scene import RunTable, VehicleScene
 from wheelset_demo.vehicle.simulation import at_start
@@ -40,7 +40,14 @@ SHIFT = 1e-6
 
 def straight(scene: VehicleScene, speed: float) -> VehicleScene:
     """The scene straight, level and without drives, at a speed (m/s). Raises CaseError."""
-    refuse_bulk(scene.case, "the search for a hunting speed")
+    run = "the search for a hunting speed"
+    refuse_bulk(scene.case, run)
+    refuse_changes(scene.case, run)
+    if scene.wet:
+        raise CaseError(
+            f"wet: given, allowed to be left out: {run} has one place along the track, with "
+            "fluid.water_rate"
+        )
     wheelset = scene.case.wheelset.model_copy(update={"speed": speed})
     method = scene.case.method
     method = method.model_copy(update={"tolerance": min(method.tolerance, CLOSE)})
@@ -54,10 +61,21 @@ def straight(scene: VehicleScene, speed: float) -> VehicleScene:
         alignment=AlignmentTable(),
         irregularity=None,
         dip=(),
-        wet=(),
         measured_track=None,
         measured=None,
     )
+
+
+def left_out(scene: VehicleScene) -> list[str]:
+    """The scene's tables of which straight() takes nothing."""
+    given = {
+        "alignment": scene.alignment.radius is not None or scene.alignment.section is not None,
+        "irregularity": scene.irregularity is not None,
+        "measured_track": scene.measured_track is not None,
+        "dip": bool(scene.dip),
+        "vehicle.drive": bool(scene.vehicle.drive),
+    }
+    return [name for name, there in given.items() if there]
 
 
 @dataclass

@@ -199,3 +199,23 @@ def check_rolling(case: Any) -> Problems:
         yield relation("temperature", "given", f"{LEFT_OUT} {where}")
     if couples(case.material):
         yield relation("material", "unlike bodies", f"equal (1 - 2 nu)/G {where}")
+
+
+def place_problems(case: Any, run: str) -> list[str]:
+    """Of a case of wheels with what changes along the track or round a wheel, for runs that have
+    one place of both. run: which one."""
+    friction = None if case.friction is None else case.friction.along_track
+    given = {"friction.along_track": friction, "track.irregularity": case.track.irregularity}
+    for side in SIDES:
+        wheel, rail = getattr(case.wheelset, side), getattr(case.track, side)
+        given |= {f"wheelset.{side}.{key}": getattr(wheel, key) for key in ("flat", "runout")}
+        given |= {f"track.{side}.{key}": getattr(rail, key) for key in ("joint", "running_surface")}
+        for path, sections in (("wheelset", wheel.sections), ("track", rail.sections)):
+            # one alone is the same everywhere
+            given[f"{path}.{side}.sections"] = sections if len(sections or ()) > 1 else None
+    return [
+        f"{key}: given, allowed to be left out: {run} has one place along the track and round the "
+        "wheels"
+        for key, value in given.items()
+        if value is not None
+    ]
