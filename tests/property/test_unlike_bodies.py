@@ -172,15 +172,22 @@ def test_stick_and_slip(solution: Checked) -> None:
 def test_power_and_energy(solution: Checked) -> None:
     c, h = solution, solution.half_space
     area, speed = h.dx * h.dy, c.drawn.case["motion"]["rolling_speed"]
-    # the power of the tractions on all slip that they do not cause themselves
-    _, phi, direction = c.drawn.rigid
-    # at the elements themselves, as force and moment are summed
-    at_elements = c.supplied - np.array([[0.0], [0.25 * phi * direction * h.dx]])
-    supplied = -speed * float((c.tractions * at_elements).sum() * area)
+    pressure, traction = c.result["pressure"], c.result["traction"]
+    # the power of the tractions on all slip that they do not cause themselves: on the rigid slip at
+    # the elements, as force and moment are summed, and on what the pressure causes by the mean of
+    # both ends of the material's way from element to element
+    (xi, eta), phi, direction = c.drawn.rigid
+    y, x = np.meshgrid(c.result["y"], c.result["x"], indexing="ij")
+    rigid = np.array([xi - phi * y, eta + phi * x])
+    pressed = (h.from_pressure(pressure) - h.from_pressure(pressure, direction * h.dx)) / h.dx
+    before = np.zeros_like(traction)
+    ahead, behind = (slice(1, None), slice(None, -1))[::direction]
+    before[..., behind] = traction[..., ahead]
+    work = traction * rigid + 0.5 * (traction + before) * pressed
+    supplied = max(0.0, -speed * float(work.sum() * area))
     scale = speed * float(c.bound.sum() * area * np.abs(c.supplied).max())
     assert c.result["friction_power"] == pytest.approx(supplied, abs=1e-6 * scale)
     assert c.result["friction_power"] >= 0
-    pressure, traction = c.result["pressure"], c.result["traction"]
     moved = h.normal(pressure) + h.from_traction(traction)
     along = h.tangential(traction) + h.from_pressure(pressure)
     energy = float((pressure * moved).sum() + (traction * along).sum()) * area / 2
