@@ -79,12 +79,13 @@ void profile_sections::find_slopes(const std::int32_t *kink) {
   const auto before = [&](std::size_t k) { return k > 0 ? k - 1 : count - 1; };
   const auto after = [&](std::size_t k) { return k + 1 < count ? k + 1 : 0; };
   const auto broken = [&](std::size_t k) { return kink && kink[k] != 0; };
+  const auto outer = [&](std::size_t k) { return !round && (k == 0 || k + 1 == count); };
   left_.resize(count);
   right_.resize(count);
   for (std::size_t k = 0; k < count; ++k) {
     left_[k] = right_[k] = slopes_.size();
     slopes_.push_back({values(n), values(n), values(n)});
-    if (!round && (k == 0 || k + 1 == count)) continue;
+    if (outer(k)) continue;
     if (broken(k)) {
       right_[k] = slopes_.size();
       slopes_.push_back({values(n), values(n), values(n)});
@@ -97,7 +98,8 @@ void profile_sections::find_slopes(const std::int32_t *kink) {
       return (h2 * d1 + h1 * d2) / (h1 + h2);
     });
   }
-  // sides of kinks, from the slopes at their other ends: a chord between two kinks
+  // sides of kinks, from the slopes at their other ends: a chord between two kinks, and beside an
+  // outer end, whose slope of 0 is that of the rail beyond
   for (std::size_t k = 0; k < count; ++k) {
     if (left_[k] == right_[k]) continue;
     const auto one_sided = [&](std::size_t from, std::size_t to, std::size_t own, std::size_t far,
@@ -110,8 +112,8 @@ void profile_sections::find_slopes(const std::int32_t *kink) {
       });
     };
     const std::size_t p = before(k), q = after(k);
-    one_sided(p, k, left_[k], right_[p], way(p), broken(p));
-    one_sided(k, q, right_[k], left_[q], way(k), broken(q));
+    one_sided(p, k, left_[k], right_[p], way(p), broken(p) || outer(p));
+    one_sided(k, q, right_[k], left_[q], way(k), broken(q) || outer(q));
   }
 }
 

@@ -8,9 +8,10 @@
 // sections. These are linear in the knots, as a rule of slopes that keeps each knot between its
 // values is not: that one bends the profile wherever its neighbours take another case. Slopes are 0
 // at the ends. At a kink each side has the slope of a parabola by its own sections alone: where a
-// part of the profile begins at once, as a blade's tip. Before the first and beyond the last
-// section the profile is constant; with a period it goes on at the first. Each step's rail is
-// prismatic, each step's wheel round, with the profile there.
+// part of the profile begins at once, as a blade's tip. Next to an end that is the chord's, as the
+// slope of 0 says nothing of the way inside: so what goes on evenly through a kink has one slope.
+// Before the first and beyond the last section the profile is constant; with a period it goes on at
+// the first. Each step's rail is prismatic, each step's wheel round, with the profile there.
 #pragma once
 
 #include <cstdint>

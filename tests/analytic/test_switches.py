@@ -180,6 +180,33 @@ def test_forces_are_continuous_through_the_transfer(
     assert min(places) < carried[0] < carried[1] < max(places)
 
 
+@pytest.mark.parametrize("kind", ["blade", "crossing"])
+def test_forces_are_continuous_where_the_tip_begins(kind: str, tmp_path: Path, measured) -> None:
+    """The slopes of the knots turn there, but those under the wheel go on evenly: the rule of
+    docs/continuity.md, in steps of 50 um through the millimetre in which blade and nose appear."""
+    start, stop, step = -2.5e-3, 2.5e-3, 5e-5
+    path = Sweep("x", lambda x: {"x": x}, start, stop, step, step)
+    case = case_of(kind, tmp_path)
+    samples = Measure(case, path, case["wheelset"]["vertical_force"]).samples(start, stop, step)
+    assert {sample.status for sample in samples} == {"converged"}
+    jump = jumps_of(samples).max()
+    measured(f"{kind}: {jump:.4f} % of the load at the tip")
+    assert jump < LIMIT
+
+
+def test_what_lies_above_a_hidden_face_stays_where_it_is() -> None:
+    """Features of the stock rail where the blade begins: the same place of it on both sides."""
+    before, after = (next(part for part in blade() if part.position == x) for x in (-1e-3, 0.0))
+    for feature in (1, 2):
+        places = []
+        for part in (before, after):
+            way = np.append(0.0, np.cumsum(np.hypot(*np.diff(part.points, axis=0).T)))
+            at = part.features[feature]
+            places.append([np.interp(at, way, part.points[:, k]) for k in (0, 1)])
+        # the rail's face leaves the gauge line by 1 : 60
+        assert places[1] == pytest.approx([places[0][0] + 1e-3 / 60, places[0][1]], abs=2e-5)
+
+
 def test_a_slice_is_its_own_rail(tmp_path: Path) -> None:
     """At a slice the forces are those of a rail with that profile alone, but for what the pressure
     has along the track as the rail rises and falls: test_section_power.py."""

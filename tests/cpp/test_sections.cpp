@@ -166,6 +166,25 @@ TEST(Sections, CubicsTurnAtAKink) {
   EXPECT_NEAR(chord.at(-0.25).y[3], polynomial(1, 3, 1, 0.25), 1e-15);
 }
 
+// What goes on evenly through a kink has one slope there, also from or to an outer end, whose slope
+// is 0: a rail on the way beside which a part begins or ends.
+TEST(Sections, CubicsGoOnEvenlyThroughAKinkNextToAnEnd) {
+  const std::vector<double> positions{-0.3, -0.001, 0.0, 0.5, 0.501, 0.8};
+  const std::int32_t kinks[] = {0, 1, 1, 1, 1, 0};
+  section_rules rules = cubic_rules();
+  rules.kink = kinks;
+  stack sections = polynomials(positions, rules, 1);
+  for (const double x : {-0.001, 0.0, 0.5, 0.501})
+    for (const double side : {-1e-7, 1e-7})
+      for (int i = 0; i + 1 < knots; ++i) {
+        sections.at(x + side);
+        const section_rate found = sections.rate(i, 0.0);
+        EXPECT_NEAR(found.y, 0.01 * (i + 1) + 0.003, 1e-7) << x << ' ' << side;
+        EXPECT_NEAR(found.z, 0.01 * (i + 1) + 0.006, 1e-7) << x << ' ' << side;
+      }
+  EXPECT_EQ((sections.at(-0.3), sections.rate(2, 0.5).z), 0.0);
+}
+
 double slope_of(stack &sections, double x, double step, int i) {
   const double after = sections.at(x + step).z[i];
   return (after - sections.at(x).z[i]) / step;

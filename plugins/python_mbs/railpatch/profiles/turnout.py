@@ -154,9 +154,10 @@ def blade(step: float = 0.15) -> list[Slice]:
 
     The stock rail's face leaves the gauge line by 1 : 60. The blade is a head at the gauge line of
     which the stock rail hides what lies lower: where it is 3 mm wide its top is 14 mm low, at 25 mm
-    3 mm, and from 50 mm on it is in the running plane.
+    3 mm, and from 50 mm on it is in the running plane. The stock rail's face below the place where
+    the blade hides it goes over into the blade's, so what lies above stays where it is.
     """
-    ends = [-0.3, -1e-3, *(step * np.arange(round(3.0 / step) + 1)).tolist()]
+    ends = [-0.3, -0.15, -0.075, -1e-3, *(step * np.arange(round(3.0 / step) + 1)).tolist()]
     return [blade_slice(x) for x in ends]
 
 
@@ -166,13 +167,20 @@ def blade_slice(x: float) -> Slice:
     stock = head(max(width, 0.0), 0.0)
     corner = crown_from(max(width, 0.0))
     if x < 0:
-        return Slice(x, stock, (0.0, 0.0, arc_length_at(stock, corner)))
-    top = float(np.interp(width, [BLADE_TIP, 0.025, 0.05], [0.014, 0.003, 0.0]))
-    own = head(0.0, top)
+        at_tip = head(BLADE_TIP, 0.0)
+        joint = hidden_from(blade_at(BLADE_TIP), at_tip)
+        hidden = arc_length_at(stock, joint - BLADE_TIP + max(width, 0.0))
+        return Slice(x, stock, (hidden, hidden, arc_length_at(stock, corner)))
+    own = blade_at(width)
     joint = hidden_from(own, stock)
     points = np.concatenate([between(own, -1.0, joint), between(stock, joint, 1.0)[1:]])
     places = (min(crown_from(0.0), joint), joint, max(corner, joint))
     return Slice(x, points, tuple(arc_length_at(points, y) for y in places))
+
+
+def blade_at(width: float) -> Array:
+    """Its head before the stock rail hides a part, where it is so wide, m."""
+    return head(0.0, float(np.interp(width, [BLADE_TIP, 0.025, 0.05], [0.014, 0.003, 0.0])))
 
 
 def hidden_from(blade_points: Array, stock: Array) -> float:
