@@ -157,7 +157,9 @@ uint32_t warnings_of_patch(const rp_config &config, const rp_patch_result &patch
   for (int k = 0; k < (line ? 1 : 2); ++k) {
     // a grid of the case's own number has a border around it
     const int count = config.elements[k] > 0 ? config.elements[k] : patch.grid[k];
-    coarse = coarse || (patch.grid[k] > 0 && count < least_elements);
+    // strips of one or two rows are meant: there is nothing to refine across
+    const bool strip = has_strips(config) && count < 3;
+    coarse = coarse || (patch.grid[k] > 0 && count < least_elements && !strip);
   }
   return found | bit(RP_WARNING_COARSE, coarse && config.fitted[0] == 0);
 }

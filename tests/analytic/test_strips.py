@@ -271,3 +271,13 @@ def test_one_row_of_a_file(tmp_path: Path) -> None:
     (tmp_path / "gap.csv").write_text(",".join(map(repr, row)) + "\n")
     scene["geometry"] = {"undeformed_distance": "gap.csv"}
     assert Contact(scene, folder=tmp_path).step()["creep_force"] == wanted["creep_force"]
+
+
+@pytest.mark.parametrize(
+    ("nx", "ny", "coarse"),
+    [(24, 1, False), (2, 16, False), (1, 1, False), (1, 6, True), (6, 24, True)],
+)
+def test_strips_are_not_called_coarse(nx: int, ny: int, coarse: bool) -> None:
+    """One and two rows or columns are meant; fewer than eight elements along them are a fault."""
+    found = railpatch.solve(case(nx, ny, {"regime": "none"}))
+    assert any("fewer than 8 elements" in text for text in found.warnings) == coarse
