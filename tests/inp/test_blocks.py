@@ -143,6 +143,15 @@ BASIC_REFUSED = [
     ({"module": "2 MODULE"}, "module 2"),
     ({"first": "12345678"}, "too many digits"),
     ({"second": "122020", "friction": ""}, "L = 1 in the first case"),
+    ({"first": "204100"}, "line 2: T = 4: allowed 0, 1, 2, 3"),
+    ({"first": "203900"}, "N = 9: allowed 0, 1"),
+    ({"first": "203140"}, "F = 4: allowed 0, 1, 2"),
+    ({"first": "703100"}, "P = 7: allowed 0, 1, 2, 3"),
+    ({"second": "1022020"}, "line 3: V = 1: allowed 0, 3"),
+    ({"second": "025020"}, "C3 = 5: allowed 0, 1, 2, 3, 4, 9"),
+    ({"second": "022027"}, "E = 7: allowed 0, 1, 2, 3, 9"),
+    ({"third": "4000211"}, "line 4: H = 4: allowed 0, 1, 3"),
+    ({"third": "20000211"}, "X = 2: allowed 0, 1"),
 ]
 
 
@@ -240,6 +249,10 @@ WHEEL_READ = [
     ),
 ]
 WHEEL_REFUSED = [
+    ({"first": "2203100"}, "line 2: C1 = 2: allowed 0, 1, 4, 5"),
+    ({"first": "1204100"}, "T = 4: allowed 0, 1, 2, 3"),
+    ({"second": "3022033"}, "line 3: V = 3: allowed 0, 1, 2"),
+    ({"second": "0025033"}, "C3 = 5: allowed 0, 1, 2, 3, 4"),
     ({"first": "1201100"}, "T = 1"),
     ({"first": "1200110"}, "F = 1, 2"),
     ({"first": "1223100"}, "B = 2 on wheels"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from railpatch.inp.digits import out_of_range
 from railpatch.inp.words import Reader
 
 # most elements that a list may have
@@ -81,7 +82,10 @@ def control(reader: Reader, module: int) -> dict[str, int]:
             )
         if len(word) > len(names):
             raise reader.error(f"{shown}: {word} has too many digits", line)
-        found |= dict(zip(names, map(int, word.rjust(len(names), "0")), strict=True))
+        digits = dict(zip(names, map(int, word.rjust(len(names), "0")), strict=True))
+        if wrong := out_of_range(module, digits):
+            raise reader.error(wrong, line)
+        found |= digits
         if names == SECOND:
             packed = reader.optional()
             found["M2"] = int(packed) % 10 if packed is not None else 1
@@ -182,8 +186,6 @@ def _damping_and_heat(reader: Reader, digits: dict[str, int], blocks: dict[str, 
         blocks["heat"] = heat
     elif digits["H"] == 0:
         blocks.pop("heat", None)
-    elif digits["H"] == 2:
-        raise reader.error("H = 2: allowed 0, 1, 3")
 
 
 def _profile(reader: Reader) -> dict[str, Any]:

@@ -17,3 +17,28 @@ REFUSED_ON_WHEELS = {
     "C3": {3: "bilinear elements"},
 }
 FACTORS = {"k0": "K0", "alpha": "ALFA", "beta": "BETA"}
+# values of digits that no block looks at; of modules where they differ
+ALLOWED: dict[str, tuple[int, ...]] = {
+    "P": (0, 1, 2, 3),
+    "T": (0, 1, 2, 3),
+    "N": (0, 1),
+    "S": (0, 1, 2, 3),
+    "X": (0, 1),
+    "H": (0, 1, 3),
+    "I": (0, 1, 2, 3),
+    "A": (0, 1, 2),
+    "R": (0, 1, 2, 3),
+}
+ALLOWED_OF = {
+    1: {"C1": (0, 1, 4, 5), "F": (0, 1, 2, 3), "V": (0, 1, 2), "C3": (0, 1, 2, 3, 4)},
+    3: {"F": (0, 1, 2), "V": (0, 3), "C3": (0, 1, 2, 3, 4, 9), "E": (0, 1, 2, 3, 9)},
+}
+
+
+def out_of_range(module: int, digits: dict[str, int]) -> str | None:
+    """The first digit that has no such value, and what it may be."""
+    for name, value in digits.items():
+        allowed = ALLOWED_OF[module].get(name, ALLOWED.get(name))
+        if allowed is not None and value not in allowed:
+            return f"{name} = {value}: allowed {', '.join(map(str, allowed))}"
+    return None
