@@ -11,6 +11,7 @@ from typing import Any
 from railpatch.case import WheelsetCase
 from railpatch.case.common import without_friction
 from railpatch.case.load import Scene, check_case, check_table, plain, read_toml, refuse_others
+from railpatch.case.scene_profiles import find_sections, sections_of
 from railpatch.case.types import SIDES, Table
 from railpatch.case.wheel import PROFILE_KEYS
 from railpatch.errors import CaseError
@@ -190,6 +191,7 @@ def rig_scene_of(
         if (named := getattr(case.profiles, key)) in files
     }
     case = case.model_copy(update={"profiles": case.profiles.model_copy(update=found)})
+    case, _ = find_sections(case, files.get)
     measured = None
     if table.record is not None:
         measured = measured_run(table, case, folder / table.record)
@@ -313,11 +315,14 @@ def scenes() -> Path:
 
 
 def found_profiles(case: WheelsetCase, folder: Path) -> dict[str, Path]:
-    """Name in [profiles] -> its file, looked for in the folder, then beside the package's scenes.
+    """Name in [profiles] or of a section -> its file, looked for in the folder, then beside the
+    package's scenes.
 
     A scene that was shown and changed elsewhere names the package's profiles.
     """
     names = {getattr(case.profiles, key) for key in PROFILE_KEYS} - {None}
+    for side in SIDES:
+        names |= {section.profile for _, section in sections_of(case, side)}
     found = {}
     for name in sorted(names):
         files = [place / name for place in (folder, scenes()) if (place / name).is_file()]

@@ -14,6 +14,7 @@ from railpatch.case import WheelsetCase
 from railpatch.case.common import without_friction
 from railpatch.case.load import Scene, check_case, check_table, plain, read_toml, refuse_others
 from railpatch.case.rolling import place_problems
+from railpatch.case.scene_profiles import find_sections
 from railpatch.case.types import NotNegative, Positive, Table, relation
 from railpatch.case.wheel import PROFILE_KEYS
 from railpatch.errors import CaseError
@@ -135,7 +136,7 @@ class RunScene:
     """What the checked scenes of all runs have.
 
     name: of the file. text: as it was read. case: the contact of each wheelset. profiles: key of
-    [profiles] -> the file found, or the built-in name.
+    [profiles] -> the file found, or the built-in name; key of a section -> its file.
     """
 
     name: str
@@ -263,7 +264,9 @@ def load_checked(
     check_all(**checked)
     profiles = found_profiles(checked["case"], path.parent)
     found = checked["case"].profiles.model_copy(update=profiles)
-    checked["case"] = checked["case"].model_copy(update={"profiles": found})
+    case = checked["case"].model_copy(update={"profiles": found})
+    checked["case"], sections = find_sections(case, partial(file_beside, path.parent))
+    profiles |= {key: str(file) for key, file in sections.items()}
     return scene(name=path.name, text=path.read_bytes(), profiles=profiles, **checked)
 
 
@@ -366,6 +369,11 @@ def found_profiles(case: WheelsetCase, folder: Path) -> dict[str, str]:
     for key in PROFILE_KEYS:
         name = getattr(case.profiles, key)
         if name is not None:
-            file = folder / name
-            found[key] = str(file if file.is_file() else name)
+            found[key] = str(file_beside(folder, name) or name)
     return found
+
+
+def file_beside(folder: Path, name: str) -> Path | None:
+    """A profile's file, looked for in the folder; None: the name is a built-in one, or wrong."""
+    file = folder / name
+    return file if file.is_file() else None

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 from railpatch import CaseError, Contact
 from railpatch.case.common import without_friction
+from railpatch.case.scene_profiles import sections_of
 from railpatch.case.types import SIDES
 from railpatch.case.wheel import WheelsetCase
 from railpatch.damage.run import RunWear
@@ -187,12 +188,15 @@ def at_start(scene: VehicleScene, system: VehicleSystem) -> VehicleState:
     values = np.zeros(system.size)
     q, v = values[:n], values[n : 2 * n]
     loads = system.suspension.statics.loads
-    found: dict[tuple[int, float], tuple[float, float, Vector]] = {}
+    places = vehicle.rest[vehicle.carriers[:, 0]]
+    varies = any(True for side in SIDES for _ in sections_of(scene.case, side))
+    found: dict[tuple[int, float, float], tuple[float, float, Vector]] = {}
     deflections = []
-    for axle, load in zip(scene.vehicle.axles, loads.tolist(), strict=True):
-        alike = id(axle.table), round(load, 3)
+    for axle, load, x in zip(scene.vehicle.axles, loads.tolist(), places.tolist(), strict=True):
+        alike = id(axle.table), round(load, 3), x if varies else 0.0
         if alike not in found:
-            found[alike] = wheels_under_load(scene.case_of(axle), load, scene.support)
+            case = scene.case_of(axle)
+            found[alike] = wheels_under_load(case, load, scene.support, place=alike[2])
         q[vehicle.carriers[axle.number - 1, 2]], radius, below = found[alike]
         v[vehicle.spins[axle.number - 1]] = -scene.speed / radius
         deflections.append(below)
@@ -206,22 +210,31 @@ def at_start(scene: VehicleScene, system: VehicleSystem) -> VehicleState:
 
 
 def wheels_under_load(
-    case: WheelsetCase, load: float, support: SupportTable | None = None
+    case: WheelsetCase, load: float, support: SupportTable | None = None, *, place: float = 0.0
 ) -> tuple[float, float, Vector]:
     """m: how far a wheelset in the middle is pressed down by a load (N), its rolling radius, and
-    deflections [2, 2] of left and right rail on the track below, lateral and vertical."""
+    deflections [2, 2] of left and right rail on the track below, lateral and vertical. place: m,
+    along the track. Raises CaseError where it cannot stand there."""
     content = without_friction(case.model_dump())
     content["wheelset"] |= {"vertical_force": load, "z": None}
     if support is not None:
         content["track"]["rail_support"] = {"stiffness": list(support.static_stiffness)}
     content["method"]["derivatives"] = False
-    result = Contact(content).step()
+    result = Contact(content).step(x=place)
     if result.status in BAD or result.status == "no_contact":
         raise CaseError(
             f"vehicle: an axle load is {load:.6g} N, allowed one that the wheels can "
             f"carry: {result.status}: {result.reason}"
         )
     radii = [result[side]["rolling_radius"] for side in SIDES]
+    for side, other, radius in zip(SIDES, reversed(SIDES), radii, strict=True):
+        if np.isnan(radius):
+            raise CaseError(
+                f"vehicle: at {place:.6g} m the {side} wheel of a level wheelset hangs above its "
+                f"rail while the {other} one carries {load:.6g} N, allowed rails as high as each "
+                f"other where the vehicle starts: 'origin' of track.{SIDES[0]} and "
+                f"track.{SIDES[1]}, 'position' of their sections"
+            )
     found = np.zeros((2, 2))
     if support is not None:
         found[:] = [result[side]["rail_deflection"] for side in SIDES]

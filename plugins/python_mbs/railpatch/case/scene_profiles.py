@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal, TypeVar
 
 from railpatch.case.rails import SectionProfile
+from railpatch.case.types import SIDES
 from railpatch.case.wheel import WheelRailCase, WheelsetCase
 from railpatch.profiles import Profile, Reading, load_profile
 from railpatch.profiles.builtin import builtin_profile
@@ -17,6 +18,7 @@ from railpatch.profiles.placement import Flange, flange_of, gauge_note
 
 Body = Literal["wheel", "rail"]
 WheelCase = WheelRailCase | WheelsetCase
+Case = TypeVar("Case", WheelRailCase, WheelsetCase)
 BODIES: tuple[Body, ...] = ("wheel", "rail")
 # m, between the tops of slices along a rail: more is hardly meant to be left out
 HEIGHTS = 0.5e-3
@@ -66,6 +68,30 @@ def sections_of(case: WheelCase, side: str) -> Iterator[tuple[Body, SectionProfi
     for body, table in zip(BODIES, (case.wheelset, case.track), strict=True):
         for section in getattr(table, side).sections or ():
             yield body, section
+
+
+def find_sections(case: Case, find: Callable[[str], Path | None]) -> tuple[Case, dict[str, Path]]:
+    """The case with the files of its sections in place of their names, and those files by key.
+
+    find: the file of a name; None where there is none: the name stays.
+    """
+    files: dict[str, Path] = {}
+    tables: dict[str, Any] = {}
+    for name in ("wheelset", "track"):
+        table, sides = getattr(case, name), {}
+        for side in SIDES:
+            deviation, found = getattr(table, side), []
+            for index, section in enumerate(deviation.sections or ()):
+                file = find(section.profile)
+                if file is not None:
+                    files[f"{name}.{side}.sections[{index}]"] = file
+                    section = section.model_copy(update={"profile": str(file)})
+                found.append(section)
+            if found:
+                sides[side] = deviation.model_copy(update={"sections": found})
+        if sides:
+            tables[name] = table.model_copy(update=sides)
+    return (case.model_copy(update=tables) if files else case), files
 
 
 class Shelf:
