@@ -223,16 +223,30 @@ REFUSED = {
     "digits": ({"first": "12031000"}, "has too many digits"),
     "a digit": ({"first": "1207100"}, "T = 7: allowed 0 ... 3"),
     "a word": ({"friction": "0.3 none"}, "line 6: FKIN: expected a number, found 'none'"),
-    "kept of nothing": ({"second": "0122033", "friction": ""}, "L = 1 and D = 0"),
-    "points kept": ({"first": "1203101"}, "S = 1 and 2"),
+    "in its line": (
+        {"friction": "0.3 none"},
+        "found 'none', in FSTAT FKIN; before it line 5 was read",
+    ),
+    "a line too few": (
+        {"friction": ""},
+        "line 9: G2: expected a number, found '90d', in NU1 NU2 G1 G2; before it line 7 was read "
+        "as FSTAT FKIN",
+    ),
+    "kept of nothing": ({"second": "0122033", "friction": ""}, "L = 1 keeps what was"),
+    "search kept": ({"second": "0002033", "patches": ""}, "D = 0 keeps what was"),
+    "points kept": ({"first": "1203101"}, "S = 1 keeps what was"),
+    "track": ({"second": "0022043"}, "Z = 4: allowed 0 ... 3"),
     "blocks": ({"first": "1203103"}, "subs_addblock"),
     "gap weighting": ({"second": "0022033 11"}, "gap weighting"),
     "damping": ({"second": "0022033 2", "heat": "1 1 1 1"}, "M2 = 2"),
     "solver": ({"third": "0700211"}, "G = 7: allowed 0 ... 5"),
-    "tolerance": ({"solver": "500 60 30 1 0."}, "MAXGS and EPS must be > 0"),
+    "tolerance": ({"solver": "500 60 30 1 0."}, "MAXGS and EPS are 500 and 0, allowed"),
     "law": ({"second": "0522033"}, "L = 5: allowed"),
-    "places": ({"second": "1022033", "friction": "2\n1d .3 .3\n0d .3 .3"}, "must increase"),
-    "two coefficients": ({"friction": "0.3 0.2"}, "FSTAT other than FKIN"),
+    "places": (
+        {"second": "1022033", "friction": "2\n1d .3 .3\n0d .3 .3"},
+        "angle or s of friction is 0, allowed more than",
+    ),
+    "two coefficients": ({"friction": "0.3 0.2"}, "FSTAT is 0.3, allowed FKIN (0.2)"),
     "viscoelastic": (
         {"second": "0022133", "material": "0.28 0.28 82000. 82000. 1 1 1 1"},
         "M = 1",
@@ -245,7 +259,10 @@ REFUSED = {
     "slices": ({"rail": "'none.slcs' 0 1. 0."}, "none.slcs: file not found"),
     "slices of a wheel": ({"rail": "'round.slcw' 0 1. 0."}, "is read as a rail"),
     "smoothing": ({"rail": "'rail.txt' 0 1. 1."}, "smoothing 0"),
-    "ends": ({"velocity": "20000. 0", "end": ""}, "ends where VZ is needed"),
+    "ends": (
+        {"velocity": "20000. 0", "end": ""},
+        "ends where VZ is needed, in VS VY VZ VROLL VYAW VPITCH; before it line",
+    ),
 }
 
 

@@ -57,6 +57,7 @@ class input_file {
 
   // Raises input_error.
   void read() {
+    file_.expect("MODULE REID CPID");
     const int module = file_.whole("MODULE");
     const bool fits = simpack_ ? module == 0 || module == 11 : module == 1;
     if (!fits)
@@ -74,7 +75,8 @@ class input_file {
     if (digit("S") >= 2) {
       if (!simpack_)
         file_.fail("S = " + std::to_string(digit("S")) +
-                   ", blocks of points below the surface: subs_addblock");
+                   ": blocks of points below the surface are not read, allowed 0; subs_addblock "
+                   "adds them");
     }
     if (!file_.ended()) say(call_, "the first case is taken, the rest of the file is left");
   }
@@ -87,6 +89,9 @@ class input_file {
   std::vector<double> reals(const std::vector<const char *> &names,
                             const std::string &angles = "") {
     std::vector<double> found;
+    std::string line;
+    for (const char *name : names) line.append(line.empty() ? "" : " ").append(name);
+    file_.expect(line);
     for (const char *name : names) {
       const std::string padded = std::string(" ").append(name).append(" ");
       found.push_back(file_.real(name, angles.find(padded) != std::string::npos));
@@ -130,7 +135,9 @@ class input_file {
     control_word("the control word VLDCMZE", second_word);
     const int packed = static_cast<int>(file_.optional().value_or(1.0));
     digits_["M2"] = packed % 10;
-    if (packed / 10 > 0) file_.fail("gap weighting has no counterpart");
+    if (packed / 10 > 0)
+      file_.fail("M2 = " + std::to_string(packed) +
+                 ": gap weighting has no counterpart, allowed 0 ... 9");
     file_.end_line();
     control_word("the control word XHGIAOWR", third_word);
     file_.end_line();
@@ -139,12 +146,16 @@ class input_file {
       file_.end_line();
     }
     for (const char *name : {"Z", "E"})
-      if (digit(name) > (name[0] == 'Z' ? 3 : 5))
-        file_.fail(std::string(name) + " = " + std::to_string(digit(name)) + " is not allowed");
-    if (digit("L") == 1 || digit("D") == 0)
-      file_.fail("L = 1 and D = 0 keep what was: nothing was before the first case");
-    if (!simpack_ && (digit("S") == 1 || digit("S") == 2))
-      file_.fail("S = 1 and 2 keep points: nothing was before the first case");
+      if (const int most = name[0] == 'Z' ? 3 : 5; digit(name) > most)
+        file_.fail(std::string(name) + " = " + std::to_string(digit(name)) + ": allowed 0 ... " +
+                   std::to_string(most));
+    const auto keeps = [&](const char *name, const char *allowed) {
+      file_.fail(std::string(name) + " = " + std::to_string(digit(name)) +
+                 " keeps what was, and nothing was before the first case: allowed " + allowed);
+    };
+    if (digit("L") == 1) keeps("L", "0, 2 ... 4, 6");
+    if (digit("D") == 0) keeps("D", "2, 4, 5");
+    if (!simpack_ && (digit("S") == 1 || digit("S") == 2)) keeps("S", "0");
     if (!simpack_) {
       set_flag(flag_sequence, 2);
       set_flag(flag_start, 0);
@@ -158,7 +169,9 @@ class input_file {
     std::vector<double> v = reals({"MAXGS", "MAXIN", "MAXNR", "MAXOUT", "EPS"});
     file_.optional();
     file_.end_line();
-    if (!(v[0] >= 1) || !(v[4] > 0)) file_.fail("MAXGS and EPS must be > 0");
+    if (!(v[0] >= 1) || !(v[4] > 0))
+      file_.fail("MAXGS and EPS are " + words::shown(v[0]) + " and " + words::shown(v[4]) +
+                 ", allowed >= 1 and > 0");
     int ints[4];
     for (int i = 0; i < 4; ++i)
       ints[i] = static_cast<int>(std::fmin(std::fmax(v[static_cast<size_t>(i)], 0.0), 1e9));
@@ -193,11 +206,14 @@ class input_file {
       if (variation > 0) {
         places.push_back(file_.real("angle or s of friction", variation == 1));
         if (i > 0 && !(places.back() > places[places.size() - 2]))
-          file_.fail("places of friction must increase");
+          file_.fail("the angle or s of friction is " + words::shown(places.back()) +
+                     ", allowed more than that of the set before, " +
+                     words::shown(places[places.size() - 2]));
       }
       rows.push_back(reals(laws.at(law)));
       if (law == 0 && rows.back()[0] != rows.back()[1])
-        file_.fail("L = 0 with FSTAT other than FKIN has no counterpart");
+        file_.fail("FSTAT is " + words::shown(rows.back()[0]) + ", allowed FKIN (" +
+                   words::shown(rows.back()[1]) + ") with L = 0");
     }
     const std::vector<double> memory =
         law != 0 ? reals({"MEMDST", "MEM_S0"}) : std::vector<double>{};
@@ -268,7 +284,8 @@ class input_file {
 
   // A profile's line, and those that it says follow.
   void profile(int type) {
-    const std::string name = file_.string("a profile's name");
+    file_.expect("'FILE' MIRRORY SCALE SMOOTH MIRRORZ");
+    const std::string name = file_.string(type == 0 ? "the rail's profile" : "the wheel's profile");
     std::vector<double> v = reals({"MIRRORY", "SCALE", "SMOOTH"});
     optional(v, 2);
     const double option = v.size() > 4 ? v[4] : 0.0;

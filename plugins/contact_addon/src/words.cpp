@@ -94,6 +94,12 @@ words words::of_file(const std::string &path) {
   return words(path.substr(path.find_last_of("/\\") + 1), text);
 }
 
+std::string words::shown(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
 int words::line() const {
   return rows_.empty() ? 0 : rows_[std::min(row_, rows_.size() - 1)].front().line;
 }
@@ -103,13 +109,29 @@ void words::fail(const std::string &what, int line) const {
                     what);
 }
 
+void words::expect(const std::string &names) {
+  const bool at_end = !ended() && at_ >= rows_[row_].size();
+  const size_t row = std::min(row_ + (at_end ? 1 : 0), rows_.size() - 1);
+  const int line = rows_.empty() ? 0 : rows_[row].front().line;
+  if (now_.line < line) before_ = now_;
+  now_ = {names, line};
+}
+
+std::string words::told() const {
+  const bool several = now_.names.find(' ') != std::string::npos;
+  std::string text = several ? ", in " + now_.names : "";
+  if (before_.line > 0)
+    text += "; before it line " + std::to_string(before_.line) + " was read as " + before_.names;
+  return text;
+}
+
 void words::end_line() {
   if (at_ > 0) ++row_, at_ = 0;
 }
 
 const words::word &words::next(const char *what) {
   while (!ended() && at_ >= rows_[row_].size()) ++row_, at_ = 0;
-  if (ended()) throw input_error(name_ + ": ends where " + what + " is needed");
+  if (ended()) throw input_error(name_ + ": ends where " + what + " is needed" + told());
   return rows_[row_][at_++];
 }
 
@@ -117,7 +139,8 @@ double words::real(const char *what, bool angle) {
   const word &found = next(what);
   const auto value = number_of(found.text, angle);
   if (!value)
-    fail(std::string(what) + ": expected a number, found '" + found.text.substr(0, 40) + "'",
+    fail(std::string(what) + ": expected a number, found '" + found.text.substr(0, 40) + "'" +
+             told(),
          found.line);
   return *value;
 }
@@ -130,17 +153,19 @@ std::optional<double> words::optional(bool angle) {
 }
 
 int words::whole(const char *what) {
+  const int line = this->line();
   const double value = real(what);
   if (value != std::floor(value) || std::fabs(value) > 2147483647.0)
-    fail(std::string(what) + ": expected a whole number");
+    fail(std::string(what) + ": expected a whole number" + told(), line);
   return static_cast<int>(value);
 }
 
 std::string words::digits(const char *what) {
+  expect(what);
   const word &found = next(what);
   if (found.text.empty() || found.text.size() > 9 ||
       !std::all_of(found.text.begin(), found.text.end(), digit))
-    fail(std::string(what) + ": expected digits, found '" + found.text.substr(0, 40) + "'",
+    fail(std::string(what) + ": expected digits, found '" + found.text.substr(0, 40) + "'" + told(),
          found.line);
   return found.text;
 }
@@ -149,7 +174,7 @@ std::string words::string(const char *what) {
   const word &found = next(what);
   const std::string &t = found.text;
   if (t.size() < 2 || t.front() != '\'' || t.back() != '\'' || t.find('\'', 1) != t.size() - 1)
-    fail(std::string(what) + ": expected a name in '...', found '" + t.substr(0, 40) + "'",
+    fail(std::string(what) + ": expected a name in '...', found '" + t.substr(0, 40) + "'" + told(),
          found.line);
   const size_t first = t.find_first_not_of(" \t", 1);
   if (first >= t.size() - 1) return {};
