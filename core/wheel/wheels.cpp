@@ -292,7 +292,7 @@ void wheels::find_z(const rp_input &in, rp_result &out) {
     const double modulus = solver_.scene().modulus(), radius = 0.5 * nominal_radius_;
     depth = cbrt(9.0 * load * load / (16.0 * modulus * modulus * radius));
   }
-  const height_guess::way way{along_track_ ? in.x : in.pitch, touch};
+  const height_guess::way way{along_track_ ? in.x : in.pitch, touch, target};
   if (guess_ && last > 0) depth = guess_->depth(last, way);
   force_search search(target, depth, tolerance_);
   force_samples samples(target);
@@ -339,7 +339,7 @@ void wheels::find_z(const rp_input &in, rp_result &out) {
   double known;
   const double found_stiffness = search.stiffness(known);
   guess_->learn(found_stiffness, stiffness, known);
-  guess_->keep(depth_, way);
+  guess_->keep(depth_, force / target - 1, stiffness, way);
 }
 
 // Forces of depths beyond the one that carries the load, and of one on the way to it, for as much
