@@ -136,6 +136,7 @@ def test_commands(folder, tmp_path):
     (bad / "a.inp").write_text(text_of(BASIC))
     (bad / "b.inp").write_text(text_of(BASIC, first="243100"))
     (bad / "c.inp").write_text("3 MODULE\nx")
+    (bad / "d.inp").write_text(text_of(WHEEL))
     run = CliRunner()
     listed = run.invoke(cli, ["convert", str(bad), "--list"])
     assert listed.exit_code == 2
@@ -143,6 +144,7 @@ def test_commands(folder, tmp_path):
     assert lines[0] == "a.inp: case 1: patch"
     assert "b.inp, line 2, case 1: B = 4 (SDEC) has no counterpart" in lines[1]
     assert "c.inp, line 2" in lines[2]
+    assert "d.inp: case 1: d.inp: the profile 'wheel.txt' is not there: " in lines[3]
     assert run.invoke(cli, ["convert", str(good), "--list"]).exit_code == 0
     refused = run.invoke(cli, ["convert", str(bad / "b.inp"), "-o", str(tmp_path / "out")])
     assert refused.exit_code == 2

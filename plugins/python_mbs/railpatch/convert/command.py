@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -10,7 +11,7 @@ from railpatch.command.group import WrongCall, quiet_flag, wrong_calls
 from railpatch.command.output import check_folder
 from railpatch.errors import CaseError
 from railpatch.inp.files import convert as cases_of_file
-from railpatch.inp.written import plan, write_cases
+from railpatch.inp.written import missing_profile, named_profiles, plan, write_cases
 
 
 @click.command("convert")
@@ -67,9 +68,10 @@ def show_list(source: Path, *, quiet: bool) -> bool:
         lines = []
         try:
             for one in cases_of_file(path):
-                state = one.refused if one.tables is None else one.tables["kind"]
+                wrong = one.refused or first_missing(one.tables or {}, path)
+                state = wrong or (one.tables or {})["kind"]
                 lines.append(f"{path.name}: case {one.case.number}: {state}")
-                bad = bad or one.refused is not None
+                bad = bad or wrong is not None
         except CaseError as error:
             bad = True
             lines.append(f"cannot be read: {error}")
@@ -77,3 +79,9 @@ def show_list(source: Path, *, quiet: bool) -> bool:
             for line in lines:
                 click.echo(line)
     return bad
+
+
+def first_missing(tables: dict[str, Any], source: Path) -> str | None:
+    """What is said of the first profile of a case that is not there."""
+    texts = (missing_profile(table[key], source) for table, key in named_profiles(tables))
+    return next(filter(None, texts), None)

@@ -41,9 +41,9 @@ def write_cases(files: list[tuple[str, dict[str, Any]]], source: Path, folder: P
     for _, tables in files:
         for table, key in named_profiles(tables):
             profiles[table[key]] = source.parent / table[key]
-    for name, place in profiles.items():
-        if not place.is_file():
-            raise CaseError(f"{source.name}: the profile {name!r} is not there: {place}")
+    for name in profiles:
+        if text := missing_profile(name, source):
+            raise CaseError(text)
     if len({place.name for place in profiles.values()}) < len(profiles):
         raise CaseError(f"{source.name}: names several profiles alike in different folders")
     folder.mkdir(parents=True, exist_ok=True)
@@ -63,6 +63,12 @@ def write_cases(files: list[tuple[str, dict[str, Any]]], source: Path, folder: P
             whole["geometry"]["undeformed_distance"] = gap
         written.append(write_whole(folder / f"{name}.toml", toml_of(whole).encode()))
     return written
+
+
+def missing_profile(name: str, source: Path) -> str | None:
+    """What is said of a profile that an input file names and that is not there."""
+    place = source.parent / name
+    return None if place.is_file() else f"{source.name}: the profile {name!r} is not there: {place}"
 
 
 def named_profiles(tables: dict[str, Any]) -> list[tuple[dict[str, Any], str]]:
