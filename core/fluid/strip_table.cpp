@@ -30,20 +30,6 @@ void weigh(double x, double w[4]) {
   w[3] = a * b * c / 6.0;
 }
 
-// acos within 2e-8, of -1 to 1 (a number beyond): Hastings' polynomial (Abramowitz and Stegun
-// 1964, 4.4.46).
-inline double near_acos(double x) {
-  const double y = std::fabs(x);
-  double p = 0.0066700901 - 0.0012624911 * y;
-  p = -0.0170881256 + p * y;
-  p = 0.0308918810 + p * y;
-  p = -0.0501743046 + p * y;
-  p = 0.0889789874 + p * y;
-  p = -0.2145988016 + p * y;
-  p = 1.5707963050 + p * y;
-  return 0.5 * pi - std::copysign(0.5 * pi - p * std::sqrt(std::fabs(1.0 - y)), x);
-}
-
 // The first of the four nodes about a place, 0 ... count - 1.
 int first_of(double at, int count) {
   return std::clamp(static_cast<int>(std::floor(at)) - 1, 0, count - 4);
@@ -94,14 +80,18 @@ strip_table::strip strip_table::rows_of::at(double r) const {
 
 strip_table::strip strip_table::at(double s, double r) { return rows_of(s).at(r); }
 
-double strip_table::share(double s, double r) {
+double strip_table::number(double s, double r, int which) {
   const place of_s = place_of_s(s), of_r = place_of_r(r);
   double sum = 0;
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j)
-      sum += of_s.weight[i] * of_r.weight[j] * node(of_s.first + i, of_r.first + j)[1];
-  return std::clamp(sum, 0.0, 1.0);
+      sum += of_s.weight[i] * of_r.weight[j] * node(of_s.first + i, of_r.first + j)[which];
+  return sum;
 }
+
+double strip_table::share(double s, double r) { return std::clamp(number(s, r, 1), 0.0, 1.0); }
+
+double strip_table::end(double s, double r) { return number(s, r, 0); }
 
 // Of a row at y = b sin(v) the load is as cos^2(v), r as cos(v): sum of share cos^3(v) dv 3/4.
 double strip_table::share_of_ellipse(double s, double r) {

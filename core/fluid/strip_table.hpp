@@ -5,10 +5,26 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "numeric/elementary.hpp"
 
 namespace railpatch {
+
+// acos within 2e-8, of -1 to 1 (a number beyond): Hastings' polynomial (Abramowitz and Stegun
+// 1964, 4.4.46).
+inline double near_acos(double x) {
+  constexpr double pi = 3.141592653589793;
+  const double y = std::fabs(x);
+  double p = 0.0066700901 - 0.0012624911 * y;
+  p = -0.0170881256 + p * y;
+  p = 0.0308918810 + p * y;
+  p = -0.0501743046 + p * y;
+  p = 0.0889789874 + p * y;
+  p = -0.2145988016 + p * y;
+  p = 1.5707963050 + p * y;
+  return 0.5 * pi - std::copysign(0.5 * pi - p * std::sqrt(std::fabs(1.0 - y)), x);
+}
 
 class strip_table {
  public:
@@ -49,6 +65,7 @@ class strip_table {
   // Share of asperities alone, and of all rows of an ellipse: r in its middle. S is the same in
   // all.
   static double share(double s, double r);
+  static double end(double s, double r);  // theta of X_c alone
   static double share_of_ellipse(double s, double r);
 
  private:
@@ -59,6 +76,7 @@ class strip_table {
   static place place_of_s(double s);
   static place place_of_r(double r);
   static const double *node(int s, int r);
+  static double number(double s, double r, int which);  // of a strip's
 };
 
 }  // namespace railpatch

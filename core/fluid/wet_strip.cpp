@@ -14,14 +14,11 @@ using std::numbers::pi;
 
 namespace {
 
-// isotropic: of ln 9 and 1.47476, as the source's equations have them
-constexpr double barred = 0.27774310294369754, quadratic = 0.37738917651535963, cubic = 1.0019;
 // of the flow factor where flow is barred: there the film is that of the flow
 constexpr double least_flow = 1e-12;
 // ends of the search for d: 1 - Phi is 1 and 1e-300 there
 constexpr double lowest = -9.0, highest = 37.0;
 
-constexpr int most_newton_steps = 12;
 // of the distribution's table, from -reach to reach
 constexpr int reach = 8, each = 32, entries = 2 * reach * each + 1;
 // 1/n!
@@ -31,8 +28,8 @@ constexpr double over[] = {1.0,       1.0,       1.0 / 2,    1.0 / 6,    1.0 / 2
 }  // namespace
 
 double flow_factor(double t) {
-  const double above = std::max(t - barred, 0.0);
-  return above * above * (quadratic + cubic * above);
+  const double above = std::max(t - barred_film, 0.0);
+  return above * above * (flow_quadratic + flow_cubic * above);
 }
 
 double elliptic_strip::at(double cosine, double sine, double &slope) const {
@@ -60,9 +57,9 @@ struct strip_solver::section {
 
  private:
   void flows() {
-    const double above = std::max(film - barred, 0.0);
-    flow = std::max(above * above * (quadratic + cubic * above), least_flow);
-    slope = above * (2.0 * quadratic + 3.0 * cubic * above);
+    const double above = std::max(film - barred_film, 0.0);
+    flow = std::max(above * above * (flow_quadratic + flow_cubic * above), least_flow);
+    slope = above * (2.0 * flow_quadratic + 3.0 * flow_cubic * above);
   }
 };
 
@@ -186,40 +183,54 @@ void strip_solver::move(double end, double by) {
   flow_ += by * flow_rate_;
 }
 
-// Newton's steps while they stay within the bracket, and shrink; else those of rising_root.
+end_search::end_search(double begin, double low) : least_(low) {
+  most_ = high_ = pi * (1.0 - 1e-9);
+  const double width = high_ - low;
+  at_ = begin > 0 ? std::clamp(begin, low + 1e-6 * width, high_ - 1e-6 * width) : low + 0.4 * width;
+}
+
+double end_search::tolerance_of_distance(double precision) {
+  return std::clamp(0.3 * std::sqrt(precision), 1e-7, 1e-4);
+}
+
+bool end_search::take(double value, double slope, double precision) {
+  const double step = -value / slope;
+  (value < 0 ? least_ : most_) = at_;
+  const bool last_step = slope > 0 && std::fabs(step) <= 0.3 * std::sqrt(precision);
+  if (last_step || std::fabs(value) <= precision) {
+    by_ = last_step ? step : 0.0;
+    residual_ = last_step ? 0.0 : value;
+    return true;
+  }
+  const bool newton = slope > 0 && std::fabs(step) < 0.5 * last_;
+  last_ = newton ? std::fabs(step) : HUGE_VAL;
+  if (newton && at_ + step > least_ && at_ + step < most_)
+    at_ += step;
+  else  // near the trailing edge all is steep
+    at_ = most_ < high_ ? 0.5 * (least_ + most_) : at_ + 0.25 * (most_ - at_);
+  return false;
+}
+
+// Newton's steps first, then those of rising_root.
 strip_solution strip_solver::solve(const strip_pressure &pressure, double s, double r, double start,
                                    double precision) {
   strip_solution found;
   // theta of X_c, from the greatest pressure to the trailing edge
   const double low = pressure.peak(), high = pi * (1.0 - 1e-9), width = high - low;
   const bool warm = start > -1 && start < 1;
-  const double begin =
-      warm ? std::clamp(acos(-start), low + 1e-6 * width, high - 1e-6 * width) : low + 0.4 * width;
-  // of d, before Newton's last step, which squares it
-  const double tolerance = std::clamp(0.3 * std::sqrt(precision), 1e-7, 1e-4);
-  // of X_c, likewise
-  const double small = 0.3 * std::sqrt(precision);
-  double least = low, most = high, at = begin, last = HUGE_VAL;
-  for (int k = 0; k < most_newton_steps; ++k) {
+  end_search newton(warm ? acos(-start) : 0.0, low);
+  const double begin = newton.at(), tolerance = end_search::tolerance_of_distance(precision);
+  for (int k = 0; k < end_search::most_steps; ++k) {
     double slope;
-    const double value = march(pressure, s, r, at, tolerance, slope), step = -value / slope;
+    const double at = newton.at(), value = march(pressure, s, r, at, tolerance, slope);
     ++found.marches;
-    (value < 0 ? least : most) = at;
-    const bool last_step = slope > 0 && std::fabs(step) <= small;
-    if (last_step || std::fabs(value) <= precision) {
-      if (last_step) move(at, step);
-      found.converged = true;
-      found.residual = last_step ? 0.0 : value;
-      found.cavitation = -cos(last_step ? at + step : at);
-      found.flow = flow_;
-      return found;
-    }
-    const bool newton = slope > 0 && std::fabs(step) < 0.5 * last;
-    last = newton ? std::fabs(step) : HUGE_VAL;
-    if (newton && at + step > least && at + step < most)
-      at += step;
-    else  // near the trailing edge all is steep
-      at = most < high ? 0.5 * (least + most) : at + 0.25 * (most - at);
+    if (!newton.take(value, slope, precision)) continue;
+    if (newton.by() != 0) move(at, newton.by());
+    found.converged = true;
+    found.residual = newton.residual();
+    found.cavitation = -cos(at + newton.by());
+    found.flow = flow_;
+    return found;
   }
   return search(pressure, s, r, {begin, warm ? 0.003 * width : 0.15 * width, low, high}, tolerance,
                 precision, found.marches);

@@ -18,6 +18,8 @@
 // and its last, small step is taken by these rates, without a march.
 #pragma once
 
+#include <cmath>
+
 #include "numeric/memory.hpp"
 
 namespace railpatch {
@@ -35,6 +37,27 @@ struct strip_pressure {
 struct elliptic_strip final : strip_pressure {
   double at(double cosine, double sine, double &slope) const override;
   double peak() const override;
+};
+
+// The search for theta of X_c by Newton's steps, while they stay within its bracket, and shrink.
+class end_search {
+ public:
+  static constexpr int most_steps = 12;
+  end_search() = default;
+  // begin: where, or 0 for anywhere; low: least, where the pressure is greatest
+  end_search(double begin, double low);
+  double at() const { return at_; }
+  // Takes P at the leading edge and its rate, or 0 where there is none. Whether X_c is found, to
+  // `precision` of P and itself: farther `by`, which the march's rates are to take.
+  bool take(double value, double slope, double precision);
+  double by() const { return by_; }
+  double residual() const { return residual_; }
+  // a march's, of d, before that last step, which squares it
+  static double tolerance_of_distance(double precision);
+
+ private:
+  double at_ = 0, least_ = 0, most_ = 0, high_ = 0, last_ = HUGE_VAL;
+  double by_ = 0, residual_ = 0;
 };
 
 struct strip_solution {
@@ -81,6 +104,9 @@ class strip_solver {
   aligned_buffer<double> bell_, tail_;              // phi and 1 - Phi at steps of d
 };
 
+// of the flow factor, isotropic: of ln 9 and 1.47476, as the source's equations have them
+constexpr double barred_film = 0.27774310294369754, flow_quadratic = 0.37738917651535963,
+                 flow_cubic = 1.0019;
 double flow_factor(double t);
 
 }  // namespace railpatch

@@ -9,7 +9,8 @@ namespace railpatch {
 
 fluid_stage::fluid_stage(patch_workspace &shared, int max_nx, int max_ny) : shared_(shared) {
   if (shared.scene.has_ehl()) ehl_.emplace(max_nx, max_ny);
-  if (shared.scene.has_strips()) strips_.emplace(shared.scene.normal == RP_NORMAL_HERTZ);
+  if (shared.scene.has_strips())
+    strips_.emplace(shared.scene.normal == RP_NORMAL_HERTZ, max_nx, max_ny);
 }
 
 fluid_outcome fluid_stage::solve(const patch_problem &problem, pressure_outcome &pressure,

@@ -20,61 +20,23 @@ constexpr double most_r = 0.55;
 constexpr double most_part = 1.0 - 1e-12;
 constexpr int steps_of_row = 64;
 
-// Pressure of a run of elements over its greatest: its square is straight between the elements, and
-// beyond the last one to the edge, where it would vanish going on as it does, within the element.
-class run_of_elements final : public strip_pressure {
- public:
-  run_of_elements(const double *first, int count, double dx, bool backwards)
-      : first_(first), count_(count), backwards_(backwards) {
-    for (int i = 0; i < count; ++i)
-      if (value(i) > value(most_)) most_ = i;
-    greatest_ = value(most_);
-    const auto edge = [&](int last, int before) {
-      if (count < 2) return 0.5;
-      const double fall = square(before) - square(last);
-      return fall > 0 ? std::clamp(square(last) / fall, 0.05, 1.0) : 1.0;
-    };
-    const double lead = edge(0, 1), trail = edge(count - 1, count - 2);
-    over_greatest_ = 1.0 / greatest_;
-    over_lead_ = 1.0 / lead;
-    over_trail_ = 1.0 / trail;
-    front_ = -lead;
-    half_ = 0.5 * (count - 1 + lead + trail);
-    half_length_ = half_ * dx;
-  }
-  double half_length() const { return half_length_; }
-  double greatest() const { return greatest_; }
-  // of an element
-  double theta(int i) const { return acos(std::clamp(1.0 - (i - front_) / half_, -1.0, 1.0)); }
-  double at(double cosine, double sine, double &slope) const override {
-    const double u = front_ + half_ * (1.0 - cosine), moves = half_ * sine;
-    const int i = u < 0 ? -1 : std::min(static_cast<int>(u), count_ - 1);
-    if (i >= 0 && i + 1 < count_) {
-      const double left = square(i), right = square(i + 1);
-      const double value = std::sqrt(left + (u - i) * (right - left)) * over_greatest_;
-      slope = 0.5 * moves * (right - left) * over_greatest_ * over_greatest_ / value;
-      return value;
-    }
-    const double way = i < 0 ? (u - front_) * over_lead_ : 1.0 - (u - i) * over_trail_;
-    const double all = i < 0 ? square(0) : square(i);
-    const double value = std::sqrt(all * std::clamp(way, 0.0, 1.0)) * over_greatest_;
-    const double rises = all * (i < 0 ? over_lead_ : -over_trail_);
-    slope = value > 0 ? 0.5 * moves * rises * over_greatest_ * over_greatest_ / value : 0.0;
-    return value;
-  }
-  double peak() const override { return theta(most_); }
+constexpr double precision = 1e-8;  // of the liquid's pressure and where it cavitates
 
- private:
-  // from the leading edge on
-  double value(int i) const { return first_[backwards_ ? count_ - 1 - i : i]; }
-  double square(int i) const { return value(i) * value(i); }
-
-  const double *first_;
-  int count_, most_ = 0;
-  bool backwards_;
-  double greatest_ = 0, front_ = 0, half_ = 0, half_length_ = 0;
-  double over_greatest_ = 0, over_lead_ = 0, over_trail_ = 0;
-};
+// The liquid's pressure in the elements of a run; node(k): P at even steps of theta from the
+// leading edge to `end`.
+template <class Node>
+void read_elements(const pressed_run &run, double end, int nodes, const Node &node,
+                   const double *pressure, double *fluid, int stride, double *thetas) {
+  const double over_step = (nodes - 1) / end;
+  run.thetas(thetas);
+  for (int i = 0; i < run.count; ++i) {
+    const double place = thetas[i] * over_step;
+    const int k = static_cast<int>(place);
+    if (k + 1 >= nodes) break;
+    const double here = node(k), mean = here + (place - k) * (node(k + 1) - here);
+    fluid[i * stride] = std::clamp(run.greatest * mean, 0.0, most_part * pressure[i * stride]);
+  }
+}
 
 }  // namespace
 
@@ -83,8 +45,13 @@ double strip_liquid::film(double asperities) const {
   return roughness * mean_film(distance_of(part));
 }
 
-fluid_strips::fluid_strips(bool elliptic) {
-  if (!elliptic) solver_.emplace(steps_of_row);
+fluid_strips::fluid_strips(bool elliptic, int max_nx, int max_ny) {
+  if (elliptic) return;
+  const auto longest = static_cast<size_t>(max_nx), all = static_cast<size_t>(max_ny);
+  rows_.emplace(by_rows{strip_lanes(steps_of_row), strip_solver(steps_of_row),
+                        aligned_buffer<element_run>((longest + 1) / 2 * all),
+                        aligned_buffer<double>((longest + 2) * strip_lanes::lanes),
+                        aligned_buffer<double>(longest)});
 }
 
 strip_outcome fluid_strips::of_ellipse(const hertz_contact &hertz, const strip_liquid &liquid) {
@@ -108,21 +75,10 @@ strip_outcome fluid_strips::solve(const grid &g, const double *pressure, const h
     rows.emplace(liquid.s(hertz.semi_axes[0], hertz.max_pressure));
   }
   double all = 0, left = 0, greatest = 0, beside = 0;
-  off_ = 0;
+  std::fill_n(fluid, g.count(), 0.0);
+  if (!ellipse) found.converged = add_rows(g, pressure, direction, liquid, fluid);
   for (int j = 0; j < g.ny; ++j) {
-    std::fill_n(fluid + j * g.nx, g.nx, 0.0);
-    if (ellipse) {
-      add_elliptic_row(g, j, pressure, hertz, direction, liquid, *rows, fluid);
-    } else {
-      for (int i = 0; i < g.nx; ++i) {
-        if (!(pressure[j * g.nx + i] > 0)) continue;
-        int last = i;
-        while (last + 1 < g.nx && pressure[j * g.nx + last + 1] > 0) ++last;
-        found.converged =
-            add_row(g, j, i, last, pressure, direction, liquid, fluid) && found.converged;
-        i = last;
-      }
-    }
+    if (ellipse) add_elliptic_row(g, j, pressure, hertz, direction, liquid, *rows, fluid);
     for (int at = j * g.nx; at < (j + 1) * g.nx; ++at) {
       all += pressure[at];
       left += pressure[at] - fluid[at];
@@ -158,28 +114,65 @@ void fluid_strips::add_elliptic_row(const grid &g, int j, const double *pressure
   }
 }
 
-// Elements first to last of a row.
-bool fluid_strips::add_row(const grid &g, int j, int first, int last, const double *pressure,
-                           int direction, const strip_liquid &liquid, double *fluid) {
-  const int count = last - first + 1;
-  // rolling towards +x the leading edge is there
-  const run_of_elements run(pressure + j * g.nx + first, count, g.dx, direction > 0);
-  const double unit = run.greatest();
-  const double number = liquid.s(run.half_length(), unit), r = std::min(liquid.r(unit), most_r);
-  const double elliptic = -cos(strip_table::at(number, r).end);
-  const strip_solution found = solver_->solve(run, number, r, elliptic + off_, 1e-8);
-  off_ = found.cavitation - elliptic;
-  const double *theta = solver_->theta(), *p = solver_->liquid();
-  const double step = theta[1];
-  for (int i = 0; i < count; ++i) {
-    const double place = run.theta(i) / step;
-    const int k = static_cast<int>(place);
-    if (k + 1 >= solver_->nodes()) break;
-    const double mean = p[k] + (place - k) * (p[k + 1] - p[k]);
-    const int at = j * g.nx + (direction > 0 ? last - i : first + i);
-    fluid[at] = std::clamp(unit * mean, 0.0, most_part * pressure[at]);
+strip_solution fluid_strips::solve_one(const strip_lanes::strip &strip) {
+  return rows_->one.solve(run_pressure(strip.run), strip.s, strip.r, -cos(strip.start), precision);
+}
+
+// Each row of elements that touch, or each part of it. A lane has rows that follow each other, and
+// begins with the table's X_c, moved as in the row before.
+bool fluid_strips::add_rows(const grid &g, const double *pressure, int direction,
+                            const strip_liquid &liquid, double *fluid) {
+  constexpr int lanes = strip_lanes::lanes;
+  element_run *runs = rows_->runs.data();
+  int count = 0;
+  for (int j = 0; j < g.ny; ++j)
+    for (int i = 0; i < g.nx; ++i) {
+      if (!(pressure[j * g.nx + i] > 0)) continue;
+      const int first = i;
+      while (i + 1 < g.nx && pressure[j * g.nx + i + 1] > 0) ++i;
+      runs[count++] = {j, first, i};
+    }
+  const int rounds = (count + lanes - 1) / lanes;
+  double off[lanes] = {}, *thetas = rows_->thetas.data();
+  bool converged = true;
+  for (int round = 0; round < rounds; ++round) {
+    strip_lanes::strip strips[lanes];
+    double elliptic[lanes];
+    int used = 0;
+    for (int at = round; used < lanes && at < count; at += rounds, ++used) {
+      strip_lanes::strip &strip = strips[used];
+      double *squares = rows_->squares.data() + static_cast<size_t>(used * (g.nx + 2));
+      // rolling towards +x the leading edge is there
+      strip.run = pressed_run::of(pressure + runs[at].row * g.nx + runs[at].first,
+                                  runs[at].last - runs[at].first + 1, direction > 0, squares);
+      strip.s = liquid.s(strip.run.half * g.dx, strip.run.greatest);
+      strip.r = std::min(liquid.r(strip.run.greatest), most_r);
+      elliptic[used] = strip_table::end(strip.s, strip.r);
+      strip.start = std::clamp(elliptic[used] + off[used], 1e-3, pi);
+    }
+    rows_->lanes.solve(strips, used, precision);
+    for (int l = 0, at = round; l < used; at += rounds, ++l) {
+      const element_run &of = runs[at];
+      const int leading = of.row * g.nx + (direction > 0 ? of.last : of.first);
+      const double *p = pressure + leading;
+      double *found = fluid + leading;
+      const int stride = direction > 0 ? -1 : 1;
+      double end = rows_->lanes.end(l);
+      if (rows_->lanes.found(l).converged) {
+        const auto node = [&](int k) { return rows_->lanes.liquid(k, l); };
+        read_elements(strips[l].run, end, rows_->lanes.nodes(), node, p, found, stride, thetas);
+      } else {
+        const strip_solution alone = solve_one(strips[l]);
+        const strip_solver &one = rows_->one;
+        end = one.theta()[one.nodes() - 1];
+        const auto node = [&](int k) { return one.liquid()[k]; };
+        read_elements(strips[l].run, end, one.nodes(), node, p, found, stride, thetas);
+        converged = converged && alone.converged;
+      }
+      off[l] = end - elliptic[l];
+    }
   }
-  return found.converged;
+  return converged;
 }
 
 }  // namespace railpatch

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "fluid/strip_lanes.hpp"
 #include "fluid/strip_table.hpp"
 #include "fluid/wet_strip.hpp"
 #include "normal/hertz.hpp"
@@ -33,7 +34,7 @@ struct strip_outcome {
 class fluid_strips {
  public:
   // elliptic: from the table alone
-  explicit fluid_strips(bool elliptic);
+  fluid_strips(bool elliptic, int max_nx, int max_ny);
 
   // Without a grid: the whole ellipse.
   static strip_outcome of_ellipse(const hertz_contact &hertz, const strip_liquid &liquid);
@@ -41,18 +42,32 @@ class fluid_strips {
   // contact is no ellipse.
   strip_outcome solve(const grid &g, const double *pressure, const hertz_contact &hertz,
                       int direction, const strip_liquid &liquid, double *fluid);
-  size_t bytes() const { return solver_ ? sizeof(strip_solver) + solver_->bytes() : 0; }
+  size_t bytes() const { return rows_ ? sizeof(by_rows) + rows_->bytes() : 0; }
 
  private:
+  struct element_run {
+    int row, first, last;
+  };
+  // of contacts that are no ellipse
+  struct by_rows {
+    strip_lanes lanes;
+    strip_solver one;  // for what the lanes leave
+    aligned_buffer<element_run> runs;
+    aligned_buffer<double> squares;  // [lane][element]
+    aligned_buffer<double> thetas;   // of elements of a row
+    size_t bytes() const {
+      return lanes.bytes() + one.bytes() + runs.bytes() + squares.bytes() + thetas.bytes();
+    }
+  };
   static void add_elliptic_row(const grid &g, int j, const double *pressure,
                                const hertz_contact &hertz, int direction,
                                const strip_liquid &liquid, const strip_table::rows_of &rows,
                                double *fluid);
-  bool add_row(const grid &g, int j, int first, int last, const double *pressure, int direction,
-               const strip_liquid &liquid, double *fluid);
+  bool add_rows(const grid &g, const double *pressure, int direction, const strip_liquid &liquid,
+                double *fluid);
+  strip_solution solve_one(const strip_lanes::strip &strip);
 
-  std::optional<strip_solver> solver_;
-  double off_ = 0;  // X_c of the last row less that of an elliptic pressure
+  std::optional<by_rows> rows_;
 };
 
 }  // namespace railpatch

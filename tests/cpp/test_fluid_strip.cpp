@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+#include "fluid/asperities.hpp"
+#include "fluid/strip_lanes.hpp"
 #include "fluid/strip_table.hpp"
 #include "patch/fluid_strips.hpp"
 
@@ -134,7 +136,7 @@ TEST(FluidStrip, RowsOfElements) {
           std::sqrt(std::max(inside_ellipse(hertz.semi_axes, g.x(i), g.y(j)), 0.0));
   for (double speed : {2.0, 20.0, 72.0}) {
     const strip_liquid liquid{1e-3, speed, 0.5e-6, 2.8e9};
-    fluid_strips strips(false);
+    fluid_strips strips(false, g.nx, g.ny);
     const strip_outcome a = strips.solve(g, p.data(), hertz, 1, liquid, table.data());
     const strip_outcome b = strips.solve(g, p.data(), hertz_contact{}, 1, liquid, direct.data());
     EXPECT_TRUE(b.converged);
@@ -174,6 +176,117 @@ TEST(FluidStrip, NewtonsStepsFindTheSame) {
           EXPECT_NEAR(warm.liquid()[k], cold.liquid()[k], 1e-8) << number << " " << r << " " << k;
       }
     }
+}
+
+// Runs of elements with pressures as rough as those of worn surfaces, from which lanes take rows.
+struct drawn_runs {
+  std::vector<std::vector<double>> pressures, squares;
+  std::vector<strip_lanes::strip> strips;
+
+  drawn_runs(int count, unsigned seed) : pressures(static_cast<size_t>(count)), squares(pressures) {
+    std::mt19937 draw(seed);
+    std::uniform_real_distribution<double> flat(0, 1);
+    for (size_t n = 0; n < pressures.size(); ++n) {
+      const int elements = 1 + static_cast<int>(40 * flat(draw));
+      const double skew = 0.3 * (flat(draw) - 0.5), rough = 0.1 * flat(draw);
+      for (int i = 0; i < elements; ++i) {
+        const double x = (2 * i + 1.0) / elements - 1;
+        pressures[n].push_back(1e9 * std::sqrt(1 - x * x) * (1 + skew * x) *
+                               (1 + rough * (flat(draw) - 0.5)));
+      }
+      squares[n].resize(static_cast<size_t>(elements + 2));
+      strip_lanes::strip strip;
+      strip.run = pressed_run::of(pressures[n].data(), elements, n % 2 == 1, squares[n].data());
+      strip.s = std::pow(10.0, -4 + 6 * flat(draw));
+      strip.r = 0.02 + 0.5 * flat(draw);
+      strip.start = strip_table::end(strip.s, strip.r);
+      strips.push_back(strip);
+    }
+  }
+};
+
+// The march of several rows at once is that of one; what it leaves is little, and it says so.
+TEST(FluidStrip, LanesAreTheSolverOfOne) {
+  constexpr int lanes = strip_lanes::lanes;
+  const drawn_runs drawn(30 * lanes, 3);
+  strip_lanes several(64);
+  strip_solver one(64);
+  int left = 0;
+  for (size_t first = 0; first < drawn.strips.size(); first += lanes) {
+    several.solve(&drawn.strips[first], lanes, 1e-8);
+    for (int l = 0; l < lanes; ++l) {
+      const strip_lanes::strip &strip = drawn.strips[first + static_cast<size_t>(l)];
+      const strip_solution alone =
+          one.solve(run_pressure(strip.run), strip.s, strip.r, -std::cos(strip.start), 1e-12);
+      ASSERT_TRUE(alone.converged);
+      if (!several.found(l).converged) {
+        ++left;
+        continue;
+      }
+      const auto told = [&] { return ::testing::Message() << strip.s << " " << strip.r; };
+      // pressures are what is asked for; they fall to nothing at X_c so gently that it is not known
+      // as well
+      for (int k = 0; k < one.nodes(); ++k)
+        EXPECT_NEAR(several.liquid(k, l), one.liquid()[k], 2e-8) << told() << " " << k;
+    }
+  }
+  EXPECT_LT(left, 12);  // of 240
+}
+
+// t - K(t)/S dP/dX is one number along each row of the lanes, by differences over two steps.
+TEST(FluidStrip, FlowIsTheSameAllAlongInLanes) {
+  constexpr int lanes = strip_lanes::lanes, elements = 60;
+  std::vector<double> pressures, squares(elements + 2);
+  for (int i = 0; i < elements; ++i) {
+    const double x = (2 * i + 1.0) / elements - 1;
+    pressures.push_back(1e9 * std::sqrt(1 - x * x));
+  }
+  strip_lanes::strip strips[lanes];
+  for (int l = 0; l < lanes; ++l) {
+    strips[l].run = pressed_run::of(pressures.data(), elements, false, squares.data());
+    strips[l].s = 0.01 * std::pow(4.0, l);
+    strips[l].r = 1 / 2.8;
+    strips[l].start = strip_table::end(strips[l].s, strips[l].r);
+  }
+  strip_lanes solver(4096);
+  solver.solve(strips, lanes, 1e-12);
+  for (int l = 0; l < lanes; ++l) {
+    ASSERT_TRUE(solver.found(l).converged) << l;
+    const double step = solver.end(l) / (solver.nodes() - 1), r = strips[l].r;
+    double worst = 0;
+    for (int k = solver.nodes() / 50; k + 1 < solver.nodes(); ++k) {
+      const double x = -std::cos((k + 1) * step), before = -std::cos((k - 1) * step);
+      const double rise = (solver.liquid(k + 1, l) - solver.liquid(k - 1, l)) / (x - before);
+      const double film = solver.film(k, l);
+      const double flow = film - flow_factor(film) / strips[l].s * rise;
+      worst = std::max(worst, std::fabs(flow - solver.found(l).flow));
+      // and the film is that of what asperities bear
+      double slope;
+      const double nominal =
+          run_pressure(strips[l].run).at(std::cos(k * step), std::sin(k * step), slope);
+      EXPECT_NEAR(film, mean_film(distance_of(r * (nominal - solver.liquid(k, l)))), 1e-7);
+    }
+    EXPECT_LT(worst, 1e-3 * solver.found(l).flow) << l;
+  }
+}
+
+// A row's bits do not depend on what is solved beside it.
+TEST(FluidStrip, LanesDoNotMeet) {
+  constexpr int lanes = strip_lanes::lanes;
+  const drawn_runs drawn(8 * lanes, 4);
+  strip_lanes several(64), alone(64);
+  for (size_t first = 0; first < drawn.strips.size(); first += lanes) {
+    several.solve(&drawn.strips[first], lanes, 1e-8);
+    for (int l = 0; l < lanes; ++l) {
+      alone.solve(&drawn.strips[first + static_cast<size_t>(l)], 1, 1e-8);
+      ASSERT_EQ(alone.found(0).converged, several.found(l).converged);
+      if (!alone.found(0).converged) continue;
+      EXPECT_EQ(alone.end(0), several.end(l));
+      EXPECT_EQ(alone.found(0).marches, several.found(l).marches);
+      for (int k = 0; k < alone.nodes(); ++k)
+        ASSERT_EQ(alone.liquid(k, 0), several.liquid(k, l)) << l << " " << k;
+    }
+  }
 }
 
 TEST(FluidStrip, Extremes) {
