@@ -14,6 +14,8 @@ namespace {
 
 constexpr int krylov = 120;
 constexpr double linear_tolerance = 1e-4;
+// of the unit of films: less that arrives would be lost in the rounding of what passes
+constexpr double least_supply = 1e-6;
 
 size_t below_of(int nx, int ny) {
   return ny > 1 ? 4 * static_cast<size_t>(ny) + 2 : 2 * static_cast<size_t>(nx);
@@ -68,6 +70,19 @@ ehl_solver::ehl_solver(int max_nx, int max_ny)
   for (auto *vector : {&right_, &step_, &column_}) *vector = aligned_buffer<double>(2 * n + 1);
 }
 
+double line_film(const ehl_liquid &liquid, double modulus, double half_length, double pressure,
+                 double speed) {
+  const double radius = 0.5 * modulus * half_length / pressure;
+  const double u = liquid.viscosity * speed / (modulus * radius), root = std::sqrt(u);
+  const double m = std::numbers::pi * pressure * half_length / 2 / (2 * modulus * radius) / root;
+  const double l = liquid.law == ehl_viscosity::constant
+                       ? 0.0
+                       : liquid.pressure_coefficient * 2 * modulus * std::sqrt(root);
+  const double soft = 2.05 * pow(m, -0.2);
+  const double hard = l > 0 ? 1.65 * pow(l, 0.75) * pow(m, -0.125) : 0.0;
+  return std::max(soft, hard) * root * radius;
+}
+
 // Scales, and a film of the right order, from the dry contact: its length along the flow in the
 // row of the greatest pressure, and the radius of a line contact with the same length and pressure.
 ehl_scales ehl_solver::scales_of(influence &a, const ehl_problem &problem,
@@ -90,20 +105,8 @@ ehl_scales ehl_solver::scales_of(influence &a, const ehl_problem &problem,
   for (int i = 0; i < g.nx; ++i) length += p[row + static_cast<size_t>(i)] > 0 ? g.dx : 0;
   const elastic_constants &e = a.bodies().elastic;
   const double modulus = e.shear_modulus / (1 - e.poisson_ratio);  // E*
-  const double half = std::max(0.5 * length, g.dx),
-               radius = 0.5 * modulus * half / std::max(p0, 1.0);
-  const double speed = std::max(problem.speed, 1e-9);
-  const double u = problem.liquid.viscosity * speed / (modulus * radius);
-  // isoviscous and piezoviscous line contacts (docs/ehl.md), the thicker one
-  const double w = std::numbers::pi * p0 * half / 2 / (2 * modulus * radius);
-  const double root = std::sqrt(u);
-  const double m = w / root,
-               l = problem.liquid.law == ehl_viscosity::constant
-                       ? 0.0
-                       : problem.liquid.pressure_coefficient * 2 * modulus * std::sqrt(root);
-  const double soft = 2.05 * pow(m, -0.2);
-  const double hard = l > 0 ? 1.65 * pow(l, 0.75) * pow(m, -0.125) : 0.0;
-  const double film = std::max(soft, hard) * root * radius;
+  const double film = line_film(problem.liquid, modulus, std::max(0.5 * length, g.dx),
+                                std::max(p0, 1.0), std::max(problem.speed, 1e-9));
   film_ = film;
   const double unit = std::max(film, 0.3 * problem.roughness.height);
   const double fastest =
@@ -271,9 +274,12 @@ double ehl_solver::greatest_residual() const {
   return std::isfinite(worst) ? worst : std::numeric_limits<double>::infinity();
 }
 
-ehl_result ehl_solver::solve(influence &a, const ehl_problem &problem, bool warm,
+ehl_result ehl_solver::solve(influence &a, const ehl_problem &given, bool warm,
                              const ehl_options &options) {
-  scales_ = scales_of(a, problem, options);
+  scales_ = scales_of(a, given, options);
+  ehl_problem problem = given;
+  if (given.inlet_film > 0)
+    problem.inlet_film = std::max(given.inlet_film, least_supply * scales_.gap);
   const bool by_supply = problem.inlet_film > 0 && problem.area.ny == 1 && !(problem.time_step > 0);
   if (!by_supply) {
     const ehl_result found = solve_from(a, problem, warm, options);

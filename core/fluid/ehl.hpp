@@ -41,6 +41,12 @@ struct ehl_result {
 double greatest_rise(const grid &g, int direction, double pressure_coefficient,
                      const double *pressure);
 
+// A film (m) of the right order: of isoviscous and piezoviscous line contacts (docs/ehl.md), the
+// thicker one. modulus: E*; half_length (m) and pressure (Pa) of the dry contact, along the flow
+// and at most.
+double line_film(const ehl_liquid &liquid, double modulus, double half_length, double pressure,
+                 double speed);
+
 class ehl_solver {
  public:
   ehl_solver(int max_nx, int max_ny);

@@ -54,6 +54,7 @@ class ehl_system {
   // Takes over a problem; `a` has its grid set.
   void set(const ehl_problem &problem, const ehl_scales &scales);
   size_t count() const { return count_; }
+  int rows() const { return ny_; }  // of the grid
   // Element of the grid at (s, j).
   size_t on_grid(int s, int j) const {
     const int i = problem_.direction > 0 ? problem_.area.nx - 1 - s : s;

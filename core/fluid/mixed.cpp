@@ -142,9 +142,7 @@ film_outcome solve_wet(const fluid_scene &scene, const fluid_supply &supply, wet
   film_outcome found;
   found.temperature = scene.liquid.liquid == RP_LIQUID_GIVEN ? nan : supply.temperature;
   const double boundary = scene.own_boundary ? scene.boundary_friction : c.dry_friction;
-  double asperity = boundary;
-  if (std::isfinite(in.layer))
-    asperity += (c.dry_friction - boundary) * exp(-in.layer / scene.roughness);
+  const double asperity = asperity_friction(boundary, c.dry_friction, in.layer, scene.roughness);
   found.friction = asperity;
   if (!(v > 0) || !(c.film.force > 0) || !(in.layer > 0)) return found;
   const elliptic_film film(c.film);
@@ -165,6 +163,10 @@ film_outcome solve_wet(const fluid_scene &scene, const fluid_supply &supply, wet
 }
 
 }  // namespace
+
+double asperity_friction(double boundary, double dry, double layer, double roughness) {
+  return std::isfinite(layer) ? boundary + (dry - boundary) * exp(-layer / roughness) : boundary;
+}
 
 film_outcome solve_film(const fluid_scene &scene, const fluid_supply &supply, wet_contact c) {
   film_outcome found = solve_wet(scene, supply, c);

@@ -85,6 +85,9 @@ struct film_outcome {
   double shear = 0;           // -, the part of it that the liquid's own shear has
 };
 
+// -, of asperities: where a layer (m) is all that arrives, dry where no liquid reaches them.
+double asperity_friction(double boundary, double dry, double layer, double roughness);
+
 film_outcome solve_film(const fluid_scene &scene, const fluid_supply &supply, wet_contact contact);
 
 // Rates of what is found, by those of the contact, but for the liquid's own, and of the supply: the

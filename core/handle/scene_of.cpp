@@ -15,7 +15,7 @@ namespace {
 
 // of grids of unlike bodies, over Hertz's contact
 constexpr double most_reach = 2.5;
-constexpr double wet_reach = 1.6;
+constexpr double wet_reach = 1.6, farthest_inlet = 4.0;
 
 slip_velocity_law slip_law_of(const rp_config &c) {
   slip_velocity_law law;
@@ -215,6 +215,7 @@ grid_rules grid_rules_of(const rp_config &c, const patch_scene &scene) {
     rules.most[k] = c.max_elements[k];
   }
   rules.reach = reach_of(c, scene);
+  if (scene.has_ehl()) rules.farthest = farthest_inlet;
   rules.corrected = c.normal == RP_NORMAL_KIK_PIOTROWSKI_CORRECTED;
   rules.interpenetrates = (rules.corrected || c.normal == RP_NORMAL_KIK_PIOTROWSKI) &&
                           c.geometry != RP_UNDEFORMED_DISTANCE;
@@ -231,14 +232,16 @@ grid_size largest_of_patch(const rp_config &c, const patch_scene &scene, const g
   const hertz_contact unit = ellipse ? hertz_from_ellipse(c.semi_axes, 1.0, 1.0) : hertz_contact{};
   const auto cells = [&](int k) {
     if (k == 1 && c.geometry == RP_LINE_CONTACT) return 1;
-    if (!rules.sized) return rules.with_margin(c.elements[k]) + 2;
+    const auto ahead = [&](int n) { return k == 0 ? rules.ahead_of(n, rules.farthest) : 0; };
+    if (!rules.sized) return rules.with_margin(c.elements[k]) + 2 + ahead(c.elements[k]);
     // where nothing says more a square of 128; one row is no burden, and as long as may be asked
     const bool line = c.geometry == RP_LINE_CONTACT;
     int needed = line ? static_cast<int>(config_range::max_elements.high) : 130;
     if (ellipse) {
       const double across = 2.0 * rules.relative_size(unit, k) * c.semi_axes[k];
       const double wanted = std::min(2000.0, std::ceil(across / c.element_size[k]));
-      needed = rules.with_margin(static_cast<int>(wanted)) + 3;
+      const int n = static_cast<int>(wanted);
+      needed = rules.with_margin(n) + 3 + ahead(n);
     }
     if (rules.most[k] == 0) return needed;
     // of an ellipse that stays as it is, but steps that remember have the whole grid
@@ -275,7 +278,7 @@ void set_transforms(const rp_config &c, grid_size largest, scene &made) {
   if (!made.patch.needs_influence()) return;
   const int n[2] = {2 * largest.nx + 1, largest.ny > 1 ? 2 * largest.ny - 1 : 1};
   const bool by_load = c.geometry == RP_CURVATURES || c.geometry == RP_LINE_CONTACT;
-  const bool fixed = made.single && !(by_load && c.element_size[0] > 0);
+  const bool fixed = made.single && !(by_load && c.element_size[0] > 0) && !made.patch.has_ehl();
   for (int k = 0; k < 2; ++k)
     made.transforms[k] = !fixed     ? ladder(std::min(n[k], 16), n[k])
                          : n[k] > 1 ? std::vector<int>{smooth_size(n[k])}

@@ -32,6 +32,7 @@ constexpr double hardening_range[2] = {1e7, 1e17};  // Pa/m, either way
 constexpr double longest_hardening = 0.1;           // m, of plastic displacement in a table
 constexpr int least_elements = 8;
 constexpr double coarse_rise = 0.1;  // of a film's pressure in an element: docs/ehl.md
+constexpr double least_entry = 10;   // gap where the liquid enters over the film: docs/ehl.md
 
 uint32_t bit(rp_warning warning, bool given) {
   return given ? uint32_t{1} << warning : uint32_t{0};
@@ -125,6 +126,16 @@ bool doubtful_supply(double rate, double film) {
   return outside(rate, fluid_water_rate_range) || outside(film, fluid_oil_film_range);
 }
 
+bool doubtful_liquid(const rp_config &config) {
+  if (config.fluid_model == RP_FLUID_NONE || config.fluid_model == RP_FLUID_REGIMES) return false;
+  bool doubtful = outside(config.fluid_roughness, fluid_roughness_range) ||
+                  outside(config.fluid_viscosity, fluid_viscosity_range);
+  for (int k = 0; k < config.fluid_viscosity_points; ++k)
+    doubtful = doubtful || outside(config.fluid_viscosity_value[k], fluid_viscosity_range);
+  const double stress = config.fluid_eyring_stress;
+  return doubtful || (stress > 0 && outside(stress, fluid_eyring_stress_range));
+}
+
 // Of what a step gives in place of the case.
 uint32_t warnings_of_physics(const rp_config &config, const rp_input &in) {
   const bool fluid = config.fluid_model != RP_FLUID_NONE;
@@ -213,7 +224,8 @@ uint32_t warnings_of_case(const rp_config &config) {
          bit(RP_WARNING_SUPPLY,
              config.fluid_model != RP_FLUID_NONE &&
                  doubtful_supply(config.fluid_water_rate, config.fluid_oil_film)) |
-         bit(RP_WARNING_SLIP_LAW, doubtful_slip_law(config));
+         bit(RP_WARNING_SLIP_LAW, doubtful_slip_law(config)) |
+         bit(RP_WARNING_LIQUID, doubtful_liquid(config));
 }
 
 uint32_t warnings_of_film(const rp_config &config, const patch_memory *solution,
@@ -222,7 +234,8 @@ uint32_t warnings_of_film(const rp_config &config, const patch_memory *solution,
   const double rise =
       greatest_rise(solution->g, result.side[RP_RIGHT].patch[0].direction,
                     config.fluid_pressure_coefficient, solution->fluid_pressure.data());
-  return bit(RP_WARNING_FILM_GRID, rise > coarse_rise);
+  return bit(RP_WARNING_FILM_GRID, rise > coarse_rise) |
+         bit(RP_WARNING_FILM_REACH, solution->film_entry < least_entry);
 }
 
 void report_warnings(const rp_config &config, uint32_t of_case, const rp_input &input,

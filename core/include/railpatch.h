@@ -196,7 +196,12 @@ enum {
     "of a liquid water_rate is above 1e-3 m^3/s (1 l/s), or oil_film above 5e-4 m")                \
   X(RP_WARNING_SLIP_LAW, 27,                                                                       \
     "friction: halving_speed, or ln(2)/polach_b, is outside 1e-5 to 100 m/s, or memory_distance "  \
-    "above 20 mm")
+    "above 20 mm")                                                                                 \
+  X(RP_WARNING_FILM_REACH, 28,                                                                     \
+    "the liquid's film begins before the grid, which must reach farther ahead of the contact")     \
+  X(RP_WARNING_LIQUID, 29,                                                                         \
+    "of a liquid roughness is above 5e-5 m, a viscosity outside 1e-4 to 100 Pa s, or "             \
+    "eyring_stress outside 1e5 to 1e9 Pa")
 
 #define RP_ENUM_ENTRY(name, value, text) name = value,
 typedef enum rp_error { RP_ERRORS(RP_ENUM_ENTRY) } rp_error;

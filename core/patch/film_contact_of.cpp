@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fluid/ehl.hpp"
 #include "numeric/elementary.hpp"
 #include "patch/patch_derivative.hpp"
 
@@ -13,6 +14,7 @@ using std::numbers::pi;
 
 namespace {
 
+constexpr double full_inlet = 20;         // gap over film
 constexpr double usual_temperature = 20;  // degrees C, where nothing says it
 
 // Moments of a pressure about the origin along x and y.
@@ -118,6 +120,36 @@ hertz_contact wet_ellipse(const patch_scene &scene, const patch_problem &problem
   double axes[2];
   axes_of(problem.g, moments_of(problem.g, pressure), axes);
   return hertz_from_ellipse(axes, scene.modulus(), force);
+}
+
+double inlet_reach(const patch_scene &scene, const hertz_contact &hertz, double speed) {
+  const double a = hertz.semi_axes[0];
+  if (!(speed > 0) || !(hertz.normal_force > 0) || !(a > 0)) return 1;
+  const fluid_scene &fluid = *scene.fluid;
+  const double viscosity = fluid.liquid.at(supplied_temperature(scene)).value;
+  const double along = 0.5 / hertz.curvatures[0], modulus = 2.0 * scene.modulus();
+  double film;
+  if (hertz.curvatures[1] > 0) {
+    const film_contact contact{
+        {along, 0.5 / hertz.curvatures[1]}, modulus, hertz.normal_force, speed, viscosity,
+        fluid.pressure_coefficient};
+    film = elliptic_film(contact).at().thickness;
+  } else {
+    const ehl_liquid liquid{viscosity, fluid.pressure_coefficient, ehl_viscosity::roelands, false};
+    film = line_film(liquid, scene.modulus(), a, hertz.max_pressure, speed);
+  }
+  const double width = hertz.semi_axes[1] > 0 ? 2.0 * hertz.semi_axes[1] : scene.line_width;
+  if (scene.supply.layer >= 0) film = std::min(film, scene.supply.layer);
+  if (scene.supply.water_rate >= 0)
+    film = std::min(film, scene.supply.water_rate / (speed * width));
+  // of a cylinder, over a^2/R: (m sqrt(m^2 - 1) - acosh m)/2, which rises from m = 1 on
+  const double gap = full_inlet * film * along / (a * a);
+  double low = 1, high = 2.0 + std::sqrt(2.0 * gap);
+  for (int k = 0; k < 40; ++k) {
+    const double m = 0.5 * (low + high), root = std::sqrt(m * m - 1.0);
+    (0.5 * (m * root - log(m + root)) < gap ? low : high) = m;
+  }
+  return high;
 }
 
 double supplied_temperature(const patch_scene &scene) {

@@ -16,6 +16,11 @@ struct patch_variation;
 hertz_contact wet_ellipse(const patch_scene &scene, const patch_problem &problem,
                           const double *pressure, double force);
 
+// Over the semi-axis along rolling: how far ahead of the middle a grid must reach, that the film
+// has its inlet on it. From there on Hertz's gap is `full_inlet` times the film, so that what
+// stays outside costs the film 1 % or so (measured: docs/ehl.md).
+double inlet_reach(const patch_scene &scene, const hertz_contact &hertz, double speed);
+
 double supplied_temperature(const patch_scene &scene);  // degrees C, before the contact
 
 wet_contact film_contact_of(const patch_scene &scene, const patch_problem &problem,

@@ -14,16 +14,18 @@ constexpr double tolerance = 1e-9;
 constexpr int most_iterations = 100;
 // of the greatest pressure: less is no contact for the tangential problem
 constexpr double least_part = 1e-6;
+constexpr double least_layer = 1e-30;  // m
+// layers of less than so much of the roughness bear nothing, at whatever speed: then one is taken
+// at which the equations are well scaled
+constexpr double least_wetting = 1e-6, dry_speed = 100, dry_viscosity = 1e-3;  // -, m/s, Pa s
 
 // m, of liquid before the contact: on the surfaces, or spread over the width of the dry contact;
-// 0: plenty, as the solver has it
+// infinite: plenty
 double layer_of(const fluid_supply &supply, double speed, double width) {
-  double layer = 0;
+  double layer = HUGE_VAL;
   if (supply.layer >= 0) layer = supply.layer;
-  if (supply.water_rate >= 0 && speed > 0 && width > 0) {
-    const double spread = supply.water_rate / (speed * width);
-    layer = layer > 0 ? std::min(layer, spread) : spread;
-  }
+  if (supply.water_rate >= 0 && speed > 0 && width > 0)
+    layer = std::min(layer, supply.water_rate / (speed * width));
   return layer;
 }
 
@@ -85,6 +87,7 @@ struct film_shear {
 
 // All liquid is pressed out: the dry pressure stays.
 fluid_outcome stand_still(const grid &g, patch_memory &memory, const fluid_outcome &found) {
+  memory.film_entry = HUGE_VAL;
   for (auto *field : {&memory.fluid_pressure, &memory.fluid_film, &memory.fluid_shear})
     if (field->size()) std::fill_n(field->data(), g.count(), 0.0);
   return found;
@@ -97,11 +100,15 @@ fluid_outcome fluid_ehl::solve(const patch_problem &problem, const patch_scene &
                                pressure_outcome &pressure) {
   const fluid_scene &fluid = *scene.fluid;
   const grid &g = problem.g;
-  const double boundary = fluid.own_boundary ? fluid.boundary_friction : scene.friction_coefficient;
+  const double dry = scene.friction_coefficient;
+  const double layer =
+      layer_of(scene.supply, problem.rolling_speed, width_of(g, memory.pressure.data()));
+  boundary_ = asperity_friction(fluid.own_boundary ? fluid.boundary_friction : dry, dry, layer,
+                                fluid.roughness);
   fluid_outcome out;
   out.found = true;
   out.temperature = fluid.liquid.liquid == RP_LIQUID_GIVEN ? nan : temperature;
-  out.friction = boundary;
+  out.friction = boundary_;
   out.shear_part = 0;
   if (!(problem.rolling_speed > 0)) return stand_still(g, memory, out);
   ehl_problem lubricated;
@@ -116,18 +123,23 @@ fluid_outcome fluid_ehl::solve(const patch_problem &problem, const patch_scene &
       fluid.liquid.at(temperature).value, fluid.pressure_coefficient,
       fluid.pressure_coefficient > 0 ? ehl_viscosity::roelands : ehl_viscosity::constant, false};
   lubricated.roughness = {fluid.roughness, fluid.hardness};
-  lubricated.inlet_film =
-      layer_of(scene.supply, lubricated.speed, width_of(g, memory.pressure.data()));
+  if (layer < least_wetting * fluid.roughness) {
+    lubricated.speed = dry_speed;
+    lubricated.liquid = {dry_viscosity, 0, ehl_viscosity::constant, false};
+  }
+  // none at all is not plenty, which 0 is for the solver
+  if (std::isfinite(layer)) lubricated.inlet_film = std::max(layer, least_layer);
   const ehl_result found =
       solver_.solve(a, lubricated, false, {tolerance, most_iterations, scene.ask});
   out.converged = found.converged;
   out.film_thickness = take_over(problem, lubricated, memory, pressure);
+  memory.film_entry = entry() / out.film_thickness;
   pressure.normal_force = found.normal_force;
   pressure.approach = found.approach;
   pressure.residual = found.residual;
   pressure.iterations += found.iterations;
   out.asperity_share = 1 - found.fluid_force / found.normal_force;
-  out.friction = boundary * out.asperity_share;
+  out.friction = boundary_ * out.asperity_share;
   if (fluid.eyring_stress > 0) {
     const double shear =
         add_shear(problem, scene, lubricated, temperature, memory) / found.normal_force;
@@ -166,6 +178,18 @@ double fluid_ehl::take_over(const patch_problem &problem, const ehl_problem &lub
   pressure.elastic_energy = energy;
   pressure.exterior = g.count() - touching;
   return middle;
+}
+
+// m, the mean film where the liquid enters the grid, in the row of the greatest pressure; infinite
+// where it enters torn, since its inlet then lies on the grid.
+double fluid_ehl::entry() const {
+  const ehl_system &s = solver_.system();
+  const auto load = [&](size_t k) { return s.pressure[k] + s.asperity[k]; };
+  size_t top = 0;
+  for (size_t k = 0; k < s.count(); ++k)
+    if (load(k) > load(top)) top = k;
+  const size_t first = top % static_cast<size_t>(s.rows());
+  return s.empty[first] > least_part ? HUGE_VAL : s.gap[first];
 }
 
 // Returns its sum, N.

@@ -27,15 +27,18 @@ class fluid_ehl {
   // film and shear, and what the pressure stage had found of the dry contact.
   fluid_outcome solve(const patch_problem &problem, const patch_scene &scene, double temperature,
                       influence &a, patch_memory &memory, pressure_outcome &pressure);
+  double boundary() const { return boundary_; }  // -, of asperities, of the last solve
   size_t bytes() const { return solver_.bytes(); }
 
  private:
+  double entry() const;
   double take_over(const patch_problem &problem, const ehl_problem &lubricated,
                    patch_memory &memory, pressure_outcome &pressure);
   double add_shear(const patch_problem &problem, const patch_scene &scene,
                    const ehl_problem &lubricated, double temperature, patch_memory &memory) const;
 
   ehl_solver solver_;
+  double boundary_ = 0;
 };
 
 }  // namespace railpatch

@@ -72,9 +72,7 @@ fluid_outcome fluid_stage::solve_ehl(double temperature, const patch_problem &pr
   if (follows_heat() && !std::isnan(now_)) temperature = now_;
   const fluid_outcome found =
       ehl_->solve(problem, scene, temperature, *shared_.influence, memory, pressure);
-  const double boundary =
-      scene.fluid->own_boundary ? scene.fluid->boundary_friction : scene.friction_coefficient;
-  scene.wet_friction = scene.full_on_grid() ? boundary : found.friction;
+  scene.wet_friction = scene.full_on_grid() ? ehl_->boundary() : found.friction;
   return found;
 }
 

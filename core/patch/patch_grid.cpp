@@ -10,7 +10,7 @@ namespace railpatch {
 
 namespace {
 
-constexpr int most_elements = 1000;  // of grids of unlike bodies
+constexpr int most_elements = 1000;  // of grids of unlike bodies, and to add ahead of any
 
 }  // namespace
 
@@ -18,6 +18,11 @@ int grid_rules::with_margin(int n) const {
   if (reach == 1) return n;
   const int wanted = n + 2 * static_cast<int>(std::ceil(0.5 * (reach - 1.0) * n));
   return std::max(n, std::min(wanted, most_elements));
+}
+
+int grid_rules::ahead_of(int n, double wanted) const {
+  const double more = std::min(wanted, farthest) - reach;
+  return more > 0 ? std::min(static_cast<int>(std::ceil(0.5 * more * n)), most_elements) : 0;
 }
 
 // Kik-Piotrowski needs its contact, an ellipse with Hertz's axis ratio and the area

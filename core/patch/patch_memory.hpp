@@ -84,6 +84,8 @@ struct patch_memory {
     double friction = 0, shear = 0;
   } wet;  // with a liquid's film: what it formed on, the coefficient without factors and the
           // liquid's own part of it
+  // of elastohydrodynamic lubrication: gap where the liquid enters the grid over the film
+  double film_entry = HUGE_VAL;
   patch_history history;
   physics_part<heat_memory> heat;
   physics_part<conformal_rows> curved;

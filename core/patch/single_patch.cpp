@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "numeric/nan.hpp"
+#include "patch/film_contact_of.hpp"
 #include "patch/result_sums.hpp"
 
 namespace railpatch {
@@ -115,7 +116,7 @@ void single_patch::sum_up(const rp_result &value, rp_result &sum) {
 bool single_patch::pose(const rp_input &in, const patch_memory &m, patch_problem &problem) const {
   const patch_scene &scene = solver_.scene();
   problem.hertz = hertz_of(in);
-  if (!set_grid(m, problem) || !solver_.fits(problem.g)) return false;
+  if (!set_grid(in, m, problem) || !solver_.fits(problem.g)) return false;
   problem.force_given = setup_.force_given;
   problem.force = in.normal_force;
   problem.approach = in.approach;
@@ -148,7 +149,7 @@ hertz_contact single_patch::hertz_of(const rp_input &in) const {
 }
 
 // Grid over the ellipse's bounding box, centred, with one free element around it.
-grid single_patch::hertz_grid(const hertz_contact &hertz) const {
+grid single_patch::hertz_grid(const hertz_contact &hertz, const rp_input &in) const {
   grid g;
   if (!setup_.has_grid) return g;
   const grid_rules &rules = setup_.grid;
@@ -170,11 +171,23 @@ grid single_patch::hertz_grid(const hertz_contact &hertz) const {
   if (line) g.dy = setup_.width;
   g.x0 = -0.5 * (g.nx - 1) * g.dx;
   g.y0 = -0.5 * (g.ny - 1) * g.dy;
+  if (rules.farthest > 0) reach_ahead(hertz, in, g);
   return g;
 }
 
+// To where the film begins, as far as there is room for it.
+void single_patch::reach_ahead(const hertz_contact &hertz, const rp_input &in, grid &g) const {
+  const int across = static_cast<int>(std::ceil(2.0 * hertz.semi_axes[0] / g.dx - 1e-9));
+  const double wanted = inlet_reach(solver_.scene(), hertz, in.rolling_speed);
+  const int more = std::min(setup_.grid.ahead_of(across, wanted), setup_.largest.nx - g.nx);
+  if (more <= 0) return;
+  g.nx += more;
+  if (in.direction < 0) g.x0 -= more * g.dx;
+}
+
 // The grid of a step. Returns whether it covers what is drawn on it.
-bool single_patch::set_grid(const patch_memory &m, patch_problem &problem) const {
+bool single_patch::set_grid(const rp_input &in, const patch_memory &m,
+                            patch_problem &problem) const {
   const grid_rules &rules = setup_.grid;
   grid &g = problem.g;
   const auto centre = [&] {
@@ -188,7 +201,7 @@ bool single_patch::set_grid(const patch_memory &m, patch_problem &problem) const
     g.dy = rules.element_size[1];
     centre();
   } else if (!solver_.scene().closed_form()) {
-    g = hertz_grid(problem.hertz);
+    g = hertz_grid(problem.hertz, in);
   }
   if (!solver_.scene().keeps_steps()) return true;
   // shift and transient rolling stay on the grid of their first step

@@ -46,8 +46,9 @@ class single_patch final : public driver {
   double approach_apart(const rp_input &input) const;
   hertz_contact hertz_of(const rp_input &input) const;
   hertz_contact hertz_rate(const hertz_contact &hertz, const rp_input &direction) const;
-  grid hertz_grid(const hertz_contact &hertz) const;
-  bool set_grid(const patch_memory &m, patch_problem &problem) const;
+  grid hertz_grid(const hertz_contact &hertz, const rp_input &input) const;
+  void reach_ahead(const hertz_contact &hertz, const rp_input &input, grid &g) const;
+  bool set_grid(const rp_input &input, const patch_memory &m, patch_problem &problem) const;
   bool pose(const rp_input &input, const patch_memory &m, patch_problem &problem) const;
   void set_distance(const patch_problem &problem, patch_memory &m) const;
   static void sum_up(const rp_result &value, rp_result &sum);

@@ -146,6 +146,21 @@ MISTAKES: dict[str, tuple[dict[str, Any], str]] = {
     ),
     "a supply in l/s": (with_values(PATCH, fluid={**WATER, "water_rate": 0.025}), "water_rate"),
     "an oil's film in mm": (oil(oil_film=1e-3), "oil_film"),
+    "a roughness in mm": (oil(roughness=5e-4), "roughness is above"),
+    "a viscosity in mPa s": (oil(viscosity=200.0), "100 Pa s"),
+    "a kinematic viscosity": (oil(viscosity=1e-5), "100 Pa s"),
+    "a table of viscosities in m^2/s": (
+        with_values(
+            PATCH,
+            fluid={
+                **FILM,
+                "boundary_friction": 0.2,
+                "viscosity_table": [[20.0, 3e-4], [60.0, 5e-5]],
+            },
+        ),
+        "100 Pa s",
+    ),
+    "an oil's shear stress in MPa": (oil(eyring_stress=5.0), "eyring_stress"),
     "a halving speed in mm/s": (falling(halving_speed=400.0), "halving_speed"),
     "the second halving speed in mm/s": (
         falling(amplitude=[0.1, 0.1], halving_speed=[0.4, 400.0]),
@@ -168,6 +183,8 @@ WITHIN: dict[str, dict[str, Any]] = {
     "oil": oil(reference_temperature=100.0, temperature=-20.0),
     "rain": with_values(PATCH, fluid={**WATER, "water_rate": 1e-3}),
     "a thick film": oil(oil_film=5e-4),
+    "a rough paste": oil(roughness=5e-5, viscosity=100.0, eyring_stress=1e5),
+    "a liquid without shear": oil(viscosity=1e-4, eyring_stress=0.0),
     "Polach's law": with_values(
         PATCH,
         friction={

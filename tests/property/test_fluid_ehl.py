@@ -148,6 +148,60 @@ def test_starved() -> None:
     assert much["central_film_thickness"] == pytest.approx(plenty, rel=1e-6)
 
 
+@pytest.mark.parametrize("supply", ["water_rate", "oil_film"])
+def test_without_supply_it_is_dry(supply: str) -> None:
+    """No liquid at all is not plenty; friction goes over to that of dry surfaces without a jump."""
+    motion = {"creepage": [0.05, 0.0], "rolling_speed": 20.0}
+    case = {**BASE, "motion": motion, "grid": {"elements": [16, 12]}}
+    steps = {}
+    for amount in (0.0, 1e-18, 1e-13):
+        r = solved({**case, "fluid": {**BASE["fluid"], supply: amount}})
+        assert r["mean_asperity_share"] == pytest.approx(1, abs=1e-6)
+        steps[amount] = np.hypot(*r["creep_force"]) / 8e4
+    # but for elements of less than a millionth of the greatest pressure, which have no traction
+    assert steps[0.0] == pytest.approx(0.4, rel=1e-4)
+    assert steps[1e-18] == pytest.approx(steps[0.0], rel=1e-8)
+    assert steps[1e-13] == pytest.approx(steps[0.0], rel=1e-5)
+    # and of a layer asperities that no liquid reaches are dry, as with film
+    layer = 3e-8
+    r = solved({**case, "fluid": {**BASE["fluid"], "oil_film": layer}})
+    wetted = 0.15 + (0.4 - 0.15) * np.exp(-layer / 5e-7)
+    assert r["effective_friction"] == pytest.approx(wetted * r["mean_asperity_share"], rel=1e-9)
+
+
+REACH = "the liquid's film begins before the grid, which must reach farther ahead of the contact"
+SMOOTH = {**OIL, "roughness": 1e-8}
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_grids_reach_to_where_a_film_begins(direction: int) -> None:
+    """Their film is that of one given much greater; one too short is warned of."""
+    motion = {"creepage": [0.0, 0.0], "rolling_speed": 60.0, "direction": direction}
+    curvatures, half = [1.0, 1.5], 8  # elements of a semi-axis
+    case = {**BASE, "fluid": SMOOTH, "motion": motion, "grid": {"elements": [2 * half, 10]}}
+    own = solved({**case, "geometry": {"curvatures": curvatures}})
+    x, y = np.array(own["x"]), np.array(own["y"])
+    size = [float(x[1] - x[0]), float(y[1] - y[0])]
+    behind, ahead = (direction * x).min(), (direction * x).max()
+    assert ahead > 2.2 * half * size[0]
+    assert 1.5 * half * size[0] < -behind < 1.8 * half * size[0]
+    assert REACH not in own.warnings
+
+    def given(ahead: float) -> railpatch.Result:
+        """On a grid of the user's, so many semi-axes ahead of the middle."""
+        place = behind + size[0] * np.arange(round((1.6 + ahead) * half))
+        gap = curvatures[0] * place**2 + curvatures[1] * y[:, None] ** 2
+        shape = {"undeformed_distance": gap[:, ::direction].tolist()}
+        return solved({**case, "geometry": shape, "grid": {"element_size": size}})
+
+    far, short = given(6.0), given(1.6)
+    assert REACH not in far.warnings
+    film = "central_film_thickness"
+    assert own[film] == pytest.approx(far[film], rel=0.015)
+    assert REACH in short.warnings
+    assert short[film] < 0.97 * far[film]
+
+
 COARSE = "the grid is too coarse for the film that was found: more elements along rolling"
 
 

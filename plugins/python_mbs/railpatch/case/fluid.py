@@ -157,9 +157,12 @@ class Fluid(Table):
         "that of its calibration; 'contact': that of each contact",
     )
     viscosity: Annotated[float, within("fluid_viscosity")] | None = Field(
-        default=None,
-        description="Pa s, of the liquid at any temperature; with liquid = 'oil' at "
-        "reference_temperature",
+        **likely(
+            "fluid_viscosity",
+            default=None,
+            description="Pa s, of the liquid at any temperature; with liquid = 'oil' at "
+            "reference_temperature",
+        )
     )
     liquid: Literal["water", "oil"] | None = Field(
         default=None,
@@ -215,9 +218,12 @@ class Fluid(Table):
         "with model = 'ehl' its own shear in the contact heats it, left out: it does not",
     )
     eyring_stress: Annotated[float, within("fluid_eyring_stress")] | None = Field(
-        default=None,
-        description="Pa, of the liquid's own friction; 0: none, as of water; left out: 0, with "
-        "oil 5e6 (assumed)",
+        **likely(
+            "fluid_eyring_stress",
+            default=None,
+            description="Pa, of the liquid's own friction; 0: none, as of water; left out: 0, with "
+            "oil 5e6 (assumed)",
+        )
     )
     limiting_friction: float = key("; with eyring_stress", of="fluid_limiting_friction")
     knots: Knots | None = Field(
