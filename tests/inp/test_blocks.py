@@ -146,6 +146,7 @@ BASIC_REFUSED = [
     ({"first": "204100"}, "line 2: T = 4: allowed 0, 1, 2, 3"),
     ({"first": "203900"}, "N = 9: allowed 0, 1"),
     ({"first": "203140"}, "F = 4: allowed 0, 1, 2"),
+    ({"first": "273100"}, "line 2: B = 7: allowed 0, 1, 2, 3, 4, 5, 6"),
     ({"first": "703100"}, "P = 7: allowed 0, 1, 2, 3"),
     ({"second": "1022020"}, "line 3: V = 1: allowed 0, 3"),
     ({"second": "025020"}, "C3 = 5: allowed 0, 1, 2, 3, 4, 9"),

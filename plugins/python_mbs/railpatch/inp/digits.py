@@ -20,6 +20,7 @@ FACTORS = {"k0": "K0", "alpha": "ALFA", "beta": "BETA"}
 # values of digits that no block looks at; of modules where they differ
 ALLOWED: dict[str, tuple[int, ...]] = {
     "P": (0, 1, 2, 3),
+    "B": tuple(range(7)),
     "T": (0, 1, 2, 3),
     "N": (0, 1),
     "S": (0, 1, 2, 3),
