@@ -63,6 +63,7 @@ class normal_solver {
   enum class precision { full, single };
   void product(problem &state, const double *pressure, double *displacement, precision digits);
   void cold_start(problem &state, double *pressure);
+  void fit_size(problem &state, double *pressure);
   void evaluate(problem &state, const double *pressure);
   void check_conditions(problem &state, const double *pressure);
   bool search_direction(problem &state, bool restart);
