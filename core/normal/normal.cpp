@@ -156,7 +156,7 @@ void normal_solver::scale_to_force(problem &s, double *p) {
 // A start of the right shape has the right size at once, as the displacement goes with it: by least
 // energy, so that nothing is lost where the shape is wrong.
 void normal_solver::fit_size(problem &s, double *p) {
-  if (s.force_given) return;
+  if (s.force_given || !s.options.grows) return;
   double work = 0;
   for (size_t i = 0; i < s.n; ++i) work += p[i] * (s.approach - s.h[i]);
   const double size = dot(p, displacement_.data(), s.n);

@@ -26,6 +26,8 @@ struct normal_options {
   interrupt ask{};
   // one or two elements either way are all the bodies that there are: no border that way
   bool strips = false;
+  // the grid has grown with the contact: so has the start
+  bool grows = false;
 };
 
 struct normal_result {

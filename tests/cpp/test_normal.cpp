@@ -379,7 +379,7 @@ TEST(Normal, AStartOfTheRightShapeHasTheRightSizeAtOnce) {
         h[static_cast<size_t>(j * g.nx + i)] = 1.1 * g.x(i) * g.x(i) + 0.5 * g.y(j) * g.y(j);
     ASSERT_TRUE(a.set_grid(g));
     // the first one better than the others are asked for
-    const normal_options options{growth == 1.0 ? 1e-10 : 1e-8, 200};
+    const normal_options options{growth == 1.0 ? 1e-10 : 1e-8, 200, {}, false, true};
     const normal_result found =
         solver.with_approach(a, g, h.data(), 2e-5 * growth * growth, options, p.data());
     EXPECT_TRUE(found.converged);
