@@ -147,7 +147,9 @@ tangential_result solve_fastrip(const fast_problem &problem, tangential_fields f
       fields.py[at] = p[1];
       fields.sx[at] = way * s[0];
       fields.sy[at] = s[1];
-      result.friction -= (p[0] * (xi - spin * y) + p[1] * (eta + spin * x)) * g.dx * g.dy;
+      // the place of the spin term does no work (tangential_solver::take_offset_work)
+      const double own = eta - input.spin_creepage * input.spin_offset;
+      result.friction -= (p[0] * (xi - spin * y) + p[1] * (own + spin * x)) * g.dx * g.dy;
       fields.division[at] = static_cast<unsigned char>(slip ? RP_SLIP : RP_STICK);
       ++(slip ? result.slip : result.stick);
     }

@@ -179,6 +179,16 @@ def test_linear_power_is_what_the_motion_supplies() -> None:
         assert result["friction_power"] == pytest.approx(-SPEED * work, rel=1e-12)
 
 
+@pytest.mark.parametrize("offset", ["none", "automatic", "sixth"])
+@pytest.mark.parametrize("direction", [1, -1])
+def test_fastrip_takes_what_the_motion_supplies(direction: int, offset: str) -> None:
+    """Wherever the spin is read: friction was 0.7 % off by an offset of a sixth."""
+    result = ellipse(
+        "fastrip", (1.2e-3, -4e-4), 0.25, direction=direction, elements=12, spin_offset=offset
+    )
+    assert result["friction_power"] == pytest.approx(result["creep_power"], rel=1e-12)
+
+
 # --- saturation ------------------------------------------------------------------------------
 
 

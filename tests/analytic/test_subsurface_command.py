@@ -103,3 +103,30 @@ def test_depths_in_mm_are_doubted(tmp_path: Path) -> None:
     assert below.warnings == []
     [text] = railpatch.Subsurface(contact, [1e-3, 0.06]).warnings
     assert text.startswith("depth: a depth is 0.06 m, hardly meant above 0.05 m")
+
+
+def test_an_accuracy_in_place_of_a_grid(tmp_path: Path) -> None:
+    """It chose a table, which has no tractions, and ended with an error of the core."""
+    below = "[subsurface]\ndepths = [1e-3, 2e-3]\n"
+    file = tmp_path / "case.toml"
+    stresses = []
+    for old, new in (("", ""), ("[grid]\nelements = [40, 40]\n", "")):
+        text = CASE.replace(old, new).replace(
+            'normal = "hertz"', "" if not old else "accuracy = 0.03"
+        )
+        file.write_text(text + below)
+        stresses.append(railpatch.solve(file)["subsurface"]["von_mises"])
+    assert stresses[1] == pytest.approx(stresses[0], rel=0.03)
+
+
+def test_damage_by_elements_needs_a_grid(tmp_path: Path) -> None:
+    """An accuracy chooses rows of nodes or a table: it ended with a TypeError."""
+    file = tmp_path / "case.toml"
+    text = CASE.replace("[grid]\nelements = [40, 40]\n", "").replace(
+        'normal = "hertz"', "accuracy = 0.03"
+    )
+    file.write_text(text + "[damage]\n")
+    with pytest.raises(railpatch.CaseError, match=r"^damage.basis: value is 'elements', allowed"):
+        railpatch.solve(file)
+    file.write_text(text + '[damage]\nbasis = "patch"\n')
+    assert railpatch.solve(file).status == "converged"

@@ -197,6 +197,13 @@ def check_asked(case: Any, line: bool) -> Problems:
     elif case.damage.basis == "elements" and (without or fitted):
         why = "fitted rows" if fitted else f"method.tangential = {method.tangential!r}"
         yield relation("damage.basis", "'elements'", f"'patch' with {why}")
+    elif (
+        case.damage.basis == "elements"
+        and method.accuracy is not None
+        and method.tangential == "full"
+    ):
+        allowed = "'patch' with method.accuracy, which chooses rows of nodes or a table: or 'grid'"
+        yield relation("damage.basis", "'elements'", allowed)
     elif case.damage.basis == "patch" and getattr(case.motion, "slip_field", None) is not None:
         allowed = "'elements' with motion.slip_field, which the wear number has not"
         yield relation("damage.basis", "'patch'", allowed)

@@ -28,6 +28,8 @@ def takes_table(case: Case, ratio: float | None, normal: str) -> bool:
     open_choice = "tangential" not in case.method.model_fields_set and case.has_tangential
     if (
         not open_choice
+        # stresses below are those of pressures and tractions, which it has not
+        or case.subsurface is not None
         or ratio is None
         or normal != "hertz"
         or (case.layer is not None and case.layer.thickness > 0)
