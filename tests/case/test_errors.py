@@ -242,13 +242,30 @@ def test_every_problem_is_told_at_once_with_a_hint() -> None:
         PATCH, friction__coeficient=0.3, load__normal_force=-1.0, method__tolerance="small"
     )
     assert problems_of(case) == [
-        "load.normal_force: value is -1.0, allowed >= 0.0",
+        "load.normal_force: value is -1.0, allowed >= 0.0 N",
         "friction.coeficient: value is 0.3, but the key is unknown, allowed law, coefficient, "
         "shape, kinetic, amplitude, halving_speed, polach_a, polach_b, memory_distance, "
         "memory_speed, reference, change, reference_temperature, temperature_range, factor, "
         "along_track, scale; did you mean 'coefficient'?",
         "method.tolerance: value is 'small', allowed a number",
     ]
+
+
+@pytest.mark.parametrize(
+    ("case", "key", "value", "line"),
+    [
+        (WHEELSET, "wheelset__nominal_radius", 460.0, "allowed <= 10.0 m"),
+        (WHEELSET, "track__gauge", 1435.0, "allowed <= 10.0 m"),
+        (PATCH, "material__shear_modulus", [82e9, -1.0], "allowed >= 1.0 Pa"),
+        (PATCH, "fluid", {"model": "film", "roughness": 0.5}, "allowed <= 0.001 m"),
+        (PATCH, "fluid", {"model": "film", "water_rate": 25.0}, "allowed <= 1.0 m^3/s"),
+        (PATCH, "friction__coefficient", 35.0, "allowed <= 10.0"),
+        (PATCH, "grid__elements", [16, 0], "allowed >= 1"),
+    ],
+)
+def test_limits_have_their_unit(case: Any, key: str, value: Any, line: str) -> None:
+    """Who writes mm, MPa or l/s is told the unit with the limit."""
+    assert problems_of(with_values(case, **{key: value}))[0].endswith(line)
 
 
 @pytest.mark.parametrize("kind", ["patch", "wheelset", "vehicle", "rig", "curve", "wheelset_run"])

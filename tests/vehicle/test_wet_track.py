@@ -162,24 +162,24 @@ REFUSED: dict[str, tuple[str, list[str]]] = {
     ),
     "ends before it starts": (
         RATE + stretch(length="-5.0"),
-        ["wet[0].length: value is -5.0, allowed > 0.0"],
+        ["wet[0].length: value is -5.0, allowed > 0.0 m"],
     ),
-    "no length": (RATE + stretch(length="0.0"), ["wet[0].length: value is 0.0, allowed > 0.0"]),
+    "no length": (RATE + stretch(length="0.0"), ["wet[0].length: value is 0.0, allowed > 0.0 m"]),
     "endless": (
         RATE + stretch(length="1e6"),
-        ["wet[0].length: value is 1000000.0, allowed <= 100000.0"],
+        ["wet[0].length: value is 1000000.0, allowed <= 100000.0 m"],
     ),
     "before the track": (
         RATE + stretch(position="-1.0"),
-        ["wet[0].position: value is -1.0, allowed >= 0.0"],
+        ["wet[0].position: value is -1.0, allowed >= 0.0 m"],
     ),
     "negative rate": (
         RATE + stretch(water_rate="-1e-8"),
-        ["wet[0].water_rate: value is -1e-08, allowed >= 0.0"],
+        ["wet[0].water_rate: value is -1e-08, allowed >= 0.0 m^3/s"],
     ),
     "a river": (
         RATE + stretch(water_rate="1e3"),
-        ["wet[0].water_rate: value is 1000.0, allowed <= 1.0"],
+        ["wet[0].water_rate: value is 1000.0, allowed <= 1.0 m^3/s"],
     ),
     "no number": (
         RATE + stretch(water_rate="nan"),

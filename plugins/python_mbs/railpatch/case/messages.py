@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 
 from railpatch.case.homes import Tables, models_in, unknown_key
+from railpatch.case.key_units import parts_of_unit
 from railpatch.case.types import show
 
 ALLOWED = {
@@ -29,6 +30,8 @@ ALLOWED = {
     "dict_type": "a table",
     "literal_error": "{expected}",
 }
+# of numbers: limits are of their unit
+LIMITS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
 # pydantic's names of the branch of a union that is a text
 TEXTS = (("str",), ("constrained-str",))
 
@@ -114,7 +117,22 @@ def problem(
     if item["loc"][-1:] in TEXTS:
         template = "a path or rows of numbers"
     allowed = template.format(**context) if template else item["msg"]
+    if item["type"] in LIMITS:
+        allowed += unit_at(model, loc)
     return f"{key}: value is {show(item['input'])}, allowed {allowed}"
+
+
+def unit_at(model: type[BaseModel], loc: list[Any]) -> str:
+    """' m' of a number of a case, as its description says, of rows that of the column; nothing of
+    what has no unit."""
+    names = [place for place, part in enumerate(loc) if isinstance(part, str)]
+    table = table_at(model, loc[: names[-1]]) if names else None
+    held = table.model_fields.get(str(loc[names[-1]])) if table else None
+    parts = parts_of_unit(held.description or "") if held else [""]
+    if len(parts) > 1 and not isinstance(loc[-1], int):
+        return ""
+    unit = parts[min(int(loc[-1]), len(parts) - 1)] if isinstance(loc[-1], int) else parts[0]
+    return "" if unit == "-" or not unit else f" {unit}"
 
 
 def words_of(annotation: Any) -> list[Any]:
