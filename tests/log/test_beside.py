@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import re
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,9 +16,11 @@ from click.testing import CliRunner, Result
 from railpatch.command.cli import cli
 from railpatch.errors import CaseError, RecordError
 from railpatch.log import read_run
+from railpatch.log.reader import Attachment
 from railpatch.report import write_report
-from railpatch.report.beside import Pair, beside_log, beside_measured, beside_record
-from railpatch.report.beside_page import curves, differences, traction
+from railpatch.report.beside import Beside, Pair, beside_log, beside_measured, beside_record
+from railpatch.report.beside_page import curves, differences, scenes, traction
+from railpatch.report.scene import differences_of
 
 COLUMNS = """
 [columns]
@@ -172,6 +177,44 @@ def test_another_log(rig_file: Path, tmp_path: Path):
     done = invoke(rig_file, "-o", tmp_path / "page.html", "--beside", other)
     assert done.exit_code == 0, done.output
     assert "Beside other.mcap" in text_of(tmp_path / "page.html")
+
+
+def logged(content: dict | None, **files: bytes) -> SimpleNamespace:
+    """What a log carries: the scene as it ran, and files beside it."""
+    held = {name.replace("_", "."): Attachment(data, "text/csv") for name, data in files.items()}
+    if content is not None:
+        held["effective.json"] = Attachment(json.dumps(content).encode(), "application/json")
+    return SimpleNamespace(attachments=held)
+
+
+def test_what_the_scenes_of_two_logs_differ_in() -> None:
+    """Keys of tables and of tables in lists, lists as wholes, files of one name."""
+    scene = {
+        "friction": {"coefficient": 0.35, "law": "coulomb"},
+        "grid": {"elements": [10, 10]},
+        "vehicle": {"body": [{"name": "a", "mass": 1.0}, {"name": "b", "mass": 2.0}]},
+        "profiles": {"wheel": "wheel.csv", "smoothing": None},
+    }
+    other = json.loads(json.dumps(scene))
+    other["friction"]["coefficient"] = 0.15
+    other["grid"]["elements"] = [10, 12]
+    other["vehicle"]["body"][1]["mass"] = 2.5
+    other["profiles"]["smoothing"] = 4e-3
+    run = logged(scene, wheel_csv=b"1 2", case_toml=b"x")
+    assert differences_of(run, logged(other, wheel_csv=b"1 2 3", case_toml=b"y")) == [
+        ("friction.coefficient", "0.35", "0.15"),
+        ("grid.elements", "[10, 10]", "[10, 12]"),
+        ("vehicle.body[1].mass", "2.0", "2.5"),
+        ("profiles.smoothing", "-", "0.004"),
+        ("content of wheel.csv", "3 bytes", "5 bytes"),
+    ]
+    assert differences_of(run, run) == []
+    assert differences_of(run, logged(None)) == []
+    beside = Beside("Beside b", "b", "time [s]", [], scenes=differences_of(run, logged(other)))
+    text = "".join(scenes(beside))
+    assert all(cell in text for cell in ("friction.coefficient", ">0.35<", ">0.15<"))
+    assert "are the same" in "".join(scenes(replace(beside, scenes=[])))
+    assert scenes(replace(beside, scenes=None)) == []
 
 
 def test_vehicles(rig_file: Path, tmp_path: Path):

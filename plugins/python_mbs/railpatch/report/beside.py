@@ -22,6 +22,7 @@ from railpatch.record.columns import load_columns
 from railpatch.record.quantities import BY_NAME, OUTPUT, QUANTITIES, Quantity, ratio_side
 from railpatch.record.units import UNITS, dimension_of
 from railpatch.report.data import SHOWN
+from railpatch.report.scene import differences_of
 
 Array = NDArray[np.float64]
 
@@ -64,7 +65,8 @@ class Pair:
 class Beside:
     """What is laid over a run. title: of the section; what: of the other curves, "measured".
 
-    label: of the abscissa. at, yaw: [n], of the run, yaw in rad; None without."""
+    label: of the abscissa. at, yaw: [n], of the run, yaw in rad; None without. scenes: of another
+    log, key, value here and there of what the scenes differ in; None of what is no log."""
 
     title: str
     what: str
@@ -72,6 +74,7 @@ class Beside:
     pairs: list[Pair]
     at: Array | None = None
     yaw: Array | None = None
+    scenes: list[tuple[str, str, str]] | None = None
 
     def ratios(self) -> dict[str, Pair]:
         """L/V by side, where both are known."""
@@ -200,7 +203,8 @@ def beside_log(run: Run, other_path: str | PathLike[str]) -> Beside:
             pairs.append(_pair(quantity, own, at, other_at, values))
     if not pairs:
         raise CaseError(f"--beside: value is {name!r}, allowed a log of the same kind of run")
-    return Beside(f"Beside {name}", name, ABSCISSAS[kind][1], pairs, at, yaw_of(own))
+    scenes = differences_of(run, other_run)
+    return Beside(f"Beside {name}", name, ABSCISSAS[kind][1], pairs, at, yaw_of(own), scenes)
 
 
 def beside_measured(run: Run) -> Beside | None:

@@ -14,6 +14,7 @@ from railpatch.report.beside import Beside, Pair
 
 _OWN, _OTHER = COLORS["left"], OTHER
 _MANY = 2000  # points of a curve; longer ones are thinned for the page
+_KEYS = 30  # of scenes that differ
 _FEW = 300  # points that are shown one by one
 
 
@@ -25,6 +26,7 @@ def section(beside: Beside, name: str, remark: str = "") -> list[str]:
         f"<h2>{escape(beside.title)}</h2><p>Differences: run minus {escape(beside.what)}, at the "
         "run's positions. Forces act on roller or rail, in track axes: x forward, y right, z "
         "down.</p>",
+        *scenes(beside),
         differences(beside),
         plot(curves(beside), name),
         *_over_yaw(beside, name),
@@ -58,6 +60,17 @@ def traction(beside: Beside) -> go.Figure:
         figure.update_xaxes(title_text="yaw [mrad]", row=1, col=column)
     figure.update_yaxes(title_text="L/V = F<sub>y</sub>/F<sub>z</sub>", row=1, col=1)
     return styled(figure, 430)
+
+
+def scenes(beside: Beside) -> list[str]:
+    """What another log's scene has otherwise."""
+    if beside.scenes is None:
+        return []
+    if not beside.scenes:
+        return ["<p>The scenes of both runs are the same, where both logs hold one.</p>"]
+    rows, more = beside.scenes[:_KEYS], len(beside.scenes) - _KEYS
+    end = [f"<p>And {more} keys more.</p>"] if more > 0 else []
+    return [table(["the scenes differ in", "run", beside.what], rows), *end]
 
 
 def differences(beside: Beside) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from railpatch.report.data import Positions
 
 EFFECTIVE = "effective.json"
+LONGEST = 60  # of a value that is shown
 MPH = 0.44704  # m/s, exactly
 
 
@@ -28,6 +30,48 @@ def scene_of(run: Run) -> dict[str, Any]:
     except ValueError:
         return {}
     return found if isinstance(found, dict) else {}
+
+
+def leaves_of(place: str, value: Any) -> Iterator[tuple[str, Any]]:
+    """Keys of a scene with their values; lists of tables by number, other lists whole."""
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            yield from leaves_of(f"{place}.{key}" if place else str(key), inner)
+    elif isinstance(value, list) and any(isinstance(inner, dict) for inner in value):
+        for number, inner in enumerate(value):
+            yield from leaves_of(f"{place}[{number}]", inner)
+    elif value is not None:
+        yield place, value
+
+
+def differences_of(run: Run, other: Run) -> list[tuple[str, str, str]]:
+    """Key, value in a run, value in another one: what their scenes differ in, and files of one name
+    with other content. "-" is what a scene has not. Nothing where a log has no scene."""
+    own, theirs = (dict(leaves_of("", scene_of(one))) for one in (run, other))
+    if not own or not theirs:
+        return []
+    keys = dict.fromkeys([*own, *theirs])
+    found = [
+        (key, shown(own.get(key)), shown(theirs.get(key)))
+        for key in keys
+        if own.get(key) != theirs.get(key)
+    ]
+    for name in run.attachments.keys() & other.attachments.keys() - {EFFECTIVE}:
+        sizes = [len(one.attachments[name].data) for one in (run, other)]
+        if run.attachments[name].data != other.attachments[name].data and named(name, own, theirs):
+            found.append((f"content of {name}", *(f"{size} bytes" for size in sizes)))
+    return found
+
+
+def named(name: str, *scenes: dict[str, Any]) -> bool:
+    """Whether a scene names a file, as a profile; the scene's own file is none of them."""
+    return any(value == name for scene in scenes for value in scene.values())
+
+
+def shown(value: Any) -> str:
+    """Of a scene, for a table."""
+    text = "-" if value is None else value if isinstance(value, str) else json.dumps(value)
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 4]} ..."
 
 
 def friction_of(run: Run) -> tuple[float, str]:
