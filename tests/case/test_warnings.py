@@ -411,6 +411,24 @@ def test_a_command_warns_and_strict_refuses(tmp_path: Path) -> None:
     assert "100 N to 500 kN" in ran.stderr
 
 
+@pytest.mark.parametrize(
+    ("x", "end", "words"),
+    [
+        (0.5, 1.0, ""),
+        (-8.0, 1.0, ""),
+        (500.0, 1.0, "wheelset.x is 500 m, 499 m off track.right.sections at 0 to 1 m"),
+        (0.5, 1000.0, "track.right.sections: two neighbours lie 1000 m apart: positions are in m"),
+    ],
+)
+def test_slices_along_a_rail(x: float, end: float, words: str) -> None:
+    """Places in mm: between slices, or of the wheel beside them."""
+    places = [{"position": at, "profile": "UIC60@1:40"} for at in (0.0, end)]
+    case = with_values(LOADED, wheelset__x=x, track__right={"sections": places})
+    found = railpatch.solve(case).warnings
+    assert [text for text in found if "sections" in text] == ([] if not words else [found[-1]])
+    assert words in "".join(found)
+
+
 @pytest.mark.parametrize(("coefficient", "scale", "told"), [(0.6, 2.0, 1), (1.2, 0.5, 0)])
 def test_friction_of_a_step(coefficient: float, scale: float, told: int) -> None:
     """By the coefficient with the step's own factor."""

@@ -18,7 +18,7 @@ from railpatch.case.keys_of_step import signature
 from railpatch.case.load import Case, Scene, check_table, load_scene
 from railpatch.case.moving import changed_case, moving_keys, with_numbers
 from railpatch.case.patch import Motion, PatchCase
-from railpatch.case.scene_profiles import Shelf, placement_doubts, profile_notes
+from railpatch.case.scene_profiles import Shelf, beside_sections, placement_doubts, profile_notes
 from railpatch.case.to_core import (
     FORCE_AND_MOMENT,
     POSE_AND_VELOCITY,
@@ -404,7 +404,8 @@ def solve(
     """
     contact = Contact(case, folder=folder)
     result = _solved(contact, fields)
-    result.data["warnings"] = [*result.warnings, *contact.placement_doubts()]
+    doubts = [*contact.placement_doubts(), *beside_sections(contact.case)]
+    result.data["warnings"] = [*result.warnings, *doubts]
     notes = [*notes_of_solve(contact.case), *_add_pressure_error(contact, result)]
     if strict and result.warnings:
         raise CaseError(result.warnings)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
@@ -22,6 +23,9 @@ Case = TypeVar("Case", WheelRailCase, WheelsetCase)
 BODIES: tuple[Body, ...] = ("wheel", "rail")
 # m, between the tops of slices along a rail: more is hardly meant to be left out
 HEIGHTS = 0.5e-3
+# m: neighbours among slices are hardly further apart; a case that is this much beside all of them,
+# and by more than they reach, was hardly meant to be
+SLICES, BESIDE = 100.0, 10.0
 
 
 @dataclass(frozen=True)
@@ -177,13 +181,44 @@ def flange_in(case: WheelCase, placed: Placed) -> Flange | None:
 
 def placement_doubts(case: WheelCase, shelf: Shelf) -> list[str]:
     """Warnings of wheels whose flange says that they lie elsewhere than the scene has them, and of
-    rails along the track whose heights are not read."""
+    rails along the track whose heights are not read or whose slices lie far apart."""
     found: dict[str, None] = {}
     for placed in placed_profiles(case, shelf):
         flange = flange_in(case, placed)
         for text in flange.doubts(case.wheelset.flange_back_position) if flange else ():
             found[f"{Path(placed.profile.name).name}: {text}"] = None
-    return [*found, *dropped_heights(case, shelf)]
+    return [*found, *dropped_heights(case, shelf), *far_apart(case)]
+
+
+def far_apart(case: WheelCase) -> list[str]:
+    """Warnings of slices along the track at positions in mm."""
+    found = []
+    for side in case.sides:
+        places = [section.position for section in getattr(case.track, side).sections or ()]
+        widest = max((b - a for a, b in pairwise(places)), default=0.0)
+        if widest > SLICES:
+            found.append(
+                f"track.{side}.sections: two neighbours lie {widest:g} m apart: positions are in m"
+            )
+    return found
+
+
+def beside_sections(case: object) -> list[str]:
+    """Warnings of a case that stands far from the slices of its rails: it does not feel them."""
+    found: list[str] = []
+    if not isinstance(case, WheelCase):
+        return found
+    for side in case.sides:
+        places = [section.position for section in getattr(case.track, side).sections or ()]
+        if len(places) < 2:
+            continue
+        off = max(places[0] - case.wheelset.x, case.wheelset.x - places[-1])
+        if off > max(BESIDE, places[-1] - places[0]):
+            found.append(
+                f"wheelset.x is {case.wheelset.x:g} m, {off:g} m off track.{side}.sections at "
+                f"{places[0]:g} to {places[-1]:g} m: the rail is that of their end there"
+            )
+    return found
 
 
 def dropped_heights(case: WheelCase, shelf: Shelf) -> list[str]:
