@@ -166,6 +166,18 @@ def test_files_are_read_as_by_solve(addon: Addon, folder: Path, name: str) -> No
         assert np.array([y, z]) + turned @ place[5:7] == pytest.approx(place[1:3], abs=1e-9)
 
 
+def test_files_as_editors_of_windows_save_them(addon: Addon, folder: Path) -> None:
+    """A mark of byte order and ends of lines of two characters change nothing."""
+    path = folder / "case.inp"
+    forces = []
+    for mark, end in (("", "\n"), ("\ufeff", "\r\n")):
+        path.write_bytes((mark + text_of(WHEEL)).replace("\n", end).encode("utf-8"))
+        assert addon.read(1, str(path)) == 0, addon.said()
+        assert addon.calculate(1) == 0, addon.said()
+        forces.append(addon.forces(1)[:6])
+    assert forces[0] == forces[1]
+
+
 def test_arc_lengths_are_those_of_the_slice_that_is_met(addon: Addon, folder: Path) -> None:
     """A place found by the core lies on the profile that the add-on tells."""
     path = folder / "case.inp"

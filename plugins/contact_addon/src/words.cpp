@@ -91,6 +91,7 @@ words words::of_file(const std::string &path) {
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<size_t>(file.gcount()));
   if (text.size() > most_bytes) throw input_error(path + ": is larger than 20 MB");
+  if (text.compare(0, 3, "\xef\xbb\xbf") == 0) text.erase(0, 3);
   return words(path.substr(path.find_last_of("/\\") + 1), text);
 }
 
