@@ -382,7 +382,6 @@ TEST(Config, CurvedReferenceSurfaceIsChecked) {
   expect("full or none", [](rp_config &c) { c.tangential = RP_TANGENTIAL_FASTSIM; });
   expect("fitted", [](rp_config &c) { c.fitted[0] = c.fitted[1] = 8; });
   expect("(1-2nu)/G", [](rp_config &c) { c.shear_modulus[0] = 2e9; });
-  expect("derivatives", [](rp_config &c) { c.derivatives = 1; });
   const std::vector<double> level(16, 1e-4);
   expect("runout", [&](rp_config &c) {
     c.runout[RP_RIGHT] = level.data();
