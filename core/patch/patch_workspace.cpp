@@ -10,9 +10,7 @@ namespace railpatch {
 patch_workspace::patch_workspace(const patch_scene &of, stage_marks at, const fft_plans &plans,
                                  int max_count)
     : scene(of), marks(at) {
-  railpatch::influence::medium bodies = scene.medium();
-  bodies.follows = scene.stretches;
-  if (scene.needs_influence()) influence.emplace(bodies, plans);
+  if (scene.needs_influence()) influence.emplace(scene.medium(), plans);
   if (scene.couples()) {
     std::unique_ptr<coupling_operator> coupling;
     if (scene.curved)

@@ -32,22 +32,16 @@ tangential_stage::tangential_stage(patch_workspace &shared, const fft_plans &pla
   const auto count = static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny);
   if (scene.full_on_grid()) {
     const bool rolls_on = scene.changes || scene.regime == motion::transient;
-    // with a prescribed force no creepage is known to start from
-    const bool plain = !scene.is_forced() && !scene.law && !scene.keeps_steps() &&
-                       !scene.couples() && !scene.slip_by_element;
-    // of grids as wide as the bodies' overlap the contact takes two thirds either way
-    influence::medium bodies = scene.medium();
-    bodies.follows = scene.stretches;
-    const bool boxed = plain && scene.stretches && !scene.heat && !scene.fluid && !scene.curved;
     tangential_.emplace(
         max_nx, max_ny,
         tangential_solver::setup{scene.is_forced(), scene.law.has_value(), scene.yields(),
-                                 scene.keeps_steps(), rolls_on ? &plans : nullptr, scene.moves,
-                                 boxed ? &bodies : nullptr, &plans});
+                                 scene.keeps_steps(), rolls_on ? &plans : nullptr, scene.moves});
+    // with a prescribed force no creepage is known to start from
+    const bool plain = !scene.is_forced() && !scene.law && !scene.keeps_steps() &&
+                       !scene.couples() && !scene.slip_by_element;
     if (plain && coarse_start::serves(max_nx, max_ny))
       coarse_start_.emplace(scene.medium(), plans, max_nx, max_ny);
     bound_ = aligned_buffer<double>(count);
-    if (plain) pressure_before_ = aligned_buffer<double>(count);
   }
   if (is_fast(scene.tangential)) fast_.emplace(scene.elastic, scene.fast, max_nx, max_ny);
   if (scene.is_fitted()) {
@@ -64,30 +58,11 @@ tangential_stage::tangential_stage(patch_workspace &shared, const fft_plans &pla
 }
 
 size_t tangential_stage::bytes() const {
-  return bound_.bytes() + pressure_before_.bytes() + 2 * before_[0].bytes() +
-         3 * before_gap_.bytes() + 2 * last_rows_[0].bytes() +
-         (tangential_ ? tangential_->bytes() : 0) + (coarse_start_ ? coarse_start_->bytes() : 0) +
+  return bound_.bytes() + 2 * before_[0].bytes() + 3 * before_gap_.bytes() +
+         2 * last_rows_[0].bytes() + (tangential_ ? tangential_->bytes() : 0) +
+         (coarse_start_ ? coarse_start_->bytes() : 0) +
          (fast_ ? sizeof(fast_solver) + fast_->bytes() : 0) +
          (fitted_ ? fitted_rows_->bytes() + fitted_->bytes() : 0);
-}
-
-void tangential_stage::keep_pressure(const grid &g, const patch_memory &memory) {
-  if (pressure_before_.size() > 0)
-    std::copy_n(memory.pressure.data(), g.count(), pressure_before_.data());
-}
-
-// Elements that slid go on at their bound, as it goes with the pressure.
-void tangential_stage::follow_bound(const grid &g, patch_memory &memory) const {
-  // of the bound, within which tractions are there but for rounding
-  constexpr double near = 1 - 1e-6;
-  for (size_t i = 0; i < static_cast<size_t>(g.count()); ++i) {
-    const double before = pressure_before_[i], now = memory.pressure[i];
-    if (!(before > 0 && now > 0)) continue;
-    const double size = hypot(memory.px[i], memory.py[i]);
-    if (!(size * now > near * bound_[i] * before)) continue;
-    memory.px[i] *= bound_[i] / size;
-    memory.py[i] *= bound_[i] / size;
-  }
 }
 
 traction_outcome tangential_stage::solve(const patch_problem &problem,
@@ -121,10 +96,8 @@ traction_outcome tangential_stage::solve(const patch_problem &problem,
   if (!t.converged) explain(problem, pressure, t, found);
   // what shift and transient rolling know already
   if (scene.tangential == RP_TANGENTIAL_FULL && !scene.goes_on(rolling))
-    found.elastic_energy = fitted_ ? fitted_->elastic_energy(*fitted_rows_)
-                           : std::isnan(t.stored) || memory.history.energy.size() > 0
-                               ? elastic_energy(problem, memory)
-                               : 0.5 * t.stored * problem.g.dx * problem.g.dy;
+    found.elastic_energy =
+        fitted_ ? fitted_->elastic_energy(*fitted_rows_) : elastic_energy(problem, memory);
   return found;
 }
 
@@ -405,8 +378,6 @@ tangential_result tangential_stage::solve_on_grid(const patch_problem &problem,
       zero(memory.px.data()) && zero(memory.py.data()))
     coarse_start_->find(g, memory.pressure.data(), bound_.data(), rolling, options,
                         memory.fields());
-  else if (pressure_before_.size() > 0 && !mu)
-    follow_bound(g, memory);
   tangential_result t = solve_by_law(problem, rolling, memory, options, found);
   if (shared_.scene.goes_on(rolling))
     close_step(problem, rolling, memory, t, found);
@@ -428,14 +399,14 @@ tangential_result tangential_stage::solve_by_law(const patch_problem &problem,
   const grid &g = problem.g;
   if (!has_physics || !shared_.scene.law)
     return tangential_->solve({*shared_.influence, g, memory.pressure.data(), bound_.data(),
-                               rolling, options, memory.fields(), problem.follows});
+                               rolling, options, memory.fields()});
   const bool goes_on = shared_.scene.goes_on(rolling);
   memory.history.start_from_before(g, *shared_.scene.law, goes_on);
   const inelastic_fields fields = memory.history.fields(*shared_.scene.law, goes_on);
   inelastic_sums sums;
   const tangential_result t =
       tangential_->solve({*shared_.influence, g, memory.pressure.data(), bound_.data(), rolling,
-                          options, memory.fields(), problem.follows, &fields, &sums});
+                          options, memory.fields(), &fields, &sums});
   for (size_t i = 0; i < static_cast<size_t>(g.count()); ++i)
     if (memory.pressure[i] > 0) memory.history.friction[i] /= memory.pressure[i];
   found.plastic = sums.plastic;

@@ -25,8 +25,6 @@ class tangential_stage {
  public:
   tangential_stage(patch_workspace &shared, const fft_plans &plans, int max_nx, int max_ny);
 
-  // Before the pressure is solved: what the tractions in the memory belong to.
-  void keep_pressure(const grid &g, const patch_memory &memory);
   // The tractions in the memory are the start, and the solution.
   traction_outcome solve(const patch_problem &problem, const pressure_outcome &pressure,
                          patch_memory &memory, heat_stage &heat);
@@ -75,7 +73,6 @@ class tangential_stage {
                                  traction_outcome &found);
   void set_bound(const grid &g, const patch_memory &memory, const double *mu);
   double elastic_energy(const patch_problem &problem, patch_memory &memory);
-  void follow_bound(const grid &g, patch_memory &memory) const;
   double greatest_traction(const patch_memory &memory) const;
   double capacity(const patch_problem &problem, const pressure_outcome &pressure,
                   const patch_memory &memory, const heat_stage &heat) const;
@@ -113,7 +110,6 @@ class tangential_stage {
   std::optional<fitted_solver> fitted_;
   std::optional<fast_solver> fast_;
   aligned_buffer<double> bound_, before_[2];
-  aligned_buffer<double> pressure_before_;  // of tractions that a solution starts from
   // of a curved reference surface: what of it the pressure did, the gap by the last step's
   // tractions, cosine and sine of its rows
   aligned_buffer<double> before_pressed_[2], before_gap_, last_rows_[2];
