@@ -433,7 +433,8 @@ answer fastrip_once_more(const setting &s) {
       out.sx[at] = way * slip[0];
       out.sy[at] = slip[1];
       const double w[2] = {s.in.creepage[0] - s.in.spin_creepage * g.y(j),
-                           s.in.creepage[1] + s.in.spin_creepage * (g.x(i) + s.in.spin_offset)};
+                           s.in.creepage[1] + s.in.spin_creepage * g.x(i)};
+      // what the motion supplies, wherever the spin is read
       out.friction -= (out.px[at] * w[0] + out.py[at] * w[1]) * g.dx * g.dy;
       out.division[at] = slides ? RP_SLIP : RP_STICK;
       ++(slides ? out.slip : out.stick);
