@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 namespace railpatch {
 
@@ -24,24 +25,16 @@ double between(const grid &g, const double *field, double x, double y) {
 }  // namespace
 
 offset_influence::offset_influence(const fft_plans &plans, bool moves)
-    : plans_(plans), along_x_(plans.max_nx()), along_y_(plans.max_ny()) {
+    : plans_(plans), plane_(plans) {
   const auto nx = static_cast<size_t>(plans.max_nx()), ny = static_cast<size_t>(plans.max_ny());
-  padded_ = aligned_buffer<double>(nx * ny);
-  transform_ = aligned_buffer<std::complex<double>>((nx / 2 + 1) * ny);
   for (int k = 0; k < 3; ++k)
     for (auto *b : {&re_[k], &im_[k]}) *b = aligned_buffer<double>(nx * ny);
-  const auto columns = static_cast<size_t>(fft::whole_packs(plans.max_nx() / 2 + 1));
-  const auto waves = static_cast<size_t>(fft::whole_packs(plans.max_ny()));
-  for (auto &b : lateral_) b = aligned_buffer<double>(columns * ny);
-  for (auto &b : along_) b = aligned_buffer<double>(waves * nx);
   if (!moves) return;
   for (auto &b : corner_) b = aligned_buffer<double>((nx + 2) * (ny + 2));
 }
 
 size_t offset_influence::bytes() const {
-  return along_x_.bytes() + along_y_.bytes() + padded_.bytes() + 6 * re_[0].bytes() +
-         transform_.bytes() + 4 * (lateral_[0].bytes() + along_[0].bytes()) +
-         3 * corner_[0].bytes();
+  return plane_.bytes() + 6 * re_[0].bytes() + 3 * corner_[0].bytes();
 }
 
 void offset_influence::make_spectra(const influence &a, const grid &g) {
@@ -53,26 +46,10 @@ void offset_influence::make_spectra(const influence &a, const grid &g) {
         const int oi = 2 * i <= nx ? i : i - nx, oj = 2 * j <= ny ? j : j - ny;
         double values[3];
         a.bodies_at(oi * g.dx + offset_, oj * g.dy, values);
-        padded_[static_cast<size_t>(j * nx + i)] = values[k];
+        plane_.kernel()[j * nx + i] = values[k];
       }
     transform_kernel(k);
   }
-}
-
-// The spectrum of the kernel in padded_, on all waves.
-void offset_influence::transform_kernel(int k) {
-  const int nx = plans_.nx(plan_), ny = plans_.ny(plan_), half = nx / 2 + 1;
-  const double scale = 1.0 / (static_cast<double>(nx) * ny);
-  plans_.forward(plan_, padded_.data(), transform_.data());
-  for (int i = 0; i < nx; ++i)
-    for (int j = 0; j < ny; ++j) {
-      const bool mirrored = i >= half;
-      const int from_i = mirrored ? nx - i : i, from_j = mirrored ? (ny - j) % ny : j;
-      const std::complex<double> z = transform_[static_cast<size_t>(from_j * half + from_i)];
-      const auto at = static_cast<size_t>(i * ny + j);
-      re_[k][at] = scale * z.real();
-      im_[k][at] = scale * (mirrored ? -z.imag() : z.imag());
-    }
 }
 
 // Coefficients between all elements of both grids; no others are used.
@@ -87,7 +64,7 @@ void offset_influence::make_moved_spectra(const influence &a) {
       for (int k = 0; k < 3; ++k) corner_[k][static_cast<size_t>(j * columns + i)] = values[k];
     }
   for (int k = 0; k < 3; ++k) {
-    std::fill_n(padded_.data(), nx * ny, 0.0);
+    std::fill_n(plane_.kernel(), nx * ny, 0.0);
     for (int j = 0; j + 1 < rows; ++j)
       for (int i = 0; i + 1 < columns; ++i) {
         double sum[3], values[3];
@@ -97,8 +74,7 @@ void offset_influence::make_moved_spectra(const influence &a) {
         }
         a.from_corners(sum, values);
         const int oi = i - from_[0] + 1, oj = j - from_[1] + 1;
-        padded_[static_cast<size_t>((oj < 0 ? oj + ny : oj) * nx + (oi < 0 ? oi + nx : oi))] =
-            values[k];
+        plane_.kernel()[(oj < 0 ? oj + ny : oj) * nx + (oi < 0 ? oi + nx : oi)] = values[k];
       }
     transform_kernel(k);
   }
@@ -128,8 +104,7 @@ void offset_influence::product(const influence &a, const grid &g, double offset,
   if (plan != plan_ || offset != offset_ || g.dx != dx_ || g.dy != dy_) {
     plan_ = plan;
     offset_ = offset, dx_ = g.dx, dy_ = g.dy;
-    along_x_.set_length(plans_.nx(plan));
-    along_y_.set_length(plans_.ny(plan));
+    plane_.set_plan(plan);
     make_spectra(a, g);
   }
   const lines u = transfer(g, g, px, py);
@@ -143,50 +118,16 @@ void offset_influence::product(const influence &a, const grid &g, double offset,
   const double *from[2] = {px, py};
   double *to[2] = {ux, uy};
   for (int c = 0; c < 2; ++c) {
-    shift_field(g, offset, 0.0, from[c], padded_.data());
-    for (int i = 0; i < g.count(); ++i) to[c][i] += flexibility * padded_[static_cast<size_t>(i)];
+    shift_field(g, offset, 0.0, from[c], plane_.kernel());
+    for (int i = 0; i < g.count(); ++i) to[c][i] += flexibility * plane_.kernel()[i];
   }
 }
 
 offset_influence::lines offset_influence::transfer(const grid &from, const grid &to,
                                                    const double *px, const double *py) {
-  const int waves = fft::whole_packs(plans_.ny(plan_)), back_columns = fft::whole_packs(to.nx);
-  const int columns = fft::whole_packs(from.nx);
-  const lines lateral[2] = {{lateral_[0].data(), lateral_[1].data()},
-                            {lateral_[2].data(), lateral_[3].data()}};
-  const lines along[2] = {{along_[0].data(), along_[1].data()},
-                          {along_[2].data(), along_[3].data()}};
-  const auto other = [](const lines pair[2], lines l) {
-    return l.re == pair[0].re ? pair[1] : pair[0];
-  };
-  for (int j = 0; j < from.ny; ++j) {
-    double *re = lateral[0].re + j * columns, *im = lateral[0].im + j * columns;
-    std::copy_n(px + j * from.nx, from.nx, re);
-    std::copy_n(py + j * from.nx, from.nx, im);
-    std::fill(re + from.nx, re + columns, 0.0);
-    std::fill(im + from.nx, im + columns, 0.0);
-  }
-  const int ny = plans_.ny(plan_);
-  const lines z = along_y_.forward(columns, from.ny, lateral[0], lateral[1]);
-  for (int i = 0; i < from.nx; ++i)
-    for (int j = 0; j < waves; ++j) {
-      along[0].re[i * waves + j] = j < ny ? z.re[j * columns + i] : 0.0;
-      along[0].im[i * waves + j] = j < ny ? z.im[j * columns + i] : 0.0;
-    }
-  const lines t = along_x_.forward(waves, from.nx, along[0], along[1]);
-  const lines product = other(along, t);
-  for (int i = 0; i < plans_.nx(plan_); ++i) {
-    std::fill(product.re + i * waves + ny, product.re + (i + 1) * waves, 0.0);
-    std::fill(product.im + i * waves + ny, product.im + (i + 1) * waves, 0.0);
-  }
-  multiply(t, product, waves);
-  const lines back = along_x_.backward(waves, to.nx, product, t);
-  for (int j = 0; j < ny; ++j)
-    for (int i = 0; i < back_columns; ++i) {
-      lateral[0].re[j * back_columns + i] = i < to.nx ? back.re[i * waves + j] : 0.0;
-      lateral[0].im[j * back_columns + i] = i < to.nx ? back.im[i * waves + j] : 0.0;
-    }
-  return along_y_.backward(back_columns, to.ny, lateral[0], lateral[1]);
+  const int sizes[2][2] = {{from.nx, from.ny}, {to.nx, to.ny}};
+  return plane_.product(sizes[0], sizes[1], px, py,
+                        [&](lines t, lines u, int stride) { multiply(t, u, stride); });
 }
 
 // Kernels between two grids, where they are not those of the last call.
@@ -201,8 +142,7 @@ void offset_influence::place(const influence &a, const grid &from, const grid &t
   plan_ = plan;
   offset_ = offset[0], lateral_offset_ = offset[1], dx_ = to.dx, dy_ = to.dy;
   from_[0] = from.nx, from_[1] = from.ny, to_[0] = to.nx, to_[1] = to.ny;
-  along_x_.set_length(plans_.nx(plan));
-  along_y_.set_length(plans_.ny(plan));
+  plane_.set_plan(plan);
   make_moved_spectra(a);
 }
 
@@ -242,7 +182,7 @@ void offset_influence::add_curved(const influence &a, const grid &from, const gr
   place(a, from, to, offset);
   const double nu = a.bodies().elastic.poisson_ratio, normal = (1.0 - nu) / (2.0 - nu);
   const int columns = fft::whole_packs(to.nx);
-  double *scaled = padded_.data(), *none = scaled + from.count();
+  double *scaled = plane_.kernel(), *none = scaled + from.count();
   std::fill_n(none, from.count(), 0.0);
   // adds factor (row) times a component of what a field causes, itself scaled by rows (null: 1)
   const auto each = [&](const double *field, const double *by_source, bool along, auto &&add) {

@@ -5,9 +5,8 @@
 // With `moves` also from one grid to another that lies anywhere: the patches of wheels move.
 #pragma once
 
-#include <complex>
-
 #include "half_space/influence.hpp"
+#include "numeric/plane_transform.hpp"
 
 namespace railpatch {
 
@@ -44,14 +43,14 @@ class offset_influence {
   size_t bytes() const;
 
  private:
-  using fft = batch_fft<double>;
-  using lines = typename fft::lines;
+  using fft = plane_transform::fft;
+  using lines = plane_transform::lines;
   void make_spectra(const influence &a, const grid &g);
   void make_moved_spectra(const influence &a);
   void place(const influence &a, const grid &from, const grid &to, const double offset[2]);
   void add_layer(const influence &a, const grid &from, const grid &to, const double offset[2],
                  double share, const double *px, const double *py, double *ux, double *uy) const;
-  void transform_kernel(int k);
+  void transform_kernel(int k) { plane_.spectrum_of_kernel(re_[k].data(), im_[k].data()); }
   // the product itself; its result lies in the first columns of the rows returned
   lines transfer(const grid &from, const grid &to, const double *px, const double *py);
   void multiply(lines from, lines to, int stride) const;
@@ -59,10 +58,8 @@ class offset_influence {
   const fft_plans &plans_;
   int plan_ = -1;
   double offset_ = 0, dx_ = 0, dy_ = 0;
-  fft along_x_, along_y_;
-  aligned_buffer<double> padded_, re_[3], im_[3];  // [big_nx][big_ny]
-  aligned_buffer<std::complex<double>> transform_;
-  aligned_buffer<double> lateral_[4], along_[4];
+  plane_transform plane_;
+  aligned_buffer<double> re_[3], im_[3];  // [big_nx][big_ny]
   // of grids that move: size of both, lateral offset, corners of the elements
   int from_[2] = {0, 0}, to_[2] = {0, 0};
   double lateral_offset_ = 0;

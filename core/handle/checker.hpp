@@ -101,6 +101,8 @@ inline bool has_strips(const rp_config &c) {
          (c.distance_shape[0] < 3 || c.distance_shape[1] < 3);
 }
 
+// Viscoelastic bodies.
+void check_viscous(const rp_config &c, checker &check);
 // Shift and transient rolling, and regimes that change.
 void check_regime(const rp_config &c, checker &check);
 // The regime of a step, an rp_regime, and what it may be.

@@ -16,6 +16,7 @@ namespace {
 // of grids of unlike bodies, over Hertz's contact
 constexpr double most_reach = 2.5;
 constexpr double wet_reach = 1.6, farthest_inlet = 4.0;
+constexpr double viscous_reach = 1.42;  // 2^0.5, and a little
 
 slip_velocity_law slip_law_of(const rp_config &c) {
   slip_velocity_law law;
@@ -144,6 +145,7 @@ double spin_offset_of(const rp_config &c, const patch_scene &scene, bool steady)
 patch_scene patch_scene_of(const rp_config &c) {
   patch_scene scene;
   scene.elastic = combine(c.shear_modulus, c.poisson_ratio);
+  scene.viscous = viscous_bodies_of(c);
   scene.friction_coefficient = c.friction_coefficient;
   if (c.friction_points > 0)
     scene.friction_variation =
@@ -197,6 +199,8 @@ patch_scene patch_scene_of(const rp_config &c) {
 double reach_of(const rp_config &c, const patch_scene &scene) {
   // the liquid's inlet, sides and outlet
   if (scene.has_ehl()) return wet_reach;
+  // with the approach given, hard material touches ahead as far as the bodies overlap
+  if (scene.is_viscous()) return c.load == RP_POSITION ? viscous_reach : 1.0;
   const elastic_constants &e = scene.elastic;
   if (scene.tangential != RP_TANGENTIAL_FULL || !is_coupled(e)) return 1.0;
   const double share = atan(most_friction(c, c.friction_coefficient) * std::abs(e.mismatch) /
@@ -306,6 +310,17 @@ single_patch_setup single_patch_of(const rp_config &c, const patch_scene &scene)
 }
 
 }  // namespace
+
+viscous_bodies viscous_bodies_of(const rp_config &c) {
+  viscous_bodies bodies;
+  for (int k = 0; k < 2; ++k) {
+    bodies.shear_modulus[k] = c.shear_modulus[k];
+    bodies.poisson_ratio[k] = c.poisson_ratio[k];
+    bodies.ratio[k] = c.viscoelastic_ratio[k];
+    bodies.relaxation_time[k] = c.relaxation_time[k];
+  }
+  return bodies;
+}
 
 scene scene_of(const rp_config &c) {
   scene made;

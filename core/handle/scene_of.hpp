@@ -28,6 +28,9 @@ struct scene {
 // profile_error or std::bad_alloc.
 scene scene_of(const rp_config &config);
 
+// Of a checked config, or one that is being checked.
+viscous_bodies viscous_bodies_of(const rp_config &config);
+
 struct profile_error {
   const char *field;  // "wheel_left", ...
   const char *reason;

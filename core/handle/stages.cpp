@@ -10,8 +10,9 @@ namespace {
 constexpr const char *stage_names[] = {RP_STAGES(RP_STAGE_NAME)};
 #undef RP_STAGE_NAME
 
-const char *normal_reason(rp_normal_method method) {
-  switch (method) {
+const char *normal_reason(const patch_scene &scene) {
+  if (scene.is_viscous()) return "viscoelastic bodies: Newton's method on the contact area";
+  switch (scene.normal) {
     case RP_NORMAL_HERTZ:
       return "normal = hertz: closed form";
     case RP_NORMAL_KIK_PIOTROWSKI:
@@ -57,6 +58,9 @@ const char *temperature_reason(const patch_scene &scene) {
 
 const char *influence_reason(const patch_scene &scene) {
   const bool on_grid = scene.full_on_grid();
+  if (scene.is_viscous())
+    return on_grid ? "viscoelastic bodies: normal = half_space and tangential = full need it"
+                   : "viscoelastic bodies: normal = half_space needs it";
   if (scene.normal == RP_NORMAL_HALF_SPACE)
     return on_grid ? "normal = half_space and tangential = full need it"
                    : "normal = half_space needs it";
@@ -139,7 +143,7 @@ void describe_driver(const driver &of, rp_stage_info *info) {
   };
   set(RP_STAGE_GEOMETRY, true, of.geometry_reason(), distance);
   set(RP_STAGE_INFLUENCE, influence > 0, influence_reason(scene), influence);
-  set(RP_STAGE_NORMAL, true, normal_reason(scene.normal), normal + solver.normal_bytes());
+  set(RP_STAGE_NORMAL, true, normal_reason(scene), normal + solver.normal_bytes());
   set(RP_STAGE_TANGENTIAL, tangential,
       scene.has_regime ? tangential_reason(scene) : "regime = none", traction);
   set(RP_STAGE_TEMPERATURE, scene.heat.has_value(), temperature_reason(scene),

@@ -391,6 +391,15 @@ static rp_error said(rp_error error, int side, int patch, rp_message *message) {
   return error;
 }
 
+static rp_error check_bodies(const rp_contact &of, rp_message *message) {
+  const rp_config &c = of.handle.config();
+  if (!(c.viscoelastic_ratio[0] > 0 || c.viscoelastic_ratio[1] > 0)) return RP_OK;
+  set_message(message,
+              "viscoelastic_ratio must be 0: viscoelastic bodies are not solved below "
+              "their surface");
+  return RP_ERROR_VALUE;
+}
+
 void rp_default_subsurface(rp_subsurface_config *to) {
   if (!to) return;
   *to = {};
@@ -405,6 +414,7 @@ rp_error rp_create_subsurface(const rp_contact *contact, const rp_subsurface_con
     return RP_ERROR_NULL;
   }
   if (const rp_error error = check_subsurface(*config, message); error != RP_OK) return error;
+  if (const rp_error error = check_bodies(*contact, message); error != RP_OK) return error;
   try {
     *out = new rp_subsurface(*config, contact->handle);
     return RP_OK;
@@ -449,6 +459,7 @@ rp_error rp_stress_at(const rp_contact *contact, int side, int patch, int body,
     return RP_ERROR_NULL;
   }
   if (const rp_error error = check_place(side, patch, body, message); error != RP_OK) return error;
+  if (const rp_error error = check_bodies(*contact, message); error != RP_OK) return error;
   for (size_t k = 0; k < count; ++k) {
     const double *p = points + 3 * k;
     if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && p[2] >= 0 && p[2] <= 1)) {

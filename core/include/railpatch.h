@@ -719,6 +719,16 @@ typedef struct rp_config {
    * docs/fluids.md; 0: it does not dry by that */
   double fluid_drying_time; /* s */
   double fluid_drying_work; /* J/m */
+
+  /* Viscoelastic bodies, of a patch in RP_STEADY_ROLLING with normal = half_space and tangential =
+   * full or none, Coulomb's law, alike in (1-2nu)/G where there are tractions; docs/physics.md has
+   * what else it is refused with. Creep compliance of wheel, rail
+   * (1 + viscoelastic_ratio (1 - exp(-t/relaxation_time)))/shear_modulus. With curvatures and a
+   * line contact elements and capacity are those across the contact of bodies with all time to
+   * yield */
+  double viscoelastic_ratio[2]; /* -, >= 0, flexibility of the second spring over that of the first;
+                                   0: elastic */
+  double relaxation_time[2];    /* s, at constant stress; 0 of elastic bodies, else > 0 */
 } rp_config;
 
 typedef struct rp_input {
@@ -873,9 +883,15 @@ typedef struct rp_patch_result {
    * of the rail's surface, and of the wheel's the approach below it. Shapes along rolling are no
    * part of a profile: z has them */
   double wheel_profile_position[2], rail_profile_position[2];
-  double fluid_power; /* W, the part of friction_power that the shear of the liquid itself takes,
-                         the heat of the film; asperities take the rest. NaN: no liquid in the
-                         scene, or RP_FLUID_REGIMES, whose curves do not say */
+  double fluid_power;   /* W, the part of friction_power that the shear of the liquid itself takes,
+                           the heat of the film; asperities take the rest. NaN: no liquid in the
+                           scene, or RP_FLUID_REGIMES, whose curves do not say */
+  double viscous_power; /* W, that viscoelastic bodies take up and turn into heat, by pressure and
+                           tractions: no part of friction_power. NaN: elastic bodies */
+  double rolling_resistance_moment; /* N m about the lateral axis through the grid's origin (that of
+                                       curvatures): of the pressure, which leans forward, > 0 holds
+                                       the rolling up, whichever way that is; over the rolling
+                                       radius it is the rolling resistance. NaN: elastic bodies */
 } rp_patch_result;
 
 /* One wheel; on a roller see rp_contact_frame. NaN where a patch could not be solved. */

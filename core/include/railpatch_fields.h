@@ -106,7 +106,11 @@
   X(double, rail_profile_position, 2, number, even, kept, alone, NAN, "m",                        \
     "contact reference in the axes of the rail's profile: y, z")                                  \
   X(double, fluid_power, 1, number, even, own, by_share, NAN, "W",                                \
-    "part of the friction power that the liquid's own shear takes")
+    "part of the friction power that the liquid's own shear takes")                               \
+  X(double, viscous_power, 1, number, even, own, alone, NAN, "W",                                 \
+    "power that viscoelastic bodies turn into heat, beside friction")                             \
+  X(double, rolling_resistance_moment, 1, number, even, own, alone, NAN, "N m",                   \
+    "moment of the pressure about the lateral axis, against rolling")
 
 #define RP_SIDE_RESULT_FIELDS(X, O)                                                      \
   X(rp_status, status, 1, status, even, kept, alone, RP_NO_CONTACT, "",                  \
@@ -506,7 +510,11 @@
     "in which the paste's water falls to 1/e; 0: it does not dry by time")                         \
   X(double, fluid_drying_work, 1, number, always, 0, "[]", 0, 1e15, "J/m",                         \
     "of friction on each metre of the circumference, by which the paste's water falls to 1/e; 0: " \
-    "it does not dry by work")
+    "it does not dry by work")                                                                     \
+  X(double, viscoelastic_ratio, 2, number, always, 0, "[]", 0, 1e4, "-",                           \
+    "of viscoelastic bodies: what they yield in time over their elastic strain; 0: elastic")       \
+  X(double, relaxation_time, 2, number, always, 0, "[]", 0, 1e6, "s",                              \
+    "of viscoelastic bodies, at constant stress; 0 of elastic ones")
 
 /* X(type, name, count, role, where, start, bounds, low, high, scale, unit, text), as above and
  * role      place: a number whose size says nothing about how fast things change there

@@ -74,17 +74,20 @@ normal_result normal_solver::solve(problem &s, double *p) {
   result.scale = s.scale;
   result.approach = s.approach;
   result.normal_force = total(p, s.n) * s.g.dx * s.g.dy;
-  const bool bounded_x = s.g.nx > (s.options.strips ? 2 : 0);
-  const bool bounded_y = s.g.ny > (s.options.strips ? 2 : 1);
-  for (int j = 0; j < s.g.ny; ++j)
-    for (int i = 0; i < s.g.nx; ++i) {
-      if (p[j * s.g.nx + i] <= 0) continue;
+  count_contact(s.g, p, s.options.strips, result);
+  return result;
+}
+
+void count_contact(const grid &g, const double *p, bool strips, normal_result &result) {
+  const bool bounded_x = g.nx > (strips ? 2 : 0), bounded_y = g.ny > (strips ? 2 : 1);
+  for (int j = 0; j < g.ny; ++j)
+    for (int i = 0; i < g.nx; ++i) {
+      if (p[j * g.nx + i] <= 0) continue;
       ++result.contact_count;
-      const bool edge_x = bounded_x && (i == 0 || i == s.g.nx - 1);
-      const bool edge_y = bounded_y && (j == 0 || j == s.g.ny - 1);
+      const bool edge_x = bounded_x && (i == 0 || i == g.nx - 1);
+      const bool edge_y = bounded_y && (j == 0 || j == g.ny - 1);
       result.touches_border |= edge_x || edge_y;
     }
-  return result;
 }
 
 void normal_solver::start(problem &s, double *p) {

@@ -39,6 +39,9 @@ struct normal_result {
   int contact_count = 0;
 };
 
+// Elements in contact, and whether they reach the border.
+void count_contact(const grid &g, const double *pressure, bool strips, normal_result &result);
+
 class normal_solver {
  public:
   explicit normal_solver(int max_count);

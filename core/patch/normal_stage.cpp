@@ -51,14 +51,17 @@ void find_size(const grid &g, const row_contact &rows, const double *pressure, d
 
 normal_stage::normal_stage(patch_workspace &shared, int max_nx, int max_ny) : shared_(shared) {
   const patch_scene &scene = shared.scene;
-  if (scene.normal == RP_NORMAL_HALF_SPACE) normal_.emplace(max_nx * max_ny);
+  if (scene.is_viscous())
+    viscous_.emplace(max_nx * max_ny);
+  else if (scene.normal == RP_NORMAL_HALF_SPACE)
+    normal_.emplace(max_nx * max_ny);
   if (takes_rows(scene.normal)) rows_.emplace(scene.normal, scene.modulus(), max_ny);
 }
 
 pressure_outcome normal_stage::solve(const patch_problem &problem, patch_memory &memory) {
-  pressure_outcome found = rows_     ? solve_rows(problem, memory)
-                           : normal_ ? solve_half_space(problem, memory)
-                                     : solve_hertz(problem, memory);
+  pressure_outcome found = rows_                 ? solve_rows(problem, memory)
+                           : normal_ || viscous_ ? solve_half_space(problem, memory)
+                                                 : solve_hertz(problem, memory);
   if (rows_) found.rows = &*rows_;
   if (memory.pressure.size() == 0) {
     found.loaded = found.normal_force > 0;
@@ -85,7 +88,8 @@ pressure_outcome normal_stage::solve_half_space(const patch_problem &problem,
   const double *h =
       shared_.coupled ? shared_.coupled->distance() : memory.undeformed_distance.data();
   const normal_result n =
-      problem.force_given
+      viscous_ ? solve_viscous(problem, options, h, p)
+      : problem.force_given
           ? normal_->with_force(*shared_.influence, g, h, problem.force, options, p, problem.parts)
           : normal_->with_approach(*shared_.influence, g, h, problem.approach, options, p,
                                    problem.parts);
@@ -104,7 +108,18 @@ pressure_outcome normal_stage::solve_half_space(const patch_problem &problem,
   double energy = 0;
   for (int i = 0; i < g.count(); ++i) energy += p[i] * (n.approach - h[i]);
   found.elastic_energy = 0.5 * energy * g.dx * g.dy;
+  if (shared_.viscous)
+    found.viscous_power = problem.rolling_speed * shared_.viscous->normal_loss(p);
   return found;
+}
+
+normal_result normal_stage::solve_viscous(const patch_problem &problem,
+                                          const normal_options &options, const double *h,
+                                          double *p) {
+  viscous_influence &a = *shared_.viscous;
+  return problem.force_given
+             ? viscous_->with_force(a, problem.g, h, problem.force, options, p)
+             : viscous_->with_approach(a, problem.g, h, problem.approach, options, p);
 }
 
 // The fast theories for contact areas of any shape.

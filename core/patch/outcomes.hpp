@@ -15,7 +15,8 @@ struct pressure_outcome : verdict {
   bool loaded = false;  // the bodies touch
   double normal_force = 0, approach = 0, max_pressure = 0, contact_area = 0;
   double elastic_energy = 0, residual = 0;
-  double size[2] = {0, 0};  // m, of the area in contact
+  double size[2] = {0, 0};   // m, of the area in contact
+  double viscous_power = 0;  // W, of viscoelastic bodies
   int iterations = 0;
   int exterior = 0;                   // elements
   const row_contact *rows = nullptr;  // where the theory knows the ends of the rows
@@ -31,6 +32,7 @@ struct traction_outcome : verdict {
   double friction_power = 0;
   double supplied = nan;  // W, by creepages and spin, where steps go on from the last one's
   double plastic_power = nan;
+  double viscous_power = 0;  // W, of viscoelastic bodies
   double elastic_energy = 0, coupling_energy = 0;
   double moment = 0, force[2] = {0, 0};  // of theories without tractions
   double capacity = 0;                   // N, that friction could carry

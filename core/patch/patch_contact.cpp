@@ -134,6 +134,7 @@ void patch_contact::solve(const patch_problem &problem, patch_memory &memory,
   if (memory.curved && memory.px.size())
     t.own = sum_tractions(problem.g, memory.pressure.data(), memory.px.data(), memory.py.data());
   report(scene, problem, n, t, h, wrench, result);
+  if (shared_.viscous) describe_viscous(problem, n, t, wrench, result);
   if (f.found) describe_fluid(f, t.fluid_power, scene.friction_scale, result);
   if (f.found && scene.fluid->model == RP_FLUID_REGIMES)
     result.effective_friction = scene.wet_friction * scene.friction_scale;
@@ -179,6 +180,8 @@ void patch_contact::begin_solve(const patch_problem &problem, patch_memory &memo
     const stage_mark mark = shared_.marks.enter(RP_STAGE_INFLUENCE);
     shared_.influence->set_grid(problem.g);
     if (memory.curved) shared_.influence->set_rows(memory.curved->cosine(), memory.curved->sine());
+    if (shared_.viscous)
+      shared_.viscous->set(problem.g, problem.rolling.direction, problem.rolling_speed);
   }
   if (problem.past && memory.history.has_law()) {
     const stage_mark mark = shared_.marks.enter(RP_STAGE_HISTORY);
@@ -325,7 +328,7 @@ void patch_contact::estimate_error(const patch_problem &problem, const pressure_
   const bool linear = scene.tangential == RP_TANGENTIAL_LINEAR;
   if (result.status != RP_CONVERGED && !(linear && result.status == RP_OUT_OF_RANGE)) return;
   if (scene.line_width > 0 || shared_.coupled || scene.curved || scene.fluid) return;
-  if (scene.slip_by_element || scene.strips) return;
+  if (scene.slip_by_element || scene.strips || scene.is_viscous()) return;
   // no model is fitted to it
   if (scene.normal == RP_NORMAL_KIK_PIOTROWSKI_CORRECTED) return;
   estimated_patch patch{scene.normal, scene.tangential, problem.hertz,

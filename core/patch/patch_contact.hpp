@@ -50,7 +50,10 @@ class patch_contact {
   void set_fluid_supply(const fluid_supply &supply) { shared_.scene.supply = supply; }
   void set_cleaning_work(double value) { shared_.scene.supply.work = value; }
   void set_oxide_water(double value) { shared_.scene.supply.oxide_water = value; }
-  size_t influence_bytes() const { return shared_.influence ? shared_.influence->bytes() : 0; }
+  size_t influence_bytes() const {
+    return (shared_.influence ? shared_.influence->bytes() : 0) +
+           (shared_.viscous ? shared_.viscous->bytes() : 0);
+  }
   size_t coupling_bytes() const { return shared_.coupled ? shared_.coupled->bytes() : 0; }
   size_t history_bytes() const {
     return tangential_.history_bytes() + (shared_.scene.keeps_steps() ? work_bytes() : 0);

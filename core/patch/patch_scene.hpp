@@ -7,6 +7,7 @@
 #include "fluid/mixed.hpp"
 #include "half_space/coupling.hpp"
 #include "half_space/physics.hpp"
+#include "half_space/viscous_influence.hpp"
 #include "numeric/interrupt.hpp"
 #include "railpatch.h"
 #include "tangential/friction_factor.hpp"
@@ -18,6 +19,7 @@ namespace railpatch {
 // Constant over the life of a handle, but for the friction coefficient and its scale.
 struct patch_scene {
   elastic_constants elastic;
+  viscous_bodies viscous;           // of patches in steady rolling
   double friction_coefficient = 0;  // of Coulomb's law, or of dry surfaces
   friction_factor friction_variation;
   double friction_scale = 1.0;   // of the law, in this step
@@ -87,7 +89,12 @@ struct patch_scene {
   }
   // Whether a patch's derivatives can come from its equations (patch_derivative.hpp).
   bool differentiates() const;
-  double modulus() const { return elastic.shear_modulus / (1.0 - elastic.poisson_ratio); }
+  bool is_viscous() const { return has_physics && viscous.any(); }
+  // Viscoelastic bodies' contact is bounded by the one after all time.
+  double modulus() const {
+    const elastic_constants e = is_viscous() ? viscous.relaxed() : elastic;
+    return e.shear_modulus / (1.0 - e.poisson_ratio);
+  }
 };
 
 }  // namespace railpatch

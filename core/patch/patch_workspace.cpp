@@ -11,6 +11,7 @@ patch_workspace::patch_workspace(const patch_scene &of, stage_marks at, const ff
                                  int max_count)
     : scene(of), marks(at) {
   if (scene.needs_influence()) influence.emplace(scene.medium(), plans);
+  if (scene.is_viscous()) viscous.emplace(scene.viscous, *influence, plans);
   if (scene.couples()) {
     std::unique_ptr<coupling_operator> coupling;
     if (scene.curved)

@@ -22,6 +22,7 @@ struct patch_workspace {
   patch_scene scene;
   stage_marks marks;
   std::optional<railpatch::influence> influence;
+  physics_part<viscous_influence> viscous;  // of viscoelastic bodies, in place of the elastic one
   physics_part<coupled_contact> coupled;
   aligned_buffer<double> scratch[2];
   // where friction's work is asked for element by element: N/m^2 over the way of the step, and what

@@ -106,6 +106,14 @@ void report(const patch_scene &scene, const patch_problem &problem, const pressu
   describe_heat(h, result);
 }
 
+void describe_viscous(const patch_problem &problem, const pressure_outcome &n,
+                      const traction_outcome &t, const patch_wrench &wrench,
+                      rp_patch_result &result) {
+  result.viscous_power = n.viscous_power + t.viscous_power;
+  // forward of the origin pressure holds the rolling up, whichever way that is
+  result.rolling_resistance_moment = problem.rolling.direction * wrench.moment[1];
+}
+
 void describe_fluid(const fluid_outcome &f, double power, double scale, rp_patch_result &result) {
   result.central_film_thickness = f.film_thickness;
   result.mean_asperity_share = f.asperity_share;

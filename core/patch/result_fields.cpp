@@ -106,6 +106,7 @@ void set_unloaded(const patch_scene &scene, rp_patch_result &result) {
   RP_PATCH_RESULT_FIELDS(RP_UNLOAD, RP_NONE)
   if (rolling) result.error_estimate[0] = result.error_estimate[1] = 0;
   result.error_estimate[2] = 0;
+  if (scene.is_viscous()) result.viscous_power = result.rolling_resistance_moment = 0;
   if (scene.fluid && scene.fluid->model != RP_FLUID_REGIMES) result.fluid_power = 0;
   if (!scene.heat) return;
   result.max_temperature =

@@ -120,7 +120,7 @@ bool single_patch::pose(const rp_input &in, const patch_memory &m, patch_problem
   problem.force_given = setup_.force_given;
   problem.force = in.normal_force;
   problem.approach = in.approach;
-  if (scene.tangential == RP_TANGENTIAL_NONE) return true;
+  if (scene.tangential == RP_TANGENTIAL_NONE && !scene.is_viscous()) return true;
   problem.place.direction = in.rolling_speed > 0 ? in.direction : 0;
   problem.rolling_speed = in.rolling_speed;
   problem.rolling = motion_of(in);

@@ -38,7 +38,7 @@ tangential_stage::tangential_stage(patch_workspace &shared, const fft_plans &pla
                                  scene.keeps_steps(), rolls_on ? &plans : nullptr, scene.moves});
     // with a prescribed force no creepage is known to start from
     const bool plain = !scene.is_forced() && !scene.law && !scene.keeps_steps() &&
-                       !scene.couples() && !scene.slip_by_element;
+                       !scene.couples() && !scene.slip_by_element && !scene.is_viscous();
     if (plain && coarse_start::serves(max_nx, max_ny))
       coarse_start_.emplace(scene.medium(), plans, max_nx, max_ny);
     bound_ = aligned_buffer<double>(count);
@@ -397,6 +397,8 @@ tangential_result tangential_stage::solve_by_law(const patch_problem &problem,
                                                  const tangential_options &options,
                                                  traction_outcome &found) {
   const grid &g = problem.g;
+  if (has_physics && shared_.viscous)
+    return solve_viscous(problem, rolling, memory, options, found);
   if (!has_physics || !shared_.scene.law)
     return tangential_->solve({*shared_.influence, g, memory.pressure.data(), bound_.data(),
                                rolling, options, memory.fields()});
@@ -412,6 +414,22 @@ tangential_result tangential_stage::solve_by_law(const patch_problem &problem,
   found.plastic = sums.plastic;
   found.ambiguous = sums.ambiguous;
   if (shared_.scene.law->plastic()) found.plastic_power = sums.plastic_work;
+  return t;
+}
+
+// What the bodies take up by the tractions is none of friction's.
+tangential_result tangential_stage::solve_viscous(const patch_problem &problem,
+                                                  const rolling_input &rolling,
+                                                  patch_memory &memory,
+                                                  const tangential_options &options,
+                                                  traction_outcome &found) {
+  viscous_influence &viscous = *shared_.viscous;
+  tangential_result t =
+      tangential_->solve({*shared_.influence, problem.g, memory.pressure.data(), bound_.data(),
+                          rolling, options, memory.fields(), nullptr, nullptr, &viscous});
+  const double loss = viscous.tangential_loss(memory.px.data(), memory.py.data());
+  t.friction -= loss;
+  found.viscous_power = problem.rolling_speed * loss;
   return t;
 }
 
@@ -442,8 +460,11 @@ double tangential_stage::elastic_energy(const patch_problem &problem, patch_memo
     for (auto &u : shared_.scratch) std::fill_n(u.data(), g.count(), 0.0);
     return 0.0;
   }
-  shared_.influence->tangential_product(memory.px.data(), memory.py.data(),
-                                        shared_.scratch[0].data(), shared_.scratch[1].data());
+  double *u[2] = {shared_.scratch[0].data(), shared_.scratch[1].data()};
+  if (shared_.viscous)
+    shared_.viscous->tangential_product(memory.px.data(), memory.py.data(), u[0], u[1]);
+  else
+    shared_.influence->tangential_product(memory.px.data(), memory.py.data(), u[0], u[1]);
   double sum = 0;
   for (int i = 0; i < g.count(); ++i) {
     const auto at = static_cast<size_t>(i);

@@ -71,6 +71,9 @@ class tangential_stage {
   tangential_result solve_by_law(const patch_problem &problem, const rolling_input &rolling,
                                  patch_memory &memory, const tangential_options &options,
                                  traction_outcome &found);
+  tangential_result solve_viscous(const patch_problem &problem, const rolling_input &rolling,
+                                  patch_memory &memory, const tangential_options &options,
+                                  traction_outcome &found);
   void set_bound(const grid &g, const patch_memory &memory, const double *mu);
   double elastic_energy(const patch_problem &problem, patch_memory &memory);
   double greatest_traction(const patch_memory &memory) const;

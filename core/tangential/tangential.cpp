@@ -58,6 +58,42 @@ class tangential_solver::grid_operator final : public rolling_operator {
   int direction_;
 };
 
+// The same of viscoelastic bodies.
+class tangential_solver::viscous_operator final : public rolling_operator {
+ public:
+  viscous_operator(tangential_solver &solver, const tangential_problem &problem)
+      : elements_(solver.elements_),
+        strips_(solver.strips_),
+        a_(*problem.viscous),
+        dx_(problem.g.dx) {
+    strips_.set([&](kernel k, int ahead, int j) { return a_.coefficient(k, ahead, j); }, problem.g,
+                elements_.rows());
+  }
+
+  void product(const double *p, double *s) override {
+    elements_.product(p, s, [&](double *px, double *py, double *sx, double *sy) {
+      a_.rolling_product(px, py, sx, sy);
+    });
+  }
+  void row_matrices(int row, double *bxx, double *byy) const override {
+    strips_.matrices(elements_, row, a_.direction(), bxx, byy);
+  }
+  int common_row(const rolling_problem &) const override { return elements_.common_row(); }
+  double projection_scale(int) const override {
+    return 2.0 / (entry(kernel::xx) + entry(kernel::yy));
+  }
+
+ private:
+  double entry(kernel k) const {
+    return (a_.coefficient(k, 0, 0) - a_.coefficient(k, -1, 0)) / dx_;
+  }
+
+  row_elements &elements_;
+  row_strips &strips_;
+  viscous_influence &a_;
+  double dx_;
+};
+
 // One step of transient rolling or of a shift: s = A p/dq.
 class tangential_solver::step_operator final : public rolling_operator {
  public:
@@ -136,7 +172,11 @@ tangential_result tangential_solver::solve(const tangential_problem &problem) {
                       : newton_->solve(b, rows, problem.options);
   };
   tangential_result result;
-  if (!has_physics || input.regime == motion::steady) {
+  if (has_physics && problem.viscous) {
+    viscous_operator b(*this, problem);
+    result = run(b);
+    take_offset_work(problem, result);
+  } else if (!has_physics || input.regime == motion::steady) {
     grid_operator b(*this, problem);
     result = run(b);
     take_offset_work(problem, result);

@@ -15,6 +15,7 @@
 #include "half_space/influence.hpp"
 #include "half_space/offset_influence.hpp"
 #include "half_space/physics.hpp"
+#include "half_space/viscous_influence.hpp"
 #include "tangential/inelastic_newton.hpp"
 #include "tangential/rolling_newton.hpp"
 #include "tangential/row_strips.hpp"
@@ -81,6 +82,7 @@ struct tangential_problem {
   tangential_fields fields;
   const inelastic_fields *inelastic = nullptr;  // of laws beyond Coulomb's, with their sums
   inelastic_sums *sums = nullptr;
+  viscous_influence *viscous = nullptr;  // of viscoelastic bodies in steady rolling, in place of a
 };
 
 class tangential_solver {
@@ -118,6 +120,7 @@ class tangential_solver {
 
  private:
   class grid_operator;
+  class viscous_operator;
   class step_operator;
   void collect(const tangential_problem &problem);
   void add_history(const tangential_problem &problem);

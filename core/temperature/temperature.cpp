@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "numeric/elementary.hpp"
+#include "numeric/gauss_legendre.hpp"
 #include "numeric/simd.hpp"
 
 namespace railpatch {
@@ -19,15 +20,6 @@ RAILPATCH_DISPATCH void add_shifted(int n, double w, const double *q, double *y)
   RAILPATCH_INDEPENDENT
   for (int i = 0; i < n; ++i) y[i] += w * q[i];
 }
-
-// Gauss-Legendre on (-1, 1) with 16 nodes: the positive half (Abramowitz and Stegun 1964,
-// table 25.4)
-constexpr double node[8] = {0.0950125098376374402, 0.2816035507792589132, 0.4580167776572273863,
-                            0.6178762444026437484, 0.7554044083550030339, 0.8656312023878317439,
-                            0.9445750230732325761, 0.9894009349916499326};
-constexpr double node_weight[8] = {
-    0.1894506104550684963, 0.1826034150449235889, 0.1691565193950025382, 0.1495959888165767321,
-    0.1246289712555338720, 0.0951585116824927848, 0.0622535239386478929, 0.0271524594117540949};
 
 }  // namespace
 
@@ -69,8 +61,10 @@ double levelled(double touched, double since, double depth) {
   for (int panel = 0; panel < 12; ++panel) {
     const double stop = panel < 11 ? begin + 0.5 * (end - begin) : end;
     const double mid = 0.5 * (begin + stop), half = 0.5 * (stop - begin);
-    for (int k = 0; k < 8; ++k)
-      sum += half * node_weight[k] * (term(mid - half * node[k]) + term(mid + half * node[k]));
+    for (int k = 0; k < gauss_legendre::half; ++k)
+      sum +=
+          half * gauss_legendre::weight[k] *
+          (term(mid - half * gauss_legendre::node[k]) + term(mid + half * gauss_legendre::node[k]));
     begin = stop;
   }
   return 2.0 / pi * sum;

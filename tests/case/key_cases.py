@@ -59,6 +59,13 @@ def features(kind: str) -> dict[str, dict[str, Any]]:
         found["flange"] = TWO_AREAS
         found["stored heat"] = STORED
         found["patch rule"] = {**TWO_AREAS, "method__patch_rule": "contact"}
+    if kind == "patch":
+        found["viscoelastic"] = {
+            "geometry": {"curvatures": [1.0, 1.2]},
+            "material__viscoelastic_ratio": 2.0,
+            "material__relaxation_time": 1e-3,
+            "method__normal": "half_space",
+        }
     if kind == "wheelset":
         del found["other side"]
     return {**found, "temperature": ALONE, "warm wheel": HEAT}
@@ -125,6 +132,8 @@ VALUES: dict[str, Any] = {
     "geometry.line_contact_radius": 0.4,
     "geometry.width": 0.1,
     "geometry.undeformed_distance": [[1e-5, 2e-5], [0.0, 1e-5]],
+    "material.viscoelastic_ratio": 1.5,
+    "material.relaxation_time": 2e-3,
     "motion.creepage": [1.3e-3, -5e-4],
     "motion.tangential_force": [-1e4, 1e3],
     "motion.distance": 2e-3,

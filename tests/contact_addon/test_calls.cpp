@@ -290,7 +290,12 @@ TEST_F(Addon, WhatHasNoCounterpartIsRefusedByName) {
       {flag(1970, 1), -99, "P = 1"},
       {flag(1980, 2), -99, "E3"},
       {flag(1974, 3), -99, "F = 3"},
-      {material(1, {.28, .28, 1, 1, 1, 1, 1, 1}), -99, "M = 1"},
+      {[&](basic_contact &c) {
+         material(1, {.28, .28, 1e9, 1e9, 1, 1, 1e-3, 1e-3})(c);
+         c.flag(1972, 2);
+       },
+       -99, "M = 1, viscoelastic bodies, is for steady rolling"},
+      {material(1, {.28, .28, 1e9, 1e9, 1, 0, 1e-3, 1e-3}), -99, "viscoelastic_ratio"},
       {material(2, {.28, .28, 1, 1, 1, 1, 1, 1}), -99, "M = 2"},
       {material(5, {.28, .28, 1e9, 1e9, 2, 1, 1}), -99, "K0 and ALFA"},
       {material(12, {1, 1, 1, 1}), -99, "M2 = 2"},
@@ -468,6 +473,27 @@ TEST_F(Addon, ExtraRigidSlipIsAddedToCreepages) {
     ASSERT_EQ(contact.solve(), 0);
     near(without);
   }
+}
+
+// M = 1: of no second springs as M = 0, of springs that yield at once as bodies of G/(1 + FG).
+TEST_F(Addon, ViscoelasticBodies) {
+  const auto forces_of = [](int m, double shear, double ratio, double time) {
+    static int element = 1;
+    basic_contact contact(element++);
+    int count = m == 1 ? 8 : 4;
+    double values[] = {.28, .28, shear, shear, ratio, ratio, time, time};
+    cntc_setmaterialparameters(&contact.ire, &contact.icp, &m, &count, values);
+    EXPECT_EQ(contact.solve(), 0);
+    return contact.forces();
+  };
+  const auto hard = forces_of(0, 120e9, 0, 0), none = forces_of(1, 120e9, 0, 0.5);
+  for (size_t k = 0; k < 4; ++k) EXPECT_EQ(hard[k], none[k]);
+  const auto soft = forces_of(0, 60e9, 0, 0), slow = forces_of(1, 120e9, 1, 1e-12);
+  // of the order of V VT/DX, and EPS
+  for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(soft[k], slow[k], 1e-4 * 12000) << k;
+  const auto between = forces_of(1, 120e9, 1, 5e-4);
+  EXPECT_GT(std::fabs(between[1] - soft[1]), 10);
+  EXPECT_GT(std::fabs(between[1] - hard[1]), 10);
 }
 
 TEST_F(Addon, UnitsAndSigns) {

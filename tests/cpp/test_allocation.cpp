@@ -317,6 +317,24 @@ TEST(Step, OfUnlikeBodiesAllocatesNothing) {
   }
 }
 
+TEST(Step, OfViscoelasticBodiesAllocatesNothing) {
+  for (const bool force : {false, true}) {
+    rp_config c = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL);
+    c.geometry = RP_CURVATURES;
+    c.curvatures[0] = c.curvatures[1] = 1.0;
+    for (int k = 0; k < 2; ++k) {
+      c.shear_modulus[k] = 1e9;
+      c.viscoelastic_ratio[k] = 2.0;
+      c.relaxation_time[k] = 1e-4;
+      c.force_prescribed[k] = force;
+    }
+    std::vector<rp_input> inputs = patch_inputs();
+    if (force)
+      inputs = {scenes::forced_input(1e3, 0.5, 0.3, 0), scenes::forced_input(2e3, 0.2, 2.0, 0)};
+    EXPECT_EQ(run(c, inputs).allocated, 0);
+  }
+}
+
 TEST(Step, WithAPrescribedForceAllocatesNothing) {
   for (int nodes : {0, 7}) {
     rp_config c = scenes::forced_patch(nodes);

@@ -44,6 +44,8 @@ NOT_THERE |= {
     "effective_friction",
     "fluid_power",
     "oxide_water",
+    "viscous_power",
+    "rolling_resistance_moment",
 }
 
 

@@ -74,6 +74,16 @@ BASIC_READ = [
     ),
     ({"second": "022420", "material": ".28 .28 82000 82000 0 0 35 -1e3"}, "layer.hardening", -1e12),
     ({"second": "022520", "material": ".28 .28 82000 82000 1 1 0"}, "method.tangential", "fastrip"),
+    (
+        {"second": "022120", "material": ".5 .5 82000 82000 2 3 0.2 0.3"},
+        "material.viscoelastic_ratio",
+        [3.0, 2.0],
+    ),
+    (
+        {"second": "022120", "material": ".5 .5 82000 82000 0 3 0.2 0.3"},
+        "material.relaxation_time",
+        [0.3, 0.0],
+    ),
     ({"second": "022620"}, "method.flexibility_blending", "none"),
     ({"second": "022720"}, "method.flexibility_blending", "sliding"),
     (
@@ -107,7 +117,20 @@ BASIC_REFUSED = [
     ({"first": "243100"}, "B = 4 (SDEC)"),
     ({"first": "223100"}, "B = 2 without an ellipse"),
     ({"first": "203010", "motion": "0.05 0.5 0 0"}, "F > 0 with the penetration given"),
-    ({"second": "022120", "material": ".28 .28 82000 82000 1 1 1 1"}, "M = 1 (viscoelastic"),
+    (
+        {"first": "202100", "second": "022120", "material": ".28 .28 82000 82000 1 1 1 1"},
+        "M = 1 (viscoelastic bodies) with T = 2",
+    ),
+    (
+        {
+            "second": "022120",
+            "material": ".28 .28 82000 82000 1 1 1 1",
+            "potcon": "-1",
+            "grid": "24 20 0.5e-3 1e-3 1.2",
+            "distance": "",
+        },
+        "M = 1 (viscoelastic bodies) with an ellipse",
+    ),
     ({"second": "022220", "material": ".28 .28 82000 82000 1 1 1 1"}, "M = 2 (one flexibility"),
     ({"second": "022520", "material": ".28 .28 82000 82000 2 1 0"}, "M = 5 with K0"),
     ({"second": "023020"}, "C3 = 3"),

@@ -131,6 +131,10 @@ void cntc_setmaterialparameters(int *ire, int *icp, int *mdigit, int *count, dou
       d.poisson[k] = params[k];
       d.shear[k] = params[2 + k] * u.pressure();
     }
+    for (int k = 0; m == 1 && k < 2; ++k) {
+      d.flexibility[k] = params[4 + k];
+      d.relaxation[k] = params[6 + k];
+    }
     if (m == 3 || m == 5 || m == 2) {
       const int at = m == 2 ? 5 : 4;
       d.k0 = params[at], d.alpha = params[at + 1], d.beta = params[at + 2];
@@ -142,9 +146,7 @@ void cntc_setmaterialparameters(int *ire, int *icp, int *mdigit, int *count, dou
       d.yield_stress = params[6] >= 1e10 ? 0.0 : yield;
       d.hardening = params[7] / u.volume();
     }
-    p.refuse("M", m == 1   ? "M = 1, viscoelastic bodies, has no counterpart"
-                  : m == 2 ? "M = 2, one flexibility for all directions, has no counterpart"
-                           : "");
+    p.refuse("M", m == 2 ? "M = 2, one flexibility for all directions, has no counterpart" : "");
     p.material = d;
     p.changed = true;
   });

@@ -15,12 +15,26 @@ namespace {
 
 [[noreturn]] void no(const std::string &text, int code = error_other) { throw refusal{code, text}; }
 
+// A body without second spring is elastic, whatever its time.
+void map_viscous(const problem &p, rp_config &c) {
+  const material_data &m = p.material;
+  for (int k = 0; k < 2; ++k) {
+    c.viscoelastic_ratio[k] = m.flexibility[1 - k];
+    c.relaxation_time[k] = m.flexibility[1 - k] > 0 ? m.relaxation[1 - k] : 0.0;
+  }
+  if (!(m.flexibility[0] > 0 || m.flexibility[1] > 0)) return;
+  if (p.wheel_rail()) no("M = 1, viscoelastic bodies, of wheels on rails has no counterpart");
+  if (p.flags.get(flag_tangential) != 3)
+    no("M = 1, viscoelastic bodies, is for steady rolling, T = 3");
+}
+
 void map_bodies(const problem &p, rp_config &c) {
   const material_data &m = p.material;
   for (int k = 0; k < 2; ++k) {
     c.shear_modulus[k] = m.shear[1 - k];
     c.poisson_ratio[k] = m.poisson[1 - k];
   }
+  if (m.method == 1) map_viscous(p, c);
   if (m.method == 4) {
     c.layer_shear_modulus = m.layer_shear;
     c.layer_thickness = m.layer_thickness;
@@ -30,7 +44,8 @@ void map_bodies(const problem &p, rp_config &c) {
   }
   c.tolerance = p.solver.tolerance;
   c.max_iterations = p.solver.max_iterations;
-  c.derivatives = p.flags.get(flag_sensitivity) >= 2 && !p.wheel_rail();
+  const bool viscous = c.viscoelastic_ratio[0] > 0 || c.viscoelastic_ratio[1] > 0;
+  c.derivatives = p.flags.get(flag_sensitivity) >= 2 && !p.wheel_rail() && !viscous;
 }
 
 void map_normal(const problem &p, rp_config &c) {
@@ -222,7 +237,8 @@ void map_grid(const problem &p, mapped_case &out) {
     c.geometry = RP_LINE_CONTACT;
     c.line_contact_radius = 0.5 / e.A1;
     c.width = 2 * e.b;
-    c.normal = RP_NORMAL_HERTZ;
+    const bool viscous = c.viscoelastic_ratio[0] > 0 || c.viscoelastic_ratio[1] > 0;
+    c.normal = viscous ? RP_NORMAL_HALF_SPACE : RP_NORMAL_HERTZ;
     return;
   }
   if (c.normal == RP_NORMAL_HERTZ) {

@@ -49,6 +49,7 @@ from railpatch.case.types import (
     refuse,
     relation,
 )
+from railpatch.case.viscous import check_viscous
 
 # of [motion]: moving keys that are no continuous numbers
 STEPWISE = ("direction", "steps")
@@ -325,6 +326,7 @@ class PatchCase(Table):
                 self._check_of_wheels(),
                 self._check_shape(),
                 self._check_slip(),
+                check_viscous(self),
                 check_asked(self, self.geometry.line_contact_radius is not None),
             )
         )

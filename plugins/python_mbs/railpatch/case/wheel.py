@@ -52,6 +52,7 @@ from railpatch.case.types import (
     refuse,
     relation,
 )
+from railpatch.case.viscous import check_viscous
 from railpatch.profiles import Reading
 from railpatch.profiles.builtin import builtin_profile
 from railpatch.profiles.smooth import MEASURED_WAVELENGTH
@@ -407,7 +408,12 @@ class _WheelCase(Table):
     @model_validator(mode="after")
     def _relations(self) -> _WheelCase:
         refuse(
-            itertools.chain(self._check_physics(), self._check_profiles(), check_asked(self, False))
+            itertools.chain(
+                self._check_physics(),
+                self._check_profiles(),
+                check_viscous(self),
+                check_asked(self, False),
+            )
         )
         return self
 

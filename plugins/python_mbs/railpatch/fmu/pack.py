@@ -19,6 +19,7 @@ from railpatch import _core
 from railpatch.case.load import Scene
 from railpatch.case.patch import PatchCase
 from railpatch.case.to_core import config_of
+from railpatch.case.viscous import is_viscous
 from railpatch.contact import Contact, at_balance
 from railpatch.errors import CaseError
 from railpatch.fmu.choice import chosen, input_conditions, with_patches
@@ -243,6 +244,8 @@ def check_regime(scene: Scene) -> None:
             raise CaseError(f"motion.{key}: given, allowed in an FMU: left out, one regime for all")
     if getattr(motion, "slip_field", None) is not None:
         raise CaseError("motion.slip_field: given, allowed in an FMU: left out, inputs are numbers")
+    if is_viscous(scene.case.material):
+        raise CaseError("material.viscoelastic_ratio: given, allowed in an FMU: 0, elastic bodies")
     regime = getattr(motion, "regime", "none")
     if regime == "shift":
         raise CaseError(

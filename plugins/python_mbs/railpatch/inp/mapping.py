@@ -75,10 +75,10 @@ class Mapping:
             }
         }
         kind = m["M"]
-        if kind in (1, 2):
-            raise self.refuse(
-                f"M = {kind} ({'viscoelastic bodies' if kind == 1 else 'one flexibility'})"
-            )
+        if kind == 1:
+            found["material"] |= self._viscous(m)
+        if kind == 2:
+            raise self.refuse("M = 2 (one flexibility)")
         if kind == 4 and self.tangential:
             layer = {"thickness": MM * m["LAYTHK"]}
             if m["LAYTHK"] > 0:
@@ -89,6 +89,21 @@ class Mapping:
                     layer["plastic_heat_fraction"] = self.blocks["heat"].get("BETAPL", 1.0)
             found["layer"] = layer
         return found
+
+    def _viscous(self, m: dict[str, Any]) -> dict[str, Any]:
+        """Ratios and times of rail and wheel, of basic contacts in steady rolling along x."""
+        if self.case.module == 1:
+            raise self.refuse("M = 1 (viscoelastic bodies) of wheels")
+        if self.digits["T"] != 3:
+            raise self.refuse(f"M = 1 (viscoelastic bodies) with T = {self.digits['T']}")
+        if self.blocks["grid"]["IPOTCN"] < 0:
+            raise self.refuse("M = 1 (viscoelastic bodies) with an ellipse (IPOTCN < 0)")
+        ratio = [m["FG2"], m["FG1"]]
+        if not any(ratio):
+            return {}
+        times = [m["TC2"], m["TC1"]]
+        times = [time if f > 0 else 0.0 for f, time in zip(ratio, times, strict=True)]
+        return {"viscoelastic_ratio": ratio, "relaxation_time": times}
 
     def _method(self) -> dict[str, Any]:
         d, m = self.digits, self.blocks.get("material", {"M": 0})

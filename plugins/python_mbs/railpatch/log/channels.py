@@ -328,7 +328,10 @@ LEFT_OUT = {
         ),
         _IN_FIELDS,
     )
-    | dict.fromkeys(("row_position", "row_angle"), "of a curved reference surface, not logged"),
+    | dict.fromkeys(("row_position", "row_angle"), "of a curved reference surface, not logged")
+    | dict.fromkeys(
+        ("viscous_power", "rolling_resistance_moment"), "of viscoelastic bodies, none of wheels"
+    ),
 }
 
 PATCH_FIELDS = Message(

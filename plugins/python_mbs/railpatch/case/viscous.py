@@ -1,0 +1,87 @@
+"""Viscoelastic bodies: what a case with them needs, and what they are not solved with."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from railpatch.case.common import Material, couples
+from railpatch.case.types import LEFT_OUT, Problems, relation
+
+RATIO, TIME = "material.viscoelastic_ratio", "material.relaxation_time"
+
+
+def is_viscous(material: Material) -> bool:
+    """Whether a body yields in time."""
+    return any(ratio > 0 for ratio in material.viscoelastic_ratio)
+
+
+def yields_unlike(material: Material) -> bool:
+    """Whether what the bodies yield in time moves the surfaces along each other: (1 - 2 nu) f/G of
+    bodies with unlike times, or unlike in it."""
+    parts = [
+        (1 - 2 * nu) * ratio / modulus
+        for nu, ratio, modulus in zip(
+            material.poisson_ratio,
+            material.viscoelastic_ratio,
+            material.shear_modulus,
+            strict=True,
+        )
+    ]
+    limit = 1e-12 * sum(1 / modulus for modulus in material.shear_modulus)
+    times = material.relaxation_time
+    return abs(parts[0] - parts[1]) > limit if times[0] == times[1] else max(parts) > limit
+
+
+def check_viscous(case: Any) -> Problems:
+    """Of any kind of case."""
+    material = case.material
+    for k, (ratio, time) in enumerate(
+        zip(material.viscoelastic_ratio, material.relaxation_time, strict=True)
+    ):
+        if ratio > 0 and not time > 0:
+            yield relation(f"{TIME}[{k}]", time, f"> 0 with {RATIO}[{k}] > 0")
+        if time > 0 and not ratio > 0:
+            yield relation(f"{TIME}[{k}]", time, f"0 with {RATIO}[{k}] = 0: an elastic body")
+    if not is_viscous(material):
+        return
+    where = f"with {RATIO}"
+    if case.kind != "patch":
+        yield relation("kind", repr(case.kind), f"'patch' {where}")
+        return
+    if case.geometry.semi_axes is not None:
+        allowed = f"{LEFT_OUT} {where}, they are those of elastic bodies: give curvatures"
+        yield relation("geometry.semi_axes", str(case.geometry.semi_axes), allowed)
+    yield from _check_method(case, where)
+    for name in ("layer", "temperature", "fluid", "subsurface", "damage"):
+        if getattr(case, name, None) is not None:
+            yield relation(name, "given", f"{LEFT_OUT} {where}")
+    if case.friction is not None and case.friction.law != "coulomb":
+        yield relation("friction.law", repr(case.friction.law), f"'coulomb' {where}")
+    if case.motion.slip_field is not None:
+        yield relation("motion.slip_field", "given", f"{LEFT_OUT} {where}")
+    if case.has_tangential and (couples(material) or yields_unlike(material)):
+        yield relation(
+            RATIO,
+            str(material.viscoelastic_ratio),
+            "with tangential = 'full': bodies with equal (1-2nu)/G, and of equal ratio and time "
+            "but where poisson_ratio is 0.5",
+        )
+
+
+def _check_method(case: Any, where: str) -> Problems:
+    method, motion = case.method, case.motion
+    if motion.regime != "steady_rolling" or motion.changes:
+        shown = repr(motion.regime)
+        allowed = f"'steady_rolling' for all steps {where}: the history is the line ahead"
+        yield relation("motion.regime", shown, allowed)
+    if method.normal != "half_space":
+        yield relation("method.normal", repr(method.normal), f"'half_space' {where}")
+    if method.tangential not in ("full", "none"):
+        yield relation("method.tangential", repr(method.tangential), f"'full', 'none' {where}")
+    if case.grid is not None and case.grid.fitted is not None:
+        yield relation("grid.fitted", str(case.grid.fitted), f"{LEFT_OUT} {where}")
+    if method.derivatives:
+        yield relation("method.derivatives", "True", f"False {where}")
+    if method.accuracy is not None:
+        shown = f"{LEFT_OUT} {where}, which has no error estimate: give 'grid'"
+        yield relation("method.accuracy", method.accuracy, shown)
