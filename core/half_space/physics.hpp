@@ -1,7 +1,7 @@
 // Whether this build holds more than steady rolling of like bodies with Coulomb friction: laws
-// beyond Coulomb's, layers that yield, shift and transient rolling, temperature, unlike bodies
-// (build option RAILPATCH_PHYSICS). The build without them serves to show that scenes that do not
-// use them do not pay for them.
+// beyond Coulomb's, layers that yield, shift and transient rolling, temperature, unlike and
+// viscoelastic bodies (build option RAILPATCH_PHYSICS). The build without them serves to show that
+// scenes that do not use them do not pay for them.
 #pragma once
 
 #include <optional>

@@ -18,6 +18,8 @@ using std::numbers::pi;
 constexpr double end_of_memory = 40.0;
 // halvings of panels towards an edge
 constexpr int halvings = 20;
+// of the elastic part, that bodies yield along a grid which they cross as good as elastic ones
+constexpr double little = 2.0;
 
 }  // namespace
 
@@ -301,18 +303,18 @@ void viscous_influence::along_rows(const unsigned char *inside, F &&f) const {
 }
 
 void viscous_influence::normal_inverse(const unsigned char *inside, double *u, double *p) {
-  // ahead of the first element a row goes on as it is as far as the bodies yield within the grid,
-  // and ends where they are as good as elastic
-  const double much = 0.25 * grid_.nx * yielding_ * (1.0 - decay_), share = much / (1.0 + much);
+  // of the elastic part, that bodies yield from one element to the next
+  const double yields = yielding_ * (1.0 - decay_);
+  if (yields * grid_.nx < little) return elastic_.normal_inverse(u, p);
   // each from the one ahead as it was, which is kept as it goes
   double ahead = 0;
   along_rows(inside, [&](int at, int next) {
     const double here = u[at];
-    u[at] -= decay_ * (next >= 0 ? ahead : share * here);
+    u[at] -= next >= 0 ? decay_ * ahead : 0.0;
     ahead = here;
   });
   elastic_.normal_inverse(u, p);
-  const double scale = 1.0 / (1.0 + yielding_ * (1.0 - decay_));
+  const double scale = 1.0 / (1.0 + yields);
   along_rows(inside, [&](int at, int next) {
     p[at] = scale * (p[at] + (next >= 0 ? decay_ * p[next] : 0.0));
   });

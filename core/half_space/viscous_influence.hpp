@@ -55,8 +55,9 @@ class viscous_influence {
   // u = A p of the normal direction, [ny][nx].
   void normal_product(const double *pressure, double *displacement);
   // Approximate inverse of normal_product from and to the elements that are marked: along each row
-  // u - L du/dx is an elastic displacement by (1 + f) p - L dp/dx, with p zero ahead; the elastic
-  // part by its circulant. displacement is used up.
+  // u - L du/dx is an elastic displacement by (1 + f) p - L dp/dx, with u and p zero ahead; the
+  // elastic part by its circulant, alone where little yields along the grid. displacement is used
+  // up.
   void normal_inverse(const unsigned char *inside, double *displacement, double *pressure);
   // (u_x, u_y) = A (p_x, p_y).
   void tangential_product(const double *px, const double *py, double *ux, double *uy);

@@ -14,13 +14,13 @@ namespace railpatch {
 void report(const patch_scene &scene, const patch_problem &problem, const pressure_outcome &n,
             const traction_outcome &t, const heat_outcome &h, const patch_wrench &wrench,
             rp_patch_result &result);
-// A problem whose bodies turned out not to touch.
-// What the liquid is in it; scale: of the friction law in this step.
-// Of viscoelastic bodies.
+// What viscoelastic bodies add to it.
 void describe_viscous(const patch_problem &problem, const pressure_outcome &n,
                       const traction_outcome &t, const patch_wrench &wrench,
                       rp_patch_result &result);
+// What the liquid is in it; scale: of the friction law in this step.
 void describe_fluid(const fluid_outcome &f, double power, double scale, rp_patch_result &result);
+// A problem whose bodies turned out not to touch.
 void report_unloaded(const patch_scene &scene, const patch_problem &problem,
                      const pressure_outcome &n, const heat_outcome &h, rp_patch_result &result);
 // Bodies that are apart by their approach: no problem was there to solve.

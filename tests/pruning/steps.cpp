@@ -90,6 +90,14 @@ void try_physics() {
   try_to_create("layer_yield_stress", [](rp_config &c) { c.layer_yield_stress = 1e8; });
   try_to_create("temperature", [](rp_config &c) { c.temperature = 1; });
   try_to_create("shear_modulus", [](rp_config &c) { c.shear_modulus[1] = 1e9; });
+  try_to_create("viscoelastic_ratio", [](rp_config &c) {
+    c.geometry = RP_CURVATURES;
+    c.curvatures[0] = c.curvatures[1] = 1.0;
+    for (int k = 0; k < 2; ++k) {
+      c.viscoelastic_ratio[k] = 1.0;
+      c.relaxation_time[k] = 1e-3;
+    }
+  });
 }
 
 }  // namespace
