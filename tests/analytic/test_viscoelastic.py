@@ -100,35 +100,84 @@ def hunter(load: float, length: float) -> tuple[float, float, float]:
     return (a, *of(a)[1:])
 
 
+def by_edges(load: float, half: float, size: float) -> float:
+    """N m: what elements of a size (m) leave open of the moment, and of the power times radius over
+    speed, of a load (N) on a half width (m).
+
+    An edge of contact lies anywhere within an element: by (size/2 half)^2 of load times half width
+    the load's middle is off. The power, by central differences of displacements, has beside it the
+    pressure of each edge's last element times the gap at the next: with the edge s before and t
+    behind their centres 0.42 s^(1/2) t^(3/2)/half^2 of the same after Hertz, 0.14 (size/half)^2 at
+    most. Both together are a half (size/half)^2.
+    """
+    return 0.5 * load * size**2 / half
+
+
 @pytest.mark.parametrize("time", TIMES)
 def test_rolling_resistance_of_a_cylinder(time: float) -> None:
-    """Over Deborah numbers V tau/a of 0.05 to 100; the edges lie somewhere within an element, so
-    the error falls with its size."""
+    """Over Deborah numbers V tau/a of 0.05 to 100, with errors of second order."""
     half, _, turn = hunter(FORCE / WIDTH, SPEED * time)
-    for elements, within in ((40, 2e-2), (160, 5e-3)):
+    for elements in (40, 160):
         found = patch_of(cylinder(rubber(time), elements), fields=True)
-        assert found["rolling_resistance_moment"] == pytest.approx(WIDTH * turn, rel=within)
-        power = SPEED * WIDTH * turn / RADIUS
-        assert found["viscous_power"] == pytest.approx(power, rel=within)
         size = np.diff(np.unique(found["x"]))[0]
+        within = by_edges(FORCE, half, size)
+        assert found["rolling_resistance_moment"] == pytest.approx(WIDTH * turn, abs=within / 2)
+        lost = found["viscous_power"] * RADIUS / SPEED
+        assert lost == pytest.approx(WIDTH * turn, abs=within)
+        # one element at each edge
         assert found["contact_size"][0] == pytest.approx(2 * half, abs=2 * size)
 
 
+def heat_of_dashpots(pressure: Array, size: float, length: float) -> float:
+    """W/m of elements' pressure (Pa) on a line: traction times rate of the springs beside them.
+
+    Of the wave k the second springs yield v = f A p/(1 + (k L)^2)^(1/2) in length, with A =
+    2 (1 - nu)/(G k) of both bodies (Johnson 1985, Contact Mechanics, 13.3), and the dashpots, L v
+    k/(f A) each, take V L k^2 |v|^2/(f A). Gauss-Legendre on panels of the wave as long as the
+    grid, and shorter ones about 1/L; beyond 30 waves an element all but nothing is left.
+    """
+    edges = np.linspace(0.0, 60 * np.pi / size, 30 * pressure.size + 1)
+    edges = np.union1d(edges, np.geomspace(0.01, 100.0, 40) / length)
+    node, weight = np.polynomial.legendre.leggauss(6)
+    low, high = edges[:-1, None], edges[1:, None]
+    k = ((low + high) / 2 + (high - low) / 2 * node).ravel()
+    places = size * np.arange(pressure.size)
+    waves = np.exp(-1j * np.outer(k, places)) @ pressure * size * np.sinc(k * size / 2 / np.pi)
+    flexibility = RATIO * 2 * (1 - POISSON) / SHEAR
+    lost = flexibility * length * k / (1 + (k * length) ** 2) * np.abs(waves) ** 2
+    return SPEED / np.pi * float(((high - low) / 2 * weight).ravel() @ lost)
+
+
+@pytest.mark.parametrize("time", TIMES)
+def test_resistance_does_the_work_that_dashpots_turn_into_heat(time: float) -> None:
+    half = hunter(FORCE / WIDTH, SPEED * time)[0]
+    for elements in (40, 160):
+        found = patch_of(cylinder(rubber(time), elements), fields=True)
+        size = np.diff(np.unique(found["x"]))[0]
+        heat = WIDTH * heat_of_dashpots(found["pressure"].ravel(), size, SPEED * time)
+        within = by_edges(FORCE, half, size) * SPEED / RADIUS
+        assert found["viscous_power"] == pytest.approx(heat, abs=within)
+        work = found["rolling_resistance_moment"] * SPEED / RADIUS
+        assert work == pytest.approx(heat, abs=within)
+
+
 def test_the_resistance_has_its_peak_between() -> None:
-    """At V tau of about a, after Hunter, and nothing at either end."""
-    turns = [hunter(FORCE / WIDTH, SPEED * time)[2] for time in np.geomspace(1e-7, 1e2, 200)]
+    """At V tau of about a, after Hunter, and as good as nothing at either end: by L/a = 1e-6 and
+    a/L = 1e-8."""
+    turns = np.array([hunter(FORCE / WIDTH, SPEED * time)[2] for time in TIMES])
     found = [patch_of(cylinder(rubber(time), 80))["rolling_resistance_moment"] for time in TIMES]
-    assert max(found) < 1.01 * WIDTH * max(turns)
-    assert max(found) > 0.95 * WIDTH * max(turns)
+    assert (np.sign(np.diff(found)) == np.sign(np.diff(turns))).all()
+    top = int(np.argmax(found))
+    assert 0.3 < SPEED * TIMES[top] / hunter(FORCE / WIDTH, SPEED * TIMES[top])[0] < 5
     for time in (1e-9, 1e5):
         end = patch_of(cylinder(rubber(time), 80))["rolling_resistance_moment"]
-        assert end < 1e-4 * max(found)
+        assert abs(end) < 1e-5 * max(found)
 
 
 @pytest.mark.parametrize("direction", [1, -1])
 def test_slow_and_fast_rolling_are_elastic(direction: int) -> None:
-    """G/(1 + f) and G, by the elastic solvers on the same grid. What is left is of the order of L
-    over the element, and of the contact over L."""
+    """G/(1 + f) and G, by the elastic solvers on the same grid. What is left is L over the element,
+    1e-9, of slow and f (a/L) ln(L/a) = 7e-8 of fast rolling."""
     motion = ball({})["motion"] | {"direction": direction}
     for time, shear in ((1e-13, SHEAR / (1 + RATIO)), (1e6, SHEAR)):
         soft = patch_of(ball(rubber(time), motion=motion))
@@ -257,6 +306,13 @@ def test_contact_friction_and_power_by_dense_sums() -> None:
 
     area = dx * dy
     pressed = area * p.ravel() @ rate(0) @ p.ravel()
+    # the resistance's work but for the pressure of the edges' last elements times the gap beside
+    gap = error.reshape(ny, nx)
+    beside = SPEED * area * (p[:, 1:-1] * (gap[:, :-2] - gap[:, 2:])).sum() / (2 * dx)
+    resisted = 2 * 5.0 * SPEED * patch["rolling_resistance_moment"]
+    assert pressed == pytest.approx(resisted + beside, rel=1e-8)
+    half = (touching.reshape(ny, nx).any(axis=0)).sum() * dx / 2
+    assert abs(beside) < 2 * 5.0 * SPEED * by_edges(100.0, half, dx)
     pulled = area * (px @ rate(1) @ px + px @ rate(3) @ py + py @ rate(3) @ px + py @ rate(2) @ py)
     assert patch["viscous_power"] == pytest.approx(pressed + pulled, rel=1e-8)
     supplied = -SPEED * area * (px @ rigid[0] + py @ rigid[1])
@@ -267,22 +323,24 @@ def test_contact_friction_and_power_by_dense_sums() -> None:
 
 
 def test_power_balances() -> None:
-    """The pressure's part is the resistance times the speed, creep power friction's and the
-    tractions' part: in the limit of small elements."""
-    for elements, within in ((16, 2e-2), (48, 4e-3)):
+    """The pressure's part is the resistance times the speed but for the edges, creep power that of
+    friction and the tractions' part."""
+    for elements in (16, 48):
         case = round_ball(rubber(8e-4), elements)
         del case["method"]["tolerance"]
         rolling = patch_of(case)
         case["method"]["tangential"] = "none"
         del case["friction"], case["motion"]["creepage"], case["motion"]["spin_creepage"]
         del case["method"]["spin_offset"]
-        free = patch_of(case)
-        power = SPEED * free["rolling_resistance_moment"] * 2 * 5.0
-        assert free["viscous_power"] == pytest.approx(power, rel=within)
+        free = patch_of(case, fields=True)
+        half, size = free["contact_size"][0] / 2, np.diff(np.unique(free["x"]))[0]
+        power = 2 * 5.0 * SPEED * free["rolling_resistance_moment"]
+        within = 2 * 5.0 * SPEED * by_edges(100.0, half, size)
+        assert free["viscous_power"] == pytest.approx(power, abs=within)
         # with nu = 0.5 tractions leave the pressure alone
         by_tractions = rolling["viscous_power"] - free["viscous_power"]
         taken = rolling["friction_power"] + by_tractions
-        assert rolling["creep_power"] == pytest.approx(taken, rel=1e-4)
+        assert rolling["creep_power"] == pytest.approx(taken, rel=1e-9)
 
 
 def test_rolling_back_is_the_mirror() -> None:
