@@ -204,7 +204,10 @@ double extent(const double *values, int count) {
 
 uint32_t warnings_of_case(const rp_config &config) {
   bool soft = false, odd = false, wide = false;
-  for (double modulus : config.shear_modulus) soft = soft || outside(modulus, shear_modulus_range);
+  // viscoelastic ones are rubber as a rule
+  for (int body = 0; body < 2; ++body)
+    soft = soft || (!(config.viscoelastic_ratio[body] > 0) &&
+                    outside(config.shear_modulus[body], shear_modulus_range));
   const double play = config.gauge + config.gauge_widening - config.flange_back_distance;
   for (int side = 0; side < 2; ++side) {
     const rp_profile &profile = config.wheel[side];

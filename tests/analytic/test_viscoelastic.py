@@ -72,6 +72,9 @@ def round_ball(material: dict[str, Any], elements: int) -> dict[str, Any]:
 def patch_of(case: dict[str, Any], *, fields: bool = False) -> Any:
     result = railpatch.solve(case, fields=fields)
     assert result.good, result.reason
+    if any(ratio > 0 for ratio in np.ravel(case["material"].get("viscoelastic_ratio", 0))):
+        # rubber is soft
+        assert not any("shear_modulus" in text for text in result.warnings)
     return result
 
 
