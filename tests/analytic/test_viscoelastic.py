@@ -72,7 +72,7 @@ def round_ball(material: dict[str, Any], elements: int) -> dict[str, Any]:
 def patch_of(case: dict[str, Any], *, fields: bool = False) -> Any:
     result = railpatch.solve(case, fields=fields)
     assert result.good, result.reason
-    if any(ratio > 0 for ratio in np.ravel(case["material"].get("viscoelastic_ratio", 0))):
+    if all(ratio > 0 for ratio in np.ravel(case["material"].get("viscoelastic_ratio", 0))):
         # rubber is soft
         assert not any("shear_modulus" in text for text in result.warnings)
     return result
@@ -180,13 +180,16 @@ def test_the_resistance_has_its_peak_between() -> None:
 @pytest.mark.parametrize("direction", [1, -1])
 def test_slow_and_fast_rolling_are_elastic(direction: int) -> None:
     """G/(1 + f) and G, by the elastic solvers on the same grid. What is left is L over the element,
-    1e-9, of slow and f (a/L) ln(L/a) = 7e-8 of fast rolling."""
+    1e-9, of slow and f (a/L) ln(L/a) = 7e-8 of fast rolling; the spin moment, in which most
+    tractions cancel, in terms of a force at the arm of an element."""
     motion = ball({})["motion"] | {"direction": direction}
     for time, shear in ((1e-13, SHEAR / (1 + RATIO)), (1e6, SHEAR)):
         soft = patch_of(ball(rubber(time), motion=motion))
         hard = patch_of(ball(rubber(0.0, shear=shear), motion=motion))
-        for name in ("creep_force", "normal_force", "max_pressure", "approach", "spin_moment"):
+        for name in ("creep_force", "normal_force", "max_pressure", "approach"):
             assert soft[name] == pytest.approx(hard[name], rel=2e-7), (name, time)
+        arm = 2e-7 * np.hypot(*hard["creep_force"]) * DX
+        assert soft["spin_moment"] == pytest.approx(hard["spin_moment"], abs=arm)
         for division in ("stick", "slip"):
             assert soft["elements"][division] == hard["elements"][division]
         assert abs(soft["viscous_power"]) < 1e-6 * hard["friction_power"]

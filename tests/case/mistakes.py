@@ -35,7 +35,7 @@ Cases without a mistake, numbered and seeded (`tests/case/correct.py`), are solv
 
 | kind | cases | of them |
 |---|---|---|
-| `patch` | 123 | methods, regimes, laws, layers, shapes and pairs of these; loads, radii, creepages and speeds by chance; examples of the documentation |
+| `patch` | 124 | methods, regimes, laws, layers, shapes and pairs of these; loads, radii, creepages and speeds by chance; examples of the documentation |
 | `wheel_rail` | 32 | profiles, loads, speeds and positions by chance, on rails and rollers |
 | `wheelset` | 131 | the same in balance, in curves, on flats, joints and springs |
 | all commands | 7 | the packaged scenes with `--strict`: `tests/case/test_warnings.py` |
