@@ -129,6 +129,14 @@ std::vector<scene> patches() {
   c = full;
   c.shear_modulus[0] *= 0.5;
   add("unlike bodies", c);
+  c = full;
+  c.geometry = RP_CURVATURES;
+  c.curvatures[0] = c.curvatures[1] = 1.0;
+  for (int k = 0; k < 2; ++k) {
+    c.viscoelastic_ratio[k] = 2.0;
+    c.relaxation_time[k] = 1e-4;
+  }
+  add("viscoelastic bodies", c);
   add("temperature", scenes::heated_patch(RP_STEADY_ROLLING));
   add("transient with temperature", scenes::heated_patch(RP_TRANSIENT_ROLLING));
   return all;
