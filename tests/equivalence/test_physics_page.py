@@ -15,6 +15,7 @@ CASES = [
     ("Regimes", {"history"}),
     ("Regimes", {"history"}),
     ("Unlike bodies", {"coupling"}),
+    ("Viscoelastic bodies", set()),
     ("Third-body layer", {"plasticity"}),
     ("Friction", set()),
     ("Temperature", {"temperature"}),

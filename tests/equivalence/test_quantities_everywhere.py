@@ -30,10 +30,12 @@ def rows() -> dict[str, list[str]]:
 
 
 def test_all_are_listed() -> None:
-    """Members that the results have had since the wear number, in the order of the lists."""
+    """Members that the results have had since the wear number, in the order of the lists, but for
+    those of viscoelastic bodies, which are in no run of wheels."""
+    of_patches = {"viscous_power", "rolling_resistance_moment"}
     for level, first in (("patch", "wear_number"), ("side", "wear_number"), ("result", "conicity")):
         names = list(_core.QUANTITIES[level])
-        assert set(names[names.index(first) :]) <= set(rows())
+        assert set(names[names.index(first) :]) - of_patches <= set(rows())
 
 
 @pytest.mark.parametrize("name", rows())
