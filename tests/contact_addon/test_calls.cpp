@@ -486,12 +486,12 @@ TEST_F(Addon, ViscoelasticBodies) {
     EXPECT_EQ(contact.solve(), 0);
     return contact.forces();
   };
-  const auto hard = forces_of(0, 120e9, 0, 0), none = forces_of(1, 120e9, 0, 0.5);
+  const auto hard = forces_of(0, 320e9, 0, 0), none = forces_of(1, 320e9, 0, 0.5);
   for (size_t k = 0; k < 4; ++k) EXPECT_EQ(hard[k], none[k]);
-  const auto soft = forces_of(0, 60e9, 0, 0), slow = forces_of(1, 120e9, 1, 1e-12);
+  const auto soft = forces_of(0, 160e9, 0, 0), slow = forces_of(1, 320e9, 1, 1e-12);
   // of the order of V VT/DX, and EPS
   for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(soft[k], slow[k], 1e-4 * 12000) << k;
-  const auto between = forces_of(1, 120e9, 1, 5e-4);
+  const auto between = forces_of(1, 320e9, 1, 5e-4);
   EXPECT_GT(std::fabs(between[1] - soft[1]), 10);
   EXPECT_GT(std::fabs(between[1] - hard[1]), 10);
 }
