@@ -553,6 +553,55 @@ TEST_F(Checks, Distances) {
   });
 }
 
+TEST_F(Checks, ViscoelasticBodies) {
+  base.geometry = RP_CURVATURES;
+  base.curvatures[0] = base.curvatures[1] = 1.0;
+  for (int k = 0; k < 2; ++k) {
+    base.viscoelastic_ratio[k] = 2.0;
+    base.relaxation_time[k] = 1e-3;
+  }
+  accepts();
+  accepts([](rp_config &c) { c.tangential = RP_TANGENTIAL_NONE; });
+  for (double wrong : {-1e-9, 1.0001e4, std::nan("")})
+    refuses("viscoelastic_ratio[0] is", [&](rp_config &c) { c.viscoelastic_ratio[0] = wrong; });
+  for (int k = 0; k < 2; ++k) {
+    const std::string time = "relaxation_time[" + std::to_string(k) + "] must be ";
+    refuses((time + "> 0").c_str(), [k](rp_config &c) { c.relaxation_time[k] = 0; });
+    refuses((time + "0 with").c_str(), [k](rp_config &c) { c.viscoelastic_ratio[k] = 0; });
+  }
+  refuses("semi_axes are those of elastic bodies", [](rp_config &c) {
+    c.geometry = RP_SEMI_AXES;
+    c.semi_axes[0] = c.semi_axes[1] = 5e-3;
+  });
+  const std::pair<const char *, change> rules[] = {
+      {"needs regime = steady_rolling", [](rp_config &c) { c.regime = RP_SHIFT; }},
+      {"needs regime = steady_rolling", [](rp_config &c) { c.regime_changes = 1; }},
+      {"needs normal = half_space", [](rp_config &c) { c.normal = RP_NORMAL_HERTZ; }},
+      {"needs tangential = full", [](rp_config &c) { c.tangential = RP_TANGENTIAL_FASTSIM; }},
+      {"no fitted rows", [](rp_config &c) { c.fitted[0] = c.fitted[1] = 8; }},
+      {"temperature must be 0", [](rp_config &c) { c.temperature = 1; }},
+      {"accuracy must be 0", [](rp_config &c) { c.accuracy = 0.01; }},
+      {"derivatives must be 0", [](rp_config &c) { c.derivatives = 1; }},
+      {"bodies with equal (1-2nu)/G", [](rp_config &c) { c.viscoelastic_ratio[1] = 1.0; }},
+      {"bodies with equal (1-2nu)/G", [](rp_config &c) { c.shear_modulus[1] *= 0.5; }},
+  };
+  for (const auto &[words, spoil] : rules) refuses(words, spoil);
+  refuses("layer_thickness must be 0", [](rp_config &c) {
+    c.layer_thickness = 1e-4;
+    c.layer_shear_modulus = 1e9;
+  });
+  refuses("friction_law must be coulomb", [](rp_config &c) {
+    c.friction_law = RP_SLIP_VELOCITY;
+    c.friction_kinetic = 0.2;
+    c.friction_amplitude[0] = 0.1;
+  });
+  base = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+  refuses("viscoelastic_ratio must be 0 but with kind = patch", [](rp_config &c) {
+    c.viscoelastic_ratio[0] = 1.0;
+    c.relaxation_time[0] = 1e-3;
+  });
+}
+
 // --- friction's most, inputs and directions ------------------------------------------------------
 
 TEST_F(Checks, MostFriction) {
