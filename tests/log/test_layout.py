@@ -14,6 +14,7 @@ from railpatch.command.cli import cli
 from railpatch.layout import KINDS, Curve, layout, tabs_of, topics_of
 from railpatch.log import read_run
 from railpatch.log.channels import WELL_KNOWN, channel, vehicle_channels
+from railpatch.log.scene import turning
 
 
 def invoke(*arguments: object):
@@ -113,9 +114,25 @@ def test_labels_have_the_tables_units():
     assert Curve("/left/contact", "patches[0].max_pressure", "p").label == "p [Pa]"
     assert Curve("/left/contact", "patches[0].creepage[1]", "y").label == "y"
     assert Curve("/rig/balance", "evaluations", "n").label == "n"
-    for curves in (plot for tab in tabs_of("vehicle", 2) for plot in tab.plots.values()):
-        # one axis has one unit
-        assert len({curve.unit for curve in curves}) == 1
+    # of a list whose numbers have units of their own
+    assert Curve("/rig/balance", "residuals[0]", "m").label == "m [N m]"
+    assert Curve("/rig/balance", "residuals[1]", "f").label == "f [N]"
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_one_axis_has_one_unit(kind):
+    for curves in (plot for tab in tabs_of(kind, 2) for plot in tab.plots.values()):
+        [shown] = {curve.unit for curve in curves}
+        assert "," not in shown
+
+
+def test_marks_lie_on_both_faces_of_a_disc():
+    """Not beside it, where a profile is wide; nor in it, where they would not be seen."""
+    curve = np.array([[-0.07, 0.49], [-0.03, 0.47], [0.0, 0.46], [0.06, 0.455]])
+    [marks] = turning("wheel", "wheel", curve, dict.fromkeys("rgba", 1.0))["lines"]
+    places = np.array([[point[axis] for axis in "xyz"] for point in marks["points"]])
+    assert set(places[:, 1]) == {-marks["thickness"], marks["thickness"]}
+    assert np.hypot(places[:, 0], places[:, 2]) == pytest.approx(0.46)
 
 
 @pytest.mark.parametrize(

@@ -3,13 +3,15 @@
 //
 // node screenshot.mjs MODULES CHROMIUM RUN.mcap LAYOUT.json TIME_S PICTURE.png
 
-import { createReadStream, readFileSync, statSync } from "node:fs";
+import { createReadStream, readFileSync, statSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { createRequire } from "node:module";
 import path from "node:path";
 
-const PLOTS_MS = 15_000;
-const TAB_MS = 6_000;
+// how long a state is waited for: on a busy computer the viewer's 30 MB alone take minutes
+const LIMIT_MS = 900_000;
+// a picture is taken once two, this far apart, are the same
+const STILL_MS = 3_000;
 const [modules, browserPath, run, layout, time, picture] = process.argv.slice(2);
 const here = import.meta.dirname ?? path.dirname(new URL(import.meta.url).pathname);
 const require = createRequire(path.resolve(modules, "driver.js"));
@@ -54,9 +56,29 @@ const browser = await puppeteer.launch({
   // drawn by the processor: there need be no graphics card
   args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
   defaultViewport: { width: 1920, height: 1080 },
+  timeout: LIMIT_MS,
+  protocolTimeout: LIMIT_MS,
 });
+
+// plots fill in while the log is read: saves the page once it has come to rest
+async function photograph(page, file) {
+  const end = Date.now() + LIMIT_MS;
+  let before = null;
+  for (;;) {
+    const now = Buffer.from(await page.screenshot());
+    if (before?.equals(now)) {
+      writeFileSync(file, now);
+      return;
+    }
+    if (Date.now() > end) throw new Error(`${file}: the page does not come to rest`);
+    before = now;
+    await new Promise((done) => setTimeout(done, STILL_MS));
+  }
+}
+
 try {
   const page = await browser.newPage();
+  page.setDefaultTimeout(LIMIT_MS);
   const problems = new Set();
   page.on("pageerror", (error) => problems.add(String(error)));
   page.on("response", (found) => {
@@ -64,15 +86,13 @@ try {
     if (found.status() >= 400 && file !== "/favicon.ico") console.log(`not found: ${file}`);
   });
   const at = new Date(1000 * Number(time)).toISOString();
-  await page.goto(`${address}?time=${encodeURIComponent(at)}`, { waitUntil: "load" });
+  await page.goto(`${address}?time=${encodeURIComponent(at)}`, { waitUntil: "domcontentloaded" });
   // the panel of raw messages has the last one at the time asked for
   const shown = () => /railpatch\.\w+ @ [\d.]+ sec/.test(document.body.innerText);
-  await page.waitForFunction(shown, { timeout: 120_000 });
+  await page.waitForFunction(shown, { polling: 500 });
   // a hint that covers a panel
   for (const button of await page.$$('[role="tooltip"] button')) await button.click();
-  // plots fill in while the log is read
-  await new Promise((done) => setTimeout(done, PLOTS_MS));
-  await page.screenshot({ path: picture });
+  await photograph(page, picture);
   const canvases = await page.$$eval("canvas", (found) => found.length);
   console.log(`${picture}: ${canvases} canvases`);
   // the other tabs of plots
@@ -81,9 +101,8 @@ try {
     const tab = await page.$(`input[value="${title}"]`);
     if (!tab) throw new Error(`the viewer shows no tab ${title}`);
     await tab.click();
-    await new Promise((done) => setTimeout(done, TAB_MS));
     const file = picture.replace(/\.png$/, `-${title.toLowerCase()}.png`);
-    await page.screenshot({ path: file });
+    await photograph(page, file);
     console.log(file);
   }
   for (const problem of problems) console.error(`page: ${problem}`);

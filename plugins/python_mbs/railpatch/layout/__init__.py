@@ -118,11 +118,12 @@ def _plot(title: str, curves: list[Curve]) -> dict[str, Any]:
         "xAxisVal": "timestamp",
         "isSynced": True,
         "showLegend": True,
-        "legendDisplay": "floating",
+        # beside the curves: floating it lies over them
+        "legendDisplay": "left",
         "showPlotValuesInLegend": False,
         "showXAxisLabels": True,
         "showYAxisLabels": True,
-        "sidebarDimension": 240,
+        "sidebarDimension": 180,  # px
     }
 
 
@@ -136,12 +137,12 @@ def _scene(kind: str) -> dict[str, Any]:
     vehicle = kind == "vehicle"
     return {
         "cameraState": {
-            "distance": 34.0 if vehicle else 4.5,
+            "distance": {"vehicle": 34.0, "roller": 6.0}.get(kind, 4.5),
             "perspective": True,
             "phi": 68.0,
             "thetaOffset": -62.0 if vehicle else -38.0,
             "target": [0, 0, 0],
-            "targetOffset": [0, 0, -1.0 if vehicle else 0.2],
+            "targetOffset": [0, 0, {"vehicle": -1.0, "roller": -0.4}.get(kind, 0.2)],
             "targetOrientation": [0, 0, 0, 1],
             "fovy": 40,
             "near": 0.05,

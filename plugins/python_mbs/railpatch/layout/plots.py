@@ -36,7 +36,10 @@ class Curve:
         # a list of messages is written with brackets in the table, a list of numbers without
         last = parts.pop()[0]
         path = "".join(f"{head}{'[]' if listed else ''}." for head, listed in parts) + last
-        return unit(self.topic, path)
+        found = unit(self.topic, path)
+        # of a list whose numbers have units of their own: that of the one that is shown
+        each = found.split(", ")
+        return found if len(each) == 1 else each[int(self.field.rpartition("[")[2].rstrip("]"))]
 
     @property
     def path(self) -> str:
@@ -61,10 +64,10 @@ def tabs_of(kind: str, wheelsets: int) -> list[Tab]:
     """All plots of a kind of run."""
     if kind == "vehicle":
         return _vehicle(wheelsets)
-    tabs = [_motion(), _forces(), _contact()]
+    rest = [_forces(), _contact()]
     if kind == "roller":
-        return [*tabs, _balance(), _work()]
-    return [*tabs, _energies("/wheelset"), _momenta(), _work()]
+        return [_motion(rates=False), *rest, _balance(), _work()]
+    return [_motion(), *rest, _energies("/wheelset"), _momenta(), _work()]
 
 
 def _vectors(topic: str, field: str, name: str, count: int = 3) -> list[Curve]:
@@ -76,16 +79,17 @@ def _both(field: str, name: str) -> list[Curve]:
     return [Curve(f"/{side}/contact", field, f"{side} {name}") for side in SIDES]
 
 
-def _motion() -> Tab:
+def _motion(rates: bool = True) -> Tab:
+    """rates: of positions that follow each other in time; a rig's are at rest."""
     state = "/wheelset/state"
-    return Tab(
-        "Motion",
-        {
-            "position": [Curve(state, "y", "y"), Curve(state, "z", "z")],
-            "angles": [Curve(state, "yaw", "yaw"), Curve(state, "roll", "roll")],
-            "rates": [Curve(state, "vy", "vy"), Curve(state, "yaw_rate", "yaw rate")],
-        },
-    )
+    plots = {
+        "position": [Curve(state, "y", "y"), Curve(state, "z", "z")],
+        "angles": [Curve(state, "yaw", "yaw"), Curve(state, "roll", "roll")],
+    }
+    if rates:
+        plots["lateral speed"] = [Curve(state, "vy", "vy")]
+        plots["yaw rate"] = [Curve(state, "yaw_rate", "yaw rate")]
+    return Tab("Motion", plots)
 
 
 def _forces() -> Tab:
@@ -117,10 +121,11 @@ def _balance() -> Tab:
     return Tab(
         "Balance",
         {
-            "residuals": [
-                Curve(topic, f"residuals[{k}]", name)
-                for k, name in enumerate(("axle moment", "vertical force", "roll moment"))
+            "open moments": [
+                Curve(topic, "residuals[0]", "about the axle"),
+                Curve(topic, "residuals[2]", "roll"),
             ],
+            "open force": [Curve(topic, "residuals[1]", "vertical")],
             "evaluations": [Curve(topic, "evaluations", "evaluations")],
         },
     )
@@ -166,12 +171,14 @@ def _work() -> Tab:
 def _vehicle(wheelsets: int) -> list[Tab]:
     numbers = range(1, wheelsets + 1)
 
-    def wheels(field: str, name: str) -> list[Curve]:
-        return [
-            Curve(f"/wheelset/{n}/{side}/contact", field, f"{n} {side} {name}")
-            for n in numbers
+    # by side: eight curves in one plot are more than a viewer has colours for
+    def wheels(title: str, field: str, name: str) -> dict[str, list[Curve]]:
+        return {
+            f"{title}, {side}": [
+                Curve(f"/wheelset/{n}/{side}/contact", field, f"{n} {name}") for n in numbers
+            ]
             for side in SIDES
-        ]
+        }
 
     def axles(field: str, name: str) -> list[Curve]:
         return [Curve(f"/wheelset/{n}/state", field, f"{n} {name}") for n in numbers]
@@ -191,15 +198,15 @@ def _vehicle(wheelsets: int) -> list[Tab]:
         Tab(
             "Forces",
             {
-                "vertical forces on the wheels": wheels("force[2]", "Fz"),
-                "lateral forces on the wheels": wheels("force[1]", "Fy"),
+                **wheels("vertical forces", "force[2]", "Fz"),
+                **wheels("lateral forces", "force[1]", "Fy"),
             },
         ),
         Tab(
             "Contact",
             {
-                "longitudinal creepages": wheels("patches[0].creepage[0]", "x"),
-                "lateral creepages": wheels("patches[0].creepage[1]", "y"),
+                **wheels("longitudinal creepages", "patches[0].creepage[0]", "x"),
+                **wheels("lateral creepages", "patches[0].creepage[1]", "y"),
                 "angles of attack": axles("yaw", "yaw"),
             },
         ),

@@ -35,6 +35,7 @@ from railpatch.log.primitives import (
 
 _RAIL_LENGTH = 4.0  # m
 _SHAFT = 0.08  # m, radius of axles
+_SPOKE = 0.006  # m, thickness of the marks on a disc
 _ARROW_SCALE = 5e-6  # m/N: 100 kN are half a metre
 _CIRCLE_POINTS = 20
 _CIRCLE = [
@@ -103,18 +104,17 @@ def turning(
     if axle:
         shapes.append(revolved(np.array([[0.0, _SHAFT], [inside, _SHAFT]]), 2))
     meshes = [triangles(*shape, color) for shape in shapes]
-    return entity(name, place, triangles=meshes, lines=[_spokes(curve)])
+    return entity(name, place, triangles=meshes, lines=[_spokes(inside, radius)])
 
 
-def _spokes(curve: np.ndarray) -> dict[str, Any]:
-    """Lines on both faces."""
+def _spokes(inside: float, radius: float) -> dict[str, Any]:
+    """Lines on both faces of the disc; within a line's thickness they would vanish in it."""
     points = []
-    for y in (curve[:, 0].min(), curve[:, 0].max()):
-        radius = float(curve[np.argmin(abs(curve[:, 0] - y)), 1])
+    for y in (inside - _SPOKE, inside + _SPOKE):
         for angle in np.arange(3) * np.pi / 3:
             for end in (-radius, radius):
-                points.append((end * np.sin(angle), float(y), end * np.cos(angle)))
-    return line(points, _MARK, 0.006, kind=LinePrimitive.LINE_LIST)
+                points.append((end * np.sin(angle), y, end * np.cos(angle)))
+    return line(points, _MARK, _SPOKE, kind=LinePrimitive.LINE_LIST)
 
 
 def contact(sides: Mapping[str, Mapping[str, Any]], time_ns: int) -> SceneUpdate:
