@@ -45,7 +45,7 @@ CXX_FILES = $(shell find core plugins tests -name '*.[ch]' -o -name '*.[ch]pp')
 SOURCES := $(shell find core plugins rig_model wheelset_demo -type f -not -name '*.pyc' 2>/dev/null) \
 	CMakeLists.txt README.md
 
-.PHONY: help tools asan-core build-asan demo docs book pages viewer fmu fmu-clients fmu-fftw contact-addon wheels smoke release test test-long lint format clean setup \
+.PHONY: help tools asan-core build-asan demo docs book pages viewer fmu fmu-clients fmu-fftw contact-addon wheels smoke release test test-long bits lint format clean setup \
 	system test-cpp test-python test-asan pruning mutants bits-steps
 
 help: ## this list
@@ -176,6 +176,10 @@ test: ## set-up and every check; what each part and the slowest tests took
 bits-steps: $(VENV)/tools
 	cmake --preset release $(RELEASE)
 	cmake --build --preset release --target bits_steps contact_addon
+
+bits: setup bits-steps ## the same bits on three emulated processors, of which `make test` runs none
+	@.ci/system-packages qemu-x86_64:qemu-user
+	$(BIN)/python -m pytest -q -m long tests/bits
 
 test-long: setup bits-steps ## what is slow by nature, before a release: hours
 	@.ci/system-packages qemu-x86_64:qemu-user gfortran

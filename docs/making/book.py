@@ -2,13 +2,18 @@
 
     python -m making.book OUT.json            # from docs/: runs the quick ones
     python -m making.book OUT.json --all      # the long ones too: hours
+    python -m making.book OUT.json --only "vehicle in a curve" --keep
 
 The claims stand in claims.toml. What was run is written to OUT.json with date, commit and time, and
-the page shows it; a claim that was not run here shows the date and commit of its last evidence.
+the page shows it. --only runs the claims whose titles hold the words and adds them to what OUT.json
+has; --keep writes what is long into long_runs.json too, which is part of the checkout: the page
+shows it where OUT.json has no later one. A claim that has neither shows the date and commit of its
+last evidence.
 """
 
 from __future__ import annotations
 
+import argparse
 import json
 import re
 import shlex
@@ -29,6 +34,7 @@ else:
 
 CLAIMS = Path(__file__).with_name("claims.toml")
 RESULTS = ROOT / "build/book.json"
+KEPT = Path(__file__).with_name("long_runs.json")
 # s, beyond which a command is ended
 LONGEST = 36000.0
 # what commands print that is no result
@@ -92,11 +98,26 @@ def run(claim: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def results() -> dict[str, dict[str, Any]]:
-    """What was run in this checkout, by command."""
-    if not RESULTS.is_file():
+def read(place: Path) -> dict[str, dict[str, Any]]:
+    """Runs by command, as they stand in a file; none where it is not there."""
+    if not place.is_file():
         return {}
-    return {one["command"]: one for one in json.loads(RESULTS.read_text(encoding="utf-8"))}
+    return {one["command"]: one for one in json.loads(place.read_text(encoding="utf-8"))}
+
+
+def write(place: Path, runs: dict[str, dict[str, Any]]) -> None:
+    """Those of claims that there are, in the order of the book."""
+    kept = [runs[claim["command"]] for claim in claims() if claim["command"] in runs]
+    place.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+
+
+def results() -> dict[str, dict[str, Any]]:
+    """What was run, by command: in this checkout, or before and kept; the later of both."""
+    runs = read(KEPT)
+    for command, one in read(RESULTS).items():
+        if command not in runs or runs[command]["date"] <= one["date"]:
+            runs[command] = one
+    return runs
 
 
 def entry(claim: dict[str, Any], known: dict[str, dict[str, Any]]) -> list[str]:
@@ -125,6 +146,12 @@ def entry(claim: dict[str, Any], known: dict[str, dict[str, Any]]) -> list[str]:
     return lines
 
 
+def anchor(title: str) -> str:
+    """Where a claim stands on the page."""
+    name = re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
+    return "#" + re.sub(r"-+", "-", name)
+
+
 def pages() -> Pages:
     """The book."""
     known = results()
@@ -133,7 +160,9 @@ def pages() -> Pages:
         "",
         "Every claim with what shows it and the command that makes it again, from a checkout with"
         " `make setup`. `make book` runs all that are quick and builds this page anew; those that"
-        " take long say so. Tests are named where the numbers with their sources stand in them.",
+        " take long say so and are run one by one (`python -m making.book --only TITLE --keep` in"
+        " docs/), with the date and commit of the last run kept. Tests are named where the numbers"
+        " with their sources stand in them.",
         "",
     ]
     rows = []
@@ -142,10 +171,9 @@ def pages() -> Pages:
         state = "not run for this page"
         if done is not None:
             state = ("holds, " if done["good"] else "**does not hold**, ") + done["date"]
-        name = claim["title"].lower()
-        anchor = re.sub(r"[^\w\- ]", "", name).replace(" ", "-")
-        anchor = re.sub(r"-+", "-", anchor)
-        rows.append([f"[{cell(claim['title'])}](#{anchor})", cell(claim["against"]), state])
+            state += f", `{done['commit']}`"
+        link = f"[{cell(claim['title'])}]({anchor(claim['title'])})"
+        rows.append([link, cell(claim["against"]), state])
     lines += [table(["claim", "against", "state"], rows), ""]
     chapter = None
     for claim in claims():
@@ -158,19 +186,32 @@ def pages() -> Pages:
 
 def main() -> int:
     """Runs the claims; 1 where one does not hold."""
-    wanted = [claim for claim in claims() if "--all" in sys.argv or "long" not in claim]
-    found = []
+    parser = argparse.ArgumentParser(prog="python -m making.book")
+    parser.add_argument("output", nargs="?", type=Path, default=RESULTS, metavar="OUT.json")
+    parser.add_argument("--all", action="store_true", help="the long ones too")
+    parser.add_argument("--only", metavar="WORDS", help="claims whose titles have these words")
+    parser.add_argument("--keep", action="store_true", help="what is long, in long_runs.json")
+    options = parser.parse_args()
+    wanted = [claim for claim in claims() if options.all or "long" not in claim]
+    if options.only is not None:
+        wanted = [claim for claim in claims() if options.only.lower() in claim["title"].lower()]
+        if not wanted:
+            parser.error(f"--only: no claim's title has {options.only!r}")
+    options.output.parent.mkdir(parents=True, exist_ok=True)
+    found = read(options.output) if options.only is not None else {}
+    good = True
     for claim in wanted:
         done = run(claim)
-        found.append(done)
-        print(
-            f"{'holds' if done['good'] else 'FAILS':6} {done['seconds']:7.1f} s  {claim['title']}"
-        )
+        good = good and done["good"]
+        found[claim["command"]] = done
+        word = "holds" if done["good"] else "FAILS"
+        print(f"{word:6} {done['seconds']:7.1f} s  {claim['title']}", flush=True)
         print(done["error"], end="")
-    RESULTS.parent.mkdir(exist_ok=True)
-    place = Path(next((word for word in sys.argv[1:] if not word.startswith("-")), RESULTS))
-    place.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
-    return 0 if all(done["good"] for done in found) else 1
+        # at once: the next one may take hours
+        write(options.output, found)
+        if options.keep and "long" in claim:
+            write(KEPT, {**read(KEPT), claim["command"]: done})
+    return 0 if good else 1
 
 
 if __name__ == "__main__":

@@ -131,6 +131,59 @@ def test_claims_have_evidence() -> None:
     assert "| claim | against | state |" in book.pages()["book.md"]
 
 
+def test_every_figure_and_program_of_the_pages_is_in_the_book() -> None:
+    """What docs/ draws or computes is a claim, beside the command that makes it again."""
+    claims = book.claims()
+    drawn = {claim["figure"] for claim in claims if "figure" in claim}
+    assert {page.name for page in (ROOT / "docs").glob("*.svg")} == drawn
+    commands = " ".join(claim["command"] for claim in claims)
+    programs = {f"docs/{page.name}" for page in (ROOT / "docs").glob("*.py")}
+    assert {one for one in programs if one not in commands} == set()
+    titles = [claim["title"] for claim in claims]
+    assert len(set(titles)) == len(titles)
+    assert len({claim["command"] for claim in claims}) == len(titles)
+
+
+def a_run(command: str, date: str, printed: str = "") -> dict[str, Any]:
+    return {
+        "command": command, "good": True, "seconds": 7.0, "date": date, "commit": date[-2:],
+        "changed": False, "printed": printed, "error": "",
+    }  # fmt: skip
+
+
+def test_long_claims_are_kept_and_shown_with_date_and_commit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    long = [claim for claim in book.claims() if "long" in claim]
+    kept, made, out = long[0]["command"], long[1]["command"], tmp_path / "book.json"
+    monkeypatch.setattr(book, "KEPT", tmp_path / "kept.json")
+    monkeypatch.setattr(book, "RESULTS", out)
+    monkeypatch.setattr(book, "run", lambda claim: a_run(claim["command"], "2026-02-03"))
+    title = long[0]["title"]
+    monkeypatch.setattr(sys, "argv", ["book", str(out), "--only", title, "--keep"])
+    assert book.main() == 0
+    book.write(out, {made: a_run(made, "2026-03-04")})
+    page = book.pages()["book.md"]
+    assert f"({book.anchor(title)}) | {long[0]['against']} | holds, 2026-02-03, `03` |" in page
+    assert "Holds: 2026-03-04, commit `04`, 7 s." in page
+    # the later of both
+    book.write(out, {kept: a_run(kept, "2026-01-01")})
+    assert "2026-01-01" not in book.pages()["book.md"]
+    book.write(out, {kept: a_run(kept, "2026-05-06")})
+    assert "Holds: 2026-05-06" in book.pages()["book.md"]
+
+
+def test_kept_runs_are_those_of_claims() -> None:
+    """Of each the command is a claim's that is long, and the commit one of this checkout's kind."""
+    long = {claim["command"] for claim in book.claims() if "long" in claim}
+    for command, one in book.read(book.KEPT).items():
+        assert command in long, command
+        assert one["good"], one["error"]
+        assert re.fullmatch(r"[0-9a-f]{7,12}", one["commit"])
+        assert re.fullmatch(r"\d{4}-\d\d-\d\d", one["date"])
+        assert not re.search(r"(^|\s)/(tmp|home|root|work)", one["printed"]), command
+
+
 @pytest.mark.parametrize("script", tutorials.scripts(), ids=lambda s: s.stem)
 def test_examples_run(script: Path) -> None:
     shown = tutorials.run(script)
