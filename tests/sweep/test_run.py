@@ -16,9 +16,9 @@ from page_checks import check_page
 from railpatch.case.kinds import kind_of, write_example
 from railpatch.command.cli import cli
 from railpatch.sweep import Sweep, read_sweep, run_sweep
-from railpatch.sweep import run as runner
+from railpatch.sweep import local as runner
+from railpatch.sweep.local import WORKER_DIED
 from railpatch.sweep.plan import load_plan
-from railpatch.sweep.run import WORKER_DIED
 from railpatch.sweep.sensitivity import indices_of
 from railpatch.sweep.work import Chunk, Row, solve_chunk
 

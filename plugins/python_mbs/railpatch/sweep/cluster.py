@@ -15,7 +15,7 @@ from contextlib import suppress
 from typing import Any
 
 from railpatch.errors import CaseError
-from railpatch.sweep.run import TRIES, Backend, died, single_cases
+from railpatch.sweep.local import TRIES, Backend, died, single_cases
 from railpatch.sweep.work import Chunk, Row, solve_chunk
 
 RETRY = 2.0  # s, between attempts to reach a scheduler

@@ -3,28 +3,21 @@
 from __future__ import annotations
 
 import time
-from collections import deque
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager, suppress
-from multiprocessing import get_context
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 from railpatch.case.load import KINDS, check_case
 from railpatch.case.moving import moving_keys
 from railpatch.errors import CaseError, ProfileError
+from railpatch.sweep.local import Backend, LocalWorkers
 from railpatch.sweep.outcome import Sweep
 from railpatch.sweep.plan import Plan, load_plan, steps_of
 from railpatch.sweep.store import need_pyarrow, read_rows, write_chunk, write_results
-from railpatch.sweep.work import Chunk, Row, solve_chunk, solve_first
+from railpatch.sweep.work import Chunk, Row, solve_first
 
 SECONDS = 1.0  # of a chunk, about
 MOST_IN_CHUNK = 5000
-# how often the cases of a worker that ended are tried; each alone the last time
-TRIES = 3
-WORKER_DIED = "worker_died"
-Backend = Callable[[list[Chunk]], Iterable[tuple[Chunk, list[Row]]]]
 
 
 def run_sweep(
@@ -56,30 +49,36 @@ def run_sweep(
     ids = plan.ids()
     outputs = tuple(plan.table.outputs or ())
     row = None
-    if not outputs:
-        outputs, row = first_of(plan, ids, list(range(len(ids))), outputs, logs)
-    found = read_rows(folder, ids, outputs)
-    reused = sum(name in found for name in ids)
-    missing = in_order(plan, name_places(ids, found))
-    solved = len(missing)
-    seconds = [found[name].seconds for name in ids[:20] if name in found]
-    if missing:
-        # one is solved here: what is wrong with all is told at once
-        if row is None or row.id in found:
-            _, row = first_of(plan, ids, missing, outputs, logs)
-        place = ids.index(row.id)
-        write_chunk(folder, chunk_of(plan, ids, [place], outputs, logs), [row])
-        found[row.id] = row
-        seconds.append(row.seconds)
-        missing.remove(place)
-    progress(len(ids) - len(missing), len(ids))
-    chunks = chunks_of(plan, ids, missing, outputs, logs, min(seconds, default=SECONDS), workers)
-    done = len(ids) - len(missing)
-    for chunk, rows in (backend or local_backend(workers))(chunks):
-        write_chunk(folder, chunk, rows)
-        found |= {row.id: row for row in rows}
-        done += len(rows)
-        progress(min(done, len(ids)), len(ids))
+    with LocalWorkers(workers if backend is None else 1, plan.kind) as local:
+        if not outputs:
+            local.begin()
+            outputs, row = first_of(plan, ids, list(range(len(ids))), outputs, logs)
+        found = read_rows(folder, ids, outputs)
+        reused = sum(name in found for name in ids)
+        missing = in_order(plan, name_places(ids, found))
+        solved = len(missing)
+        seconds = [found[name].seconds for name in ids[:20] if name in found]
+        if missing:
+            # one is solved here: what is wrong with all is told at once
+            if len(missing) > 1:
+                local.begin()
+            if row is None or row.id in found:
+                _, row = first_of(plan, ids, missing, outputs, logs)
+            place = ids.index(row.id)
+            write_chunk(folder, chunk_of(plan, ids, [place], outputs, logs), [row])
+            found[row.id] = row
+            seconds.append(row.seconds)
+            missing.remove(place)
+        progress(len(ids) - len(missing), len(ids))
+        chunks = chunks_of(
+            plan, ids, missing, outputs, logs, min(seconds, default=SECONDS), workers
+        )
+        done = len(ids) - len(missing)
+        for chunk, rows in (backend or local)(chunks):
+            write_chunk(folder, chunk, rows)
+            found |= {row.id: row for row in rows}
+            done += len(rows)
+            progress(min(done, len(ids)), len(ids))
     rows = [found[name] for name in ids]
     sweep = Sweep(plan, folder, outputs, rows, reused, solved, time.perf_counter() - begin)
     sweep.written.append(write_results(folder, plan, rows, outputs))
@@ -188,74 +187,3 @@ def chunks_of(
         chunk_of(plan, ids, missing[start : start + size], outputs, logs, number)
         for number, start in enumerate(starts)
     ]
-
-
-def single_cases(chunk: Chunk) -> list[Chunk]:
-    """Each case a chunk of its own."""
-    return [
-        Chunk(
-            chunk.number,
-            chunk.kind,
-            chunk.content,
-            chunk.keys,
-            (name,),
-            (point,),
-            chunk.outputs,
-            chunk.logs,
-        )
-        for name, point in zip(chunk.ids, chunk.points, strict=True)
-    ]
-
-
-def died(chunk: Chunk) -> list[Row]:
-    """The rows of a case that ended its worker every time."""
-    reason = f"the worker that solved it ended {TRIES} times: memory, or a signal"
-    empty = (None,) * len(chunk.outputs)
-    return [Row(name, WORKER_DIED, reason, (), 0.0, empty) for name in chunk.ids]
-
-
-def local_backend(workers: int) -> Backend:
-    """This process, or as many others on this machine."""
-    if workers <= 1:
-        return lambda chunks: ((chunk, solve_chunk(chunk)) for chunk in chunks)
-    return lambda chunks: _in_processes(chunks, workers)
-
-
-@contextmanager
-def pool_of(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """Processes that end with this one; what waits is dropped on an error."""
-    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"))
-    try:
-        yield pool
-    finally:
-        pool.shutdown(wait=False, cancel_futures=True)
-
-
-def _in_processes(chunks: list[Chunk], workers: int) -> Iterator[tuple[Chunk, list[Row]]]:
-    """Those that ran when a worker ended are tried again alone, case by case."""
-    waiting, suspects = deque(chunks), deque[tuple[Chunk, int]]()
-    while waiting or suspects:
-        with pool_of(workers) as pool:
-            running: dict[Future[list[Row]], tuple[Chunk, int]] = {}
-            broken = False
-            while not broken and (waiting or suspects or running):
-                while waiting and len(running) < workers and not suspects:
-                    chunk = waiting.popleft()
-                    running[pool.submit(solve_chunk, chunk)] = (chunk, 1)
-                if suspects and not running:
-                    chunk, tries = suspects.popleft()
-                    running[pool.submit(solve_chunk, chunk)] = (chunk, tries)
-                ended, _ = wait(running, return_when=FIRST_COMPLETED)
-                for future in ended:
-                    chunk, tries = running.pop(future)
-                    try:
-                        yield chunk, future.result()
-                    except BrokenProcessPool:
-                        broken = True
-                        if tries < TRIES:
-                            suspects += [(one, tries + 1) for one in single_cases(chunk)]
-                        else:
-                            yield chunk, died(chunk)
-                if broken:
-                    for chunk, tries in running.values():
-                        suspects += [(one, tries + 1) for one in single_cases(chunk)]

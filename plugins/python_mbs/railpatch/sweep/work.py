@@ -59,6 +59,12 @@ class Row:
     outputs: tuple[Output, ...]
 
 
+def get_ready(kind: str) -> None:
+    """Imports what cases of a kind take, before the first one comes."""
+    if kind not in KINDS:
+        kind_of(kind)
+
+
 def solve_chunk(chunk: Chunk) -> list[Row]:
     """The rows of its cases. What is wrong with one case is said in its row."""
     return [

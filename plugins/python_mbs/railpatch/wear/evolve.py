@@ -27,7 +27,7 @@ from railpatch.profiles import load_profile
 from railpatch.profiles.pairing.conicity import equivalent_conicity
 from railpatch.profiles.pairing.contact_points import Dimensions, contact_points, positions
 from railpatch.result import SOLVED
-from railpatch.sweep.run import pool_of
+from railpatch.sweep.local import pool_of
 from railpatch.wear.plan import WearPlan
 from railpatch.writing import write_whole
 

@@ -1,0 +1,113 @@
+"""Workers of a sweep on this machine: this process, or as many others."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import ExitStack, contextmanager
+from multiprocessing import get_context
+
+from railpatch.sweep.work import Chunk, Row, get_ready, solve_chunk
+
+# how often the cases of a worker that ended are tried; each alone the last time
+TRIES = 3
+WORKER_DIED = "worker_died"
+Backend = Callable[[list[Chunk]], Iterable[tuple[Chunk, list[Row]]]]
+
+
+def single_cases(chunk: Chunk) -> list[Chunk]:
+    """Each case a chunk of its own."""
+    return [
+        Chunk(
+            chunk.number,
+            chunk.kind,
+            chunk.content,
+            chunk.keys,
+            (name,),
+            (point,),
+            chunk.outputs,
+            chunk.logs,
+        )
+        for name, point in zip(chunk.ids, chunk.points, strict=True)
+    ]
+
+
+def died(chunk: Chunk) -> list[Row]:
+    """The rows of a case that ended its worker every time."""
+    reason = f"the worker that solved it ended {TRIES} times: memory, or a signal"
+    empty = (None,) * len(chunk.outputs)
+    return [Row(name, WORKER_DIED, reason, (), 0.0, empty) for name in chunk.ids]
+
+
+@contextmanager
+def pool_of(workers: int) -> Iterator[ProcessPoolExecutor]:
+    """Processes that end with this one; what waits is dropped on an error."""
+    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"))
+    try:
+        yield pool
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+class LocalWorkers:
+    """Solves chunks in this process, or in `count` others, of cases of one kind: these start with
+    begin(), so that they are ready when the first case has been solved here."""
+
+    def __init__(self, count: int, kind: str) -> None:
+        self.count = count
+        self.kind = kind
+        self._stack = ExitStack()
+        self._pool: ProcessPoolExecutor | None = None
+
+    def __enter__(self) -> LocalWorkers:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
+
+    def begin(self) -> None:
+        """Starts the other processes, if there shall be any and there are none."""
+        if self.count <= 1 or self._pool is not None:
+            return
+        self._pool = self._stack.enter_context(pool_of(self.count))
+        for _ in range(self.count):
+            self._pool.submit(get_ready, self.kind)
+
+    def __call__(self, chunks: list[Chunk]) -> Iterable[tuple[Chunk, list[Row]]]:
+        if self.count <= 1:
+            return ((chunk, solve_chunk(chunk)) for chunk in chunks)
+        return self._in_processes(chunks)
+
+    def _in_processes(self, chunks: list[Chunk]) -> Iterator[tuple[Chunk, list[Row]]]:
+        """Those that ran when a worker ended are tried again alone, case by case, by new ones."""
+        waiting, suspects = deque(chunks), deque[tuple[Chunk, int]]()
+        while waiting or suspects:
+            self.begin()
+            pool = self._pool
+            assert pool is not None
+            running: dict[Future[list[Row]], tuple[Chunk, int]] = {}
+            broken = False
+            while not broken and (waiting or suspects or running):
+                while waiting and len(running) < self.count and not suspects:
+                    chunk = waiting.popleft()
+                    running[pool.submit(solve_chunk, chunk)] = (chunk, 1)
+                if suspects and not running:
+                    chunk, tries = suspects.popleft()
+                    running[pool.submit(solve_chunk, chunk)] = (chunk, tries)
+                ended, _ = wait(running, return_when=FIRST_COMPLETED)
+                for future in ended:
+                    chunk, tries = running.pop(future)
+                    try:
+                        yield chunk, future.result()
+                    except BrokenProcessPool:
+                        broken = True
+                        if tries < TRIES:
+                            suspects += [(one, tries + 1) for one in single_cases(chunk)]
+                        else:
+                            yield chunk, died(chunk)
+            if broken:
+                self._pool = None
+                for chunk, tries in running.values():
+                    suspects += [(one, tries + 1) for one in single_cases(chunk)]
