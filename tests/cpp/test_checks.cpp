@@ -573,9 +573,18 @@ TEST_F(Checks, ViscoelasticBodies) {
     c.geometry = RP_SEMI_AXES;
     c.semi_axes[0] = c.semi_axes[1] = 5e-3;
   });
+  // of these regimes grids are fixed, which another rule asks for
+  for (const bool changes : {false, true})
+    refuses("needs regime = steady_rolling", [changes](rp_config &c) {
+      for (int k = 0; k < 2; ++k) {
+        c.elements[k] = 0;
+        c.element_size[k] = 1e-3;
+        c.max_elements[k] = 20;
+      }
+      if (changes) c.regime_changes = 1;
+      if (!changes) c.regime = RP_SHIFT;
+    });
   const std::pair<const char *, change> rules[] = {
-      {"needs regime = steady_rolling", [](rp_config &c) { c.regime = RP_SHIFT; }},
-      {"needs regime = steady_rolling", [](rp_config &c) { c.regime_changes = 1; }},
       {"needs normal = half_space", [](rp_config &c) { c.normal = RP_NORMAL_HERTZ; }},
       {"needs tangential = full", [](rp_config &c) { c.tangential = RP_TANGENTIAL_FASTSIM; }},
       {"no fitted rows", [](rp_config &c) { c.fitted[0] = c.fitted[1] = 8; }},
