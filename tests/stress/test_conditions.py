@@ -175,6 +175,14 @@ def test_rows_are_judged_by_the_traction_that_they_stand_for() -> None:
     assert row.conditions < 0.3
 
 
+def test_regimes_have_no_friction_beside_their_own() -> None:
+    """With one, a case is refused: all 447 trials of regimes were."""
+    trial = wet_mixture(SEED, 0)
+    assert trial.case["fluid"]["model"] == "regimes"
+    row = run_trial(trial)
+    assert row.verdict == CLEAN, row.reason
+
+
 def test_traction_between_nodes_is_a_cubic() -> None:
     """Of the angle, through the nodes, odd at both edges: what is such a cubic is met."""
     count, length, width = 12, 4e-3, 1e-3
