@@ -32,8 +32,8 @@ def place(variable: Any, field: str) -> str:
     return f"offsetof({struct}, {field})" if struct and field else "no_field"
 
 
-def line(variable: Any) -> str:
-    """One entry of the C++ table."""
+def line(variable: Any, types: Any) -> str:
+    """One entry of the C++ table. types: those that variables.toml declares."""
     low, high = (float(limit) for limit in variable.range)
     side = 0 if variable.side is None else variable.side + 1
     patch = 0 if variable.patch is None else variable.patch + 1
@@ -41,8 +41,14 @@ def line(variable: Any) -> str:
         f"{{{variable.reference}, Type::{TYPES[variable.base]}, Role::{variable.causality}, "
         f"{place(variable, variable.field)}, {place(variable, variable.plus)}, {low!r}, {high!r}, "
         f"{side}, {patch}, {variable.mean_of}, Absent::{absent(variable)}, "
-        f"{str(variable.fixed).lower()}}},"
+        f'{str(variable.fixed).lower()}, "{unit(types[variable.type])}"}},'
     )
+
+
+def unit(declared: Any) -> str:
+    """As messages write it; none of what has no dimension."""
+    found = declared.get("unit", "1")
+    return "" if found == "1" else found.replace(".", " ")
 
 
 def absent(variable: Any) -> str:
@@ -65,10 +71,11 @@ def names(variables: list[Any]) -> dict[str, int]:
 def main() -> None:
     """Writes the files."""
     module, table, folder = (Path(argument) for argument in sys.argv[1:])
-    variables = load(module).Table(table).everything()
+    known = load(module).Table(table)
+    variables = known.everything()
     references = [f"{name} = {reference}," for name, reference in names(variables).items()]
     for name, lines in (
-        ("variables.inc", [line(variable) for variable in variables]),
+        ("variables.inc", [line(variable, known.types) for variable in variables]),
         ("references.inc", references),
     ):
         (folder / name).write_text("\n".join(lines) + "\n", encoding="utf-8")

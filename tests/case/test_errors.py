@@ -312,6 +312,10 @@ def test_toml_errors_name_the_file(tmp_path: Path) -> None:
     (problem,) = problems_of(path)
     assert problem.startswith(f"{path}: is not TOML: ")
     assert "line 1" in problem
+    table = tmp_path / "points.csv"
+    table.write_text("y;force\n1;2\n")
+    (problem,) = problems_of(table)
+    assert "; scenes, sweeps and wear are TOML files, and a table of numbers (.csv)" in problem
     path.write_bytes(b"\xff\xfe")
     assert problems_of(path) == [f"{path}: is not a text file in UTF-8"]
     (problem,) = problems_of(tmp_path / "absent.toml")

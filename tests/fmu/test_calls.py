@@ -168,6 +168,17 @@ def test_a_direction_of_0_is_refused(unpacked: Unpack) -> None:
         assert slave.get("direction") == [1]
 
 
+def test_a_refused_number_is_answered_in_its_unit(unpacked: Unpack) -> None:
+    with Slave(unpacked("patch")).initialize() as slave:
+        assert slave.set({"rolling_speed": -2.0}) == ERROR
+        assert slave.log[-1][2].endswith("rolling_speed is -2, allowed 0 ... 1000 m/s")
+        assert slave.set({"spin_creepage": 1e9}) == ERROR
+        assert slave.log[-1][2].endswith(" ... 10000 rad/m")
+        # without dimension
+        assert slave.set({"creepage[1]": 1e9}) == ERROR
+        assert slave.log[-1][2].endswith("creepage[1] is 1e+09, allowed -100 ... 100")
+
+
 def test_status_of_a_step(unpacked: Unpack) -> None:
     with brought_to(unpacked("frictionless"), FAILED) as slave:
         value, time, ended = Integer(), Real(1), Integer(1)

@@ -415,8 +415,9 @@ bool Instance::in_range(const Call &call, int index, double value) {
   const bool choice = variable.fixed && variable.type == Type::enumeration;
   const double high = choice ? profile_count(variable) : variable.high;
   if (value >= variable.low && value <= high) return true;
+  const std::string unit = *variable.unit == '\0' ? "" : std::string(" ") + variable.unit;
   refuse(call, item.name + " is " + text_of(value) + ", allowed " + text_of(variable.low) +
-                   " ... " + text_of(high));
+                   " ... " + text_of(high) + unit);
   return false;
 }
 

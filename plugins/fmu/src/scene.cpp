@@ -134,9 +134,9 @@ bool read_constant(Words &words, Scene &scene) {
   if (item.name.empty()) return false;
   if (type == Type::text ? !read_text(words.next(), item.text) : !words.number(item.start))
     return false;
-  scene.constants.push_back(
-      std::make_unique<Variable>(Variable{reference, type, Role::constant, no_field, no_field,
-                                          item.start, item.start, 0, 0, 0, Absent::zero, true}));
+  scene.constants.push_back(std::make_unique<Variable>(
+      Variable{reference, type, Role::constant, no_field, no_field, item.start, item.start, 0, 0, 0,
+               Absent::zero, true, ""}));
   item.variable = scene.constants.back().get();
   scene.variables.push_back(std::move(item));
   return true;

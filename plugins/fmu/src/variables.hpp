@@ -48,7 +48,8 @@ struct Variable {
   uint8_t side, patch;  // their numbers from 1; 0: of none
   uint32_t mean_of;     // of a mean over a step: reference of what it is the mean of; 0: no mean
   Absent absent;
-  bool fixed;  // a parameter that keeps its value after initialization: a profile
+  bool fixed;        // a parameter that keeps its value after initialization: a profile
+  const char *unit;  // of the range, for messages; "" without dimension
 };
 
 // null: there is no such variable in any scene

@@ -33,6 +33,8 @@ KINDS: dict[str, type[PatchCase] | type[WheelRailCase] | type[WheelsetCase]] = {
 # bytes of a file and tables or arrays in each other, far above what any scene has
 LARGEST = 64_000_000
 DEEPEST = 32
+# suffixes of files that hold numbers, not scenes
+TABLES = (".csv", ".tsv", ".txt", ".dat", ".parquet", ".xlsx", ".mat")
 # tables that a contact case has not, by which files of other commands are known
 OTHERS = {
     "match": "match",
@@ -99,12 +101,22 @@ def read_toml(path: Path) -> dict[str, Any]:
     except OSError as error:
         raise CaseError(f"{path}: cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
-        raise CaseError(f"{path}: is not a text file in UTF-8") from None
+        raise CaseError(f"{path}: is not a text file in UTF-8{_table_hint(path)}") from None
     except tomllib.TOMLDecodeError as error:
-        raise CaseError(f"{path}: is not TOML: {error}") from None
+        raise CaseError(f"{path}: is not TOML: {error}{_table_hint(path)}") from None
     except RecursionError:
         raise CaseError(f"{path}: is nested too deeply, allowed {DEEPEST} levels") from None
     return content
+
+
+def _table_hint(path: Path) -> str:
+    """What reads a table of numbers, where one was given in place of a scene."""
+    if path.suffix.lower() not in TABLES:
+        return ""
+    return (
+        f"; scenes, sweeps and wear are TOML files, and a table of numbers ({path.suffix}) is read"
+        " where one names it, as a record or a profile: 'railpatch init' writes some to start from"
+    )
 
 
 def depth(content: Any) -> int:

@@ -119,7 +119,9 @@ def _listed(struct: str, name: str, frame: str = "") -> Field:
     known = _core.QUANTITIES[struct][name]
     kind = "double" if known["type"] == "double" else "uint32"
     unit = "degC" if known["unit"] == "degrees C" else known["unit"]
-    return Field(name, kind, unit, known["text"], frame, size=math.prod(known["shape"]))
+    # the frame has a column of its own
+    text = known["text"].replace(f", {frame} axes", "") if frame else known["text"]
+    return Field(name, kind, unit, text, frame, size=math.prod(known["shape"]))
 
 
 WHEELSET_STATE = Message(
