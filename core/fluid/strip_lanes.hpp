@@ -18,6 +18,7 @@ struct pressed_run {
   int count = 0, most = 0;          // elements, and which has p_0, from the leading one on
   double front = 0, half = 0;       // of the edge and of half the length, in elements
   double greatest = 0;              // p_0, Pa
+  double lean = 0;                  // k of sqrt(1 - X^2) (1 + k X) with the same centre of pressure
 
   // first: pressures in the order of x; squares: memory of count + 2
   static pressed_run of(const double *first, int count, bool backwards, double *squares);
@@ -45,6 +46,8 @@ class strip_lanes {
     pressed_run run;
     double s = 0, r = 0;
     double start = 0;  // theta of X_c to begin with
+    // where X_c is about: the ellipse's from the table, moved as the pressure leans
+    double likely_end() const;
   };
 
   explicit strip_lanes(int steps);  // from X_c to the leading edge
@@ -53,27 +56,25 @@ class strip_lanes {
   void solve(const strip *strips, int count, double precision);
   const strip_solution &found(int lane) const { return found_[lane]; }
   int nodes() const { return steps_ + 1; }
-  double end(int lane) const { return end_[lane] + by_[lane]; }  // theta of X_c
-  // of a node, from the leading edge to X_c in even steps of theta: P, t
-  double liquid(int node, int lane) const {
-    return liquid_[at(node, lane)] + by_[lane] * liquid_rate_[at(node, lane)];
-  }
-  double film(int node, int lane) const {
-    return film_[at(node, lane)] + by_[lane] * film_rate_[at(node, lane)];
-  }
-  size_t bytes() const { return 4 * liquid_.bytes() + bell_.bytes() + tail_.bytes(); }
+  double end(int lane) const { return end_[lane]; }  // theta of X_c
+  // of each node, from the leading edge to X_c in even steps of theta: P
+  const double *liquid(int lane) const { return kept_.data() + lane * nodes(); }
+  size_t bytes() const { return 5 * liquid_.bytes() + bell_.bytes() + tail_.bytes(); }
 
  private:
   static size_t at(int node, int lane) { return static_cast<size_t>(node * lanes + lane); }
   void set_lane(int lane, const strip &of, strip_march &task);
+  // what the last march found, for X_c a little farther
+  void keep(int lane, double by);
 
   int steps_;
   end_search search_[lanes];
-  double end_[lanes] = {}, by_[lanes] = {};
+  double end_[lanes] = {};
   strip_solution found_[lanes];
-  aligned_buffer<double> liquid_, film_;            // [node][lane]
-  aligned_buffer<double> liquid_rate_, film_rate_;  // by theta of X_c
-  aligned_buffer<double> bell_, tail_;              // phi and 1 - Phi at steps of d
+  aligned_buffer<double> liquid_, distance_;            // [node][lane], of d
+  aligned_buffer<double> liquid_rate_, distance_rate_;  // by theta of X_c
+  aligned_buffer<double> kept_;                         // [lane][node], P
+  aligned_buffer<double> bell_, tail_;                  // phi and 1 - Phi at steps of d
 };
 
 }  // namespace railpatch

@@ -204,10 +204,15 @@ bool end_search::take(double value, double slope, double precision) {
   }
   const bool newton = slope > 0 && std::fabs(step) < 0.5 * last_;
   last_ = newton ? std::fabs(step) : HUGE_VAL;
-  if (newton && at_ + step > least_ && at_ + step < most_)
+  if (newton && at_ + step > least_ && at_ + step < most_) {
     at_ += step;
-  else  // near the trailing edge all is steep
+  } else if (!(slope > 0) && most_ < high_) {
+    // too far behind, no one knows by how much: little first, as the begin is near
+    at_ = std::max(at_ - back_, 0.5 * (least_ + most_));
+    back_ *= 4.0;
+  } else {  // near the trailing edge all is steep
     at_ = most_ < high_ ? 0.5 * (least_ + most_) : at_ + 0.25 * (most_ - at_);
+  }
   return false;
 }
 

@@ -57,6 +57,7 @@ class end_search {
 
  private:
   double at_ = 0, least_ = 0, most_ = 0, high_ = 0, last_ = HUGE_VAL;
+  double back_ = 0.03;  // where a march has no rate
   double by_ = 0, residual_ = 0;
 };
 

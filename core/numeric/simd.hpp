@@ -24,3 +24,11 @@
 #else
 #define RAILPATCH_INLINE inline
 #endif
+
+// Before a short loop of a known length: it becomes instructions for several steps at once, where
+// writing its steps out first would leave one instruction for each.
+#if defined(__GNUC__) && !defined(__clang__)
+#define RAILPATCH_ROLLED _Pragma("GCC unroll 1")
+#else
+#define RAILPATCH_ROLLED
+#endif

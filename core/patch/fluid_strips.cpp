@@ -22,10 +22,9 @@ constexpr int steps_of_row = 64;
 
 constexpr double precision = 1e-8;  // of the liquid's pressure and where it cavitates
 
-// The liquid's pressure in the elements of a run; node(k): P at even steps of theta from the
+// The liquid's pressure in the elements of a run; at_nodes: P at even steps of theta from the
 // leading edge to `end`.
-template <class Node>
-void read_elements(const pressed_run &run, double end, int nodes, const Node &node,
+void read_elements(const pressed_run &run, double end, int nodes, const double *at_nodes,
                    const double *pressure, double *fluid, int stride, double *thetas) {
   const double over_step = (nodes - 1) / end;
   run.thetas(thetas);
@@ -33,7 +32,7 @@ void read_elements(const pressed_run &run, double end, int nodes, const Node &no
     const double place = thetas[i] * over_step;
     const int k = static_cast<int>(place);
     if (k + 1 >= nodes) break;
-    const double here = node(k), mean = here + (place - k) * (node(k + 1) - here);
+    const double mean = at_nodes[k] + (place - k) * (at_nodes[k + 1] - at_nodes[k]);
     fluid[i * stride] = std::clamp(run.greatest * mean, 0.0, most_part * pressure[i * stride]);
   }
 }
@@ -137,7 +136,7 @@ bool fluid_strips::add_rows(const grid &g, const double *pressure, int direction
   bool converged = true;
   for (int round = 0; round < rounds; ++round) {
     strip_lanes::strip strips[lanes];
-    double elliptic[lanes];
+    double likely[lanes];
     int used = 0;
     for (int at = round; used < lanes && at < count; at += rounds, ++used) {
       strip_lanes::strip &strip = strips[used];
@@ -147,8 +146,8 @@ bool fluid_strips::add_rows(const grid &g, const double *pressure, int direction
                                   runs[at].last - runs[at].first + 1, direction > 0, squares);
       strip.s = liquid.s(strip.run.half * g.dx, strip.run.greatest);
       strip.r = std::min(liquid.r(strip.run.greatest), most_r);
-      elliptic[used] = strip_table::end(strip.s, strip.r);
-      strip.start = std::clamp(elliptic[used] + off[used], 1e-3, pi);
+      likely[used] = strip.likely_end();
+      strip.start = std::clamp(likely[used] + off[used], 1e-3, pi);
     }
     rows_->lanes.solve(strips, used, precision);
     for (int l = 0, at = round; l < used; at += rounds, ++l) {
@@ -159,17 +158,16 @@ bool fluid_strips::add_rows(const grid &g, const double *pressure, int direction
       const int stride = direction > 0 ? -1 : 1;
       double end = rows_->lanes.end(l);
       if (rows_->lanes.found(l).converged) {
-        const auto node = [&](int k) { return rows_->lanes.liquid(k, l); };
-        read_elements(strips[l].run, end, rows_->lanes.nodes(), node, p, found, stride, thetas);
+        read_elements(strips[l].run, end, rows_->lanes.nodes(), rows_->lanes.liquid(l), p, found,
+                      stride, thetas);
       } else {
         const strip_solution alone = solve_one(strips[l]);
         const strip_solver &one = rows_->one;
         end = one.theta()[one.nodes() - 1];
-        const auto node = [&](int k) { return one.liquid()[k]; };
-        read_elements(strips[l].run, end, one.nodes(), node, p, found, stride, thetas);
+        read_elements(strips[l].run, end, one.nodes(), one.liquid(), p, found, stride, thetas);
         converged = converged && alone.converged;
       }
-      off[l] = end - elliptic[l];
+      off[l] = end - likely[l];
     }
   }
   return converged;
