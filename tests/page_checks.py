@@ -6,6 +6,7 @@ import base64
 import gzip
 import json
 import re
+from html import unescape
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -67,6 +68,11 @@ def check_page(path: Path, *, keys: tuple[int, int] = KEYS) -> dict[str, Any]:
     # the figure comes before any table
     shown = [name for name in order.met if name in ("figure", "table", "viewer")]
     assert shown[0] != "table", order.met[:8]
+    # what is too wide for a phone can be moved sideways, and sentences have room
+    for table in re.finditer(r"(.{0,24})<table", body):
+        assert table[1].endswith('<div class="scroll">'), f"{path.name}: {table[0]}"
+    long = [cell for cell in re.findall(r"<td>([^<]+)</td>", body) if len(unescape(cell)) > 30]
+    assert not long, f"{path.name}: cells that may become columns of single words: {long[:3]}"
     data = data_of(page)
     for name, figure in data.items():
         assert body.count(f'id="{name}"') == 1, name

@@ -62,6 +62,15 @@
     }
     return parse(getComputedStyle(root).colorScheme.includes("dark") ? "rgb(0,0,0)" : "rgb(255,255,255)");
   };
+  for (const cell of document.querySelectorAll("td")) {
+    const box = cell.getBoundingClientRect();
+    const line = parseFloat(getComputedStyle(cell).fontSize) * 1.5;
+    if (!matchMedia("print").matches && box.width < 110 && box.height > 5 * line) {
+      const own = cell.textContent.trim();
+      if (own.length > 30) found.push(`"${own}" stands in ${box.width.toFixed(0)} px`);
+    }
+  }
+
   const faint = new Set();
   for (const { text, parent } of texts) {
     const svg = parent.closest("text");

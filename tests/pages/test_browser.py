@@ -85,6 +85,8 @@ def test_what_is_wrong_is_found(browser: Browser, tmp_path: Path) -> None:
     body = (
         "<h1>a</h1><div style='position:absolute;top:90px'>one text</div>"
         "<div style='position:absolute;top:92px'>other text</div>"
+        "<table><tr><td style='max-width:60px;min-width:60px;width:60px;padding:0'>"
+        "a sentence in a column of single words, one below the other</table>"
         "<p style='color:#999'>faint</p><div style='width:3000px'>wide</div>"
         "<script>window.redrawn = async () => 0; console.error('told')</script>"
     )
@@ -94,7 +96,8 @@ def test_what_is_wrong_is_found(browser: Browser, tmp_path: Path) -> None:
     browser.media()
     browser.open(page)
     wrong = "\n".join(seen(browser, "light"))
-    for text in ("lie over each other", '"faint": contrast', "wider than the page", "told"):
+    texts = ("lie over each other", '"faint": contrast', "wider than the page", "told", "in 60 px")
+    for text in texts:
         assert text in wrong, wrong
 
 

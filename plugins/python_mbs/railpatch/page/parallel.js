@@ -104,7 +104,7 @@ class ParallelAxes {
     context.textBaseline = "bottom";
     // names over two or three lines, of what fits between two axes
     const lines = [""];
-    for (const part of axis.name.split(/(?<=[._\s\[(])/)) {
+    for (const part of axis.name.split(/(?<=[._\s(])/)) {
       const longer = lines[lines.length - 1] + part;
       if (context.measureText(longer).width > gap - 8 && lines[lines.length - 1]) lines.push(part);
       else lines[lines.length - 1] = longer;

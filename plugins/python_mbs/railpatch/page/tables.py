@@ -21,6 +21,8 @@ def table(head: Sequence[str], rows: Iterable[Sequence[object]], css: str = "") 
 
 # of numbers of pages, which are in units for people (kN, mm, MPa): less is rounding
 ROUNDING = 1e-12
+# characters, of cells that may be broken into lines, but not at every word
+LONG = 30
 
 
 def number(value: float) -> str:
@@ -57,10 +59,17 @@ def whole(value: float) -> str:
 
 def _row(tag: str, cells: Sequence[object], numeric: Sequence[bool]) -> str:
     shown = (
-        f"<{tag}{' class=n' if right else ''}>{escape(str(cell))}</{tag}>"
+        f"<{tag}{_kind(tag, str(cell), right)}>{escape(str(cell))}</{tag}>"
         for cell, right in zip(cells, numeric, strict=True)
     )
     return f"<tr>{''.join(shown)}</tr>"
+
+
+def _kind(tag: str, text: str, right: bool) -> str:
+    """Numbers stand to the right; sentences are not squeezed into a column of single words."""
+    if right:
+        return " class=n"
+    return " class=long" if tag == "td" and len(text) > LONG else ""
 
 
 def _is_number(value: object) -> bool:

@@ -283,4 +283,4 @@ def conicity_table(points: ContactPoints) -> str:
         value = points.conicity(amplitude)
         shown = f"{value:.4f}" if np.isfinite(value) else "none"
         rows.append(f"<tr><td class=n>{1e3 * amplitude:g}</td><td class=n>{shown}</td></tr>")
-    return f"<table>{head}{''.join(rows)}</table>"
+    return f'<div class="scroll"><table>{head}{"".join(rows)}</table></div>'
