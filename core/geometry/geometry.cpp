@@ -224,6 +224,31 @@ void subtract(const double *rail, int count, double *h) {
   }
 }
 
+// The last rows that were met, newest first, as long as none was missed in between.
+struct rows_met {
+  hit last[3];
+  int count = 0;
+
+  void add(const hit &h) {
+    last[2] = last[1];
+    last[1] = last[0];
+    last[0] = h;
+    count = std::min(count + 1, 3);
+  }
+  // where the next row will be met
+  hit next() const {
+    hit h = last[0];
+    if (count == 2) {
+      h.p = 2 * last[0].p - last[1].p;
+      h.n = 2 * last[0].n - last[1].n;
+    } else if (count == 3) {
+      h.p = 3 * (last[0].p - last[1].p) + last[2].p;
+      h.n = 3 * (last[0].n - last[1].n) + last[2].n;
+    }
+    return h;
+  }
+};
+
 // calls use(row, middle) for all rows, from the one nearest to the origin outwards
 template <class F>
 void for_rows(const surface &f, const surface_grid &g, int column, F use) {
@@ -231,12 +256,23 @@ void for_rows(const surface &f, const surface_grid &g, int column, F use) {
   const int start = clamp_index(-g.y0 / g.dy, g.ny);
   hit origin = nearest(f);
   meet(f, f.at(0, 0), origin);
+  rows_met first;  // from the start on, for the way back
   for (int direction : {1, -1}) {
     hit h = origin;
+    rows_met met;
+    if (direction < 0)
+      for (int k = first.count; k > 0; --k) met.add(first.last[first.count - k]);
     for (int row = direction > 0 ? start : start - 1; row >= 0 && row < g.ny; row += direction) {
+      const vec3 at = f.at(x, g.y0 + row * g.dy);
+      hit next = met.count > 0 ? met.next() : h;
+      bool there = meet(f, at, next);
+      if (!there && met.count > 1) there = meet(f, at, next = h);
       // a row that is missed leaves the start of the next one as it was
-      hit next = h;
-      if (meet(f, f.at(x, g.y0 + row * g.dy), next)) h = next;
+      if (there)
+        met.add(h = next);
+      else
+        met.count = 0;
+      if (direction > 0 && row < start + 3 && met.count == row - start + 1) first = met;
       use(row, next);
     }
   }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "numeric/elementary.hpp"
+#include "numeric/nan.hpp"
 
 namespace railpatch {
 
@@ -42,24 +43,81 @@ influence::influence(const medium &of, const fft_plans &plans)
   spectrum_ = aligned_buffer<double>(half);
   if (of.curved)
     curved_ = std::make_unique<conformal_influence>(plans, of.tangential, of.layer_flexibility);
+  if (!of.follows || of.curved || of.line_width > 0 || of.by_length) return;
+  if (!kernel_book::serves(table)) return;
+  const int kept = of.tangential ? 3 : 1;
+  book_ = std::make_unique<kernel_book>(2 * kept, table);
+  mixed_ = aligned_buffer<double>(static_cast<size_t>(kept) * table);
 }
 
-bool influence::set_grid(const grid &g) {
+bool influence::close(const grid &a, const grid &b) {
+  return std::fabs(log(a.dy * b.dx / (b.dy * a.dx))) < kernel_book::step;
+}
+
+bool influence::set_grid(const grid &g, bool follows) {
   // one element more along x: the product is also seen from one element upstream
   const int plan = plans_.find(2 * g.nx + 1, g.ny > 1 ? 2 * g.ny - 1 : 1);
   if (plan < 0) return false;
-  const bool same_elements = g.dx == grid_.dx && g.dy == grid_.dy;
+  const bool read = follows && book_;
+  const bool same_elements = g.dx == grid_.dx && g.dy == grid_.dy && read == read_;
   const int half_x = plans_.nx(plan) / 2, half_y = plans_.ny(plan) / 2;
   grid_ = g;
   full_.set_size(g.nx, g.ny, plans_.nx(plan), plans_.ny(plan));
   single_.set_size(g.nx, g.ny, plans_.nx(plan), plans_.ny(plan));
   if (is_curved()) curved_->set_size(g.nx, g.ny, plans_.nx(plan), plans_.ny(plan));
   if (same_elements && plan == plan_) return true;
-  if (!same_elements || half_x > half_x_ || half_y > half_y_) make_kernels(half_x, half_y);
   plan_ = plan;
+  read_ = read;
   transform_.set_size(plans_.nx(plan), plans_.ny(plan));
+  if (read) {
+    half_x_ = half_x;
+    half_y_ = half_y;
+    read_book();
+    make_spectra();
+    return true;
+  }
+  if (!same_elements || half_x > half_x_ || half_y > half_y_) make_kernels(half_x, half_y);
   make_spectra();
   return true;
+}
+
+// Kept are tables and spectra of xx, yy and xy, without the layer: zz is (1 - nu)/(2 - nu) of xx
+// and yy together. Without tractions those of zz.
+void influence::read_book() {
+  book_->set_size(plans_.nx(plan_), plans_.ny(plan_));
+  double *tractions[] = {table_[1].data(), table_[2].data(), table_[3].data(),
+                         mixed(0),         mixed(1),         mixed(2)};
+  double *pressure[] = {table_[0].data(), mixed(0)};
+  book_->read(grid_.dy / grid_.dx, grid_.dx, table_[0].size(),
+              medium_.tangential ? tractions : pressure,
+              [&](double ratio, double *const *arrays) { write_page(ratio, arrays); });
+  if (!medium_.tangential) return;
+  for (size_t i = 0; i < table_[0].size(); ++i)
+    table_[0][i] = share_of_pressure() * (table_[1][i] + table_[2][i]);
+  table_[1][0] += medium_.layer_flexibility;
+  table_[2][0] += medium_.layer_flexibility;
+}
+
+double influence::share_of_pressure() const {
+  const double nu = medium_.elastic.poisson_ratio;
+  return (1.0 - nu) / (2.0 - nu);
+}
+
+// Of dx = 1 m.
+void influence::write_page(double ratio, double *const *arrays) {
+  const grid now = grid_;
+  grid_.dx = 1;
+  grid_.dy = ratio;
+  make_half_space_kernels();
+  grid_ = now;
+  const int kept = medium_.tangential ? 3 : 1, first = medium_.tangential ? 1 : 0;
+  const size_t count = table_[0].size();
+  for (int k = 0; k < kept; ++k) {
+    const bool odd = static_cast<kernel>(first + k) == kernel::xy;
+    std::copy_n(table_[first + k].data(), count, arrays[k]);
+    transform_.make(odd, table_[first + k].data(), stride_, spectrum_.data());
+    std::copy_n(spectrum_.data(), count, arrays[kept + k]);
+  }
 }
 
 void influence::make_kernels(int half_x, int half_y) {
@@ -183,19 +241,55 @@ double influence::coefficient(kernel k, int i, int j) const {
   return i == 0 || j == 0 ? 0.0 : ((i < 0) == (j < 0) ? value : -value);
 }
 
+// All that a curved surface needs; else each when it is asked for.
 void influence::make_spectra() {
+  pressed_ = rubbed_ = false;
+  if (!is_curved()) return;
+  need_tractions();
+  need_pressure();
+}
+
+void influence::need_pressure() {
+  if (pressed_) return;
+  pressed_ = true;
+  if (!read_)
+    transform_.make(false, table_[0].data(), stride_, spectrum_.data());
+  else if (medium_.tangential)
+    for (size_t i = 0; i < table_[0].size(); ++i)
+      spectrum_[i] = share_of_pressure() * (mixed(0)[i] + mixed(1)[i]);
+  else
+    std::copy_n(mixed(0), table_[0].size(), spectrum_.data());
+  take_spectrum(kernel::zz);
+  take_inverse();
+}
+
+void influence::need_tractions() {
+  if (rubbed_ || !medium_.tangential) return;
+  rubbed_ = true;
+  for (const kernel k : {kernel::xy, kernel::yy, kernel::xx}) {
+    const int at = static_cast<int>(k);
+    const double layer = k == kernel::xy ? 0.0 : medium_.layer_flexibility;
+    if (!read_)
+      transform_.make(k == kernel::xy, table_[at].data(), stride_, spectrum_.data());
+    else
+      for (size_t i = 0; i < table_[0].size(); ++i) spectrum_[i] = mixed(at - 1)[i] + layer;
+    take_spectrum(k);
+  }
+}
+
+void influence::take_spectrum(kernel k) {
   using name = convolution<double>::kernel_name;
   constexpr name names[] = {name::zz, name::xx, name::yy, name::xy};
-  for (int k = medium_.tangential ? 3 : 0; k >= 0; --k) {
-    const bool odd = static_cast<kernel>(k) == kernel::xy;
-    transform_.make(odd, table_[k].data(), stride_, spectrum_.data());
-    full_.set_spectrum(names[k], spectrum_.data());
-    single_.set_spectrum(static_cast<convolution<float>::kernel_name>(names[k]), spectrum_.data());
-    if (is_curved()) give_spectrum(static_cast<kernel>(k));
-  }
-  // zz came last; truncation can make small entries negative, and a floor keeps the preconditioner
-  // positive
-  const int half = (plans_.nx(plan_) / 2 + 1) * plans_.ny(plan_);
+  const name of = names[static_cast<int>(k)];
+  full_.set_spectrum(of, spectrum_.data());
+  single_.set_spectrum(static_cast<convolution<float>::kernel_name>(of), spectrum_.data());
+  if (is_curved()) give_spectrum(k);
+}
+
+// Of zz: truncation can make small entries negative, and a floor keeps the preconditioner positive.
+// What is taken of a spectrum are its lateral waves up to the middle; the others mirror them.
+void influence::take_inverse() {
+  const int half = (plans_.nx(plan_) / 2 + 1) * (plans_.ny(plan_) / 2 + 1);
   const double top = *std::max_element(spectrum_.data(), spectrum_.data() + half);
   for (int i = 0; i < half; ++i) {
     double &value = spectrum_[static_cast<size_t>(i)];
@@ -220,6 +314,7 @@ void influence::give_spectrum(kernel k) {
 }
 
 void influence::normal_product(const double *pressure, double *displacement) {
+  need_pressure();
   const auto flat = [&](const double *p, double *u) {
     full_.product(convolution<double>::zz, p, u);
   };
@@ -228,6 +323,7 @@ void influence::normal_product(const double *pressure, double *displacement) {
 }
 
 void influence::normal_product_single(const double *pressure, double *displacement) {
+  need_pressure();
   const auto flat = [&](const double *p, double *u) {
     single_.product(convolution<float>::zz, p, u);
   };
@@ -236,29 +332,35 @@ void influence::normal_product_single(const double *pressure, double *displaceme
 }
 
 void influence::normal_inverse(const double *displacement, double *pressure) {
+  need_pressure();
   single_.product(convolution<float>::zz_inverse, displacement, pressure);
 }
 
 void influence::tangential_product(const double *px, const double *py, double *ux, double *uy) {
   if (is_curved()) return curved_->tangential(px, py, ux, uy);
+  need_tractions();
   full_.tangential_product(px, py, ux, uy);
 }
 
 void influence::tangential_product_single(const double *px, const double *py, double *ux,
                                           double *uy) {
   if (is_curved()) return curved_->tangential_single(px, py, ux, uy);
+  need_tractions();
   single_.tangential_product(px, py, ux, uy);
 }
 
-void influence::rolling_product(const double *px, const double *py, int direction, double *sx,
-                                double *sy) {
-  if (is_curved()) return curved_->rolling(px, py, direction, grid_.dx, sx, sy);
-  full_.rolling_product(px, py, direction, grid_.dx, sx, sy);
+double influence::rolling_product(const double *px, const double *py, int direction, double *sx,
+                                  double *sy) {
+  need_tractions();
+  if (!is_curved()) return full_.rolling_product(px, py, direction, grid_.dx, sx, sy);
+  curved_->rolling(px, py, direction, grid_.dx, sx, sy);
+  return nan;
 }
 
 void influence::rolling_product_single(const double *px, const double *py, int direction,
                                        double *sx, double *sy) {
   if (is_curved()) return curved_->rolling_single(px, py, direction, grid_.dx, sx, sy);
+  need_tractions();
   single_.rolling_product(px, py, direction, grid_.dx, sx, sy);
 }
 
@@ -267,6 +369,7 @@ size_t influence::bytes() const {
                single_.bytes() + (is_curved() ? curved_->bytes() : 0);
   for (const auto &b : table_) sum += b.bytes();
   for (const auto &b : corner_) sum += b.bytes();
+  if (book_) sum += sizeof(kernel_book) + book_->bytes() + mixed_.bytes();
   return sum;
 }
 

@@ -19,6 +19,7 @@
 #include <memory>
 
 #include "half_space/conformal_influence.hpp"
+#include "half_space/kernel_book.hpp"
 #include "half_space/physics.hpp"
 #include "numeric/convolution.hpp"
 #include "numeric/fft.hpp"
@@ -54,14 +55,18 @@ class influence {
     bool tangential = true;        // false: no xx, yy, xy at all
     // the coefficients' derivatives by dx instead, offsets in elements kept (not plane strain)
     bool by_length = false;
-    bool curved = false;  // rows on a curved reference surface
+    bool curved = false;   // rows on a curved reference surface
+    bool follows = false;  // of grids that follow each other: see set_grid()
   };
 
   influence(const medium &of, const fft_plans &plans);
 
   // Prepares kernels and spectra for a grid; false where the grid exceeds the plans. Cheap when
-  // neither element size nor transform size changes.
-  bool set_grid(const grid &g);
+  // neither element size nor transform size changes. follows: dy/dx is close to that of the grid
+  // that this one follows, so that kept kernels serve it too (kernel_book.hpp), if there are any.
+  bool set_grid(const grid &g, bool follows = false);
+  // Whether it is: what is kept reaches as far.
+  static bool close(const grid &a, const grid &b);
 
   // Of a curved reference surface: the inclination of each row (conformal_influence.hpp), before
   // the products. Their inverses and single coefficients stay those of the plane.
@@ -80,7 +85,8 @@ class influence {
   // The same in single precision, for what only steers an iteration.
   void tangential_product_single(const double *px, const double *py, double *ux, double *uy);
   // Steady rolling: (u(x) - u(x + direction dx))/dx, the micro-slip caused by the tractions.
-  void rolling_product(const double *px, const double *py, int direction, double *sx, double *sy);
+  // Returns p . A p (Pa m, over the elements); nan on a curved reference surface.
+  double rolling_product(const double *px, const double *py, int direction, double *sx, double *sy);
   void rolling_product_single(const double *px, const double *py, int direction, double *sx,
                               double *sy);
 
@@ -101,6 +107,14 @@ class influence {
   void make_line_kernels();
   void make_rates(double x, double y, double moves, size_t at);
   void make_spectra();
+  void need_pressure();
+  void need_tractions();
+  void read_book();
+  void write_page(double ratio, double *const *arrays);
+  double *mixed(int k) { return mixed_.data() + static_cast<size_t>(k) * table_[0].size(); }
+  double share_of_pressure() const;
+  void take_spectrum(kernel k);
+  void take_inverse();
   void give_spectrum(kernel k);
   bool is_curved() const { return has_physics && curved_; }
 
@@ -113,6 +127,11 @@ class influence {
   aligned_buffer<double> table_[4];
   aligned_buffer<double> corner_[3];
   aligned_buffer<double> spectrum_;  // of a kernel, real
+  std::unique_ptr<kernel_book> book_;
+  aligned_buffer<double> mixed_;  // of its pages: spectra
+  bool read_ = false;             // kernels are those of the book
+  // spectra are made when they are asked for
+  bool pressed_ = false, rubbed_ = false;
   convolution<double> full_;
   convolution<float> single_;
   kernel_transform transform_;

@@ -53,6 +53,7 @@ normal_result normal_solver::solve(problem &s, double *p) {
   start(s, p);
   normal_result result;
   evaluate(s, p);
+  if (s.worst > s.options.tolerance * s.scale) fit_size(s, p);
   // iterate until the conditions hold on a settled contact area
   for (; result.iterations < s.options.max_iterations; ++result.iterations) {
     s.options.ask.check();
@@ -153,6 +154,22 @@ void normal_solver::scale_to_force(problem &s, double *p) {
   const double sum = total(p, s.n) * s.g.dx * s.g.dy;
   if (sum <= 0) return;
   for (size_t i = 0; i < s.n; ++i) p[i] *= s.force / sum;
+}
+
+// A start of the right shape has the right size at once, as the displacement goes with it: by least
+// energy, so that nothing is lost where the shape is wrong.
+void normal_solver::fit_size(problem &s, double *p) {
+  if (s.force_given || !s.options.grows) return;
+  double work = 0;
+  for (size_t i = 0; i < s.n; ++i) work += p[i] * (s.approach - s.h[i]);
+  const double size = dot(p, displacement_.data(), s.n);
+  if (!(work > 0 && size > 0)) return;
+  const double factor = work / size;
+  for (size_t i = 0; i < s.n; ++i) {
+    p[i] *= factor;
+    displacement_[i] *= factor;
+  }
+  check_conditions(s, p);
 }
 
 void normal_solver::evaluate(problem &s, const double *p) {

@@ -26,6 +26,8 @@ struct normal_options {
   interrupt ask{};
   // one or two elements either way are all the bodies that there are: no border that way
   bool strips = false;
+  // the grid has grown with the contact: so has the start
+  bool grows = false;
 };
 
 struct normal_result {
@@ -66,6 +68,7 @@ class normal_solver {
   enum class precision { full, single };
   void product(problem &state, const double *pressure, double *displacement, precision digits);
   void cold_start(problem &state, double *pressure);
+  void fit_size(problem &state, double *pressure);
   void evaluate(problem &state, const double *pressure);
   void check_conditions(problem &state, const double *pressure);
   bool search_direction(problem &state, bool restart);

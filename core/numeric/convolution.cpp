@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "numeric/elementary.hpp"
+#include "numeric/nan.hpp"
 #include "numeric/simd.hpp"
 
 namespace railpatch {
@@ -37,6 +38,20 @@ RAILPATCH_INLINE void multiply_row(const tangential_row<T> &f) {
     re[half + i] = f.turn_re * yr - f.turn_im * yi;
     im[half + i] = f.turn_re * yi + f.turn_im * yr;
   }
+}
+
+// Adds what a row's waves give p . A p, wave by wave.
+RAILPATCH_DISPATCH
+void add_squares(const tangential_row<double> &f, double *to) {
+  const auto half = static_cast<size_t>(f.half);
+  const double *__restrict re = f.re, *__restrict im = f.im;
+  double *__restrict sum = to;
+  const double twice = 2 * f.xy_sign;
+  RAILPATCH_INDEPENDENT
+  for (size_t i = 0; i < half; ++i)
+    sum[i] += (f.xx[i] * (re[i] * re[i] + im[i] * im[i]) +
+               f.yy[i] * (re[half + i] * re[half + i] + im[half + i] * im[half + i])) +
+              twice * f.xy[i] * (re[i] * re[half + i] + im[i] * im[half + i]);
 }
 
 template <class T>
@@ -73,12 +88,13 @@ convolution<T>::convolution(int max_nx, int max_ny, bool tangential)
     spectrum_[k] = aligned_buffer<T>((nx / 2 + 1) * static_cast<size_t>(half));
   turn_re_ = aligned_buffer<T>(nx);
   turn_im_ = aligned_buffer<T>(nx);
+  if (tangential && exact) square_ = aligned_buffer<double>(static_cast<size_t>(half));
 }
 
 template <class T>
 size_t convolution<T>::bytes() const {
   return along_x_.bytes() + along_y_.bytes() + 4 * (lateral_[0].bytes() + along_[0].bytes()) +
-         (tangential_ ? 5 : 2) * spectrum_[0].bytes() + 2 * turn_re_.bytes();
+         (tangential_ ? 5 : 2) * spectrum_[0].bytes() + 2 * turn_re_.bytes() + square_.bytes();
 }
 
 template <class T>
@@ -209,7 +225,7 @@ void convolution<T>::product(kernel_name name, const double *p, double *u) {
 
 // turn(number of the row along x, factor's real and imaginary part)
 template <class T>
-template <class Turn>
+template <bool squares, class Turn>
 void convolution<T>::two_products(const double *const in[2], double *const out[2], Turn &&turn) {
   const two_fields f{{nx_, nx_}, fft::whole_packs(2 * half_), static_cast<size_t>(half_)};
   convolve(f, in, out, [&](int i, lines row) {
@@ -217,9 +233,17 @@ void convolution<T>::two_products(const double *const in[2], double *const out[2
     const int at = (upper ? big_nx_ - i : i) * half_;
     T re, im;
     turn(static_cast<size_t>(i), re, im);
-    multiply(tangential_row<T>{half_, re, im, upper ? T(-1) : T(1), spectrum_[xx].data() + at,
-                               spectrum_[yy].data() + at, spectrum_[xy].data() + at, row.re,
-                               row.im});
+    const tangential_row<T> waves{half_,
+                                  re,
+                                  im,
+                                  upper ? T(-1) : T(1),
+                                  spectrum_[xx].data() + at,
+                                  spectrum_[yy].data() + at,
+                                  spectrum_[xy].data() + at,
+                                  row.re,
+                                  row.im};
+    if constexpr (squares) add_squares(waves, square_.data());
+    multiply(waves);
   });
 }
 
@@ -228,19 +252,27 @@ void convolution<T>::tangential_product(const double *px, const double *py, doub
                                         double *uy) {
   const double *const in[2] = {px, py};
   double *const out[2] = {ux, uy};
-  two_products(in, out, [](size_t, T &re, T &im) { re = 1, im = 0; });
+  two_products<false>(in, out, [](size_t, T &re, T &im) { re = 1, im = 0; });
 }
 
 template <class T>
-void convolution<T>::rolling_product(const double *px, const double *py, int direction, double dx,
-                                     double *sx, double *sy) {
+double convolution<T>::rolling_product(const double *px, const double *py, int direction, double dx,
+                                       double *sx, double *sy) {
   const double *const in[2] = {px, py};
   double *const out[2] = {sx, sy};
   const auto factor = static_cast<T>(1.0 / dx);
-  two_products(in, out, [&](size_t i, T &re, T &im) {
+  std::fill_n(square_.data(), square_.size(), 0.0);
+  two_products<exact>(in, out, [&](size_t i, T &re, T &im) {
     re = factor * turn_re_[i];
     im = factor * static_cast<T>(direction) * turn_im_[i];
   });
+  if (!exact) return nan;
+  // waves other than the first and the middle one stand for two; fields are twice themselves, and
+  // spectra half of theirs
+  double sum = 0;
+  for (int j = 0; j < half_; ++j)
+    sum += (j == 0 || 2 * j == big_ny_ ? 0.5 : 1.0) * square_[static_cast<size_t>(j)];
+  return sum;
 }
 
 template class convolution<float>;

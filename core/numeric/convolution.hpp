@@ -6,6 +6,8 @@
 // real fields travel as one complex one and are told apart after the lateral transform.
 #pragma once
 
+#include <type_traits>
+
 #include "numeric/batch_fft.hpp"
 #include "numeric/memory.hpp"
 
@@ -28,12 +30,14 @@ class convolution {
   void product(kernel_name name, const double *p, double *u);
   // (u_x, u_y) = A (p_x, p_y)
   void tangential_product(const double *px, const double *py, double *ux, double *uy);
-  // (s_x, s_y) = (u(x) - u(x + direction dx))/dx
-  void rolling_product(const double *px, const double *py, int direction, double dx, double *sx,
-                       double *sy);
+  // (s_x, s_y) = (u(x) - u(x + direction dx))/dx; returns p . A p, by the waves (Parseval), in
+  // double precision, else nan.
+  double rolling_product(const double *px, const double *py, int direction, double dx, double *sx,
+                         double *sy);
   size_t bytes() const;
 
  private:
+  static constexpr bool exact = std::is_same_v<T, double>;
   using fft = batch_fft<T>;
   using lines = typename fft::lines;
   // Two fields on the grid, or the two halves of one.
@@ -49,7 +53,7 @@ class convolution {
   void store_lateral(const two_fields &f, lines z, double *const out[2]) const;
   void tell_apart(const two_fields &f, lines z);
   void join(const two_fields &f, lines from);
-  template <class Turn>
+  template <bool squares, class Turn>
   void two_products(const double *const in[2], double *const out[2], Turn &&turn);
 
   int nx_ = 0, ny_ = 0, big_nx_ = 1, big_ny_ = 1;
@@ -59,6 +63,7 @@ class convolution {
   aligned_buffer<T> lateral_[4], along_[4];  // data and work, real and imaginary
   aligned_buffer<T> spectrum_[5];            // [big_nx/2 + 1][half]
   aligned_buffer<T> turn_re_, turn_im_;      // 1 - exp(i k dx)
+  aligned_buffer<double> square_;            // p . A p of each lateral wave
 };
 
 extern template class convolution<float>;

@@ -14,6 +14,7 @@ kernel_transform::kernel_transform(int max_nx, int max_ny) : along_x_(max_nx), a
 }
 
 void kernel_transform::set_size(int nx, int ny) {
+  if (nx == nx_ && ny == ny_) return;
   nx_ = nx;
   ny_ = ny;
   along_x_.set_length(nx);

@@ -26,7 +26,7 @@ class kernel_transform {
   using lines = fft::lines;
   lines laterally(bool odd, const double *values, int stride);
 
-  int nx_ = 2, ny_ = 1;
+  int nx_ = 0, ny_ = 0;
   fft along_x_, along_y_;
   aligned_buffer<double> buffer_[4];
 };

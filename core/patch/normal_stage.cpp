@@ -83,7 +83,7 @@ pressure_outcome normal_stage::solve_half_space(const patch_problem &problem,
   double tolerance = shared_.scene.normal_tolerance;
   if (shared_.coupled) tolerance = shared_.coupled->tolerance(tolerance);
   const normal_options options{tolerance, shared_.scene.max_iterations, shared_.scene.ask,
-                               shared_.scene.strips};
+                               shared_.scene.strips, shared_.scene.stretches && problem.follows};
   double *p = memory.pressure.data();
   const double *h =
       shared_.coupled ? shared_.coupled->distance() : memory.undeformed_distance.data();

@@ -70,8 +70,9 @@ heat_outcome patch_contact::leave_contact(const rolling_input &step, patch_memor
   return heat_.finish(nothing, memory);
 }
 
-void patch_contact::start_from(patch_memory &memory, const grid &g) {
+bool patch_contact::start_from(patch_memory &memory, const grid &g) {
   const bool same_shape = memory.g.nx == g.nx && memory.g.ny == g.ny;
+  const bool follows = memory.warm && same_shape && influence::close(memory.g, g);
   const bool same_size = memory.g.dx == g.dx && memory.g.dy == g.dy;
   if (memory.warm &&
       !(same_shape && (!same_size || (memory.g.x0 == g.x0 && memory.g.y0 == g.y0)))) {
@@ -96,13 +97,14 @@ void patch_contact::start_from(patch_memory &memory, const grid &g) {
     }
   }
   memory.g = g;
-  if (memory.warm) return;
+  if (memory.warm) return follows;
   if (memory.heat) memory.heat->forget_friction();
   if (memory.pressure.size()) std::fill_n(memory.pressure.data(), g.count(), 0.0);
-  if (memory.px.size() == 0) return;
+  if (memory.px.size() == 0) return false;
   for (auto *field : {&memory.px, &memory.py})
     std::fill_n(field->data(), memory.columns() * memory.rows(), 0.0);
   if (shared_.scene.is_forced()) std::fill_n(memory.creepage.data(), 2, 0.0);
+  return false;
 }
 
 // The way through a patch. The contact area of unlike bodies is known only after the tractions, and
@@ -178,7 +180,7 @@ void patch_contact::warm_liquid(const patch_problem &problem, patch_memory &memo
 void patch_contact::begin_solve(const patch_problem &problem, patch_memory &memory) {
   if (shared_.influence) {
     const stage_mark mark = shared_.marks.enter(RP_STAGE_INFLUENCE);
-    shared_.influence->set_grid(problem.g);
+    shared_.influence->set_grid(problem.g, problem.follows);
     if (memory.curved) shared_.influence->set_rows(memory.curved->cosine(), memory.curved->sine());
     if (shared_.viscous)
       shared_.viscous->set(problem.g, problem.rolling.direction, problem.rolling_speed);

@@ -33,8 +33,9 @@ class patch_contact {
   void remember(patch_memory &memory) const;
   // A step without contact: the material moves on and bears no traction.
   heat_outcome leave_contact(const rolling_input &step, patch_memory &memory);
-  // Carries the memory's solution over to another grid, or clears it.
-  void start_from(patch_memory &memory, const grid &g);
+  // Carries the memory's solution over to another grid, or clears it. Whether the grid goes on from
+  // one nearly like it.
+  bool start_from(patch_memory &memory, const grid &g);
 
   // Derivatives of the last step's solution, which `memory` holds, in `count` directions; for
   // scenes with exact ones. The memory and later steps stay as they are.

@@ -48,6 +48,7 @@ struct patch_problem {
   contact_parts parts;
   const past_tractions *past = nullptr;  // of wheels in transient rolling, with their number
   int past_count = 0;
+  bool follows = false;  // the grid goes on from one nearly like it: influence::set_grid()
   double rolled = 0;  // m along x in the step, with it: near standstill not all of rolling.distance
 };
 

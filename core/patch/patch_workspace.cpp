@@ -10,7 +10,9 @@ namespace railpatch {
 patch_workspace::patch_workspace(const patch_scene &of, stage_marks at, const fft_plans &plans,
                                  int max_count)
     : scene(of), marks(at) {
-  if (scene.needs_influence()) influence.emplace(scene.medium(), plans);
+  railpatch::influence::medium bodies = scene.medium();
+  bodies.follows = scene.stretches;
+  if (scene.needs_influence()) influence.emplace(bodies, plans);
   if (scene.is_viscous()) viscous.emplace(scene.viscous, *influence, plans);
   if (scene.couples()) {
     std::unique_ptr<coupling_operator> coupling;

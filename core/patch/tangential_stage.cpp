@@ -32,13 +32,18 @@ tangential_stage::tangential_stage(patch_workspace &shared, const fft_plans &pla
   const auto count = static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny);
   if (scene.full_on_grid()) {
     const bool rolls_on = scene.changes || scene.regime == motion::transient;
-    tangential_.emplace(
-        max_nx, max_ny,
-        tangential_solver::setup{scene.is_forced(), scene.law.has_value(), scene.yields(),
-                                 scene.keeps_steps(), rolls_on ? &plans : nullptr, scene.moves});
     // with a prescribed force no creepage is known to start from
     const bool plain = !scene.is_forced() && !scene.law && !scene.keeps_steps() &&
                        !scene.couples() && !scene.slip_by_element && !scene.is_viscous();
+    // of grids as wide as the bodies' overlap the contact takes two thirds either way
+    influence::medium bodies = scene.medium();
+    bodies.follows = scene.stretches;
+    const bool boxed = plain && scene.stretches && !scene.heat && !scene.fluid && !scene.curved;
+    tangential_.emplace(
+        max_nx, max_ny,
+        tangential_solver::setup{scene.is_forced(), scene.law.has_value(), scene.yields(),
+                                 scene.keeps_steps(), rolls_on ? &plans : nullptr, scene.moves,
+                                 boxed ? &bodies : nullptr, &plans});
     if (plain && coarse_start::serves(max_nx, max_ny))
       coarse_start_.emplace(scene.medium(), plans, max_nx, max_ny);
     bound_ = aligned_buffer<double>(count);
@@ -96,8 +101,10 @@ traction_outcome tangential_stage::solve(const patch_problem &problem,
   if (!t.converged) explain(problem, pressure, t, found);
   // what shift and transient rolling know already
   if (scene.tangential == RP_TANGENTIAL_FULL && !scene.goes_on(rolling))
-    found.elastic_energy =
-        fitted_ ? fitted_->elastic_energy(*fitted_rows_) : elastic_energy(problem, memory);
+    found.elastic_energy = fitted_ ? fitted_->elastic_energy(*fitted_rows_)
+                           : std::isnan(t.stored) || memory.history.energy.size() > 0
+                               ? elastic_energy(problem, memory)
+                               : 0.5 * t.stored * problem.g.dx * problem.g.dy;
   return found;
 }
 
@@ -401,14 +408,14 @@ tangential_result tangential_stage::solve_by_law(const patch_problem &problem,
     return solve_viscous(problem, rolling, memory, options, found);
   if (!has_physics || !shared_.scene.law)
     return tangential_->solve({*shared_.influence, g, memory.pressure.data(), bound_.data(),
-                               rolling, options, memory.fields()});
+                               rolling, options, memory.fields(), problem.follows});
   const bool goes_on = shared_.scene.goes_on(rolling);
   memory.history.start_from_before(g, *shared_.scene.law, goes_on);
   const inelastic_fields fields = memory.history.fields(*shared_.scene.law, goes_on);
   inelastic_sums sums;
   const tangential_result t =
       tangential_->solve({*shared_.influence, g, memory.pressure.data(), bound_.data(), rolling,
-                          options, memory.fields(), &fields, &sums});
+                          options, memory.fields(), problem.follows, &fields, &sums});
   for (size_t i = 0; i < static_cast<size_t>(g.count()); ++i)
     if (memory.pressure[i] > 0) memory.history.friction[i] /= memory.pressure[i];
   found.plastic = sums.plastic;
@@ -426,7 +433,8 @@ tangential_result tangential_stage::solve_viscous(const patch_problem &problem,
   viscous_influence &viscous = *shared_.viscous;
   tangential_result t =
       tangential_->solve({*shared_.influence, problem.g, memory.pressure.data(), bound_.data(),
-                          rolling, options, memory.fields(), nullptr, nullptr, &viscous});
+                          rolling, options, memory.fields(), problem.follows, nullptr, nullptr,
+                          &viscous});
   const double loss = viscous.tangential_loss(memory.px.data(), memory.py.data());
   t.friction -= loss;
   found.viscous_power = problem.rolling_speed * loss;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "numeric/interrupt.hpp"
+#include "numeric/nan.hpp"
 #include "tangential/force_constraint.hpp"
 #include "tangential/row_elements.hpp"
 
@@ -66,6 +67,8 @@ struct tangential_result {
   int products = 0;
   int stick = 0, slip = 0;
   double friction = 0;  // N, frictional power over the rolling speed, see below
+  // Pa m, p . A p over the elements, where it is known
+  double stored = nan;
 };
 
 // In steady rolling the elastic energy is constant, so friction takes exactly the power that the

@@ -48,7 +48,10 @@ class row_elements {
  public:
   row_elements(int max_nx, int max_ny);
   // Those under pressure; rows begin at their leading edges, rows without contact are left out.
-  void collect(const grid &g, const double *pressure, int direction);
+  // boxed: products are on the least grid that holds them.
+  void collect(const grid &g, const double *pressure, int direction, bool boxed = false);
+  // That of products, on elements as those of g.
+  grid product_grid(const grid &g) const;
 
   int count() const { return count_; }
   int rows() const { return rows_; }
@@ -71,16 +74,22 @@ class row_elements {
       f(element, static_cast<size_t>(at_[element]), ix, iy);
     });
   }
-  // out = B v by run(px, py, sx, sy) on the grid, where v is zero out of contact.
+  // out = B v by run(px, py, sx, sy) on the products' grid, where v is zero out of contact.
   template <class Run>
   void product(const double *v, double *out, Run &&run) {
     double *px = grid_[0].data(), *py = grid_[1].data();
-    for_each([&](size_t, size_t at, size_t ix, size_t iy) {
+    for_each_row_element(rows_, row_start(), [&](size_t k, size_t ix, size_t iy) {
+      const auto at = static_cast<size_t>(within_[k]);
       px[at] = v[ix];
       py[at] = v[iy];
     });
     run(px, py, x(), y());
-    gather(x(), y(), out);
+    const double *sx = x(), *sy = y();
+    for_each_row_element(rows_, row_start(), [&](size_t k, size_t ix, size_t iy) {
+      const auto at = static_cast<size_t>(within_[k]);
+      out[ix] = sx[at];
+      out[iy] = sy[at];
+    });
   }
   // The vector of two fields on the grid.
   void gather(const double *x, const double *y, double *v) const {
@@ -92,11 +101,13 @@ class row_elements {
   // Fields on the grid for a product's result.
   double *x() { return grid_[2].data(); }
   double *y() { return grid_[3].data(); }
-  size_t bytes() const { return at_.bytes() + row_start_.bytes() + 4 * grid_[0].bytes(); }
+  size_t bytes() const { return 2 * at_.bytes() + row_start_.bytes() + 4 * grid_[0].bytes(); }
 
  private:
   int count_ = 0, rows_ = 0;
+  int box_[4] = {0, 0, 0, 0};  // of products: first column and row, numbers of both
   aligned_buffer<int> at_, row_start_;
+  aligned_buffer<int> within_;  // indices on the products' grid
   aligned_buffer<double> grid_[4];
 };
 

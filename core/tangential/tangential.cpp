@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "numeric/elementary.hpp"
+#include "numeric/nan.hpp"
 #include "railpatch.h"
 
 namespace railpatch {
@@ -21,17 +22,19 @@ class tangential_solver::grid_operator final : public rolling_operator {
   grid_operator(tangential_solver &solver, const tangential_problem &problem)
       : elements_(solver.elements_),
         strips_(solver.strips_),
-        a_(problem.a),
+        a_(solver.products(problem)),
         dx_(problem.g.dx),
         direction_(problem.input.direction) {
-    strips_.set(a_, problem.g, elements_.rows());
+    strips_.set(a_, elements_.product_grid(problem.g), elements_.rows());
   }
 
   void product(const double *p, double *s) override {
     elements_.product(p, s, [&](double *px, double *py, double *sx, double *sy) {
-      a_.rolling_product(px, py, direction_, sx, sy);
+      stored_ = a_.rolling_product(px, py, direction_, sx, sy);
     });
   }
+  // p . A p of the last product
+  double stored() const { return stored_; }
   void product_single(const double *p, double *s) override {
     elements_.product(p, s, [&](double *px, double *py, double *sx, double *sy) {
       a_.rolling_product_single(px, py, direction_, sx, sy);
@@ -56,6 +59,7 @@ class tangential_solver::grid_operator final : public rolling_operator {
   influence &a_;
   double dx_;
   int direction_;
+  double stored_ = 0;
 };
 
 // The same of viscoelastic bodies.
@@ -140,6 +144,7 @@ tangential_solver::tangential_solver(int max_nx, int max_ny, const setup &setup)
     inelastic_.emplace(max_nx, max_ny, setup.forced);
   else
     newton_.emplace(max_nx, max_ny, setup.forced);
+  if (setup.bodies) boxed_ = std::make_unique<influence>(*setup.bodies, *setup.plans);
   if (setup.transient) offset_.emplace(*setup.transient, setup.moves);
   const auto n = static_cast<size_t>(max_nx) * static_cast<size_t>(max_ny);
   for (auto *b : {&bound_, &area_}) *b = aligned_buffer<double>(n);
@@ -157,7 +162,8 @@ size_t tangential_solver::bytes() const {
   return (newton_ ? newton_->bytes() : 0) + (inelastic_ ? inelastic_->bytes() : 0) +
          (offset_ ? offset_->bytes() : 0) + before_.bytes() + after_.bytes() +
          2 * plastic_slip_.bytes() + friction_.bytes() + state_.bytes() + 3 * p_.bytes() +
-         2 * bound_.bytes() + elements_.bytes() + strips_.bytes();
+         2 * bound_.bytes() + elements_.bytes() + strips_.bytes() +
+         (boxed_ ? sizeof(influence) + boxed_->bytes() : 0);
 }
 
 tangential_result tangential_solver::solve(const tangential_problem &problem) {
@@ -179,6 +185,8 @@ tangential_result tangential_solver::solve(const tangential_problem &problem) {
   } else if (!has_physics || input.regime == motion::steady) {
     grid_operator b(*this, problem);
     result = run(b);
+    // the last product is that of the solution; laws beyond Coulomb's have others
+    result.stored = inelastic_ ? nan : b.stored();
     take_offset_work(problem, result);
   } else {
     add_history(problem);
@@ -187,6 +195,12 @@ tangential_result tangential_solver::solve(const tangential_problem &problem) {
   }
   release(problem.g, problem.fields);
   return result;
+}
+
+influence &tangential_solver::products(const tangential_problem &problem) {
+  if (!boxed_) return problem.a;
+  boxed_->set_grid(elements_.product_grid(problem.g), problem.follows);
+  return *boxed_;
 }
 
 // The place of the spin term belongs to the discretisation: forces and moment, summed at the
@@ -282,7 +296,8 @@ void tangential_solver::carry_plastic(const inelastic_fields &fields) {
 void tangential_solver::collect(const tangential_problem &problem) {
   const grid &g = problem.g;
   const rolling_input &input = problem.input;
-  elements_.collect(g, problem.pressure, input.direction);
+  const bool steady = !has_physics || input.regime == motion::steady;
+  elements_.collect(g, problem.pressure, input.direction, steady && boxed_);
   elements_.for_each([&](size_t k, size_t at, size_t ix, size_t iy) {
     const int i = static_cast<int>(at) % g.nx, j = static_cast<int>(at) / g.nx;
     const double x = g.x(i), y = g.y(j);

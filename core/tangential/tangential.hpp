@@ -10,6 +10,7 @@
 // inelastic_newton.hpp.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "half_space/influence.hpp"
@@ -80,6 +81,7 @@ struct tangential_problem {
   const rolling_input &input;
   tangential_options options;
   tangential_fields fields;
+  bool follows = false;                         // see influence::set_grid()
   const inelastic_fields *inelastic = nullptr;  // of laws beyond Coulomb's, with their sums
   inelastic_sums *sums = nullptr;
   viscous_influence *viscous = nullptr;  // of viscoelastic bodies in steady rolling, in place of a
@@ -94,6 +96,10 @@ class tangential_solver {
     bool history = false;                  // for shift and transient rolling
     const fft_plans *transient = nullptr;  // transient rolling: those of the influence
     bool moves = false;                    // of patches whose grid moves: add_moved()
+    // Products in steady rolling on the least grid that holds the contact, with these bodies and
+    // plans; null: on the problem's.
+    const influence::medium *bodies = nullptr;
+    const fft_plans *plans = nullptr;
   };
   tangential_solver(int max_nx, int max_ny, const setup &setup);
 
@@ -130,8 +136,11 @@ class tangential_solver {
   void carry_plastic(const inelastic_fields &fields);
   void release(const grid &g, tangential_fields fields) const;
 
+  influence &products(const tangential_problem &problem);
+
   row_elements elements_;
   row_strips strips_;
+  std::unique_ptr<influence> boxed_;
   aligned_buffer<double> bound_, area_, rigid_, p_, s_;
   std::optional<rolling_newton> newton_;
   physics_part<inelastic_newton> inelastic_;

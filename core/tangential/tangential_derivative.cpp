@@ -106,9 +106,11 @@ void tangential_derivative::factor(const tangential_point &point, bool transpose
 void tangential_derivative::product(const tangential_point &point, const double *v, double *out,
                                     bool transposed, bool exact) {
   const int direction = transposed ? -point.rolling.direction : point.rolling.direction;
-  const auto rolling = exact ? &influence::rolling_product : &influence::rolling_product_single;
   elements_.product(v, out, [&](double *px, double *py, double *sx, double *sy) {
-    (point.a.*rolling)(px, py, direction, sx, sy);
+    if (exact)
+      point.a.rolling_product(px, py, direction, sx, sy);
+    else
+      point.a.rolling_product_single(px, py, direction, sx, sy);
   });
   ++products_;
   exact_ += exact;

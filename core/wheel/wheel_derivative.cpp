@@ -182,12 +182,18 @@ void wheel_derivative::set_shape(step &s, int index, patch_variation *in) {
       s.lattice[k].origin[c] = low[c]->rate[at] - 0.5 * size;
     }
   }
-  geometry.distance_rates(s.frame, {g.nx, g.ny, g.x0, g.y0, g.dx, g.dy}, s.lattice, s.moving,
-                          rates);
   const double *h = s.wheel.memory[index].undeformed_distance.data();
-  const auto deepest = std::min_element(h, h + g.count()) - h;
+  auto deepest = static_cast<int>(std::min_element(h, h + g.count()) - h);
+  const bool all = s.solver.scene().normal != RP_NORMAL_HERTZ;
+  if (all) {
+    geometry.distance_rates(s.frame, {g.nx, g.ny, g.x0, g.y0, g.dx, g.dy}, s.lattice, s.moving,
+                            rates);
+  } else {
+    set_depth(s, geometry, g, deepest, rates);
+    deepest = 0;
+  }
   for (int k = 0; k < s.moving; ++k) {
-    in[k].distance = rates[k];
+    if (all) in[k].distance = rates[k];
     std::copy_n(s.lattice[k].size, 2, in[k].size);
     std::copy_n(s.lattice[k].origin, 2, in[k].origin);
     for (int i = region.first_part; i + 1 < end; ++i)
@@ -195,6 +201,18 @@ void wheel_derivative::set_shape(step &s, int index, patch_variation *in) {
           interaction(s.wheel.rules.blend, s.parts[i], s.parts[i + 1]).rate[static_cast<size_t>(k)];
     s.depth.rate[static_cast<size_t>(k)] = -rates[k][deepest];
   }
+}
+
+// Of an ellipse the depth alone counts: rates of the distance at the deepest element.
+void wheel_derivative::set_depth(const step &s, const moving_geometry &geometry, const grid &g,
+                                 int deepest, double *const *rates) {
+  const int at[2] = {deepest % g.nx, deepest / g.nx};
+  lattice_rates one[rate_directions];
+  for (int k = 0; k < s.moving; ++k)
+    for (int c = 0; c < 2; ++c)
+      one[k].origin[c] = s.lattice[k].origin[c] + at[c] * s.lattice[k].size[c];
+  geometry.distance_rates(s.frame, {1, 1, g.x(at[0]), g.y(at[1]), g.dx, g.dy}, one, s.moving,
+                          rates);
 }
 
 // Slopes of the rail's surface.

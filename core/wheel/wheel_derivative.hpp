@@ -59,6 +59,8 @@ class wheel_derivative {
   struct step;
   void solve_patch(step &s, int index);
   void set_shape(step &s, int index, patch_variation *in);
+  static void set_depth(const step &s, const moving_geometry &geometry, const grid &g, int deepest,
+                        double *const *rates);
   void set_slopes(step &s, int index, patch_variation *in);
   void set_friction(step &s, int index, const lattice_rates *lattice, patch_variation *in);
   void set_motion(step &s, int index, patch_variation *in);

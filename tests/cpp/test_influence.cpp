@@ -329,6 +329,23 @@ TEST_P(Products, RollingEqualsTheDirectSumInBothDirections) {
   }
 }
 
+// Parseval's sum over the waves is that over the elements.
+TEST_P(Products, RollingReturnsTheTractionsOwnProduct) {
+  const std::vector<double> px = random_field(), py = random_field();
+  const std::vector<double> ux = sum(direct(kernel::xx, px), direct(kernel::xy, py), 1),
+                            uy = sum(direct(kernel::xy, px), direct(kernel::yy, py), 1);
+  double own = 0, size = 0;
+  for (size_t i = 0; i < px.size(); ++i) {
+    own += px[i] * ux[i] + py[i] * uy[i];
+    size += std::fabs(px[i] * ux[i]) + std::fabs(py[i] * uy[i]);
+  }
+  for (int direction : {1, -1}) {
+    std::vector<double> sx = zeros(), sy = zeros();
+    EXPECT_NEAR(s.a.rolling_product(px.data(), py.data(), direction, sx.data(), sy.data()), own,
+                imposed * size);
+  }
+}
+
 // what makes it fit as a preconditioner of conjugate gradients
 TEST_P(Products, InverseIsSymmetricAndPositive) {
   const std::vector<double> p = random_field(), q = random_field();
@@ -367,6 +384,72 @@ TEST(Grids, TheirOrderMakesNoDifference) {
   fresh.normal_product(p.data(), v.data());
   EXPECT_EQ(u, v);
   EXPECT_FALSE(used.set_grid({40, 7, 1e-3, 1e-3, 0, 0})) << "larger than every plan";
+}
+
+influence::medium followed(double layer, bool tangential) {
+  influence::medium m{steel(), layer, 0.0, tangential};
+  m.follows = true;
+  return m;
+}
+
+// Kept kernels against those of the grid itself: coefficients, products of pressure and traction.
+// Lagrange's remainder for eight values h = 1/32 apart is (1/2 3/2 5/2 7/2 h^4)^2 |f^(8)|/8!, and
+// |f^(8)|/8! some f/(pi/2)^8 with the nearest singularities at log(dy/dx) = +-i pi/2: 1.1e-12 f.
+TEST(Grids, KeptKernelsAreThoseOfTheGrid) {
+  constexpr double kept = 1.1e-12;
+  const fft_plans plans({40}, {36});
+  for (const double layer : {0.0, 2e-15})
+    for (const double ratio : {0.21, 0.97, 1.0, 1.62, 2.44, 7.3}) {
+      influence exact(followed(layer, true), plans), read(followed(layer, true), plans),
+          normal(followed(0, false), plans);
+      const grid g{18, 18, 7e-4, 7e-4 * ratio, 0, 0};
+      ASSERT_TRUE(exact.set_grid(g) && read.set_grid(g, true) && normal.set_grid(g, true));
+      for (const kernel k : {kernel::zz, kernel::xx, kernel::yy, kernel::xy})
+        for (int j = 0; j < 3; ++j)
+          for (int i = 0; i < 18; ++i)
+            EXPECT_NEAR(read.coefficient(k, i, j), exact.coefficient(k, i, j),
+                        kept * exact.coefficient(kernel::zz, 0, 0))
+                << ratio << " " << static_cast<int>(k) << " " << i << " " << j;
+      std::vector<double> p(324), q(324), u[6], v[6];
+      for (auto *f : {&u, &v})
+        for (auto &one : *f) one.resize(p.size());
+      for (size_t i = 0; i < p.size(); ++i)
+        p[i] = std::sin(1.0 + static_cast<double>(i)),
+        q[i] = std::cos(0.7 * static_cast<double>(i));
+      const auto products = [&](influence &a, std::vector<double> *out) {
+        a.normal_product(p.data(), out[0].data());
+        a.tangential_product(p.data(), q.data(), out[1].data(), out[2].data());
+        a.rolling_product(p.data(), q.data(), 1, out[3].data(), out[4].data());
+      };
+      products(exact, u);
+      products(read, v);
+      normal.normal_product(p.data(), v[5].data());
+      u[5] = u[0];
+      for (int k = 0; k < 6; ++k)
+        for (size_t i = 0; i < p.size(); ++i) {
+          // all elements may be off by as much
+          const double scale =
+              exact.coefficient(kernel::zz, 0, 0) * 324 / (k == 3 || k == 4 ? g.dx : 1);
+          EXPECT_NEAR(v[k][i], u[k][i], kept * scale) << ratio << " " << k;
+        }
+    }
+}
+
+// Pages are the same whenever they were written, also where others had to go.
+TEST(Grids, WhatWasReadBeforeMakesNoDifference) {
+  const fft_plans plans({40}, {36});
+  influence used(followed(0, true), plans), fresh(followed(0, true), plans);
+  const auto of = [](double ratio) { return grid{18, 18, 7e-4, 7e-4 * ratio, 0, 0}; };
+  for (int k = 0; k < 80; ++k) ASSERT_TRUE(used.set_grid(of(0.1 * std::exp(0.06 * k)), k % 7 > 0));
+  ASSERT_TRUE(used.set_grid(of(1.3), true) && fresh.set_grid(of(1.3), true));
+  std::vector<double> p(324), u(324), v(324);
+  for (size_t i = 0; i < p.size(); ++i) p[i] = std::sin(static_cast<double>(i));
+  for (const bool follows : {true, false}) {
+    ASSERT_TRUE(used.set_grid(of(1.3), follows) && fresh.set_grid(of(1.3), follows));
+    used.normal_product(p.data(), u.data());
+    fresh.normal_product(p.data(), v.data());
+    EXPECT_EQ(u, v);
+  }
 }
 
 }  // namespace

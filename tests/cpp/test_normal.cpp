@@ -365,4 +365,29 @@ TEST(NormalDerivative, NothingMoves) {
   for (double a : approach) EXPECT_EQ(a, 0);
 }
 
+// Pressure of one depth is that of another but for its size, on elements that have grown with the
+// contact: what a wheel's grid does. Nothing is left to iterate.
+TEST(Normal, AStartOfTheRightShapeHasTheRightSizeAtOnce) {
+  const fft_plans plans({48}, {40});
+  influence a({steel}, plans);
+  normal_solver solver(400);
+  std::vector<double> p(400), h(400);
+  for (const double growth : {1.0, 1.3, 0.6}) {
+    grid g{20, 20, 5e-4 * growth, 7e-4 * growth, -4.75e-3 * growth, -6.65e-3 * growth};
+    for (int j = 0; j < g.ny; ++j)
+      for (int i = 0; i < g.nx; ++i)
+        h[static_cast<size_t>(j * g.nx + i)] = 1.1 * g.x(i) * g.x(i) + 0.5 * g.y(j) * g.y(j);
+    ASSERT_TRUE(a.set_grid(g));
+    // the first one better than the others are asked for
+    const normal_options options{growth == 1.0 ? 1e-10 : 1e-8, 200, {}, false, true};
+    const normal_result found =
+        solver.with_approach(a, g, h.data(), 2e-5 * growth * growth, options, p.data());
+    EXPECT_TRUE(found.converged);
+    if (growth == 1.0)
+      EXPECT_GT(found.iterations, 0);
+    else
+      EXPECT_EQ(found.iterations, 0) << growth;
+  }
+}
+
 }  // namespace
