@@ -431,10 +431,9 @@ tangential_result tangential_stage::solve_viscous(const patch_problem &problem,
                                                   const tangential_options &options,
                                                   traction_outcome &found) {
   viscous_influence &viscous = *shared_.viscous;
-  tangential_result t =
-      tangential_->solve({*shared_.influence, problem.g, memory.pressure.data(), bound_.data(),
-                          rolling, options, memory.fields(), problem.follows, nullptr, nullptr,
-                          &viscous});
+  tangential_result t = tangential_->solve({*shared_.influence, problem.g, memory.pressure.data(),
+                                            bound_.data(), rolling, options, memory.fields(),
+                                            problem.follows, nullptr, nullptr, &viscous});
   const double loss = viscous.tangential_loss(memory.px.data(), memory.py.data());
   t.friction -= loss;
   found.viscous_power = problem.rolling_speed * loss;
