@@ -254,6 +254,35 @@ RAILPATCH_INLINE void settle(Task &task, const lane_numbers &load, const lane_nu
   }
 }
 
+// What a march has found of a node, for the next one.
+template <class Task>
+RAILPATCH_INLINE void write_node(Task &task, size_t node, const lane_numbers &p,
+                                 const lane_numbers &d, const lane_numbers &p_end,
+                                 const lane_numbers &d_end) {
+  RAILPATCH_INDEPENDENT
+  RAILPATCH_ROLLED
+  for (int l = 0; l < lanes; ++l) {
+    const auto at = node + static_cast<size_t>(l);
+    task.liquid[at] = p.of[l];
+    task.distance[at] = d.of[l];
+    task.liquid_rate[at] = p_end.of[l];
+    task.distance_rate[at] = d_end.of[l];
+  }
+}
+
+// Where d of a node lies by the last march, as far as the beginning has moved since.
+template <class Task>
+RAILPATCH_INLINE void look_back(const Task &task, size_t node, lane_numbers &guess) {
+  RAILPATCH_INDEPENDENT
+  RAILPATCH_ROLLED
+  for (int l = 0; l < lanes; ++l) {
+    const auto at = node + static_cast<size_t>(l);
+    double way = task.moved.of[l] * task.distance_rate[at];
+    way = way > -most_way ? way : -most_way;
+    guess.of[l] = in_table(task.distance[at] + (way < most_way ? way : most_way));
+  }
+}
+
 // Everything of wet_strip's march, whose words these are, in each lane.
 RAILPATCH_DISPATCH void march_lanes(strip_march &task) {
   const double over_steps = 1.0 / task.steps;
@@ -274,15 +303,7 @@ RAILPATCH_DISPATCH void march_lanes(strip_march &task) {
   for (int k = task.steps; k > 1; --k) {
     const auto here = static_cast<size_t>(k * lanes);
     const double part = (k - 1) * over_steps;
-    RAILPATCH_INDEPENDENT
-    RAILPATCH_ROLLED
-    for (int l = 0; l < lanes; ++l) {
-      const auto at = here + static_cast<size_t>(l);
-      task.liquid[at] = p.of[l];
-      task.distance[at] = now.d.of[l];
-      task.liquid_rate[at] = p_end.of[l];
-      task.distance_rate[at] = d_end.of[l];
-    }
+    write_node(task, here, p, now.d, p_end, d_end);
     RAILPATCH_ROLLED
     for (int l = 0; l < lanes; ++l) {
       const double h = task.h.of[l], before = cosine.of[l];
@@ -292,14 +313,7 @@ RAILPATCH_DISPATCH void march_lanes(strip_march &task) {
       sine.of[l] = sine.of[l] * task.turn.of[l] - before * task.lift.of[l];
       weight.of[l] = 0.5 * h * task.s.of[l] * sine.of[l];
     }
-    RAILPATCH_INDEPENDENT
-    RAILPATCH_ROLLED
-    for (int l = 0; l < lanes; ++l) {
-      const auto at = here - lanes + static_cast<size_t>(l);
-      double way = task.moved.of[l] * task.distance_rate[at];
-      way = way > -most_way ? way : -most_way;
-      guess.of[l] = in_table(task.distance[at] + (way < most_way ? way : most_way));
-    }
+    look_back(task, here - lanes, guess);
     press(task, cosine, sine, load, rise);
     RAILPATCH_ROLLED
     for (int l = 0; l < lanes; ++l) {
@@ -328,14 +342,11 @@ RAILPATCH_DISPATCH void march_lanes(strip_march &task) {
       d_end.of[l] = by_end;
     }
   }
+  write_node(task, lanes, p, now.d, p_end, d_end);
   RAILPATCH_ROLLED
   for (int l = 0; l < lanes; ++l) {
-    const auto first = static_cast<size_t>(l), second = first + lanes;
+    const auto first = static_cast<size_t>(l);
     const double h = task.h.of[l];
-    task.liquid[second] = p.of[l];
-    task.distance[second] = now.d.of[l];
-    task.liquid_rate[second] = p_end.of[l];
-    task.distance_rate[second] = d_end.of[l];
     task.liquid[first] = p.of[l] - 0.5 * h * rate.of[l];
     task.liquid_rate[first] = p_end.of[l] - 0.5 * (over_steps * rate.of[l] + h * rate_end.of[l]);
     if (!(task.alive.of[l] > 0.0)) continue;
