@@ -240,6 +240,7 @@ void expect_summed_along_rows(int nx, int ny) {
                       input,
                       {1e-9, 200},
                       {px.data(), py.data(), sx.data(), sy.data(), division.data()},
+                      false,
                       &fields,
                       &sums});
     ASSERT_TRUE(result.converged) << result.residual;
