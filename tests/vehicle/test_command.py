@@ -65,13 +65,19 @@ def test_ratios_of_the_table():
     assert full[0] == "half-space, full, 16 x 16"
 
 
-def test_table_of_one_run():
-    result = call("--method", "polach", "--duration", "0.005")
+def test_table_of_times_compares():
+    """Of two theories a row each beside published times; one alone has nothing to stand beside."""
+    result = call("--method", "polach", "--method", "fastsim", "--duration", "0.005")
     assert result.exit_code == 0, result.output
-    *_, header, row, published = result.output.splitlines()
+    *_, header, row, other, published = result.output.splitlines()
     assert header.split()[-2:] == ["CPU", "published"]
     assert row.startswith("Hertz, polach, 10 x 10")
+    assert other.startswith("Hertz, fastsim, 10 x 10")
     assert "CONTACT 383 s" in published
+    result = call("--method", "fastsim", "--duration", "0.005")
+    assert result.exit_code == 0, result.output
+    assert "Hertz, fastsim, 10 x 10" in result.output
+    assert "published" not in result.output
 
 
 def test_wrong_calls(tmp_path):

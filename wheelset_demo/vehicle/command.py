@@ -139,7 +139,7 @@ def run_all(
 
 
 def show(name: str, found: dict[str, Any]) -> None:
-    """Summaries, and the table of times where theories are named."""
+    """Summaries, and the table of times where several theories ran."""
     from wheelset_demo.vehicle.compare import THEORIES, table_of
 
     click.echo(f"{'scene':<16}{name}")
@@ -147,6 +147,6 @@ def show(name: str, found: dict[str, Any]) -> None:
         if key in THEORIES:
             click.echo(f"{'theory':<16}{THEORIES[key].text}")
         click.echo(summary.text())
-    if "scene" not in found:
+    if len(found) > 1:
         click.echo("")
         click.echo(table_of(found))
