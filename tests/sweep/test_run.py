@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -114,6 +115,36 @@ def test_sweeps_go_on_and_share(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     again = run_sweep(larger, folder)
     assert again.solved == 6
     assert same(again, shared)
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_ended_command_says_what_is_kept(
+    number: signal.Signals, code: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of all cases, those that are there; the same command goes on with as many."""
+    solved: list[str] = []
+
+    def ended(chunk: Chunk) -> list[Row]:
+        if len(solved) >= 2:
+            signal.raise_signal(number)
+        solved.extend(chunk.ids)
+        return solve_chunk(chunk)
+
+    path, folder = files(tmp_path), tmp_path / "out"
+    call = ["sweep", str(path), "-o", str(folder), "--json"]
+    monkeypatch.setattr(runner, "solve_chunk", ended)
+    found = CliRunner().invoke(cli, call)
+    assert found.exit_code == code
+    # the first case is solved before the chunks
+    kept = 1 + len(solved)
+    words = f"ended by {number.name}: {kept} of 6 cases are kept in {folder}; the same command"
+    assert words in found.output
+    monkeypatch.setattr(runner, "solve_chunk", solve_chunk)
+    rest = CliRunner().invoke(cli, call)
+    assert json.loads(rest.stdout)["reused"] == kept
+    told = CliRunner().invoke(cli, ["sweep", "--help"]).output
+    assert "130" in told
+    assert "143" in told
 
 
 def test_cases_that_fail_are_rows(tmp_path: Path) -> None:

@@ -32,6 +32,9 @@ def told_when_ended(text: Callable[[], str]) -> Iterator[None]:
     try:
         yield
     except Ended as ended:
+        # what is told now is short, and said whole
+        for number in before:
+            signal.signal(number, signal.SIG_IGN)
         click.echo(f"ended by {signal.Signals(ended.code - 128).name}: {text()}", err=True)
         click.get_current_context().exit(ended.code)
     finally:

@@ -11,6 +11,7 @@ from typing import Any
 
 import click
 
+from railpatch.command.ending import told_when_ended
 from railpatch.command.group import (
     EXIT_NOT_CONVERGED,
     WrongCall,
@@ -62,18 +63,24 @@ def sweep(
 ) -> None:
     """Solve a scene for many values of its keys, here or on a cluster.
 
-    What is done is kept as it is done: the same command goes on where it was ended. Cases without a
-    good result are rows with status and reason, and exit code 3.
+    What is done is kept as it is done: the same command goes on where it was ended. Ctrl-C ends it
+    with exit code 130, SIGTERM with 143, and it says how many cases are kept. Cases without a good
+    result are rows with status and reason, and exit code 3.
     """
     from railpatch.sweep.plan import load_plan
-    from railpatch.sweep.run import run_sweep
+    from railpatch.sweep.run import kept_of, run_sweep
 
     if scheduler is not None and cluster is not None:
         raise WrongCall(f"--cluster: value is {cluster!r} with --scheduler, allowed one of them")
     if scheduler is not None and workers is not None:
         raise WrongCall(f"--workers: value is {workers} with --scheduler, allowed without")
     check_folder(output)
-    with wrong_calls():
+    plan = None
+
+    def kept() -> str:
+        return "no case was begun" if plan is None else kept_of(plan, output)
+
+    with told_when_ended(kept), wrong_calls():
         plan = load_plan(sweep)
         backend = backend_of(scheduler, cluster, workers)
         count = workers or 1

@@ -91,6 +91,15 @@ def run_sweep(
     return sweep
 
 
+def kept_of(plan: Plan, folder: Path) -> str:
+    """How many of a sweep's cases its folder has, for one that was ended."""
+    ids = plan.ids()
+    found = read_rows(folder, ids, tuple(plan.table.outputs or ()))
+    count = sum(name in found for name in ids)
+    kept = f"{count} of {len(ids)} cases are kept in {folder}"
+    return f"{kept}; the same command goes on with them" if count else kept
+
+
 def first_of(
     plan: Plan, ids: list[str], places: list[int], outputs: tuple[str, ...], logs: Path | None
 ) -> tuple[tuple[str, ...], Row]:
