@@ -10,10 +10,9 @@
 #pragma once
 
 #include <cmath>
-#include <complex>
 
 #include "half_space/coupling_operator.hpp"
-#include "numeric/batch_fft.hpp"
+#include "numeric/plane_transform.hpp"
 
 namespace railpatch {
 
@@ -35,8 +34,11 @@ class coupling_influence final : public coupling_operator {
   size_t bytes() const override;
 
  private:
-  using fft = batch_fft<double>;
-  using lines = typename fft::lines;
+  using fft = plane_transform::fft;
+  using lines = plane_transform::lines;
+  struct wave {
+    double re, im;
+  };
   // of K_x + i K_y with the kernels u_x, u_y from p_n, [big_nx][big_ny]
   struct spectrum {
     bool made = false;
@@ -46,9 +48,8 @@ class coupling_influence final : public coupling_operator {
   void prepare(spectrum &s, double offset);
   void fill_kernel(int component, double offset);
   void fill_corners(int component, double offset);
-  void take_over(int component, spectrum &s) const;
-  lines transformed(const double *re, const double *im);
-  lines back(lines along);
+  template <class F>
+  lines product(const double *re, const double *im, F &&times);
   int big_nx() const { return plans_.nx(plan_); }
   int big_ny() const { return plans_.ny(plan_); }
 
@@ -57,11 +58,9 @@ class coupling_influence final : public coupling_operator {
   const fft_plans &plans_;
   grid grid_;
   int plan_ = -1;
-  fft along_x_, along_y_;
+  plane_transform plane_;
   spectrum here_, there_;
-  aligned_buffer<double> corner_, padded_;
-  aligned_buffer<std::complex<double>> transform_;
-  aligned_buffer<double> lateral_[4], along_[4];  // data and work, real and imaginary
+  aligned_buffer<double> corner_;
 };
 
 }  // namespace railpatch

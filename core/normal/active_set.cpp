@@ -112,17 +112,7 @@ void active_set_solver::evaluate(problem &s, const double *p) {
       std::minmax_element(displacement_.data(), displacement_.data() + s.n);
   // a line contact's displacements are known but for a constant
   s.scale = s.a.is_line() ? *greatest - *least : *greatest;
-  if (s.force_given) {
-    // the approach that leaves no mean error where the bodies touch
-    double sum = 0;
-    int count = 0;
-    for (size_t i = 0; i < s.n; ++i)
-      if (p[i] > 0) {
-        sum += s.h[i] + displacement_[i];
-        ++count;
-      }
-    s.approach = sum / std::max(count, 1);
-  }
+  if (s.force_given) s.approach = mean_approach(s.n, s.h, displacement_.data(), p);
   if (!(s.scale > 0)) s.scale = std::max(0.0, s.approach - *std::min_element(s.h, s.h + s.n));
   find_area(s, p);
   if (s.worst <= 0.9 * s.least) {

@@ -79,6 +79,17 @@ normal_result normal_solver::solve(problem &s, double *p) {
   return result;
 }
 
+double mean_approach(size_t n, const double *h, const double *displacement, const double *p) {
+  double sum = 0;
+  int count = 0;
+  for (size_t i = 0; i < n; ++i)
+    if (p[i] > 0) {
+      sum += h[i] + displacement[i];
+      ++count;
+    }
+  return sum / std::max(count, 1);
+}
+
 void count_contact(const grid &g, const double *p, bool strips, normal_result &result) {
   const bool bounded_x = g.nx > (strips ? 2 : 0), bounded_y = g.ny > (strips ? 2 : 1);
   for (int j = 0; j < g.ny; ++j)
@@ -182,15 +193,7 @@ void normal_solver::evaluate(problem &s, const double *p) {
 void normal_solver::check_conditions(problem &s, const double *p) {
   s.scale = *std::max_element(displacement_.data(), displacement_.data() + s.n);
   if (s.force_given) {
-    // the approach that leaves no mean error where the bodies touch
-    double sum = 0;
-    int count = 0;
-    for (size_t i = 0; i < s.n; ++i)
-      if (p[i] > 0) {
-        sum += s.h[i] + displacement_[i];
-        ++count;
-      }
-    s.approach = sum / std::max(count, 1);
+    s.approach = mean_approach(s.n, s.h, displacement_.data(), p);
   } else if (s.scale <= 0) {
     s.scale = std::max(0.0, s.approach - *std::min_element(s.h, s.h + s.n));
   }

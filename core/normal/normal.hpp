@@ -41,6 +41,10 @@ struct normal_result {
   int contact_count = 0;
 };
 
+// The approach (m) that leaves no mean error of the gap where n elements with the pressure p touch.
+double mean_approach(size_t n, const double *undeformed_distance, const double *displacement,
+                     const double *p);
+
 // Elements in contact, and whether they reach the border.
 void count_contact(const grid &g, const double *pressure, bool strips, normal_result &result);
 

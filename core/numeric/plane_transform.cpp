@@ -25,21 +25,6 @@ void plane_transform::set_plan(int plan) {
   along_y_.set_length(ny());
 }
 
-void plane_transform::spectrum_of_kernel(double *re, double *im) {
-  const int half = nx() / 2 + 1;
-  const double scale = 1.0 / (static_cast<double>(nx()) * ny());
-  plans_.forward(plan_, padded_.data(), transform_.data());
-  for (int i = 0; i < nx(); ++i)
-    for (int j = 0; j < ny(); ++j) {
-      const bool mirrored = i >= half;
-      const int from_i = mirrored ? nx() - i : i, from_j = mirrored ? (ny() - j) % ny() : j;
-      const std::complex<double> z = transform_[static_cast<size_t>(from_j * half + from_i)];
-      const int at = i * ny() + j;
-      re[at] = scale * z.real();
-      im[at] = scale * (mirrored ? -z.imag() : z.imag());
-    }
-}
-
 plane_transform::lines plane_transform::forward(const int from[2], const double *re,
                                                 const double *im) {
   const int waves = fft::whole_packs(ny()), columns = fft::whole_packs(from[0]);

@@ -24,8 +24,28 @@ class plane_transform {
 
   // A kernel's values at all offsets, [ny][nx], wrapped around: to be filled.
   double *kernel() { return padded_.data(); }
-  // Its spectrum on all waves, [nx][ny], with the factor of the way back.
-  void spectrum_of_kernel(double *re, double *im);
+  // Its spectrum on all waves, with the factor of the way back: take(at, re, im) for each,
+  // [nx][ny].
+  template <class F>
+  void spectrum_of_kernel(F &&take) {
+    const int half = nx() / 2 + 1;
+    const double scale = 1.0 / (static_cast<double>(nx()) * ny());
+    plans_.forward(plan_, padded_.data(), transform_.data());
+    for (int i = 0; i < nx(); ++i)
+      for (int j = 0; j < ny(); ++j) {
+        const bool mirrored = i >= half;
+        const int from_i = mirrored ? nx() - i : i, from_j = mirrored ? (ny() - j) % ny() : j;
+        const std::complex<double> z = transform_[static_cast<size_t>(from_j * half + from_i)];
+        take(static_cast<size_t>(i * ny() + j), scale * z.real(),
+             scale * (mirrored ? -z.imag() : z.imag()));
+      }
+  }
+  void spectrum_of_kernel(double *re, double *im) {
+    spectrum_of_kernel([=](size_t at, double real, double imaginary) {
+      re[at] = real;
+      im[at] = imaginary;
+    });
+  }
 
   // From fields on from[0] by from[1] elements (im may be null) to to[0] by to[1] ones, whose rows
   // are fft::whole_packs(to[0]) apart. multiply(from, to, stride) has the transform of the one and
