@@ -67,7 +67,7 @@ void contact::step(const rp_input &input, rp_result &result) {
   if (derivative_) begin_record();
   rp_result out = config_.accuracy > 0 ? solve_to_accuracy(input) : solve(input);
   report_warnings(config_, warnings_ | warnings_of_film(config_, solution(RP_RIGHT, 0), out), input,
-                  out);
+                  friction_coefficient(), out);
   result = out;
   if (derivative_) end_record(input, out);
 }

@@ -19,6 +19,7 @@ constexpr double steel_range[2] = {6e10, 1e11};   // Pa, shear moduli of steels 
 constexpr double pressure_range[2] = {1e7, 5e9};  // Pa
 constexpr double water_range[2] = {0, 100};       // degrees C, where water is a liquid
 constexpr double thick_film = 1e-4;               // m, of a liquid between the bodies
+constexpr double slippery = 1e-3;                 // -, friction of what a liquid wets
 constexpr double doubtful_size = 0.06;            // m, diameter of the circle of a contact's area
 constexpr double play_range[2] = {0.04, 0.12};    // m, gauge minus flange back distance
 constexpr double least_flange = 0.015;            // m, height of a profile that has one
@@ -132,6 +133,7 @@ bool doubtful_liquid(const rp_config &config) {
                   outside(config.fluid_viscosity, fluid_viscosity_range);
   for (int k = 0; k < config.fluid_viscosity_points; ++k)
     doubtful = doubtful || outside(config.fluid_viscosity_value[k], fluid_viscosity_range);
+  doubtful = doubtful || config.fluid_boundary_friction > config.friction_coefficient;
   const double stress = config.fluid_eyring_stress;
   return doubtful || (stress > 0 && outside(stress, fluid_eyring_stress_range));
 }
@@ -163,7 +165,9 @@ uint32_t warnings_of_patch(const rp_config &config, const rp_patch_result &patch
   found |= bit(RP_WARNING_WATER, config.fluid_model != RP_FLUID_NONE &&
                                      config.fluid_liquid == RP_LIQUID_WATER &&
                                      outside(patch.fluid_temperature, water_range)) |
-           bit(RP_WARNING_THICK_FILM, patch.central_film_thickness > thick_film);
+           bit(RP_WARNING_THICK_FILM, patch.central_film_thickness > thick_film) |
+           bit(RP_WARNING_SLIPPERY,
+               config.fluid_model != RP_FLUID_NONE && patch.effective_friction < slippery);
   bool coarse = false;
   for (int k = 0; k < (line ? 1 : 2); ++k) {
     // a grid of the case's own number has a border around it
@@ -175,10 +179,10 @@ uint32_t warnings_of_patch(const rp_config &config, const rp_patch_result &patch
   return found | bit(RP_WARNING_COARSE, coarse && config.fitted[0] == 0);
 }
 
-// pitch_rate: given or found
-uint32_t warnings_of_side(const rp_config &config, const rp_input &input, double pitch_rate,
-                          int side, const rp_side_result &wheel) {
-  const double friction = config.friction_coefficient * input.friction_scale[side];
+// coefficient: Coulomb's, as set last. pitch_rate: given or found
+uint32_t warnings_of_side(const rp_config &config, const rp_input &input, double coefficient,
+                          double pitch_rate, int side, const rp_side_result &wheel) {
+  const double friction = coefficient * input.friction_scale[side];
   uint32_t found = bit(RP_WARNING_FRICTION, config.tangential != RP_TANGENTIAL_NONE &&
                                                 friction > friction_coefficient_range[1]);
   double load = 0;
@@ -242,15 +246,15 @@ uint32_t warnings_of_film(const rp_config &config, const patch_memory *solution,
 }
 
 void report_warnings(const rp_config &config, uint32_t of_case, const rp_input &input,
-                     rp_result &result) {
+                     double coefficient, rp_result &result) {
   const uint32_t of_step = warnings_of_motion(config, input) | warnings_of_physics(config, input);
   int touching = 0;
   for (int side = 0; side < 2; ++side) {
     if (!in_use(config, side)) continue;
     rp_side_result &wheel = result.side[side];
     // those of the search for the height are there already
-    wheel.warnings |=
-        of_case | of_step | warnings_of_side(config, input, result.pitch_rate, side, wheel);
+    wheel.warnings |= of_case | of_step |
+                      warnings_of_side(config, input, coefficient, result.pitch_rate, side, wheel);
     touching += wheel.patch_count > 0;
   }
   // said of the wheel in the air

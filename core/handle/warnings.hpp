@@ -13,8 +13,9 @@ uint32_t warnings_of_case(const rp_config &config);
 // Of a step's elastohydrodynamic film on its grid; none where there is no solution.
 uint32_t warnings_of_film(const rp_config &config, const patch_memory *solution,
                           const rp_result &result);
-// Of a step, with those of its case; the config needs no profiles any more.
+// Of a step, with those of its case; the config needs no profiles any more. coefficient: Coulomb's,
+// as it was set last.
 void report_warnings(const rp_config &config, uint32_t of_case, const rp_input &input,
-                     rp_result &result);
+                     double coefficient, rp_result &result);
 
 }  // namespace railpatch

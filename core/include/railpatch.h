@@ -200,8 +200,11 @@ enum {
   X(RP_WARNING_FILM_REACH, 28,                                                                     \
     "the liquid's film begins before the grid, which must reach farther ahead of the contact")     \
   X(RP_WARNING_LIQUID, 29,                                                                         \
-    "of a liquid roughness is above 5e-5 m, a viscosity outside 1e-4 to 100 Pa s, or "             \
-    "eyring_stress outside 1e5 to 1e9 Pa")
+    "of a liquid roughness is above 5e-5 m, a viscosity outside 1e-4 to 100 Pa s, eyring_stress "  \
+    "outside 1e5 to 1e9 Pa, or boundary_friction above the coefficient of the dry contact")        \
+  X(RP_WARNING_SLIPPERY, 30,                                                                       \
+    "effective_friction of a wet contact is below 0.001: the liquid carries all of the load, see " \
+    "viscosity, in Pa s, and roughness, in m")
 
 #define RP_ENUM_ENTRY(name, value, text) name = value,
 typedef enum rp_error { RP_ERRORS(RP_ENUM_ENTRY) } rp_error;

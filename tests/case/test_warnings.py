@@ -145,6 +145,14 @@ MISTAKES: dict[str, tuple[dict[str, Any], str]] = {
         CELSIUS,
     ),
     "a supply in l/s": (with_values(PATCH, fluid={**WATER, "water_rate": 0.025}), "water_rate"),
+    "a viscosity in mPa s, little": (
+        with_values(PATCH, fluid={**FILM, "viscosity": 1.0, "boundary_friction": 0.15}),
+        "effective_friction",
+    ),
+    "a roughness of a thousandth": (
+        with_values(PATCH, fluid={**WATER, "roughness": 1e-9}),
+        "effective_friction",
+    ),
     "an oil's film in mm": (oil(oil_film=1e-3), "oil_film"),
     "a roughness in mm": (oil(roughness=5e-4), "roughness is above"),
     "a viscosity in mPa s": (oil(viscosity=200.0), "100 Pa s"),
@@ -160,6 +168,7 @@ MISTAKES: dict[str, tuple[dict[str, Any], str]] = {
         ),
         "100 Pa s",
     ),
+    "a boundary friction in per cent": (oil(boundary_friction=0.9), "boundary_friction above"),
     "an oil's shear stress in MPa": (oil(eyring_stress=5.0), "eyring_stress"),
     "a halving speed in mm/s": (falling(halving_speed=400.0), "halving_speed"),
     "the second halving speed in mm/s": (
@@ -185,6 +194,9 @@ WITHIN: dict[str, dict[str, Any]] = {
     "a thick film": oil(oil_film=5e-4),
     "a rough paste": oil(roughness=5e-5, viscosity=100.0, eyring_stress=1e5),
     "a liquid without shear": oil(viscosity=1e-4, eyring_stress=0.0),
+    "water at 360 km/h": with_values(
+        PATCH, fluid={**WATER, "roughness": 0.5765e-6}, motion__rolling_speed=100.0
+    ),
     "Polach's law": with_values(
         PATCH,
         friction={

@@ -713,6 +713,16 @@ TEST(Input, OfAPrescribedForceIsChecked) {
   expect_refused(contact, in, RP_ERROR_VALUE, "tangential_force");
 }
 
+// A coefficient in per cent, or above 1, is doubted as it was set last, not as the case has it.
+TEST(Input, FrictionSetIsDoubted) {
+  scenes::handle contact(scenes::patch(RP_NORMAL_HERTZ, RP_TANGENTIAL_FASTSIM));
+  const uint32_t bit = uint32_t{1} << RP_WARNING_FRICTION;
+  for (double coefficient : {0.3, 1.5, 0.4}) {
+    ASSERT_EQ(rp_set_friction_coefficient(contact.get(), coefficient, nullptr), RP_OK);
+    EXPECT_EQ(contact.step(default_input()).warnings & bit, coefficient > 1 ? bit : 0u);
+  }
+}
+
 // Where the normal force follows from the approach, the solve tells.
 TEST(Input, ForceBeyondFrictionIsAStatus) {
   for (int nodes : {0, 8}) {

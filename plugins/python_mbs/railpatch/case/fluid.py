@@ -304,9 +304,11 @@ class Fluid(Table):
         for name, values in columns.items():
             field = listed(f"fluid_knot_{name}")
             low, high, open_low = field["low"], field["high"], field["bounds"][0] == "("
-            if not all(low <= v <= high and not (open_low and v == low) for v in values):
-                allowed = f"{name} within {field['bounds'][0]}{low:g}, {high:g}]"
-                yield relation("knots", show(self.knots), allowed)
+            at = OF_KNOT.index(name)
+            for k, v in enumerate(values):
+                if not low <= v <= high or (open_low and v == low):
+                    allowed = f"{name} within {field['bounds'][0]}{low:g}, {high:g}]"
+                    yield relation(f"knots[{k}][{at}]", v, allowed)
 
     def _viscosity(self) -> Problems:
         by_temperature = self.liquid is not None or self.viscosity_table is not None
@@ -316,7 +318,7 @@ class Fluid(Table):
                 yield relation("viscosity", self.viscosity, f"{LEFT_OUT} with {which}")
         elif self.viscosity is None:
             yield relation(
-                "viscosity", "missing", "a number (of oil too), liquid = 'water' or a table"
+                "viscosity", "missing", "a number in Pa s (of oil too), liquid = 'water' or a table"
             )
         if self.liquid is not None and self.viscosity_table is not None:
             yield relation("liquid", repr(self.liquid), f"{LEFT_OUT} with viscosity_table")

@@ -70,10 +70,14 @@ def check_viscous(case: Any) -> Problems:
 
 def _check_method(case: Any, where: str) -> Problems:
     method, motion = case.method, case.motion
-    if motion.regime != "steady_rolling" or motion.changes:
-        shown = repr(motion.regime)
-        allowed = f"'steady_rolling' for all steps {where}: the history is the line ahead"
-        yield relation("motion.regime", shown, allowed)
+    rule = f"'steady_rolling' for all steps {where}: the history is the line ahead"
+    if motion.changes:
+        yield relation("motion.regimes", str(motion.regimes), f"{LEFT_OUT}; {rule}")
+    elif motion.regime != "steady_rolling":
+        yield relation("motion.regime", repr(motion.regime), rule)
+    if "rolling_speed" not in motion.model_fields_set:
+        allowed = f"a number in m/s {where}: how far the bodies yield in the contact depends on it"
+        yield relation("motion.rolling_speed", "missing", allowed)
     if method.normal != "half_space":
         yield relation("method.normal", repr(method.normal), f"'half_space' {where}")
     if method.tangential not in ("full", "none"):
