@@ -37,6 +37,12 @@ void read_elements(const pressed_run &run, double end, int nodes, const double *
   }
 }
 
+// Of a row of the same nominal pressures but for rounding.
+void copy_row(const grid &g, int of, int to, const double *pressure, double *fluid) {
+  for (int i = 0; i < g.nx; ++i)
+    fluid[to * g.nx + i] = std::min(fluid[of * g.nx + i], most_part * pressure[to * g.nx + i]);
+}
+
 }  // namespace
 
 double strip_liquid::film(double asperities) const {
@@ -76,8 +82,13 @@ strip_outcome fluid_strips::solve(const grid &g, const double *pressure, const h
   double all = 0, left = 0, greatest = 0, beside = 0;
   std::fill_n(fluid, g.count(), 0.0);
   if (!ellipse) found.converged = add_rows(g, pressure, direction, liquid, fluid);
+  // an ellipse's rows at y and -y are the same
+  const bool mirrored = std::fabs(g.y(0) + g.y(g.ny - 1)) < 1e-9 * g.dy;
   for (int j = 0; j < g.ny; ++j) {
-    if (ellipse) add_elliptic_row(g, j, pressure, hertz, direction, liquid, *rows, fluid);
+    if (ellipse && mirrored && j > g.ny - 1 - j)
+      copy_row(g, g.ny - 1 - j, j, pressure, fluid);
+    else if (ellipse)
+      add_elliptic_row(g, j, pressure, hertz, direction, liquid, *rows, fluid);
     for (int at = j * g.nx; at < (j + 1) * g.nx; ++at) {
       all += pressure[at];
       left += pressure[at] - fluid[at];

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import signal
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -21,7 +22,7 @@ from railpatch.sweep import local as runner
 from railpatch.sweep.local import WORKER_DIED
 from railpatch.sweep.plan import load_plan
 from railpatch.sweep.sensitivity import indices_of
-from railpatch.sweep.work import Chunk, Row, solve_chunk
+from railpatch.sweep.work import Chunk, Row, solve_chunk, solve_first
 
 PATCH = """kind = "patch"
 [geometry]
@@ -115,6 +116,22 @@ def test_sweeps_go_on_and_share(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     again = run_sweep(larger, folder)
     assert again.solved == 6
     assert same(again, shared)
+
+
+def test_chunks_are_of_what_cases_take_after_the_first(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A first case that reads profiles and imports for 10 s does not make each case a file."""
+
+    def slow(chunk: Chunk) -> tuple[tuple[str, ...], Row]:
+        names, row = solve_first(chunk)
+        return names, replace(row, seconds=10.0)
+
+    monkeypatch.setattr(import_module("railpatch.sweep.run"), "solve_first", slow)
+    found = run_sweep(files(tmp_path), tmp_path / "out", page=False)
+    # the first one, and at least four for a worker
+    assert len(list((tmp_path / "out" / "results").iterdir())) == 1 + 3
+    assert found.solved == 6
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])

@@ -7,13 +7,17 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager
-from multiprocessing import get_context
+from multiprocessing import get_all_start_methods, get_context
 
-from railpatch.sweep.work import Chunk, Row, get_ready, solve_chunk
+from railpatch.sweep.work import Chunk, Row, get_ready, modules_of, solve_chunk
 
 # how often the cases of a worker that ended are tried; each alone the last time
 TRIES = 3
 WORKER_DIED = "worker_died"
+METHOD = "forkserver" if "forkserver" in get_all_start_methods() else "spawn"
+QUEUED = 2  # chunks of each worker: one that it solves, one that waits
+# what solving a case imports when it first comes to it
+CASES_IMPORT = ("railpatch.sweep.work", "scipy.interpolate", "scipy.spatial")
 Backend = Callable[[list[Chunk]], Iterable[tuple[Chunk, list[Row]]]]
 
 
@@ -41,10 +45,20 @@ def died(chunk: Chunk) -> list[Row]:
     return [Row(name, WORKER_DIED, reason, (), 0.0, empty) for name in chunk.ids]
 
 
+def start_server(kind: str) -> None:
+    """Where processes are forks of a server, starts it: it imports what cases of a kind take beside
+    this process and once for all."""
+    if METHOD == "forkserver":
+        from multiprocessing.forkserver import ensure_running
+
+        get_context(METHOD).set_forkserver_preload([*CASES_IMPORT, *modules_of(kind)])
+        ensure_running()
+
+
 @contextmanager
 def pool_of(workers: int) -> Iterator[ProcessPoolExecutor]:
     """Processes that end with this one; what waits is dropped on an error."""
-    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"))
+    pool = ProcessPoolExecutor(workers, mp_context=get_context(METHOD))
     try:
         yield pool
     finally:
@@ -68,9 +82,13 @@ class LocalWorkers:
         self._stack.close()
 
     def begin(self) -> None:
-        """Starts the other processes, if there shall be any and there are none."""
-        if self.count <= 1 or self._pool is not None:
-            return
+        """Starts the other processes, or what they are forks of, if there shall be any."""
+        if self.count > 1 and self._pool is None:
+            start_server(self.kind)
+            if METHOD == "spawn":
+                self._start()
+
+    def _start(self) -> None:
         self._pool = self._stack.enter_context(pool_of(self.count))
         for _ in range(self.count):
             self._pool.submit(get_ready, self.kind)
@@ -84,13 +102,15 @@ class LocalWorkers:
         """Those that ran when a worker ended are tried again alone, case by case, by new ones."""
         waiting, suspects = deque(chunks), deque[tuple[Chunk, int]]()
         while waiting or suspects:
-            self.begin()
+            if self._pool is None:
+                start_server(self.kind)
+                self._start()
             pool = self._pool
             assert pool is not None
             running: dict[Future[list[Row]], tuple[Chunk, int]] = {}
             broken = False
             while not broken and (waiting or suspects or running):
-                while waiting and len(running) < self.count and not suspects:
+                while waiting and len(running) < QUEUED * self.count and not suspects:
                     chunk = waiting.popleft()
                     running[pool.submit(solve_chunk, chunk)] = (chunk, 1)
                 if suspects and not running:

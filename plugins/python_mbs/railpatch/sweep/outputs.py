@@ -5,12 +5,14 @@ from __future__ import annotations
 import difflib
 import re
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from railpatch.errors import CaseError
-from railpatch.log import Run
+
+if TYPE_CHECKING:
+    from railpatch.log import Run
 
 Output = float | str | None
 STATISTICS = {

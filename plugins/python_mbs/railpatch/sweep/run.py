@@ -5,7 +5,9 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
+from threading import Thread
 
 from railpatch.case.load import KINDS, check_case
 from railpatch.case.moving import moving_keys
@@ -13,11 +15,12 @@ from railpatch.errors import CaseError, ProfileError
 from railpatch.sweep.local import Backend, LocalWorkers
 from railpatch.sweep.outcome import Sweep
 from railpatch.sweep.plan import Plan, load_plan, steps_of
-from railpatch.sweep.store import need_pyarrow, read_rows, write_chunk, write_results
-from railpatch.sweep.work import Chunk, Row, solve_first
+from railpatch.sweep.store import is_new, need_pyarrow, read_rows, write_chunk, write_results
+from railpatch.sweep.work import Chunk, Row, solve_chunk, solve_first
 
 SECONDS = 1.0  # of a chunk, about
 MOST_IN_CHUNK = 5000
+PAGE = "railpatch.sweep.page"  # imported late: workers import this module
 
 
 def run_sweep(
@@ -50,7 +53,7 @@ def run_sweep(
     outputs = tuple(plan.table.outputs or ())
     row = None
     with LocalWorkers(workers if backend is None else 1, plan.kind) as local:
-        if not outputs:
+        if not outputs or is_new(folder):
             local.begin()
             outputs, row = first_of(plan, ids, list(range(len(ids))), outputs, logs)
         found = read_rows(folder, ids, outputs)
@@ -67,13 +70,16 @@ def run_sweep(
             place = ids.index(row.id)
             write_chunk(folder, chunk_of(plan, ids, [place], outputs, logs), [row])
             found[row.id] = row
-            seconds.append(row.seconds)
+            seconds.append(time_of(plan, chunk_of(plan, ids, [place], outputs, logs), row))
             missing.remove(place)
         progress(len(ids) - len(missing), len(ids))
         chunks = chunks_of(
             plan, ids, missing, outputs, logs, min(seconds, default=SECONDS), workers
         )
         done = len(ids) - len(missing)
+        if page and (backend or workers > 1):
+            # plotly takes a while to import, in which others solve
+            Thread(target=import_module, args=(PAGE,), daemon=True).start()
         for chunk, rows in (backend or local)(chunks):
             write_chunk(folder, chunk, rows)
             found |= {row.id: row for row in rows}
@@ -83,10 +89,7 @@ def run_sweep(
     sweep = Sweep(plan, folder, outputs, rows, reused, solved, time.perf_counter() - begin)
     sweep.written.append(write_results(folder, plan, rows, outputs))
     if page:
-        # plotly takes a while to import, and workers import this
-        from railpatch.sweep.page import write_page
-
-        sweep.written.append(write_page(sweep))
+        sweep.written.append(import_module(PAGE).write_page(sweep))
     sweep.wall_time = time.perf_counter() - begin
     return sweep
 
@@ -112,6 +115,12 @@ def first_of(
         except (CaseError, ProfileError) as error:
             errors.append(error)
     raise errors[0]
+
+
+def time_of(plan: Plan, chunk: Chunk, row: Row) -> float:
+    """s, of a case like this one. A contact's is taken again, without imports and profiles that
+    only the first one reads."""
+    return solve_chunk(chunk)[0].seconds if plan.kind in KINDS else row.seconds
 
 
 def need_toml_writer() -> None:

@@ -53,6 +53,11 @@ def write_chunk(folder: Path, chunk: Chunk, rows: Sequence[Row]) -> Path:
     return _write(folder / CHUNKS / f"{name}.parquet", columns)
 
 
+def is_new(folder: Path) -> bool:
+    """Whether it has no rows of any sweep."""
+    return not any((folder / CHUNKS).glob("*.parquet"))
+
+
 def read_rows(folder: Path, wanted: Iterable[str], outputs: Sequence[str]) -> dict[str, Row]:
     """Rows that are there, by their ids. Files that are damaged are passed over: their cases are
     solved again."""

@@ -13,8 +13,9 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from copy import deepcopy
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from railpatch.case.kinds import Ending, kind_of
 from railpatch.case.load import KINDS, Case, Scene, check_case
@@ -22,10 +23,12 @@ from railpatch.case.moving import moving_keys
 from railpatch.case.patch import PatchCase
 from railpatch.contact import Contact, solve
 from railpatch.errors import CaseError, ProfileError
-from railpatch.log import Run, read_run
 from railpatch.pressure_error import run_doubts
 from railpatch.sweep.outputs import Output, default_names, value_of
 from railpatch.sweep.plan import Value, put, steps_of
+
+if TYPE_CHECKING:
+    from railpatch.log import Run
 
 # of a case that is wrong at its point, in place of a result's status
 REFUSED = "refused"
@@ -61,8 +64,17 @@ class Row:
 
 def get_ready(kind: str) -> None:
     """Imports what cases of a kind take, before the first one comes."""
-    if kind not in KINDS:
-        kind_of(kind)
+    for name in modules_of(kind):
+        import_module(name)
+
+
+def modules_of(kind: str) -> list[str]:
+    """What runs of a kind are made with; none for contacts, which this package solves itself."""
+    if kind in KINDS:
+        return []
+    runner = kind_of(kind).run
+    assert runner is not None
+    return ["tomli_w", "railpatch.log", runner.__module__]
 
 
 def solve_chunk(chunk: Chunk) -> list[Row]:
@@ -180,5 +192,8 @@ def run_ending(chunk: Chunk, name: str, point: Sequence[Value]) -> tuple[Ending,
         if chunk.logs is not None:
             log = Path(chunk.logs) / f"{name}.mcap"
         ending = runner(scene, log)
-        wanted = any("/" in output for output in chunk.outputs)
-        return ending, read_run(log) if wanted and log.is_file() else None
+        if log.is_file() and any("/" in output for output in chunk.outputs):
+            from railpatch.log import read_run
+
+            return ending, read_run(log)
+        return ending, None
