@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import sys
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager
-from multiprocessing import get_all_start_methods, get_context
+from multiprocessing import get_context
 
 from railpatch.sweep.work import Chunk, Row, get_ready, modules_of, solve_chunk
 
 # how often the cases of a worker that ended are tried; each alone the last time
 TRIES = 3
 WORKER_DIED = "worker_died"
-METHOD = "forkserver" if "forkserver" in get_all_start_methods() else "spawn"
+# elsewhere forks are missing, or not safe with what the system's libraries start
+METHOD = "forkserver" if sys.platform == "linux" else "spawn"
 QUEUED = 2  # chunks of each worker: one that it solves, one that waits
 # what solving a case imports when it first comes to it
 CASES_IMPORT = ("railpatch.sweep.work", "scipy.interpolate", "scipy.spatial")
