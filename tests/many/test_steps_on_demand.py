@@ -143,6 +143,18 @@ def test_one_quantity_is_that_of_all(name: str) -> None:
     assert alone.keys() == list(whole)
 
 
+def test_a_result_is_a_mapping() -> None:
+    result = Contact(CASES["patch"]).step()
+    assert list(result) == result.keys() == list(dict(result))
+    assert len(result) == len(result.data)
+    assert result.get("approach") == result["approach"]
+    assert result.get("no such quantity") is None
+    assert dict(result.items()) == result.data
+    other = pickle.loads(pickle.dumps(result))
+    assert result != other
+    assert len({result, other}) == 2
+
+
 def test_every_moving_key_has_a_type() -> None:
     """Those of all kinds stand in the signature that editors and notebooks complete from."""
     moving = {key for case in CASES.values() for key in moving_keys(check_case(case))}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from html import escape
 from typing import Any, Protocol
@@ -124,10 +124,10 @@ class Source(Protocol):
         """One of them; KeyError where it takes all."""
 
 
-class Result:
+class Result(Mapping[str, Any]):
     """What a solve gives. Signs: forces act on the wheel, creepages are wheel minus rail.
 
-    ``data`` and ``result[key]`` hold the quantities of the JSON result (SI units); fields are numpy
+    A mapping of the quantities of the JSON result (SI units), as is ``data``; fields are numpy
     arrays there: x [nx] (fitted rows: [ny, nx]) and y [ny] in m, pressure [ny, nx] in Pa, traction
     [2, ny, nx] in Pa, micro_slip [2, ny, nx] relative to the rolling speed, element_division
     [ny, nx] as 0 exterior, 1 stick, 2 slip, 3 plastic, temperature [2, ny, nx] of wheel and rail in
@@ -162,6 +162,16 @@ class Result:
 
     def __contains__(self, key: object) -> bool:
         return key in self.data
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.data)
+
+    def __len__(self) -> int:
+        return len(self.data)
+
+    # arrays have no truth: one result is itself alone
+    __eq__ = object.__eq__
+    __hash__ = object.__hash__
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Result, (self.data,)
