@@ -53,7 +53,7 @@ def results(name: str, summary: VehicleSummary) -> list[str]:
     return [
         THEORIES[name].text,
         f"{summary.derailment:.3f}",
-        f"{summary.guiding / 1e3:.1f}",
+        f"{summary.shift / 1e3:.1f}",
         f"{low:.1f} to {high:.1f}",
         f"{1e3 * summary.offset:.2f}",
         f"{lateral:.3f}, {vertical:.3f}",

@@ -99,7 +99,7 @@ print(
     f"axle load {loaded.axle_load / 1e3:.1f} kN, {len(times)} steps at {3.6 * loaded.speed:.0f} km/h"
 )
 ratio = np.array(guiding) / np.array(loads)
-print(f"greatest Y/Q {np.nanmax(np.abs(ratio)):.3f}, limit 0.8 (EN 14363)")
+print(f"greatest Y/Q {np.nanmax(ratio):.3f}, Y outward, limit 0.8 (EN 14363)")
 print(f"wear number of all eight wheels {np.mean(wear):.1f} N")
 
 figure = go.Figure(layout={"template": "plotly_white", "height": 420})

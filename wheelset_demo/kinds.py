@@ -33,7 +33,7 @@ VEHICLE_UNITS = {
     **dict.fromkeys(("distance", "offset"), "m"),
     "duration": "s",
     **dict.fromkeys(("load_range", "load_percentile", "load_median"), "N"),
-    **dict.fromkeys(("static_loads", "guiding", "shift_percentile", "shift_limit"), "N"),
+    **dict.fromkeys(("static_loads", "shift", "shift_percentile", "shift_limit"), "N"),
     **dict.fromkeys(("comfort", "acceleration_percentile"), "m/s^2"),
     **dict.fromkeys(("friction", "open_balance", "lost"), "J"),
     "step_times": "",

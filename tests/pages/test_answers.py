@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from pathlib import Path
@@ -14,10 +15,13 @@ from click.testing import CliRunner
 from page_checks import check_page
 from railpatch.command.cli import cli
 from railpatch.log import read_run
+from railpatch.log.effective import Effective
 from railpatch.log.waves import half_waves, waves
 from railpatch.report import write_report
 from railpatch.report.vehicle import limits
-from railpatch.report.vehicle.data import vehicle_run
+from railpatch.report.vehicle.data import VehicleRun, vehicle_run
+from railpatch.report.vehicle.figures import beside_limits
+from railpatch.report.vehicle.page import course
 
 
 def text_of(page: Path) -> str:
@@ -105,22 +109,84 @@ def test_vehicle_page_holds_forces_against_their_limits(vehicle_file: Path, tmp_
     assert limits.static_load(data, 1) == pytest.approx(axle)
     assert limits.sum_limit(data, 1) == pytest.approx(10e3 + axle / 3)
     # Y is a tenth of Q, outward on the left and inward on the right
-    total = limits.spread(limits.sum_of_guiding(data, 1))
-    assert total.percentile == pytest.approx(0.1 * axle)
-    assert limits.spread(data.ratio((1, "left"))).percentile == pytest.approx(0.1)
-    keys = {key.name: key for key in limits.key_numbers(data)}
-    assert keys["Y/Q"].value == "0.1"
-    assert keys["Y/Q"].note.startswith("within 0.8")
-    assert limits.verdict(list(keys.values()))[1] in ("good", "bad")
+    assert limits.sum_spread(data, 1).most == pytest.approx(0.1 * axle)
+    for side, sign in (("left", 1), ("right", -1)):
+        assert limits.ratio_spread(data, (1, side)).most == pytest.approx(sign * 0.1)
+        assert math.copysign(1, limits.guiding_spread(data, (1, side)).most) == sign
 
 
-def test_percentiles_leave_out_what_is_not_known() -> None:
-    values = np.r_[np.linspace(-1.0, 0.5, 20001), np.nan]
-    found = limits.spread(values)
-    assert found.most == 1.0
-    # of sizes, the greatest part lies evenly between 0 and 1 with twice the weight below 0.5
-    assert found.percentile == pytest.approx(1.0 - 0.0015 * 1.5, abs=2e-4)
-    assert math.isnan(limits.spread(np.array([np.nan])).most)
+def shown_dots(data: VehicleRun) -> list[str]:
+    """Names of what the panels of limits draw."""
+    return [trace.name for trace in beside_limits(data).data]
+
+
+def test_run_without_percentiles_is_not_assessed(vehicle_file: Path) -> None:
+    """Nothing is within a limit, no percentile is drawn or told; a value above one is."""
+    data = vehicle_run(read_run(vehicle_file))
+    data.assessment["acceleration_rms"] = [0.1, 0.1]
+    keys = limits.key_numbers(data)
+    assert len(keys) == 6
+    assert {key.state for key in keys} == {"plain"}
+    assert all(key.note.startswith("not assessed: limit ") for key in keys)
+    said, state = limits.verdict(data, keys)
+    assert "the greatest value on this way" in said
+    assert state == "plain"
+    assert keys[0].value == "0.1"
+    assert set(shown_dots(data)) == {"greatest", "limit of EN 14363"}
+    assert limits.head(data) == [
+        *("wheel", "Y outward most [kN]", "Q most [kN]", "Y/Q outward most"),
+        "|sum of Y| most [kN]",
+    ]
+    assert all(len(row) == 5 for row in limits.rows(data))
+
+    data.assessment["most_derailment"] = [0.9] * 8
+    keys = limits.key_numbers(data)
+    assert keys[0].state == "bad"
+    said, state = limits.verdict(data, keys)
+    assert state == "bad"
+    assert said.startswith("No assessment by EN 14363")
+    assert said.endswith("Y/Q.")
+
+
+def test_percentiles_are_those_of_the_run(vehicle_file: Path) -> None:
+    """Beside greatest values of the same sign, in table, panels and key numbers."""
+    data = vehicle_run(read_run(vehicle_file))
+    wheels, sets = len(data.contact), len(data.wheelsets)
+    told = {"derailment": 0.1, "outward_guiding_force": -2e3, "load": 6e4}
+    data.assessment.update({"places": 100, "shift": [4e3] * sets, "most_shift": [5e3] * sets})
+    data.assessment.update({name: [value] * wheels for name, value in told.items()})
+    most = {"most_derailment": 0.2, "most_outward_guiding_force": -1e3, "most_load": 7e4}
+    data.assessment.update({name: [value] * wheels for name, value in most.items()})
+    assert shown_dots(data).count("99.85 %") == 4
+    assert limits.head(data)[1:3] == ["Y outward 99.85 % [kN]", "Y outward most [kN]"]
+    first = [str(cell).replace("\u2212", "-") for cell in limits.rows(data)[0]]
+    assert first == ["1 left", "-2", "-1", "60", "70", "0.1", "0.2", "4", "5"]
+    keys = limits.key_numbers(data)
+    assert (keys[0].value, keys[0].note) == ("0.1", "within 0.8, wheelset 1 left")
+    assert limits.verdict(data, keys)[1] in ("good", "bad")
+
+
+@pytest.mark.parametrize(
+    ("arc", "told"),
+    [(-vehicle.RADIUS, "900 m"), (700.0, "900 m (the scene's arc of 700 m was not reached)")],
+)
+def test_least_radius_is_of_the_track_that_was_run_on(
+    tmp_path: Path, arc: float, told: str
+) -> None:
+    """The first wheelset is in the circle, the vehicle's middle is not; the scene's arc, if the run
+    did not come to it, is told as that."""
+    scene = {"alignment": {"radius": None, "section": [{"radius": None}, {"radius": arc}]}}
+    ran_with = Effective(json.dumps(scene).encode(), {})
+    steps = 1 + math.floor(vehicle.CURVE_AT / vehicle.SPEED / 0.01)
+    log = vehicle.write_run(tmp_path / "short.mcap", steps, ran_with=ran_with)
+    data = vehicle_run(read_run(log))
+    assert not data.state["curvature"].any()
+    assert dict(course(data))["least radius run on"] == told
+
+
+def test_greatest_leaves_out_what_is_not_known() -> None:
+    assert limits.greatest(np.array([-3.0, 0.5, np.nan])) == 0.5
+    assert math.isnan(limits.greatest(np.array([np.nan])))
 
 
 @pytest.mark.parametrize(

@@ -70,6 +70,10 @@ def test_sum_of_a_wheelset_and_its_limit():
     found = assess(trace, STEP)
     assert found is not None
     assert found.shift == pytest.approx(2e4)
+    assert found.guiding[0] == pytest.approx(2e4)
+    # it pushes inward: outward it never was, of the sign of Y/Q
+    assert found.outward_guiding[0] == pytest.approx(-2e4)
+    assert found.ratios[0] == pytest.approx(-2e4 / 6e4)
     # a car body at rest feels gravity, which is no acceleration of its own
     assert found.acceleration == pytest.approx((0.0, 0.0), abs=1e-9)
     assert found.ratio == pytest.approx(0.0, abs=1e-9)
@@ -105,7 +109,7 @@ def test_summary_of_a_run():
     found = summarise(trace, simulation)
     load = simulation.scene.vehicle.mass * GRAVITY / 4
     assert found.shift_limit == pytest.approx(0.85 * (1e4 + load / 3))
-    assert 0 < found.shift_percentile <= 1.01 * found.guiding
+    assert 0 < found.shift_percentile <= 1.01 * found.shift
     low, high = found.load_range
     assert low < found.load_median < found.load_percentile < 1.01 * high
     assert found.derailment_percentile < 1.01 * found.derailment
@@ -116,5 +120,9 @@ def test_summary_of_a_run():
     assert max(told["derailment"]) == found.derailment_percentile
     assert max(told["shift"]) == found.shift_percentile
     assert max(told["load"]) == found.load_percentile
-    assert 0 < max(told["guiding"]) < 1.01 * max(told["most_guiding"])
+    assert 0 < max(told["guiding_force"]) < 1.01 * max(told["most_guiding_force"])
+    outward, most = told["outward_guiding_force"], told["most_outward_guiding_force"]
+    for percentile, greatest, either in zip(outward, most, told["most_guiding_force"], strict=True):
+        assert percentile < greatest + 0.01 * abs(greatest)
+        assert greatest <= either
     assert "EN 14363" in found.text()

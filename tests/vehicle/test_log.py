@@ -96,7 +96,7 @@ def test_page_takes_loads_at_rest_and_extremes_of_every_step(ran):
     assert max(limits.unloading(data, wheel) for wheel in wheels) == found.unloading
     assert max(limits.load_spread(data, w).most for w in wheels) == found.load_range[1]
     assert max(limits.ratio_spread(data, w).most for w in wheels) == found.derailment
-    assert max(limits.sum_spread(data, n).most for n in range(1, 5)) == found.guiding
+    assert max(limits.sum_spread(data, n).most for n in range(1, 5)) == found.shift
     assert limits.ride(data)[1] == pytest.approx(found.comfort, rel=1e-12)
     # known from the run's begin on, should it be ended from outside
     assert run["/vehicle/assessment"].messages[0]["static_load"] == pytest.approx([weight / 4] * 4)

@@ -51,6 +51,9 @@ def test_means_are_integrals_over_the_last_metres():
     assert most.least_loads == (means.load_range[0],) * 8
     assert most.most_loads == (means.load_range[1],) * 8
     assert most.guiding == pytest.approx([0.1 * means.load_range[1]] * 8)
+    # outward alone: what is least inward on the right
+    low, high = means.load_range
+    assert most.outward_guiding == pytest.approx([0.1 * high, -0.1 * low] * 4)
     assert most.sums == (means.sum,) * 4
     # a wheelset's, of both wheels
     assert means.sum == pytest.approx(0.2 * means.load_range[1])

@@ -179,7 +179,7 @@ def test_unknown_and_missing_keys(tmp_path: Path, old: str, new: str, words: str
 
 def test_doubts_are_said_first_and_on_the_page(tmp_path: Path) -> None:
     """Before a run that may fail by them, by hunting too, and in the head of its report, which says
-    of a short run that it has no percentiles."""
+    of a short run that it is not assessed."""
     text = scene_file("vehicle_straight.toml").read_text(encoding="utf-8")
     before = (
         text[: text.index("[run]")].replace("half_space", "hertz").replace('"full"', '"polach"')
@@ -202,7 +202,8 @@ def test_doubts_are_said_first_and_on_the_page(tmp_path: Path) -> None:
     for words in wanted:
         assert words.removeprefix("v").removeprefix("d") in shown
     assert "No percentiles as EN 14363 counts them" in shown
-    assert "too short for what EN 14363 counts (52 m): on it no limit is passed" in shown
+    assert "No assessment by EN 14363: " in shown
+    assert "m of way are too short for what it counts (52 m)" in shown
     assert "stays within its limits" not in shown
     assert assessed.LEAST_WAY == LEAST_WAY + SLIDING
     assert assessed.LEAST_RATE == LEAST_RATE

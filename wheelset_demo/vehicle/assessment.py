@@ -46,10 +46,11 @@ class Kept(Protocol):
 @dataclass(frozen=True)
 class Assessment:
     """SI. ratio: greatest 99.85 % of a wheel's Y/Q, Y outward. shift: N, greatest of a wheelset's
-    sum of Y by 0.15 and 99.85 %, either way. guiding: N, likewise of each wheel's Y. load,
-    median_load: N, greatest 99.85 % and 50 % of a wheel's Q. acceleration: m/s^2, lateral,
-    vertical, the greater of 0.15 and 99.85 %, without gravity's. ratios, loads, median_loads: the
-    same of each wheel, shifts: of each wheelset. places: number of the places that they are of."""
+    sum of Y by 0.15 and 99.85 %, either way. guiding: N, likewise of each wheel's Y;
+    outward_guiding: N, 99.85 % of it outward, of Y/Q's sign. load, median_load: N, greatest 99.85 %
+    and 50 % of a wheel's Q. acceleration: m/s^2, lateral, vertical, the greater of 0.15 and
+    99.85 %, without gravity's. ratios, loads, median_loads: the same of each wheel, shifts: of each
+    wheelset. places: number of the places that they are of."""
 
     ratio: float
     shift: float
@@ -61,6 +62,7 @@ class Assessment:
     loads: tuple[float, ...] = ()
     median_loads: tuple[float, ...] = ()
     guiding: tuple[float, ...] = ()
+    outward_guiding: tuple[float, ...] = ()
     places: int = 0
 
 
@@ -104,6 +106,7 @@ def assess(trace: Kept, interval: float) -> Assessment | None:
     lateral, vertical = np.maximum(np.abs(least), np.abs(greatest)).tolist()
     # a wheel in the air has no ratio; interpolation between ranks must not meet infinities
     by_wheel = np.percentile(ratios, PERCENTILES[-1], axis=0, method="lower")
+    inward, outward = np.percentile(guiding, PERCENTILES[::2], axis=0)
     ratio, shifts = by_wheel.max(), np.maximum(np.abs(low), np.abs(high))
     return Assessment(
         ratio=float(ratio) if np.isfinite(ratio) else 0.0,
@@ -115,9 +118,8 @@ def assess(trace: Kept, interval: float) -> Assessment | None:
         shifts=tuple(shifts.tolist()),
         loads=tuple(most.tolist()),
         median_loads=tuple(median.tolist()),
-        guiding=tuple(
-            np.abs(np.percentile(guiding, PERCENTILES[::2], axis=0)).max(axis=0).tolist()
-        ),
+        guiding=tuple(np.maximum(np.abs(inward), np.abs(outward)).tolist()),
+        outward_guiding=tuple(outward.tolist()),
         places=len(places),
     )
 

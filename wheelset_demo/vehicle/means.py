@@ -22,11 +22,13 @@ def rail_forces(wheels: Vector) -> tuple[Vector, Vector]:
 
 @dataclass(frozen=True)
 class Extremes:
-    """[wheels] each, so far. ratios: -, greatest Y/Q; none: 0. guiding: N, greatest Y, either way.
+    """[wheels] each, so far. ratios: -, greatest Y/Q, Y outward; none: 0. guiding: N, greatest Y,
+    either way; outward_guiding: N, greatest Y outward, below 0 where it never was.
     least_loads, most_loads: N, Q. sums: N, [wheelsets], greatest sum of Y, either way."""
 
     ratios: tuple[float, ...]
     guiding: tuple[float, ...]
+    outward_guiding: tuple[float, ...]
     least_loads: tuple[float, ...]
     most_loads: tuple[float, ...]
     sums: tuple[float, ...]
@@ -89,6 +91,7 @@ class SlidingMeans:
         return Extremes(
             ratios=tuple(x if np.isfinite(x) else 0.0 for x in core.most_ratios),
             guiding=tuple(core.most_guiding),
+            outward_guiding=tuple(core.most_outward_guiding),
             least_loads=tuple(core.least_loads),
             most_loads=tuple(core.most_loads),
             sums=tuple(core.most_sums[::2]),

@@ -157,10 +157,10 @@ def traced(
 class VehicleSummary:
     """A run in numbers, SI. Of Y and Q those averaged over 2 m (EN 14363), of every time step.
 
-    derailment: greatest Y/Q of a wheel, Y outward. load_range: N, least and greatest Q. guiding: N,
-    greatest force of a wheelset across the track, either way. offset: m, greatest of a wheelset
-    from the track's middle. comfort: m/s^2, standard deviation, over the whole run, of lateral and
-    vertical acceleration at the car body's centre in its axes. friction: J, [wheels], at each.
+    derailment: greatest Y/Q of a wheel, Y outward. load_range: N, least and greatest Q. shift: N,
+    greatest sum of Y of a wheelset, either way. offset: m, greatest of a wheelset from the track's
+    middle. comfort: m/s^2, standard deviation, over the whole run, of lateral and vertical
+    acceleration at the car body's centre in its axes. friction: J, [wheels], at each.
     open_balance: J, most that was missing in the energy of bodies and springs; lost: J, in friction
     and dampers. seconds: of the time steps: total, by the clock; cpu, of all
     threads, and of it contact (force element) and derivatives. real_time: -, total over the time
@@ -182,7 +182,7 @@ class VehicleSummary:
     steps: int
     derailment: float
     load_range: tuple[float, float]
-    guiding: float
+    shift: float
     offset: float
     comfort: tuple[float, float]
     friction: tuple[float, ...]
@@ -224,8 +224,8 @@ class VehicleSummary:
             ("distance", f"{self.distance:.1f} m in {self.duration:.3f} s, {self.steps} steps"),
             (
                 "Y/Q",
-                f"{self.derailment:.3f} at most, Y outward; a wheelset's Y "
-                f"{self.guiding / 1e3:.2f} kN at most, either way",
+                f"{self.derailment:.3f} at most, Y outward; a wheelset's sum of Y "
+                f"{self.shift / 1e3:.2f} kN at most, either way",
             ),
             ("wheel loads", f"{fixed(low, 1)} ... {fixed(high, 1)} kN{self._at_rest()}"),
             ("offset", f"{1e3 * self.offset:.2f} mm at most"),
@@ -321,7 +321,7 @@ class VehicleSummary:
         return [
             (
                 "percentiles",
-                f"Y/Q {ratio:.3f} (limit {RATIO_LIMIT:g}), a wheelset's Y "
+                f"Y/Q {ratio:.3f} (limit {RATIO_LIMIT:g}), a wheelset's sum of Y "
                 f"{self.shift_percentile / 1e3:.2f} kN (limit {self.shift_limit / 1e3:.2f}), Q "
                 f"{fixed(load / 1e3, 1)} kN, median {fixed(median / 1e3, 1)} kN; car body "
                 f"{lateral:.3f}, {vertical:.3f} m/s^2; 99.85 %, 20 Hz, 2 m, EN 14363",
@@ -370,7 +370,8 @@ def assessed_of(trace: VehicleTrace, simulation: Simulation) -> dict[str, Any]:
     run, most, felt = simulation.scene.run, simulation.means.extremes, trace.array("felt")
     told = at_rest(simulation) | {
         "most_derailment": list(most.ratios),
-        "most_guiding": list(most.guiding),
+        "most_guiding_force": list(most.guiding),
+        "most_outward_guiding_force": list(most.outward_guiding),
         "most_shift": list(most.sums),
         "least_load": list(most.least_loads),
         "most_load": list(most.most_loads),
@@ -382,7 +383,8 @@ def assessed_of(trace: VehicleTrace, simulation: Simulation) -> dict[str, Any]:
     return told | {
         "places": found.places,
         "derailment": list(found.ratios),
-        "guiding": list(found.guiding),
+        "guiding_force": list(found.guiding),
+        "outward_guiding_force": list(found.outward_guiding),
         "shift": list(found.shifts),
         "load": list(found.loads),
         "median_load": list(found.median_loads),
@@ -446,7 +448,7 @@ def summarise(trace: VehicleTrace, simulation: Simulation) -> VehicleSummary:
         steps=round(time / simulation.scene.run.step),
         derailment=means.ratio if np.isfinite(means.ratio) else 0.0,
         load_range=means.load_range,
-        guiding=means.sum,
+        shift=means.sum,
         offset=float(np.abs(trace.array("lateral")).max()),
         comfort=(float(felt[:, 1].std()), float(felt[:, 2].std())),
         friction=tuple(trace.works[-1][len(WORKS) :].tolist()),

@@ -71,7 +71,7 @@ class SlidingMeans final : public VehicleMeans {
   // by kExtremes; of a wheelset's two wheels the same sum
   const std::vector<double> &most(int which) const { return extremes_[which]; }
 
-  enum { kRatio, kSum, kGuiding, kLeastLoad, kMostLoad, kExtremes };
+  enum { kRatio, kSum, kGuiding, kOutward, kLeastLoad, kMostLoad, kExtremes };
 
  private:
   // rows to begin with: more than a vehicle at speed needs
@@ -128,6 +128,7 @@ class SlidingMeans final : public VehicleMeans {
       if (load > least_load_) raise(kRatio, k, means_[k] / load);
       raise(kMostLoad, k, load);
       raise(kGuiding, k, std::abs(means_[k]));
+      raise(kOutward, k, means_[k]);
     }
     for (size_t k = 0; k < wheels_; k += 2) {
       const double both = std::abs(means_[k] - means_[k + 1]);
@@ -171,6 +172,7 @@ void bind_means(nb::module_ &m) {
       .def_prop_ro("most_ratios", [](const M &self) { return self.most(M::kRatio); })
       .def_prop_ro("most_sums", [](const M &self) { return self.most(M::kSum); })
       .def_prop_ro("most_guiding", [](const M &self) { return self.most(M::kGuiding); })
+      .def_prop_ro("most_outward_guiding", [](const M &self) { return self.most(M::kOutward); })
       .def_prop_ro("least_loads", [](const M &self) { return self.most(M::kLeastLoad); })
       .def_prop_ro("most_loads", [](const M &self) { return self.most(M::kMostLoad); })
       .def_prop_ro("means", &means_of, "N, on the rails: outward, then down, of all wheels.");

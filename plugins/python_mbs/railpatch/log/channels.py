@@ -560,20 +560,23 @@ ASSESSMENT = Message(
     "Assessment",
     "Loads at rest and extremes of a whole run, its percentiles as EN 14363 counts them, left and "
     "right wheel of the first wheelset first, and mean comfort as EN 12299 does. Y and Q are means "
-    "over 2 m.",
+    "over 2 m, extremes those of every time step. guiding_force is of a wheel, shift of a "
+    "wheelset.",
     (
         _count("places", "number of the places, every 0.5 m, that percentiles are of"),
         _number("static_load", "N", "of each wheelset on level rails at rest", size=0),
         _number("derailment", "-", "99.85 % of each wheel's Y/Q, Y outward", size=0),
-        _number("guiding", "N", "0.15 or 99.85 % of each wheel's Y, by size", size=0),
+        _number("guiding_force", "N", "0.15 or 99.85 % of each wheel's Y, by size", size=0),
+        _number("outward_guiding_force", "N", "99.85 % of each wheel's Y, outward > 0", size=0),
         _number("shift", "N", "0.15 or 99.85 % of each wheelset's sum of Y, by size", size=0),
         _number("load", "N", "99.85 % of each wheel's Q", size=0),
         _number("median_load", "N", "50 % of each wheel's Q", size=0),
         _number("acceleration", "m/s^2", "lateral, vertical, of the body of reference", size=2),
         _number("derailment_limit", "-", "of Y/Q"),
         _number("shift_limit", "N", "of a wheelset's sum of Y"),
-        _number("most_derailment", "-", "greatest Y/Q of each wheel, of every time step", size=0),
-        _number("most_guiding", "N", "greatest Y of each wheel, either way", size=0),
+        _number("most_derailment", "-", "greatest Y/Q of each wheel, Y outward", size=0),
+        _number("most_guiding_force", "N", "greatest Y of each wheel, either way", size=0),
+        _number("most_outward_guiding_force", "N", "greatest Y of each wheel, outward > 0", size=0),
         _number("most_shift", "N", "greatest sum of Y of each wheelset, either way", size=0),
         _number("least_load", "N", "least Q of each wheel", size=0),
         _number("most_load", "N", "greatest Q of each wheel", size=0),

@@ -13,17 +13,15 @@ from railpatch.case.types import SIDES
 from railpatch.page import tables
 from railpatch.page.figures import LINES, plot, styled
 from railpatch.report.vehicle.data import VehicleRun
-from railpatch.report.vehicle.limits import LEAST_WAY, sum_limit, way_of
+from railpatch.report.vehicle.limits import LEAST_RATE, LEAST_WAY, counted, sum_limit, way_of
 
 AXES = ("longitudinal", "lateral", "vertical")
-# of kept steps, that percentiles ask for: railpatch vehicle counts them
-LEAST_RATE = 100.0  # Hz
 # of EN 12299's five minutes in blocks of 5 s
 WANTED = 60
 PERCENTILES = (
     "Of the whole run as one section: forces as means over 2 m, these and accelerations behind a "
-    "low pass of 20 Hz, at every 0.5 m ({places} places); percentiles of 99.85 %, of a wheelset's "
-    "sum of Y the greater of 0.15 and 99.85 %. Stated from memory of EN 14363:2016."
+    "low pass of 20 Hz, at every 0.5 m ({places} places); percentiles of 99.85 %, Y outward, of a "
+    "wheelset's sum of Y the greater of 0.15 and 99.85 %. Stated from memory of EN 14363:2016."
 )
 COMFORT = (
     "At points of the scene: accelerations weighted by Wd and Wb, root mean squares of 5 s, 95 % "
@@ -50,7 +48,7 @@ def missing(data: VehicleRun) -> list[str]:
 
 def percentiles(data: VehicleRun, found: dict[str, Any]) -> list[str]:
     """Of forces and accelerations."""
-    if not found.get("places"):
+    if not counted(data):
         return []
     text = PERCENTILES.format(places=found["places"])
     lateral, vertical = (tables.short(value) for value in found["acceleration"])
@@ -58,8 +56,8 @@ def percentiles(data: VehicleRun, found: dict[str, Any]) -> list[str]:
         f"The body of reference: {lateral} m/s² lateral, {vertical} m/s² vertical, of its centre."
     )
     head = (
-        *("wheel", "Y/Q 99.85 %", "limit", "Q 99.85 % [kN]", "Q 50 % [kN]"),
-        *("sum of Y [kN]", "limit [kN]"),
+        *("wheel", "Y/Q outward 99.85 %", "limit", "Q 99.85 % [kN]", "Q 50 % [kN]"),
+        *("|sum of Y| [kN]", "limit [kN]"),
     )
     return [
         f"<h2>Percentiles as EN 14363 counts them</h2><p>{text} {felt}</p>",

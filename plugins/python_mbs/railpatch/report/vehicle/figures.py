@@ -21,15 +21,22 @@ def _color(number: int) -> str:
 
 
 def beside_limits(data: VehicleRun) -> go.Figure:
-    """Percentiles and greatest values of every wheel beside their limits, before any course."""
+    """Percentiles, where the run found them, and greatest values of every wheel beside their
+    limits, before any course."""
     figure = make_subplots(2, 2, horizontal_spacing=0.12, vertical_spacing=0.14)
     wheels, numbers = list(data.contact), list(data.wheelsets)
     # short: eight of them stand below a narrow panel
     names = [f"{number}{side[0].upper()}" for number, side in wheels]
     panels = (
-        ("Y/Q", names, [limits.ratio_spread(data, w) for w in wheels], 1.0, [limits.RATIO]),
         (
-            "sum of Y [kN]",
+            "Y/Q outward",
+            names,
+            [limits.ratio_spread(data, w) for w in wheels],
+            1.0,
+            [limits.RATIO],
+        ),
+        (
+            "|sum of Y| [kN]",
             [str(n) for n in numbers],
             [limits.sum_spread(data, n) for n in numbers],
             1e-3,
@@ -42,7 +49,7 @@ def beside_limits(data: VehicleRun) -> go.Figure:
             1e-3,
             [limits.load_limit(data, w[0]) for w in wheels],
         ),
-        ("Y [kN]", names, [limits.guiding_spread(data, w) for w in wheels], 1e-3, []),
+        ("Y outward [kN]", names, [limits.guiding_spread(data, w) for w in wheels], 1e-3, []),
     )
     for place, (title, at, found, factor, most) in enumerate(panels):
         row, column = divmod(place, 2)
@@ -61,12 +68,14 @@ def _percentiles(
     most: list[float],
     place: tuple[int, int],
 ) -> None:
-    """One panel: greatest values, percentiles, and their limit where there is one."""
+    """One panel: greatest values, percentiles and their limit where there are any."""
     first = place == (1, 1)
     for name, values, symbol, color in (
         ("greatest", [s.most for s in found], "line-ew-open", GREY),
         ("99.85 %", [s.percentile for s in found], "circle", COLORS["left"]),
     ):
+        if not np.isfinite(values).any():
+            continue
         figure.add_trace(
             go.Scatter(
                 x=at,

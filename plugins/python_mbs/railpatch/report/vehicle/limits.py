@@ -1,11 +1,12 @@
 """Forces and accelerations of a vehicle beside the limits of EN 14363:2016.
 
-Forces are means over 2 m of way. The standard takes percentiles of 99.85 % in sections of track and
-estimates from many of them; here the whole run is one section, and its percentile is taken as it
-is: the one that the run itself found, of its kept steps, and extremes those of every time step; of
-the logged steps where the log has none of these. Loads at rest are those that the log has. The
-standard measures accelerations on the floor and filters them; here they are those of a body's
-centre, as logged.
+Forces are means over 2 m of way; Y and Y/Q are outward, a wheelset's sum of Y is by its size. The
+standard takes percentiles of 99.85 % in sections of track and estimates from many of them; here the
+whole run is one section, and its percentile is the one that the run itself found, of its kept
+steps. A run that found none is not assessed: its greatest values stand beside the limits. These are
+of every time step, of the logged ones where the log has no others. Loads at rest are those that the
+log has. The standard measures accelerations on the floor and filters them; here they are those of a
+body's centre, as logged.
 """
 
 from __future__ import annotations
@@ -17,7 +18,8 @@ import numpy as np
 
 from railpatch.case.types import SIDES
 from railpatch.errors import ProfileError
-from railpatch.page.parts import BAD, GOOD, PLAIN, Key, against
+from railpatch.page.parts import BAD, GOOD, PLAIN, Key
+from railpatch.page.parts import against as judged
 from railpatch.page.tables import short
 from railpatch.profiles import load_profile
 from railpatch.profiles.shape import shape_of
@@ -26,8 +28,8 @@ from railpatch.report.vehicle.data import VehicleRun, Wheel
 
 Array = np.ndarray
 
-SHARE = 99.85  # %, of the percentile
 LEAST_WAY = 52.0  # m, that percentiles ask for: 50 m of means over 2 m
+LEAST_RATE = 100.0  # Hz, of kept steps, likewise
 RATIO = 0.8  # Y/Q
 # N: Prud'homme's limit of the sum of Y is 10 kN and a third of the static axle load
 PRUDHOMME, AXLE_PART = 10e3, 3.0
@@ -38,22 +40,33 @@ UNLOADING = 0.6  # of the static load
 # m/s^2, root mean squares of ride characteristics of passenger vehicles: lateral, vertical
 RIDE = (0.5, 0.75)
 AXES = ("lateral", "vertical")
+# of the table: names with their signs, as the panels of figures.py have them, and units
+COLUMNS = (("Y outward", " [kN]"), ("Q", " [kN]"), ("Y/Q outward", ""), ("|sum of Y|", " [kN]"))
 
 
 @dataclass(frozen=True)
 class Spread:
-    """Percentile of 99.85 % and the greatest one by size; NaN where nothing is known."""
+    """Percentile of 99.85 % as EN 14363 counts it, and the greatest one, of the same sign; NaN
+    where nothing is known."""
 
     percentile: float
     most: float
 
+    @property
+    def compared(self) -> float:
+        """What stands beside a limit: the greatest one where there is no percentile."""
+        return self.percentile if np.isfinite(self.percentile) else self.most
 
-def spread(values: Array) -> Spread:
-    """Of what is known."""
-    known = np.abs(values[np.isfinite(values)])
-    if not known.size:
-        return Spread(float("nan"), float("nan"))
-    return Spread(float(np.percentile(known, SHARE)), float(known.max()))
+
+def counted(data: VehicleRun) -> bool:
+    """Whether the run found percentiles as EN 14363 counts them."""
+    return bool(data.assessment.get("places"))
+
+
+def greatest(values: Array) -> float:
+    """Of what is known; NaN of none."""
+    known = values[np.isfinite(values)]
+    return float(known.max()) if known.size else float("nan")
 
 
 def static_load(data: VehicleRun, number: int) -> float:
@@ -70,8 +83,8 @@ def ratio_spread(data: VehicleRun, wheel: Wheel) -> Spread:
 
 
 def guiding_spread(data: VehicleRun, wheel: Wheel) -> Spread:
-    """N, of Y, by size."""
-    return _spread(data, "guiding", _place(wheel), lambda: data.mean_guiding[wheel])
+    """N, of Y, outward: below 0 where it never was."""
+    return _spread(data, "outward_guiding_force", _place(wheel), lambda: data.mean_guiding[wheel])
 
 
 def load_spread(data: VehicleRun, wheel: Wheel) -> Spread:
@@ -81,7 +94,7 @@ def load_spread(data: VehicleRun, wheel: Wheel) -> Spread:
 
 def sum_spread(data: VehicleRun, number: int) -> Spread:
     """N, of a wheelset's sum of Y, by size."""
-    return _spread(data, "shift", number - 1, lambda: sum_of_guiding(data, number))
+    return _spread(data, "shift", number - 1, lambda: np.abs(sum_of_guiding(data, number)))
 
 
 def least_load(data: VehicleRun, wheel: Wheel) -> float:
@@ -101,12 +114,12 @@ def _place(wheel: Wheel) -> int:
 
 
 def _spread(data: VehicleRun, name: str, place: int, logged: Callable[[], Array]) -> Spread:
-    """As the run found it, or of what was logged."""
+    """As the run found it, the greatest one else of what was logged."""
     percentile, most = (data.assessment.get(key) for key in (name, f"most_{name}"))
-    if percentile and most:
-        return Spread(float(percentile[place]), float(most[place]))
-    found = spread(logged())
-    return Spread(found.percentile, float(most[place])) if most else found
+    return Spread(
+        float(percentile[place]) if percentile else float("nan"),
+        float(most[place]) if most else greatest(logged()),
+    )
 
 
 def sum_of_guiding(data: VehicleRun, number: int) -> Array:
@@ -161,25 +174,36 @@ def ride(data: VehicleRun) -> tuple[str, tuple[float, float]]:
 def key_numbers(data: VehicleRun) -> list[Key]:
     """Of all wheels, each beside its limit."""
     keys = []
-    ratios = {wheel: ratio_spread(data, wheel).percentile for wheel in data.contact}
-    keys.append(_key("Y/Q", ratios, dict.fromkeys(ratios, RATIO), 1.0, ""))
-    sums = {(n, ""): sum_spread(data, n).percentile for n in data.wheelsets}
+    ratios = {wheel: ratio_spread(data, wheel).compared for wheel in data.contact}
+    keys.append(_key(data, "Y/Q", ratios, dict.fromkeys(ratios, RATIO), 1.0, ""))
+    sums = {(n, ""): sum_spread(data, n).compared for n in data.wheelsets}
     limits = {(n, ""): sum_limit(data, n) for n in data.wheelsets}
-    keys.append(_key("sum of Y, a wheelset", sums, limits, 1e-3, " kN"))
-    loads = {wheel: load_spread(data, wheel).percentile for wheel in data.contact}
+    keys.append(_key(data, "sum of Y, a wheelset", sums, limits, 1e-3, " kN"))
+    loads = {wheel: load_spread(data, wheel).compared for wheel in data.contact}
     most = {wheel: load_limit(data, wheel[0]) for wheel in loads}
-    keys.append(_key("wheel load Q", loads, most, 1e-3, " kN"))
+    keys.append(_key(data, "wheel load Q", loads, most, 1e-3, " kN"))
     lifted = {wheel: unloading(data, wheel) for wheel in data.contact}
-    keys.append(_key("wheel unloading", lifted, dict.fromkeys(lifted, UNLOADING), 100.0, " %"))
+    limits = dict.fromkeys(lifted, UNLOADING)
+    keys.append(_key(data, "wheel unloading", lifted, limits, 100.0, " %"))
     name, found = ride(data)
     for axis, value, limit in zip(AXES, found, RIDE, strict=True):
         if np.isfinite(value):
-            note, state = against(value, limit, f"{limit:g} m/s², {name}")
+            note, state = against(data, value, limit, f"{limit:g} m/s², {name}")
             keys.append(Key(f"{axis} acceleration, rms", f"{short(value)} m/s²", note, state))
     return keys
 
 
+def against(data: VehicleRun, value: float, limit: float, text: str) -> tuple[str, str]:
+    """Note and state of a number beside its limit. One of a run without percentiles is within
+    nothing: it may be above a limit."""
+    note, state = judged(value, limit, text)
+    return (
+        (note, state) if counted(data) or state == BAD else (f"not assessed: limit {text}", PLAIN)
+    )
+
+
 def _key(
+    data: VehicleRun,
     name: str,
     values: dict[tuple[int, str], float],
     limits: dict[tuple[int, str], float],
@@ -194,31 +218,34 @@ def _key(
     worst = max(known, key=lambda wheel: known[wheel])
     where = f"wheelset {worst[0]} {worst[1]}".strip()
     text = f"{short(factor * limits[worst])}{unit}, {where}"
-    note, state = against(values[worst], limits[worst], text)
+    note, state = against(data, values[worst], limits[worst], text)
     return Key(name, f"{short(factor * values[worst])}{unit}", note, state)
 
 
-def verdict(keys: list[Key]) -> tuple[str, str]:
-    """In a sentence, and its state."""
+def verdict(data: VehicleRun, keys: list[Key]) -> tuple[str, str]:
+    """In a sentence or two, and its state."""
     above = [key.name for key in keys if key.state == BAD]
-    judged = [key for key in keys if key.state != PLAIN]
+    if not counted(data):
+        return _not_assessed(data, above), BAD if above else PLAIN
     if above:
         return f"Above the limits of EN 14363: {'; '.join(above)}.", BAD
-    if not judged:
+    if all(key.state == PLAIN for key in keys):
         return "Nothing in this log can be held against a limit.", PLAIN
     return "All that this page holds against EN 14363 stays within its limits.", GOOD
 
 
-def within(data: VehicleRun, said: str, state: str) -> tuple[str, str]:
-    """A verdict as it is for a way that percentiles can be taken of; a shorter one is not good."""
+def _not_assessed(data: VehicleRun, above: list[str]) -> str:
+    """Why there is no assessment, and what stands beside the limits in its place."""
     way = way_of(data)
-    if state != GOOD or way >= LEAST_WAY:
-        return said, state
-    return (
-        f"Of {short(way)} m of way, too short for what EN 14363 counts ({LEAST_WAY:g} m): on it no "
-        "limit is passed.",
-        PLAIN,
+    if way < LEAST_WAY:
+        why = f"{short(way)} m of way are too short for what it counts ({LEAST_WAY:g} m)"
+    else:
+        why = f"the run found no percentiles, of steps kept at {LEAST_RATE:g} Hz or more"
+    said = (
+        f"No assessment by EN 14363: {why}. What stands beside its limits is the greatest value on "
+        "this way, of accelerations the root mean square: no pass and no fail."
     )
+    return f"{said} Above a limit already: {'; '.join(above)}." if above else said
 
 
 def way_of(data: VehicleRun) -> float:
@@ -227,14 +254,8 @@ def way_of(data: VehicleRun) -> float:
 
 
 def rows(data: VehicleRun) -> list[list[object]]:
-    """Y, Q, Y/Q of each wheel and the sum of Y of its wheelset: percentile, where the way is long
-    enough, and greatest."""
-    found = []
-    counts = way_of(data) >= LEAST_WAY
-
-    def percentile(value: float) -> object:
-        return short(value) if counts else "-"
-
+    """Y, Q, Y/Q of each wheel and the sum of Y of its wheelset, as head() names them."""
+    found, counts = [], counted(data)
     for number in data.wheelsets:
         total = sum_spread(data, number)
         for side in SIDES:
@@ -243,16 +264,21 @@ def rows(data: VehicleRun) -> list[list[object]]:
                 (guiding_spread(data, wheel), 1e-3),
                 (load_spread(data, wheel), 1e-3),
                 (ratio_spread(data, wheel), 1.0),
+                (total, 1e-3),
             )
-            cells: list[object] = []
+            cells: list[object] = [f"{number} {side}"]
             for one, factor in columns:
-                cells += [percentile(factor * one.percentile), short(factor * one.most)]
-            sums = [percentile(1e-3 * total.percentile), short(1e-3 * total.most)]
-            found.append([f"{number} {side}", *cells, *sums])
+                cells += [short(factor * one.percentile)] if counts else []
+                cells.append(short(factor * one.most))
+            found.append(cells)
     return found
 
 
-HEAD = (
-    *("wheel", "Y 99.85 % [kN]", "most", "Q 99.85 % [kN]", "most", "Y/Q 99.85 %", "most"),
-    *("sum of Y 99.85 % [kN]", "most"),
-)
+def head(data: VehicleRun) -> list[str]:
+    """Of the table of rows(): of each quantity with its sign its percentile, where the run found
+    them, and its greatest value."""
+    found = ["wheel"]
+    for name, unit in COLUMNS:
+        found += [f"{name} 99.85 %{unit}"] if counted(data) else []
+        found.append(f"{name} most{unit}")
+    return found

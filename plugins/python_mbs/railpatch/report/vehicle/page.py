@@ -16,11 +16,11 @@ from railpatch.page.parts import BAD, folded, opening
 from railpatch.report import balance_figures, quantities, worn
 from railpatch.report.data import has_bulk
 from railpatch.report.patch_views import over_distance
-from railpatch.report.scene import friction_of
+from railpatch.report.scene import friction_of, scene_of
 from railpatch.report.tables import identity
 from railpatch.report.vehicle import assessed, below_rails, limits
 from railpatch.report.vehicle import figures as vehicle_figures
-from railpatch.report.vehicle.data import VehicleRun, Wheel, snapshot
+from railpatch.report.vehicle.data import VehicleRun, snapshot
 from railpatch.report.warnings import warnings
 
 
@@ -31,20 +31,22 @@ def body(
     over the run; other: the run whose patches are laid over its own."""
     bad = int((~data.solved).sum())
     keys = limits.key_numbers(data)
-    verdict, state = limits.within(data, *limits.verdict(keys))
+    verdict, state = limits.verdict(data, keys)
     if bad:
         verdict, state = f"{bad} of {data.count} steps did not converge. {verdict}", BAD
     head = [
         opening("Vehicle on track", about(data), verdict, keys, state),
         *warnings(data.run, f"{data.count} steps", bad, data.count, "steps"),
         unsolved(data),
-        f"<h2>Forces and accelerations beside their limits</h2><p>On the rail, Y outward, "
-        f"{data.averaging}. {escape(nadal_line(data))}</p>",
+        f"<h2>Forces and accelerations beside their limits</h2><p>On the rail, {data.averaging}. "
+        f"{signs(data)} {escape(nadal_line(data))}</p>",
         plot(vehicle_figures.beside_limits(data), "limits"),
-        tables.table(limits.HEAD, limits.rows(data)),
+        tables.table(limits.head(data), limits.rows(data)),
         folded("What is held against the standard", f"<p>{escape(STANDARD)}</p>"),
         *assessed.section(data),
-        f"<h2>Wheels</h2>{tables.table(*wheels(data))}",
+        "<h2>Wheels</h2><p class=sub>Greatest and least values on the way; y is the wheelset's "
+        "place across the track.</p>",
+        tables.table(*wheels(data)),
     ]
     return "".join(
         [*head, laid, *_sections(data), *_patches(data, at, other), *_administration(data)]
@@ -59,8 +61,9 @@ STANDARD = (
     "0.5 m/s² lateral and 0.75 m/s² vertical. Static loads are those "
     "at rest on level rails, the mean of the run in logs that have none. The standard "
     "takes percentiles of 99.85 % in many sections of track and estimates from these; here the "
-    "whole run is one section. It measures accelerations on the floor and filters them; here they "
-    "are those of a body's centre, about their mean, as logged."
+    "whole run is one section, and a run without percentiles, whose greatest values stand beside "
+    "the limits, is not assessed. It measures accelerations on the floor and filters them; here "
+    "they are those of a body's centre, about their mean, as logged."
 )
 
 
@@ -73,6 +76,15 @@ def about(data: VehicleRun) -> str:
         parts.append(f"friction coefficient {tables.short(friction)}")
     parts.append(str(data.run.metadata["railpatch"].get("theory", "")))
     return ", ".join(filter(None, parts))
+
+
+def signs(data: VehicleRun) -> str:
+    """What the columns are of, the same in all of them."""
+    shown = "Percentiles and greatest values" if limits.counted(data) else "Greatest values"
+    return (
+        f"{shown} of each quantity by itself, not of one moment: of Y and of Y/Q outward, below 0 "
+        "where the wheel never pressed outward; of a wheelset's sum of Y by size, either way."
+    )
 
 
 def nadal_line(data: VehicleRun) -> str:
@@ -105,17 +117,33 @@ def summary(data: VehicleRun) -> list[tuple[str, str]]:
 
 
 def course(data: VehicleRun) -> list[tuple[str, str]]:
-    """Speed and sharpest curve."""
+    """Speed and the sharpest curve that its wheelsets came into."""
     n, state, rows = tables.number, data.state, []
     speed = state["speed"][np.isfinite(state["speed"])]
     if speed.size:
         low, high = n(speed.min()), n(speed.max())
         both = high if low == high else f"{low} to {high}"
         rows.append(("speed", f"{both} m/s ({n(3.6 * speed.max())} km/h)"))
-    curved = np.abs(state["curvature"])
-    if np.isfinite(curved).any() and np.nanmax(curved) > 0:
-        rows.append(("least radius", f"{n(1 / np.nanmax(curved))} m"))
+    curves = [np.abs(series["curvature"]) for series in (*data.wheelsets.values(), state)]
+    known = np.concatenate([curve[np.isfinite(curve)] for curve in curves])
+    if known.size and known.max() > 0:
+        rows.append(("least radius run on", radius_text(1 / float(known.max()), data)))
     return rows
+
+
+def radius_text(run_on: float, data: VehicleRun) -> str:
+    """run_on: m. With the scene's least radius where the run did not come to it."""
+    text, least = f"{tables.short(run_on)} m", least_radius(data)
+    if least > 0.999 * run_on:
+        return text
+    return f"{text} (the scene's arc of {tables.short(least)} m was not reached)"
+
+
+def least_radius(data: VehicleRun) -> float:
+    """m, of the arcs in the scene's alignment; infinite where there is none."""
+    table = scene_of(data.run).get("alignment") or {}
+    arcs = [one.get("radius") for one in (table, *(table.get("section") or ()))]
+    return min((abs(float(radius)) for radius in arcs if radius), default=np.inf)
 
 
 def _comfort(data: VehicleRun) -> list[tuple[str, str]]:
@@ -129,7 +157,7 @@ def _comfort(data: VehicleRun) -> list[tuple[str, str]]:
 
 def wheels(data: VehicleRun) -> tuple[Sequence[str], list[list[object]]]:
     """Head and rows of the table of all wheels."""
-    head = ["wheelset", "wheel", "Q least [kN]", "Q most [kN]", "Y/Q most", "y most [mm]"]
+    head = ["wheelset", "wheel", "Q least [kN]", "Q most [kN]", "Y/Q outward most", "|y| most [mm]"]
     head += [
         *quantities.HEAD,
         "lost in friction [kJ]",
@@ -150,7 +178,7 @@ def wheels(data: VehicleRun) -> tuple[Sequence[str], list[list[object]]]:
             bad = ~np.isin(status, ("converged", "no_contact"))
             patches = max(len(m["patches"]) for m in data.contact[wheel].messages)
             row: list[object] = [number, side, *map(tables.number, load)]
-            row += [tables.number(most_ratio(data, wheel)), tables.number(lateral)]
+            row += [tables.number(limits.ratio_spread(data, wheel).most), tables.number(lateral)]
             row += quantities.greatest(data.contact[wheel])
             row.append(tables.number(1e-3 * data.friction_work(wheel)[-1]))
             rows.append([*row, patches, int((status == "no_contact").sum()), int(bad.sum())])
@@ -169,15 +197,6 @@ def unsolved(data: VehicleRun) -> str:
     ]
     head = ["step", "time [s]", "distance [m]"]
     return tables.table([*head, *(f"{number} {side}" for number, side in data.contact)], rows)
-
-
-def most_ratio(data: VehicleRun, wheel: Wheel) -> float:
-    """-, greatest Y/Q, Y outward."""
-    known = data.assessment.get("most_derailment")
-    if known:
-        return limits.ratio_spread(data, wheel).most
-    values = data.ratio(wheel)
-    return float(np.nanmax(values)) if np.isfinite(values).any() else float("nan")
 
 
 def _sections(data: VehicleRun) -> list[str]:
