@@ -157,6 +157,23 @@ def test_wrong_sweeps_are_refused(tmp_path: Path, text: str, told: str) -> None:
     assert told in str(error.value)
 
 
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        (PATCH, "a contact case, without [sweep]"),
+        ("[vehicle]\n[run]\n", "a scene of railpatch vehicle"),
+    ],
+)
+def test_a_scene_is_no_sweep(tmp_path: Path, text: str, kind: str) -> None:
+    """Said in one line, in place of all its tables."""
+    path = tmp_path / "wheel.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(CaseError) as error:
+        load_plan(path)
+    hint = 'a sweep names its scene: [sweep] scene = "wheel.toml", and [[vary]] its keys'
+    assert str(error.value) == f"{path}: this is {kind}, allowed one of railpatch sweep; {hint}"
+
+
 def test_values_go_where_the_key_says() -> None:
     """Through tables and lists; tables that are absent are made, lists are not."""
     content = {"a": {"b": [1, [2, 3]]}, "c": 1}

@@ -20,6 +20,7 @@ from railpatch.command.cli import cli
 from railpatch.sweep import Sweep, read_sweep, run_sweep
 from railpatch.sweep import local as runner
 from railpatch.sweep.local import WORKER_DIED
+from railpatch.sweep.page import MEANS, _means
 from railpatch.sweep.plan import load_plan
 from railpatch.sweep.sensitivity import indices_of
 from railpatch.sweep.work import Chunk, Row, solve_chunk, solve_first
@@ -278,6 +279,47 @@ def test_sensitivities_of_a_linear_output(tmp_path: Path) -> None:
     for (_, first, _, total, _), size in zip(indices_of(plan, linear(plan, a)), a, strict=True):
         assert first == pytest.approx(size**2 / whole, abs=0.01)
         assert total == pytest.approx(size**2 / whole, abs=0.01)
+
+
+def test_the_page_names_outputs_that_do_not_vary(tmp_path: Path) -> None:
+    """With their value, and those without a number; a case that failed has none."""
+    text = SWEEP.replace('"spin_moment"', '"spin_moment", "normal_force"')
+    run_sweep(files(tmp_path, text), tmp_path / "out")
+    page = (tmp_path / "out" / "sweep.html").read_text(encoding="utf-8")
+    assert "normal_force is 10\u00a0kN, the same in all 6 cases" in page
+    assert "max_pressure is " in page
+    text = SWEEP.replace("values = [0.1, 0.3]", "values = [0.1, -0.3]").replace(
+        '"max_pressure"', '"max_temperature"'
+    )
+    run_sweep(files(tmp_path, text), tmp_path / "other")
+    page = (tmp_path / "other" / "sweep.html").read_text(encoding="utf-8")
+    assert (
+        "the same in the 3 of 6 cases that have it; no case has a number of max_temperature."
+        in page
+    )
+
+
+def test_logarithmic_keys_have_logarithmic_axes(tmp_path: Path) -> None:
+    """Of responses and parallel coordinates, with a mark on their names; others stay linear."""
+    text = SWEEP.replace(
+        "values = [0.1, 0.3]", "low = 1e-3\nhigh = 1.0\ncount = 25\nlogarithmic = true"
+    )
+    run_sweep(files(tmp_path, text), tmp_path / "out")
+    shown = check_page(tmp_path / "out" / "sweep.html", keys=(2, 5))
+    axes = [panel["layout"]["xaxis"] for panel in shown["responses"]["panels"]]
+    assert {axis["title"]["text"]: axis.get("type") for axis in axes} == {
+        "friction.coefficient (log)": "log",
+        "motion.creepage[0]": None,
+    }
+    found = {axis["name"]: axis.get("logarithmic") for axis in shown["parallel"]["data"]["axes"]}
+    assert found.pop("friction.coefficient (log)")
+    assert not any(found.values())
+    # of so many places the mean is one over equal parts of the range's logarithm
+    at = np.geomspace(1e-3, 1.0, 25)
+    x, mean = _means(at, np.log(at), logarithmic=True)
+    edges = np.geomspace(1e-3, 1.0, MEANS + 1)
+    assert x == pytest.approx(np.sqrt(edges[:-1] * edges[1:]))
+    assert len(mean) == MEANS
 
 
 def test_the_page_says_which_outputs_have_no_card(tmp_path: Path) -> None:

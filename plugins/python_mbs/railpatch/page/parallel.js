@@ -1,10 +1,12 @@
 "use strict";
 // Cases as lines over parallel axes. A range dragged along an axis picks cases; a click ends it.
+// Of a logarithmic axis values, low and high are logarithms.
 class ParallelAxes {
   constructor(root, data, colours) {
     Object.assign(this, { root, colours, ramp: ramp(VIRIDIS), ranges: new Map() });
     this.axes = data.axes.map((axis) => ({ ...axis, values: numbers(axis.values, Float32Array) }));
     for (const axis of this.axes) {
+      if (axis.logarithmic) axis.values = axis.values.map(Math.log10);
       const known = axis.values.filter(Number.isFinite);
       axis.low = known.reduce((a, b) => Math.min(a, b), Infinity);
       axis.high = known.reduce((a, b) => Math.max(a, b), -Infinity);
@@ -98,6 +100,17 @@ class ParallelAxes {
       `let them go. Colour: ${this.color.name}.`;
   }
 
+  // a mark at each power of ten
+  decades(context, axis, k, y) {
+    context.beginPath();
+    for (let power = Math.ceil(axis.low); power <= axis.high; power += 1) {
+      const at = y((power - axis.low) / (axis.high - axis.low));
+      context.moveTo(this.at[k] - 4, at);
+      context.lineTo(this.at[k] + 4, at);
+    }
+    context.stroke();
+  }
+
   labels(context, axis, k, gap, y, ink) {
     context.fillStyle = ink.soft;
     context.textAlign = "center";
@@ -117,8 +130,10 @@ class ParallelAxes {
     });
     const ends = axis.texts ? [] : [[1, axis.high, -4], [0, axis.low, 18]];
     for (const [share, value, off] of ends) {
-      context.fillText(digits(value), this.at[k], y(share) + off, gap - 6);
+      const shown = axis.logarithmic ? 10 ** value : value;
+      context.fillText(digits(shown), this.at[k], y(share) + off, gap - 6);
     }
+    if (axis.logarithmic) this.decades(context, axis, k, y);
     context.textAlign = "left";
     (axis.texts || []).forEach((text, i) => {
       context.fillText(text, this.at[k] + 5, y((i - axis.low) / (axis.high - axis.low)) + 6, gap - 8);

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from html import escape
 from typing import Any
 
@@ -72,16 +73,25 @@ def patches_viewer(
     )
 
 
-def parallel_axes(
-    name: str, axes: Sequence[tuple[str, NDArray[np.float64], list[str] | None]], color: int
-) -> str:
-    """Cases as lines. axes: name, a value of each case, texts of whole-number values; color: the
-    axis by which lines are coloured."""
+@dataclass(frozen=True)
+class Axis:
+    """One of parallel ones. values: [cases]; texts: of whole-number values; logarithmic: whether
+    values, all > 0, lie by their logarithm."""
+
+    name: str
+    values: NDArray[np.float64]
+    texts: list[str] | None = None
+    logarithmic: bool = False
+
+
+def parallel_axes(name: str, axes: Sequence[Axis], color: int) -> str:
+    """Cases as lines. color: number of the axis by which lines are coloured."""
     data = {
         "axes": [
-            {"name": text, "values": _bytes(np.asarray(values, dtype="<f4"))}
-            | ({"texts": list(texts)} if texts else {})
-            for text, values, texts in axes
+            {"name": axis.name, "values": _bytes(np.asarray(axis.values, dtype="<f4"))}
+            | ({"texts": list(axis.texts)} if axis.texts else {})
+            | ({"logarithmic": True} if axis.logarithmic else {})
+            for axis in axes
         ],
         "color": color,
     }

@@ -15,7 +15,7 @@ from railpatch.page.document import document
 from railpatch.page.figures import COLORS, plot, styled
 from railpatch.page.parts import BAD, DOUBT, GOOD, Key, folded, opening
 from railpatch.page.tables import number, short, table
-from railpatch.page.viewer import parallel_axes
+from railpatch.page.viewer import Axis, parallel_axes
 from railpatch.sweep.outcome import Sweep
 from railpatch.sweep.plan import SENSITIVITY
 from railpatch.sweep.units import labelled, unit_of_output, unit_of_varied
@@ -31,6 +31,8 @@ LARGE = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 SMALL = ((0.1, ""), (1e-3, "m"), (1e-6, "\u00b5"), (1e-9, "n"))
 PREFIXES = {**dict.fromkeys(("N", "N m", "Pa", "W", "J"), LARGE), "m": SMALL}
 MEANS = 20  # places along a key where the mean is drawn
+# told where a key was varied so; its name has "(log)" there
+LOGARITHMIC = "Axes of keys with (log) are logarithmic, as their ranges are divided."
 
 Array = NDArray[np.float64]
 
@@ -69,8 +71,14 @@ def output_label(sweep: Sweep, name: str) -> str:
 
 
 def key_label(sweep: Sweep, key: str) -> str:
-    """With its unit."""
-    return labelled(key, unit_of_varied(sweep.plan.kind, key))
+    """With its unit, and whether its axis is logarithmic."""
+    name = f"{key} (log)" if is_logarithmic(sweep, key) else key
+    return labelled(name, unit_of_varied(sweep.plan.kind, key))
+
+
+def is_logarithmic(sweep: Sweep, key: str) -> bool:
+    """Whether the key's range was divided by its logarithm; all its values are > 0 then."""
+    return sweep.plan.vary[sweep.plan.keys.index(key)].logarithmic
 
 
 def with_unit(text: str, unit: str) -> str:
@@ -125,6 +133,30 @@ def _left_out(names: list[str], most: int) -> str:
     return f"<p class=sub>{escape(text + ', '.join(more))}.</p>"
 
 
+def _unvaried(sweep: Sweep) -> str:
+    """Outputs that are the same in all cases, with their value, and those that no case has a number
+    of; nothing where there are none."""
+    count, told, empty = len(sweep.rows), [], []
+    for name in sweep.outputs:
+        values = output_values(sweep, name)
+        known = values[np.isfinite(values)]
+        if not known.size:
+            empty.append(name)
+        elif count > 1 and not varies(values):
+            there = f"all {count}" if known.size == count else f"the {known.size} of {count}"
+            having = "" if known.size == count else " that have it"
+            shown = glance(known[:1], unit_of(sweep, name))
+            told.append(f"{name} is {shown}, the same in {there} cases{having}")
+    if empty:
+        told.append(f"no case has a number of {', '.join(empty)}")
+    return f"<p class=sub>{escape('; '.join(told))}.</p>" if told else ""
+
+
+def varies(values: Array) -> bool:
+    """Whether an output has more than one value."""
+    return bool(np.nanmax(values) > np.nanmin(values))
+
+
 def _range(sweep: Sweep, name: str) -> Key:
     """Least and greatest of an output."""
     values = output_values(sweep, name)
@@ -151,7 +183,7 @@ def _strongest(sweep: Sweep, shown: list[str]) -> str:
 def shown_outputs(sweep: Sweep) -> list[str]:
     """Those that are numbers, and vary where any does."""
     known = [name for name in sweep.outputs if np.isfinite(output_values(sweep, name)).any()]
-    return [name for name in known if np.nanstd(output_values(sweep, name)) > 0] or known
+    return [name for name in known if varies(output_values(sweep, name))] or known
 
 
 def _sections(sweep: Sweep) -> list[str]:
@@ -160,6 +192,8 @@ def _sections(sweep: Sweep) -> list[str]:
         parts += _sensitivities(sweep, shown)
         parts += _responses(sweep, shown)
         parts += _extremes(sweep, shown)
+    parts.append(_unvaried(sweep))
+    if shown:
         parts += _parallel(sweep, shown[:MOST_OUTPUTS])
     warned = Counter(text for row in sweep.rows for text in row.warnings)
     if warned:
@@ -220,6 +254,7 @@ def _responses(sweep: Sweep, outputs: list[str]) -> list[str]:
     )
     for column, key in enumerate(keys, 1):
         at, texts = key_values(sweep, key)
+        logarithmic = is_logarithmic(sweep, key)
         for row, name in enumerate(names, 1):
             values = output_values(sweep, name)
             few = _few(len(at))
@@ -233,7 +268,7 @@ def _responses(sweep: Sweep, outputs: list[str]) -> list[str]:
                 row=row,
                 col=column,
             )
-            x, mean = _means(at, values)
+            x, mean = _means(at, values, logarithmic=logarithmic)
             figure.add_scatter(
                 x=x,
                 y=mean,
@@ -246,6 +281,8 @@ def _responses(sweep: Sweep, outputs: list[str]) -> list[str]:
             )
             # each has its own: on a narrow screen they stand below each other
             figure.update_xaxes(title_text=key_label(sweep, key), row=row, col=column)
+            if logarithmic:
+                figure.update_xaxes(type="log", row=row, col=column)
             if texts:
                 figure.update_xaxes(
                     tickvals=list(range(len(texts))), ticktext=texts, row=row, col=column
@@ -253,7 +290,10 @@ def _responses(sweep: Sweep, outputs: list[str]) -> list[str]:
             if column == 1:
                 figure.update_yaxes(title_text=output_label(sweep, name), row=row, col=column)
     styled(figure, 120 + 240 * len(names))
-    text = "<p class=sub>Dots are cases, the line is their mean along the key.</p>" + left_out
+    text = "Dots are cases, the line is their mean along the key."
+    if any(is_logarithmic(sweep, key) for key in keys):
+        text += f" {LOGARITHMIC}"
+    text = f"<p class=sub>{text}</p>{left_out}"
     figure.update_xaxes(exponentformat="SI")
     figure.update_yaxes(exponentformat="SI")
     return ["<h2>Responses</h2>" + text + plot(figure, "responses")]
@@ -264,8 +304,12 @@ def _few(count: int) -> NDArray[np.int64]:
     return np.unique(np.linspace(0, count - 1, min(count, MOST_LINES)).astype(np.int64))
 
 
-def _means(at: Array, values: Array) -> tuple[Array, Array]:
-    """Mean of an output over a key, at its values or over parts of its range."""
+def _means(at: Array, values: Array, *, logarithmic: bool = False) -> tuple[Array, Array]:
+    """Mean of an output over a key, at its values or over parts of its range, or of the range of
+    its logarithm."""
+    if logarithmic:
+        places, means = _means(np.log(at), values)
+        return np.exp(places), means
     known = np.isfinite(values)
     at, values = at[known], values[known]
     places = np.unique(at)
@@ -286,11 +330,12 @@ def _parallel(sweep: Sweep, names: list[str]) -> list[str]:
     few = _few(len(sweep.rows))
     color = output_values(sweep, names[0])[few]
     known = np.isfinite(color)
-    axes = [(key_label(sweep, key), at[few][known], texts) for key in sweep.plan.keys
-            for at, texts in (key_values(sweep, key),)]  # fmt: skip
-    axes += [
-        (output_label(sweep, name), output_values(sweep, name)[few][known], None) for name in names
-    ]
+    axes = []
+    for key in sweep.plan.keys:
+        at, texts = key_values(sweep, key)
+        axes.append(Axis(key_label(sweep, key), at[few][known], texts, is_logarithmic(sweep, key)))
+    axes += [Axis(output_label(sweep, name), output_values(sweep, name)[few][known])
+             for name in names]  # fmt: skip
     left = len(sweep.rows) - int(known.sum())
     text = f"<p class=sub>{left} cases are not drawn.</p>" if left else ""
     shown = parallel_axes("parallel", axes, len(sweep.plan.keys))

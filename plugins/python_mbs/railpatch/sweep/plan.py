@@ -18,7 +18,7 @@ from pydantic import Field, model_validator
 
 from railpatch._core import version
 from railpatch.case.kinds import kind_of
-from railpatch.case.load import KINDS, OTHERS, check_table, plain, read_toml
+from railpatch.case.load import KINDS, OTHERS, check_table, plain, read_toml, refuse_others
 from railpatch.case.types import Number, Table, relation, show
 from railpatch.command.output import is_file
 from railpatch.errors import CaseError
@@ -187,6 +187,7 @@ def load_plan(path: str | Path, besides: tuple[str, ...] = ()) -> Plan:
     another reader's. Raises CaseError."""
     path = Path(path)
     content = plain(read_toml(path))
+    refuse_scene(content, path)
     unknown = set(content) - {"sweep", "vary", *besides}
     if unknown:
         raise CaseError(
@@ -213,6 +214,15 @@ def load_plan(path: str | Path, besides: tuple[str, ...] = ()) -> Plan:
     plan = Plan(path.name, table, vary, kind, base, files, points_of(table, vary))
     plan.case(plan.points[0])
     return plan
+
+
+def refuse_scene(content: Mapping[str, Any], path: Path) -> None:
+    """Says once that a file is a scene, or one of another command. Raises CaseError."""
+    try:
+        refuse_others(content, "sweep")
+    except CaseError as error:
+        hint = f'a sweep names its scene: [sweep] scene = "{path.name}", and [[vary]] its keys'
+        raise CaseError(f"{path}: {error}; {hint}") from None
 
 
 def kind_of_content(content: Mapping[str, Any], path: Path) -> str:
