@@ -160,8 +160,9 @@ uint32_t warnings_of_patch(const rp_config &config, const rp_patch_result &patch
              bit(RP_WARNING_SPIN, outside(patch.spin_creepage, spin_creepage_range));
   const double width = 2 * std::sqrt(patch.contact_area / std::numbers::pi);
   const bool line = config.kind == RP_PATCH && config.geometry == RP_LINE_CONTACT;
+  const double widest = std::max(doubtful_size, 2 * config.line_contact_radius);
   found |= bit(RP_WARNING_LAYER, !line && config.layer_thickness > width && width > 0) |
-           bit(RP_WARNING_SIZE, !line && width > doubtful_size);
+           bit(RP_WARNING_SIZE, line ? patch.contact_size[0] > widest : width > doubtful_size);
   found |= bit(RP_WARNING_WATER, config.fluid_model != RP_FLUID_NONE &&
                                      config.fluid_liquid == RP_LIQUID_WATER &&
                                      outside(patch.fluid_temperature, water_range)) |

@@ -71,6 +71,16 @@ MISTAKES: dict[str, tuple[dict[str, Any], str]] = {
         with_values(PATCH, geometry={"semi_axes": [2e-2, 2e-2]}, load={"normal_force": 2e3}),
         "10 MPa",
     ),
+    "a line contact wider than its body": (
+        # Hertz: half-width sqrt(4 F' R/(pi E*)) with E* = G/(1 - nu), 0.77 m on a radius of 0.16 m
+        with_values(
+            PATCH,
+            geometry={"line_contact_radius": 0.16, "width": 0.1},
+            material={"shear_modulus": 2.47e5},
+            grid={"elements": [24, 1]},
+        ),
+        "wider than a circle of 60 mm",
+    ),
     "creepage in per cent": (with_values(PATCH, motion__creepage=[0.3, 0.0]), "creepage"),
     "creepage in per mille": (with_values(PATCH, motion__creepage=[0.0, 2.0]), "creepage"),
     "pitch rate of the other sign": (with_values(LOADED, wheelset__pitch_rate=4.35), "pitch_rate"),
