@@ -46,7 +46,7 @@ def problems_of(case: Any, **options: Any) -> list[str]:
             [0.3, 0.6],
             "material.poisson_ratio[1]: value is 0.6, allowed <=",
         ),
-        ("material__shear_modulus", -1.0, "material.shear_modulus[0]: value is -1.0, allowed >= 1"),
+        ("material__shear_modulus", -1.0, "material.shear_modulus: value is -1.0, allowed >= 1"),
         ("geometry__semi_axes", [0.006], "geometry.semi_axes: value is [0.006], allowed 2 values"),
         ("geometry__semi_axes", None, "geometry: value is none of them, allowed exactly one of"),
         (
@@ -111,7 +111,12 @@ def problems_of(case: Any, **options: Any) -> list[str]:
             "motion.tangential_force: value is ['creepage', 30001.0], allowed at most "
             "friction.coefficient * load.normal_force = 30000 N in magnitude",
         ),
-        ("motion__rolling_speed", -1.0, "motion.rolling_speed: value is -1.0, allowed >= 0"),
+        (
+            "motion__rolling_speed",
+            -1.0,
+            "motion.rolling_speed: value is -1.0, allowed >= 0.0 m/s; motion.direction = -1 rolls "
+            "towards -x",
+        ),
         ("friction", None, "friction: value is missing, allowed the table [friction]"),
         ("friction__law", "viscous", "friction.law: value is 'viscous', allowed 'coulomb', 'slip"),
         ("friction__law", "temperature", "friction.reference: value is missing, allowed a number"),
@@ -193,6 +198,22 @@ def test_wrong_values_of_a_patch(key: str, value: Any, line: str) -> None:
     found = problems_of(with_values(PATCH, **{key: value}))
     assert len(set(found)) == len(found)
     assert found[0].startswith(line) or found[-1].startswith(line), found
+
+
+@pytest.mark.parametrize(
+    ("value", "told"),
+    [
+        (-1.0, [": value is -1.0, allowed >= 0.0 s"]),
+        ("fast", [": value is 'fast', allowed a number"]),
+        (math.nan, [": value is nan, allowed a finite number"]),
+        ([-1.0, -1.0], [f"[{k}]: value is -1.0, allowed >= 0.0 s" for k in range(2)]),
+        ([1.0], [": value is [1.0], allowed 2 values"]),
+        ({"wheel": 1.0}, [": value is a table, allowed a number"]),
+    ],
+)
+def test_one_number_for_both_bodies_is_told_once(value: Any, told: list[str]) -> None:
+    found = problems_of(with_values(PATCH, material__relaxation_time=value))
+    assert found == [f"material.relaxation_time{line}" for line in told]
 
 
 @pytest.mark.parametrize(

@@ -30,11 +30,11 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     ),
     "steam": (
         {**FILM, "temperature": 150.0},
-        "fluid.temperature: value is 150.0, allowed 0 to 100 with liquid = 'water'",
+        "fluid.temperature: value is 150.0, allowed 0 to 100 degrees C with liquid = 'water'",
     ),
     "ice": (
         {**FILM, "temperature": -20.0},
-        "fluid.temperature: value is -20.0, allowed 0 to 100 with liquid = 'water'",
+        "fluid.temperature: value is -20.0, allowed 0 to 100 degrees C with liquid = 'water'",
     ),
     "two supplies": (
         {**OIL, "oil_film": 1e-6, "water_rate": 1e-8},
@@ -48,6 +48,14 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "another table": (
         {"model": "regimes", "water_rate": 1e-8, "oxide": {"solid_content": 0.3}},
         "fluid.oxide: value is a table, allowed none: it must be left out with model = 'regimes'",
+    ),
+    "one knot": (
+        {"model": "regimes", "water_rate": 1e-8, "knots": KNOTS[:1]},
+        "fluid.knots: value is [[0.0, 1.0, 0.4, 0.55, 0.4, 0.6]], allowed 2 to 8 rows",
+    ),
+    "a short knot": (
+        {"model": "regimes", "water_rate": 1e-8, "knots": [KNOTS[0], [1e-6, 0.3]]},
+        "fluid.knots[1]: value is [1e-06, 0.3], allowed 6 values",
     ),
     "rows": (
         {"model": "regimes", "water_rate": 1e-8, "knots": KNOTS[::-1]},
@@ -136,8 +144,15 @@ def test_steps_are_refused_as_cases_are() -> None:
     with pytest.raises(railpatch.CaseError, match="oil_film must be left NaN with water_rate"):
         contact.step({**values, "oil_film": 1e-6})
     wet = railpatch.Contact({**PATCH, "fluid": FILM})
-    with pytest.raises(railpatch.CaseError, match=r"value is 120\.0, allowed 0 to 100 with liquid"):
+    # by the name that a step has for the key
+    with pytest.raises(railpatch.CaseError) as refused:
         wet.step(water_temperature=120.0)
+    assert str(refused.value) == (
+        "water_temperature (fluid.temperature): value is 120.0, allowed 0 to 100 degrees C with "
+        "liquid = 'water'"
+    )
+    with pytest.raises(railpatch.CaseError, match=r"^friction_scale\[1\] \(friction\.scale"):
+        wet.step(friction_scale=[1.0, -1.0])
     # a case that has one supply has no other to move; one that has none has both
     one = railpatch.Contact({**PATCH, "fluid": {**OIL, "water_rate": 1e-8}})
     with pytest.raises(railpatch.CaseError, match="oil_film: value is 1e-06, but this is no mov"):

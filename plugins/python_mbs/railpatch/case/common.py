@@ -47,7 +47,10 @@ class Material(Table):
     shear_modulus: of_bodies("shear_modulus") = key(", or [wheel, rail]")
     poisson_ratio: of_bodies("poisson_ratio") = key(", or [wheel, rail]")
     viscoelastic_ratio: of_bodies("viscoelastic_ratio") = key(", or [wheel, rail]")
-    relaxation_time: of_bodies("relaxation_time") = key(", or [wheel, rail]")
+    relaxation_time: of_bodies("relaxation_time") = key(
+        ", or [wheel, rail]: of a rubber wheel on an elastic rail [1e-3, 0.0], and "
+        "viscoelastic_ratio likewise"
+    )
 
 
 # of the core: memory grows with the square

@@ -307,7 +307,8 @@ class Fluid(Table):
             at = OF_KNOT.index(name)
             for k, v in enumerate(values):
                 if not low <= v <= high or (open_low and v == low):
-                    allowed = f"{name} within {field['bounds'][0]}{low:g}, {high:g}]"
+                    unit = "" if field["unit"] == "-" else f" {field['unit']}"
+                    allowed = f"{name} within {field['bounds'][0]}{low:g}, {high:g}]{unit}"
                     yield relation(f"knots[{k}][{at}]", v, allowed)
 
     def _viscosity(self) -> Problems:
@@ -325,7 +326,7 @@ class Fluid(Table):
         if self.liquid == "water" and self.temperature is not None:
             low, high = LIQUID_WATER
             if not low <= self.temperature <= high:
-                allowed = f"{low:g} to {high:g} with liquid = 'water'"
+                allowed = f"{low:g} to {high:g} degrees C with liquid = 'water'"
                 yield relation("temperature", self.temperature, allowed)
         if self.liquid == "oil" and self.temperature is not None and self.temperature > HOT_OIL:
             allowed = f"<= {HOT_OIL:g} degrees C with liquid = 'oil', which burns or boils beyond"
@@ -349,7 +350,9 @@ class Fluid(Table):
         low, high = (listed("fluid_viscosity")[end] for end in ("low", "high"))
         if not all(low <= value <= high for _, value in self.viscosity_table):
             shown = show(self.viscosity_table)
-            yield relation("viscosity_table", shown, f"viscosities within {low:g} ... {high:g}")
+            yield relation(
+                "viscosity_table", shown, f"viscosities within {low:g} ... {high:g} Pa s"
+            )
         if self.inlet_heating and self.liquid_conductivity is None:
             yield relation(
                 "liquid_conductivity", "missing", "a number with inlet_heating and a table"

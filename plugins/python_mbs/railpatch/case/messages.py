@@ -7,6 +7,7 @@ from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
 
 from railpatch.case.homes import Tables, models_in, unknown_key
 from railpatch.case.key_units import parts_of_unit
@@ -23,8 +24,6 @@ ALLOWED = {
     "string_type": "a text",
     "string_too_short": "a text that is not empty",
     "list_type": "a list",
-    "too_short": "{min_length} values",
-    "too_long": "{max_length} values",
     "model_type": "a table",
     "model_attributes_type": "a table",
     "dict_type": "a table",
@@ -32,6 +31,11 @@ ALLOWED = {
 }
 # of numbers: limits are of their unit
 LIMITS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
+# of lists: pydantic's errors; least and greatest length, and what they hold
+Lengths = tuple[int | None, int | None, str]
+LENGTHS = ("too_short", "too_long")
+# what a value below the limit of a key may have been meant as
+BELOW = {"motion.rolling_speed": "; motion.direction = -1 rolls towards -x"}
 # pydantic's names of the branch of a union that is a text
 TEXTS = (("str",), ("constrained-str",))
 
@@ -117,17 +121,69 @@ def problem(
     if item["loc"][-1:] in TEXTS:
         template = "a path or rows of numbers"
     allowed = template.format(**context) if template else item["msg"]
+    if item["type"] in LENGTHS:
+        allowed = length_at(model, loc, context)
     if item["type"] in LIMITS:
         allowed += unit_at(model, loc)
+    if item["type"] == "greater_than_equal":
+        allowed += BELOW.get(key, "")
     return f"{key}: value is {show(item['input'])}, allowed {allowed}"
+
+
+def length_at(model: type[BaseModel], loc: list[Any], context: Mapping[str, Any]) -> str:
+    """'2 values' or '2 to 8 rows' of a list, by its type. context: of pydantic's error, which has
+    the end that the list goes beyond."""
+    held, deep = held_at(model, loc)
+    found = lengths_in(held.annotation, deep) if held else None
+    if held and found and not deep:
+        found = ended(found, held.metadata)
+    low, high, what = found or (None, None, "values")
+    low, high = context.get("min_length", low), context.get("max_length", high)
+    if low == high:
+        return f"{low} values"
+    if high is None:
+        return f"{low} or more {what}"
+    return f"{low} to {high} {what}" if low else f"at most {high} {what}"
+
+
+def ended(found: Lengths, marks: Iterable[Any]) -> Lengths:
+    """With the ends that marks of the list's type set."""
+    low, high, what = found
+    ends = [end for mark in marks for end in getattr(mark, "metadata", (mark,))]
+    for end in ends:
+        low, high = getattr(end, "min_length", low), getattr(end, "max_length", high)
+    return low, high, what
+
+
+def lengths_in(annotation: Any, deep: int) -> Lengths | None:
+    """Least and greatest length of a list and what it holds, of the type of a key. deep: how many
+    lists it lies in. None where the type holds no such list."""
+    origin, parts = get_origin(annotation), get_args(annotation)
+    if origin is Annotated:
+        found = lengths_in(parts[0], deep)
+        return found if found is None or deep else ended(found, parts[1:])
+    if origin is list:
+        if deep:
+            return lengths_in(parts[0], deep - 1)
+        inner = parts[0]
+        while get_origin(inner) is Annotated:
+            inner = get_args(inner)[0]
+        return None, None, "rows" if get_origin(inner) is list else "values"
+    return next(filter(None, (lengths_in(part, deep) for part in parts)), None)
+
+
+def held_at(model: type[BaseModel], loc: list[Any]) -> tuple[FieldInfo | None, int]:
+    """The key of a table that a location lies in, and in how many of its lists."""
+    names = [place for place, part in enumerate(loc) if isinstance(part, str)]
+    table = table_at(model, loc[: names[-1]]) if names else None
+    held = table.model_fields.get(str(loc[names[-1]])) if table else None
+    return held, len(loc) - 1 - names[-1] if names else 0
 
 
 def unit_at(model: type[BaseModel], loc: list[Any]) -> str:
     """' m' of a number of a case, as its description says, of rows that of the column; nothing of
     what has no unit."""
-    names = [place for place, part in enumerate(loc) if isinstance(part, str)]
-    table = table_at(model, loc[: names[-1]]) if names else None
-    held = table.model_fields.get(str(loc[names[-1]])) if table else None
+    held, _ = held_at(model, loc)
     parts = parts_of_unit(held.description or "") if held else [""]
     if len(parts) > 1 and not isinstance(loc[-1], int):
         return ""

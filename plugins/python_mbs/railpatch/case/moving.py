@@ -82,7 +82,8 @@ def with_numbers(case: Case, numbers: Mapping[str, float]) -> Case:
 
 
 def changed_table(case: Case, name: str, values: dict[str, Any]) -> Any:
-    """One table of the case, checked again with new values."""
+    """One table of the case, checked again with new values. Raises CaseError, of keys that have
+    another name in a step by both names."""
     table = getattr(case, name)
     content = table.model_dump()
     for key, value in values.items():
@@ -91,7 +92,21 @@ def changed_table(case: Case, name: str, values: dict[str, Any]) -> Any:
             refuse_unknown(fixed, dict.fromkeys(getattr(table, key).moving), f"{name}.{key}.")
             value = {**content[key], **value}
         content[key] = value
-    return check_table(type(table), content, name)
+    try:
+        return check_table(type(table), content, name)
+    except CaseError as error:
+        raise CaseError(by_step(name, line) for line in error.problems) from None
+
+
+def by_step(name: str, line: str) -> str:
+    """A line on a key of a table with the name that a step has for it, 'water_temperature
+    (fluid.temperature): value is ...', where that is not the table's own."""
+    key, said = line.split(":", 1)
+    for moved, own in OF_STEP.get(name, {}).items():
+        place = key.removeprefix(f"{name}.{own}")
+        if own != moved and place != key and place[:1] in ("", "["):
+            return f"{moved}{place} ({key}):{said}"
+    return line
 
 
 def refuse_unknown(changes: Mapping[str, Any], keys: Mapping[str, Any], prefix: str) -> None:

@@ -10,8 +10,16 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
-from pydantic_core import PydanticCustomError
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    WithJsonSchema,
+    WrapValidator,
+)
+from pydantic_core import PydanticCustomError, PydanticKnownError
 
 from railpatch import _core
 
@@ -91,7 +99,7 @@ def of_bodies(name: str) -> Any:
     return Annotated[
         list[Annotated[float, within(name)]],
         exactly(2),
-        BeforeValidator(lambda value: twice(value)),
+        WrapValidator(lambda value, check: twice(value, check)),
         WithJsonSchema({"anyOf": [number, pair]}),
     ]
 
@@ -202,9 +210,15 @@ class Table(BaseModel, metaclass=Named):
         return ()
 
 
-def twice(value: Any) -> Any:
-    """One number stands for wheel and rail."""
-    return value if isinstance(value, list) else [value, value]
+def twice(value: Any, check: ValidatorFunctionWrapHandler) -> Any:
+    """One number stands for wheel and rail; what is wrong with it is said once."""
+    if isinstance(value, list):
+        return check(value)
+    try:
+        return check([value, value])
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        raise PydanticKnownError(first["type"], first.get("ctx")) from None
 
 
 # what a check of several relations gives: one for each that is broken

@@ -35,13 +35,15 @@ def yields_unlike(material: Material) -> bool:
 def check_viscous(case: Any) -> Problems:
     """Of any kind of case."""
     material = case.material
-    for k, (ratio, time) in enumerate(
-        zip(material.viscoelastic_ratio, material.relaxation_time, strict=True)
-    ):
+    pairs = list(zip(material.viscoelastic_ratio, material.relaxation_time, strict=True))
+    alike = pairs[0] == pairs[1]
+    for k, (ratio, time) in enumerate(pairs[: 1 if alike else 2]):
+        body = "" if alike else f"[{k}]"
         if ratio > 0 and not time > 0:
-            yield relation(f"{TIME}[{k}]", time, f"> 0 with {RATIO}[{k}] > 0")
+            yield relation(f"{TIME}{body}", time, f"> 0 s with {RATIO}{body} > 0")
         if time > 0 and not ratio > 0:
-            yield relation(f"{TIME}[{k}]", time, f"0 with {RATIO}[{k}] = 0: an elastic body")
+            which = "elastic bodies" if alike else "an elastic body"
+            yield relation(f"{TIME}{body}", time, f"0 with {RATIO}{body} = 0: {which}")
     if not is_viscous(material):
         return
     where = f"with {RATIO}"
