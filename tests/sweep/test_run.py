@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import multiprocessing
 import signal
+import time
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
@@ -218,6 +220,39 @@ def test_a_case_that_ends_workers_is_a_row(tmp_path: Path, monkeypatch: pytest.M
     assert whole.failed == []
     sweep.rows[4] = whole.rows[4]
     assert same(sweep, whole)
+
+
+def test_workers_that_end_while_rows_are_taken_in(tmp_path: Path) -> None:
+    """Between two chunks, by a signal from outside: what waits goes to new ones."""
+    path = files(tmp_path)
+    killed: list[int] = []
+
+    def kill(done: int, _all: int) -> None:
+        if done < 2 or killed:
+            return
+        for worker in multiprocessing.active_children():
+            killed.append(worker.pid or 0)
+            worker.kill()
+            worker.join()
+        # until the pool has seen it
+        time.sleep(0.3)
+
+    sweep = run_sweep(path, tmp_path / "out", workers=2, page=False, progress=kill)
+    assert killed
+    assert same(sweep, run_sweep(path, tmp_path / "whole", page=False))
+
+
+def test_workers_that_never_are_ready(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Said after a few tries, and by a worker that reads the script that starts workers."""
+    path = files(tmp_path)
+    monkeypatch.syspath_prepend(str(Path(__file__).parent))
+    monkeypatch.setattr(runner, "get_ready", import_module("deadly").die_at_once)
+    with pytest.raises(railpatch.CaseError, match="under if __name__"):
+        run_sweep(path, tmp_path / "out", workers=2, page=False)
+    monkeypatch.setattr(multiprocessing.current_process(), "_inheriting", True, raising=False)
+    with pytest.raises(railpatch.CaseError, match="that a worker reads"):
+        run_sweep(path, tmp_path / "other", workers=2, page=False)
+    assert not (tmp_path / "other").exists()
 
 
 def test_command_prints_a_summary(tmp_path: Path) -> None:
