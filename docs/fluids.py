@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 import railpatch
 from railpatch.case.fluid import Fluid
-from railpatch.case.friction import Friction
 
 from wheelset_demo.scene import scene_file
 from wheelset_demo.vehicle import Simulation, load_vehicle_scene
@@ -46,7 +45,11 @@ def contact(fluid: dict[str, Any] | None, **tables: Any) -> railpatch.Contact:
         "method": {"normal": "hertz", "tangential": "polach"},
         **tables,
     }
-    return railpatch.Contact(case if fluid is None else {**case, "fluid": fluid})
+    if fluid is not None:
+        case["fluid"] = fluid
+        if fluid["model"] == "regimes":  # whose knots have friction of their own
+            del case["friction"]
+    return railpatch.Contact(case)
 
 
 def friction(of: railpatch.Contact, **changes: Any) -> float:
@@ -151,7 +154,7 @@ def braking(panel: Any) -> None:
     scene = load_vehicle_scene(scene_file("locomotive.toml"))
     scene = scene.with_run(step=2e-3, log_every=1, duration=6.0).with_method(tangential="polach")
     damp = {"model": "regimes", "water_rate": 0.0, "recovery": {"coefficient": TAU}}
-    liquid = {"friction": Friction(coefficient=0.5), "fluid": Fluid(**damp)}
+    liquid = {"friction": None, "fluid": Fluid(**damp)}
     torque = [[0.0, 0.0], [BRAKED, 0.0], [BRAKED + 0.5, -TORQUE]]
     drives = [one.model_copy(update={"torque": torque}) for one in scene.vehicle.drive]
     wet = WetTable(position=STRETCH[0], length=STRETCH[1] - STRETCH[0], water_rate=25e-9)
