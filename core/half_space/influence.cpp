@@ -39,6 +39,12 @@ influence::influence(const medium &of, const fft_plans &plans)
   const size_t table = (nx / 2 + 1) * (ny / 2 + 1), half = (nx / 2 + 1) * ny;
   stride_ = static_cast<int>(nx / 2 + 1);
   for (int k = 0; k < (of.tangential ? 4 : 1); ++k) table_[k] = aligned_buffer<double>(table);
+  if (has_physics && of.own) {
+    own_ = aligned_buffer<double>(static_cast<size_t>(of.own_columns) *
+                                  static_cast<size_t>(of.own_rows) * (of.tangential ? 4 : 1));
+    std::copy_n(of.own, own_.size(), own_.data());
+    medium_.own = nullptr;
+  }
   for (auto &corner : corner_) corner = aligned_buffer<double>((nx / 2 + 2) * (ny / 2 + 2));
   spectrum_ = aligned_buffer<double>(half);
   if (of.curved)
@@ -123,6 +129,7 @@ void influence::write_page(double ratio, double *const *arrays) {
 void influence::make_kernels(int half_x, int half_y) {
   half_x_ = half_x;
   half_y_ = half_y;
+  if (has_physics && own_.size() > 0) return take_own_kernels();
   if (medium_.line_width > 0)
     make_line_kernels();
   else
@@ -176,6 +183,17 @@ void influence::make_rates(double x, double y, double moves, size_t at) {
   corner_[0][at] = moves * y / r;
   corner_[1][at] = moves * (corner_[1][at] - y / r);
   corner_[2][at] = -moves * x / r;
+}
+
+// Offsets beyond the grid are those of the transform's padding: as far as the last ones are.
+void influence::take_own_kernels() {
+  const int columns = medium_.own_columns, rows = medium_.own_rows;
+  for (int k = 0; k < (medium_.tangential ? 4 : 1); ++k)
+    for (int j = 0; j <= half_y_; ++j)
+      for (int i = 0; i <= half_x_; ++i) {
+        const int at = (k * rows + std::min(j, rows - 1)) * columns + std::min(i, columns - 1);
+        table_[k][static_cast<size_t>(j * stride_ + i)] = own_[static_cast<size_t>(at)];
+      }
 }
 
 void influence::make_line_kernels() {
@@ -365,8 +383,8 @@ void influence::rolling_product_single(const double *px, const double *py, int d
 }
 
 size_t influence::bytes() const {
-  size_t sum = plans_.bytes() + spectrum_.bytes() + transform_.bytes() + full_.bytes() +
-               single_.bytes() + (is_curved() ? curved_->bytes() : 0);
+  size_t sum = plans_.bytes() + own_.bytes() + spectrum_.bytes() + transform_.bytes() +
+               full_.bytes() + single_.bytes() + (is_curved() ? curved_->bytes() : 0);
   for (const auto &b : table_) sum += b.bytes();
   for (const auto &b : corner_) sum += b.bytes();
   if (book_) sum += sizeof(kernel_book) + book_->bytes() + mixed_.bytes();

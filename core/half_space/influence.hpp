@@ -10,7 +10,8 @@
 // Line contact (plane strain, ny = 1): u = c int p ln(width/|x-s|) ds with c = 2(1-nu)/(pi G) for
 // zz and xx, 2/(pi G) for yy: the displacement at the middle of a strip of the given width, so the
 // approach of a line contact refers to that width (Johnson 1985, chapter 5).
-// The layer adds thickness/G3 to the diagonal of xx and yy.
+// The layer adds thickness/G3 to the diagonal of xx and yy. In place of all of them there may be
+// coefficients that the caller has, of any bodies that are the same wherever the load is.
 //
 // Index order: arrays [ny][nx], x fastest. All kernels are even (xx, yy, zz) or odd (xy) in both
 // coordinates, so their spectra are real.
@@ -57,6 +58,10 @@ class influence {
     bool by_length = false;
     bool curved = false;   // rows on a curved reference surface
     bool follows = false;  // of grids that follow each other: see set_grid()
+    // in place of the half-space's, copied: [4][own_rows][own_columns] or the first of them, by
+    // kernel and offset in elements; no others are used
+    const double *own = nullptr;
+    int own_columns = 0, own_rows = 0;
   };
 
   influence(const medium &of, const fft_plans &plans);
@@ -105,6 +110,7 @@ class influence {
   void make_kernels(int half_x, int half_y);
   void make_half_space_kernels();
   void make_line_kernels();
+  void take_own_kernels();
   void make_rates(double x, double y, double moves, size_t at);
   void make_spectra();
   void need_pressure();
@@ -126,6 +132,7 @@ class influence {
   int stride_ = 0;
   aligned_buffer<double> table_[4];
   aligned_buffer<double> corner_[3];
+  aligned_buffer<double> own_;
   aligned_buffer<double> spectrum_;  // of a kernel, real
   std::unique_ptr<kernel_book> book_;
   aligned_buffer<double> mixed_;  // of its pages: spectra

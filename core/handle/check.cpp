@@ -377,6 +377,7 @@ rp_error check_config(const rp_config &c, rp_message *message) {
   check_balance(c, check);
   check_max_work(c, check);
   check_viscous(c, check);
+  check_own_influence(c, check);
   check_build(c, check);
   if (c.layer_thickness > 0)
     check.field("layer_shear_modulus", c.layer_shear_modulus, config_range::layer_shear_modulus);

@@ -103,6 +103,9 @@ inline bool has_strips(const rp_config &c) {
 
 // Viscoelastic bodies.
 void check_viscous(const rp_config &c, checker &check);
+// Influence coefficients that are given, and how many there are.
+void check_own_influence(const rp_config &c, checker &check);
+size_t count_of_own_influence(const rp_config &c);
 // Shift and transient rolling, and regimes that change.
 void check_regime(const rp_config &c, checker &check);
 // The regime of a step, an rp_regime, and what it may be.

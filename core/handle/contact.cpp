@@ -43,7 +43,7 @@ contact::contact(const rp_config &config)
   noted_.resize(driver_->kept().all_bytes());
   if (config.derivatives != 0) derivative_ = std::make_unique<derivative_record>(config, *driver_);
   // nothing else of the caller's memory is kept than the creep table
-  config_.undeformed_distance = nullptr;
+  config_.undeformed_distance = config_.influence_coefficients = nullptr;
   for (auto *p : {&config_.wheel[0], &config_.wheel[1], &config_.rail[0], &config_.rail[1]})
     *p = rp_profile{};
   for (int side = 0; side < 2; ++side) {

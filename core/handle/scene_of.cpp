@@ -146,6 +146,8 @@ patch_scene patch_scene_of(const rp_config &c) {
   patch_scene scene;
   scene.elastic = combine(c.shear_modulus, c.poisson_ratio);
   scene.viscous = viscous_bodies_of(c);
+  if (c.own_influence != 0)
+    scene.own = {c.influence_coefficients, c.distance_shape[0] + 1, c.distance_shape[1]};
   scene.friction_coefficient = c.friction_coefficient;
   if (c.friction_points > 0)
     scene.friction_variation =

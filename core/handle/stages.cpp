@@ -58,6 +58,9 @@ const char *temperature_reason(const patch_scene &scene) {
 
 const char *influence_reason(const patch_scene &scene) {
   const bool on_grid = scene.full_on_grid();
+  if (scene.has_own_influence())
+    return on_grid ? "own influence coefficients, of pressure and tractions"
+                   : "own influence coefficients, of pressure";
   if (scene.is_viscous())
     return on_grid ? "viscoelastic bodies: normal = half_space and tangential = full need it"
                    : "viscoelastic bodies: normal = half_space needs it";

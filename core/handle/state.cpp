@@ -5,6 +5,7 @@
 
 #include "handle/case_fields.hpp"
 #include "handle/check.hpp"
+#include "handle/checker.hpp"
 #include "handle/contact.hpp"
 #include "handle/contact_derivative.hpp"
 #include "patch/patch_state.hpp"
@@ -67,6 +68,7 @@ uint64_t fingerprint_of_arrays(const rp_config &c) {
   if (c.kind == RP_PATCH && c.geometry == RP_UNDEFORMED_DISTANCE)
     add(c.undeformed_distance,
         static_cast<size_t>(c.distance_shape[0]) * static_cast<size_t>(c.distance_shape[1]));
+  if (c.own_influence != 0) add(c.influence_coefficients, count_of_own_influence(c));
   const auto points = static_cast<size_t>(c.friction_points);
   add(c.friction_position, points);
   add(c.friction_factor, points);

@@ -393,10 +393,11 @@ static rp_error said(rp_error error, int side, int patch, rp_message *message) {
 
 static rp_error check_bodies(const rp_contact &of, rp_message *message) {
   const rp_config &c = of.handle.config();
-  if (!(c.viscoelastic_ratio[0] > 0 || c.viscoelastic_ratio[1] > 0)) return RP_OK;
-  set_message(message,
-              "viscoelastic_ratio must be 0: viscoelastic bodies are not solved below "
-              "their surface");
+  const bool viscous = c.viscoelastic_ratio[0] > 0 || c.viscoelastic_ratio[1] > 0;
+  if (!viscous && c.own_influence == 0) return RP_OK;
+  set_message(message, viscous ? "viscoelastic_ratio must be 0: viscoelastic bodies are not solved "
+                                 "below their surface"
+                               : "own_influence must be 0: what is given is of the surface alone");
   return RP_ERROR_VALUE;
 }
 

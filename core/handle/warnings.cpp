@@ -149,7 +149,7 @@ uint32_t warnings_of_physics(const rp_config &config, const rp_input &in) {
 }
 
 uint32_t warnings_of_patch(const rp_config &config, const rp_patch_result &patch) {
-  bool hard = true;
+  bool hard = config.own_influence == 0;
   for (double modulus : config.shear_modulus) hard = hard && !outside(modulus, steel_range);
   uint32_t found = bit(RP_WARNING_HIGH_PRESSURE, patch.max_pressure > pressure_range[1]) |
                    bit(RP_WARNING_LOW_PRESSURE,

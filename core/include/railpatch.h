@@ -732,6 +732,19 @@ typedef struct rp_config {
   double viscoelastic_ratio[2]; /* -, >= 0, flexibility of the second spring over that of the first;
                                    0: elastic */
   double relaxation_time[2];    /* s, at constant stress; 0 of elastic bodies, else > 0 */
+
+  /* Influence coefficients in place of the half-space's, of RP_PATCH with undeformed_distance,
+   * normal = half_space, tangential = full or none, in steady rolling, shift or at rest;
+   * docs/physics.md has what they are refused with. influence_coefficients: m/Pa, displacement
+   * difference by unit pressure or traction on one element,
+   * [4][distance_shape[1]][distance_shape[0] + 1]: of normal displacement by pressure, longitudinal
+   * and lateral displacement by traction along it, longitudinal by lateral traction, each at
+   * offsets 0, 1, ... elements, observer minus source, lateral [..][offset][..] and along rolling.
+   * The first three are even in both offsets, the last one is odd. They make a positive definite
+   * operator, which is up to the caller. Copied. Without tangential problem the first is read alone
+   */
+  int32_t own_influence; /* 1: given, 0: the half-space's */
+  const double *influence_coefficients;
 } rp_config;
 
 typedef struct rp_input {

@@ -514,7 +514,10 @@
   X(double, viscoelastic_ratio, 2, number, always, 0, "[]", 0, 1e4, "-",                           \
     "of viscoelastic bodies: what they yield in time over their elastic strain; 0: elastic")       \
   X(double, relaxation_time, 2, number, always, 0, "[]", 0, 1e6, "s",                              \
-    "of viscoelastic bodies, at constant stress; 0 of elastic ones")
+    "of viscoelastic bodies, at constant stress; 0 of elastic ones")                               \
+  X(int32_t, own_influence, 1, integer, always, 0, "[]", 0, 1, "-",                                \
+    "whether influence coefficients are given in place of the half-space's")                       \
+  O(const double *, influence_coefficients, 1)
 
 /* X(type, name, count, role, where, start, bounds, low, high, scale, unit, text), as above and
  * role      place: a number whose size says nothing about how fast things change there

@@ -331,6 +331,7 @@ void patch_contact::estimate_error(const patch_problem &problem, const pressure_
   if (result.status != RP_CONVERGED && !(linear && result.status == RP_OUT_OF_RANGE)) return;
   if (scene.line_width > 0 || shared_.coupled || scene.curved || scene.fluid) return;
   if (scene.slip_by_element || scene.strips || scene.is_viscous()) return;
+  if (scene.has_own_influence()) return;
   // no model is fitted to it
   if (scene.normal == RP_NORMAL_KIK_PIOTROWSKI_CORRECTED) return;
   estimated_patch patch{scene.normal, scene.tangential, problem.hertz,

@@ -5,6 +5,11 @@ namespace railpatch {
 influence::medium patch_scene::medium() const {
   influence::medium m{elastic, layer_flexibility, line_width, full_on_grid()};
   m.curved = curved;
+  if (has_own_influence()) {
+    m.own = own.values;
+    m.own_columns = own.columns;
+    m.own_rows = own.rows;
+  }
   return m;
 }
 

@@ -19,7 +19,14 @@ namespace railpatch {
 // Constant over the life of a handle, but for the friction coefficient and its scale.
 struct patch_scene {
   elastic_constants elastic;
-  viscous_bodies viscous;           // of patches in steady rolling
+  viscous_bodies viscous;  // of patches in steady rolling
+  // influence coefficients in place of the half-space's; values: the caller's, while the handle is
+  // made
+  struct own_coefficients {
+    const double *values = nullptr;
+    int columns = 0, rows = 0;
+  };
+  own_coefficients own;
   double friction_coefficient = 0;  // of Coulomb's law, or of dry surfaces
   friction_factor friction_variation;
   double friction_scale = 1.0;   // of the law, in this step
@@ -90,6 +97,7 @@ struct patch_scene {
   // Whether a patch's derivatives can come from its equations (patch_derivative.hpp).
   bool differentiates() const;
   bool is_viscous() const { return has_physics && viscous.any(); }
+  bool has_own_influence() const { return has_physics && own.columns > 0; }
   // Viscoelastic bodies' contact is bounded by the one after all time.
   double modulus() const {
     const elastic_constants e = is_viscous() ? viscous.relaxed() : elastic;

@@ -34,7 +34,8 @@ tangential_stage::tangential_stage(patch_workspace &shared, const fft_plans &pla
     const bool rolls_on = scene.changes || scene.regime == motion::transient;
     // with a prescribed force no creepage is known to start from
     const bool plain = !scene.is_forced() && !scene.law && !scene.keeps_steps() &&
-                       !scene.couples() && !scene.slip_by_element && !scene.is_viscous();
+                       !scene.couples() && !scene.slip_by_element && !scene.is_viscous() &&
+                       !scene.has_own_influence();
     // of grids as wide as the bodies' overlap the contact takes two thirds either way
     influence::medium bodies = scene.medium();
     bodies.follows = scene.stretches;

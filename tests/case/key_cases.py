@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import tempfile
 import typing
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import railpatch
 from bits.combinations import COMMON, HEAT, OF_PATCHES, OF_WHEELS, PATCH_BASE, WHEEL_BASE
 from bits.combinations import WHEELSET_BASE as ON_RAILS
@@ -19,6 +22,18 @@ Numbers = dict[str, Any]
 # --- base cases ----------------------------------------------------------------------------------
 
 SMALL = {"patch": {"elements": [8, 8]}, "wheels": {"element_size": [1.6e-3, 1.6e-3]}}
+OWN = tempfile.TemporaryDirectory()
+
+
+def mattress(name: str, softness: float) -> str:
+    """A file of a mattress of springs for the grid of "distance"."""
+    springs = np.zeros((39, 41))
+    springs[19, 20] = softness
+    path = Path(OWN.name) / name
+    np.savez(path, zz=springs, xx=springs, yy=springs)
+    return str(path)
+
+
 # tangential methods and regimes differ by what they read; these are not worth a base of their own
 LEFT_OUT = {"derivatives", "element size", "elements"}
 # a wheel that is as warm as the rail or nearly so, in place of one that is warmer than the contact
@@ -64,6 +79,11 @@ def features(kind: str) -> dict[str, dict[str, Any]]:
             "geometry": {"curvatures": [1.0, 1.2]},
             "material__viscoelastic_ratio": 2.0,
             "material__relaxation_time": 1e-3,
+            "method__normal": "half_space",
+        }
+        found["own influence"] = {
+            **OF_PATCHES["distance"],
+            "material": {"influence_file": mattress("one.npz", 2e-14)},
             "method__normal": "half_space",
         }
     if kind == "wheelset":
@@ -134,6 +154,7 @@ VALUES: dict[str, Any] = {
     "geometry.undeformed_distance": [[1e-5, 2e-5], [0.0, 1e-5]],
     "material.viscoelastic_ratio": 1.5,
     "material.relaxation_time": 2e-3,
+    "material.influence_file": mattress("other.npz", 3e-14),
     "motion.creepage": [1.3e-3, -5e-4],
     "motion.tangential_force": [-1e4, 1e3],
     "motion.distance": 2e-3,

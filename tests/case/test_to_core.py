@@ -35,6 +35,7 @@ MADE = {
     "hardening_stress": "layer.hardening_table",
     "distance_shape": "geometry.undeformed_distance",
     "slip_by_element": "motion.slip_field",
+    "own_influence": "material.influence_file",
     "roll_balanced": "wheelset.roll = 'balanced'",
     "axle_free": "wheelset.pitch_rate = 'free'",
     "longitudinal_prescribed": "wheelset.longitudinal_force",

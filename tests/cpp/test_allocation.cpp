@@ -335,6 +335,24 @@ TEST(Step, OfViscoelasticBodiesAllocatesNothing) {
   }
 }
 
+TEST(Step, OfOwnInfluenceAllocatesNothing) {
+  constexpr int n = 12;
+  std::vector<double> gap, own(4 * (n + 1) * n, 0.0);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i)
+      gap.push_back(0.5e-6 * ((i - 5.5) * (i - 5.5) + (j - 5.5) * (j - 5.5)));
+  for (size_t k = 0; k < 3; ++k) own[k * (n + 1) * n] = 1e-13;
+  rp_config c = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_FULL);
+  c.geometry = RP_UNDEFORMED_DISTANCE;
+  c.elements[0] = c.elements[1] = 0;
+  c.element_size[0] = c.element_size[1] = 1e-3;
+  c.distance_shape[0] = c.distance_shape[1] = n;
+  c.undeformed_distance = gap.data();
+  c.own_influence = 1;
+  c.influence_coefficients = own.data();
+  EXPECT_EQ(run(c, patch_inputs()).allocated, 0);
+}
+
 TEST(Step, WithAPrescribedForceAllocatesNothing) {
   for (int nodes : {0, 7}) {
     rp_config c = scenes::forced_patch(nodes);

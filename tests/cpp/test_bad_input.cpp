@@ -921,9 +921,9 @@ class Garbage : public testing::Test {
 #define RAILPATCH_SKIP(type, field, count)
 #define RAILPATCH_DRY(type, field, ...)                                                          \
   if (std::strncmp(#field, "fluid_", 6) == 0 || std::strncmp(#field, "viscoelastic", 12) == 0 || \
-      std::strncmp(#field, "relaxation", 10) == 0)                                               \
+      std::strncmp(#field, "relaxation", 10) == 0 || std::strcmp(#field, "own_influence") == 0)  \
     std::memcpy(&c.field, &whole.field, sizeof c.field);
-  // without liquid, whose keys a case without it refuses, and of elastic bodies
+  // without liquid, whose keys a case without it refuses, and of elastic half-spaces
   static void dry(rp_config &c) {
     const rp_config whole = default_config();
     RP_CONFIG_FIELDS(RAILPATCH_DRY, RAILPATCH_SKIP)
@@ -1017,7 +1017,7 @@ class Garbage : public testing::Test {
 };
 
 TEST_F(Garbage, ConfigsOfPatchesDoNotCrash) {
-  std::vector<double> gap(20 * 20, 0.0);
+  std::vector<double> gap(20 * 20, 0.0), own(4 * 20 * 21, 0.0);
   for (int n = 0; n < 5000; ++n) {
     rp_config c = default_config();
     spoil(c);
@@ -1030,9 +1030,11 @@ TEST_F(Garbage, ConfigsOfPatchesDoNotCrash) {
       dry(c);
     }
     for (double &v : gap) v = rarely() ? number() : 1e-6;
+    for (double &v : own) v = rarely() ? number() : 1e-14;
     if (c.geometry == RP_UNDEFORMED_DISTANCE) {
       c.undeformed_distance = rarely() ? nullptr : gap.data();
       for (int &shape : c.distance_shape) shape = std::min(count(), 20);
+      c.influence_coefficients = rarely() ? nullptr : own.data();
     }
     SCOPED_TRACE("number " + std::to_string(n));
     try_out(c, default_input());

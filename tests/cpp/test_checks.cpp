@@ -611,6 +611,64 @@ TEST_F(Checks, ViscoelasticBodies) {
   });
 }
 
+TEST_F(Checks, OwnInfluence) {
+  const int shape[2] = {4, 3}, each = 5 * 3;
+  std::vector<double> gap(12, 0.0), own(4 * each, 0.0);
+  for (int k = 0; k < 3; ++k) own[static_cast<size_t>(k * each)] = 1e-13;
+  base.geometry = RP_UNDEFORMED_DISTANCE;
+  base.elements[0] = base.elements[1] = 0;
+  base.element_size[0] = base.element_size[1] = 1e-3;
+  std::copy_n(shape, 2, base.distance_shape);
+  base.undeformed_distance = gap.data();
+  base.influence_coefficients = own.data();
+  base.own_influence = 1;
+  accepts();
+  accepts([](rp_config &c) { c.tangential = RP_TANGENTIAL_NONE; });
+  accepts([](rp_config &c) { c.regime = RP_SHIFT; });
+  refuses("own_influence is 2", [](rp_config &c) { c.own_influence = 2; });
+  refuses("influence_coefficients is null",
+          [](rp_config &c) { c.influence_coefficients = nullptr; });
+  const std::pair<const char *, change> rules[] = {
+      {"needs geometry = undeformed_distance",
+       [](rp_config &c) {
+         c.geometry = RP_CURVATURES;
+         c.curvatures[0] = c.curvatures[1] = 1.0;
+       }},
+      {"needs normal = half_space", [](rp_config &c) { c.normal = RP_NORMAL_ANALYN; }},
+      {"needs tangential = full", [](rp_config &c) { c.tangential = RP_TANGENTIAL_FASTSIM; }},
+      {"no fitted rows", [](rp_config &c) { c.fitted[0] = c.fitted[1] = 8; }},
+      {"needs regime = none", [](rp_config &c) { c.regime = RP_TRANSIENT_ROLLING; }},
+      {"regime_changes = 0", [](rp_config &c) { c.regime_changes = 1; }},
+      {"accuracy must be 0", [](rp_config &c) { c.accuracy = 0.01; }},
+      {"derivatives must be 0", [](rp_config &c) { c.derivatives = 1; }},
+      {"bodies with equal (1-2nu)/G", [](rp_config &c) { c.shear_modulus[1] *= 0.5; }},
+  };
+  for (const auto &[words, spoil] : rules) refuses(words, spoil);
+  refuses("layer_thickness must be 0", [](rp_config &c) {
+    c.layer_thickness = 1e-4;
+    c.layer_shear_modulus = 1e9;
+  });
+  refuses("viscoelastic_ratio must be 0 with own_influence", [](rp_config &c) {
+    for (int k = 0; k < 2; ++k) {
+      c.viscoelastic_ratio[k] = 1.0;
+      c.relaxation_time[k] = 1e-3;
+    }
+  });
+  const auto with = [&](int at, double value, const char *words) {
+    std::vector<double> other = own;
+    other[static_cast<size_t>(at)] = value;
+    refuses(words, [&](rp_config &c) { c.influence_coefficients = other.data(); });
+  };
+  with(7, std::nan(""), "influence_coefficients[7] is nan");
+  with(4 * each - 1, 1.001, "influence_coefficients[59] is 1.001");
+  with(0, 0.0, "influence_coefficients[0][0][0] is 0, must be > 0 and the greatest");
+  with(each + 3, -1.1e-13, "influence_coefficients[1][0][0] is 1e-13");
+  with(3 * each + 6, 1.1e-13, "influence_coefficients[3] has one above the geometric mean");
+  base = scenes::wheels(RP_WHEELSET, RP_RAIL, pair);
+  refuses("own_influence must be 0 but with kind = patch",
+          [](rp_config &c) { c.own_influence = 1; });
+}
+
 // --- friction's most, inputs and directions ------------------------------------------------------
 
 TEST_F(Checks, MostFriction) {

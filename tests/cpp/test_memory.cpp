@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "scenes.hpp"
 
@@ -151,6 +152,34 @@ TEST(Memory, OfAPatchGrowsAsItSays) {
       s.config.elements[0] = k == 1 ? 72 : 44;
       s.config.elements[1] = k == 2 ? 90 : 41;
       found[k] = of(s.config);
+    }
+    for (int k = 1; k < 3; ++k) {
+      EXPECT_GT(found[k].taken, found[0].taken);
+      EXPECT_EQ(found[k].described - found[0].described, found[k].taken - found[0].taken) << k;
+    }
+  }
+}
+
+TEST(Memory, OfOwnInfluenceGrowsAsItSays) {
+  for (const bool rolls : {false, true}) {
+    sizes found[3];
+    for (int k = 0; k < 3; ++k) {
+      rp_config c =
+          scenes::patch(RP_NORMAL_HALF_SPACE, rolls ? RP_TANGENTIAL_FULL : RP_TANGENTIAL_NONE);
+      c.geometry = RP_UNDEFORMED_DISTANCE;
+      c.elements[0] = c.elements[1] = 0;
+      c.element_size[0] = c.element_size[1] = 1e-3;
+      c.distance_shape[0] = k == 1 ? 40 : 24;
+      c.distance_shape[1] = k == 2 ? 36 : 21;
+      const auto count = static_cast<size_t>(c.distance_shape[0] * c.distance_shape[1]);
+      const auto each = count + static_cast<size_t>(c.distance_shape[1]);
+      const std::vector<double> gap(count, 0.0);
+      std::vector<double> own(4 * each, 0.0);
+      for (size_t i = 0; i < 3; ++i) own[i * each] = 1e-13;
+      c.undeformed_distance = gap.data();
+      c.own_influence = 1;
+      c.influence_coefficients = own.data();
+      found[k] = of(c);
     }
     for (int k = 1; k < 3; ++k) {
       EXPECT_GT(found[k].taken, found[0].taken);

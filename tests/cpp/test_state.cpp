@@ -296,6 +296,17 @@ TEST(StateOfArrays, WithOtherNumbersIsRefused) {
   }
   c.layer_yield_stress = 1e8;
   const auto state_of = [](const rp_config &config) { return scenes::handle(config).state(); };
+  rp_config given = c;
+  std::vector<double> own(4 * 7 * 5, 0.0);
+  for (size_t k = 0; k < 3; ++k) own[k * 7 * 5] = 1e-13;
+  given.layer_thickness = given.layer_yield_stress = 0;
+  given.hardening_points = 0;
+  given.own_influence = 1;
+  given.influence_coefficients = own.data();
+  scenes::handle with_own(given);
+  EXPECT_EQ(with_own.restore(state_of(given)), RP_OK);
+  own[4] = 1e-15;
+  EXPECT_EQ(with_own.restore(state_of(given)), RP_ERROR_STATE);
   scenes::handle contact(c);
   EXPECT_EQ(contact.restore(state_of(c)), RP_OK);
   for (int i = 0; i < 4; ++i)

@@ -373,6 +373,33 @@ TEST(Subsurface, OfALeftWheelIsTheMirrorImage) {
     }
 }
 
+TEST(Subsurface, OfOwnInfluenceIsRefused) {
+  constexpr int nx = 4, ny = 3;
+  const std::vector<double> gap(nx * ny, 0.0);
+  std::vector<double> own((nx + 1) * ny, 0.0);
+  own[0] = 1e-13;
+  rp_config c = scenes::patch(RP_NORMAL_HALF_SPACE, RP_TANGENTIAL_NONE);
+  c.geometry = RP_UNDEFORMED_DISTANCE;
+  c.elements[0] = c.elements[1] = 0;
+  c.element_size[0] = c.element_size[1] = 1e-3;
+  c.distance_shape[0] = nx;
+  c.distance_shape[1] = ny;
+  c.undeformed_distance = gap.data();
+  c.own_influence = 1;
+  c.influence_coefficients = own.data();
+  const scenes::handle contact(c);
+  const double depth[] = {1e-3};
+  rp_subsurface_config config;
+  rp_default_subsurface(&config);
+  config.depth = depth;
+  config.depth_count = 1;
+  rp_subsurface *below = nullptr;
+  rp_message message{};
+  EXPECT_EQ(rp_create_subsurface(contact.get(), &config, &below, &message), RP_ERROR_VALUE);
+  EXPECT_EQ(below, nullptr);
+  EXPECT_STREQ(message.text, "own_influence must be 0: what is given is of the surface alone");
+}
+
 TEST(Subsurface, BadInputIsRefused) {
   scenes::handle contact(patch_case(12));
   rp_subsurface *below = nullptr;

@@ -28,6 +28,7 @@ WHOLE = (10**9, -1)
 # fields with a range whose numbers the package makes itself, from words, counts and files
 DERIVED = {
     *("distance_shape", "force_prescribed", "finer_grids", "temperature", "slip_by_element"),
+    "own_influence",
     *("regime_changes", "roll_balanced", "axle_free", "longitudinal_prescribed", "side"),
     *("friction_points", "friction_along_points", "hardening_points", "fluid_viscosity_points"),
     *("fluid_knots", "section_count", "wheel_section_count", "derivatives", "heat_exchange"),

@@ -98,6 +98,20 @@ void try_physics() {
       c.relaxation_time[k] = 1e-3;
     }
   });
+  try_to_create("own_influence", [](rp_config &c) {
+    static const double distance[9] = {};
+    static double coefficients[4][3][4] = {};
+    for (int k = 0; k < 3; ++k) coefficients[k][0][0] = 1e-13;
+    c.geometry = RP_UNDEFORMED_DISTANCE;
+    c.undeformed_distance = distance;
+    c.own_influence = 1;
+    c.influence_coefficients = coefficients[0][0];
+    for (int k = 0; k < 2; ++k) {
+      c.distance_shape[k] = 3;
+      c.elements[k] = 0;
+      c.element_size[k] = 1e-3;
+    }
+  });
 }
 
 }  // namespace

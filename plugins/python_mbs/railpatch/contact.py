@@ -17,6 +17,7 @@ from railpatch.asked import Asked
 from railpatch.case.keys_of_step import signature
 from railpatch.case.load import Case, Scene, check_table, load_scene
 from railpatch.case.moving import changed_case, moving_keys, with_numbers
+from railpatch.case.own_influence import influence_doubts
 from railpatch.case.patch import Motion, PatchCase
 from railpatch.case.scene_profiles import Shelf, beside_sections, placement_doubts, profile_notes
 from railpatch.case.to_core import (
@@ -404,8 +405,12 @@ def solve(
     """
     contact = Contact(case, folder=folder)
     result = _solved(contact, fields)
-    doubts = [*contact.placement_doubts(), *beside_sections(contact.case)]
-    result.data["warnings"] = [*result.warnings, *doubts]
+    said = [
+        *contact.placement_doubts(),
+        *beside_sections(contact.case),
+        *influence_doubts(contact.case, contact.folder),
+    ]
+    result.data["warnings"] = [*result.warnings, *said]
     notes = [*notes_of_solve(contact.case), *_add_pressure_error(contact, result)]
     if strict and result.warnings:
         raise CaseError(result.warnings)

@@ -61,6 +61,11 @@ class Subsurface:
             )
         inside("depth", self._depth, 0.0, DEEPEST)
         inside("dang_van", numbers("dang_van", dang_van), 0.0, 3.0)
+        if contact.case.material.influence_file is not None:
+            raise CaseError(
+                "material.influence_file: given, allowed below the surface: left out, it has the "
+                "surface alone"
+            )
         self._core = contact._core.below(self._depth.tolist(), displacements, float(dang_van))
         self._displacements = displacements
         self._contact = contact

@@ -172,6 +172,18 @@ void fill_gap(Reader &reader, Config &to) {
   to.values.distance_shape[1] = static_cast<int32_t>(to.gap.shape(0));
 }
 
+// after the gap: [4 or 1][rows][elements of a row and one]
+void fill_own_influence(Reader &reader, Config &to) {
+  if (!reader.has("influence_coefficients")) return;
+  const Cube own = nb::cast<Cube>(reader.at("influence_coefficients"));
+  const auto *shape = to.values.distance_shape;
+  if (own.shape(0) < 1 || own.shape(1) != static_cast<size_t>(shape[1]) ||
+      own.shape(2) != static_cast<size_t>(shape[0]) + 1)
+    throw nb::value_error("influence_coefficients");
+  to.own_influence = own;
+  to.values.influence_coefficients = own.data();
+}
+
 // --- to Python ---------------------------------------------------------------------------------
 
 template <typename T, size_t N>
@@ -285,6 +297,7 @@ void fill_config(const nb::dict &from, Config &to) {
   Reader reader(from);
   RP_CONFIG_FIELDS(RAILPATCH_READ, RAILPATCH_SKIP)
   fill_gap(reader, to);
+  fill_own_influence(reader, to);
   if (reader.has("creep_table")) {
     to.table = nb::cast<Bytes>(reader.at("creep_table"));
     c.creep_table = to.table.data();

@@ -17,6 +17,8 @@ using Values = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::
 using Bytes = nb::ndarray<const uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Grid = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
+using Cube = nb::ndarray<const double, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
+
 // profiles along the track or round a wheel, and where
 struct Sections {
   std::vector<rp_profile> profiles;
@@ -30,6 +32,7 @@ struct Config {
   std::vector<Values> profiles;
   Sections rail_sections[2], wheel_sections[2];
   Grid gap;
+  Cube own_influence;
   Bytes table;
 };
 

@@ -51,6 +51,12 @@ class Material(Table):
         ", or [wheel, rail]: of a rubber wheel on an elastic rail [1e-3, 0.0], and "
         "viscoelastic_ratio likewise"
     )
+    influence_file: str | None = Field(
+        default=None,
+        description="influence coefficients in m/Pa (file, .npz or .csv, from the case's folder) "
+        "of a patch with geometry.undeformed_distance, of bodies that are the same wherever the "
+        "load is, docs/physics.md; left out: the half-space's",
+    )
 
 
 # of the core: memory grows with the square

@@ -29,6 +29,7 @@ from railpatch.case.common import (
     couples,
 )
 from railpatch.case.fluid import Fluid, check_ehl, check_fluid
+from railpatch.case.own_influence import check_own_influence
 from railpatch.case.theories import BY_ROWS
 from railpatch.case.types import (
     LEFT_OUT,
@@ -327,6 +328,7 @@ class PatchCase(Table):
                 self._check_shape(),
                 self._check_slip(),
                 check_viscous(self),
+                check_own_influence(self),
                 check_asked(self, self.geometry.line_contact_radius is not None),
             )
         )

@@ -25,6 +25,7 @@ from railpatch.case.gap import read_gap
 from railpatch.case.load import Case, Scene, plain
 from railpatch.case.longitudinal import shape_config
 from railpatch.case.moving import BY_TABLE, moving_keys, refuse_unknown
+from railpatch.case.own_influence import read_own_influence
 from railpatch.case.patch import SHAPES, STEPWISE, PatchCase
 from railpatch.case.resolve import choose, resolved
 from railpatch.case.scene_profiles import Placed, Shelf, scene_profiles, sections_of
@@ -203,7 +204,13 @@ def patch_config(case: PatchCase, folder: Path) -> dict[str, Any]:
         "slip_by_element": int(case.motion.slip_field is not None and case.has_tangential),
     }
     if shape == "undeformed_distance":
-        config[shape] = read_gap(case.geometry.undeformed_distance, folder)
+        config[shape] = gap = read_gap(case.geometry.undeformed_distance, folder)
+        file = case.material.influence_file
+        if file is not None:
+            config["own_influence"] = 1
+            config["influence_coefficients"] = read_own_influence(
+                (folder / file).resolve(), gap.shape, tractions=case.has_tangential
+            )
     return config
 
 

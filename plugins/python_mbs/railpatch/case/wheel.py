@@ -24,6 +24,7 @@ from railpatch.case.common import (
     check_tangential,
 )
 from railpatch.case.fluid import Fluid, check_fluid
+from railpatch.case.own_influence import check_own_influence
 from railpatch.case.rails import (
     RailSupport,
     Section,
@@ -412,6 +413,7 @@ class _WheelCase(Table):
                 self._check_physics(),
                 self._check_profiles(),
                 check_viscous(self),
+                check_own_influence(self),
                 check_asked(self, False),
             )
         )

@@ -246,6 +246,8 @@ def check_regime(scene: Scene) -> None:
         raise CaseError("motion.slip_field: given, allowed in an FMU: left out, inputs are numbers")
     if is_viscous(scene.case.material):
         raise CaseError("material.viscoelastic_ratio: given, allowed in an FMU: 0, elastic bodies")
+    if scene.case.material.influence_file is not None:
+        raise CaseError("material.influence_file: given, allowed in an FMU: left out, half-spaces")
     regime = getattr(motion, "regime", "none")
     if regime == "shift":
         raise CaseError(
