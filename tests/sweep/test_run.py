@@ -6,6 +6,7 @@ import json
 import multiprocessing
 import signal
 import time
+from collections.abc import Iterator
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
@@ -25,6 +26,7 @@ from railpatch.sweep.local import WORKER_DIED
 from railpatch.sweep.page import MEANS, _means
 from railpatch.sweep.plan import load_plan
 from railpatch.sweep.sensitivity import indices_of
+from railpatch.sweep.store import write_chunk
 from railpatch.sweep.work import Chunk, Row, solve_chunk, solve_first
 
 PATCH = """kind = "patch"
@@ -135,6 +137,33 @@ def test_chunks_are_of_what_cases_take_after_the_first(
     # the first one, and at least four for a worker
     assert len(list((tmp_path / "out" / "results").iterdir())) == 1 + 3
     assert found.solved == 6
+
+
+def test_chunks_of_a_sweep_that_goes_on_are_of_what_solved_cases_took(tmp_path: Path) -> None:
+    """Neither a refused case nor one without contact, which take next to nothing, makes chunks of
+    thousands of slow ones."""
+    sweep = SWEEP.replace("-2e-3, 1e-3, 4e-3", "-2e-3, 1e-3, 4e-3, 5e-3, 6e-3, 7e-3")
+    path, folder = files(tmp_path, sweep), tmp_path / "out"
+    plan = load_plan(path)
+    seconds = [0.9, 0.9, 0.9, 1e-4, 1e-4]
+    status = ["converged", "converged", "converged", "no_contact", "refused"]
+    outputs = tuple(plan.table.outputs or ())
+    rows = [
+        Row(name, said, None, (), took, (0.0, 0.0, 0.0))
+        for name, took, said in zip(plan.ids(), seconds, status, strict=False)
+    ]
+    ids, points = tuple(plan.ids()[:5]), tuple(plan.points[:5])
+    chunk = Chunk(0, plan.kind, plan.content, plan.keys, ids, points, outputs)
+    (folder / "results").mkdir(parents=True)
+    write_chunk(folder, chunk, rows)
+    given: list[int] = []
+
+    def backend(chunks: list[Chunk]) -> Iterator[tuple[Chunk, list[Row]]]:
+        given.extend(len(one.ids) for one in chunks)
+        return ((one, solve_chunk(one)) for one in chunks)
+
+    run_sweep(plan, folder, backend=backend, page=False)
+    assert given == [1] * 6
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])

@@ -7,16 +7,17 @@ from collections.abc import Callable
 from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
+from statistics import median_low
 from threading import Thread
 
 from railpatch.case.load import KINDS, check_case
 from railpatch.case.moving import moving_keys
 from railpatch.errors import CaseError, ProfileError
-from railpatch.sweep.local import Backend, LocalWorkers
+from railpatch.sweep.local import WORKER_DIED, Backend, LocalWorkers
 from railpatch.sweep.outcome import Sweep
 from railpatch.sweep.plan import Plan, load_plan, steps_of
 from railpatch.sweep.store import is_new, need_pyarrow, read_rows, write_chunk, write_results
-from railpatch.sweep.work import Chunk, Row, solve_chunk, solve_first
+from railpatch.sweep.work import REFUSED, Chunk, Row, solve_chunk, solve_first
 
 SECONDS = 1.0  # of a chunk, about
 MOST_IN_CHUNK = 5000
@@ -60,7 +61,8 @@ def run_sweep(
         reused = sum(name in found for name in ids)
         missing = in_order(plan, name_places(ids, found))
         solved = len(missing)
-        seconds = [found[name].seconds for name in ids[:20] if name in found]
+        known = [found[name] for name in ids[:20] if name in found]
+        seconds = [one.seconds for one in known if was_solved(one)]
         if missing:
             # one is solved here: what is wrong with all is told at once
             if len(missing) > 1:
@@ -73,9 +75,8 @@ def run_sweep(
             seconds.append(time_of(plan, chunk_of(plan, ids, [place], outputs, logs), row))
             missing.remove(place)
         progress(len(ids) - len(missing), len(ids))
-        chunks = chunks_of(
-            plan, ids, missing, outputs, logs, min(seconds, default=SECONDS), workers
-        )
+        each = median_low(seconds) if seconds else SECONDS
+        chunks = chunks_of(plan, ids, missing, outputs, logs, each, workers)
         done = len(ids) - len(missing)
         if page and (backend or workers > 1):
             # plotly takes a while to import, in which others solve
@@ -121,6 +122,11 @@ def time_of(plan: Plan, chunk: Chunk, row: Row) -> float:
     """s, of a case like this one. A contact's is taken again, without imports and profiles that
     only the first one reads."""
     return solve_chunk(chunk)[0].seconds if plan.kind in KINDS else row.seconds
+
+
+def was_solved(row: Row) -> bool:
+    """Whether its time is that of a solution: a refused case's says nothing of others."""
+    return row.status not in (REFUSED, WORKER_DIED)
 
 
 def need_toml_writer() -> None:
