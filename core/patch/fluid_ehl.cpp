@@ -138,7 +138,8 @@ fluid_outcome fluid_ehl::solve(const patch_problem &problem, const patch_scene &
   pressure.approach = found.approach;
   pressure.residual = found.residual;
   pressure.iterations += found.iterations;
-  out.asperity_share = 1 - found.fluid_force / found.normal_force;
+  // pressures of which the search was given up may bear more than the load
+  out.asperity_share = std::clamp(1 - found.fluid_force / found.normal_force, 0.0, 1.0);
   out.friction = boundary_ * out.asperity_share;
   if (fluid.eyring_stress > 0) {
     const double shear =

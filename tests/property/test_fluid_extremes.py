@@ -183,3 +183,30 @@ def test_from_wet_to_dry_nothing_jumps(model: str, speed: float) -> None:
         without = {key: table for key, table in case.items() if key != "fluid"}
         plain = railpatch.Contact(without).step(rolling_speed=speed)["creep_force"]
         assert np.hypot(*plain) == pytest.approx(dry, rel=1e-9)
+
+
+def test_pressures_of_which_the_search_is_given_up() -> None:
+    """Smooth bodies under 300 kN on a grid too coarse for their film: the last pressures of the
+    liquid bear more than the load, shares and friction stay what they can be."""
+    case = {
+        "kind": "patch",
+        "material": {"shear_modulus": 80.77e9, "poisson_ratio": 0.3},
+        "geometry": {"curvatures": [0.5 / 0.46, 0.5 / 0.30]},
+        "load": {"normal_force": 3e5},
+        "grid": {"elements": [32, 12]},
+        "motion": {"creepage": [5e-3, 0.0], "rolling_speed": 0.01},
+        "friction": {"coefficient": 0.4},
+        "fluid": {
+            "model": "ehl",
+            "roughness": 1e-9,
+            "boundary_friction": BOUNDARY,
+            "liquid": "water",
+            "temperature": 0.0,
+        },
+    }
+    found = railpatch.Contact(case).step()
+    assert 0 <= found["mean_asperity_share"] <= 1
+    assert 0 <= found["effective_friction"] <= BOUNDARY + LIMITING
+    if found.status != "converged":
+        assert found.status == "not_converged"
+        assert "finer elements" in str(found.reason)
