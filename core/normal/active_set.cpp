@@ -13,6 +13,7 @@ namespace {
 constexpr double inner_tolerance = 1e-3, worst_inner_tolerance = 3e-2;
 // rounds in which the greatest error may stay above nine tenths of the least so far
 constexpr int patience = 6;
+constexpr double shortest = 1.0 / 8;  // of a step
 
 }  // namespace
 
@@ -30,6 +31,7 @@ struct active_set_solver::problem {
   double worst = 0;  // m, greatest violation of the contact conditions
   double least = HUGE_VAL;
   int strayed = 0;
+  int settled = 0;    // rounds with the area as it is
   double length = 1;  // of a step
   double ones = 0;    // sum of the preconditioned ones
   int products = 0;
@@ -119,16 +121,20 @@ void active_set_solver::evaluate(problem &s, const double *p) {
     s.least = s.worst;
     s.strayed = 0;
   } else if (++s.strayed > patience) {
-    s.length = 0.5;
+    s.length = std::max(0.5 * s.length, shortest);
+    s.strayed = 0;
   }
 }
 
 void active_set_solver::find_area(problem &s, const double *p) {
   s.worst = 0;
   s.size = 0;
+  ++s.settled;
   for (size_t i = 0; i < s.n; ++i) {
     error_[i] = s.h[i] + displacement_[i] - s.approach;
+    const bool before = inside_[i];
     inside_[i] = p[i] > 0 || error_[i] < 0;
+    if (inside_[i] != before) s.settled = 0;
     if (!inside_[i]) continue;
     area_[s.size++] = static_cast<int>(i);
     s.worst = std::max(s.worst, std::abs(error_[i]));
@@ -187,9 +193,11 @@ void active_set_solver::find_step(problem &s, const double *p) {
 }
 
 void active_set_solver::advance(problem &s, double *p) {
+  // of an area that stays, a whole step leaves no error
+  const double length = s.settled > 1 ? 1.0 : s.length;
   for (size_t k = 0; k < s.size; ++k) {
     double &value = p[area_[k]];
-    value = std::max(0.0, value + s.length * step_[k]);
+    value = std::max(0.0, value + length * step_[k]);
   }
   scale_to_force(s, p);
 }

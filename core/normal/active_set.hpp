@@ -8,7 +8,8 @@
 // by GMRES with an approximate inverse along the rows as preconditioner, cuts p at zero and looks
 // at the area again. Rounds end where e is within the tolerance on the area and p >= 0, e >= 0
 // hold, which is all that is asked of a solution; A is positive (half_space/viscous_influence.hpp),
-// so there is one only. Where rounds return to areas they have had, they take halved steps.
+// so there is one only. Where rounds return to areas they have had, their steps get shorter, until
+// the area stays.
 #pragma once
 
 #include "half_space/viscous_influence.hpp"

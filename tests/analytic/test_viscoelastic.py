@@ -233,9 +233,11 @@ def elastic_at(x: Array, y: Array, dx: float, dy: float) -> Array:
     )
 
 
-def under_history(x: Array, y: Array, dx: float, dy: float, length: float) -> Array:
-    """The elastic coefficients and RATIO times their mean over the line ahead of x: Gauss-Legendre
-    between and beyond the element's edges, towards which the panels shrink."""
+def under_history(
+    x: Array, y: Array, dx: float, dy: float, length: float, ratio: float = RATIO
+) -> Array:
+    """The elastic coefficients and `ratio` times their mean over the line ahead of x:
+    Gauss-Legendre between and beyond the element's edges, towards which the panels shrink."""
     total = elastic_at(x, y, dx, dy)
     node, weight = np.polynomial.legendre.leggauss(14)
     for k, place in np.ndenumerate(x):
@@ -248,7 +250,7 @@ def under_history(x: Array, y: Array, dx: float, dy: float, length: float) -> Ar
         ends += list(ends[-1] + np.geomspace(dx / 4, 40 * length + dx, 24))
         low, high = np.array(ends[:-1])[:, None], np.array(ends[1:])[:, None]
         s = (low + high) / 2 + (high - low) / 2 * node
-        share = RATIO * (high - low) / 2 * weight * np.exp(-s / length) / length
+        share = ratio * (high - low) / 2 * weight * np.exp(-s / length) / length
         at = elastic_at(place + s.ravel(), np.full(s.size, y[k]), dx, dy)
         total[(slice(None), *k)] += at @ share.ravel()
     return total
@@ -381,6 +383,37 @@ def test_rubber_far_from_elastic(ratio: float, time: float) -> None:
     assert found["normal_force"] == pytest.approx(100.0)
     assert found["viscous_power"] > 0
     assert found["friction_power"] > 0
+
+
+@pytest.mark.parametrize(("ratio", "slenderness"), [(300.0, 4.0), (1000.0, 1.0), (1000.0, 10.0)])
+def test_areas_that_come_back(ratio: float, slenderness: float) -> None:
+    """Bodies that yield by far more than they are elastic, over a length of the order of the
+    contact's: rounds with whole steps return to areas that they had. The conditions of contact by
+    dense sums."""
+    length = 0.06
+    case = {
+        "kind": "patch",
+        "material": rubber(1.0, ratio),
+        "geometry": {"curvatures": [10.0, 10.0 / slenderness**1.5]},
+        "load": {"normal_force": 500.0},
+        "grid": {"elements": [20, 20]},
+        "motion": {"rolling_speed": length},
+        "method": {"normal": "half_space", "tangential": "none", "tolerance": 1e-6},
+    }
+    found = patch_of(case, fields=True)
+    x, y, p = (np.array(found[name]) for name in ("x", "y", "pressure"))
+    x, y = np.unique(x), np.unique(y)
+    dx, dy = x[1] - x[0], y[1] - y[0]
+    offset = np.meshgrid(dx * np.arange(-x.size, x.size), dy * np.arange(y.size), indexing="ij")
+    table = under_history(*offset, dx, dy, length, ratio)[0]
+    i = np.subtract.outer(np.arange(x.size), np.arange(x.size)) + x.size
+    j = np.abs(np.subtract.outer(np.arange(y.size), np.arange(y.size)))
+    down = np.einsum("jikl,kl->ji", table[i[None, :, None, :], j[:, None, :, None]], p)
+    first, second = 10.0, 10.0 / slenderness**1.5
+    error = first * x**2 + second * y[:, None] ** 2 + down - found["approach"]
+    assert np.abs(error[p > 0]).max() < 2e-6 * down.max()
+    assert error[p == 0].min() > -2e-6 * down.max()
+    assert p.sum() * dx * dy == pytest.approx(500.0, rel=1e-9)
 
 
 def test_steps_from_each_other_and_prescribed_forces() -> None:
