@@ -148,7 +148,8 @@ uint32_t warnings_of_physics(const rp_config &config, const rp_input &in) {
          bit(RP_WARNING_SUPPLY, fluid && doubtful_supply(in.water_rate, in.oil_film));
 }
 
-uint32_t warnings_of_patch(const rp_config &config, const rp_patch_result &patch) {
+// friction: of the dry contact
+uint32_t warnings_of_patch(const rp_config &config, double friction, const rp_patch_result &patch) {
   bool hard = config.own_influence == 0;
   for (double modulus : config.shear_modulus) hard = hard && !outside(modulus, steel_range);
   uint32_t found = bit(RP_WARNING_HIGH_PRESSURE, patch.max_pressure > pressure_range[1]) |
@@ -159,6 +160,7 @@ uint32_t warnings_of_patch(const rp_config &config, const rp_patch_result &patch
                                           outside(patch.creepage[1], creepage_range)) |
              bit(RP_WARNING_SPIN, outside(patch.spin_creepage, spin_creepage_range));
   const double width = 2 * std::sqrt(patch.contact_area / std::numbers::pi);
+  const bool is_slippery = friction > 0 && friction < slippery;  // without a liquid
   const bool line = config.kind == RP_PATCH && config.geometry == RP_LINE_CONTACT;
   const double widest = std::max(doubtful_size, 2 * config.line_contact_radius);
   found |= bit(RP_WARNING_LAYER, !line && config.layer_thickness > width && width > 0) |
@@ -167,8 +169,8 @@ uint32_t warnings_of_patch(const rp_config &config, const rp_patch_result &patch
                                      config.fluid_liquid == RP_LIQUID_WATER &&
                                      outside(patch.fluid_temperature, water_range)) |
            bit(RP_WARNING_THICK_FILM, patch.central_film_thickness > thick_film) |
-           bit(RP_WARNING_SLIPPERY,
-               config.fluid_model != RP_FLUID_NONE && patch.effective_friction < slippery);
+           bit(RP_WARNING_SLIPPERY, config.fluid_model != RP_FLUID_NONE && !is_slippery &&
+                                        patch.effective_friction < slippery);
   bool coarse = false;
   for (int k = 0; k < (line ? 1 : 2); ++k) {
     // a grid of the case's own number has a border around it
@@ -191,7 +193,7 @@ uint32_t warnings_of_side(const rp_config &config, const rp_input &input, double
     const rp_patch_result &patch = wheel.patch[i];
     if (patch.status == RP_NO_CONTACT) continue;
     load += patch.share * patch.normal_force;
-    found |= warnings_of_patch(config, patch);
+    found |= warnings_of_patch(config, friction, patch);
   }
   found |= bit(RP_WARNING_LOAD, load != 0 && outside(load, normal_force_range));
   if (config.kind == RP_PATCH) return found;

@@ -485,3 +485,12 @@ def test_what_is_solved_has_no_reason() -> None:
     for side in ("left", "right"):
         assert result[side]["reason"] is None
         assert [patch["reason"] for patch in result[side]["patches"]] == [None]
+
+
+def test_a_dry_contact_as_slippery_says_nothing_of_its_liquid() -> None:
+    """Asperities that hardly rub are not a liquid that carries all."""
+    fluid = {**FILM, "viscosity": 1e-3, "boundary_friction": 8e-4}
+    case = with_values(PATCH, fluid=fluid, friction__coefficient=8e-4)
+    found = railpatch.solve(case)
+    assert 0 < found["effective_friction"] < 1e-3
+    assert not [text for text in found["warnings"] if "effective_friction" in text]
