@@ -43,8 +43,8 @@ WRONG = {
     "yaw too large": (YAW, "yaw = [[0, 0.0], [1, 0.5]]", ("rig.yaw", "0.5", "0.1 rad")),
     "progress": (YAW, "yaw = [[0, 0.0], [0.5, 0.0]]", ("rig.yaw", "from 0 to 1")),
     "order": (YAW, "yaw = [[0, 0.0], [0.5, 0.0], [0.5, 1e-3], [1, 0.0]]", ("rig.yaw", "rising")),
-    "row": (YAW, "yaw = [[0, 0.0, 1.0], [1, 0.0]]", ("rig.yaw[0]", "2 values")),
-    "one row": (YAW, "yaw = [[0, 0.0]]", ("rig.yaw", "2 values")),
+    "row": (YAW, "yaw = [[0, 0.0, 1.0], [1, 0.0]]", ("rig.yaw[0]", "2 or more rows")),
+    "one row": (YAW, "yaw = [[0, 0.0]]", ("rig.yaw", "2 or more rows")),
     "nan": (YAW, "yaw = [[0, nan], [1, 0.0]]", ("rig.yaw[0][1]", "nan", "finite")),
     "torque": (
         "[rig]",

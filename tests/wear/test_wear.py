@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import itertools
 import json
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import Any
 
@@ -215,6 +217,18 @@ def test_rails_alone_by_passages(tmp_path: Path) -> None:
     page = (tmp_path / "out" / "wear.html").read_text(encoding="utf-8")
     for text in ("Both rails", "passages", "off rails [g/m]", "greatest Y/Q"):
         assert text in page
+
+
+def test_a_worker_that_ends_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is done stays for the next call."""
+
+    def ended(*_: Any) -> Any:
+        raise BrokenProcessPool
+
+    monkeypatch.setattr(ProcessPoolExecutor, "map", ended)
+    with pytest.raises(CaseError, match="one of 2 ended, by a signal"):
+        wear_profiles(load_wear(written(tmp_path, sweep=SWEEP)), tmp_path / "out", workers=2)
+    assert len(json.loads((tmp_path / "out" / "wear.json").read_text())["rows"]) == 1
 
 
 def test_processes_give_the_same_rows_and_files(

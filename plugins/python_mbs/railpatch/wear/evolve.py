@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -66,18 +67,34 @@ def wear_profiles(
     """
     folder = Path(folder)
     rows = _begun(plan, folder)
-    with pool_of(workers) if workers > 1 else nullcontext() as pool:
-        solve: Any = map if pool is None else pool.map
-        while _way(plan, rows[-1]) < plan.table.total:
-            rows.append(_step(plan, folder, rows[-1], solve))
-            _keep(plan, folder, rows)
-            if progress is not None:
-                progress(min(1.0, _way(plan, rows[-1]) / plan.table.total))
-        if rows[-1]["y_over_q"] is None:
-            # what the last profiles do
-            _, rows[-1]["y_over_q"] = _solve(plan, folder, rows[-1], solve)
-            _keep(plan, folder, rows)
+    try:
+        with pool_of(workers) if workers > 1 else nullcontext() as pool:
+            _wear(plan, folder, rows, map if pool is None else pool.map, progress)
+    except BrokenProcessPool:
+        raise CaseError(
+            f"--workers: one of {workers} ended, by a signal or for want of memory; steps that are"
+            f" done are in {folder}, and the same call goes on there"
+        ) from None
     return rows
+
+
+def _wear(
+    plan: WearPlan,
+    folder: Path,
+    rows: list[dict[str, Any]],
+    solve: Any,
+    progress: Callable[[float], None] | None,
+) -> None:
+    """Adds rows until all is worn. solve: as map()."""
+    while _way(plan, rows[-1]) < plan.table.total:
+        rows.append(_step(plan, folder, rows[-1], solve))
+        _keep(plan, folder, rows)
+        if progress is not None:
+            progress(min(1.0, _way(plan, rows[-1]) / plan.table.total))
+    if rows[-1]["y_over_q"] is None:
+        # what the last profiles do
+        _, rows[-1]["y_over_q"] = _solve(plan, folder, rows[-1], solve)
+        _keep(plan, folder, rows)
 
 
 def _way(plan: WearPlan, row: dict[str, Any]) -> float:
