@@ -43,7 +43,7 @@ WRONG = {
     "yaw too large": (YAW, "yaw = [[0, 0.0], [1, 0.5]]", ("rig.yaw", "0.5", "0.1 rad")),
     "progress": (YAW, "yaw = [[0, 0.0], [0.5, 0.0]]", ("rig.yaw", "from 0 to 1")),
     "order": (YAW, "yaw = [[0, 0.0], [0.5, 0.0], [0.5, 1e-3], [1, 0.0]]", ("rig.yaw", "rising")),
-    "row": (YAW, "yaw = [[0, 0.0, 1.0], [1, 0.0]]", ("rig.yaw[0]", "2 or more rows")),
+    "row": (YAW, "yaw = [[0, 0.0, 1.0], [1, 0.0]]", ("rig.yaw[0]", "2 values")),
     "one row": (YAW, "yaw = [[0, 0.0]]", ("rig.yaw", "2 or more rows")),
     "nan": (YAW, "yaw = [[0, nan], [1, 0.0]]", ("rig.yaw[0][1]", "nan", "finite")),
     "torque": (
