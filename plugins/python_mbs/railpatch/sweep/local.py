@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from multiprocessing import current_process, get_context
 
 from railpatch.errors import CaseError
@@ -110,15 +110,23 @@ class LocalWorkers:
     def __call__(self, chunks: list[Chunk]) -> Iterable[tuple[Chunk, list[Row]]]:
         if self.count <= 1:
             return ((chunk, solve_chunk(chunk)) for chunk in chunks)
-        return self._in_processes(chunks)
+        waiting, suspects = deque((chunk, 1) for chunk in chunks), deque[Tried]()
+        running: dict[Future[list[Row]], Tried] = {}
+        # at once; workers that end before they have any are replaced below
+        with suppress(BrokenProcessPool):
+            self._hand_out(waiting, suspects, running)
+        return self._in_processes(waiting, suspects, running)
 
-    def _in_processes(self, chunks: list[Chunk]) -> Iterator[tuple[Chunk, list[Row]]]:
+    def _in_processes(
+        self,
+        waiting: deque[Tried],
+        suspects: deque[Tried],
+        running: dict[Future[list[Row]], Tried],
+    ) -> Iterator[tuple[Chunk, list[Row]]]:
         """Those that ran when a worker ended are tried again alone, case by case, by new ones.
         Raises CaseError where new workers end before they are ready."""
-        waiting, suspects = deque((chunk, 1) for chunk in chunks), deque[Tried]()
         idle = 0  # sets of workers, one after the other, that ended so
-        while waiting or suspects:
-            running: dict[Future[list[Row]], Tried] = {}
+        while waiting or suspects or running:
             broken = False
             while not broken and (waiting or suspects or running):
                 try:
@@ -147,6 +155,7 @@ class LocalWorkers:
                 self._pool = None
                 for chunk, tries in running.values():
                     suspects += [(one, tries + 1) for one in single_cases(chunk)]
+                running.clear()
 
     def _hand_out(
         self,

@@ -159,8 +159,9 @@ class Plan:
 
     def ids(self) -> list[str]:
         """Of each case, by its content: sweeps that have a case in common have its id in common."""
+        base, keys = self._base, self.keys
         return [
-            digest((self._base, *sorted(zip(self.keys, map(repr, point), strict=True))))
+            digest((base, *sorted(zip(keys, map(repr, point), strict=True))))
             for point in self.points
         ]
 

@@ -52,7 +52,7 @@ def run_sweep(
         logs.mkdir(parents=True, exist_ok=True)
     ids = plan.ids()
     outputs = tuple(plan.table.outputs or ())
-    row = None
+    row = first = None
     with LocalWorkers(workers if backend is None else 1, plan.kind) as local:
         if not outputs or is_new(folder):
             local.begin()
@@ -70,9 +70,9 @@ def run_sweep(
             if row is None or row.id in found:
                 _, row = first_of(plan, ids, missing, outputs, logs)
             place = ids.index(row.id)
-            write_chunk(folder, chunk_of(plan, ids, [place], outputs, logs), [row])
+            first = chunk_of(plan, ids, [place], outputs, logs)
             found[row.id] = row
-            seconds.append(time_of(plan, chunk_of(plan, ids, [place], outputs, logs), row))
+            seconds.append(time_of(plan, first, row))
             missing.remove(place)
         progress(len(ids) - len(missing), len(ids))
         each = median_low(seconds) if seconds else SECONDS
@@ -81,7 +81,11 @@ def run_sweep(
         if page and (backend or workers > 1):
             # plotly takes a while to import, in which others solve
             Thread(target=import_module, args=(PAGE,), daemon=True).start()
-        for chunk, rows in (backend or local)(chunks):
+        others = (backend or local)(chunks)
+        if first is not None and row is not None:
+            # pyarrow imports pandas where it is, while others solve
+            write_chunk(folder, first, [row])
+        for chunk, rows in others:
             write_chunk(folder, chunk, rows)
             found |= {row.id: row for row in rows}
             done += len(rows)
